@@ -1,0 +1,90 @@
+# phr: parallel hierarchical radiosity.
+#
+#   make                 phr with mpicc              make SERIAL=1   the same without MPI, with cc
+#   make demo            the Cornell box, 2 ranks    make check      all tests
+#   make install         to $(DESTDIR)$(prefix)      make uninstall  make clean
+#
+# Knobs: MPICC, CC, MPIEXEC, CFLAGS, CPPFLAGS, LDFLAGS, prefix, DESTDIR.
+# Other builds side by side: BUILD is where objects go, PHR the program that is made of them.
+
+SHELL = /bin/sh
+.SUFFIXES:
+
+MPICC ?= mpicc
+MPIEXEC ?= mpiexec
+CFLAGS ?= -O2 -g
+INSTALL ?= install
+prefix ?= /usr/local
+bindir = $(prefix)/bin
+mandir = $(prefix)/share/man
+PHR ?= phr
+
+# What the results depend on: C99 without extensions, no fused multiply-add.
+STRICT = -std=c99 -ffp-contract=off
+WARN = -pedantic -Wall -Wextra -Wshadow -Wconversion
+
+ifdef SERIAL
+BUILD ?= build/serial
+COMPILE = $(CC)
+MPI_INCLUDE = -Impi/serial
+else
+BUILD ?= build/mpi
+COMPILE = $(MPICC)
+MPI_INCLUDE =
+endif
+
+GEOM = alloc error polygon scene triangle
+OCTREE = octree
+RAD = flux formfactor id link method patch pushpull treecode
+MPI = assign broadcast comm gather linking migrate picture plan refinement scatter solver vote
+IO = camera image mesh mtl obj options output render shading stats text tone
+MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)
+OBJECTS = $(MODULES:%=$(BUILD)/%.o)
+
+# Unit tests, bottom up; `exchange` runs on several ranks.
+TESTS = alloc id triangle scene polygon octree flux patch formfactor link pushpull treecode \
+        plan assign text obj output tone image camera shading options exchange
+TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)
+
+all: $(PHR)
+
+# Linked beside the objects and copied, so that `make` after `make SERIAL=1` changes phr again.
+$(PHR): $(BUILD)/phr FORCE
+	@cmp -s $(BUILD)/phr $@ || cp $(BUILD)/phr $@
+
+$(BUILD)/phr: $(BUILD)/phr.o $(OBJECTS)
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/phr.o $(OBJECTS) -lm
+
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(OBJECTS)
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(OBJECTS) -lm
+
+$(BUILD)/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) -MMD -c -o $@ $<
+
+-include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(TESTS:%=$(BUILD)/tests/%.d)
+
+demo: $(PHR)
+	$(MPIEXEC) -n 2 ./$(PHR) scenes/cornell.obj --view scenes/cornell.view \
+	    -o cornell.ppm -o cornell.pfm -o cornell.ply
+
+tests: $(TEST_PROGRAMS)
+
+check: $(PHR) tests
+	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
+	    sh tests/run.sh $(TESTS)
+
+install: $(PHR)
+	mkdir -p $(DESTDIR)$(bindir) $(DESTDIR)$(mandir)/man1
+	$(INSTALL) -m 755 $(PHR) $(DESTDIR)$(bindir)/phr
+	$(INSTALL) -m 644 phr.1 $(DESTDIR)$(mandir)/man1/phr.1
+
+uninstall:
+	rm -f $(DESTDIR)$(bindir)/phr $(DESTDIR)$(mandir)/man1/phr.1
+
+clean:
+	rm -rf build phr cornell.ppm cornell.pfm cornell.ply
+
+FORCE:
+
+.PHONY: all demo tests check install uninstall clean FORCE

@@ -1,0 +1,37 @@
+/* The one counted allocator of the program.
+ *
+ * Every block is counted, so that alloc_balance() == 0 at exit turns each run into a leak
+ * test. Running out of memory is not returned to the caller: the failure handler is called
+ * and must not return (the MPI layer installs one that ends all ranks with exit code 1). */
+#ifndef GEOM_ALLOC_H
+#define GEOM_ALLOC_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* `count` elements of `size` bytes, zeroed. Never NULL, also for count 0.
+ * Errors: overflow of count * size and exhausted memory call the failure handler. */
+void *alloc_array(size_t count, size_t size);
+
+/* Resizes a block to `count` elements; what lies past the old end is not initialised.
+ * `block` may be NULL. */
+void *alloc_resize(void *block, size_t count, size_t size);
+
+/* Makes room for `needed` elements, growing by half so that appending costs O(1) amortised.
+ * `*capacity` is the number of elements that there is room for, updated on growth. */
+void *alloc_reserve(void *block, int64_t *capacity, int64_t needed, size_t size);
+
+/* Copy of a string. */
+char *alloc_string(const char *text);
+
+/* Releases a block; NULL is allowed. */
+void alloc_free(void *block);
+
+/* Number of blocks that are allocated and not yet freed. */
+int64_t alloc_balance(void);
+
+/* `handler(bytes)` is called when `bytes` cannot be had; it must not return.
+ * Without a handler: a line on stderr and exit code 1. */
+void alloc_on_failure(void (*handler)(size_t bytes));
+
+#endif

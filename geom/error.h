@@ -1,0 +1,30 @@
+/* Errors of the user or the system as values: a text and the exit code that it asks for.
+ *
+ * A function that can fail so takes a `struct error *`, fills it and returns false. Nothing
+ * is printed where the error is found: the ranks first agree on it, then rank 0 prints it. */
+#ifndef GEOM_ERROR_H
+#define GEOM_ERROR_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum {
+    EXIT_DONE = 0,  /* the computation ended well */
+    EXIT_FAILED = 1, /* it failed: diverged, out of memory, cannot write */
+    EXIT_USAGE = 2  /* bad usage or bad input */
+};
+
+struct error {
+    int32_t code;   /* EXIT_DONE while nothing is wrong */
+    char text[508]; /* one line, without "phr: " and without the newline */
+};
+
+/* Fills `error` from a printf format unless it holds an error already (the first one counts);
+ * control characters of the text (which may quote a file) become '?'. Returns false, so that
+ * a caller can write `return error_set(...)`. */
+#ifdef __GNUC__
+__attribute__((format(printf, 3, 4)))
+#endif
+bool error_set(struct error *error, int code, const char *format, ...);
+
+#endif

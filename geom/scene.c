@@ -1,0 +1,171 @@
+/* Preparation of the scene.
+ *
+ * Scaling by a power of two is exact, so a scene scaled by 2^k gives the same bits in scene
+ * units, and no threshold of the program has to know how large the scene is. Moving the centre
+ * to the origin costs one rounding per coordinate and takes away the digits that a large offset
+ * would eat. Shared vertices stay shared: equal inputs give equal outputs. */
+#include "geom/scene.h"
+
+#include "geom/alloc.h"
+
+static const double CLAMPED_REFLECTANCE = 0.999;
+
+struct scene *scene_create(int32_t input_count, int32_t material_count)
+{
+    struct scene *scene = alloc_array(1, sizeof *scene);
+    scene->input_count = input_count;
+    scene->material_count = material_count;
+    scene->triangles = alloc_array((size_t)input_count, sizeof *scene->triangles);
+    scene->planes = alloc_array((size_t)input_count, sizeof *scene->planes);
+    scene->areas = alloc_array((size_t)input_count, sizeof *scene->areas);
+    scene->material_of = alloc_array((size_t)input_count, sizeof *scene->material_of);
+    scene->materials = alloc_array((size_t)material_count, sizeof *scene->materials);
+    return scene;
+}
+
+void scene_destroy(struct scene *scene)
+{
+    if (!scene)
+        return;
+    alloc_free(scene->triangles);
+    alloc_free(scene->planes);
+    alloc_free(scene->areas);
+    alloc_free(scene->material_of);
+    alloc_free(scene->materials);
+    alloc_free(scene);
+}
+
+static double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static void find_bounds(struct scene *scene)
+{
+    scene->low = scene->high = scene->triangles[0].corner[0];
+    for (int32_t i = 0; i < scene->input_count; i++) {
+        for (int k = 0; k < 3; k++) {
+            struct vec3 x = scene->triangles[i].corner[k];
+            scene->low = (struct vec3){smaller(scene->low.x, x.x), smaller(scene->low.y, x.y),
+                                       smaller(scene->low.z, x.z)};
+            scene->high = (struct vec3){larger(scene->high.x, x.x), larger(scene->high.y, x.y),
+                                        larger(scene->high.z, x.z)};
+        }
+    }
+}
+
+static bool normalise(struct scene *scene, struct error *error)
+{
+    find_bounds(scene);
+    struct vec3 size = vec3_sub(scene->high, scene->low);
+    double extent = larger(size.x, larger(size.y, size.z));
+    int exponent;
+    frexp(extent, &exponent);
+    if (!(extent > 0.0))
+        return error_set(error, EXIT_USAGE, "the scene is a single point");
+    if (!(extent < 1e150) || exponent < -500)
+        return error_set(error, EXIT_USAGE, "the scene's extent %g is out of range", extent);
+    scene->exponent = exponent;
+    scene->centre = vec3_add(scene->low, vec3_scale(size, 0.5));
+    for (int32_t i = 0; i < scene->input_count; i++)
+        for (int k = 0; k < 3; k++)
+            scene->triangles[i].corner[k] = scene_from_input(scene, scene->triangles[i].corner[k]);
+    find_bounds(scene);
+    return true;
+}
+
+static int64_t clamp_reflectances(struct scene *scene)
+{
+    int64_t clamped = 0;
+    for (int32_t m = 0; m < scene->material_count; m++) {
+        bool changed = false;
+        for (int c = 0; c < BANDS; c++) {
+            double *rho = &scene->materials[m].reflectance.band[c];
+            changed = changed || *rho >= 1.0;
+            *rho = *rho >= 1.0 ? CLAMPED_REFLECTANCE : *rho;
+        }
+        clamped += changed;
+    }
+    return clamped;
+}
+
+bool scene_prepare(struct scene *scene, struct scene_repairs *repairs, struct error *error)
+{
+    if (scene->input_count == 0)
+        return error_set(error, EXIT_USAGE, "the scene has no faces");
+    if (!normalise(scene, error))
+        return false;
+    repairs->clamped = clamp_reflectances(scene);
+    repairs->degenerate = 0;
+    for (int32_t i = 0; i < scene->input_count; i++) {
+        if (triangle_is_degenerate(&scene->triangles[i])) {
+            repairs->degenerate++;
+            continue;
+        }
+        scene->areas[i] = triangle_area(&scene->triangles[i]);
+        scene->planes[i] = triangle_plane(&scene->triangles[i]);
+    }
+    if (repairs->degenerate == scene->input_count)
+        return error_set(error, EXIT_USAGE, "all faces of the scene are degenerate");
+    return true;
+}
+
+int32_t scene_root_count(const struct scene *scene)
+{
+    return scene->two_sided ? 2 * scene->input_count : scene->input_count;
+}
+
+struct triangle scene_root_triangle(const struct scene *scene, int32_t root)
+{
+    struct triangle t = scene->triangles[scene_input_of(scene, root)];
+    if (root >= scene->input_count) {
+        struct vec3 swap = t.corner[1];
+        t.corner[1] = t.corner[2];
+        t.corner[2] = swap;
+    }
+    return t;
+}
+
+struct plane scene_root_plane(const struct scene *scene, int32_t root)
+{
+    struct plane plane = scene->planes[scene_input_of(scene, root)];
+    if (root >= scene->input_count)
+        plane = (struct plane){vec3_scale(plane.normal, -1.0), -plane.offset};
+    return plane;
+}
+
+double scene_area(const struct scene *scene)
+{
+    double sum = 0.0;
+    for (int32_t root = 0; root < scene_root_count(scene); root++)
+        sum += scene_root_area(scene, root);
+    return sum;
+}
+
+double scene_emitted_power(const struct scene *scene)
+{
+    double sum = 0.0;
+    for (int32_t root = 0; root < scene_root_count(scene); root++)
+        sum += scene_root_area(scene, root) * rgb_sum(scene_root_material(scene, root)->emission);
+    return sum;
+}
+
+double scene_area_unit(const struct scene *scene)
+{
+    return ldexp(1.0, 2 * scene->exponent);
+}
+
+struct vec3 scene_to_input(const struct scene *scene, struct vec3 x)
+{
+    return vec3_add(scene->centre, vec3_scale(x, ldexp(1.0, scene->exponent)));
+}
+
+struct vec3 scene_from_input(const struct scene *scene, struct vec3 x)
+{
+    return vec3_scale(vec3_sub(x, scene->centre), ldexp(1.0, -scene->exponent));
+}

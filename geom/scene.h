@@ -1,0 +1,93 @@
+/* The scene: triangles with materials, in the program's own units.
+ *
+ * Positions are moved and scaled on preparation: the centre of the bounding box goes to the
+ * origin, and a power of two brings the longest side into (1/2, 1]. Lengths in the program are
+ * such "scene units"; one scene unit is 2^scene.exponent input units (called metres). */
+#ifndef GEOM_SCENE_H
+#define GEOM_SCENE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "geom/error.h"
+#include "geom/triangle.h"
+
+struct material {
+    struct rgb reflectance; /* rho, 1, each band in [0, 1) */
+    struct rgb emission;    /* E, emitted radiosity, W/m^2, each band >= 0 */
+};
+
+/* True for a surface that neither reflects nor emits. */
+static inline bool material_is_dark(const struct material *material)
+{
+    return rgb_sum(material->reflectance) == 0.0 && rgb_sum(material->emission) == 0.0;
+}
+
+/* What the repair of an input changed, for one warning per kind. */
+struct scene_repairs {
+    int64_t degenerate; /* triangles without area, dropped (their numbers stay) */
+    int64_t clamped;    /* materials with a reflectance of 1 or more, set to 0.999 */
+};
+
+struct scene {
+    struct triangle *triangles; /* [input_count], scene units after scene_prepare() */
+    struct plane *planes;       /* [input_count]; zero for a dropped triangle */
+    double *areas;              /* [input_count], square scene units; 0 for a dropped one */
+    int32_t *material_of;       /* [input_count], index into materials */
+    struct material *materials; /* [material_count] */
+    int32_t input_count;        /* triangles read from the file, dropped ones included */
+    int32_t material_count;
+    bool two_sided;             /* each triangle i has a twin root i + input_count */
+    struct vec3 centre;         /* of the input's bounding box, input units */
+    int32_t exponent;           /* a scene unit is 2^exponent input units */
+    struct vec3 low, high;      /* bounding box, scene units */
+};
+
+/* An empty scene with room for the given numbers. Owns its arrays. */
+struct scene *scene_create(int32_t input_count, int32_t material_count);
+void scene_destroy(struct scene *scene);
+
+/* Moves and scales the positions, clamps reflectances, finds degenerate triangles, computes
+ * planes and areas. To be called once, on positions in input units.
+ * Errors: no triangle with an area; a coordinate or extent out of the range of the numbers. */
+bool scene_prepare(struct scene *scene, struct scene_repairs *repairs, struct error *error);
+
+/* Number of roots, twins and dropped ones included: IDs run from 0 to this. */
+int32_t scene_root_count(const struct scene *scene);
+
+/* The input triangle behind a root: itself, or the one whose twin it is. */
+static inline int32_t scene_input_of(const struct scene *scene, int32_t root)
+{
+    return root < scene->input_count ? root : root - scene->input_count;
+}
+
+/* Geometry of a root. A twin has its corners in the order (a, c, b) and faces the other way. */
+struct triangle scene_root_triangle(const struct scene *scene, int32_t root);
+struct plane scene_root_plane(const struct scene *scene, int32_t root);
+
+static inline double scene_root_area(const struct scene *scene, int32_t root)
+{
+    return scene->areas[scene_input_of(scene, root)];
+}
+
+static inline const struct material *scene_root_material(const struct scene *scene, int32_t root)
+{
+    return &scene->materials[scene->material_of[scene_input_of(scene, root)]];
+}
+
+/* Sum of the areas of all roots, square scene units. */
+double scene_area(const struct scene *scene);
+
+/* Sum over roots and bands of area times emission, W for areas in square scene units. */
+double scene_emitted_power(const struct scene *scene);
+
+/* Square input units in a square scene unit: turns power and areas into those of the input. */
+double scene_area_unit(const struct scene *scene);
+
+/* A point of the scene in input units. */
+struct vec3 scene_to_input(const struct scene *scene, struct vec3 x);
+
+/* A point in input units in the scene's. */
+struct vec3 scene_from_input(const struct scene *scene, struct vec3 x);
+
+#endif

@@ -1,0 +1,116 @@
+/* Triangles and the watertight segment test.
+ *
+ * The test follows Woop, Benthin and Wald (Journal of Computer Graphics Techniques 2(1), 2013):
+ * coordinates are taken relative to the segment's start, permuted and sheared so that the
+ * segment runs along the third axis; the three edge functions of the projected triangle then
+ * say whether the origin is inside. What makes it watertight:
+ *
+ *  - a vertex is projected to the same bits whichever triangle it belongs to;
+ *  - an edge function is x1 y2 - x2 y1, so the two triangles at an edge get exact negatives;
+ *  - rounding is monotone, so the sign of that difference is right or zero, never inverted,
+ *    and zero counts as inside.
+ *
+ * So no line slips between two triangles that share an edge. A fused multiply-add would break
+ * the second point, which is one more reason for -ffp-contract=off.
+ *
+ * Rejected: Moeller-Trumbore (each triangle rounds a shared edge for itself, so rays leak) and
+ * an absolute epsilon along the ray (wrong for small scenes and at contacts). */
+#include "geom/triangle.h"
+
+#include <stddef.h>
+
+struct vec3 triangle_cross(const struct triangle *t)
+{
+    return vec3_cross(vec3_sub(t->corner[1], t->corner[0]), vec3_sub(t->corner[2], t->corner[0]));
+}
+
+double triangle_area(const struct triangle *t)
+{
+    return 0.5 * vec3_length(triangle_cross(t));
+}
+
+struct vec3 triangle_centroid(const struct triangle *t)
+{
+    struct vec3 sum = vec3_add(vec3_add(t->corner[0], t->corner[1]), t->corner[2]);
+    return vec3_scale(sum, 1.0 / 3.0);
+}
+
+struct plane triangle_plane(const struct triangle *t)
+{
+    struct vec3 cross = triangle_cross(t);
+    struct plane plane;
+    plane.normal = vec3_scale(cross, 1.0 / vec3_length(cross));
+    plane.offset = vec3_dot(plane.normal, triangle_centroid(t));
+    return plane;
+}
+
+bool triangle_is_degenerate(const struct triangle *t)
+{
+    double longest = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double edge = vec3_length(vec3_sub(t->corner[(k + 1) % 3], t->corner[k]));
+        longest = edge > longest ? edge : longest;
+    }
+    return 2.0 * triangle_area(t) <= GEOM_ROUNDING * longest; /* its height is noise */
+}
+
+struct triangle triangle_child(const struct triangle *t, int child)
+{
+    struct vec3 a = t->corner[0], b = t->corner[1], c = t->corner[2];
+    struct vec3 ab = vec3_middle(a, b), bc = vec3_middle(b, c), ca = vec3_middle(c, a);
+    switch (child) {
+    case 0: return (struct triangle){{a, ab, ca}};
+    case 1: return (struct triangle){{ab, b, bc}};
+    case 2: return (struct triangle){{ca, bc, c}};
+    default: return (struct triangle){{bc, ca, ab}};
+    }
+}
+
+struct segment segment_make(struct vec3 from, struct vec3 to)
+{
+    struct segment s = {.from = from, .to = to};
+    struct vec3 d = vec3_sub(to, from);
+    double x = fabs(d.x), y = fabs(d.y), z = fabs(d.z);
+    int largest = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
+    s.axis[0] = (largest + 1) % 3;
+    s.axis[1] = (largest + 2) % 3;
+    s.axis[2] = largest;
+    s.shear[0] = vec3_axis(d, s.axis[0]) / vec3_axis(d, largest);
+    s.shear[1] = vec3_axis(d, s.axis[1]) / vec3_axis(d, largest);
+    return s;
+}
+
+bool segment_line_meets(const struct segment *s, const struct triangle *t, double weight[3])
+{
+    double x[3], y[3];
+    for (int k = 0; k < 3; k++) {
+        struct vec3 v = vec3_sub(t->corner[k], s->from);
+        double z = vec3_axis(v, s->axis[2]);
+        x[k] = vec3_axis(v, s->axis[0]) - s->shear[0] * z;
+        y[k] = vec3_axis(v, s->axis[1]) - s->shear[1] * z;
+    }
+    double u = x[1] * y[2] - x[2] * y[1];
+    double v = x[2] * y[0] - x[0] * y[2];
+    double w = x[0] * y[1] - x[1] * y[0];
+    if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0))
+        return false;
+    double sum = u + v + w;
+    if (sum == 0.0)
+        return false;
+    if (weight) {
+        weight[0] = u / sum;
+        weight[1] = v / sum;
+        weight[2] = w / sum;
+    }
+    return true;
+}
+
+bool segment_is_blocked_by(const struct segment *s, const struct triangle *t,
+                           const struct plane *plane)
+{
+    double start = plane_distance(plane, s->from);
+    double end = plane_distance(plane, s->to);
+    bool crosses = (start > GEOM_ROUNDING && end < -GEOM_ROUNDING) ||
+                   (start < -GEOM_ROUNDING && end > GEOM_ROUNDING);
+    return crosses && segment_line_meets(s, t, NULL);
+}

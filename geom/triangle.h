@@ -1,0 +1,66 @@
+/* Triangles: area, normal, subdivision, and the segment test that decides visibility. */
+#ifndef GEOM_TRIANGLE_H
+#define GEOM_TRIANGLE_H
+
+#include <stdbool.h>
+
+#include "geom/vec.h"
+
+/* A distance (scene units, where the scene fits in the unit cube) below which rounding, and
+ * not the input, decides on which side of a plane a point lies: 64 units in the last place. */
+#define GEOM_ROUNDING 1.4210854715202004e-14
+
+struct triangle {
+    struct vec3 corner[3]; /* counter-clockwise seen from the front */
+};
+
+struct plane {
+    struct vec3 normal; /* unit length, towards the front */
+    double offset;      /* normal . x of the points x of the plane */
+};
+
+/* Segment or ray prepared for the watertight test: coordinates are sheared so that the
+ * direction becomes the third axis. */
+struct segment {
+    struct vec3 from, to;
+    int axis[3];     /* permutation of the coordinates; axis[2] is where |to - from| is largest */
+    double shear[2]; /* what is subtracted from the first two coordinates per unit of the third */
+};
+
+struct vec3 triangle_cross(const struct triangle *t);   /* normal times twice the area */
+double triangle_area(const struct triangle *t);         /* m^2 in scene units */
+struct vec3 triangle_centroid(const struct triangle *t);
+
+/* Pre: the area is not zero. */
+struct plane triangle_plane(const struct triangle *t);
+
+/* True where the corners lie on a line within rounding. */
+bool triangle_is_degenerate(const struct triangle *t);
+
+/* Child 0..3 of the quadtree split: 0 = (a, ab, ca), 1 = (ab, b, bc), 2 = (ca, bc, c) and
+ * 3 = (bc, ca, ab). Two triangles that share an edge split it at the same bits. */
+struct triangle triangle_child(const struct triangle *t, int child);
+
+/* Signed distance to the plane, positive in front. */
+static inline double plane_distance(const struct plane *plane, struct vec3 x)
+{
+    return vec3_dot(plane->normal, x) - plane->offset;
+}
+
+/* Pre: from != to. */
+struct segment segment_make(struct vec3 from, struct vec3 to);
+
+/* True where the segment's line passes through the closed triangle. Watertight: of the
+ * triangles of a closed mesh at least one says yes on each crossing, also through edges and
+ * vertices. A line in the triangle's plane misses. If `weight` is not NULL it receives the
+ * barycentric coordinates of the point. */
+bool segment_line_meets(const struct segment *s, const struct triangle *t, double weight[3]);
+
+/* True where the triangle blocks the segment: its end points lie on opposite sides of the
+ * triangle's plane, both off the plane by more than rounding, and the line passes through the
+ * triangle. Both sides block. A triangle in whose plane an end point lies does not block:
+ * that is what lets a decal in a wall, or a light flush with the ceiling, be seen. */
+bool segment_is_blocked_by(const struct segment *s, const struct triangle *t,
+                           const struct plane *plane);
+
+#endif

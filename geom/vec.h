@@ -1,0 +1,67 @@
+/* Vectors of three doubles and colours of three bands.
+ *
+ * Only + - * / and sqrt: all of them are exactly rounded by IEEE 754, so every machine
+ * computes the same bits (the build forbids fused multiply-add with -ffp-contract=off). */
+#ifndef GEOM_VEC_H
+#define GEOM_VEC_H
+
+#include <math.h>
+
+struct vec3 {
+    double x, y, z;
+};
+
+/* Three bands: red, green, blue. */
+struct rgb {
+    double band[3];
+};
+
+enum { BANDS = 3 };
+
+static inline struct vec3 vec3_add(struct vec3 a, struct vec3 b)
+{
+    return (struct vec3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+static inline struct vec3 vec3_sub(struct vec3 a, struct vec3 b)
+{
+    return (struct vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static inline struct vec3 vec3_scale(struct vec3 a, double s)
+{
+    return (struct vec3){a.x * s, a.y * s, a.z * s};
+}
+
+static inline struct vec3 vec3_middle(struct vec3 a, struct vec3 b)
+{
+    return vec3_scale(vec3_add(a, b), 0.5);
+}
+
+static inline double vec3_dot(struct vec3 a, struct vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline struct vec3 vec3_cross(struct vec3 a, struct vec3 b)
+{
+    return (struct vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static inline double vec3_length(struct vec3 a)
+{
+    return sqrt(vec3_dot(a, a));
+}
+
+/* Component 0, 1 or 2. */
+static inline double vec3_axis(struct vec3 a, int axis)
+{
+    return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
+}
+
+static inline double rgb_sum(struct rgb c)
+{
+    return c.band[0] + c.band[1] + c.band[2];
+}
+
+#endif

@@ -1,0 +1,32 @@
+/* The camera: where a picture is taken from. */
+#ifndef IO_CAMERA_H
+#define IO_CAMERA_H
+
+#include <stdbool.h>
+
+#include "geom/scene.h"
+
+enum { IMAGE_SIZE_MAX = 32768 }; /* pixels along a side */
+
+struct camera {
+    struct vec3 eye, at, up; /* input units */
+    double fov;              /* vertical, degrees, 0..180 exclusive */
+    int width, height;       /* pixels */
+    bool fronts_only;        /* look through the backs of the input triangles */
+};
+
+/* Reads a view file: lines `eye x y z`, `at x y z`, `up x y z`, `fov degrees`, `size w h` in any
+ * order, # comments. eye and at must be there; up is 0 1 0 (or 0 0 1 where that is the viewing
+ * direction), fov 45 and the size 512 512 unless said.
+ * Errors: "FILE:LINE: what is wrong", EXIT_USAGE. */
+bool camera_read(const char *path, struct camera *camera, struct error *error);
+
+/* A camera outside the bounding box that shows all of it, looking through backs, so that a
+ * closed room is seen like a doll's house. */
+struct camera camera_of_scene(const struct scene *scene);
+
+/* Direction, of no certain length, of the ray through the point (x, y) of the picture, in
+ * pixels from the top left corner. */
+struct vec3 camera_ray(const struct camera *camera, double x, double y);
+
+#endif

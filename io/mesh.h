@@ -1,0 +1,21 @@
+/* The solution as a PLY mesh. */
+#ifndef IO_MESH_H
+#define IO_MESH_H
+
+#include <stdbool.h>
+
+#include "io/shading.h"
+#include "io/tone.h"
+
+/* Writes binary little-endian PLY: vertices with float x y z (input units) and uchar red green
+ * blue (sRGB of the vertex radiosity); faces with `list uchar int vertex_indices`, float
+ * radiosity_r radiosity_g radiosity_b (of the leaf, W/m^2), uint root and uint hierarchy: one
+ * face per leaf, roots in order, depth first. Errors: as output_close(). */
+bool mesh_write(const struct shading *shading, const struct tone *tone, const char *path,
+                struct error *error);
+
+/* The radiosities of all leaves as linear RGB pixels, to choose an exposure where there is no
+ * picture. *count receives their number; to be freed with alloc_free(). */
+float *mesh_colours(const struct forest *forest, int64_t *count);
+
+#endif

@@ -1,0 +1,214 @@
+/* The command line.
+ *
+ * Options are a table: a name, what kind of value follows, and where it goes. The same table
+ * would serve no one at run time, so --help is plain text that stays readable in the source. */
+#include "io/options.h"
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "io/camera.h"
+#include "io/text.h"
+
+enum kind { KIND_FLAG, KIND_TEXT, KIND_REAL, KIND_INTEGER, KIND_OUTPUT, KIND_SIZE, KIND_ORACLE };
+
+struct option {
+    const char *name;
+    enum kind kind;
+    size_t offset;    /* of the field in struct options */
+    double low, high; /* inclusive range of a number */
+};
+
+static const struct option OPTIONS[] = {
+    {"-o", KIND_OUTPUT, 0, 0, 0},
+    {"--view", KIND_TEXT, offsetof(struct options, view), 0, 0},
+    {"--size", KIND_SIZE, 0, 0, 0},
+    {"--samples", KIND_INTEGER, offsetof(struct options, samples), 1, 64},
+    {"--exposure", KIND_REAL, offsetof(struct options, exposure), 1e-30, 1e30},
+    {"--flat", KIND_FLAG, offsetof(struct options, flat), 0, 0},
+    {"--epsilon", KIND_REAL, offsetof(struct options, criterion.epsilon), 0, 1e30},
+    {"--max-level", KIND_INTEGER, offsetof(struct options, criterion.max_level), 0, ID_MAX_LEVEL},
+    {"--min-area", KIND_REAL, offsetof(struct options, criterion.min_area), 0, 1},
+    {"--oracle", KIND_ORACLE, 0, 0, 0},
+    {"--alpha", KIND_REAL, offsetof(struct options, criterion.alpha), 0, 1},
+    {"--tolerance", KIND_REAL, offsetof(struct options, criterion.tolerance), 0, 1},
+    {"--max-iterations", KIND_INTEGER, offsetof(struct options, criterion.max_iterations), 1, 1e9},
+    {"--two-sided", KIND_FLAG, offsetof(struct options, two_sided), 0, 0},
+    {"--stats", KIND_TEXT, offsetof(struct options, stats), 0, 0},
+    {"--quiet", KIND_FLAG, offsetof(struct options, quiet), 0, 0},
+    {"--verbose", KIND_FLAG, offsetof(struct options, verbose), 0, 0},
+    {"--help", KIND_FLAG, offsetof(struct options, help), 0, 0},
+    {"--version", KIND_FLAG, offsetof(struct options, version), 0, 0},
+};
+
+static const struct option *find_option(const char *name)
+{
+    for (size_t i = 0; i < sizeof OPTIONS / sizeof OPTIONS[0]; i++)
+        if (strcmp(name, OPTIONS[i].name) == 0)
+            return &OPTIONS[i];
+    return NULL;
+}
+
+static bool has_suffix(const char *path, const char *suffix)
+{
+    size_t length = strlen(path), tail = strlen(suffix);
+    return length > tail && strcmp(path + length - tail, suffix) == 0;
+}
+
+enum output_format output_format_of(const char *path)
+{
+    return has_suffix(path, ".pfm") ? FORMAT_PFM : has_suffix(path, ".ply") ? FORMAT_PLY
+                                                                             : FORMAT_PPM;
+}
+
+static bool add_output(struct options *options, const char *path, struct error *error)
+{
+    if (!has_suffix(path, ".ppm") && !has_suffix(path, ".pfm") && !has_suffix(path, ".ply"))
+        return error_set(error, EXIT_USAGE, "-o %s: the name must end in .ppm, .pfm or .ply", path);
+    options->outputs[options->output_count++] = path;
+    return true;
+}
+
+static bool parse_number(const struct option *option, const char *value, double *number,
+                         struct error *error)
+{
+    if (!text_is_number(value, number))
+        return error_set(error, EXIT_USAGE, "%s: '%s' is not a number", option->name, value);
+    if (!(*number >= option->low && *number <= option->high))
+        return error_set(error, EXIT_USAGE, "%s: %s is not between %g and %g", option->name, value,
+                         option->low, option->high);
+    return true;
+}
+
+static bool set_integer(struct options *options, const struct option *option, const char *value,
+                        struct error *error)
+{
+    double number;
+    if (!parse_number(option, value, &number, error))
+        return false;
+    if (number != (double)(int)number)
+        return error_set(error, EXIT_USAGE, "%s: '%s' is not a whole number", option->name, value);
+    *(int *)(void *)((char *)options + option->offset) = (int)number;
+    return true;
+}
+
+static bool set_size(struct options *options, const char *value, struct error *error)
+{
+    int64_t width, height;
+    const char *at = value;
+    if (text_integer(&at, &width) && (*at == 'x' || *at == 'X')) {
+        at++;
+        if (text_integer(&at, &height) && *at == '\0' && width >= 1 && width <= IMAGE_SIZE_MAX &&
+            height >= 1 && height <= IMAGE_SIZE_MAX) {
+            options->width = (int)width;
+            options->height = (int)height;
+            return true;
+        }
+    }
+    return error_set(error, EXIT_USAGE, "--size: '%s' is not WIDTHxHEIGHT, each from 1 to %d", value,
+                     (int)IMAGE_SIZE_MAX);
+}
+
+static bool set_value(struct options *options, const struct option *option, const char *value,
+                      struct error *error)
+{
+    char *field = (char *)options + option->offset;
+    switch (option->kind) {
+    case KIND_OUTPUT:
+        return add_output(options, value, error);
+    case KIND_SIZE:
+        return set_size(options, value, error);
+    case KIND_INTEGER:
+        return set_integer(options, option, value, error);
+    case KIND_REAL:
+        return parse_number(option, value, (double *)(void *)field, error);
+    case KIND_ORACLE:
+        return strcmp(value, "bf") == 0 ||
+               error_set(error, EXIT_USAGE, "--oracle: '%s' is not bf", value);
+    default:
+        *(const char **)(void *)field = value;
+        return true;
+    }
+}
+
+static bool add_scene(struct options *options, const char *path, struct error *error)
+{
+    if (options->scene)
+        return error_set(error, EXIT_USAGE, "one scene at a time: %s and %s", options->scene, path);
+    options->scene = path;
+    return true;
+}
+
+bool options_parse(struct options *options, int argc, char **argv, struct error *error)
+{
+    *options = (struct options){
+        .samples = 3,
+        .criterion = {.epsilon = 1e-5, .min_area = 2e-6, .max_level = 10, .alpha = 0.5,
+                      .tolerance = 1e-3, .max_iterations = 1000},
+    };
+    options->outputs = alloc_array((size_t)argc, sizeof *options->outputs);
+    for (int i = 1; i < argc; i++) {
+        const char *argument = argv[i];
+        if (argument[0] != '-' || argument[1] == '\0') {
+            if (!add_scene(options, argument, error))
+                return false;
+            continue;
+        }
+        const struct option *option = find_option(argument);
+        if (!option)
+            return error_set(error, EXIT_USAGE, "unknown option %s; see --help", argument);
+        if (option->kind == KIND_FLAG) {
+            *(bool *)(void *)((char *)options + option->offset) = true;
+            continue;
+        }
+        if (++i >= argc)
+            return error_set(error, EXIT_USAGE, "%s needs a value", argument);
+        if (!set_value(options, option, argv[i], error))
+            return false;
+    }
+    if (!options->scene && !options->help && !options->version)
+        return error_set(error, EXIT_USAGE, "no scene given; see --help");
+    return true;
+}
+
+void options_free(struct options *options)
+{
+    alloc_free((void *)options->outputs);
+    options->outputs = NULL;
+}
+
+void options_print_help(FILE *file)
+{
+    fputs("usage: phr [options] SCENE.obj\n"
+          "       mpiexec -n P phr [options] SCENE.obj\n"
+          "\n"
+          "Computes the light in a diffuse scene by parallel hierarchical radiosity.\n"
+          "\n"
+          "  -o FILE             output, repeatable; by suffix: .ppm (sRGB picture),\n"
+          "                      .pfm (linear picture), .ply (solution mesh)\n"
+          "  --view FILE         camera: lines eye x y z, at x y z, up x y z, fov degrees,\n"
+          "                      size w h; default: all of the scene, seen from outside\n"
+          "  --size WxH          picture size (512x512 or what the view says)\n"
+          "  --samples N         N x N samples a pixel, 1..64 (3)\n"
+          "  --exposure X        factor on radiosity before sRGB (chosen from the picture)\n"
+          "  --flat              show the constant of each leaf, without interpolation\n"
+          "  --epsilon E         split links that carry more than E of the emitted power (1e-5)\n"
+          "  --max-level N       deepest subdivision, 0..15 (10)\n"
+          "  --min-area A        smallest patch, relative to the scene's area (2e-6)\n"
+          "  --oracle bf         refinement criterion: the paper's, energy of a link (bf)\n"
+          "  --tolerance T       bound on the remaining iteration error, relative (1e-3)\n"
+          "  --max-iterations N  stop after N iterations in any case (1000)\n"
+          "  --two-sided         both sides of each triangle reflect and emit\n"
+          "  --alpha A           share of a link's parent in its predicted cost, 0..1 (0.5)\n"
+          "  --stats FILE        counts, power, times and balance as JSON\n"
+          "  --quiet  --verbose  less or more on stderr\n"
+          "  --help  --version\n"
+          "\n"
+          "Exit status: 0 done; 1 the computation failed; 2 bad usage or input.\n"
+          "\n"
+          "  phr room.obj -o room.ppm\n"
+          "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o cornell.pfm\n",
+          file);
+}

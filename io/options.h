@@ -1,0 +1,39 @@
+/* The command line. */
+#ifndef IO_OPTIONS_H
+#define IO_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "geom/error.h"
+#include "rad/method.h"
+
+#define PHR_VERSION "0.1"
+
+enum output_format { FORMAT_PPM, FORMAT_PFM, FORMAT_PLY };
+
+struct options {
+    const char *scene;        /* path of the scene, NULL with help or version */
+    const char **outputs;     /* [output_count] paths of -o; owned array, borrowed strings */
+    int output_count;
+    const char *view;         /* path of the view file, or NULL */
+    const char *stats;        /* path of the JSON file, or NULL */
+    int width, height;        /* of --size; 0: what the view says */
+    int samples;              /* samples x samples rays a pixel */
+    double exposure;          /* 0: chosen from the picture */
+    bool flat, two_sided, quiet, verbose, help, version;
+    struct criterion criterion;
+};
+
+/* Reads the arguments; the strings stay those of argv. Release with options_free(), also after
+ * a failure. Errors: one line that says which argument is wrong, EXIT_USAGE. */
+bool options_parse(struct options *options, int argc, char **argv, struct error *error);
+void options_free(struct options *options);
+
+/* Format of an output by its suffix. Pre: options_parse() has accepted it. */
+enum output_format output_format_of(const char *path);
+
+/* The text of --help. */
+void options_print_help(FILE *file);
+
+#endif

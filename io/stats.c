@@ -1,0 +1,100 @@
+/* Reporting a run. Keys of the JSON stand in one order, one a line, so that two files can be
+ * compared with diff; times and bytes are the only values that depend on the machine or on the
+ * number of ranks. */
+#include "io/stats.h"
+
+#include <inttypes.h>
+
+#include "io/output.h"
+
+static const char *const PHASE_NAMES[PHASE_COUNT] = {
+    "total", "read", "linking", "refinement", "idle", "migration",
+    "gather", "push_pull", "scatter", "solve", "render", "write"};
+
+void stats_print(const struct stats *stats, FILE *file)
+{
+    fprintf(file, "triangles   %" PRId64 " (%" PRId64 " roots)\n", stats->triangles, stats->roots);
+    fprintf(file, "patches     %" PRId64 " (%" PRId64 " leaves)\n", stats->patches, stats->leaves);
+    fprintf(file, "links       %" PRId64 " (%" PRId64 " rays)\n", stats->links, stats->rays);
+    fprintf(file, "iterations  %" PRId64 " (%s)\n", stats->iterations,
+            stats->converged ? "converged" : "not converged");
+    fprintf(file, "power       %.6g W emitted, %.6g W absorbed, %.6g W escaped\n",
+            stats->emitted_power, stats->absorbed_power, stats->escaped_power);
+    fprintf(file, "row sums    %.4f .. %.4f, mean %.4f (1 in a closed scene)\n",
+            stats->closure_min, stats->closure_max, stats->closure_mean);
+    fprintf(file, "checksum    %016" PRIx64 "\n", stats->checksum);
+}
+
+static void write_integer(FILE *file, const char *key, int64_t value)
+{
+    fprintf(file, "  \"%s\": %" PRId64 ",\n", key, value);
+}
+
+static void write_real(FILE *file, const char *key, double value)
+{
+    fprintf(file, "  \"%s\": %.17g,\n", key, value);
+}
+
+static void write_counts(FILE *file, const struct stats *stats)
+{
+    write_integer(file, "ranks", stats->ranks);
+    write_integer(file, "triangles", stats->triangles);
+    write_integer(file, "roots", stats->roots);
+    write_integer(file, "patches", stats->patches);
+    write_integer(file, "leaves", stats->leaves);
+    write_integer(file, "links", stats->links);
+    write_integer(file, "iterations", stats->iterations);
+    fprintf(file, "  \"converged\": %s,\n", stats->converged ? "true" : "false");
+    write_real(file, "epsilon", stats->epsilon);
+    write_real(file, "emitted_power", stats->emitted_power);
+    write_real(file, "absorbed_power", stats->absorbed_power);
+    write_real(file, "escaped_power", stats->escaped_power);
+    fprintf(file, "  \"checksum\": \"%016" PRIx64 "\",\n", stats->checksum);
+    write_integer(file, "rays", stats->rays);
+    write_integer(file, "node_tests", stats->node_tests);
+    write_integer(file, "triangle_tests", stats->triangle_tests);
+    fprintf(file, "  \"closure\": {\"min\": %.17g, \"mean\": %.17g, \"max\": %.17g, \"rms\": %.17g},\n",
+            stats->closure_min, stats->closure_mean, stats->closure_max, stats->closure_rms);
+}
+
+static void write_seconds(FILE *file, const struct stats *stats)
+{
+    fprintf(file, "  \"seconds\": {\n");
+    for (int phase = 0; phase < PHASE_COUNT; phase++)
+        fprintf(file, "    \"%s\": {\"min\": %.6f, \"mean\": %.6f, \"max\": %.6f}%s\n",
+                PHASE_NAMES[phase], stats->seconds[phase].min, stats->seconds[phase].mean,
+                stats->seconds[phase].max, phase + 1 < PHASE_COUNT ? "," : "");
+    fprintf(file, "  },\n");
+}
+
+static void write_balance(FILE *file, const struct stats *stats)
+{
+    fprintf(file, "  \"balance\": [");
+    for (int64_t i = 0; i < stats->level_count; i++) {
+        const struct level_balance *level = &stats->levels[i];
+        fprintf(file,
+                "%s\n    {\"iteration\": %" PRId64 ", \"level\": %" PRId64 ", \"links\": %" PRId64
+                ", \"predicted_max\": %.17g, \"predicted_mean\": %.17g"
+                ", \"work_max\": %.17g, \"work_mean\": %.17g}",
+                i ? "," : "", level->iteration, level->level, level->links, level->predicted_max,
+                level->predicted_mean, level->work_max, level->work_mean);
+    }
+    fprintf(file, "%s],\n", stats->level_count ? "\n  " : "");
+}
+
+bool stats_write(const struct stats *stats, const char *path, struct error *error)
+{
+    struct output output;
+    if (!output_open(&output, path, error))
+        return false;
+    fprintf(output.file, "{\n");
+    write_counts(output.file, stats);
+    write_seconds(output.file, stats);
+    write_balance(output.file, stats);
+    fprintf(output.file,
+            "  \"bytes\": {\"migration\": %" PRId64 ", \"gather\": %" PRId64 ", \"scatter\": %" PRId64
+            "},\n",
+            stats->bytes_migration, stats->bytes_gather, stats->bytes_scatter);
+    fprintf(output.file, "  \"peak_rss_bytes\": %" PRId64 "\n}\n", stats->peak_rss_bytes);
+    return output_close(&output, error);
+}

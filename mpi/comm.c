@@ -1,0 +1,156 @@
+/* The ranks.
+ *
+ * MPICH and Open MPI wait by polling without pause. With fewer cores than ranks a blocking
+ * collective then holds the core that the rank it waits for needs, and an 8-byte reduction
+ * takes tens of milliseconds. So every collective here is the non-blocking one, tested in a
+ * loop that soon yields the processor and later sleeps: where each rank has a core of its own
+ * the first tests succeed and nothing is lost.
+ *
+ * Yielding alone is not enough with many ranks: the scheduler may hand the core to another
+ * waiting rank, again and again. Hence the sleep, short beside a refinement level. */
+#if defined(__unix__) || defined(__APPLE__)
+#define _POSIX_C_SOURCE 200112L
+#include <sched.h>
+#include <time.h>
+#define HAVE_YIELD 1
+#endif
+
+#include "mpi/comm.h"
+
+#include <limits.h>
+#include <stdio.h>
+
+#include "geom/alloc.h"
+
+enum {
+    TESTS_BEFORE_YIELD = 100,
+    TESTS_BEFORE_SLEEP = 200
+};
+
+static MPI_Comm failing_comm; /* for the handler of exhausted memory, which has no argument */
+
+static void out_of_memory(size_t bytes)
+{
+    fprintf(stderr, "phr: out of memory (%zu bytes more were needed)\n", bytes);
+    MPI_Abort(failing_comm, EXIT_FAILED);
+}
+
+void comm_start(struct comm *comm, int *argc, char ***argv)
+{
+    MPI_Init(argc, argv);
+    MPI_Comm_dup(MPI_COMM_WORLD, &comm->handle);
+    MPI_Comm_rank(comm->handle, &comm->rank);
+    MPI_Comm_size(comm->handle, &comm->size);
+    failing_comm = comm->handle;
+    alloc_on_failure(out_of_memory);
+}
+
+void comm_stop(struct comm *comm)
+{
+    MPI_Request request;
+    MPI_Ibarrier(comm->handle, &request);
+    comm_wait(&request);
+    alloc_on_failure(NULL);
+    MPI_Comm_free(&comm->handle);
+    MPI_Finalize();
+}
+
+static void leave_processor(int tests)
+{
+#ifdef HAVE_YIELD
+    if (tests > TESTS_BEFORE_SLEEP) {
+        struct timespec pause = {0, 20000};
+        nanosleep(&pause, NULL);
+    } else if (tests > TESTS_BEFORE_YIELD) {
+        sched_yield();
+    }
+#else
+    (void)tests;
+#endif
+}
+
+void comm_wait(MPI_Request *request)
+{
+    int done = 0;
+    for (int tests = 0; !done; tests += tests < INT_MAX) {
+        MPI_Test(request, &done, MPI_STATUS_IGNORE);
+        if (!done)
+            leave_processor(tests);
+    }
+}
+
+void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes)
+{
+    const size_t chunk = (size_t)1 << 26;
+    char *at = buffer;
+    for (size_t left = bytes; left > 0;) {
+        size_t now = left < chunk ? left : chunk;
+        MPI_Request request;
+        MPI_Ibcast(at, (int)now, MPI_BYTE, 0, comm->handle, &request);
+        comm_wait(&request);
+        at += now;
+        left -= now;
+    }
+}
+
+bool comm_agree(const struct comm *comm, struct error *error)
+{
+    struct error *all = alloc_array((size_t)comm->size, sizeof *all);
+    MPI_Request request;
+    MPI_Iallgather(error, (int)sizeof *error, MPI_BYTE, all, (int)sizeof *error, MPI_BYTE,
+                   comm->handle, &request);
+    comm_wait(&request);
+    for (int r = comm->size - 1; r >= 0; r--)
+        if (all[r].code != EXIT_DONE)
+            *error = all[r];
+    alloc_free(all);
+    return error->code == EXIT_DONE;
+}
+
+int comm_count(const struct comm *comm, int64_t count)
+{
+    if (count > INT_MAX) {
+        fprintf(stderr, "phr: a message of %lld items is more than MPI can count; "
+                        "use more ranks or a larger epsilon\n", (long long)count);
+        MPI_Abort(comm->handle, EXIT_FAILED);
+    }
+    return (int)count;
+}
+
+int64_t comm_displacements(const struct comm *comm, const int *counts, int *displacements)
+{
+    int64_t sum = 0;
+    for (int r = 0; r < comm->size; r++) {
+        displacements[r] = comm_count(comm, sum);
+        sum += counts[r];
+    }
+    return comm_count(comm, sum);
+}
+
+void *comm_exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
+                    int64_t *arriving)
+{
+    size_t ranks = (size_t)comm->size;
+    int *receive = alloc_array(3 * ranks, sizeof *receive);
+    int *receive_at = receive + ranks, *send_at = receive + 2 * ranks;
+    MPI_Request request;
+    MPI_Ialltoall(counts, 1, MPI_INT, receive, 1, MPI_INT, comm->handle, &request);
+    comm_wait(&request);
+    comm_displacements(comm, counts, send_at);
+    *arriving = comm_displacements(comm, receive, receive_at);
+    void *arrived = alloc_array((size_t)*arriving, bytes);
+    MPI_Datatype record; /* whole records, so that counts stay small */
+    MPI_Type_contiguous((int)bytes, MPI_BYTE, &record);
+    MPI_Type_commit(&record);
+    MPI_Ialltoallv(records, counts, send_at, record, arrived, receive, receive_at, record,
+                   comm->handle, &request);
+    comm_wait(&request);
+    MPI_Type_free(&record);
+    alloc_free(receive);
+    return arrived;
+}
+
+double comm_seconds(void)
+{
+    return MPI_Wtime();
+}

@@ -1,0 +1,46 @@
+/* The ranks: one communicator, waiting that yields, and agreement on errors. */
+#ifndef MPI_COMM_H
+#define MPI_COMM_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <mpi.h>
+
+#include "geom/error.h"
+
+struct comm {
+    MPI_Comm handle; /* a duplicate of MPI_COMM_WORLD */
+    int rank, size;
+};
+
+/* Initialises MPI; from here on, running out of memory ends all ranks with exit code 1. */
+void comm_start(struct comm *comm, int *argc, char ***argv);
+
+/* Collective. Waits for all ranks and finalises MPI. */
+void comm_stop(struct comm *comm);
+
+/* Waits for a non-blocking operation and leaves the processor to others meanwhile. */
+void comm_wait(MPI_Request *request);
+
+/* Collective. Rank 0's bytes go to all; any size. */
+void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes);
+
+/* Collective. All ranks end with the error of the lowest rank that has one. True if none has. */
+bool comm_agree(const struct comm *comm, struct error *error);
+
+/* A count as the int that MPI wants. A count that does not fit is fatal: exit code 1. */
+int comm_count(const struct comm *comm, int64_t count);
+
+/* displacements[r] = counts[0] + ... + counts[r - 1]. Returns the sum of all counts. */
+int64_t comm_displacements(const struct comm *comm, const int *counts, int *displacements);
+
+/* Collective. Total exchange of records of `bytes` bytes without padding: `records` holds
+ * counts[0] for rank 0, then counts[1] for rank 1, and so on. Returns what arrives, in the order
+ * of the ranks, and its number; to be freed with alloc_free(). */
+void *comm_exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
+                    int64_t *arriving);
+
+/* Seconds since some moment in the past. */
+double comm_seconds(void);
+
+#endif

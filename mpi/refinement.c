@@ -1,0 +1,191 @@
+/* Step 4: Algorithm 1 of the paper, and the transfer of light.
+ *
+ * `prolific` holds the links of one level that will be split. Before each level the ranks
+ * exchange their loads, the sums of predicted costs; each computes the same greedy plan
+ * (mpi/plan.h); senders deal links to their receivers in turn until the planned load is gone.
+ * Then each rank splits what it has: children that are to be split too form the next level, the
+ * others join the links.
+ *
+ * With the loads travel two figures of the level before, the load after migration and the tests
+ * that it really took, so that prediction and work can be compared without another exchange. */
+#include "mpi/migrate.h"
+#include "mpi/plan.h"
+
+#include "geom/alloc.h"
+
+/* What ranks tell each other before a level. */
+struct load_notice {
+    int64_t links;           /* prolific links here */
+    int64_t load;            /* their predicted cost */
+    int64_t last_links;      /* of the level before: links that were split here, */
+    int64_t last_load;       /* their predicted cost, */
+    int64_t last_work;       /* and the tests that this took */
+};
+
+static int64_t load_of(const struct link_list *list)
+{
+    int64_t load = 0;
+    for (int64_t i = 0; i < list->count; i++)
+        load += list->items[i].cost;
+    return load;
+}
+
+static int64_t work_so_far(const struct solver *solver)
+{
+    return solver->method.counts.node_tests + solver->method.counts.triangle_tests;
+}
+
+/* Moves the links that are to be split from the rank's links to `prolific`. */
+static void select_prolific(struct solver *solver, struct link_list *prolific)
+{
+    int64_t kept = 0;
+    for (int64_t i = 0; i < solver->links.count; i++) {
+        struct link link = solver->links.items[i];
+        if (link_patch_to_split(&solver->method, &link) >= 0)
+            link_list_append(prolific, link);
+        else
+            solver->links.items[kept++] = link;
+    }
+    solver->links.count = kept;
+}
+
+/* Deals this rank's links in turn to the receivers of its transfers. A link goes to a receiver
+ * as long as at least half of its cost still fits into what is planned for it. */
+static void deal_links(const struct solver *solver, const struct link_list *list,
+                       struct transfer *transfers, int count, int *destination)
+{
+    int mine = 0;
+    for (int t = 0; t < count; t++)
+        if (transfers[t].from == solver->comm->rank)
+            transfers[mine++] = transfers[t];
+    int turn = 0;
+    for (int64_t i = 0; i < list->count; i++) {
+        int64_t cost = list->items[i].cost;
+        destination[i] = solver->comm->rank;
+        for (int tried = 0; tried < mine; tried++) {
+            struct transfer *t = &transfers[(turn + tried) % mine];
+            if (2 * t->load < cost)
+                continue;
+            destination[i] = t->to;
+            t->load -= cost;
+            turn = (turn + tried + 1) % mine;
+            break;
+        }
+    }
+}
+
+static void record_level(struct solver *solver, const struct load_notice *notices, int64_t level)
+{
+    struct level_balance balance = {.iteration = solver->iteration, .level = level};
+    int ranks = solver->comm->size;
+    for (int r = 0; r < ranks; r++) {
+        double load = (double)notices[r].last_load, work = (double)notices[r].last_work;
+        balance.links += notices[r].last_links;
+        balance.predicted_mean += load / ranks;
+        balance.work_mean += work / ranks;
+        balance.predicted_max = load > balance.predicted_max ? load : balance.predicted_max;
+        balance.work_max = work > balance.work_max ? work : balance.work_max;
+    }
+    solver->levels = alloc_reserve(solver->levels, &solver->level_capacity,
+                                   solver->level_count + 1, sizeof *solver->levels);
+    solver->levels[solver->level_count++] = balance;
+}
+
+/* The total exchange of loads. Waiting here is idle time. */
+static struct load_notice *exchange_loads(struct solver *solver, struct load_notice own)
+{
+    const struct comm *comm = solver->comm;
+    struct load_notice *notices = alloc_array((size_t)comm->size, sizeof *notices);
+    double start = comm_seconds();
+    MPI_Request request;
+    MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, notices, (int)sizeof own, MPI_BYTE,
+                   comm->handle, &request);
+    comm_wait(&request);
+    solver->seconds[PHASE_IDLE] += comm_seconds() - start;
+    return notices;
+}
+
+/* LoadBalance of Algorithm 1. `done` holds this rank's figures of the level before and receives
+ * the load of this one. Returns the number of links to split on all ranks. */
+static int64_t balance_load(struct solver *solver, struct link_list *prolific, int64_t level,
+                            struct load_notice *done)
+{
+    int ranks = solver->comm->size;
+    done->links = prolific->count;
+    done->load = load_of(prolific);
+    struct load_notice *notices = exchange_loads(solver, *done);
+    if (level > 0)
+        record_level(solver, notices, level - 1);
+    double start = comm_seconds();
+    int64_t total = 0;
+    int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
+    for (int r = 0; r < ranks; r++) {
+        loads[r] = notices[r].load;
+        total += notices[r].links;
+    }
+    struct transfer *transfers = alloc_array(2 * (size_t)ranks, sizeof *transfers);
+    int count = plan_transfers(loads, ranks, transfers);
+    if (count > 0) { /* the plan is the same on all ranks, so all or none enter */
+        int *destination = alloc_array((size_t)prolific->count, sizeof *destination);
+        deal_links(solver, prolific, transfers, count, destination);
+        solver->bytes_migration += links_migrate(solver, prolific, destination);
+        alloc_free(destination);
+    }
+    alloc_free(transfers);
+    alloc_free(loads);
+    alloc_free(notices);
+    done->last_links = prolific->count;
+    done->last_load = load_of(prolific);
+    solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
+    return total;
+}
+
+/* Splits all links of the level; their children go to `next` or to the rank's links. */
+static void split_level(struct solver *solver, const struct link_list *prolific,
+                        struct link_list *next)
+{
+    for (int64_t i = 0; i < prolific->count; i++) {
+        const struct link *link = &prolific->items[i];
+        struct link children[4];
+        int32_t patch = link_patch_to_split(&solver->method, link);
+        int count = link_split(&solver->method, link, patch, children);
+        for (int k = 0; k < count; k++) {
+            bool goes_on = link_patch_to_split(&solver->method, &children[k]) >= 0;
+            link_list_append(goes_on ? next : &solver->links, children[k]);
+        }
+    }
+    solver->split_here += prolific->count;
+}
+
+static void transfer_light(struct solver *solver)
+{
+    double start = comm_seconds();
+    forest_clear_flux(solver->method.forest);
+    solver->moved = links_transfer(&solver->links, solver->method.forest,
+                                   solver->method.flux_unit);
+    solver->seconds[PHASE_SOLVE] += comm_seconds() - start;
+}
+
+void solver_refine(struct solver *solver)
+{
+    solver->iteration++;
+    solver->split_here = 0;
+    solver->first_new = solver->method.forest->count;
+    struct link_list prolific = {0}, next = {0};
+    struct load_notice done = {0};
+    double start = comm_seconds();
+    select_prolific(solver, &prolific);
+    solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
+    for (int64_t level = 0; balance_load(solver, &prolific, level, &done) > 0; level++) {
+        start = comm_seconds();
+        int64_t work = work_so_far(solver);
+        split_level(solver, &prolific, &next);
+        done.last_work = work_so_far(solver) - work;
+        link_list_free(&prolific);
+        prolific = next;
+        next = (struct link_list){0};
+        solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
+    }
+    link_list_free(&prolific);
+    transfer_light(solver);
+}

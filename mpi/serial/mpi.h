@@ -1,0 +1,182 @@
+/* A stand-in for MPI with one process, for `make SERIAL=1`: the calls that phr uses, each
+ * doing what MPI does in a communicator of size 1. A datatype is its size in bytes. */
+#ifndef MPI_SERIAL_MPI_H
+#define MPI_SERIAL_MPI_H
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+typedef int MPI_Comm;
+typedef int MPI_Request;
+typedef int MPI_Datatype;
+typedef int MPI_Op;
+
+enum { MPI_SUCCESS = 0, MPI_COMM_WORLD = 0, MPI_COMM_SELF = 1, MPI_REQUEST_NULL = 0 };
+enum { MPI_SUM, MPI_MAX, MPI_MIN };
+
+#define MPI_STATUS_IGNORE NULL
+#define MPI_IN_PLACE ((void *)-1)
+#define MPI_BYTE 1
+#define MPI_INT ((MPI_Datatype)sizeof(int))
+#define MPI_INT64_T 8
+#define MPI_DOUBLE 8
+#define MPI_FLOAT 4
+
+static inline void serial_copy(const void *from, void *to, int count, MPI_Datatype type)
+{
+    if (from != MPI_IN_PLACE && count > 0)
+        memcpy(to, from, (size_t)count * (size_t)type);
+}
+
+static inline int MPI_Init(int *argc, char ***argv)
+{
+    (void)argc;
+    (void)argv;
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Finalize(void)
+{
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Abort(MPI_Comm comm, int code)
+{
+    (void)comm;
+    exit(code);
+}
+
+static inline double MPI_Wtime(void)
+{
+    return (double)clock() / (double)CLOCKS_PER_SEC; /* C99 has no better: processor time */
+}
+
+static inline int MPI_Comm_dup(MPI_Comm comm, MPI_Comm *copy)
+{
+    *copy = comm;
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Comm_free(MPI_Comm *comm)
+{
+    *comm = -1;
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Comm_rank(MPI_Comm comm, int *rank)
+{
+    (void)comm;
+    *rank = 0;
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Comm_size(MPI_Comm comm, int *size)
+{
+    (void)comm;
+    *size = 1;
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Test(MPI_Request *request, int *done, void *status)
+{
+    (void)status;
+    *request = MPI_REQUEST_NULL;
+    *done = 1;
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Type_contiguous(int count, MPI_Datatype old, MPI_Datatype *made)
+{
+    *made = count * old;
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Type_commit(MPI_Datatype *type)
+{
+    (void)type;
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Type_free(MPI_Datatype *type)
+{
+    *type = 0;
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Ibarrier(MPI_Comm comm, MPI_Request *request)
+{
+    (void)comm;
+    *request = MPI_REQUEST_NULL;
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Ibcast(void *buffer, int count, MPI_Datatype type, int root, MPI_Comm comm,
+                             MPI_Request *request)
+{
+    (void)buffer;
+    (void)count;
+    (void)type;
+    (void)root;
+    return MPI_Ibarrier(comm, request);
+}
+
+static inline int MPI_Iallreduce(const void *send, void *receive, int count, MPI_Datatype type,
+                                 MPI_Op op, MPI_Comm comm, MPI_Request *request)
+{
+    (void)op;
+    serial_copy(send, receive, count, type);
+    return MPI_Ibarrier(comm, request);
+}
+
+static inline int MPI_Iallgather(const void *send, int count, MPI_Datatype type, void *receive,
+                                 int receive_count, MPI_Datatype receive_type, MPI_Comm comm,
+                                 MPI_Request *request)
+{
+    (void)receive_count;
+    (void)receive_type;
+    serial_copy(send, receive, count, type);
+    return MPI_Ibarrier(comm, request);
+}
+
+static inline int MPI_Iallgatherv(const void *send, int count, MPI_Datatype type, void *receive,
+                                  const int *counts, const int *displacements,
+                                  MPI_Datatype receive_type, MPI_Comm comm, MPI_Request *request)
+{
+    (void)counts;
+    (void)displacements;
+    (void)receive_type;
+    serial_copy(send, receive, count, type);
+    return MPI_Ibarrier(comm, request);
+}
+
+static inline int MPI_Igatherv(const void *send, int count, MPI_Datatype type, void *receive,
+                               const int *counts, const int *displacements,
+                               MPI_Datatype receive_type, int root, MPI_Comm comm,
+                               MPI_Request *request)
+{
+    (void)root;
+    return MPI_Iallgatherv(send, count, type, receive, counts, displacements, receive_type, comm,
+                           request);
+}
+
+static inline int MPI_Ialltoall(const void *send, int count, MPI_Datatype type, void *receive,
+                                int receive_count, MPI_Datatype receive_type, MPI_Comm comm,
+                                MPI_Request *request)
+{
+    return MPI_Iallgather(send, count, type, receive, receive_count, receive_type, comm, request);
+}
+
+static inline int MPI_Ialltoallv(const void *send, const int *counts, const int *displacements,
+                                 MPI_Datatype type, void *receive, const int *receive_counts,
+                                 const int *receive_displacements, MPI_Datatype receive_type,
+                                 MPI_Comm comm, MPI_Request *request)
+{
+    (void)displacements;
+    return MPI_Iallgatherv(send, counts[0], type, receive, receive_counts, receive_displacements,
+                           receive_type, comm, request);
+}
+
+#endif

@@ -1,0 +1,152 @@
+/* The state of one rank, and what it reports at the end. */
+#if defined(__unix__) || defined(__APPLE__)
+#define _XOPEN_SOURCE 600
+#include <sys/resource.h>
+#define HAVE_RUSAGE 1
+#endif
+
+#include "mpi/solver.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "rad/treecode.h"
+
+struct solver *solver_create(const struct comm *comm, const struct scene *scene,
+                             const struct octree *octree, const struct criterion *criterion)
+{
+    struct solver *solver = alloc_array(1, sizeof *solver);
+    size_t roots = (size_t)scene_root_count(scene);
+    solver->comm = comm;
+    solver->method = method_make(scene, octree, forest_create(scene), criterion);
+    solver->owner = alloc_array(roots, sizeof *solver->owner);
+    solver->own = alloc_array(roots, sizeof *solver->own);
+    solver->touched = alloc_array(roots, sizeof *solver->touched);
+    solver->root_change = alloc_array(roots, sizeof *solver->root_change);
+    return solver;
+}
+
+void solver_destroy(struct solver *solver)
+{
+    if (!solver)
+        return;
+    forest_destroy(solver->method.forest);
+    link_list_free(&solver->links);
+    alloc_free(solver->owner);
+    alloc_free(solver->own);
+    alloc_free(solver->touched);
+    alloc_free(solver->root_change);
+    alloc_free(solver->levels);
+    alloc_free(solver);
+}
+
+void solver_measure_closure(struct solver *solver, struct stats *stats)
+{
+    const struct comm *comm = solver->comm;
+    struct forest *forest = solver->method.forest;
+    struct flux_unit unit = closure_unit(solver->method.scene);
+    solver->first_new = forest->count;
+    forest_clear_flux(forest);
+    links_transfer_ones(&solver->links, forest, unit);
+    solver_gather(solver);
+    struct closure_sums own = closure_measure(forest, solver->own, unit);
+    struct closure_sums *all = alloc_array((size_t)comm->size, sizeof *all);
+    struct closure_sums sum = {.min = HUGE_VAL, .max = -HUGE_VAL};
+    MPI_Request request;
+    MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, all, (int)sizeof own, MPI_BYTE, comm->handle,
+                   &request);
+    comm_wait(&request);
+    for (int r = 0; r < comm->size; r++) {
+        sum.min = fmin(sum.min, all[r].min);
+        sum.max = fmax(sum.max, all[r].max);
+        sum.area = flux_add(sum.area, all[r].area);
+        sum.rows = flux_add(sum.rows, all[r].rows);
+        sum.squares = flux_add(sum.squares, all[r].squares);
+    }
+    alloc_free(all);
+    stats->closure_min = sum.min;
+    stats->closure_max = sum.max;
+    stats->closure_mean = (double)sum.rows / (double)sum.area;
+    stats->closure_rms = sqrt((double)sum.squares / (double)sum.area);
+}
+
+/* Bytes that this process held at most, 0 where the system does not tell. */
+static int64_t peak_memory(void)
+{
+#ifdef HAVE_RUSAGE
+    struct rusage usage;
+    if (getrusage(RUSAGE_SELF, &usage) == 0)
+#ifdef __APPLE__
+        return usage.ru_maxrss;
+#else
+        return (int64_t)usage.ru_maxrss * 1024;
+#endif
+#endif
+    return 0;
+}
+
+static void report_seconds(const struct solver *solver, struct stats *stats)
+{
+    const struct comm *comm = solver->comm;
+    double *all = alloc_array((size_t)comm->size * PHASE_COUNT, sizeof *all);
+    MPI_Request request;
+    MPI_Iallgather(solver->seconds, PHASE_COUNT, MPI_DOUBLE, all, PHASE_COUNT, MPI_DOUBLE,
+                   comm->handle, &request);
+    comm_wait(&request);
+    for (int phase = 0; phase < PHASE_COUNT; phase++) {
+        struct spread spread = {all[phase], 0.0, all[phase]};
+        for (int r = 0; r < comm->size; r++) {
+            double seconds = all[r * PHASE_COUNT + phase];
+            spread.min = fmin(spread.min, seconds);
+            spread.mean += seconds / comm->size;
+            spread.max = fmax(spread.max, seconds);
+        }
+        stats->seconds[phase] = spread;
+    }
+    alloc_free(all);
+}
+
+static void report_counts(const struct solver *solver, struct stats *stats)
+{
+    const struct octree_counts *counts = &solver->method.counts;
+    int64_t own[6] = {counts->rays, counts->node_tests, counts->triangle_tests,
+                      solver->bytes_migration, solver->bytes_gather, solver->bytes_scatter};
+    int64_t sum[6], memory = peak_memory();
+    MPI_Request request;
+    MPI_Iallreduce(own, sum, 6, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
+    comm_wait(&request);
+    stats->rays = sum[0];
+    stats->node_tests = sum[1];
+    stats->triangle_tests = sum[2];
+    stats->bytes_migration = sum[3];
+    stats->bytes_gather = sum[4];
+    stats->bytes_scatter = sum[5];
+    MPI_Iallreduce(&memory, &stats->peak_rss_bytes, 1, MPI_INT64_T, MPI_MAX,
+                   solver->comm->handle, &request);
+    comm_wait(&request);
+}
+
+void solver_report(struct solver *solver, const struct vote *vote, struct stats *stats)
+{
+    const struct scene *scene = solver->method.scene;
+    double unit = scene_area_unit(scene);
+    stats->ranks = solver->comm->size;
+    stats->triangles = scene->input_count;
+    stats->roots = 0;
+    for (int32_t root = 0; root < scene_root_count(scene); root++)
+        stats->roots += scene_root_area(scene, root) > 0.0;
+    stats->patches = forest_patch_count(solver->method.forest);
+    stats->leaves = forest_leaf_count(solver->method.forest);
+    stats->links = vote->links;
+    stats->iterations = solver->iteration;
+    stats->converged = vote->converged;
+    stats->epsilon = solver->method.criterion.epsilon;
+    stats->emitted_power = unit * scene_emitted_power(scene);
+    stats->absorbed_power = unit * vote->absorbed;
+    stats->escaped_power = unit * vote->escaped;
+    stats->checksum = forest_checksum(solver->method.forest);
+    stats->levels = solver->levels;
+    stats->level_count = solver->level_count;
+    report_counts(solver, stats);
+    report_seconds(solver, stats);
+}

@@ -1,0 +1,76 @@
+/* The distributed algorithm: the state of one rank, and the steps of the paper's Sec. 3.2 that
+ * work on it. Every step is collective. */
+#ifndef MPI_SOLVER_H
+#define MPI_SOLVER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "mpi/comm.h"
+#include "rad/link.h"
+#include "rad/method.h"
+#include "rad/pushpull.h"
+#include "rad/stats.h"
+
+struct solver {
+    const struct comm *comm;  /* borrowed */
+    struct method method;     /* scene, octree, forest and criterion; the forest is owned */
+    struct link_list links;   /* the links that live here ("allInteractions") */
+    int *owner;               /* [roots] home rank of each root */
+    bool *own;                /* [roots] owner[root] == rank */
+    bool *touched;            /* [roots] own tree whose structure or values changed */
+    int64_t *root_change;     /* [roots] see push_pull() */
+    int64_t first_new;        /* patches from here on were created in this iteration */
+    int64_t iteration;        /* 1, 2, ... */
+    struct push_pull_sums sums; /* of the last push-pull */
+    int64_t last_change;      /* change of all ranks in the iteration before */
+    int64_t moved;            /* flux over this rank's links in this iteration */
+    int64_t split_here;       /* links that this rank split in this iteration */
+    double seconds[PHASE_COUNT];
+    int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent by this rank to others */
+    struct level_balance *levels;                         /* [level_count], same on all ranks */
+    int64_t level_count, level_capacity;
+};
+
+/* Sums over all ranks after an iteration; the same on all ranks. */
+struct vote {
+    bool converged;
+    bool diverged;
+    int64_t split;     /* links split in this iteration */
+    int64_t links;     /* links there are */
+    double remaining;  /* bound on the remaining error, relative to all light; HUGE_VAL: none */
+    double absorbed;   /* W, areas in square scene units */
+    double escaped;    /* the same: what leaves the surfaces less what the links deliver */
+};
+
+/* Borrows comm, scene and octree. */
+struct solver *solver_create(const struct comm *comm, const struct scene *scene,
+                             const struct octree *octree, const struct criterion *criterion);
+void solver_destroy(struct solver *solver);
+
+/* Step 2: initial linking. Pairs of roots are dealt evenly; each rank links its pairs. */
+void solver_link_roots(struct solver *solver);
+
+/* Step 3: re-assignment. Roots get homes by even area sums, links go to the homes. */
+void solver_assign_roots(struct solver *solver);
+
+/* Step 4: Algorithm 1, level by level with load balancing, then the transfer of light over the
+ * links there are. */
+void solver_refine(struct solver *solver);
+
+/* Step 5: flux of proxies, and the patches that were split, go to their homes. */
+void solver_gather(struct solver *solver);
+
+/* Steps 6 to 8: push-pull on the own roots; scatter of the own trees that changed; the vote. */
+void solver_push_pull(struct solver *solver);
+void solver_scatter(struct solver *solver);
+struct vote solver_vote(struct solver *solver);
+
+/* After the last iteration: the row sums over the links there are, into `stats`. */
+void solver_measure_closure(struct solver *solver, struct stats *stats);
+
+/* Fills `stats` but for the closure: counts and sums over all ranks, and the clocks of all ranks
+ * as they stand. Borrows the levels of the solver. */
+void solver_report(struct solver *solver, const struct vote *vote, struct stats *stats);
+
+#endif

@@ -1,0 +1,294 @@
+/* phr: parallel hierarchical radiosity.
+ *
+ * This file is the algorithm: compute_light() below is the outline of the paper's Sec. 3.2, its
+ * eight steps as eight calls. Around it stand reading on rank 0, pictures and reports. Errors
+ * of the user or the system are values (geom/error.h) on which all ranks agree after each phase;
+ * rank 0 prints them once and all ranks leave with the same exit code. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "geom/alloc.h"
+#include "io/camera.h"
+#include "io/image.h"
+#include "io/mesh.h"
+#include "io/obj.h"
+#include "io/options.h"
+#include "io/output.h"
+#include "io/render.h"
+#include "io/stats.h"
+#include "mpi/broadcast.h"
+#include "mpi/picture.h"
+#include "mpi/solver.h"
+
+struct run {
+    struct comm comm;
+    struct options options;
+    struct scene *scene;
+    struct camera camera;
+    struct octree *octree;
+    struct solver *solver;
+    struct vote vote; /* of the last iteration */
+    struct stats stats;
+    struct error error;
+    double start; /* comm_seconds() at the beginning */
+};
+
+/* A line on stderr from rank 0, unless --quiet. */
+#ifdef __GNUC__
+__attribute__((format(printf, 2, 3)))
+#endif
+static void say(const struct run *run, const char *format, ...)
+{
+    if (run->comm.rank != 0 || run->options.quiet)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    fputs("phr: ", stderr);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+    va_end(arguments);
+}
+
+/* --- reading, on rank 0 --- */
+
+static void warn_repairs(const struct run *run, const struct obj_repairs *read,
+                         const struct scene_repairs *prepared)
+{
+    const char *path = run->options.scene;
+    if (read->missing_libraries > 0)
+        say(run, "%s: warning: %lld material file(s) missing", path,
+            (long long)read->missing_libraries);
+    if (read->missing_materials > 0)
+        say(run, "%s: warning: %lld material(s) without a definition, taken as grey (first: %s)",
+            path, (long long)read->missing_materials, read->first_missing);
+    if (prepared->clamped > 0)
+        say(run, "%s: warning: %lld material(s) with a reflectance of 1 or more, set to 0.999",
+            path, (long long)prepared->clamped);
+    if (prepared->degenerate > 0)
+        say(run, "%s: warning: %lld face(s) without area dropped", path,
+            (long long)prepared->degenerate);
+}
+
+static bool check_emission(const struct run *run, struct error *error)
+{
+    double power = scene_emitted_power(run->scene);
+    if (!(power > 0.0))
+        return error_set(error, EXIT_USAGE, "%s: nothing emits light (no face with Ke above 0)",
+                         run->options.scene);
+    if (!(power < 1e200) || power < 1e-200)
+        return error_set(error, EXIT_USAGE, "%s: the emitted power is out of range",
+                         run->options.scene);
+    return true;
+}
+
+static bool read_scene(struct run *run)
+{
+    struct error *error = &run->error;
+    struct obj_repairs read = {0};
+    struct scene_repairs prepared = {0};
+    run->scene = obj_read(run->options.scene, &read, error);
+    if (!run->scene)
+        return false;
+    run->scene->two_sided = run->options.two_sided;
+    struct error wrong = {0};
+    if (!scene_prepare(run->scene, &prepared, &wrong))
+        return error_set(error, wrong.code, "%s: %s", run->options.scene, wrong.text);
+    warn_repairs(run, &read, &prepared);
+    return check_emission(run, error);
+}
+
+static bool read_camera(struct run *run)
+{
+    const struct options *options = &run->options;
+    if (!options->view)
+        run->camera = camera_of_scene(run->scene);
+    else if (!camera_read(options->view, &run->camera, &run->error))
+        return false;
+    if (options->width > 0) {
+        run->camera.width = options->width;
+        run->camera.height = options->height;
+    }
+    return true;
+}
+
+static bool probe_outputs(struct run *run)
+{
+    for (int i = 0; i < run->options.output_count; i++)
+        if (!output_probe(run->options.outputs[i], &run->error))
+            return false;
+    return !run->options.stats || output_probe(run->options.stats, &run->error);
+}
+
+/* Collective. Step 1: rank 0 reads, all agree on errors, all receive the scene. */
+static bool read_and_broadcast(struct run *run)
+{
+    double start = comm_seconds();
+    if (run->comm.rank == 0 && read_scene(run) && read_camera(run))
+        probe_outputs(run);
+    if (!comm_agree(&run->comm, &run->error))
+        return false;
+    run->scene = scene_broadcast(&run->comm, run->scene);
+    comm_broadcast(&run->comm, &run->camera, sizeof run->camera);
+    run->octree = octree_create(run->scene->triangles, run->scene->planes, run->scene->input_count);
+    run->solver = solver_create(&run->comm, run->scene, run->octree, &run->options.criterion);
+    run->solver->seconds[PHASE_READ] = comm_seconds() - start;
+    return true;
+}
+
+/* --- the algorithm --- */
+
+static void report_iteration(const struct run *run)
+{
+    const struct vote *vote = &run->vote;
+    say(run, "iteration %lld: %lld links (%lld split), remaining error at most %.2g",
+        (long long)run->solver->iteration, (long long)vote->links, (long long)vote->split,
+        vote->remaining);
+}
+
+/* Collective. Steps 2 to 8 of the paper's Sec. 3.2. */
+static bool compute_light(struct run *run)
+{
+    struct solver *solver = run->solver;
+    solver_link_roots(solver);   /* 2: initial linking */
+    solver_assign_roots(solver); /* 3: re-assignment by area */
+    say(run, "roots are linked, %.1f s", comm_seconds() - run->start);
+    do {
+        solver_refine(solver);            /* 4: evaluate and refine, level by level */
+        solver_gather(solver);            /* 5: proxies go home */
+        solver_push_pull(solver);         /* 6: push-pull on own roots */
+        solver_scatter(solver);           /* 7: proxies are renewed */
+        run->vote = solver_vote(solver);  /* 8: is there another iteration? */
+        report_iteration(run);
+    } while (!run->vote.converged && !run->vote.diverged &&
+             solver->iteration < run->options.criterion.max_iterations);
+    if (run->vote.diverged)
+        return error_set(&run->error, EXIT_FAILED,
+                         "the solution diverges: surfaces reflect more light than they receive");
+    return true;
+}
+
+/* --- results --- */
+
+/* The tone of 8-bit colours: --exposure, or chosen from the picture, or from the leaves. */
+static struct tone choose_tone(const struct run *run, const float *picture)
+{
+    if (run->options.exposure > 0.0)
+        return tone_make(run->options.exposure);
+    if (picture)
+        return tone_make(tone_automatic(picture, (int64_t)run->camera.width * run->camera.height));
+    int64_t count;
+    float *colours = mesh_colours(run->solver->method.forest, &count);
+    struct tone tone = tone_make(tone_automatic(colours, count));
+    alloc_free(colours);
+    return tone;
+}
+
+/* Rank 0 only. */
+static void write_outputs(struct run *run, const struct shading *shading, float *picture)
+{
+    struct tone tone = choose_tone(run, picture);
+    struct image image = {run->camera.width, run->camera.height, picture};
+    for (int i = 0; i < run->options.output_count; i++) {
+        const char *path = run->options.outputs[i];
+        switch (output_format_of(path)) {
+        case FORMAT_PPM: ppm_write(&image, &tone, path, &run->error); break;
+        case FORMAT_PFM: pfm_write(&image, path, &run->error); break;
+        case FORMAT_PLY: mesh_write(shading, &tone, path, &run->error); break;
+        }
+    }
+}
+
+static bool wants_picture(const struct options *options)
+{
+    for (int i = 0; i < options->output_count; i++)
+        if (output_format_of(options->outputs[i]) != FORMAT_PLY)
+            return true;
+    return false;
+}
+
+/* Collective. Renders by rows and writes. */
+static bool show_results(struct run *run)
+{
+    double start = comm_seconds();
+    const struct options *options = &run->options;
+    struct comm *comm = &run->comm;
+    if (options->output_count == 0)
+        return true;
+    struct shading *shading = shading_create(run->solver->method.forest, run->octree,
+                                             options->flat);
+    float *picture = NULL;
+    if (wants_picture(options)) {
+        float *rows = render_rows(shading, run->octree, &run->camera, options->samples, comm->rank,
+                                  comm->size);
+        picture = picture_gather(comm, rows, 3 * (size_t)run->camera.width, run->camera.height);
+        alloc_free(rows);
+    }
+    run->solver->seconds[PHASE_RENDER] = comm_seconds() - start;
+    start = comm_seconds();
+    if (comm->rank == 0)
+        write_outputs(run, shading, picture);
+    alloc_free(picture);
+    shading_destroy(shading);
+    run->solver->seconds[PHASE_WRITE] = comm_seconds() - start;
+    return comm_agree(comm, &run->error);
+}
+
+/* Collective. The summary and --stats. */
+static bool report_run(struct run *run)
+{
+    run->solver->seconds[PHASE_TOTAL] = comm_seconds() - run->start;
+    solver_report(run->solver, &run->vote, &run->stats);
+    if (run->comm.rank == 0) {
+        if (!run->vote.converged)
+            say(run, "warning: not converged after %lld iterations", (long long)run->stats.iterations);
+        if (!run->options.quiet)
+            stats_print(&run->stats, stdout);
+        if (run->options.stats)
+            stats_write(&run->stats, run->options.stats, &run->error);
+    }
+    return comm_agree(&run->comm, &run->error);
+}
+
+static void run_all(struct run *run)
+{
+    if (!read_and_broadcast(run) || !compute_light(run))
+        return;
+    solver_measure_closure(run->solver, &run->stats);
+    if (show_results(run))
+        report_run(run);
+}
+
+static void release(struct run *run)
+{
+    solver_destroy(run->solver);
+    octree_destroy(run->octree);
+    scene_destroy(run->scene);
+    options_free(&run->options);
+}
+
+int main(int argc, char **argv)
+{
+    struct run run = {0};
+    comm_start(&run.comm, &argc, &argv);
+    run.start = comm_seconds();
+    bool parsed = options_parse(&run.options, argc, argv, &run.error);
+    if (parsed && (run.options.help || run.options.version)) {
+        if (run.comm.rank == 0 && run.options.help)
+            options_print_help(stdout);
+        else if (run.comm.rank == 0)
+            printf("phr %s\n", PHR_VERSION);
+    } else if (parsed) {
+        run_all(&run);
+    }
+    if (run.error.code != EXIT_DONE && run.comm.rank == 0)
+        fprintf(stderr, "phr: %s\n", run.error.text);
+    release(&run);
+    comm_stop(&run.comm);
+    if (alloc_balance() != 0) {
+        fprintf(stderr, "phr: BUG: %lld blocks of memory were not freed\n",
+                (long long)alloc_balance());
+        return EXIT_FAILED;
+    }
+    return run.error.code;
+}

@@ -1,0 +1,45 @@
+/* Light as integers: flux in fixed point.
+ *
+ * Flux [W, areas in square scene units] is summed as integers, llrint(x * 2^k) with one k for
+ * the run. Integer sums do not depend on their order, so no result depends on which rank held
+ * which link. Sums saturate at FLUX_LIMIT; the sum of non-negative numbers that stops at a limit
+ * is the same in any order too, so "it diverged" is seen by all ranks alike. */
+#ifndef RAD_FLUX_H
+#define RAD_FLUX_H
+
+#include <stdint.h>
+
+#include "geom/scene.h"
+
+/* A sum that reaches this has diverged. */
+#define FLUX_LIMIT (INT64_C(1) << 62)
+
+struct flux_unit {
+    double per_watt; /* 2^k, integer units in a watt */
+    double watt;     /* 2^-k, watts in an integer unit */
+};
+
+/* The unit in which sums up to `largest` watts stay below FLUX_LIMIT: a power of two.
+ * Pre: 0 < largest. */
+struct flux_unit flux_unit_for(double largest);
+
+/* Chooses k from the emitted power and the largest reflectance rho: the light in a closed scene
+ * adds up to at most power / (1 - rho), and 2^-62 of 16 times that is the unit. 16 leaves room
+ * for form factors whose rows sum to more than 1. */
+struct flux_unit flux_unit_choose(const struct scene *scene);
+
+/* Watts in integer units, at most FLUX_LIMIT. Pre: watts >= 0 (NaN counts as the limit). */
+int64_t flux_from_watts(struct flux_unit unit, double watts);
+
+static inline double flux_to_watts(struct flux_unit unit, int64_t flux)
+{
+    return (double)flux * unit.watt;
+}
+
+/* min(a + b, FLUX_LIMIT). Pre: 0 <= a, b <= FLUX_LIMIT. */
+static inline int64_t flux_add(int64_t a, int64_t b)
+{
+    return a < FLUX_LIMIT - b ? a + b : FLUX_LIMIT; /* a + b itself might overflow */
+}
+
+#endif

@@ -1,0 +1,38 @@
+/* What the method works on and how: the one argument that links, refinement and push-pull
+ * share. Identical on all ranks but for the counters. */
+#ifndef RAD_METHOD_H
+#define RAD_METHOD_H
+
+#include <stdint.h>
+
+#include "geom/scene.h"
+#include "octree/octree.h"
+#include "rad/flux.h"
+#include "rad/patch.h"
+
+/* When and how far links are refined, and when the iterations end. */
+struct criterion {
+    double epsilon;         /* energy of a link that splits it, relative to the emitted power */
+    double min_area;        /* smallest patch, relative to the scene's area */
+    int max_level;          /* deepest subdivision, 0..ID_MAX_LEVEL */
+    double alpha;           /* share of its parent's cost in the cost of a link, 0..1 */
+    double tolerance;       /* bound on the remaining iteration error, relative to all light */
+    int max_iterations;     /* at least 1 */
+};
+
+struct method {
+    const struct scene *scene;
+    const struct octree *octree;
+    struct forest *forest;
+    struct criterion criterion;
+    struct flux_unit flux_unit;
+    double link_threshold;  /* W, areas in square scene units: epsilon times the emitted power */
+    double patch_threshold; /* square scene units: no patch smaller than this is made */
+    struct octree_counts counts; /* work of this rank so far */
+};
+
+/* Fills a method; borrows scene, octree and forest. */
+struct method method_make(const struct scene *scene, const struct octree *octree,
+                          struct forest *forest, const struct criterion *criterion);
+
+#endif

@@ -1,0 +1,112 @@
+/* The patch forest.
+ *
+ * A patch is 64 bytes: one cache line, and less than three links. Its corners, normal and area
+ * follow from its root and its ID, so they are not stored. The four children of a patch lie side
+ * by side, hence one number finds them all and 0 (always a root, never a child) means none. */
+#include "rad/patch.h"
+
+#include "geom/alloc.h"
+
+struct forest *forest_create(const struct scene *scene)
+{
+    struct forest *forest = alloc_array(1, sizeof *forest);
+    forest->scene = scene;
+    forest->root_count = scene_root_count(scene);
+    forest->patches = alloc_reserve(NULL, &forest->capacity, forest->root_count,
+                                    sizeof *forest->patches);
+    forest->count = forest->root_count;
+    for (int32_t root = 0; root < forest->root_count; root++)
+        forest->patches[root] = (struct patch){
+            .radiosity = scene_root_material(scene, root)->emission,
+            .id = id_of_root((uint32_t)root),
+            .parent = -1,
+        };
+    return forest;
+}
+
+void forest_destroy(struct forest *forest)
+{
+    if (!forest)
+        return;
+    alloc_free(forest->patches);
+    alloc_free(forest);
+}
+
+void forest_split(struct forest *forest, int32_t patch)
+{
+    if (!patch_is_leaf(&forest->patches[patch]))
+        return;
+    forest->patches = alloc_reserve(forest->patches, &forest->capacity, forest->count + 4,
+                                    sizeof *forest->patches);
+    struct patch *parent = &forest->patches[patch];
+    parent->children = (int32_t)forest->count;
+    for (int k = 0; k < 4; k++)
+        forest->patches[forest->count++] = (struct patch){
+            .radiosity = parent->radiosity,
+            .id = id_child(parent->id, k),
+            .parent = patch,
+        };
+}
+
+int32_t forest_reach(struct forest *forest, struct patch_id id)
+{
+    int32_t patch = (int32_t)id.root;
+    int level = id_level(id);
+    for (int step = 0; step < level; step++) {
+        forest_split(forest, patch);
+        patch = forest->patches[patch].children + id_step(id, step);
+    }
+    return patch;
+}
+
+struct triangle forest_triangle(const struct forest *forest, int32_t patch)
+{
+    struct patch_id id = forest->patches[patch].id;
+    struct triangle t = scene_root_triangle(forest->scene, (int32_t)id.root);
+    int level = id_level(id);
+    for (int step = 0; step < level; step++)
+        t = triangle_child(&t, id_step(id, step));
+    return t;
+}
+
+double forest_area(const struct forest *forest, int32_t patch)
+{
+    struct patch_id id = forest->patches[patch].id;
+    double share = 1.0 / (double)(UINT32_C(1) << (2 * id_level(id)));
+    return scene_root_area(forest->scene, (int32_t)id.root) * share;
+}
+
+static int64_t count_patches(const struct forest *forest, bool leaves_only)
+{
+    int64_t count = 0;
+    for (int64_t p = 0; p < forest->count; p++) {
+        const struct patch *patch = &forest->patches[p];
+        bool has_area = scene_root_area(forest->scene, (int32_t)patch->id.root) > 0.0;
+        count += has_area && (!leaves_only || patch_is_leaf(patch));
+    }
+    return count;
+}
+
+int64_t forest_leaf_count(const struct forest *forest)
+{
+    return count_patches(forest, true);
+}
+
+int64_t forest_patch_count(const struct forest *forest)
+{
+    return count_patches(forest, false);
+}
+
+int32_t forest_next(const struct forest *forest, int32_t patch, bool descend)
+{
+    const struct patch *at = &forest->patches[patch];
+    if (descend && !patch_is_leaf(at))
+        return at->children;
+    while (at->parent >= 0) {
+        if ((at->id.hierarchy & 3u) != 3u)
+            return patch + 1;
+        patch = at->parent;
+        at = &forest->patches[patch];
+    }
+    return -1;
+}

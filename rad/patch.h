@@ -1,0 +1,68 @@
+/* Patches: one quadtree over each root triangle.
+ *
+ * Every rank holds the whole forest (paper Sec. 3.1). Patch number r < root_count is root r;
+ * other numbers are given in the order of creation, which differs from rank to rank: they are
+ * local and never leave a rank. What travels is the ID. */
+#ifndef RAD_PATCH_H
+#define RAD_PATCH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "geom/scene.h"
+#include "rad/id.h"
+
+struct patch {
+    struct rgb radiosity;   /* B, W/m^2; of an inner patch: the mean over its leaves */
+    int64_t flux[BANDS];    /* Phi received in this iteration over links of this very patch */
+    struct patch_id id;     /* global name */
+    int32_t parent;         /* local number, -1 for a root */
+    int32_t children;       /* local number of child 0 (1..3 follow it), 0 for a leaf */
+};
+
+struct forest {
+    const struct scene *scene; /* borrowed */
+    struct patch *patches;     /* [count] */
+    int64_t count, capacity;
+    int32_t root_count;
+};
+
+/* The forest of undivided roots, each with its emission as radiosity. */
+struct forest *forest_create(const struct scene *scene);
+void forest_destroy(struct forest *forest);
+
+static inline bool patch_is_leaf(const struct patch *patch)
+{
+    return patch->children == 0;
+}
+
+/* Gives a leaf four children with its radiosity and no flux; does nothing to an inner patch.
+ * May move `patches`. Pre: its level is below ID_MAX_LEVEL. */
+void forest_split(struct forest *forest, int32_t patch);
+
+/* Local number of the patch with this ID; what lacks on the way is created.
+ * Pre: id_is_valid(id) and id.root < root_count. */
+int32_t forest_reach(struct forest *forest, struct patch_id id);
+
+/* Corners, recomputed from the root. Scene units. */
+struct triangle forest_triangle(const struct forest *forest, int32_t patch);
+
+/* Area, square scene units: the root's times 4^-level, so that children add up exactly. */
+double forest_area(const struct forest *forest, int32_t patch);
+
+static inline const struct material *forest_material(const struct forest *forest, int32_t patch)
+{
+    return scene_root_material(forest->scene, (int32_t)forest->patches[patch].id.root);
+}
+
+/* Number of leaves under all roots that have an area. */
+int64_t forest_leaf_count(const struct forest *forest);
+
+/* Number of patches under all roots that have an area. */
+int64_t forest_patch_count(const struct forest *forest);
+
+/* The next patch of root `root` depth first, children in order: start with patch = root, ends
+ * with -1. `descend` false skips what is below `patch`. */
+int32_t forest_next(const struct forest *forest, int32_t patch, bool descend);
+
+#endif

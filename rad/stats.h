@@ -1,0 +1,43 @@
+/* What a run reports: filled by the layers that know, written by io/stats.c. */
+#ifndef RAD_STATS_H
+#define RAD_STATS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Where time goes, as in the paper's Table 2 and beyond. */
+enum phase {
+    PHASE_TOTAL, PHASE_READ, PHASE_LINKING, PHASE_REFINEMENT, PHASE_IDLE, PHASE_MIGRATION,
+    PHASE_GATHER, PHASE_PUSH_PULL, PHASE_SCATTER, PHASE_SOLVE, PHASE_RENDER, PHASE_WRITE,
+    PHASE_COUNT
+};
+
+/* Seconds over ranks. */
+struct spread {
+    double min, mean, max;
+};
+
+/* One level of refinement: how even the work was. Cost and work in box and triangle tests. */
+struct level_balance {
+    int64_t iteration, level;
+    int64_t links; /* that were split */
+    double predicted_max, predicted_mean; /* cost over ranks, after migration */
+    double work_max, work_mean;           /* tests that were then done */
+};
+
+struct stats {
+    int64_t ranks, triangles, roots, patches, leaves, links, iterations;
+    bool converged;
+    double epsilon;                                     /* relative to the emitted power */
+    double emitted_power, absorbed_power, escaped_power; /* W, input units, sum over bands */
+    uint64_t checksum;
+    int64_t rays, node_tests, triangle_tests;                      /* of form factors */
+    double closure_min, closure_mean, closure_max, closure_rms;    /* row sums, rms of R - 1 */
+    struct spread seconds[PHASE_COUNT];
+    struct level_balance *levels; /* [level_count], owned by the run */
+    int64_t level_count;
+    int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent from rank to rank */
+    int64_t peak_rss_bytes;                               /* largest over ranks; 0 if unknown */
+};
+
+#endif
