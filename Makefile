@@ -9,9 +9,9 @@
 
 SHELL = /bin/sh
 .SUFFIXES:
+.SECONDARY:
 
 MPICC ?= mpicc
-MPIEXEC ?= mpiexec
 CFLAGS ?= -O2 -g
 INSTALL ?= install
 prefix ?= /usr/local
@@ -27,10 +27,12 @@ ifdef SERIAL
 BUILD ?= build/serial
 COMPILE = $(CC)
 MPI_INCLUDE = -Impi/serial
+MPIEXEC = sh tests/alone.sh
 else
 BUILD ?= build/mpi
 COMPILE = $(MPICC)
 MPI_INCLUDE =
+MPIEXEC ?= mpiexec
 endif
 
 GEOM = alloc error polygon scene triangle
@@ -41,9 +43,9 @@ IO = camera image mesh mtl obj options output render shading stats text tone
 MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
-# Unit tests, bottom up; `exchange` runs on several ranks.
+# Unit tests, bottom up; the last three are run with several ranks.
 TESTS = alloc id triangle scene polygon octree flux patch formfactor link pushpull treecode \
-        plan assign text obj output tone image camera shading options exchange
+        plan assign text obj output tone image camera shading options exchange exact converge
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)
 
 all: $(PHR)
@@ -52,11 +54,14 @@ all: $(PHR)
 $(PHR): $(BUILD)/phr FORCE
 	@cmp -s $(BUILD)/phr $@ || cp $(BUILD)/phr $@
 
-$(BUILD)/phr: $(BUILD)/phr.o $(OBJECTS)
-	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/phr.o $(OBJECTS) -lm
+$(BUILD)/phr: $(BUILD)/phr.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/phr.o $(BUILD)/libphr.a -lm
 
-$(BUILD)/tests/%: $(BUILD)/tests/%.o $(OBJECTS)
-	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(OBJECTS) -lm
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
+
+$(BUILD)/libphr.a: $(OBJECTS)
+	rm -f $@ && ar rcs $@ $(OBJECTS)
 
 $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)

@@ -138,6 +138,17 @@ static bool read_and_broadcast(struct run *run)
 
 /* --- the algorithm --- */
 
+/* With --verbose, the levels of refinement since `first`. */
+static void report_levels(const struct run *run, int64_t first)
+{
+    for (int64_t i = first; i < run->solver->level_count && run->options.verbose; i++) {
+        const struct level_balance *level = &run->solver->levels[i];
+        say(run, "iteration %lld, level %lld: %lld links split, most work %.3f of the mean",
+            (long long)level->iteration, (long long)level->level, (long long)level->links,
+            level->work_max / level->work_mean);
+    }
+}
+
 static void report_iteration(const struct run *run)
 {
     const struct vote *vote = &run->vote;
@@ -150,15 +161,18 @@ static void report_iteration(const struct run *run)
 static bool compute_light(struct run *run)
 {
     struct solver *solver = run->solver;
+    say(run, "%s: %lld triangles; linking", run->options.scene, (long long)run->scene->input_count);
     solver_link_roots(solver);   /* 2: initial linking */
     solver_assign_roots(solver); /* 3: re-assignment by area */
     say(run, "roots are linked, %.1f s", comm_seconds() - run->start);
     do {
+        int64_t levels = solver->level_count;
         solver_refine(solver);            /* 4: evaluate and refine, level by level */
         solver_gather(solver);            /* 5: proxies go home */
         solver_push_pull(solver);         /* 6: push-pull on own roots */
         solver_scatter(solver);           /* 7: proxies are renewed */
         run->vote = solver_vote(solver);  /* 8: is there another iteration? */
+        report_levels(run, levels);
         report_iteration(run);
     } while (!run->vote.converged && !run->vote.diverged &&
              solver->iteration < run->options.criterion.max_iterations);
@@ -281,6 +295,9 @@ int main(int argc, char **argv)
     } else if (parsed) {
         run_all(&run);
     }
+    if (run.comm.rank == 0 && (fflush(stdout) != 0 || ferror(stdout)))
+        error_set(&run.error, EXIT_FAILED, "cannot write to the standard output");
+    comm_agree(&run.comm, &run.error);
     if (run.error.code != EXIT_DONE && run.comm.rank == 0)
         fprintf(stderr, "phr: %s\n", run.error.text);
     release(&run);

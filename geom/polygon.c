@@ -48,16 +48,13 @@ static double largest(struct vec3 x)
     return fmax(fabs(x.x), fmax(fabs(x.y), fabs(x.z)));
 }
 
-/* Distance from corner 0 to the farthest one in the largest coordinate, rounded up to a power
- * of two, so that dividing by it changes no digit; 1 if all corners are equal. */
+/* Distance from corner 0 to the farthest one in the largest coordinate; 1 if all are equal. */
 static double size_of(const struct vec3 *corners, int32_t count)
 {
     double size = 0.0;
     for (int32_t i = 1; i < count; i++)
         size = fmax(size, largest(vec3_sub(corners[i], corners[0])));
-    int exponent;
-    frexp(size, &exponent);
-    return size > 0.0 ? ldexp(1.0, exponent) : 1.0;
+    return size > 0.0 ? size : 1.0;
 }
 
 /* Corner i as seen from corner 0. Divides, since 1 / size may overflow. */
@@ -171,7 +168,7 @@ static void clip_ears(struct corner *ring, int32_t count, int32_t *triangles)
         ring[i].next = i + 1 < count ? i + 1 : 0;
     }
     int32_t at = 1;
-    for (int32_t step = 0; step < 2 * count && triangles < last; step++) {
+    for (int64_t step = 0; step < 2 * (int64_t)count && triangles < last; step++) {
         bool fold = is_fold(ring, at);
         if (fold)
             triangles = cut_corner(ring, at, triangles);

@@ -59,8 +59,23 @@ static void find_bounds(struct scene *scene)
     }
 }
 
+/* Largest coordinate of the input, far from where squares of lengths would overflow. */
+static const double COORDINATE_MAX = 1e150;
+
+static bool coordinates_are_sane(const struct scene *scene)
+{
+    for (int32_t i = 0; i < scene->input_count; i++)
+        for (int k = 0; k < 3; k++)
+            for (int axis = 0; axis < 3; axis++)
+                if (!(fabs(vec3_axis(scene->triangles[i].corner[k], axis)) <= COORDINATE_MAX))
+                    return false;
+    return true;
+}
+
 static bool normalise(struct scene *scene, struct error *error)
 {
+    if (!coordinates_are_sane(scene))
+        return error_set(error, EXIT_USAGE, "a coordinate is out of range");
     find_bounds(scene);
     struct vec3 size = vec3_sub(scene->high, scene->low);
     double extent = larger(size.x, larger(size.y, size.z));
@@ -68,7 +83,7 @@ static bool normalise(struct scene *scene, struct error *error)
     frexp(extent, &exponent);
     if (!(extent > 0.0))
         return error_set(error, EXIT_USAGE, "the scene is a single point");
-    if (!(extent < 1e150) || exponent < -500)
+    if (exponent < -500)
         return error_set(error, EXIT_USAGE, "the scene's extent %g is out of range", extent);
     scene->exponent = exponent;
     scene->centre = vec3_add(scene->low, vec3_scale(size, 0.5));

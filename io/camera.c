@@ -138,7 +138,8 @@ struct camera camera_of_scene(const struct scene *scene)
                             .fronts_only = true};
     struct vec3 size = vec3_sub(scene->high, scene->low);
     double radius = 0.5 * vec3_length(size);
-    double distance = radius / (tangent(camera.fov * PI / 360.0) * 0.94);
+    /* radius / sin of half the angle shows the bounding sphere; 0.93 is a little below its cosine */
+    double distance = radius / (tangent(camera.fov * PI / 360.0) * 0.93);
     struct vec3 aside = unit((struct vec3){0.35, 0.35, 1.0});
     struct vec3 middle = vec3_middle(scene->low, scene->high);
     camera.at = scene_to_input(scene, middle);

@@ -53,9 +53,9 @@ static void release(struct output *output)
 bool output_open(struct output *output, const char *path, struct error *error)
 {
     *output = (struct output){.path = alloc_string(path)};
-    if (is_directory(path)) {
+    if (!*path || is_directory(path)) {
         release(output);
-        return fail(path, EISDIR, error);
+        return fail(path, *path ? EISDIR : ENOENT, error);
     }
     if (!is_special(path)) {
         size_t length = strlen(path);

@@ -5,9 +5,13 @@
  * to the bit) and whose planes agree within 2.5 degrees. The value of a vertex is the mean of
  * the leaves around it, each weighted by one over the distance of its centroid: a linear
  * function comes out right where the leaves lie evenly around the vertex, whatever their sizes.
- * Covered leaves, the floor under a box, are left out: their darkness is not seen and must not
- * leak. A leaf counts as covered if the normal from its centroid meets a back first, that is,
- * if it lies inside a solid. A vertex that has only such leaves around it takes their mean.
+ *
+ * Where a box stands on the floor, leaves are covered in part. The covered part is dark, is not
+ * seen and must not leak. It is found with the four points where the rays of the leaf's links
+ * begin: a point is covered if four rays from it, up and far aside, all meet a back first: it
+ * lies inside a solid, not merely below a shelf. The light of the leaf then belongs to the open share of it: the irradiance that is
+ * shown is the leaf's over that share. A vertex with nothing but covered leaves around it takes
+ * their mean.
  *
  * Between the vertices a leaf interpolates linearly. That alone would crack at T-vertices, where
  * a fine leaf has a vertex in the middle of a coarse leaf's edge: the coarse side does not know
@@ -16,6 +20,7 @@
  * continuous on every smooth surface. */
 #include "io/shading.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -175,37 +180,72 @@ static int32_t reach_vertex(struct table *table, struct vec3 x, int32_t surface)
 
 /* --- values --- */
 
-/* Weight of a covered leaf: it counts only where no other leaf does. */
+/* Weight of a leaf that is covered as a whole: it counts only where no other leaf does. */
 static const double COVERED = 1e-12;
 
-static bool is_covered(const struct table *table, int32_t leaf, struct vec3 centroid)
+static bool meets_back(const struct octree *octree, struct vec3 start, struct vec3 direction)
 {
-    const struct scene *scene = table->shading->forest->scene;
-    int32_t root = (int32_t)table->shading->forest->patches[leaf].id.root;
     struct octree_counts counts = {0};
     struct octree_hit hit;
-    struct vec3 normal = scene_root_plane(scene, root).normal;
-    struct vec3 start = vec3_add(centroid, vec3_scale(normal, 1024.0 * GEOM_ROUNDING));
-    return !scene->two_sided &&
-           octree_first_hit(table->octree, start, normal, false, &hit, &counts) && !hit.front;
+    return octree_first_hit(octree, start, direction, false, &hit, &counts) && !hit.front;
+}
+
+/* `aside`: a triangle about the point, whose corners give three directions along the surface. */
+static bool is_covered(const struct table *table, struct vec3 point, struct vec3 normal,
+                       const struct triangle *aside)
+{
+    struct vec3 start = vec3_add(point, vec3_scale(normal, 1024.0 * GEOM_ROUNDING));
+    if (!meets_back(table->octree, start, normal))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        struct vec3 along = vec3_sub(aside->corner[k], point);
+        struct vec3 up = vec3_scale(normal, 0.25 * vec3_length(along));
+        if (!meets_back(table->octree, start, vec3_add(along, up)))
+            return false;
+    }
+    return true;
+}
+
+/* Share of a leaf that is not covered: 1/2, 3/4 or 1; below, too little is known: 0. */
+static double open_share(const struct table *table, int32_t leaf, const struct triangle *t)
+{
+    const struct forest *forest = table->shading->forest;
+    if (forest->scene->two_sided)
+        return 1.0;
+    struct plane plane = scene_root_plane(forest->scene, (int32_t)forest->patches[leaf].id.root);
+    int open = 0;
+    for (int k = 0; k < 4; k++) {
+        struct triangle child = triangle_child(t, k);
+        open += !is_covered(table, triangle_centroid(&child), plane.normal, &child);
+    }
+    return open < 2 ? 0.0 : 0.25 * open;
+}
+
+/* Radiosity of the open share of a leaf: what it receives, it receives there. */
+static struct rgb open_radiosity(const struct forest *forest, int32_t leaf, double share)
+{
+    struct rgb b = forest->patches[leaf].radiosity, e = forest_material(forest, leaf)->emission;
+    for (int c = 0; c < BANDS && share > 0.0; c++)
+        b.band[c] = e.band[c] + (b.band[c] - e.band[c]) / share;
+    return b;
 }
 
 static void add_leaf(struct table *table, int32_t leaf)
 {
     struct shading *shading = table->shading;
-    const struct patch *patch = &shading->forest->patches[leaf];
+    int32_t root = (int32_t)shading->forest->patches[leaf].id.root;
     struct triangle t = forest_triangle(shading->forest, leaf);
     struct vec3 centroid = triangle_centroid(&t);
-    double share = is_covered(table, leaf, centroid) ? COVERED : 1.0;
+    double share = shading->flat ? 1.0 : open_share(table, leaf, &t);
+    struct rgb radiosity = open_radiosity(shading->forest, leaf, share);
     for (int k = 0; k < 3; k++) {
-        int32_t v = shading->flat ? append_vertex(table, t.corner[k], (int32_t)patch->id.root)
-                                  : reach_vertex(table, t.corner[k],
-                                                 table->surface[patch->id.root]);
-        double weight = share / vec3_length(vec3_sub(centroid, t.corner[k]));
+        int32_t v = shading->flat ? append_vertex(table, t.corner[k], root)
+                                  : reach_vertex(table, t.corner[k], table->surface[root]);
+        double weight = fmax(share, COVERED) / vec3_length(vec3_sub(centroid, t.corner[k]));
         shading->corners[3 * (int64_t)leaf + k] = v;
         table->weights[v] += weight;
         for (int c = 0; c < BANDS; c++)
-            shading->values[v].band[c] += weight * patch->radiosity.band[c];
+            shading->values[v].band[c] += weight * radiosity.band[c];
     }
 }
 

@@ -10,7 +10,9 @@
  * On the denominator: the paper prints F_ij = v cos cos A_j / (pi r^2 + A_i), which has no
  * bound when a small i lies close to a large j (F = 24 where 0.968 is right). Wallace's disk
  * has the area of the source j in both places; computed from the smaller patch, its source is
- * the larger one, hence the maximum. So F <= 1 in both directions and G is symmetric.
+ * the larger one, hence the maximum, and G is symmetric. Of patches that all but touch, the four
+ * disks of one side overlap as seen from the other; where that makes G larger than the smaller
+ * patch, it is cut down to it, so F <= 1 in both directions.
  *
  * Pairs of sub-areas below each other's horizon exchange nothing: they get no ray and do not
  * count as blocked.
@@ -156,6 +158,11 @@ struct exchange exchange_by_disks(const struct facet *p, const struct facet *q,
             else
                 last = blockers[blocked++] = blocker;
         }
+    }
+    double limit = fmin(p->area, q->area);
+    if (exchange.unoccluded > limit) {
+        exchange.area = fmin(limit, exchange.area * (limit / exchange.unoccluded));
+        exchange.unoccluded = limit;
     }
     if (fired < RAYS)
         exchange.unoccluded = fmax(exchange.unoccluded, horizon_estimate(p, q));

@@ -1,0 +1,51 @@
+# The house: layers point one way, MPI stays in mpi/, the texts agree with the program, and
+# install puts things where it should.
+
+. tests/tap.sh
+
+# forbidden FOLDER PATTERN: no source in FOLDER includes what matches.
+forbidden() {
+    ! grep -nE "#include \"($2)/" "$1"/*.[ch]
+}
+
+check "geom/ includes no other layer" forbidden geom 'octree|rad|mpi|io'
+check "octree/ includes geom/ only" forbidden octree 'rad|mpi|io'
+check "rad/ includes neither mpi/ nor io/" forbidden rad 'mpi|io'
+check "io/ does not include mpi/" forbidden io 'mpi'
+check "mpi/ does not include io/" forbidden mpi 'io'
+
+mpi_outside=$(grep -lE '<mpi\.h>|\bMPI_[A-Z]' phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] io/*.[ch])
+check "MPI is used in mpi/ only" [ -z "$mpi_outside" ]
+
+./phr --help >"$work/help"
+options=$(grep -oE '(^|[^a-zA-Z-])--[a-z][a-z-]*' "$work/help" | grep -oE '\-\-[a-z-]+' | sort -u)
+missing=
+for option in $options; do
+    sed 's/\\-/-/g' phr.1 | grep -q -- "$option" || missing="$missing $option"
+done
+check "the man page has every option of --help:$missing" [ -z "$missing" ]
+more=$(sed 's/\\-/-/g' phr.1 | grep -oE '\-\-[a-z][a-z-]+' | sort -u |
+    while read -r option; do echo "$options" | grep -qx -- "$option" || echo "$option"; done)
+check "and no other: $more" [ -z "$more" ]
+
+missing=
+for file in phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] mpi/*.[ch] mpi/serial/*.h io/*.[ch] tests/*.[ch] \
+    tests/*.sh tests/bench/* scenes/*; do
+    stem=$(echo "$file" | sed 's/\.[ch]$//')
+    grep -q "\`$stem" README.md || grep -q "\`$(basename "$stem")" README.md ||
+        missing="$missing $file"
+done
+check "the README's file map has every file:$missing" [ -z "$missing" ]
+
+$MPIEXEC -n 2 ./phr scenes/cornell.obj --view scenes/cornell.view >"$work/summary" 2>/dev/null
+missing=$(while IFS= read -r line; do grep -qxF -- "$line" README.md || echo "$line"; done <"$work/summary")
+check "the README shows the summary of make demo: $missing" [ -z "$missing" ]
+check "which has seven lines" [ "$(wc -l <"$work/summary")" -eq 7 ]
+
+$MAKE BUILD="$BUILD" install DESTDIR="$work/root" prefix=/opt/phr >"$work/install.log" 2>&1
+check "install: the program runs" [ "$("$work/root/opt/phr/bin/phr" --version)" = "phr 0.1" ]
+check "install: the man page is there" [ -s "$work/root/opt/phr/share/man/man1/phr.1" ]
+$MAKE BUILD="$BUILD" uninstall DESTDIR="$work/root" prefix=/opt/phr >>"$work/install.log" 2>&1
+check "uninstall leaves no file" [ -z "$(find "$work/root" -type f)" ]
+
+tap_done

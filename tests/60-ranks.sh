@@ -1,0 +1,110 @@
+# The same bytes everywhere: every output file, the checksum and the counts are the same on any
+# number of ranks, in the serial build, with every compiler at hand and at every optimisation.
+
+. tests/tap.sh
+
+quiet="--quiet --epsilon 1e-4 --size 96x96"
+
+# build NAME ARGUMENTS...: another phr as $work/NAME/phr; fails with the log if it has warnings.
+build() {
+    name=$1
+    shift
+    if ! $MAKE BUILD="$work/$name" PHR="$work/$name/phr.out" "$@" "$work/$name/phr" \
+        >"$work/$name.log" 2>&1 || grep -q 'warning:' "$work/$name.log"; then
+        cat "$work/$name.log"
+        return 1
+    fi
+}
+
+# produce DIRECTORY COMMAND...: the three outputs and the stats of a run.
+produce() {
+    directory=$work/$1
+    shift
+    mkdir -p "$directory"
+    "$@" $quiet -o "$directory/a.pfm" -o "$directory/a.ppm" -o "$directory/a.ply" \
+        --stats "$directory/s.json"
+}
+
+# same A B: equal files and equal counts.
+same() {
+    for file in a.pfm a.ppm a.ply; do
+        cmp "$work/$1/$file" "$work/$2/$file" || return 1
+    done
+    for key in checksum links patches leaves iterations rays node_tests triangle_tests \
+               absorbed_power escaped_power; do
+        if [ "$(stat_of "$work/$1/s.json" $key)" != "$(stat_of "$work/$2/s.json" $key)" ] ||
+            [ -z "$(stat_of "$work/$1/s.json" $key)" ]; then
+            echo "# $key differs or is missing: $1 and $2"
+            return 1
+        fi
+    done
+}
+
+cornell="scenes/cornell.obj --view scenes/cornell.view"
+
+# Two facing triangles: more ranks than roots.
+cat >"$work/two.mtl" <<END
+newmtl lamp
+Kd 0.5 0.6 0.7
+Ke 3 2 1
+END
+cat >"$work/two.obj" <<END
+mtllib two.mtl
+usemtl lamp
+v 0 0 0
+v 1 0 0
+v 0 1 0
+v 0 0 1
+v 1 0 1
+v 0 1 1
+f 1 2 3
+f 4 6 5
+END
+
+check "the serial build compiles without MPI and without warnings" build serial SERIAL=1
+produce serial "$work/serial/phr" $cornell
+for ranks in 1 2 3 4 7 16; do
+    produce ranks-$ranks $MPIEXEC -n $ranks "$BUILD/phr" $cornell
+    check "Cornell box: $ranks ranks give the bytes of the serial build" same ranks-$ranks serial
+done
+
+produce flat-serial "$work/serial/phr" $cornell --flat --two-sided
+produce flat-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided
+check "the same with --flat --two-sided" same flat-3 flat-serial
+
+produce levels-serial "$work/serial/phr" scenes/cornell.obj --max-level 3 --min-area 1e-3 \
+    --alpha 0 --tolerance 1e-6 --oracle bf --samples 1 --exposure 0.1
+produce levels-4 $MPIEXEC -n 4 "$BUILD/phr" scenes/cornell.obj --max-level 3 --min-area 1e-3 \
+    --alpha 1 --tolerance 1e-6 --oracle bf --samples 1 --exposure 0.1
+check "other limits, no view; alpha moves links, not light" same levels-4 levels-serial
+
+produce two-serial "$work/serial/phr" "$work/two.obj"
+for ranks in 2 3 7; do
+    produce two-$ranks $MPIEXEC -n $ranks "$BUILD/phr" "$work/two.obj"
+    check "two roots on $ranks ranks" same two-$ranks two-serial
+done
+
+check "-O0 builds without warnings" build O0 SERIAL=1 CFLAGS=-O0
+produce O0 "$work/O0/phr" $cornell
+check "-O0 gives the same bytes" same O0 serial
+check "-O3 -march=native builds without warnings" build O3 SERIAL=1 CFLAGS="-O3 -march=native"
+produce O3 "$work/O3/phr" $cornell
+check "-O3 -march=native gives the same bytes" same O3 serial
+for compiler in gcc clang; do
+    if command -v $compiler >/dev/null; then
+        check "$compiler builds without warnings" build $compiler SERIAL=1 CC=$compiler \
+            CFLAGS="-O3 -march=native"
+        produce $compiler "$work/$compiler/phr" $cornell
+        check "$compiler gives the same bytes" same $compiler serial
+    else
+        tap 0 "$compiler is not installed # SKIP"
+    fi
+done
+
+# What the comparison is worth: it notices one changed byte.
+cp -r "$work/ranks-1" "$work/planted"
+printf x | dd of="$work/planted/a.ply" bs=1 seek=1000 conv=notrunc 2>/dev/null
+same planted serial >/dev/null 2>&1
+check "the comparison notices one changed byte" [ $? -ne 0 ]
+
+tap_done

@@ -1,0 +1,213 @@
+# Bad input, bad usage, outputs that cannot be written: on 1 and on 4 ranks each ends with one
+# line on stderr, nothing on stdout, the right exit status, and no file touched. Nothing hangs
+# (10 seconds are the limit of a hang, not of a speed).
+#
+# What the ranks print is taken from each rank itself, so that words of the launcher about an
+# exit status that is not 0 do not count as ours.
+. tests/tap.sh
+
+: "${PHR:=./phr}"
+case $PHR in */*) ;; *) PHR=./$PHR ;; esac
+out=$work/stdout
+err=$work/stderr
+old=$work/old.ppm
+
+# phr_on RANKS LIMIT ARGUMENTS...: runs it; leaves $out, $err and the exit status in $status.
+phr_on() {
+    ranks=$1
+    limit=$2
+    shift 2
+    : >"$out"
+    : >"$err"
+    timeout "$limit" $MPIEXEC -n "$ranks" sh -c 'exec 2>>"$1" >>"$0"; shift; exec "$@"' \
+        "$out" "$err" "$PHR" "$@" >"$work/launcher" 2>&1 </dev/null
+    status=$?
+}
+
+is_one_line() { [ "$(wc -l <"$1")" -eq 1 ]; }
+
+starts_with() {
+    case $(cat "$1") in "$2"*) ;; *) return 1 ;; esac
+}
+
+is_untouched() {
+    [ "$(cat "$old")" = "old bytes" ] && [ -z "$(find "$work" -name '*.tmp')" ] &&
+        [ ! -e "$work/new.ppm" ] && [ ! -e "$work/new.json" ]
+}
+
+# ended CODE START: the last run ended as an error should.
+ended() {
+    [ "$status" -eq "$1" ] && [ ! -s "$out" ] && is_one_line "$err" && starts_with "$err" "$2" &&
+        is_untouched && ! grep -q 'BAD TERMINATION' "$work/launcher" && return
+    echo "# expected status $1 and '$2...', got status $status and:"
+    sed 's/^/# /' "$err" "$out"
+    return 1
+}
+
+# refuse CODE START NAME ARGUMENTS...: the arguments fail on 1 and 4 ranks.
+refuse() {
+    code=$1
+    start=$2
+    name=$3
+    shift 3
+    for ranks in 1 4; do
+        echo "old bytes" >"$old"
+        phr_on $ranks 10 "$@"
+        check "$name, on $ranks" ended "$code" "phr: $start"
+    done
+}
+
+# refuse_scene SUFFIX NAME: $scene is refused with "FILE" and the suffix, whatever else is asked.
+refuse_scene() {
+    refuse 2 "$scene$1" "$2" "$scene" -o "$old" -o "$work/new.ppm" --stats "$work/new.json"
+}
+
+# scene NAME: the file that stdin becomes is the scene of what follows.
+scene() {
+    scene=$work/$1
+    cat >"$scene"
+}
+
+# random_bytes: 1000 bytes, the same ones always.
+random_bytes() {
+    printf "$(awk 'BEGIN { for (s = i = 1; i <= 1000; i++) {
+        s = s * 16807 % 2147483647
+        printf "\\%03o", int(s / 65536) % 256
+    } }')"
+}
+
+vertices='v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0'
+printf 'newmtl lamp\nKd 0.5 0.5 0.5\nKe 1 1 1\n' >"$work/lamp.mtl"
+lamp="mtllib lamp.mtl
+usemtl lamp"
+
+# --- scenes ---
+
+scene=$work/absent.obj
+refuse_scene ": cannot read: " "a missing scene"
+
+scene unreadable.obj </dev/null
+chmod 000 "$scene"
+if [ -r "$scene" ]; then
+    tap 0 "an unreadable scene # SKIP this user can read everything"
+else
+    refuse_scene ": cannot read: " "an unreadable scene"
+fi
+
+scene=$work/folder.obj
+mkdir "$scene"
+refuse_scene ": cannot read: " "a folder as scene"
+
+scene empty.obj </dev/null
+refuse_scene ": no faces" "an empty scene"
+
+scene=$work/random.obj
+random_bytes >"$scene"
+refuse_scene ": not a text file" "a scene of random bytes"
+
+scene index.obj <<END
+$lamp
+$vertices
+f 1 2 3
+f 1 3 5
+END
+refuse_scene ":8: face refers to vertex 5 of 4" "an index out of range"
+
+scene nan.obj <<END
+$lamp
+$vertices
+v 0 nan 0
+f 1 2 3
+END
+refuse_scene ":7: bad number 'nan'" "a coordinate that is not a number"
+
+printf 'newmtl lamp\nKe 1 one 1\n' >"$work/bad.mtl"
+scene library.obj <<END
+mtllib bad.mtl
+$vertices
+f 1 2 3
+END
+refuse 2 "$work/bad.mtl:2: bad number 'one'" "a bad material library" "$scene" -o "$old"
+
+printf 'newmtl grey\nKd 0.5 0.5 0.5\n' >"$work/grey.mtl"
+scene dark.obj <<END
+mtllib grey.mtl
+$vertices
+usemtl grey
+f 1 2 3 4
+END
+refuse_scene ": nothing emits light" "a scene without a light"
+
+scene degenerate.obj <<END
+$lamp
+$vertices
+v 2 0 0
+f 1 2 2
+f 1 2 5
+END
+refuse_scene ": all faces of the scene are degenerate" "only faces without area"
+
+# --- views and usage ---
+
+scene good.obj <<END
+$lamp
+$vertices
+f 1 2 3 4
+END
+
+printf 'eye 0 0 5\nat 0 0 0\nfov 200\n' >"$work/bad.view"
+refuse 2 "$work/bad.view:3: fov must" "a bad view" "$scene" --view "$work/bad.view" -o "$old"
+refuse 2 "$work/absent.view: cannot read: " "a missing view" "$scene" --view "$work/absent.view" \
+    -o "$old"
+refuse 2 "unknown option --fast" "an unknown option" "$scene" -o "$old" --fast
+refuse 2 "--epsilon needs a value" "a missing value" "$scene" -o "$old" --epsilon
+refuse 2 "--samples: 'x' is not a number" "a bad value" "$scene" -o "$old" --samples x
+refuse 2 "no scene given" "no scene" -o "$old"
+refuse 2 "one scene at a time" "two scenes" "$scene" "$scene" -o "$old"
+refuse 2 "-o $work/new.png: the name must" "an unknown format" "$scene" -o "$old" -o "$work/new.png"
+
+# --- outputs ---
+
+mkdir "$work/folder.ppm"
+refuse 1 "$work/absent/new.ppm: cannot write: " "an output in a missing folder" \
+    "$scene" -o "$old" -o "$work/absent/new.ppm" -o "$work/new.ppm"
+refuse 1 "$work/folder.ppm: cannot write: " "a folder as output" "$scene" -o "$old" \
+    -o "$work/folder.ppm" -o "$work/new.ppm"
+refuse 1 "$work/absent/new.json: cannot write: " "a report in a missing folder" \
+    "$scene" -o "$old" -o "$work/new.ppm" --stats "$work/absent/new.json"
+
+if [ -c /dev/full ]; then
+    ln -s /dev/full "$work/full.ppm"
+    refuse 1 "$work/full.ppm: cannot write: " "a full disk" "$scene" --quiet -o "$work/full.ppm"
+else
+    tap 0 "a full disk # SKIP there is no /dev/full"
+fi
+
+# --- what is no error ---
+
+help_is_right() {
+    [ "$status" -eq 0 ] && [ ! -s "$err" ] && [ "$(grep -c '^usage: phr' "$out")" -eq 1 ]
+}
+
+version_is_right() {
+    [ "$status" -eq 0 ] && [ ! -s "$err" ] && is_one_line "$out" && starts_with "$out" "phr "
+}
+
+is_silent() {
+    [ "$status" -eq 0 ] && [ ! -s "$err" ] && [ ! -s "$out" ] && [ -s "$work/quiet.ppm" ]
+}
+
+for ranks in 1 4; do
+    phr_on $ranks 10 --help
+    check "--help, on $ranks" help_is_right
+    phr_on $ranks 10 --version
+    check "--version, on $ranks" version_is_right
+    phr_on $ranks 60 --quiet "$scene" -o "$work/quiet.ppm" --size 20x20
+    check "--quiet, on $ranks" is_silent
+    rm -f "$work/quiet.ppm"
+done
+
+tap_done

@@ -1,0 +1,3 @@
+# Stands in for mpiexec where phr is built without MPI: `alone.sh -n P COMMAND...` runs the command.
+shift 2
+exec "$@"

@@ -1,0 +1,197 @@
+/* The exchanges of the distributed algorithm on a made-up forest, on any number of ranks: gather,
+ * push-pull and scatter end with the same forest as one rank alone, links that migrate arrive
+ * once and mean the same, and the vote adds up to the same sums.
+ *
+ * Every rank knows all of the made-up links and holds those that a hash deals to it; beside the
+ * parallel solver runs one on MPI_COMM_SELF that holds them all. To be run with mpiexec; rank 0
+ * reports. */
+#include "mpi/assign.h"
+#include "mpi/migrate.h"
+#include "mpi/picture.h"
+#include "rad/treecode.h"
+
+#include "tests/random.h"
+#include "tests/tap.h"
+
+enum { ROOTS = 23, LINKS = 4000 };
+
+/* A scene of triangles with all the material that the exchanges need: areas and reflectances. */
+static struct scene *make_scene(void)
+{
+    struct scene *scene = scene_create(ROOTS, 2);
+    struct random random = random_seed(3);
+    for (int32_t i = 0; i < ROOTS; i++) {
+        scene->areas[i] = 0.01 + 0.1 * random_unit(&random);
+        scene->material_of[i] = i % 5 == 0;
+    }
+    scene->materials[0].reflectance = (struct rgb){{0.5, 0.7, 0.2}};
+    scene->materials[1].reflectance = (struct rgb){{0.9, 0.1, 0.4}};
+    scene->materials[1].emission = (struct rgb){{3.0, 2.0, 1.0}};
+    return scene;
+}
+
+static struct patch_id random_id(struct random *random)
+{
+    struct patch_id id = id_of_root((uint32_t)(random_bits(random) % ROOTS));
+    int level = (int)(random_bits(random) % 5);
+    for (int k = 0; k < level; k++)
+        id = id_child(id, (int)(random_bits(random) % 4));
+    return id;
+}
+
+/* A fifth of the links are dealt to nobody in the first round: their patches appear later. */
+static void add_links(struct solver *solver, int round)
+{
+    struct random random = random_seed(99);
+    for (int i = 0; i < LINKS; i++) {
+        struct patch_id p = random_id(&random), q = random_id(&random);
+        double area = 1e-5 * random_unit(&random);
+        uint64_t dealt = random_bits(&random);
+        if ((i % 5 == 0) != (round == 1) || dealt % (uint64_t)solver->comm->size !=
+                                                (uint64_t)solver->comm->rank)
+            continue;
+        int32_t a = forest_reach(solver->method.forest, p);
+        int32_t b = forest_reach(solver->method.forest, q);
+        link_list_append(&solver->links, (struct link){a, b, area, (float)area, (uint32_t)i});
+    }
+}
+
+static struct solver *make_solver(const struct comm *comm, const struct scene *scene)
+{
+    const struct criterion criterion = {.epsilon = 1.0, .tolerance = 1e-3, .max_level = 15};
+    struct solver *solver = solver_create(comm, scene, NULL, &criterion);
+    roots_assign(scene, comm->size, solver->owner);
+    for (int32_t root = 0; root < ROOTS; root++)
+        solver->own[root] = solver->owner[root] == comm->rank;
+    return solver;
+}
+
+/* One iteration without refinement; in rounds 0 and 1 new links come with new patches. */
+static struct vote iterate(struct solver *solver, int round)
+{
+    solver->first_new = solver->method.forest->count;
+    if (round < 2)
+        add_links(solver, round);
+    forest_clear_flux(solver->method.forest);
+    solver->moved = links_transfer(&solver->links, solver->method.forest, solver->method.flux_unit);
+    solver_gather(solver);
+    solver_push_pull(solver);
+    solver_scatter(solver);
+    return solver_vote(solver);
+}
+
+/* True on all ranks if it is on all of them. */
+static bool on_all(const struct comm *comm, bool here)
+{
+    struct error error = {0};
+    if (!here)
+        error_set(&error, EXIT_FAILED, "rank %d", comm->rank);
+    return comm_agree(comm, &error);
+}
+
+static void report(const struct comm *comm, bool here, const char *name)
+{
+    bool all = on_all(comm, here);
+    if (comm->rank == 0)
+        tap_ok(all, "%s", name);
+}
+
+static void test_rounds(struct solver *parallel, struct solver *alone)
+{
+    const struct comm *comm = parallel->comm;
+    bool same_forest = true, same_vote = true, same_size = true;
+    for (int round = 0; round < 4; round++) {
+        struct vote a = iterate(parallel, round), b = iterate(alone, round);
+        same_forest = same_forest && forest_checksum(parallel->method.forest) ==
+                                         forest_checksum(alone->method.forest);
+        same_size = same_size && parallel->method.forest->count == alone->method.forest->count;
+        same_vote = same_vote && a.links == b.links && a.absorbed == b.absorbed &&
+                    a.escaped == b.escaped && a.remaining == b.remaining;
+    }
+    report(comm, same_forest, "four iterations: the same trees as on one rank, to the bit");
+    report(comm, same_size, "no rank has a patch that another lacks");
+    report(comm, same_vote, "the votes agree with one rank's, to the bit");
+}
+
+static int64_t total_of(const struct comm *comm, int64_t own)
+{
+    int64_t sum;
+    MPI_Request request;
+    MPI_Iallreduce(&own, &sum, 1, MPI_INT64_T, MPI_SUM, comm->handle, &request);
+    comm_wait(&request);
+    return sum;
+}
+
+/* Sum over links of a number that depends on all that a link says. */
+static int64_t fingerprint(const struct solver *solver)
+{
+    uint64_t sum = 0;
+    for (int64_t i = 0; i < solver->links.count; i++) {
+        const struct link *link = &solver->links.items[i];
+        struct patch_id p = solver->method.forest->patches[link->p].id;
+        struct patch_id q = solver->method.forest->patches[link->q].id;
+        uint64_t word = p.root + 31u * (uint64_t)p.hierarchy + 1009u * (uint64_t)q.root +
+                        99991u * (uint64_t)q.hierarchy + 7u * (uint64_t)link->cost;
+        sum += (word * UINT64_C(0x9E3779B97F4A7C15) >> 16) + (uint64_t)(link->area * 1e15);
+    }
+    return (int64_t)(sum & UINT64_C(0xffffffffffff));
+}
+
+static void test_migration(struct solver *parallel, struct solver *alone)
+{
+    const struct comm *comm = parallel->comm;
+    int64_t before = total_of(comm, fingerprint(parallel)) & INT64_C(0xffffffffffff);
+    int64_t count = total_of(comm, parallel->links.count);
+    bool right_place = true;
+    for (int turn = 1; turn <= 3; turn++) {
+        int *destination = alloc_array((size_t)parallel->links.count, sizeof *destination);
+        for (int64_t i = 0; i < parallel->links.count; i++)
+            destination[i] = (int)(parallel->links.items[i].cost / (unsigned)turn) % comm->size;
+        links_migrate(parallel, &parallel->links, destination);
+        alloc_free(destination);
+        for (int64_t i = 0; i < parallel->links.count; i++)
+            right_place = right_place && (int)(parallel->links.items[i].cost / (unsigned)turn) %
+                                                 comm->size == comm->rank;
+    }
+    int64_t after = total_of(comm, fingerprint(parallel)) & INT64_C(0xffffffffffff);
+    report(comm, right_place, "each link is where it was sent");
+    report(comm, count == total_of(comm, parallel->links.count) && before == after,
+           "links that migrate arrive once and unchanged");
+    iterate(parallel, 2);
+    iterate(alone, 2);
+    report(comm, forest_checksum(parallel->method.forest) == forest_checksum(alone->method.forest),
+           "and carry the same light from their new ranks");
+}
+
+/* With more ranks than roots some own nothing; the picture has fewer rows than ranks too. */
+static void test_picture(const struct comm *comm)
+{
+    enum { HEIGHT = 5, ROW = 6 };
+    float rows[HEIGHT * ROW] = {0};
+    int mine = 0;
+    for (int y = comm->rank; y < HEIGHT; y += comm->size)
+        for (int x = 0; x < ROW; x++)
+            rows[mine++] = (float)(100 * y + x);
+    float *picture = picture_gather(comm, rows, ROW, HEIGHT);
+    bool right = (picture != NULL) == (comm->rank == 0);
+    for (int i = 0; i < HEIGHT * ROW && picture; i++)
+        right = right && picture[i] == (float)(100 * (i / ROW) + i % ROW);
+    report(comm, right, "rows of a picture find their places");
+    alloc_free(picture);
+}
+
+int main(int argc, char **argv)
+{
+    struct comm comm, self = {MPI_COMM_SELF, 0, 1};
+    comm_start(&comm, &argc, &argv);
+    struct scene *scene = make_scene();
+    struct solver *parallel = make_solver(&comm, scene), *alone = make_solver(&self, scene);
+    test_rounds(parallel, alone);
+    test_migration(parallel, alone);
+    test_picture(&comm);
+    solver_destroy(parallel);
+    solver_destroy(alone);
+    scene_destroy(scene);
+    comm_stop(&comm);
+    return comm.rank == 0 ? tap_done() : alloc_balance() != 0;
+}

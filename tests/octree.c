@@ -1,0 +1,375 @@
+/* Tests of octree/octree.h against brute force over all triangles, in three scenes: a random
+ * soup; a closed room with boxes on its floor; a sphere with coincident triangles, needles and
+ * dropped triangles. Segments are random, run through vertices and edges, lie in axis planes or
+ * join two triangles of the scene. Then: closed meshes let nothing out, ten thousand coincident
+ * triangles, the rules of the first hit, and the counters. */
+#include "octree/octree.h"
+
+#include <string.h>
+
+#include "tests/scenes.h"
+#include "tests/tap.h"
+
+enum { SEGMENTS = 100000, RAYS = 20000, CROSSINGS = 40000 };
+
+/* --- scenes --- */
+
+static void make_soup(struct soup *soup)
+{
+    struct random random = random_seed(1);
+    for (int i = 0; i < 2000; i++) {
+        struct triangle t = random_triangle(&random, 0.5, i % 10 == 0 ? 0.4 : 0.05);
+        int axis = i % 7; /* 0, 1, 2: lies in an axis plane, where rounding does not help */
+        for (int k = 1; k < 3; k++) {
+            t.corner[k].x = axis == 0 ? t.corner[0].x : t.corner[k].x;
+            t.corner[k].y = axis == 1 ? t.corner[0].y : t.corner[k].y;
+            t.corner[k].z = axis == 2 ? t.corner[0].z : t.corner[k].z;
+        }
+        soup_add(soup, t);
+    }
+}
+
+static void make_room(struct soup *soup)
+{
+    soup_add_box(soup, (struct vec3){0, 0, 0}, (struct vec3){4, 3, 2.5}, 10, true);
+    soup_add_box(soup, (struct vec3){0.5, 0.5, 0}, (struct vec3){1.5, 1.25, 1}, 4, false);
+    soup_add_box(soup, (struct vec3){2.1, 1.2, 0}, (struct vec3){3.3, 2.2, 0.7}, 4, false);
+    soup_add_box(soup, (struct vec3){2.3, 1.3, 0.7}, (struct vec3){2.9, 1.9, 1.9}, 4, false);
+}
+
+static void make_sphere(struct soup *soup)
+{
+    struct random random = random_seed(2);
+    soup_add_sphere(soup, 0.8, 3);
+    for (int i = 0; i < 100; i++)
+        soup_add(soup, soup->items[i]); /* coincident */
+    for (int i = 0; i < 300; i++) {
+        struct vec3 a = random_point(&random, 1.0), b = random_point(&random, 1.0), c = b;
+        c.x += random_between(&random, -1e-6, 1e-6);
+        c.y += random_between(&random, -1e-6, 1e-6);
+        soup_add(soup, (struct triangle){{a, b, i % 10 == 0 ? a : c}}); /* needle, or dropped */
+    }
+}
+
+/* --- segments --- */
+
+struct question {
+    struct vec3 from, to;
+    int32_t own[2];
+};
+
+static struct vec3 random_corner(struct random *random, const struct scene *scene)
+{
+    int32_t t = random_below(random, scene->input_count);
+    return scene->triangles[t].corner[random_below(random, 3)];
+}
+
+static struct vec3 random_edge_point(struct random *random, const struct scene *scene)
+{
+    const struct triangle *t = &scene->triangles[random_below(random, scene->input_count)];
+    int k = random_below(random, 3);
+    struct vec3 along = vec3_sub(t->corner[(k + 1) % 3], t->corner[k]);
+    return vec3_add(t->corner[k], vec3_scale(along, random_unit(random)));
+}
+
+/* As far behind `through` as it is from `from`. */
+static struct vec3 beyond(struct vec3 from, struct vec3 through)
+{
+    return vec3_add(through, vec3_sub(through, from));
+}
+
+static struct question random_question(struct random *random, const struct scene *scene)
+{
+    struct question q = {random_point(random, 0.5), random_point(random, 0.5), {-1, -1}};
+    switch (random_below(random, 6)) {
+    case 0: q.to = beyond(q.from, random_corner(random, scene)); break;
+    case 1: q.to = beyond(q.from, random_edge_point(random, scene)); break;
+    case 2: /* in an axis plane through a corner, every other one along an axis */
+        q.from = random_corner(random, scene);
+        q.to.x = q.from.x;
+        q.to.y = random_bits(random) & 1 ? q.from.y : q.to.y;
+        break;
+    case 3: /* from edge to edge */
+        q.from = random_edge_point(random, scene);
+        q.to = random_edge_point(random, scene);
+        break;
+    case 4: /* as form factors ask */
+        for (int k = 0; k < 2; k++)
+            q.own[k] = random_below(random, scene->input_count);
+        q.from = triangle_centroid(&scene->triangles[q.own[0]]);
+        q.to = triangle_centroid(&scene->triangles[q.own[1]]);
+        break;
+    default: break;
+    }
+    if (memcmp(&q.from, &q.to, sizeof q.from) == 0)
+        q.to.z += 0.25;
+    return q;
+}
+
+/* --- blockers --- */
+
+static bool is_blocker(const struct scene *scene, const struct question *q, int32_t t)
+{
+    struct segment segment = segment_make(q->from, q->to);
+    return t >= 0 && t < scene->input_count && t != q->own[0] && t != q->own[1] &&
+           segment_is_blocked_by(&segment, &scene->triangles[t], &scene->planes[t]);
+}
+
+/* Work of a plain loop over all triangles, to be undercut. */
+static int64_t plain_work(const struct scene *scene)
+{
+    return (int64_t)SEGMENTS * scene->input_count;
+}
+
+static void test_blockers(const struct world *world, const char *name)
+{
+    const struct scene *scene = world->scene;
+    struct random random = random_seed(3);
+    struct octree_counts counts = {0}, again = {0};
+    int wrong = 0, false_blockers = 0, misled = 0, blocked = 0;
+    for (int i = 0; i < SEGMENTS; i++) {
+        struct question q = random_question(&random, scene);
+        int32_t brute = brute_blocker(scene->triangles, scene->planes, scene->input_count, q.from,
+                                      q.to, q.own);
+        int32_t found = octree_blocker(world->octree, q.from, q.to, q.own, -1, &counts);
+        wrong += (brute >= 0) != (found >= 0);
+        false_blockers += found >= 0 && !is_blocker(scene, &q, found);
+        int32_t guess = i % 3 == 0 ? q.own[i & 1] : i % 3 == 1 ? brute
+                                                  : random_below(&random, scene->input_count);
+        int32_t guessed = octree_blocker(world->octree, q.from, q.to, q.own, guess, &again);
+        misled += (guessed >= 0) != (brute >= 0);
+        misled += guessed >= 0 && !is_blocker(scene, &q, guessed);
+        blocked += brute >= 0;
+    }
+    tap_ok(wrong == 0, "%s: %d segments, of which %d are blocked, as by brute force", name,
+           (int)SEGMENTS, blocked);
+    tap_ok(false_blockers == 0, "%s: the blocker named blocks and is not one's own", name);
+    tap_ok(misled == 0, "%s: no guess changes the answer", name);
+    tap_ok(counts.rays == SEGMENTS && again.rays == SEGMENTS, "%s: a question counts once", name);
+    /* 3 % of it are box tests in the soup; needles as long as the scene make it 15 %. */
+    tap_ok(counts.triangle_tests > 0 && counts.triangle_tests < plain_work(scene) / 5 &&
+               counts.node_tests < plain_work(scene) / 5,
+           "%s: with a small part of the work", name);
+}
+
+static void test_counters(const struct world *world, const char *name)
+{
+    struct random random = random_seed(4);
+    bool same = true;
+    for (int i = 0; i < 1000; i++) {
+        struct question q = random_question(&random, world->scene);
+        struct octree_counts counts[2] = {{0, 0, 0}, {0, 0, 0}};
+        int32_t answer[2];
+        for (int k = 0; k < 2; k++)
+            answer[k] = octree_blocker(world->octree, q.from, q.to, q.own, -1, &counts[k]);
+        same = same && answer[0] == answer[1] && counts[0].rays == 1 &&
+               memcmp(&counts[0], &counts[1], sizeof counts[0]) == 0;
+    }
+    tap_ok(same, "%s: the same question has the same answer and takes the same work", name);
+}
+
+/* --- first hits --- */
+
+/* Parameter of the ray's point in the triangle, in lengths of `ray`, or -1. */
+static double hit_distance(const struct scene *scene, int32_t t, const struct segment *ray,
+                           bool fronts_only)
+{
+    const struct plane *plane = &scene->planes[t];
+    double start = plane_distance(plane, ray->from);
+    double speed = -vec3_dot(plane->normal, vec3_sub(ray->to, ray->from));
+    if (start * speed <= 0.0 || (fronts_only && start <= 0.0) ||
+        !segment_line_meets(ray, &scene->triangles[t], NULL))
+        return -1.0;
+    return start / speed;
+}
+
+/* Random rays, from within and from far away. Where two triangles are met at once any will do
+ * that is no further away than rounding. */
+static void test_first_hits(const struct world *world, const char *name, bool fronts_only)
+{
+    const struct scene *scene = world->scene;
+    struct random random = random_seed(5);
+    struct octree_counts counts = {0};
+    int wrong = 0, hits = 0, wrong_weights = 0;
+    for (int i = 0; i < RAYS; i++) {
+        struct vec3 origin = random_point(&random, i % 2 ? 0.3 : 2.0);
+        struct vec3 aim = random_point(&random, 0.5);
+        struct vec3 direction = vec3_scale(vec3_sub(aim, origin), random_between(&random, 0.1, 9));
+        struct segment ray = segment_make(origin, vec3_add(origin, direction));
+        double nearest = HUGE_VAL;
+        for (int32_t t = 0; t < scene->input_count; t++) {
+            double at = hit_distance(scene, t, &ray, fronts_only);
+            nearest = at >= 0.0 ? fmin(nearest, at) : nearest;
+        }
+        struct octree_hit hit;
+        bool found = octree_first_hit(world->octree, origin, direction, fronts_only, &hit, &counts);
+        hits += found;
+        wrong += found != (nearest < HUGE_VAL);
+        if (!found)
+            continue;
+        double at = hit_distance(scene, hit.triangle, &ray, fronts_only);
+        double front = plane_distance(&scene->planes[hit.triangle], origin);
+        /* Positions are right to 1e-13 or so; planes of needles, whose normals come of an area
+         * of 1e-6, to 1e-8. */
+        double reach = vec3_length(direction);
+        wrong += at < 0.0 || (at - nearest) * reach > 1e-8 || hit.front != (front > 0.0);
+        struct vec3 x = vec3_add(origin, vec3_scale(direction, at)), y = {0, 0, 0};
+        for (int k = 0; k < 3; k++)
+            y = vec3_add(y, vec3_scale(scene->triangles[hit.triangle].corner[k], hit.weight[k]));
+        wrong_weights += vec3_length(vec3_sub(x, y)) > 1e-6;
+    }
+    tap_ok(wrong == 0 && hits > RAYS / 10, "%s%s: first hits as by brute force (%d hits)", name,
+           fronts_only ? ", fronts only" : "", hits);
+    tap_ok(wrong_weights == 0, "%s: the weights give the point", name);
+    tap_ok(counts.rays == RAYS, "%s: a ray counts once", name);
+}
+
+static void test_scene(void (*make)(struct soup *), const char *name)
+{
+    struct soup soup = {0};
+    make(&soup);
+    struct world world = world_make(scene_of_soup(&soup, 1));
+    test_blockers(&world, name);
+    test_counters(&world, name);
+    test_first_hits(&world, name, false);
+    test_first_hits(&world, name, true);
+    bool same = true;
+    for (int32_t t = 0; t < world.scene->input_count; t++)
+        same = same && octree_triangle(world.octree, t) == &world.scene->triangles[t] &&
+               octree_plane(world.octree, t) == &world.scene->planes[t];
+    tap_ok(same, "%s: triangles and planes by number", name);
+    world_free(&world);
+    soup_free(&soup);
+}
+
+/* --- closed meshes --- */
+
+/* From a point inside (the room is 0.31 scene units high) through corners and edges; the mesh is
+ * convex, so that what lies as far behind is outside. */
+static void count_escapes(const struct world *world, int escapes[3])
+{
+    const struct scene *scene = world->scene;
+    struct random random = random_seed(6);
+    struct octree_counts counts = {0};
+    const int32_t own[2] = {-1, -1};
+    for (int i = 0; i < CROSSINGS; i++) {
+        struct vec3 from = random_point(&random, 0.1);
+        struct vec3 at[2] = {random_corner(&random, scene), random_edge_point(&random, scene)};
+        for (int k = 0; k < 2; k++) {
+            struct vec3 to = beyond(from, at[k]);
+            struct octree_hit hit;
+            escapes[k] += octree_blocker(world->octree, from, to, own, -1, &counts) < 0;
+            escapes[2] += !octree_first_hit(world->octree, from, vec3_sub(at[k], from), false, &hit,
+                                            &counts);
+        }
+    }
+}
+
+static void test_closed(bool is_sphere, const char *name)
+{
+    struct soup soup = {0};
+    if (is_sphere)
+        soup_add_sphere(&soup, 0.9, 3);
+    else
+        soup_add_box(&soup, (struct vec3){0, 0, 0}, (struct vec3){4, 3, 2.5}, 10, true);
+    struct world world = world_make(scene_of_soup(&soup, 1));
+    int escapes[3] = {0, 0, 0};
+    count_escapes(&world, escapes);
+    tap_ok(escapes[0] == 0, "%s: nothing leaves through corners", name);
+    tap_ok(escapes[1] == 0, "%s: nothing leaves through edges", name);
+    tap_ok(escapes[2] == 0, "%s: rays from inside always hit", name);
+    world_free(&world);
+    soup_free(&soup);
+}
+
+/* --- special cases --- */
+
+static void test_coincident(void)
+{
+    enum { COUNT = 10000 };
+    struct soup soup = {0};
+    struct triangle t = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.5}}};
+    for (int i = 0; i < COUNT; i++)
+        soup_add(&soup, t);
+    struct world world = world_make(scene_of_soup(&soup, 1));
+    const struct triangle *first = &world.scene->triangles[0];
+    struct plane plane = world.scene->planes[0];
+    struct random random = random_seed(7);
+    struct octree_counts counts = {0};
+    struct octree_hit hit = {0};
+    const int32_t own[2] = {5, 6};
+    bool right = true;
+    for (int i = 0; i < 300; i++) {
+        struct vec3 through = random_point_on(&random, first);
+        struct vec3 from = vec3_add(through, vec3_scale(plane.normal, 0.1));
+        struct vec3 to = beyond(from, through), along = vec3_sub(to, from);
+        int32_t blocker = octree_blocker(world.octree, from, to, own, -1, &counts);
+        right = right && blocker >= 0 && blocker != 5 && blocker != 6;
+        right = right && octree_blocker(world.octree, to, beyond(from, to), own, -1, &counts) < 0;
+        right = right && octree_first_hit(world.octree, from, along, false, &hit, &counts) &&
+                hit.triangle == COUNT - 1;
+    }
+    tap_ok(right, "ten thousand coincident triangles: they block, the last is met first");
+    world_free(&world);
+    soup_free(&soup);
+}
+
+static void test_nothing(void)
+{
+    struct octree *octree = octree_create(NULL, NULL, 0);
+    struct octree_counts counts = {0};
+    struct octree_hit hit;
+    const int32_t own[2] = {-1, -1};
+    struct vec3 a = {0, 0, 0}, b = {1, 2, 3};
+    tap_ok(octree_blocker(octree, a, b, own, -1, &counts) == -1 &&
+               !octree_first_hit(octree, a, b, false, &hit, &counts) && counts.rays == 2,
+           "an octree of nothing answers");
+    octree_destroy(octree);
+    octree_destroy(NULL);
+}
+
+/* A floor, a decal in its plane that comes after it and faces down, and a lid above both. */
+static void test_layers(void)
+{
+    struct triangle triangles[3] = {{{{-0.4, -0.4, 0}, {0.4, -0.4, 0}, {0, 0.4, 0}}},
+                                    {{{-0.1, -0.1, 0}, {0, 0.1, 0}, {0.1, -0.1, 0}}},
+                                    {{{-0.4, -0.4, 0.2}, {0, 0.4, 0.2}, {0.4, -0.4, 0.2}}}};
+    struct plane planes[3];
+    for (int k = 0; k < 3; k++)
+        planes[k] = triangle_plane(&triangles[k]);
+    struct octree *octree = octree_create(triangles, planes, 3);
+    struct octree_counts counts = {0};
+    struct octree_hit hit = {0};
+    struct vec3 above = {0.01, 0.02, 0.1}, aside = {0.2, -0.3, 0.1}, high = {0.01, 0.02, 4.0};
+    struct vec3 down = {0, 0, -0.1}, up = {0, 0, 0.3};
+    tap_ok(octree_first_hit(octree, above, down, false, &hit, &counts) && hit.triangle == 1 &&
+               !hit.front,
+           "of two in one plane the later is met");
+    tap_ok(octree_first_hit(octree, above, down, true, &hit, &counts) && hit.triangle == 0 &&
+               hit.front,
+           "but not its back if fronts alone count");
+    tap_ok(octree_first_hit(octree, aside, down, false, &hit, &counts) && hit.triangle == 0,
+           "beside it the floor is met");
+    tap_ok(octree_first_hit(octree, above, up, true, &hit, &counts) && hit.triangle == 2 &&
+               hit.front,
+           "the lid above it faces down");
+    tap_ok(octree_first_hit(octree, high, down, false, &hit, &counts) && hit.triangle == 2 &&
+               !hit.front && octree_first_hit(octree, high, down, true, &hit, &counts) &&
+               hit.triangle == 0,
+           "from above it is met, or looked through");
+    tap_ok(!octree_first_hit(octree, high, up, false, &hit, &counts), "nothing lies behind");
+    octree_destroy(octree);
+}
+
+int main(void)
+{
+    test_nothing();
+    test_layers();
+    test_coincident();
+    test_closed(true, "sphere");
+    test_closed(false, "room");
+    test_scene(make_soup, "soup");
+    test_scene(make_room, "furnished room");
+    test_scene(make_sphere, "sphere with needles");
+    return tap_done();
+}

@@ -1,0 +1,380 @@
+/* Tests of io/options.h. Proved are: each option goes to its field; each kind of wrong argument
+ * is refused with a line that names it; and the help, the table of options in io/options.c and
+ * the table below know the same options and the same default values. */
+#include "io/options.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/tap.h"
+
+enum { ARGUMENTS_MAX = 8, TEXT_MAX = 100000 };
+
+static struct error error;
+
+/* Parses a command line that is written with blanks between its words ("_" is an empty one). */
+static bool parse(const char *line, struct options *options)
+{
+    static char words[200]; /* the options keep pointers into it */
+    static char *arguments[ARGUMENTS_MAX + 1];
+    int count = 0;
+    error = (struct error){EXIT_DONE, ""};
+    snprintf(words, sizeof words, "phr %s", line);
+    for (char *word = strtok(words, " "); word && count < ARGUMENTS_MAX; word = strtok(NULL, " "))
+        arguments[count++] = strcmp(word, "_") == 0 ? word + 1 : word;
+    arguments[count] = NULL;
+    return options_parse(options, count, arguments, &error);
+}
+
+static bool is_same(const char *found, const char *expected)
+{
+    return found && strcmp(found, expected) == 0;
+}
+
+/* --- fields --- */
+
+static void test_defaults(void)
+{
+    struct options options;
+    tap_ok(parse("room.obj", &options) && error.code == EXIT_DONE &&
+               is_same(options.scene, "room.obj") && options.output_count == 0 && !options.view &&
+               !options.stats && options.width == 0 && options.height == 0 &&
+               options.exposure == 0.0,
+           "a scene alone");
+    tap_ok(!options.flat && !options.two_sided && !options.quiet && !options.verbose &&
+               !options.help && !options.version,
+           "all switches are off");
+    options_free(&options);
+}
+
+static void test_texts(void)
+{
+    struct options options;
+    tap_ok(parse("--view a.view room.obj --stats b.json", &options) &&
+               is_same(options.view, "a.view") && is_same(options.stats, "b.json") &&
+               is_same(options.scene, "room.obj"),
+           "--view and --stats, before and behind the scene");
+    options_free(&options);
+    tap_ok(parse("room.obj --view --flat", &options) && is_same(options.view, "--flat") &&
+               !options.flat,
+           "the word behind an option is its value");
+    options_free(&options);
+    tap_ok(parse("-", &options) && is_same(options.scene, "-"), "a lone - is a name");
+    options_free(&options);
+}
+
+static void test_outputs(void)
+{
+    struct options options;
+    tap_ok(parse("-o a.ppm room.obj -o b.ply -o d/c.pfm", &options) && options.output_count == 3 &&
+               is_same(options.outputs[0], "a.ppm") && is_same(options.outputs[1], "b.ply") &&
+               is_same(options.outputs[2], "d/c.pfm"),
+           "-o, three times");
+    options_free(&options);
+    tap_ok(!options.outputs, "options_free() forgets the outputs");
+    tap_ok(output_format_of("a.ppm") == FORMAT_PPM && output_format_of("a.ppm.pfm") == FORMAT_PFM &&
+               output_format_of("d.ppm/a.ply") == FORMAT_PLY,
+           "the suffix is the format");
+}
+
+static void test_switches(void)
+{
+    struct options options;
+    tap_ok(parse("--flat a.obj", &options) && options.flat && !options.two_sided, "--flat");
+    options_free(&options);
+    tap_ok(parse("--two-sided a.obj", &options) && options.two_sided && !options.flat,
+           "--two-sided");
+    options_free(&options);
+    tap_ok(parse("--quiet a.obj", &options) && options.quiet && !options.verbose, "--quiet");
+    options_free(&options);
+    tap_ok(parse("--verbose a.obj", &options) && options.verbose && !options.quiet, "--verbose");
+    options_free(&options);
+    tap_ok(parse("--help", &options) && options.help && !options.version && !options.scene,
+           "--help needs no scene");
+    options_free(&options);
+    tap_ok(parse("--version", &options) && options.version && !options.help,
+           "--version needs no scene");
+    options_free(&options);
+    tap_ok(parse("--oracle bf a.obj", &options), "--oracle bf");
+    options_free(&options);
+}
+
+static void test_sizes(void)
+{
+    struct options options;
+    tap_ok(parse("--size 640x480 a.obj", &options) && options.width == 640 && options.height == 480,
+           "--size 640x480");
+    options_free(&options);
+    tap_ok(parse("--size 1X32768 a.obj", &options) && options.width == 1 && options.height == 32768,
+           "--size 1X32768");
+    options_free(&options);
+}
+
+/* Options with a number: where it goes, its range, and whether the help says its default. */
+struct number {
+    const char *name;
+    size_t offset;         /* in struct options */
+    bool is_int, in_help;
+    const char *low, *high; /* inside the range */
+    const char *below, *above; /* outside */
+};
+
+#define FIELD(field) offsetof(struct options, field)
+
+static const struct number NUMBERS[] = {
+    {"--samples", FIELD(samples), true, true, "1", "64", "0", "65"},
+    {"--exposure", FIELD(exposure), false, false, "1e-30", "1e30", "0", "2e30"},
+    {"--epsilon", FIELD(criterion.epsilon), false, true, "0", "1e30", "-1e-9", "1e31"},
+    {"--max-level", FIELD(criterion.max_level), true, true, "0", "15", "-1", "16"},
+    {"--min-area", FIELD(criterion.min_area), false, true, "0", "1", "-1e-300", "1.0001"},
+    {"--alpha", FIELD(criterion.alpha), false, true, "0", "1", "-0.1", "1.1"},
+    {"--tolerance", FIELD(criterion.tolerance), false, true, "0", "1", "-1", "2"},
+    {"--max-iterations", FIELD(criterion.max_iterations), true, true, "1", "1000000000", "0",
+     "1e300"},
+};
+enum { NUMBER_COUNT = sizeof NUMBERS / sizeof NUMBERS[0] };
+
+/* The other options, with what stands behind each. */
+static const char *const OTHERS[][2] = {
+    {"-o", " a.ppm"},  {"--view", " a"},    {"--size", " 2x3"}, {"--stats", " a"},
+    {"--oracle", " bf"}, {"--flat", ""},    {"--two-sided", ""}, {"--quiet", ""},
+    {"--verbose", ""}, {"--help", ""},      {"--version", ""}};
+enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
+
+static double number_of(const struct number *number, const struct options *options)
+{
+    const char *field = (const char *)options + number->offset;
+    return number->is_int ? *(const int *)(const void *)field
+                          : *(const double *)(const void *)field;
+}
+
+/* Whether the value is taken and arrives. */
+static bool takes(const struct number *number, const char *value)
+{
+    char line[100];
+    struct options options;
+    snprintf(line, sizeof line, "%s %s a.obj", number->name, value);
+    bool taken = parse(line, &options) && number_of(number, &options) == strtod(value, NULL);
+    options_free(&options);
+    return taken;
+}
+
+/* Whether the value is refused with a line that starts with the option and quotes the value. */
+static bool refuses(const struct number *number, const char *value, const char *reason)
+{
+    char line[100], start[100];
+    struct options options;
+    snprintf(line, sizeof line, "%s %s a.obj", number->name, value);
+    snprintf(start, sizeof start, "%s: ", number->name);
+    bool refused = !parse(line, &options) && error.code == EXIT_USAGE &&
+                   strncmp(error.text, start, strlen(start)) == 0 &&
+                   strstr(error.text, value) && strstr(error.text, reason);
+    options_free(&options);
+    return refused;
+}
+
+static void test_numbers(void)
+{
+    for (int i = 0; i < NUMBER_COUNT; i++) {
+        const struct number *number = &NUMBERS[i];
+        tap_ok(takes(number, number->low) && takes(number, number->high), "%s takes %s and %s",
+               number->name, number->low, number->high);
+        tap_ok(refuses(number, number->below, "not between") &&
+                   refuses(number, number->above, "not between"),
+               "%s refuses %s and %s", number->name, number->below, number->above);
+        tap_ok(refuses(number, "x", "not a number") && refuses(number, "1x", "not a number") &&
+                   refuses(number, "nan", "not a number") &&
+                   refuses(number, "inf", "not a number") &&
+                   refuses(number, "0x1", "not a number"),
+               "%s refuses what is not a number", number->name);
+        tap_ok(number->is_int ? refuses(number, "1.5", "not a whole number")
+                              : takes(number, "0.375"),
+               "%s %s a fraction", number->name, number->is_int ? "refuses" : "takes");
+    }
+}
+
+/* --- errors --- */
+
+static void check_refused(const char *line, const char *message)
+{
+    struct options options;
+    bool right = !parse(line, &options) && error.code == EXIT_USAGE && is_same(error.text, message);
+    tap_ok(right, "%s%s%s", message, right ? "" : " is not: ", right ? "" : error.text);
+    options_free(&options);
+}
+
+static void test_errors(void)
+{
+    check_refused("", "no scene given; see --help");
+    check_refused("--quiet -o a.ppm", "no scene given; see --help");
+    check_refused("a.obj b.obj", "one scene at a time: a.obj and b.obj");
+    check_refused("a.obj --fast", "unknown option --fast; see --help");
+    check_refused("a.obj --flat=1", "unknown option --flat=1; see --help");
+    check_refused("a.obj --Flat", "unknown option --Flat; see --help");
+    check_refused("a.obj --", "unknown option --; see --help");
+    check_refused("a.obj -f", "unknown option -f; see --help");
+    check_refused("a.obj --oracle of-delphi", "--oracle: 'of-delphi' is not bf");
+    check_refused("a.obj --samples 2.5", "--samples: '2.5' is not a whole number");
+    check_refused("a.obj --epsilon ten", "--epsilon: 'ten' is not a number");
+    check_refused("a.obj --epsilon _", "--epsilon: '' is not a number");
+    check_refused("a.obj --max-level 16", "--max-level: 16 is not between 0 and 15");
+    check_refused("--flat --fast --help", "unknown option --fast; see --help");
+}
+
+static void test_bad_suffixes(void)
+{
+    static const char *const names[] = {"a", "a.png", "a.PPM", "a.ppm.gz", ".ppm", "ppm", "a.ppm/"};
+    char line[50], message[100];
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        snprintf(line, sizeof line, "a.obj -o %s", names[i]);
+        snprintf(message, sizeof message, "-o %s: the name must end in .ppm, .pfm or .ply",
+                 names[i]);
+        check_refused(line, message);
+    }
+}
+
+static void test_bad_sizes(void)
+{
+    static const char *const sizes[] = {"5", "5x", "x5", "5x5x", "5x5x5", "0x5", "5x0", "-5x5",
+                                        "5.5x5", "32769x1", "1x32769", "axb", "5*5", "nanx5",
+                                        "99999999999999999999x5", "4294967297x5"};
+    char line[50], message[100];
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        snprintf(line, sizeof line, "a.obj --size %s", sizes[i]);
+        snprintf(message, sizeof message,
+                 "--size: '%s' is not WIDTHxHEIGHT, each from 1 to 32768", sizes[i]);
+        check_refused(line, message);
+    }
+}
+
+static void test_missing_values(void)
+{
+    char line[50], message[100];
+    for (int i = 0; i < NUMBER_COUNT + OTHER_COUNT; i++) {
+        const char *name = i < NUMBER_COUNT ? NUMBERS[i].name : OTHERS[i - NUMBER_COUNT][0];
+        if (i >= NUMBER_COUNT && !*OTHERS[i - NUMBER_COUNT][1])
+            continue;
+        snprintf(line, sizeof line, "a.obj %s", name);
+        snprintf(message, sizeof message, "%s needs a value", name);
+        check_refused(line, message);
+    }
+}
+
+/* --- the help and the tables --- */
+
+static size_t read_all(FILE *file, char *text)
+{
+    size_t size = fread(text, 1, TEXT_MAX - 1, file);
+    text[size] = '\0';
+    fclose(file);
+    return size;
+}
+
+static bool read_help(char *text)
+{
+    FILE *file = tmpfile();
+    if (!file)
+        return false;
+    options_print_help(file);
+    rewind(file);
+    return read_all(file, text) > 0;
+}
+
+/* The place where the whole word `name` stands in a text, or NULL. */
+static const char *find_word(const char *text, const char *name)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyz-";
+    size_t length = strlen(name);
+    for (const char *at = text; (at = strstr(at, name)) != NULL; at += length)
+        if ((at == text || !strchr(letters, at[-1])) &&
+            (!at[length] || !strchr(letters, at[length])))
+            return at;
+    return NULL;
+}
+
+static bool is_known(const char *name)
+{
+    bool known = false;
+    for (int i = 0; i < NUMBER_COUNT; i++)
+        known = known || strcmp(NUMBERS[i].name, name) == 0;
+    for (int i = 0; i < OTHER_COUNT; i++)
+        known = known || strcmp(OTHERS[i][0], name) == 0;
+    return known;
+}
+
+/* Options stand in the parser's table as {"--name", and nothing else there looks like that. */
+static void test_parser_table(const char *help)
+{
+    static char source[TEXT_MAX];
+    FILE *file = fopen("io/options.c", "rb");
+    int count = 0;
+    if (file)
+        read_all(file, source);
+    for (const char *at = source; (at = strstr(at, "{\"-")) != NULL;) {
+        char name[50];
+        at += 2;
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(at, "\""), at);
+        tap_ok(find_word(help, name), "the help knows %s", name);
+        tap_ok(is_known(name), "this test knows %s", name);
+        count++;
+    }
+    tap_ok(count == NUMBER_COUNT + OTHER_COUNT, "the parser knows %d options (%d here)", count,
+           NUMBER_COUNT + OTHER_COUNT);
+}
+
+static void test_help_is_true(const char *help)
+{
+    for (const char *at = strstr(help, "--"); at; at = strstr(at, "--")) {
+        char name[50];
+        size_t length = strspn(at, "-abcdefghijklmnopqrstuvwxyz");
+        snprintf(name, sizeof name, "%.*s", (int)length, at);
+        tap_ok(is_known(name), "the help's %s exists", name);
+        at += length;
+    }
+}
+
+/* The default value stands in brackets at the end of the option's line. */
+static void test_help_defaults(const char *help)
+{
+    struct options options;
+    parse("a.obj", &options);
+    for (int i = 0; i < NUMBER_COUNT; i++) {
+        const char *line = find_word(help, NUMBERS[i].name);
+        const char *end = line ? strchr(line, '\n') : NULL;
+        if (!NUMBERS[i].in_help)
+            continue;
+        while (end && end > line && *end != '(')
+            end--;
+        double said = end ? strtod(end + 1, NULL) : NAN, is = number_of(&NUMBERS[i], &options);
+        tap_ok(said == is, "%s: the help says %g, the default is %g", NUMBERS[i].name, said, is);
+    }
+    options_free(&options);
+}
+
+static void test_help(void)
+{
+    static char help[TEXT_MAX];
+    if (!tap_ok(read_help(help) && strncmp(help, "usage: phr ", 11) == 0, "there is a help"))
+        return;
+    test_parser_table(help);
+    test_help_is_true(help);
+    test_help_defaults(help);
+}
+
+int main(void)
+{
+    test_defaults();
+    test_texts();
+    test_outputs();
+    test_switches();
+    test_sizes();
+    test_numbers();
+    test_errors();
+    test_bad_suffixes();
+    test_bad_sizes();
+    test_missing_values();
+    test_help();
+    return tap_done();
+}

@@ -1,0 +1,317 @@
+/* Tests of rad/patch.h: the size of a patch, splitting, areas that add up exactly, the same tree
+ * in any order of creation, the walk depth first, equal bits along shared edges. */
+#include "rad/patch.h"
+
+#include <string.h>
+
+#include "tests/scenes.h"
+#include "tests/tap.h"
+
+enum { ROOTS = 6, PATHS = 300 };
+
+/* A prepared scene of random triangles; number 4 has no area. */
+static struct scene *make_scene(void)
+{
+    struct soup soup = {0};
+    struct random random = random_seed(1);
+    for (int i = 0; i < ROOTS; i++)
+        soup_add(&soup, random_triangle(&random, 0.5, 0.3));
+    soup.items[4].corner[1] = soup.items[4].corner[0];
+    struct scene *scene = scene_of_soup(&soup, 2);
+    scene->material_of[1] = 1;
+    scene->materials[1].emission = (struct rgb){{1.0, 2.0, 3.0}};
+    scene_prepare_or_exit(scene);
+    soup_free(&soup);
+    return scene;
+}
+
+static struct patch_id random_id(struct random *random, int max_level)
+{
+    struct patch_id id = id_of_root((uint32_t)random_below(random, ROOTS));
+    int level = random_below(random, max_level + 1);
+    for (int k = 0; k < level; k++)
+        id = id_child(id, random_below(random, 4));
+    return id;
+}
+
+static bool same_id(struct patch_id a, struct patch_id b)
+{
+    return a.root == b.root && a.hierarchy == b.hierarchy;
+}
+
+static void test_creation(struct scene *scene)
+{
+    struct forest *forest = forest_create(scene);
+    tap_ok(sizeof(struct patch) <= 64, "a patch takes %d bytes", (int)sizeof(struct patch));
+    bool right = forest->count == ROOTS && forest->root_count == ROOTS;
+    for (int32_t r = 0; r < ROOTS; r++) {
+        const struct patch *patch = &forest->patches[r];
+        right = right && patch_is_leaf(patch) && patch->parent == -1 &&
+                same_id(patch->id, id_of_root((uint32_t)r)) && patch->flux[0] == 0 &&
+                patch->radiosity.band[2] == (r == 1 ? 3.0 : 0.0) &&
+                forest_area(forest, r) == scene->areas[r] &&
+                forest_material(forest, r) == &scene->materials[r == 1];
+    }
+    tap_ok(right, "roots have their emission as radiosity");
+    tap_ok(forest_leaf_count(forest) == ROOTS - 1 && forest_patch_count(forest) == ROOTS - 1,
+           "roots without an area are not counted");
+    forest_destroy(forest);
+    forest_destroy(NULL);
+}
+
+static void test_split(struct scene *scene)
+{
+    struct forest *forest = forest_create(scene);
+    forest->patches[2].radiosity = (struct rgb){{0.5, 0.25, 7.0}};
+    forest->patches[2].flux[1] = 99;
+    forest_split(forest, 2);
+    int32_t first = forest->patches[2].children;
+    bool right = first == ROOTS && forest->count == ROOTS + 4;
+    for (int k = 0; k < 4; k++) {
+        const struct patch *child = &forest->patches[first + k];
+        right = right && same_id(child->id, id_child(id_of_root(2), k)) && child->parent == 2 &&
+                patch_is_leaf(child) && child->flux[0] == 0 && child->flux[1] == 0 &&
+                memcmp(&child->radiosity, &forest->patches[2].radiosity, sizeof(struct rgb)) == 0;
+    }
+    tap_ok(right && forest->patches[2].flux[1] == 99,
+           "children take over the radiosity; the flux stays with the parent");
+    forest_split(forest, 2);
+    tap_ok(forest->count == ROOTS + 4 && forest->patches[2].children == first,
+           "an inner patch is not split again");
+    tap_ok(forest_leaf_count(forest) == ROOTS + 2 && forest_patch_count(forest) == ROOTS + 3,
+           "leaves and patches are counted");
+    forest_split(forest, 4);
+    tap_ok(forest_leaf_count(forest) == ROOTS + 2 && forest_patch_count(forest) == ROOTS + 3,
+           "but not those without an area");
+    forest_destroy(forest);
+}
+
+/* Areas are exact fractions of the root's. Those of the triangles are computed from corners that
+ * are rounded at each of up to 15 levels: the relative error of a difference of corners is then
+ * 1e-16 / 2^-15 = 4e-12, and slivers have more. */
+static void test_areas(struct scene *scene)
+{
+    struct forest *forest = forest_create(scene);
+    struct random random = random_seed(2);
+    for (int i = 0; i < PATHS; i++)
+        forest_reach(forest, random_id(&random, ID_MAX_LEVEL));
+    bool exact = true;
+    double worst = 0.0;
+    for (int32_t p = 0; p < forest->count; p++) {
+        double area = forest_area(forest, p), sum = 0.0;
+        struct triangle t = forest_triangle(forest, p);
+        if (area > 0.0)
+            worst = fmax(worst, fabs(triangle_area(&t) / area - 1.0));
+        if (patch_is_leaf(&forest->patches[p]))
+            continue;
+        for (int k = 0; k < 4; k++)
+            sum += forest_area(forest, forest->patches[p].children + k);
+        exact = exact && sum == area;
+    }
+    tap_ok(exact, "the areas of children sum to the parent's exactly, down to level 15");
+    tap_ok(worst < 1e-10, "and they are those of the triangles");
+    forest_destroy(forest);
+}
+
+/* --- the same tree in any order --- */
+
+static void shuffle(struct patch_id *ids, int count, struct random *random)
+{
+    for (int i = count - 1; i > 0; i--) {
+        int j = random_below(random, i + 1);
+        struct patch_id swap = ids[i];
+        ids[i] = ids[j];
+        ids[j] = swap;
+    }
+}
+
+static bool same_trees(const struct forest *a, const struct forest *b)
+{
+    if (a->count != b->count)
+        return false;
+    for (int32_t root = 0; root < a->root_count; root++) {
+        int32_t p = root, q = root;
+        while (p >= 0 && q >= 0) {
+            if (!same_id(a->patches[p].id, b->patches[q].id))
+                return false;
+            p = forest_next(a, p, true);
+            q = forest_next(b, q, true);
+        }
+        if (p != q)
+            return false;
+    }
+    return true;
+}
+
+/* Whether the patch that is reached has the ID. Reaching may move `patches`: it comes first. */
+static bool reaches(struct forest *forest, struct patch_id id)
+{
+    int32_t patch = forest_reach(forest, id);
+    return same_id(forest->patches[patch].id, id);
+}
+
+static void test_reach(struct scene *scene)
+{
+    static struct patch_id ids[PATHS];
+    struct random random = random_seed(3);
+    for (int i = 0; i < PATHS; i++)
+        ids[i] = random_id(&random, 8);
+    struct forest *first = forest_create(scene);
+    bool found = true, same = true, numbers_differ = false;
+    for (int i = 0; i < PATHS; i++)
+        found = reaches(first, ids[i]) && found;
+    int64_t count = first->count;
+    for (int i = 0; i < PATHS; i++)
+        found = reaches(first, ids[i]) && found;
+    tap_ok(found && first->count == count,
+           "what is reached has the ID, and is there the next time");
+    for (int round = 0; round < 20; round++) {
+        struct forest *other = forest_create(scene);
+        shuffle(ids, PATHS, &random);
+        for (int i = 0; i < PATHS; i++)
+            forest_reach(other, ids[i]);
+        same = same && same_trees(first, other);
+        for (int32_t p = 0; same && p < count; p++)
+            numbers_differ |= !same_id(first->patches[p].id, other->patches[p].id);
+        forest_destroy(other);
+    }
+    tap_ok(same && numbers_differ, "any order of creation makes the same trees");
+    forest_destroy(first);
+}
+
+/* --- the walk --- */
+
+/* Depth first order: at the first step in which two paths differ the smaller child comes first,
+ * and a path comes before those that it begins. */
+static bool comes_before(struct patch_id a, struct patch_id b)
+{
+    int level_a = id_level(a), level_b = id_level(b);
+    for (int k = 0; k < level_a && k < level_b; k++)
+        if (id_step(a, k) != id_step(b, k))
+            return id_step(a, k) < id_step(b, k);
+    return level_a < level_b;
+}
+
+static bool is_below(struct patch_id a, struct patch_id top)
+{
+    while (id_level(a) > id_level(top))
+        a = id_parent(a);
+    return same_id(a, top);
+}
+
+static void test_walk(struct scene *scene)
+{
+    struct forest *forest = forest_create(scene);
+    struct random random = random_seed(4);
+    for (int i = 0; i < PATHS; i++)
+        forest_reach(forest, random_id(&random, 6));
+    int64_t seen = 0;
+    bool ordered = true, skipped = true;
+    for (int32_t root = 0; root < ROOTS; root++) {
+        for (int32_t p = root; p >= 0; seen++) {
+            int32_t next = forest_next(forest, p, true);
+            if (next >= 0)
+                ordered = ordered && forest->patches[next].id.root == (uint32_t)root &&
+                          comes_before(forest->patches[p].id, forest->patches[next].id);
+            int32_t over = next;
+            while (over >= 0 && is_below(forest->patches[over].id, forest->patches[p].id))
+                over = forest_next(forest, over, true);
+            skipped = skipped && forest_next(forest, p, false) == over;
+            p = next;
+        }
+    }
+    tap_ok(ordered && seen == forest->count, "the walk visits each patch once, depth first");
+    tap_ok(skipped, "and skips what is below a patch on request");
+    forest_destroy(forest);
+}
+
+/* --- geometry --- */
+
+static void test_triangles(struct scene *scene)
+{
+    struct forest *forest = forest_create(scene);
+    int32_t patch = forest_reach(forest, id_child(id_child(id_of_root(3), 3), 1));
+    struct triangle t = scene_root_triangle(scene, 3);
+    t = triangle_child(&t, 3);
+    t = triangle_child(&t, 1);
+    struct triangle u = forest_triangle(forest, patch);
+    tap_ok(memcmp(&t, &u, sizeof t) == 0, "corners follow the path from the root");
+    forest_destroy(forest);
+}
+
+static void add_corners(const struct forest *forest, int32_t root, struct soup *leaves)
+{
+    for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
+        if (patch_is_leaf(&forest->patches[p]))
+            soup_add(leaves, forest_triangle(forest, p));
+}
+
+static int count_common(const struct soup *a, const struct soup *b)
+{
+    int common = 0;
+    for (int64_t i = 0; i < 3 * a->count; i++) {
+        const struct vec3 *x = &a->items[i / 3].corner[i % 3];
+        bool first = true, found = false;
+        for (int64_t j = 0; j < i; j++)
+            first = first && memcmp(x, &a->items[j / 3].corner[j % 3], sizeof *x) != 0;
+        for (int64_t j = 0; j < 3 * b->count; j++)
+            found = found || memcmp(x, &b->items[j / 3].corner[j % 3], sizeof *x) == 0;
+        common += first && found;
+    }
+    return common;
+}
+
+/* Splits each leaf of the forest once. */
+static void split_all(struct forest *forest)
+{
+    for (int64_t p = 0, count = forest->count; p < count; p++)
+        forest_split(forest, (int32_t)p);
+}
+
+/* The faces of a tetrahedron, and their twins: any two have an edge in common, with 2^L + 1
+ * points on it after L splits. A twin has all points in common with its triangle. */
+static void test_neighbours(void)
+{
+    enum { LEVEL = 4, FACES = 4, ON_EDGE = (1 << LEVEL) + 1 };
+    struct soup soup = {0}, leaves[2 * FACES] = {{0, 0, 0}};
+    struct random random = random_seed(5);
+    struct vec3 corner[4];
+    for (int k = 0; k < 4; k++)
+        corner[k] = random_point(&random, 0.7);
+    for (int k = 0; k < FACES; k++)
+        soup_add(&soup, (struct triangle){{corner[(k + 1) % 4], corner[(k + 3) % 4],
+                                           corner[(k + 2) % 4]}});
+    struct scene *scene = scene_of_soup(&soup, 1);
+    scene->two_sided = true;
+    scene_prepare_or_exit(scene);
+    struct forest *forest = forest_create(scene);
+    for (int level = 0; level < LEVEL; level++)
+        split_all(forest);
+    for (int32_t r = 0; r < 2 * FACES; r++)
+        add_corners(forest, r, &leaves[r]);
+    bool right = true;
+    for (int r = 0; r < 2 * FACES; r++)
+        for (int s = 0; s < r; s++)
+            right = right && count_common(&leaves[r], &leaves[s]) ==
+                                 (r - s == FACES ? ON_EDGE * (ON_EDGE + 1) / 2 : ON_EDGE);
+    tap_ok(right, "neighbours and twins have the same bits along their edges");
+    for (int r = 0; r < 2 * FACES; r++)
+        soup_free(&leaves[r]);
+    forest_destroy(forest);
+    scene_destroy(scene);
+    soup_free(&soup);
+}
+
+int main(void)
+{
+    struct scene *scene = make_scene();
+    test_creation(scene);
+    test_split(scene);
+    test_areas(scene);
+    test_reach(scene);
+    test_walk(scene);
+    test_triangles(scene);
+    test_neighbours();
+    scene_destroy(scene);
+    return tap_done();
+}

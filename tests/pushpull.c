@@ -1,0 +1,399 @@
+/* Tests of rad/pushpull.h: no light is lost on its way from any level to the leaves, pulls are
+ * means, the sums of a push-pull, `touched`, the factor by which changes shrink, and row sums. */
+#include "rad/pushpull.h"
+
+#include <string.h>
+
+#include "tests/scenes.h"
+#include "tests/tap.h"
+
+enum { ROOTS = 12, SPLITS = 200, NO_AREA = 5 };
+
+/* Random triangles, number 5 without an area. Materials: two that reflect, the first emits, and
+ * a black one for number 7. */
+static struct world make_world(void)
+{
+    struct soup soup = {0};
+    struct random random = random_seed(1);
+    for (int i = 0; i < ROOTS; i++)
+        soup_add(&soup, random_triangle(&random, 0.5, 0.3));
+    soup.items[NO_AREA].corner[2] = soup.items[NO_AREA].corner[0];
+    struct scene *scene = scene_of_soup(&soup, 3);
+    for (int32_t i = 0; i < ROOTS; i++)
+        scene->material_of[i] = i == 7 ? 2 : i % 2;
+    scene->materials[0] = (struct material){{{0.5, 0.25, 0.75}}, {{1.0, 2.0, 0.5}}};
+    scene->materials[1] = (struct material){{{0.9, 0.0, 0.1}}, {{0.0, 0.0, 0.0}}};
+    soup_free(&soup);
+    return world_make(scene);
+}
+
+/* Splits random patches below level 9; roots 0 and 1 stay whole. */
+static void grow(struct forest *forest, uint64_t seed)
+{
+    struct random random = random_seed(seed);
+    for (int i = 0; i < SPLITS; i++) {
+        int32_t p = 2 + random_below(&random, (int32_t)forest->count - 2);
+        if (id_level(forest->patches[p].id) < 9)
+            forest_split(forest, p);
+    }
+}
+
+/* Flux at all levels, smaller on smaller patches. Returns its sum over roots with an area. */
+static int64_t pour(struct world *world, uint64_t seed)
+{
+    struct forest *forest = world->method.forest;
+    struct random random = random_seed(seed);
+    int64_t sum = 0;
+    for (int32_t p = 0; p < forest->count; p++) {
+        for (int c = 0; c < BANDS; c++) {
+            double watts = 3.0 * random_unit(&random) * forest_area(forest, p);
+            forest->patches[p].flux[c] = flux_from_watts(world->method.flux_unit, watts);
+            sum += forest->patches[p].flux[c];
+        }
+    }
+    return sum;
+}
+
+static void own_all(bool own[ROOTS])
+{
+    for (int r = 0; r < ROOTS; r++)
+        own[r] = true;
+}
+
+/* --- push --- */
+
+/* Areas are fractions by powers of 4, so what is lost is rounding alone: a division and a sum of
+ * 10 terms for each leaf, and the sum of about 600 leaves: 1e-13; and the comparison is of
+ * numbers that a double holds to 1e-16. */
+static void test_push(void)
+{
+    double worst = 0.0;
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        struct world world = make_world();
+        struct forest *forest = world.method.forest;
+        grow(forest, seed);
+        int64_t poured = pour(&world, seed);
+        double arrived = 0.0;
+        for (int32_t p = 0; p < forest->count; p++) {
+            if (!patch_is_leaf(&forest->patches[p]) || forest_area(forest, p) <= 0.0)
+                continue;
+            struct rgb h = leaf_irradiance(forest, p, world.method.flux_unit);
+            arrived += forest_area(forest, p) * rgb_sum(h);
+        }
+        double sent = flux_to_watts(world.method.flux_unit, poured);
+        worst = fmax(worst, fabs(arrived / sent - 1.0));
+        world_free(&world);
+    }
+    tap_ok(worst < 1e-12, "what is poured in at all levels arrives at the leaves (to %.1e)", worst);
+}
+
+/* Fluxes chosen so that all of it is exact: the sums down the line are 1, 1 + 4 x 2, ... */
+static void test_line(void)
+{
+    struct world world = make_world();
+    struct forest *forest = world.method.forest;
+    struct flux_unit unit = world.method.flux_unit;
+    int32_t leaf = forest_reach(forest, id_child(id_child(id_of_root(2), 3), 0));
+    int32_t middle = forest->patches[leaf].parent, other = forest->patches[middle].children + 1;
+    double area = forest_area(forest, 2);
+    forest->patches[2].flux[0] = flux_from_watts(unit, area);
+    forest->patches[middle].flux[0] = flux_from_watts(unit, 2.0 * area);
+    forest->patches[leaf].flux[0] = flux_from_watts(unit, 0.5 * area);
+    forest->patches[leaf].flux[2] = flux_from_watts(unit, area);
+    struct rgb at_leaf = leaf_irradiance(forest, leaf, unit);
+    struct rgb at_other = leaf_irradiance(forest, other, unit);
+    /* Fluxes are rounded to 2^-62 of 16 times the light and more. */
+    tap_ok(fabs(at_leaf.band[0] - (1.0 + 8.0 + 8.0)) < 1e-12 && at_leaf.band[1] == 0.0 &&
+               fabs(at_leaf.band[2] - 16.0) < 1e-12 && fabs(at_other.band[0] - 9.0) < 1e-12 &&
+               at_other.band[2] == 0.0,
+           "a leaf gets the flux of its own line of ancestors, each over its area");
+    world_free(&world);
+}
+
+/* --- pull --- */
+
+static double mean_of_leaves(const struct forest *forest, int32_t patch, int band)
+{
+    if (patch_is_leaf(&forest->patches[patch]))
+        return forest->patches[patch].radiosity.band[band];
+    double sum = 0.0;
+    for (int k = 0; k < 4; k++)
+        sum += mean_of_leaves(forest, forest->patches[patch].children + k, band);
+    return sum / 4.0;
+}
+
+/* Means of four of numbers that are rounded, over 9 levels at most. */
+static bool inner_are_means(const struct forest *forest, const bool *own)
+{
+    for (int32_t p = 0; p < forest->count; p++)
+        for (int c = 0; own[forest->patches[p].id.root] && c < BANDS; c++)
+            if (fabs(forest->patches[p].radiosity.band[c] - mean_of_leaves(forest, p, c)) > 1e-14)
+                return false;
+    return true;
+}
+
+static void test_pull(void)
+{
+    struct world world = make_world();
+    struct forest *forest = world.method.forest;
+    struct random random = random_seed(3);
+    bool own[ROOTS];
+    own_all(own);
+    grow(forest, 3);
+    for (int64_t p = 0; p < forest->count; p++)
+        for (int c = 0; c < BANDS; c++)
+            forest->patches[p].radiosity.band[c] = random_unit(&random);
+    bool before = inner_are_means(forest, own);
+    forest_pull(forest);
+    tap_ok(!before && inner_are_means(forest, own), "a pull makes inner patches means of leaves");
+    world_free(&world);
+}
+
+/* --- push-pull --- */
+
+static void test_radiosity(void)
+{
+    struct world world = make_world();
+    struct forest *forest = world.method.forest;
+    bool own[ROOTS], touched[ROOTS] = {false};
+    int64_t change[ROOTS] = {0};
+    own_all(own);
+    grow(forest, 4);
+    pour(&world, 4);
+    push_pull(&world.method, own, touched, change);
+    bool right = true;
+    for (int32_t p = 0; p < forest->count; p++) {
+        const struct patch *patch = &forest->patches[p];
+        if (!patch_is_leaf(patch) || patch->id.root == NO_AREA)
+            continue;
+        struct rgb h = leaf_irradiance(forest, p, world.method.flux_unit);
+        const struct material *material = forest_material(forest, p);
+        for (int c = 0; c < BANDS; c++) {
+            double reflected = material->reflectance.band[c] * h.band[c];
+            right = right && patch->radiosity.band[c] == material->emission.band[c] + reflected;
+        }
+    }
+    tap_ok(right, "leaves get B = E + rho H");
+    tap_ok(inner_are_means(forest, own), "and inner patches the means");
+    for (int32_t r = 0; r < ROOTS; r++)
+        right = right && touched[r] == (r != NO_AREA && r != 7);
+    tap_ok(right, "what changed is touched: not the black root, nor that without an area");
+    bool none[ROOTS] = {false};
+    push_pull(&world.method, own, none, change);
+    for (int32_t r = 0; r < ROOTS; r++)
+        right = right && !none[r] && change[r] == 0;
+    tap_ok(right, "the same flux again touches nothing");
+    push_pull(&world.method, own, touched, change);
+    tap_ok(touched[0], "a root that is touched stays so until the caller takes it back");
+    forest_clear_flux(forest);
+    for (int64_t p = 0; p < forest->count; p++)
+        for (int c = 0; c < BANDS; c++)
+            right = right && forest->patches[p].flux[c] == 0;
+    tap_ok(right, "fluxes are cleared");
+    world_free(&world);
+}
+
+static bool own_of(int32_t root)
+{
+    return root % 3 != 0;
+}
+
+/* Sums in double beside those in integers: half a unit for each of the leaves, nothing beside
+ * the rounding of the double sums. */
+static void test_sums(void)
+{
+    struct world world = make_world();
+    struct forest *forest = world.method.forest;
+    struct flux_unit unit = world.method.flux_unit;
+    bool own[ROOTS], touched[ROOTS] = {false};
+    int64_t change[ROOTS] = {0};
+    for (int32_t r = 0; r < ROOTS; r++)
+        own[r] = own_of(r);
+    grow(forest, 5);
+    pour(&world, 5);
+    double light = 0.0, absorbed = 0.0, changed = 0.0;
+    for (int32_t p = 0; p < forest->count; p++) {
+        const struct patch *patch = &forest->patches[p];
+        if (!patch_is_leaf(patch) || patch->id.root == NO_AREA || !own[patch->id.root])
+            continue;
+        struct rgb h = leaf_irradiance(forest, p, unit);
+        const struct material *m = forest_material(forest, p);
+        for (int c = 0; c < BANDS; c++) {
+            double rho = m->reflectance.band[c], b = m->emission.band[c] + rho * h.band[c];
+            light += forest_area(forest, p) * b;
+            absorbed += forest_area(forest, p) * (1.0 - rho) * h.band[c];
+            changed += forest_area(forest, p) * fabs(b - patch->radiosity.band[c]);
+        }
+    }
+    struct push_pull_sums sums = push_pull(&world.method, own, touched, change);
+    tap_ok(fabs(flux_to_watts(unit, sums.light) / light - 1.0) < 1e-12, "light is A B of leaves");
+    tap_ok(fabs(flux_to_watts(unit, sums.absorbed) / absorbed - 1.0) < 1e-12,
+           "absorbed is A (1 - rho) H of leaves");
+    tap_ok(fabs(flux_to_watts(unit, sums.change) / changed - 1.0) < 1e-12,
+           "change is A |B - B before| of leaves");
+    int64_t total = 0;
+    bool others = true;
+    for (int32_t r = 0; r < ROOTS; r++) {
+        total += change[r];
+        others = others && (own[r] || (!touched[r] && change[r] == 0 &&
+                                       forest->patches[r].radiosity.band[0] ==
+                                           forest_material(forest, r)->emission.band[0]));
+    }
+    tap_ok(total == sums.change, "the changes of roots add up to it");
+    tap_ok(others, "roots of others stay as they are");
+    tap_ok(!sums.diverged, "nothing diverged");
+    world_free(&world);
+}
+
+/* Sums over the roots of two ranks are those of one rank with all roots, to the last integer. */
+static void test_two_ranks(void)
+{
+    struct push_pull_sums sums[3];
+    for (int part = 0; part < 3; part++) {
+        struct world world = make_world();
+        bool own[ROOTS], touched[ROOTS] = {false};
+        int64_t change[ROOTS] = {0};
+        for (int32_t r = 0; r < ROOTS; r++)
+            own[r] = part == 2 || own_of(r) == (part == 1);
+        grow(world.method.forest, 6);
+        pour(&world, 6);
+        sums[part] = push_pull(&world.method, own, touched, change);
+        world_free(&world);
+    }
+    tap_ok(sums[0].light + sums[1].light == sums[2].light &&
+               sums[0].absorbed + sums[1].absorbed == sums[2].absorbed &&
+               sums[0].change + sums[1].change == sums[2].change && sums[0].change > 0,
+           "the sums of two ranks are those of one");
+}
+
+static void test_divergence(void)
+{
+    struct world world = make_world();
+    bool own[ROOTS] = {false}, touched[ROOTS] = {false};
+    int64_t change[ROOTS] = {0};
+    forest_split(world.method.forest, 3);
+    world.method.forest->patches[3].flux[1] = FLUX_LIMIT; /* an inner patch counts too */
+    own[2] = true;
+    tap_ok(!push_pull(&world.method, own, touched, change).diverged, "others' fluxes do not count");
+    own[3] = true;
+    tap_ok(push_pull(&world.method, own, touched, change).diverged, "a flux at the limit diverged");
+    world_free(&world);
+}
+
+/* --- shrink --- */
+
+/* Sets the irradiance of a root that is a leaf, W/m^2 in band 0. */
+static void set_irradiance(struct world *world, int32_t root, double irradiance)
+{
+    double watts = irradiance * forest_area(world->method.forest, root);
+    world->method.forest->patches[root].flux[0] = flux_from_watts(world->method.flux_unit, watts);
+}
+
+/* Root 0: rho = 0.5; H = 1, 1.25, 1.375: changes 0.5, 0.125, 0.0625 times the area.
+ * Root 1: rho = 0.9; H = 2, 2.5, 2.5: changes 1.8, 0.45, 0. The fluxes are rounded to 2^-62 of
+ * what all light can be, so the factors are right to 1e-12. */
+static void test_shrink(void)
+{
+    struct world world = make_world();
+    bool own[ROOTS] = {true, true}, touched[ROOTS] = {false};
+    int64_t change[ROOTS] = {0};
+    static const double first[4] = {1.0, 1.25, 1.375, 1.375}, second[4] = {2.0, 2.5, 2.5, 2.5};
+    double shrink[4], changed[4];
+    for (int step = 0; step < 4; step++) {
+        set_irradiance(&world, 0, first[step]);
+        set_irradiance(&world, 1, second[step]);
+        struct push_pull_sums sums = push_pull(&world.method, own, touched, change);
+        shrink[step] = sums.shrink;
+        changed[step] = flux_to_watts(world.method.flux_unit, sums.change);
+        if (step == 0)
+            change[1] = 2 * change[1]; /* root 1 then shrinks by 1/8, and root 0 by 1/4 */
+    }
+    double a = forest_area(world.method.forest, 0), b = forest_area(world.method.forest, 1);
+    tap_ok(shrink[0] == HUGE_VAL, "a change out of nothing shrinks by no factor");
+    tap_ok(fabs(shrink[1] - 0.25) < 1e-12, "the largest factor of a root counts");
+    tap_ok(fabs(shrink[2] - 0.5) < 1e-12, "of those that still change");
+    tap_ok(shrink[3] == 0.0 && changed[3] == 0.0, "without a change it is 0");
+    tap_ok(fabs(changed[0] - (0.5 * a + 1.8 * b)) < 1e-12 &&
+               fabs(changed[1] - (0.125 * a + 0.45 * b)) < 1e-12,
+           "the changes on the way");
+    world_free(&world);
+}
+
+/* The tolerance is a power; a root that changes by 1e-4 of it, for its area, is far below it. */
+static void test_settled(void)
+{
+    struct world world = make_world();
+    bool own[ROOTS] = {true}, touched[ROOTS] = {false};
+    double tolerance = world.method.criterion.tolerance * scene_emitted_power(world.scene) /
+                       scene_area(world.scene);
+    double shrink[2];
+    for (int k = 0; k < 2; k++) {
+        int64_t change[ROOTS] = {0};
+        double step = (k ? 1.01 : 1e-4) * tolerance / 0.5; /* rho is 0.5 */
+        set_irradiance(&world, 0, 3.0);
+        push_pull(&world.method, own, touched, change);
+        change[0] = 0;
+        set_irradiance(&world, 0, 3.0 + step);
+        shrink[k] = push_pull(&world.method, own, touched, change).shrink;
+    }
+    tap_ok(shrink[0] == 0.0 && shrink[1] == HUGE_VAL,
+           "roots that change far less than the tolerance are left out, others are not");
+    world_free(&world);
+}
+
+/* --- row sums --- */
+
+/* Root 0 gets 1.25 of its area, root 1 half of it, in two of its children 0.4 more; root 7 is
+ * dark and root 3 another's. */
+static void test_closure(void)
+{
+    struct world world = make_world();
+    struct forest *forest = world.method.forest;
+    struct flux_unit unit = closure_unit(world.scene);
+    bool own[ROOTS] = {true, true};
+    own[7] = own[NO_AREA] = true;
+    forest_split(forest, 1);
+    double a = forest_area(forest, 0), b = forest_area(forest, 1);
+    int32_t child = forest->patches[1].children;
+    forest->patches[0].flux[0] = flux_from_watts(unit, 1.25 * a);
+    forest->patches[0].flux[1] = flux_from_watts(unit, 7.0 * a); /* another band: no matter */
+    forest->patches[1].flux[0] = flux_from_watts(unit, 0.5 * b);
+    forest->patches[child].flux[0] = flux_from_watts(unit, 0.4 * b / 4.0);
+    forest->patches[child + 3].flux[0] = flux_from_watts(unit, 0.4 * b / 4.0);
+    forest->patches[3].flux[0] = flux_from_watts(unit, 9.0);
+    forest->patches[7].flux[0] = flux_from_watts(unit, 9.0);
+    struct closure_sums sums = closure_measure(forest, own, unit);
+    /* All numbers are of size 1 and rounded a few times. */
+    tap_ok(fabs(sums.min - 0.5) < 1e-13 && fabs(sums.max - 1.25) < 1e-13,
+           "least and greatest row sum");
+    tap_ok(fabs(flux_to_watts(unit, sums.area) - (a + b)) < 1e-13,
+           "the area counted is that of own leaves that are not dark");
+    tap_ok(fabs(flux_to_watts(unit, sums.rows) - (1.25 * a + 0.7 * b)) < 1e-13, "rows");
+    double squares = 0.0625 * a + 0.5 * b * 0.25 + 0.5 * b * 0.01;
+    tap_ok(fabs(flux_to_watts(unit, sums.squares) - squares) < 1e-13, "squares");
+    bool none[ROOTS] = {false};
+    sums = closure_measure(forest, none, unit);
+    tap_ok(sums.min == HUGE_VAL && sums.max == -HUGE_VAL && sums.area == 0 && sums.rows == 0 &&
+               sums.squares == 0,
+           "no leaf at all");
+    double area = scene_area(world.scene);
+    tap_ok(flux_from_watts(unit, 15.9 * area) < FLUX_LIMIT &&
+               flux_from_watts(unit, 33.0 * area) == FLUX_LIMIT,
+           "its unit has room for the area 16 times");
+    world_free(&world);
+}
+
+int main(void)
+{
+    test_push();
+    test_line();
+    test_pull();
+    test_radiosity();
+    test_sums();
+    test_two_ranks();
+    test_divergence();
+    test_shrink();
+    test_settled();
+    test_closure();
+    return tap_done();
+}

@@ -1,0 +1,61 @@
+#!/bin/sh
+# Runs all tests: the unit tests named as arguments, then the scripts tests/[0-9]*.sh in order.
+# Each prints TAP lines; what fails is shown, and the last line is "N passed, N failed".
+# A test that dies or ends without its plan counts as one failure more. Called by `make check`,
+# which sets BUILD, MPIEXEC, MPICC, CC and MAKE.
+
+cd "$(dirname "$0")/.." || exit 2
+logs=$BUILD/tests/logs
+rm -rf "$logs"
+mkdir -p "$logs"
+passed=0
+failed=0
+
+# run NAME COMMAND...: runs one test and adds its lines to the counts.
+run() {
+    name=$1
+    shift
+    log=$logs/$name.tap
+    timeout 600 "$@" >"$log" 2>&1
+    status=$?
+    good=$(grep -c '^ok ' "$log")
+    bad=$(grep -c '^not ok ' "$log")
+    grep -q '^1\.\.[0-9]' "$log" || { bad=$((bad + 1)); echo "# $name ended without its plan"; }
+    if [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; then
+        bad=1
+        echo "# $name: exit status $status"
+    fi
+    passed=$((passed + good))
+    failed=$((failed + bad))
+    grep '^# ' "$log"
+    if [ "$bad" -gt 0 ]; then
+        echo "FAIL $name ($good passed, $bad failed), from $log:"
+        grep -v '^ok ' "$log" | tail -n 40
+    else
+        echo "ok   $name ($good)"
+    fi
+}
+
+# run_on_ranks NAME P...: the unit test NAME with mpiexec, once for each number of ranks.
+run_on_ranks() {
+    program=$1
+    shift
+    for ranks in "$@"; do
+        run "$program-on-$ranks" $MPIEXEC -n "$ranks" "$BUILD/tests/$program"
+    done
+}
+
+for test in "$@"; do
+    case $test in
+    exchange) run_on_ranks "$test" 1 2 3 4 7 ;;
+    exact) run_on_ranks "$test" 1 3 ;;
+    converge) run_on_ranks "$test" 2 ;;
+    *) run "$test" "$BUILD/tests/$test" ;;
+    esac
+done
+for script in tests/[0-9]*.sh; do
+    run "$(basename "$script" .sh)" sh "$script"
+done
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]

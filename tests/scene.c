@@ -1,0 +1,281 @@
+/* Tests of geom/scene.h: the same bits at every power of two, stability far from the origin,
+ * twins, repairs and their counts, areas and powers, and the errors. */
+#include "geom/scene.h"
+
+#include <string.h>
+
+#include "tests/scenes.h"
+#include "tests/tap.h"
+
+enum { COUNT = 200 };
+
+static void make_soup(struct soup *soup)
+{
+    struct random random = random_seed(1);
+    for (int i = 0; i < COUNT; i++)
+        soup_add(soup, random_triangle(&random, 2.0, 0.5));
+}
+
+/* The prepared scene of the soup, each corner scaled and then moved. */
+static struct scene *prepared(const struct soup *soup, double scale, double offset)
+{
+    struct scene *scene = scene_of_soup(soup, 1);
+    struct vec3 move = {offset, -offset, offset};
+    for (int64_t i = 0; i < 3 * soup->count; i++) {
+        struct vec3 *x = &scene->triangles[i / 3].corner[i % 3];
+        *x = vec3_add(vec3_scale(*x, scale), move);
+    }
+    scene->materials[0] = material_grey(0.5, 1.0);
+    scene_prepare_or_exit(scene);
+    return scene;
+}
+
+static bool same_geometry(const struct scene *a, const struct scene *b)
+{
+    size_t count = (size_t)a->input_count;
+    return memcmp(a->triangles, b->triangles, count * sizeof *a->triangles) == 0 &&
+           memcmp(a->planes, b->planes, count * sizeof *a->planes) == 0 &&
+           memcmp(a->areas, b->areas, count * sizeof *a->areas) == 0 &&
+           memcmp(&a->low, &b->low, sizeof a->low) == 0 &&
+           memcmp(&a->high, &b->high, sizeof a->high) == 0;
+}
+
+static void test_scaling(void)
+{
+    struct soup soup = {0};
+    make_soup(&soup);
+    struct scene *plain = prepared(&soup, 1.0, 0.0);
+    bool right = true;
+    for (int k = -400; k <= 400; k += 25) {
+        struct scene *scaled = prepared(&soup, ldexp(1.0, k), 0.0);
+        right = right && same_geometry(plain, scaled) && scaled->exponent == plain->exponent + k;
+        scene_destroy(scaled);
+    }
+    tap_ok(right, "a scene scaled by 2^k has the same bits in scene units");
+    struct scene *thrice = prepared(&soup, 3.0, 0.0);
+    tap_ok(!same_geometry(plain, thrice), "a scene scaled by 3 has not");
+    scene_destroy(thrice);
+    scene_destroy(plain);
+    soup_free(&soup);
+}
+
+static double largest_difference(const struct scene *a, const struct scene *b)
+{
+    double largest = 0.0;
+    for (int32_t i = 0; i < 3 * a->input_count; i++) {
+        struct vec3 d = vec3_sub(a->triangles[i / 3].corner[i % 3],
+                                 b->triangles[i / 3].corner[i % 3]);
+        largest = fmax(largest, vec3_length(d));
+    }
+    return largest;
+}
+
+static void test_offset(void)
+{
+    struct soup soup = {0};
+    make_soup(&soup);
+    struct scene *plain = prepared(&soup, 1.0, 0.0), *far = prepared(&soup, 1.0, 5e6);
+    double difference = largest_difference(plain, far);
+    /* Numbers near 5e6 are 2^-30 = 9.3e-10 apart. A corner rounds by half of that, the centre by
+     * as much again from rounded bounds; three axes; a scene unit is 8 here. */
+    tap_ok(plain->exponent == 3 && difference < 9.3e-10 * 1.7321 / 8.0,
+           "a scene 1e6 sizes from the origin moves by its rounding alone");
+    for (int64_t i = 0; i < 3 * soup.count; i++) {
+        struct vec3 *x = &soup.items[i / 3].corner[i % 3];
+        *x = (struct vec3){rint(1024.0 * x->x), rint(1024.0 * x->y), rint(1024.0 * x->z)};
+    }
+    struct scene *grid = prepared(&soup, 1.0, 0.0), *far_grid = prepared(&soup, 1.0, 5e9);
+    tap_ok(same_geometry(grid, far_grid), "corners on a grid keep their bits there");
+    scene_destroy(plain);
+    scene_destroy(far);
+    scene_destroy(grid);
+    scene_destroy(far_grid);
+    soup_free(&soup);
+}
+
+static void test_box(void)
+{
+    struct soup soup = {0};
+    make_soup(&soup);
+    bool fits = true, back = true;
+    for (double scale = 0.37; scale < 3.0; scale += 0.01) {
+        struct scene *scene = prepared(&soup, scale, 100.0);
+        struct vec3 size = vec3_sub(scene->high, scene->low);
+        double extent = fmax(size.x, fmax(size.y, size.z));
+        /* Rounding moves a bound by a unit in the last place of 100. */
+        fits = fits && extent >= 0.5 - 1e-13 && extent <= 1.0 + 1e-13 &&
+               fabs(scene->low.x + scene->high.x) < 1e-13 &&
+               fabs(scene->low.z + scene->high.z) < 1e-13;
+        struct vec3 x = scene_to_input(scene, scene->triangles[7].corner[1]);
+        struct vec3 y = vec3_scale(soup.items[7].corner[1], scale);
+        struct vec3 moved = vec3_add(y, (struct vec3){100.0, -100.0, 100.0});
+        struct vec3 again = scene_from_input(scene, x);
+        back = back && vec3_length(vec3_sub(x, moved)) < 1e-13 &&
+               vec3_length(vec3_sub(again, scene->triangles[7].corner[1])) < 1e-13;
+        scene_destroy(scene);
+    }
+    tap_ok(fits, "the box has its longest side in 1/2 .. 1 and its centre at the origin");
+    tap_ok(back, "points go back to input units");
+    soup_free(&soup);
+}
+
+static void test_twins(void)
+{
+    struct soup soup = {0};
+    make_soup(&soup);
+    struct scene *scene = prepared(&soup, 1.0, 0.0);
+    double area = scene_area(scene), power = scene_emitted_power(scene);
+    tap_ok(scene_root_count(scene) == COUNT, "a root for each triangle");
+    scene->two_sided = true;
+    tap_ok(scene_root_count(scene) == 2 * COUNT, "two if two-sided");
+    bool right = true;
+    for (int32_t i = 0; i < COUNT; i++) {
+        int32_t twin = i + COUNT;
+        struct triangle t = scene_root_triangle(scene, i), u = scene_root_triangle(scene, twin);
+        struct plane p = scene_root_plane(scene, i), q = scene_root_plane(scene, twin);
+        right = right && memcmp(&t, &scene->triangles[i], sizeof t) == 0 &&
+                memcmp(&t.corner[0], &u.corner[0], sizeof t.corner[0]) == 0 &&
+                memcmp(&t.corner[1], &u.corner[2], sizeof t.corner[0]) == 0 &&
+                memcmp(&t.corner[2], &u.corner[1], sizeof t.corner[0]) == 0;
+        right = right && p.normal.x == -q.normal.x && p.normal.y == -q.normal.y &&
+                p.normal.z == -q.normal.z && p.offset == -q.offset &&
+                vec3_dot(triangle_cross(&u), q.normal) > 0.0;
+        right = right && scene_input_of(scene, i) == i && scene_input_of(scene, twin) == i &&
+                scene_root_area(scene, twin) == scene_root_area(scene, i) &&
+                scene_root_material(scene, twin) == scene_root_material(scene, i);
+    }
+    tap_ok(right, "a twin has the corners (a, c, b), the other side of the plane, all else alike");
+    /* 200 more terms of a sum of positive numbers: 400 roundings. */
+    tap_ok(fabs(scene_area(scene) / area - 2.0) < 1e-13 &&
+               fabs(scene_emitted_power(scene) / power - 2.0) < 1e-13,
+           "twice the area and twice the power");
+    scene_destroy(scene);
+    soup_free(&soup);
+}
+
+static void test_power(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, (struct vec3){0, 0, 0}, (struct vec3){6, 0, 0}, (struct vec3){0, 3, 0}, 1);
+    struct scene *scene = scene_of_soup(&soup, 2);
+    scene->material_of[1] = 1;
+    scene->materials[0] = (struct material){{{0, 0, 0}}, {{1, 2, 4}}};
+    scene_prepare_or_exit(scene);
+    tap_ok(scene->exponent == 3 && scene_area_unit(scene) == 64.0, "a size of 6 has the unit 8");
+    /* Dyadic corners: all of this is exact. */
+    tap_ok(scene_area(scene) * scene_area_unit(scene) == 18.0, "the area in input units");
+    tap_ok(scene_emitted_power(scene) * scene_area_unit(scene) == 9.0 * 7.0,
+           "the power in input units, over roots and bands");
+    tap_ok(!material_is_dark(&scene->materials[0]) && material_is_dark(&scene->materials[1]),
+           "dark is what neither reflects nor emits");
+    scene_destroy(scene);
+    soup_free(&soup);
+}
+
+static void test_clamping(void)
+{
+    struct soup soup = {0};
+    make_soup(&soup);
+    struct scene *scene = scene_of_soup(&soup, 4);
+    scene->materials[0].reflectance = (struct rgb){{1.0, 0.5, 7.0}};
+    scene->materials[1].reflectance = (struct rgb){{0.9995, 0.0, 0.5}};
+    scene->materials[2].reflectance = (struct rgb){{0.0, 0.0, 1.0}};
+    struct scene_repairs repairs;
+    struct error error = {0};
+    bool done = scene_prepare(scene, &repairs, &error);
+    tap_ok(done && repairs.clamped == 2, "materials are clamped once each");
+    const double *first = scene->materials[0].reflectance.band;
+    tap_ok(first[0] == 0.999 && first[1] == 0.5 && first[2] == 0.999 &&
+               scene->materials[2].reflectance.band[2] == 0.999,
+           "bands of 1 or more become 0.999, the others stay");
+    tap_ok(scene->materials[1].reflectance.band[0] == 0.9995, "what is below 1 stays");
+    scene_destroy(scene);
+    soup_free(&soup);
+}
+
+static void test_degenerate(void)
+{
+    struct soup soup = {0};
+    make_soup(&soup);
+    struct scene *plain = prepared(&soup, 1.0, 0.0);
+    int32_t expected = 0;
+    for (int32_t i = 0; i < COUNT; i += 9, expected++) {
+        struct triangle *t = &soup.items[i];
+        t->corner[2] = i % 2 ? t->corner[0] : vec3_middle(t->corner[0], t->corner[1]);
+    }
+    struct scene *scene = scene_of_soup(&soup, 1);
+    struct scene_repairs repairs = {-1, -1};
+    struct error error = {0};
+    bool done = scene_prepare(scene, &repairs, &error);
+    tap_ok(done && repairs.degenerate == expected && repairs.clamped == 0,
+           "degenerate triangles are counted");
+    bool dropped = true, kept = scene->input_count == COUNT;
+    for (int32_t i = 0; i < COUNT; i++) {
+        struct vec3 normal = scene->planes[i].normal;
+        if (i % 9 == 0)
+            dropped = dropped && scene->areas[i] == 0.0 && vec3_dot(normal, normal) == 0.0;
+        else
+            kept = kept && scene->areas[i] > 0.0 &&
+                   memcmp(&scene->triangles[i], &plain->triangles[i], sizeof(struct triangle)) == 0;
+    }
+    tap_ok(dropped, "they have no area and no plane");
+    tap_ok(kept, "the others keep their numbers");
+    scene_destroy(scene);
+    scene_destroy(plain);
+    soup_free(&soup);
+}
+
+/* --- errors --- */
+
+/* Whether a scene of one triangle, its last corner given, is refused as bad input. */
+static bool is_refused(struct vec3 a, struct vec3 b, struct vec3 c)
+{
+    struct scene *scene = scene_create(1, 1);
+    scene->triangles[0] = (struct triangle){{a, b, c}};
+    struct scene_repairs repairs;
+    struct error error = {0};
+    bool refused = !scene_prepare(scene, &repairs, &error) && error.code == EXIT_USAGE &&
+                   error.text[0] != '\0';
+    scene_destroy(scene);
+    return refused;
+}
+
+static void test_errors(void)
+{
+    struct vec3 o = {0, 0, 0}, x = {1, 0, 0}, y = {0, 1, 0}, p = {3, 4, 5};
+    struct scene *scene = scene_create(0, 0);
+    struct scene_repairs repairs;
+    struct error error = {0};
+    tap_ok(!scene_prepare(scene, &repairs, &error) && error.code == EXIT_USAGE &&
+               strcmp(error.text, "the scene has no faces") == 0,
+           "no faces");
+    scene_destroy(scene);
+    tap_ok(!is_refused(o, x, y), "one triangle is a scene");
+    tap_ok(is_refused(p, p, p), "a single point");
+    tap_ok(is_refused(o, x, x), "only degenerate faces");
+    tap_ok(is_refused(o, x, (struct vec3){0, HUGE_VAL, 0}) &&
+               is_refused(o, x, (struct vec3){0, -HUGE_VAL, 0}) &&
+               is_refused((struct vec3){HUGE_VAL, 0, 0}, x, y),
+           "infinite coordinates");
+    tap_ok(is_refused(o, x, (struct vec3){0, 1e200, 0}) &&
+               is_refused(o, (struct vec3){1e-200, 0, 0}, (struct vec3){0, 1e-200, 0}),
+           "extents that leave the range of the numbers");
+    double nan = HUGE_VAL - HUGE_VAL;
+    tap_ok(is_refused((struct vec3){nan, 0, 0}, x, y) &&
+               is_refused(o, (struct vec3){1, nan, 0}, y) &&
+               is_refused(o, x, (struct vec3){0, 1, nan}),
+           "coordinates that are not numbers");
+}
+
+int main(void)
+{
+    test_scaling();
+    test_offset();
+    test_box();
+    test_twins();
+    test_power();
+    test_clamping();
+    test_degenerate();
+    test_errors();
+    return tap_done();
+}

@@ -1,0 +1,217 @@
+/* Small scenes for tests: a growing list of triangles, shapes that are added to it, and the whole
+ * of scene, octree, forest and method that is made of it. */
+#ifndef TESTS_SCENES_H
+#define TESTS_SCENES_H
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "geom/alloc.h"
+#include "geom/scene.h"
+#include "octree/octree.h"
+#include "rad/method.h"
+#include "tests/random.h"
+
+/* --- random numbers and points --- */
+
+static inline double random_between(struct random *random, double low, double high)
+{
+    return low + (high - low) * random_unit(random);
+}
+
+/* In 0 .. count - 1. */
+static inline int32_t random_below(struct random *random, int32_t count)
+{
+    return (int32_t)(random_bits(random) % (uint64_t)count);
+}
+
+/* In the cube around the origin with this half side. */
+static inline struct vec3 random_point(struct random *random, double half)
+{
+    double x = random_between(random, -half, half);
+    double y = random_between(random, -half, half);
+    return (struct vec3){x, y, random_between(random, -half, half)};
+}
+
+/* Inside the triangle, evenly spread. */
+static inline struct vec3 random_point_on(struct random *random, const struct triangle *t)
+{
+    double u = random_unit(random), v = random_unit(random);
+    if (u + v > 1.0) {
+        u = 1.0 - u;
+        v = 1.0 - v;
+    }
+    struct vec3 along = vec3_scale(vec3_sub(t->corner[1], t->corner[0]), u);
+    struct vec3 across = vec3_scale(vec3_sub(t->corner[2], t->corner[0]), v);
+    return vec3_add(t->corner[0], vec3_add(along, across));
+}
+
+/* Three points around a random centre, none further away than `size` along an axis. */
+static inline struct triangle random_triangle(struct random *random, double half, double size)
+{
+    struct vec3 centre = random_point(random, half);
+    struct triangle t;
+    for (int k = 0; k < 3; k++)
+        t.corner[k] = vec3_add(centre, random_point(random, size));
+    return t;
+}
+
+/* --- lists of triangles --- */
+
+struct soup {
+    struct triangle *items; /* [count] */
+    int64_t count, capacity;
+};
+
+static inline void soup_add(struct soup *soup, struct triangle triangle)
+{
+    soup->items = alloc_reserve(soup->items, &soup->capacity, soup->count + 1,
+                                sizeof *soup->items);
+    soup->items[soup->count++] = triangle;
+}
+
+static inline void soup_free(struct soup *soup)
+{
+    alloc_free(soup->items);
+    *soup = (struct soup){0};
+}
+
+/* The parallelogram origin, origin + u, origin + u + v, origin + v in n x n cells of two
+ * triangles; the front is where u x v points. Cells share the bits of their corners. */
+static inline void soup_add_quad(struct soup *soup, struct vec3 origin, struct vec3 u,
+                                 struct vec3 v, int n)
+{
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            struct vec3 corner[4];
+            for (int k = 0; k < 4; k++) {
+                struct vec3 along = vec3_scale(u, (double)(i + (k == 1 || k == 2)) / n);
+                struct vec3 across = vec3_scale(v, (double)(j + (k >= 2)) / n);
+                corner[k] = vec3_add(origin, vec3_add(along, across));
+            }
+            soup_add(soup, (struct triangle){{corner[0], corner[1], corner[2]}});
+            soup_add(soup, (struct triangle){{corner[0], corner[2], corner[3]}});
+        }
+    }
+}
+
+/* The six sides of a box, n x n cells each; fronts outwards, or inwards for a room. */
+static inline void soup_add_box(struct soup *soup, struct vec3 low, struct vec3 high, int n,
+                                bool inwards)
+{
+    struct vec3 size = vec3_sub(high, low);
+    struct vec3 edge[3] = {{size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z}};
+    for (int k = 0; k < 3; k++) {
+        struct vec3 u = edge[(k + 1) % 3], v = edge[(k + 2) % 3]; /* u x v points along axis k */
+        struct vec3 top = vec3_add(low, edge[k]);
+        soup_add_quad(soup, low, inwards ? u : v, inwards ? v : u, n);
+        soup_add_quad(soup, top, inwards ? v : u, inwards ? u : v, n);
+    }
+}
+
+static inline struct vec3 vec3_unit(struct vec3 a)
+{
+    return vec3_scale(a, 1.0 / vec3_length(a));
+}
+
+/* Splits a triangle of the unit sphere `level` times and adds the parts. Edges are split at the
+ * same bits from both sides. */
+static inline void soup_add_sphere_part(struct soup *soup, struct triangle t, double radius,
+                                        int level)
+{
+    if (level == 0) {
+        for (int k = 0; k < 3; k++)
+            t.corner[k] = vec3_scale(t.corner[k], radius);
+        soup_add(soup, t);
+        return;
+    }
+    struct vec3 a = t.corner[0], b = t.corner[1], c = t.corner[2];
+    struct vec3 ab = vec3_unit(vec3_middle(a, b)), bc = vec3_unit(vec3_middle(b, c)),
+                ca = vec3_unit(vec3_middle(c, a));
+    soup_add_sphere_part(soup, (struct triangle){{a, ab, ca}}, radius, level - 1);
+    soup_add_sphere_part(soup, (struct triangle){{ab, b, bc}}, radius, level - 1);
+    soup_add_sphere_part(soup, (struct triangle){{ca, bc, c}}, radius, level - 1);
+    soup_add_sphere_part(soup, (struct triangle){{bc, ca, ab}}, radius, level - 1);
+}
+
+/* A closed sphere of 8 * 4^level triangles around the origin, fronts outwards. */
+static inline void soup_add_sphere(struct soup *soup, double radius, int level)
+{
+    for (int octant = 0; octant < 8; octant++) {
+        double x = octant & 1 ? -1 : 1, y = octant & 2 ? -1 : 1, z = octant & 4 ? -1 : 1;
+        struct triangle t = {{{x, 0, 0}, {0, y, 0}, {0, 0, z}}};
+        if (x * y * z < 0.0)
+            t = (struct triangle){{t.corner[0], t.corner[2], t.corner[1]}};
+        soup_add_sphere_part(soup, t, radius, level);
+    }
+}
+
+/* --- scenes --- */
+
+/* An unprepared scene of these triangles, all of material 0. */
+static inline struct scene *scene_of_soup(const struct soup *soup, int32_t material_count)
+{
+    struct scene *scene = scene_create((int32_t)soup->count, material_count);
+    for (int32_t i = 0; i < scene->input_count; i++)
+        scene->triangles[i] = soup->items[i];
+    return scene;
+}
+
+static inline struct material material_grey(double reflectance, double emission)
+{
+    return (struct material){{{reflectance, reflectance, reflectance}},
+                             {{emission, emission, emission}}};
+}
+
+/* scene_prepare() for a scene that is known to be right. */
+static inline void scene_prepare_or_exit(struct scene *scene)
+{
+    struct scene_repairs repairs;
+    struct error error = {0};
+    if (!scene_prepare(scene, &repairs, &error)) {
+        printf("Bail out! %s\n", error.text);
+        exit(1);
+    }
+}
+
+struct world {
+    struct scene *scene;
+    struct octree *octree;
+    struct method method; /* method.forest is the forest */
+};
+
+/* Prepares the scene, owns it, and makes the rest with a criterion that a test may change. */
+static inline struct world world_make(struct scene *scene)
+{
+    static const struct criterion criterion = {.epsilon = 1e-3, .max_level = ID_MAX_LEVEL,
+                                               .tolerance = 1e-3, .max_iterations = 1};
+    scene_prepare_or_exit(scene);
+    struct world world = {.scene = scene};
+    world.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    world.method = method_make(scene, world.octree, forest_create(scene), &criterion);
+    return world;
+}
+
+static inline void world_free(struct world *world)
+{
+    forest_destroy(world->method.forest);
+    octree_destroy(world->octree);
+    scene_destroy(world->scene);
+}
+
+/* --- answers by brute force --- */
+
+/* The first of the triangles that blocks the segment, `own` left out, or -1. */
+static inline int32_t brute_blocker(const struct triangle *triangles, const struct plane *planes,
+                                    int32_t count, struct vec3 from, struct vec3 to,
+                                    const int32_t own[2])
+{
+    struct segment segment = segment_make(from, to);
+    for (int32_t i = 0; i < count; i++)
+        if (i != own[0] && i != own[1] && vec3_dot(planes[i].normal, planes[i].normal) > 0.0 &&
+            segment_is_blocked_by(&segment, &triangles[i], &planes[i]))
+            return i;
+    return -1;
+}
+
+#endif

@@ -1,0 +1,73 @@
+/* Solving a scene inside a test: the loop of phr.c without pictures. */
+#ifndef TESTS_SOLVE_H
+#define TESTS_SOLVE_H
+
+#include "mpi/solver.h"
+
+struct solution {
+    struct scene *scene; /* owned */
+    struct octree *octree;
+    struct solver *solver;
+    struct vote vote;
+    struct stats stats; /* closure and the fields of solver_report() */
+};
+
+static inline struct criterion criterion_of(double epsilon, int max_level, double tolerance)
+{
+    return (struct criterion){.epsilon = epsilon, .min_area = 0.0, .max_level = max_level,
+                              .alpha = 0.5, .tolerance = tolerance, .max_iterations = 100000};
+}
+
+/* Collective. Solves a prepared scene and takes it over. */
+static inline struct solution solve(const struct comm *comm, struct scene *scene,
+                                    struct criterion criterion)
+{
+    struct solution s = {.scene = scene};
+    s.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    s.solver = solver_create(comm, scene, s.octree, &criterion);
+    solver_link_roots(s.solver);
+    solver_assign_roots(s.solver);
+    do {
+        solver_refine(s.solver);
+        solver_gather(s.solver);
+        solver_push_pull(s.solver);
+        solver_scatter(s.solver);
+        s.vote = solver_vote(s.solver);
+    } while (!s.vote.converged && !s.vote.diverged &&
+             s.solver->iteration < criterion.max_iterations);
+    solver_measure_closure(s.solver, &s.stats);
+    solver_report(s.solver, &s.vote, &s.stats);
+    return s;
+}
+
+static inline void solution_free(struct solution *s)
+{
+    solver_destroy(s->solver);
+    octree_destroy(s->octree);
+    scene_destroy(s->scene);
+}
+
+/* The cube [0, 1]^3 seen from inside, faces in the order bottom, top (y), then the sides, two
+ * triangles each; every face has material `face`, of which there are six, all zero. Prepared. */
+static inline struct scene *cube_create(void)
+{
+    static const int quads[6][4] = {{0, 4, 5, 1}, {2, 3, 7, 6}, {0, 1, 3, 2},
+                                    {4, 6, 7, 5}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+    struct scene *scene = scene_create(12, 6);
+    for (int face = 0; face < 6; face++) {
+        struct vec3 v[4];
+        for (int k = 0; k < 4; k++) {
+            int bits = quads[face][k]; /* x = bit 0, y = bit 1, z = bit 2 */
+            v[k] = (struct vec3){bits & 1, bits >> 1 & 1, bits >> 2};
+        }
+        scene->triangles[2 * face] = (struct triangle){{v[0], v[1], v[2]}};
+        scene->triangles[2 * face + 1] = (struct triangle){{v[0], v[2], v[3]}};
+        scene->material_of[2 * face] = scene->material_of[2 * face + 1] = face;
+    }
+    struct scene_repairs repairs;
+    struct error error = {0};
+    scene_prepare(scene, &repairs, &error);
+    return scene;
+}
+
+#endif

@@ -1,0 +1,44 @@
+# TAP for shell tests: `. tests/tap.sh` at the top, `tap_done` as the last line. The current
+# directory is the top of the source tree; $work is an empty folder of the test's own.
+
+: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${MPICC:=mpicc}" "${CC:=cc}" "${MAKE:=make}"
+tap_count=0
+tap_failed=0
+work=$BUILD/tests/$(basename "$0" .sh).work
+rm -rf "$work"
+mkdir -p "$work"
+
+# tap STATUS NAME: one test, passed if STATUS is 0.
+tap() {
+    tap_count=$((tap_count + 1))
+    if [ "$1" -eq 0 ]; then
+        echo "ok $tap_count - $2"
+    else
+        tap_failed=$((tap_failed + 1))
+        echo "not ok $tap_count - $2"
+    fi
+}
+
+# check NAME COMMAND...: passed if the command succeeds.
+check() {
+    check_name=$1
+    shift
+    "$@"
+    tap $? "$check_name"
+}
+
+# stat_of FILE KEY: the value of a top-level key of a --stats file.
+stat_of() {
+    sed -n "s/^  \"$2\": \"\{0,1\}\([^\",]*\)\"\{0,1\},\{0,1\}\$/\1/p" "$1"
+}
+
+# holds EXPRESSION: true if the awk expression is not 0.
+holds() {
+    awk "BEGIN { exit !($1) }"
+}
+
+tap_done() {
+    echo "1..$tap_count"
+    [ "$tap_failed" -eq 0 ]
+    exit
+}

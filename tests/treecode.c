@@ -1,0 +1,216 @@
+/* Tests of rad/treecode.h: the bytes of a small tree by literal values, random trees there and
+ * back bit by bit, and a checksum that is blind to the order of creation and to nothing else. */
+#include "rad/treecode.h"
+
+#include <string.h>
+
+#include "rad/pushpull.h"
+#include "tests/scenes.h"
+#include "tests/tap.h"
+
+enum { ROOTS = 7, PATHS = 120 };
+
+static struct scene *make_scene(void)
+{
+    struct soup soup = {0};
+    struct random random = random_seed(1);
+    for (int i = 0; i < ROOTS; i++)
+        soup_add(&soup, random_triangle(&random, 0.5, 0.3));
+    soup.items[3].corner[0] = soup.items[3].corner[1]; /* dropped; it has a tree all the same */
+    struct scene *scene = scene_of_soup(&soup, 1);
+    scene_prepare_or_exit(scene);
+    soup_free(&soup);
+    return scene;
+}
+
+static void random_ids(uint64_t seed, struct patch_id ids[PATHS])
+{
+    struct random random = random_seed(seed);
+    for (int i = 0; i < PATHS; i++) {
+        ids[i] = id_of_root((uint32_t)random_below(&random, ROOTS));
+        for (int k = random_below(&random, i == 0 ? ID_MAX_LEVEL + 1 : 6); k > 0; k--)
+            ids[i] = id_child(ids[i], random_below(&random, 4));
+    }
+}
+
+/* Any bits but those of NaN, which a machine may change in a copy; every other one is plain. */
+static double random_double(struct random *random)
+{
+    uint64_t bits = random_bits(random) << 8 ^ random_bits(random);
+    if ((bits >> 52 & 0x7FF) == 0x7FF || (bits & 1))
+        return random_unit(random);
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* Values that depend on the ID alone, whatever the local number. */
+static void set_values(struct forest *forest)
+{
+    for (int64_t p = 0; p < forest->count; p++) {
+        struct patch_id id = forest->patches[p].id;
+        struct random random = random_seed((uint64_t)id.root << 32 | id.hierarchy);
+        random_bits(&random);
+        for (int c = 0; c < BANDS; c++)
+            forest->patches[p].radiosity.band[c] = random_double(&random);
+    }
+}
+
+static struct forest *make_forest(const struct scene *scene, const struct patch_id *ids,
+                                  bool backwards)
+{
+    struct forest *forest = forest_create(scene);
+    for (int i = 0; i < PATHS; i++)
+        forest_reach(forest, ids[backwards ? PATHS - 1 - i : i]);
+    set_values(forest);
+    return forest;
+}
+
+/* --- the format --- */
+
+/* Root split, child 2 split: depth first 1 00 1 0000 0, so the bytes 09 and 00; then 7 leaves. */
+static void test_format(const struct scene *scene)
+{
+    struct forest *forest = forest_create(scene);
+    struct bytes bytes = {0};
+    bytes_append(&bytes, 0xEE); /* what is there stays */
+    tree_encode(forest, 1, &bytes);
+    bool right = bytes.count == 1 + 1 + 24 && bytes.data[0] == 0xEE && bytes.data[1] == 0;
+    tap_ok(right, "a leaf takes a byte and 24");
+    int32_t leaf = forest_reach(forest, id_child(id_child(id_of_root(1), 2), 1));
+    forest->patches[leaf].radiosity = (struct rgb){{1.0, -2.0, 0x1p-1074}};
+    bytes.count = 0;
+    tree_encode(forest, 1, &bytes);
+    tap_ok(bytes.count == 2 + 7 * 24 && bytes.data[0] == 0x09 && bytes.data[1] == 0x00,
+           "structure bits, the first in the lowest place");
+    static const uint8_t expected[24] = {0, 0, 0, 0, 0, 0, 0xF0, 0x3F, 0, 0, 0, 0,
+                                         0, 0, 0, 0xC0, 1, 0, 0, 0,    0, 0, 0, 0};
+    /* Leaves in order: children 0, 1, then 20, 21. */
+    tap_ok(memcmp(bytes.data + 2 + 3 * 24, expected, 24) == 0,
+           "then the leaves' doubles, least significant byte first");
+    bytes_free(&bytes);
+    tap_ok(!bytes.data && bytes.count == 0, "bytes are freed");
+    forest_destroy(forest);
+}
+
+/* FNV-1a of seven leaves without light: computed here from the definition. */
+static void test_hash(const struct scene *scene)
+{
+    struct forest *forest = forest_create(scene);
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    for (int i = 0; i < ROOTS * 25; i++)
+        hash = (hash ^ 0) * UINT64_C(0x100000001b3);
+    tap_ok(forest_checksum(forest) == hash, "the checksum is FNV-1a");
+    forest_destroy(forest);
+}
+
+/* --- there and back --- */
+
+static bool same_trees(const struct forest *a, const struct forest *b)
+{
+    for (int32_t root = 0; root < a->root_count; root++) {
+        int32_t p = root, q = root;
+        for (; p >= 0 && q >= 0; p = forest_next(a, p, true), q = forest_next(b, q, true)) {
+            const struct patch *x = &a->patches[p], *y = &b->patches[q];
+            if (x->id.root != y->id.root || x->id.hierarchy != y->id.hierarchy ||
+                memcmp(&x->radiosity, &y->radiosity, sizeof x->radiosity) != 0)
+                return false;
+        }
+        if (p != q)
+            return false;
+    }
+    return a->count == b->count;
+}
+
+/* The receiver has part of the trees already, with other values. */
+static void test_round_trips(const struct scene *scene)
+{
+    bool same = true, lengths = true;
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        struct patch_id ids[PATHS];
+        random_ids(seed, ids);
+        struct forest *forest = make_forest(scene, ids, false), *copy = forest_create(scene);
+        for (int i = 0; i < PATHS; i += (int)seed)
+            forest_reach(copy, ids[i]);
+        struct bytes bytes = {0};
+        int64_t end[ROOTS];
+        for (int32_t root = 0; root < ROOTS; root++) {
+            tree_encode(forest, root, &bytes);
+            end[root] = bytes.count;
+        }
+        int64_t at = 0;
+        for (int32_t root = 0; root < ROOTS; root++) {
+            at += tree_decode(copy, root, bytes.data + at);
+            lengths = lengths && at == end[root];
+        }
+        forest_pull(forest);
+        forest_pull(copy);
+        same = same && same_trees(forest, copy) && forest_checksum(forest) == forest_checksum(copy);
+        bytes_free(&bytes);
+        forest_destroy(forest);
+        forest_destroy(copy);
+    }
+    tap_ok(lengths, "decoding reads as many bytes as encoding wrote");
+    tap_ok(same, "trees arrive with their structure and values, bit by bit");
+}
+
+/* --- checksum --- */
+
+static void test_order(const struct scene *scene)
+{
+    struct patch_id ids[PATHS];
+    random_ids(30, ids);
+    struct forest *a = make_forest(scene, ids, false), *b = make_forest(scene, ids, true);
+    bool numbers_differ = false;
+    for (int64_t p = 0; p < a->count; p++)
+        numbers_differ = numbers_differ || a->patches[p].id.hierarchy != b->patches[p].id.hierarchy;
+    tap_ok(numbers_differ && forest_checksum(a) == forest_checksum(b),
+           "the checksum does not depend on the order of creation");
+    forest_destroy(a);
+    forest_destroy(b);
+}
+
+/* One bit of one band of one leaf at a time, spread over all 64 places. */
+static void test_bits(const struct scene *scene)
+{
+    struct patch_id ids[PATHS];
+    random_ids(31, ids);
+    struct forest *forest = make_forest(scene, ids, false);
+    uint64_t plain = forest_checksum(forest);
+    bool seen = true, restored = true;
+    for (int32_t p = 0; p < forest->count; p++) {
+        if (!patch_is_leaf(&forest->patches[p]))
+            continue;
+        double *value = &forest->patches[p].radiosity.band[p % 3];
+        double before = *value;
+        uint64_t bits;
+        memcpy(&bits, value, sizeof bits);
+        bits ^= UINT64_C(1) << (p % 64);
+        memcpy(value, &bits, sizeof bits);
+        seen = seen && forest_checksum(forest) != plain;
+        *value = before;
+        restored = restored && forest_checksum(forest) == plain;
+    }
+    tap_ok(seen && restored, "any bit of a leaf changes it, and back");
+    forest->patches[0].flux[0]++;
+    tap_ok(patch_is_leaf(&forest->patches[0]) || forest_checksum(forest) == plain,
+           "fluxes do not");
+    int32_t p = 0;
+    while (!patch_is_leaf(&forest->patches[p]))
+        p++;
+    forest_split(forest, p);
+    tap_ok(forest_checksum(forest) != plain, "a split changes it, with the same radiosities too");
+    forest_destroy(forest);
+}
+
+int main(void)
+{
+    struct scene *scene = make_scene();
+    test_format(scene);
+    test_hash(scene);
+    test_round_trips(scene);
+    test_order(scene);
+    test_bits(scene);
+    scene_destroy(scene);
+    return tap_done();
+}
