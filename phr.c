@@ -152,9 +152,11 @@ static void report_levels(const struct run *run, int64_t first)
 static void report_iteration(const struct run *run)
 {
     const struct vote *vote = &run->vote;
-    say(run, "iteration %lld: %lld links (%lld split), remaining error at most %.2g",
-        (long long)run->solver->iteration, (long long)vote->links, (long long)vote->split,
-        vote->remaining);
+    char bound[48] = "no bound yet on the remaining error";
+    if (vote->remaining < HUGE_VAL)
+        snprintf(bound, sizeof bound, "remaining error at most %.2g", vote->remaining);
+    say(run, "iteration %lld: %lld links (%lld split), %s", (long long)run->solver->iteration,
+        (long long)vote->links, (long long)vote->split, bound);
 }
 
 /* Collective. Steps 2 to 8 of the paper's Sec. 3.2. */
