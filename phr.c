@@ -70,15 +70,22 @@ static void warn_repairs(const struct run *run, const struct obj_repairs *read,
             (long long)prepared->degenerate);
 }
 
+/* Emissions beyond these would leave the range of the float outputs. */
+static const double EMISSION_MIN = 1e-30, EMISSION_MAX = 1e30;
+
 static bool check_emission(const struct run *run, struct error *error)
 {
-    double power = scene_emitted_power(run->scene);
-    if (!(power > 0.0))
+    const struct scene *scene = run->scene;
+    double largest = 0.0;
+    for (int32_t i = 0; i < scene->input_count; i++)
+        for (int c = 0; c < BANDS && scene->areas[i] > 0.0; c++)
+            largest = fmax(largest, scene_root_material(scene, i)->emission.band[c]);
+    if (!(largest > 0.0))
         return error_set(error, EXIT_USAGE, "%s: nothing emits light (no face with Ke above 0)",
                          run->options.scene);
-    if (!(power < 1e200) || power < 1e-200)
-        return error_set(error, EXIT_USAGE, "%s: the emitted power is out of range",
-                         run->options.scene);
+    if (largest < EMISSION_MIN || largest > EMISSION_MAX)
+        return error_set(error, EXIT_USAGE, "%s: the largest Ke, %g, is not within %g and %g",
+                         run->options.scene, largest, EMISSION_MIN, EMISSION_MAX);
     return true;
 }
 
@@ -101,14 +108,16 @@ static bool read_scene(struct run *run)
 static bool read_camera(struct run *run)
 {
     const struct options *options = &run->options;
-    if (!options->view)
-        run->camera = camera_of_scene(run->scene);
-    else if (!camera_read(options->view, &run->camera, &run->error))
-        return false;
-    if (options->width > 0) {
-        run->camera.width = options->width;
-        run->camera.height = options->height;
+    bool sized = options->width > 0;
+    if (!options->view) {
+        run->camera = camera_of_scene(run->scene, sized ? options->width : CAMERA_SIZE,
+                                      sized ? options->height : CAMERA_SIZE);
+        return true;
     }
+    if (!camera_read(options->view, &run->camera, &run->error))
+        return false;
+    run->camera.width = sized ? options->width : run->camera.width;
+    run->camera.height = sized ? options->height : run->camera.height;
     return true;
 }
 
@@ -145,7 +154,7 @@ static void report_levels(const struct run *run, int64_t first)
         const struct level_balance *level = &run->solver->levels[i];
         say(run, "iteration %lld, level %lld: %lld links split, most work %.3f of the mean",
             (long long)level->iteration, (long long)level->level, (long long)level->links,
-            level->work_max / level->work_mean);
+            level->work_mean > 0.0 ? level->work_max / level->work_mean : 1.0);
     }
 }
 
@@ -283,12 +292,30 @@ static void release(struct run *run)
     options_free(&run->options);
 }
 
+/* Collective. True if all ranks have the arguments of rank 0: they decide alike from here on. */
+static bool check_arguments(struct run *run, int argc, char **argv)
+{
+    uint64_t own = UINT64_C(14695981039346656037), first; /* FNV-1a, the zeros between included */
+    for (int i = 1; i < argc; i++)
+        for (const char *c = argv[i];; c++) {
+            own = (own ^ (unsigned char)*c) * UINT64_C(1099511628211);
+            if (!*c)
+                break;
+        }
+    first = own;
+    comm_broadcast(&run->comm, &first, sizeof first);
+    if (own != first)
+        error_set(&run->error, EXIT_USAGE, "the ranks have different arguments");
+    return comm_agree(&run->comm, &run->error);
+}
+
 int main(int argc, char **argv)
 {
     struct run run = {0};
     comm_start(&run.comm, &argc, &argv);
     run.start = comm_seconds();
-    bool parsed = options_parse(&run.options, argc, argv, &run.error);
+    bool parsed = check_arguments(&run, argc, argv) &&
+                  options_parse(&run.options, argc, argv, &run.error);
     if (parsed && (run.options.help || run.options.version)) {
         if (run.comm.rank == 0 && run.options.help)
             options_print_help(stdout);

@@ -12,7 +12,7 @@
 static int64_t balance;
 static void (*failure_handler)(size_t bytes);
 
-static void fail(size_t bytes)
+void alloc_fail(size_t bytes)
 {
     if (failure_handler)
         failure_handler(bytes);
@@ -24,7 +24,7 @@ void *alloc_array(size_t count, size_t size)
 {
     void *block = calloc(count ? count : 1, size ? size : 1);
     if (!block)
-        fail(size && count > SIZE_MAX / size ? SIZE_MAX : count * size);
+        alloc_fail(size && count > SIZE_MAX / size ? SIZE_MAX : count * size);
     balance++;
     return block;
 }
@@ -34,11 +34,11 @@ void *alloc_resize(void *block, size_t count, size_t size)
     if (!block)
         return alloc_array(count, size);
     if (size && count > SIZE_MAX / size)
-        fail(SIZE_MAX);
+        alloc_fail(SIZE_MAX);
     size_t bytes = count * size;
     void *resized = realloc(block, bytes ? bytes : 1);
     if (!resized)
-        fail(bytes);
+        alloc_fail(bytes);
     return resized;
 }
 

@@ -24,6 +24,9 @@ void *alloc_reserve(void *block, int64_t *capacity, int64_t needed, size_t size)
 /* Copy of a string. */
 char *alloc_string(const char *text);
 
+/* Gives up as if `bytes` could not be had: for what outgrows the numbers that count it. */
+void alloc_fail(size_t bytes);
+
 /* Releases a block; NULL is allowed. */
 void alloc_free(void *block);
 

@@ -1,7 +1,7 @@
 /* The scene: triangles with materials, in the program's own units.
  *
  * Positions are moved and scaled on preparation: the centre of the bounding box goes to the
- * origin, and a power of two brings the longest side into (1/2, 1]. Lengths in the program are
+ * origin, and a power of two brings the longest side into [1/2, 1). Lengths in the program are
  * such "scene units"; one scene unit is 2^scene.exponent input units (called metres). */
 #ifndef GEOM_SCENE_H
 #define GEOM_SCENE_H

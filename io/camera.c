@@ -119,7 +119,8 @@ static bool check_view(const char *path, struct camera *camera, const struct vie
 
 bool camera_read(const char *path, struct camera *camera, struct error *error)
 {
-    *camera = (struct camera){.up = {0.0, 1.0, 0.0}, .fov = 45.0, .width = 512, .height = 512};
+    *camera = (struct camera){.up = {0.0, 1.0, 0.0}, .fov = 45.0, .width = CAMERA_SIZE,
+                              .height = CAMERA_SIZE};
     struct text text;
     if (!text_read(&text, path, error))
         return false;
@@ -132,14 +133,15 @@ bool camera_read(const char *path, struct camera *camera, struct error *error)
     return error->code == EXIT_DONE && check_view(path, camera, &seen, error);
 }
 
-struct camera camera_of_scene(const struct scene *scene)
+struct camera camera_of_scene(const struct scene *scene, int width, int height)
 {
-    struct camera camera = {.up = {0.0, 1.0, 0.0}, .fov = 40.0, .width = 512, .height = 512,
+    struct camera camera = {.up = {0.0, 1.0, 0.0}, .fov = 40.0, .width = width, .height = height,
                             .fronts_only = true};
-    struct vec3 size = vec3_sub(scene->high, scene->low);
-    double radius = 0.5 * vec3_length(size);
-    /* radius / sin of half the angle shows the bounding sphere; 0.93 is a little below its cosine */
-    double distance = radius / (tangent(camera.fov * PI / 360.0) * 0.93);
+    double radius = 0.5 * vec3_length(vec3_sub(scene->high, scene->low));
+    double narrow = width < height ? (double)width / height : 1.0; /* of width and height */
+    double slope = tangent(camera.fov * PI / 360.0) * narrow;
+    /* The bounding sphere is seen whole from radius / sin = radius sqrt(1 + 1 / tan^2). */
+    double distance = 1.01 * radius * sqrt(1.0 + 1.0 / (slope * slope));
     struct vec3 aside = unit((struct vec3){0.35, 0.35, 1.0});
     struct vec3 middle = vec3_middle(scene->low, scene->high);
     camera.at = scene_to_input(scene, middle);

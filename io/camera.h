@@ -6,7 +6,10 @@
 
 #include "geom/scene.h"
 
-enum { IMAGE_SIZE_MAX = 32768 }; /* pixels along a side */
+enum {
+    CAMERA_SIZE = 512,     /* pixels along a side, unless said */
+    IMAGE_SIZE_MAX = 32768 /* the most that may be said */
+};
 
 struct camera {
     struct vec3 eye, at, up; /* input units */
@@ -21,9 +24,9 @@ struct camera {
  * Errors: "FILE:LINE: what is wrong", EXIT_USAGE. */
 bool camera_read(const char *path, struct camera *camera, struct error *error);
 
-/* A camera outside the bounding box that shows all of it, looking through backs, so that a
- * closed room is seen like a doll's house. */
-struct camera camera_of_scene(const struct scene *scene);
+/* A camera outside the bounding box that shows all of it in a picture of this size, looking
+ * through backs, so that a closed room is seen like a doll's house. */
+struct camera camera_of_scene(const struct scene *scene, int width, int height);
 
 /* Direction, of no certain length, of the ray through the point (x, y) of the picture, in
  * pixels from the top left corner. */

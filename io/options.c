@@ -1,7 +1,7 @@
 /* The command line.
  *
- * Options are a table: a name, what kind of value follows, and where it goes. The same table
- * would serve no one at run time, so --help is plain text that stays readable in the source. */
+ * Options are a table: a name, what kind of value follows, where it goes, and its range. --help is
+ * plain text beside it, so that it reads as it prints; tests/options.c holds the two together. */
 #include "io/options.h"
 
 #include <stddef.h>
@@ -141,6 +141,23 @@ static bool add_scene(struct options *options, const char *path, struct error *e
     return true;
 }
 
+/* Refuses to write a file twice, or over what is read. */
+static bool check_paths(const struct options *options, struct error *error)
+{
+    for (int i = 0; i <= options->output_count; i++) {
+        const char *path = i < options->output_count ? options->outputs[i] : options->stats;
+        if (!path)
+            continue;
+        bool clash = strcmp(path, options->scene) == 0 ||
+                     (options->view && strcmp(path, options->view) == 0);
+        for (int j = 0; j < i; j++)
+            clash = clash || strcmp(path, options->outputs[j]) == 0;
+        if (clash)
+            return error_set(error, EXIT_USAGE, "%s is named twice", path);
+    }
+    return true;
+}
+
 bool options_parse(struct options *options, int argc, char **argv, struct error *error)
 {
     *options = (struct options){
@@ -170,7 +187,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
     }
     if (!options->scene && !options->help && !options->version)
         return error_set(error, EXIT_USAGE, "no scene given; see --help");
-    return true;
+    return !options->scene || check_paths(options, error);
 }
 
 void options_free(struct options *options)

@@ -1,24 +1,28 @@
 /* Output files.
  *
- * A reader never sees half a file: the bytes go to PATH.tmp, and rename() puts the whole file
- * in place or nothing. What is not a regular file (/dev/stdout, a pipe) has no place beside it
+ * A reader never sees half a file: the bytes go to a new file PATH.N.tmp, and rename() puts the
+ * whole file in place or nothing. A link is followed first, so that what it points to is
+ * replaced and not the link. What is not a regular file (/dev/stdout, a pipe) has no place beside it
  * and is written directly. */
 #if defined(__unix__) || defined(__APPLE__)
-#define _POSIX_C_SOURCE 200112L
+#define _XOPEN_SOURCE 700
+#include <fcntl.h>
 #include <sys/stat.h>
-#define HAVE_STAT 1
+#include <unistd.h>
+#define HAVE_POSIX 1
 #endif
 
 #include "io/output.h"
 
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
 
 static bool is_special(const char *path)
 {
-#ifdef HAVE_STAT
+#ifdef HAVE_POSIX
     struct stat status;
     return stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 #else
@@ -29,7 +33,7 @@ static bool is_special(const char *path)
 
 static bool is_directory(const char *path)
 {
-#ifdef HAVE_STAT
+#ifdef HAVE_POSIX
     struct stat status;
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 #else
@@ -45,25 +49,60 @@ static bool fail(const char *path, int reason, struct error *error)
 
 static void release(struct output *output)
 {
+    alloc_free(output->shown);
     alloc_free(output->path);
     alloc_free(output->temporary);
     *output = (struct output){0};
 }
 
+/* The path behind links, or the path itself where nothing is there yet. To be freed. */
+static char *follow_links(const char *path)
+{
+    char *copy;
+#ifdef HAVE_POSIX
+    char *real = realpath(path, NULL);
+    copy = alloc_string(real ? real : path);
+    free(real);
+#else
+    copy = alloc_string(path);
+#endif
+    return copy;
+}
+
+/* Opens a file that did not exist; NULL with errno if it does or cannot be made. */
+static FILE *open_new(const char *path)
+{
+#ifdef HAVE_POSIX
+    int file = open(path, O_WRONLY | O_CREAT | O_EXCL, 0666);
+    return file < 0 ? NULL : fdopen(file, "wb");
+#else
+    return fopen(path, "wb");
+#endif
+}
+
+static FILE *open_temporary(struct output *output)
+{
+    enum { TRIES = 100, EXTRA = 16 };
+    size_t room = strlen(output->path) + EXTRA;
+    output->temporary = alloc_array(room, 1);
+    FILE *file = NULL;
+    for (int n = 0; n < TRIES && !file; n++) {
+        snprintf(output->temporary, room, "%s.%d.tmp", output->path, n);
+        file = open_new(output->temporary);
+        if (!file && errno != EEXIST)
+            break;
+    }
+    return file;
+}
+
 bool output_open(struct output *output, const char *path, struct error *error)
 {
-    *output = (struct output){.path = alloc_string(path)};
-    if (!*path || is_directory(path)) {
-        release(output);
+    *output = (struct output){0};
+    if (!*path || is_directory(path))
         return fail(path, *path ? EISDIR : ENOENT, error);
-    }
-    if (!is_special(path)) {
-        size_t length = strlen(path);
-        output->temporary = alloc_array(length + 5, 1);
-        memcpy(output->temporary, path, length);
-        memcpy(output->temporary + length, ".tmp", 5);
-    }
-    output->file = fopen(output->temporary ? output->temporary : path, "wb");
+    output->shown = alloc_string(path);
+    output->path = follow_links(path);
+    output->file = is_special(path) ? fopen(path, "wb") : open_temporary(output);
     if (output->file)
         return true;
     int reason = errno;
@@ -80,10 +119,10 @@ bool output_close(struct output *output, struct error *error)
     if (fclose(output->file) != 0)
         written = false;
     if (!written)
-        fail(output->path, errno ? errno : EIO, error);
+        fail(output->shown, errno ? errno : EIO, error);
     bool good = error->code == EXIT_DONE;
     if (good && output->temporary && rename(output->temporary, output->path) != 0)
-        good = fail(output->path, errno, error);
+        good = fail(output->shown, errno, error);
     if (!good && output->temporary)
         remove(output->temporary);
     release(output);

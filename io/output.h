@@ -10,7 +10,8 @@
 
 struct output {
     FILE *file;
-    char *path;      /* owned */
+    char *shown;     /* the path as it was given, owned */
+    char *path;      /* the path behind links, owned */
     char *temporary; /* owned; NULL when written in place (a device or a pipe) */
 };
 
@@ -19,7 +20,8 @@ struct output {
  * Errors: "PATH: cannot write: REASON", EXIT_FAILED. */
 bool output_probe(const char *path, struct error *error);
 
-/* Opens PATH.tmp, or PATH itself where it exists and is not a regular file. */
+/* Opens a new file PATH.N.tmp, or PATH itself where it exists and is not a regular file. Links
+ * are followed. */
 bool output_open(struct output *output, const char *path, struct error *error);
 
 /* Closes and renames. On any write error so far, or if `error` is already set, nothing is left

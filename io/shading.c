@@ -17,7 +17,7 @@
  * a fine leaf has a vertex in the middle of a coarse leaf's edge: the coarse side does not know
  * of it. Such a vertex gets the mean of the edge's ends, which is what the coarse side shows
  * there; edges are treated from coarse to fine, so the ends are settled before. The result is
- * continuous on every smooth surface. */
+ * continuous on every smooth surface; T-junctions of the input mesh itself are not joined. */
 #include "io/shading.h"
 
 #include <math.h>
@@ -149,6 +149,8 @@ static int32_t append_vertex(struct table *table, struct vec3 x, int32_t surface
 {
     struct shading *shading = table->shading;
     int64_t needed = shading->vertex_count + 1;
+    if (needed > INT32_MAX)
+        alloc_fail(SIZE_MAX);
     if (needed > table->capacity) {
         int64_t capacity = table->capacity;
         shading->positions = alloc_reserve(shading->positions, &capacity, needed,

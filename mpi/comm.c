@@ -110,8 +110,8 @@ bool comm_agree(const struct comm *comm, struct error *error)
 int comm_count(const struct comm *comm, int64_t count)
 {
     if (count > INT_MAX) {
-        fprintf(stderr, "phr: a message of %lld items is more than MPI can count; "
-                        "use more ranks or a larger epsilon\n", (long long)count);
+        fprintf(stderr, "phr: a message of %lld items is more than MPI can count; a larger "
+                        "epsilon makes it smaller\n", (long long)count);
         MPI_Abort(comm->handle, EXIT_FAILED);
     }
     return (int)count;

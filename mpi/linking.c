@@ -42,7 +42,7 @@ void solver_assign_roots(struct solver *solver)
     int *destination = alloc_array((size_t)solver->links.count, sizeof *destination);
     for (int64_t i = 0; i < solver->links.count; i++) {
         const struct link *link = &solver->links.items[i]; /* p < q: both are roots */
-        destination[i] = solver->owner[(link->p + link->q) % 2 == 0 ? link->p : link->q];
+        destination[i] = solver->owner[(link->p ^ link->q) % 2 == 0 ? link->p : link->q];
     }
     links_migrate(solver, &solver->links, destination);
     alloc_free(destination);

@@ -48,7 +48,11 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
     solver->first_new = forest->count;
     forest_clear_flux(forest);
     links_transfer_ones(&solver->links, forest, unit);
+    int64_t bytes = solver->bytes_gather; /* this gather is for the report, not of the method */
+    double seconds = solver->seconds[PHASE_GATHER];
     solver_gather(solver);
+    solver->bytes_gather = bytes;
+    solver->seconds[PHASE_GATHER] = seconds;
     struct closure_sums own = closure_measure(forest, solver->own, unit);
     struct closure_sums *all = alloc_array((size_t)comm->size, sizeof *all);
     struct closure_sums sum = {.min = HUGE_VAL, .max = -HUGE_VAL};
@@ -64,10 +68,11 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
         sum.squares = flux_add(sum.squares, all[r].squares);
     }
     alloc_free(all);
+    double area = sum.area > 0 ? (double)sum.area : 1.0; /* 0: too small to count, all is 0 */
     stats->closure_min = sum.min;
     stats->closure_max = sum.max;
-    stats->closure_mean = (double)sum.rows / (double)sum.area;
-    stats->closure_rms = sqrt((double)sum.squares / (double)sum.area);
+    stats->closure_mean = (double)sum.rows / area;
+    stats->closure_rms = sqrt((double)sum.squares / area);
 }
 
 /* Bytes that this process held at most, 0 where the system does not tell. */

@@ -289,8 +289,15 @@ static bool clip_to_scene(const struct node *root, struct vec3 *origin, struct v
     return true;
 }
 
-/* Tests one triangle; keeps it in `hit` and its parameter in `nearest` if it is met no later
- * than that, or in the same plane and after it in the file. */
+/* Of two triangles met in the same place, a front counts before a back (the wall of the next room
+ * lies back to back with ours), then the one that comes later in the file. */
+static bool wins_tie(const struct octree_hit *hit, int32_t t, bool front)
+{
+    return front != hit->front ? front : t > hit->triangle;
+}
+
+/* Tests one triangle; keeps it in `hit` and its parameter in `nearest` if it is met before that,
+ * or in the same place and wins the tie. */
 static bool improve_hit(const struct octree *octree, const struct segment *segment, int32_t t,
                         bool fronts_only, double *nearest, struct octree_hit *hit)
 {
@@ -300,7 +307,7 @@ static bool improve_hit(const struct octree *octree, const struct segment *segme
         return false;
     double at = start / (start - end);
     double tie = 64.0 * GEOM_ROUNDING;
-    if (at > *nearest + tie || (at > *nearest - tie && t < hit->triangle))
+    if (at > *nearest + tie || (at > *nearest - tie && !wins_tie(hit, t, start > 0.0)))
         return false;
     double weight[3];
     if (!segment_line_meets(segment, &octree->triangles[t], weight))

@@ -43,8 +43,8 @@ int32_t octree_blocker(const struct octree *octree, struct vec3 from, struct vec
                        const int32_t own[2], int32_t guess, struct octree_counts *counts);
 
 /* The triangle that the ray from `origin` along `direction` (of any length but 0) meets first.
- * Of triangles in one plane the one with the largest number counts: what a file lays over a
- * surface comes after it. `fronts_only` looks through backs. False if nothing is met. */
+ * Of triangles met in the same place a front counts before a back, then the largest number: what
+ * a file lays over a surface comes after it. `fronts_only` looks through backs. False if nothing is met. */
 bool octree_first_hit(const struct octree *octree, struct vec3 origin, struct vec3 direction,
                       bool fronts_only, struct octree_hit *hit, struct octree_counts *counts);
 

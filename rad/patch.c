@@ -36,6 +36,8 @@ void forest_split(struct forest *forest, int32_t patch)
 {
     if (!patch_is_leaf(&forest->patches[patch]))
         return;
+    if (forest->count > INT32_MAX - 4)
+        alloc_fail(SIZE_MAX); /* local numbers end at 2^31 patches, 128 GiB */
     forest->patches = alloc_reserve(forest->patches, &forest->capacity, forest->count + 4,
                                     sizeof *forest->patches);
     struct patch *parent = &forest->patches[patch];

@@ -34,9 +34,10 @@ struct stats {
     int64_t rays, node_tests, triangle_tests;                      /* of form factors */
     double closure_min, closure_mean, closure_max, closure_rms;    /* row sums, rms of R - 1 */
     struct spread seconds[PHASE_COUNT];
-    struct level_balance *levels; /* [level_count], owned by the run */
+    struct level_balance *levels; /* [level_count], borrowed from the solver */
     int64_t level_count;
-    int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent from rank to rank */
+    int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent from rank to rank, in the
+                                                             refinement levels and steps 5, 7 */
     int64_t peak_rss_bytes;                               /* largest over ranks; 0 if unknown */
 };
 

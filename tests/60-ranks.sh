@@ -84,6 +84,31 @@ for ranks in 2 3 7; do
     check "two roots on $ranks ranks" same two-$ranks two-serial
 done
 
+# A lamp that reflects nothing is split by other ranks than its home, and no radiosity tells.
+sed 's/^Kd.*/Kd 0 0 0/' "$work/two.mtl" >"$work/lamp.mtl"
+printf 'newmtl floor\nKd 0.5 0.5 0.5\n' >>"$work/lamp.mtl"
+cat >"$work/lamp.obj" <<END
+mtllib lamp.mtl
+v -4 2 -4
+v 4 2 -4
+v 4 2 4
+v -4 2 4
+v 0 0 0
+v 0 0 1
+v 1 0 0
+v 1 0 1
+usemtl lamp
+f 1 2 3 4
+usemtl floor
+f 5 6 7
+f 7 6 8
+END
+produce lamp-serial "$work/serial/phr" "$work/lamp.obj"
+for ranks in 2 3 5; do
+    produce lamp-$ranks $MPIEXEC -n $ranks "$BUILD/phr" "$work/lamp.obj"
+    check "a black lamp on $ranks ranks" same lamp-$ranks lamp-serial
+done
+
 check "-O0 builds without warnings" build O0 SERIAL=1 CFLAGS=-O0
 produce O0 "$work/O0/phr" $cornell
 check "-O0 gives the same bytes" same O0 serial

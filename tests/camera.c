@@ -225,7 +225,7 @@ static struct scene *make_scene(struct vec3 low, struct vec3 high)
 static bool box_is_seen(struct vec3 low, struct vec3 high)
 {
     struct scene *scene = make_scene(low, high);
-    struct camera camera = camera_of_scene(scene);
+    struct camera camera = camera_of_scene(scene, 150, 400);
     bool seen = error.code == EXIT_DONE && camera.fronts_only;
     for (int k = 0; k < 8; k++) {
         struct vec3 corner = {k & 1 ? low.x : high.x, k & 2 ? low.y : high.y,

@@ -167,6 +167,30 @@ static void test_power(const struct comm *comm)
     solution_free(&s);
 }
 
+/* The greedy plan at work: with several ranks links migrate, and after that no level of many
+ * links is predicted to be uneven by more than a few links' cost. */
+static void test_balance(const struct comm *comm)
+{
+    struct solution s = solve(comm, furnace_create(), criterion_of(1e-4, 10, 1e-3));
+    double worst = 1.0;
+    int64_t large = 0;
+    for (int64_t i = 0; i < s.stats.level_count; i++) {
+        const struct level_balance *level = &s.stats.levels[i];
+        if (level->links < 100 * comm->size)
+            continue;
+        large++;
+        worst = fmax(worst, level->predicted_max / level->predicted_mean);
+    }
+    if (comm->rank == 0) {
+        tap_ok((s.stats.bytes_migration > 0) == (comm->size > 1), "%lld bytes of links migrate",
+               (long long)s.stats.bytes_migration);
+        tap_ok(large > 0 && worst < 1.02, "on %lld levels of 100 links a rank and more, the "
+               "largest load is at most 2 %% above the mean: %.2f %%", (long long)large,
+               100.0 * (worst - 1.0));
+    }
+    solution_free(&s);
+}
+
 int main(int argc, char **argv)
 {
     struct comm comm;
@@ -181,6 +205,7 @@ int main(int argc, char **argv)
     test_furnace(&comm, 1e-4, 0.24, 0.016); /* 16.8 and 1.1 %: rows of mixed levels, */
     test_furnace(&comm, 1e-5, 0.33, 0.007); /* 23.2 and 0.5 %: worse at single leaves */
     test_power(&comm);
+    test_balance(&comm);
     comm_stop(&comm);
     return comm.rank == 0 ? tap_done() : alloc_balance() != 0;
 }

@@ -330,7 +330,8 @@ static void test_facing(void)
     struct facet cut = facet_of((struct triangle){{{2, 0, -1}, {2, 1, -1}, {2, 0, 0.1}}}, 1);
     struct facet turned = facet_of(reversed(cut.triangle), 1);
     tap_ok(facets_face(&p, &above) && facets_face(&above, &p), "a ceiling faces the floor");
-    tap_ok(!facets_face(&p, &up) && !facets_face(&p, &below), "a floor above does not, nor below");
+    tap_ok(!facets_face(&p, &up) && !facets_face(&up, &p) && !facets_face(&p, &below),
+           "a floor above does not, nor one below");
     tap_ok(!facets_face(&p, &beside) && !facets_face(&p, &inside) && !facets_face(&p, &p),
            "nor does what lies in the plane");
     tap_ok(facets_face(&p, &turned) && !facets_face(&p, &cut),

@@ -167,12 +167,13 @@ static void test_energy(void)
     struct material lamp = {{{0.5, 0.5, 0.5}}, {{1.0, 2.0, 4.0}}};
     struct world world = make_pair(1.0, material_grey(0.5, 0), lamp, NULL);
     struct method *method = &world.method;
-    struct link link = {0, 1, 0.0, 0.125f, 1};
+    struct link link = {0, 1, 0.0, 0.125f, 1}, swapped = {1, 0, 0.0, 0.125f, 1};
     method->link_threshold = 0.875; /* 0.125 x (1 + 2 + 4), exactly */
-    tap_ok(link_patch_to_split(method, &link) == -1, "a link at the threshold is fine");
+    tap_ok(link_patch_to_split(method, &link) == -1 &&
+               link_patch_to_split(method, &swapped) == -1,
+           "a link at the threshold is fine");
     method->link_threshold = nextafter(0.875, 0.0);
     tap_ok(link_patch_to_split(method, &link) == 0, "above it, in the sum of the bands, it is not");
-    struct link swapped = {1, 0, 0.0, 0.125f, 1};
     tap_ok(link_patch_to_split(method, &swapped) == 0, "also if it names the lamp first");
     world.scene->materials[0].reflectance = (struct rgb){{0, 0, 0}};
     tap_ok(link_patch_to_split(method, &link) == -1,

@@ -10,7 +10,7 @@
 #include "tests/tap.h"
 
 #define PATH "build/output_test.bin"
-#define BESIDE PATH ".tmp"
+#define BESIDE PATH ".0.tmp"
 
 static struct error error;
 
@@ -172,7 +172,7 @@ static void test_full_device(void)
     for (int i = 0; i < 100000; i++)
         output_uint32(&output, 1);
     tap_ok(is_refused(output_close(&output, &error), path), "many bytes: %s", error.text);
-    tap_ok(path_is_free("/dev/full.tmp") && is_full(path), "the device stays");
+    tap_ok(path_is_free("/dev/full.0.tmp") && is_full(path), "the device stays");
 }
 
 static void test_numbers(void)
