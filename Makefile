@@ -2,6 +2,8 @@
 #
 #   make                 phr with mpicc              make SERIAL=1   the same without MPI, with cc
 #   make demo            the Cornell box, 2 ranks    make check      all tests
+#   make room            build/room, a scene generator
+#   make bench           $(BUILD)/rays, a bench of visibility, beside Embree where it is installed
 #   make install         to $(DESTDIR)$(prefix)      make uninstall  make clean
 #
 # Knobs: MPICC, CC, MPIEXEC, CFLAGS, CPPFLAGS, LDFLAGS, prefix, DESTDIR.
@@ -36,15 +38,17 @@ MPIEXEC ?= mpiexec
 endif
 
 GEOM = alloc error polygon scene triangle
-OCTREE = octree
+OCTREE = build octree
 RAD = flux formfactor id link method patch pushpull treecode
 MPI = assign broadcast comm gather linking migrate picture plan refinement scatter solver vote
 IO = camera image mesh mtl obj options output render shading stats text tone
-MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)
+# OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
+BRUTE =
+MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last three are run with several ranks.
-TESTS = alloc id triangle scene polygon octree flux patch formfactor link pushpull treecode \
+TESTS = alloc id triangle scene polygon octree bundles flux patch formfactor link pushpull treecode \
         plan assign text obj output tone image camera shading options exchange exact converge
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)
 
@@ -75,6 +79,21 @@ demo: $(PHR)
 
 tests: $(TEST_PROGRAMS)
 
+room: build/room
+
+build/room: scenes/room.c Makefile
+	@mkdir -p build
+	$(CC) $(STRICT) $(WARN) $(CFLAGS) -o $@ scenes/room.c -lm
+
+# Set EMBREE= to leave Embree out where its header is found.
+EMBREE ?= $(wildcard /usr/include/embree3/rtcore.h /usr/local/include/embree3/rtcore.h)
+
+bench: $(BUILD)/rays build/room
+
+$(BUILD)/rays: tests/bench/rays.c $(OBJECTS) Makefile
+	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) $(CFLAGS) -o $@ \
+	    tests/bench/rays.c $(OBJECTS) $(if $(EMBREE),-lembree3) -lm
+
 check: $(PHR) tests
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
@@ -92,4 +111,5 @@ clean:
 
 FORCE:
 
-.PHONY: all demo tests check install uninstall clean FORCE
+
+.PHONY: all demo tests room bench check install uninstall clean FORCE

@@ -266,7 +266,8 @@ static bool report_run(struct run *run)
     solver_report(run->solver, &run->vote, &run->stats);
     if (run->comm.rank == 0) {
         if (!run->vote.converged)
-            say(run, "warning: not converged after %lld iterations", (long long)run->stats.iterations);
+            say(run, "warning: not converged after %lld iterations",
+                (long long)run->stats.iterations);
         if (!run->options.quiet)
             stats_print(&run->stats, stdout);
         if (run->options.stats)

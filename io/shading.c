@@ -9,9 +9,9 @@
  * Where a box stands on the floor, leaves are covered in part. The covered part is dark, is not
  * seen and must not leak. It is found with the four points where the rays of the leaf's links
  * begin: a point is covered if four rays from it, up and far aside, all meet a back first: it
- * lies inside a solid, not merely below a shelf. The light of the leaf then belongs to the open share of it: the irradiance that is
- * shown is the leaf's over that share. A vertex with nothing but covered leaves around it takes
- * their mean.
+ * lies inside a solid, not merely below a shelf. The light of the leaf then belongs to its open
+ * share: the irradiance that is shown is the leaf's over that share. A vertex with nothing but
+ * covered leaves around it takes their mean.
  *
  * Between the vertices a leaf interpolates linearly. That alone would crack at T-vertices, where
  * a fine leaf has a vertex in the middle of a coarse leaf's edge: the coarse side does not know

@@ -1,8 +1,9 @@
-/* The ray caster: which triangle is met first, and is a segment blocked?
+/* The ray caster: which triangle is met first, and which segments are blocked?
  *
  * Triangles are known by their number in the array that the octree is built over. Nothing here
  * depends on a rank, a thread or on earlier queries: the same question always takes the same
- * path, so that the counters are as reproducible as the answers. */
+ * path, so that the counters are as reproducible as the answers. What blocks a segment is defined
+ * by segment_is_blocked_by() in double precision, and the answers are exactly those. */
 #ifndef OCTREE_OCTREE_H
 #define OCTREE_OCTREE_H
 
@@ -13,11 +14,24 @@
 
 struct octree;
 
+enum {
+    BUNDLE_ENDS = 4,                       /* points on either side of a bundle */
+    BUNDLE_RAYS = BUNDLE_ENDS * BUNDLE_ENDS /* segments of a bundle */
+};
+
+/* The 16 segments between four points and four others. Segment 4 a + b runs from from[a] to
+ * to[b]. The points lie in the convex hull of the scene, such as on its triangles. */
+struct bundle {
+    struct vec3 from[BUNDLE_ENDS], to[BUNDLE_ENDS];
+    unsigned asked; /* bit 4 a + b: this segment is wanted; from[a] != to[b] */
+    int32_t own[2]; /* triangles on which the points lie: they never block; -1: none */
+};
+
 /* Work done, for predicting and reporting cost. */
 struct octree_counts {
-    int64_t rays;           /* questions asked */
-    int64_t node_tests;     /* boxes tested against a segment */
-    int64_t triangle_tests; /* triangles tested against a segment */
+    int64_t rays;           /* segments asked about */
+    int64_t node_tests;     /* nodes, with all their children's boxes, tested against a bundle */
+    int64_t triangle_tests; /* triangles tested against a bundle */
 };
 
 struct octree_hit {
@@ -26,25 +40,32 @@ struct octree_hit {
     double weight[3]; /* barycentric coordinates of the point */
 };
 
-/* Builds the octree over `count` triangles and their planes. Triangles whose plane has a zero
- * normal (dropped ones) are left out. Borrows both arrays, which must outlive it. */
+/* Builds the octree over `count` triangles and their planes, in scene units (the box around them
+ * fits in [-1/2, 1/2]^3). Triangles whose plane has a zero normal (dropped ones) are left out.
+ * Borrows both arrays, which must outlive it. */
 struct octree *octree_create(const struct triangle *triangles, const struct plane *planes,
                              int32_t count);
 void octree_destroy(struct octree *octree);
 
-/* A triangle that the octree was built over, and its plane. */
-const struct triangle *octree_triangle(const struct octree *octree, int32_t triangle);
-const struct plane *octree_plane(const struct octree *octree, int32_t triangle);
+/* Bytes that the octree itself takes. */
+int64_t octree_bytes(const struct octree *octree);
 
-/* The triangle that blocks the segment (segment_is_blocked_by() says what that means), or -1.
- * The triangles `own[0]` and `own[1]`, on which the end points lie, never block.
- * `guess` is tested first unless it is -1: the last blocker of a similar segment. */
-int32_t octree_blocker(const struct octree *octree, struct vec3 from, struct vec3 to,
-                       const int32_t own[2], int32_t guess, struct octree_counts *counts);
+/* Which of the segments asked for are blocked: bits as in `asked`. `*guess` is a triangle that is
+ * tested first, such as the last blocker of a similar bundle, or -1; it becomes the last one that
+ * blocked some segment. It saves time and never changes the answer. */
+unsigned octree_block(const struct octree *octree, const struct bundle *bundle, int32_t *guess,
+                      struct octree_counts *counts);
+
+/* True if one triangle alone blocks all segments between the points of one triangle and those of
+ * another, as far as it can be proved: it blocks all nine between their corners (see
+ * rad/formfactor.c). `own`: their numbers, as above. */
+bool octree_has_wall(const struct octree *octree, const struct triangle *p,
+                     const struct triangle *q, const int32_t own[2], struct octree_counts *counts);
 
 /* The triangle that the ray from `origin` along `direction` (of any length but 0) meets first.
  * Of triangles met in the same place a front counts before a back, then the largest number: what
- * a file lays over a surface comes after it. `fronts_only` looks through backs. False if nothing is met. */
+ * a file lays over a surface comes after it. `fronts_only` looks through backs. False if nothing
+ * is met. */
 bool octree_first_hit(const struct octree *octree, struct vec3 origin, struct vec3 direction,
                       bool fronts_only, struct octree_hit *hit, struct octree_counts *counts);
 

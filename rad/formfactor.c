@@ -17,7 +17,7 @@
  * Pairs of sub-areas below each other's horizon exchange nothing: they get no ray and do not
  * count as blocked.
  *
- * No free ray does not mean that nothing passes. It is only taken as blocked with a proof: a
+ * No free ray does not mean that nothing passes. That is only taken so with a proof: a
  * triangle T whose plane has p on one side and q on the other, and that stops all nine segments
  * between corners of p and corners of q. Then every segment from x in p to y in q is stopped:
  * x and y are weighted averages of corners, and the point where xy crosses the plane is a
@@ -27,9 +27,8 @@
 #include "rad/formfactor.h"
 
 #include <math.h>
-#include <stddef.h>
 
-enum { SUBAREAS = 4, RAYS = SUBAREAS * SUBAREAS };
+enum { SUBAREAS = BUNDLE_ENDS, RAYS = BUNDLE_RAYS, ALL_RAYS = (1 << RAYS) - 1 };
 
 static const double PI = 3.14159265358979323846;
 
@@ -84,48 +83,6 @@ static double horizon_estimate(const struct facet *p, const struct facet *q)
     return p->area * q->area * cosines / (PI * r2 + fmax(p->area, q->area));
 }
 
-static bool plane_separates(const struct plane *plane, const struct triangle *p,
-                            const struct triangle *q)
-{
-    int sides[2] = {0, 0};
-    for (int k = 0; k < 3; k++) {
-        double dp = plane_distance(plane, p->corner[k]), dq = plane_distance(plane, q->corner[k]);
-        sides[0] += (dp > GEOM_ROUNDING) - (dp < -GEOM_ROUNDING);
-        sides[1] += (dq > GEOM_ROUNDING) - (dq < -GEOM_ROUNDING);
-    }
-    return sides[0] * sides[1] == -9;
-}
-
-/* The proof of the essay: true only if `blocker` stops every segment between p and q. */
-static bool blocks_for_sure(const struct octree *octree, int32_t blocker, const struct triangle *p,
-                            const struct triangle *q)
-{
-    const struct triangle *t = octree_triangle(octree, blocker);
-    if (!plane_separates(octree_plane(octree, blocker), p, q))
-        return false;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            struct segment s = segment_make(p->corner[i], q->corner[j]);
-            if (!segment_line_meets(&s, t, NULL))
-                return false;
-        }
-    }
-    return true;
-}
-
-static bool is_proved_blocked(const struct octree *octree, const int32_t *blockers, int count,
-                              const struct facet *p, const struct facet *q)
-{
-    for (int i = 0; i < count; i++) {
-        bool tried = false;
-        for (int j = 0; j < i; j++)
-            tried = tried || blockers[j] == blockers[i];
-        if (!tried && blocks_for_sure(octree, blockers[i], &p->triangle, &q->triangle))
-            return true;
-    }
-    return false;
-}
-
 static void subarea_centroids(const struct triangle *t, struct vec3 centroids[SUBAREAS])
 {
     for (int k = 0; k < SUBAREAS; k++) {
@@ -134,39 +91,46 @@ static void subarea_centroids(const struct triangle *t, struct vec3 centroids[SU
     }
 }
 
-struct exchange exchange_by_disks(const struct facet *p, const struct facet *q,
-                                  const struct octree *octree, struct octree_counts *counts)
+/* Sets the segments of the bundle and their kernels; asks for those that face each other. */
+static void aim(const struct facet *p, const struct facet *q, struct bundle *bundle,
+                double kernels[RAYS])
 {
-    struct vec3 x[SUBAREAS], y[SUBAREAS];
-    subarea_centroids(&p->triangle, x);
-    subarea_centroids(&q->triangle, y);
-    const int32_t own[2] = {p->input, q->input};
-    int32_t blockers[RAYS], last = -1;
-    int fired = 0, blocked = 0;
-    struct exchange exchange = {0.0, 0.0, false};
-    for (int a = 0; a < SUBAREAS; a++) {
-        for (int b = 0; b < SUBAREAS; b++) {
-            double kernel = disk_kernel(x[a], p->plane.normal, 0.25 * p->area, y[b],
-                                        q->plane.normal, 0.25 * q->area);
-            if (kernel <= 0.0)
-                continue;
-            fired++;
-            exchange.unoccluded += kernel;
-            int32_t blocker = octree_blocker(octree, x[a], y[b], own, last, counts);
-            if (blocker < 0)
-                exchange.area += kernel;
-            else
-                last = blockers[blocked++] = blocker;
-        }
+    *bundle = (struct bundle){.own = {p->input, q->input}};
+    subarea_centroids(&p->triangle, bundle->from);
+    subarea_centroids(&q->triangle, bundle->to);
+    for (int ray = 0; ray < RAYS; ray++) {
+        kernels[ray] = disk_kernel(bundle->from[ray / SUBAREAS], p->plane.normal, 0.25 * p->area,
+                                   bundle->to[ray % SUBAREAS], q->plane.normal, 0.25 * q->area);
+        bundle->asked |= (unsigned)(kernels[ray] > 0.0) << ray;
+    }
+}
+
+struct exchange exchange_by_disks(const struct facet *p, const struct facet *q,
+                                  const struct octree *octree, int32_t *guess,
+                                  struct octree_counts *counts)
+{
+    double kernels[RAYS];
+    struct bundle bundle;
+    aim(p, q, &bundle, kernels);
+    unsigned blocked = octree_block(octree, &bundle, guess, counts);
+    struct exchange exchange = {0.0, 0.0};
+    for (int ray = 0; ray < RAYS; ray++) {
+        exchange.unoccluded += kernels[ray];
+        exchange.area += blocked >> ray & 1u ? 0.0 : kernels[ray];
     }
     double limit = fmin(p->area, q->area);
     if (exchange.unoccluded > limit) {
         exchange.area = fmin(limit, exchange.area * (limit / exchange.unoccluded));
         exchange.unoccluded = limit;
     }
-    if (fired < RAYS)
+    if (bundle.asked != ALL_RAYS)
         exchange.unoccluded = fmax(exchange.unoccluded, horizon_estimate(p, q));
-    if (fired > 0 && blocked == fired)
-        exchange.blocked = is_proved_blocked(octree, blockers, blocked, p, q);
     return exchange;
+}
+
+bool facets_are_walled_off(const struct facet *p, const struct facet *q,
+                           const struct octree *octree, struct octree_counts *counts)
+{
+    const int32_t own[2] = {p->input, q->input};
+    return octree_has_wall(octree, &p->triangle, &q->triangle, own, counts);
 }

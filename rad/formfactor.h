@@ -13,7 +13,6 @@
 struct exchange {
     double area;       /* G with visibility */
     double unoccluded; /* an estimate of what G would be without blockers, >= area */
-    bool blocked;      /* proved: nothing of one patch sees anything of the other */
 };
 
 /* One patch of a pair, as the kernel needs it. */
@@ -31,8 +30,14 @@ struct facet facet_make(const struct forest *forest, int32_t patch);
 bool facets_face(const struct facet *p, const struct facet *q);
 
 /* The 16-ray disk: both patches in 4 sub-areas, one ray for each pair of sub-areas that face
- * each other. Pre: facets_face(p, q). */
+ * each other. `*guess` is as in octree_block(). Pre: facets_face(p, q). */
 struct exchange exchange_by_disks(const struct facet *p, const struct facet *q,
-                                  const struct octree *octree, struct octree_counts *counts);
+                                  const struct octree *octree, int32_t *guess,
+                                  struct octree_counts *counts);
+
+/* True if it is proved that nothing of one facet sees anything of the other: one triangle stops
+ * all nine segments between their corners. */
+bool facets_are_walled_off(const struct facet *p, const struct facet *q,
+                           const struct octree *octree, struct octree_counts *counts);
 
 #endif

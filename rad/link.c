@@ -35,7 +35,8 @@ static uint32_t predict_cost(int64_t tests, double alpha, uint32_t inherited)
 }
 
 bool link_make(struct method *method, int32_t p, const struct facet *facet_p, int32_t q,
-               const struct facet *facet_q, uint32_t inherited, struct link *link)
+               const struct facet *facet_q, uint32_t inherited, int32_t *guess,
+               struct link *link)
 {
     if (!facets_face(facet_p, facet_q))
         return false;
@@ -43,12 +44,10 @@ bool link_make(struct method *method, int32_t p, const struct facet *facet_p, in
         material_is_dark(forest_material(method->forest, q)))
         return false;
     struct octree_counts work = {0};
-    struct exchange exchange = exchange_by_disks(facet_p, facet_q, method->octree, &work);
+    struct exchange exchange = exchange_by_disks(facet_p, facet_q, method->octree, guess, &work);
     method->counts.rays += work.rays;
     method->counts.node_tests += work.node_tests;
     method->counts.triangle_tests += work.triangle_tests;
-    if (exchange.blocked)
-        return false;
     int64_t tests = work.node_tests + work.triangle_tests;
     *link = (struct link){p, q, exchange.area, (float)exchange.unoccluded,
                           predict_cost(tests, method->criterion.alpha, inherited)};
@@ -90,20 +89,31 @@ int32_t link_patch_to_split(const struct method *method, const struct link *link
     return patch_may_split(method, first) ? first : patch_may_split(method, second) ? second : -1;
 }
 
+static bool link_is_walled_off(struct method *method, const struct link *link)
+{
+    struct facet p = facet_make(method->forest, link->p), q = facet_make(method->forest, link->q);
+    return facets_are_walled_off(&p, &q, method->octree, &method->counts);
+}
+
 int link_split(struct method *method, const struct link *link, int32_t patch,
                struct link children[4])
 {
+    if (link->area == 0.0 && link_is_walled_off(method, link))
+        return 0;
     forest_split(method->forest, patch);
     bool splits_p = patch == link->p;
     int32_t other = splits_p ? link->q : link->p;
     struct facet facet_other = facet_make(method->forest, other);
+    int32_t guess = -1; /* what blocks one child is likely to block the next */
     int count = 0;
     for (int k = 0; k < 4; k++) {
         int32_t child = method->forest->patches[patch].children + k;
         struct facet facet = facet_make(method->forest, child);
         struct link *made = &children[count];
-        count += splits_p ? link_make(method, child, &facet, other, &facet_other, link->cost, made)
-                          : link_make(method, other, &facet_other, child, &facet, link->cost, made);
+        count += splits_p ? link_make(method, child, &facet, other, &facet_other, link->cost,
+                                      &guess, made)
+                          : link_make(method, other, &facet_other, child, &facet, link->cost,
+                                      &guess, made);
     }
     return count;
 }

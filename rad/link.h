@@ -27,18 +27,21 @@ void link_list_append(struct link_list *list, struct link link);
 void link_list_free(struct link_list *list);
 
 /* Makes the link between two patches, given as facets too, with its form factor and its cost.
- * `inherited` is the cost of the link that it comes from, 0 for an initial link.
- * False if no light can ever pass: both patches black and dark, not facing each other, or proved
- * blocked. That no ray arrived is no reason: such a link lives on with area 0. */
+ * `inherited` is the cost of the link that it comes from, 0 for an initial link; `*guess` is as
+ * in octree_block().
+ * False if no light can ever pass: both patches black and dark, or not facing each other. That no
+ * ray arrived is no reason: such a link lives on with area 0. */
 bool link_make(struct method *method, int32_t p, const struct facet *facet_p, int32_t q,
-               const struct facet *facet_q, uint32_t inherited, struct link *link);
+               const struct facet *facet_q, uint32_t inherited, int32_t *guess,
+               struct link *link);
 
 /* The patch of the link that the criterion wants to split, or -1 if the link is fine or neither
  * patch may be split. Reads the radiosities of the last iteration. */
 int32_t link_patch_to_split(const struct method *method, const struct link *link);
 
 /* Splits `patch` (p or q of the link) unless it is split already and makes the links of its
- * children with the other side. Returns how many there are, 0..4. */
+ * children with the other side. Returns how many there are, 0..4; none, and nothing is split, if
+ * no ray had arrived and the two patches are proved to be walled off. */
 int link_split(struct method *method, const struct link *link, int32_t patch,
                struct link children[4]);
 

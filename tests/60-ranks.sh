@@ -3,6 +3,8 @@
 
 . tests/tap.sh
 
+counts="checksum links patches leaves iterations rays node_tests triangle_tests absorbed_power
+        escaped_power"
 quiet="--quiet --epsilon 1e-4 --size 96x96"
 
 # build NAME ARGUMENTS...: another phr as $work/NAME/phr; fails with the log if it has warnings.
@@ -30,8 +32,7 @@ same() {
     for file in a.pfm a.ppm a.ply; do
         cmp "$work/$1/$file" "$work/$2/$file" || return 1
     done
-    for key in checksum links patches leaves iterations rays node_tests triangle_tests \
-               absorbed_power escaped_power; do
+    for key in $counts; do
         if [ "$(stat_of "$work/$1/s.json" $key)" != "$(stat_of "$work/$2/s.json" $key)" ] ||
             [ -z "$(stat_of "$work/$1/s.json" $key)" ]; then
             echo "# $key differs or is missing: $1 and $2"
@@ -125,6 +126,17 @@ for compiler in gcc clang; do
         tap 0 "$compiler is not installed # SKIP"
     fi
 done
+
+check "the plain loops of octree/lanes.h build without warnings" build plain SERIAL=1 \
+    CPPFLAGS=-DPHR_PLAIN_LANES
+produce plain "$work/plain/phr" $cornell
+check "they give the same bytes as vectors" same plain serial
+
+# The ray caster by brute force, linked in place of the octree. It counts no tests.
+check "brute force builds without warnings" build brute SERIAL=1 OCTREE= BRUTE=brute
+produce brute "$work/brute/phr" $cornell
+counts="checksum links patches leaves iterations rays"
+check "brute force gives the same bytes" same brute serial
 
 # What the comparison is worth: it notices one changed byte.
 cp -r "$work/ranks-1" "$work/planted"

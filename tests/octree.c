@@ -11,6 +11,37 @@
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
+/* Puts specks into the eight corners of space, far outside the world, so that its own triangles
+ * are not the hull and segments that leave it can be asked about. */
+static void surround(struct world *world)
+{
+    struct scene *scene = world->scene;
+    size_t count = (size_t)scene->input_count + 8;
+    scene->triangles = alloc_resize(scene->triangles, count, sizeof *scene->triangles);
+    scene->planes = alloc_resize(scene->planes, count, sizeof *scene->planes);
+    for (int k = 0; k < 8; k++) {
+        struct vec3 a = {k & 1 ? 0.99 : -0.99, k & 2 ? 0.99 : -0.99, k & 4 ? 0.99 : -0.99};
+        struct vec3 b = vec3_scale(a, 0.999999), c = {a.x, b.y, b.z};
+        struct triangle speck = {{a, b, c}};
+        scene->triangles[count - 8 + (size_t)k] = speck;
+        scene->planes[count - 8 + (size_t)k] = triangle_plane(&speck);
+    }
+    octree_destroy(world->octree);
+    world->octree = octree_create(scene->triangles, scene->planes, (int32_t)count);
+}
+
+/* A bundle of one segment: the triangle that blocks it, or -1. */
+static int32_t octree_blocker(const struct octree *octree, struct vec3 from, struct vec3 to,
+                              const int32_t own[2], int32_t guess, struct octree_counts *counts)
+{
+    struct bundle bundle = {.asked = 1, .own = {own[0], own[1]}};
+    for (int k = 0; k < BUNDLE_ENDS; k++) {
+        bundle.from[k] = from;
+        bundle.to[k] = to;
+    }
+    return octree_block(octree, &bundle, &guess, counts) ? guess : -1;
+}
+
 enum { SEGMENTS = 100000, RAYS = 8000, CROSSINGS = 20000 };
 
 /* --- scenes --- */
@@ -235,15 +266,11 @@ static void test_scene(void (*make)(struct soup *), const char *name)
     struct soup soup = {0};
     make(&soup);
     struct world world = world_make(scene_of_soup(&soup, 1));
+    surround(&world);
     test_blockers(&world, name);
     test_counters(&world, name);
     test_first_hits(&world, name, false);
     test_first_hits(&world, name, true);
-    bool same = true;
-    for (int32_t t = 0; t < world.scene->input_count; t++)
-        same = same && octree_triangle(world.octree, t) == &world.scene->triangles[t] &&
-               octree_plane(world.octree, t) == &world.scene->planes[t];
-    tap_ok(same, "%s: triangles and planes by number", name);
     world_free(&world);
     soup_free(&soup);
 }
@@ -279,6 +306,7 @@ static void test_closed(bool is_sphere, const char *name)
     else
         soup_add_box(&soup, (struct vec3){0, 0, 0}, (struct vec3){4, 3, 2.5}, 10, true);
     struct world world = world_make(scene_of_soup(&soup, 1));
+    surround(&world);
     int escapes[3] = {0, 0, 0};
     count_escapes(&world, escapes);
     tap_ok(escapes[0] == 0, "%s: nothing leaves through corners", name);
@@ -298,6 +326,7 @@ static void test_coincident(void)
     for (int i = 0; i < COUNT; i++)
         soup_add(&soup, t);
     struct world world = world_make(scene_of_soup(&soup, 1));
+    surround(&world);
     const struct triangle *first = &world.scene->triangles[0];
     struct plane plane = world.scene->planes[0];
     struct random random = random_seed(7);
@@ -333,6 +362,7 @@ static void test_overlay(bool large_first)
     if (!large_first)
         soup_add(&soup, large);
     struct world world = world_make(scene_of_soup(&soup, 1));
+    surround(&world);
     const struct scene *scene = world.scene;
     struct random random = random_seed(8);
     struct octree_counts counts = {0};

@@ -1,0 +1,62 @@
+/* The octree in memory; for octree/ only. */
+#ifndef OCTREE_TREE_H
+#define OCTREE_TREE_H
+
+#include "octree/lanes.h"
+#include "octree/octree.h"
+
+enum {
+    TREE_DEPTH = 24,                   /* deepest level of a tree */
+    TREE_STACK = LANES * TREE_DEPTH + LANES /* room for a walk: what waits on all levels */
+};
+
+/* An inner node: the boxes of its eight children side by side, so that one instruction looks at
+ * all of them. A box is middle +- half, rounded outwards; that of an absent child is so far
+ * away that nothing meets it. Children are in the order of the cell's octants. */
+struct node {
+    float middle[3][LANES], half[3][LANES];
+    int32_t child[LANES]; /* an inner node if >= 0, leaf ~child if < 0 */
+};
+
+/* A run of records. */
+struct leaf {
+    int32_t first, count;
+};
+
+/* A triangle as three affine maps r(x) = r[0] x + r[1] y + r[2] z + r[3]: the barycentric
+ * coordinates of corners b and c, and the signed distance to the plane. 64 bytes. */
+struct record {
+    float u[4], v[4], w[4];
+    float error_u, error_v, error_w; /* bounds on |r(x) - its exact value| for |x| <= 1 */
+    int32_t triangle;
+};
+
+/* One tree over some of the triangles. */
+struct tree {
+    struct node *nodes;     /* [node_count]; the first is the root */
+    struct leaf *leaves;    /* [leaf_count] */
+    struct record *records; /* [record_count], leaf by leaf */
+    int64_t node_count, node_capacity, leaf_count, leaf_capacity, record_count;
+    struct vec3 low, high;  /* bounding box */
+};
+
+struct octree {
+    const struct triangle *triangles;
+    const struct plane *planes;
+    struct tree inside; /* triangles that can block something between two points of the scene */
+    struct tree hull;   /* triangles that have the whole scene on one side of their plane */
+    int32_t *place;     /* [count] where a triangle's record is in `inside`, or -1 */
+    int64_t count;
+    struct vec3 low, high; /* bounding box */
+};
+
+/* Builds a tree over `count` triangles, given by number; `order` is used up. */
+struct tree tree_build(const struct triangle *triangles, const struct plane *planes, int32_t *order,
+                       int32_t count);
+void tree_free(struct tree *tree);
+
+/* True if some corner of the tree's triangles is in front of the plane by more than `margin`. */
+bool tree_reaches_above(const struct tree *tree, const struct triangle *triangles,
+                        const struct plane *plane, double margin);
+
+#endif

@@ -1,0 +1,288 @@
+/* Visibility bench: segments per second of octree/ on the program's own workload, and beside it,
+ * where it is compiled in (-DWITH_EMBREE), Embree 3 on the same segments, one thread.
+ *
+ *   make bench BUILD=build/native CFLAGS="-O2 -march=native"
+ *   build/room 6350 1 > build/room.obj && build/native/rays build/room.obj [BUNDLES [SEED]]
+ *
+ * The workload is bundles of 16 segments between the sub-triangle centres of two facing patches,
+ * both 0 to 4 levels below their roots, in two orders: pairs at random, and in refinement order
+ * (the four children that link_split() makes of a link, each starting with the last blocker of
+ * the one before). Programs take turns, five times, and the fastest turn counts. Both are handed
+ * the end points in double and convert them themselves. Embree's segments are cut short by 1e-4
+ * at both ends, where it would meet the triangles they lie on; what it sees otherwise is counted
+ * and is near edges or in those cuts. */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#ifdef WITH_EMBREE
+#include <embree3/rtcore.h>
+#endif
+
+#include "io/obj.h"
+#include "mpi/comm.h"
+#include "octree/octree.h"
+#include "rad/formfactor.h"
+
+#include "geom/alloc.h"
+#include "tests/random.h"
+
+enum { TURNS = 5, CHILDREN = 4 };
+
+struct load {
+    struct bundle *bundles;    /* [count] */
+    unsigned *blocked;         /* [count] answer of the octree */
+    int count;
+    bool refinement_order;     /* groups of CHILDREN share a guess */
+};
+
+struct figures {
+    double seconds; /* of the fastest turn */
+    struct octree_counts counts;
+};
+
+static struct vec3 sub_centre(const struct triangle *t, int child)
+{
+    struct triangle part = triangle_child(t, child);
+    return triangle_centroid(&part);
+}
+
+static struct bundle bundle_of(const struct facet *p, const struct facet *q)
+{
+    struct bundle bundle = {.own = {p->input, q->input}};
+    for (int k = 0; k < BUNDLE_ENDS; k++) {
+        bundle.from[k] = sub_centre(&p->triangle, k);
+        bundle.to[k] = sub_centre(&q->triangle, k);
+    }
+    for (int k = 0; k < BUNDLE_RAYS; k++) {
+        struct vec3 d = vec3_sub(bundle.to[k % BUNDLE_ENDS], bundle.from[k / BUNDLE_ENDS]);
+        bool faces = vec3_dot(p->plane.normal, d) > 0.0 && vec3_dot(q->plane.normal, d) < 0.0;
+        bundle.asked |= (unsigned)faces << k;
+    }
+    return bundle;
+}
+
+static struct facet random_facet(const struct scene *scene, struct random *random)
+{
+    int32_t root;
+    do
+        root = (int32_t)(random_bits(random) % (uint64_t)scene->input_count);
+    while (scene->areas[root] <= 0.0);
+    struct facet facet = {scene->triangles[root], scene->planes[root], scene->areas[root], root};
+    for (int level = (int)(random_bits(random) % 5); level > 0; level--)
+        facet.triangle = triangle_child(&facet.triangle, (int)(random_bits(random) % 4));
+    return facet;
+}
+
+static void fill_load(const struct scene *scene, struct load *load, struct random *random)
+{
+    for (int i = 0; i < load->count;) {
+        struct facet p = random_facet(scene, random), q = random_facet(scene, random);
+        if (p.input == q.input || !facets_face(&p, &q))
+            continue;
+        struct facet whole = p;
+        for (int k = 0; k < (load->refinement_order ? CHILDREN : 1) && i < load->count; k++) {
+            if (load->refinement_order)
+                p.triangle = triangle_child(&whole.triangle, k);
+            load->bundles[i] = bundle_of(&p, &q);
+            i += load->bundles[i].asked != 0;
+        }
+    }
+}
+
+static void run_octree(const struct octree *octree, struct load *load, struct figures *figures)
+{
+    struct octree_counts counts = {0};
+    double start = comm_seconds();
+    int32_t guess = -1;
+    for (int i = 0; i < load->count; i++) {
+        if (!load->refinement_order || i % CHILDREN == 0)
+            guess = -1;
+        load->blocked[i] = octree_block(octree, &load->bundles[i], &guess, &counts);
+    }
+    double seconds = comm_seconds() - start;
+    figures->seconds = figures->seconds > 0.0 && figures->seconds < seconds ? figures->seconds
+                                                                             : seconds;
+    figures->counts = counts;
+}
+
+#ifdef WITH_EMBREE
+
+/* Embree knows no "own" triangles. */
+static const float CUT = 1e-4f;
+
+static RTCScene embree_create(RTCDevice device, const struct scene *scene)
+{
+    RTCScene embree = rtcNewScene(device);
+    RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    size_t count = (size_t)scene->input_count;
+    float *vertices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                              3 * sizeof(float), 3 * count);
+    unsigned *indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                3 * sizeof(unsigned), count);
+    for (size_t i = 0; i < 3 * count; i++) {
+        struct vec3 x = scene->triangles[i / 3].corner[i % 3];
+        vertices[3 * i] = (float)x.x;
+        vertices[3 * i + 1] = (float)x.y;
+        vertices[3 * i + 2] = (float)x.z;
+        indices[i] = (unsigned)i;
+    }
+    rtcCommitGeometry(mesh);
+    rtcAttachGeometry(embree, mesh);
+    rtcReleaseGeometry(mesh);
+    rtcSetSceneBuildQuality(embree, RTC_BUILD_QUALITY_HIGH);
+    rtcCommitScene(embree);
+    return embree;
+}
+
+static void set_rays(const struct bundle *bundle, struct RTCRay16 *rays, int *valid)
+{
+    for (int k = 0; k < BUNDLE_RAYS; k++) {
+        struct vec3 from = bundle->from[k / BUNDLE_ENDS];
+        struct vec3 d = vec3_sub(bundle->to[k % BUNDLE_ENDS], from);
+        rays->org_x[k] = (float)from.x;
+        rays->org_y[k] = (float)from.y;
+        rays->org_z[k] = (float)from.z;
+        rays->dir_x[k] = (float)d.x;
+        rays->dir_y[k] = (float)d.y;
+        rays->dir_z[k] = (float)d.z;
+        rays->tnear[k] = CUT;
+        rays->tfar[k] = 1.0f - CUT;
+        rays->time[k] = 0.0f;
+        rays->mask[k] = 0xffffffffu;
+        rays->id[k] = rays->flags[k] = 0;
+        valid[k] = bundle->asked >> k & 1u ? -1 : 0;
+    }
+}
+
+/* The 16-wide coherent mode, Embree's best here. Returns the segments that it sees otherwise. */
+static int64_t run_embree(RTCScene embree, const struct load *load, double *fastest)
+{
+    int64_t differ = 0;
+    double start = comm_seconds();
+    for (int i = 0; i < load->count; i++) {
+        struct RTCRay16 rays;
+        struct RTCIntersectContext context;
+        int valid[BUNDLE_RAYS] __attribute__((aligned(64)));
+        rtcInitIntersectContext(&context);
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        set_rays(&load->bundles[i], &rays, valid);
+        rtcOccluded16(valid, embree, &context, &rays);
+        unsigned blocked = 0;
+        for (int k = 0; k < BUNDLE_RAYS; k++)
+            blocked |= (unsigned)(valid[k] && rays.tfar[k] < 0.0f) << k;
+        for (unsigned other = blocked ^ load->blocked[i]; other; other &= other - 1)
+            differ++;
+    }
+    double seconds = comm_seconds() - start;
+    *fastest = *fastest > 0.0 && *fastest < seconds ? *fastest : seconds;
+    return differ;
+}
+
+static void run_embree_single(RTCScene embree, const struct load *load, double *fastest)
+{
+    double start = comm_seconds();
+    for (int i = 0; i < load->count; i++) {
+        struct RTCRay16 rays;
+        struct RTCIntersectContext context;
+        int valid[BUNDLE_RAYS];
+        rtcInitIntersectContext(&context);
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        set_rays(&load->bundles[i], &rays, valid);
+        for (int k = 0; k < BUNDLE_RAYS; k++) {
+            if (!valid[k])
+                continue;
+            struct RTCRay ray = {.org_x = rays.org_x[k], .org_y = rays.org_y[k],
+                                 .org_z = rays.org_z[k], .dir_x = rays.dir_x[k],
+                                 .dir_y = rays.dir_y[k], .dir_z = rays.dir_z[k],
+                                 .tnear = rays.tnear[k], .tfar = rays.tfar[k],
+                                 .mask = 0xffffffffu};
+            rtcOccluded1(embree, &context, &ray);
+        }
+    }
+    double seconds = comm_seconds() - start;
+    *fastest = *fastest > 0.0 && *fastest < seconds ? *fastest : seconds;
+}
+
+#endif
+
+static void print_octree(const struct load *load, const struct figures *figures)
+{
+    int open = 0, blocked = 0;
+    for (int i = 0; i < load->count; i++) {
+        open += load->blocked[i] == 0;
+        blocked += load->blocked[i] == load->bundles[i].asked;
+    }
+    double rays = (double)figures->counts.rays;
+    printf("  octree: %.3f million segments/s, per bundle %.1f nodes and %.1f triangles; "
+           "bundles %.0f %% open, %.0f %% blocked, %.0f %% mixed\n",
+           1e-6 * rays / figures->seconds, (double)figures->counts.node_tests / load->count,
+           (double)figures->counts.triangle_tests / load->count, 100.0 * open / load->count,
+           100.0 * blocked / load->count, 100.0 * (load->count - open - blocked) / load->count);
+}
+
+int main(int argc, char **argv)
+{
+    struct error error = {0};
+    struct obj_repairs read = {0};
+    struct scene_repairs prepared;
+    if (argc < 2) {
+        fprintf(stderr, "usage: rays SCENE.obj [BUNDLES [SEED]]\n");
+        return EXIT_USAGE;
+    }
+    struct comm comm;
+    comm_start(&comm, &argc, &argv);
+    struct scene *scene = obj_read(argv[1], &read, &error);
+    if (!scene || !scene_prepare(scene, &prepared, &error)) {
+        fprintf(stderr, "rays: %s\n", error.text);
+        return EXIT_USAGE;
+    }
+    double start = comm_seconds();
+    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    printf("%s: %d triangles, octree built in %.3f s, %.1f bytes per triangle\n", argv[1],
+           (int)scene->input_count, comm_seconds() - start,
+           (double)octree_bytes(octree) / scene->input_count);
+#ifdef WITH_EMBREE
+    RTCDevice device = rtcNewDevice("threads=1");
+    RTCScene embree = embree_create(device, scene);
+#endif
+    struct load load = {.count = argc > 2 ? atoi(argv[2]) : 100000};
+    load.bundles = alloc_array((size_t)load.count, sizeof *load.bundles);
+    load.blocked = alloc_array((size_t)load.count, sizeof *load.blocked);
+    for (int order = 0; order < 2; order++) {
+        struct random random = random_seed(argc > 3 ? (uint64_t)atoi(argv[3]) : 1);
+        struct figures figures = {0};
+        load.refinement_order = order == 1;
+        fill_load(scene, &load, &random);
+        printf(" %s\n", order ? "refinement order" : "random pairs");
+#ifdef WITH_EMBREE
+        double packet = 0.0, single = 0.0;
+        int64_t differ = 0;
+        for (int turn = 0; turn < TURNS; turn++) {
+            run_octree(octree, &load, &figures);
+            differ = run_embree(embree, &load, &packet);
+            run_embree_single(embree, &load, &single);
+        }
+        print_octree(&load, &figures);
+        printf("  Embree: 16-wide coherent %.3f, one by one %.3f million segments/s; octree is %.2f "
+               "and %.2f of that; %" PRId64 " of %" PRId64 " segments differ\n",
+               1e-6 * (double)figures.counts.rays / packet,
+               1e-6 * (double)figures.counts.rays / single, packet / figures.seconds,
+               single / figures.seconds, differ, figures.counts.rays);
+#else
+        for (int turn = 0; turn < TURNS; turn++)
+            run_octree(octree, &load, &figures);
+        print_octree(&load, &figures);
+#endif
+    }
+    alloc_free(load.bundles);
+    alloc_free(load.blocked);
+#ifdef WITH_EMBREE
+    rtcReleaseScene(embree);
+    rtcReleaseDevice(device);
+#endif
+    octree_destroy(octree);
+    scene_destroy(scene);
+    comm_stop(&comm);
+    return EXIT_DONE;
+}

@@ -1,0 +1,92 @@
+/* The ray caster by brute force: the interface of octree/octree.h, every triangle tested against
+ * every segment in double precision. It defines what is right: linked in place of octree/ it must
+ * give the same bytes, only slower (tests/60-ranks.sh). */
+#include "octree/octree.h"
+
+#include <stddef.h>
+
+#include "geom/alloc.h"
+
+struct octree {
+    const struct triangle *triangles;
+    const struct plane *planes;
+    int32_t count;
+};
+
+struct octree *octree_create(const struct triangle *triangles, const struct plane *planes,
+                             int32_t count)
+{
+    struct octree *octree = alloc_array(1, sizeof *octree);
+    *octree = (struct octree){triangles, planes, count};
+    return octree;
+}
+
+void octree_destroy(struct octree *octree)
+{
+    alloc_free(octree);
+}
+
+int64_t octree_bytes(const struct octree *octree)
+{
+    return (int64_t)sizeof *octree;
+}
+
+static bool is_blocked_by(const struct octree *octree, int32_t t, struct vec3 from, struct vec3 to)
+{
+    struct segment s = segment_make(from, to);
+    return segment_is_blocked_by(&s, &octree->triangles[t], &octree->planes[t]);
+}
+
+unsigned octree_block(const struct octree *octree, const struct bundle *bundle, int32_t *guess,
+                      struct octree_counts *counts)
+{
+    unsigned blocked = 0;
+    (void)guess;
+    for (int k = 0; k < BUNDLE_RAYS; k++) {
+        if (!(bundle->asked >> k & 1u))
+            continue;
+        counts->rays++;
+        for (int32_t t = 0; t < octree->count; t++)
+            if (t != bundle->own[0] && t != bundle->own[1] &&
+                is_blocked_by(octree, t, bundle->from[k / BUNDLE_ENDS], bundle->to[k % BUNDLE_ENDS]))
+                blocked |= 1u << k;
+    }
+    return blocked;
+}
+
+bool octree_has_wall(const struct octree *octree, const struct triangle *p,
+                     const struct triangle *q, const int32_t own[2], struct octree_counts *counts)
+{
+    (void)counts;
+    for (int32_t t = 0; t < octree->count; t++) {
+        int stopped = 0;
+        for (int k = 0; k < 9; k++)
+            stopped += is_blocked_by(octree, t, p->corner[k / 3], q->corner[k % 3]);
+        if (stopped == 9 && t != own[0] && t != own[1])
+            return true;
+    }
+    return false;
+}
+
+bool octree_first_hit(const struct octree *octree, struct vec3 origin, struct vec3 direction,
+                      bool fronts_only, struct octree_hit *hit, struct octree_counts *counts)
+{
+    struct segment s = segment_make(origin, vec3_add(origin, direction));
+    double nearest = HUGE_VAL;
+    hit->triangle = -1;
+    counts->rays++;
+    for (int32_t t = 0; t < octree->count; t++) {
+        const struct plane *plane = &octree->planes[t];
+        double start = plane_distance(plane, origin), slope = vec3_dot(plane->normal, direction);
+        double at = -start / slope, weight[3]; /* in lengths of `direction` */
+        bool faces = start > 0.0;
+        bool ties = at <= nearest * (1.0 + 1e-12) && at > nearest * (1.0 - 1e-12);
+        if (slope == 0.0 || !(at > 0.0) || (fronts_only && !faces) ||
+            (ties ? !faces && hit->front : at > nearest) ||
+            !segment_line_meets(&s, &octree->triangles[t], weight))
+            continue;
+        nearest = at < nearest ? at : nearest;
+        *hit = (struct octree_hit){t, faces, {weight[0], weight[1], weight[2]}};
+    }
+    return hit->triangle >= 0;
+}
