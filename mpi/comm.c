@@ -37,8 +37,10 @@ static void out_of_memory(size_t bytes)
 
 void comm_start(struct comm *comm, int *argc, char ***argv)
 {
+    MPI_Request request;
     MPI_Init(argc, argv);
-    MPI_Comm_dup(MPI_COMM_WORLD, &comm->handle);
+    MPI_Comm_idup(MPI_COMM_WORLD, &comm->handle, &request);
+    comm_wait(&request);
     MPI_Comm_rank(comm->handle, &comm->rank);
     MPI_Comm_size(comm->handle, &comm->size);
     failing_comm = comm->handle;

@@ -13,6 +13,9 @@
 
 #include "geom/alloc.h"
 
+/* Links per rank from which a level is balanced: below, splitting takes less than an exchange. */
+enum { WORTH_MOVING = 4 };
+
 /* What ranks tell each other before a level. */
 struct load_notice {
     int64_t links;           /* prolific links here */
@@ -125,7 +128,8 @@ static int64_t balance_load(struct solver *solver, struct link_list *prolific, i
     }
     struct transfer *transfers = alloc_array(2 * (size_t)ranks, sizeof *transfers);
     int count = plan_transfers(loads, ranks, transfers);
-    if (count > 0) { /* the plan is the same on all ranks, so all or none enter */
+    bool pays = count > 0 && total >= WORTH_MOVING * ranks;
+    if (pays) { /* the same on all ranks, so all or none enter */
         int *destination = alloc_array((size_t)prolific->count, sizeof *destination);
         deal_links(solver, prolific, transfers, count, destination);
         solver->bytes_migration += links_migrate(solver, prolific, destination);

@@ -24,15 +24,17 @@ static void append_double(struct bytes *bytes, double value)
 {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
+    bytes->data = alloc_reserve(bytes->data, &bytes->capacity, bytes->count + 8, 1);
     for (int k = 0; k < 8; k++)
-        bytes_append(bytes, (uint8_t)(bits >> (8 * k)));
+        bytes->data[bytes->count++] = (uint8_t)(bits >> (8 * k));
 }
 
 static double read_double(const uint8_t *data)
 {
-    uint64_t bits = 0;
-    for (int k = 0; k < 8; k++)
-        bits |= (uint64_t)data[k] << (8 * k);
+    /* written out, so that compilers see one load where the byte order allows it */
+    uint64_t bits = (uint64_t)data[0] | (uint64_t)data[1] << 8 | (uint64_t)data[2] << 16 |
+                    (uint64_t)data[3] << 24 | (uint64_t)data[4] << 32 | (uint64_t)data[5] << 40 |
+                    (uint64_t)data[6] << 48 | (uint64_t)data[7] << 56;
     double value;
     memcpy(&value, &bits, sizeof value);
     return value;
