@@ -38,7 +38,6 @@ struct cell {
 struct builder {
     struct tree tree;
     const struct triangle *triangles;
-    const struct plane *planes;
     int32_t *order, *scratch;
     struct cell *queue;
     int64_t queue_count, queue_capacity;
@@ -203,7 +202,7 @@ static struct record make_record(const struct triangle *t, const struct plane *p
 struct tree tree_build(const struct triangle *triangles, const struct plane *planes, int32_t *order,
                        int32_t count)
 {
-    struct builder builder = {.triangles = triangles, .planes = planes, .order = order};
+    struct builder builder = {.triangles = triangles, .order = order};
     if (count == 0)
         return builder.tree;
     builder.scratch = alloc_array((size_t)count, sizeof *builder.scratch);
