@@ -232,6 +232,21 @@ static bool wants_picture(const struct options *options)
     return false;
 }
 
+/* Collective. Each rank looks at some leaves, all shade all. */
+static struct shading *shade_leaves(struct run *run)
+{
+    const struct forest *forest = run->solver->method.forest;
+    if (run->options.flat)
+        return shading_create(forest, NULL);
+    int64_t leaves;
+    uint8_t *open = shading_open_quarters(forest, run->octree, run->comm.rank, run->comm.size,
+                                          &leaves);
+    comm_add_bytes(&run->comm, open, leaves);
+    struct shading *shading = shading_create(forest, open);
+    alloc_free(open);
+    return shading;
+}
+
 /* Collective. Renders by rows and writes. */
 static bool show_results(struct run *run)
 {
@@ -240,8 +255,7 @@ static bool show_results(struct run *run)
     struct comm *comm = &run->comm;
     if (options->output_count == 0)
         return true;
-    struct shading *shading = shading_create(run->solver->method.forest, run->octree,
-                                             options->flat);
+    struct shading *shading = shade_leaves(run);
     float *picture = NULL;
     if (wants_picture(options)) {
         float *rows = render_rows(shading, run->octree, &run->camera, options->samples, comm->rank,

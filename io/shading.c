@@ -95,11 +95,88 @@ static int32_t *find_surfaces(const struct scene *scene)
     return surface;
 }
 
+/* --- leaves, and how much of each is covered --- */
+
+/* Calls for each leaf of the wanted level (-1: of any), roots in order, depth first. */
+static void for_each_leaf(const struct forest *forest, int level,
+                          void (*visit)(void *context, int32_t leaf), void *context)
+{
+    for (int32_t root = 0; root < forest->root_count; root++) {
+        if (scene_root_area(forest->scene, root) <= 0.0)
+            continue;
+        for (int32_t p = root; p >= 0;) {
+            int at = id_level(forest->patches[p].id);
+            if (patch_is_leaf(&forest->patches[p]) && (level < 0 || at == level))
+                visit(context, p);
+            p = forest_next(forest, p, level < 0 || at < level);
+        }
+    }
+}
+
+static bool meets_back(const struct octree *octree, struct vec3 start, struct vec3 direction)
+{
+    struct octree_counts counts = {0};
+    struct octree_hit hit;
+    return octree_first_hit(octree, start, direction, false, &hit, &counts) && !hit.front;
+}
+
+/* `aside`: a triangle about the point, whose corners give three directions along the surface. */
+static bool is_covered(const struct octree *octree, struct vec3 point, struct vec3 normal,
+                       const struct triangle *aside)
+{
+    struct vec3 start = vec3_add(point, vec3_scale(normal, 1024.0 * GEOM_ROUNDING));
+    if (!meets_back(octree, start, normal))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        struct vec3 along = vec3_sub(aside->corner[k], point);
+        struct vec3 up = vec3_scale(normal, 0.25 * vec3_length(along));
+        if (!meets_back(octree, start, vec3_add(along, up)))
+            return false;
+    }
+    return true;
+}
+
+struct survey {
+    const struct forest *forest;
+    const struct octree *octree;
+    int64_t count, first, step; /* leaves seen, those to look at */
+    uint8_t *open;              /* [count], NULL while only counting */
+};
+
+static void survey_leaf(void *context, int32_t leaf)
+{
+    struct survey *survey = context;
+    const struct forest *forest = survey->forest;
+    int64_t number = survey->count++;
+    if (!survey->open || number % survey->step != survey->first)
+        return;
+    struct triangle t = forest_triangle(forest, leaf);
+    struct plane plane = scene_root_plane(forest->scene, (int32_t)forest->patches[leaf].id.root);
+    for (int k = 0; k < 4; k++) {
+        struct triangle child = triangle_child(&t, k);
+        if (forest->scene->two_sided ||
+            !is_covered(survey->octree, triangle_centroid(&child), plane.normal, &child))
+            survey->open[number]++;
+    }
+}
+
+uint8_t *shading_open_quarters(const struct forest *forest, const struct octree *octree, int first,
+                               int step, int64_t *count)
+{
+    struct survey survey = {forest, octree, 0, first, step, NULL};
+    for_each_leaf(forest, -1, survey_leaf, &survey);
+    *count = survey.count;
+    survey.open = alloc_array((size_t)survey.count, sizeof *survey.open);
+    survey.count = 0;
+    for_each_leaf(forest, -1, survey_leaf, &survey);
+    return survey.open;
+}
+
 /* --- vertices: a hash table from (point, surface) to a number --- */
 
 struct table {
     struct shading *shading;
-    const struct octree *octree;
+    const uint8_t *open;     /* [leaves] shading_open_quarters(), used up leaf by leaf */
     int32_t *surface;        /* [roots] */
     int32_t *vertex_surface; /* [vertex_count] */
     double *weights;         /* [vertex_count] sum of the weights of the leaves around */
@@ -185,42 +262,10 @@ static int32_t reach_vertex(struct table *table, struct vec3 x, int32_t surface)
 /* Weight of a leaf that is covered as a whole: it counts only where no other leaf does. */
 static const double COVERED = 1e-12;
 
-static bool meets_back(const struct octree *octree, struct vec3 start, struct vec3 direction)
-{
-    struct octree_counts counts = {0};
-    struct octree_hit hit;
-    return octree_first_hit(octree, start, direction, false, &hit, &counts) && !hit.front;
-}
-
-/* `aside`: a triangle about the point, whose corners give three directions along the surface. */
-static bool is_covered(const struct table *table, struct vec3 point, struct vec3 normal,
-                       const struct triangle *aside)
-{
-    struct vec3 start = vec3_add(point, vec3_scale(normal, 1024.0 * GEOM_ROUNDING));
-    if (!meets_back(table->octree, start, normal))
-        return false;
-    for (int k = 0; k < 3; k++) {
-        struct vec3 along = vec3_sub(aside->corner[k], point);
-        struct vec3 up = vec3_scale(normal, 0.25 * vec3_length(along));
-        if (!meets_back(table->octree, start, vec3_add(along, up)))
-            return false;
-    }
-    return true;
-}
-
 /* Share of a leaf that is not covered: 1/2, 3/4 or 1; below, too little is known: 0. */
-static double open_share(const struct table *table, int32_t leaf, const struct triangle *t)
+static double open_share(uint8_t quarters)
 {
-    const struct forest *forest = table->shading->forest;
-    if (forest->scene->two_sided)
-        return 1.0;
-    struct plane plane = scene_root_plane(forest->scene, (int32_t)forest->patches[leaf].id.root);
-    int open = 0;
-    for (int k = 0; k < 4; k++) {
-        struct triangle child = triangle_child(t, k);
-        open += !is_covered(table, triangle_centroid(&child), plane.normal, &child);
-    }
-    return open < 2 ? 0.0 : 0.25 * open;
+    return quarters < 2 ? 0.0 : 0.25 * quarters;
 }
 
 /* Radiosity of the open share of a leaf: what it receives, it receives there. */
@@ -232,13 +277,14 @@ static struct rgb open_radiosity(const struct forest *forest, int32_t leaf, doub
     return b;
 }
 
-static void add_leaf(struct table *table, int32_t leaf)
+static void add_leaf(void *context, int32_t leaf)
 {
+    struct table *table = context;
     struct shading *shading = table->shading;
     int32_t root = (int32_t)shading->forest->patches[leaf].id.root;
     struct triangle t = forest_triangle(shading->forest, leaf);
     struct vec3 centroid = triangle_centroid(&t);
-    double share = shading->flat ? 1.0 : open_share(table, leaf, &t);
+    double share = shading->flat ? 1.0 : open_share(*table->open++);
     struct rgb radiosity = open_radiosity(shading->forest, leaf, share);
     for (int k = 0; k < 3; k++) {
         int32_t v = shading->flat ? append_vertex(table, t.corner[k], root)
@@ -267,44 +313,29 @@ static void settle_edge(struct table *table, int32_t u, int32_t v)
     settle_edge(table, middle, v);
 }
 
-/* Calls for each leaf of the wanted level (-1: of any), roots in order, depth first. */
-static void for_each_leaf(struct table *table, int level,
-                          void (*visit)(struct table *table, int32_t leaf))
+static void settle_leaf(void *context, int32_t leaf)
 {
-    const struct forest *forest = table->shading->forest;
-    for (int32_t root = 0; root < forest->root_count; root++) {
-        if (scene_root_area(forest->scene, root) <= 0.0)
-            continue;
-        for (int32_t p = root; p >= 0;) {
-            int at = id_level(forest->patches[p].id);
-            if (patch_is_leaf(&forest->patches[p]) && (level < 0 || at == level))
-                visit(table, p);
-            p = forest_next(forest, p, level < 0 || at < level);
-        }
-    }
-}
-
-static void settle_leaf(struct table *table, int32_t leaf)
-{
+    struct table *table = context;
     const int32_t *corner = &table->shading->corners[3 * (int64_t)leaf];
     for (int k = 0; k < 3; k++)
         settle_edge(table, corner[k], corner[(k + 1) % 3]);
 }
 
-struct shading *shading_create(const struct forest *forest, const struct octree *octree, bool flat)
+struct shading *shading_create(const struct forest *forest, const uint8_t *open)
 {
+    bool flat = !open;
     struct shading *shading = alloc_array(1, sizeof *shading);
     shading->forest = forest;
     shading->flat = flat;
     shading->corners = alloc_array(3 * (size_t)forest->count, sizeof *shading->corners);
-    struct table table = {.shading = shading, .octree = octree,
+    struct table table = {.shading = shading, .open = open,
                           .surface = find_surfaces(forest->scene)};
-    for_each_leaf(&table, -1, add_leaf);
+    for_each_leaf(forest, -1, add_leaf, &table);
     for (int64_t v = 0; v < shading->vertex_count; v++)
         for (int c = 0; c < BANDS; c++)
             shading->values[v].band[c] /= table.weights[v];
     for (int level = 0; level <= ID_MAX_LEVEL && !flat; level++)
-        for_each_leaf(&table, level, settle_leaf);
+        for_each_leaf(forest, level, settle_leaf, &table);
     alloc_free(table.surface);
     alloc_free(table.vertex_surface);
     alloc_free(table.weights);

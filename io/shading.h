@@ -17,11 +17,17 @@ struct shading {
     int64_t vertex_count;
 };
 
-/* Prepares the shading of a solution; `octree` is that of the scene, to see which leaves are
- * covered. Vertices are numbered as the leaves meet them, roots in
- * order, depth first: the same on every rank. `flat`: each leaf has three vertices of its own
- * with its constant. */
-struct shading *shading_create(const struct forest *forest, const struct octree *octree, bool flat);
+/* How much of each leaf is open, not covered by a solid that stands on it: the number of open
+ * quarters, 0 to 4. Leaves are in canonical order: roots in order, depth first. Only the leaves
+ * first, first + step, ... are looked at, the others get 0: ranks look at some each and add.
+ * Returns [count] numbers, to be freed with alloc_free(); `octree` is that of the scene. */
+uint8_t *shading_open_quarters(const struct forest *forest, const struct octree *octree, int first,
+                               int step, int64_t *count);
+
+/* Prepares the shading of a solution. `open`: the open quarters of all leaves. NULL gives flat
+ * shading: each leaf has three vertices of its own with its constant. Vertices are numbered as
+ * the leaves meet them in canonical order: the same on every rank. */
+struct shading *shading_create(const struct forest *forest, const uint8_t *open);
 void shading_destroy(struct shading *shading);
 
 /* Radiosity at the point of a root with the given barycentric coordinates, W/m^2. */

@@ -7,7 +7,8 @@
  * the first tests succeed and nothing is lost.
  *
  * Yielding alone is not enough with many ranks: the scheduler may hand the core to another
- * waiting rank, again and again. Hence the sleep, short beside a refinement level. */
+ * waiting rank, again and again. Hence the sleep, short beside a refinement level, and longer
+ * the longer a rank has waited: while rank 0 writes, the others are not to wake all the time. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _POSIX_C_SOURCE 200112L
 #include <sched.h>
@@ -24,7 +25,10 @@
 
 enum {
     TESTS_BEFORE_YIELD = 100,
-    TESTS_BEFORE_SLEEP = 200
+    TESTS_BEFORE_SLEEP = 200,
+    SHORTEST_SLEEP = 20, /* microseconds */
+    LONGEST_SLEEP = 1000,
+    SLEEP_GROWTH = 4 /* microseconds for each test in vain */
 };
 
 static MPI_Comm failing_comm; /* for the handler of exhausted memory, which has no argument */
@@ -61,7 +65,8 @@ static void leave_processor(int tests)
 {
 #ifdef HAVE_YIELD
     if (tests > TESTS_BEFORE_SLEEP) {
-        struct timespec pause = {0, 20000};
+        long sleep = SHORTEST_SLEEP + (long)SLEEP_GROWTH * (tests - TESTS_BEFORE_SLEEP);
+        struct timespec pause = {0, 1000 * (sleep < LONGEST_SLEEP ? sleep : LONGEST_SLEEP)};
         nanosleep(&pause, NULL);
     } else if (tests > TESTS_BEFORE_YIELD) {
         sched_yield();
@@ -93,6 +98,14 @@ void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes)
         at += now;
         left -= now;
     }
+}
+
+void comm_add_bytes(const struct comm *comm, uint8_t *bytes, int64_t count)
+{
+    MPI_Request request;
+    MPI_Iallreduce(MPI_IN_PLACE, bytes, comm_count(comm, count), MPI_UINT8_T, MPI_SUM, comm->handle,
+                   &request);
+    comm_wait(&request);
 }
 
 bool comm_agree(const struct comm *comm, struct error *error)

@@ -25,6 +25,9 @@ void comm_wait(MPI_Request *request);
 /* Collective. Rank 0's bytes go to all; any size. */
 void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes);
 
+/* Collective. Each of `count` bytes becomes its sum over all ranks; sums stay below 256. */
+void comm_add_bytes(const struct comm *comm, uint8_t *bytes, int64_t count);
+
 /* Collective. All ranks end with the error of the lowest rank that has one. True if none has. */
 bool comm_agree(const struct comm *comm, struct error *error);
 

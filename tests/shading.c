@@ -76,7 +76,10 @@ static struct stage square_stage(void)
 static void shade(struct stage *stage, bool flat)
 {
     shading_destroy(stage->shading);
-    stage->shading = shading_create(stage->forest, stage->octree, flat);
+    int64_t leaves;
+    uint8_t *open = flat ? NULL : shading_open_quarters(stage->forest, stage->octree, 0, 1, &leaves);
+    stage->shading = shading_create(stage->forest, open);
+    alloc_free(open);
 }
 
 static void dismantle(struct stage *stage)

@@ -22,6 +22,7 @@ enum { MPI_SUM, MPI_MAX, MPI_MIN };
 #define MPI_BYTE 1
 #define MPI_INT ((MPI_Datatype)sizeof(int))
 #define MPI_INT64_T 8
+#define MPI_UINT8_T 1
 #define MPI_DOUBLE 8
 #define MPI_FLOAT 4
 
