@@ -4,6 +4,7 @@
 #   make demo            the Cornell box, 2 ranks    make check      all tests
 #   make room            build/room, a scene generator
 #   make bench           $(BUILD)/rays, a bench of visibility, beside Embree where it is installed
+#   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make install         to $(DESTDIR)$(prefix)      make uninstall  make clean
 #
 # Knobs: MPICC, CC, MPIEXEC, CFLAGS, CPPFLAGS, LDFLAGS, prefix, DESTDIR.
@@ -94,6 +95,14 @@ $(BUILD)/rays: tests/bench/rays.c $(OBJECTS) Makefile
 	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) $(CFLAGS) -o $@ \
 	    tests/bench/rays.c $(OBJECTS) $(if $(EMBREE),-lembree3) -lm
 
+# What is compared with the truth is measured, not tested: it takes minutes.
+TRUTH = $(BUILD)/tests/pathtracer.o $(BUILD)/tests/truth.o $(BUILD)/tests/deviation.o
+
+errors: $(BUILD)/reference $(BUILD)/measure
+
+$(BUILD)/reference $(BUILD)/measure: $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
 check: $(PHR) tests
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
@@ -112,4 +121,4 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench check install uninstall clean FORCE
+.PHONY: all demo tests room bench errors check install uninstall clean FORCE
