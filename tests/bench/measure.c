@@ -3,6 +3,9 @@
  *
  *   build/mpi/measure [--header] SCENE.obj REF [options of phr]
  *
+ * The scene and the reference come first; --two-sided has to be given where the reference was made
+ * with it. Outputs that are asked for are not written.
+ *
  * The norms are those of tests/deviation.h, for two answers. `leaf`: the constant of a leaf, with
  * the mean of the truth over that leaf; where leaves are smaller than an element of the truth,
  * their mean over the element. `shown`: the radiosity that pictures show, with the truth at one
@@ -176,8 +179,8 @@ static void print_line(const struct measure *measure, const struct solution *s,
 
 /* --- running --- */
 
-/* Takes --header and the reference, the second argument that is no option, out of the arguments;
- * the rest is for phr. Returns the number of arguments left. */
+/* Takes --header and the reference, which follows the scene, out of the arguments; the rest is for
+ * phr. Returns the number of arguments left. */
 static int take_own(struct measure *measure, int argc, char **argv)
 {
     int kept = 1;
@@ -217,9 +220,9 @@ static void run(struct measure *measure, int argc, char **argv)
         return;
     struct solution s = solve(&measure->comm, scene, measure->options.criterion);
     struct shading *shading = shade(measure, &s);
-    if (!s.vote.converged)
-        error_set(&measure->error, EXIT_FAILED, "not converged");
-    if (measure->comm.rank == 0) {
+    if (s.vote.diverged)
+        error_set(&measure->error, EXIT_FAILED, "the solution diverges");
+    if (measure->comm.rank == 0 && !s.vote.diverged) {
         struct deviation leaf = compare_leaves(s.solver->method.forest, &measure->truth);
         struct deviation shown = compare_points(shading, &measure->truth);
         if (measure->header)
