@@ -27,7 +27,8 @@ static struct sample sample_of(double area, double value, double truth)
 
 /* Areas 1, 2, 6 with errors 0.5, 1, 3 of truths 2, 4, 6 in each of three bands: squares of errors
  * 0.25 + 2 + 54 of 4 + 32 + 216; errors 0.5 + 2 + 18 of 2 + 8 + 36. More than half the area has
- * an error of 3; the mean truth is 46 / 9. What is not exact in binary is within 1e-15. */
+ * an error of 3; the mean truth is 46 / 9; the differences are 18 - 0.5 + 2. What is not exact in
+ * binary is within 1e-15. */
 static void test_known(void)
 {
     struct sample samples[3] = {sample_of(6, 9, 6), sample_of(1, 1.5, 2), sample_of(2, 5, 4)};
@@ -35,6 +36,7 @@ static void test_known(void)
     tap_ok(near(d.rms, sqrt(56.25 / 252.0), 1e-15), "rms %.6f", d.rms);
     tap_ok(near(d.l1, 20.5 / 46.0, 1e-15), "l1 %.6f", d.l1);
     tap_ok(near(d.median, 27.0 / 46.0, 1e-15), "median %.6f", d.median);
+    tap_ok(near(d.bias, 19.5 / 46.0, 1e-15), "bias %.6f", d.bias);
     tap_ok(d.noise == 0.0 && near(d.square, 84.0, 1e-12), "no noise; mean square %g", d.square);
 }
 
@@ -42,7 +44,8 @@ static void test_ends(void)
 {
     struct sample black[2] = {sample_of(1, 0, 3), sample_of(3, 0, 3)};
     struct deviation d = deviation_of(black, 2);
-    tap_ok(d.rms == 1.0 && d.l1 == 1.0 && d.median == 1.0, "a black solution has errors of 1");
+    tap_ok(d.rms == 1.0 && d.l1 == 1.0 && d.median == 1.0 && d.bias == -1.0,
+           "a black solution has errors of 1 and has lost all");
     struct sample right[2] = {sample_of(1, 5, 5), sample_of(3, 2, 2)};
     d = deviation_of(right, 2);
     tap_ok(d.rms == 0.0 && d.l1 == 0.0 && d.median == 0.0, "the right solution has none");

@@ -8,7 +8,8 @@
  *
  * The norms are those of tests/deviation.h, for two answers. `leaf`: the constant of a leaf, with
  * the mean of the truth over that leaf; where leaves are smaller than an element of the truth,
- * their mean over the element. `shown`: the radiosity that pictures show, with the truth at one
+ * their mean over the element. The errors of small leaves cancel in that mean, so only numbers
+ * that one reference gives can be compared. `shown`: the radiosity that pictures show, with the truth at one
  * point of each element; points that no light reaches at all, such as those that a box covers,
  * are left out. The seconds are those of linking and iterating, with the octree; on several ranks,
  * until the last is done. `emitters` is what turns the relative RMS, which is that of the
@@ -27,7 +28,8 @@
 
 static const char *const HEADER =
     "scene,options,seconds,links,rays,node_tests,triangle_tests,iterations,patches,leaf_rms,"
-    "leaf_l1,leaf_median,shown_rms,shown_l1,shown_median,noise,shown_noise,emitters";
+    "leaf_l1,leaf_median,shown_rms,shown_l1,shown_median,noise,shown_noise,emitters,"
+    "leaf_bias,shown_bias";
 
 struct measure {
     struct comm comm;
@@ -172,9 +174,10 @@ static void print_line(const struct measure *measure, const struct solution *s,
     printf(",%.3f,%lld,%lld,%lld,%lld,%lld,%lld", s->seconds, (long long)stats->links,
            (long long)stats->rays, (long long)stats->node_tests, (long long)stats->triangle_tests,
            (long long)stats->iterations, (long long)stats->patches);
-    printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.4f\n", leaf->rms, leaf->l1, leaf->median,
-           shown->rms, shown->l1, shown->median, leaf->noise, shown->noise,
-           share_of_reflected(&measure->truth, s->scene, leaf));
+    printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f", leaf->rms, leaf->l1, leaf->median,
+           shown->rms, shown->l1, shown->median, leaf->noise, shown->noise);
+    printf(",%.4f,%.5f,%.5f\n", share_of_reflected(&measure->truth, s->scene, leaf), leaf->bias,
+           shown->bias);
 }
 
 /* --- running --- */
