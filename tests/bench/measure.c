@@ -9,11 +9,11 @@
  * The norms are those of tests/deviation.h, for two answers. `leaf`: the constant of a leaf, with
  * the mean of the truth over that leaf; where leaves are smaller than an element of the truth,
  * their mean over the element. The errors of small leaves cancel in that mean, so only numbers
- * that one reference gives can be compared. `shown`: the radiosity that pictures show, with the truth at one
- * point of each element; points that no light reaches at all, such as those that a box covers,
- * are left out. The seconds are those of linking and iterating, with the octree; on several ranks,
- * until the last is done. `emitters` is what turns the relative RMS, which is that of the
- * reflected light, into one relative to all radiosity, emission included: multiply by it. */
+ * that one reference gives can be compared. `shown`: the radiosity that pictures show, with the
+ * truth at one point of each element; points that no light reaches at all, such as those that a
+ * box covers, are left out. The seconds are those of linking and iterating, with the octree; on
+ * several ranks, until the last is done. `emitters` is what turns the relative RMS, which is that
+ * of the reflected light, into one relative to all radiosity, emission included: multiply by it. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
