@@ -78,9 +78,8 @@ double truth_noise(const struct truth *truth, const struct scene *scene, bool po
     for (int64_t i = 0; i < truth->count; i++) {
         const struct element *element = &truth->items[i];
         const struct rgb *halves = points ? element->point : element->mean;
-        double parts = (double)(INT64_C(1) << 2 * id_level(element->id));
         samples[i] = (struct sample){
-            .area = scene_root_area(scene, (int32_t)element->id.root) / parts,
+            .area = element_area(element, scene),
             .truth = {halves[0], halves[1]}};
     }
     double noise = deviation_of(samples, truth->count).noise;

@@ -111,7 +111,7 @@ static struct deviation compare_points(const struct shading *shading, const stru
         if (is_black(element))
             continue;
         list.items[list.count++] = (struct sample){
-            .area = ldexp(scene_root_area(scene, root), -2 * id_level(element->id)),
+            .area = element_area(element, scene),
             .value = reflected(scene, root, shading_at(shading, root, element->weight)),
             .truth = {element->point[0], element->point[1]}};
     }
@@ -147,24 +147,27 @@ static void print_options(const struct measure *measure, int argc, char **argv)
         }
 }
 
-/* RMS of the reflected radiosity over that of all radiosity. */
+/* RMS of the reflected radiosity over that of all radiosity, black emitters included. */
 static double share_of_reflected(const struct truth *truth, const struct scene *scene,
                                  const struct deviation *leaf)
 {
     double emitted = 0.0, crossed = 0.0, area = 0.0;
+    for (int32_t root = 0; root < scene_root_count(scene); root++)
+        for (int c = 0; c < BANDS; c++) {
+            double e = scene_root_material(scene, root)->emission.band[c];
+            emitted += scene_root_area(scene, root) * e * e;
+        }
     for (int64_t i = 0; i < truth->count; i++) {
         const struct element *element = &truth->items[i];
         int32_t root = (int32_t)element->id.root;
-        double a = ldexp(scene_root_area(scene, root), -2 * id_level(element->id));
-        struct rgb emission = scene_root_material(scene, root)->emission;
+        double a = element_area(element, scene);
         area += a;
-        for (int c = 0; c < BANDS; c++) {
-            emitted += a * emission.band[c] * emission.band[c];
-            crossed += a * emission.band[c] *
+        for (int c = 0; c < BANDS; c++)
+            crossed += a * scene_root_material(scene, root)->emission.band[c] *
                        (element->mean[0].band[c] + element->mean[1].band[c]);
-        }
     }
-    return sqrt(leaf->square / (leaf->square + (emitted + crossed) / area));
+    double reflected_square = area * leaf->square;
+    return sqrt(reflected_square / (reflected_square + crossed + emitted));
 }
 
 static void print_line(const struct measure *measure, const struct solution *s,
