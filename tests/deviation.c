@@ -14,7 +14,7 @@ struct ranked {
 };
 
 struct sums {
-    double area, square, truth_square, absolute, truth, noise;
+    double area, square, truth_square, absolute, difference, truth, noise;
 };
 
 static int compare_errors(const void *left, const void *right)
@@ -35,6 +35,7 @@ static double add_sample(struct sums *sums, const struct sample *sample)
         sums->truth_square += sample->area * r * s;
         sums->truth += sample->area * 0.5 * (r + s);
         sums->noise += sample->area * 0.25 * (r - s) * (r - s);
+        sums->difference += sample->area * (b - 0.5 * (r + s));
         error += fabs(b - 0.5 * (r + s));
     }
     sums->absolute += sample->area * error;
@@ -53,8 +54,8 @@ static double median_of(struct ranked *ranked, int64_t count, double area)
 
 struct deviation deviation_of(const struct sample *samples, int64_t count)
 {
-    struct deviation deviation = {0.0, 0.0, 0.0, 0.0, 0.0};
-    struct sums sums = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    struct deviation deviation = {.rms = 0.0};
+    struct sums sums = {.area = 0.0};
     struct ranked *ranked = alloc_array((size_t)count, sizeof *ranked);
     for (int64_t i = 0; i < count; i++)
         ranked[i] = (struct ranked){add_sample(&sums, &samples[i]), samples[i].area};
@@ -63,6 +64,7 @@ struct deviation deviation_of(const struct sample *samples, int64_t count)
             .rms = sqrt(fmax(sums.square, 0.0) / sums.truth_square),
             .l1 = sums.absolute / sums.truth,
             .median = median_of(ranked, count, sums.area) / (sums.truth / sums.area),
+            .bias = sums.difference / sums.truth,
             .noise = sqrt(sums.noise / sums.truth_square),
             .square = sums.truth_square / sums.area,
         };
@@ -76,9 +78,8 @@ double truth_noise(const struct truth *truth, const struct scene *scene, bool po
     for (int64_t i = 0; i < truth->count; i++) {
         const struct element *element = &truth->items[i];
         const struct rgb *halves = points ? element->point : element->mean;
-        double parts = (double)(INT64_C(1) << 2 * id_level(element->id));
         samples[i] = (struct sample){
-            .area = scene_root_area(scene, (int32_t)element->id.root) / parts,
+            .area = element_area(element, scene),
             .truth = {halves[0], halves[1]}};
     }
     double noise = deviation_of(samples, truth->count).noise;

@@ -6,15 +6,18 @@
  *     rms    = sqrt(sum a |B - T|^2 / sum a |T|^2)
  *     l1     = sum a |B - T| / sum a T
  *     median = median by area of |B - T|, over the mean by area of T
+ *     bias   = sum a (B - T) / sum a T
  *
- * All three are 1 for a solution that is black. Emission is taken away on both sides, since it is
+ * The first three are 1 for a solution that is black, the last, which tells whether light is lost
+ * or won as a whole, is -1. Emission is taken away on both sides, since it is
  * given and not found: the light of a lamp, many times brighter than all it lights, would hide
  * any error in a relative number.
  *
  * The truth is two independent estimates r and s. The rms uses (B - r)(B - s) for the square of
  * the error, and r s for that of the truth: both are right in the mean, so noise does not bias it.
- * A sum below 0, which noise can make of an error near 0, counts as 0. The l1 and the median use
- * (r + s) / 2 and carry its noise: errors well below `noise` cannot be seen by them. */
+ * A sum below 0, which noise can make of an error near 0, counts as 0. The bias is linear in the
+ * truth, so the same holds for it. The l1 and the median use (r + s) / 2 and carry its noise:
+ * errors well below `noise` cannot be seen by them. */
 #ifndef TESTS_DEVIATION_H
 #define TESTS_DEVIATION_H
 
@@ -28,9 +31,9 @@ struct sample {
 };
 
 struct deviation {
-    double rms, l1, median; /* relative, 1 */
-    double noise;           /* RMS of (r - s) / 2, relative as rms: the deviation of (r + s) / 2 */
-    double square;          /* mean by area of |T|^2, (W/m^2)^2 */
+    double rms, l1, median, bias; /* relative, 1 */
+    double noise;  /* RMS of (r - s) / 2, relative as rms: the deviation of (r + s) / 2 */
+    double square; /* mean by area of |T|^2, (W/m^2)^2 */
 };
 
 /* All are 0 without samples, or where the truth is black. */

@@ -25,28 +25,34 @@ static struct sample sample_of(double area, double value, double truth)
     return (struct sample){area, grey(value), {grey(truth), grey(truth)}};
 }
 
-/* Areas 1, 2, 1 with errors 0.5, 1, 3 of truths 2, 4, 6 in each of three bands: squares of errors
- * 0.25 + 2 + 9 of 4 + 32 + 36; errors 0.5 + 2 + 3 of 2 + 8 + 6; half the area has an error of 1
- * at most, where the mean is 4. The sums are exact in binary, the roots nearly: 1e-15. */
+/* Areas 1, 2, 6 with errors 0.5, 1, 3 of truths 2, 4, 6 in each of three bands: squares of errors
+ * 0.25 + 2 + 54 of 4 + 32 + 216; errors 0.5 + 2 + 18 of 2 + 8 + 36. More than half the area has
+ * an error of 3; the mean truth is 46 / 9; the differences are 18 - 0.5 + 2. What is not exact in
+ * binary is within 1e-15. */
 static void test_known(void)
 {
-    struct sample samples[3] = {sample_of(1, 9, 6), sample_of(1, 1.5, 2), sample_of(2, 5, 4)};
+    struct sample samples[3] = {sample_of(6, 9, 6), sample_of(1, 1.5, 2), sample_of(2, 5, 4)};
     struct deviation d = deviation_of(samples, 3);
-    tap_ok(near(d.rms, sqrt(11.25 / 72.0), 1e-15), "rms %.6f", d.rms);
-    tap_ok(near(d.l1, 5.5 / 16.0, 1e-15), "l1 %.6f", d.l1);
-    tap_ok(near(d.median, 0.25, 1e-15), "median %.6f", d.median);
-    tap_ok(d.noise == 0.0 && near(d.square, 3.0 * 18.0, 1e-12), "no noise; mean square %g",
-           d.square);
+    tap_ok(near(d.rms, sqrt(56.25 / 252.0), 1e-15), "rms %.6f", d.rms);
+    tap_ok(near(d.l1, 20.5 / 46.0, 1e-15), "l1 %.6f", d.l1);
+    tap_ok(near(d.median, 27.0 / 46.0, 1e-15), "median %.6f", d.median);
+    tap_ok(near(d.bias, 19.5 / 46.0, 1e-15), "bias %.6f", d.bias);
+    tap_ok(d.noise == 0.0 && near(d.square, 84.0, 1e-12), "no noise; mean square %g", d.square);
 }
 
 static void test_ends(void)
 {
     struct sample black[2] = {sample_of(1, 0, 3), sample_of(3, 0, 3)};
     struct deviation d = deviation_of(black, 2);
-    tap_ok(d.rms == 1.0 && d.l1 == 1.0 && d.median == 1.0, "a black solution has errors of 1");
+    tap_ok(d.rms == 1.0 && d.l1 == 1.0 && d.median == 1.0 && d.bias == -1.0,
+           "a black solution has errors of 1 and has lost all");
     struct sample right[2] = {sample_of(1, 5, 5), sample_of(3, 2, 2)};
     d = deviation_of(right, 2);
     tap_ok(d.rms == 0.0 && d.l1 == 0.0 && d.median == 0.0, "the right solution has none");
+    struct sample between = {1.0, grey(2.0), {grey(1.0), grey(3.0)}};
+    d = deviation_of(&between, 1);
+    tap_ok(d.rms == 0.0 && near(d.noise, sqrt(1.0 / 3.0), 1e-15),
+           "an answer between the two estimates has an rms of 0");
     d = deviation_of(NULL, 0);
     tap_ok(d.rms == 0.0 && d.noise == 0.0, "no samples, no error");
 }
@@ -86,12 +92,13 @@ static void test_noise(void)
     alloc_free(samples);
 }
 
-/* A floor of 2 x 2 triangles of area 1/2 each, of which one is black; the light shines up. */
+/* A floor of two triangles, and a black light of two above it. */
 static struct world floor_and_light(void)
 {
     struct soup soup = {0};
-    soup_add_quad(&soup, (struct vec3){-1, -1, 0}, (struct vec3){2, 0, 0}, (struct vec3){0, 2, 0}, 1);
-    soup_add_quad(&soup, (struct vec3){-1, -1, 1}, (struct vec3){0, 2, 0}, (struct vec3){2, 0, 0}, 1);
+    struct vec3 x = {2, 0, 0}, y = {0, 2, 0};
+    soup_add_quad(&soup, (struct vec3){-1, -1, 0}, x, y, 1);
+    soup_add_quad(&soup, (struct vec3){-1, -1, 1}, y, x, 1);
     struct scene *scene = scene_of_soup(&soup, 2);
     scene->materials[0] = material_grey(0.5, 0.0);
     scene->materials[1] = material_grey(0.0, 1.0);
@@ -133,7 +140,8 @@ static void test_file(const struct scene *scene, const struct truth *truth)
     tap_ok(same, "a file gives back what was written");
     truth_free(&copy);
     struct scene other = *scene;
-    other.two_sided = true;
+    double areas[4] = {scene->areas[0], scene->areas[1], scene->areas[2], 2.0 * scene->areas[3]};
+    other.areas = areas;
     tap_ok(!truth_read(&copy, FILE_NAME, &other, &error) && error.code == EXIT_USAGE,
            "the reference of another scene is refused: %s", error.text);
     remove(FILE_NAME);

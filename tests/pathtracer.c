@@ -76,8 +76,8 @@ static double draw_next(struct draw *draw)
 
 struct vec3 triangle_point(const struct triangle *t, struct vec3 weight)
 {
-    return vec3_add(vec3_scale(t->corner[0], weight.x),
-                    vec3_add(vec3_scale(t->corner[1], weight.y), vec3_scale(t->corner[2], weight.z)));
+    struct vec3 a = vec3_scale(t->corner[0], weight.x), b = vec3_scale(t->corner[1], weight.y);
+    return vec3_add(vec3_add(a, b), vec3_scale(t->corner[2], weight.z));
 }
 
 static struct vec3 point_on(const struct triangle *t, struct draw *draw)
@@ -208,7 +208,7 @@ static void add_met_light(const struct pathtracer *pathtracer, const struct spot
 
 /* --- paths --- */
 
-/* A ray begins this far above its surface, so that it does not meet it: hardly more than rounding. */
+/* A ray begins this far above its surface, beyond rounding, so that it does not meet it. */
 static const double LIFT = 1024.0 * GEOM_ROUNDING;
 
 /* Where the ray arrives. False for a miss or a black back. */

@@ -69,6 +69,12 @@ void truth_free(struct truth *truth)
     *truth = (struct truth){0};
 }
 
+double element_area(const struct element *element, const struct scene *scene)
+{
+    double parts = (double)(INT64_C(1) << 2 * id_level(element->id));
+    return scene_root_area(scene, (int32_t)element->id.root) / parts;
+}
+
 void truth_estimate(struct truth *truth, int64_t number, const struct pathtracer *pathtracer,
                     int samples)
 {

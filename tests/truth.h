@@ -33,6 +33,9 @@ struct truth {
 struct truth truth_make(const struct scene *scene, int64_t wanted);
 void truth_free(struct truth *truth);
 
+/* Square scene units. */
+double element_area(const struct element *element, const struct scene *scene);
+
 /* Estimates element number `number` with this many paths for each mean, and a quarter of them for
  * each point. The same whoever does it. */
 void truth_estimate(struct truth *truth, int64_t number, const struct pathtracer *pathtracer,

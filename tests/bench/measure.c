@@ -3,13 +3,17 @@
  *
  *   build/mpi/measure [--header] SCENE.obj REF [options of phr]
  *
+ * The scene and the reference come first; --two-sided has to be given where the reference was made
+ * with it. Outputs that are asked for are not written.
+ *
  * The norms are those of tests/deviation.h, for two answers. `leaf`: the constant of a leaf, with
  * the mean of the truth over that leaf; where leaves are smaller than an element of the truth,
- * their mean over the element. `shown`: the radiosity that pictures show, with the truth at one
- * point of each element; points that no light reaches at all, such as those that a box covers,
- * are left out. The seconds are those of linking and iterating, with the octree; on several ranks,
- * until the last is done. `emitters` is what turns the relative RMS, which is that of the
- * reflected light, into one relative to all radiosity, emission included: multiply by it. */
+ * their mean over the element. The errors of small leaves cancel in that mean, so only numbers
+ * that one reference gives can be compared. `shown`: the radiosity that pictures show, with the
+ * truth at one point of each element; points that no light reaches at all, such as those that a
+ * box covers, are left out. The seconds are those of linking and iterating, with the octree; on
+ * several ranks, until the last is done. `emitters` is what turns the relative RMS, which is that
+ * of the reflected light, into one relative to all radiosity, emission included: multiply by it. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -24,7 +28,8 @@
 
 static const char *const HEADER =
     "scene,options,seconds,links,rays,node_tests,triangle_tests,iterations,patches,leaf_rms,"
-    "leaf_l1,leaf_median,shown_rms,shown_l1,shown_median,noise,shown_noise,emitters";
+    "leaf_l1,leaf_median,shown_rms,shown_l1,shown_median,noise,shown_noise,emitters,"
+    "leaf_bias,shown_bias";
 
 struct measure {
     struct comm comm;
@@ -106,7 +111,7 @@ static struct deviation compare_points(const struct shading *shading, const stru
         if (is_black(element))
             continue;
         list.items[list.count++] = (struct sample){
-            .area = ldexp(scene_root_area(scene, root), -2 * id_level(element->id)),
+            .area = element_area(element, scene),
             .value = reflected(scene, root, shading_at(shading, root, element->weight)),
             .truth = {element->point[0], element->point[1]}};
     }
@@ -142,24 +147,27 @@ static void print_options(const struct measure *measure, int argc, char **argv)
         }
 }
 
-/* RMS of the reflected radiosity over that of all radiosity. */
+/* RMS of the reflected radiosity over that of all radiosity, black emitters included. */
 static double share_of_reflected(const struct truth *truth, const struct scene *scene,
                                  const struct deviation *leaf)
 {
     double emitted = 0.0, crossed = 0.0, area = 0.0;
+    for (int32_t root = 0; root < scene_root_count(scene); root++)
+        for (int c = 0; c < BANDS; c++) {
+            double e = scene_root_material(scene, root)->emission.band[c];
+            emitted += scene_root_area(scene, root) * e * e;
+        }
     for (int64_t i = 0; i < truth->count; i++) {
         const struct element *element = &truth->items[i];
         int32_t root = (int32_t)element->id.root;
-        double a = ldexp(scene_root_area(scene, root), -2 * id_level(element->id));
-        struct rgb emission = scene_root_material(scene, root)->emission;
+        double a = element_area(element, scene);
         area += a;
-        for (int c = 0; c < BANDS; c++) {
-            emitted += a * emission.band[c] * emission.band[c];
-            crossed += a * emission.band[c] *
+        for (int c = 0; c < BANDS; c++)
+            crossed += a * scene_root_material(scene, root)->emission.band[c] *
                        (element->mean[0].band[c] + element->mean[1].band[c]);
-        }
     }
-    return sqrt(leaf->square / (leaf->square + (emitted + crossed) / area));
+    double reflected_square = area * leaf->square;
+    return sqrt(reflected_square / (reflected_square + crossed + emitted));
 }
 
 static void print_line(const struct measure *measure, const struct solution *s,
@@ -169,15 +177,16 @@ static void print_line(const struct measure *measure, const struct solution *s,
     printf(",%.3f,%lld,%lld,%lld,%lld,%lld,%lld", s->seconds, (long long)stats->links,
            (long long)stats->rays, (long long)stats->node_tests, (long long)stats->triangle_tests,
            (long long)stats->iterations, (long long)stats->patches);
-    printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.4f\n", leaf->rms, leaf->l1, leaf->median,
-           shown->rms, shown->l1, shown->median, leaf->noise, shown->noise,
-           share_of_reflected(&measure->truth, s->scene, leaf));
+    printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f", leaf->rms, leaf->l1, leaf->median,
+           shown->rms, shown->l1, shown->median, leaf->noise, shown->noise);
+    printf(",%.4f,%.5f,%.5f\n", share_of_reflected(&measure->truth, s->scene, leaf), leaf->bias,
+           shown->bias);
 }
 
 /* --- running --- */
 
-/* Takes --header and the reference, the second argument that is no option, out of the arguments;
- * the rest is for phr. Returns the number of arguments left. */
+/* Takes --header and the reference, which follows the scene, out of the arguments; the rest is for
+ * phr. Returns the number of arguments left. */
 static int take_own(struct measure *measure, int argc, char **argv)
 {
     int kept = 1;
@@ -217,9 +226,9 @@ static void run(struct measure *measure, int argc, char **argv)
         return;
     struct solution s = solve(&measure->comm, scene, measure->options.criterion);
     struct shading *shading = shade(measure, &s);
-    if (!s.vote.converged)
-        error_set(&measure->error, EXIT_FAILED, "not converged");
-    if (measure->comm.rank == 0) {
+    if (s.vote.diverged)
+        error_set(&measure->error, EXIT_FAILED, "the solution diverges");
+    if (measure->comm.rank == 0 && !s.vote.diverged) {
         struct deviation leaf = compare_leaves(s.solver->method.forest, &measure->truth);
         struct deviation shown = compare_points(shading, &measure->truth);
         if (measure->header)

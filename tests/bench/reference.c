@@ -4,6 +4,9 @@
  *   mpiexec -n 2 build/mpi/reference scenes/cornell.obj cornell.ref
  *   build/mpi/measure scenes/cornell.obj cornell.ref --epsilon 1e-4
  *
+ * ELEMENTS (20000) sets their size: each has at most that share of the scene's area. SAMPLES (1000)
+ * is the number of paths of each of the two estimates of an element's mean.
+ *
  * Elements are dealt to the ranks in turn and are the same whoever estimates them, so the file is
  * the same bytes on any number of ranks. The noise falls as one over the square root of SAMPLES,
  * or faster, and the time grows with ELEMENTS times SAMPLES. */
@@ -17,13 +20,20 @@
 #include "mpi/comm.h"
 #include "tests/deviation.h"
 
-enum { ELEMENTS = 20000, SAMPLES = 1000 };
+enum { ELEMENTS = 20000, SAMPLES = 1000, MOST = 1000000000 };
 
 struct arguments {
     const char *scene, *out;
     bool two_sided;
     long long numbers[2]; /* elements, samples */
 };
+
+static bool is_count(const char *text, long long *count)
+{
+    char *end;
+    *count = strtoll(text, &end, 10);
+    return *end == '\0' && *count >= 1 && *count <= MOST;
+}
 
 static bool parse(struct arguments *arguments, int argc, char **argv, struct error *error)
 {
@@ -34,7 +44,7 @@ static bool parse(struct arguments *arguments, int argc, char **argv, struct err
             arguments->two_sided = true;
         else if (paths < 2)
             *(paths++ == 0 ? &arguments->scene : &arguments->out) = argv[i];
-        else if (numbers == 2 || (arguments->numbers[numbers++] = atoll(argv[i])) < 1)
+        else if (numbers == 2 || !is_count(argv[i], &arguments->numbers[numbers++]))
             return error_set(error, EXIT_USAGE, "what is %s?", argv[i]);
     }
     return paths == 2 ||
