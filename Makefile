@@ -38,10 +38,10 @@ MPI_INCLUDE =
 MPIEXEC ?= mpiexec
 endif
 
-GEOM = alloc error polygon scene triangle
+GEOM = alloc elementary error lambert polygon scene triangle
 OCTREE = build octree
-RAD = flux formfactor id link method patch pushpull treecode
-MPI = assign broadcast comm gather linking migrate picture plan refinement scatter solver vote
+RAD = closure conjugate flux formfactor id link method oracle patch pushpull treecode
+MPI = assign broadcast closing comm gather linking migrate picture plan refinement scatter solve solver vote
 IO = camera image mesh mtl obj options output render shading stats text tone
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =

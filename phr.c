@@ -178,11 +178,15 @@ static bool compute_light(struct run *run)
     say(run, "roots are linked, %.1f s", comm_seconds() - run->start);
     do {
         int64_t levels = solver->level_count;
-        solver_refine(solver);            /* 4: evaluate and refine, level by level */
-        solver_gather(solver);            /* 5: proxies go home */
-        solver_push_pull(solver);         /* 6: push-pull on own roots */
-        solver_scatter(solver);           /* 7: proxies are renewed */
-        run->vote = solver_vote(solver);  /* 8: is there another iteration? */
+        solver_refine(solver); /* 4: evaluate and refine, level by level */
+        solver_close(solver);  /*    what each row of form factors should sum to */
+        do {
+            solver_transfer(solver);         /* 5: light over the links, */
+            solver_gather(solver);           /*    and proxies go home */
+            solver_push_pull(solver);        /* 6: push-pull on own roots */
+            solver_scatter(solver);          /* 7: proxies are renewed */
+            run->vote = solver_vote(solver); /* 8: is there another iteration? */
+        } while (run->vote.again);
         report_levels(run, levels);
         report_iteration(run);
     } while (!run->vote.converged && !run->vote.diverged &&

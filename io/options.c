@@ -12,35 +12,43 @@
 #include "io/camera.h"
 #include "io/text.h"
 
-enum kind { KIND_FLAG, KIND_TEXT, KIND_REAL, KIND_INTEGER, KIND_OUTPUT, KIND_SIZE, KIND_ORACLE };
+enum kind { KIND_FLAG, KIND_TEXT, KIND_REAL, KIND_INTEGER, KIND_OUTPUT, KIND_SIZE,
+            KIND_CHOICE, KIND_PAPER };
 
 struct option {
     const char *name;
     enum kind kind;
     size_t offset;    /* of the field in struct options */
     double low, high; /* inclusive range of a number */
+    const char *choices; /* names, separated by bars, in the order of the enum at `offset` */
 };
 
 static const struct option OPTIONS[] = {
-    {"-o", KIND_OUTPUT, 0, 0, 0},
-    {"--view", KIND_TEXT, offsetof(struct options, view), 0, 0},
-    {"--size", KIND_SIZE, 0, 0, 0},
-    {"--samples", KIND_INTEGER, offsetof(struct options, samples), 1, 64},
-    {"--exposure", KIND_REAL, offsetof(struct options, exposure), 1e-30, 1e30},
-    {"--flat", KIND_FLAG, offsetof(struct options, flat), 0, 0},
-    {"--epsilon", KIND_REAL, offsetof(struct options, criterion.epsilon), 0, 1e30},
-    {"--max-level", KIND_INTEGER, offsetof(struct options, criterion.max_level), 0, ID_MAX_LEVEL},
-    {"--min-area", KIND_REAL, offsetof(struct options, criterion.min_area), 0, 1},
-    {"--oracle", KIND_ORACLE, 0, 0, 0},
-    {"--alpha", KIND_REAL, offsetof(struct options, criterion.alpha), 0, 1},
-    {"--tolerance", KIND_REAL, offsetof(struct options, criterion.tolerance), 0, 1},
-    {"--max-iterations", KIND_INTEGER, offsetof(struct options, criterion.max_iterations), 1, 1e9},
-    {"--two-sided", KIND_FLAG, offsetof(struct options, two_sided), 0, 0},
-    {"--stats", KIND_TEXT, offsetof(struct options, stats), 0, 0},
-    {"--quiet", KIND_FLAG, offsetof(struct options, quiet), 0, 0},
-    {"--verbose", KIND_FLAG, offsetof(struct options, verbose), 0, 0},
-    {"--help", KIND_FLAG, offsetof(struct options, help), 0, 0},
-    {"--version", KIND_FLAG, offsetof(struct options, version), 0, 0},
+    {"-o", KIND_OUTPUT, 0, 0, 0, NULL},
+    {"--view", KIND_TEXT, offsetof(struct options, view), 0, 0, NULL},
+    {"--size", KIND_SIZE, 0, 0, 0, NULL},
+    {"--samples", KIND_INTEGER, offsetof(struct options, samples), 1, 64, NULL},
+    {"--exposure", KIND_REAL, offsetof(struct options, exposure), 1e-30, 1e30, NULL},
+    {"--flat", KIND_FLAG, offsetof(struct options, flat), 0, 0, NULL},
+    {"--epsilon", KIND_REAL, offsetof(struct options, criterion.epsilon), 0, 1e30, NULL},
+    {"--max-level", KIND_INTEGER, offsetof(struct options, criterion.max_level), 0, ID_MAX_LEVEL, NULL},
+    {"--min-area", KIND_REAL, offsetof(struct options, criterion.min_area), 0, 1, NULL},
+    {"--oracle", KIND_CHOICE, offsetof(struct options, criterion.oracle), 0, 0, "bf|error"},
+    {"--form-factor", KIND_CHOICE, offsetof(struct options, criterion.form_factor), 0, 0,
+     "disk|polygon"},
+    {"--closure", KIND_CHOICE, offsetof(struct options, criterion.closure), 0, 0,
+     "none|rows|symmetric"},
+    {"--solver", KIND_CHOICE, offsetof(struct options, criterion.solver), 0, 0, "jacobi|cg"},
+    {"--paper", KIND_PAPER, 0, 0, 0, NULL},
+    {"--alpha", KIND_REAL, offsetof(struct options, criterion.alpha), 0, 1, NULL},
+    {"--tolerance", KIND_REAL, offsetof(struct options, criterion.tolerance), 0, 1, NULL},
+    {"--max-iterations", KIND_INTEGER, offsetof(struct options, criterion.max_iterations), 1, 1e9, NULL},
+    {"--two-sided", KIND_FLAG, offsetof(struct options, two_sided), 0, 0, NULL},
+    {"--stats", KIND_TEXT, offsetof(struct options, stats), 0, 0, NULL},
+    {"--quiet", KIND_FLAG, offsetof(struct options, quiet), 0, 0, NULL},
+    {"--verbose", KIND_FLAG, offsetof(struct options, verbose), 0, 0, NULL},
+    {"--help", KIND_FLAG, offsetof(struct options, help), 0, 0, NULL},
+    {"--version", KIND_FLAG, offsetof(struct options, version), 0, 0, NULL},
 };
 
 static const struct option *find_option(const char *name)
@@ -111,6 +119,31 @@ static bool set_size(struct options *options, const char *value, struct error *e
                      (int)IMAGE_SIZE_MAX);
 }
 
+/* The enums of rad/method.h are ints: each has a constant for each choice, counted from 0. */
+static bool set_choice(const struct option *option, const char *value, int *field,
+                       struct error *error)
+{
+    size_t length = strlen(value);
+    int number = 0;
+    for (const char *at = option->choices; at; at = strchr(at, '|'), number++) {
+        at += *at == '|';
+        if (strncmp(at, value, length) == 0 && (at[length] == '|' || at[length] == '\0')) {
+            *field = number;
+            return true;
+        }
+    }
+    return error_set(error, EXIT_USAGE, "%s: '%s' is not one of %s", option->name, value,
+                     option->choices);
+}
+
+static void set_paper(struct criterion *criterion)
+{
+    criterion->oracle = ORACLE_BF;
+    criterion->form_factor = FORM_FACTOR_DISK;
+    criterion->closure = CLOSURE_NONE;
+    criterion->solver = SOLVER_JACOBI;
+}
+
 static bool set_value(struct options *options, const struct option *option, const char *value,
                       struct error *error)
 {
@@ -124,9 +157,8 @@ static bool set_value(struct options *options, const struct option *option, cons
         return set_integer(options, option, value, error);
     case KIND_REAL:
         return parse_number(option, value, (double *)(void *)field, error);
-    case KIND_ORACLE:
-        return strcmp(value, "bf") == 0 ||
-               error_set(error, EXIT_USAGE, "--oracle: '%s' is not bf", value);
+    case KIND_CHOICE:
+        return set_choice(option, value, (int *)(void *)field, error);
     default:
         *(const char **)(void *)field = value;
         return true;
@@ -176,6 +208,10 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         const struct option *option = find_option(argument);
         if (!option)
             return error_set(error, EXIT_USAGE, "unknown option %s; see --help", argument);
+        if (option->kind == KIND_PAPER) {
+            set_paper(&options->criterion);
+            continue;
+        }
         if (option->kind == KIND_FLAG) {
             *(bool *)(void *)((char *)options + option->offset) = true;
             continue;

@@ -108,6 +108,15 @@ void comm_add_bytes(const struct comm *comm, uint8_t *bytes, int64_t count)
     comm_wait(&request);
 }
 
+double comm_largest(const struct comm *comm, double value)
+{
+    double largest;
+    MPI_Request request;
+    MPI_Iallreduce(&value, &largest, 1, MPI_DOUBLE, MPI_MAX, comm->handle, &request);
+    comm_wait(&request);
+    return largest;
+}
+
 bool comm_agree(const struct comm *comm, struct error *error)
 {
     struct error *all = alloc_array((size_t)comm->size, sizeof *all);
@@ -163,6 +172,21 @@ void *comm_exchange(const struct comm *comm, const void *records, const int *cou
     MPI_Type_free(&record);
     alloc_free(receive);
     return arrived;
+}
+
+uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes, int *at)
+{
+    int *sizes = alloc_array((size_t)comm->size, sizeof *sizes);
+    int size = comm_count(comm, bytes);
+    MPI_Request request;
+    MPI_Iallgather(&size, 1, MPI_INT, sizes, 1, MPI_INT, comm->handle, &request);
+    comm_wait(&request);
+    at[comm->size] = comm_count(comm, comm_displacements(comm, sizes, at));
+    uint8_t *all = alloc_array((size_t)at[comm->size], 1);
+    MPI_Iallgatherv(own, size, MPI_BYTE, all, sizes, at, MPI_BYTE, comm->handle, &request);
+    comm_wait(&request);
+    alloc_free(sizes);
+    return all;
 }
 
 double comm_seconds(void)

@@ -28,6 +28,9 @@ void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes);
 /* Collective. Each of `count` bytes becomes its sum over all ranks; sums stay below 256. */
 void comm_add_bytes(const struct comm *comm, uint8_t *bytes, int64_t count);
 
+/* Collective. The largest value over all ranks. */
+double comm_largest(const struct comm *comm, double value);
+
 /* Collective. All ranks end with the error of the lowest rank that has one. True if none has. */
 bool comm_agree(const struct comm *comm, struct error *error);
 
@@ -42,6 +45,10 @@ int64_t comm_displacements(const struct comm *comm, const int *counts, int *disp
  * of the ranks, and its number; to be freed with alloc_free(). */
 void *comm_exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
                     int64_t *arriving);
+
+/* Collective. The bytes of all ranks, in the order of the ranks, on all ranks. at[r] is where those
+ * of rank r begin, at[size] their number; at holds size + 1 ints. To be freed with alloc_free(). */
+uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes, int *at);
 
 /* Seconds since some moment in the past. */
 double comm_seconds(void);

@@ -1,8 +1,7 @@
 /* Step 5: what proxies received goes home.
  *
  * A rank's links add flux to patches of all homes. Each proxy with flux is sent as (ID, flux);
- * so is the first child of each proxy that was split here, which tells its home to split too.
- * The home creates what it lacks and adds: integers, so in any order. */
+ * the home adds: integers, so in any order. */
 #include "mpi/solver.h"
 
 #include "geom/alloc.h"
@@ -16,10 +15,8 @@ struct wire_patch {
 static bool must_go_home(const struct solver *solver, int64_t p)
 {
     const struct patch *patch = &solver->method.forest->patches[p];
-    if (solver->own[patch->id.root])
-        return false;
-    bool tells_split = p >= solver->first_new && (patch->id.hierarchy & 3u) == 0;
-    return tells_split || patch->flux[0] != 0 || patch->flux[1] != 0 || patch->flux[2] != 0;
+    return !solver->own[patch->id.root] &&
+           (patch->flux[0] != 0 || patch->flux[1] != 0 || patch->flux[2] != 0);
 }
 
 /* Packs what goes home; `at` is where each home's records begin, and is used up. */
@@ -43,7 +40,7 @@ static void add_to_home(struct forest *forest, const struct wire_patch *wire)
 {
     int32_t p = forest_reach(forest, wire->id);
     for (int c = 0; c < BANDS; c++)
-        forest->patches[p].flux[c] = flux_add(forest->patches[p].flux[c], wire->flux[c]);
+        forest->patches[p].flux[c] += wire->flux[c];
 }
 
 void solver_gather(struct solver *solver)

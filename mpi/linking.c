@@ -16,12 +16,14 @@ enum { BLOCK = 32 };
 static void link_block(struct solver *solver, const struct facet *facets, int32_t i, int32_t first,
                        int32_t end)
 {
-    int32_t guess = -1;
+    int32_t blocker = -1;
     for (int32_t j = first > i ? first : i + 1; j < end; j++) {
         struct link link;
+        struct sight sight = {.blocker = blocker};
         if (facets[i].area > 0.0 && facets[j].area > 0.0 &&
-            link_make(&solver->method, i, &facets[i], j, &facets[j], 0, &guess, &link))
+            link_make(&solver->method, i, &facets[i], j, &facets[j], 0.0, &sight, &link))
             link_list_append(&solver->links, link);
+        blocker = sight.blocker;
     }
 }
 

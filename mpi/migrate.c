@@ -5,26 +5,36 @@
  * has where it was first split, so a link means the same wherever it lives. */
 #include "mpi/migrate.h"
 
+#include <string.h>
+
 #include "geom/alloc.h"
 
-/* 32 bytes, no padding. */
+/* 32 bytes, no padding: a link with IDs in place of local numbers. */
 struct wire_link {
     struct patch_id p, q;
-    double area;
-    float unoccluded;
-    uint32_t cost;
+    float area;
+    int32_t blocker;
+    uint8_t parts_p[3], parts_q[3], seen, cost;
 };
 
 static struct wire_link pack(const struct forest *forest, const struct link *link)
 {
-    return (struct wire_link){forest->patches[link->p].id, forest->patches[link->q].id,
-                              link->area, link->unoccluded, link->cost};
+    struct wire_link wire = {.p = forest->patches[link->p].id, .q = forest->patches[link->q].id,
+                             .area = link->area, .blocker = link->blocker, .seen = link->seen,
+                             .cost = link->cost};
+    memcpy(wire.parts_p, link->parts_p, sizeof wire.parts_p);
+    memcpy(wire.parts_q, link->parts_q, sizeof wire.parts_q);
+    return wire;
 }
 
 static struct link unpack(struct forest *forest, const struct wire_link *wire)
 {
-    int32_t p = forest_reach(forest, wire->p), q = forest_reach(forest, wire->q);
-    return (struct link){p, q, wire->area, wire->unoccluded, wire->cost};
+    struct link link = {.p = forest_reach(forest, wire->p), .q = forest_reach(forest, wire->q),
+                        .area = wire->area, .blocker = wire->blocker, .seen = wire->seen,
+                        .cost = wire->cost};
+    memcpy(link.parts_p, wire->parts_p, sizeof link.parts_p);
+    memcpy(link.parts_q, wire->parts_q, sizeof link.parts_q);
+    return link;
 }
 
 /* Packs what leaves, destination by destination, and closes the gaps in `list`. `at` is where

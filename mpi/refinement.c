@@ -1,4 +1,4 @@
-/* Step 4: Algorithm 1 of the paper, and the transfer of light.
+/* Step 4: Algorithm 1 of the paper.
  *
  * `prolific` holds the links of one level that will be split. Before each level the ranks
  * exchange their loads, the sums of predicted costs; each computes the same greedy plan
@@ -11,7 +11,10 @@
 #include "mpi/migrate.h"
 #include "mpi/plan.h"
 
+#include <string.h>
+
 #include "geom/alloc.h"
+#include "rad/oracle.h"
 
 /* Links per rank from which a level is balanced: below, splitting takes less than an exchange. */
 enum { WORTH_MOVING = 4 };
@@ -29,7 +32,7 @@ static int64_t load_of(const struct link_list *list)
 {
     int64_t load = 0;
     for (int64_t i = 0; i < list->count; i++)
-        load += list->items[i].cost;
+        load += (int64_t)link_cost(&list->items[i]);
     return load;
 }
 
@@ -44,10 +47,12 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
     int64_t kept = 0;
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
-        if (link_patch_to_split(&solver->method, &link) >= 0)
+        if (oracle_patch_to_split(&solver->method, &link) >= 0)
             link_list_append(prolific, link);
-        else
+        else {
+            oracle_divide_patches(&solver->method, &link);
             solver->links.items[kept++] = link;
+        }
     }
     solver->links.count = kept;
 }
@@ -63,7 +68,7 @@ static void deal_links(const struct solver *solver, const struct link_list *list
             transfers[mine++] = transfers[t];
     int turn = 0;
     for (int64_t i = 0; i < list->count; i++) {
-        int64_t cost = list->items[i].cost;
+        int64_t cost = (int64_t)link_cost(&list->items[i]);
         destination[i] = solver->comm->rank;
         for (int tried = 0; tried < mine; tried++) {
             struct transfer *t = &transfers[(turn + tried) % mine];
@@ -79,7 +84,7 @@ static void deal_links(const struct solver *solver, const struct link_list *list
 
 static void record_level(struct solver *solver, const struct load_notice *notices, int64_t level)
 {
-    struct level_balance balance = {.iteration = solver->iteration, .level = level};
+    struct level_balance balance = {.iteration = solver->pass, .level = level};
     int ranks = solver->comm->size;
     for (int r = 0; r < ranks; r++) {
         double load = (double)notices[r].last_load, work = (double)notices[r].last_work;
@@ -151,28 +156,47 @@ static void split_level(struct solver *solver, const struct link_list *prolific,
     for (int64_t i = 0; i < prolific->count; i++) {
         const struct link *link = &prolific->items[i];
         struct link children[4];
-        int32_t patch = link_patch_to_split(&solver->method, link);
+        int32_t patch = oracle_patch_to_split(&solver->method, link);
         int count = link_split(&solver->method, link, patch, children);
         for (int k = 0; k < count; k++) {
-            bool goes_on = link_patch_to_split(&solver->method, &children[k]) >= 0;
+            bool goes_on = oracle_patch_to_split(&solver->method, &children[k]) >= 0;
+            if (!goes_on)
+                oracle_divide_patches(&solver->method, &children[k]);
             link_list_append(goes_on ? next : &solver->links, children[k]);
         }
     }
     solver->split_here += prolific->count;
 }
 
-static void transfer_light(struct solver *solver)
+/* All ranks learn which patches were split here: the trees are the same everywhere before light is
+ * transferred, since a link deals light to the children of a patch, if there are any. */
+static void share_splits(struct solver *solver)
 {
+    struct forest *forest = solver->method.forest;
+    const struct comm *comm = solver->comm;
     double start = comm_seconds();
-    forest_clear_flux(solver->method.forest);
-    solver->moved = links_transfer(&solver->links, solver->method.forest,
-                                   solver->method.flux_unit);
-    solver->seconds[PHASE_SOLVE] += comm_seconds() - start;
+    int64_t count = 0;
+    struct patch_id *split = alloc_array((size_t)(forest->count - solver->first_new) / 4,
+                                         sizeof *split);
+    for (int64_t p = solver->first_new; p < forest->count; p += 4)
+        split[count++] = forest->patches[p].id;
+    int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
+    uint8_t *all = comm_gather_all(comm, split, count * (int64_t)sizeof *split, at);
+    for (int i = 0; i < at[comm->size]; i += (int)sizeof *split) {
+        struct patch_id id;
+        memcpy(&id, all + i, sizeof id);
+        forest_reach(forest, id);
+    }
+    solver->bytes_scatter += count * (int64_t)sizeof *split * (comm->size - 1);
+    alloc_free(all);
+    alloc_free(at);
+    alloc_free(split);
+    solver->seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
 
 void solver_refine(struct solver *solver)
 {
-    solver->iteration++;
+    solver->pass++;
     solver->split_here = 0;
     solver->first_new = solver->method.forest->count;
     struct link_list prolific = {0}, next = {0};
@@ -191,5 +215,5 @@ void solver_refine(struct solver *solver)
         solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
     }
     link_list_free(&prolific);
-    transfer_light(solver);
+    share_splits(solver);
 }

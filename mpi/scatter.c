@@ -55,19 +55,11 @@ void solver_scatter(struct solver *solver)
 {
     double start = comm_seconds();
     const struct comm *comm = solver->comm;
-    size_t ranks = (size_t)comm->size;
     struct bytes own = {0};
     touch_split_trees(solver);
     encode_own(solver, &own);
-    int *sizes = alloc_array(ranks, sizeof *sizes), *at = alloc_array(ranks, sizeof *at);
-    int size = comm_count(comm, own.count);
-    MPI_Request request;
-    MPI_Iallgather(&size, 1, MPI_INT, sizes, 1, MPI_INT, comm->handle, &request);
-    comm_wait(&request);
-    int64_t total = comm_displacements(comm, sizes, at);
-    uint8_t *all = alloc_array((size_t)total, 1);
-    MPI_Iallgatherv(own.data, size, MPI_BYTE, all, sizes, at, MPI_BYTE, comm->handle, &request);
-    comm_wait(&request);
+    int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
+    uint8_t *all = comm_gather_all(comm, own.data, own.count, at);
     for (int r = 0; r < comm->size; r++)
         if (r != comm->rank)
             decode_from(solver, r, all + at[r]);
@@ -77,7 +69,6 @@ void solver_scatter(struct solver *solver)
     solver->bytes_scatter += own.count * (comm->size - 1);
     alloc_free(all);
     alloc_free(at);
-    alloc_free(sizes);
     bytes_free(&own);
     solver->seconds[PHASE_SCATTER] += comm_seconds() - start;
 }

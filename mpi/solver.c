@@ -23,6 +23,9 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     solver->own = alloc_array(roots, sizeof *solver->own);
     solver->touched = alloc_array(roots, sizeof *solver->touched);
     solver->root_change = alloc_array(roots, sizeof *solver->root_change);
+    solver->closure.kind = criterion->closure;
+    solver->fresh = true;
+    solver->least_bend = 1.0;
     return solver;
 }
 
@@ -37,6 +40,8 @@ void solver_destroy(struct solver *solver)
     alloc_free(solver->touched);
     alloc_free(solver->root_change);
     alloc_free(solver->levels);
+    closure_free(&solver->closure);
+    conjugate_free(&solver->conjugate);
     alloc_free(solver);
 }
 
@@ -44,16 +49,20 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
 {
     const struct comm *comm = solver->comm;
     struct forest *forest = solver->method.forest;
-    struct flux_unit unit = closure_unit(solver->method.scene);
-    solver->first_new = forest->count;
-    forest_clear_flux(forest);
-    links_transfer_ones(&solver->links, forest, unit);
+    struct rgb *kept = forest_keep(forest);
+    for (int64_t p = 0; p < forest->count; p++)
+        forest->patches[p].radiosity = (struct rgb){{1.0, 0.0, 0.0}};
+    enum closure_kind kind = solver->closure.kind;
+    solver->closure.kind = CLOSURE_NONE;
+    solver_transfer(solver);
+    solver->closure.kind = kind;
+    forest_restore(forest, kept);
     int64_t bytes = solver->bytes_gather; /* this gather is for the report, not of the method */
     double seconds = solver->seconds[PHASE_GATHER];
     solver_gather(solver);
     solver->bytes_gather = bytes;
     solver->seconds[PHASE_GATHER] = seconds;
-    struct closure_sums own = closure_measure(forest, solver->own, unit);
+    struct closure_sums own = closure_measure(forest, solver->own, solver->flux);
     struct closure_sums *all = alloc_array((size_t)comm->size, sizeof *all);
     struct closure_sums sum = {.min = HUGE_VAL, .max = -HUGE_VAL};
     MPI_Request request;

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "mpi/comm.h"
+#include "rad/conjugate.h"
 #include "rad/link.h"
 #include "rad/method.h"
 #include "rad/pushpull.h"
@@ -21,10 +22,19 @@ struct solver {
     bool *touched;            /* [roots] own tree whose structure or values changed */
     int64_t *root_change;     /* [roots] see push_pull() */
     int64_t first_new;        /* patches from here on were created in this iteration */
-    int64_t iteration;        /* 1, 2, ... */
+    int64_t pass;             /* refinements so far */
+    int64_t iteration;        /* transfers of light so far */
+    struct closure closure;   /* factors of the leaves */
+    struct flux_unit flux;    /* unit of the flux of the last transfer */
     struct push_pull_sums sums; /* of the last push-pull */
     int64_t last_change;      /* change of all ranks in the iteration before */
-    int64_t moved;            /* flux over this rank's links in this iteration */
+    struct conjugate conjugate; /* of --solver cg, like all up to `diverged` */
+    bool fresh;                 /* the links have changed: the next transfer is of B */
+    bool diverged;              /* K is not positive: more is reflected than arrives */
+    double gain, shrink, weight; /* bounds: row sum, row sum times rho, closure_weight() */
+    double gamma[BANDS], gamma_before[BANDS], step_before[BANDS];
+    double bound_residual, bound_image; /* |z| and |K p| are nowhere larger */
+    double least_bend;          /* least <K z, z> / <z, z> seen */
     int64_t split_here;       /* links that this rank split in this iteration */
     double seconds[PHASE_COUNT];
     int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent by this rank to others */
@@ -34,6 +44,7 @@ struct solver {
 
 /* Sums over all ranks after an iteration; the same on all ranks. */
 struct vote {
+    bool again;        /* another transfer over the same links */
     bool converged;
     bool diverged;
     int64_t split;     /* links split in this iteration */
@@ -54,11 +65,15 @@ void solver_link_roots(struct solver *solver);
 /* Step 3: re-assignment. Roots get homes by even area sums, links go to the homes. */
 void solver_assign_roots(struct solver *solver);
 
-/* Step 4: Algorithm 1, level by level with load balancing, then the transfer of light over the
- * links there are. */
+/* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches were
+ * split. */
 void solver_refine(struct solver *solver);
 
-/* Step 5: flux of proxies, and the patches that were split, go to their homes. */
+/* Row sums of the links there are, and the closure. */
+void solver_close(struct solver *solver);
+
+/* Step 5: the transfer of light over the links there are, and flux of proxies goes home. */
+void solver_transfer(struct solver *solver);
 void solver_gather(struct solver *solver);
 
 /* Steps 6 to 8: push-pull on the own roots; scatter of the own trees that changed; the vote. */

@@ -13,52 +13,35 @@
 
 #include "geom/alloc.h"
 
-/* What a rank says; 64 bytes, no padding. */
+/* What a rank says; 96 bytes, no padding. */
 struct ballot {
-    int64_t light, absorbed, change, moved; /* flux units */
+    int64_t light, absorbed, change, arriving; /* flux units */
     int64_t split, links;
-    int64_t diverged;
-    double shrink;
+    int64_t divided;                           /* own patches that are new */
+    int64_t square[BANDS];                     /* --solver cg: <z, z> */
+    double shrink;                             /* --solver jacobi: see push_pull() */
+    double largest;                            /* --solver cg: |z| */
 };
-
-void solver_push_pull(struct solver *solver)
-{
-    double start = comm_seconds();
-    solver->sums = push_pull(&solver->method, solver->own, solver->touched, solver->root_change);
-    solver->seconds[PHASE_PUSH_PULL] += comm_seconds() - start;
-}
 
 static void add_ballot(struct ballot *sum, const struct ballot *ballot)
 {
     sum->light = flux_add(sum->light, ballot->light);
     sum->absorbed = flux_add(sum->absorbed, ballot->absorbed);
     sum->change = flux_add(sum->change, ballot->change);
-    sum->moved = flux_add(sum->moved, ballot->moved);
+    sum->arriving = flux_add(sum->arriving, ballot->arriving);
     sum->split += ballot->split;
     sum->links += ballot->links;
-    sum->diverged += ballot->diverged;
+    sum->divided += ballot->divided;
+    for (int c = 0; c < BANDS; c++)
+        sum->square[c] += ballot->square[c];
     sum->shrink = fmax(sum->shrink, ballot->shrink);
+    sum->largest = fmax(sum->largest, ballot->largest);
 }
 
-/* Bound on the remaining error relative to all light; `before` is the change of the iteration
- * before. */
-static double remaining_error(const struct ballot *sum, int64_t before)
-{
-    if (sum->change == 0)
-        return 0.0;
-    double shrink = before > 0 ? (double)sum->change / (double)before : HUGE_VAL;
-    shrink = fmax(shrink, sum->shrink);
-    if (!(shrink < 1.0))
-        return HUGE_VAL;
-    return shrink / (1.0 - shrink) * ((double)sum->change / (double)sum->light);
-}
-
-struct vote solver_vote(struct solver *solver)
+/* The sums of all ranks. */
+static struct ballot count_votes(struct solver *solver, struct ballot own)
 {
     const struct comm *comm = solver->comm;
-    const struct push_pull_sums *sums = &solver->sums;
-    struct ballot own = {sums->light, sums->absorbed, sums->change, solver->moved,
-                         solver->split_here, solver->links.count, sums->diverged, sums->shrink};
     struct ballot *all = alloc_array((size_t)comm->size, sizeof *all), sum = {0};
     MPI_Request request;
     double start = comm_seconds();
@@ -69,16 +52,123 @@ struct vote solver_vote(struct solver *solver)
     for (int r = 0; r < comm->size; r++)
         add_ballot(&sum, &all[r]);
     alloc_free(all);
+    return sum;
+}
+
+static int64_t own_new_patches(const struct solver *solver)
+{
+    const struct forest *forest = solver->method.forest;
+    int64_t count = 0;
+    for (int64_t p = solver->first_new; p < forest->count; p++)
+        count += solver->own[forest->patches[p].id.root];
+    return count;
+}
+
+/* What both solvers say. */
+static struct vote vote_of(const struct solver *solver, const struct ballot *sum, double remaining)
+{
     struct flux_unit unit = solver->method.flux_unit;
     struct vote vote = {
-        .diverged = sum.diverged > 0 || sum.light >= FLUX_LIMIT || sum.moved >= FLUX_LIMIT,
-        .split = sum.split,
-        .links = sum.links,
-        .remaining = remaining_error(&sum, solver->last_change),
-        .absorbed = flux_to_watts(unit, sum.absorbed),
-        .escaped = flux_to_watts(unit, sum.light - sum.moved),
+        .diverged = solver->diverged || sum->light >= FLUX_LIMIT,
+        .split = sum->split,
+        .links = sum->links,
+        .remaining = remaining,
+        .absorbed = flux_to_watts(unit, sum->absorbed),
+        .escaped = flux_to_watts(unit, sum->light - sum->arriving),
     };
-    solver->last_change = sum.change;
-    vote.converged = vote.split == 0 && vote.remaining <= solver->method.criterion.tolerance;
+    vote.converged = vote.split == 0 && sum->divided == 0 &&
+                     remaining <= solver->method.criterion.tolerance;
     return vote;
+}
+
+/* --- Jacobi --- */
+
+/* Bound on the remaining error relative to all light; `before` is the change of the iteration
+ * before. */
+static double remaining_by_change(const struct ballot *sum, int64_t before)
+{
+    if (sum->change == 0)
+        return 0.0;
+    double shrink = before > 0 ? (double)sum->change / (double)before : HUGE_VAL;
+    shrink = fmax(shrink, sum->shrink);
+    if (!(shrink < 1.0))
+        return HUGE_VAL;
+    return shrink / (1.0 - shrink) * ((double)sum->change / (double)sum->light);
+}
+
+static struct vote vote_jacobi(struct solver *solver)
+{
+    const struct push_pull_sums *sums = &solver->sums;
+    struct ballot own = {.light = sums->light, .absorbed = sums->absorbed, .change = sums->change,
+                         .arriving = sums->arriving, .split = solver->split_here,
+                         .links = solver->links.count, .divided = own_new_patches(solver),
+                         .shrink = sums->shrink};
+    struct ballot sum = count_votes(solver, own);
+    double remaining = remaining_by_change(&sum, solver->last_change);
+    solver->last_change = sum.change;
+    return vote_of(solver, &sum, remaining);
+}
+
+/* --- conjugate gradients --- */
+
+/* While links are still being split the light is wanted only this well. */
+static const double WHILE_SPLITTING = 0.01;
+
+/* Bound on the remaining error relative to all light. The error e of H solves K e = z, and K is at
+ * least 1 - q in the norm of the scalar product, q being the largest row sum times rho: so
+ * |e| <= |z| / (1 - q); by Schwarz the sum of A rho |e| is at most sqrt(A rho) |e|. Where q is not
+ * below 1, half of the least K seen takes the place of 1 - q: an estimate. */
+static double remaining_by_residual(const struct solver *solver, const struct ballot *sum)
+{
+    const struct scene *scene = solver->method.scene;
+    double least = solver->shrink < 1.0 ? 1.0 - solver->shrink : 0.5 * solver->least_bend;
+    double missing = 0.0;
+    for (int c = 0; c < BANDS; c++)
+        missing += sqrt(scene_area(scene) * solver->gamma[c]);
+    double light = flux_to_watts(solver->method.flux_unit, sum->light);
+    return light > 0.0 ? missing / least / light : 0.0;
+}
+
+/* B takes the place of rho z, on all ranks. */
+static void finish_conjugate(struct solver *solver)
+{
+    conjugate_publish(&solver->conjugate, &solver->method, solver->own, true);
+    for (int32_t root = 0; root < solver->method.forest->root_count; root++)
+        solver->touched[root] = solver->own[root];
+    solver_scatter(solver);
+    solver->fresh = true;
+}
+
+static struct vote vote_conjugate(struct solver *solver)
+{
+    const struct criterion *criterion = &solver->method.criterion;
+    struct flux_unit unit = conjugate_unit(solver->method.scene, solver->bound_residual,
+                                           solver->bound_residual, solver->weight);
+    struct conjugate_sums sums = conjugate_sum(&solver->conjugate, &solver->method, solver->own,
+                                               &solver->closure, unit);
+    struct ballot own = {.light = sums.light, .absorbed = sums.absorbed,
+                         .arriving = sums.arriving, .split = solver->split_here,
+                         .links = solver->links.count, .divided = own_new_patches(solver),
+                         .largest = sums.largest};
+    for (int c = 0; c < BANDS; c++)
+        own.square[c] = sums.square[c];
+    struct ballot sum = count_votes(solver, own);
+    for (int c = 0; c < BANDS; c++)
+        solver->gamma[c] = flux_to_watts(unit, sum.square[c]);
+    solver->bound_residual = sum.largest;
+    double remaining = remaining_by_residual(solver, &sum);
+    bool splitting = sum.split > 0 || sum.divided > 0;
+    double wanted = splitting ? fmax(criterion->tolerance, WHILE_SPLITTING) : criterion->tolerance;
+    struct vote vote = vote_of(solver, &sum, remaining);
+    vote.again = !(remaining <= wanted) && !vote.diverged &&
+                 solver->iteration < criterion->max_iterations;
+    if (!vote.again)
+        finish_conjugate(solver);
+    return vote;
+}
+
+struct vote solver_vote(struct solver *solver)
+{
+    return solver->method.criterion.solver == SOLVER_CG ? vote_conjugate(solver)
+                                                        : vote_jacobi(solver);
 }

@@ -26,7 +26,7 @@ struct flux_unit flux_unit_choose(const struct scene *scene)
 int64_t flux_from_watts(struct flux_unit unit, double watts)
 {
     double scaled = watts * unit.per_watt;
-    if (!(scaled < (double)FLUX_LIMIT))
-        return FLUX_LIMIT;
+    if (!(fabs(scaled) < (double)FLUX_LIMIT))
+        return scaled < 0.0 ? -FLUX_LIMIT : FLUX_LIMIT;
     return (int64_t)llrint(scaled);
 }

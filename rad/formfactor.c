@@ -28,6 +28,8 @@
 
 #include <math.h>
 
+#include "geom/lambert.h"
+
 enum { SUBAREAS = BUNDLE_ENDS, RAYS = BUNDLE_RAYS, ALL_RAYS = (1 << RAYS) - 1 };
 
 static const double PI = 3.14159265358979323846;
@@ -91,40 +93,196 @@ static void subarea_centroids(const struct triangle *t, struct vec3 centroids[SU
     }
 }
 
-/* Sets the segments of the bundle and their kernels; asks for those that face each other. */
-static void aim(const struct facet *p, const struct facet *q, struct bundle *bundle,
-                double kernels[RAYS])
+/* A pair while it is estimated. */
+struct pair {
+    const struct facet *p, *q;
+    double kernels[RAYS]; /* exchange areas of the sub-areas, by disks, not occluded */
+    struct bundle bundle; /* the segments between them; asked: those that face each other */
+    unsigned visible;
+};
+
+static void pair_aim(struct pair *pair, const struct facet *p, const struct facet *q)
 {
+    struct bundle *bundle = &pair->bundle;
     *bundle = (struct bundle){.own = {p->input, q->input}};
+    pair->p = p;
+    pair->q = q;
     subarea_centroids(&p->triangle, bundle->from);
     subarea_centroids(&q->triangle, bundle->to);
     for (int ray = 0; ray < RAYS; ray++) {
-        kernels[ray] = disk_kernel(bundle->from[ray / SUBAREAS], p->plane.normal, 0.25 * p->area,
-                                   bundle->to[ray % SUBAREAS], q->plane.normal, 0.25 * q->area);
-        bundle->asked |= (unsigned)(kernels[ray] > 0.0) << ray;
+        pair->kernels[ray] = disk_kernel(bundle->from[ray / SUBAREAS], p->plane.normal,
+                                         0.25 * p->area, bundle->to[ray % SUBAREAS],
+                                         q->plane.normal, 0.25 * q->area);
+        bundle->asked |= (unsigned)(pair->kernels[ray] > 0.0) << ray;
     }
 }
 
-struct exchange exchange_by_disks(const struct facet *p, const struct facet *q,
-                                  const struct octree *octree, int32_t *guess,
+/* One segment for each sub-area of p and of q: four of the 16. */
+static const unsigned DIAGONAL = 0x8421u;
+
+/* With four segments that agree, all others are taken to be like them. */
+static void pair_look(struct pair *pair, enum look look, const struct octree *octree,
+                      struct sight *sight, struct octree_counts *counts)
+{
+    unsigned facing = pair->bundle.asked, blocked = 0;
+    pair->visible = facing;
+    if (sight->open || facing == 0)
+        return;
+    if (look == LOOK_FOUR_FIRST && (facing & DIAGONAL) != 0) {
+        pair->bundle.asked = facing & DIAGONAL;
+        blocked = octree_block(octree, &pair->bundle, &sight->blocker, counts);
+        unsigned asked = pair->bundle.asked;
+        pair->bundle.asked = facing;
+        if (blocked == 0)
+            return;
+        if (blocked == asked) {
+            pair->visible = 0;
+            return;
+        }
+        pair->bundle.asked = facing & ~DIAGONAL;
+    }
+    if (pair->bundle.asked)
+        blocked |= octree_block(octree, &pair->bundle, &sight->blocker, counts);
+    pair->bundle.asked = facing;
+    pair->visible = facing & ~blocked;
+}
+
+/* Sums of the kernels of one sub-area of p (`of_p`) or q: all that face, and those that are seen. */
+static void sum_kernels(const struct pair *pair, bool of_p, int sub, double *all, double *seen)
+{
+    *all = *seen = 0.0;
+    for (int other = 0; other < SUBAREAS; other++) {
+        int ray = of_p ? SUBAREAS * sub + other : SUBAREAS * other + sub;
+        *all += pair->kernels[ray];
+        *seen += pair->visible >> ray & 1u ? pair->kernels[ray] : 0.0;
+    }
+}
+
+/* Exchange areas of the four sub-areas of a side with the whole of the other: not occluded, and
+ * as far as it is seen. */
+struct side {
+    double unoccluded[SUBAREAS], area[SUBAREAS];
+};
+
+static struct side side_by_disks(const struct pair *pair, bool of_p)
+{
+    struct side side;
+    for (int sub = 0; sub < SUBAREAS; sub++)
+        sum_kernels(pair, of_p, sub, &side.unoccluded[sub], &side.area[sub]);
+    return side;
+}
+
+/* A sub-area none of whose segments faces has no kernels to tell what is seen: then what the whole
+ * pair sees counts. */
+static struct side side_by_points(const struct pair *pair, bool of_p)
+{
+    const struct facet *own = of_p ? pair->p : pair->q, *other = of_p ? pair->q : pair->p;
+    const struct vec3 *points = of_p ? pair->bundle.from : pair->bundle.to;
+    struct side side;
+    double all[SUBAREAS], seen[SUBAREAS], all_sum = 0.0, seen_sum = 0.0;
+    for (int sub = 0; sub < SUBAREAS; sub++) {
+        sum_kernels(pair, of_p, sub, &all[sub], &seen[sub]);
+        all_sum += all[sub];
+        seen_sum += seen[sub];
+    }
+    double share = all_sum > 0.0 ? seen_sum / all_sum : 0.0;
+    for (int sub = 0; sub < SUBAREAS; sub++) {
+        double factor = point_triangle_factor(points[sub], own->plane.normal, &other->triangle);
+        side.unoccluded[sub] = 0.25 * own->area * factor;
+        side.area[sub] = side.unoccluded[sub] * (all[sub] > 0.0 ? seen[sub] / all[sub] : share);
+    }
+    return side;
+}
+
+static double sum_of(const double values[SUBAREAS])
+{
+    return (values[0] + values[1]) + (values[2] + values[3]);
+}
+
+/* The parts that the four sub-areas have in the whole: a quarter each if there is nothing. */
+static void set_parts(const struct side *side, double parts[SUBAREAS])
+{
+    double sum = sum_of(side->area);
+    for (int sub = 0; sub < SUBAREAS; sub++)
+        parts[sub] = sum > 0.0 ? side->area[sub] / sum : 0.25;
+}
+
+double exchange_guess(const struct facet *p, const struct facet *q)
+{
+    return disk_kernel(triangle_centroid(&p->triangle), p->plane.normal, p->area,
+                       triangle_centroid(&q->triangle), q->plane.normal, q->area);
+}
+
+static double radius_of(const struct triangle *t, struct vec3 centre)
+{
+    double a = vec3_length(vec3_sub(t->corner[0], centre));
+    double b = vec3_length(vec3_sub(t->corner[1], centre));
+    return fmax(a, fmax(b, vec3_length(vec3_sub(t->corner[2], centre))));
+}
+
+/* Beyond this distance, over the sum of the radii, one disk is good enough for what is little
+ * (within 10 % or so); nearer, it might say that a patch receives more than all there is. */
+static const double FAR = 1.5;
+
+static bool is_far(const struct facet *p, const struct facet *q)
+{
+    struct vec3 x = triangle_centroid(&p->triangle), y = triangle_centroid(&q->triangle);
+    double reach = radius_of(&p->triangle, x) + radius_of(&q->triangle, y);
+    return vec3_length(vec3_sub(y, x)) > FAR * reach;
+}
+
+static struct exchange exchange_by_one(const struct facet *p, const struct facet *q,
+                                       const struct octree *octree, struct sight *sight,
+                                       struct octree_counts *counts)
+{
+    double unoccluded = exchange_guess(p, q);
+    struct bundle bundle = {.asked = 1, .own = {p->input, q->input}};
+    for (int k = 0; k < SUBAREAS; k++) {
+        bundle.from[k] = triangle_centroid(&p->triangle);
+        bundle.to[k] = triangle_centroid(&q->triangle);
+    }
+    bool seen = sight->open || octree_block(octree, &bundle, &sight->blocker, counts) == 0;
+    return (struct exchange){.area = seen ? unoccluded : 0.0, .unoccluded = unoccluded,
+                             .seen = seen ? 1.0 : 0.0,
+                             .parts_p = {0.25, 0.25, 0.25, 0.25},
+                             .parts_q = {0.25, 0.25, 0.25, 0.25}};
+}
+
+static struct exchange exchange_by_all(const struct facet *p, const struct facet *q,
+                                       enum form_factor kind, enum look look,
+                                       const struct octree *octree, struct sight *sight,
+                                       struct octree_counts *counts)
+{
+    struct pair pair;
+    pair_aim(&pair, p, q);
+    pair_look(&pair, look, octree, sight, counts);
+    bool points = kind == FORM_FACTOR_POLYGON;
+    struct side side_p = points ? side_by_points(&pair, true) : side_by_disks(&pair, true);
+    struct side side_q = points ? side_by_points(&pair, false) : side_by_disks(&pair, false);
+    const struct side *smaller = p->area <= q->area ? &side_p : &side_q;
+    struct exchange exchange = {.area = sum_of(smaller->area),
+                                .unoccluded = sum_of(smaller->unoccluded)};
+    exchange.seen = exchange.unoccluded > 0.0 ? exchange.area / exchange.unoccluded : 0.0;
+    set_parts(&side_p, exchange.parts_p);
+    set_parts(&side_q, exchange.parts_q);
+    if (pair.bundle.asked != ALL_RAYS)
+        exchange.unoccluded = fmax(exchange.unoccluded, horizon_estimate(p, q));
+    return exchange;
+}
+
+struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
+                                  enum form_factor kind, enum look look,
+                                  const struct octree *octree, struct sight *sight,
                                   struct octree_counts *counts)
 {
-    double kernels[RAYS];
-    struct bundle bundle;
-    aim(p, q, &bundle, kernels);
-    unsigned blocked = octree_block(octree, &bundle, guess, counts);
-    struct exchange exchange = {0.0, 0.0};
-    for (int ray = 0; ray < RAYS; ray++) {
-        exchange.unoccluded += kernels[ray];
-        exchange.area += blocked >> ray & 1u ? 0.0 : kernels[ray];
-    }
+    struct exchange exchange = look == LOOK_ONE && is_far(p, q)
+                                   ? exchange_by_one(p, q, octree, sight, counts)
+                                   : exchange_by_all(p, q, kind, look, octree, sight, counts);
     double limit = fmin(p->area, q->area);
     if (exchange.unoccluded > limit) {
         exchange.area = fmin(limit, exchange.area * (limit / exchange.unoccluded));
         exchange.unoccluded = limit;
     }
-    if (bundle.asked != ALL_RAYS)
-        exchange.unoccluded = fmax(exchange.unoccluded, horizon_estimate(p, q));
     return exchange;
 }
 

@@ -13,6 +13,15 @@
 struct exchange {
     double area;       /* G with visibility */
     double unoccluded; /* an estimate of what G would be without blockers, >= area */
+    double seen;       /* share of the segments that arrive, weighted, 1 */
+    double parts_p[4]; /* the parts of G that go to the four children of p: sum 1 */
+    double parts_q[4]; /* and to those of q */
+};
+
+/* What is known of the visibility of a pair before it is looked at. */
+struct sight {
+    bool open;       /* proved: nothing can stand between the patches */
+    int32_t blocker; /* in and out: as *guess of octree_block() */
 };
 
 /* One patch of a pair, as the kernel needs it. */
@@ -29,11 +38,23 @@ struct facet facet_make(const struct forest *forest, int32_t patch);
  * facing exchanges no light at all. */
 bool facets_face(const struct facet *p, const struct facet *q);
 
-/* The 16-ray disk: both patches in 4 sub-areas, one ray for each pair of sub-areas that face
- * each other. `*guess` is as in octree_block(). Pre: facets_face(p, q). */
-struct exchange exchange_by_disks(const struct facet *p, const struct facet *q,
-                                  const struct octree *octree, int32_t *guess,
+/* How closely a pair is looked at. ONE: if the patches are far apart for their size, one disk
+ * and a segment from centroid to centroid decide for all.
+ * FOUR_FIRST: four segments, one from each sub-area to another, decide if they agree, else all 16
+ * do. ALL: 16. */
+enum look { LOOK_ONE, LOOK_FOUR_FIRST, LOOK_ALL };
+
+/* The exchange of a pair: visibility from segments between sub-areas that face each other, unless
+ * it is known; form factors by the disk or from points to the whole other patch.
+ * Pre: facets_face(p, q). */
+struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
+                                  enum form_factor kind, enum look look,
+                                  const struct octree *octree, struct sight *sight,
                                   struct octree_counts *counts);
+
+/* What the pair would exchange without blockers, by one disk from centroid to centroid: quick and
+ * rough, for deciding how closely to look. 0 if the centroids do not face each other. */
+double exchange_guess(const struct facet *p, const struct facet *q);
 
 /* True if it is proved that nothing of one facet sees anything of the other: one triangle stops
  * all nine segments between their corners. */

@@ -8,15 +8,55 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "rad/compact.h"
 #include "rad/formfactor.h"
 #include "rad/method.h"
 
+/* 24 bytes. `parts` say which parts of G go to (and come from) the children 0, 1 and 2 of p and
+ * those of q, in 256ths; child 3 has the rest. So a link tells the four children of a patch apart
+ * without being split itself.
+ *
+ *     area      p's children        q's children
+ *     G  x  (k0 k1 k2 k3)/256  x  (k0 k1 k2 k3)/256      both sum to 1
+ */
 struct link {
-    int32_t p, q;     /* local numbers of the two patches */
-    double area;      /* exchange area G, visibility included, square scene units */
-    float unoccluded; /* what G would be without blockers; G's doubt is the difference */
-    uint32_t cost;    /* predicted cost of splitting it, in box and triangle tests, >= 1 */
+    int32_t p, q;        /* local numbers of the two patches */
+    float area;          /* exchange area, square scene units: G, visibility included, or, if
+                            nothing is seen (seen = 0), what it would be without blockers */
+    int32_t blocker;     /* triangle that blocked last on the way here, -1: none */
+    uint8_t parts_p[3], parts_q[3];
+    uint8_t seen;        /* share of the segments' weight that arrives, in 254ths; 0 only if none
+                            does, LINK_OPEN if it is proved that nothing can stand in between */
+    uint8_t cost;        /* predicted cost of splitting it, in box and triangle tests, >= 1; short
+                            form of rad/compact.h */
 };
+
+enum { LINK_OPEN = 255, LINK_ALL_SEEN = 254 };
+
+/* Exchange area G. */
+static inline double link_area(const struct link *link)
+{
+    return link->seen ? (double)link->area : 0.0;
+}
+
+/* What G would be without blockers, within 1/500 of G or so. */
+static inline double link_unoccluded(const struct link *link)
+{
+    bool partly = link->seen > 0 && link->seen < LINK_ALL_SEEN;
+    return partly ? (double)link->area * LINK_ALL_SEEN / link->seen : (double)link->area;
+}
+
+static inline double link_cost(const struct link *link)
+{
+    return expand8(link->cost);
+}
+
+/* The part of child k, 1. */
+static inline double link_part(const uint8_t parts[3], int k)
+{
+    return k < 3 ? parts[k] * (1.0 / 256.0)
+                 : (256 - parts[0] - parts[1] - parts[2]) * (1.0 / 256.0);
+}
 
 struct link_list {
     struct link *items; /* [count] */
@@ -27,17 +67,13 @@ void link_list_append(struct link_list *list, struct link link);
 void link_list_free(struct link_list *list);
 
 /* Makes the link between two patches, given as facets too, with its form factor and its cost.
- * `inherited` is the cost of the link that it comes from, 0 for an initial link; `*guess` is as
- * in octree_block().
+ * `inherited` is the cost of the link that it comes from, 0 for an initial link; `*sight` is what
+ * is known of its visibility, and receives the last blocker.
  * False if no light can ever pass: both patches black and dark, or not facing each other. That no
  * ray arrived is no reason: such a link lives on with area 0. */
 bool link_make(struct method *method, int32_t p, const struct facet *facet_p, int32_t q,
-               const struct facet *facet_q, uint32_t inherited, int32_t *guess,
+               const struct facet *facet_q, double inherited, struct sight *sight,
                struct link *link);
-
-/* The patch of the link that the criterion wants to split, or -1 if the link is fine or neither
- * patch may be split. Reads the radiosities of the last iteration. */
-int32_t link_patch_to_split(const struct method *method, const struct link *link);
 
 /* Splits `patch` (p or q of the link) unless it is split already and makes the links of its
  * children with the other side. Returns how many there are, 0..4; none, and nothing is split, if
@@ -45,13 +81,10 @@ int32_t link_patch_to_split(const struct method *method, const struct link *link
 int link_split(struct method *method, const struct link *link, int32_t patch,
                struct link children[4]);
 
-/* Transfers light over all links: adds G B of either side to the flux of the other. Returns the
- * flux moved. */
-int64_t links_transfer(const struct link_list *list, struct forest *forest, struct flux_unit unit);
-
-/* The same with B = 1 everywhere, in band 0 only: what arrives per area is the row sum of the
- * form factors. */
-void links_transfer_ones(const struct link_list *list, struct forest *forest,
-                         struct flux_unit unit);
+/* Transfers light over all links: adds G B of either side to the flux of the other. B may have any
+ * sign. Pre: the largest |B| times the area of the scene is below FLUX_LIMIT units; then no flux
+ * can overflow, since the links of a patch lead to patches that do not overlap, and G is at most
+ * the area of each. */
+void links_transfer(const struct link_list *list, struct forest *forest, struct flux_unit unit);
 
 #endif

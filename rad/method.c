@@ -4,6 +4,23 @@
  * every colour of light. */
 #include "rad/method.h"
 
+/* The mean radiosity if all light were spread evenly in a closed scene: E / (1 - rho) of means. */
+static struct rgb typical_radiosity(const struct scene *scene)
+{
+    struct rgb emitted = {{0.0, 0.0, 0.0}}, absorbing = {{0.0, 0.0, 0.0}};
+    for (int32_t root = 0; root < scene_root_count(scene); root++) {
+        const struct material *material = scene_root_material(scene, root);
+        double area = scene_root_area(scene, root);
+        for (int c = 0; c < BANDS; c++) {
+            emitted.band[c] += area * material->emission.band[c];
+            absorbing.band[c] += area * (1.0 - material->reflectance.band[c]);
+        }
+    }
+    for (int c = 0; c < BANDS; c++)
+        emitted.band[c] /= absorbing.band[c];
+    return emitted;
+}
+
 struct method method_make(const struct scene *scene, const struct octree *octree,
                           struct forest *forest, const struct criterion *criterion)
 {
@@ -14,6 +31,7 @@ struct method method_make(const struct scene *scene, const struct octree *octree
         .criterion = *criterion,
         .flux_unit = flux_unit_choose(scene),
         .link_threshold = criterion->epsilon * scene_emitted_power(scene),
+        .typical = typical_radiosity(scene),
         .patch_threshold = criterion->min_area * scene_area(scene),
     };
 }

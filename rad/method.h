@@ -10,9 +10,19 @@
 #include "rad/flux.h"
 #include "rad/patch.h"
 
-/* When and how far links are refined, and when the iterations end. */
+enum oracle { ORACLE_BF, ORACLE_ERROR };                      /* rad/oracle.h */
+enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON };    /* rad/formfactor.h */
+enum closure_kind { CLOSURE_NONE, CLOSURE_ROWS, CLOSURE_SYMMETRIC }; /* rad/closure.h */
+enum solver_kind { SOLVER_JACOBI, SOLVER_CG };                    /* rad/conjugate.h */
+
+/* How links are evaluated, when and how far they are refined, and when the iterations end. */
 struct criterion {
-    double epsilon;         /* energy of a link that splits it, relative to the emitted power */
+    enum oracle oracle;
+    enum form_factor form_factor;
+    enum closure_kind closure;
+    enum solver_kind solver;
+    double epsilon;         /* energy or error of a link that splits it, relative to the emitted
+                               power */
     double min_area;        /* smallest patch, relative to the scene's area */
     int max_level;          /* deepest subdivision, 0..ID_MAX_LEVEL */
     double alpha;           /* share of its parent's cost in the cost of a link, 0..1 */
@@ -28,6 +38,7 @@ struct method {
     struct flux_unit flux_unit;
     double link_threshold;  /* W, areas in square scene units: epsilon times the emitted power */
     double patch_threshold; /* square scene units: no patch smaller than this is made */
+    struct rgb typical;     /* a guess at the mean radiosity, W/m^2, before there is an answer */
     struct octree_counts counts; /* work of this rank so far */
 };
 

@@ -14,6 +14,8 @@ struct forest *forest_create(const struct scene *scene)
     forest->root_count = scene_root_count(scene);
     forest->patches = alloc_reserve(NULL, &forest->capacity, forest->root_count,
                                     sizeof *forest->patches);
+    forest->extremes = alloc_reserve(NULL, &forest->extremes_capacity, forest->root_count,
+                                     sizeof *forest->extremes);
     forest->count = forest->root_count;
     for (int32_t root = 0; root < forest->root_count; root++)
         forest->patches[root] = (struct patch){
@@ -29,6 +31,7 @@ void forest_destroy(struct forest *forest)
     if (!forest)
         return;
     alloc_free(forest->patches);
+    alloc_free(forest->extremes);
     alloc_free(forest);
 }
 
@@ -40,8 +43,13 @@ void forest_split(struct forest *forest, int32_t patch)
         alloc_fail(SIZE_MAX); /* local numbers end at 2^31 patches, 128 GiB */
     forest->patches = alloc_reserve(forest->patches, &forest->capacity, forest->count + 4,
                                     sizeof *forest->patches);
+    forest->extremes = alloc_reserve(forest->extremes, &forest->extremes_capacity,
+                                     forest->count + 4, sizeof *forest->extremes);
     struct patch *parent = &forest->patches[patch];
+    float brightness = (float)rgb_sum(parent->radiosity);
     parent->children = (int32_t)forest->count;
+    for (int k = 0; k < 4; k++)
+        forest->extremes[forest->count + k] = (struct extremes){brightness, brightness};
     for (int k = 0; k < 4; k++)
         forest->patches[forest->count++] = (struct patch){
             .radiosity = parent->radiosity,
@@ -76,6 +84,21 @@ double forest_area(const struct forest *forest, int32_t patch)
     struct patch_id id = forest->patches[patch].id;
     double share = 1.0 / (double)(UINT32_C(1) << (2 * id_level(id)));
     return scene_root_area(forest->scene, (int32_t)id.root) * share;
+}
+
+struct rgb *forest_keep(const struct forest *forest)
+{
+    struct rgb *kept = alloc_array((size_t)forest->count, sizeof *kept);
+    for (int64_t p = 0; p < forest->count; p++)
+        kept[p] = forest->patches[p].radiosity;
+    return kept;
+}
+
+void forest_restore(struct forest *forest, struct rgb *kept)
+{
+    for (int64_t p = 0; p < forest->count; p++)
+        forest->patches[p].radiosity = kept[p];
+    alloc_free(kept);
 }
 
 static int64_t count_patches(const struct forest *forest, bool leaves_only)

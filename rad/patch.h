@@ -20,10 +20,16 @@ struct patch {
     int32_t children;       /* local number of child 0 (1..3 follow it), 0 for a leaf */
 };
 
+/* Least and most radiosity, summed over bands, of the leaves below a patch, W/m^2. */
+struct extremes {
+    float low, high;
+};
+
 struct forest {
     const struct scene *scene; /* borrowed */
     struct patch *patches;     /* [count] */
-    int64_t count, capacity;
+    struct extremes *extremes; /* [count] as of the last forest_pull(); a new patch's are equal */
+    int64_t count, capacity, extremes_capacity;
     int32_t root_count;
 };
 
@@ -54,6 +60,11 @@ static inline const struct material *forest_material(const struct forest *forest
 {
     return scene_root_material(forest->scene, (int32_t)forest->patches[patch].id.root);
 }
+
+/* A copy of all radiosities, and putting it back (which frees it): B makes room for what else is
+ * to be transferred. No patch may be split in between. */
+struct rgb *forest_keep(const struct forest *forest);
+void forest_restore(struct forest *forest, struct rgb *kept);
 
 /* Number of leaves under all roots that have an area. */
 int64_t forest_leaf_count(const struct forest *forest);

@@ -41,24 +41,28 @@ struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flu
 }
 
 /* Gives a leaf its new radiosity and adds what that means to the sums. Returns the change. */
-static int64_t update_leaf(const struct method *method, int32_t leaf, bool *touched,
+static int64_t update_leaf(const struct method *method, const struct closure *closure,
+                           struct flux_unit flux, int32_t leaf, bool *touched,
                            struct push_pull_sums *sums)
 {
     struct patch *patch = &method->forest->patches[leaf];
     const struct material *material = forest_material(method->forest, leaf);
-    struct rgb irradiance = leaf_irradiance(method->forest, leaf, method->flux_unit);
+    struct rgb irradiance = leaf_irradiance(method->forest, leaf, flux);
     double area = forest_area(method->forest, leaf);
-    double light = 0.0, absorbed = 0.0, change = 0.0;
+    double light = 0.0, absorbed = 0.0, arriving = 0.0, change = 0.0;
     for (int c = 0; c < BANDS; c++) {
-        double rho = material->reflectance.band[c], h = irradiance.band[c];
+        double rho = material->reflectance.band[c];
+        double h = closure_receives(closure, leaf) * irradiance.band[c];
         double b = material->emission.band[c] + rho * h;
         light += area * b;
         absorbed += area * ((1.0 - rho) * h);
+        arriving += area * h;
         change += area * fabs(b - patch->radiosity.band[c]);
         *touched = *touched || b != patch->radiosity.band[c];
         patch->radiosity.band[c] = b;
     }
     sums->light = flux_add(sums->light, flux_from_watts(method->flux_unit, light));
+    sums->arriving = flux_add(sums->arriving, flux_from_watts(method->flux_unit, arriving));
     sums->absorbed = flux_add(sums->absorbed, flux_from_watts(method->flux_unit, absorbed));
     return flux_from_watts(method->flux_unit, change);
 }
@@ -77,9 +81,24 @@ static void pull(struct forest *forest, const bool *own)
     }
 }
 
+void forest_average(struct forest *forest)
+{
+    pull(forest, NULL);
+}
+
 void forest_pull(struct forest *forest)
 {
     pull(forest, NULL);
+    for (int64_t p = forest->count - 1; p >= 0; p--) {
+        const struct patch *patch = &forest->patches[p];
+        float brightness = (float)rgb_sum(patch->radiosity);
+        struct extremes *own = &forest->extremes[p], *child = &forest->extremes[patch->children];
+        *own = (struct extremes){brightness, brightness};
+        for (int k = 0; k < 4 && !patch_is_leaf(patch); k++) {
+            own->low = fminf(own->low, child[k].low);
+            own->high = fmaxf(own->high, child[k].high);
+        }
+    }
 }
 
 static double largest_shrink(const struct method *method, const bool *own, const int64_t *before,
@@ -99,7 +118,8 @@ static double largest_shrink(const struct method *method, const bool *own, const
     return largest;
 }
 
-struct push_pull_sums push_pull(const struct method *method, const bool *own, bool *touched,
+struct push_pull_sums push_pull(const struct method *method, const struct closure *closure,
+                                struct flux_unit flux, const bool *own, bool *touched,
                                 int64_t *root_change)
 {
     struct forest *forest = method->forest;
@@ -110,11 +130,9 @@ struct push_pull_sums push_pull(const struct method *method, const bool *own, bo
         uint32_t root = patch->id.root;
         if (!own[root] || scene_root_area(method->scene, (int32_t)root) <= 0.0)
             continue;
-        for (int c = 0; c < BANDS; c++)
-            sums.diverged = sums.diverged || patch->flux[c] >= FLUX_LIMIT;
         if (!patch_is_leaf(patch))
             continue;
-        int64_t change = update_leaf(method, (int32_t)p, &touched[root], &sums);
+        int64_t change = update_leaf(method, closure, flux, (int32_t)p, &touched[root], &sums);
         now[root] = flux_add(now[root], change);
         sums.change = flux_add(sums.change, change);
     }
@@ -131,30 +149,4 @@ void forest_clear_flux(struct forest *forest)
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
             forest->patches[p].flux[c] = 0;
-}
-
-struct closure_sums closure_measure(const struct forest *forest, const bool *own,
-                                    struct flux_unit unit)
-{
-    struct closure_sums sums = {.min = HUGE_VAL, .max = -HUGE_VAL};
-    for (int64_t p = 0; p < forest->count; p++) {
-        const struct patch *patch = &forest->patches[p];
-        double area = forest_area(forest, (int32_t)p);
-        if (!own[patch->id.root] || !patch_is_leaf(patch) || area <= 0.0 ||
-            material_is_dark(forest_material(forest, (int32_t)p)))
-            continue;
-        double row = leaf_irradiance(forest, (int32_t)p, unit).band[0];
-        sums.min = fmin(sums.min, row);
-        sums.max = fmax(sums.max, row);
-        sums.area = flux_add(sums.area, flux_from_watts(unit, area));
-        sums.rows = flux_add(sums.rows, flux_from_watts(unit, area * row));
-        sums.squares = flux_add(sums.squares,
-                                flux_from_watts(unit, area * (row - 1.0) * (row - 1.0)));
-    }
-    return sums;
-}
-
-struct flux_unit closure_unit(const struct scene *scene)
-{
-    return flux_unit_for(16.0 * scene_area(scene));
 }

@@ -31,10 +31,14 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
     solver_assign_roots(s.solver);
     do {
         solver_refine(s.solver);
-        solver_gather(s.solver);
-        solver_push_pull(s.solver);
-        solver_scatter(s.solver);
-        s.vote = solver_vote(s.solver);
+        solver_close(s.solver);
+        do {
+            solver_transfer(s.solver);
+            solver_gather(s.solver);
+            solver_push_pull(s.solver);
+            solver_scatter(s.solver);
+            s.vote = solver_vote(s.solver);
+        } while (s.vote.again);
     } while (!s.vote.converged && !s.vote.diverged &&
              s.solver->iteration < criterion.max_iterations);
     s.seconds = comm_seconds() - start;

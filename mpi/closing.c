@@ -1,0 +1,118 @@
+/* Between refinement and transfer: the row sums of the links there are, and the closure.
+ *
+ * B = 1 is transferred like light; what arrives per area is a leaf's row sum R. --closure rows:
+ * an enclosed leaf receives 1 / R of what its links bring, so that its row sums to 1.
+ * --closure symmetric: factors d on both sides with d_i (F d)_i = 1 (Sinkhorn's scaling of a
+ * symmetric matrix), by d <- sqrt(d / (F d)), which halves the error each time or better; the
+ * corrected form factors still obey A_i F_ij = A_j F_ji. */
+#include "mpi/solver.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+
+enum { ROUNDS = 60 };
+
+static const double CLOSED = 1e-9; /* a row sum this close to 1 needs no further round */
+
+/* Transfers B = 1, times what senders are corrected by, and brings it home. */
+static void transfer_ones(struct solver *solver)
+{
+    struct forest *forest = solver->method.forest;
+    for (int64_t p = 0; p < forest->count; p++)
+        forest->patches[p].radiosity = (struct rgb){{1.0, 0.0, 0.0}};
+    solver_transfer(solver);
+    solver_gather(solver);
+}
+
+static bool is_own_leaf(const struct solver *solver, int64_t p)
+{
+    const struct patch *patch = &solver->method.forest->patches[p];
+    return solver->own[patch->id.root] && patch_is_leaf(patch) &&
+           scene_root_area(solver->method.scene, (int32_t)patch->id.root) > 0.0;
+}
+
+/* One round: renews the factors of own leaves that are to be closed. Returns the largest
+ * deviation of a corrected row sum from 1 before it. */
+static double renew_factors(struct solver *solver)
+{
+    struct closure *closure = &solver->closure;
+    double off = 0.0;
+    for (int64_t p = 0; p < closure->count; p++) {
+        if (!is_own_leaf(solver, p) || !closure_is_due(closure, &solver->method, (int32_t)p))
+            continue;
+        double row = leaf_irradiance(solver->method.forest, (int32_t)p, solver->flux).band[0];
+        if (!(row > 0.0))
+            continue;
+        double d = closure->factor[p];
+        bool symmetric = closure->kind == CLOSURE_SYMMETRIC;
+        off = fmax(off, fabs(d * row - 1.0));
+        closure->factor[p] = symmetric ? sqrt(d / row) : 1.0 / row;
+    }
+    return comm_largest(solver->comm, off);
+}
+
+/* The factors of all leaves go to all ranks, as radiosities. */
+static void scatter_factors(struct solver *solver)
+{
+    struct forest *forest = solver->method.forest;
+    for (int64_t p = 0; p < forest->count; p++)
+        for (int c = 0; c < BANDS; c++)
+            forest->patches[p].radiosity.band[c] = solver->closure.factor[p];
+    for (int32_t root = 0; root < forest->root_count; root++)
+        solver->touched[root] = true;
+    solver_scatter(solver);
+    for (int64_t p = 0; p < forest->count; p++)
+        solver->closure.factor[p] = forest->patches[p].radiosity.band[0];
+}
+
+static void close_symmetrically(struct solver *solver)
+{
+    for (int round = 0; round < ROUNDS; round++) {
+        transfer_ones(solver);
+        double off = renew_factors(solver);
+        scatter_factors(solver);
+        if (off <= CLOSED)
+            return;
+    }
+}
+
+/* Largest corrected row sum, and that times the largest reflectance of the leaf; both over all
+ * leaves of all ranks. */
+static void bound_rows(struct solver *solver)
+{
+    const struct method *method = &solver->method;
+    double gain = 1.0, shrink = 0.0, weight = 1.0;
+    for (int64_t p = 0; p < method->forest->count; p++) {
+        if (!is_own_leaf(solver, p))
+            continue;
+        int32_t leaf = (int32_t)p;
+        double row = closure_receives(&solver->closure, leaf) *
+                     leaf_irradiance(method->forest, leaf, solver->flux).band[0];
+        struct rgb rho = forest_material(method->forest, leaf)->reflectance;
+        gain = fmax(gain, row);
+        shrink = fmax(shrink, row * fmax(rho.band[0], fmax(rho.band[1], rho.band[2])));
+        weight = fmax(weight, closure_weight(&solver->closure, leaf));
+    }
+    solver->gain = comm_largest(solver->comm, gain);
+    solver->shrink = comm_largest(solver->comm, shrink);
+    solver->weight = comm_largest(solver->comm, weight);
+}
+
+void solver_close(struct solver *solver)
+{
+    const struct criterion *criterion = &solver->method.criterion;
+    struct forest *forest = solver->method.forest;
+    closure_extend(&solver->closure, forest);
+    conjugate_extend(&solver->conjugate, forest);
+    if (criterion->closure == CLOSURE_NONE && criterion->solver == SOLVER_JACOBI)
+        return;
+    struct rgb *kept = forest_keep(forest);
+    if (criterion->closure == CLOSURE_SYMMETRIC)
+        close_symmetrically(solver);
+    transfer_ones(solver);
+    if (criterion->closure == CLOSURE_ROWS)
+        renew_factors(solver);
+    bound_rows(solver);
+    forest_restore(forest, kept);
+}

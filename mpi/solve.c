@@ -1,0 +1,122 @@
+/* Steps 5 and 6 for both solvers: the transfer of light over the links there are, and what is made
+ * of it at home. Jacobi, the paper's: B = E + rho H, and the next refinement. Conjugate gradients:
+ * one step (rad/conjugate.c), until the bound on what is still missing is small enough. */
+#include "mpi/solver.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+
+/* --- the transfer of light --- */
+
+static double largest_radiosity(const struct forest *forest)
+{
+    double largest = 1e-290;
+    for (int64_t p = 0; p < forest->count; p++)
+        for (int c = 0; c < BANDS; c++)
+            largest = fmax(largest, fabs(forest->patches[p].radiosity.band[c]));
+    return largest;
+}
+
+/* What leaves send with --closure symmetric. */
+static void correct_senders(struct forest *forest, const struct closure *closure)
+{
+    for (int64_t p = 0; p < forest->count; p++)
+        for (int c = 0; c < BANDS && patch_is_leaf(&forest->patches[p]); c++)
+            forest->patches[p].radiosity.band[c] *= closure_sends(closure, (int32_t)p);
+    forest_average(forest);
+}
+
+void solver_transfer(struct solver *solver)
+{
+    double start = comm_seconds();
+    struct forest *forest = solver->method.forest;
+    bool corrects = solver->closure.kind == CLOSURE_SYMMETRIC;
+    struct rgb *kept = corrects ? forest_keep(forest) : NULL;
+    if (corrects)
+        correct_senders(forest, &solver->closure);
+    forest_clear_flux(forest);
+    solver->flux = flux_unit_for(largest_radiosity(forest) * scene_area(solver->method.scene));
+    links_transfer(&solver->links, forest, solver->flux);
+    if (corrects)
+        forest_restore(forest, kept);
+    solver->seconds[PHASE_SOLVE] += comm_seconds() - start;
+}
+
+/* --- conjugate gradients --- */
+
+static void start_conjugate(struct solver *solver)
+{
+    struct conjugate *cg = &solver->conjugate;
+    conjugate_start(cg, &solver->method, solver->own, &solver->closure, solver->flux);
+    struct flux_unit any = flux_unit_for(1.0);
+    double own = conjugate_sum(cg, &solver->method, solver->own, &solver->closure, any).largest;
+    solver->bound_residual = comm_largest(solver->comm, own);
+    solver->bound_image = 0.0;
+    for (int c = 0; c < BANDS; c++)
+        solver->step_before[c] = 0.0;
+}
+
+/* <K z, z> over all ranks, W^2 m^-2. */
+static void multiply(struct solver *solver, double bound, double product[BANDS])
+{
+    struct flux_unit unit = conjugate_unit(solver->method.scene, bound, solver->bound_residual,
+                                           solver->weight);
+    int64_t own[BANDS] = {0, 0, 0}, all[BANDS];
+    conjugate_apply(&solver->conjugate, &solver->method, solver->own, &solver->closure,
+                    solver->flux, unit, own);
+    MPI_Request request;
+    MPI_Iallreduce(own, all, BANDS, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
+    comm_wait(&request);
+    for (int c = 0; c < BANDS; c++)
+        product[c] = flux_to_watts(unit, all[c]);
+}
+
+static void step_conjugate(struct solver *solver)
+{
+    double image = solver->bound_residual * (1.0 + solver->gain);
+    double delta[BANDS], turn[BANDS] = {0.0}, step[BANDS] = {0.0};
+    double longest_turn = 0.0, longest_step = 0.0;
+    multiply(solver, image, delta);
+    for (int c = 0; c < BANDS; c++) {
+        double gamma = solver->gamma[c], before = solver->step_before[c];
+        if (!(gamma > 0.0))
+            continue;
+        turn[c] = before > 0.0 ? gamma / solver->gamma_before[c] : 0.0;
+        double bend = delta[c] - (before > 0.0 ? turn[c] * gamma / before : 0.0);
+        solver->diverged = solver->diverged || !(bend > 0.0);
+        step[c] = bend > 0.0 ? gamma / bend : 0.0;
+        solver->least_bend = fmin(solver->least_bend, delta[c] / gamma);
+        longest_turn = fmax(longest_turn, turn[c]);
+        longest_step = fmax(longest_step, step[c]);
+        solver->gamma_before[c] = gamma;
+        solver->step_before[c] = step[c];
+    }
+    conjugate_advance(&solver->conjugate, &solver->method, solver->own, turn, step);
+    solver->bound_image = image + longest_turn * solver->bound_image;
+    solver->bound_residual += longest_step * solver->bound_image;
+}
+
+static void push_pull_conjugate(struct solver *solver)
+{
+    if (solver->fresh)
+        start_conjugate(solver);
+    else
+        step_conjugate(solver);
+    solver->fresh = false;
+    conjugate_publish(&solver->conjugate, &solver->method, solver->own, false);
+    for (int32_t root = 0; root < solver->method.forest->root_count; root++)
+        solver->touched[root] = solver->own[root];
+}
+
+void solver_push_pull(struct solver *solver)
+{
+    double start = comm_seconds();
+    solver->iteration++;
+    if (solver->method.criterion.solver == SOLVER_CG)
+        push_pull_conjugate(solver);
+    else
+        solver->sums = push_pull(&solver->method, &solver->closure, solver->flux, solver->own,
+                                 solver->touched, solver->root_change);
+    solver->seconds[PHASE_PUSH_PULL] += comm_seconds() - start;
+}

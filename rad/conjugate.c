@@ -1,0 +1,171 @@
+/* Conjugate gradients.
+ *
+ * F maps radiosities of leaves to irradiances; A F is symmetric, since links are. With closure
+ * F' = d F d', d for what a leaf receives and d' for what it sends, and with the scalar product
+ *
+ *     <x, y> = sum over leaves of w x y,   w = A rho d' / d,
+ *
+ * K = 1 - F' rho is self-adjoint, and positive where row sums times rho are below 1: w F' rho =
+ * rho d' (A F) d' rho. So conjugate gradients apply to K as it stands, without square roots of
+ * rho, and surfaces that reflect nothing take no part: their w is 0. The three bands are three
+ * systems, solved side by side.
+ *
+ * In the form of Chronopoulos and Gear one step costs one transfer of light and two exchanges of
+ * a few numbers: with w = K z, gamma = <z, z>, delta = <w, z>,
+ *
+ *     turn = gamma / gamma_before            p = z + turn p       K p = w + turn K p
+ *     step = gamma / (delta - turn gamma / step_before)           H += step p   z -= step K p.
+ *
+ * Products are summed as integers in a unit that is chosen from bounds on their factors, so they
+ * are the same on any number of ranks, and so is every bit of the result. Jacobi's method, the
+ * paper's, gains a factor rho per iteration; this one needs some ten iterations for any rho. */
+#include "rad/conjugate.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "rad/pushpull.h"
+
+void conjugate_free(struct conjugate *cg)
+{
+    alloc_free(cg->irradiance);
+    alloc_free(cg->residual);
+    alloc_free(cg->work);
+    alloc_free(cg->direction);
+    alloc_free(cg->image);
+    *cg = (struct conjugate){0};
+}
+
+void conjugate_extend(struct conjugate *cg, const struct forest *forest)
+{
+    struct rgb **vectors[5] = {&cg->irradiance, &cg->residual, &cg->work, &cg->direction,
+                               &cg->image};
+    for (int i = 0; i < 5; i++)
+        *vectors[i] = alloc_reserve(*vectors[i], &cg->capacity[i], forest->count,
+                                    sizeof **vectors[i]);
+    for (int64_t p = cg->count; p < forest->count; p++) {
+        int32_t parent = forest->patches[p].parent;
+        cg->irradiance[p] = parent >= 0 ? cg->irradiance[parent] : (struct rgb){{0.0, 0.0, 0.0}};
+    }
+    cg->count = forest->count;
+}
+
+struct flux_unit conjugate_unit(const struct scene *scene, double a, double b, double weight)
+{
+    return flux_unit_for(fmax(a * b * weight * scene_area(scene), 1e-290));
+}
+
+static bool is_own_leaf(const struct method *method, const bool *own, int64_t p)
+{
+    const struct patch *patch = &method->forest->patches[p];
+    return own[patch->id.root] && patch_is_leaf(patch) &&
+           scene_root_area(method->scene, (int32_t)patch->id.root) > 0.0;
+}
+
+/* w of the scalar product, without rho. */
+static double weight_of(const struct method *method, const struct closure *closure, int32_t leaf)
+{
+    return forest_area(method->forest, leaf) * closure_weight(closure, leaf);
+}
+
+void conjugate_start(struct conjugate *cg, const struct method *method, const bool *own,
+                     const struct closure *closure, struct flux_unit flux)
+{
+    for (int64_t p = 0; p < cg->count; p++) {
+        if (!is_own_leaf(method, own, p))
+            continue;
+        int32_t leaf = (int32_t)p;
+        const struct material *material = forest_material(method->forest, leaf);
+        struct rgb h = leaf_irradiance(method->forest, leaf, flux);
+        for (int c = 0; c < BANDS; c++) {
+            double now = closure_receives(closure, leaf) * h.band[c];
+            if (material->reflectance.band[c] == 0.0)
+                cg->irradiance[p].band[c] = now;
+            cg->residual[p].band[c] = now - cg->irradiance[p].band[c];
+            cg->direction[p].band[c] = cg->image[p].band[c] = 0.0;
+        }
+    }
+}
+
+void conjugate_apply(struct conjugate *cg, const struct method *method, const bool *own,
+                     const struct closure *closure, struct flux_unit flux, struct flux_unit unit,
+                     int64_t product[BANDS])
+{
+    for (int64_t p = 0; p < cg->count; p++) {
+        if (!is_own_leaf(method, own, p))
+            continue;
+        int32_t leaf = (int32_t)p;
+        const struct material *material = forest_material(method->forest, leaf);
+        struct rgb h = leaf_irradiance(method->forest, leaf, flux);
+        double weight = weight_of(method, closure, leaf);
+        for (int c = 0; c < BANDS; c++) {
+            double z = cg->residual[p].band[c];
+            double w = z - closure_receives(closure, leaf) * h.band[c];
+            cg->work[p].band[c] = w;
+            product[c] += flux_from_watts(unit, weight * material->reflectance.band[c] * (w * z));
+        }
+    }
+}
+
+void conjugate_advance(struct conjugate *cg, const struct method *method, const bool *own,
+                       const double turn[BANDS], const double step[BANDS])
+{
+    for (int64_t p = 0; p < cg->count; p++) {
+        if (!is_own_leaf(method, own, p))
+            continue;
+        const struct material *material = forest_material(method->forest, (int32_t)p);
+        for (int c = 0; c < BANDS; c++) {
+            if (material->reflectance.band[c] == 0.0)
+                continue;
+            double *direction = &cg->direction[p].band[c], *image = &cg->image[p].band[c];
+            *direction = cg->residual[p].band[c] + turn[c] * *direction;
+            *image = cg->work[p].band[c] + turn[c] * *image;
+            cg->irradiance[p].band[c] += step[c] * *direction;
+            cg->residual[p].band[c] -= step[c] * *image;
+        }
+    }
+}
+
+void conjugate_publish(const struct conjugate *cg, struct method *method, const bool *own,
+                       bool final)
+{
+    for (int64_t p = 0; p < cg->count; p++) {
+        if (!is_own_leaf(method, own, p))
+            continue;
+        const struct material *material = forest_material(method->forest, (int32_t)p);
+        for (int c = 0; c < BANDS; c++) {
+            double rho = material->reflectance.band[c];
+            method->forest->patches[p].radiosity.band[c] =
+                final ? material->emission.band[c] + rho * cg->irradiance[p].band[c]
+                      : rho * cg->residual[p].band[c];
+        }
+    }
+}
+
+struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct method *method,
+                                    const bool *own, const struct closure *closure,
+                                    struct flux_unit unit)
+{
+    struct conjugate_sums sums = {0};
+    for (int64_t p = 0; p < cg->count; p++) {
+        if (!is_own_leaf(method, own, p))
+            continue;
+        int32_t leaf = (int32_t)p;
+        const struct material *material = forest_material(method->forest, leaf);
+        double area = forest_area(method->forest, leaf), weight = weight_of(method, closure, leaf);
+        double light = 0.0, absorbed = 0.0, arriving = 0.0;
+        for (int c = 0; c < BANDS; c++) {
+            double rho = material->reflectance.band[c], h = cg->irradiance[p].band[c];
+            double z = cg->residual[p].band[c];
+            light += area * (material->emission.band[c] + rho * h);
+            absorbed += area * ((1.0 - rho) * h);
+            arriving += area * (h + z);
+            sums.square[c] += flux_from_watts(unit, weight * rho * (z * z));
+            sums.largest = fmax(sums.largest, rho > 0.0 ? fabs(z) : 0.0);
+        }
+        sums.light += flux_from_watts(method->flux_unit, light);
+        sums.absorbed += flux_from_watts(method->flux_unit, absorbed);
+        sums.arriving += flux_from_watts(method->flux_unit, arriving);
+    }
+    return sums;
+}

@@ -1,0 +1,62 @@
+/* Conjugate gradients for the irradiances of the leaves of a rank's own roots.
+ *
+ * The equation is K H = F' E with K = 1 - F' rho: H is irradiance, W/m^2, and F' the form factors
+ * with their closure. Vectors have three bands per patch; only those of own leaves mean anything.
+ * Every function works on own leaves alone; what all ranks have to add is returned as integers. */
+#ifndef RAD_CONJUGATE_H
+#define RAD_CONJUGATE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "rad/closure.h"
+#include "rad/method.h"
+
+struct conjugate {
+    struct rgb *irradiance; /* H, W/m^2; [count], like the others by local patch number */
+    struct rgb *residual;   /* z = F' B - H, with B = E + rho H */
+    struct rgb *work;       /* K z */
+    struct rgb *direction;  /* p */
+    struct rgb *image;      /* K p */
+    int64_t count, capacity[5];
+};
+
+/* What one rank's leaves add up to. */
+struct conjugate_sums {
+    int64_t square[BANDS];             /* <z, z> in the unit asked for */
+    int64_t light, absorbed, arriving; /* A B, A (1 - rho) H, A (H + z) over leaves and bands, in
+                                          units of method.flux_unit */
+    double largest;                    /* largest |z| */
+};
+
+void conjugate_free(struct conjugate *cg);
+
+/* Makes room for all patches; new ones inherit H from their parents. */
+void conjugate_extend(struct conjugate *cg, const struct forest *forest);
+
+/* The unit in which scalar products of vectors that are nowhere larger than a and b are summed.
+ * `weight`: the largest closure_weight(). */
+struct flux_unit conjugate_unit(const struct scene *scene, double a, double b, double weight);
+
+/* After B has been transferred: z = F' B - H. Where nothing is reflected, H = F' B and z = 0. */
+void conjugate_start(struct conjugate *cg, const struct method *method, const bool *own,
+                     const struct closure *closure, struct flux_unit flux);
+
+/* After rho z has been transferred: work = K z. Adds <work, z> to `product`. */
+void conjugate_apply(struct conjugate *cg, const struct method *method, const bool *own,
+                     const struct closure *closure, struct flux_unit flux, struct flux_unit unit,
+                     int64_t product[BANDS]);
+
+/* p = z + turn p, K p = work + turn K p, H += step p, z -= step K p. */
+void conjugate_advance(struct conjugate *cg, const struct method *method, const bool *own,
+                       const double turn[BANDS], const double step[BANDS]);
+
+/* Makes rho z the radiosity of the own leaves, or B if `final`. */
+void conjugate_publish(const struct conjugate *cg, struct method *method, const bool *own,
+                       bool final);
+
+struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct method *method,
+                                    const bool *own, const struct closure *closure,
+                                    struct flux_unit unit);
+
+#endif

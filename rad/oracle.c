@@ -1,0 +1,196 @@
+/* The oracles.
+ *
+ * --oracle bf, the paper's (Sec. 2.2 and 3.3): a link whose exchanged energy is above a threshold
+ * has its larger patch split. Two refinements of the wording:
+ *
+ *  - The energy is that of the unobstructed exchange, G_u B. With visibility in it, a link none
+ *    of whose 16 rays arrives would have no energy and never be looked at again; what passes
+ *    the blocker's edge would be lost whatever the threshold.
+ *  - A direction counts only if its receiver reflects. Splitting patches under light that a
+ *    black surface swallows changes no picture.
+ *
+ * If the larger patch may not be split any further the smaller one is, as long as it may.
+ *
+ * --oracle error: a link is split for what is wrong with it. On the way from q to p, light is
+ * misplaced by
+ *
+ *     rho_p B_q dG_p       the form factor varies over p: splitting p mends it,
+ *     rho_p G dB_q         the radiosity varies over q: splitting q mends it,
+ *
+ * with dG_p the spread of G over the sub-areas of p (shadows that begin or end on p are in it) and
+ * dB_q the range of radiosity over the leaves of q; likewise from p to q. The link itself tells the
+ * four children of p apart (rad/link.h). So the spread over p is first of all a reason to give p
+ * children, which costs no ray; what is left then is the spread within each child, about half as
+ * large, and the range within each child of q. A sampled link may be wrong about what it did not
+ * see: a part of what G would be is in doubt, less if all segments agree, nothing if the way is
+ * proved to be open. All these are powers; their sum is compared with the threshold, and the side
+ * that causes more of it is split. */
+#include "rad/oracle.h"
+
+#include <math.h>
+
+
+static bool patch_may_split(const struct method *method, int32_t patch)
+{
+    const struct forest *forest = method->forest;
+    return id_level(forest->patches[patch].id) < method->criterion.max_level &&
+           0.25 * forest_area(forest, patch) >= method->patch_threshold;
+}
+
+/* The larger patch; of equal ones that with the lower ID. */
+static bool p_goes_first(const struct forest *forest, const struct link *link)
+{
+    double area_p = forest_area(forest, link->p), area_q = forest_area(forest, link->q);
+    if (area_p != area_q)
+        return area_p > area_q;
+    return id_compare(forest->patches[link->p].id, forest->patches[link->q].id) < 0;
+}
+
+/* --- the paper's --- */
+
+static double energy_sent(const struct forest *forest, int32_t from, int32_t to, double area)
+{
+    if (rgb_sum(forest_material(forest, to)->reflectance) == 0.0)
+        return 0.0;
+    return area * rgb_sum(forest->patches[from].radiosity);
+}
+
+static int32_t split_by_energy(const struct method *method, const struct link *link)
+{
+    const struct forest *forest = method->forest;
+    double area = link_unoccluded(link);
+    if (energy_sent(forest, link->p, link->q, area) <= method->link_threshold &&
+        energy_sent(forest, link->q, link->p, area) <= method->link_threshold)
+        return -1;
+    bool p_first = p_goes_first(forest, link);
+    int32_t first = p_first ? link->p : link->q, second = p_first ? link->q : link->p;
+    return patch_may_split(method, first) ? first : patch_may_split(method, second) ? second : -1;
+}
+
+/* --- by error --- */
+
+/* Sum over bands of rho B: what the receiver makes of the sender's light, W/m^2. */
+static double light_reflected(const struct forest *forest, int32_t from, int32_t to)
+{
+    struct rgb b = forest->patches[from].radiosity, rho = forest_material(forest, to)->reflectance;
+    return rho.band[0] * b.band[0] + rho.band[1] * b.band[1] + rho.band[2] * b.band[2];
+}
+
+static double mean_reflectance(const struct forest *forest, int32_t patch)
+{
+    return rgb_sum(forest_material(forest, patch)->reflectance) / BANDS;
+}
+
+/* Part of the exchange that is in doubt when segments disagree, and when all agree; part of the
+ * spread over a patch that is left within its children. The errors that come of half or twice
+ * these at the same number of links differ by less than a tenth (Cornell box). */
+static const double DOUBT_MIXED = 0.25, DOUBT_AGREED = 0.125, SPREAD_LEFT = 0.5;
+
+static double doubt_of(const struct link *link)
+{
+    if (link->seen == LINK_OPEN)
+        return 0.0;
+    bool agreed = link->seen == 0 || link->seen == LINK_ALL_SEEN;
+    return link_unoccluded(link) * (agreed ? DOUBT_AGREED : DOUBT_MIXED);
+}
+
+/* Largest less smallest part, as an exchange area if all of the patch were like that. */
+static double spread_of(const struct link *link, const uint8_t parts[3])
+{
+    double least = 1.0, most = 0.0;
+    for (int k = 0; k < 4; k++) {
+        least = fmin(least, link_part(parts, k));
+        most = fmax(most, link_part(parts, k));
+    }
+    return 4.0 * (most - least) * link_area(link);
+}
+
+/* Largest range of radiosity within a child. */
+static double range_within(const struct forest *forest, int32_t patch)
+{
+    double range = 0.0;
+    int32_t children = forest->patches[patch].children;
+    for (int k = 0; k < 4 && children > 0; k++) {
+        struct extremes e = forest->extremes[children + k];
+        range = fmax(range, (double)(e.high - e.low));
+    }
+    return range;
+}
+
+/* What one side causes: spread of what it receives within its children, range of what it sends. */
+static double error_of(const struct method *method, const struct link *link, int32_t own,
+                       int32_t other, const uint8_t parts[3], double light)
+{
+    const struct forest *forest = method->forest;
+    return SPREAD_LEFT * spread_of(link, parts) * light +
+           link_area(link) * mean_reflectance(forest, other) * range_within(forest, own);
+}
+
+static int32_t split_by_error(const struct method *method, const struct link *link)
+{
+    const struct forest *forest = method->forest;
+    double to_p = light_reflected(forest, link->q, link->p);
+    double to_q = light_reflected(forest, link->p, link->q);
+    double error_p = error_of(method, link, link->p, link->q, link->parts_p, to_p);
+    double error_q = error_of(method, link, link->q, link->p, link->parts_q, to_q);
+    double doubt = doubt_of(link) * (to_p + to_q);
+    if (error_p + error_q + doubt <= method->link_threshold)
+        return -1;
+    bool p_larger = p_goes_first(forest, link);
+    error_p += p_larger ? doubt : 0.0;
+    error_q += p_larger ? 0.0 : doubt;
+    bool p_first = error_p != error_q ? error_p > error_q : p_larger;
+    int32_t first = p_first ? link->p : link->q, second = p_first ? link->q : link->p;
+    if (patch_may_split(method, first))
+        return first;
+    bool helps = fmin(error_p, error_q) > 0.5 * method->link_threshold;
+    return helps && patch_may_split(method, second) ? second : -1;
+}
+
+/* Divides the patch `to`, which receives. */
+static void divide(struct method *method, const struct link *link, int32_t to, int32_t from,
+                   const uint8_t parts[3])
+{
+    double error = spread_of(link, parts) * light_reflected(method->forest, from, to);
+    if (error > method->link_threshold && patch_may_split(method, to))
+        forest_split(method->forest, to);
+}
+
+void oracle_divide_patches(struct method *method, const struct link *link)
+{
+    if (method->criterion.oracle == ORACLE_BF)
+        return;
+    divide(method, link, link->p, link->q, link->parts_p);
+    divide(method, link, link->q, link->p, link->parts_q);
+}
+
+/* Powers at stake, relative to the threshold, up to which one segment, and four, tell enough. */
+static const double STAKE_ONE = 0.1, STAKE_FOUR = 1.0;
+
+/* rho B as above, with B at least what is typical: in the first pass little is lit yet. */
+static double light_expected(const struct method *method, int32_t from, int32_t to)
+{
+    const struct forest *forest = method->forest;
+    struct rgb rho = forest_material(forest, to)->reflectance;
+    double light = 0.0;
+    for (int c = 0; c < BANDS; c++)
+        light += rho.band[c] * fmax(method->typical.band[c],
+                                    forest->patches[from].radiosity.band[c]);
+    return light;
+}
+
+enum look oracle_look(const struct method *method, int32_t p, int32_t q, double guess)
+{
+    if (method->criterion.oracle == ORACLE_BF || !(guess > 0.0))
+        return LOOK_ALL;
+    double stake = guess * (light_expected(method, p, q) + light_expected(method, q, p));
+    return stake <= STAKE_ONE * method->link_threshold    ? LOOK_ONE
+           : stake <= STAKE_FOUR * method->link_threshold ? LOOK_FOUR_FIRST
+                                                          : LOOK_ALL;
+}
+
+int32_t oracle_patch_to_split(const struct method *method, const struct link *link)
+{
+    return method->criterion.oracle == ORACLE_BF ? split_by_energy(method, link)
+                                                 : split_by_error(method, link);
+}
