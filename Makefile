@@ -37,7 +37,7 @@ MPI_INCLUDE =
 MPIEXEC ?= mpiexec
 endif
 
-GEOM = alloc elementary error lambert polygon scene triangle
+GEOM = alloc contour elementary error gauss lambert polygon scene triangle
 OCTREE = build octree
 RAD = flux formfactor id link method patch pushpull treecode
 MPI = assign broadcast comm gather linking migrate picture plan refinement scatter solver vote
@@ -48,7 +48,7 @@ MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last three are run with several ranks.
-TESTS = alloc elementary id triangle lambert scene polygon octree bundles flux patch formfactor link pushpull treecode \
+TESTS = alloc elementary id triangle lambert scene polygon contour octree bundles flux patch formfactor link pushpull treecode \
         plan assign text obj output tone image camera shading options exchange exact converge
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)
 
