@@ -41,7 +41,7 @@ GEOM = alloc contour elementary error gauss lambert polygon scene triangle
 OCTREE = build octree
 RAD = flux formfactor id link method patch pushpull treecode
 MPI = assign broadcast comm gather linking migrate picture plan refinement scatter solver vote
-IO = camera image mesh mtl obj options output render shading stats text tone
+IO = camera cases image mesh mtl obj options output render shading stats text tone validate
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
 MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)

@@ -18,7 +18,8 @@
  *
  * has no terms that cancel. Where s is at most FAR of d it is taken by Radon's rule of seven
  * points, exact to degree 5: its error falls with (s/d)^6 and is 3e-10 of F at most, and it costs
- * two thirds of what three arctangents do. F is then small only where h or n . r are, and so is its error.
+ * two thirds of what three arctangents do. F is then small only where h or n . r are, and so is its
+ * error.
  *
  * The sum is small for three more reasons: x close to the plane of the triangle and not over it,
  * a triangle that reaches just above the horizon, a sliver. There the error stays some 1e-16 of

@@ -116,7 +116,8 @@ static void test_table(void)
 
 /* Integrals four times over of cos cos' / (pi r^2): for parallel planes at distance z between
  * points x and y apart, and for perpendicular planes at distances a and b from their line, y apart
- * along it (Ehlert and Smith 1993; Howell C-13 and C-15). Long double, since the 16 of them cancel. */
+ * along it (Ehlert and Smith 1993; Howell C-13 and C-15). Long double, since the 16 of them
+ * cancel. */
 static long double parallel_term(long double x, long double y, long double z)
 {
     long double p = sqrtl(x * x + z * z), q = sqrtl(y * y + z * z);
