@@ -4,6 +4,7 @@
 #   make demo            the Cornell box, 2 ranks    make check      all tests
 #   make room            build/room, a scene generator
 #   make bench           $(BUILD)/rays, a bench of visibility, beside Embree where it is installed
+#   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make install         to $(DESTDIR)$(prefix)      make uninstall  make clean
 #
 # Knobs: MPICC, CC, MPIEXEC, CFLAGS, CPPFLAGS, LDFLAGS, prefix, DESTDIR.
@@ -48,8 +49,9 @@ MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last three are run with several ranks.
-TESTS = alloc elementary id triangle lambert scene polygon contour octree bundles flux patch formfactor link pushpull treecode \
-        plan assign text obj output tone image camera shading options exchange exact converge
+TESTS = alloc elementary id triangle lambert scene polygon contour octree bundles flux patch \
+        formfactor link pushpull treecode plan assign text obj output tone image camera shading \
+        options paths norms exchange exact converge
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)
 
 all: $(PHR)
@@ -64,6 +66,13 @@ $(BUILD)/phr: $(BUILD)/phr.o $(BUILD)/libphr.a
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
 
+# What is true, for the tests and benches that compare phr with it.
+TRUTH = $(BUILD)/tests/pathtracer.o $(BUILD)/tests/truth.o $(BUILD)/tests/deviation.o
+
+$(BUILD)/tests/paths $(BUILD)/tests/norms: $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TRUTH) \
+        $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
 $(BUILD)/libphr.a: $(OBJECTS)
 	rm -f $@ && ar rcs $@ $(OBJECTS)
 
@@ -71,7 +80,8 @@ $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) -MMD -c -o $@ $<
 
--include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(TESTS:%=$(BUILD)/tests/%.d)
+-include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(TESTS:%=$(BUILD)/tests/%.d) \
+    $(TRUTH:.o=.d) $(BUILD)/tests/bench/reference.d $(BUILD)/tests/bench/measure.d
 
 demo: $(PHR)
 	$(MPIEXEC) -n 2 ./$(PHR) scenes/cornell.obj --view scenes/cornell.view \
@@ -94,6 +104,11 @@ $(BUILD)/rays: tests/bench/rays.c $(OBJECTS) Makefile
 	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) $(CFLAGS) -o $@ \
 	    tests/bench/rays.c $(OBJECTS) $(if $(EMBREE),-lembree3) -lm
 
+errors: $(BUILD)/reference $(BUILD)/measure
+
+$(BUILD)/reference $(BUILD)/measure: $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
 check: $(PHR) tests
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
@@ -112,4 +127,4 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench check install uninstall clean FORCE
+.PHONY: all demo tests room bench errors check install uninstall clean FORCE

@@ -7,7 +7,7 @@
 
 enum {
     TREE_DEPTH = 24,                   /* deepest level of a tree */
-    TREE_STACK = LANES * TREE_DEPTH + LANES /* room for a walk: what waits on all levels */
+    TREE_STACK = 2 * LANES * (TREE_DEPTH + 1) /* room for a walk: what waits on all levels */
 };
 
 /* An inner node: the boxes of its eight children side by side, so that one instruction looks at

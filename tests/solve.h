@@ -10,6 +10,7 @@ struct solution {
     struct solver *solver;
     struct vote vote;
     struct stats stats; /* closure and the fields of solver_report() */
+    double seconds;     /* for the octree and the loop; the same on all ranks but for waiting */
 };
 
 static inline struct criterion criterion_of(double epsilon, int max_level, double tolerance)
@@ -23,6 +24,7 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
                                     struct criterion criterion)
 {
     struct solution s = {.scene = scene};
+    double start = comm_seconds();
     s.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
     s.solver = solver_create(comm, scene, s.octree, &criterion);
     solver_link_roots(s.solver);
@@ -35,6 +37,7 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
         s.vote = solver_vote(s.solver);
     } while (!s.vote.converged && !s.vote.diverged &&
              s.solver->iteration < criterion.max_iterations);
+    s.seconds = comm_seconds() - start;
     solver_measure_closure(s.solver, &s.stats);
     solver_report(s.solver, &s.vote, &s.stats);
     return s;

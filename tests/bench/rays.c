@@ -5,9 +5,10 @@
  *   build/room 6350 1 > build/room.obj && build/native/rays build/room.obj [BUNDLES [SEED]]
  *
  * The workload is bundles of 16 segments between the sub-triangle centres of two facing patches,
- * both 0 to 4 levels below their roots, in two orders: pairs at random, and in refinement order
- * (the four children that link_split() makes of a link, each starting with the last blocker of
- * the one before). Programs take turns, five times, and the fastest turn counts. Both are handed
+ * both 0 to 4 levels below their roots, in two orders: pairs at random, and in refinement order:
+ * a pair, the four that come from splitting one of its patches, and the four of each of those.
+ * The first of four starts with the last blocker of the pair that it comes from, each other one
+ * with that of the one before, as in link_split(). Programs take turns, five times, and the fastest turn counts. Both are handed
  * the end points in double and convert them themselves. Embree's segments are cut short by 1e-4
  * at both ends, where it would meet the triangles they lie on; what it sees otherwise is counted
  * and is near edges or in those cuts. */
@@ -27,13 +28,15 @@
 #include "geom/alloc.h"
 #include "tests/random.h"
 
-enum { TURNS = 5, CHILDREN = 4 };
+enum { TURNS = 5, TRIES = 100000 };
 
 struct load {
     struct bundle *bundles;    /* [count] */
     unsigned *blocked;         /* [count] answer of the octree */
+    int *start;                /* [count] the bundle before with whose blocker it starts, or -1 */
+    int32_t *guess;            /* [count] the last blocker */
     int count;
-    bool refinement_order;     /* groups of CHILDREN share a guess */
+    bool refinement_order;
 };
 
 struct figures {
@@ -62,43 +65,77 @@ static struct bundle bundle_of(const struct facet *p, const struct facet *q)
     return bundle;
 }
 
-static struct facet random_facet(const struct scene *scene, struct random *random)
+static struct facet random_facet(const struct scene *scene, struct random *random, int levels)
 {
     int32_t root;
     do
         root = (int32_t)(random_bits(random) % (uint64_t)scene->input_count);
     while (scene->areas[root] <= 0.0);
     struct facet facet = {scene->triangles[root], scene->planes[root], scene->areas[root], root};
-    for (int level = (int)(random_bits(random) % 5); level > 0; level--)
+    for (int level = (int)(random_bits(random) % (uint64_t)levels); level > 0; level--)
         facet.triangle = triangle_child(&facet.triangle, (int)(random_bits(random) % 4));
     return facet;
 }
 
-static void fill_load(const struct scene *scene, struct load *load, struct random *random)
+/* Appends the bundle of a pair, unless nothing in it faces. */
+static bool add_bundle(struct load *load, int *filled, const struct facet *p,
+                       const struct facet *q, int start)
 {
-    for (int i = 0; i < load->count;) {
-        struct facet p = random_facet(scene, random), q = random_facet(scene, random);
-        if (p.input == q.input || !facets_face(&p, &q))
-            continue;
-        struct facet whole = p;
-        for (int k = 0; k < (load->refinement_order ? CHILDREN : 1) && i < load->count; k++) {
-            if (load->refinement_order)
-                p.triangle = triangle_child(&whole.triangle, k);
-            load->bundles[i] = bundle_of(&p, &q);
-            i += load->bundles[i].asked != 0;
+    struct bundle bundle = bundle_of(p, q);
+    if (*filled == load->count || bundle.asked == 0)
+        return false;
+    load->bundles[*filled] = bundle;
+    load->start[(*filled)++] = start;
+    return true;
+}
+
+/* A pair and two generations, breadth first: p is split, then q. */
+static void add_family(struct load *load, int *filled, const struct facet *p,
+                       const struct facet *q)
+{
+    int parent = *filled, made[4];
+    struct facet child[4];
+    if (!add_bundle(load, filled, p, q, -1))
+        return;
+    for (int k = 0, start = parent; k < 4; k++) {
+        child[k] = *p;
+        child[k].triangle = triangle_child(&p->triangle, k);
+        made[k] = add_bundle(load, filled, &child[k], q, start) ? start = *filled - 1 : -1;
+    }
+    for (int k = 0; k < 4; k++) {
+        for (int m = 0, start = made[k]; m < 4 && made[k] >= 0; m++) {
+            struct facet part = *q;
+            part.triangle = triangle_child(&q->triangle, m);
+            start = add_bundle(load, filled, &child[k], &part, start) ? *filled - 1 : start;
         }
     }
+}
+
+/* Fills the load; cuts it short where pairs that face each other are too rare to be found. */
+static void fill_load(const struct scene *scene, struct load *load, struct random *random)
+{
+    int filled = 0;
+    for (int tries = 0; filled < load->count && tries / TRIES <= filled; tries++) {
+        int levels = load->refinement_order ? 4 : 5;
+        struct facet p = random_facet(scene, random, levels);
+        struct facet q = random_facet(scene, random, levels);
+        if (p.input == q.input || !facets_face(&p, &q))
+            continue;
+        if (load->refinement_order)
+            add_family(load, &filled, &p, &q);
+        else
+            add_bundle(load, &filled, &p, &q, -1);
+    }
+    load->count = filled;
 }
 
 static void run_octree(const struct octree *octree, struct load *load, struct figures *figures)
 {
     struct octree_counts counts = {0};
     double start = comm_seconds();
-    int32_t guess = -1;
     for (int i = 0; i < load->count; i++) {
-        if (!load->refinement_order || i % CHILDREN == 0)
-            guess = -1;
-        load->blocked[i] = octree_block(octree, &load->bundles[i], &guess, &counts);
+        load->guess[i] = load->start[i] >= 0 ? load->guess[load->start[i]] : -1;
+        load->blocked[i] = octree_block(octree, &load->bundles[i], &load->guess[i], &counts);
     }
     double seconds = comm_seconds() - start;
     figures->seconds = figures->seconds > 0.0 && figures->seconds < seconds ? figures->seconds
@@ -249,6 +286,8 @@ int main(int argc, char **argv)
     struct load load = {.count = argc > 2 ? atoi(argv[2]) : 100000};
     load.bundles = alloc_array((size_t)load.count, sizeof *load.bundles);
     load.blocked = alloc_array((size_t)load.count, sizeof *load.blocked);
+    load.start = alloc_array((size_t)load.count, sizeof *load.start);
+    load.guess = alloc_array((size_t)load.count, sizeof *load.guess);
     for (int order = 0; order < 2; order++) {
         struct random random = random_seed(argc > 3 ? (uint64_t)atoi(argv[3]) : 1);
         struct figures figures = {0};
@@ -277,6 +316,8 @@ int main(int argc, char **argv)
     }
     alloc_free(load.bundles);
     alloc_free(load.blocked);
+    alloc_free(load.start);
+    alloc_free(load.guess);
 #ifdef WITH_EMBREE
     rtcReleaseScene(embree);
     rtcReleaseDevice(device);

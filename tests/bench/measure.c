@@ -1,0 +1,260 @@
+/* Solves a scene with any options of phr and compares it with the truth that
+ * tests/bench/reference.c has made: one line of CSV.
+ *
+ *   build/mpi/measure [--header] SCENE.obj REF [options of phr]
+ *
+ * The scene and the reference come first; --two-sided has to be given where the reference was made
+ * with it. Outputs that are asked for are not written.
+ *
+ * The norms are those of tests/deviation.h, for two answers. `leaf`: the constant of a leaf, with
+ * the mean of the truth over that leaf; where leaves are smaller than an element of the truth,
+ * their mean over the element. The errors of small leaves cancel in that mean, so only numbers
+ * that one reference gives can be compared. `shown`: the radiosity that pictures show, with the
+ * truth at one point of each element; points that no light reaches at all, such as those that a
+ * box covers, are left out. The seconds are those of linking and iterating, with the octree; on
+ * several ranks, until the last is done. `emitters` is what turns the relative RMS, which is that
+ * of the reflected light, into one relative to all radiosity, emission included: multiply by it. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "io/obj.h"
+#include "io/options.h"
+#include "io/shading.h"
+#include "mpi/broadcast.h"
+#include "tests/deviation.h"
+#include "tests/solve.h"
+
+static const char *const HEADER =
+    "scene,options,seconds,links,rays,node_tests,triangle_tests,iterations,patches,leaf_rms,"
+    "leaf_l1,leaf_median,shown_rms,shown_l1,shown_median,noise,shown_noise,emitters,"
+    "leaf_bias,shown_bias";
+
+struct measure {
+    struct comm comm;
+    struct options options;
+    const char *reference;
+    bool header;
+    struct truth truth;
+    struct error error;
+};
+
+struct list {
+    struct sample *items; /* [count] */
+    int64_t count;
+};
+
+/* --- the two answers --- */
+
+/* B - E of a root. */
+static struct rgb reflected(const struct scene *scene, int32_t root, struct rgb radiosity)
+{
+    struct rgb emission = scene_root_material(scene, root)->emission;
+    for (int c = 0; c < BANDS; c++)
+        radiosity.band[c] -= emission.band[c];
+    return radiosity;
+}
+
+static struct rgb mean_of(const struct element *elements, int64_t count, int half)
+{
+    struct rgb mean = {{0.0, 0.0, 0.0}};
+    for (int64_t i = 0; i < count; i++)
+        for (int c = 0; c < BANDS; c++)
+            mean.band[c] += elements[i].mean[half].band[c] / (double)count;
+    return mean;
+}
+
+/* The leaves of a patch, which holds these elements, or the patch if it is one element. */
+static void add_leaves(const struct forest *forest, int32_t patch, const struct element *elements,
+                       int64_t count, struct list *list)
+{
+    const struct patch *at = &forest->patches[patch];
+    if (count > 1 && !patch_is_leaf(at)) {
+        for (int k = 0; k < 4; k++)
+            add_leaves(forest, at->children + k, elements + k * (count / 4), count / 4, list);
+        return;
+    }
+    struct sample *sample = &list->items[list->count++];
+    sample->area = forest_area(forest, patch);
+    sample->value = reflected(forest->scene, (int32_t)at->id.root, at->radiosity);
+    for (int half = 0; half < TRUTH_HALVES; half++)
+        sample->truth[half] = mean_of(elements, count, half);
+}
+
+static struct deviation compare_leaves(const struct forest *forest, const struct truth *truth)
+{
+    struct list list = {alloc_array((size_t)truth->count, sizeof *list.items), 0};
+    for (int64_t i = 0; i < truth->count;) {
+        struct patch_id id = truth->items[i].id;
+        int64_t count = INT64_C(1) << 2 * id_level(id);
+        add_leaves(forest, (int32_t)id.root, &truth->items[i], count, &list);
+        i += count;
+    }
+    struct deviation deviation = deviation_of(list.items, list.count);
+    alloc_free(list.items);
+    return deviation;
+}
+
+static bool is_black(const struct element *element)
+{
+    return rgb_sum(element->point[0]) + rgb_sum(element->point[1]) == 0.0;
+}
+
+static struct deviation compare_points(const struct shading *shading, const struct truth *truth)
+{
+    const struct scene *scene = shading->forest->scene;
+    struct list list = {alloc_array((size_t)truth->count, sizeof *list.items), 0};
+    for (int64_t i = 0; i < truth->count; i++) {
+        const struct element *element = &truth->items[i];
+        int32_t root = (int32_t)element->id.root;
+        if (is_black(element))
+            continue;
+        list.items[list.count++] = (struct sample){
+            .area = element_area(element, scene),
+            .value = reflected(scene, root, shading_at(shading, root, element->weight)),
+            .truth = {element->point[0], element->point[1]}};
+    }
+    struct deviation deviation = deviation_of(list.items, list.count);
+    alloc_free(list.items);
+    return deviation;
+}
+
+/* Collective. As phr.c does. */
+static struct shading *shade(const struct measure *measure, const struct solution *s)
+{
+    const struct forest *forest = s->solver->method.forest;
+    if (measure->options.flat)
+        return shading_create(forest, NULL);
+    int64_t leaves;
+    uint8_t *open = shading_open_quarters(forest, s->octree, measure->comm.rank,
+                                          measure->comm.size, &leaves);
+    comm_add_bytes(&measure->comm, open, leaves);
+    struct shading *shading = shading_create(forest, open);
+    alloc_free(open);
+    return shading;
+}
+
+/* --- the line --- */
+
+static void print_options(const struct measure *measure, int argc, char **argv)
+{
+    printf("%s,", measure->options.scene);
+    for (int i = 1, first = 1; i < argc; i++)
+        if (argv[i] != measure->options.scene) {
+            printf("%s%s", first ? "" : " ", argv[i]);
+            first = 0;
+        }
+}
+
+/* RMS of the reflected radiosity over that of all radiosity, black emitters included. */
+static double share_of_reflected(const struct truth *truth, const struct scene *scene,
+                                 const struct deviation *leaf)
+{
+    double emitted = 0.0, crossed = 0.0, area = 0.0;
+    for (int32_t root = 0; root < scene_root_count(scene); root++)
+        for (int c = 0; c < BANDS; c++) {
+            double e = scene_root_material(scene, root)->emission.band[c];
+            emitted += scene_root_area(scene, root) * e * e;
+        }
+    for (int64_t i = 0; i < truth->count; i++) {
+        const struct element *element = &truth->items[i];
+        int32_t root = (int32_t)element->id.root;
+        double a = element_area(element, scene);
+        area += a;
+        for (int c = 0; c < BANDS; c++)
+            crossed += a * scene_root_material(scene, root)->emission.band[c] *
+                       (element->mean[0].band[c] + element->mean[1].band[c]);
+    }
+    double reflected_square = area * leaf->square;
+    return sqrt(reflected_square / (reflected_square + crossed + emitted));
+}
+
+static void print_line(const struct measure *measure, const struct solution *s,
+                       const struct deviation *leaf, const struct deviation *shown)
+{
+    const struct stats *stats = &s->stats;
+    printf(",%.3f,%lld,%lld,%lld,%lld,%lld,%lld", s->seconds, (long long)stats->links,
+           (long long)stats->rays, (long long)stats->node_tests, (long long)stats->triangle_tests,
+           (long long)stats->iterations, (long long)stats->patches);
+    printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f", leaf->rms, leaf->l1, leaf->median,
+           shown->rms, shown->l1, shown->median, leaf->noise, shown->noise);
+    printf(",%.4f,%.5f,%.5f\n", share_of_reflected(&measure->truth, s->scene, leaf), leaf->bias,
+           shown->bias);
+}
+
+/* --- running --- */
+
+/* Takes --header and the reference, which follows the scene, out of the arguments; the rest is for
+ * phr. Returns the number of arguments left. */
+static int take_own(struct measure *measure, int argc, char **argv)
+{
+    int kept = 1;
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--header") == 0)
+            measure->header = true;
+        else if (kept == 2 && !measure->reference)
+            measure->reference = argv[i];
+        else
+            argv[kept++] = argv[i];
+    }
+    return kept;
+}
+
+/* Collective. The prepared scene on all ranks, the truth on rank 0; NULL on all after an error. */
+static struct scene *read_all(struct measure *measure)
+{
+    struct obj_repairs read = {0};
+    struct scene_repairs prepared;
+    struct error *error = &measure->error;
+    struct scene *scene = NULL;
+    if (measure->comm.rank == 0 && (scene = obj_read(measure->options.scene, &read, error))) {
+        scene->two_sided = measure->options.two_sided;
+        if (scene_prepare(scene, &prepared, error))
+            truth_read(&measure->truth, measure->reference, scene, error);
+    }
+    if (comm_agree(&measure->comm, error))
+        return scene_broadcast(&measure->comm, scene);
+    scene_destroy(scene);
+    return NULL;
+}
+
+static void run(struct measure *measure, int argc, char **argv)
+{
+    struct scene *scene = read_all(measure);
+    if (!scene)
+        return;
+    struct solution s = solve(&measure->comm, scene, measure->options.criterion);
+    struct shading *shading = shade(measure, &s);
+    if (s.vote.diverged)
+        error_set(&measure->error, EXIT_FAILED, "the solution diverges");
+    if (measure->comm.rank == 0 && !s.vote.diverged) {
+        struct deviation leaf = compare_leaves(s.solver->method.forest, &measure->truth);
+        struct deviation shown = compare_points(shading, &measure->truth);
+        if (measure->header)
+            printf("%s\n", HEADER);
+        print_options(measure, argc, argv);
+        print_line(measure, &s, &leaf, &shown);
+    }
+    shading_destroy(shading);
+    solution_free(&s);
+}
+
+int main(int argc, char **argv)
+{
+    struct measure measure = {.reference = NULL};
+    comm_start(&measure.comm, &argc, &argv);
+    argc = take_own(&measure, argc, argv);
+    if (!measure.reference)
+        error_set(&measure.error, EXIT_USAGE,
+                  "usage: measure [--header] SCENE.obj REF [options of phr]");
+    else if (options_parse(&measure.options, argc, argv, &measure.error))
+        run(&measure, argc, argv);
+    comm_agree(&measure.comm, &measure.error);
+    if (measure.error.code != EXIT_DONE && measure.comm.rank == 0)
+        fprintf(stderr, "measure: %s\n", measure.error.text);
+    truth_free(&measure.truth);
+    options_free(&measure.options);
+    comm_stop(&measure.comm);
+    return measure.error.code;
+}

@@ -1,0 +1,129 @@
+/* Makes the truth about a scene: a file that tests/bench/measure.c compares solutions with.
+ *
+ *   make errors
+ *   mpiexec -n 2 build/mpi/reference scenes/cornell.obj cornell.ref
+ *   build/mpi/measure scenes/cornell.obj cornell.ref --epsilon 1e-4
+ *
+ * ELEMENTS (20000) sets their size: each has at most that share of the scene's area. SAMPLES (1000)
+ * is the number of paths of each of the two estimates of an element's mean.
+ *
+ * Elements are dealt to the ranks in turn and are the same whoever estimates them, so the file is
+ * the same bytes on any number of ranks. The noise falls as one over the square root of SAMPLES,
+ * or faster, and the time grows with ELEMENTS times SAMPLES. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "io/obj.h"
+#include "mpi/broadcast.h"
+#include "mpi/comm.h"
+#include "tests/deviation.h"
+
+enum { ELEMENTS = 20000, SAMPLES = 1000, MOST = 1000000000 };
+
+struct arguments {
+    const char *scene, *out;
+    bool two_sided;
+    long long numbers[2]; /* elements, samples */
+};
+
+static bool is_count(const char *text, long long *count)
+{
+    char *end;
+    *count = strtoll(text, &end, 10);
+    return *end == '\0' && *count >= 1 && *count <= MOST;
+}
+
+static bool parse(struct arguments *arguments, int argc, char **argv, struct error *error)
+{
+    int paths = 0, numbers = 0;
+    *arguments = (struct arguments){.numbers = {ELEMENTS, SAMPLES}};
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--two-sided") == 0)
+            arguments->two_sided = true;
+        else if (paths < 2)
+            *(paths++ == 0 ? &arguments->scene : &arguments->out) = argv[i];
+        else if (numbers == 2 || !is_count(argv[i], &arguments->numbers[numbers++]))
+            return error_set(error, EXIT_USAGE, "what is %s?", argv[i]);
+    }
+    return paths == 2 ||
+           error_set(error, EXIT_USAGE,
+                     "usage: reference SCENE.obj OUT.ref [--two-sided] [ELEMENTS [SAMPLES]]");
+}
+
+/* Collective. The prepared scene, or NULL on all ranks. */
+static struct scene *read_scene(const struct comm *comm, const struct arguments *arguments,
+                                struct error *error)
+{
+    struct obj_repairs read = {0};
+    struct scene_repairs prepared;
+    struct scene *scene = comm->rank == 0 ? obj_read(arguments->scene, &read, error) : NULL;
+    if (scene) {
+        scene->two_sided = arguments->two_sided;
+        scene_prepare(scene, &prepared, error);
+        if (!(scene_emitted_power(scene) > 0.0))
+            error_set(error, EXIT_USAGE, "%s: nothing emits light", arguments->scene);
+    }
+    if (comm_agree(comm, error))
+        return scene_broadcast(comm, scene);
+    scene_destroy(scene);
+    return NULL;
+}
+
+/* Collective. Rank 0 receives what the others have estimated. */
+static void gather_elements(const struct comm *comm, struct truth *truth)
+{
+    int64_t own = 0, arriving, at = 0;
+    struct element *mine = alloc_array((size_t)(truth->count / comm->size + 1), sizeof *mine);
+    for (int64_t i = comm->rank; i < truth->count; i += comm->size)
+        mine[own++] = truth->items[i];
+    int *counts = alloc_array((size_t)comm->size, sizeof *counts);
+    counts[0] = comm_count(comm, own);
+    struct element *all = comm_exchange(comm, mine, counts, sizeof *mine, &arriving);
+    for (int rank = 0; rank < comm->size && at < arriving; rank++)
+        for (int64_t i = rank; i < truth->count; i += comm->size)
+            truth->items[i] = all[at++];
+    alloc_free(all);
+    alloc_free(counts);
+    alloc_free(mine);
+}
+
+static void make_reference(const struct comm *comm, const struct arguments *arguments,
+                           const struct scene *scene, struct error *error)
+{
+    double start = comm_seconds();
+    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct pathtracer pathtracer = pathtracer_make(scene, octree);
+    struct truth truth = truth_make(scene, arguments->numbers[0]);
+    for (int64_t i = comm->rank; i < truth.count; i += comm->size)
+        truth_estimate(&truth, i, &pathtracer, (int)arguments->numbers[1]);
+    gather_elements(comm, &truth);
+    if (comm->rank == 0 && truth_write(&truth, arguments->out, error))
+        printf("%s: %lld elements, %lld paths each twice, %.1f s on %d rank(s); noise of elements "
+               "%.2f %%, of points %.2f %%\n", arguments->out, (long long)truth.count,
+               arguments->numbers[1], comm_seconds() - start, comm->size,
+               100.0 * truth_noise(&truth, scene, false), 100.0 * truth_noise(&truth, scene, true));
+    truth_free(&truth);
+    pathtracer_free(&pathtracer);
+    octree_destroy(octree);
+}
+
+int main(int argc, char **argv)
+{
+    struct comm comm;
+    struct error error = {0};
+    struct arguments arguments;
+    comm_start(&comm, &argc, &argv);
+    struct scene *scene = NULL;
+    if (parse(&arguments, argc, argv, &error))
+        scene = read_scene(&comm, &arguments, &error);
+    if (scene)
+        make_reference(&comm, &arguments, scene, &error);
+    comm_agree(&comm, &error);
+    if (error.code != EXIT_DONE && comm.rank == 0)
+        fprintf(stderr, "reference: %s\n", error.text);
+    scene_destroy(scene);
+    comm_stop(&comm);
+    return error.code;
+}

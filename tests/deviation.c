@@ -1,0 +1,88 @@
+/* The error norms; the header defines them.
+ *
+ * The square of the error uses the product of two deviations rather than the square of one less
+ * an estimate of the variance: it is the same sum, and nothing has to be subtracted. */
+#include "tests/deviation.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/alloc.h"
+
+struct ranked {
+    double error, area;
+};
+
+struct sums {
+    double area, square, truth_square, absolute, difference, truth, noise;
+};
+
+static int compare_errors(const void *left, const void *right)
+{
+    const struct ranked *a = left, *b = right;
+    return (a->error > b->error) - (a->error < b->error);
+}
+
+/* Adds a sample; returns its |B - T|, summed over bands. */
+static double add_sample(struct sums *sums, const struct sample *sample)
+{
+    double error = 0.0;
+    sums->area += sample->area;
+    for (int c = 0; c < BANDS; c++) {
+        double r = sample->truth[0].band[c], s = sample->truth[1].band[c];
+        double b = sample->value.band[c];
+        sums->square += sample->area * (b - r) * (b - s);
+        sums->truth_square += sample->area * r * s;
+        sums->truth += sample->area * 0.5 * (r + s);
+        sums->noise += sample->area * 0.25 * (r - s) * (r - s);
+        sums->difference += sample->area * (b - 0.5 * (r + s));
+        error += fabs(b - 0.5 * (r + s));
+    }
+    sums->absolute += sample->area * error;
+    return error;
+}
+
+static double median_of(struct ranked *ranked, int64_t count, double area)
+{
+    qsort(ranked, (size_t)count, sizeof *ranked, compare_errors);
+    double passed = 0.0;
+    int64_t middle = 0;
+    while (middle + 1 < count && (passed += ranked[middle].area) < 0.5 * area)
+        middle++;
+    return ranked[middle].error;
+}
+
+struct deviation deviation_of(const struct sample *samples, int64_t count)
+{
+    struct deviation deviation = {.rms = 0.0};
+    struct sums sums = {.area = 0.0};
+    struct ranked *ranked = alloc_array((size_t)count, sizeof *ranked);
+    for (int64_t i = 0; i < count; i++)
+        ranked[i] = (struct ranked){add_sample(&sums, &samples[i]), samples[i].area};
+    if (sums.truth_square > 0.0)
+        deviation = (struct deviation){
+            .rms = sqrt(fmax(sums.square, 0.0) / sums.truth_square),
+            .l1 = sums.absolute / sums.truth,
+            .median = median_of(ranked, count, sums.area) / (sums.truth / sums.area),
+            .bias = sums.difference / sums.truth,
+            .noise = sqrt(sums.noise / sums.truth_square),
+            .square = sums.truth_square / sums.area,
+        };
+    alloc_free(ranked);
+    return deviation;
+}
+
+double truth_noise(const struct truth *truth, const struct scene *scene, bool points)
+{
+    struct sample *samples = alloc_array((size_t)truth->count, sizeof *samples);
+    for (int64_t i = 0; i < truth->count; i++) {
+        const struct element *element = &truth->items[i];
+        const struct rgb *halves = points ? element->point : element->mean;
+        samples[i] = (struct sample){
+            .area = element_area(element, scene),
+            .truth = {halves[0], halves[1]}};
+    }
+    double noise = deviation_of(samples, truth->count).noise;
+    alloc_free(samples);
+    return noise;
+}

@@ -1,0 +1,170 @@
+/* The error norms on made-up samples with known answers, and the truth's elements and file. */
+#include "tests/deviation.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "tests/scenes.h"
+#include "tests/tap.h"
+
+static const char *const FILE_NAME = "build/norms_test.ref";
+
+static bool near(double value, double exact, double tolerance)
+{
+    return fabs(value - exact) <= tolerance;
+}
+
+static struct rgb grey(double value)
+{
+    return (struct rgb){{value, value, value}};
+}
+
+static struct sample sample_of(double area, double value, double truth)
+{
+    return (struct sample){area, grey(value), {grey(truth), grey(truth)}};
+}
+
+/* Areas 1, 2, 6 with errors 0.5, 1, 3 of truths 2, 4, 6 in each of three bands: squares of errors
+ * 0.25 + 2 + 54 of 4 + 32 + 216; errors 0.5 + 2 + 18 of 2 + 8 + 36. More than half the area has
+ * an error of 3; the mean truth is 46 / 9; the differences are 18 - 0.5 + 2. What is not exact in
+ * binary is within 1e-15. */
+static void test_known(void)
+{
+    struct sample samples[3] = {sample_of(6, 9, 6), sample_of(1, 1.5, 2), sample_of(2, 5, 4)};
+    struct deviation d = deviation_of(samples, 3);
+    tap_ok(near(d.rms, sqrt(56.25 / 252.0), 1e-15), "rms %.6f", d.rms);
+    tap_ok(near(d.l1, 20.5 / 46.0, 1e-15), "l1 %.6f", d.l1);
+    tap_ok(near(d.median, 27.0 / 46.0, 1e-15), "median %.6f", d.median);
+    tap_ok(near(d.bias, 19.5 / 46.0, 1e-15), "bias %.6f", d.bias);
+    tap_ok(d.noise == 0.0 && near(d.square, 84.0, 1e-12), "no noise; mean square %g", d.square);
+}
+
+static void test_ends(void)
+{
+    struct sample black[2] = {sample_of(1, 0, 3), sample_of(3, 0, 3)};
+    struct deviation d = deviation_of(black, 2);
+    tap_ok(d.rms == 1.0 && d.l1 == 1.0 && d.median == 1.0 && d.bias == -1.0,
+           "a black solution has errors of 1 and has lost all");
+    struct sample right[2] = {sample_of(1, 5, 5), sample_of(3, 2, 2)};
+    d = deviation_of(right, 2);
+    tap_ok(d.rms == 0.0 && d.l1 == 0.0 && d.median == 0.0, "the right solution has none");
+    struct sample between = {1.0, grey(2.0), {grey(1.0), grey(3.0)}};
+    d = deviation_of(&between, 1);
+    tap_ok(d.rms == 0.0 && near(d.noise, sqrt(1.0 / 3.0), 1e-15),
+           "an answer between the two estimates has an rms of 0");
+    d = deviation_of(NULL, 0);
+    tap_ok(d.rms == 0.0 && d.noise == 0.0, "no samples, no error");
+}
+
+/* One band has all the error: bands are added before the root and before the median. */
+static void test_bands(void)
+{
+    struct sample sample = {1.0, {{1.0, 2.0, 5.0}}, {{{1.0, 2.0, 2.0}}, {{1.0, 2.0, 2.0}}}};
+    struct deviation d = deviation_of(&sample, 1);
+    tap_ok(near(d.rms, 1.0, 1e-15) && near(d.l1, 0.6, 1e-15) && near(d.median, 0.6, 1e-15),
+           "bands are added: %.3f, %.3f, %.3f", d.rms, d.l1, d.median);
+}
+
+enum { MANY = 100000 };
+
+/* Truth 1, even noise of +-0.5 in each half (variance 1/12), solution off by 0.1. The rms is
+ * sqrt(mean of (0.1 + a)(0.1 + b)): the mean has a standard deviation of about 1/12 / sqrt(3 MANY),
+ * 1.5e-4, on 0.01; 5 of them are 4 % of the rms. A biased sum would give 0.1 + noise: 0.23. */
+static void test_noise(void)
+{
+    struct sample *samples = alloc_array(MANY, sizeof *samples);
+    struct random random = random_seed(1);
+    for (int i = 0; i < MANY; i++) {
+        samples[i] = sample_of(1.0, 1.1, 0.0);
+        for (int c = 0; c < BANDS; c++)
+            for (int half = 0; half < TRUTH_HALVES; half++)
+                samples[i].truth[half].band[c] = 0.5 + random_unit(&random);
+    }
+    struct deviation d = deviation_of(samples, MANY);
+    tap_ok(near(d.rms, 0.1, 0.004), "noise does not bias the rms: %.4f, exact 0.1", d.rms);
+    tap_ok(near(d.noise, sqrt(1.0 / 24.0), 0.002), "the noise is known: %.4f, exact %.4f", d.noise,
+           sqrt(1.0 / 24.0)); /* itself known to 0.2 % */
+    tap_ok(d.l1 > 0.15, "the l1 carries it: %.4f", d.l1);
+    for (int i = 0; i < MANY; i++)
+        samples[i].value = grey(1.0);
+    tap_ok(deviation_of(samples, MANY).rms < 0.03, "no error: rms near 0 whatever the noise");
+    alloc_free(samples);
+}
+
+/* A floor of two triangles, and a black light of two above it. */
+static struct world floor_and_light(void)
+{
+    struct soup soup = {0};
+    struct vec3 x = {2, 0, 0}, y = {0, 2, 0};
+    soup_add_quad(&soup, (struct vec3){-1, -1, 0}, x, y, 1);
+    soup_add_quad(&soup, (struct vec3){-1, -1, 1}, y, x, 1);
+    struct scene *scene = scene_of_soup(&soup, 2);
+    scene->materials[0] = material_grey(0.5, 0.0);
+    scene->materials[1] = material_grey(0.0, 1.0);
+    scene->material_of[2] = scene->material_of[3] = 1;
+    soup_free(&soup);
+    return world_make(scene);
+}
+
+static void test_elements(const struct scene *scene, const struct truth *truth)
+{
+    bool ordered = true, inside = true;
+    for (int64_t i = 0; i < truth->count; i++) {
+        const struct element *e = &truth->items[i];
+        ordered = ordered && (i == 0 || id_compare(truth->items[i - 1].id, e->id) < 0);
+        double w[3] = {e->weight[0], e->weight[1], e->weight[2]};
+        for (int step = 0; step < id_level(e->id); step++) {
+            int child = id_step(e->id, step);
+            for (int k = 0; k < 3; k++)
+                w[k] = child == 3 ? 1.0 - 2.0 * w[k] : 2.0 * w[k] - (k == child);
+        }
+        inside = inside && fmin(w[0], fmin(w[1], w[2])) >= -1e-12; /* rounding times 4^2 */
+    }
+    tap_ok(truth->count == 32, "2 of 4 roots reflect, 16 elements each: %lld",
+           (long long)truth->count);
+    tap_ok(ordered, "elements are in the order of IDs");
+    tap_ok(inside, "each has its point inside");
+    tap_ok(truth_noise(truth, scene, false) > 0.0 &&
+               truth_noise(truth, scene, false) < truth_noise(truth, scene, true),
+           "the means have noise, and less of it than the points");
+}
+
+static void test_file(const struct scene *scene, const struct truth *truth)
+{
+    struct truth copy = {0};
+    struct error error = {0};
+    bool same = truth_write(truth, FILE_NAME, &error) &&
+                truth_read(&copy, FILE_NAME, scene, &error) && copy.count == truth->count &&
+                memcmp(copy.items, truth->items, (size_t)copy.count * sizeof *copy.items) == 0;
+    tap_ok(same, "a file gives back what was written");
+    truth_free(&copy);
+    struct scene other = *scene;
+    double areas[4] = {scene->areas[0], scene->areas[1], scene->areas[2], 2.0 * scene->areas[3]};
+    other.areas = areas;
+    tap_ok(!truth_read(&copy, FILE_NAME, &other, &error) && error.code == EXIT_USAGE,
+           "the reference of another scene is refused: %s", error.text);
+    remove(FILE_NAME);
+    error.code = EXIT_DONE;
+    tap_ok(!truth_read(&copy, FILE_NAME, scene, &error) && error.code == EXIT_USAGE,
+           "and so is none: %s", error.text);
+}
+
+int main(void)
+{
+    test_known();
+    test_ends();
+    test_bands();
+    test_noise();
+    struct world world = floor_and_light();
+    struct pathtracer pathtracer = pathtracer_make(world.scene, world.octree);
+    struct truth truth = truth_make(world.scene, 64);
+    for (int64_t i = 0; i < truth.count; i++)
+        truth_estimate(&truth, i, &pathtracer, 64);
+    test_elements(world.scene, &truth);
+    test_file(world.scene, &truth);
+    truth_free(&truth);
+    pathtracer_free(&pathtracer);
+    world_free(&world);
+    return tap_done();
+}

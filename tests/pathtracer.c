@@ -1,0 +1,264 @@
+/* The path tracer.
+ *
+ * The radiosity of a surface is B = E + rho H with the irradiance
+ *
+ *     H(x) = integral over y of  G(x, y) V(x, y) (E(y) + rho(y) H(y)) dA(y),
+ *     G(x, y) = cos cos' / (pi r^2).
+ *
+ * A path goes from x in a direction whose density is the cosine over pi. Where it arrives, at y,
+ * the density by area is G(x, y) itself: nothing but rho(y) remains as its factor. It goes on with
+ * the probability of y's largest reflectance. A miss or a back ends it; in a two-sided scene a
+ * back is the front of the twin.
+ *
+ * Emission is found in two ways, by a point chosen on the lights (by power, evenly over the area
+ * of one: a density L(y) of its emission, all bands, over all power) with a shadow segment, and by
+ * the paths that meet a light. Each light path is counted with the share of the way that found it,
+ * L / (L + G) and G / (L + G) (the balance heuristic of Veach and Guibas, SIGGRAPH 1995), so the
+ * shares add up to 1 and nothing is counted twice. Rejected: the lights alone. G has no bound
+ * where a light touches a surface, nor has the variance there; here both terms are at most the
+ * light's own E.
+ *
+ * The first seven numbers of a path (its start, its first light point, its first direction) are
+ * those of a lattice that is moved by a random vector: sample i has shift + i * step, modulo 1, in
+ * each dimension. Each sample alone is uniform, so the mean is exact whatever the lattice; spread
+ * evenly, they take away most of the noise. The step is that of Roberts: powers of 1 / g with
+ * g^8 = g + 1. The rest of the path is plain random numbers. */
+#include "tests/pathtracer.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "tests/random.h"
+
+static const double PI = 3.141592653589793238;
+
+/* --- numbers in [0, 1) --- */
+
+enum { DIMENSIONS = 7 };
+
+static const double STEP[DIMENSIONS] = {
+    0.9115923534820549, 0.8310006189269519, 0.7575338099526643, 0.690562028656977,
+    0.629511064928756, 0.5738574732213994, 0.5231240845771608};
+
+struct draw {
+    struct random random;
+    double shift[DIMENSIONS];
+    int sample; /* number of the path */
+    int used;   /* numbers that the path has taken */
+};
+
+/* Neighbouring seeds must not give related numbers: the finaliser of MurmurHash3. */
+static uint64_t scramble(uint64_t seed)
+{
+    seed = (seed ^ seed >> 33) * UINT64_C(0xFF51AFD7ED558CCD);
+    seed = (seed ^ seed >> 33) * UINT64_C(0xC4CEB9FE1A85EC53);
+    return seed ^ seed >> 33;
+}
+
+static struct draw draw_make(uint64_t seed)
+{
+    struct draw draw = {.random = random_seed(scramble(seed + 1))};
+    for (int k = 0; k < DIMENSIONS; k++)
+        draw.shift[k] = random_unit(&draw.random);
+    return draw;
+}
+
+static double draw_next(struct draw *draw)
+{
+    int k = draw->used++;
+    if (k >= DIMENSIONS)
+        return random_unit(&draw->random);
+    double moved = draw->shift[k] + draw->sample * STEP[k];
+    return moved - floor(moved);
+}
+
+/* --- points and directions --- */
+
+struct vec3 triangle_point(const struct triangle *t, struct vec3 weight)
+{
+    struct vec3 a = vec3_scale(t->corner[0], weight.x), b = vec3_scale(t->corner[1], weight.y);
+    return vec3_add(vec3_add(a, b), vec3_scale(t->corner[2], weight.z));
+}
+
+static struct vec3 point_on(const struct triangle *t, struct draw *draw)
+{
+    double u = draw_next(draw), v = draw_next(draw);
+    if (u + v > 1.0) {
+        u = 1.0 - u;
+        v = 1.0 - v;
+    }
+    return triangle_point(t, (struct vec3){1.0 - u - v, u, v});
+}
+
+/* A unit vector whose density is its cosine to the unit normal over pi. */
+static struct vec3 cosine_direction(struct vec3 normal, struct draw *draw)
+{
+    double height = draw_next(draw), angle = 2.0 * PI * draw_next(draw);
+    double up = sqrt(1.0 - height), aside = sqrt(height);
+    struct vec3 axis = fabs(normal.x) < 0.5 ? (struct vec3){1, 0, 0} : (struct vec3){0, 1, 0};
+    struct vec3 u = vec3_cross(normal, axis);
+    u = vec3_scale(u, 1.0 / vec3_length(u));
+    struct vec3 v = vec3_cross(normal, u);
+    return vec3_add(vec3_scale(normal, up), vec3_add(vec3_scale(u, aside * cos(angle)),
+                                                     vec3_scale(v, aside * sin(angle))));
+}
+
+/* --- light --- */
+
+struct spot {
+    struct vec3 x;
+    int32_t root;
+};
+
+struct pathtracer pathtracer_make(const struct scene *scene, const struct octree *octree)
+{
+    struct pathtracer pathtracer = {scene, octree, NULL};
+    int32_t roots = scene_root_count(scene);
+    pathtracer.power = alloc_array((size_t)roots, sizeof *pathtracer.power);
+    double sum = 0.0;
+    for (int32_t r = 0; r < roots; r++)
+        pathtracer.power[r] = sum +=
+            scene_root_area(scene, r) * rgb_sum(scene_root_material(scene, r)->emission);
+    return pathtracer;
+}
+
+void pathtracer_free(struct pathtracer *pathtracer)
+{
+    alloc_free(pathtracer->power);
+    pathtracer->power = NULL;
+}
+
+static double all_power(const struct pathtracer *pathtracer)
+{
+    return pathtracer->power[scene_root_count(pathtracer->scene) - 1];
+}
+
+/* The first root up to and with which more than this power is emitted. */
+static int32_t emitter_at(const struct pathtracer *pathtracer, double power)
+{
+    int32_t low = 0, high = scene_root_count(pathtracer->scene) - 1;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (pathtracer->power[middle] > power)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+/* G, 1 / square scene unit; 0 where one of the two faces away. */
+static double coupling(const struct pathtracer *pathtracer, const struct spot *p,
+                       const struct spot *q)
+{
+    struct vec3 d = vec3_sub(q->x, p->x);
+    double square = vec3_dot(d, d);
+    double out = vec3_dot(scene_root_plane(pathtracer->scene, p->root).normal, d);
+    double in = -vec3_dot(scene_root_plane(pathtracer->scene, q->root).normal, d);
+    return out > 0.0 && in > 0.0 ? out * in / (PI * square * square) : 0.0;
+}
+
+static bool is_blocked(const struct pathtracer *pathtracer, const struct spot *p,
+                       const struct spot *q)
+{
+    struct bundle bundle = {.asked = 1, .own = {scene_input_of(pathtracer->scene, p->root),
+                                                scene_input_of(pathtracer->scene, q->root)}};
+    for (int k = 0; k < BUNDLE_ENDS; k++) {
+        bundle.from[k] = p->x;
+        bundle.to[k] = q->x;
+    }
+    struct octree_counts counts = {0};
+    int32_t guess = -1;
+    return octree_block(pathtracer->octree, &bundle, &guess, &counts) != 0;
+}
+
+/* sum += throughput * factor * colour, band by band. */
+static void add_light(struct rgb *sum, struct rgb throughput, double factor, struct rgb colour)
+{
+    for (int c = 0; c < BANDS; c++)
+        sum->band[c] += throughput.band[c] * factor * colour.band[c];
+}
+
+/* Irradiance from a point chosen on the lights. */
+static void add_chosen_light(const struct pathtracer *pathtracer, const struct spot *p,
+                             struct rgb throughput, struct draw *draw, struct rgb *sum)
+{
+    const struct scene *scene = pathtracer->scene;
+    double power = all_power(pathtracer);
+    struct spot light = {.root = emitter_at(pathtracer, power * draw_next(draw))};
+    struct triangle t = scene_root_triangle(scene, light.root);
+    light.x = point_on(&t, draw);
+    struct rgb emission = scene_root_material(scene, light.root)->emission;
+    double g = coupling(pathtracer, p, &light), density = rgb_sum(emission) / power;
+    if (g > 0.0 && !is_blocked(pathtracer, p, &light))
+        add_light(sum, throughput, g / (density + g), emission);
+}
+
+/* Irradiance from the light that a path has met. */
+static void add_met_light(const struct pathtracer *pathtracer, const struct spot *p,
+                          const struct spot *q, struct rgb throughput, struct rgb *sum)
+{
+    struct rgb emission = scene_root_material(pathtracer->scene, q->root)->emission;
+    if (!(rgb_sum(emission) > 0.0))
+        return;
+    double g = coupling(pathtracer, p, q), density = rgb_sum(emission) / all_power(pathtracer);
+    if (g > 0.0)
+        add_light(sum, throughput, g / (density + g), emission);
+}
+
+/* --- paths --- */
+
+/* A ray begins this far above its surface, beyond rounding, so that it does not meet it. */
+static const double LIFT = 1024.0 * GEOM_ROUNDING;
+
+/* Where the ray arrives. False for a miss or a black back. */
+static bool follow(const struct pathtracer *pathtracer, const struct spot *p, struct vec3 direction,
+                   struct spot *q)
+{
+    struct octree_counts counts = {0};
+    struct octree_hit hit;
+    struct vec3 normal = scene_root_plane(pathtracer->scene, p->root).normal;
+    struct vec3 start = vec3_add(p->x, vec3_scale(normal, LIFT));
+    if (!octree_first_hit(pathtracer->octree, start, direction, false, &hit, &counts) ||
+        (!hit.front && !pathtracer->scene->two_sided))
+        return false;
+    q->x = triangle_point(&pathtracer->scene->triangles[hit.triangle],
+                          (struct vec3){hit.weight[0], hit.weight[1], hit.weight[2]});
+    q->root = hit.front ? hit.triangle : hit.triangle + pathtracer->scene->input_count;
+    return true;
+}
+
+static struct rgb irradiance(const struct pathtracer *pathtracer, struct spot p, struct draw *draw)
+{
+    struct rgb sum = {{0.0, 0.0, 0.0}}, throughput = {{1.0, 1.0, 1.0}};
+    for (;;) {
+        struct spot q;
+        add_chosen_light(pathtracer, &p, throughput, draw, &sum);
+        struct vec3 normal = scene_root_plane(pathtracer->scene, p.root).normal;
+        if (!follow(pathtracer, &p, cosine_direction(normal, draw), &q))
+            return sum;
+        add_met_light(pathtracer, &p, &q, throughput, &sum);
+        const double *rho = scene_root_material(pathtracer->scene, q.root)->reflectance.band;
+        double survival = fmax(rho[0], fmax(rho[1], rho[2]));
+        if (random_unit(&draw->random) >= survival)
+            return sum;
+        for (int c = 0; c < BANDS; c++)
+            throughput.band[c] *= rho[c] / survival;
+        p = q;
+    }
+}
+
+struct rgb pathtracer_reflected(const struct pathtracer *pathtracer, int32_t root,
+                                const struct triangle *part, int samples, uint64_t seed)
+{
+    struct rgb sum = {{0.0, 0.0, 0.0}};
+    struct rgb rho = scene_root_material(pathtracer->scene, root)->reflectance;
+    struct triangle t = scene_root_triangle(pathtracer->scene, root);
+    struct draw draw = draw_make(seed);
+    for (draw.sample = 0; draw.sample < samples; draw.sample++) {
+        draw.used = 0;
+        struct spot start = {triangle_point(&t, point_on(part, &draw)), root};
+        add_light(&sum, rho, 1.0 / samples, irradiance(pathtracer, start, &draw));
+    }
+    return sum;
+}
