@@ -27,6 +27,9 @@
  * gives all digits, at a hundred to ten thousand times the price; faces that are in one plane but
  * for the rounding of their file would pay it everywhere, for light that is not there.
  *
+ * A point on the plane but for rounding must see nothing: just in front of a triangle that faces it
+ * it would see nothing else.
+ *
  * Rejected: a single point for far triangles, whose error falls with (s/d)^2 only. */
 #include "geom/lambert.h"
 
@@ -147,6 +150,22 @@ static double factor_of_rest(struct sight s[4], struct vec3 normal)
     return factor;
 }
 
+static struct vec3 sizes(struct vec3 a)
+{
+    return (struct vec3){fabs(a.x), fabs(a.y), fabs(a.z)};
+}
+
+/* True if x lies in front of the triangle by more than the rounding of its coordinates: the sum of
+ * the products is larger than 64 units in the last place of their sizes. */
+static bool is_in_front(struct vec3 x, const struct triangle *t, struct vec3 r0, struct vec3 back)
+{
+    struct vec3 u = sizes(vec3_sub(t->corner[2], t->corner[0]));
+    struct vec3 v = sizes(vec3_sub(t->corner[1], t->corner[0]));
+    struct vec3 products = {u.y * v.z + u.z * v.y, u.z * v.x + u.x * v.z, u.x * v.y + u.y * v.x};
+    struct vec3 place = vec3_add(sizes(x), sizes(t->corner[0]));
+    return vec3_dot(r0, back) > GEOM_ROUNDING * vec3_dot(products, place);
+}
+
 double point_triangle_factor(struct vec3 x, struct vec3 normal, const struct triangle *t)
 {
     struct sight s[4] = {{{0.0, 0.0, 0.0}, 0.0}};
@@ -157,7 +176,7 @@ double point_triangle_factor(struct vec3 x, struct vec3 normal, const struct tri
     struct vec3 back = back_of(t->corner[0], t->corner[1], t->corner[2]);
     double lowest = fmin(s[0].rise, fmin(s[1].rise, s[2].rise));
     double highest = fmax(s[0].rise, fmax(s[1].rise, s[2].rise));
-    if (!(vec3_dot(s[0].r, back) > 0.0) || highest <= 0.0)
+    if (highest <= 0.0 || !is_in_front(x, t, s[0].r, back))
         return 0.0;
     double factor = lowest < 0.0 ? factor_of_rest(s, normal)
                     : is_far(s)  ? factor_by_points(s, back)

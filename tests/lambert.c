@@ -256,6 +256,27 @@ static void test_plane(void)
            "just in front of an edge: 1/2");
 }
 
+/* In a tilted plane rounding puts a point a little in front of the triangle or behind it; in front
+ * of a twin that faces the other way all of its view would be covered. */
+static void test_tilted_plane(void)
+{
+    struct random random = random_seed(6);
+    int seen = 0;
+    for (int i = 0; i < 20000; i++) {
+        struct triangle t = random_triangle(&random, 0.5, 0.4), twin = reversed(t);
+        if (triangle_is_degenerate(&t))
+            continue;
+        struct vec3 normal = triangle_plane(&t).normal, back = vec3_scale(normal, -1.0);
+        struct triangle child = triangle_child(&t, i % 4);
+        struct vec3 x = triangle_centroid(&child);
+        seen += point_triangle_factor(x, normal, &t) > 0.0;
+        seen += point_triangle_factor(x, normal, &twin) > 0.0;
+        seen += point_triangle_factor(x, back, &t) > 0.0;
+        seen += point_triangle_factor(x, random_direction(&random), &twin) > 0.0;
+    }
+    tap_ok(seen == 0, "on tilted planes: 0, within rounding (%d seen)", seen);
+}
+
 /* --- moving, turning, scaling --- */
 
 /* Turns by the quaternion (a, b, c, d), which need not be normalised. */
@@ -363,6 +384,7 @@ int main(void)
     test_far();
     test_horizon();
     test_plane();
+    test_tilted_plane();
     test_motions();
     test_bounds();
     test_polygons();
