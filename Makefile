@@ -38,19 +38,21 @@ MPI_INCLUDE =
 MPIEXEC ?= mpiexec
 endif
 
-GEOM = alloc elementary error lambert polygon scene triangle
+GEOM = alloc contour elementary error gauss lambert polygon scene triangle
 OCTREE = build octree
 RAD = closure conjugate flux formfactor id link method oracle patch pushpull treecode
-MPI = assign broadcast closing comm gather linking migrate picture plan refinement scatter solve solver vote
-IO = camera image mesh mtl obj options output render shading stats text tone
+MPI = assign broadcast closing comm gather linking migrate picture plan refinement scatter solve \
+      solver vote
+IO = camera cases image mesh mtl obj options output render shading stats text tone validate
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
 MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last three are run with several ranks.
-TESTS = alloc id triangle scene polygon octree bundles flux patch formfactor link pushpull treecode \
-        plan assign text obj output tone image camera shading options paths norms exchange exact converge
+TESTS = alloc elementary id triangle lambert scene polygon contour octree bundles flux patch \
+        formfactor link pushpull treecode plan assign text obj output tone image camera shading \
+        options paths norms exchange exact converge
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)
 
 all: $(PHR)

@@ -17,6 +17,7 @@
 #include "io/output.h"
 #include "io/render.h"
 #include "io/stats.h"
+#include "io/validate.h"
 #include "mpi/broadcast.h"
 #include "mpi/picture.h"
 #include "mpi/solver.h"
@@ -340,6 +341,9 @@ int main(int argc, char **argv)
             options_print_help(stdout);
         else if (run.comm.rank == 0)
             printf("phr %s\n", PHR_VERSION);
+    } else if (parsed && run.options.validate) {
+        if (run.comm.rank == 0 && !validate_print(stdout))
+            error_set(&run.error, EXIT_FAILED, "form factors are worse than stated");
     } else if (parsed) {
         run_all(&run);
     }

@@ -8,9 +8,9 @@
  *
  * F is 0 where the point is on the polygon's plane, within rounding, or behind it.
  *
- * Error: at most 1e-9 F + 1e-15, besides what a rounding of the coordinates makes; a polygon that is
- * small only because it is far away keeps the 1e-9. Lengths may be in any unit between 1e-60 and
- * 1e60. Source: Lambert, Photometria (1760). */
+ * Error: at most 1e-9 F + 1e-15, besides what a rounding of the coordinates makes; a polygon that
+ * covers little only because it is far away keeps the 1e-9. Lengths may be in any unit between
+ * 1e-60 and 1e60. Source: Lambert, Photometria (1760). */
 #ifndef GEOM_LAMBERT_H
 #define GEOM_LAMBERT_H
 

@@ -47,6 +47,7 @@ static const struct option OPTIONS[] = {
     {"--stats", KIND_TEXT, offsetof(struct options, stats), 0, 0, NULL},
     {"--quiet", KIND_FLAG, offsetof(struct options, quiet), 0, 0, NULL},
     {"--verbose", KIND_FLAG, offsetof(struct options, verbose), 0, 0, NULL},
+    {"--validate", KIND_FLAG, offsetof(struct options, validate), 0, 0, NULL},
     {"--help", KIND_FLAG, offsetof(struct options, help), 0, 0, NULL},
     {"--version", KIND_FLAG, offsetof(struct options, version), 0, 0, NULL},
 };
@@ -221,7 +222,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         if (!set_value(options, option, argv[i], error))
             return false;
     }
-    if (!options->scene && !options->help && !options->version)
+    if (!options->scene && !options->help && !options->version && !options->validate)
         return error_set(error, EXIT_USAGE, "no scene given; see --help");
     return !options->scene || check_paths(options, error);
 }
@@ -257,6 +258,7 @@ void options_print_help(FILE *file)
           "  --alpha A           share of a link's parent in its predicted cost, 0..1 (0.5)\n"
           "  --stats FILE        counts, power, times and balance as JSON\n"
           "  --quiet  --verbose  less or more on stderr\n"
+          "  --validate          check all form factors against exact answers, without a scene\n"
           "  --help  --version\n"
           "\n"
           "Exit status: 0 done; 1 the computation failed; 2 bad usage or input.\n"

@@ -13,7 +13,7 @@
 enum output_format { FORMAT_PPM, FORMAT_PFM, FORMAT_PLY };
 
 struct options {
-    const char *scene;        /* path of the scene, NULL with help or version */
+    const char *scene;        /* path of the scene, NULL with help, version or validate */
     const char **outputs;     /* [output_count] paths of -o; owned array, borrowed strings */
     int output_count;
     const char *view;         /* path of the view file, or NULL */
@@ -21,7 +21,7 @@ struct options {
     int width, height;        /* of --size; 0: what the view says */
     int samples;              /* samples x samples rays a pixel */
     double exposure;          /* 0: chosen from the picture */
-    bool flat, two_sided, quiet, verbose, help, version;
+    bool flat, two_sided, quiet, verbose, help, version, validate;
     struct criterion criterion;
 };
 

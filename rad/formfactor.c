@@ -28,6 +28,7 @@
 
 #include <math.h>
 
+#include "geom/contour.h"
 #include "geom/lambert.h"
 
 enum { SUBAREAS = BUNDLE_ENDS, RAYS = BUNDLE_RAYS, ALL_RAYS = (1 << RAYS) - 1 };
@@ -224,7 +225,7 @@ static double radius_of(const struct triangle *t, struct vec3 centre)
  * (within 10 % or so); nearer, it might say that a patch receives more than all there is. */
 static const double FAR = 1.5;
 
-static bool is_far(const struct facet *p, const struct facet *q)
+static bool is_apart(const struct facet *p, const struct facet *q)
 {
     struct vec3 x = triangle_centroid(&p->triangle), y = triangle_centroid(&q->triangle);
     double reach = radius_of(&p->triangle, x) + radius_of(&q->triangle, y);
@@ -256,13 +257,16 @@ static struct exchange exchange_by_all(const struct facet *p, const struct facet
     struct pair pair;
     pair_aim(&pair, p, q);
     pair_look(&pair, look, octree, sight, counts);
-    bool points = kind == FORM_FACTOR_POLYGON;
+    bool points = kind != FORM_FACTOR_DISK;
     struct side side_p = points ? side_by_points(&pair, true) : side_by_disks(&pair, true);
     struct side side_q = points ? side_by_points(&pair, false) : side_by_disks(&pair, false);
     const struct side *smaller = p->area <= q->area ? &side_p : &side_q;
-    struct exchange exchange = {.area = sum_of(smaller->area),
-                                .unoccluded = sum_of(smaller->unoccluded)};
-    exchange.seen = exchange.unoccluded > 0.0 ? exchange.area / exchange.unoccluded : 0.0;
+    double sum = sum_of(smaller->unoccluded);
+    struct exchange exchange = {.unoccluded = kind == FORM_FACTOR_EXACT
+                                                  ? triangle_exchange(&p->triangle, &q->triangle)
+                                                  : sum};
+    exchange.seen = sum > 0.0 ? sum_of(smaller->area) / sum : 0.0;
+    exchange.area = exchange.seen * exchange.unoccluded;
     set_parts(&side_p, exchange.parts_p);
     set_parts(&side_q, exchange.parts_q);
     if (pair.bundle.asked != ALL_RAYS)
@@ -275,7 +279,7 @@ struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
                                   const struct octree *octree, struct sight *sight,
                                   struct octree_counts *counts)
 {
-    struct exchange exchange = look == LOOK_ONE && is_far(p, q)
+    struct exchange exchange = look == LOOK_ONE && is_apart(p, q)
                                    ? exchange_by_one(p, q, octree, sight, counts)
                                    : exchange_by_all(p, q, kind, look, octree, sight, counts);
     double limit = fmin(p->area, q->area);

@@ -97,6 +97,9 @@ static void test_switches(void)
     tap_ok(parse("--version", &options) && options.version && !options.help,
            "--version needs no scene");
     options_free(&options);
+    tap_ok(parse("--validate", &options) && options.validate && !options.scene,
+           "--validate needs no scene");
+    options_free(&options);
     tap_ok(parse("--oracle bf a.obj", &options), "--oracle bf");
     options_free(&options);
 }
@@ -140,7 +143,7 @@ enum { NUMBER_COUNT = sizeof NUMBERS / sizeof NUMBERS[0] };
 static const char *const OTHERS[][2] = {
     {"-o", " a.ppm"},  {"--view", " a"},    {"--size", " 2x3"}, {"--stats", " a"},
     {"--oracle", " bf"}, {"--flat", ""},    {"--two-sided", ""}, {"--quiet", ""},
-    {"--verbose", ""}, {"--help", ""},      {"--version", ""}};
+    {"--verbose", ""}, {"--validate", ""},  {"--help", ""},      {"--version", ""}};
 enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
 
 static double number_of(const struct number *number, const struct options *options)
