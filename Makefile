@@ -38,7 +38,7 @@ MPI_INCLUDE =
 MPIEXEC ?= mpiexec
 endif
 
-GEOM = alloc contour elementary error gauss lambert polygon scene triangle
+GEOM = alloc contour elementary error gauss hull lambert polygon scene triangle
 OCTREE = build octree
 RAD = closure conjugate flux formfactor id link method oracle patch pushpull treecode
 MPI = assign broadcast closing comm gather linking migrate picture plan refinement scatter solve \

@@ -195,8 +195,10 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
 {
     *options = (struct options){
         .samples = 3,
-        .criterion = {.epsilon = 1e-5, .min_area = 2e-6, .max_level = 10, .alpha = 0.5,
-                      .tolerance = 1e-3, .max_iterations = 1000},
+        .criterion = {.oracle = ORACLE_ERROR, .form_factor = FORM_FACTOR_POLYGON,
+                      .closure = CLOSURE_NONE, .solver = SOLVER_CG, .epsilon = 1e-5,
+                      .min_area = 1e-7, .max_level = 10, .alpha = 0.5, .tolerance = 1e-3,
+                      .max_iterations = 1000},
     };
     options->outputs = alloc_array((size_t)argc, sizeof *options->outputs);
     for (int i = 1; i < argc; i++) {
@@ -248,10 +250,15 @@ void options_print_help(FILE *file)
           "  --samples N         N x N samples a pixel, 1..64 (3)\n"
           "  --exposure X        factor on radiosity before sRGB (chosen from the picture)\n"
           "  --flat              show the constant of each leaf, without interpolation\n"
-          "  --epsilon E         split links that carry more than E of the emitted power (1e-5)\n"
+          "  --epsilon E         split links whose error is above E of the emitted power (1e-5)\n"
           "  --max-level N       deepest subdivision, 0..15 (10)\n"
-          "  --min-area A        smallest patch, relative to the scene's area (2e-6)\n"
-          "  --oracle bf         refinement criterion: the paper's, energy of a link (bf)\n"
+          "  --min-area A        smallest patch, relative to the scene's area (1e-7)\n"
+          "  --oracle WHICH      what splits a link: error, its error (default), or bf, its energy\n"
+          "  --form-factor F     polygon, from points to all of a patch (default), or disk\n"
+          "  --closure C         rows or symmetric: make form factors of enclosed leaves sum to 1;\n"
+          "                      none (default)\n"
+          "  --solver S          cg, conjugate gradients (default), or jacobi\n"
+          "  --paper             --oracle bf --form-factor disk --closure none --solver jacobi\n"
           "  --tolerance T       bound on the remaining iteration error, relative (1e-3)\n"
           "  --max-iterations N  stop after N iterations in any case (1000)\n"
           "  --two-sided         both sides of each triangle reflect and emit\n"

@@ -42,6 +42,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/hull.h"
 #include "octree/tree.h"
 
 /* Margin for the rounding of box tests: coordinates are below 1 and direction components at most
@@ -453,6 +454,44 @@ bool octree_has_wall(const struct octree *octree, const struct triangle *p,
             return true;
     }
     return false;
+}
+
+/* --- empty shafts --- */
+
+bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p,
+                           const struct plane *plane_p, const struct triangle *q,
+                           const struct plane *plane_q, const int32_t own[2],
+                           struct octree_counts *counts)
+{
+    const struct tree *tree = &octree->inside;
+    struct hull hull = hull_of_pair(p, plane_p, q, plane_q);
+    struct vec3 from[BUNDLE_ENDS], to[BUNDLE_ENDS];
+    for (int k = 0; k < BUNDLE_ENDS; k++) {
+        from[k] = p->corner[k % 3];
+        to[k] = q->corner[k % 3];
+    }
+    struct shaft shaft;
+    shaft_set(&shaft, from, to);
+    int32_t stack[TREE_STACK];
+    int height = 0;
+    if (tree->node_count > 0)
+        stack[height++] = 0;
+    while (height > 0) {
+        if (stack[height - 1] >= 0) {
+            height = descend(tree, &shaft, stack, height, counts);
+            continue;
+        }
+        const struct leaf *run = &tree->leaves[~stack[--height]];
+        for (int32_t i = run->first; i < run->first + run->count; i++) {
+            int32_t t = tree->records[i].triangle;
+            if (t == own[0] || t == own[1])
+                continue;
+            counts->triangle_tests++;
+            if (hull_is_entered(&hull, &octree->triangles[t]))
+                return false;
+        }
+    }
+    return true;
 }
 
 /* --- first hit --- */

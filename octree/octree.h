@@ -62,6 +62,14 @@ unsigned octree_block(const struct octree *octree, const struct bundle *bundle, 
 bool octree_has_wall(const struct octree *octree, const struct triangle *p,
                      const struct triangle *q, const int32_t own[2], struct octree_counts *counts);
 
+/* True if it is proved that nothing can block a segment from the front of one triangle to the front
+ * of another: no triangle reaches into the shaft between them, their convex hull, in front of both
+ * planes. False says nothing. `own`: their numbers, as above. */
+bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p,
+                           const struct plane *plane_p, const struct triangle *q,
+                           const struct plane *plane_q, const int32_t own[2],
+                           struct octree_counts *counts);
+
 /* The triangle that the ray from `origin` along `direction` (of any length but 0) meets first.
  * Of triangles met in the same place a front counts before a back, then the largest number: what
  * a file lays over a surface comes after it. `fronts_only` looks through backs. False if nothing

@@ -296,3 +296,11 @@ bool facets_are_walled_off(const struct facet *p, const struct facet *q,
     const int32_t own[2] = {p->input, q->input};
     return octree_has_wall(octree, &p->triangle, &q->triangle, own, counts);
 }
+
+bool facets_are_open(const struct facet *p, const struct facet *q, const struct octree *octree,
+                     struct octree_counts *counts)
+{
+    const int32_t own[2] = {p->input, q->input};
+    return octree_shaft_is_empty(octree, &p->triangle, &p->plane, &q->triangle, &q->plane, own,
+                                 counts);
+}

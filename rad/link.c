@@ -96,27 +96,25 @@ bool link_make(struct method *method, int32_t p, const struct facet *facet_p, in
     return true;
 }
 
-static bool link_is_walled_off(struct method *method, const struct link *link)
-{
-    struct facet p = facet_make(method->forest, link->p), q = facet_make(method->forest, link->q);
-    return facets_are_walled_off(&p, &q, method->octree, &method->counts);
-}
-
 int link_split(struct method *method, const struct link *link, int32_t patch,
                struct link children[4])
 {
-    if (link->seen == 0 && link_is_walled_off(method, link))
-        return 0;
-    forest_split(method->forest, patch);
-    bool of_p = patch == link->p;
+    bool of_p = patch == link->p, open = link->seen == LINK_OPEN;
     int32_t other = of_p ? link->q : link->p, blocker = link->blocker;
+    struct facet facet_own = facet_make(method->forest, patch);
     struct facet facet_other = facet_make(method->forest, other);
+    if (link->seen == 0 &&
+        facets_are_walled_off(&facet_own, &facet_other, method->octree, &method->counts))
+        return 0;
+    if (link->seen == LINK_ALL_SEEN && method->criterion.oracle == ORACLE_ERROR)
+        open = facets_are_open(&facet_own, &facet_other, method->octree, &method->counts);
+    forest_split(method->forest, patch);
     double cost = link_cost(link);
     int count = 0;
     for (int k = 0; k < 4; k++) {
         int32_t child = method->forest->patches[patch].children + k;
         struct facet facet = facet_make(method->forest, child);
-        struct sight sight = {.open = link->seen == LINK_OPEN, .blocker = blocker};
+        struct sight sight = {.open = open, .blocker = blocker};
         struct link *made = &children[count];
         count += of_p ? link_make(method, child, &facet, other, &facet_other, cost, &sight, made)
                       : link_make(method, other, &facet_other, child, &facet, cost, &sight, made);

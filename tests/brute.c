@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "geom/alloc.h"
+#include "geom/hull.h"
 
 struct octree {
     const struct triangle *triangles;
@@ -66,6 +67,21 @@ bool octree_has_wall(const struct octree *octree, const struct triangle *p,
             return true;
     }
     return false;
+}
+
+bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p,
+                           const struct plane *plane_p, const struct triangle *q,
+                           const struct plane *plane_q, const int32_t own[2],
+                           struct octree_counts *counts)
+{
+    struct hull hull = hull_of_pair(p, plane_p, q, plane_q);
+    (void)counts;
+    for (int32_t t = 0; t < octree->count; t++)
+        if (t != own[0] && t != own[1] && vec3_dot(octree->planes[t].normal,
+                                                   octree->planes[t].normal) > 0.0 &&
+            hull_is_entered(&hull, &octree->triangles[t]))
+            return false;
+    return true;
 }
 
 bool octree_first_hit(const struct octree *octree, struct vec3 origin, struct vec3 direction,
