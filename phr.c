@@ -190,7 +190,7 @@ static bool compute_light(struct run *run)
         } while (run->vote.again);
         report_levels(run, levels);
         report_iteration(run);
-    } while (!run->vote.converged && !run->vote.diverged &&
+    } while (!(run->vote.converged && solver_is_accurate(solver)) && !run->vote.diverged &&
              solver->iteration < run->options.criterion.max_iterations);
     if (run->vote.diverged)
         return error_set(&run->error, EXIT_FAILED,

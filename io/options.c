@@ -13,7 +13,7 @@
 #include "io/text.h"
 
 enum kind { KIND_FLAG, KIND_TEXT, KIND_REAL, KIND_INTEGER, KIND_OUTPUT, KIND_SIZE,
-            KIND_CHOICE, KIND_PAPER };
+            KIND_CHOICE, KIND_SHARE, KIND_PAPER };
 
 struct option {
     const char *name;
@@ -31,13 +31,14 @@ static const struct option OPTIONS[] = {
     {"--exposure", KIND_REAL, offsetof(struct options, exposure), 1e-30, 1e30, NULL},
     {"--flat", KIND_FLAG, offsetof(struct options, flat), 0, 0, NULL},
     {"--epsilon", KIND_REAL, offsetof(struct options, criterion.epsilon), 0, 1e30, NULL},
+    {"--accuracy", KIND_SHARE, offsetof(struct options, criterion.accuracy), 1e-4, 1, NULL},
     {"--max-level", KIND_INTEGER, offsetof(struct options, criterion.max_level), 0, ID_MAX_LEVEL, NULL},
     {"--min-area", KIND_REAL, offsetof(struct options, criterion.min_area), 0, 1, NULL},
     {"--oracle", KIND_CHOICE, offsetof(struct options, criterion.oracle), 0, 0, "bf|error"},
     {"--form-factor", KIND_CHOICE, offsetof(struct options, criterion.form_factor), 0, 0,
      "disk|polygon"},
     {"--closure", KIND_CHOICE, offsetof(struct options, criterion.closure), 0, 0,
-     "none|rows|symmetric"},
+     "none|cap|rows|symmetric"},
     {"--solver", KIND_CHOICE, offsetof(struct options, criterion.solver), 0, 0, "jacobi|cg"},
     {"--paper", KIND_PAPER, 0, 0, 0, NULL},
     {"--alpha", KIND_REAL, offsetof(struct options, criterion.alpha), 0, 1, NULL},
@@ -137,6 +138,27 @@ static bool set_choice(const struct option *option, const char *value, int *fiel
                      option->choices);
 }
 
+/* A number, or a number of percent. */
+static bool set_share(const struct option *option, const char *value, double *field,
+                      struct error *error)
+{
+    char digits[64];
+    size_t length = strlen(value);
+    bool percent = length > 1 && length < sizeof digits && value[length - 1] == '%';
+    if (!percent)
+        return parse_number(option, value, field, error);
+    memcpy(digits, value, length - 1);
+    digits[length - 1] = '\0';
+    double number;
+    if (!text_is_number(digits, &number))
+        return error_set(error, EXIT_USAGE, "%s: '%s' is not a number", option->name, value);
+    *field = number / 100.0;
+    if (!(*field >= option->low && *field <= option->high))
+        return error_set(error, EXIT_USAGE, "%s: %s is not between %g %% and %g %%", option->name,
+                         value, 100.0 * option->low, 100.0 * option->high);
+    return true;
+}
+
 static void set_paper(struct criterion *criterion)
 {
     criterion->oracle = ORACLE_BF;
@@ -158,6 +180,8 @@ static bool set_value(struct options *options, const struct option *option, cons
         return set_integer(options, option, value, error);
     case KIND_REAL:
         return parse_number(option, value, (double *)(void *)field, error);
+    case KIND_SHARE:
+        return set_share(option, value, (double *)(void *)field, error);
     case KIND_CHOICE:
         return set_choice(option, value, (int *)(void *)field, error);
     default:
@@ -191,12 +215,15 @@ static bool check_paths(const struct options *options, struct error *error)
     return true;
 }
 
+/* Where --accuracy begins, and what --epsilon is without it. */
+static const double COARSE = 1e-3, EPSILON = 1e-5;
+
 bool options_parse(struct options *options, int argc, char **argv, struct error *error)
 {
     *options = (struct options){
         .samples = 3,
         .criterion = {.oracle = ORACLE_ERROR, .form_factor = FORM_FACTOR_POLYGON,
-                      .closure = CLOSURE_NONE, .solver = SOLVER_CG, .epsilon = 1e-5,
+                      .closure = CLOSURE_CAP, .solver = SOLVER_CG, .epsilon = -1.0,
                       .min_area = 1e-7, .max_level = 10, .alpha = 0.5, .tolerance = 1e-3,
                       .max_iterations = 1000},
     };
@@ -224,6 +251,8 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         if (!set_value(options, option, argv[i], error))
             return false;
     }
+    if (options->criterion.epsilon < 0.0) /* not given */
+        options->criterion.epsilon = options->criterion.accuracy > 0.0 ? COARSE : EPSILON;
     if (!options->scene && !options->help && !options->version && !options->validate)
         return error_set(error, EXIT_USAGE, "no scene given; see --help");
     return !options->scene || check_paths(options, error);
@@ -251,12 +280,13 @@ void options_print_help(FILE *file)
           "  --exposure X        factor on radiosity before sRGB (chosen from the picture)\n"
           "  --flat              show the constant of each leaf, without interpolation\n"
           "  --epsilon E         split links whose error is above E of the emitted power (1e-5)\n"
+          "  --accuracy A        lower epsilon until the leaves' estimated error is below A, as in 1%\n"
           "  --max-level N       deepest subdivision, 0..15 (10)\n"
           "  --min-area A        smallest patch, relative to the scene's area (1e-7)\n"
           "  --oracle WHICH      what splits a link: error, its error (default), or bf, its energy\n"
           "  --form-factor F     polygon, from points to all of a patch (default), or disk\n"
-          "  --closure C         rows or symmetric: make form factors of enclosed leaves sum to 1;\n"
-          "                      none (default)\n"
+          "  --closure C         rows, symmetric: make form factors of enclosed leaves sum to 1;\n"
+          "                      cap: only keep them from exceeding 1 by much (default); none\n"
           "  --solver S          cg, conjugate gradients (default), or jacobi\n"
           "  --paper             --oracle bf --form-factor disk --closure none --solver jacobi\n"
           "  --tolerance T       bound on the remaining iteration error, relative (1e-3)\n"

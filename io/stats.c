@@ -22,6 +22,9 @@ void stats_print(const struct stats *stats, FILE *file)
             stats->emitted_power, stats->absorbed_power, stats->escaped_power);
     fprintf(file, "row sums    %.4f .. %.4f, mean %.4f (1 in a closed scene)\n",
             stats->closure_min, stats->closure_max, stats->closure_mean);
+    if (stats->error_estimate > 0.0)
+        fprintf(file, "error       %.2g %% RMS at the leaves, estimated, at epsilon %.3g\n",
+                100.0 * stats->error_estimate, stats->epsilon);
     fprintf(file, "checksum    %016" PRIx64 "\n", stats->checksum);
 }
 
@@ -46,6 +49,7 @@ static void write_counts(FILE *file, const struct stats *stats)
     write_integer(file, "iterations", stats->iterations);
     fprintf(file, "  \"converged\": %s,\n", stats->converged ? "true" : "false");
     write_real(file, "epsilon", stats->epsilon);
+    write_real(file, "error_estimate", stats->error_estimate);
     write_real(file, "emitted_power", stats->emitted_power);
     write_real(file, "absorbed_power", stats->absorbed_power);
     write_real(file, "escaped_power", stats->escaped_power);

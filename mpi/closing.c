@@ -1,7 +1,10 @@
 /* Between refinement and transfer: the row sums of the links there are, and the closure.
  *
- * B = 1 is transferred like light; what arrives per area is a leaf's row sum R. --closure rows:
- * an enclosed leaf receives 1 / R of what its links bring, so that its row sums to 1.
+ * B = 1 is transferred like light; what arrives per area is a leaf's row sum R, at most 1 in truth.
+ * --closure cap: where links make it so large that light would grow from bounce to bounce, the leaf
+ * receives less; then the solution always exists, and the bound on the iteration error always
+ * holds. --closure rows: the same, and an enclosed leaf receives 1 / R of what its links bring, so
+ * that its row sums to 1.
  * --closure symmetric: factors d on both sides with d_i (F d)_i = 1 (Sinkhorn's scaling of a
  * symmetric matrix), by d <- sqrt(d / (F d)), which halves the error each time or better; the
  * corrected form factors still obey A_i F_ij = A_j F_ji. */
@@ -32,6 +35,15 @@ static bool is_own_leaf(const struct solver *solver, int64_t p)
            scene_root_area(solver->method.scene, (int32_t)patch->id.root) > 0.0;
 }
 
+/* Row sums are never above 1. Where links make them so, light grows from bounce to bounce by row
+ * sum times reflectance: that is kept below (1 + rho) / 2. */
+static double largest_row(const struct solver *solver, int32_t leaf)
+{
+    struct rgb rho = forest_material(solver->method.forest, leaf)->reflectance;
+    double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2]));
+    return largest > 0.0 ? 0.5 * (1.0 + largest) / largest : HUGE_VAL;
+}
+
 /* One round: renews the factors of own leaves that are to be closed. Returns the largest
  * deviation of a corrected row sum from 1 before it. */
 static double renew_factors(struct solver *solver)
@@ -39,11 +51,16 @@ static double renew_factors(struct solver *solver)
     struct closure *closure = &solver->closure;
     double off = 0.0;
     for (int64_t p = 0; p < closure->count; p++) {
-        if (!is_own_leaf(solver, p) || !closure_is_due(closure, &solver->method, (int32_t)p))
+        if (!is_own_leaf(solver, p))
             continue;
         double row = leaf_irradiance(solver->method.forest, (int32_t)p, solver->flux).band[0];
-        if (!(row > 0.0))
+        bool due = row > 0.0 && closure->kind != CLOSURE_CAP &&
+                   closure_is_due(closure, &solver->method, (int32_t)p);
+        if (!due) {
+            if (closure->kind != CLOSURE_SYMMETRIC)
+                closure->factor[p] = fmin(1.0, largest_row(solver, (int32_t)p) / row);
             continue;
+        }
         double d = closure->factor[p];
         bool symmetric = closure->kind == CLOSURE_SYMMETRIC;
         off = fmax(off, fabs(d * row - 1.0));
@@ -111,7 +128,7 @@ void solver_close(struct solver *solver)
     if (criterion->closure == CLOSURE_SYMMETRIC)
         close_symmetrically(solver);
     transfer_ones(solver);
-    if (criterion->closure == CLOSURE_ROWS)
+    if (criterion->closure == CLOSURE_ROWS || criterion->closure == CLOSURE_CAP)
         renew_factors(solver);
     bound_rows(solver);
     forest_restore(forest, kept);

@@ -42,6 +42,7 @@ void solver_destroy(struct solver *solver)
     alloc_free(solver->levels);
     closure_free(&solver->closure);
     conjugate_free(&solver->conjugate);
+    accuracy_free(&solver->accuracy);
     alloc_free(solver);
 }
 
@@ -155,6 +156,7 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->iterations = solver->iteration;
     stats->converged = vote->converged;
     stats->epsilon = solver->method.criterion.epsilon;
+    stats->error_estimate = solver->accuracy.estimate;
     stats->emitted_power = unit * scene_emitted_power(scene);
     stats->absorbed_power = unit * vote->absorbed;
     stats->escaped_power = unit * vote->escaped;

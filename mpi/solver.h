@@ -13,6 +13,13 @@
 #include "rad/pushpull.h"
 #include "rad/stats.h"
 
+/* What --accuracy compares with; see mpi/accuracy.c. */
+struct accuracy {
+    struct rgb *before; /* [count] radiosities for the epsilon before, NULL: there was none */
+    int64_t count;
+    double estimate;    /* of the error of the leaves, relative RMS; 0: none yet */
+};
+
 struct solver {
     const struct comm *comm;  /* borrowed */
     struct method method;     /* scene, octree, forest and criterion; the forest is owned */
@@ -35,6 +42,7 @@ struct solver {
     double gamma[BANDS], gamma_before[BANDS], step_before[BANDS];
     double bound_residual, bound_image; /* |z| and |K p| are nowhere larger */
     double least_bend;          /* least <K z, z> / <z, z> seen */
+    struct accuracy accuracy;
     int64_t split_here;       /* links that this rank split in this iteration */
     double seconds[PHASE_COUNT];
     int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent by this rank to others */
@@ -80,6 +88,11 @@ void solver_gather(struct solver *solver);
 void solver_push_pull(struct solver *solver);
 void solver_scatter(struct solver *solver);
 struct vote solver_vote(struct solver *solver);
+
+/* When the vote has converged: true if the accuracy asked for is reached, or none was asked for, or
+ * epsilon cannot go down any more. Else epsilon is lowered, for another pass. */
+bool solver_is_accurate(struct solver *solver);
+void accuracy_free(struct accuracy *accuracy);
 
 /* After the last iteration: the row sums over the links there are, into `stats`. */
 void solver_measure_closure(struct solver *solver, struct stats *stats);

@@ -45,7 +45,8 @@ static inline double closure_sends(const struct closure *closure, int32_t leaf)
  * the corrected form factors symmetric. */
 static inline double closure_weight(const struct closure *closure, int32_t leaf)
 {
-    return closure->kind == CLOSURE_ROWS ? 1.0 / closure->factor[leaf] : 1.0;
+    bool receivers = closure->kind == CLOSURE_ROWS || closure->kind == CLOSURE_CAP;
+    return receivers ? 1.0 / closure->factor[leaf] : 1.0;
 }
 
 /* True if the row sum of the leaf has to be 1: it is enclosed, and none of its ancestors is open.

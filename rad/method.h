@@ -12,7 +12,7 @@
 
 enum oracle { ORACLE_BF, ORACLE_ERROR };                      /* rad/oracle.h */
 enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON, FORM_FACTOR_EXACT }; /* rad/formfactor.h */
-enum closure_kind { CLOSURE_NONE, CLOSURE_ROWS, CLOSURE_SYMMETRIC }; /* rad/closure.h */
+enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS, CLOSURE_SYMMETRIC }; /* rad/closure.h */
 enum solver_kind { SOLVER_JACOBI, SOLVER_CG };                    /* rad/conjugate.h */
 
 /* How links are evaluated, when and how far they are refined, and when the iterations end. */
@@ -23,6 +23,8 @@ struct criterion {
     enum solver_kind solver;
     double epsilon;         /* energy or error of a link that splits it, relative to the emitted
                                power */
+    double accuracy;        /* estimated error of the leaves down to which epsilon is lowered,
+                               relative RMS; 0: epsilon stays */
     double min_area;        /* smallest patch, relative to the scene's area */
     int max_level;          /* deepest subdivision, 0..ID_MAX_LEVEL */
     double alpha;           /* share of its parent's cost in the cost of a link, 0..1 */

@@ -29,6 +29,7 @@ struct stats {
     int64_t ranks, triangles, roots, patches, leaves, links, iterations;
     bool converged;
     double epsilon;                                     /* relative to the emitted power */
+    double error_estimate;                              /* of the leaves, with --accuracy, or 0 */
     double emitted_power, absorbed_power, escaped_power; /* W, input units, sum over bands */
     uint64_t checksum;
     int64_t rays, node_tests, triangle_tests;                      /* of form factors */

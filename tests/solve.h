@@ -39,7 +39,7 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
             solver_scatter(s.solver);
             s.vote = solver_vote(s.solver);
         } while (s.vote.again);
-    } while (!s.vote.converged && !s.vote.diverged &&
+    } while (!(s.vote.converged && solver_is_accurate(s.solver)) && !s.vote.diverged &&
              s.solver->iteration < criterion.max_iterations);
     s.seconds = comm_seconds() - start;
     solver_measure_closure(s.solver, &s.stats);

@@ -177,6 +177,8 @@ static void print_line(const struct measure *measure, const struct solution *s,
     printf(",%.3f,%lld,%lld,%lld,%lld,%lld,%lld", s->seconds, (long long)stats->links,
            (long long)stats->rays, (long long)stats->node_tests, (long long)stats->triangle_tests,
            (long long)stats->iterations, (long long)stats->patches);
+    if (stats->error_estimate > 0.0)
+        fprintf(stderr, "estimate %.5f at epsilon %g\n", stats->error_estimate, stats->epsilon);
     printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f", leaf->rms, leaf->l1, leaf->median,
            shown->rms, shown->l1, shown->median, leaf->noise, shown->noise);
     printf(",%.4f,%.5f,%.5f\n", share_of_reflected(&measure->truth, s->scene, leaf), leaf->bias,
