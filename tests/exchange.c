@@ -10,6 +10,8 @@
 #include "mpi/picture.h"
 #include "rad/treecode.h"
 
+#include <string.h>
+
 #include "tests/random.h"
 #include "tests/tap.h"
 
@@ -52,7 +54,10 @@ static void add_links(struct solver *solver, int round)
             continue;
         int32_t a = forest_reach(solver->method.forest, p);
         int32_t b = forest_reach(solver->method.forest, q);
-        link_list_append(&solver->links, (struct link){a, b, area, (float)area, (uint32_t)i});
+        link_list_append(&solver->links, (struct link){
+            .p = a, .q = b, .area = float_below(area), .blocker = i,
+            .parts_p = {(uint8_t)(i % 80), 64, 20}, .parts_q = {1, (uint8_t)(i % 100), 0},
+            .seen = (uint8_t)(i % 256), .cost = (uint8_t)(i / 256)});
     }
 }
 
@@ -66,14 +71,37 @@ static struct solver *make_solver(const struct comm *comm, const struct scene *s
     return solver;
 }
 
+/* Makes the trees of all ranks equal, as a refinement does at its end. */
+static void share_patches(struct solver *solver)
+{
+    struct bytes own = {0};
+    struct forest *forest = solver->method.forest;
+    for (int64_t p = 0; p < forest->count; p++) {
+        const uint8_t *id = (const uint8_t *)&forest->patches[p].id;
+        for (size_t k = 0; k < sizeof forest->patches[p].id; k++)
+            bytes_append(&own, id[k]);
+    }
+    int *at = alloc_array((size_t)solver->comm->size + 1, sizeof *at);
+    uint8_t *all = comm_gather_all(solver->comm, own.data, own.count, at);
+    for (int i = 0; i < at[solver->comm->size]; i += (int)sizeof(struct patch_id)) {
+        struct patch_id id;
+        memcpy(&id, all + i, sizeof id);
+        forest_reach(forest, id);
+    }
+    alloc_free(all);
+    alloc_free(at);
+    bytes_free(&own);
+}
+
 /* One iteration without refinement; in rounds 0 and 1 new links come with new patches. */
 static struct vote iterate(struct solver *solver, int round)
 {
     solver->first_new = solver->method.forest->count;
     if (round < 2)
         add_links(solver, round);
-    forest_clear_flux(solver->method.forest);
-    solver->moved = links_transfer(&solver->links, solver->method.forest, solver->method.flux_unit);
+    share_patches(solver);
+    solver_close(solver);
+    solver_transfer(solver);
     solver_gather(solver);
     solver_push_pull(solver);
     solver_scatter(solver);
@@ -132,7 +160,10 @@ static int64_t fingerprint(const struct solver *solver)
         struct patch_id q = solver->method.forest->patches[link->q].id;
         uint64_t word = p.root + 31u * (uint64_t)p.hierarchy + 1009u * (uint64_t)q.root +
                         99991u * (uint64_t)q.hierarchy + 7u * (uint64_t)link->cost;
-        sum += (word * UINT64_C(0x9E3779B97F4A7C15) >> 16) + (uint64_t)(link->area * 1e15);
+        for (int k = 0; k < 3; k++)
+            word = 257u * word + 65537u * (uint64_t)link->parts_p[k] + (uint64_t)link->parts_q[k];
+        word = 259u * word + 17u * (uint64_t)(uint32_t)link->blocker + (uint64_t)link->seen;
+        sum += (word * UINT64_C(0x9E3779B97F4A7C15) >> 16) + (uint64_t)((double)link->area * 1e15);
     }
     return (int64_t)(sum & UINT64_C(0xffffffffffff));
 }
@@ -146,12 +177,12 @@ static void test_migration(struct solver *parallel, struct solver *alone)
     for (int turn = 1; turn <= 3; turn++) {
         int *destination = alloc_array((size_t)parallel->links.count, sizeof *destination);
         for (int64_t i = 0; i < parallel->links.count; i++)
-            destination[i] = (int)(parallel->links.items[i].cost / (unsigned)turn) % comm->size;
+            destination[i] = parallel->links.items[i].blocker / turn % comm->size;
         links_migrate(parallel, &parallel->links, destination);
         alloc_free(destination);
         for (int64_t i = 0; i < parallel->links.count; i++)
-            right_place = right_place && (int)(parallel->links.items[i].cost / (unsigned)turn) %
-                                                 comm->size == comm->rank;
+            right_place = right_place && parallel->links.items[i].blocker / turn % comm->size ==
+                                             comm->rank;
     }
     int64_t after = total_of(comm, fingerprint(parallel)) & INT64_C(0xffffffffffff);
     report(comm, right_place, "each link is where it was sent");

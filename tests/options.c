@@ -215,7 +215,7 @@ static void test_errors(void)
     check_refused("a.obj --Flat", "unknown option --Flat; see --help");
     check_refused("a.obj --", "unknown option --; see --help");
     check_refused("a.obj -f", "unknown option -f; see --help");
-    check_refused("a.obj --oracle of-delphi", "--oracle: 'of-delphi' is not bf");
+    check_refused("a.obj --oracle of-delphi", "--oracle: 'of-delphi' is not one of bf|error");
     check_refused("a.obj --samples 2.5", "--samples: '2.5' is not a whole number");
     check_refused("a.obj --epsilon ten", "--epsilon: 'ten' is not a number");
     check_refused("a.obj --epsilon _", "--epsilon: '' is not a number");
