@@ -427,16 +427,38 @@ static void test_closure(void)
     /* All numbers are of size 1 and rounded a few times. */
     tap_ok(fabs(sums.min - 0.5) < 1e-13 && fabs(sums.max - 1.25) < 1e-13,
            "least and greatest row sum");
-    tap_ok(fabs(flux_to_watts(unit, sums.area) - (a + b)) < 1e-13,
+    struct flux_unit coarse = {unit.per_watt / CLOSURE_ROOM, unit.watt * CLOSURE_ROOM};
+    tap_ok(fabs(flux_to_watts(coarse, sums.area) - (a + b)) < 1e-13,
            "the area counted is that of own leaves that are not dark");
-    tap_ok(fabs(flux_to_watts(unit, sums.rows) - (1.25 * a + 0.7 * b)) < 1e-13, "rows");
+    tap_ok(fabs(flux_to_watts(coarse, sums.rows) - (1.25 * a + 0.7 * b)) < 1e-13, "rows");
     double squares = 0.0625 * a + 0.5 * b * 0.25 + 0.5 * b * 0.01;
-    tap_ok(fabs(flux_to_watts(unit, sums.squares) - squares) < 1e-13, "squares");
+    tap_ok(fabs(flux_to_watts(coarse, sums.squares) - squares) < 1e-13, "squares");
     bool none[ROOTS] = {false};
     sums = closure_measure(forest, none, unit);
     tap_ok(sums.min == HUGE_VAL && sums.max == -HUGE_VAL && sums.area == 0 && sums.rows == 0 &&
                sums.squares == 0,
            "no leaf at all");
+    /* The unit of a transfer of B = 1 is chosen for a flux as large as the area. */
+    int tried = 0, right = 0;
+    for (int32_t root = 0; root < ROOTS; root++) {
+        double area = forest_area(forest, root);
+        if (root == NO_AREA || root == 7)
+            continue;
+        unit = flux_unit_for(area);
+        memset(none, 0, sizeof none);
+        none[root] = true;
+        forest_clear_flux(forest);
+        forest_split(forest, root);
+        for (int k = 0; k < 4; k++)
+            forest->patches[forest->patches[root].children + k].flux[0] =
+                flux_from_watts(unit, 0.25 * 1.5 * area);
+        forest->patches[root].flux[0] = flux_from_watts(unit, 0.9375 * area);
+        sums = closure_measure(forest, none, unit);
+        tried++;
+        right += fabs((double)sums.rows / (double)sums.area - 2.4375) < 1e-12 &&
+                 fabs((double)sums.squares / (double)sums.area - 1.4375 * 1.4375) < 1e-12;
+    }
+    tap_ok(tried == 10 && right == tried, "rows may sum to more than 2 all over a scene");
     world_free(&world);
 }
 
