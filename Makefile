@@ -49,10 +49,10 @@ BRUTE =
 MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
-# Unit tests, bottom up; the last three are run with several ranks.
+# Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary id triangle lambert scene polygon contour octree bundles flux patch \
-        formfactor link pushpull treecode plan assign text obj output tone image camera shading \
-        options paths norms exchange exact converge
+        compact formfactor link oracle pushpull closure treecode plan assign text obj output tone \
+        image camera shading options paths norms exchange conjugate exact converge
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)
 
 all: $(PHR)

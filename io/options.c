@@ -129,7 +129,7 @@ static bool set_choice(const struct option *option, const char *value, int *fiel
     int number = 0;
     for (const char *at = option->choices; at; at = strchr(at, '|'), number++) {
         at += *at == '|';
-        if (strncmp(at, value, length) == 0 && (at[length] == '|' || at[length] == '\0')) {
+        if (strcspn(at, "|") == length && strncmp(at, value, length) == 0) {
             *field = number;
             return true;
         }

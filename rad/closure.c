@@ -121,6 +121,7 @@ struct closure_sums closure_measure(const struct forest *forest, const bool *own
                                     struct flux_unit unit)
 {
     struct closure_sums sums = {.min = HUGE_VAL, .max = -HUGE_VAL};
+    struct flux_unit coarse = {unit.per_watt / CLOSURE_ROOM, unit.watt * CLOSURE_ROOM};
     for (int64_t p = 0; p < forest->count; p++) {
         const struct patch *patch = &forest->patches[p];
         double area = forest_area(forest, (int32_t)p);
@@ -130,10 +131,10 @@ struct closure_sums closure_measure(const struct forest *forest, const bool *own
         double row = leaf_irradiance(forest, (int32_t)p, unit).band[0];
         sums.min = fmin(sums.min, row);
         sums.max = fmax(sums.max, row);
-        sums.area = flux_add(sums.area, flux_from_watts(unit, area));
-        sums.rows = flux_add(sums.rows, flux_from_watts(unit, area * row));
+        sums.area = flux_add(sums.area, flux_from_watts(coarse, area));
+        sums.rows = flux_add(sums.rows, flux_from_watts(coarse, area * row));
         sums.squares = flux_add(sums.squares,
-                                flux_from_watts(unit, area * (row - 1.0) * (row - 1.0)));
+                                flux_from_watts(coarse, area * (row - 1.0) * (row - 1.0)));
     }
     return sums;
 }

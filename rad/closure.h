@@ -53,8 +53,11 @@ static inline double closure_weight(const struct closure *closure, int32_t leaf)
  * Fires rays, which are counted, for those of which nothing is known yet. */
 bool closure_is_due(struct closure *closure, struct method *method, int32_t leaf);
 
-/* Row sums of the form factors over the leaves of this rank's own roots, area-weighted; sums in
- * the unit given to closure_measure(). */
+enum { CLOSURE_ROOM = 16 };
+
+/* Row sums of the form factors over the leaves of this rank's own roots, area-weighted. The sums
+ * count in CLOSURE_ROOM of the units given to closure_measure(): a unit that has room for the area
+ * of the scene may have none for rows that sum to more than 1. */
 struct closure_sums {
     double min, max; /* +-HUGE_VAL where there is no leaf */
     int64_t area;    /* of the leaves counted */

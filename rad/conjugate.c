@@ -115,11 +115,13 @@ void conjugate_advance(struct conjugate *cg, const struct method *method, const 
             continue;
         const struct material *material = forest_material(method->forest, (int32_t)p);
         for (int c = 0; c < BANDS; c++) {
-            if (material->reflectance.band[c] == 0.0)
-                continue;
             double *direction = &cg->direction[p].band[c], *image = &cg->image[p].band[c];
-            *direction = cg->residual[p].band[c] + turn[c] * *direction;
             *image = cg->work[p].band[c] + turn[c] * *image;
+            if (material->reflectance.band[c] == 0.0) { /* p = z = 0, and H follows the others */
+                cg->irradiance[p].band[c] -= step[c] * *image;
+                continue;
+            }
+            *direction = cg->residual[p].band[c] + turn[c] * *direction;
             cg->irradiance[p].band[c] += step[c] * *direction;
             cg->residual[p].band[c] -= step[c] * *image;
         }

@@ -11,6 +11,7 @@ struct flux_unit flux_unit_for(double largest)
 {
     int exponent;
     frexp(largest, &exponent); /* largest < 2^exponent */
+    exponent = exponent > -960 ? exponent : -960; /* 2^(62 + 960) is finite, its inverse exact */
     return (struct flux_unit){ldexp(1.0, 62 - exponent), ldexp(1.0, exponent - 62)};
 }
 

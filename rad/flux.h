@@ -20,7 +20,7 @@ struct flux_unit {
 };
 
 /* The unit in which sums up to `largest` watts stay below FLUX_LIMIT: a power of two.
- * Pre: 0 < largest. */
+ * Below 2^-960 it is that of 2^-960. Pre: 0 <= largest. */
 struct flux_unit flux_unit_for(double largest);
 
 /* Chooses k from the emitted power and the largest reflectance rho: the light in a closed scene

@@ -1,6 +1,7 @@
 /* The exchanges of the distributed algorithm on a made-up forest, on any number of ranks: gather,
  * push-pull and scatter end with the same forest as one rank alone, links that migrate arrive
- * once and mean the same, and the vote adds up to the same sums.
+ * once and mean the same, and the vote adds up to the same sums. Collectives give what they say,
+ * and a cube is refined alike on all ranks.
  *
  * Every rank knows all of the made-up links and holds those that a hash deals to it; beside the
  * parallel solver runs one on MPI_COMM_SELF that holds them all. To be run with mpiexec; rank 0
@@ -10,7 +11,10 @@
 #include "mpi/picture.h"
 #include "rad/treecode.h"
 
+#include <string.h>
+
 #include "tests/random.h"
+#include "tests/solve.h"
 #include "tests/tap.h"
 
 enum { ROOTS = 23, LINKS = 4000 };
@@ -52,7 +56,10 @@ static void add_links(struct solver *solver, int round)
             continue;
         int32_t a = forest_reach(solver->method.forest, p);
         int32_t b = forest_reach(solver->method.forest, q);
-        link_list_append(&solver->links, (struct link){a, b, area, (float)area, (uint32_t)i});
+        link_list_append(&solver->links, (struct link){
+            .p = a, .q = b, .area = float_below(area), .blocker = i,
+            .parts_p = {(uint8_t)(i % 80), 64, 20}, .parts_q = {1, (uint8_t)(i % 100), 0},
+            .seen = (uint8_t)(i % 256), .cost = (uint8_t)(i / 256)});
     }
 }
 
@@ -66,14 +73,37 @@ static struct solver *make_solver(const struct comm *comm, const struct scene *s
     return solver;
 }
 
+/* Makes the trees of all ranks equal, as a refinement does at its end. */
+static void share_patches(struct solver *solver)
+{
+    struct bytes own = {0};
+    struct forest *forest = solver->method.forest;
+    for (int64_t p = 0; p < forest->count; p++) {
+        const uint8_t *id = (const uint8_t *)&forest->patches[p].id;
+        for (size_t k = 0; k < sizeof forest->patches[p].id; k++)
+            bytes_append(&own, id[k]);
+    }
+    int *at = alloc_array((size_t)solver->comm->size + 1, sizeof *at);
+    uint8_t *all = comm_gather_all(solver->comm, own.data, own.count, at);
+    for (int i = 0; i < at[solver->comm->size]; i += (int)sizeof(struct patch_id)) {
+        struct patch_id id;
+        memcpy(&id, all + i, sizeof id);
+        forest_reach(forest, id);
+    }
+    alloc_free(all);
+    alloc_free(at);
+    bytes_free(&own);
+}
+
 /* One iteration without refinement; in rounds 0 and 1 new links come with new patches. */
 static struct vote iterate(struct solver *solver, int round)
 {
     solver->first_new = solver->method.forest->count;
     if (round < 2)
         add_links(solver, round);
-    forest_clear_flux(solver->method.forest);
-    solver->moved = links_transfer(&solver->links, solver->method.forest, solver->method.flux_unit);
+    share_patches(solver);
+    solver_close(solver);
+    solver_transfer(solver);
     solver_gather(solver);
     solver_push_pull(solver);
     solver_scatter(solver);
@@ -132,7 +162,10 @@ static int64_t fingerprint(const struct solver *solver)
         struct patch_id q = solver->method.forest->patches[link->q].id;
         uint64_t word = p.root + 31u * (uint64_t)p.hierarchy + 1009u * (uint64_t)q.root +
                         99991u * (uint64_t)q.hierarchy + 7u * (uint64_t)link->cost;
-        sum += (word * UINT64_C(0x9E3779B97F4A7C15) >> 16) + (uint64_t)(link->area * 1e15);
+        for (int k = 0; k < 3; k++)
+            word = 257u * word + 65537u * (uint64_t)link->parts_p[k] + (uint64_t)link->parts_q[k];
+        word = 259u * word + 17u * (uint64_t)(uint32_t)link->blocker + (uint64_t)link->seen;
+        sum += (word * UINT64_C(0x9E3779B97F4A7C15) >> 16) + (uint64_t)((double)link->area * 1e15);
     }
     return (int64_t)(sum & UINT64_C(0xffffffffffff));
 }
@@ -146,12 +179,12 @@ static void test_migration(struct solver *parallel, struct solver *alone)
     for (int turn = 1; turn <= 3; turn++) {
         int *destination = alloc_array((size_t)parallel->links.count, sizeof *destination);
         for (int64_t i = 0; i < parallel->links.count; i++)
-            destination[i] = (int)(parallel->links.items[i].cost / (unsigned)turn) % comm->size;
+            destination[i] = parallel->links.items[i].blocker / turn % comm->size;
         links_migrate(parallel, &parallel->links, destination);
         alloc_free(destination);
         for (int64_t i = 0; i < parallel->links.count; i++)
-            right_place = right_place && (int)(parallel->links.items[i].cost / (unsigned)turn) %
-                                                 comm->size == comm->rank;
+            right_place = right_place && parallel->links.items[i].blocker / turn % comm->size ==
+                                             comm->rank;
     }
     int64_t after = total_of(comm, fingerprint(parallel)) & INT64_C(0xffffffffffff);
     report(comm, right_place, "each link is where it was sent");
@@ -161,6 +194,122 @@ static void test_migration(struct solver *parallel, struct solver *alone)
     iterate(alone, 2);
     report(comm, forest_checksum(parallel->method.forest) == forest_checksum(alone->method.forest),
            "and carry the same light from their new ranks");
+}
+
+/* --- collectives --- */
+
+/* Rank r gives r % 3 * 5 bytes: some give none. */
+static void test_gather_all(const struct comm *comm)
+{
+    uint8_t own[10];
+    int bytes = comm->rank % 3 * 5, expected = 0;
+    for (int i = 0; i < bytes; i++)
+        own[i] = (uint8_t)(20 * comm->rank + i);
+    int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
+    uint8_t *all = comm_gather_all(comm, own, bytes, at);
+    bool right = true;
+    for (int r = 0; r < comm->size; r++) {
+        right = right && at[r] == expected;
+        for (int i = 0; i < r % 3 * 5; i++)
+            right = right && all[expected + i] == (uint8_t)(20 * r + i);
+        expected += r % 3 * 5;
+    }
+    right = right && at[comm->size] == expected;
+    alloc_free(all);
+    all = comm_gather_all(comm, own, 0, at);
+    right = right && at[comm->size] == 0;
+    report(comm, right, "the bytes of all ranks in their order, also none at all");
+    alloc_free(all);
+    alloc_free(at);
+}
+
+static void test_sums(const struct comm *comm)
+{
+    int size = comm->size;
+    double values[4] = {comm->rank == size / 2 ? 1e300 : -1.0, -1.0 - comm->rank,
+                        comm->rank - 0.5 * size, comm->rank == size - 1 ? HUGE_VAL : 0.0};
+    bool right = comm_largest(comm, values[0]) == 1e300 && comm_largest(comm, values[1]) == -1.0 &&
+                 comm_largest(comm, values[2]) == size - 1 - 0.5 * size &&
+                 comm_largest(comm, values[3]) == HUGE_VAL;
+    report(comm, right, "the largest value of all ranks, whatever its sign");
+    uint8_t bytes[6] = {1, (uint8_t)comm->rank, 0, comm->rank == 0 ? 255 : 0,
+                        (uint8_t)(comm->rank == size - 1), 9};
+    comm_add_bytes(comm, bytes, 5);
+    right = bytes[0] == size && bytes[1] == size * (size - 1) / 2 && bytes[2] == 0 &&
+            bytes[3] == 255 && bytes[4] == 1 && bytes[5] == 9;
+    report(comm, right, "bytes are added over all ranks, and no others");
+}
+
+/* --- refinement --- */
+
+/* Whether all ranks have the trees of rank 0. */
+static bool trees_agree(const struct solver *solver)
+{
+    uint64_t own = forest_checksum(solver->method.forest), first = own;
+    comm_broadcast(solver->comm, &first, sizeof first);
+    return on_all(solver->comm, own == first);
+}
+
+static struct vote transfer(struct solver *solver)
+{
+    struct vote vote;
+    solver_close(solver);
+    do {
+        solver_transfer(solver);
+        solver_gather(solver);
+        solver_push_pull(solver);
+        solver_scatter(solver);
+        vote = solver_vote(solver);
+    } while (vote.again);
+    return vote;
+}
+
+/* A cube, refined twice: right after a refinement all ranks have the same trees, which are those
+ * that one rank makes, though the links that split them live on different ranks. */
+static void test_refinement(const struct comm *comm, const struct comm *self,
+                            const struct criterion *criterion, const char *name)
+{
+    const struct comm *comms[2] = {comm, self};
+    struct solver *solvers[2];
+    struct scene *cube = cube_create();
+    for (int face = 0; face < 6; face++)
+        cube->materials[face] = (struct material){{{0.3 + 0.1 * face, 0.5, 0.2}},
+                                                  {{face == 1, face == 1, face == 2}}};
+    struct octree *octree = octree_create(cube->triangles, cube->planes, cube->input_count);
+    for (int k = 0; k < 2; k++) {
+        solvers[k] = solver_create(comms[k], cube, octree, criterion);
+        solver_link_roots(solvers[k]);
+        solver_assign_roots(solvers[k]);
+    }
+    bool agree = true, alike = true, grows = true, apart = true, even = true;
+    for (int pass = 0; pass < 3; pass++) {
+        struct vote vote[2];
+        int64_t before = solvers[0]->method.forest->count;
+        for (int k = 0; k < 2; k++)
+            solver_refine(solvers[k]);
+        const struct forest *here = solvers[0]->method.forest, *there = solvers[1]->method.forest;
+        int64_t split = total_of(comm, solvers[0]->split_here);
+        apart = apart && (comm->size == 1 || pass > 0 || solvers[0]->split_here < split);
+        agree = agree && trees_agree(solvers[0]);
+        alike = alike && here->count == there->count &&
+                forest_checksum(here) == forest_checksum(there);
+        grows = grows && (pass > 0 || here->count > before);
+        for (int k = 0; k < 2; k++)
+            vote[k] = transfer(solvers[k]);
+        even = even && trees_agree(solvers[0]) && forest_checksum(here) == forest_checksum(there) &&
+               vote[0].links == vote[1].links && vote[0].split == vote[1].split &&
+               vote[0].remaining == vote[1].remaining && vote[0].absorbed == vote[1].absorbed &&
+               vote[0].escaped == vote[1].escaped &&
+               solvers[0]->iteration == solvers[1]->iteration;
+    }
+    report(comm, grows && apart, name);
+    report(comm, agree, "after a refinement all ranks have the same trees");
+    report(comm, alike, "which are those of one rank alone");
+    report(comm, even, "and so are the light and the votes, to the bit");
+    for (int k = 0; k < 2; k++)
+        solver_destroy(solvers[k]);
+    octree_destroy(octree);
+    scene_destroy(cube);
 }
 
 /* With more ranks than roots some own nothing; the picture has fewer rows than ranks too. */
@@ -189,6 +338,14 @@ int main(int argc, char **argv)
     test_rounds(parallel, alone);
     test_migration(parallel, alone);
     test_picture(&comm);
+    test_gather_all(&comm);
+    test_sums(&comm);
+    struct criterion criterion = criterion_of(3e-4, 10, 1e-3);
+    test_refinement(&comm, &self, &criterion, "the paper's method: several ranks split links");
+    for (enum closure_kind kind = CLOSURE_NONE; kind <= CLOSURE_SYMMETRIC; kind++) {
+        criterion = criterion_best(3e-4, 10, 1e-4, kind);
+        test_refinement(&comm, &self, &criterion, "error oracle and cg: several ranks split links");
+    }
     solver_destroy(parallel);
     solver_destroy(alone);
     scene_destroy(scene);

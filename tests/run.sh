@@ -48,6 +48,7 @@ run_on_ranks() {
 for test in "$@"; do
     case $test in
     exchange) run_on_ranks "$test" 1 2 3 4 7 ;;
+    conjugate) run_on_ranks "$test" 1 3 ;;
     exact) run_on_ranks "$test" 1 3 ;;
     converge) run_on_ranks "$test" 2 ;;
     *) run "$test" "$BUILD/tests/$test" ;;

@@ -13,10 +13,23 @@ struct solution {
     double seconds;     /* for the octree and the loop; the same on all ranks but for waiting */
 };
 
+/* The paper's variant. */
 static inline struct criterion criterion_of(double epsilon, int max_level, double tolerance)
 {
     return (struct criterion){.epsilon = epsilon, .min_area = 0.0, .max_level = max_level,
                               .alpha = 0.5, .tolerance = tolerance, .max_iterations = 100000};
+}
+
+/* The error oracle, form factors of polygons, and conjugate gradients. */
+static inline struct criterion criterion_best(double epsilon, int max_level, double tolerance,
+                                              enum closure_kind closure)
+{
+    struct criterion criterion = criterion_of(epsilon, max_level, tolerance);
+    criterion.oracle = ORACLE_ERROR;
+    criterion.form_factor = FORM_FACTOR_POLYGON;
+    criterion.closure = closure;
+    criterion.solver = SOLVER_CG;
+    return criterion;
 }
 
 /* Collective. Solves a prepared scene and takes it over. */

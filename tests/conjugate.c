@@ -1,0 +1,375 @@
+/* Conjugate gradients (rad/conjugate.h, mpi/solve.c, mpi/vote.c) and the closure (mpi/closing.c)
+ * against Gaussian elimination: a made-up forest with random links, whose form factors are written
+ * down here once more as a dense matrix. On any number of ranks; rank 0 reports. */
+#include "mpi/assign.h"
+#include "mpi/solver.h"
+
+#include "rad/treecode.h"
+
+#include "tests/scenes.h"
+#include "tests/tap.h"
+
+enum { ROOTS = 9, BLACK = 4, OPEN_ROOT = 2, LEAVES_MAX = 200 };
+
+struct problem {
+    const struct comm *comm;
+    struct scene *scene;
+    struct solver *solver;
+    int32_t leaves[LEAVES_MAX]; /* local numbers */
+    int count;
+};
+
+/* Roots of made-up areas. Root 4 reflects nothing, root 6 nothing in one band; 0 and 3 glow. */
+static struct scene *make_scene(double rho)
+{
+    struct scene *scene = scene_create(ROOTS, ROOTS);
+    struct random random = random_seed(3);
+    for (int32_t i = 0; i < ROOTS; i++) {
+        scene->areas[i] = 0.05 + 0.1 * random_unit(&random);
+        scene->material_of[i] = i;
+        for (int c = 0; c < BANDS && i != BLACK; c++)
+            scene->materials[i].reflectance.band[c] = rho * (0.5 + 0.5 * random_unit(&random));
+    }
+    scene->materials[6].reflectance.band[1] = 0.0;
+    scene->materials[0].emission = (struct rgb){{3.0, 0.5, 1.0}};
+    scene->materials[3].emission = (struct rgb){{0.0, 2.0, 1e-3}};
+    scene->materials[BLACK].emission = (struct rgb){{0.1, 0.0, 0.2}};
+    return scene;
+}
+
+/* A link from every root, and every child if there are any, to every other root, with random parts
+ * where there are children. Rows sum to less than 1. Every rank keeps its share. */
+static void add_links(struct solver *solver)
+{
+    struct forest *forest = solver->method.forest;
+    struct random random = random_seed(99);
+    int number = 0;
+    for (int32_t p = 0; p < forest->count; p++)
+        for (int32_t q = 0; q < ROOTS; q++) {
+            struct link link = {.p = p, .q = q, .seen = LINK_ALL_SEEN};
+            double least = fmin(forest_area(forest, p), forest_area(forest, q));
+            link.area = float_below(0.035 * least * (0.5 + random_unit(&random)));
+            for (int k = 0; k < 3; k++) {
+                link.parts_p[k] = (uint8_t)random_below(&random, 86);
+                link.parts_q[k] = (uint8_t)random_below(&random, 86);
+            }
+            if (forest->patches[p].id.root < (uint32_t)q &&
+                number++ % solver->comm->size == solver->comm->rank)
+                link_list_append(&solver->links, link);
+        }
+}
+
+/* `splits` roots are split, and a child of each of them. */
+static struct problem problem_make(const struct comm *comm, double rho, int splits,
+                                   const struct criterion *criterion)
+{
+    struct problem problem = {.comm = comm, .scene = make_scene(rho)};
+    problem.solver = solver_create(comm, problem.scene, NULL, criterion);
+    struct solver *solver = problem.solver;
+    struct forest *forest = solver->method.forest;
+    roots_assign(problem.scene, comm->size, solver->owner);
+    for (int32_t root = 0; root < ROOTS; root++)
+        solver->own[root] = solver->owner[root] == comm->rank;
+    for (int32_t root = 0; root < splits; root++) {
+        forest_split(forest, root);
+        forest_split(forest, forest->patches[root].children + root % 4);
+    }
+    solver->first_new = forest->count;
+    add_links(solver);
+    closure_extend(&solver->closure, forest); /* without geometry no ray can look around */
+    for (int32_t p = 0; p < forest->count; p++) {
+        solver->closure.enclosure[p] = forest->patches[p].id.root == OPEN_ROOT ? OPEN : ENCLOSED;
+        if (patch_is_leaf(&forest->patches[p]))
+            problem.leaves[problem.count++] = p;
+    }
+    return problem;
+}
+
+static void problem_free(struct problem *problem)
+{
+    solver_destroy(problem->solver);
+    scene_destroy(problem->scene);
+}
+
+/* The part of what a link has to do with `patch` that falls to the leaf: 0 if it is elsewhere. */
+static double share_of(const struct forest *forest, int32_t leaf, int32_t patch,
+                       const uint8_t parts[3])
+{
+    double share = 1.0;
+    for (int32_t p = leaf; p >= 0; p = forest->patches[p].parent) {
+        if (p == patch)
+            return share;
+        int32_t parent = forest->patches[p].parent;
+        if (parent >= 0)
+            share *= parent == patch ? link_part(parts, p - forest->patches[parent].children) : 0.25;
+    }
+    return 0.0;
+}
+
+/* f[i][j] += from leaf j to leaf i, summed over the links of all ranks. */
+static void build(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX])
+{
+    static double own[LEAVES_MAX][LEAVES_MAX];
+    const struct forest *forest = problem->solver->method.forest;
+    for (int i = 0; i < problem->count; i++)
+        for (int j = 0; j < problem->count; j++) {
+            int32_t a = problem->leaves[i], b = problem->leaves[j];
+            own[i][j] = 0.0;
+            for (int64_t k = 0; k < problem->solver->links.count; k++) {
+                const struct link *link = &problem->solver->links.items[k];
+                double there = share_of(forest, a, link->p, link->parts_p) *
+                               share_of(forest, b, link->q, link->parts_q);
+                double back = share_of(forest, a, link->q, link->parts_q) *
+                              share_of(forest, b, link->p, link->parts_p);
+                own[i][j] += (double)link->area * (there + back) / forest_area(forest, a);
+            }
+        }
+    MPI_Request request;
+    MPI_Iallreduce(own, f, LEAVES_MAX * LEAVES_MAX, MPI_DOUBLE, MPI_SUM, problem->comm->handle,
+                   &request);
+    comm_wait(&request);
+}
+
+/* Solves a x = b in place, with pivots. */
+static void eliminate(double a[LEAVES_MAX][LEAVES_MAX], double *b, int n)
+{
+    for (int k = 0; k < n; k++) {
+        int pivot = k;
+        for (int i = k + 1; i < n; i++)
+            pivot = fabs(a[i][k]) > fabs(a[pivot][k]) ? i : pivot;
+        for (int j = 0; j < n; j++) {
+            double swap = a[k][j];
+            a[k][j] = a[pivot][j];
+            a[pivot][j] = swap;
+        }
+        double swap = b[k];
+        b[k] = b[pivot];
+        b[pivot] = swap;
+        for (int i = 0; i < n; i++) {
+            double factor = i == k ? 0.0 : a[i][k] / a[k][k];
+            for (int j = k; j < n && factor != 0.0; j++)
+                a[i][j] -= factor * a[k][j];
+            b[i] -= factor * b[k];
+        }
+    }
+    for (int k = 0; k < n; k++)
+        b[k] /= a[k][k];
+}
+
+/* Largest difference of B from E + rho H with (1 - d F d' rho) H = d F d' E, over the largest B. */
+static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX])
+{
+    static double a[LEAVES_MAX][LEAVES_MAX], h[LEAVES_MAX];
+    const struct solver *solver = problem->solver;
+    const struct forest *forest = solver->method.forest;
+    double worst = 0.0, largest = 0.0;
+    for (int c = 0; c < BANDS; c++) {
+        for (int i = 0; i < problem->count; i++) {
+            h[i] = 0.0;
+            for (int j = 0; j < problem->count; j++) {
+                const struct material *m = forest_material(forest, problem->leaves[j]);
+                double factor = f[i][j] * closure_receives(&solver->closure, problem->leaves[i]) *
+                                closure_sends(&solver->closure, problem->leaves[j]);
+                a[i][j] = (i == j ? 1.0 : 0.0) - factor * m->reflectance.band[c];
+                h[i] += factor * m->emission.band[c];
+            }
+        }
+        eliminate(a, h, problem->count);
+        for (int i = 0; i < problem->count; i++) {
+            const struct material *m = forest_material(forest, problem->leaves[i]);
+            double exact = m->emission.band[c] + m->reflectance.band[c] * h[i];
+            double b = forest->patches[problem->leaves[i]].radiosity.band[c];
+            worst = fmax(worst, fabs(b - exact));
+            largest = fmax(largest, exact);
+        }
+    }
+    return worst / largest;
+}
+
+/* Largest |z| that is left where H is computed once more from B = E + rho H, by the links. */
+static double residual(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX])
+{
+    const struct solver *solver = problem->solver;
+    const struct forest *forest = solver->method.forest;
+    double worst = 0.0;
+    for (int i = 0; i < problem->count; i++)
+        for (int c = 0; c < BANDS; c++) {
+            int32_t leaf = problem->leaves[i];
+            double h = 0.0;
+            for (int j = 0; j < problem->count; j++)
+                h += f[i][j] * closure_receives(&solver->closure, leaf) *
+                     closure_sends(&solver->closure, problem->leaves[j]) *
+                     forest->patches[problem->leaves[j]].radiosity.band[c];
+            if (solver->own[forest->patches[leaf].id.root])
+                worst = fmax(worst, fabs(h - solver->conjugate.irradiance[leaf].band[c]));
+        }
+    return comm_largest(problem->comm, worst);
+}
+
+static struct vote iterate(struct solver *solver)
+{
+    struct vote vote;
+    solver_close(solver);
+    do {
+        solver_transfer(solver);
+        solver_gather(solver);
+        solver_push_pull(solver);
+        solver_scatter(solver);
+        vote = solver_vote(solver);
+    } while (vote.again);
+    return vote;
+}
+
+/* Largest difference from 1 of the corrected row sums of enclosed leaves. */
+static double rows_off(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX])
+{
+    const struct solver *solver = problem->solver;
+    double off = 0.0;
+    for (int i = 0; i < problem->count; i++) {
+        double row = 0.0;
+        int32_t leaf = problem->leaves[i];
+        uint32_t root = solver->method.forest->patches[leaf].id.root;
+        for (int j = 0; j < problem->count; j++)
+            row += closure_receives(&solver->closure, leaf) * f[i][j] *
+                   closure_sends(&solver->closure, problem->leaves[j]);
+        if (root != OPEN_ROOT && solver->own[root])
+            off = fmax(off, fabs(row - 1.0));
+        else if (root == OPEN_ROOT)
+            off = fmax(off, fabs(solver->closure.factor[leaf] - 1.0));
+    }
+    return comm_largest(problem->comm, off);
+}
+
+/* The factors of --closure rows are known only to the homes; all ranks need them here. */
+static void share_factors(const struct problem *problem)
+{
+    struct closure *closure = &problem->solver->closure;
+    const struct forest *forest = problem->solver->method.forest;
+    for (int32_t p = 0; p < forest->count; p++) {
+        bool own = problem->solver->own[forest->patches[p].id.root];
+        closure->factor[p] = comm_largest(problem->comm, own ? closure->factor[p] : 0.0);
+    }
+}
+
+static const char *const KINDS[] = {"no closure", "rows", "symmetric"};
+
+static void test_dense(const struct comm *comm, enum closure_kind kind, double rho, int splits)
+{
+    static double f[LEAVES_MAX][LEAVES_MAX];
+    struct criterion criterion = {.oracle = ORACLE_ERROR, .closure = kind, .solver = SOLVER_CG,
+                                  .tolerance = 1e-12, .max_level = 15, .max_iterations = 1000};
+    struct problem problem = problem_make(comm, rho, splits, &criterion);
+    struct vote vote = iterate(problem.solver);
+    share_factors(&problem);
+    build(&problem, f);
+    double off = deviation(&problem, f), rest = residual(&problem, f), rows = rows_off(&problem, f);
+    int steps = (int)problem.solver->iteration - 1; /* the first transfer is of B itself */
+    int most = 0; /* in exact arithmetic as many steps as there are unknowns */
+    for (int i = 0; i < problem.count; i++)
+        most += rgb_sum(forest_material(problem.solver->method.forest,
+                                        problem.leaves[i])->reflectance) > 0.0;
+    if (comm->rank == 0) {
+        /* The bound asks for 1e-12 of all light; fluxes are rounded to 2^-61 or so. */
+        tap_ok(vote.converged && off < 1e-9,
+               "%s, rho to %g, %d leaves: as by elimination, to %.1e of the largest B", KINDS[kind],
+               rho, problem.count, off);
+        tap_ok(rest < 1e-9, "and what arrives is what was solved for: %.1e W/m^2", rest);
+        tap_ok(steps <= most, "in %d steps, at most %d", steps, most);
+        if (kind != CLOSURE_NONE)
+            tap_ok(rows < 1e-8, "enclosed rows sum to 1, others have no factor: to %.1e", rows);
+    }
+    problem_free(&problem);
+}
+
+/* From the answer of before the next start is at once good enough, with factors that are found
+ * again. */
+static void test_restart(const struct comm *comm)
+{
+    struct criterion criterion = {.oracle = ORACLE_ERROR, .closure = CLOSURE_ROWS,
+                                  .solver = SOLVER_CG, .tolerance = 1e-6, .max_level = 15,
+                                  .max_iterations = 1000};
+    struct problem problem = problem_make(comm, 0.9, 4, &criterion);
+    iterate(problem.solver);
+    int64_t before = problem.solver->iteration;
+    struct vote vote = iterate(problem.solver);
+    if (comm->rank == 0)
+        tap_ok(before > 3 && vote.converged && problem.solver->iteration == before + 1,
+               "from its own answer it needs no step");
+    problem_free(&problem);
+}
+
+/* The bound on what is missing holds: it is never less than the deviation, both relative to all
+ * light. */
+static void test_bound(const struct comm *comm)
+{
+    bool holds = true;
+    double first = 0.0, last = 0.0;
+    for (int most = 1; most <= 8; most++) {
+        struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
+                                      .tolerance = 1e-12, .max_level = 15, .max_iterations = most};
+        struct problem problem = problem_make(comm, 0.95, 3, &criterion), exact;
+        struct vote vote = iterate(problem.solver);
+        criterion.max_iterations = 1000;
+        exact = problem_make(comm, 0.95, 3, &criterion);
+        iterate(exact.solver);
+        const struct forest *a = problem.solver->method.forest, *b = exact.solver->method.forest;
+        double missing = 0.0, light = 0.0;
+        for (int i = 0; i < problem.count; i++)
+            for (int c = 0; c < BANDS; c++) {
+                int32_t leaf = problem.leaves[i];
+                double at = a->patches[leaf].radiosity.band[c];
+                missing += forest_area(a, leaf) * fabs(at - b->patches[leaf].radiosity.band[c]);
+                light += forest_area(a, leaf) * at;
+            }
+        holds = holds && problem.solver->iteration == most && vote.remaining >= missing / light;
+        first = most == 1 ? vote.remaining : first;
+        last = vote.remaining;
+        problem_free(&exact);
+        problem_free(&problem);
+    }
+    if (comm->rank == 0)
+        tap_ok(holds && last < 1e-3 * first,
+               "what is still missing is within the bound, from %.1e after none to %.1e after 7 "
+               "steps", first, last);
+}
+
+/* On any number of ranks the same bits as on one. */
+static void test_ranks(const struct comm *comm, const struct comm *self, enum closure_kind kind)
+{
+    struct criterion criterion = {.oracle = ORACLE_ERROR, .closure = kind, .solver = SOLVER_CG,
+                                  .tolerance = 1e-9, .max_level = 15, .max_iterations = 1000};
+    struct problem parallel = problem_make(comm, 0.97, 5, &criterion);
+    struct problem alone = problem_make(self, 0.97, 5, &criterion);
+    struct vote a = iterate(parallel.solver), b = iterate(alone.solver);
+    bool same = a.absorbed == b.absorbed && a.escaped == b.escaped && a.remaining == b.remaining &&
+                parallel.solver->iteration == alone.solver->iteration &&
+                forest_checksum(parallel.solver->method.forest) ==
+                    forest_checksum(alone.solver->method.forest);
+    struct error error = {0};
+    if (!same)
+        error_set(&error, EXIT_FAILED, "rank %d", comm->rank);
+    same = comm_agree(comm, &error);
+    if (comm->rank == 0)
+        tap_ok(same, "%s: on %d ranks as on one, to the bit", KINDS[kind], comm->size);
+    problem_free(&parallel);
+    problem_free(&alone);
+}
+
+int main(int argc, char **argv)
+{
+    struct comm comm, self = {MPI_COMM_SELF, 0, 1};
+    comm_start(&comm, &argc, &argv);
+    test_dense(&comm, CLOSURE_NONE, 0.5, 0);
+    test_dense(&comm, CLOSURE_NONE, 0.99, 0);
+    test_dense(&comm, CLOSURE_ROWS, 0.9, 0);
+    for (enum closure_kind kind = CLOSURE_NONE; kind <= CLOSURE_SYMMETRIC; kind++) {
+        test_dense(&comm, kind, 0.9, 6);
+        test_dense(&comm, kind, 0.999, 9);
+        test_ranks(&comm, &self, kind);
+    }
+    test_dense(&comm, CLOSURE_NONE, 0.0, 3); /* nothing is reflected: H = F E, at once */
+    test_restart(&comm);
+    test_bound(&comm);
+    comm_stop(&comm);
+    return comm.rank == 0 ? tap_done() : alloc_balance() != 0;
+}

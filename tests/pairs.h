@@ -1,0 +1,63 @@
+/* Pairs of triangles that face each other, for tests of what stands between two patches. */
+#ifndef TESTS_PAIRS_H
+#define TESTS_PAIRS_H
+
+#include "rad/link.h"
+
+#include "tests/scenes.h"
+
+static inline struct vec3 point(double x, double y, double z)
+{
+    return (struct vec3){x, y, z};
+}
+
+/* A right triangle in the plane z, its right angle at x, facing up or down. */
+static inline struct triangle tile(double x, double z, double size, bool up)
+{
+    struct vec3 a = {x, 0, z}, b = {x + size, 0, z}, c = {x, size, z};
+    return up ? (struct triangle){{a, b, c}} : (struct triangle){{a, c, b}};
+}
+
+/* The link between two patches as an initial link. */
+static inline bool make(struct world *world, int32_t p, int32_t q, struct link *link)
+{
+    struct facet facet_p = facet_make(world->method.forest, p);
+    struct facet facet_q = facet_make(world->method.forest, q);
+    struct sight sight = {.open = false, .blocker = -1};
+    return link_make(&world->method, p, &facet_p, q, &facet_q, 0.0, &sight, link);
+}
+
+/* Floor 0 (material 0) and ceiling `size` times as large (material 1), then `more`. */
+static inline struct world make_pair(double size, struct material floor, struct material ceiling,
+                                     const struct soup *more)
+{
+    struct soup soup = {0};
+    soup_add(&soup, tile(0, 0, 1, true));
+    soup_add(&soup, tile(0, 1, size, false));
+    for (int64_t i = 0; more && i < more->count; i++)
+        soup_add(&soup, more->items[i]);
+    struct scene *scene = scene_of_soup(&soup, 3);
+    scene->material_of[1] = 1;
+    for (int64_t i = 2; i < soup.count; i++)
+        scene->material_of[i] = 2;
+    scene->materials[0] = floor;
+    scene->materials[1] = ceiling;
+    soup_free(&soup);
+    return world_make(scene);
+}
+
+static inline int64_t tests_done(const struct world *world)
+{
+    return world->method.counts.node_tests + world->method.counts.triangle_tests;
+}
+
+/* A triangle beside the pair, so that there is something to test: floor and ceiling alone are the
+ * hull of their scene and block nothing. */
+static inline struct soup bystander(void)
+{
+    struct soup more = {0};
+    soup_add(&more, (struct triangle){{{0.5, 0.3, 0.5}, {0.5, 0.4, 0.5}, {0.5, 0.4, 0.6}}});
+    return more;
+}
+
+#endif
