@@ -240,6 +240,27 @@ static double rows_off(const struct problem *problem, double f[LEAVES_MAX][LEAVE
     return comm_largest(problem->comm, off);
 }
 
+/* By how much the corrected row sum of a leaf times rho exceeds (1 + rho) / 2, at most; and by how
+ * much a factor differs from what the cap makes it, min(1, (1 + rho) / (2 rho R)). */
+static double above_cap(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX])
+{
+    const struct solver *solver = problem->solver;
+    double off = 0.0;
+    for (int i = 0; i < problem->count; i++) {
+        int32_t leaf = problem->leaves[i];
+        if (!solver->own[solver->method.forest->patches[leaf].id.root])
+            continue;
+        struct rgb rho = forest_material(solver->method.forest, leaf)->reflectance;
+        double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2])), row = 0.0;
+        for (int j = 0; j < problem->count; j++)
+            row += f[i][j];
+        double factor = solver->closure.factor[leaf], most = 0.5 * (1.0 + largest);
+        double wanted = largest * row > most ? most / (largest * row) : 1.0;
+        off = fmax(off, fmax(factor * row * largest - most, fabs(factor - wanted)));
+    }
+    return comm_largest(problem->comm, off);
+}
+
 /* The factors of --closure rows are known only to the homes; all ranks need them here. */
 static void share_factors(const struct problem *problem)
 {
@@ -251,7 +272,7 @@ static void share_factors(const struct problem *problem)
     }
 }
 
-static const char *const KINDS[] = {"no closure", "rows", "symmetric"};
+static const char *const KINDS[] = {"no closure", "cap", "rows", "symmetric"};
 
 static void test_dense(const struct comm *comm, enum closure_kind kind, double rho, int splits)
 {
@@ -263,6 +284,7 @@ static void test_dense(const struct comm *comm, enum closure_kind kind, double r
     share_factors(&problem);
     build(&problem, f);
     double off = deviation(&problem, f), rest = residual(&problem, f), rows = rows_off(&problem, f);
+    double capped = above_cap(&problem, f);
     int steps = (int)problem.solver->iteration - 1; /* the first transfer is of B itself */
     int most = 0; /* in exact arithmetic as many steps as there are unknowns */
     for (int i = 0; i < problem.count; i++)
@@ -275,7 +297,9 @@ static void test_dense(const struct comm *comm, enum closure_kind kind, double r
                rho, problem.count, off);
         tap_ok(rest < 1e-9, "and what arrives is what was solved for: %.1e W/m^2", rest);
         tap_ok(steps <= most, "in %d steps, at most %d", steps, most);
-        if (kind != CLOSURE_NONE)
+        if (kind == CLOSURE_CAP)
+            tap_ok(capped < 1e-8, "no row times rho is above (1 + rho) / 2: by %.1e", capped);
+        else if (kind != CLOSURE_NONE)
             tap_ok(rows < 1e-8, "enclosed rows sum to 1, others have no factor: to %.1e", rows);
     }
     problem_free(&problem);

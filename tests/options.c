@@ -100,6 +100,23 @@ static void test_switches(void)
     tap_ok(parse("--validate", &options) && options.validate && !options.scene,
            "--validate needs no scene");
     options_free(&options);
+    tap_ok(parse("--accuracy 2.5% a.obj", &options) && options.criterion.accuracy == 0.025 &&
+               options.criterion.epsilon == 1e-3,
+           "--accuracy in percent, from a coarse epsilon");
+    options_free(&options);
+    tap_ok(parse("--accuracy 0.5 --epsilon 1e-4 a.obj", &options) &&
+               options.criterion.accuracy == 0.5 && options.criterion.epsilon == 1e-4,
+           "--accuracy from a given epsilon");
+    options_free(&options);
+    static const char *const wrong[] = {"%", "0.001%", "101%", "1%%", "0%"};
+    int refused = 0;
+    for (int i = 0; i < 5; i++) {
+        char line[40];
+        snprintf(line, sizeof line, "--accuracy %s a.obj", wrong[i]);
+        refused += !parse(line, &options);
+        options_free(&options);
+    }
+    tap_ok(refused == 5, "not %% alone, not too little or too much, not twice");
     tap_ok(parse("--oracle bf a.obj", &options), "--oracle bf");
     options_free(&options);
 }
@@ -111,7 +128,7 @@ struct choice {
     const char *name;
     size_t offset; /* in struct options */
     int count;
-    const char *values[3];
+    const char *values[4];
     const char *bars; /* as an error lists them */
 };
 
@@ -119,8 +136,8 @@ static const struct choice CHOICES[] = {
     {"--oracle", offsetof(struct options, criterion.oracle), 2, {"bf", "error", NULL}, "bf|error"},
     {"--form-factor", offsetof(struct options, criterion.form_factor), 2,
      {"disk", "polygon", NULL}, "disk|polygon"},
-    {"--closure", offsetof(struct options, criterion.closure), 3, {"none", "rows", "symmetric"},
-     "none|rows|symmetric"},
+    {"--closure", offsetof(struct options, criterion.closure), 4,
+     {"none", "cap", "rows", "symmetric"}, "none|cap|rows|symmetric"},
     {"--solver", offsetof(struct options, criterion.solver), 2, {"jacobi", "cg", NULL},
      "jacobi|cg"},
 };
@@ -176,8 +193,8 @@ static void test_choices(void)
 static void test_enums(void)
 {
     tap_ok(ORACLE_BF == 0 && ORACLE_ERROR == 1 && FORM_FACTOR_DISK == 0 &&
-               FORM_FACTOR_POLYGON == 1 && CLOSURE_NONE == 0 && CLOSURE_ROWS == 1 &&
-               CLOSURE_SYMMETRIC == 2 && SOLVER_JACOBI == 0 && SOLVER_CG == 1,
+               FORM_FACTOR_POLYGON == 1 && CLOSURE_NONE == 0 && CLOSURE_CAP == 1 &&
+               CLOSURE_ROWS == 2 && CLOSURE_SYMMETRIC == 3 && SOLVER_JACOBI == 0 && SOLVER_CG == 1,
            "the names are in the order of the enums");
     tap_ok(sizeof(enum oracle) == sizeof(int) && sizeof(enum form_factor) == sizeof(int) &&
                sizeof(enum closure_kind) == sizeof(int) && sizeof(enum solver_kind) == sizeof(int),
@@ -230,6 +247,7 @@ static const struct number NUMBERS[] = {
     {"--samples", FIELD(samples), true, true, "1", "64", "0", "65"},
     {"--exposure", FIELD(exposure), false, false, "1e-30", "1e30", "0", "2e30"},
     {"--epsilon", FIELD(criterion.epsilon), false, true, "0", "1e30", "-1e-9", "1e31"},
+    {"--accuracy", FIELD(criterion.accuracy), false, false, "1e-4", "1", "0", "1.1"},
     {"--max-level", FIELD(criterion.max_level), true, true, "0", "15", "-1", "16"},
     {"--min-area", FIELD(criterion.min_area), false, true, "0", "1", "-1e-300", "1.0001"},
     {"--alpha", FIELD(criterion.alpha), false, true, "0", "1", "-0.1", "1.1"},
