@@ -5,6 +5,8 @@
  * perpendicular rectangles with a common edge, from which follows the case with a gap. */
 #include "rad/formfactor.h"
 
+#include "geom/lambert.h"
+
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
@@ -513,6 +515,26 @@ static void test_known(void)
     octree_destroy(octree);
 }
 
+/* A speck close to a large triangle is a point to it, and the triangle is anything but to the speck:
+ * the points have to be on the speck, whichever comes first. */
+static void test_speck(void)
+{
+    struct triangle floor = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    struct triangle speck = {{{0.3, 0.3, 0.05}, {0.3, 0.3001, 0.05}, {0.3001, 0.3, 0.0501}}};
+    struct facet p = facet_of(floor, -1), q = facet_of(speck, -1);
+    struct octree *octree = octree_create(NULL, NULL, 0);
+    struct octree_counts counts = {0};
+    double exact = q.area * point_triangle_factor(triangle_centroid(&speck), q.plane.normal, &floor);
+    struct exchange there = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ALL, octree, &counts);
+    struct exchange back = estimate(&q, &p, FORM_FACTOR_POLYGON, LOOK_ALL, octree, &counts);
+    /* Its size over its distance is 2e-3, and the error of a point is of second order. */
+    tap_ok(exact > 0.8 * q.area && fabs(there.area / exact - 1.0) < 4e-6 &&
+               fabs(back.area / exact - 1.0) < 4e-6,
+           "a speck above a triangle: the points are on the speck (off by %.1e)",
+           fabs(there.area / exact - 1.0));
+    octree_destroy(octree);
+}
+
 /* --- any kind, any look --- */
 
 struct blockers {
@@ -727,6 +749,7 @@ int main(void)
     test_proof();
     test_claims();
     test_known();
+    test_speck();
     test_any(FORM_FACTOR_DISK, LOOK_ALL, "disks, all");
     test_any(FORM_FACTOR_POLYGON, LOOK_ALL, "polygons, all");
     test_any(FORM_FACTOR_POLYGON, LOOK_FOUR_FIRST, "polygons, four first");
