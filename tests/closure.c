@@ -138,7 +138,8 @@ static void test_ancestors(void)
     closure.enclosure[child] = COVERED;
     tap_ok(closure_is_due(&closure, &world.method, leaf), "one that is covered in part does not");
     closure.enclosure[leaf] = COVERED;
-    tap_ok(!closure_is_due(&closure, &world.method, leaf), "a leaf that is covered in part is open");
+    tap_ok(!closure_is_due(&closure, &world.method, leaf),
+           "a leaf that is covered in part is open");
     closure_free(&closure);
     world_free(&world);
 }

@@ -101,7 +101,8 @@ static double share_of(const struct forest *forest, int32_t leaf, int32_t patch,
             return share;
         int32_t parent = forest->patches[p].parent;
         if (parent >= 0)
-            share *= parent == patch ? link_part(parts, p - forest->patches[parent].children) : 0.25;
+            share *= parent == patch ? link_part(parts, p - forest->patches[parent].children)
+                                     : 0.25;
     }
     return 0.0;
 }

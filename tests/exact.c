@@ -144,9 +144,10 @@ static void test_closed_furnace(const struct comm *comm, double rho, double epsi
     if (comm->rank == 0) {
         tap_ok(s.vote.converged && largest <= 1e-6 && s.stats.iterations <= 60,
                "closed by %s, rho %g, epsilon %g: B within %.1e, at most 1e-6; %lld links, "
-               "%lld iterations", kind == CLOSURE_ROWS ? "rows" : "both sides", rho, epsilon, largest,
+               "%lld iterations", kind == CLOSURE_ROWS ? "rows" : "both sides", rho, epsilon,
+               largest,
                (long long)s.stats.links, (long long)s.stats.iterations);
-        /* (1 - rho) A H against A E with H = E / (1 - rho): what is missing of H counts as it is. */
+        /* (1 - rho) A H against A E, H = E / (1 - rho): what is missing of H counts as it is. */
         tap_ok(absorbed <= 1e-6, "all that is emitted is absorbed: off by %.1e", absorbed);
     }
     solution_free(&s);
@@ -174,7 +175,8 @@ static void test_same_answer(const struct comm *comm, enum closure_kind kind)
     const struct forest *a = s[0].solver->method.forest, *b = s[1].solver->method.forest;
     for (int32_t p = 0; p < a->root_count; p++)
         for (int c = 0; c < BANDS; c++)
-            off = fmax(off, fabs(a->patches[p].radiosity.band[c] - b->patches[p].radiosity.band[c]));
+            off = fmax(off, fabs(a->patches[p].radiosity.band[c] -
+                                 b->patches[p].radiosity.band[c]));
     double emitted = s[0].stats.emitted_power;
     double absorbed = fabs(s[0].stats.absorbed_power - s[1].stats.absorbed_power) / emitted;
     double escaped = fabs(s[0].stats.escaped_power - s[1].stats.escaped_power) / emitted;

@@ -5,6 +5,8 @@
  * perpendicular rectangles with a common edge, from which follows the case with a gap. */
 #include "rad/formfactor.h"
 
+#include "geom/lambert.h"
+
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
@@ -463,7 +465,7 @@ static void test_claims(void)
 /* --- points to polygons --- */
 
 /* Two triangles, F from the first to the second (shared/reference/formfactors.csv of this project,
- * by adaptive quadrature to 15 digits), and how far the form factor from the four points of the
+ * exact to 15 digits), and how far the form factor from the four points of the
  * smaller one is off: measured, and a quarter more. */
 struct known {
     const char *name;
@@ -510,6 +512,27 @@ static void test_known(void)
     }
     tap_ok(worst < 0.5 * worst_disk, "at worst %.1f %%, and by disks %.1f %%", 100.0 * worst,
            100.0 * worst_disk);
+    octree_destroy(octree);
+}
+
+/* A speck close to a large triangle is a point to it, and the triangle is all but that to the
+ * speck: the points have to be on the speck, whichever comes first. */
+static void test_speck(void)
+{
+    struct triangle floor = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    struct triangle speck = {{{0.3, 0.3, 0.05}, {0.3, 0.3001, 0.05}, {0.3001, 0.3, 0.0501}}};
+    struct facet p = facet_of(floor, -1), q = facet_of(speck, -1);
+    struct octree *octree = octree_create(NULL, NULL, 0);
+    struct octree_counts counts = {0};
+    struct vec3 centre = triangle_centroid(&speck);
+    double exact = q.area * point_triangle_factor(centre, q.plane.normal, &floor);
+    struct exchange there = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ALL, octree, &counts);
+    struct exchange back = estimate(&q, &p, FORM_FACTOR_POLYGON, LOOK_ALL, octree, &counts);
+    /* Its size over its distance is 2e-3, and the error of a point is of second order. */
+    tap_ok(exact > 0.5 * q.area && fabs(there.area / exact - 1.0) < 4e-6 &&
+               fabs(back.area / exact - 1.0) < 4e-6,
+           "a speck above a triangle: the points are on the speck (off by %.1e)",
+           fabs(there.area / exact - 1.0));
     octree_destroy(octree);
 }
 
@@ -638,7 +661,8 @@ static void test_four(void)
         missed += !agreed && four.rays == all.rays && !is_same_exchange(&whole, &part);
     }
     tap_ok(free > 100 && dark > 20 && mixed > 100 && wrong == 0,
-           "four first: as with all 16 where nothing (%d) or everything (%d) is blocked", free, dark);
+           "four first: as with all 16 where nothing (%d) or everything (%d) is blocked", free,
+           dark);
     tap_ok(dear == 0, "with four segments");
     tap_ok(missed == 0, "and where they disagree (some of %d) all are asked, with the same answer",
            mixed);
@@ -727,6 +751,7 @@ int main(void)
     test_proof();
     test_claims();
     test_known();
+    test_speck();
     test_any(FORM_FACTOR_DISK, LOOK_ALL, "disks, all");
     test_any(FORM_FACTOR_POLYGON, LOOK_ALL, "polygons, all");
     test_any(FORM_FACTOR_POLYGON, LOOK_FOUR_FIRST, "polygons, four first");

@@ -205,8 +205,8 @@ static void test_paper(void)
 {
     struct options options, plain;
     parse("a.obj", &plain);
-    tap_ok(parse("--solver cg --oracle error --closure rows --form-factor polygon --paper", &options)
-               == false && is_same(error.text, "no scene given; see --help") &&
+    tap_ok(!parse("--solver cg --oracle error --closure rows --form-factor polygon --paper",
+                  &options) && is_same(error.text, "no scene given; see --help") &&
                options.criterion.oracle == ORACLE_BF && options.criterion.solver == SOLVER_JACOBI &&
                options.criterion.closure == CLOSURE_NONE &&
                options.criterion.form_factor == FORM_FACTOR_DISK &&

@@ -83,7 +83,8 @@ static void test_other_side(void)
     double area = forest_area(method->forest, 0);
     struct link large = link_of(0, 1);
     method->patch_threshold = 4.0 * area; /* a quarter of the ceiling, 16 times the floor */
-    tap_ok(oracle_patch_to_split(method, &large) == 1, "parts as large as the smallest may be made");
+    tap_ok(oracle_patch_to_split(method, &large) == 1,
+           "parts as large as the smallest may be made");
     method->patch_threshold = nextafter(4.0 * area, HUGE_VAL);
     tap_ok(oracle_patch_to_split(method, &large) == -1, "smaller ones not");
     world_free(&world);
@@ -154,7 +155,8 @@ static void test_spread(void)
     tap_ok(error_is(&world, &link, 0.5 * 4.0 * 0.25 * 0.125 * 1.5, 0),
            "spread over p splits p, though q is larger");
     link.parts_p[0] = 128; /* 128 64 64 0: spread 1/2 */
-    tap_ok(error_is(&world, &link, 0.5 * 4.0 * 0.5 * 0.125 * 1.5, 0), "twice as much, twice the error");
+    tap_ok(error_is(&world, &link, 0.5 * 4.0 * 0.5 * 0.125 * 1.5, 0),
+           "twice as much, twice the error");
     link = link_of(0, 1);
     link.parts_q[2] = 128;
     tap_ok(error_is(&world, &link, 0.5 * 4.0 * 0.5 * 0.125 * 1.5, 1), "spread over q splits q");
@@ -216,7 +218,8 @@ static void test_error_doubt(void)
     struct link link = link_of(0, 1);
     link.seen = LINK_ALL_SEEN;
     double agreed = 0.125 * 0.125 * 3.0; /* an eighth of G, 3/2 each way */
-    tap_ok(error_is(&world, &link, agreed, 1), "all segments arrive: in doubt, and the larger is split");
+    tap_ok(error_is(&world, &link, agreed, 1),
+           "all segments arrive: in doubt, and the larger is split");
     link.seen = 0;
     tap_ok(error_is(&world, &link, agreed, 1), "none arrives: the same");
     link.seen = 127;

@@ -279,7 +279,7 @@ static void test_two_ranks(void)
            "the sums of two ranks are those of one");
 }
 
-/* Light that is as much as the unit can count shows as a sum at the limit: the vote ends the run. */
+/* Light that is as much as the unit can count shows as a sum at the limit: the vote ends it. */
 static void test_divergence(void)
 {
     struct world world = make_world();
