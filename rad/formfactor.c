@@ -222,7 +222,7 @@ static double radius_of(const struct triangle *t, struct vec3 centre)
 }
 
 /* Beyond this distance, over the sum of the radii, one disk is good enough for what is little
- * (within 10 % or so); nearer, it might say that a patch receives more than all there is. */
+ * (within 15 % or so); nearer, it might say that a patch receives more than all there is. */
 static const double FAR = 1.5;
 
 static bool is_apart(const struct facet *p, const struct facet *q)
