@@ -50,7 +50,7 @@ MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last four are run with several ranks.
-TESTS = alloc elementary id triangle lambert scene polygon contour octree bundles flux patch \
+TESTS = alloc elementary id triangle lambert hull scene polygon contour octree bundles flux patch \
         compact formfactor link oracle pushpull closure treecode plan assign text obj output tone \
         image camera shading options paths norms exchange conjugate exact converge
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)
@@ -70,7 +70,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
 # What is true, for the tests and benches that compare phr with it.
 TRUTH = $(BUILD)/tests/pathtracer.o $(BUILD)/tests/truth.o $(BUILD)/tests/deviation.o
 
-$(BUILD)/tests/paths $(BUILD)/tests/norms: $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TRUTH) \
+$(BUILD)/tests/paths $(BUILD)/tests/norms $(BUILD)/tests/converge: $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TRUTH) \
         $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 

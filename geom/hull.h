@@ -11,6 +11,7 @@ struct hull {
     int count;
 };
 
+/* Pre: each has a corner in front of the other. */
 struct hull hull_of_pair(const struct triangle *p, const struct plane *plane_p,
                          const struct triangle *q, const struct plane *plane_q);
 

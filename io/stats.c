@@ -46,6 +46,7 @@ static void write_counts(FILE *file, const struct stats *stats)
     write_integer(file, "patches", stats->patches);
     write_integer(file, "leaves", stats->leaves);
     write_integer(file, "links", stats->links);
+    write_integer(file, "passes", stats->passes);
     write_integer(file, "iterations", stats->iterations);
     fprintf(file, "  \"converged\": %s,\n", stats->converged ? "true" : "false");
     write_real(file, "epsilon", stats->epsilon);
@@ -57,6 +58,12 @@ static void write_counts(FILE *file, const struct stats *stats)
     write_integer(file, "rays", stats->rays);
     write_integer(file, "node_tests", stats->node_tests);
     write_integer(file, "triangle_tests", stats->triangle_tests);
+    fprintf(file,
+            "  \"visibility\": {\"open\": %" PRId64 ", \"seen\": %" PRId64 ", \"partly\": %" PRId64
+            ", \"unseen\": %" PRId64 ", \"walled_off\": %" PRId64 ", \"rays_spared\": %" PRId64
+            "},\n",
+            stats->links_open, stats->links_seen, stats->links_partly, stats->links_unseen,
+            stats->walled_off, stats->rays_spared);
     fprintf(file, "  \"closure\": {\"min\": %.17g, \"mean\": %.17g, \"max\": %.17g, \"rms\": %.17g},\n",
             stats->closure_min, stats->closure_mean, stats->closure_max, stats->closure_rms);
 }

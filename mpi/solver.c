@@ -121,14 +121,26 @@ static void report_seconds(const struct solver *solver, struct stats *stats)
     alloc_free(all);
 }
 
+enum { COUNT_SUMS = 8 + 4 };
+
+/* 0: open, 1: seen, 2: partly, 3: unseen. */
+static int kind_of(const struct link *link)
+{
+    return link->seen == LINK_OPEN ? 0 : link->seen == LINK_ALL_SEEN ? 1 : link->seen > 0 ? 2 : 3;
+}
+
 static void report_counts(const struct solver *solver, struct stats *stats)
 {
     const struct octree_counts *counts = &solver->method.counts;
-    int64_t own[6] = {counts->rays, counts->node_tests, counts->triangle_tests,
-                      solver->bytes_migration, solver->bytes_gather, solver->bytes_scatter};
-    int64_t sum[6], memory = peak_memory();
+    int64_t own[COUNT_SUMS] = {counts->rays, counts->node_tests, counts->triangle_tests,
+                               solver->bytes_migration, solver->bytes_gather,
+                               solver->bytes_scatter, solver->method.walled_off,
+                               solver->method.rays_spared};
+    int64_t sum[COUNT_SUMS], memory = peak_memory();
+    for (int64_t i = 0; i < solver->links.count; i++)
+        own[8 + kind_of(&solver->links.items[i])]++;
     MPI_Request request;
-    MPI_Iallreduce(own, sum, 6, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
+    MPI_Iallreduce(own, sum, COUNT_SUMS, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
     comm_wait(&request);
     stats->rays = sum[0];
     stats->node_tests = sum[1];
@@ -136,6 +148,12 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     stats->bytes_migration = sum[3];
     stats->bytes_gather = sum[4];
     stats->bytes_scatter = sum[5];
+    stats->walled_off = sum[6];
+    stats->rays_spared = sum[7];
+    stats->links_open = sum[8];
+    stats->links_seen = sum[9];
+    stats->links_partly = sum[10];
+    stats->links_unseen = sum[11];
     MPI_Iallreduce(&memory, &stats->peak_rss_bytes, 1, MPI_INT64_T, MPI_MAX,
                    solver->comm->handle, &request);
     comm_wait(&request);
@@ -153,6 +171,7 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->patches = forest_patch_count(solver->method.forest);
     stats->leaves = forest_leaf_count(solver->method.forest);
     stats->links = vote->links;
+    stats->passes = solver->pass;
     stats->iterations = solver->iteration;
     stats->converged = vote->converged;
     stats->epsilon = solver->method.criterion.epsilon;

@@ -73,6 +73,7 @@ bool link_make(struct method *method, int32_t p, const struct facet *facet_p, in
     struct exchange exchange = exchange_estimate(facet_p, facet_q, method->criterion.form_factor,
                                                  look, method->octree, sight, &work);
     method->counts.rays += work.rays;
+    method->rays_spared += BUNDLE_RAYS - work.rays;
     method->counts.node_tests += work.node_tests;
     method->counts.triangle_tests += work.triangle_tests;
     double cost = predict_cost(work.node_tests + work.triangle_tests, method->criterion.alpha,
@@ -104,8 +105,10 @@ int link_split(struct method *method, const struct link *link, int32_t patch,
     struct facet facet_own = facet_make(method->forest, patch);
     struct facet facet_other = facet_make(method->forest, other);
     if (link->seen == 0 &&
-        facets_are_walled_off(&facet_own, &facet_other, method->octree, &method->counts))
+        facets_are_walled_off(&facet_own, &facet_other, method->octree, &method->counts)) {
+        method->walled_off++;
         return 0;
+    }
     if (link->seen == LINK_ALL_SEEN && method->criterion.oracle == ORACLE_ERROR)
         open = facets_are_open(&facet_own, &facet_other, method->octree, &method->counts);
     forest_split(method->forest, patch);

@@ -42,6 +42,8 @@ struct method {
     double patch_threshold; /* square scene units: no patch smaller than this is made */
     struct rgb typical;     /* a guess at the mean radiosity, W/m^2, before there is an answer */
     struct octree_counts counts; /* work of this rank so far */
+    int64_t rays_spared;    /* of 16 for each link that this rank has made, those not fired */
+    int64_t walled_off;     /* links that ended here since they are proved to be blocked */
 };
 
 /* Fills a method; borrows scene, octree and forest. */

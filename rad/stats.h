@@ -26,13 +26,19 @@ struct level_balance {
 };
 
 struct stats {
-    int64_t ranks, triangles, roots, patches, leaves, links, iterations;
+    int64_t ranks, triangles, roots, patches, leaves, links, passes, iterations;
     bool converged;
     double epsilon;                                     /* relative to the emitted power */
     double error_estimate;                              /* of the leaves, with --accuracy, or 0 */
     double emitted_power, absorbed_power, escaped_power; /* W, input units, sum over bands */
     uint64_t checksum;
     int64_t rays, node_tests, triangle_tests;                      /* of form factors */
+    int64_t links_open;    /* links proved to be open, */
+    int64_t links_seen;    /* all of whose segments arrived, */
+    int64_t links_partly;  /* some, */
+    int64_t links_unseen;  /* or none; these four are all links */
+    int64_t walled_off;    /* links that ended since they were proved to be blocked */
+    int64_t rays_spared;   /* of 16 for each link ever made, those that were not fired */
     double closure_min, closure_mean, closure_max, closure_rms;    /* row sums, rms of R - 1 */
     struct spread seconds[PHASE_COUNT];
     struct level_balance *levels; /* [level_count], borrowed from the solver */

@@ -86,3 +86,83 @@ double truth_noise(const struct truth *truth, const struct scene *scene, bool po
     alloc_free(samples);
     return noise;
 }
+
+/* --- the two answers --- */
+
+struct list {
+    struct sample *items; /* [count] */
+    int64_t count;
+};
+
+/* B - E of a root. */
+static struct rgb reflected(const struct scene *scene, int32_t root, struct rgb radiosity)
+{
+    struct rgb emission = scene_root_material(scene, root)->emission;
+    for (int c = 0; c < BANDS; c++)
+        radiosity.band[c] -= emission.band[c];
+    return radiosity;
+}
+
+static struct rgb mean_of(const struct element *elements, int64_t count, int half)
+{
+    struct rgb mean = {{0.0, 0.0, 0.0}};
+    for (int64_t i = 0; i < count; i++)
+        for (int c = 0; c < BANDS; c++)
+            mean.band[c] += elements[i].mean[half].band[c] / (double)count;
+    return mean;
+}
+
+/* The leaves of a patch, which holds these elements, or the patch if it is one element. */
+static void add_leaves(const struct forest *forest, int32_t patch, const struct element *elements,
+                       int64_t count, struct list *list)
+{
+    const struct patch *at = &forest->patches[patch];
+    if (count > 1 && !patch_is_leaf(at)) {
+        for (int k = 0; k < 4; k++)
+            add_leaves(forest, at->children + k, elements + k * (count / 4), count / 4, list);
+        return;
+    }
+    struct sample *sample = &list->items[list->count++];
+    sample->area = forest_area(forest, patch);
+    sample->value = reflected(forest->scene, (int32_t)at->id.root, at->radiosity);
+    for (int half = 0; half < TRUTH_HALVES; half++)
+        sample->truth[half] = mean_of(elements, count, half);
+}
+
+struct deviation deviation_of_leaves(const struct forest *forest, const struct truth *truth)
+{
+    struct list list = {alloc_array((size_t)truth->count, sizeof *list.items), 0};
+    for (int64_t i = 0; i < truth->count;) {
+        struct patch_id id = truth->items[i].id;
+        int64_t count = INT64_C(1) << 2 * id_level(id);
+        add_leaves(forest, (int32_t)id.root, &truth->items[i], count, &list);
+        i += count;
+    }
+    struct deviation deviation = deviation_of(list.items, list.count);
+    alloc_free(list.items);
+    return deviation;
+}
+
+static bool is_black(const struct element *element)
+{
+    return rgb_sum(element->point[0]) + rgb_sum(element->point[1]) == 0.0;
+}
+
+struct deviation deviation_of_points(const struct shading *shading, const struct truth *truth)
+{
+    const struct scene *scene = shading->forest->scene;
+    struct list list = {alloc_array((size_t)truth->count, sizeof *list.items), 0};
+    for (int64_t i = 0; i < truth->count; i++) {
+        const struct element *element = &truth->items[i];
+        int32_t root = (int32_t)element->id.root;
+        if (is_black(element))
+            continue;
+        list.items[list.count++] = (struct sample){
+            .area = element_area(element, scene),
+            .value = reflected(scene, root, shading_at(shading, root, element->weight)),
+            .truth = {element->point[0], element->point[1]}};
+    }
+    struct deviation deviation = deviation_of(list.items, list.count);
+    alloc_free(list.items);
+    return deviation;
+}

@@ -21,6 +21,7 @@
 #ifndef TESTS_DEVIATION_H
 #define TESTS_DEVIATION_H
 
+#include "io/shading.h"
 #include "tests/truth.h"
 
 /* A piece of surface on which a solution is compared with the truth. */
@@ -41,5 +42,13 @@ struct deviation deviation_of(const struct sample *samples, int64_t count);
 
 /* Noise of the truth alone: of the elements' means, or of their points. */
 double truth_noise(const struct truth *truth, const struct scene *scene, bool points);
+
+/* `leaf`: the constant of a leaf, with the mean of the truth over that leaf; where leaves are smaller
+ * than an element of the truth, their mean over the element. */
+struct deviation deviation_of_leaves(const struct forest *forest, const struct truth *truth);
+
+/* `shown`: the radiosity that pictures show, with the truth at the points of the elements. Points
+ * that no light reaches at all, such as those that a box covers, are left out. */
+struct deviation deviation_of_points(const struct shading *shading, const struct truth *truth);
 
 #endif

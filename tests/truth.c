@@ -156,3 +156,35 @@ bool truth_read(struct truth *truth, const char *path, const struct scene *scene
         truth_free(truth);
     return done;
 }
+
+/* --- on several ranks --- */
+
+/* Rank 0 receives what the others have estimated. */
+static void gather_elements(const struct comm *comm, struct truth *truth)
+{
+    int64_t own = 0, arriving, at = 0;
+    struct element *mine = alloc_array((size_t)(truth->count / comm->size + 1), sizeof *mine);
+    for (int64_t i = comm->rank; i < truth->count; i += comm->size)
+        mine[own++] = truth->items[i];
+    int *counts = alloc_array((size_t)comm->size, sizeof *counts);
+    counts[0] = comm_count(comm, own);
+    struct element *all = comm_exchange(comm, mine, counts, sizeof *mine, &arriving);
+    for (int rank = 0; rank < comm->size && at < arriving; rank++)
+        for (int64_t i = rank; i < truth->count; i += comm->size)
+            truth->items[i] = all[at++];
+    alloc_free(all);
+    alloc_free(counts);
+    alloc_free(mine);
+}
+
+struct truth truth_trace(const struct comm *comm, const struct scene *scene,
+                         const struct octree *octree, int64_t wanted, int samples)
+{
+    struct pathtracer pathtracer = pathtracer_make(scene, octree);
+    struct truth truth = truth_make(scene, wanted);
+    for (int64_t i = comm->rank; i < truth.count; i += comm->size)
+        truth_estimate(&truth, i, &pathtracer, samples);
+    gather_elements(comm, &truth);
+    pathtracer_free(&pathtracer);
+    return truth;
+}

@@ -8,6 +8,7 @@
 #define TESTS_TRUTH_H
 
 #include "geom/error.h"
+#include "mpi/comm.h"
 #include "rad/id.h"
 #include "tests/pathtracer.h"
 
@@ -40,6 +41,10 @@ double element_area(const struct element *element, const struct scene *scene);
  * each point. The same whoever does it. */
 void truth_estimate(struct truth *truth, int64_t number, const struct pathtracer *pathtracer,
                     int samples);
+
+/* Collective. Elements with estimates, complete on rank 0; dealt to the ranks in turn. */
+struct truth truth_trace(const struct comm *comm, const struct scene *scene,
+                         const struct octree *octree, int64_t wanted, int samples);
 
 /* Files are in the machine's own byte order. */
 bool truth_write(const struct truth *truth, const char *path, struct error *error);

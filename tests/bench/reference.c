@@ -71,41 +71,19 @@ static struct scene *read_scene(const struct comm *comm, const struct arguments 
     return NULL;
 }
 
-/* Collective. Rank 0 receives what the others have estimated. */
-static void gather_elements(const struct comm *comm, struct truth *truth)
-{
-    int64_t own = 0, arriving, at = 0;
-    struct element *mine = alloc_array((size_t)(truth->count / comm->size + 1), sizeof *mine);
-    for (int64_t i = comm->rank; i < truth->count; i += comm->size)
-        mine[own++] = truth->items[i];
-    int *counts = alloc_array((size_t)comm->size, sizeof *counts);
-    counts[0] = comm_count(comm, own);
-    struct element *all = comm_exchange(comm, mine, counts, sizeof *mine, &arriving);
-    for (int rank = 0; rank < comm->size && at < arriving; rank++)
-        for (int64_t i = rank; i < truth->count; i += comm->size)
-            truth->items[i] = all[at++];
-    alloc_free(all);
-    alloc_free(counts);
-    alloc_free(mine);
-}
-
 static void make_reference(const struct comm *comm, const struct arguments *arguments,
                            const struct scene *scene, struct error *error)
 {
     double start = comm_seconds();
     struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
-    struct pathtracer pathtracer = pathtracer_make(scene, octree);
-    struct truth truth = truth_make(scene, arguments->numbers[0]);
-    for (int64_t i = comm->rank; i < truth.count; i += comm->size)
-        truth_estimate(&truth, i, &pathtracer, (int)arguments->numbers[1]);
-    gather_elements(comm, &truth);
+    struct truth truth = truth_trace(comm, scene, octree, arguments->numbers[0],
+                                     (int)arguments->numbers[1]);
     if (comm->rank == 0 && truth_write(&truth, arguments->out, error))
         printf("%s: %lld elements, %lld paths each twice, %.1f s on %d rank(s); noise of elements "
                "%.2f %%, of points %.2f %%\n", arguments->out, (long long)truth.count,
                arguments->numbers[1], comm_seconds() - start, comm->size,
                100.0 * truth_noise(&truth, scene, false), 100.0 * truth_noise(&truth, scene, true));
     truth_free(&truth);
-    pathtracer_free(&pathtracer);
     octree_destroy(octree);
 }
 
