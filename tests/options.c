@@ -143,7 +143,8 @@ enum { NUMBER_COUNT = sizeof NUMBERS / sizeof NUMBERS[0] };
 static const char *const OTHERS[][2] = {
     {"-o", " a.ppm"},  {"--view", " a"},    {"--size", " 2x3"}, {"--stats", " a"},
     {"--oracle", " bf"}, {"--flat", ""},    {"--two-sided", ""}, {"--quiet", ""},
-    {"--verbose", ""}, {"--validate", ""},  {"--help", ""},      {"--version", ""}};
+    {"--verbose", ""}, {"--validate", ""},  {"--help", ""},      {"--version", ""},
+    {"--form-factors", ""}};
 enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
 
 static double number_of(const struct number *number, const struct options *options)
