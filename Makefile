@@ -40,10 +40,12 @@ endif
 
 GEOM = alloc contour elementary error gauss hull lambert polygon scene triangle
 OCTREE = build octree
-RAD = closure conjugate flux formfactor id link method oracle patch pushpull treecode
-MPI = accuracy assign broadcast closing comm gather linking migrate picture plan refinement scatter solve \
-      solver vote
-IO = camera cases image mesh mtl obj options output render shading stats text tone validate
+RAD = closure conjugate flux formfactor id link method oracle patch pushpull treecode \
+      viewfactor
+MPI = accuracy assign broadcast closing comm gather linking migrate pairs picture plan refinement \
+      scatter solve solver vote
+IO = camera cases image mesh mtl obj options output render shading stats table text \
+     tone validate
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
 MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)

@@ -17,8 +17,10 @@
 #include "io/output.h"
 #include "io/render.h"
 #include "io/stats.h"
+#include "io/table.h"
 #include "io/validate.h"
 #include "mpi/broadcast.h"
+#include "mpi/pairs.h"
 #include "mpi/picture.h"
 #include "mpi/solver.h"
 
@@ -90,6 +92,14 @@ static bool check_emission(const struct run *run, struct error *error)
     return true;
 }
 
+static bool check_groups(const struct run *run, struct error *error)
+{
+    if (run->scene->group_count > VIEWFACTOR_GROUPS_MAX)
+        return error_set(error, EXIT_USAGE, "%s: %lld groups are more than %d", run->options.scene,
+                         (long long)run->scene->group_count, VIEWFACTOR_GROUPS_MAX);
+    return true;
+}
+
 static bool read_scene(struct run *run)
 {
     struct error *error = &run->error;
@@ -103,7 +113,7 @@ static bool read_scene(struct run *run)
     if (!scene_prepare(run->scene, &prepared, &wrong))
         return error_set(error, wrong.code, "%s: %s", run->options.scene, wrong.text);
     warn_repairs(run, &read, &prepared);
-    return check_emission(run, error);
+    return run->options.form_factors ? check_groups(run, error) : check_emission(run, error);
 }
 
 static bool read_camera(struct run *run)
@@ -133,7 +143,6 @@ static bool probe_outputs(struct run *run)
 /* Collective. Step 1: rank 0 reads, all agree on errors, all receive the scene. */
 static bool read_and_broadcast(struct run *run)
 {
-    double start = comm_seconds();
     if (run->comm.rank == 0 && read_scene(run) && read_camera(run))
         probe_outputs(run);
     if (!comm_agree(&run->comm, &run->error))
@@ -141,8 +150,6 @@ static bool read_and_broadcast(struct run *run)
     run->scene = scene_broadcast(&run->comm, run->scene);
     comm_broadcast(&run->comm, &run->camera, sizeof run->camera);
     run->octree = octree_create(run->scene->triangles, run->scene->planes, run->scene->input_count);
-    run->solver = solver_create(&run->comm, run->scene, run->octree, &run->options.criterion);
-    run->solver->seconds[PHASE_READ] = comm_seconds() - start;
     return true;
 }
 
@@ -172,7 +179,10 @@ static void report_iteration(const struct run *run)
 /* Collective. Steps 2 to 8 of the paper's Sec. 3.2. */
 static bool compute_light(struct run *run)
 {
-    struct solver *solver = run->solver;
+    struct solver *solver = solver_create(&run->comm, run->scene, run->octree,
+                                          &run->options.criterion);
+    run->solver = solver;
+    solver->seconds[PHASE_READ] = comm_seconds() - run->start;
     say(run, "%s: %lld triangles; linking", run->options.scene, (long long)run->scene->input_count);
     solver_link_roots(solver);   /* 2: initial linking */
     solver_assign_roots(solver); /* 3: re-assignment by area */
@@ -304,6 +314,23 @@ static void run_all(struct run *run)
         report_run(run);
 }
 
+/* Collective. --form-factors: exchanges between groups in place of light. */
+static void tabulate_factors(struct run *run)
+{
+    const struct criterion *criterion = &run->options.criterion;
+    if (!read_and_broadcast(run))
+        return;
+    say(run, "%s: %lld triangles in %lld groups", run->options.scene,
+        (long long)run->scene->input_count, (long long)run->scene->group_count);
+    struct viewfactors *factors = viewfactors_create(run->scene, run->octree, criterion->epsilon,
+                                                     criterion->max_level);
+    pairs_add(&run->comm, factors);
+    if (run->comm.rank == 0)
+        table_print(factors, stdout);
+    say(run, "%.1f s", comm_seconds() - run->start);
+    viewfactors_destroy(factors);
+}
+
 static void release(struct run *run)
 {
     solver_destroy(run->solver);
@@ -344,6 +371,8 @@ int main(int argc, char **argv)
     } else if (parsed && run.options.validate) {
         if (run.comm.rank == 0 && !validate_print(stdout))
             error_set(&run.error, EXIT_FAILED, "form factors are worse than stated");
+    } else if (parsed && run.options.form_factors) {
+        tabulate_factors(&run);
     } else if (parsed) {
         run_all(&run);
     }

@@ -6,9 +6,21 @@
  * would eat. Shared vertices stay shared: equal inputs give equal outputs. */
 #include "geom/scene.h"
 
+#include <string.h>
+
 #include "geom/alloc.h"
 
 static const double CLAMPED_REFLECTANCE = 0.999;
+
+static const char DEFAULT_GROUP[] = "default";
+
+void scene_set_groups(struct scene *scene, int32_t count, int64_t bytes)
+{
+    alloc_free(scene->group_names);
+    scene->group_count = count;
+    scene->group_bytes = bytes;
+    scene->group_names = alloc_array((size_t)bytes, 1);
+}
 
 struct scene *scene_create(int32_t input_count, int32_t material_count)
 {
@@ -20,6 +32,9 @@ struct scene *scene_create(int32_t input_count, int32_t material_count)
     scene->areas = alloc_array((size_t)input_count, sizeof *scene->areas);
     scene->material_of = alloc_array((size_t)input_count, sizeof *scene->material_of);
     scene->materials = alloc_array((size_t)material_count, sizeof *scene->materials);
+    scene->group_of = alloc_array((size_t)input_count, sizeof *scene->group_of);
+    scene_set_groups(scene, 1, sizeof DEFAULT_GROUP);
+    memcpy(scene->group_names, DEFAULT_GROUP, sizeof DEFAULT_GROUP);
     return scene;
 }
 
@@ -32,6 +47,8 @@ void scene_destroy(struct scene *scene)
     alloc_free(scene->areas);
     alloc_free(scene->material_of);
     alloc_free(scene->materials);
+    alloc_free(scene->group_of);
+    alloc_free(scene->group_names);
     alloc_free(scene);
 }
 

@@ -35,17 +35,25 @@ struct scene {
     double *areas;              /* [input_count], square scene units; 0 for a dropped one */
     int32_t *material_of;       /* [input_count], index into materials */
     struct material *materials; /* [material_count] */
+    int32_t *group_of;          /* [input_count], index of the group: the name that a face goes by */
+    char *group_names;          /* [group_bytes], one after the other, each with its zero */
     int32_t input_count;        /* triangles read from the file, dropped ones included */
     int32_t material_count;
+    int32_t group_count;        /* at least 1 */
+    int64_t group_bytes;
     bool two_sided;             /* each triangle i has a twin root i + input_count */
     struct vec3 centre;         /* of the input's bounding box, input units */
     int32_t exponent;           /* a scene unit is 2^exponent input units */
     struct vec3 low, high;      /* bounding box, scene units */
 };
 
-/* An empty scene with room for the given numbers. Owns its arrays. */
+/* An empty scene with room for the given numbers, all of it in one group, "default". Owns its
+ * arrays. */
 struct scene *scene_create(int32_t input_count, int32_t material_count);
 void scene_destroy(struct scene *scene);
+
+/* Makes room for the names of `count` groups, of `bytes` bytes with their zeros. */
+void scene_set_groups(struct scene *scene, int32_t count, int64_t bytes);
 
 /* Moves and scales the positions, clamps reflectances, finds degenerate triangles, computes
  * planes and areas. To be called once, on positions in input units.

@@ -35,6 +35,7 @@ enum {
 struct obj_triangle {
     int32_t vertex[3];
     int32_t material; /* number in the material table */
+    int32_t group;    /* number of the group's name */
 };
 
 struct obj_reader {
@@ -48,9 +49,13 @@ struct obj_reader {
     struct mtl_table materials;    /* the first one is for faces without a material */
     int32_t material;              /* of the next face */
     struct text_names libraries;   /* names that have been tried */
+    struct text_names groups;      /* names of groups, also of those without a face */
+    int32_t group;                 /* of the next face */
     struct obj_repairs *repairs;
     struct error *error;
 };
+
+static const char DEFAULT_GROUP[] = "default";
 
 static void note_missing(struct obj_repairs *repairs, int64_t *counter, const char *name)
 {
@@ -135,7 +140,8 @@ static void add_triangle(struct obj_reader *reader, int32_t a, int32_t b, int32_
 {
     const int32_t *corners = reader->corners;
     reader->triangles[reader->triangle_count++] =
-        (struct obj_triangle){{corners[a], corners[b], corners[c]}, reader->material};
+        (struct obj_triangle){{corners[a], corners[b], corners[c]}, reader->material,
+                              reader->group};
 }
 
 static void add_polygon(struct obj_reader *reader)
@@ -238,6 +244,13 @@ static bool read_libraries(struct obj_reader *reader, char *rest)
     return true;
 }
 
+static bool read_group(struct obj_reader *reader, char *rest)
+{
+    const char *name = text_trim(rest);
+    reader->group = text_names_add(&reader->groups, *name ? name : DEFAULT_GROUP);
+    return true;
+}
+
 static bool read_line(struct obj_reader *reader, char *line)
 {
     const char *keyword = text_word(&line);
@@ -249,6 +262,8 @@ static bool read_line(struct obj_reader *reader, char *line)
         return read_face(reader, line);
     if (strcmp(keyword, "mtllib") == 0)
         return read_libraries(reader, line);
+    if (strcmp(keyword, "o") == 0 || strcmp(keyword, "g") == 0)
+        return read_group(reader, line);
     if (strcmp(keyword, "usemtl") == 0)
         reader->material = mtl_find(&reader->materials, text_trim(line));
     return true;
@@ -260,6 +275,7 @@ static bool read_lines(struct obj_reader *reader, const char *path)
         return false;
     reader->material = mtl_find(&reader->materials, "");
     reader->materials.entries[reader->material].defined = true;
+    reader->group = text_names_add(&reader->groups, DEFAULT_GROUP);
     for (char *line; (line = text_line(&reader->text)) != NULL;)
         if (!read_line(reader, line))
             return false;
@@ -283,6 +299,33 @@ static int32_t number_materials(const struct obj_reader *reader, int32_t *number
     return count;
 }
 
+/* Numbers the groups that have faces, in the order of these, and names them in the scene. */
+static void make_groups(const struct obj_reader *reader, struct scene *scene)
+{
+    int32_t known = reader->groups.count, count = 0;
+    int32_t *number = alloc_array((size_t)known, sizeof *number); /* from 1; 0: no face yet */
+    int32_t *order = alloc_array((size_t)known, sizeof *order);
+    size_t bytes = 0;
+    for (int32_t i = 0; i < scene->input_count; i++) {
+        int32_t group = reader->triangles[i].group;
+        if (number[group] == 0) {
+            order[count++] = group;
+            number[group] = count;
+            bytes += strlen(reader->groups.name[group]) + 1;
+        }
+        scene->group_of[i] = number[group] - 1;
+    }
+    scene_set_groups(scene, count, (int64_t)bytes);
+    char *to = scene->group_names;
+    for (int32_t i = 0; i < count; i++) {
+        size_t length = strlen(reader->groups.name[order[i]]) + 1;
+        memcpy(to, reader->groups.name[order[i]], length);
+        to += length;
+    }
+    alloc_free(number);
+    alloc_free(order);
+}
+
 static struct scene *make_scene(const struct obj_reader *reader)
 {
     int32_t known = reader->materials.names.count;
@@ -298,6 +341,7 @@ static struct scene *make_scene(const struct obj_reader *reader)
             scene->triangles[i].corner[k] = reader->vertices[triangle->vertex[k]];
         scene->material_of[i] = number[triangle->material];
     }
+    make_groups(reader, scene);
     alloc_free(number);
     return scene;
 }
@@ -314,5 +358,6 @@ struct scene *obj_read(const char *path, struct obj_repairs *repairs, struct err
     alloc_free(reader.corners);
     mtl_free(&reader.materials);
     text_names_free(&reader.libraries);
+    text_names_free(&reader.groups);
     return scene;
 }

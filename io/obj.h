@@ -2,6 +2,9 @@
  *
  * Understood: v, f (v, v/vt, v//vn, v/vt/vn, negative indices, polygons), usemtl, mtllib,
  * o, g; in MTL files newmtl, Kd (the reflectance rho) and Ke (the emitted radiosity E, W/m^2).
+ * An o or g line gives the faces behind it, up to the next one, to the group of the name that is
+ * the rest of the line; faces before any such line, or behind one without a name, are in the group
+ * "default". Groups are numbered by their first faces.
  * Other keywords are passed over. Lines may end in LF or CRLF and go on after a backslash. */
 #ifndef IO_OBJ_H
 #define IO_OBJ_H

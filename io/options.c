@@ -49,6 +49,7 @@ static const struct option OPTIONS[] = {
     {"--quiet", KIND_FLAG, offsetof(struct options, quiet), 0, 0, NULL},
     {"--verbose", KIND_FLAG, offsetof(struct options, verbose), 0, 0, NULL},
     {"--validate", KIND_FLAG, offsetof(struct options, validate), 0, 0, NULL},
+    {"--form-factors", KIND_FLAG, offsetof(struct options, form_factors), 0, 0, NULL},
     {"--help", KIND_FLAG, offsetof(struct options, help), 0, 0, NULL},
     {"--version", KIND_FLAG, offsetof(struct options, version), 0, 0, NULL},
 };
@@ -215,6 +216,18 @@ static bool check_paths(const struct options *options, struct error *error)
     return true;
 }
 
+/* A table of form factors is all that a run prints: no light is computed that could be shown. */
+static bool check_table(const struct options *options, struct error *error)
+{
+    const char *other = options->output_count > 0 ? "-o"
+                        : options->view           ? "--view"
+                        : options->stats          ? "--stats"
+                                                  : NULL;
+    if (options->form_factors && other)
+        return error_set(error, EXIT_USAGE, "--form-factors and %s do not go together", other);
+    return true;
+}
+
 /* Where --accuracy begins, and what --epsilon is without it. */
 static const double COARSE = 1e-3, EPSILON = 1e-5;
 
@@ -255,7 +268,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         options->criterion.epsilon = options->criterion.accuracy > 0.0 ? COARSE : EPSILON;
     if (!options->scene && !options->help && !options->version && !options->validate)
         return error_set(error, EXIT_USAGE, "no scene given; see --help");
-    return !options->scene || check_paths(options, error);
+    return !options->scene || (check_table(options, error) && check_paths(options, error));
 }
 
 void options_free(struct options *options)
@@ -296,6 +309,8 @@ void options_print_help(FILE *file)
           "  --stats FILE        counts, power, times and balance as JSON\n"
           "  --quiet  --verbose  less or more on stderr\n"
           "  --validate          check all form factors against exact answers, without a scene\n"
+          "  --form-factors      print the form factors between the groups of the scene as CSV;\n"
+          "                      --epsilon is relative to the smaller group's area\n"
           "  --help  --version\n"
           "\n"
           "Exit status: 0 done; 1 the computation failed; 2 bad usage or input.\n"

@@ -21,7 +21,7 @@ struct options {
     int width, height;        /* of --size; 0: what the view says */
     int samples;              /* samples x samples rays a pixel */
     double exposure;          /* 0: chosen from the picture */
-    bool flat, two_sided, quiet, verbose, help, version, validate;
+    bool flat, two_sided, quiet, verbose, help, version, validate, form_factors;
     struct criterion criterion;
 };
 

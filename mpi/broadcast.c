@@ -19,6 +19,7 @@ struct scene *scene_broadcast(const struct comm *comm, struct scene *scene)
         scene->exponent = head.exponent;
         scene->low = head.low;
         scene->high = head.high;
+        scene_set_groups(scene, head.group_count, head.group_bytes);
     }
     size_t count = (size_t)head.input_count;
     comm_broadcast(comm, scene->triangles, count * sizeof *scene->triangles);
@@ -27,5 +28,7 @@ struct scene *scene_broadcast(const struct comm *comm, struct scene *scene)
     comm_broadcast(comm, scene->material_of, count * sizeof *scene->material_of);
     comm_broadcast(comm, scene->materials,
                    (size_t)head.material_count * sizeof *scene->materials);
+    comm_broadcast(comm, scene->group_of, count * sizeof *scene->group_of);
+    comm_broadcast(comm, scene->group_names, (size_t)head.group_bytes);
     return scene;
 }

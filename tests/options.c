@@ -262,7 +262,8 @@ static const char *const OTHERS[][2] = {
     {"-o", " a.ppm"},  {"--view", " a"},    {"--size", " 2x3"}, {"--stats", " a"},
     {"--oracle", " bf"}, {"--flat", ""},    {"--two-sided", ""}, {"--quiet", ""},
     {"--verbose", ""}, {"--validate", ""},  {"--help", ""},      {"--version", ""},
-    {"--form-factor", " disk"}, {"--closure", " none"}, {"--solver", " cg"}, {"--paper", ""}};
+    {"--form-factor", " disk"}, {"--closure", " none"}, {"--solver", " cg"}, {"--paper", ""},
+    {"--form-factors", ""}};
 enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
 
 static double number_of(const struct number *number, const struct options *options)

@@ -1,0 +1,13 @@
+/* View factors on all ranks: pairs of roots are dealt, exchanges are summed. */
+#ifndef MPI_PAIRS_H
+#define MPI_PAIRS_H
+
+#include "mpi/comm.h"
+#include "rad/viewfactor.h"
+
+/* Collective. Adds all pairs of roots that face each other to `factors`, which are all 0 and
+ * alike on all ranks. All ranks end with the same exchanges; counts and links stay those of the
+ * rank. */
+void pairs_add(const struct comm *comm, struct viewfactors *factors);
+
+#endif

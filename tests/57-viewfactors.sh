@@ -1,0 +1,256 @@
+# phr --form-factors: exact without blockers, within 1 % with them and within 0.1 % if asked for;
+# tables have what they should have, and are the same on any number of ranks and without MPI,
+# whatever the unit of length and the place of the scene.
+
+. tests/tap.sh
+
+: "${PHR:=./phr}"
+case $PHR in */*) ;; *) PHR=./$PHR ;; esac
+
+# table FILE ARGUMENTS...: the table of $work/FILE.obj goes to $work/FILE.csv.
+table() {
+    table_name=$1
+    shift
+    "$PHR" --quiet --form-factors "$work/$table_name.obj" "$@" >"$work/$table_name.csv"
+}
+
+# value FILE FROM TO: F.
+value() {
+    awk -F, -v from="$2" -v to="$3" '$1 == from && $2 == to { print $4 }' "$work/$1.csv"
+}
+
+# near VALUE EXPECTED RELATIVE ABSOLUTE
+near() {
+    awk -v v="$1" -v e="$2" -v r="$3" -v a="$4" 'BEGIN {
+        d = v - e; d = d < 0 ? -d : d; limit = r * (e < 0 ? -e : e) + a
+        if (v == "" || !(d <= limit)) { print "# " v " instead of " e; exit 1 } }'
+}
+
+# objs FILE POLYGONS EXACT: writes each case of a CSV file as $work/ID.obj, its polygons as groups p1,
+# p2, ..., and lists "ID F". POLYGONS is the field with their number, or 0 if they are two.
+objs() {
+    awk -F, -v counted="$2" -v work="$work" 'NR > 1 {
+        polygons = counted ? $counted : 2
+        at = counted ? counted + 1 : 3
+        file = work "/" $1 ".obj"
+        corners = 0
+        printf "" >file
+        for (p = 1; p <= polygons; p++) {
+            count = $at
+            print "g p" p >file
+            for (k = 0; k < count; k++)
+                print "v", $(at + 3 * k + 1), $(at + 3 * k + 2), $(at + 3 * k + 3) >file
+            printf "f" >file
+            for (k = 1; k <= count; k++)
+                printf " %d", corners + k >file
+            print "" >file
+            corners += count
+            at += 3 * count + 1
+        }
+        close(file)
+        print $1, $at
+    }' "$1"
+}
+
+# --- pairs without blockers: nothing is in doubt, so that epsilon does not matter ---
+
+objs tests/formfactors.csv 0 >"$work/plain"
+check "48 pairs" [ "$(wc -l <"$work/plain")" -eq 48 ]
+while read -r id exact; do
+    table "$id" --epsilon 0.1
+    check "$id" near "$(value "$id" p1 p2)" "$exact" 1e-6 1e-12
+done <"$work/plain"
+
+# --- with blockers: the default, and a smaller epsilon ---
+
+objs tests/formfactors_blocked.csv 3 >"$work/blocked"
+check "7 blocked pairs" [ "$(wc -l <"$work/blocked")" -eq 7 ]
+objs tests/viewfactors.csv 3 >"$work/own"
+check "and 10 more" [ "$(wc -l <"$work/own")" -eq 10 ]
+cat "$work/blocked" "$work/own" >"$work/cases"
+while read -r id exact; do
+    table "$id"
+    check "$id by default" near "$(value "$id" p1 p2)" "$exact" 0.01 1e-12
+    table "$id" --epsilon 1e-6
+    check "$id at epsilon 1e-6" near "$(value "$id" p1 p2)" "$exact" 0.001 1e-12
+done <"$work/cases"
+
+# The error estimate of rad/viewfactor.c, 0.2 sqrt(epsilon F) for one pair, at three standard
+# deviations.
+while read -r id exact; do
+    for epsilon in 1e-3 1e-4; do
+        table "$id" --epsilon $epsilon
+        check "$id at epsilon $epsilon" near "$(value "$id" p1 p2)" "$exact" 0 \
+            "$(awk -v e=$epsilon -v f="$exact" 'BEGIN { print 0.6 * sqrt(e * f) + 1e-12 }')"
+    done
+done <"$work/cases"
+
+# --- the unit of length, and which way the scene looks ---
+
+# moved FROM TO SCALE: turned by 73.74 degrees about one axis and 53.13 about another, moved, scaled.
+moved() {
+    awk -v s="$3" '$1 == "v" {
+        x = 0.28 * $2 - 0.96 * $3; y = 0.96 * $2 + 0.28 * $3
+        z = 0.8 * $4 - 0.6 * y; y = 0.6 * $4 + 0.8 * y
+        printf "v %.17g %.17g %.17g\n", s * (x + 2.5), s * (y - 1.25), s * z; next }
+        { print }' "$work/$1.obj" >"$work/$2.obj"
+}
+
+# same_factors A B SCALE: equal tables, but for the unit of area; a group may be seen by rounding.
+same_factors() {
+    paste -d, "$work/$1.csv" "$work/$2.csv" | awk -F, -v s="$3" 'NR > 1 {
+        d = $4 - $8; a = $7 / ($3 * s * s) - 1
+        if ($1 != $5 || $2 != $6 || d * d > 1e-18 || a * a > 1e-18) { print "# " $0; bad = 1 } }
+        END { exit bad || NR < 2 }'
+}
+
+for id in OB1 OB7 OB9 OB11 V1 V6; do
+    table $id --epsilon 1e-4
+    for scale in 1 1e-6 1e6; do
+        moved $id moved $scale
+        table moved --epsilon 1e-4
+        check "$id turned and moved, times $scale" same_factors $id moved $scale
+    done
+done
+
+# --- tables ---
+
+# box: the unit cube from inside, each face a group; its rows sum to 1.
+box() {
+    awk 'BEGIN {
+        for (k = 0; k < 8; k++) print "v", k % 2, int(k / 2) % 2, int(k / 4)
+        print "o floor\nf 1 2 4 3\no ceiling\nf 5 7 8 6\no front\nf 1 5 6 2"
+        print "o back\nf 3 4 8 7\no left\nf 1 3 7 5\no right\nf 2 6 8 4" }'
+}
+
+# block LOW HIGH: the cube [LOW, HIGH]^3 from outside, a group.
+block() {
+    awk -v low="$1" -v high="$2" 'BEGIN {
+        print "g block"
+        for (k = 0; k < 8; k++)
+            print "v", k % 2 ? high : low, int(k / 2) % 2 ? high : low, int(k / 4) ? high : low
+        print "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3" }'
+}
+
+# rows_are_one FILE TOLERANCE: and there are as many as groups.
+rows_are_one() {
+    awk -F, -v t="$2" 'NR == 1 { next } !($1 in seen) { seen[$1] = 1; groups++ } $2 == "*" {
+        rows++; if ($4 < 1 - t || $4 > 1 + t) { print "# " $0; bad = 1 } }
+        END { exit bad || rows != groups || NR != 1 + groups * (groups + 1) }' "$work/$1.csv"
+}
+
+# is_reciprocal FILE: A_i F_ij = A_j F_ji but for the rounding of a division.
+is_reciprocal() {
+    awk -F, 'NR > 1 && $2 != "*" { g[$1, $2] = $3 * $4; name[$1] = 1 } END {
+        for (i in name) for (j in name) {
+            d = g[i, j] - g[j, i]; d = d < 0 ? -d : d
+            if (d > 1e-15 * g[i, j]) { print "# " i, j, g[i, j], g[j, i]; exit 1 } } }' "$work/$1.csv"
+}
+
+box >"$work/box.obj"
+table box
+check "a box: its header" [ "$(head -n 1 "$work/box.csv")" = "from,to,area_from,F" ]
+check "its groups, in the order of the file" \
+    [ "$(awk -F, '$2 == "*" { printf "%s ", $1 }' "$work/box.csv")" = "floor ceiling front back left right " ]
+check "its rows sum to 1" rows_are_one box 1e-9
+check "opposite faces" near "$(value box floor ceiling)" 0.199824895698387 1e-9 0
+check "adjacent faces" near "$(value box left back)" 0.200043776075403 1e-9 0
+check "a plane face does not see itself" [ "$(value box floor floor)" = 0 ]
+
+sed -e 's/^o floor/o open/' -e '/^o [cfblr]/d' "$work/box.obj" |
+    awk '/^f 2 6 8 4/ { print "o lid" } { print }' >"$work/concave.obj"
+table concave
+check "a box without its lid sees itself" near "$(value concave open open)" 0.8 1e-9 0
+check "and the lid" near "$(value concave open lid)" 0.2 1e-9 0
+check "which sees only the box" near "$(value concave lid open)" 1 1e-9 0
+
+{ box; block 0.3 0.6; } >"$work/blocked.obj"
+table blocked
+check "a box with a block in it: its rows sum to 1" rows_are_one blocked 1e-3
+check "reciprocity" is_reciprocal blocked
+check "the block does not see itself" [ "$(value blocked block block)" = 0 ]
+table blocked --epsilon 1e-6
+check "nearer at epsilon 1e-6" rows_are_one blocked 2e-4
+
+{ box | sed 's/^o .*//'; block 0.3 0.6 | sed 's/^g .*//'; } >"$work/nameless.obj"
+table nameless
+check "without names: one group" [ "$(cut -d, -f1-2 "$work/nameless.csv" | tr '\n' ' ')" = \
+    "from,to default,default default,* " ]
+check "which is closed" near "$(value nameless default default)" 1 1e-3 0
+check "and has the area of all" near "$(awk -F, 'NR == 2 { print $3 }' "$work/nameless.csv")" \
+    6.54 1e-12 0
+
+cat >"$work/names.obj" <<'END'
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 0 1 1
+v 1 1 1
+v 1 0 1
+o unused
+o upper, "left"
+f 5 6 7
+g
+f 1 2 3
+g lower right
+f 1 3 4
+o upper, "left"
+f 5 7 8
+END
+table names
+check "names: order, blanks, quotes, default, repeated, unused" \
+    [ "$(grep ',\*,' "$work/names.csv" | sed 's/,\*,.*//' | tr '\n' ';')" = \
+    '"upper, ""left""";default;lower right;' ]
+check "the groups of a repeated name are one" \
+    near "$(sed -n 's/^"upper, ""left""",\*,1,//p' "$work/names.csv")" 0.199824895698387 1e-9 0
+
+# Two squares, back to back: with twins each has two sides, one of which sees the other.
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n' >"$work/back.obj"
+printf 'g a\nf 4 3 2 1\ng b\nf 5 6 7 8\n' >>"$work/back.obj"
+table back
+check "squares back to back" [ "$(value back a b)" = 0 ]
+table back --two-sided
+check "see each other with --two-sided" near "$(value back a b)" 0.0999124478491935 1e-9 0
+check "where both sides count" [ "$(awk -F, 'NR == 2 { print $3 }' "$work/back.csv")" = 2 ]
+table OB1 --two-sided
+check "a blocked pair with --two-sided" near "$(value OB1 p1 p2)" 0.074934335887 0.01 0
+
+# --- the same bytes everywhere ---
+
+$MAKE SERIAL=1 CFLAGS=-O1 BUILD="$work/serial" PHR="$work/serial/phr.out" "$work/serial/phr" \
+    >"$work/serial.log" 2>&1
+check "the serial build" [ $? -eq 0 ]
+cp scenes/cornell.obj scenes/cornell.mtl "$work"
+for scene in cornell blocked V7; do
+    "$work/serial/phr" --quiet --form-factors "$work/$scene.obj" --epsilon 1e-4 >"$work/serial.csv"
+    for ranks in 1 2 3 7; do
+        $MPIEXEC -n $ranks "$PHR" --quiet --form-factors "$work/$scene.obj" --epsilon 1e-4 \
+            >"$work/ranks.csv" 2>"$work/errors"
+        check "$scene on $ranks ranks" cmp "$work/serial.csv" "$work/ranks.csv"
+        check "silently" [ ! -s "$work/errors" ]
+    done
+done
+
+# --- what is refused ---
+
+# refused TEXT ARGUMENTS...: status 2, one line that begins with the text, no table.
+refused() {
+    text=$1
+    shift
+    "$PHR" --form-factors "$@" >"$work/out" 2>"$work/errors"
+    [ $? -eq 2 ] && [ ! -s "$work/out" ] && [ "$(wc -l <"$work/errors")" -eq 1 ] &&
+        case $(cat "$work/errors") in "phr: $text"*) ;; *) cat "$work/errors"; false ;; esac
+}
+
+awk 'BEGIN { print "v 0 0 0\nv 1 0 0\nv 0 1 0"; for (i = 0; i < 8193; i++) print "g " i "\nf 1 2 3" }' \
+    >"$work/many.obj"
+check "no scene" refused "no scene given"
+check "a scene that is not there" refused "$work/absent.obj: cannot read" "$work/absent.obj"
+check "an output" refused "--form-factors and -o" "$work/box.obj" -o "$work/box.ppm"
+check "a view" refused "--form-factors and --view" "$work/box.obj" --view scenes/cornell.view
+check "--stats" refused "--form-factors and --stats" "$work/box.obj" --stats "$work/box.json"
+check "too many groups" refused "$work/many.obj: 8193 groups are more than 8192" "$work/many.obj"
+
+tap_done
