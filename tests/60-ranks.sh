@@ -3,8 +3,8 @@
 
 . tests/tap.sh
 
-counts="checksum links patches leaves iterations rays node_tests triangle_tests absorbed_power
-        escaped_power"
+counts="checksum links patches leaves passes iterations rays node_tests triangle_tests
+        absorbed_power escaped_power error_estimate"
 quiet="--quiet --epsilon 1e-4 --size 96x96"
 
 # build NAME ARGUMENTS...: another phr as $work/NAME/phr; fails with the log if it has warnings.
@@ -34,6 +34,10 @@ same() {
     for file in a.pfm a.ppm a.ply table; do
         cmp "$work/$1/$file" "$work/$2/$file" || return 1
     done
+    for name in "$1" "$2"; do
+        grep '"visibility"' "$work/$name/s.json" >"$work/$name/visibility" || return 1
+    done
+    cmp "$work/$1/visibility" "$work/$2/visibility" || return 1
     for key in $counts; do
         if [ "$(stat_of "$work/$1/s.json" $key)" != "$(stat_of "$work/$2/s.json" $key)" ] ||
             [ -z "$(stat_of "$work/$1/s.json" $key)" ]; then
@@ -74,6 +78,30 @@ done
 produce flat-serial "$work/serial/phr" $cornell --flat --two-sided
 produce flat-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided
 check "the same with --flat --two-sided" same flat-3 flat-serial
+
+# method NAME OPTIONS...: another method, on 2, 3 and 7 ranks.
+method() {
+    name=$1
+    shift
+    produce "$name-serial" "$work/serial/phr" scenes/cornell.obj "$@"
+    for ranks in 2 3 7; do
+        produce "$name-$ranks" $MPIEXEC -n $ranks "$BUILD/phr" scenes/cornell.obj "$@"
+        check "$ranks ranks: $*" same "$name-$ranks" "$name-serial"
+    done
+}
+
+method paper --paper
+method rows --closure rows --form-factor disk
+method symmetric --closure symmetric --solver jacobi --max-level 4
+method none --oracle bf --closure none
+method accuracy --accuracy 4%
+
+"$work/serial/phr" --form-factors scenes/cornell.obj --epsilon 1e-3 --quiet >"$work/table-serial"
+for ranks in 2 3 7; do
+    $MPIEXEC -n $ranks "$BUILD/phr" --form-factors scenes/cornell.obj --epsilon 1e-3 --quiet \
+        >"$work/table-$ranks"
+    check "$ranks ranks: --form-factors" cmp "$work/table-$ranks" "$work/table-serial"
+done
 
 produce levels-serial "$work/serial/phr" scenes/cornell.obj --max-level 3 --min-area 1e-3 \
     --alpha 0 --tolerance 1e-6 --oracle bf --samples 1 --exposure 0.1
@@ -137,7 +165,7 @@ check "they give the same bytes as vectors" same plain serial
 # The ray caster by brute force, linked in place of the octree. It counts no tests.
 check "brute force builds without warnings" build brute SERIAL=1 OCTREE= BRUTE=brute
 produce brute "$work/brute/phr" $cornell
-counts="checksum links patches leaves iterations rays"
+counts="checksum links patches leaves passes iterations rays"
 check "brute force gives the same bytes" same brute serial
 
 # What the comparison is worth: it notices one changed byte.
