@@ -75,13 +75,13 @@ while read -r id exact; do
     check "$id at epsilon 1e-6" near "$(value "$id" p1 p2)" "$exact" 0.001 1e-12
 done <"$work/cases"
 
-# The error estimate of rad/viewfactor.c, 0.2 sqrt(epsilon F) for one pair, at three standard
-# deviations.
+# What rad/viewfactor.c says of the error, c sqrt(epsilon F) with the F without blockers, at most 1:
+# c = 0.13 was the worst in 230 runs.
 while read -r id exact; do
     for epsilon in 1e-3 1e-4; do
         table "$id" --epsilon $epsilon
         check "$id at epsilon $epsilon" near "$(value "$id" p1 p2)" "$exact" 0 \
-            "$(awk -v e=$epsilon -v f="$exact" 'BEGIN { print 0.6 * sqrt(e * f) + 1e-12 }')"
+            "$(awk -v e=$epsilon 'BEGIN { print 0.15 * sqrt(e) + 1e-12 }')"
     done
 done <"$work/cases"
 
