@@ -172,6 +172,16 @@ check "the block does not see itself" [ "$(value blocked block block)" = 0 ]
 table blocked --epsilon 1e-6
 check "nearer at epsilon 1e-6" rows_are_one blocked 2e-4
 
+# A block that stands on the floor: what it covers sees nothing, all else sees all there is.
+{ box; block 0.3 0.6 | awk '$1 == "v" { $4 -= 0.3 } { print }'; } >"$work/standing.obj"
+table standing
+check "a block on the floor: the row of the floor lacks what is covered" \
+    near "$(value standing floor '*')" 0.91 1e-3 0
+check "so does that of the block, of which a face is hidden" \
+    near "$(value standing block '*')" 0.8333333333333333 1e-9 0
+sed -E 's/^((floor|block),\*,.*),.*/\1,1/' "$work/standing.csv" >"$work/others.csv"
+check "the other rows sum to 1" rows_are_one others 1e-3
+
 { box | sed 's/^o .*//'; block 0.3 0.6 | sed 's/^g .*//'; } >"$work/nameless.obj"
 table nameless
 check "without names: one group" [ "$(cut -d, -f1-2 "$work/nameless.csv" | tr '\n' ' ')" = \
