@@ -26,8 +26,8 @@ near() {
         if (v == "" || !(d <= limit)) { print "# " v " instead of " e; exit 1 } }'
 }
 
-# objs FILE POLYGONS EXACT: writes each case of a CSV file as $work/ID.obj, its polygons as groups p1,
-# p2, ..., and lists "ID F". POLYGONS is the field with their number, or 0 if they are two.
+# objs FILE POLYGONS: writes each case of a CSV file as $work/ID.obj, its polygons as groups
+# p1, p2, ..., and lists "ID F". POLYGONS is the field with their number, or 0 if they are two.
 objs() {
     awk -F, -v counted="$2" -v work="$work" 'NR > 1 {
         polygons = counted ? $counted : 2
@@ -87,7 +87,8 @@ done <"$work/cases"
 
 # --- the unit of length, and which way the scene looks ---
 
-# moved FROM TO SCALE: turned by 73.74 degrees about one axis and 53.13 about another, moved, scaled.
+# moved FROM TO SCALE: turned by 73.74 degrees about one axis and 36.87 about another, moved, and
+# scaled.
 moved() {
     awk -v s="$3" '$1 == "v" {
         x = 0.28 * $2 - 0.96 * $3; y = 0.96 * $2 + 0.28 * $3
@@ -96,7 +97,7 @@ moved() {
         { print }' "$work/$1.obj" >"$work/$2.obj"
 }
 
-# same_factors A B SCALE: equal tables, but for the unit of area; a group may be seen by rounding.
+# same_factors A B SCALE: tables that are equal within 1e-9, but for the unit of area.
 same_factors() {
     paste -d, "$work/$1.csv" "$work/$2.csv" | awk -F, -v s="$3" 'NR > 1 {
         d = $4 - $8; a = $7 / ($3 * s * s) - 1
@@ -115,7 +116,7 @@ done
 
 # --- tables ---
 
-# box: the unit cube from inside, each face a group; its rows sum to 1.
+# box: the unit cube from inside, each face a group.
 box() {
     awk 'BEGIN {
         for (k = 0; k < 8; k++) print "v", k % 2, int(k / 2) % 2, int(k / 4)
