@@ -23,7 +23,7 @@ struct viewfactors {
     int32_t count;               /* groups */
     double *areas;               /* [count] of both sides if two-sided, square scene units */
     int32_t *roots;              /* [count] number of roots with an area */
-    int64_t *sums;               /* [pairs] row by row, of groups i <= j: G_ij, in units of its own */
+    int64_t *sums;               /* [pairs] G_ij of i <= j row by row, each in a unit of its own */
     int64_t pairs;               /* count (count + 1) / 2 */
     int64_t links;               /* parts added so far */
     struct octree_counts counts; /* work so far */

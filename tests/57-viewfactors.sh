@@ -26,8 +26,8 @@ near() {
         if (v == "" || !(d <= limit)) { print "# " v " instead of " e; exit 1 } }'
 }
 
-# objs FILE POLYGONS EXACT: writes each case of a CSV file as $work/ID.obj, its polygons as groups p1,
-# p2, ..., and lists "ID F". POLYGONS is the field with their number, or 0 if they are two.
+# objs FILE POLYGONS: writes each case of a CSV file as $work/ID.obj, its polygons as groups
+# p1, p2, ..., and lists "ID F". POLYGONS is the field with their number, or 0 if they are two.
 objs() {
     awk -F, -v counted="$2" -v work="$work" 'NR > 1 {
         polygons = counted ? $counted : 2
@@ -75,19 +75,20 @@ while read -r id exact; do
     check "$id at epsilon 1e-6" near "$(value "$id" p1 p2)" "$exact" 0.001 1e-12
 done <"$work/cases"
 
-# The error estimate of rad/viewfactor.c, 0.2 sqrt(epsilon F) for one pair, at three standard
-# deviations.
+# What rad/viewfactor.c says of the error, c sqrt(epsilon F) with the F without blockers, at most 1:
+# c = 0.13 was the worst in 230 runs.
 while read -r id exact; do
     for epsilon in 1e-3 1e-4; do
         table "$id" --epsilon $epsilon
         check "$id at epsilon $epsilon" near "$(value "$id" p1 p2)" "$exact" 0 \
-            "$(awk -v e=$epsilon -v f="$exact" 'BEGIN { print 0.6 * sqrt(e * f) + 1e-12 }')"
+            "$(awk -v e=$epsilon 'BEGIN { print 0.15 * sqrt(e) + 1e-12 }')"
     done
 done <"$work/cases"
 
 # --- the unit of length, and which way the scene looks ---
 
-# moved FROM TO SCALE: turned by 73.74 degrees about one axis and 53.13 about another, moved, scaled.
+# moved FROM TO SCALE: turned by 73.74 degrees about one axis and 36.87 about another, moved, and
+# scaled.
 moved() {
     awk -v s="$3" '$1 == "v" {
         x = 0.28 * $2 - 0.96 * $3; y = 0.96 * $2 + 0.28 * $3
@@ -96,7 +97,7 @@ moved() {
         { print }' "$work/$1.obj" >"$work/$2.obj"
 }
 
-# same_factors A B SCALE: equal tables, but for the unit of area; a group may be seen by rounding.
+# same_factors A B SCALE: tables that are equal within 1e-9, but for the unit of area.
 same_factors() {
     paste -d, "$work/$1.csv" "$work/$2.csv" | awk -F, -v s="$3" 'NR > 1 {
         d = $4 - $8; a = $7 / ($3 * s * s) - 1
@@ -115,7 +116,7 @@ done
 
 # --- tables ---
 
-# box: the unit cube from inside, each face a group; its rows sum to 1.
+# box: the unit cube from inside, each face a group.
 box() {
     awk 'BEGIN {
         for (k = 0; k < 8; k++) print "v", k % 2, int(k / 2) % 2, int(k / 4)
@@ -171,6 +172,16 @@ check "reciprocity" is_reciprocal blocked
 check "the block does not see itself" [ "$(value blocked block block)" = 0 ]
 table blocked --epsilon 1e-6
 check "nearer at epsilon 1e-6" rows_are_one blocked 2e-4
+
+# A block that stands on the floor: what it covers sees nothing, all else sees all there is.
+{ box; block 0.3 0.6 | awk '$1 == "v" { $4 -= 0.3 } { print }'; } >"$work/standing.obj"
+table standing
+check "a block on the floor: the row of the floor lacks what is covered" \
+    near "$(value standing floor '*')" 0.91 1e-3 0
+check "so does that of the block, of which a face is hidden" \
+    near "$(value standing block '*')" 0.8333333333333333 1e-9 0
+sed -E 's/^((floor|block),\*,.*),.*/\1,1/' "$work/standing.csv" >"$work/others.csv"
+check "the other rows sum to 1" rows_are_one others 1e-3
 
 { box | sed 's/^o .*//'; block 0.3 0.6 | sed 's/^g .*//'; } >"$work/nameless.obj"
 table nameless
