@@ -113,7 +113,7 @@ errors: $(BUILD)/reference $(BUILD)/measure
 $(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
-# About a quarter of an hour, a third of it for references that are kept in $(BUILD)/chart.
+# About ten minutes, half of them for references that are kept in $(BUILD)/chart.
 chart: $(BENCHES:%=$(BUILD)/%) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/chart.sh
 

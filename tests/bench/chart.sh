@@ -2,7 +2,7 @@
 # Speed against error: docs/chart.csv, the table of README.md on stdout and, where gnuplot is
 # installed, docs/chart-seconds.svg and docs/chart-links.svg.
 #
-#   make chart           all, about a quarter of an hour
+#   make chart           all, about ten minutes
 #   SCENES=shadow CSV=build/chart.csv sh tests/bench/chart.sh       one scene, nothing drawn
 #
 # Each variant is run on one rank with ever smaller epsilon until a run takes more than SECONDS or
@@ -61,7 +61,8 @@ exceeds() {
 # fastest COMMAND...: of its lines of three runs, or of one that takes long, the one with the
 # smallest second field.
 fastest() {
-    "$@" >"$folder/runs" || return
+    "$@" >"$folder/runs"
+    [ -s "$folder/runs" ] || return
     exceeds "$(cut -d, -f 2 "$folder/runs")" 2 || { "$@" && "$@"; } >>"$folder/runs" || return
     sort -t, -g -k 2,2 "$folder/runs" | head -n 1
 }
@@ -81,6 +82,7 @@ traced() {
 # turn SCENE VARIANT KNOB COMMAND: one point of a line, unless the line has ended.
 turn() {
     [ -f "$folder/ended.$2" ] && return
+    # A run that diverges gives no line.
     if ! line=$(fastest "$4" "$1" ${5:+"$5"} "$3") || [ -z "$line" ]; then
         echo "chart: $1, $2, $3: no result" >&2
         return
