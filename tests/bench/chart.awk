@@ -36,7 +36,7 @@ function rounded(x,    unit) {
 }
 
 function ratio(a, b) {
-    return a > 0 && b > 0 ? sprintf("%.2g", a / b) : "-"
+    return a > 0 && b > 0 ? sprintf(a < 10 * b ? "%.1f" : "%.0f", a / b) : "-"
 }
 
 # Three digits; a dash for what is not reached.

@@ -13,12 +13,12 @@ NAMES = "'paper + oracle error' 'paper + polygon' 'paper + cg' 'paper + rows' \
     'defaults + rows' 'defaults + symmetric' 'path tracer' 'paper' 'defaults of phr'"
 
 # One style for each variant: what is alone is thin, hollow marks; the three that matter are thick.
-set style line 1 lc rgb "#0072b2" lw 1.2 dt (6,3) pt 4 ps 0.55
-set style line 2 lc rgb "#d55e00" lw 1.2 dt (2,2) pt 8 ps 0.65
-set style line 3 lc rgb "#777777" lw 1.2 dt (8,3,2,3) pt 2 ps 0.5
-set style line 4 lc rgb "#cc79a7" lw 1.2 dt (1,3) pt 12 ps 0.7
-set style line 5 lc rgb "#009e73" lw 1.2 dt (4,2) pt 10 ps 0.65
-set style line 6 lc rgb "#56b4e9" lw 1.2 dt (10,3) pt 1 ps 0.55
+set style line 1 lc rgb "#0062a0" lw 1.5 dt (6,3) pt 4 ps 0.65
+set style line 2 lc rgb "#c05000" lw 1.5 dt (2,2) pt 8 ps 0.75
+set style line 3 lc rgb "#777777" lw 1.5 dt (8,3,2,3) pt 2 ps 0.6
+set style line 4 lc rgb "#b0508a" lw 1.5 dt (1,3) pt 12 ps 0.8
+set style line 5 lc rgb "#008a63" lw 1.5 dt (4,2) pt 10 ps 0.75
+set style line 6 lc rgb "#3a9ad9" lw 1.5 dt (10,3) pt 6 ps 0.65
 set style line 7 lc rgb "#666666" lw 2.2 dt (1,2) pt 13 ps 0.8
 set style line 8 lc rgb "#a00000" lw 2.4 dt (7,3) pt 5 ps 0.55
 set style line 9 lc rgb "black" lw 2.6 dt 1 pt 7 ps 0.55
@@ -55,9 +55,10 @@ do for [chart in "seconds links"] {
                 offset 0,0.4 } else { unset xlabel }
             if (panel == 1) { set ylabel word(NORMS, row)." error, % (RMS)" offset 0.8,0 } \
                 else { unset ylabel }
-            if (chart eq "seconds") { set xrange [0.004:20]; set xtics (0.01, 0.1, 1, 10) } \
-                else { set xrange [80:1e7]
-                    set xtics ("100" 1e2, "" 1e3, "10 000" 1e4, "" 1e5, "1 million" 1e6) }
+            if (chart eq "seconds") { set xrange [(panel == 3 ? 0.1 : 0.004):20]
+                set xtics (0.01, 0.1, "" 0.3, 1, "" 3, 10) } \
+            else { set xrange [(panel == 3 ? 1e5 : 80):5e6]
+                set xtics ("100" 1e2, "" 1e3, "10 000" 1e4, "100 000" 1e5, "1 million" 1e6) }
             if (panel == 2) { set yrange [0.1:60]; set ytics (0.1, 0.3, 1, 3, 10, 30) } \
                 else { set yrange [0.8:100]; set ytics (1, 2, 5, 10, 20, 50, 100) }
             plot for [k = 1:last] csv every ::1 using by: \
