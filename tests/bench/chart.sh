@@ -119,6 +119,7 @@ done
     done
 } >"$folder/chart.csv"
 mv "$folder/chart.csv" "$CSV"
+rm -f "$folder/lines" "$folder/runs" "$folder"/ended.*
 awk -f tests/bench/chart.awk "$CSV"
 if [ "$CSV" != docs/chart.csv ]; then
     exit
