@@ -51,14 +51,15 @@ do for [chart in "seconds links"] {
             set tmargin at screen TOP - (row - 1) * (HIGH + BELOW)
             set bmargin at screen TOP - (row - 1) * (HIGH + BELOW) - HIGH
             if (row == 1) { set title word(TITLES, panel) offset 0,-0.6 } else { unset title }
-            if (row == 2) { set xlabel (chart eq "seconds" ? "seconds, one rank" : "links") \
+            if (row == 2) { set xlabel (chart eq "seconds" ? "seconds, one rank" : "links (k: thousand, M: million)") \
                 offset 0,0.4 } else { unset xlabel }
             if (panel == 1) { set ylabel word(NORMS, row)." error, % (RMS)" offset 0.8,0 } \
                 else { unset ylabel }
             if (chart eq "seconds") { set xrange [(panel == 3 ? 0.1 : 0.004):20]
                 set xtics (0.01, 0.1, 1, 10) } \
             else { set xrange [(panel == 3 ? 1e5 : 80):5e6]
-                set xtics ("100" 1e2, "" 1e3, "10 000" 1e4, "100 000" 1e5, "1 million" 1e6) }
+                set xtics ("100" 1e2, "1k" 1e3, "10k" 1e4, "100k" 1e5, "1M" 1e6)
+                if (panel == 3) { set xtics add ("300k" 3e5, "3M" 3e6) } }
             if (panel == 2) { set yrange [0.1:60]; set ytics (0.1, 0.3, 1, 3, 10, 30) } \
                 else { set yrange [0.8:100]; set ytics (1, 2, 5, 10, 20, 50, 100) }
             plot for [k = 1:last] csv every ::1 using by: \
