@@ -5,6 +5,7 @@
 #   make room            build/room, a scene generator
 #   make bench           $(BUILD)/rays, a bench of visibility, beside Embree where it is installed
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
+#   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
 #   make install         to $(DESTDIR)$(prefix)      make uninstall  make clean
 #
 # Knobs: MPICC, CC, MPIEXEC, CFLAGS, CPPFLAGS, LDFLAGS, prefix, DESTDIR.
@@ -55,6 +56,8 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 TESTS = alloc elementary id triangle lambert hull scene polygon contour octree bundles flux patch \
         compact formfactor link oracle pushpull closure treecode plan assign text obj output tone \
         image camera shading options paths norms exchange conjugate exact converge
+# Programs that compare phr with what is true.
+BENCHES = reference measure direct tracing
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)
 
 all: $(PHR)
@@ -84,7 +87,7 @@ $(BUILD)/%.o: %.c Makefile
 	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) -MMD -c -o $@ $<
 
 -include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(TESTS:%=$(BUILD)/tests/%.d) \
-    $(TRUTH:.o=.d) $(BUILD)/tests/bench/reference.d $(BUILD)/tests/bench/measure.d
+    $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d)
 
 demo: $(PHR)
 	$(MPIEXEC) -n 2 ./$(PHR) scenes/cornell.obj --view scenes/cornell.view \
@@ -109,8 +112,12 @@ $(BUILD)/rays: tests/bench/rays.c $(OBJECTS) Makefile
 
 errors: $(BUILD)/reference $(BUILD)/measure
 
-$(BUILD)/reference $(BUILD)/measure: $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/libphr.a
+$(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
+# About ten minutes, half of them for references that are kept in $(BUILD)/chart.
+chart: $(BENCHES:%=$(BUILD)/%) build/room
+	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/chart.sh
 
 check: $(PHR) tests
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
@@ -130,4 +137,4 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench errors check install uninstall clean FORCE
+.PHONY: all demo tests room bench errors chart check install uninstall clean FORCE
