@@ -52,7 +52,7 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # Unit tests, bottom up; the last three are run with several ranks.
 TESTS = alloc elementary id triangle lambert scene polygon contour octree bundles flux patch \
         formfactor link pushpull treecode plan assign text obj output tone image camera shading \
-        options paths norms exchange exact converge
+        options paths norms cie furnace stability exchange exact converge
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)
 
 all: $(PHR)
