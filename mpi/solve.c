@@ -11,7 +11,7 @@
 
 static double largest_radiosity(const struct forest *forest)
 {
-    double largest = 1e-290;
+    double largest = 1e-250;
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
             largest = fmax(largest, fabs(forest->patches[p].radiosity.band[c]));
