@@ -76,7 +76,7 @@ static bool everywhere_within(const struct solution *s, double most)
 }
 
 /* Largest relative difference between two solutions, patch by patch by their IDs; infinite if
- * their patches differ. `map[root]` is the root of the second for one of the first. */
+ * their patches differ. The first is multiplied by `factor` before. */
 static double difference(const struct solution *a, const struct solution *b, double factor)
 {
     const struct forest *one = a->solver->method.forest, *two = b->solver->method.forest;
@@ -93,6 +93,16 @@ static double difference(const struct solution *a, const struct solution *b, dou
 static bool exact_bits(const struct solution *a, const struct solution *b, double factor)
 {
     return difference(a, b, factor) == 0.0;
+}
+
+static int deepest_level(const struct solution *s)
+{
+    int level = 0;
+    for (int64_t p = 0; p < s->solver->method.forest->count; p++) {
+        int own = id_level(s->solver->method.forest->patches[p].id);
+        level = own > level ? own : level;
+    }
+    return level;
 }
 
 static void add_room(struct painted *painted, int n)
@@ -115,33 +125,30 @@ static struct scene *furnished(double lamp, double box)
 
 /* --- form factors and solver --- */
 
-/* A small square 0.1 of its side under a large one: F = 0.968 from the small one. */
-static void test_bounds(void)
+/* A unit square 0.1 below a larger one: nearly all that leaves it arrives there. */
+static void test_bounds(const char *words)
 {
     struct painted painted = {0};
     soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    soup_add_quad(&painted.soup, point(-4.5, -4.5, 0.1), point(0, 10, 0), point(10, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(-1, -1, 0.1), point(0, 3, 0), point(3, 0, 0), 1);
     paint(&painted, 0.5, 1.0);
-    struct solution s = run(&painted, "");
+    struct solution s = run(&painted, words);
     const struct forest *forest = s.solver->method.forest;
-    double largest = 0.0, total = 0.0;
+    double largest = 0.0, f = 0.0, exact = 0.0;
     for (int64_t i = 0; i < s.solver->links.count; i++) {
         const struct link *link = &s.solver->links.items[i];
         double least = fmin(forest_area(forest, link->p), forest_area(forest, link->q));
         bool right = link_area(link) >= 0.0 && (double)link->area <= least;
-        largest = right ? fmax(largest, link_area(link) / least) : HUGE_VAL;
-        total += link_area(link);
+        largest = fmax(largest, right ? link_area(link) / least : HUGE_VAL);
+        f += link_area(link) / (2.0 * forest_area(forest, 0));
     }
-    /* Of the same directions, so more than 0.968: the large square is 10 wide here. */
-    double exact = triangle_exchange(&s.scene->triangles[0], &s.scene->triangles[2]) +
-                   triangle_exchange(&s.scene->triangles[0], &s.scene->triangles[3]) +
-                   triangle_exchange(&s.scene->triangles[1], &s.scene->triangles[2]) +
-                   triangle_exchange(&s.scene->triangles[1], &s.scene->triangles[3]);
-    double f = total / (2.0 * forest_area(forest, 0)), truth = exact / (2.0 * forest_area(forest, 0));
-    tap_ok(largest > 0.5 && largest <= 1.0, "0 <= G <= the smaller area on %lld links (at most %.6f)",
-           (long long)s.solver->links.count, largest);
-    tap_ok(fabs(f / truth - 1.0) <= 0.01, "a small square below a large one: F %.5f, exact %.5f", f,
-           truth);
+    for (int i = 0; i < 4; i++)
+        exact += triangle_exchange(&s.scene->triangles[i / 2], &s.scene->triangles[2 + i % 2]) /
+                 (2.0 * forest_area(forest, 0));
+    tap_ok(largest > 0.1 && largest <= 1.0, "0 <= G <= the smaller area%s%s: at most %.3f of it on "
+           "%lld links", *words ? ", " : "", words, largest, (long long)s.stats.links);
+    tap_ok(f <= 1.0 && (*words || fabs(f / exact - 1.0) <= 0.01), "a square below a large one: "
+           "F %.5f, exact %.5f", f, exact); /* 1 %: as the default epsilon has it elsewhere */
     solution_free(&s);
 }
 
@@ -227,7 +234,9 @@ static void test_leak(void)
     solution_free(&s);
 }
 
-/* A lamp in the plane of the ceiling and a black picture in that of a wall, over them. */
+/* A lamp in the plane of the ceiling and a picture in that of a wall, over them. Coplanar faces do
+ * not block each other: light comes to both. Of the room's 6 m^2 0.29 are there twice, so up to 1.048
+ * of what leaves arrives, and rho is as if it were up to 0.524: B up to 1.10 of the room alone. */
 static void test_coplanar(void)
 {
     struct painted painted = {0};
@@ -236,55 +245,57 @@ static void test_coplanar(void)
     soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
     paint(&painted, 0.5, 1.0);
     soup_add_quad(&painted.soup, point(0, 0.25, 0.25), point(0, 0.5, 0), point(0, 0, 0.5), 1);
-    paint(&painted, 0.1, 0.0);
-    struct solution s = run(&painted, "");
-    double direct = 0.0;
-    for (int32_t lamp = 12; lamp < 14; lamp++)
-        direct += s.stats.emitted_power > 0.0 ? forest_area(s.solver->method.forest, lamp) : 0.0;
-    tap_ok(s.vote.converged && everywhere_within(&s, 2.0) && mean_radiosity(&s, 14, 2) > 0.0,
-           "a lamp flush with the ceiling, a picture in a wall: defined, and both in the light");
-    tap_ok(mean_radiosity(&s, 0, 12) > 0.02 && mean_radiosity(&s, 0, 12) < 0.025,
-           "%g", mean_radiosity(&s, 0, 12));
+    paint(&painted, 0.5, 0.0);
+    struct solution s = run(&painted, "--tolerance 1e-6");
+    double exact = 0.04 * 0.5 / (1.0 - 0.5) / 6.0, mean = mean_radiosity(&s, 0, 12);
+    tap_ok(s.vote.converged && everywhere_within(&s, 1.1) && mean_radiosity(&s, 14, 2) > 0.5 * exact &&
+           mean >= 0.99 * exact && mean <= 1.10 * exact, "a lamp flush with the ceiling, a picture in a wall: "
+           "the room has %.5f, alone %.5f; the picture %.5f", mean, exact,
+           mean_radiosity(&s, 14, 2));
     solution_free(&s);
 }
 
-/* Every face of a furnace twice. */
-static void test_duplicates(void)
+/* Every face of a furnace twice: rows sum to 2 and B = E / (1 - 2 rho), which diverges from
+ * rho = 0.5 on, and is said to; closed, it is the furnace. */
+static void test_duplicates(double rho, const char *words, double exact, double limit)
 {
-    static const char *const words[] = {"", "--closure rows", "--closure symmetric", "--paper"};
-    for (int k = 0; k < COUNT(words); k++) {
-        char all[100];
-        struct painted painted = {0};
-        add_room(&painted, 1);
-        add_room(&painted, 1);
-        paint(&painted, 0.3, 1.0);
-        snprintf(all, sizeof all, "--epsilon 1e-3 %s", words[k]);
-        struct solution s = run(&painted, all);
-        printf("# dup %s: conv %d div %d mean %g closure %g %g %g\n", words[k], s.vote.converged, s.vote.diverged, mean_radiosity(&s, 0, 24), s.stats.closure_min, s.stats.closure_mean, s.stats.closure_max);
-        solution_free(&s);
-    }
+    struct painted painted = {0};
+    add_room(&painted, 1);
+    add_room(&painted, 1);
+    paint(&painted, rho, 1.0);
+    struct solution s = run(&painted, words);
+    double mean = mean_radiosity(&s, 0, 24);
+    if (exact > 0.0)
+        tap_ok(s.vote.converged && fabs(mean / exact - 1.0) <= limit, "all faces twice, rho %g, %s: "
+               "B %.6f, %.6f is expected (within %g)", rho, words, mean, exact, limit);
+    else
+        tap_ok(s.vote.diverged && !s.vote.converged, "all faces twice, rho %g, %s: diverges", rho,
+               words);
+    solution_free(&s);
 }
 
-/* A furnace in which a box stands on the floor and another goes through it. */
-static void test_covered(void)
+/* A furnace in which a box stands on the floor and another goes through that and the floor.
+ * Nothing may be brighter than E / (1 - rho) = 10, but leaves that are covered in part are not
+ * closed, and their rows sum to up to R = 1.33: such a leaf may have 1 + rho R 10 = 13. Some
+ * leaves lie inside the boxes, where the row sum is 0. */
+static void test_covered(const char *words)
 {
-    static const char *const words[] = {"", "--closure rows", "--closure symmetric"};
-    for (int k = 0; k < COUNT(words); k++) {
-        char all[100];
-        struct painted painted = {0};
-        add_room(&painted, 1);
-        soup_add_box(&painted.soup, point(0.2, 0.2, 0), point(0.6, 0.6, 0.3), 1, false);
-        soup_add_box(&painted.soup, point(0.5, 0.5, -0.2), point(0.9, 0.8, 0.2), 1, false);
-        paint(&painted, 0.9, 1.0);
-        snprintf(all, sizeof all, "--epsilon 1e-4 --tolerance 1e-6 %s", words[k]);
-        struct solution s = run(&painted, all);
-        double most = 0, least = 1e9;
-        for (int64_t p = 0; p < s.solver->method.forest->count; p++) {
-            most = fmax(most, radiosity(&s, p));
-            if (patch_is_leaf(&s.solver->method.forest->patches[p])) least = fmin(least, radiosity(&s, p)); }
-        printf("# covered %s: conv %d div %d most %.9g least %g mean %g closure %g %g %g\n", words[k], s.vote.converged, s.vote.diverged, most,least,mean_radiosity(&s, 0, 36), s.stats.closure_min, s.stats.closure_mean, s.stats.closure_max);
-        solution_free(&s);
+    struct painted painted = {0};
+    add_room(&painted, 1);
+    soup_add_box(&painted.soup, point(0.2, 0.2, 0), point(0.6, 0.6, 0.3), 1, false);
+    soup_add_box(&painted.soup, point(0.5, 0.5, -0.2), point(0.9, 0.8, 0.2), 1, false);
+    paint(&painted, 0.9, 1.0);
+    struct solution s = run(&painted, words);
+    const struct forest *forest = s.solver->method.forest;
+    double most = 0.0;
+    bool numbers = true;
+    for (int64_t p = 0; p < forest->count; p++) {
+        numbers = numbers && radiosity(&s, p) >= 1.0 - 1e-6; /* the tolerance */
+        most = fmax(most, radiosity(&s, p));
     }
+    tap_ok(s.vote.converged && numbers && most <= 13.5 && s.stats.closure_min == 0.0,
+           "boxes through the floor and each other, %s: at most %.3f", words, most);
+    solution_free(&s);
 }
 
 static void test_degenerate(void)
@@ -311,25 +322,50 @@ static void test_degenerate(void)
     solution_free(&two);
 }
 
-/* The furnished room with each coordinate times `scale` plus `offset`. */
-static struct scene *moved(double scale, double offset)
+/* A tetrahedron of 64 triangles seen from inside, one side lit, each coordinate times `scale` plus
+ * `offset`. All sees all, so that no segment hits or misses an edge by a rounding; and no two sides
+ * have the same area, so that it is clear which patch of a link is the smaller one, from which its
+ * form factor is taken. */
+static struct scene *tetrahedron(double scale, double offset)
 {
-    struct scene *scene = furnished(1.0, 0.0);
-    for (int32_t i = 0; i < scene->input_count; i++)
-        for (int k = 0; k < 3; k++) {
-            struct vec3 *x = &scene->triangles[i].corner[k];
-            *x = vec3_add(vec3_scale(*x, scale), point(offset, offset, offset));
+    const struct vec3 v[4] = {point(0, 0, 0), point(1, 0.1, 0), point(0.2, 0.8, 0.1),
+                              point(0.3, 0.2, 0.7)};
+    static const int sides[4][3] = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+    struct painted painted = {0};
+    for (int side = 0; side < 4; side++) {
+        struct triangle t;
+        for (int k = 0; k < 3; k++)
+            t.corner[k] = vec3_add(vec3_scale(v[sides[side][k]], scale),
+                                   point(offset, offset, offset));
+        for (int k = 0; k < 16; k++) {
+            struct triangle quarter = triangle_child(&t, k / 4);
+            soup_add(&painted.soup, triangle_child(&quarter, k % 4));
         }
-    return scene;
+        paint(&painted, 0.4 + 0.1 * side, side == 0);
+    }
+    return scene_of_painted(&painted);
 }
 
-/* On a mesh that epsilon 0 and a level fix. */
+/* Largest relative difference of roots; root i of one is (i times + plus) % count of two. */
+static double roots_differ(const struct solution *one, const struct solution *two, int times,
+                           int plus)
+{
+    int32_t count = one->scene->input_count;
+    double worst = 0.0;
+    for (int32_t i = 0; i < count; i++)
+        worst = fmax(worst, fabs(radiosity(two, (i * times + plus) % count) / radiosity(one, i) -
+                                 1.0));
+    return worst;
+}
+
+/* Form factors are kept as floats: a rounding of the coordinates may move each by 2^-24, 6e-8.
+ * 1e-7 for a few reflections of that; more where the coordinates have fewer digits. */
 static void test_moved(const char *name, double scale, double offset, double limit)
 {
-    const char *words = "--epsilon 0 --max-level 2 --tolerance 1e-12";
-    struct solution one = solve_scene(world_comm, moved(1.0, 0.0), words);
-    struct solution two = solve_scene(world_comm, moved(scale, offset), words);
-    double off = difference(&one, &two, 1.0);
+    const char *words = "--epsilon 0 --max-level 0 --tolerance 1e-12";
+    struct solution one = solve_scene(world_comm, tetrahedron(1.0, 0.0), words);
+    struct solution two = solve_scene(world_comm, tetrahedron(scale, offset), words);
+    double off = roots_differ(&one, &two, 1, 0);
     tap_ok(off <= limit, "%s: radiosities within %.1e, at most %g", name, off, limit);
     solution_free(&one);
     solution_free(&two);
@@ -356,15 +392,15 @@ static void test_emission_scale(void)
 /* E1, E2 and both on a fixed mesh. */
 static void test_linearity(void)
 {
-    const char *words = "--epsilon 0 --max-level 2 --tolerance 1e-13";
+    const char *words = "--epsilon 0 --max-level 0 --tolerance 1e-14";
     struct solution one = solve_scene(world_comm, furnished(1.0, 0.0), words);
     struct solution two = solve_scene(world_comm, furnished(0.0, 0.7), words);
     struct solution both = solve_scene(world_comm, furnished(1.0, 0.7), words);
     double worst = 0.0;
-    for (int64_t p = 0; p < both.solver->method.forest->count; p++)
-        worst = fmax(worst, fabs((radiosity(&one, p) + radiosity(&two, p)) / radiosity(&both, p) -
+    for (int32_t i = 0; i < both.scene->input_count; i++)
+        worst = fmax(worst, fabs((radiosity(&one, i) + radiosity(&two, i)) / radiosity(&both, i) -
                                  1.0));
-    tap_ok(one.solver->method.forest->count == both.solver->method.forest->count && worst <= 1e-12,
+    tap_ok(worst <= 1e-12 && radiosity(&one, 0) > 0.0 && radiosity(&two, 0) > 0.0,
            "light of two lamps is the sum of the light of each (within %.1e)", worst);
     solution_free(&one);
     solution_free(&two);
@@ -372,12 +408,12 @@ static void test_linearity(void)
 }
 
 /* rho_j A_j B_i, where only j emits, is A_i rho_i B_j, where only i does: (A_i / rho_i) R_ij. */
-static void test_reciprocity(const char *more)
+static void test_reciprocity(const char *more, double limit)
 {
     static const int32_t lamps[] = {0, 5, 13, 22};
     double b[4][4], area[4], rho[4], worst = 0.0, least = HUGE_VAL;
     char words[128];
-    snprintf(words, sizeof words, "--epsilon 0 --max-level 1 --tolerance 1e-13 %s", more);
+    snprintf(words, sizeof words, "--epsilon 0 --max-level 0 --tolerance 1e-13 %s", more);
     for (int i = 0; i < 4; i++) {
         struct scene *scene = furnished(0.0, 0.0), *lit = scene_create(scene->input_count, 24);
         for (int32_t t = 0; t < 24; t++) {
@@ -402,13 +438,17 @@ static void test_reciprocity(const char *more)
             worst = fmax(worst, fabs(there / back - 1.0));
             least = fmin(least, fmin(b[i][j], b[j][i]));
         }
-    tap_ok(least > 0.0 && worst <= 1e-12, "the response is reciprocal%s%s (within %.1e)",
+    tap_ok(least > 0.0 && worst <= limit, "the response is reciprocal%s%s (within %.1e)",
            *more ? ", " : "", more, worst);
 }
 
-/* A light 1e-4 of the room wide: E = B A cos^2 / (pi d^2) at the floor below and beside. */
+/* A light 1e-4 of the room wide: E = B A cos^2 / (pi d^2) at the floor. All of the light on the
+ * floor is right to a float; where on the floor it falls is told in 256ths of a patch, a quarter
+ * of which is 64 of them: within 1.6 %. That and a little for the interpolation, 2 %, is the limit at a point; 0.5 % is
+ * that of the RMS. */
 static void test_tiny_light(const char *words)
 {
+    enum { GRID = 41 };
     const double size = 1e-4, b = 1e8;
     struct painted painted = {0};
     soup_add_quad(&painted.soup, point(-0.5, -0.5, 0), point(1, 0, 0), point(0, 1, 0), 1);
@@ -417,25 +457,49 @@ static void test_tiny_light(const char *words)
     paint(&painted, 0.0, b);
     struct solution s = run(&painted, words);
     struct shading *shading = shade(&s);
-    static const double at[] = {0.0, 0.03, 0.1, 0.2, 0.3, 0.4};
-    double worst = 0.0;
-    for (int i = 0; i < COUNT(at); i++) {
-        double d2 = 0.25 + at[i] * at[i] * (1.0 + 0.49);
+    double worst = 0.0, squares = 0.0;
+    for (int i = 0; i < GRID * GRID; i++) {
+        double x = 0.9 * ((i % GRID) / (GRID - 1.0) - 0.5), y = 0.9 * ((i / GRID) / (GRID - 1.0) - 0.5);
+        double d2 = 0.25 + x * x + y * y;
         double e = b * size * size * 0.25 / (3.14159265358979323846 * d2 * d2);
-        double shown = shown_at(&s, shading, 0, 2, point(at[i], -0.7 * at[i], 0)) / 0.5;
-        worst = fmax(worst, fabs(shown / e - 1.0));
+        double off = fabs(shown_at(&s, shading, 0, 2, point(x, y, 0)) / 0.5 / e - 1.0);
+        worst = off <= worst ? worst : off;
+        squares += off * off;
     }
-    int level = 0;
-    for (int64_t p = 0; p < s.solver->method.forest->count; p++)
-        level = (int)fmax(level, id_level(s.solver->method.forest->patches[p].id));
-    tap_ok(s.vote.converged && worst <= 0.005, "a light of 1e-4 of the room, %s: off by %.2f %%, "
-           "level %d, %lld links", words, 100.0 * worst, level, (long long)s.stats.links);
+    int level = deepest_level(&s);
+    double rms = sqrt(squares / (GRID * GRID));
+    tap_ok(s.vote.converged && rms <= 0.005 && worst <= 0.02, "a light of 1e-4 of the room, %s: "
+           "off by %.3f %% RMS, %.2f %% at most (level %d, %lld links)", words, 100.0 * rms,
+           100.0 * worst, level, (long long)s.stats.links);
     shading_destroy(shading);
     solution_free(&s);
 }
 
+/* Level 15 is reached where it is wanted: below a lamp of 4e-5, 1e-5 above the floor. 1 %: what
+ * epsilon leaves, a third of which is measured. */
+static void test_fifteen_levels(void)
+{
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(0.3, 0.4, 1e-5), point(0, 4e-5, 0), point(4e-5, 0, 0), 1);
+    paint(&painted, 0.0, 1.0);
+    struct solution s = run(&painted, "--epsilon 1e-3 --max-level 15 --min-area 0 --tolerance 1e-6");
+    int level = deepest_level(&s);
+    double area = 2.0 * forest_area(s.solver->method.forest, 0);
+    double exact = 0.0, arrived = area * mean_radiosity(&s, 0, 2) / 0.5;
+    for (int i = 0; i < 4; i++)
+        exact += triangle_exchange(&s.scene->triangles[i / 2], &s.scene->triangles[2 + i % 2]);
+    tap_ok(s.vote.converged && level == 15 && fabs(arrived / exact - 1.0) <= 0.01,
+           "level %d below a lamp of 4e-5: off by %.2f %% (%lld links)", level,
+           100.0 * fabs(arrived / exact - 1.0), (long long)s.stats.links);
+    solution_free(&s);
+}
+
 /* A large lamp, a screen with a hole, a receiver close to it: each point sees the lamp wherever it
- * sees the hole, so the hole is a lamp of its size. */
+ * sees the hole, so the hole is a lamp of its size. What gets through is 1/60 and 1/500 of the lamp.
+ * Visibility is sampled: 16 segments where a link is not split are right within 1/4 of it, and links
+ * on the rim are a fifth to a third of the whole here: 5 and 10 %. */
 static void test_hole(const char *name, double width, double height, const char *words,
                       double limit)
 {
@@ -460,13 +524,15 @@ static void test_hole(const char *name, double width, double height, const char 
     struct solution s = run(&painted, words);
     double seen = mean_radiosity(&s, 0, 2) / 0.5;
     tap_ok(s.vote.converged && fabs(seen / exact - 1.0) <= limit,
-           "%s, %s: %.6f of the lamp, exact %.6f: off by %.2f %%, at most %g %% (%lld links, %g s)", name,
+           "%s, %s: %.6f of the lamp, exact %.6f: off by %.2f %%, at most %g %% (%lld links)", name,
            words, seen, exact, 100.0 * fabs(seen / exact - 1.0), 100.0 * limit,
-           (long long)s.stats.links, s.seconds);
+           (long long)s.stats.links);
     solution_free(&s);
 }
 
-/* A furnace inside out: all light escapes, and the report says so. */
+/* A furnace inside out: all light escapes, and the report says so. With one face flipped part of it
+ * does, and leaves that see it are not closed: the furnace's 2 is exceeded by what their rows sum to
+ * above 1, up to 0.2. */
 static void test_flipped(void)
 {
     struct painted painted = {0};
@@ -483,7 +549,7 @@ static void test_flipped(void)
     paint(&painted, 0.5, 1.0);
     s = run(&painted, "--closure rows --epsilon 1e-3");
     tap_ok(s.vote.converged && s.stats.escaped_power > 0.05 * s.stats.emitted_power &&
-           everywhere_within(&s, 2.0), "one of 12 faces flipped: %.1f %% escape, none is made up",
+           everywhere_within(&s, 2.4), "one of 12 faces flipped: %.1f %% escape, none is made up",
            100.0 * s.stats.escaped_power / s.stats.emitted_power);
     solution_free(&s);
 }
@@ -497,13 +563,9 @@ static void test_open(void)
     soup_add_quad(&painted.soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 1);
     paint(&painted, 0.4, 0.0);
     struct solution s = run(&painted, "--tolerance 1e-12");
-    /* B_2 = rho_2 F B_1, B_1 = E + rho_1 F B_2 if each were constant; F of C-11. */
-    const double f = 0.199824895698387;
-    double b1 = mean_radiosity(&s, 0, 2), exact = 1.0 / (1.0 - 0.8 * 0.4 * f * f);
     double balance = s.stats.absorbed_power + s.stats.escaped_power - s.stats.emitted_power;
     tap_ok(fabs(balance) <= 1e-9 * s.stats.emitted_power && s.stats.escaped_power > 0.0,
            "two plates: absorbed + escaped = emitted, within %.1e", fabs(balance));
-    printf("# b1 %.9g exact %.9g\n", b1, exact);
     solution_free(&s);
 }
 
@@ -528,31 +590,37 @@ static void test_cracks(void)
     solution_free(&s);
 }
 
-/* The furnished room with faces in another order and corners turned. */
-static void test_order(const char *words)
+/* Faces in another order and corners turned: sums are integers, so only the corner at which a
+ * calculation begins matters: last bits of form factors, kept as floats. It does not hold between
+ * patches of equal areas, nor with blockers: which patch's points are taken, and which segments are
+ * tried, depends on the numbers of the roots. */
+static void test_order(void)
 {
-    struct scene *plain = furnished(1.0, 0.0), *mixed = scene_create(plain->input_count, 3);
+    const char *words = "--epsilon 0 --max-level 0 --tolerance 1e-13";
+    struct scene *plain = tetrahedron(1.0, 0.0);
     int32_t count = plain->input_count;
-    for (int m = 0; m < 3; m++)
-        mixed->materials[m] = plain->materials[m];
-    for (int32_t i = 0; i < count; i++) {
-        int32_t to = (i * 11 + 5) % count; /* 26 faces: 11 has no factor in common */
-        struct triangle t = plain->triangles[i];
-        int k = i % 3;
-        mixed->triangles[to] = (struct triangle){{t.corner[k], t.corner[(k + 1) % 3],
-                                                  t.corner[(k + 2) % 3]}};
-        mixed->material_of[to] = plain->material_of[i];
+    for (int turn = 0; turn < 2; turn++) {
+        struct scene *mixed = scene_create(count, 4);
+        struct scene *again = tetrahedron(1.0, 0.0);
+        for (int m = 0; m < 4; m++)
+            mixed->materials[m] = again->materials[m];
+        for (int32_t i = 0; i < count; i++) {
+            int32_t to = (i * 11 + 5) % count; /* 64 faces: 11 has no factor in common */
+            int k = turn * (i % 3);
+            struct vec3 *c = again->triangles[i].corner;
+            mixed->triangles[to] = (struct triangle){{c[k], c[(k + 1) % 3], c[(k + 2) % 3]}};
+            mixed->material_of[to] = again->material_of[i];
+        }
+        scene_destroy(again);
+        struct solution one = solve_scene(world_comm, tetrahedron(1.0, 0.0), words);
+        struct solution two = solve_scene(world_comm, mixed, words);
+        double off = roots_differ(&one, &two, 11, 5);
+        tap_ok(off <= 1e-12, "faces in another order%s: the same light within %.1e",
+               turn ? " and corners turned" : "", off);
+        solution_free(&one);
+        solution_free(&two);
     }
-    struct solution one = solve_scene(world_comm, plain, words);
-    struct solution two = solve_scene(world_comm, mixed, words);
-    double worst = 0.0;
-    for (int32_t i = 0; i < count; i++)
-        if (radiosity(&one, i) > 0.0)
-            worst = fmax(worst, fabs(radiosity(&two, (i * 11 + 5) % count) / radiosity(&one, i) - 1));
-    double a = one.stats.absorbed_power, b = two.stats.absorbed_power;
-    printf("# order %s: worst root %g absorbed %g links %lld %lld\n", words, worst, fabs(a/b-1), (long long)one.stats.links, (long long)two.stats.links);
-    solution_free(&one);
-    solution_free(&two);
+    scene_destroy(plain);
 }
 
 int main(int argc, char **argv)
@@ -560,37 +628,36 @@ int main(int argc, char **argv)
     struct comm comm;
     comm_start(&comm, &argc, &argv);
     world_comm = &comm;
-    test_bounds();
+    test_bounds("");
+    test_bounds("--epsilon 1e30");
     test_false_convergence();
     test_termination();
     test_leak();
     test_coplanar();
-    test_duplicates();
-    test_covered();
+    test_duplicates(0.3, "--epsilon 1e-4", 2.5, 0.02); /* as exact as the row sums: 0.9 % measured */
+    test_duplicates(0.3, "--epsilon 1e-3 --closure rows", 1.0 / 0.7, 1e-3);
+    test_duplicates(0.3, "--epsilon 1e-3 --closure symmetric", 1.0 / 0.7, 1e-3);
+    test_duplicates(0.6, "--epsilon 1e-3", 0.0, 0.0);
+    test_duplicates(0.6, "--epsilon 1e-3 --paper", 0.0, 0.0);
+    test_covered("--epsilon 1e-4 --tolerance 1e-6");
+    test_covered("--epsilon 1e-4 --tolerance 1e-6 --closure rows");
+    test_covered("--epsilon 1e-4 --tolerance 1e-6 --closure symmetric");
     test_degenerate();
-    test_moved("a million times as large", 1e6, 0.0, 1e-12);
-    test_moved("a millionth as large", 1e-6, 0.0, 1e-12);
+    test_moved("a million times as large", 1e6, 0.0, 1e-7);
+    test_moved("a millionth as large", 1e-6, 0.0, 1e-7);
     test_moved("moved by a million sizes", 1.0, 1e6, 1e-6);
     test_emission_scale();
     test_linearity();
-    test_reciprocity("");
-    test_reciprocity("--closure symmetric");
-    test_tiny_light("");
-    test_tiny_light("--epsilon 1e-6 --max-level 15 --min-area 0");
-    test_tiny_light("--epsilon 1e-7 --max-level 15 --min-area 0");
-    test_hole("slit", 0.02, 0.4, "", 1);
-    test_hole("slit", 0.02, 0.4, "--epsilon 1e-7", 1);
-    test_hole("slit", 0.02, 0.4, "--epsilon 1e-8", 1);
-    test_hole("pinhole", 0.03, 0.03, "", 1);
-    test_hole("pinhole", 0.03, 0.03, "--epsilon 1e-7", 1);
-    test_hole("pinhole", 0.03, 0.03, "--epsilon 1e-8", 1);
-    test_hole("pinhole", 0.03, 0.03, "--epsilon 1e-9", 1);
+    test_reciprocity("", 1e-12);
+    test_reciprocity("--closure symmetric", 1e-9); /* factors are found to 1e-9 */
+    test_tiny_light("--epsilon 1e-7");
+    test_fifteen_levels();
+    test_hole("slit", 0.02, 0.4, "--epsilon 1e-9 --tolerance 1e-9", 0.05);
+    test_hole("pinhole", 0.03, 0.03, "--epsilon 1e-9 --tolerance 1e-9", 0.1);
     test_flipped();
     test_open();
     test_cracks();
-    test_order("--epsilon 0 --max-level 0 --tolerance 1e-13");
-    test_order("--epsilon 0 --max-level 2 --tolerance 1e-13");
-    test_order("--epsilon 1e-4");
+    test_order();
     comm_stop(&comm);
     return tap_done();
 }
