@@ -11,7 +11,7 @@
 
 static double largest_radiosity(const struct forest *forest)
 {
-    double largest = 1e-290;
+    double largest = 1e-250;
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
             largest = fmax(largest, fabs(forest->patches[p].radiosity.band[c]));
@@ -84,6 +84,10 @@ static void step_conjugate(struct solver *solver)
             continue;
         turn[c] = before > 0.0 ? gamma / solver->gamma_before[c] : 0.0;
         double bend = delta[c] - (before > 0.0 ? turn[c] * gamma / before : 0.0);
+        if (!(bend > 0.0)) { /* rounding has spoilt the recurrence: a fresh start along z */
+            turn[c] = 0.0;
+            bend = delta[c];
+        }
         solver->diverged = solver->diverged || !(bend > 0.0);
         step[c] = bend > 0.0 ? gamma / bend : 0.0;
         solver->least_bend = fmin(solver->least_bend, delta[c] / gamma);

@@ -52,7 +52,7 @@ void conjugate_extend(struct conjugate *cg, const struct forest *forest)
 
 struct flux_unit conjugate_unit(const struct scene *scene, double a, double b, double weight)
 {
-    return flux_unit_for(fmax(a * b * weight * scene_area(scene), 1e-290));
+    return flux_unit_for(fmax(a * b * weight * scene_area(scene), 1e-250));
 }
 
 static bool is_own_leaf(const struct method *method, const bool *own, int64_t p)

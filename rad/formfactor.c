@@ -28,7 +28,6 @@
 
 #include <math.h>
 
-#include "geom/contour.h"
 #include "geom/lambert.h"
 
 enum { SUBAREAS = BUNDLE_ENDS, RAYS = BUNDLE_RAYS, ALL_RAYS = (1 << RAYS) - 1 };
@@ -257,14 +256,12 @@ static struct exchange exchange_by_all(const struct facet *p, const struct facet
     struct pair pair;
     pair_aim(&pair, p, q);
     pair_look(&pair, look, octree, sight, counts);
-    bool points = kind != FORM_FACTOR_DISK;
+    bool points = kind == FORM_FACTOR_POLYGON;
     struct side side_p = points ? side_by_points(&pair, true) : side_by_disks(&pair, true);
     struct side side_q = points ? side_by_points(&pair, false) : side_by_disks(&pair, false);
     const struct side *smaller = p->area <= q->area ? &side_p : &side_q;
     double sum = sum_of(smaller->unoccluded);
-    struct exchange exchange = {.unoccluded = kind == FORM_FACTOR_EXACT
-                                                  ? triangle_exchange(&p->triangle, &q->triangle)
-                                                  : sum};
+    struct exchange exchange = {.unoccluded = sum};
     exchange.seen = sum > 0.0 ? sum_of(smaller->area) / sum : 0.0;
     exchange.area = exchange.seen * exchange.unoccluded;
     set_parts(&side_p, exchange.parts_p);

@@ -11,7 +11,7 @@
 #include "rad/patch.h"
 
 enum oracle { ORACLE_BF, ORACLE_ERROR };                      /* rad/oracle.h */
-enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON, FORM_FACTOR_EXACT }; /* rad/formfactor.h */
+enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON };         /* rad/formfactor.h */
 enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS, CLOSURE_SYMMETRIC }; /* rad/closure.h */
 enum solver_kind { SOLVER_JACOBI, SOLVER_CG };                    /* rad/conjugate.h */
 

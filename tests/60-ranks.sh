@@ -34,8 +34,8 @@ same() {
     for file in a.pfm a.ppm a.ply table; do
         cmp "$work/$1/$file" "$work/$2/$file" || return 1
     done
-    for name in "$1" "$2"; do
-        grep '"visibility"' "$work/$name/s.json" >"$work/$name/visibility" || return 1
+    for run in "$1" "$2"; do
+        grep '"visibility"' "$work/$run/s.json" >"$work/$run/visibility" || return 1
     done
     cmp "$work/$1/visibility" "$work/$2/visibility" || return 1
     for key in $counts; do

@@ -1,0 +1,47 @@
+# Materials that are no materials: each is refused with a line that says what and where, and exit
+# status 2; reflectances of 1 and more are not, but said to be set to 0.999.
+
+. tests/tap.sh
+
+cat >"$work/scene.obj" <<END
+mtllib scene.mtl
+usemtl one
+v 0 0 0
+v 1 0 0
+v 0 1 0
+f 1 2 3
+END
+
+# try KD KE: runs phr with this material; its words in $said, its exit status in $status.
+try() {
+    printf 'newmtl one\nKd %s\nKe %s\n' "$1" "$2" >"$work/scene.mtl"
+    said=$(./phr "$work/scene.obj" 2>&1 >"$work/stdout")
+    status=$?
+}
+
+# refused KD KE WORDS
+refused() {
+    try "$1" "$2"
+    [ "$status" -eq 2 ] && [ "$said" = "phr: $3" ] && [ ! -s "$work/stdout" ] && return
+    echo "# status $status: $said"
+    return 1
+}
+
+mtl=$work/scene.mtl
+check "a negative reflectance" refused "-0.5 0 0" "1 1 1" "$mtl:2: negative number '-0.5'"
+check "a negative emission" refused "0 0 0" "1 -1 1" "$mtl:3: negative number '-1'"
+check "NaN as reflectance" refused "nan 0 0" "1 1 1" "$mtl:2: bad number 'nan'"
+check "infinite emission" refused "0 0 0" "inf 0 0" "$mtl:3: bad number 'inf'"
+check "an emission that no double holds" refused "0 0 0" "1e400 0 0" "$mtl:3: bad number '1e400'"
+check "one beyond the floats of the outputs" refused "0 0 0" "1e31 0 0" \
+    "$work/scene.obj: the largest Ke, 1e+31, is not within 1e-30 and 1e+30"
+
+try "1 2 1" "1 1 1"
+clamped="warning: 1 material(s) with a reflectance of 1 or more, set to 0.999"
+is_clamped() { [ "$status" -eq 0 ] && case $said in *"$clamped"*) ;; *) return 1 ;; esac; }
+check "reflectances of 1 and 2 are clamped, with a warning" is_clamped
+try "0.5 0.5 0.5" "1e30 1e30 1e30"
+is_done() { [ "$status" -eq 0 ] && ! grep -qiE 'nan|inf' "$work/stdout"; }
+check "the largest emission has a defined result" is_done
+
+tap_done

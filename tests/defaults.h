@@ -1,0 +1,129 @@
+/* Whole runs as phr makes them: its default options, scenes of painted triangles, and radiosity
+ * at a point as pictures show it. For tests on one rank. */
+#ifndef TESTS_DEFAULTS_H
+#define TESTS_DEFAULTS_H
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/options.h"
+#include "io/shading.h"
+#include "tests/scenes.h"
+#include "tests/solve.h"
+
+/* What phr does when these options, separated by single spaces, stand behind the scene. */
+static inline struct criterion criterion_parse(const char *words)
+{
+    enum { WORDS_MAX = 32, TEXT_MAX = 256 };
+    char text[TEXT_MAX];
+    char *argv[WORDS_MAX] = {(char[]){"phr"}, (char[]){"scene.obj"}};
+    int argc = 2;
+    snprintf(text, sizeof text, "%s", words);
+    for (char *word = strtok(text, " "); word && argc < WORDS_MAX; word = strtok(NULL, " "))
+        argv[argc++] = word;
+    struct options options;
+    struct error error = {0};
+    if (!options_parse(&options, argc, argv, &error)) {
+        printf("Bail out! %s\n", error.text);
+        exit(1);
+    }
+    struct criterion criterion = options.criterion;
+    options_free(&options);
+    return criterion;
+}
+
+/* --- scenes --- */
+
+/* Triangles, each with the material that was given next after it. */
+struct painted {
+    struct soup soup;
+    struct material materials[64];
+    int64_t ends[64]; /* [count] the triangles before this have a material up to this one */
+    int count;
+};
+
+/* Gives all triangles that have none yet this material. */
+static inline void paint(struct painted *painted, double reflectance, double emission)
+{
+    painted->materials[painted->count] = material_grey(reflectance, emission);
+    painted->ends[painted->count++] = painted->soup.count;
+}
+
+/* The scene in input units, not prepared; frees the triangles. */
+static inline struct scene *scene_of_painted(struct painted *painted)
+{
+    struct scene *scene = scene_of_soup(&painted->soup, painted->count);
+    int32_t i = 0;
+    for (int m = 0; m < painted->count; m++) {
+        scene->materials[m] = painted->materials[m];
+        for (; i < painted->ends[m]; i++)
+            scene->material_of[i] = m;
+    }
+    soup_free(&painted->soup);
+    *painted = (struct painted){0};
+    return scene;
+}
+
+/* Prepares and solves a scene on the only rank, and takes it over. */
+static inline struct solution solve_scene(const struct comm *comm, struct scene *scene,
+                                          const char *words)
+{
+    scene_prepare_or_exit(scene);
+    return solve(comm, scene, criterion_parse(words));
+}
+
+/* --- answers --- */
+
+/* Smooth shading, as pictures have it. */
+static inline struct shading *shade(const struct solution *s)
+{
+    const struct forest *forest = s->solver->method.forest;
+    int64_t count;
+    uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
+    struct shading *shading = shading_create(forest, open);
+    alloc_free(open);
+    return shading;
+}
+
+/* Barycentric coordinates of a point on the triangle's plane. */
+static inline void weights_at(const struct triangle *t, struct vec3 x, double weight[3])
+{
+    struct vec3 a = vec3_sub(t->corner[1], t->corner[0]), b = vec3_sub(t->corner[2], t->corner[0]);
+    struct vec3 normal = vec3_cross(a, b), to = vec3_sub(x, t->corner[0]);
+    double unit = vec3_dot(normal, normal);
+    weight[1] = vec3_dot(vec3_cross(to, b), normal) / unit;
+    weight[2] = vec3_dot(vec3_cross(a, to), normal) / unit;
+    weight[0] = 1.0 - weight[1] - weight[2];
+}
+
+/* Radiosity at a point in input units of one of the roots first .. first + count - 1, the one
+ * that the point is on (or is least outside of). W/m^2, first band. */
+static inline double shown_at(const struct solution *s, const struct shading *shading,
+                              int32_t first, int32_t count, struct vec3 point)
+{
+    struct vec3 x = scene_from_input(s->scene, point);
+    double best[3] = {0, 0, 0}, least = -HUGE_VAL;
+    int32_t root = first;
+    for (int32_t r = first; r < first + count; r++) {
+        double weight[3];
+        struct triangle t = scene_root_triangle(s->scene, r);
+        weights_at(&t, x, weight);
+        double lowest = fmin(weight[0], fmin(weight[1], weight[2]));
+        if (lowest > least) {
+            least = lowest;
+            root = r;
+            memcpy(best, weight, sizeof best);
+        }
+    }
+    for (int k = 0; k < 3; k++)
+        best[k] = fmax(best[k], 0.0);
+    return shading_at(shading, root, best).band[0];
+}
+
+static inline struct vec3 point(double x, double y, double z)
+{
+    return (struct vec3){x, y, z};
+}
+
+#endif
