@@ -246,11 +246,11 @@ done
 
 # --- what is refused ---
 
-# refused TEXT ARGUMENTS...: status 2, one line that begins with the text, no table.
+# refused TEXT ARGUMENTS...: status 2 at once, one line that begins with the text, no table.
 refused() {
     text=$1
     shift
-    "$PHR" --form-factors "$@" >"$work/out" 2>"$work/errors"
+    timeout 5 "$PHR" --form-factors "$@" >"$work/out" 2>"$work/errors"
     [ $? -eq 2 ] && [ ! -s "$work/out" ] && [ "$(wc -l <"$work/errors")" -eq 1 ] &&
         case $(cat "$work/errors") in "phr: $text"*) ;; *) cat "$work/errors"; false ;; esac
 }
