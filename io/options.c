@@ -237,7 +237,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         .samples = 3,
         .criterion = {.oracle = ORACLE_ERROR, .form_factor = FORM_FACTOR_POLYGON,
                       .closure = CLOSURE_CAP, .solver = SOLVER_CG, .epsilon = -1.0,
-                      .min_area = 1e-7, .max_level = 10, .alpha = 0.5, .tolerance = 1e-3,
+                      .min_area = 1e-7, .max_level = 10, .alpha = 0.5, .tolerance = 1e-5,
                       .max_iterations = 1000},
     };
     options->outputs = alloc_array((size_t)argc, sizeof *options->outputs);
@@ -302,7 +302,7 @@ void options_print_help(FILE *file)
           "                      cap: only keep them from exceeding 1 by much (default); none\n"
           "  --solver S          cg, conjugate gradients (default), or jacobi\n"
           "  --paper             --oracle bf --form-factor disk --closure none --solver jacobi\n"
-          "  --tolerance T       bound on the remaining iteration error, relative (1e-3)\n"
+          "  --tolerance T       bound on the remaining iteration error, relative (1e-5)\n"
           "  --max-iterations N  stop after N iterations in any case (1000)\n"
           "  --two-sided         both sides of each triangle reflect and emit\n"
           "  --alpha A           share of a link's parent in its predicted cost, 0..1 (0.5)\n"

@@ -8,9 +8,9 @@ set terminal svg size 960,720 font "Helvetica,13" background "white" noenhanced
 SCENES = "cornell shadow room"
 TITLES = "'Cornell box' 'direct light, exact' 'furnished room'"
 NORMS = "leaf shown"
-VARIANTS = "error polygon cg rows all+rows all+symmetric paths paper all"
+VARIANTS = "error polygon cg rows all+rows paths paper all"
 NAMES = "'paper + oracle error' 'paper + polygon' 'paper + cg' 'paper + rows' \
-    'defaults + rows' 'defaults + symmetric' 'path tracer' 'paper' 'defaults of phr'"
+    'defaults + rows' 'path tracer' 'paper' 'defaults of phr'"
 
 # One style for each variant: what is alone is thin, hollow marks; the three that matter are thick.
 set style line 1 lc rgb "#0062a0" lw 1.5 dt (6,3) pt 4 ps 0.65
@@ -18,10 +18,9 @@ set style line 2 lc rgb "#c05000" lw 1.5 dt (2,2) pt 8 ps 0.75
 set style line 3 lc rgb "#777777" lw 1.5 dt (8,3,2,3) pt 2 ps 0.6
 set style line 4 lc rgb "#b0508a" lw 1.5 dt (1,3) pt 12 ps 0.8
 set style line 5 lc rgb "#008a63" lw 1.5 dt (4,2) pt 10 ps 0.75
-set style line 6 lc rgb "#3a9ad9" lw 1.5 dt (10,3) pt 6 ps 0.65
-set style line 7 lc rgb "#666666" lw 2.2 dt (1,2) pt 13 ps 0.8
-set style line 8 lc rgb "#a00000" lw 2.4 dt (7,3) pt 5 ps 0.55
-set style line 9 lc rgb "black" lw 2.6 dt 1 pt 7 ps 0.55
+set style line 6 lc rgb "#666666" lw 2.2 dt (1,2) pt 13 ps 0.8
+set style line 7 lc rgb "#a00000" lw 2.4 dt (7,3) pt 5 ps 0.55
+set style line 8 lc rgb "black" lw 2.6 dt 1 pt 7 ps 0.55
 
 set logscale xy
 set grid lc rgb "#dddddd" lt 1 lw 0.6

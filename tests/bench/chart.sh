@@ -19,7 +19,7 @@ mkdir -p "$folder"
 
 EPSILONS="1e-2 3e-3 1e-3 3e-4 1e-4 3e-5 1e-5 3e-6 1e-6 3e-7 1e-7"
 PATHS="1 4 16 64 256"
-VARIANTS="paper error polygon cg rows all all+rows all+symmetric"
+VARIANTS="paper error polygon cg rows all all+rows"
 
 options_of() {
     case $1 in
@@ -28,7 +28,7 @@ options_of() {
     polygon) echo --paper --form-factor polygon ;;
     cg) echo --paper --solver cg ;;
     rows) echo --paper --closure rows ;;
-    all) echo --closure none ;;
+    all) ;;
     all+*) echo --closure "${1#all+}" ;;
     esac
 }
