@@ -84,7 +84,7 @@ static void step_conjugate(struct solver *solver)
             continue;
         turn[c] = before > 0.0 ? gamma / solver->gamma_before[c] : 0.0;
         double bend = delta[c] - (before > 0.0 ? turn[c] * gamma / before : 0.0);
-        if (!(bend > 0.0)) { /* rounding has spoilt the recurrence: a fresh start along z */
+        if (!(bend > 0.0) && solver->shrink < 1.0) { /* rounding, since K is positive: start afresh */
             turn[c] = 0.0;
             bend = delta[c];
         }

@@ -126,7 +126,7 @@ enum { COUNT_SUMS = 8 + 4 };
 /* 0: open, 1: seen, 2: partly, 3: unseen. */
 static int kind_of(const struct link *link)
 {
-    return link->seen == LINK_OPEN ? 0 : link->seen == LINK_ALL_SEEN ? 1 : link->seen > 0 ? 2 : 3;
+    return link_is_open(link) ? 0 : link->seen == LINK_ALL_SEEN ? 1 : link->seen > 0 ? 2 : 3;
 }
 
 static void report_counts(const struct solver *solver, struct stats *stats)

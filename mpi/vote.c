@@ -13,12 +13,13 @@
 
 #include "geom/alloc.h"
 
-/* What a rank says; 96 bytes, no padding. */
+/* What a rank says; 104 bytes, no padding. */
 struct ballot {
     int64_t light, absorbed, change, arriving; /* flux units */
     int64_t split, links;
     int64_t divided;                           /* own patches that are new */
-    int64_t square[BANDS];                     /* --solver cg: <z, z> */
+    int64_t square[BANDS];                     /* --solver cg: <z, z>, */
+    int64_t negative;                          /* and see conjugate_sum(), flux units */
     double shrink;                             /* --solver jacobi: see push_pull() */
     double largest;                            /* --solver cg: |z| */
 };
@@ -34,6 +35,7 @@ static void add_ballot(struct ballot *sum, const struct ballot *ballot)
     sum->divided += ballot->divided;
     for (int c = 0; c < BANDS; c++)
         sum->square[c] += ballot->square[c];
+    sum->negative = flux_add(sum->negative, ballot->negative);
     sum->shrink = fmax(sum->shrink, ballot->shrink);
     sum->largest = fmax(sum->largest, ballot->largest);
 }
@@ -111,6 +113,10 @@ static struct vote vote_jacobi(struct solver *solver)
 
 /* --- conjugate gradients --- */
 
+/* Light is not negative. Where rows sum to so much that there is no solution, the equation may have
+ * one all the same, with more negative light than one part in so many. */
+enum { NEGATIVE = 100 };
+
 /* While links are still being split the light is wanted only this well. */
 static const double WHILE_SPLITTING = 0.01;
 
@@ -149,7 +155,7 @@ static struct vote vote_conjugate(struct solver *solver)
     struct ballot own = {.light = sums.light, .absorbed = sums.absorbed,
                          .arriving = sums.arriving, .split = solver->split_here,
                          .links = solver->links.count, .divided = own_new_patches(solver),
-                         .largest = sums.largest};
+                         .negative = sums.negative, .largest = sums.largest};
     for (int c = 0; c < BANDS; c++)
         own.square[c] = sums.square[c];
     struct ballot sum = count_votes(solver, own);
@@ -162,6 +168,8 @@ static struct vote vote_conjugate(struct solver *solver)
     struct vote vote = vote_of(solver, &sum, remaining);
     vote.again = !(remaining <= wanted) && !vote.diverged &&
                  solver->iteration < criterion->max_iterations;
+    if (remaining <= wanted && sum.negative > sum.light / NEGATIVE)
+        vote.diverged = true;
     if (!vote.again)
         finish_conjugate(solver);
     return vote;

@@ -155,18 +155,20 @@ struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct met
         int32_t leaf = (int32_t)p;
         const struct material *material = forest_material(method->forest, leaf);
         double area = forest_area(method->forest, leaf), weight = weight_of(method, closure, leaf);
-        double light = 0.0, absorbed = 0.0, arriving = 0.0;
+        double light = 0.0, absorbed = 0.0, arriving = 0.0, negative = 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = material->reflectance.band[c], h = cg->irradiance[p].band[c];
             double z = cg->residual[p].band[c];
             light += area * (material->emission.band[c] + rho * h);
             absorbed += area * ((1.0 - rho) * h);
             arriving += area * (h + z);
+            negative += area * (rho * fmax(0.0, -h));
             sums.square[c] += flux_from_watts(unit, weight * rho * (z * z));
             sums.largest = fmax(sums.largest, rho > 0.0 ? fabs(z) : 0.0);
         }
         sums.light += flux_from_watts(method->flux_unit, light);
         sums.absorbed += flux_from_watts(method->flux_unit, absorbed);
+        sums.negative = flux_add(sums.negative, flux_from_watts(method->flux_unit, negative));
         sums.arriving += flux_from_watts(method->flux_unit, arriving);
     }
     return sums;

@@ -243,7 +243,7 @@ static struct exchange exchange_by_one(const struct facet *p, const struct facet
     }
     bool seen = sight->open || octree_block(octree, &bundle, &sight->blocker, counts) == 0;
     return (struct exchange){.area = seen ? unoccluded : 0.0, .unoccluded = unoccluded,
-                             .seen = seen ? 1.0 : 0.0,
+                             .seen = seen ? 1.0 : 0.0, .apart = true,
                              .parts_p = {0.25, 0.25, 0.25, 0.25},
                              .parts_q = {0.25, 0.25, 0.25, 0.25}};
 }
@@ -261,7 +261,7 @@ static struct exchange exchange_by_all(const struct facet *p, const struct facet
     struct side side_q = points ? side_by_points(&pair, false) : side_by_disks(&pair, false);
     const struct side *smaller = p->area <= q->area ? &side_p : &side_q;
     double sum = sum_of(smaller->unoccluded);
-    struct exchange exchange = {.unoccluded = sum};
+    struct exchange exchange = {.unoccluded = sum, .apart = is_apart(p, q)};
     exchange.seen = sum > 0.0 ? sum_of(smaller->area) / sum : 0.0;
     exchange.area = exchange.seen * exchange.unoccluded;
     set_parts(&side_p, exchange.parts_p);

@@ -14,6 +14,7 @@ struct exchange {
     double area;       /* G with visibility */
     double unoccluded; /* an estimate of what G would be without blockers, >= area */
     double seen;       /* share of the segments that arrive, weighted, 1 */
+    bool apart;        /* far enough apart for their size to trust G from points */
     double parts_p[4]; /* the parts of G that go to the four children of p: sum 1 */
     double parts_q[4]; /* and to those of q */
 };

@@ -34,11 +34,14 @@ static double predict_cost(int64_t tests, double alpha, double inherited)
     return fmax(1.0, (double)tests + alpha * inherited);
 }
 
-/* In 254ths, 0 only for 0. */
-static uint8_t compact_share(double share)
+/* The field `seen` of a link. */
+static uint8_t compact_share(const struct exchange *exchange, bool open)
 {
-    return (uint8_t)(share > 0.0 ? fmin(LINK_ALL_SEEN, fmax(1.0, rint(LINK_ALL_SEEN * share)))
-                                 : 0.0);
+    if (!(exchange->seen > 0.0))
+        return 0;
+    if (open)
+        return exchange->apart ? LINK_OPEN : LINK_OPEN_NEAR;
+    return (uint8_t)fmin(LINK_ALL_SEEN, fmax(1.0, rint(LINK_ALL_SEEN * exchange->seen)));
 }
 
 static bool parts_are_even(const uint8_t parts[3])
@@ -83,7 +86,7 @@ bool link_make(struct method *method, int32_t p, const struct facet *facet_p, in
         .q = q,
         .area = float_below(exchange.seen > 0.0 ? exchange.area : exchange.unoccluded),
         .blocker = sight->blocker,
-        .seen = sight->open && exchange.seen > 0.0 ? LINK_OPEN : compact_share(exchange.seen),
+        .seen = compact_share(&exchange, sight->open),
         .cost = compact8(cost),
     };
     if (method->criterion.oracle == ORACLE_BF) {
@@ -100,7 +103,7 @@ bool link_make(struct method *method, int32_t p, const struct facet *facet_p, in
 int link_split(struct method *method, const struct link *link, int32_t patch,
                struct link children[4])
 {
-    bool of_p = patch == link->p, open = link->seen == LINK_OPEN;
+    bool of_p = patch == link->p, open = link_is_open(link);
     int32_t other = of_p ? link->q : link->p, blocker = link->blocker;
     struct facet facet_own = facet_make(method->forest, patch);
     struct facet facet_other = facet_make(method->forest, other);

@@ -25,13 +25,20 @@ struct link {
                             nothing is seen (seen = 0), what it would be without blockers */
     int32_t blocker;     /* triangle that blocked last on the way here, -1: none */
     uint8_t parts_p[3], parts_q[3];
-    uint8_t seen;        /* share of the segments' weight that arrives, in 254ths; 0 only if none
-                            does, LINK_OPEN if it is proved that nothing can stand in between */
+    uint8_t seen;        /* share of the segments' weight that arrives, in 252nds; 0 only if none
+                            does; or one of the two below */
     uint8_t cost;        /* predicted cost of splitting it, in box and triangle tests, >= 1; short
                             form of rad/compact.h */
 };
 
-enum { LINK_OPEN = 255, LINK_ALL_SEEN = 254 };
+/* It is proved that nothing can stand between p and q: and they are far enough apart for their
+ * size to trust the form factor from points, or not. */
+enum { LINK_ALL_SEEN = 252, LINK_OPEN_NEAR = 253, LINK_OPEN = 254 };
+
+static inline bool link_is_open(const struct link *link)
+{
+    return link->seen >= LINK_OPEN_NEAR;
+}
 
 /* Exchange area G. */
 static inline double link_area(const struct link *link)

@@ -23,7 +23,8 @@
  * children, which costs no ray; what is left then is the spread within each child, about half as
  * large, and the range within each child of q. A sampled link may be wrong about what it did not
  * see: a part of what G would be is in doubt, less if all segments agree, nothing if the way is
- * proved to be open. All these are powers; their sum is compared with the threshold, and the side
+ * proved to be open. (Then it is still in doubt if the patches are near: four points on a lamp do not
+ * tell what the ceiling close above it receives.) All these are powers; their sum is compared with the threshold, and the side
  * that causes more of it is split. */
 #include "rad/oracle.h"
 
@@ -81,15 +82,18 @@ static double mean_reflectance(const struct forest *forest, int32_t patch)
     return rgb_sum(forest_material(forest, patch)->reflectance) / BANDS;
 }
 
-/* Part of the exchange that is in doubt when segments disagree, and when all agree; part of the
- * spread over a patch that is left within its children. The errors that come of half or twice
- * these at the same number of links differ by less than a tenth (Cornell box). */
-static const double DOUBT_MIXED = 0.25, DOUBT_AGREED = 0.125, SPREAD_LEFT = 0.5;
+/* Part of the exchange that is in doubt when segments disagree, when all agree, and when it is open
+ * but near; part of the spread over a patch that is left within its children. The errors that come
+ * of half or twice these at the same number of links differ by less than a tenth (Cornell box). */
+static const double DOUBT_MIXED = 0.25, DOUBT_AGREED = 0.125, DOUBT_NEAR = 0.0625;
+static const double SPREAD_LEFT = 0.5;
 
 static double doubt_of(const struct link *link)
 {
     if (link->seen == LINK_OPEN)
         return 0.0;
+    if (link->seen == LINK_OPEN_NEAR)
+        return link_unoccluded(link) * DOUBT_NEAR;
     bool agreed = link->seen == 0 || link->seen == LINK_ALL_SEEN;
     return link_unoccluded(link) * (agreed ? DOUBT_AGREED : DOUBT_MIXED);
 }

@@ -97,12 +97,12 @@ static void test_blocked_energy(void)
     struct link link = link_of(0, 1);
     world.method.link_threshold = 0.25; /* 3 x 1/8 is above, seen or not */
     bool right = true;
-    for (int seen = 0; seen < 256; seen += 127) {
+    for (int seen = 0; seen <= LINK_ALL_SEEN; seen += LINK_ALL_SEEN / 2) {
         link.seen = (uint8_t)seen;
         right = right && oracle_patch_to_split(&world.method, &link) == 0;
     }
     world.method.link_threshold = 0.5; /* 3/8 is below, but 3/4 is not: half seen */
-    link.seen = 127;
+    link.seen = LINK_ALL_SEEN / 2;
     right = right && oracle_patch_to_split(&world.method, &link) == 0;
     link.seen = 0;
     right = right && oracle_patch_to_split(&world.method, &link) == -1;
@@ -222,7 +222,11 @@ static void test_error_doubt(void)
            "all segments arrive: in doubt, and the larger is split");
     link.seen = 0;
     tap_ok(error_is(&world, &link, agreed, 1), "none arrives: the same");
-    link.seen = 127;
+    link.seen = LINK_OPEN_NEAR;
+    tap_ok(error_is(&world, &link, 0.5 * agreed, 1), "open but near: half of that");
+    link.seen = LINK_OPEN;
+    tap_ok(at_threshold(&world, &link, 1e-9) == -1, "open and far: none");
+    link.seen = LINK_ALL_SEEN / 2;
     tap_ok(error_is(&world, &link, 4.0 * agreed, 1),
            "half of them: twice the doubt about twice the area");
     struct link swapped = link;
@@ -285,7 +289,7 @@ static void test_dividing(void)
            "on either side");
     link.seen = 0;
     tap_ok(divides(&world, &link, 0.0, -1), "a blocked link divides nothing");
-    link.seen = 127;
+    link.seen = LINK_ALL_SEEN / 2;
     method->patch_threshold = 0.25 * forest_area(method->forest, 1);
     bool at = divides(&world, &link, 0.5 * spread, 1);
     method->patch_threshold = nextafter(method->patch_threshold, HUGE_VAL);
