@@ -125,7 +125,7 @@ void solver_close(struct solver *solver)
     const struct criterion *criterion = &solver->method.criterion;
     struct forest *forest = solver->method.forest;
     closure_extend(&solver->closure, forest);
-    conjugate_extend(&solver->conjugate, forest);
+    conjugate_extend(&solver->conjugate, forest, solver->own);
     if (criterion->closure == CLOSURE_NONE && criterion->solver == SOLVER_JACOBI)
         return;
     struct rgb *kept = forest_keep(forest);

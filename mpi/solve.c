@@ -48,9 +48,9 @@ void solver_transfer(struct solver *solver)
 static void start_conjugate(struct solver *solver)
 {
     struct conjugate *cg = &solver->conjugate;
-    conjugate_start(cg, &solver->method, solver->own, &solver->closure, solver->flux);
+    conjugate_start(cg, &solver->method, &solver->closure, solver->flux);
     struct flux_unit any = flux_unit_for(1.0);
-    double own = conjugate_sum(cg, &solver->method, solver->own, &solver->closure, any).largest;
+    double own = conjugate_sum(cg, &solver->method, &solver->closure, any).largest;
     solver->bound_residual = comm_largest(solver->comm, own);
     solver->bound_image = 0.0;
     for (int c = 0; c < BANDS; c++)
@@ -63,7 +63,7 @@ static void multiply(struct solver *solver, double bound, double product[BANDS])
     struct flux_unit unit = conjugate_unit(solver->method.scene, bound, solver->bound_residual,
                                            solver->weight);
     int64_t own[BANDS] = {0, 0, 0}, all[BANDS];
-    conjugate_apply(&solver->conjugate, &solver->method, solver->own, &solver->closure,
+    conjugate_apply(&solver->conjugate, &solver->method, &solver->closure,
                     solver->flux, unit, own);
     MPI_Request request;
     MPI_Iallreduce(own, all, BANDS, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
@@ -96,7 +96,7 @@ static void step_conjugate(struct solver *solver)
         solver->gamma_before[c] = gamma;
         solver->step_before[c] = step[c];
     }
-    conjugate_advance(&solver->conjugate, &solver->method, solver->own, turn, step);
+    conjugate_advance(&solver->conjugate, &solver->method, turn, step);
     solver->bound_image = image + longest_turn * solver->bound_image;
     solver->bound_residual += longest_step * solver->bound_image;
 }
@@ -108,7 +108,7 @@ static void push_pull_conjugate(struct solver *solver)
     else
         step_conjugate(solver);
     solver->fresh = false;
-    conjugate_publish(&solver->conjugate, &solver->method, solver->own, false);
+    conjugate_publish(&solver->conjugate, &solver->method, false);
     for (int32_t root = 0; root < solver->method.forest->root_count; root++)
         solver->touched[root] = solver->own[root];
 }

@@ -138,7 +138,7 @@ static double remaining_by_residual(const struct solver *solver, const struct ba
 /* B takes the place of rho z, on all ranks. */
 static void finish_conjugate(struct solver *solver)
 {
-    conjugate_publish(&solver->conjugate, &solver->method, solver->own, true);
+    conjugate_publish(&solver->conjugate, &solver->method, true);
     for (int32_t root = 0; root < solver->method.forest->root_count; root++)
         solver->touched[root] = solver->own[root];
     solver_scatter(solver);
@@ -150,7 +150,7 @@ static struct vote vote_conjugate(struct solver *solver)
     const struct criterion *criterion = &solver->method.criterion;
     struct flux_unit unit = conjugate_unit(solver->method.scene, solver->bound_residual,
                                            solver->bound_residual, solver->weight);
-    struct conjugate_sums sums = conjugate_sum(&solver->conjugate, &solver->method, solver->own,
+    struct conjugate_sums sums = conjugate_sum(&solver->conjugate, &solver->method,
                                                &solver->closure, unit);
     struct ballot own = {.light = sums.light, .absorbed = sums.absorbed,
                          .arriving = sums.arriving, .split = solver->split_here,

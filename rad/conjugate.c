@@ -33,10 +33,11 @@ void conjugate_free(struct conjugate *cg)
     alloc_free(cg->work);
     alloc_free(cg->direction);
     alloc_free(cg->image);
+    alloc_free(cg->leaves);
     *cg = (struct conjugate){0};
 }
 
-void conjugate_extend(struct conjugate *cg, const struct forest *forest)
+void conjugate_extend(struct conjugate *cg, const struct forest *forest, const bool *own)
 {
     struct rgb **vectors[5] = {&cg->irradiance, &cg->residual, &cg->work, &cg->direction,
                                &cg->image};
@@ -48,18 +49,21 @@ void conjugate_extend(struct conjugate *cg, const struct forest *forest)
         cg->irradiance[p] = parent >= 0 ? cg->irradiance[parent] : (struct rgb){{0.0, 0.0, 0.0}};
     }
     cg->count = forest->count;
+    cg->leaf_count = 0;
+    for (int64_t p = 0; p < forest->count; p++) {
+        const struct patch *patch = &forest->patches[p];
+        if (!own[patch->id.root] || !patch_is_leaf(patch) ||
+            scene_root_area(forest->scene, (int32_t)patch->id.root) <= 0.0)
+            continue;
+        cg->leaves = alloc_reserve(cg->leaves, &cg->leaf_capacity, cg->leaf_count + 1,
+                                   sizeof *cg->leaves);
+        cg->leaves[cg->leaf_count++] = (int32_t)p;
+    }
 }
 
 struct flux_unit conjugate_unit(const struct scene *scene, double a, double b, double weight)
 {
     return flux_unit_for(fmax(a * b * weight * scene_area(scene), 1e-250));
-}
-
-static bool is_own_leaf(const struct method *method, const bool *own, int64_t p)
-{
-    const struct patch *patch = &method->forest->patches[p];
-    return own[patch->id.root] && patch_is_leaf(patch) &&
-           scene_root_area(method->scene, (int32_t)patch->id.root) > 0.0;
 }
 
 /* w of the scalar product, without rho. */
@@ -68,52 +72,47 @@ static double weight_of(const struct method *method, const struct closure *closu
     return forest_area(method->forest, leaf) * closure_weight(closure, leaf);
 }
 
-void conjugate_start(struct conjugate *cg, const struct method *method, const bool *own,
+void conjugate_start(struct conjugate *cg, const struct method *method,
                      const struct closure *closure, struct flux_unit flux)
 {
-    for (int64_t p = 0; p < cg->count; p++) {
-        if (!is_own_leaf(method, own, p))
-            continue;
-        int32_t leaf = (int32_t)p;
+    for (int64_t i = 0; i < cg->leaf_count; i++) {
+        int32_t leaf = cg->leaves[i];
         const struct material *material = forest_material(method->forest, leaf);
         struct rgb h = leaf_irradiance(method->forest, leaf, flux);
         for (int c = 0; c < BANDS; c++) {
             double now = closure_receives(closure, leaf) * h.band[c];
             if (material->reflectance.band[c] == 0.0)
-                cg->irradiance[p].band[c] = now;
-            cg->residual[p].band[c] = now - cg->irradiance[p].band[c];
-            cg->direction[p].band[c] = cg->image[p].band[c] = 0.0;
+                cg->irradiance[leaf].band[c] = now;
+            cg->residual[leaf].band[c] = now - cg->irradiance[leaf].band[c];
+            cg->direction[leaf].band[c] = cg->image[leaf].band[c] = 0.0;
         }
     }
 }
 
-void conjugate_apply(struct conjugate *cg, const struct method *method, const bool *own,
+void conjugate_apply(struct conjugate *cg, const struct method *method,
                      const struct closure *closure, struct flux_unit flux, struct flux_unit unit,
                      int64_t product[BANDS])
 {
-    for (int64_t p = 0; p < cg->count; p++) {
-        if (!is_own_leaf(method, own, p))
-            continue;
-        int32_t leaf = (int32_t)p;
+    for (int64_t i = 0; i < cg->leaf_count; i++) {
+        int32_t leaf = cg->leaves[i];
         const struct material *material = forest_material(method->forest, leaf);
         struct rgb h = leaf_irradiance(method->forest, leaf, flux);
         double weight = weight_of(method, closure, leaf);
         for (int c = 0; c < BANDS; c++) {
-            double z = cg->residual[p].band[c];
+            double z = cg->residual[leaf].band[c];
             double w = z - closure_receives(closure, leaf) * h.band[c];
-            cg->work[p].band[c] = w;
+            cg->work[leaf].band[c] = w;
             product[c] += flux_from_watts(unit, weight * material->reflectance.band[c] * (w * z));
         }
     }
 }
 
-void conjugate_advance(struct conjugate *cg, const struct method *method, const bool *own,
-                       const double turn[BANDS], const double step[BANDS])
+void conjugate_advance(struct conjugate *cg, const struct method *method, const double turn[BANDS],
+                       const double step[BANDS])
 {
-    for (int64_t p = 0; p < cg->count; p++) {
-        if (!is_own_leaf(method, own, p))
-            continue;
-        const struct material *material = forest_material(method->forest, (int32_t)p);
+    for (int64_t i = 0; i < cg->leaf_count; i++) {
+        int32_t p = cg->leaves[i];
+        const struct material *material = forest_material(method->forest, p);
         for (int c = 0; c < BANDS; c++) {
             double *direction = &cg->direction[p].band[c], *image = &cg->image[p].band[c];
             *image = cg->work[p].band[c] + turn[c] * *image;
@@ -128,13 +127,11 @@ void conjugate_advance(struct conjugate *cg, const struct method *method, const 
     }
 }
 
-void conjugate_publish(const struct conjugate *cg, struct method *method, const bool *own,
-                       bool final)
+void conjugate_publish(const struct conjugate *cg, struct method *method, bool final)
 {
-    for (int64_t p = 0; p < cg->count; p++) {
-        if (!is_own_leaf(method, own, p))
-            continue;
-        const struct material *material = forest_material(method->forest, (int32_t)p);
+    for (int64_t i = 0; i < cg->leaf_count; i++) {
+        int32_t p = cg->leaves[i];
+        const struct material *material = forest_material(method->forest, p);
         for (int c = 0; c < BANDS; c++) {
             double rho = material->reflectance.band[c];
             method->forest->patches[p].radiosity.band[c] =
@@ -145,20 +142,17 @@ void conjugate_publish(const struct conjugate *cg, struct method *method, const 
 }
 
 struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct method *method,
-                                    const bool *own, const struct closure *closure,
-                                    struct flux_unit unit)
+                                    const struct closure *closure, struct flux_unit unit)
 {
     struct conjugate_sums sums = {0};
-    for (int64_t p = 0; p < cg->count; p++) {
-        if (!is_own_leaf(method, own, p))
-            continue;
-        int32_t leaf = (int32_t)p;
+    for (int64_t i = 0; i < cg->leaf_count; i++) {
+        int32_t leaf = cg->leaves[i];
         const struct material *material = forest_material(method->forest, leaf);
         double area = forest_area(method->forest, leaf), weight = weight_of(method, closure, leaf);
         double light = 0.0, absorbed = 0.0, arriving = 0.0, negative = 0.0;
         for (int c = 0; c < BANDS; c++) {
-            double rho = material->reflectance.band[c], h = cg->irradiance[p].band[c];
-            double z = cg->residual[p].band[c];
+            double rho = material->reflectance.band[c], h = cg->irradiance[leaf].band[c];
+            double z = cg->residual[leaf].band[c];
             light += area * (material->emission.band[c] + rho * h);
             absorbed += area * ((1.0 - rho) * h);
             arriving += area * (h + z);

@@ -19,6 +19,8 @@ struct conjugate {
     struct rgb *direction;  /* p */
     struct rgb *image;      /* K p */
     int64_t count, capacity[5];
+    int32_t *leaves;        /* [leaf_count] the own leaves, by local patch number */
+    int64_t leaf_count, leaf_capacity;
 };
 
 /* What one rank's leaves add up to. */
@@ -32,32 +34,31 @@ struct conjugate_sums {
 
 void conjugate_free(struct conjugate *cg);
 
-/* Makes room for all patches; new ones inherit H from their parents. */
-void conjugate_extend(struct conjugate *cg, const struct forest *forest);
+/* Makes room for all patches, of which new ones inherit H from their parents, and lists the own
+ * leaves: to be called when patches have been split. */
+void conjugate_extend(struct conjugate *cg, const struct forest *forest, const bool *own);
 
 /* The unit in which scalar products of vectors that are nowhere larger than a and b are summed.
  * `weight`: the largest closure_weight(). */
 struct flux_unit conjugate_unit(const struct scene *scene, double a, double b, double weight);
 
 /* After B has been transferred: z = F' B - H. Where nothing is reflected, H = F' B and z = 0. */
-void conjugate_start(struct conjugate *cg, const struct method *method, const bool *own,
+void conjugate_start(struct conjugate *cg, const struct method *method,
                      const struct closure *closure, struct flux_unit flux);
 
 /* After rho z has been transferred: work = K z. Adds <work, z> to `product`. */
-void conjugate_apply(struct conjugate *cg, const struct method *method, const bool *own,
+void conjugate_apply(struct conjugate *cg, const struct method *method,
                      const struct closure *closure, struct flux_unit flux, struct flux_unit unit,
                      int64_t product[BANDS]);
 
 /* p = z + turn p, K p = work + turn K p, H += step p, z -= step K p. */
-void conjugate_advance(struct conjugate *cg, const struct method *method, const bool *own,
-                       const double turn[BANDS], const double step[BANDS]);
+void conjugate_advance(struct conjugate *cg, const struct method *method, const double turn[BANDS],
+                       const double step[BANDS]);
 
 /* Makes rho z the radiosity of the own leaves, or B if `final`. */
-void conjugate_publish(const struct conjugate *cg, struct method *method, const bool *own,
-                       bool final);
+void conjugate_publish(const struct conjugate *cg, struct method *method, bool final);
 
 struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct method *method,
-                                    const bool *own, const struct closure *closure,
-                                    struct flux_unit unit);
+                                    const struct closure *closure, struct flux_unit unit);
 
 #endif
