@@ -2,8 +2,8 @@
  *
  * A child inherits what is known of its parent's visibility: that it is open, if that is proved,
  * and the last blocker, which is tested first. (A quarter of its segments, those that begin or end
- * at its centroid, were already fired for its parent; keeping their answers took two bytes a link
- * and saved no time, since a bundle of 12 costs what one of 16 does.)
+ * at its centroid, were already fired for its parent; their answers would take two bytes a link,
+ * and a bundle of 12 goes down the octree as one of 16 does.)
  *
  * Light that a link brings to a patch with children is dealt to them by the link's parts, and what
  * they send is weighted by them: that costs no ray, since the parts come from the very segments

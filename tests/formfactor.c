@@ -464,7 +464,7 @@ static void test_claims(void)
 
 /* --- points to polygons --- */
 
-/* Two triangles, F from the first to the second (shared/reference/formfactors.csv of this project,
+/* Two triangles, F from the first to the second (tests/formfactors.csv,
  * exact to 15 digits), and how far the form factor from the four points of the
  * smaller one is off: measured, and a quarter more. */
 struct known {
