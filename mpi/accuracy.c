@@ -5,7 +5,7 @@
  * better one, averaged over the same patches: their relative RMS difference D is the error that was
  * mended. What is left is as large or a little larger, since the error falls slowly with epsilon and
  * much of it is new: in the Cornell box and in a furnished room the true error of the better answer
- * was 0.6 to 1.3 D for epsilons from 2.5e-4 to 1.5e-8 (tests/accuracy.c holds it to the promise: at
+ * was 0.6 to 1.3 D for epsilons from 2.5e-4 to 1.5e-8 (tests/converge.c holds it to the promise: at
  * most twice the estimate). The estimate is LEFT times D.
  *
  * Rejected: the ratio of successive differences as the part of the error that each step leaves,

@@ -29,13 +29,6 @@ static void transfer_ones(struct solver *solver)
     solver_gather(solver);
 }
 
-static bool is_own_leaf(const struct solver *solver, int64_t p)
-{
-    const struct patch *patch = &solver->method.forest->patches[p];
-    return solver->own[patch->id.root] && patch_is_leaf(patch) &&
-           scene_root_area(solver->method.scene, (int32_t)patch->id.root) > 0.0;
-}
-
 /* Row sum times reflectance is what light grows by from bounce to bounce; it is kept below this, or
  * half way from rho to 1 where that is more. Less took light from leaves close to lamps, whose rows
  * are made of links of many levels; at 0.95 the errors are those of no cap. */
@@ -54,15 +47,14 @@ static double renew_factors(struct solver *solver)
 {
     struct closure *closure = &solver->closure;
     double off = 0.0;
-    for (int64_t p = 0; p < closure->count; p++) {
-        if (!is_own_leaf(solver, p))
-            continue;
-        double row = leaf_irradiance(solver->method.forest, (int32_t)p, solver->flux).band[0];
+    for (int64_t i = 0; i < solver->conjugate.leaf_count; i++) {
+        int32_t p = solver->conjugate.leaves[i];
+        double row = leaf_irradiance(solver->method.forest, p, solver->flux).band[0];
         bool due = row > 0.0 && closure->kind != CLOSURE_CAP &&
-                   closure_is_due(closure, &solver->method, (int32_t)p);
+                   closure_is_due(closure, &solver->method, p);
         if (!due) {
             if (closure->kind != CLOSURE_SYMMETRIC)
-                closure->factor[p] = fmin(1.0, largest_row(solver, (int32_t)p) / row);
+                closure->factor[p] = fmin(1.0, largest_row(solver, p) / row);
             continue;
         }
         double d = closure->factor[p];
@@ -104,10 +96,8 @@ static void bound_rows(struct solver *solver)
 {
     const struct method *method = &solver->method;
     double gain = 1.0, shrink = 0.0, weight = 1.0;
-    for (int64_t p = 0; p < method->forest->count; p++) {
-        if (!is_own_leaf(solver, p))
-            continue;
-        int32_t leaf = (int32_t)p;
+    for (int64_t i = 0; i < solver->conjugate.leaf_count; i++) {
+        int32_t leaf = solver->conjugate.leaves[i];
         double row = closure_receives(&solver->closure, leaf) *
                      leaf_irradiance(method->forest, leaf, solver->flux).band[0];
         struct rgb rho = forest_material(method->forest, leaf)->reflectance;

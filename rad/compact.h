@@ -22,8 +22,7 @@ static inline uint8_t compact8(double x)
     float f = (float)fmin(x, 4e9);
     uint32_t bits;
     memcpy(&bits, &f, sizeof bits);
-    bits = ((bits + 0xfffffu) >> 20) - 127 * 8;
-    return (uint8_t)(bits > 255 ? 255 : bits);
+    return (uint8_t)(((bits + 0xfffffu) >> 20) - 127 * 8); /* at most 255, for 4e9 */
 }
 
 static inline double expand8(uint8_t compact)

@@ -1,9 +1,10 @@
 /* Light as integers: flux in fixed point.
  *
- * Flux [W, areas in square scene units] is summed as integers, llrint(x * 2^k) with one k for
- * the run. Integer sums do not depend on their order, so no result depends on which rank held
- * which link. Sums saturate at FLUX_LIMIT; the sum of non-negative numbers that stops at a limit
- * is the same in any order too, so "it diverged" is seen by all ranks alike. */
+ * Flux [W, areas in square scene units] is summed as integers, llrint(x * 2^k). Integer sums do not
+ * depend on their order, so no result depends on which rank held which link. Each transfer has its
+ * own k, chosen so that no flux can overflow (rad/link.h); k of a run, for powers that ranks add, is
+ * chosen once. flux_add() stops at FLUX_LIMIT; the sum of non-negative numbers that stops at a
+ * limit is the same in any order too, so "it diverged" is seen by all ranks alike. */
 #ifndef RAD_FLUX_H
 #define RAD_FLUX_H
 
@@ -28,7 +29,7 @@ struct flux_unit flux_unit_for(double largest);
  * for form factors whose rows sum to more than 1. */
 struct flux_unit flux_unit_choose(const struct scene *scene);
 
-/* Watts in integer units, at most FLUX_LIMIT. Pre: watts >= 0 (NaN counts as the limit). */
+/* Watts in integer units, between -FLUX_LIMIT and FLUX_LIMIT, which NaN counts as. */
 int64_t flux_from_watts(struct flux_unit unit, double watts);
 
 static inline double flux_to_watts(struct flux_unit unit, int64_t flux)

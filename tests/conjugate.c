@@ -7,6 +7,7 @@
 #include "rad/treecode.h"
 
 #include "tests/scenes.h"
+#include "tests/solve.h"
 #include "tests/tap.h"
 
 enum { ROOTS = 9, BLACK = 4, OPEN_ROOT = 2, LEAVES_MAX = 200 };
@@ -207,20 +208,6 @@ static double residual(const struct problem *problem, double f[LEAVES_MAX][LEAVE
     return comm_largest(problem->comm, worst);
 }
 
-static struct vote iterate(struct solver *solver)
-{
-    struct vote vote;
-    solver_close(solver);
-    do {
-        solver_transfer(solver);
-        solver_gather(solver);
-        solver_push_pull(solver);
-        solver_scatter(solver);
-        vote = solver_vote(solver);
-    } while (vote.again);
-    return vote;
-}
-
 /* Largest difference from 1 of the corrected row sums of enclosed leaves. */
 static double rows_off(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX])
 {
@@ -281,7 +268,7 @@ static void test_dense(const struct comm *comm, enum closure_kind kind, double r
     struct criterion criterion = {.oracle = ORACLE_ERROR, .closure = kind, .solver = SOLVER_CG,
                                   .tolerance = 1e-12, .max_level = 15, .max_iterations = 1000};
     struct problem problem = problem_make(comm, rho, splits, &criterion);
-    struct vote vote = iterate(problem.solver);
+    struct vote vote = solve_links(problem.solver);
     share_factors(&problem);
     build(&problem, f);
     double off = deviation(&problem, f), rest = residual(&problem, f), rows = rows_off(&problem, f);
@@ -314,9 +301,9 @@ static void test_restart(const struct comm *comm)
                                   .solver = SOLVER_CG, .tolerance = 1e-6, .max_level = 15,
                                   .max_iterations = 1000};
     struct problem problem = problem_make(comm, 0.9, 4, &criterion);
-    iterate(problem.solver);
+    solve_links(problem.solver);
     int64_t before = problem.solver->iteration;
-    struct vote vote = iterate(problem.solver);
+    struct vote vote = solve_links(problem.solver);
     if (comm->rank == 0)
         tap_ok(before > 3 && vote.converged && problem.solver->iteration == before + 1,
                "from its own answer it needs no step");
@@ -333,10 +320,10 @@ static void test_bound(const struct comm *comm)
         struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
                                       .tolerance = 1e-12, .max_level = 15, .max_iterations = most};
         struct problem problem = problem_make(comm, 0.95, 3, &criterion), exact;
-        struct vote vote = iterate(problem.solver);
+        struct vote vote = solve_links(problem.solver);
         criterion.max_iterations = 1000;
         exact = problem_make(comm, 0.95, 3, &criterion);
-        iterate(exact.solver);
+        solve_links(exact.solver);
         const struct forest *a = problem.solver->method.forest, *b = exact.solver->method.forest;
         double missing = 0.0, light = 0.0;
         for (int i = 0; i < problem.count; i++)
@@ -365,7 +352,7 @@ static void test_ranks(const struct comm *comm, const struct comm *self, enum cl
                                   .tolerance = 1e-9, .max_level = 15, .max_iterations = 1000};
     struct problem parallel = problem_make(comm, 0.97, 5, &criterion);
     struct problem alone = problem_make(self, 0.97, 5, &criterion);
-    struct vote a = iterate(parallel.solver), b = iterate(alone.solver);
+    struct vote a = solve_links(parallel.solver), b = solve_links(alone.solver);
     bool same = a.absorbed == b.absorbed && a.escaped == b.escaped && a.remaining == b.remaining &&
                 parallel.solver->iteration == alone.solver->iteration &&
                 forest_checksum(parallel.solver->method.forest) ==

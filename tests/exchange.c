@@ -250,20 +250,6 @@ static bool trees_agree(const struct solver *solver)
     return on_all(solver->comm, own == first);
 }
 
-static struct vote transfer(struct solver *solver)
-{
-    struct vote vote;
-    solver_close(solver);
-    do {
-        solver_transfer(solver);
-        solver_gather(solver);
-        solver_push_pull(solver);
-        solver_scatter(solver);
-        vote = solver_vote(solver);
-    } while (vote.again);
-    return vote;
-}
-
 /* A cube, refined twice: right after a refinement all ranks have the same trees, which are those
  * that one rank makes, though the links that split them live on different ranks. */
 static void test_refinement(const struct comm *comm, const struct comm *self,
@@ -295,7 +281,7 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
                 forest_checksum(here) == forest_checksum(there);
         grows = grows && (pass > 0 || here->count > before);
         for (int k = 0; k < 2; k++)
-            vote[k] = transfer(solvers[k]);
+            vote[k] = solve_links(solvers[k]);
         even = even && trees_agree(solvers[0]) && forest_checksum(here) == forest_checksum(there) &&
                vote[0].links == vote[1].links && vote[0].split == vote[1].split &&
                vote[0].remaining == vote[1].remaining && vote[0].absorbed == vote[1].absorbed &&

@@ -32,6 +32,21 @@ static inline struct criterion criterion_best(double epsilon, int max_level, dou
     return criterion;
 }
 
+/* Collective. Closes the links there are and solves over them, without refinement. */
+static inline struct vote solve_links(struct solver *solver)
+{
+    struct vote vote;
+    solver_close(solver);
+    do {
+        solver_transfer(solver);
+        solver_gather(solver);
+        solver_push_pull(solver);
+        solver_scatter(solver);
+        vote = solver_vote(solver);
+    } while (vote.again);
+    return vote;
+}
+
 /* Collective. Solves a prepared scene and takes it over. */
 static inline struct solution solve(const struct comm *comm, struct scene *scene,
                                     struct criterion criterion)
@@ -44,14 +59,7 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
     solver_assign_roots(s.solver);
     do {
         solver_refine(s.solver);
-        solver_close(s.solver);
-        do {
-            solver_transfer(s.solver);
-            solver_gather(s.solver);
-            solver_push_pull(s.solver);
-            solver_scatter(s.solver);
-            s.vote = solver_vote(s.solver);
-        } while (s.vote.again);
+        s.vote = solve_links(s.solver);
     } while (!(s.vote.converged && solver_is_accurate(s.solver)) && !s.vote.diverged &&
              s.solver->iteration < criterion.max_iterations);
     s.seconds = comm_seconds() - start;
