@@ -39,9 +39,9 @@ MPI_INCLUDE =
 MPIEXEC ?= mpiexec
 endif
 
-GEOM = alloc contour elementary error gauss hull lambert polygon scene triangle
+GEOM = alloc contour elementary error gauss hull lambert polygon scene triangle wall
 OCTREE = build octree
-RAD = closure conjugate flux formfactor id link method oracle patch pushpull treecode \
+RAD = boxtree closure conjugate flux formfactor id link linking method oracle patch pushpull treecode \
       viewfactor
 MPI = accuracy assign broadcast closing comm gather linking migrate pairs picture plan refinement \
       scatter solve solver vote
@@ -53,8 +53,8 @@ MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last four are run with several ranks.
-TESTS = alloc elementary id triangle lambert hull scene polygon contour octree bundles flux patch \
-        compact formfactor link oracle pushpull closure treecode plan assign text obj output tone \
+TESTS = alloc elementary id triangle lambert hull scene polygon contour wall octree bundles flux patch \
+        compact formfactor link linking oracle pushpull closure treecode plan assign text obj output tone \
         image camera shading options paths norms cie furnace stability exchange conjugate exact converge
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct tracing

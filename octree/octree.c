@@ -96,6 +96,7 @@ struct octree *octree_create(const struct triangle *triangles, const struct plan
             order[kept++] = i;
     plant_trees(octree, order, kept);
     alloc_free(order);
+    octree->walls = walls_create(triangles, planes, count);
     octree->place = alloc_array((size_t)count, sizeof *octree->place);
     for (int32_t i = 0; i < count; i++)
         octree->place[i] = -1;
@@ -110,6 +111,7 @@ void octree_destroy(struct octree *octree)
         return;
     tree_free(&octree->inside);
     tree_free(&octree->hull);
+    walls_destroy(octree->walls);
     alloc_free(octree->place);
     alloc_free(octree);
 }
@@ -124,7 +126,7 @@ static int64_t tree_bytes(const struct tree *tree)
 int64_t octree_bytes(const struct octree *octree)
 {
     return tree_bytes(&octree->inside) + tree_bytes(&octree->hull) +
-           octree->count * (int64_t)sizeof *octree->place;
+           octree->count * (int64_t)sizeof *octree->place + walls_bytes(octree->walls);
 }
 
 /* The functions below are small and are called millions of times from two places each, where a
@@ -412,38 +414,41 @@ unsigned octree_block(const struct octree *octree, const struct bundle *bundle, 
     return blocked;
 }
 
-/* True if one of the records blocks the whole bundle. */
-static bool run_has_wall(const struct octree *octree, struct leaf run, const struct bundle *bundle,
-                         const struct shaft *shaft, struct octree_counts *counts)
+/* --- walls --- */
+
+const struct walls *octree_walls(const struct octree *octree)
+{
+    return octree->walls;
+}
+
+/* True if a record that blocks the bundle's one segment is part of a wall between p and q. */
+static bool run_has_wall(const struct octree *octree, struct leaf run, const struct bundle *middle,
+                         const struct shaft *thin, const struct triangle *p,
+                         const struct triangle *q, struct octree_counts *counts)
 {
     const struct record *records = octree->inside.records + run.first;
     for (int32_t i = 0; i < run.count; i++) {
-        int32_t t = records[i].triangle;
-        if (t == bundle->own[0] || t == bundle->own[1])
-            continue;
+        struct shadow shadow;
         counts->triangle_tests++;
-        if (pairs_blocked(octree, bundle, shaft, &records[i], bundle->asked) == bundle->asked)
+        if (pairs_blocked(octree, middle, thin, &records[i], 1u) != 0 &&
+            shadow_make(&shadow, octree->walls, octree->walls->of_triangle[records[i].triangle],
+                        p) &&
+            shadow_holds_triangle(&shadow, q))
             return true;
     }
     return false;
 }
 
-/* The walk follows one segment only, from centroid to centroid: a wall blocks that too. */
 bool octree_has_wall(const struct octree *octree, const struct triangle *p,
-                     const struct triangle *q, const int32_t own[2], struct octree_counts *counts)
+                     const struct triangle *q, struct octree_counts *counts)
 {
     const struct tree *tree = &octree->inside;
-    struct bundle corners = {.own = {own[0], own[1]}}, middle;
+    struct bundle middle = {.asked = 1u};
     for (int k = 0; k < BUNDLE_ENDS; k++) {
-        corners.from[k] = p->corner[k % 3];
-        corners.to[k] = q->corner[k % 3];
         middle.from[k] = triangle_centroid(p);
         middle.to[k] = triangle_centroid(q);
     }
-    for (int k = 0; k < 9; k++)
-        corners.asked |= 1u << (k / 3 * BUNDLE_ENDS + k % 3);
-    struct shaft shaft, thin;
-    shaft_set(&shaft, corners.from, corners.to);
+    struct shaft thin;
     shaft_set(&thin, middle.from, middle.to);
     int32_t stack[TREE_STACK];
     int height = 0;
@@ -452,7 +457,7 @@ bool octree_has_wall(const struct octree *octree, const struct triangle *p,
     while (height > 0) {
         if (stack[height - 1] >= 0)
             height = descend(tree, &thin, stack, height, counts);
-        else if (run_has_wall(octree, tree->leaves[~stack[--height]], &corners, &shaft, counts))
+        else if (run_has_wall(octree, tree->leaves[~stack[--height]], &middle, &thin, p, q, counts))
             return true;
     }
     return false;

@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "geom/triangle.h"
+#include "geom/wall.h"
 
 struct octree;
 
@@ -56,11 +57,13 @@ int64_t octree_bytes(const struct octree *octree);
 unsigned octree_block(const struct octree *octree, const struct bundle *bundle, int32_t *guess,
                       struct octree_counts *counts);
 
-/* True if one triangle alone blocks all segments between the points of one triangle and those of
- * another, as far as it can be proved: it blocks all nine between their corners (see
- * rad/formfactor.c). `own`: their numbers, as above. */
+/* The walls that the triangles make up. */
+const struct walls *octree_walls(const struct octree *octree);
+
+/* True if it is proved that nothing of p sees anything of q: one wall hides all. It is found if it
+ * blocks the segment between the centroids. */
 bool octree_has_wall(const struct octree *octree, const struct triangle *p,
-                     const struct triangle *q, const int32_t own[2], struct octree_counts *counts);
+                     const struct triangle *q, struct octree_counts *counts);
 
 /* True if it is proved that nothing can block a segment from the front of one triangle to the front
  * of another: no triangle reaches into the shaft between them, their convex hull, in front of both

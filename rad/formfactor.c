@@ -17,13 +17,9 @@
  * Pairs of sub-areas below each other's horizon exchange nothing: they get no ray and do not
  * count as blocked.
  *
- * No free ray does not mean that nothing passes. That is only taken so with a proof: a
- * triangle T whose plane has p on one side and q on the other, and that stops all nine segments
- * between corners of p and corners of q. Then every segment from x in p to y in q is stopped:
- * x and y are weighted averages of corners, and the point where xy crosses the plane is a
- * weighted average (weights l_i m_j (e_i + f_j), with l, m the weights of the corners and e, f
- * their distances to the plane, normalised) of the nine crossing points, all of which lie in T,
- * which is convex. */
+ * No free ray does not mean that nothing passes. That is only taken so with a proof: a wall that
+ * stops every segment (geom/wall.c).
+ */
 #include "rad/formfactor.h"
 
 #include <math.h>
@@ -290,8 +286,7 @@ struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
 bool facets_are_walled_off(const struct facet *p, const struct facet *q,
                            const struct octree *octree, struct octree_counts *counts)
 {
-    const int32_t own[2] = {p->input, q->input};
-    return octree_has_wall(octree, &p->triangle, &q->triangle, own, counts);
+    return octree_has_wall(octree, &p->triangle, &q->triangle, counts);
 }
 
 bool facets_are_open(const struct facet *p, const struct facet *q, const struct octree *octree,

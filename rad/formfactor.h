@@ -57,8 +57,8 @@ struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
  * rough, for deciding how closely to look. 0 if the centroids do not face each other. */
 double exchange_guess(const struct facet *p, const struct facet *q);
 
-/* True if it is proved that nothing of one facet sees anything of the other: one triangle stops
- * all nine segments between their corners. */
+/* True if it is proved that nothing of one facet sees anything of the other: one wall stops all
+ * nine segments between their corners. */
 bool facets_are_walled_off(const struct facet *p, const struct facet *q,
                            const struct octree *octree, struct octree_counts *counts);
 

@@ -12,18 +12,22 @@ struct octree {
     const struct triangle *triangles;
     const struct plane *planes;
     int32_t count;
+    struct walls *walls;
 };
 
 struct octree *octree_create(const struct triangle *triangles, const struct plane *planes,
                              int32_t count)
 {
     struct octree *octree = alloc_array(1, sizeof *octree);
-    *octree = (struct octree){triangles, planes, count};
+    *octree = (struct octree){triangles, planes, count,
+                              walls_create(triangles, planes, count)};
     return octree;
 }
 
 void octree_destroy(struct octree *octree)
 {
+    if (octree)
+        walls_destroy(octree->walls);
     alloc_free(octree);
 }
 
@@ -55,15 +59,20 @@ unsigned octree_block(const struct octree *octree, const struct bundle *bundle, 
     return blocked;
 }
 
+const struct walls *octree_walls(const struct octree *octree)
+{
+    return octree->walls;
+}
+
 bool octree_has_wall(const struct octree *octree, const struct triangle *p,
-                     const struct triangle *q, const int32_t own[2], struct octree_counts *counts)
+                     const struct triangle *q, struct octree_counts *counts)
 {
     (void)counts;
     for (int32_t t = 0; t < octree->count; t++) {
-        int stopped = 0;
-        for (int k = 0; k < 9; k++)
-            stopped += is_blocked_by(octree, t, p->corner[k / 3], q->corner[k % 3]);
-        if (stopped == 9 && t != own[0] && t != own[1])
+        struct shadow shadow;
+        if (is_blocked_by(octree, t, triangle_centroid(p), triangle_centroid(q)) &&
+            shadow_make(&shadow, octree->walls, octree->walls->of_triangle[t], p) &&
+            shadow_holds_triangle(&shadow, q))
             return true;
     }
     return false;

@@ -380,9 +380,11 @@ static void test_horizon(void)
 
 /* --- blocked for sure --- */
 
+enum pieces { WHOLE, HALVES, BENT }; /* in one piece, in two, in two that are not in one plane */
+
 /* Exchange of two triangles face to face with one between them: scaled by `size` from what
  * covers all straight lines exactly. */
-static struct exchange between(double size, bool reverse, bool in_two, struct octree_counts *counts,
+static struct exchange between(double size, bool reverse, enum pieces in_two, struct octree_counts *counts,
                                bool *walled_off)
 {
     struct triangle p = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
@@ -394,10 +396,11 @@ static struct exchange between(double size, bool reverse, bool in_two, struct oc
     struct soup soup = {0};
     soup_add(&soup, p);
     soup_add(&soup, q);
-    struct vec3 middle = vec3_middle(t.corner[0], t.corner[1]);
-    soup_add(&soup, in_two ? (struct triangle){{t.corner[0], middle, t.corner[2]}} : t);
+    struct vec3 middle = vec3_middle(t.corner[0], t.corner[1]), lifted = middle;
+    lifted.z += in_two == BENT ? 0.01 : 0.0;
+    soup_add(&soup, in_two ? (struct triangle){{t.corner[0], lifted, t.corner[2]}} : t);
     if (in_two)
-        soup_add(&soup, (struct triangle){{middle, t.corner[1], t.corner[2]}});
+        soup_add(&soup, (struct triangle){{lifted, t.corner[1], t.corner[2]}});
     struct world world = world_make(scene_of_soup(&soup, 1));
     struct facet facet_p = facet_make(world.method.forest, 0);
     struct facet facet_q = facet_make(world.method.forest, 1);
@@ -412,19 +415,21 @@ static void test_proof(void)
 {
     struct octree_counts counts = {0};
     bool walled_off;
-    struct exchange free = between(1e-3, false, false, &counts, &walled_off);
+    struct exchange free = between(1e-3, false, WHOLE, &counts, &walled_off);
     tap_ok(free.area > 0.9 * free.unoccluded && !walled_off && counts.rays == 16,
            "a speck between two triangles proves nothing; 16 rays are fired");
-    struct exchange covered = between(1.01, false, false, &counts, &walled_off);
+    struct exchange covered = between(1.01, false, WHOLE, &counts, &walled_off);
     tap_ok(walled_off && covered.area == 0.0 && covered.unoccluded == free.unoccluded,
            "a triangle a little larger than needed is a proof");
-    between(1.01, true, false, &counts, &walled_off);
+    between(1.01, true, WHOLE, &counts, &walled_off);
     tap_ok(walled_off, "from its back too");
-    struct exchange open = between(0.99, false, false, &counts, &walled_off);
+    struct exchange open = between(0.99, false, WHOLE, &counts, &walled_off);
     tap_ok(!walled_off && open.area == 0.0 && open.unoccluded == free.unoccluded,
            "one a little too small is not, though no ray arrives");
-    struct exchange halves = between(1.01, false, true, &counts, &walled_off);
-    tap_ok(!walled_off && halves.area == 0.0, "nor are two halves");
+    struct exchange halves = between(1.01, false, HALVES, &counts, &walled_off);
+    tap_ok(walled_off && halves.area == 0.0, "two halves are");
+    struct exchange bent = between(1.02, false, BENT, &counts, &walled_off);
+    tap_ok(!walled_off && bent.area == 0.0, "unless they do not lie in one plane");
 }
 
 /* Two patches and a few large triangles between, beside or through them. Whenever a proof is
