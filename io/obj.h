@@ -1,11 +1,13 @@
 /* Reading Wavefront OBJ scenes with their MTL materials.
  *
- * Understood: v, f (v, v/vt, v//vn, v/vt/vn, negative indices, polygons), usemtl, mtllib,
+ * Understood: v (what stands behind three coordinates, weights or colours, is passed over), vn
+ * (for smooth shading), f (v, v/vt, v//vn, v/vt/vn, negative indices, polygons), usemtl, mtllib,
  * o, g; in MTL files newmtl, Kd (the reflectance rho) and Ke (the emitted radiosity E, W/m^2).
  * An o or g line gives the faces behind it, up to the next one, to the group of the name that is
  * the rest of the line; faces before any such line, or behind one without a name, are in the group
  * "default". Groups are numbered by their first faces.
- * Other keywords are passed over. Lines may end in LF or CRLF and go on after a backslash. */
+ * Points, lines, texture coordinates and what only programs want to know are passed over, other
+ * keywords too, but counted: free-form surfaces are among them. Lines may end in LF or CRLF and go on after a backslash. */
 #ifndef IO_OBJ_H
 #define IO_OBJ_H
 
@@ -21,6 +23,11 @@ struct obj_repairs {
     int64_t missing_materials; /* names used but defined nowhere: neutral grey instead */
     int64_t missing_libraries; /* mtllib files that could not be opened */
     char first_missing[128];   /* the first such name, for the message */
+    int64_t bad_normals;       /* corners of faces whose vn is absent or has no direction: none */
+    int64_t transparent;       /* used materials with d or Tr for transparency: opaque */
+    int64_t textured;          /* used materials with map_Kd: of one colour */
+    int64_t unknown_lines;     /* lines with keywords that are not known: passed over */
+    long first_unknown;        /* the number of the first such line */
 };
 
 /* Reads `path` and the material libraries that it names (relative to it).

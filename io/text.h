@@ -26,7 +26,8 @@ struct text {
 /* Reads the file `path`; a UTF-8 byte order mark is skipped. Owned by the caller until
  * text_free(), which is allowed (not needed) after a failure.
  * Errors: "PATH: cannot read: REASON" (then `unreadable` is set); "PATH: not a text file" for
- * control characters other than blanks and line ends. Both ask for EXIT_USAGE. */
+ * control characters other than blanks and line ends; "PATH: is UTF-16; save it as UTF-8". All
+ * ask for EXIT_USAGE. */
 bool text_read(struct text *text, const char *path, struct error *error);
 void text_free(struct text *text);
 
