@@ -3,7 +3,8 @@
 #   make                 phr with mpicc              make SERIAL=1   the same without MPI, with cc
 #   make demo            the Cornell box, 2 ranks    make check      all tests
 #   make room            build/room, a scene generator
-#   make bench           $(BUILD)/rays, a bench of visibility, beside Embree where it is installed
+#   make bench           $(BUILD)/rays, a bench of visibility, beside Embree where it is installed;
+#                        $(BUILD)/parsing, a bench of reading OBJ
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
 #   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
@@ -94,7 +95,8 @@ $(BUILD)/%.o: %.c Makefile
 	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) -MMD -c -o $@ $<
 
 -include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(TESTS:%=$(BUILD)/tests/%.d) \
-    $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d)
+    $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d) \
+    $(BUILD)/tests/bench/parsing.d
 
 demo: $(PHR)
 	$(MPIEXEC) -n 2 ./$(PHR) scenes/cornell.obj --view scenes/cornell.view \
@@ -111,11 +113,14 @@ build/room: scenes/room.c Makefile
 # Set EMBREE= to leave Embree out where its header is found.
 EMBREE ?= $(wildcard /usr/include/embree3/rtcore.h /usr/local/include/embree3/rtcore.h)
 
-bench: $(BUILD)/rays build/room
+bench: $(BUILD)/rays $(BUILD)/parsing build/room
 
 $(BUILD)/rays: tests/bench/rays.c $(OBJECTS) Makefile
 	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) $(CFLAGS) -o $@ \
 	    tests/bench/rays.c $(OBJECTS) $(if $(EMBREE),-lembree3) -lm
+
+$(BUILD)/parsing: $(BUILD)/tests/bench/parsing.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 errors: $(BUILD)/reference $(BUILD)/measure
 

@@ -60,11 +60,11 @@ static void warn_repairs(const struct run *run, const struct obj_repairs *read,
 {
     const char *path = run->options.scene;
     if (read->missing_libraries > 0)
-        say(run, "%s: warning: %lld material file(s) missing", path,
-            (long long)read->missing_libraries);
+        say(run, "%s: warning: %lld material file(s) missing (first: %s)", path,
+            (long long)read->missing_libraries, read->first_library);
     if (read->missing_materials > 0)
         say(run, "%s: warning: %lld material(s) without a definition, taken as grey (first: %s)",
-            path, (long long)read->missing_materials, read->first_missing);
+            path, (long long)read->missing_materials, read->first_material);
     if (read->transparent > 0)
         say(run, "%s: warning: %lld transparent material(s) (d or Tr), taken as opaque", path,
             (long long)read->transparent);

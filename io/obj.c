@@ -70,11 +70,11 @@ static const double DIRECTION_MIN = 1e-100;
 
 static const char DEFAULT_GROUP[] = "default";
 
-static void note_missing(struct obj_repairs *repairs, int64_t *counter, const char *name)
+/* Counts what is missing and keeps the first name. */
+static void note_missing(int64_t *counter, char first[128], const char *name)
 {
-    ++*counter;
-    if (!repairs->first_missing[0])
-        snprintf(repairs->first_missing, sizeof repairs->first_missing, "%s", name);
+    if (++*counter == 1)
+        snprintf(first, 128, "%s", name);
 }
 
 static bool read_vertex(struct obj_reader *reader, char *rest)
@@ -284,6 +284,11 @@ static char *next_library(char **rest)
     return *name ? name : NULL;
 }
 
+static void note_missing_library(struct obj_repairs *repairs, const char *name)
+{
+    note_missing(&repairs->missing_libraries, repairs->first_library, name);
+}
+
 static bool read_libraries(struct obj_reader *reader, char *rest)
 {
     char *whole = text_trim(rest);
@@ -295,14 +300,14 @@ static bool read_libraries(struct obj_reader *reader, char *rest)
     if (!missing)
         return true;
     if (!strpbrk(whole, " \t")) {
-        note_missing(reader->repairs, &reader->repairs->missing_libraries, whole);
+        note_missing_library(reader->repairs, whole);
         return true;
     }
     for (char *name; (name = next_library(&whole)) != NULL;) {
         if (!try_library(reader, name, &missing))
             return false;
         if (missing)
-            note_missing(reader->repairs, &reader->repairs->missing_libraries, name);
+            note_missing_library(reader->repairs, name);
     }
     return true;
 }
@@ -364,16 +369,17 @@ static bool read_lines(struct obj_reader *reader)
 /* Numbers the used materials of the table, in its order, for the scene. Returns how many. */
 static int32_t number_materials(const struct obj_reader *reader, int32_t *number)
 {
+    struct obj_repairs *repairs = reader->repairs;
     int32_t count = 0;
     for (int32_t i = 0; i < reader->materials.names.count; i++) {
         const struct mtl_entry *entry = &reader->materials.entries[i];
         number[i] = count;
         count += entry->used;
         if (entry->used && !entry->defined)
-            note_missing(reader->repairs, &reader->repairs->missing_materials,
+            note_missing(&repairs->missing_materials, repairs->first_material,
                          reader->materials.names.name[i]);
-        reader->repairs->transparent += entry->used && entry->transparent;
-        reader->repairs->textured += entry->used && entry->textured;
+        repairs->transparent += entry->used && entry->transparent;
+        repairs->textured += entry->used && entry->textured;
     }
     return count;
 }

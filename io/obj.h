@@ -22,7 +22,8 @@
 struct obj_repairs {
     int64_t missing_materials; /* names used but defined nowhere: neutral grey instead */
     int64_t missing_libraries; /* mtllib files that could not be opened */
-    char first_missing[128];   /* the first such name, for the message */
+    char first_material[128];  /* the first such names, for the messages */
+    char first_library[128];
     int64_t bad_normals;       /* corners of faces whose vn is absent or has no direction: none */
     int64_t transparent;       /* used materials with d or Tr for transparency: opaque */
     int64_t textured;          /* used materials with map_Kd: of one colour */

@@ -298,11 +298,46 @@ static void check_binary(const char *name, const char *bytes, size_t count)
     text_free(&text);
 }
 
+static void check_utf16(const char *name, const char *bytes, size_t count)
+{
+    struct text text;
+    bool good = read_bytes(&text, bytes, count);
+    tap_ok(!good && error.code == EXIT_USAGE &&
+               is_same(error.text, FILE_NAME ": is UTF-16; save it as UTF-8"),
+           "UTF-16, %s", name);
+    error = (struct error){EXIT_DONE, ""};
+    good = text_of_bytes(&text, "here", bytes, count, &error);
+    tap_ok(!good && is_same(error.text, "here: is UTF-16; save it as UTF-8"), "also in memory");
+}
+
+static void test_bytes(void)
+{
+    static const char bytes[] = "\xEF\xBB\xBF" "one\r\ntwo!";
+    struct text text;
+    error = (struct error){EXIT_DONE, ""};
+    bool good = text_of_bytes(&text, "here", bytes, sizeof bytes - 2, &error);
+    tap_ok(good && is_same(text_line(&text), "one") && is_same(text_line(&text), "two") &&
+               !text_line(&text) && text.line == 2,
+           "bytes in memory, as many as there are");
+    text_free(&text);
+    good = text_of_bytes(&text, "here", "", 0, &error);
+    tap_ok(good && !text_line(&text), "no bytes");
+    text_free(&text);
+    tap_ok(!text_of_bytes(&text, "here", "a\0", 2, &error) &&
+               is_same(error.text, "here: not a text file"),
+           "bytes that are no text");
+}
+
 static void test_binary(void)
 {
     check_binary("a zero byte", "a\n\0b", 4);
     check_binary("a zero byte at the end", "a\n", 3);
-    check_binary("UTF-16", "\xFF\xFE" "a\0\n\0", 6);
+    check_utf16("little-endian", "\xFF\xFE" "a\0\n\0", 6);
+    check_utf16("big-endian", "\xFE\xFF\0a\0\n", 6);
+    check_utf16("little-endian without a mark", "v\0 \0" "1\0", 6);
+    check_utf16("big-endian without a mark", "\0v\0 \0" "1", 6);
+    check_utf16("without control characters", "\xFE\xFF\x4E\x2D\x65\x87", 6);
+    check_binary("zero bytes in pairs", "\0\0\0\0", 4);
     check_binary("a bell", "a\a\n", 3);
     check_binary("an escape", "\033[0m", 4);
     char *bytes = alloc_array(3 * BLOCK, 1);
@@ -361,6 +396,7 @@ int main(void)
     test_against_strtod();
     test_number_errors();
     test_integers();
+    test_bytes();
     test_binary();
     check_unreadable("build/text_test_absent.txt");
     check_unreadable("build/text_test_absent/folder.txt");
