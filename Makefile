@@ -47,7 +47,7 @@ RAD = closure conjugate flux formfactor id link method oracle patch pushpull tre
       viewfactor
 MPI = accuracy assign broadcast closing comm gather linking migrate pairs picture plan refinement \
       scatter solve solver vote
-IO = camera cases image mesh mtl obj options output render shading stats surface table text \
+IO = camera cases image library mesh mtl obj options output render shading stats surface table text \
      tone validate
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =

@@ -10,10 +10,6 @@
  * A wrong index, number or face ends the reading, since what was meant cannot be known. Normals
  * touch pictures alone: one that is not a direction, or not there, is none.
  *
- * `mtllib` lists names between blanks, but programs also write single names with blanks in
- * them. So the whole rest of the line is tried first, then its words, where a backslash before a
- * blank keeps a word together. A name is tried once, however often it occurs.
- *
  * Cutting a concave face takes a time that is quadratic in its corners; the limit on them keeps
  * one line of a file from taking minutes. */
 #include "io/obj.h"
@@ -25,13 +21,13 @@
 
 #include "geom/alloc.h"
 #include "geom/polygon.h"
+#include "io/library.h"
 #include "io/mtl.h"
 #include "io/text.h"
 
 enum {
     COUNT_MAX = (1 << 30) - 1, /* vertices; triangles, which with their twins fit an int32_t */
-    CORNER_MAX = 1 << 14,      /* corners of one face */
-    LIBRARY_MAX = 1000         /* names in mtllib lines */
+    CORNER_MAX = 1 << 14       /* corners of one face */
 };
 
 struct obj_corner {
@@ -58,7 +54,7 @@ struct obj_reader {
     int64_t corner_count, corner_capacity;
     struct mtl_table materials;    /* the first one is for faces without a material */
     int32_t material;              /* of the next face */
-    struct text_names libraries;   /* names that have been tried */
+    struct text_names libraries;   /* for library_read() */
     struct text_names groups;      /* names of groups, also of those without a face */
     int32_t group;                 /* of the next face */
     struct obj_repairs *repairs;
@@ -70,11 +66,10 @@ static const double DIRECTION_MIN = 1e-100;
 
 static const char DEFAULT_GROUP[] = "default";
 
-/* Counts what is missing and keeps the first name. */
-static void note_missing(int64_t *counter, char first[128], const char *name)
+void obj_note_missing(int64_t *counter, char first[OBJ_NAME], const char *name)
 {
     if (++*counter == 1)
-        snprintf(first, 128, "%s", name);
+        snprintf(first, OBJ_NAME, "%s", name);
 }
 
 static bool read_vertex(struct obj_reader *reader, char *rest)
@@ -239,79 +234,6 @@ static bool read_face(struct obj_reader *reader, char *rest)
     return true;
 }
 
-/* The path of a file that the OBJ file names: relative to its folder. The caller frees it. */
-static char *path_beside(const char *path, const char *name)
-{
-    const char *slash = strrchr(path, '/');
-    size_t folder = slash && name[0] != '/' ? (size_t)(slash - path) + 1 : 0;
-    char *joined = alloc_array(folder + strlen(name) + 1, 1);
-    memcpy(joined, path, folder);
-    strcpy(joined + folder, name);
-    return joined;
-}
-
-/* Reads the library `name`, unless it has been tried before. `*missing` says whether this is
- * the first time that it turns out not to exist. */
-static bool try_library(struct obj_reader *reader, const char *name, bool *missing)
-{
-    *missing = false;
-    int32_t known = reader->libraries.count;
-    if (text_names_add(&reader->libraries, name) < known)
-        return true;
-    if (known == LIBRARY_MAX)
-        return error_set(reader->error, EXIT_USAGE, "%s:%ld: more than %d material libraries",
-                         reader->text.path, reader->text.line, LIBRARY_MAX);
-    char *path = path_beside(reader->text.path, name);
-    bool found;
-    bool good = mtl_read(&reader->materials, path, &found, reader->error);
-    *missing = !found;
-    alloc_free(path);
-    return good;
-}
-
-/* Cuts the next name off `*rest`; a backslash keeps the blank that follows it. */
-static char *next_library(char **rest)
-{
-    char *name = *rest + strspn(*rest, " \t");
-    char *to = name, *from = name;
-    while (*from && *from != ' ' && *from != '\t') {
-        if (*from == '\\' && from[1] == ' ')
-            from++;
-        *to++ = *from++;
-    }
-    *rest = *from ? from + 1 : from;
-    *to = '\0';
-    return *name ? name : NULL;
-}
-
-static void note_missing_library(struct obj_repairs *repairs, const char *name)
-{
-    note_missing(&repairs->missing_libraries, repairs->first_library, name);
-}
-
-static bool read_libraries(struct obj_reader *reader, char *rest)
-{
-    char *whole = text_trim(rest);
-    bool missing;
-    if (!*whole)
-        return true;
-    if (!try_library(reader, whole, &missing))
-        return false;
-    if (!missing)
-        return true;
-    if (!strpbrk(whole, " \t")) {
-        note_missing_library(reader->repairs, whole);
-        return true;
-    }
-    for (char *name; (name = next_library(&whole)) != NULL;) {
-        if (!try_library(reader, name, &missing))
-            return false;
-        if (missing)
-            note_missing_library(reader->repairs, name);
-    }
-    return true;
-}
-
 static bool read_group(struct obj_reader *reader, char *rest)
 {
     const char *name = text_trim(rest);
@@ -343,7 +265,8 @@ static bool read_line(struct obj_reader *reader, char *line)
     if (strcmp(keyword, "f") == 0)
         return read_face(reader, line);
     if (strcmp(keyword, "mtllib") == 0)
-        return read_libraries(reader, line);
+        return library_read(&reader->materials, &reader->libraries, &reader->text, line,
+                            reader->repairs, reader->error);
     if (strcmp(keyword, "o") == 0 || strcmp(keyword, "g") == 0)
         return read_group(reader, line);
     if (strcmp(keyword, "usemtl") == 0)
@@ -376,8 +299,8 @@ static int32_t number_materials(const struct obj_reader *reader, int32_t *number
         number[i] = count;
         count += entry->used;
         if (entry->used && !entry->defined)
-            note_missing(&repairs->missing_materials, repairs->first_material,
-                         reader->materials.names.name[i]);
+            obj_note_missing(&repairs->missing_materials, repairs->first_material,
+                             reader->materials.names.name[i]);
         repairs->transparent += entry->used && entry->transparent;
         repairs->textured += entry->used && entry->textured;
     }

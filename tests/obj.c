@@ -394,6 +394,14 @@ static void test_libraries(void)
     check_libraries("two of four", "mtllib x.mtl\tobj\\ test\\ two.mtl y.mtl  obj_test.mtl", 2);
     check_libraries("names with folders",
                     "mtllib ../build/obj_test.mtl\nmtllib ./obj test two.mtl", 0);
+    check_libraries("folders of other machines",
+                    "mtllib /home/a/obj_test.mtl\nmtllib C:\\a\\b c\\obj test two.mtl", 0);
+    check_libraries("a folder with a blank: perhaps a list",
+                    "mtllib /home/a b/obj_test.mtl\nmtllib obj test two.mtl", 1);
+    check_libraries("no file is a folder's name",
+                    "mtllib obj_test.mtl a/b/ obj\\ test\\ two.mtl a\\ /", 2);
+    check_libraries("a list, not a folder with a blank", "mtllib obj_test.mtl c/obj_test.mtl\n"
+                    "mtllib x obj_test.mtl\nmtllib c/d/obj test two.mtl", 1);
     char *text = alloc_array(20000, 1);
     for (int i = 0; i <= 1000; i++)
         sprintf(text + strlen(text), "mtllib x%d\n", i);
