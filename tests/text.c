@@ -213,9 +213,10 @@ static void test_against_strtod(void)
         double value = -7.0, expected = strtod(tried, &end);
         bool is_number = end != tried && *end == '\0' && fabs(expected) < HUGE_VAL;
         numbers += is_number;
-        wrong += text_is_number(tried, &value) != is_number ||
-                 (is_number && memcmp(&value, &expected, sizeof value) != 0);
-        if (wrong == 1)
+        bool same = text_is_number(tried, &value) == is_number &&
+                    (!is_number || memcmp(&value, &expected, sizeof value) == 0);
+        wrong += !same;
+        if (!same && wrong == 1)
             printf("# '%s'\n", tried);
     }
     tap_ok(wrong == 0 && numbers > 200000, "%d random numbers are those of strtod", numbers);
