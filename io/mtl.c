@@ -9,8 +9,10 @@
  * reflectance that nobody wrote down. A texture without Kd is the one exception: it says that
  * something is reflected, but not what, so the neutral grey stands for it. Ka, Ks, Tf and illum
  * say nothing about a diffuse surface and are passed over. Where d and Tr contradict each other,
- * d counts: programs disagree on what Tr 1 means. A library is not a place to be lenient about Kd and Ke
- * themselves: a negative or misspelt number would be a wrong picture without a message. */
+ * d counts: programs disagree on what Tr 1 means.
+ *
+ * A library is not a place to be lenient about Kd and Ke themselves: a negative or misspelt
+ * number would be a wrong picture without a message. */
 #include "io/mtl.h"
 
 #include <ctype.h>
@@ -131,10 +133,12 @@ static bool read_line(struct mtl_table *table, const struct text *text, char *li
         note_opacity(entry, line, is_keyword(keyword, "d"));
     else if (is_keyword(keyword, "map_kd"))
         note_texture(entry);
+    if (!is_colour)
+        return true;
     entry->has_kd = entry->has_kd || is_kd;
-    return !is_colour || read_colour(text, keyword, line,
-                                     is_kd ? &entry->material.reflectance : &entry->material.emission,
-                                     error);
+    struct material *material = &entry->material;
+    return read_colour(text, keyword, line,
+                       is_kd ? &material->reflectance : &material->emission, error);
 }
 
 bool mtl_of_text(struct mtl_table *table, struct text *text, struct error *error)

@@ -157,7 +157,7 @@ static int32_t find_normal(struct obj_reader *reader, int64_t index)
 
 static bool read_corner(struct obj_reader *reader, const char *word, struct obj_corner *corner)
 {
-    int64_t vertex, normal;
+    int64_t vertex, normal = 0;
     bool has_normal;
     if (!parse_corner(word, &vertex, &normal, &has_normal))
         return error_set(reader->error, EXIT_USAGE, "%s:%ld: bad corner '%.40s' of a face",
@@ -244,9 +244,9 @@ static bool read_group(struct obj_reader *reader, char *rest)
 /* Whether lines with the keyword say nothing about triangles and their colours. */
 static bool is_harmless(const char *keyword)
 {
-    static const char *const words[] = {"vt", "s",      "l",       "p",   "vp", "vw",
-                                        "mg", "usemap", "maplib", "lod", "c_interp", "d_interp",
-                                        "bevel", "shadow_obj", "trace_obj"};
+    static const char *const words[] = {"vt", "s", "l", "p", "vp", "vw", "mg", "usemap", "maplib",
+                                        "lod", "c_interp", "d_interp", "bevel", "shadow_obj",
+                                        "trace_obj"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         if (strcmp(keyword, words[i]) == 0)
             return true;

@@ -252,8 +252,8 @@ static struct rgb open_radiosity(const struct forest *forest, int32_t leaf, doub
 /* The values at the corners of roots, by flat surface and by curved one. */
 struct facets {
     const struct forest *forest;
-    const uint8_t *open;                 /* used up leaf by leaf */
-    const int32_t *flat, *curved;        /* [roots] surfaces */
+    const uint8_t *open;          /* shading_open_quarters(), used up leaf by leaf */
+    const int32_t *flat, *curved; /* [roots] surfaces */
     struct table by_flat, by_curved;
 };
 
@@ -267,8 +267,9 @@ static double corner_weight(const struct scene *scene, int32_t root, int k)
     struct vec3 a = vec3_sub(t.corner[(k + 1) % 3], t.corner[k]);
     struct vec3 b = vec3_sub(t.corner[(k + 2) % 3], t.corner[k]);
     double angle = arctangent(vec3_length(vec3_cross(a, b)), vec3_dot(a, b));
-    double cosine = vec3_dot(scene_root_plane(scene, root).normal, scene_root_normal(scene, root, k));
-    return angle / (fmax(1.0 - cosine, 0.0) + DEVIATION);
+    struct vec3 plane = scene_root_plane(scene, root).normal;
+    double cosine = vec3_dot(plane, scene_root_normal(scene, root, k));
+    return fmax(angle, GEOM_ROUNDING) / (fmax(1.0 - cosine, 0.0) + DEVIATION);
 }
 
 static int32_t leaf_at_corner(const struct forest *forest, int32_t root, int k)
@@ -349,9 +350,9 @@ static struct rgb shifted(struct rgb value, const struct rgb *shifts, struct vec
 struct blend {
     struct shading *shading;
     struct table table;
-    const uint8_t *open;   /* shading_open_quarters(), used up leaf by leaf */
-    int32_t *surface;      /* [roots] */
-    struct rgb *shifts;    /* find_shifts(), or NULL */
+    const uint8_t *open; /* shading_open_quarters(), used up leaf by leaf */
+    int32_t *surface;    /* [roots] */
+    struct rgb *shifts;  /* find_shifts(), or NULL */
 };
 
 static void add_flat_leaf(void *context, int32_t leaf)
