@@ -3,9 +3,11 @@
 #   make                 phr with mpicc              make SERIAL=1   the same without MPI, with cc
 #   make demo            the Cornell box, 2 ranks    make check      all tests
 #   make room            build/room, a scene generator
-#   make bench           $(BUILD)/rays, a bench of visibility, beside Embree where it is installed
+#   make bench           $(BUILD)/rays, a bench of visibility, beside Embree where it is installed;
+#                        $(BUILD)/parsing, a bench of reading OBJ
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
+#   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
 #   make install         to $(DESTDIR)$(prefix)      make uninstall  make clean
 #
 # Knobs: MPICC, CC, MPIEXEC, CFLAGS, CPPFLAGS, LDFLAGS, prefix, DESTDIR.
@@ -45,7 +47,7 @@ RAD = boxtree closure conjugate flux formfactor id link linking method oracle pa
       viewfactor
 MPI = accuracy assign broadcast closing comm gather linking migrate pairs picture plan refinement \
       scatter solve solver vote
-IO = camera cases image mesh mtl obj options output render shading stats table text \
+IO = camera cases image library mesh mtl obj options output render shading stats surface table text \
      tone validate
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
@@ -58,7 +60,10 @@ TESTS = alloc elementary id triangle lambert hull scene polygon contour wall oct
         image camera shading options paths norms cie furnace stability exchange conjugate exact converge
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct tracing
-TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)
+# Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
+FUZZERS = obj mtl
+REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
+TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%) $(REPLAYS)
 
 all: $(PHR)
 
@@ -79,6 +84,9 @@ $(BUILD)/tests/paths $(BUILD)/tests/norms $(BUILD)/tests/converge: $(BUILD)/test
         $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
+$(REPLAYS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/corpus.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
 $(BUILD)/libphr.a: $(OBJECTS)
 	rm -f $@ && ar rcs $@ $(OBJECTS)
 
@@ -87,7 +95,8 @@ $(BUILD)/%.o: %.c Makefile
 	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) -MMD -c -o $@ $<
 
 -include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(TESTS:%=$(BUILD)/tests/%.d) \
-    $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d)
+    $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d) \
+    $(BUILD)/tests/bench/parsing.d
 
 demo: $(PHR)
 	$(MPIEXEC) -n 2 ./$(PHR) scenes/cornell.obj --view scenes/cornell.view \
@@ -104,11 +113,14 @@ build/room: scenes/room.c Makefile
 # Set EMBREE= to leave Embree out where its header is found.
 EMBREE ?= $(wildcard /usr/include/embree3/rtcore.h /usr/local/include/embree3/rtcore.h)
 
-bench: $(BUILD)/rays build/room
+bench: $(BUILD)/rays $(BUILD)/parsing build/room
 
 $(BUILD)/rays: tests/bench/rays.c $(OBJECTS) Makefile
 	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) $(CFLAGS) -o $@ \
 	    tests/bench/rays.c $(OBJECTS) $(if $(EMBREE),-lembree3) -lm
+
+$(BUILD)/parsing: $(BUILD)/tests/bench/parsing.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 errors: $(BUILD)/reference $(BUILD)/measure
 
@@ -122,6 +134,14 @@ chart: $(BENCHES:%=$(BUILD)/%) build/room
 check: $(PHR) tests
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
+
+# To be run as build/fuzz/fuzz-obj NEW tests/fuzz/corpus/obj, say: finds go to the folder NEW.
+fuzz:
+	$(MAKE) SERIAL=1 CC=clang BUILD=build/fuzz $(FUZZERS:%=build/fuzz/fuzz-%) \
+	    CFLAGS="-g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all"
+
+$(BUILD)/fuzz-%: $(BUILD)/tests/fuzz/%.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lm
 
 install: $(PHR)
 	mkdir -p $(DESTDIR)$(bindir) $(DESTDIR)$(mandir)/man1
@@ -137,4 +157,4 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench errors chart check install uninstall clean FORCE
+.PHONY: all demo tests room bench errors chart check fuzz install uninstall clean FORCE

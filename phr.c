@@ -60,11 +60,23 @@ static void warn_repairs(const struct run *run, const struct obj_repairs *read,
 {
     const char *path = run->options.scene;
     if (read->missing_libraries > 0)
-        say(run, "%s: warning: %lld material file(s) missing", path,
-            (long long)read->missing_libraries);
+        say(run, "%s: warning: %lld material file(s) missing (first: %s)", path,
+            (long long)read->missing_libraries, read->first_library);
     if (read->missing_materials > 0)
         say(run, "%s: warning: %lld material(s) without a definition, taken as grey (first: %s)",
-            path, (long long)read->missing_materials, read->first_missing);
+            path, (long long)read->missing_materials, read->first_material);
+    if (read->transparent > 0)
+        say(run, "%s: warning: %lld transparent material(s) (d or Tr), taken as opaque", path,
+            (long long)read->transparent);
+    if (read->textured > 0)
+        say(run, "%s: warning: %lld material(s) with a texture, which is not read: Kd counts, or grey",
+            path, (long long)read->textured);
+    if (read->bad_normals > 0)
+        say(run, "%s: warning: %lld corner(s) with a vn that is no direction, or not there: ignored",
+            path, (long long)read->bad_normals);
+    if (read->unknown_lines > 0)
+        say(run, "%s: warning: %lld line(s) with unknown keywords passed over (first: line %ld)",
+            path, (long long)read->unknown_lines, read->first_unknown);
     if (prepared->clamped > 0)
         say(run, "%s: warning: %lld material(s) with a reflectance of 1 or more, set to 0.999",
             path, (long long)prepared->clamped);

@@ -38,6 +38,12 @@ struct scene *scene_create(int32_t input_count, int32_t material_count)
     return scene;
 }
 
+void scene_add_normals(struct scene *scene)
+{
+    alloc_free(scene->normals);
+    scene->normals = alloc_array(3 * (size_t)scene->input_count, sizeof *scene->normals);
+}
+
 void scene_destroy(struct scene *scene)
 {
     if (!scene)
@@ -47,6 +53,7 @@ void scene_destroy(struct scene *scene)
     alloc_free(scene->areas);
     alloc_free(scene->material_of);
     alloc_free(scene->materials);
+    alloc_free(scene->normals);
     alloc_free(scene->group_of);
     alloc_free(scene->group_names);
     alloc_free(scene);
@@ -169,6 +176,17 @@ struct plane scene_root_plane(const struct scene *scene, int32_t root)
     if (root >= scene->input_count)
         plane = (struct plane){vec3_scale(plane.normal, -1.0), -plane.offset};
     return plane;
+}
+
+struct vec3 scene_root_normal(const struct scene *scene, int32_t root, int corner)
+{
+    if (!scene->normals)
+        return (struct vec3){0.0, 0.0, 0.0};
+    bool is_twin = root >= scene->input_count;
+    int input_corner = is_twin && corner > 0 ? 3 - corner : corner;
+    struct vec3 normal = scene->normals[3 * (int64_t)scene_input_of(scene, root) + input_corner];
+    bool is_front = vec3_dot(normal, scene_root_plane(scene, root).normal) >= 0.0;
+    return is_front ? normal : vec3_scale(normal, -1.0);
 }
 
 double scene_area(const struct scene *scene)

@@ -35,6 +35,8 @@ struct scene {
     double *areas;              /* [input_count], square scene units; 0 for a dropped one */
     int32_t *material_of;       /* [input_count], index into materials */
     struct material *materials; /* [material_count] */
+    struct vec3 *normals;       /* [3 * input_count], of corner k of triangle i at [3 i + k], for
+                                 * smooth shading: of length 1, or 0 where there is none; or NULL */
     int32_t *group_of;          /* [input_count], index of the group: the name that a face goes by */
     char *group_names;          /* [group_bytes], one after the other, each with its zero */
     int32_t input_count;        /* triangles read from the file, dropped ones included */
@@ -51,6 +53,9 @@ struct scene {
  * arrays. */
 struct scene *scene_create(int32_t input_count, int32_t material_count);
 void scene_destroy(struct scene *scene);
+
+/* Makes room for normals at the corners, all of them 0. */
+void scene_add_normals(struct scene *scene);
 
 /* Makes room for the names of `count` groups, of `bytes` bytes with their zeros. */
 void scene_set_groups(struct scene *scene, int32_t count, int64_t bytes);
@@ -72,6 +77,9 @@ static inline int32_t scene_input_of(const struct scene *scene, int32_t root)
 /* Geometry of a root. A twin has its corners in the order (a, c, b) and faces the other way. */
 struct triangle scene_root_triangle(const struct scene *scene, int32_t root);
 struct plane scene_root_plane(const struct scene *scene, int32_t root);
+
+/* The normal for shading at a corner of a root, turned to the root's front; 0 if there is none. */
+struct vec3 scene_root_normal(const struct scene *scene, int32_t root, int corner);
 
 static inline double scene_root_area(const struct scene *scene, int32_t root)
 {

@@ -6,12 +6,17 @@
  *
  * Ke is not in the original description of the format, but it is what modelling programs write
  * for lights. A material that has only Ke is taken as a black light: the grey would be a
- * reflectance that nobody wrote down. Ka, Ks, Tf, illum and textures say nothing about a
- * diffuse surface and are passed over. A library is not a place to be lenient about Kd and Ke
- * themselves: a negative or misspelt number would be a wrong picture without a message. */
+ * reflectance that nobody wrote down. A texture without Kd is the one exception: it says that
+ * something is reflected, but not what, so the neutral grey stands for it. Ka, Ks, Tf and illum
+ * say nothing about a diffuse surface and are passed over. Where d and Tr contradict each other,
+ * d counts: programs disagree on what Tr 1 means.
+ *
+ * A library is not a place to be lenient about Kd and Ke themselves: a negative or misspelt
+ * number would be a wrong picture without a message. */
 #include "io/mtl.h"
 
 #include <ctype.h>
+#include <string.h>
 
 #include "geom/alloc.h"
 
@@ -81,9 +86,30 @@ static bool start_material(struct mtl_table *table, const struct text *text, cha
         return error_set(error, EXIT_USAGE, "%s:%ld: newmtl without a name", text->path,
                          text->line);
     *current = mtl_find(table, name);
-    table->entries[*current].material = (struct material){{{0.0}}, {{0.0}}};
-    table->entries[*current].defined = true;
+    bool used = table->entries[*current].used;
+    table->entries[*current] = (struct mtl_entry){.defined = true, .used = used};
     return true;
+}
+
+/* Transparency cannot be had, so what d and Tr say is kept for a warning, and nothing about them
+ * is an error. */
+static void note_opacity(struct mtl_entry *entry, char *rest, bool is_d)
+{
+    const char *word = text_word(&rest);
+    double value;
+    if (word && strcmp(word, "-halo") == 0)
+        word = text_word(&rest);
+    if (!word || !text_is_number(word, &value) || (entry->has_d && !is_d))
+        return;
+    entry->transparent = is_d ? value < 1.0 : value > 0.0;
+    entry->has_d = is_d;
+}
+
+static void note_texture(struct mtl_entry *entry)
+{
+    entry->textured = true;
+    if (!entry->has_kd)
+        entry->material.reflectance = NEUTRAL.reflectance;
 }
 
 /* `*current` is the number of the material that the line belongs to, or negative. */
@@ -96,14 +122,32 @@ static bool read_line(struct mtl_table *table, const struct text *text, char *li
     if (is_keyword(keyword, "newmtl"))
         return start_material(table, text, line, current, error);
     bool is_kd = is_keyword(keyword, "kd");
-    if (!is_kd && !is_keyword(keyword, "ke"))
-        return true;
-    if (*current < 0)
+    bool is_colour = is_kd || is_keyword(keyword, "ke");
+    if (*current < 0 && is_colour)
         return error_set(error, EXIT_USAGE, "%s:%ld: %s before newmtl", text->path, text->line,
                          keyword);
-    struct material *material = &table->entries[*current].material;
+    if (*current < 0)
+        return true;
+    struct mtl_entry *entry = &table->entries[*current];
+    if (is_keyword(keyword, "d") || is_keyword(keyword, "tr"))
+        note_opacity(entry, line, is_keyword(keyword, "d"));
+    else if (is_keyword(keyword, "map_kd"))
+        note_texture(entry);
+    if (!is_colour)
+        return true;
+    entry->has_kd = entry->has_kd || is_kd;
+    struct material *material = &entry->material;
     return read_colour(text, keyword, line,
                        is_kd ? &material->reflectance : &material->emission, error);
+}
+
+bool mtl_of_text(struct mtl_table *table, struct text *text, struct error *error)
+{
+    bool good = true;
+    int32_t current = -1;
+    for (char *line; good && (line = text_line(text)) != NULL;)
+        good = read_line(table, text, line, &current, error);
+    return good;
 }
 
 bool mtl_read(struct mtl_table *table, const char *path, bool *found, struct error *error)
@@ -114,9 +158,7 @@ bool mtl_read(struct mtl_table *table, const char *path, bool *found, struct err
     *found = !text.unreadable;
     if (!good)
         return text.unreadable ? true : error_set(error, reason.code, "%s", reason.text);
-    int32_t current = -1;
-    for (char *line; good && (line = text_line(&text)) != NULL;)
-        good = read_line(table, &text, line, &current, error);
+    good = mtl_of_text(table, &text, error);
     text_free(&text);
     return good;
 }

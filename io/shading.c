@@ -1,10 +1,18 @@
 /* Smooth shading.
  *
  * A vertex is a corner of leaves. Leaves share a vertex where they have the same point and lie
- * on one smooth surface: roots of one material that meet in a common edge (the same end points,
- * to the bit) and whose planes agree within 2.5 degrees. The value of a vertex is the mean of
- * the leaves around it, each weighted by one over the distance of its centroid: a linear
- * function comes out right where the leaves lie evenly around the vertex, whatever their sizes.
+ * on one smooth surface (io/surface.h). The value of a vertex is the mean of the leaves around
+ * it, each weighted by one over the distance of its centroid: a linear function comes out right
+ * where the leaves lie evenly around the vertex, whatever their sizes.
+ *
+ * On a curved surface that facets stand for, the light jumps from facet to facet as their planes
+ * do, and blending the leaves along an edge would only blur the facet's outline. So all values of
+ * a facet are shifted first: at each of its corners from its own value there (that of the leaf
+ * in this corner) to the mean of the facets of the surface around that point, and linearly
+ * between. Facets count by their angle and by how nearly their plane is what the corner's normal
+ * says: a flat face with rounded edges, whose normals are its own, keeps its light and the strip
+ * beside it bends. Roots in one plane count as one facet: nothing flat is shifted. Rejected:
+ * values at the facets' corners alone, which would lose the shadows on the facets.
  *
  * Where a box stands on the floor, leaves are covered in part. The covered part is dark, is not
  * seen and must not leak. It is found with the four points where the rays of the leaf's links
@@ -21,79 +29,11 @@
 #include "io/shading.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
-
-static const double SMOOTH_COSINE = 0.999;
-
-/* --- smooth surfaces: roots joined over common edges --- */
-
-struct root_edge {
-    struct vec3 low, high; /* end points, in lexical order */
-    int32_t root;
-};
-
-static int compare_points(struct vec3 a, struct vec3 b)
-{
-    if (a.x != b.x)
-        return a.x < b.x ? -1 : 1;
-    if (a.y != b.y)
-        return a.y < b.y ? -1 : 1;
-    return (a.z > b.z) - (a.z < b.z);
-}
-
-static int compare_edges(const void *left, const void *right)
-{
-    const struct root_edge *a = left, *b = right;
-    int order = compare_points(a->low, b->low);
-    order = order ? order : compare_points(a->high, b->high);
-    return order ? order : (a->root > b->root) - (a->root < b->root);
-}
-
-static int32_t surface_of(int32_t *surface, int32_t root)
-{
-    while (surface[root] != root)
-        root = surface[root] = surface[surface[root]];
-    return root;
-}
-
-static bool is_smooth(const struct scene *scene, int32_t a, int32_t b)
-{
-    struct plane plane_a = scene_root_plane(scene, a), plane_b = scene_root_plane(scene, b);
-    return scene_root_material(scene, a) == scene_root_material(scene, b) &&
-           vec3_dot(plane_a.normal, plane_b.normal) >= SMOOTH_COSINE;
-}
-
-/* surface[root]: a number that all roots of one smooth surface share. */
-static int32_t *find_surfaces(const struct scene *scene)
-{
-    int32_t roots = scene_root_count(scene);
-    int32_t *surface = alloc_array((size_t)roots, sizeof *surface);
-    struct root_edge *edges = alloc_array(3 * (size_t)roots, sizeof *edges);
-    size_t count = 0;
-    for (int32_t root = 0; root < roots; root++) {
-        struct triangle t = scene_root_triangle(scene, root);
-        surface[root] = root;
-        for (int k = 0; k < 3 && scene_root_area(scene, root) > 0.0; k++) {
-            struct vec3 a = t.corner[k], b = t.corner[(k + 1) % 3];
-            bool ordered = compare_points(a, b) <= 0;
-            edges[count++] = (struct root_edge){ordered ? a : b, ordered ? b : a, root};
-        }
-    }
-    qsort(edges, count, sizeof *edges, compare_edges);
-    for (size_t i = 0; i < count; i++) {
-        for (size_t j = i + 1; j < count && compare_points(edges[i].low, edges[j].low) == 0 &&
-                               compare_points(edges[i].high, edges[j].high) == 0; j++)
-            if (is_smooth(scene, edges[i].root, edges[j].root))
-                surface[surface_of(surface, edges[i].root)] = surface_of(surface, edges[j].root);
-    }
-    for (int32_t root = 0; root < roots; root++)
-        surface[root] = surface_of(surface, root);
-    alloc_free(edges);
-    return surface;
-}
+#include "geom/elementary.h"
+#include "io/surface.h"
 
 /* --- leaves, and how much of each is covered --- */
 
@@ -175,12 +115,11 @@ uint8_t *shading_open_quarters(const struct forest *forest, const struct octree 
 /* --- vertices: a hash table from (point, surface) to a number --- */
 
 struct table {
-    struct shading *shading;
-    const uint8_t *open;     /* [leaves] shading_open_quarters(), used up leaf by leaf */
-    int32_t *surface;        /* [roots] */
-    int32_t *vertex_surface; /* [vertex_count] */
-    double *weights;         /* [vertex_count] sum of the weights of the leaves around */
-    int64_t capacity;        /* of the vertex arrays */
+    struct vec3 *positions;  /* [count] scene units */
+    struct rgb *values;      /* [count] sum of weighted radiosities, W/m^2; later the mean */
+    double *weights;         /* [count] sum of the weights */
+    int32_t *surfaces;       /* [count] */
+    int64_t count, capacity;
     int32_t *slots;          /* [slot_count] a vertex, or -1 */
     int64_t slot_count;      /* a power of two */
 };
@@ -198,14 +137,19 @@ static uint64_t hash_point(struct vec3 x, int32_t surface)
     return hash;
 }
 
+static bool is_same_point(struct vec3 a, struct vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
 /* The slot that holds the vertex, or the free one where it would go. */
 static int64_t find_slot(const struct table *table, struct vec3 x, int32_t surface)
 {
     int64_t slot = (int64_t)(hash_point(x, surface) & (uint64_t)(table->slot_count - 1));
     for (;; slot = (slot + 1) & (table->slot_count - 1)) {
         int32_t vertex = table->slots[slot];
-        if (vertex < 0 || (table->vertex_surface[vertex] == surface &&
-                           compare_points(table->shading->positions[vertex], x) == 0))
+        if (vertex < 0 || (table->surfaces[vertex] == surface &&
+                           is_same_point(table->positions[vertex], x)))
             return slot;
     }
 }
@@ -217,44 +161,70 @@ static void grow_slots(struct table *table)
     table->slots = alloc_array((size_t)table->slot_count, sizeof *table->slots);
     for (int64_t slot = 0; slot < table->slot_count; slot++)
         table->slots[slot] = -1;
-    for (int64_t v = 0; v < table->shading->vertex_count; v++)
-        table->slots[find_slot(table, table->shading->positions[v], table->vertex_surface[v])] =
-            (int32_t)v;
+    for (int64_t v = 0; v < table->count; v++)
+        table->slots[find_slot(table, table->positions[v], table->surfaces[v])] = (int32_t)v;
 }
 
 static int32_t append_vertex(struct table *table, struct vec3 x, int32_t surface)
 {
-    struct shading *shading = table->shading;
-    int64_t needed = shading->vertex_count + 1;
+    int64_t needed = table->count + 1;
     if (needed > INT32_MAX)
         alloc_fail(SIZE_MAX);
     if (needed > table->capacity) {
         int64_t capacity = table->capacity;
-        shading->positions = alloc_reserve(shading->positions, &capacity, needed,
-                                           sizeof *shading->positions);
+        table->positions = alloc_reserve(table->positions, &capacity, needed,
+                                         sizeof *table->positions);
         size_t room = (size_t)capacity;
-        shading->values = alloc_resize(shading->values, room, sizeof *shading->values);
-        table->vertex_surface = alloc_resize(table->vertex_surface, room,
-                                             sizeof *table->vertex_surface);
+        table->values = alloc_resize(table->values, room, sizeof *table->values);
         table->weights = alloc_resize(table->weights, room, sizeof *table->weights);
+        table->surfaces = alloc_resize(table->surfaces, room, sizeof *table->surfaces);
         table->capacity = capacity;
     }
-    int32_t vertex = (int32_t)shading->vertex_count++;
-    shading->positions[vertex] = x;
-    shading->values[vertex] = (struct rgb){{0.0, 0.0, 0.0}};
-    table->vertex_surface[vertex] = surface;
+    int32_t vertex = (int32_t)table->count++;
+    table->positions[vertex] = x;
+    table->values[vertex] = (struct rgb){{0.0, 0.0, 0.0}};
     table->weights[vertex] = 0.0;
+    table->surfaces[vertex] = surface;
     return vertex;
 }
 
 static int32_t reach_vertex(struct table *table, struct vec3 x, int32_t surface)
 {
-    if (2 * (table->shading->vertex_count + 1) > table->slot_count)
+    if (2 * (table->count + 1) > table->slot_count)
         grow_slots(table);
     int64_t slot = find_slot(table, x, surface);
     if (table->slots[slot] < 0)
         table->slots[slot] = append_vertex(table, x, surface);
     return table->slots[slot];
+}
+
+static void add_value(struct table *table, int32_t vertex, struct rgb value, double weight)
+{
+    table->weights[vertex] += weight;
+    for (int c = 0; c < BANDS; c++)
+        table->values[vertex].band[c] += weight * value.band[c];
+}
+
+static void find_means(struct table *table)
+{
+    for (int64_t v = 0; v < table->count; v++)
+        for (int c = 0; c < BANDS; c++)
+            table->values[v].band[c] /= table->weights[v];
+}
+
+/* What remains is the caller's: positions and values. */
+static void drop_index(struct table *table)
+{
+    alloc_free(table->weights);
+    alloc_free(table->surfaces);
+    alloc_free(table->slots);
+}
+
+static void table_free(struct table *table)
+{
+    drop_index(table);
+    alloc_free(table->positions);
+    alloc_free(table->values);
 }
 
 /* --- values --- */
@@ -277,23 +247,146 @@ static struct rgb open_radiosity(const struct forest *forest, int32_t leaf, doub
     return b;
 }
 
+/* --- curved surfaces: shifting the values of facets --- */
+
+/* The values at the corners of roots, by flat surface and by curved one. */
+struct facets {
+    const struct forest *forest;
+    const uint8_t *open;          /* shading_open_quarters(), used up leaf by leaf */
+    const int32_t *flat, *curved; /* [roots] surfaces */
+    struct table by_flat, by_curved;
+};
+
+/* 1 - cos of the angle between plane and normal, 2.5 degrees, at which a facet counts half as much
+ * as one whose plane is what the normal says. */
+static const double DEVIATION = 1e-3;
+
+static double corner_weight(const struct scene *scene, int32_t root, int k)
+{
+    struct triangle t = scene_root_triangle(scene, root);
+    struct vec3 a = vec3_sub(t.corner[(k + 1) % 3], t.corner[k]);
+    struct vec3 b = vec3_sub(t.corner[(k + 2) % 3], t.corner[k]);
+    double angle = arctangent(vec3_length(vec3_cross(a, b)), vec3_dot(a, b));
+    struct vec3 plane = scene_root_plane(scene, root).normal;
+    double cosine = vec3_dot(plane, scene_root_normal(scene, root, k));
+    return fmax(angle, GEOM_ROUNDING) / (fmax(1.0 - cosine, 0.0) + DEVIATION);
+}
+
+static int32_t leaf_at_corner(const struct forest *forest, int32_t root, int k)
+{
+    int32_t leaf = root;
+    while (!patch_is_leaf(&forest->patches[leaf]))
+        leaf = forest->patches[leaf].children + k; /* child k has corner k */
+    return leaf;
+}
+
+static void add_corner_leaf(void *context, int32_t leaf)
+{
+    struct facets *facets = context;
+    const struct forest *forest = facets->forest;
+    int32_t root = (int32_t)forest->patches[leaf].id.root;
+    double share = open_share(*facets->open++);
+    for (int k = 0; k < 3; k++) {
+        if (leaf_at_corner(forest, root, k) != leaf)
+            continue;
+        struct vec3 x = scene_root_triangle(forest->scene, root).corner[k];
+        struct rgb value = open_radiosity(forest, leaf, share);
+        double weight = fmax(share, COVERED) * corner_weight(forest->scene, root, k);
+        add_value(&facets->by_flat, reach_vertex(&facets->by_flat, x, facets->flat[root]), value,
+                  weight);
+        add_value(&facets->by_curved, reach_vertex(&facets->by_curved, x, facets->curved[root]),
+                  value, weight);
+    }
+}
+
+/* [3 * roots] how far corner k of root r is shifted, W/m^2: [3 r + k]. Exactly 0 where one flat
+ * surface is all that is there, since both sums then have the same terms. */
+static struct rgb *find_shifts(const struct forest *forest, const uint8_t *open,
+                               const int32_t *curved)
+{
+    const struct scene *scene = forest->scene;
+    int32_t roots = scene_root_count(scene), *flat = surface_of_roots(scene, false);
+    struct rgb *shifts = alloc_array(3 * (size_t)roots, sizeof *shifts);
+    struct facets facets = {.forest = forest, .open = open, .flat = flat, .curved = curved};
+    for_each_leaf(forest, -1, add_corner_leaf, &facets);
+    find_means(&facets.by_flat);
+    find_means(&facets.by_curved);
+    for (int32_t root = 0; root < roots; root++) {
+        struct triangle t = scene_root_triangle(scene, root);
+        for (int k = 0; k < 3 && scene_root_area(scene, root) > 0.0; k++) {
+            int32_t own = reach_vertex(&facets.by_flat, t.corner[k], flat[root]);
+            int32_t common = reach_vertex(&facets.by_curved, t.corner[k], curved[root]);
+            for (int c = 0; c < BANDS; c++)
+                shifts[3 * (int64_t)root + k].band[c] = facets.by_curved.values[common].band[c] -
+                                                        facets.by_flat.values[own].band[c];
+        }
+    }
+    table_free(&facets.by_flat);
+    table_free(&facets.by_curved);
+    alloc_free(flat);
+    return shifts;
+}
+
+/* The corners of a leaf as barycentric coordinates of its root. */
+static struct triangle weights_in_root(struct patch_id id)
+{
+    struct triangle t = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+    for (int step = 0; step < id_level(id); step++)
+        t = triangle_child(&t, id_step(id, step));
+    return t;
+}
+
+/* Light is not negative: a shift ends there. */
+static struct rgb shifted(struct rgb value, const struct rgb *shifts, struct vec3 weight)
+{
+    for (int c = 0; c < BANDS; c++)
+        value.band[c] = fmax(0.0, value.band[c] + weight.x * shifts[0].band[c] +
+                                      weight.y * shifts[1].band[c] + weight.z * shifts[2].band[c]);
+    return value;
+}
+
+/* --- all leaves --- */
+
+struct blend {
+    struct shading *shading;
+    struct table table;
+    const uint8_t *open; /* shading_open_quarters(), used up leaf by leaf */
+    int32_t *surface;    /* [roots] */
+    struct rgb *shifts;  /* find_shifts(), or NULL */
+};
+
+static void add_flat_leaf(void *context, int32_t leaf)
+{
+    struct blend *blend = context;
+    const struct forest *forest = blend->shading->forest;
+    struct triangle t = forest_triangle(forest, leaf);
+    for (int k = 0; k < 3; k++) {
+        int32_t v = append_vertex(&blend->table, t.corner[k],
+                                  (int32_t)forest->patches[leaf].id.root);
+        blend->shading->corners[3 * (int64_t)leaf + k] = v;
+        add_value(&blend->table, v, forest->patches[leaf].radiosity, 1.0);
+    }
+}
+
 static void add_leaf(void *context, int32_t leaf)
 {
-    struct table *table = context;
-    struct shading *shading = table->shading;
-    int32_t root = (int32_t)shading->forest->patches[leaf].id.root;
-    struct triangle t = forest_triangle(shading->forest, leaf);
+    struct blend *blend = context;
+    const struct forest *forest = blend->shading->forest;
+    struct patch_id id = forest->patches[leaf].id;
+    struct triangle t = forest_triangle(forest, leaf), at = {0};
     struct vec3 centroid = triangle_centroid(&t);
-    double share = shading->flat ? 1.0 : open_share(*table->open++);
-    struct rgb radiosity = open_radiosity(shading->forest, leaf, share);
+    double share = open_share(*blend->open++);
+    struct rgb radiosity = open_radiosity(forest, leaf, share);
+    if (blend->shifts)
+        at = weights_in_root(id);
     for (int k = 0; k < 3; k++) {
-        int32_t v = shading->flat ? append_vertex(table, t.corner[k], root)
-                                  : reach_vertex(table, t.corner[k], table->surface[root]);
+        int32_t v = reach_vertex(&blend->table, t.corner[k], blend->surface[id.root]);
         double weight = fmax(share, COVERED) / vec3_length(vec3_sub(centroid, t.corner[k]));
-        shading->corners[3 * (int64_t)leaf + k] = v;
-        table->weights[v] += weight;
-        for (int c = 0; c < BANDS; c++)
-            shading->values[v].band[c] += weight * radiosity.band[c];
+        struct rgb value = radiosity;
+        if (blend->shifts)
+            value = shifted(radiosity, &blend->shifts[3 * (int64_t)id.root], at.corner[k]);
+        blend->shading->corners[3 * (int64_t)leaf + k] = v;
+        add_value(&blend->table, v, value, weight);
     }
 }
 
@@ -301,45 +394,53 @@ static void add_leaf(void *context, int32_t leaf)
  * edge without a vertex in its middle, at most ID_MAX_LEVEL halvings down. */
 static void settle_edge(struct table *table, int32_t u, int32_t v)
 {
-    struct shading *shading = table->shading;
-    struct vec3 x = vec3_middle(shading->positions[u], shading->positions[v]);
-    int32_t middle = table->slots[find_slot(table, x, table->vertex_surface[u])];
+    struct vec3 x = vec3_middle(table->positions[u], table->positions[v]);
+    int32_t middle = table->slots[find_slot(table, x, table->surfaces[u])];
     if (middle < 0)
         return;
     for (int c = 0; c < BANDS; c++)
-        shading->values[middle].band[c] =
-            0.5 * (shading->values[u].band[c] + shading->values[v].band[c]);
+        table->values[middle].band[c] = 0.5 * (table->values[u].band[c] + table->values[v].band[c]);
     settle_edge(table, u, middle);
     settle_edge(table, middle, v);
 }
 
 static void settle_leaf(void *context, int32_t leaf)
 {
-    struct table *table = context;
-    const int32_t *corner = &table->shading->corners[3 * (int64_t)leaf];
+    struct blend *blend = context;
+    const int32_t *corner = &blend->shading->corners[3 * (int64_t)leaf];
     for (int k = 0; k < 3; k++)
-        settle_edge(table, corner[k], corner[(k + 1) % 3]);
+        settle_edge(&blend->table, corner[k], corner[(k + 1) % 3]);
+}
+
+static void blend_leaves(struct blend *blend)
+{
+    const struct forest *forest = blend->shading->forest;
+    blend->surface = surface_of_roots(forest->scene, true);
+    if (forest->scene->normals)
+        blend->shifts = find_shifts(forest, blend->open, blend->surface);
+    for_each_leaf(forest, -1, add_leaf, blend);
+    find_means(&blend->table);
+    for (int level = 0; level <= ID_MAX_LEVEL; level++)
+        for_each_leaf(forest, level, settle_leaf, blend);
+    alloc_free(blend->surface);
+    alloc_free(blend->shifts);
 }
 
 struct shading *shading_create(const struct forest *forest, const uint8_t *open)
 {
-    bool flat = !open;
     struct shading *shading = alloc_array(1, sizeof *shading);
     shading->forest = forest;
-    shading->flat = flat;
+    shading->flat = !open;
     shading->corners = alloc_array(3 * (size_t)forest->count, sizeof *shading->corners);
-    struct table table = {.shading = shading, .open = open,
-                          .surface = find_surfaces(forest->scene)};
-    for_each_leaf(forest, -1, add_leaf, &table);
-    for (int64_t v = 0; v < shading->vertex_count; v++)
-        for (int c = 0; c < BANDS; c++)
-            shading->values[v].band[c] /= table.weights[v];
-    for (int level = 0; level <= ID_MAX_LEVEL && !flat; level++)
-        for_each_leaf(forest, level, settle_leaf, &table);
-    alloc_free(table.surface);
-    alloc_free(table.vertex_surface);
-    alloc_free(table.weights);
-    alloc_free(table.slots);
+    struct blend blend = {.shading = shading, .open = open};
+    if (shading->flat)
+        for_each_leaf(forest, -1, add_flat_leaf, &blend);
+    else
+        blend_leaves(&blend);
+    drop_index(&blend.table);
+    shading->positions = blend.table.positions;
+    shading->values = blend.table.values;
+    shading->vertex_count = blend.table.count;
     return shading;
 }
 

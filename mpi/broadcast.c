@@ -20,6 +20,8 @@ struct scene *scene_broadcast(const struct comm *comm, struct scene *scene)
         scene->low = head.low;
         scene->high = head.high;
         scene_set_groups(scene, head.group_count, head.group_bytes);
+        if (head.normals)
+            scene_add_normals(scene);
     }
     size_t count = (size_t)head.input_count;
     comm_broadcast(comm, scene->triangles, count * sizeof *scene->triangles);
@@ -30,5 +32,7 @@ struct scene *scene_broadcast(const struct comm *comm, struct scene *scene)
                    (size_t)head.material_count * sizeof *scene->materials);
     comm_broadcast(comm, scene->group_of, count * sizeof *scene->group_of);
     comm_broadcast(comm, scene->group_names, (size_t)head.group_bytes);
+    if (head.normals)
+        comm_broadcast(comm, scene->normals, 3 * count * sizeof *scene->normals);
     return scene;
 }

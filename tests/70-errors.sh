@@ -124,6 +124,10 @@ f 1 2 3
 END
 refuse_scene ":7: bad number 'nan'" "a coordinate that is not a number"
 
+scene=$work/utf16.obj
+printf '\377\376v\000 \000' >"$scene"
+refuse_scene ": is UTF-16; save it as UTF-8" "a scene in UTF-16"
+
 printf 'newmtl lamp\nKe 1 one 1\n' >"$work/bad.mtl"
 scene library.obj <<END
 mtllib bad.mtl

@@ -44,4 +44,49 @@ try "0.5 0.5 0.5" "1e30 1e30 1e30"
 is_done() { [ "$status" -eq 0 ] && ! grep -qiE 'nan|inf' "$work/stdout"; }
 check "the largest emission has a defined result" is_done
 
+# What is read in vain is said once for each kind.
+cat >"$work/notes.mtl" <<END
+newmtl lamp
+Kd 0 0 0
+Ke 1 1 1
+newmtl glass
+Kd 0.5 0.5 0.5
+d 0.25
+newmtl painted
+map_Kd wood.png
+END
+cat >"$work/notes.obj" <<END
+mtllib notes.mtl
+mtllib absent.mtl
+v 0 0 0
+v 1 0 0
+v 0 1 0
+v 0 0 1
+vn nan nan nan
+curv 0 1 1 2
+usemtl lamp
+f 1 2 3
+usemtl glass
+f 1//1 4//1 2
+usemtl painted
+f 1 3 4
+usemtl nothing
+f 2 4 3
+surf 0 1 0 1 1 2 3
+END
+said=$(./phr "$work/notes.obj" 2>&1 >"$work/stdout" | grep warning)
+notes="phr: $work/notes.obj: warning:"
+expected="$notes 1 material file(s) missing (first: absent.mtl)
+$notes 1 material(s) without a definition, taken as grey (first: nothing)
+$notes 1 transparent material(s) (d or Tr), taken as opaque
+$notes 1 material(s) with a texture, which is not read: Kd counts, or grey
+$notes 2 corner(s) with a vn that is no direction, or not there: ignored
+$notes 2 line(s) with unknown keywords passed over (first: line 8)"
+are_the_notes() {
+    [ "$said" = "$expected" ] && return
+    echo "$said" | sed 's/^/# /'
+    return 1
+}
+check "what is read in vain is said once for each kind" are_the_notes
+
 tap_done

@@ -7,6 +7,7 @@
  * parallel solver runs one on MPI_COMM_SELF that holds them all. To be run with mpiexec; rank 0
  * reports. */
 #include "mpi/assign.h"
+#include "mpi/broadcast.h"
 #include "mpi/migrate.h"
 #include "mpi/picture.h"
 #include "rad/treecode.h"
@@ -240,6 +241,29 @@ static void test_sums(const struct comm *comm)
     report(comm, right, "bytes are added over all ranks, and no others");
 }
 
+/* The scene of rank 0 comes to all, with normals if it has some. */
+static void test_broadcast(const struct comm *comm, bool normals)
+{
+    struct scene *scene = NULL;
+    if (comm->rank == 0) {
+        scene = make_scene();
+        scene->two_sided = true;
+        scene->exponent = 7;
+        if (normals)
+            scene_add_normals(scene);
+        for (int i = 0; i < 3 * ROOTS && normals; i++)
+            scene->normals[i] = (struct vec3){i, 0.5, -i};
+    }
+    scene = scene_broadcast(comm, scene);
+    bool right = scene->input_count == ROOTS && scene->two_sided && scene->exponent == 7 &&
+                 scene->materials[1].emission.band[1] == 2.0 && scene->areas[ROOTS - 1] > 0.0 &&
+                 strcmp(scene->group_names, "default") == 0 && !scene->normals == !normals;
+    for (int i = 0; i < 3 * ROOTS && right && normals; i++)
+        right = scene->normals[i].x == i && scene->normals[i].z == -i;
+    report(comm, right, normals ? "a scene comes to all ranks" : "also one without normals");
+    scene_destroy(scene);
+}
+
 /* --- refinement --- */
 
 /* Whether all ranks have the trees of rank 0. */
@@ -326,6 +350,8 @@ int main(int argc, char **argv)
     test_picture(&comm);
     test_gather_all(&comm);
     test_sums(&comm);
+    test_broadcast(&comm, true);
+    test_broadcast(&comm, false);
     struct criterion criterion = criterion_of(3e-4, 10, 1e-3);
     test_refinement(&comm, &self, &criterion, "the paper's method: several ranks split links");
     for (enum closure_kind kind = CLOSURE_NONE; kind <= CLOSURE_SYMMETRIC; kind++) {

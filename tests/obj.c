@@ -1,6 +1,7 @@
 /* Tests of io/obj.h, with io/mtl.h and io/text.h behind it. Files are written into build/. */
 #include "io/obj.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -158,6 +159,8 @@ static void test_vertices(void)
     scene_destroy(scene);
     check_triangle("unknown keywords", "vt 0 0\nvn x y z\ns off\nl 1 2\np 1\no thing\ng a b\nfo\n"
                                        "\xC3\xA9t\xC3\xA9\nvp 1\ncall x.obj\n" CORNERS "f 1 2 3\n");
+    tap_ok(repairs.unknown_lines == 3 && repairs.first_unknown == 8,
+           "of which those that may mean something are counted");
     check_refused("v 1 2\n", OBJ ":1: vertex has 2 coordinates instead of 3");
     check_refused("v\n", OBJ ":1: vertex has 0 coordinates instead of 3");
     check_refused("v 1 2 #3\n", OBJ ":1: vertex has 2 coordinates instead of 3");
@@ -196,6 +199,36 @@ static void test_corners(void)
     check_refused(CORNERS "f\n", OBJ ":5: face has 0 corners instead of 3 or more");
 }
 
+static bool normal_is(const struct scene *scene, int32_t triangle, int k, double x, double y,
+                      double z)
+{
+    struct vec3 n = scene->normals[3 * triangle + k];
+    return vec3_length(vec3_sub(n, (struct vec3){x, y, z})) < 1e-15;
+}
+
+static void test_normals(void)
+{
+    struct scene *scene = read_scene(CORNERS "vn 0 0 2\nvn 3 0 4 # not of length 1\n"
+                                     "f 1//1 2//2 3//-1\nvn 1e-90 0 0\nf 1 2/7/-1 3/7\n"
+                                     "f 1//2 2//2 3//2 4//1\n");
+    tap_ok(scene && scene->normals && normal_is(scene, 0, 0, 0, 0, 1) &&
+               normal_is(scene, 0, 1, 0.6, 0, 0.8) && normal_is(scene, 0, 2, 0.6, 0, 0.8) &&
+               normal_is(scene, 1, 0, 0, 0, 0) && normal_is(scene, 1, 1, 1, 0, 0) &&
+               normal_is(scene, 1, 2, 0, 0, 0) && normal_is(scene, 2, 2, 0.6, 0, 0.8) &&
+               normal_is(scene, 3, 2, 0, 0, 1) && repairs.bad_normals == 0,
+           "normals, where corners have some");
+    scene_destroy(scene);
+    scene = read_scene(CORNERS "vn 0 0 1\nf 1 2 3\nf 1//2 2//0 3//-2\n");
+    tap_ok(scene && !scene->normals && repairs.bad_normals == 3, "normals that are not there");
+    scene_destroy(scene);
+    scene = read_scene(CORNERS "vn 0 0 0\nvn nan nan nan\nvn -1.#IND 0 1\nvn 1 0\nvn\nvn 1e101 0 0\n"
+                               "vn 1e-101 0 0\nvn x y z\nf 1//1 2//2 3//3 4//4\nf 1//5 2//6 3//7\n");
+    tap_ok(scene && !scene->normals && repairs.bad_normals == 7 && repairs.unknown_lines == 0,
+           "normals without a direction");
+    scene_destroy(scene);
+    check_refused("vn 0 0 1\n" CORNERS "f 1//1a 2 3\n", OBJ ":6: bad corner '1//1a' of a face");
+}
+
 static void test_polygons(void)
 {
     struct scene *scene = read_scene(CORNERS "f 3 3 3\nf 1 2 3 4\nf 4 3 2\n");
@@ -213,6 +246,33 @@ static void test_polygons(void)
         area += triangle_area(&scene->triangles[i]);
     tap_ok(scene && scene->input_count == 2 && area == 2.0, "a concave face is cut inside");
     scene_destroy(scene);
+}
+
+/* One face of 1000 corners: a strip 2.5 wide that winds about the origin four times. The area of
+ * all triangles is that of the polygon: none lies outside or over another. */
+static void test_spiral(void)
+{
+    enum { HALF = 500 };
+    char *text = alloc_array(2 * HALF * 60, 1), *to = text;
+    double expected = 0.0, area = 0.0;
+    for (int i = 0; i < 2 * HALF; i++) {
+        double turn = 0.05 * (i < HALF ? i : 2 * HALF - 1 - i), r = turn + (i < HALF ? 3.5 : 1.0);
+        to += sprintf(to, "v %.17g %.17g 5\n", r * cos(turn), r * sin(turn));
+    }
+    *to++ = 'f';
+    for (int i = 1; i <= 2 * HALF; i++)
+        to += sprintf(to, " %d", i);
+    struct scene *scene = read_scene(text);
+    bool right = scene && scene->input_count == 2 * HALF - 2;
+    for (int32_t i = 0; right && i < scene->input_count; i++) {
+        struct vec3 cross = triangle_cross(&scene->triangles[i]);
+        area += 0.5 * fabs(cross.z);
+        expected += 0.5 * cross.z;
+    }
+    tap_ok(right && expected > 2.5 * 25 * 10 && fabs(area / expected - 1.0) < 1e-12,
+           "a spiral of %d corners is cut inside", 2 * HALF);
+    scene_destroy(scene);
+    alloc_free(text);
 }
 
 static void test_many_corners(void)
@@ -266,8 +326,29 @@ static void test_materials(void)
                colour_is(material_at(scene, 7)->emission, 3, 3, 3),
            "the later of two definitions counts");
     tap_ok(repairs.missing_materials == 0 && repairs.missing_libraries == 0 &&
-               repairs.first_missing[0] == '\0',
+               repairs.first_material[0] == '\0' && repairs.first_library[0] == '\0',
            "nothing is missing");
+    scene_destroy(scene);
+}
+
+static void test_notes(void)
+{
+    write_file(MTL, "newmtl opaque\nKd 1 1 1\nd 1.0\nTr 1.0\nnewmtl also opaque\nTr 1\nd 1\n"
+                    "newmtl clear\nd 0.5\nnewmtl glass\nTr 0.25\nnewmtl halo\nd -halo 0.5\n"
+                    "newmtl words\nd\nTr none\nnewmtl painted\nmap_Kd a b.png\n"
+                    "newmtl dyed\nmap_Kd x.png\nKd 0.25 0 0\nnewmtl dyed too\nKd 0.25 0 0\n"
+                    "map_Kd x.png\nnewmtl unused\nd 0\nmap_Kd x.png\n");
+    struct scene *scene = read_scene(
+        "mtllib obj_test.mtl\n" CORNERS "usemtl opaque\nf 1 2 3\nusemtl also opaque\nf 1 2 3\n"
+        "usemtl clear\nf 1 2 3\nf 1 2 3\nusemtl glass\nf 1 2 3\nusemtl halo\nf 1 2 3\n"
+        "usemtl words\nf 1 2 3\nusemtl painted\nf 1 2 3\nusemtl dyed\nf 1 2 3\n"
+        "usemtl dyed too\nf 1 2 3\n");
+    tap_ok(scene && repairs.transparent == 3, "transparent materials that are used are counted");
+    tap_ok(scene && repairs.textured == 3 &&
+               colour_is(material_at(scene, 7)->reflectance, 0.5, 0.5, 0.5) &&
+               colour_is(material_at(scene, 8)->reflectance, 0.25, 0, 0) &&
+               colour_is(material_at(scene, 9)->reflectance, 0.25, 0, 0),
+           "textures too; without Kd they are grey");
     scene_destroy(scene);
 }
 
@@ -277,7 +358,7 @@ static void test_missing(void)
         read_scene(CORNERS "usemtl none\nf 1 2 3\nusemtl nothing\nf 1 2 3\nusemtl none\nf 1 2 3\n"
                            "usemtl no face\n");
     tap_ok(scene && repairs.missing_materials == 2 && repairs.missing_libraries == 0 &&
-               strcmp(repairs.first_missing, "none") == 0,
+               strcmp(repairs.first_material, "none") == 0,
            "a missing material counts once for its name");
     tap_ok(scene && colour_is(material_at(scene, 1)->reflectance, 0.5, 0.5, 0.5) &&
                colour_is(material_at(scene, 1)->emission, 0, 0, 0),
@@ -286,7 +367,8 @@ static void test_missing(void)
     scene = read_scene("mtllib nowhere.mtl\nmtllib nowhere.mtl\nmtllib\nmtllib .\n" CORNERS
                        "usemtl none\nf 1 2 3\n");
     tap_ok(scene && repairs.missing_libraries == 2 && repairs.missing_materials == 1 &&
-               strcmp(repairs.first_missing, "nowhere.mtl") == 0,
+               strcmp(repairs.first_material, "none") == 0 &&
+               strcmp(repairs.first_library, "nowhere.mtl") == 0,
            "a missing library counts once for its name");
     scene_destroy(scene);
 }
@@ -312,6 +394,14 @@ static void test_libraries(void)
     check_libraries("two of four", "mtllib x.mtl\tobj\\ test\\ two.mtl y.mtl  obj_test.mtl", 2);
     check_libraries("names with folders",
                     "mtllib ../build/obj_test.mtl\nmtllib ./obj test two.mtl", 0);
+    check_libraries("folders of other machines",
+                    "mtllib /home/a/obj_test.mtl\nmtllib C:\\a\\b c\\obj test two.mtl", 0);
+    check_libraries("a folder with a blank: perhaps a list",
+                    "mtllib /home/a b/obj_test.mtl\nmtllib obj test two.mtl", 1);
+    check_libraries("no file is a folder's name",
+                    "mtllib obj_test.mtl a/b/ obj\\ test\\ two.mtl a\\ /", 2);
+    check_libraries("a list, not a folder with a blank", "mtllib obj_test.mtl c/obj_test.mtl\n"
+                    "mtllib x obj_test.mtl\nmtllib c/d/obj test two.mtl", 1);
     char *text = alloc_array(20000, 1);
     for (int i = 0; i <= 1000; i++)
         sprintf(text + strlen(text), "mtllib x%d\n", i);
@@ -407,9 +497,12 @@ int main(void)
     test_long_file();
     test_vertices();
     test_corners();
+    test_normals();
     test_polygons();
+    test_spiral();
     test_many_corners();
     test_materials();
+    test_notes();
     test_missing();
     test_libraries();
     test_many_names();

@@ -119,6 +119,37 @@ static void test_box(void)
     soup_free(&soup);
 }
 
+/* The normals of the file, each turned to the front of the root. */
+static void test_normals(void)
+{
+    struct soup soup = {0};
+    make_soup(&soup);
+    struct scene *scene = prepared(&soup, 1.0, 0.0);
+    scene->two_sided = true;
+    struct vec3 none = scene_root_normal(scene, COUNT - 1, 2);
+    tap_ok(vec3_length(none) == 0.0, "no normals, no normal");
+    scene_add_normals(scene);
+    bool right = true;
+    for (int32_t i = 0; i < COUNT; i++) {
+        for (int k = 0; k < 3; k++) {
+            struct vec3 side = scene->triangles[i].corner[k];
+            struct vec3 x = vec3_add(scene->planes[i].normal, vec3_scale(side, 0.1 * k));
+            scene->normals[3 * i + k] = vec3_scale(x, i % 2 ? 1.0 : -1.0);
+        }
+        for (int k = 0; k < 3; k++) {
+            struct vec3 front = scene_root_normal(scene, i, k);
+            struct vec3 back = scene_root_normal(scene, i + COUNT, (3 - k) % 3);
+            right = right && vec3_dot(front, scene->planes[i].normal) >= 0.0 &&
+                    fabs(vec3_dot(front, scene->normals[3 * i + k])) ==
+                        vec3_dot(front, front) &&
+                    vec3_length(vec3_add(front, back)) == 0.0;
+        }
+    }
+    tap_ok(right, "normals are turned to the front, those of twins to the other");
+    scene_destroy(scene);
+    soup_free(&soup);
+}
+
 static void test_twins(void)
 {
     struct soup soup = {0};
@@ -272,6 +303,7 @@ int main(void)
     test_scaling();
     test_offset();
     test_box();
+    test_normals();
     test_twins();
     test_power();
     test_clamping();

@@ -1,7 +1,8 @@
 /* Tests of io/shading.h. Proved are: the interpolation is continuous over every smooth surface,
  * also where large leaves meet small ones and where roots meet; it keeps constants and, on a
  * regular subdivision, linear functions; it neither depends on the order in which patches were
- * made nor blends what must stay apart (materials, creases, sides, the dark under a box).
+ * made nor blends what must stay apart (materials, creases, sides, the dark under a box); facets
+ * whose normals agree show one curved surface.
  *
  *      3-------2     the square: roots (0, 1, 2) and (0, 2, 3), whose common edge is the
  *      | 1  /  |     diagonal. Barycentric coordinates of all leaves are dyadic numbers, so a
@@ -66,6 +67,34 @@ static struct scene *folded_square(double lift)
     put_square(scene, 0, (struct vec3){0.0, 0.0, 0.0}, (struct vec3){1.0, 0.0, 0.0},
                (struct vec3){1.0, 1.0, 0.0}, (struct vec3){0.0, 1.0, lift});
     return scene;
+}
+
+static struct vec3 unit_or_zero(struct vec3 x)
+{
+    double length = vec3_length(x);
+    return length > 0.0 ? vec3_scale(x, 1.0 / length) : x;
+}
+
+/* The square folded by 45 degrees about its diagonal, with the same normal at all corners of both
+ * roots but for corner 2 of root 1 = (0, 2, 3), which is one end of the diagonal. */
+static struct scene *curved_square(struct vec3 normal, struct vec3 other)
+{
+    struct scene *scene = folded_square(0.0);
+    double half = sqrt(0.125); /* cos 45 / 2, sin 45 / 2 */
+    scene->triangles[1].corner[2] = (struct vec3){0.5 - half, 0.5 + half, 0.5};
+    scene_add_normals(scene);
+    for (int i = 0; i < 6; i++)
+        scene->normals[i] = unit_or_zero(normal);
+    scene->normals[3 + 1] = unit_or_zero(other);
+    return scene;
+}
+
+static const struct vec3 UP = {0.0, 0.0, 1.0};
+static const struct vec3 BETWEEN = {0.27059805007309849, -0.27059805007309849, 0.92387953251128674};
+
+static struct stage curved_stage(void)
+{
+    return stage_of(curved_square(BETWEEN, BETWEEN));
 }
 
 static struct stage square_stage(void)
@@ -219,12 +248,12 @@ static void visit_edges(const struct stage *stage, struct random *random, struct
     }
 }
 
-static void test_continuity(void)
+static void test_continuity(const char *name, struct stage (*make)(void))
 {
     struct random random = random_seed(11);
     struct continuity seen = {0, 0, 0.0};
     for (int round = 0; round < 30; round++) {
-        struct stage stage = square_stage();
+        struct stage stage = make();
         split_randomly(stage.forest, &random, 0.2 + 0.01 * round);
         set_randomly(stage.forest, &random);
         shade(&stage, false);
@@ -232,8 +261,8 @@ static void test_continuity(void)
         dismantle(&stage);
     }
     tap_ok(seen.crossings > 20000 && seen.over_diagonal > 1000 && seen.largest < CONTINUOUS,
-           "continuous at %d points, %d of them between roots (largest jump %.1e)", seen.crossings,
-           seen.over_diagonal, seen.largest);
+           "%s: continuous at %d points, %d of them between roots (largest jump %.1e)", name,
+           seen.crossings, seen.over_diagonal, seen.largest);
 }
 
 /* One root stays whole, the other one is split down to the diagonal in one place. */
@@ -504,6 +533,94 @@ static void test_materials_and_sides(void)
     dismantle(&stage);
 }
 
+/* --- curved surfaces --- */
+
+static void test_curved_edges(void)
+{
+    check_jump("a fold of 45 degrees, normals agree", curved_square(UP, UP), 0.0);
+    check_jump("normals agree within 2 degrees",
+               curved_square(UP, (struct vec3){tan(0.0349), 0.0, 1.0}), 0.0);
+    check_jump("normals are 3 degrees apart at one end",
+               curved_square(UP, (struct vec3){tan(0.0524), 0.0, 1.0}), 1.0);
+    check_jump("no normal at one end",
+               curved_square(UP, (struct vec3){0.0, 0.0, 0.0}), 1.0);
+    check_jump("normals on the back agree like those on the front",
+               curved_square(UP, (struct vec3){0.0, 0.0, -1.0}), 0.0);
+    struct scene *scene = curved_square(UP, UP);
+    scene->material_of[1] = 1;
+    check_jump("normals agree, materials do not", scene, 1.0);
+}
+
+/* Root 0 has the radiosity 1, root 1 has 0, and the normals lie between their planes: the two
+ * count alike, the diagonal has 1/2, and in between all is linear however fine the leaves are. */
+static void test_curved_values(void)
+{
+    struct random random = random_seed(11);
+    for (int level = 0; level <= 4; level++) {
+        struct stage stage = curved_stage();
+        stage.forest->patches[0].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
+        split_regularly(stage.forest, level);
+        shade(&stage, false);
+        double worst = 0.0;
+        for (int i = 0; i < 1000; i++) {
+            struct vec3 w = random_weights(&random);
+            double first = 1.0 - 0.5 * (w.x + w.z), second = 0.5 * (w.x + w.y);
+            worst = fmax(worst, difference(value_at(&stage, 0, w),
+                                           (struct rgb){{first, first, first}}));
+            worst = fmax(worst, difference(value_at(&stage, 1, w),
+                                           (struct rgb){{second, second, second}}));
+        }
+        tap_ok(worst < 1e-9, "curved: linear from facet to facet, level %d (%.1e)", level, worst);
+        dismantle(&stage);
+    }
+}
+
+/* The diagonal belongs to the root whose own normal it has. */
+static void test_flat_face_with_curved_edge(void)
+{
+    struct stage stage = stage_of(curved_square(UP, UP));
+    jump_of(&stage);
+    double value = value_at(&stage, 0, (struct vec3){0.5, 0.0, 0.5}).band[0];
+    tap_ok(value > 0.99 && value <= 1.0, "a flat face keeps its light (%.4f of it)", value);
+    dismantle(&stage);
+}
+
+/* Where light and dark leaves meet, shifts do not go below 0. */
+static void test_no_negative_light(void)
+{
+    struct random random = random_seed(6);
+    struct stage stage = curved_stage();
+    split_randomly(stage.forest, &random, 0.4);
+    for (int32_t p = 0; p < stage.forest->count; p++)
+        stage.forest->patches[p].radiosity.band[0] = (double)(random_bits(&random) % 2);
+    shade(&stage, false);
+    bool right = true;
+    for (int64_t v = 0; v < stage.shading->vertex_count; v++)
+        right = right && stage.shading->values[v].band[0] >= 0.0;
+    tap_ok(right, "curved: no negative light");
+    dismantle(&stage);
+}
+
+/* Normals change nothing on a plane, to the bit. */
+static void test_normals_on_a_plane(void)
+{
+    struct stage plain = square_stage(), with = square_stage();
+    scene_add_normals(with.scene);
+    for (int i = 0; i < 6; i++)
+        with.scene->normals[i] = i == 4 ? (struct vec3){0.6, 0.0, 0.8} : UP;
+    struct random random = random_seed(5), again = random;
+    split_randomly(plain.forest, &random, 0.5);
+    split_randomly(with.forest, &again, 0.5);
+    set_randomly(plain.forest, &random);
+    set_randomly(with.forest, &again);
+    shade(&plain, false);
+    shade(&with, false);
+    tap_ok(plain.forest->count > 20 && vertices_agree(plain.shading, with.shading),
+           "normals on a plane change nothing");
+    dismantle(&plain);
+    dismantle(&with);
+}
+
 /* Twins: fronts blend with fronts (roots 0, 1), backs with backs (2, 3), not with each other. */
 static void test_two_sided(void)
 {
@@ -667,7 +784,8 @@ static void test_dropped_triangle(void)
 
 int main(void)
 {
-    test_continuity();
+    test_continuity("flat", square_stage);
+    test_continuity("curved", curved_stage);
     test_large_beside_small();
     test_jumps_are_seen();
     test_constant();
@@ -677,6 +795,11 @@ int main(void)
     test_vertex_order();
     test_creases();
     test_materials_and_sides();
+    test_curved_edges();
+    test_curved_values();
+    test_flat_face_with_curved_edge();
+    test_no_negative_light();
+    test_normals_on_a_plane();
     test_two_sided();
     test_covered();
     test_partly_covered();

@@ -5,11 +5,13 @@
  * Lines and words are compared in one string, "1:first|2:second|". */
 #include "io/text.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "tests/random.h"
 #include "tests/tap.h"
 
 #define FILE_NAME "build/text_test.txt"
@@ -176,6 +178,50 @@ static void test_numbers(void)
     }
 }
 
+/* Appends up to `most` random digits, often zeros and nines. */
+static char *put_digits(char *to, struct random *random, int most)
+{
+    int kind = (int)(random_bits(random) % 4);
+    for (int count = (int)(random_bits(random) % (uint64_t)(most + 1)); count > 0; count--)
+        *to++ = kind == 0 ? '0' : kind == 1 ? '9' : (char)('0' + random_bits(random) % 10);
+    return to;
+}
+
+/* The same double as strtod gives, and a number where it is one to the last character. */
+static void test_against_strtod(void)
+{
+    static const char *const doubtful[] = {
+        "9007199254740992", "9007199254740993", "9007199254740991e22", "9007199254740993e-22",
+        "1e22", "1e23", "1e-22", "1e-23", "-0", "-0.0", "0e99999999999999999999", "8.5e22",
+        "123456789012345678901234567890", "0.000000000000000000000000000001",
+        "00000000000000000000000001.5", "9007199254740992.00", "3e-324", "4.9e-324", "1e-400",
+        "179769313486231570814527423731704356798070e267", "1.e5", ".5e+1", "+.5E-1", "2e0000000001"};
+    struct random random = random_seed(3);
+    int numbers = 0, wrong = 0, fixed = (int)(sizeof doubtful / sizeof doubtful[0]);
+    for (int round = 0; round < 300000; round++) {
+        char word[120], *to = word, *end;
+        if (random_bits(&random) % 2)
+            *to++ = "+-"[random_bits(&random) % 2];
+        to = put_digits(to, &random, 20);
+        if (random_bits(&random) % 2)
+            *to++ = '.';
+        to = put_digits(to, &random, 20);
+        if (random_bits(&random) % 2)
+            to += sprintf(to, "%c%d", "eE"[round % 2], (int)(random_bits(&random) % 80) - 40);
+        *to = '\0';
+        const char *tried = round < fixed ? doubtful[round] : word;
+        double value = -7.0, expected = strtod(tried, &end);
+        bool is_number = end != tried && *end == '\0' && fabs(expected) < HUGE_VAL;
+        numbers += is_number;
+        bool same = text_is_number(tried, &value) == is_number &&
+                    (!is_number || memcmp(&value, &expected, sizeof value) == 0);
+        wrong += !same;
+        if (!same && wrong == 1)
+            printf("# '%s'\n", tried);
+    }
+    tap_ok(wrong == 0 && numbers > 200000, "%d random numbers are those of strtod", numbers);
+}
+
 /* An empty message: the word is a number in range. */
 static void check_number(const char *word, const char *message)
 {
@@ -253,11 +299,46 @@ static void check_binary(const char *name, const char *bytes, size_t count)
     text_free(&text);
 }
 
+static void check_utf16(const char *name, const char *bytes, size_t count)
+{
+    struct text text;
+    bool good = read_bytes(&text, bytes, count);
+    tap_ok(!good && error.code == EXIT_USAGE &&
+               is_same(error.text, FILE_NAME ": is UTF-16; save it as UTF-8"),
+           "UTF-16, %s", name);
+    error = (struct error){EXIT_DONE, ""};
+    good = text_of_bytes(&text, "here", bytes, count, &error);
+    tap_ok(!good && is_same(error.text, "here: is UTF-16; save it as UTF-8"), "also in memory");
+}
+
+static void test_bytes(void)
+{
+    static const char bytes[] = "\xEF\xBB\xBF" "one\r\ntwo!";
+    struct text text;
+    error = (struct error){EXIT_DONE, ""};
+    bool good = text_of_bytes(&text, "here", bytes, sizeof bytes - 2, &error);
+    tap_ok(good && is_same(text_line(&text), "one") && is_same(text_line(&text), "two") &&
+               !text_line(&text) && text.line == 2,
+           "bytes in memory, as many as there are");
+    text_free(&text);
+    good = text_of_bytes(&text, "here", "", 0, &error);
+    tap_ok(good && !text_line(&text), "no bytes");
+    text_free(&text);
+    tap_ok(!text_of_bytes(&text, "here", "a\0", 2, &error) &&
+               is_same(error.text, "here: not a text file"),
+           "bytes that are no text");
+}
+
 static void test_binary(void)
 {
     check_binary("a zero byte", "a\n\0b", 4);
     check_binary("a zero byte at the end", "a\n", 3);
-    check_binary("UTF-16", "\xFF\xFE" "a\0\n\0", 6);
+    check_utf16("little-endian", "\xFF\xFE" "a\0\n\0", 6);
+    check_utf16("big-endian", "\xFE\xFF\0a\0\n", 6);
+    check_utf16("little-endian without a mark", "v\0 \0" "1\0", 6);
+    check_utf16("big-endian without a mark", "\0v\0 \0" "1", 6);
+    check_utf16("without control characters", "\xFE\xFF\x4E\x2D\x65\x87", 6);
+    check_binary("zero bytes in pairs", "\0\0\0\0", 4);
     check_binary("a bell", "a\a\n", 3);
     check_binary("an escape", "\033[0m", 4);
     char *bytes = alloc_array(3 * BLOCK, 1);
@@ -313,8 +394,10 @@ int main(void)
     test_sizes();
     test_words();
     test_numbers();
+    test_against_strtod();
     test_number_errors();
     test_integers();
+    test_bytes();
     test_binary();
     check_unreadable("build/text_test_absent.txt");
     check_unreadable("build/text_test_absent/folder.txt");
