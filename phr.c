@@ -19,6 +19,7 @@
 #include "io/stats.h"
 #include "io/table.h"
 #include "io/validate.h"
+#include "io/viewpoint.h"
 #include "mpi/broadcast.h"
 #include "mpi/pairs.h"
 #include "mpi/picture.h"
@@ -116,19 +117,16 @@ static bool read_scene(struct run *run)
     return run->options.form_factors ? check_groups(run, error) : check_emission(run, error);
 }
 
+/* The view file, if there is one. */
 static bool read_camera(struct run *run)
 {
     const struct options *options = &run->options;
-    bool sized = options->width > 0;
-    if (!options->view) {
-        run->camera = camera_of_scene(run->scene, sized ? options->width : CAMERA_SIZE,
-                                      sized ? options->height : CAMERA_SIZE);
-        return true;
-    }
-    if (!camera_read(options->view, &run->camera, &run->error))
+    if (options->view && !camera_read(options->view, &run->camera, &run->error))
         return false;
-    run->camera.width = sized ? options->width : run->camera.width;
-    run->camera.height = sized ? options->height : run->camera.height;
+    if (options->width > 0 || !options->view) {
+        run->camera.width = options->width > 0 ? options->width : CAMERA_SIZE;
+        run->camera.height = options->width > 0 ? options->height : CAMERA_SIZE;
+    }
     return true;
 }
 
@@ -273,9 +271,11 @@ static bool show_results(struct run *run)
     struct shading *shading = shade_leaves(run);
     float *picture = NULL;
     if (wants_picture(options)) {
-        float *rows = render_rows(shading, run->octree, &run->camera, options->samples, comm->rank,
-                                  comm->size);
-        picture = picture_gather(comm, rows, 3 * (size_t)run->camera.width, run->camera.height);
+        struct camera *camera = &run->camera;
+        if (!options->view) /* all ranks choose alike */
+            *camera = viewpoint_choose(run->scene, run->octree, camera->width, camera->height);
+        float *rows = render_rows(shading, run->octree, camera, options->samples, comm->rank, comm->size);
+        picture = picture_gather(comm, rows, 3 * (size_t)camera->width, camera->height);
         alloc_free(rows);
     }
     run->solver->seconds[PHASE_RENDER] = comm_seconds() - start;

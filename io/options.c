@@ -287,7 +287,7 @@ void options_print_help(FILE *file)
           "  -o FILE             output, repeatable; by suffix: .ppm (sRGB picture),\n"
           "                      .pfm (linear picture), .ply (solution mesh)\n"
           "  --view FILE         camera: lines eye x y z, at x y z, up x y z, fov degrees,\n"
-          "                      size w h; default: all of the scene, seen from outside\n"
+          "                      size w h; default: chosen by what is seen\n"
           "  --size WxH          picture size (512x512 or what the view says)\n"
           "  --samples N         N x N samples a pixel, 1..64 (3)\n"
           "  --exposure X        factor on radiosity before sRGB (chosen from the picture)\n"
