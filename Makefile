@@ -45,7 +45,7 @@ RAD = closure conjugate flux formfactor id link method oracle patch pushpull tre
       viewfactor
 MPI = accuracy assign broadcast closing comm gather linking migrate pairs picture plan refinement \
       scatter solve solver vote
-IO = camera cases image mesh mtl obj options output render shading stats table text \
+IO = camera cases image mesh mtl obj options output progress render shading stats table text \
      tone validate viewpoint
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
@@ -55,7 +55,7 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary id triangle lambert hull scene polygon contour octree bundles flux patch \
         compact formfactor link oracle pushpull closure treecode plan assign text obj output tone \
-        image camera viewpoint shading options paths norms cie furnace stability exchange conjugate exact converge
+        image camera viewpoint shading options progress paths norms cie furnace stability exchange conjugate exact converge
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct tracing
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)

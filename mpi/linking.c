@@ -35,12 +35,14 @@ void solver_link_roots(struct solver *solver)
     struct facet *facets = alloc_array((size_t)roots, sizeof *facets);
     for (int32_t i = 0; i < roots; i++)
         facets[i] = facet_make(forest, i);
-    for (int32_t i = 0; i < roots; i++)
+    for (int32_t i = 0; i < roots; i++) {
+        progress_tick_pairs(solver->progress, i, roots);
         for (int32_t block = i / BLOCK; block * BLOCK < roots; block++) {
             int32_t end = (block + 1) * BLOCK < roots ? (block + 1) * BLOCK : roots;
             if ((i + block) % solver->comm->size == solver->comm->rank)
                 link_block(solver, facets, i, block * BLOCK, end);
         }
+    }
     alloc_free(facets);
     solver->seconds[PHASE_LINKING] += comm_seconds() - start;
 }
