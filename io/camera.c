@@ -7,7 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/text.h"
 
 static const double PI = 3.14159265358979323846;
 static const double MARGIN = 1.04; /* around a framed scene */
@@ -118,20 +117,26 @@ static bool check_view(const char *path, struct camera *camera, const struct vie
     return true;
 }
 
-bool camera_read(const char *path, struct camera *camera, struct error *error)
+bool camera_of_text(struct camera *camera, struct text *text, struct error *error)
 {
     *camera = (struct camera){.up = {0.0, 1.0, 0.0}, .fov = 45.0, .width = CAMERA_SIZE,
                               .height = CAMERA_SIZE};
+    struct view_seen seen = {false, false, false};
+    char *line;
+    while ((line = text_line(text)) != NULL)
+        if (!read_view_line(text, line, camera, &seen, error))
+            return false;
+    return check_view(text->path, camera, &seen, error);
+}
+
+bool camera_read(const char *path, struct camera *camera, struct error *error)
+{
     struct text text;
     if (!text_read(&text, path, error))
         return false;
-    struct view_seen seen = {false, false, false};
-    char *line;
-    while ((line = text_line(&text)) != NULL)
-        if (!read_view_line(&text, line, camera, &seen, error))
-            break;
+    bool good = camera_of_text(camera, &text, error);
     text_free(&text);
-    return error->code == EXIT_DONE && check_view(path, camera, &seen, error);
+    return good;
 }
 
 void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 towards)
