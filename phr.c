@@ -292,7 +292,8 @@ static bool show_results(struct run *run)
     if (wants_picture(options)) {
         struct camera *camera = &run->camera;
         if (!options->view) /* all ranks choose alike */
-            *camera = viewpoint_choose(run->scene, run->octree, camera->width, camera->height);
+            *camera = viewpoint_choose(run->scene, run->octree, run->solver->method.forest,
+                                       camera->width, camera->height);
         progress_begin(&run->progress.progress, "rendering", -1, 0);
         float *rows = render_rows(shading, run->octree, camera, options->samples, comm->rank, comm->size,
                                   &run->progress.progress);

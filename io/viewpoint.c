@@ -9,7 +9,8 @@
  * around. That view is taken which is deep, as of square roots of distances, and has something in it:
  * the material changes often from ray to ray. The root keeps a view through a gap from beating one of
  * the whole room, the materials an empty wall. Such an eye is never behind a wall or in a cupboard, as
- * it sees fronts, and deep views begin at corners by themselves.
+ * it sees fronts, and deep views begin at corners by themselves. What no light reaches does not count,
+ * so that of several rooms a lit one is seen.
  *
  * An open scene is seen whole, from the direction in which the picture has the fewest backs; from
  * the front and a little aside and above unless another is clearly better.
@@ -44,21 +45,22 @@ static const double OUTSIDE_FOV = 40.0; /* degrees */
 struct site {
     const struct scene *scene;
     const struct octree *octree;
+    const struct forest *forest; /* or NULL */
     bool z_up;
 };
 
 /* What a ray meets: how far away a front is (> 0), or a back, or nothing. */
 enum { BACK = 0, NOTHING = -1 };
 
-/* `*material` becomes that of the front. */
+/* `*triangle` becomes what is met, if something is. */
 static double look_at(const struct site *site, struct vec3 from, struct vec3 direction,
-                      int32_t *material)
+                      int32_t *triangle)
 {
     struct octree_hit hit;
     struct octree_counts counts = {0};
     if (!octree_first_hit(site->octree, from, direction, false, &hit, &counts))
         return NOTHING;
-    *material = site->scene->material_of[hit.triangle];
+    *triangle = hit.triangle;
     if (!hit.front && !site->scene->two_sided)
         return BACK;
     const struct triangle *t = &site->scene->triangles[hit.triangle];
@@ -70,8 +72,8 @@ static double look_at(const struct site *site, struct vec3 from, struct vec3 dir
 
 static double look(const struct site *site, struct vec3 from, struct vec3 direction)
 {
-    int32_t material;
-    return look_at(site, from, direction, &material);
+    int32_t triangle;
+    return look_at(site, from, direction, &triangle);
 }
 
 /* A direction from its parts along two level axes and up. */
@@ -161,15 +163,24 @@ static struct vec3 stand(const struct site *site, struct vec3 point)
     return vec3_add(point, lift(site, 0.0, 0.0, rise));
 }
 
+static bool is_lit(const struct site *site, int32_t triangle)
+{
+    const struct forest *forest = site->forest;
+    int32_t twin = site->scene->two_sided ? triangle + site->scene->input_count : triangle;
+    return !forest || rgb_sum(forest->patches[triangle].radiosity) > 0.0 ||
+           rgb_sum(forest->patches[twin].radiosity) > 0.0;
+}
+
 /* How good the rays above and below one azimuth are. */
 static double rate_azimuth(const struct site *site, struct vec3 eye, int k)
 {
     double depth = 0.0;
-    int32_t material = 0, before = 0;
+    int32_t triangle = 0, before = 0;
     int changes = 0;
     for (int s = 0; s < SLOPES; s++) {
-        double met = look_at(site, eye, azimuth(site, k, SLOPE[s]), &material);
-        depth += met > 0.0 ? sqrt(met) : 0.0;
+        double met = look_at(site, eye, azimuth(site, k, SLOPE[s]), &triangle);
+        int32_t material = site->scene->material_of[triangle];
+        depth += met > 0.0 && is_lit(site, triangle) ? sqrt(met) : 0.0;
         changes += s > 0 && material != before;
         before = material;
     }
@@ -254,10 +265,10 @@ static void stand_outside(const struct site *site, struct camera *camera)
     *camera = chosen;
 }
 
-struct camera viewpoint_choose(const struct scene *scene, const struct octree *octree, int width,
-                               int height)
+struct camera viewpoint_choose(const struct scene *scene, const struct octree *octree,
+                               const struct forest *forest, int width, int height)
 {
-    struct site site = {.scene = scene, .octree = octree};
+    struct site site = {.scene = scene, .octree = octree, .forest = forest};
     bool free[GRID * GRID * GRID];
     bool is_room = find_room(&site, free);
     site.z_up = find_up(scene, is_room);

@@ -68,7 +68,7 @@ static struct shot shoot(struct scene *scene, int width, int height)
     scene_prepare_or_exit(scene);
     struct shot shot = {.scene = scene};
     shot.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
-    shot.camera = viewpoint_choose(scene, shot.octree, width, height);
+    shot.camera = viewpoint_choose(scene, shot.octree, NULL, width, height);
     shot.sight = look(scene, shot.octree, &shot.camera);
     return shot;
 }
@@ -199,6 +199,24 @@ static void test_two_sided(void)
     check_room("two-sided faces", shoot(scene, 512, 512), 0.2, true);
 }
 
+/* Two rooms, the larger one dark, no light between them. */
+static void test_dark_room(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, ZERO, (struct vec3){8.0, 3.0, 6.0}, 1, true);
+    int32_t lit = (int32_t)soup.count;
+    soup_add_box(&soup, (struct vec3){8.1, 0.0, 0.0}, (struct vec3){11.0, 3.0, 6.0}, 1, true);
+    struct world world = world_make(scene_of_soup(&soup, 1));
+    soup_free(&soup);
+    const struct octree *octree = world.octree;
+    struct camera any = viewpoint_choose(world.scene, octree, NULL, 512, 512);
+    for (int32_t i = lit; i < world.scene->input_count; i++)
+        world.method.forest->patches[i].radiosity = (struct rgb){{0.0, 0.1, 0.0}};
+    struct camera seen = viewpoint_choose(world.scene, octree, world.method.forest, 512, 512);
+    tap_ok(any.eye.x < 8.0 && seen.eye.x > 8.1, "of two rooms, the one with light");
+    world_free(&world);
+}
+
 /* --- open scenes --- */
 
 /* From outside, by fronts alone, with at least `share` of the picture; consumes the shot. */
@@ -263,6 +281,7 @@ int main(void)
     test_furniture();
     test_generated();
     test_two_sided();
+    test_dark_room();
     test_objects();
     test_lamp_above();
     test_cornell();
