@@ -47,8 +47,8 @@ RAD = boxtree closure conjugate flux formfactor id link linking method oracle pa
       viewfactor
 MPI = accuracy assign broadcast closing comm gather linking migrate pairs picture plan refinement \
       scatter solve solver vote
-IO = camera cases image library mesh mtl obj options output render shading stats surface table text \
-     tone validate
+IO = camera cases image library mesh mtl obj options output progress render shading stats surface \
+     table text tone validate viewpoint
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
 MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)
@@ -57,11 +57,11 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary id triangle lambert hull scene polygon contour wall octree bundles flux patch \
         compact formfactor link linking oracle pushpull closure treecode plan assign text obj output tone \
-        image camera shading options paths norms cie furnace stability exchange conjugate exact converge
+        image camera viewpoint shading options progress paths norms cie furnace stability exchange conjugate exact converge
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct tracing
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
-FUZZERS = obj mtl
+FUZZERS = obj mtl view
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%) $(REPLAYS)
 
@@ -131,7 +131,7 @@ $(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/
 chart: $(BENCHES:%=$(BUILD)/%) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/chart.sh
 
-check: $(PHR) tests
+check: $(PHR) tests build/room
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
 

@@ -15,10 +15,12 @@
 #include "io/obj.h"
 #include "io/options.h"
 #include "io/output.h"
+#include "io/progress.h"
 #include "io/render.h"
 #include "io/stats.h"
 #include "io/table.h"
 #include "io/validate.h"
+#include "io/viewpoint.h"
 #include "mpi/broadcast.h"
 #include "mpi/pairs.h"
 #include "mpi/picture.h"
@@ -33,6 +35,7 @@ struct run {
     struct solver *solver;
     struct vote vote; /* of the last iteration */
     struct stats stats;
+    struct progress_view progress; /* on rank 0, unless --quiet */
     struct error error;
     double start; /* comm_seconds() at the beginning */
 };
@@ -41,10 +44,11 @@ struct run {
 #ifdef __GNUC__
 __attribute__((format(printf, 2, 3)))
 #endif
-static void say(const struct run *run, const char *format, ...)
+static void say(struct run *run, const char *format, ...)
 {
     if (run->comm.rank != 0 || run->options.quiet)
         return;
+    progress_view_clear(&run->progress);
     va_list arguments;
     va_start(arguments, format);
     fputs("phr: ", stderr);
@@ -55,7 +59,7 @@ static void say(const struct run *run, const char *format, ...)
 
 /* --- reading, on rank 0 --- */
 
-static void warn_repairs(const struct run *run, const struct obj_repairs *read,
+static void warn_repairs(struct run *run, const struct obj_repairs *read,
                          const struct scene_repairs *prepared)
 {
     const char *path = run->options.scene;
@@ -128,19 +132,16 @@ static bool read_scene(struct run *run)
     return run->options.form_factors ? check_groups(run, error) : check_emission(run, error);
 }
 
+/* The view file, if there is one. */
 static bool read_camera(struct run *run)
 {
     const struct options *options = &run->options;
-    bool sized = options->width > 0;
-    if (!options->view) {
-        run->camera = camera_of_scene(run->scene, sized ? options->width : CAMERA_SIZE,
-                                      sized ? options->height : CAMERA_SIZE);
-        return true;
-    }
-    if (!camera_read(options->view, &run->camera, &run->error))
+    if (options->view && !camera_read(options->view, &run->camera, &run->error))
         return false;
-    run->camera.width = sized ? options->width : run->camera.width;
-    run->camera.height = sized ? options->height : run->camera.height;
+    if (options->width > 0 || !options->view) {
+        run->camera.width = options->width > 0 ? options->width : CAMERA_SIZE;
+        run->camera.height = options->width > 0 ? options->height : CAMERA_SIZE;
+    }
     return true;
 }
 
@@ -168,7 +169,7 @@ static bool read_and_broadcast(struct run *run)
 /* --- the algorithm --- */
 
 /* With --verbose, the levels of refinement since `first`. */
-static void report_levels(const struct run *run, int64_t first)
+static void report_levels(struct run *run, int64_t first)
 {
     for (int64_t i = first; i < run->solver->level_count && run->options.verbose; i++) {
         const struct level_balance *level = &run->solver->levels[i];
@@ -178,7 +179,7 @@ static void report_levels(const struct run *run, int64_t first)
     }
 }
 
-static void report_iteration(const struct run *run)
+static void report_iteration(struct run *run)
 {
     const struct vote *vote = &run->vote;
     char bound[48] = "no bound yet on the remaining error";
@@ -188,14 +189,26 @@ static void report_iteration(const struct run *run)
         (long long)vote->links, (long long)vote->split, bound);
 }
 
+/* How far the iterations have brought the bound on the remaining error from `first` down to the
+ * tolerance: each takes off about the same part of it. */
+static double share_solved(const struct run *run, double first)
+{
+    double tolerance = run->options.criterion.tolerance, now = run->vote.remaining;
+    bool known = tolerance > 0.0 && now > tolerance && now < first && first < HUGE_VAL;
+    return known ? log(first / now) / log(first / tolerance) : 0.0;
+}
+
 /* Collective. Steps 2 to 8 of the paper's Sec. 3.2. */
 static bool compute_light(struct run *run)
 {
+    struct progress *progress = &run->progress.progress;
     struct solver *solver = solver_create(&run->comm, run->scene, run->octree,
                                           &run->options.criterion);
     run->solver = solver;
     solver->seconds[PHASE_READ] = comm_seconds() - run->start;
     say(run, "%s: %lld triangles; linking", run->options.scene, (long long)run->scene->input_count);
+    solver->progress = progress;
+    progress_begin(progress, "linking", -1, 0);
     solver_link_roots(solver);   /* 2: initial linking */
     solver_assign_roots(solver); /* 3: re-assignment by area */
     say(run, "roots are linked, %.1f s", comm_seconds() - run->start);
@@ -203,12 +216,16 @@ static bool compute_light(struct run *run)
         int64_t levels = solver->level_count;
         solver_refine(solver); /* 4: evaluate and refine, level by level */
         solver_close(solver);  /*    what each row of form factors should sum to */
+        progress_begin(progress, "solving", -1, 0);
+        double first = HUGE_VAL; /* bound on the remaining error */
         do {
             solver_transfer(solver);         /* 5: light over the links, */
             solver_gather(solver);           /*    and proxies go home */
             solver_push_pull(solver);        /* 6: push-pull on own roots */
             solver_scatter(solver);          /* 7: proxies are renewed */
             run->vote = solver_vote(solver); /* 8: is there another iteration? */
+            first = first < HUGE_VAL ? first : run->vote.remaining;
+            progress_tick(progress, share_solved(run, first));
         } while (run->vote.again);
         report_levels(run, levels);
         report_iteration(run);
@@ -285,9 +302,14 @@ static bool show_results(struct run *run)
     struct shading *shading = shade_leaves(run);
     float *picture = NULL;
     if (wants_picture(options)) {
-        float *rows = render_rows(shading, run->octree, &run->camera, options->samples, comm->rank,
-                                  comm->size);
-        picture = picture_gather(comm, rows, 3 * (size_t)run->camera.width, run->camera.height);
+        struct camera *camera = &run->camera;
+        if (!options->view) /* all ranks choose alike */
+            *camera = viewpoint_choose(run->scene, run->octree, run->solver->method.forest,
+                                       camera->width, camera->height);
+        progress_begin(&run->progress.progress, "rendering", -1, 0);
+        float *rows = render_rows(shading, run->octree, camera, options->samples, comm->rank, comm->size,
+                                  &run->progress.progress);
+        picture = picture_gather(comm, rows, 3 * (size_t)camera->width, camera->height);
         alloc_free(rows);
     }
     run->solver->seconds[PHASE_RENDER] = comm_seconds() - start;
@@ -305,6 +327,7 @@ static bool report_run(struct run *run)
 {
     run->solver->seconds[PHASE_TOTAL] = comm_seconds() - run->start;
     solver_report(run->solver, &run->vote, &run->stats);
+    progress_view_clear(&run->progress);
     if (run->comm.rank == 0) {
         if (!run->vote.converged)
             say(run, "warning: not converged after %lld iterations",
@@ -336,7 +359,9 @@ static void tabulate_factors(struct run *run)
         (long long)run->scene->input_count, (long long)run->scene->group_count);
     struct viewfactors *factors = viewfactors_create(run->scene, run->octree, criterion->epsilon,
                                                      criterion->max_level);
-    pairs_add(&run->comm, factors);
+    progress_begin(&run->progress.progress, "form factors", -1, 0);
+    pairs_add(&run->comm, factors, &run->progress.progress);
+    progress_view_clear(&run->progress);
     if (run->comm.rank == 0)
         table_print(factors, stdout);
     say(run, "%.1f s", comm_seconds() - run->start);
@@ -375,11 +400,13 @@ int main(int argc, char **argv)
     run.start = comm_seconds();
     bool parsed = check_arguments(&run, argc, argv) &&
                   options_parse(&run.options, argc, argv, &run.error);
+    if (run.comm.rank == 0 && !run.options.quiet)
+        progress_view_open(&run.progress, comm_seconds);
     if (parsed && (run.options.help || run.options.version)) {
         if (run.comm.rank == 0 && run.options.help)
             options_print_help(stdout);
         else if (run.comm.rank == 0)
-            printf("phr %s\n", PHR_VERSION);
+            printf("phr %s (%s build), MIT licence\n", PHR_VERSION, comm_build());
     } else if (parsed && run.options.validate) {
         if (run.comm.rank == 0 && !validate_print(stdout))
             error_set(&run.error, EXIT_FAILED, "form factors are worse than stated");
@@ -391,6 +418,7 @@ int main(int argc, char **argv)
     if (run.comm.rank == 0 && (fflush(stdout) != 0 || ferror(stdout)))
         error_set(&run.error, EXIT_FAILED, "cannot write to the standard output");
     comm_agree(&run.comm, &run.error);
+    progress_view_clear(&run.progress);
     if (run.error.code != EXIT_DONE && run.comm.rank == 0)
         fprintf(stderr, "phr: %s\n", run.error.text);
     release(&run);

@@ -7,9 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/text.h"
 
 static const double PI = 3.14159265358979323846;
+static const double MARGIN = 1.04; /* around a framed scene */
 
 /* Pre: 0 < x < pi / 2. */
 static double tangent(double x)
@@ -29,7 +29,7 @@ static struct vec3 unit(struct vec3 v)
 
 static bool are_parallel(struct vec3 a, struct vec3 b)
 {
-    return vec3_length(vec3_cross(a, b)) <= 1e-9 * vec3_length(a) * vec3_length(b);
+    return !(vec3_length(vec3_cross(unit(a), unit(b))) > 1e-9); /* also if one has no length */
 }
 
 /* Reads exactly `count` numbers from the rest of a line. */
@@ -39,8 +39,8 @@ static bool read_numbers(const struct text *text, char *rest, int count, double 
     for (int i = 0; i < count; i++) {
         const char *word = text_word(&rest);
         if (!word)
-            return error_set(error, EXIT_USAGE, "%s:%ld: %d numbers are needed", text->path,
-                             text->line, count);
+            return error_set(error, EXIT_USAGE, "%s:%ld: %d number%s needed", text->path,
+                             text->line, count, count == 1 ? " is" : "s are");
         if (!text_number(text, word, &values[i], error))
             return false;
     }
@@ -117,42 +117,51 @@ static bool check_view(const char *path, struct camera *camera, const struct vie
     return true;
 }
 
-bool camera_read(const char *path, struct camera *camera, struct error *error)
+bool camera_of_text(struct camera *camera, struct text *text, struct error *error)
 {
     *camera = (struct camera){.up = {0.0, 1.0, 0.0}, .fov = 45.0, .width = CAMERA_SIZE,
                               .height = CAMERA_SIZE};
+    struct view_seen seen = {false, false, false};
+    char *line;
+    while ((line = text_line(text)) != NULL)
+        if (!read_view_line(text, line, camera, &seen, error))
+            return false;
+    return check_view(text->path, camera, &seen, error);
+}
+
+bool camera_read(const char *path, struct camera *camera, struct error *error)
+{
     struct text text;
     if (!text_read(&text, path, error))
         return false;
-    struct view_seen seen = {false, false, false};
-    char *line;
-    while ((line = text_line(&text)) != NULL)
-        if (!read_view_line(&text, line, camera, &seen, error))
-            break;
+    bool good = camera_of_text(camera, &text, error);
     text_free(&text);
-    return error->code == EXIT_DONE && check_view(path, camera, &seen, error);
+    return good;
 }
 
-struct camera camera_of_scene(const struct scene *scene, int width, int height)
+void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 towards)
 {
-    struct camera camera = {.up = {0.0, 1.0, 0.0}, .fov = 40.0, .width = width, .height = height,
-                            .fronts_only = true};
-    double radius = 0.5 * vec3_length(vec3_sub(scene->high, scene->low));
-    double narrow = width < height ? (double)width / height : 1.0; /* of width and height */
-    double slope = tangent(camera.fov * PI / 360.0) * narrow;
-    /* The bounding sphere is seen whole from radius / sin = radius sqrt(1 + 1 / tan^2). */
-    double distance = 1.01 * radius * sqrt(1.0 + 1.0 / (slope * slope));
-    struct vec3 aside = unit((struct vec3){0.35, 0.35, 1.0});
-    struct vec3 middle = vec3_middle(scene->low, scene->high);
-    camera.at = scene_to_input(scene, middle);
-    camera.eye = scene_to_input(scene, vec3_add(middle, vec3_scale(aside, distance)));
-    return camera;
+    struct vec3 back = unit(towards), right = unit(vec3_cross(camera->up, back));
+    struct vec3 above = vec3_cross(back, right), middle = vec3_middle(scene->low, scene->high);
+    double slope = tangent(camera->fov * PI / 360.0), distance = 0.0;
+    double aspect = (double)camera->width / camera->height;
+    for (int k = 0; k < 8; k++) {
+        struct vec3 corner = {k & 1 ? scene->high.x : scene->low.x,
+                              k & 2 ? scene->high.y : scene->low.y,
+                              k & 4 ? scene->high.z : scene->low.z};
+        struct vec3 arm = vec3_sub(corner, middle);
+        double across = fabs(vec3_dot(arm, right)) / (slope * aspect);
+        double up = fabs(vec3_dot(arm, above)) / slope;
+        distance = fmax(distance, MARGIN * fmax(across, up) + vec3_dot(arm, back));
+    }
+    camera->at = scene_to_input(scene, middle);
+    camera->eye = scene_to_input(scene, vec3_add(middle, vec3_scale(back, distance)));
 }
 
 struct vec3 camera_ray(const struct camera *camera, double x, double y)
 {
     struct vec3 forward = unit(vec3_sub(camera->at, camera->eye));
-    struct vec3 right = unit(vec3_cross(forward, camera->up));
+    struct vec3 right = unit(vec3_cross(forward, unit(camera->up)));
     struct vec3 above = vec3_cross(right, forward);
     double half = tangent(camera->fov * PI / 360.0);
     double pixel = 2.0 * half / camera->height;

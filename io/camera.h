@@ -5,6 +5,7 @@
 #include <stdbool.h>
 
 #include "geom/scene.h"
+#include "io/text.h"
 
 enum {
     CAMERA_SIZE = 512,     /* pixels along a side, unless said */
@@ -23,10 +24,12 @@ struct camera {
  * direction), fov 45 and the size 512 512 unless said.
  * Errors: "FILE:LINE: what is wrong", EXIT_USAGE. */
 bool camera_read(const char *path, struct camera *camera, struct error *error);
+bool camera_of_text(struct camera *camera, struct text *text, struct error *error);
 
-/* A camera outside the bounding box that shows all of it in a picture of this size, looking
- * through backs, so that a closed room is seen like a doll's house. */
-struct camera camera_of_scene(const struct scene *scene, int width, int height);
+/* Puts the camera outside the bounding box of the scene, in the direction `towards` from its middle
+ * (of any length but 0, not along up), as near as all of the box is in the picture. Reads up, fov and size;
+ * writes eye and at. */
+void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 towards);
 
 /* Direction, of no certain length, of the ray through the point (x, y) of the picture, in
  * pixels from the top left corner. */

@@ -1,7 +1,8 @@
 /* The command line.
  *
  * Options are a table: a name, what kind of value follows, where it goes, and its range. --help is
- * plain text beside it, so that it reads as it prints; tests/options.c holds the two together. */
+ * plain text beside it, so that it reads as it prints, and fits a screen of 24 lines; tests/options.c
+ * holds the two together, tests/52-words.sh the man page. */
 #include "io/options.h"
 
 #include <stddef.h>
@@ -279,43 +280,25 @@ void options_free(struct options *options)
 
 void options_print_help(FILE *file)
 {
-    fputs("usage: phr [options] SCENE.obj\n"
-          "       mpiexec -n P phr [options] SCENE.obj\n"
-          "\n"
-          "Computes the light in a diffuse scene by parallel hierarchical radiosity.\n"
-          "\n"
-          "  -o FILE             output, repeatable; by suffix: .ppm (sRGB picture),\n"
-          "                      .pfm (linear picture), .ply (solution mesh)\n"
-          "  --view FILE         camera: lines eye x y z, at x y z, up x y z, fov degrees,\n"
-          "                      size w h; default: all of the scene, seen from outside\n"
-          "  --size WxH          picture size (512x512 or what the view says)\n"
-          "  --samples N         N x N samples a pixel, 1..64 (3)\n"
-          "  --exposure X        factor on radiosity before sRGB (chosen from the picture)\n"
-          "  --flat              show the constant of each leaf, without interpolation\n"
-          "  --epsilon E         split links whose error is above E of the emitted power (1e-5)\n"
-          "  --accuracy A        lower epsilon until the leaves' estimated error is below A, as in 1%\n"
-          "  --max-level N       deepest subdivision, 0..15 (10)\n"
-          "  --min-area A        smallest patch, relative to the scene's area (1e-7)\n"
-          "  --oracle WHICH      what splits a link: error, its error (default), or bf, its energy\n"
-          "  --form-factor F     polygon, from points to all of a patch (default), or disk\n"
-          "  --closure C         rows, symmetric: make form factors of enclosed leaves sum to 1;\n"
-          "                      cap: only keep them from exceeding 1 by much (default); none\n"
-          "  --solver S          cg, conjugate gradients (default), or jacobi\n"
-          "  --paper             --oracle bf --form-factor disk --closure none --solver jacobi\n"
-          "  --tolerance T       bound on the remaining iteration error, relative (1e-5)\n"
-          "  --max-iterations N  stop after N iterations in any case (1000)\n"
-          "  --two-sided         both sides of each triangle reflect and emit\n"
-          "  --alpha A           share of a link's parent in its predicted cost, 0..1 (0.5)\n"
-          "  --stats FILE        counts, power, times and balance as JSON\n"
-          "  --quiet  --verbose  less or more on stderr\n"
-          "  --validate          check all form factors against exact answers, without a scene\n"
-          "  --form-factors      print the form factors between the groups of the scene as CSV;\n"
-          "                      --epsilon is relative to the smaller group's area\n"
-          "  --help  --version\n"
-          "\n"
-          "Exit status: 0 done; 1 the computation failed; 2 bad usage or input.\n"
-          "\n"
+    fputs("usage: phr [options] SCENE.obj     or  mpiexec -n P phr [options] SCENE.obj\n"
+          "Computes the light in a diffuse scene. Defaults in brackets; more in phr(1).\n"
+          "  -o FILE          .ppm picture, .pfm linear picture, .ply mesh; repeatable\n"
+          "  --view FILE      eye x y z, at x y z, up x y z, fov deg, size w h (chosen)\n"
+          "  --size WxH       pixels (512x512)       --samples N   N x N rays a pixel (3)\n"
+          "  --exposure X     factor (automatic)     --flat        no interpolation\n"
+          "  --epsilon E      error of a link (1e-5) --accuracy A  lower it down to this\n"
+          "  --max-level N    of subdivision (10)    --min-area A  of a patch (1e-7)\n"
+          "  --tolerance T    of the solution (1e-5) --max-iterations N   at most (1000)\n"
+          "  --oracle error|bf          what splits a link: its error, or its energy\n"
+          "  --form-factor polygon|disk              --solver cg|jacobi\n"
+          "  --closure none|cap|rows|symmetric       mend row sums of form factors (cap)\n"
+          "  --paper          bf, disk, jacobi, none --two-sided   backs are fronts, too\n"
+          "  --alpha A        inherited cost (0.5)   --stats FILE  report as JSON\n"
+          "  --form-factors   print them, as CSV     --validate    check form factors\n"
+          "  --quiet          print nothing          --verbose     levels of refinement\n"
+          "  --help                                  --version\n"
+          "Exit status: 0 done; 1 the computation failed; 2 bad usage or input. Examples:\n"
           "  phr room.obj -o room.ppm\n"
-          "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o cornell.pfm\n",
+          "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n",
           file);
 }

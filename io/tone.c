@@ -3,7 +3,13 @@
  * The sRGB curve has a power in it, and pow() differs from library to library in the last bit,
  * enough to change a byte of a golden image. So codes are found by comparing with 255
  * thresholds, and these come from the inverse curve, ((s + 0.055) / 1.055)^2.4 = u^2 (u^2)^(1/5),
- * whose fifth root takes only + * / with Newton's method. */
+ * whose fifth root takes only + * / with Newton's method.
+ *
+ * The automatic exposure goes by percentiles of what is lit: an average would follow a tiny lamp that is a
+ * thousand times brighter than its room, and go down with every black pixel around an object.
+ * The 95th percentile shows such a room well, but not one whose windows are a tenth of the picture;
+ * so what is above four times the median may be cut off (a grey card then lies in the
+ * middle). And a picture that is nearly dark but for one lit spot shows the spot. */
 #include "io/tone.h"
 
 #include <stddef.h>
@@ -11,7 +17,9 @@
 
 #include "geom/alloc.h"
 
-static const double PERCENTILE = 0.95, PERCENTILE_SHOWN = 0.9;
+static const double PERCENTILE = 0.95, SHOWN = 0.9;
+static const double HIGHLIGHT = 4.0; /* medians that are not cut off */
+static const double SPOT = 16.0;     /* the 95th percentile is never shown as more than this times SHOWN */
 
 static double fifth_root(double x)
 {
@@ -71,7 +79,10 @@ double tone_automatic(const float *rgb, int64_t count)
     double exposure = 1.0;
     if (lit > 0) {
         qsort(brightest, (size_t)lit, sizeof *brightest, compare_floats);
-        exposure = PERCENTILE_SHOWN / (double)brightest[(int64_t)(PERCENTILE * (double)(lit - 1))];
+        double high = (double)brightest[(int64_t)(PERCENTILE * (double)(lit - 1))];
+        double middle = HIGHLIGHT * (double)brightest[(lit - 1) / 2];
+        double white = middle < high ? middle : high;
+        exposure = SHOWN / (white > high / SPOT ? white : high / SPOT);
     }
     alloc_free(brightest);
     return exposure;

@@ -15,8 +15,9 @@ struct tone tone_make(double exposure);
 /* The 8-bit sRGB code of a linear value. */
 uint8_t tone_encode(const struct tone *tone, double linear);
 
-/* The exposure that brings the 95th percentile of the largest bands of `count` linear RGB pixels
- * to 0.9, so that hardly any colour is cut off; black pixels do not count. 1 if all are. */
+/* The exposure for `count` linear RGB pixels, by the largest band of each that is not black: it brings to
+ * 0.9 their 95th percentile, so that hardly any colour is cut off, or four times their median if that is
+ * less, but at least a 16th of the percentile. 1 if all are black. */
 double tone_automatic(const float *rgb, int64_t count);
 
 #endif

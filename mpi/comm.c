@@ -189,6 +189,15 @@ uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes
     return all;
 }
 
+const char *comm_build(void)
+{
+#ifdef MPI_SERIAL_MPI_H
+    return "serial";
+#else
+    return "MPI";
+#endif
+}
+
 double comm_seconds(void)
 {
     return MPI_Wtime();

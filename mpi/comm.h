@@ -50,6 +50,9 @@ void *comm_exchange(const struct comm *comm, const void *records, const int *cou
  * of rank r begin, at[size] their number; at holds size + 1 ints. To be freed with alloc_free(). */
 uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes, int *at);
 
+/* "MPI", or "serial" where mpi/serial/mpi.h takes its place. */
+const char *comm_build(void);
+
 /* Seconds since some moment in the past. */
 double comm_seconds(void);
 

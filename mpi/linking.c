@@ -13,8 +13,11 @@ void solver_link_roots(struct solver *solver)
 {
     double start = comm_seconds();
     struct linking linking = linking_start(&solver->method, &solver->links);
-    for (int32_t i = solver->comm->rank; i < linking.tree->root_count; i += solver->comm->size)
+    int32_t rows = linking.tree->root_count;
+    for (int32_t i = solver->comm->rank; i < rows; i += solver->comm->size) {
+        progress_tick(solver->progress, (double)i / rows);
         linking_add_row(&linking, i);
+    }
     solver->pairs_touched = linking.touched;
     linking_end(&linking);
     solver->seconds[PHASE_LINKING] += comm_seconds() - start;

@@ -8,7 +8,8 @@
 
 #include "geom/alloc.h"
 
-static void add_own_pairs(const struct comm *comm, struct viewfactors *factors)
+static void add_own_pairs(const struct comm *comm, struct viewfactors *factors,
+                          struct progress *progress)
 {
     const struct scene *scene = factors->scene;
     int32_t roots = scene_root_count(scene);
@@ -17,18 +18,20 @@ static void add_own_pairs(const struct comm *comm, struct viewfactors *factors)
         facets[i] = (struct facet){scene_root_triangle(scene, i), scene_root_plane(scene, i),
                                    scene_root_area(scene, i), scene_input_of(scene, i)};
     int64_t dealt = 0;
-    for (int32_t i = 0; i < roots; i++)
+    for (int32_t i = 0; i < roots; i++) {
+        progress_tick_pairs(progress, i, roots);
         for (int32_t j = i + 1; j < roots; j++)
             if (facets[i].area > 0.0 && facets[j].area > 0.0 &&
                 facets_face(&facets[i], &facets[j]) && dealt++ % comm->size == comm->rank)
                 viewfactors_add(factors, i, &facets[i], j, &facets[j]);
+    }
     alloc_free(facets);
 }
 
-void pairs_add(const struct comm *comm, struct viewfactors *factors)
+void pairs_add(const struct comm *comm, struct viewfactors *factors, struct progress *progress)
 {
     const int64_t most = 1 << 20;
-    add_own_pairs(comm, factors);
+    add_own_pairs(comm, factors, progress);
     for (int64_t done = 0; done < factors->pairs; done += most) {
         int64_t left = factors->pairs - done;
         MPI_Request request;

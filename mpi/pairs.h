@@ -2,12 +2,13 @@
 #ifndef MPI_PAIRS_H
 #define MPI_PAIRS_H
 
+#include "geom/progress.h"
 #include "mpi/comm.h"
 #include "rad/viewfactor.h"
 
 /* Collective. Adds all pairs of roots that face each other to `factors`, which are all 0 and
  * alike on all ranks. All ranks end with the same exchanges; counts and links stay those of the
- * rank. */
-void pairs_add(const struct comm *comm, struct viewfactors *factors);
+ * rank. Ticks `progress`, which may be NULL. */
+void pairs_add(const struct comm *comm, struct viewfactors *factors, struct progress *progress);
 
 #endif

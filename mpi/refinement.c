@@ -143,6 +143,7 @@ static int64_t balance_load(struct solver *solver, struct link_list *prolific, i
     alloc_free(transfers);
     alloc_free(loads);
     alloc_free(notices);
+    progress_begin(solver->progress, "refining", level, total);
     done->last_links = prolific->count;
     done->last_load = load_of(prolific);
     solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
@@ -154,6 +155,8 @@ static void split_level(struct solver *solver, const struct link_list *prolific,
                         struct link_list *next)
 {
     for (int64_t i = 0; i < prolific->count; i++) {
+        if (i % 64 == 0)
+            progress_tick(solver->progress, (double)i / (double)prolific->count);
         const struct link *link = &prolific->items[i];
         struct link children[4];
         int32_t patch = oracle_patch_to_split(&solver->method, link);

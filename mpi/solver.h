@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "geom/progress.h"
 #include "mpi/comm.h"
 #include "rad/conjugate.h"
 #include "rad/link.h"
@@ -22,6 +23,7 @@ struct accuracy {
 
 struct solver {
     const struct comm *comm;  /* borrowed */
+    struct progress *progress; /* borrowed; NULL: nobody looks */
     struct method method;     /* scene, octree, forest and criterion; the forest is owned */
     struct link_list links;   /* the links that live here ("allInteractions") */
     int *owner;               /* [roots] home rank of each root */

@@ -157,7 +157,8 @@ struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct met
             absorbed += area * ((1.0 - rho) * h);
             arriving += area * (h + z);
             negative += area * (rho * fmax(0.0, -h));
-            sums.square[c] += flux_from_watts(unit, weight * rho * (z * z));
+            sums.square[c] = flux_add(sums.square[c],
+                                      flux_from_watts(unit, weight * rho * (z * z)));
             sums.largest = fmax(sums.largest, rho > 0.0 ? fabs(z) : 0.0);
         }
         sums.light += flux_from_watts(method->flux_unit, light);

@@ -1,6 +1,6 @@
 /* Tests of io/camera.h. Proved are: what a view file means and which line of it is wrong; that
- * rays make the angles that trigonometry says; and that the camera for a scene without a view
- * file has all of the scene in its picture. */
+ * rays make the angles that trigonometry says; and that a camera that frames a scene has all of it
+ * in its picture, and little more. */
 #include "io/camera.h"
 
 #include <math.h>
@@ -53,6 +53,10 @@ static void test_keywords(void)
     tap_ok(read_view(PLACE "size 1 32768\nfov 179.9\n", &camera) && camera.width == 1 &&
                camera.height == 32768,
            "extreme sizes and angles");
+    tap_ok(read_view("eye 0 0 1e100\nat 0 0 0\nup 1e100 1e100 0\n", &camera) &&
+               fabs(vec3_length(camera_ray(&camera, 256.0, 256.0)) - 1.0) < 1e-15 &&
+               vec3_length(camera_ray(&camera, 0.0, 0.0)) < 2.0,
+           "extreme coordinates");
 }
 
 static void check_refused(const char *text, const char *message)
@@ -67,7 +71,7 @@ static void test_bad_lines(void)
 {
     check_refused("eye 1 2\n", VIEW ":1: 3 numbers are needed");
     check_refused(PLACE "up\n", VIEW ":3: 3 numbers are needed");
-    check_refused(PLACE "fov\n", VIEW ":3: 1 numbers are needed");
+    check_refused(PLACE "fov\n", VIEW ":3: 1 number is needed");
     check_refused(PLACE "\nsize 5\n", VIEW ":4: 2 numbers are needed");
     check_refused(PLACE "at 1 2 3 4\n", VIEW ":3: unexpected '4'");
     check_refused(PLACE "fov 45 degrees\n", VIEW ":3: unexpected 'degrees'");
@@ -106,6 +110,43 @@ static void test_bad_views(void)
                   VIEW ": up points along the viewing direction");
     check_refused(PLACE "up 0 0 0\n", VIEW ": up points along the viewing direction");
     check_refused(PLACE "\001\n", VIEW ": not a text file");
+}
+
+/* Reads `size` bytes as a view file. True if that ends well or in one line that names the file. */
+static bool ends_well(const char *bytes, size_t size)
+{
+    struct camera camera;
+    error = (struct error){EXIT_DONE, ""};
+    FILE *file = fopen(VIEW, "wb");
+    bool written = file && fwrite(bytes, 1, size, file) == size;
+    if ((file && fclose(file) != 0) || !written)
+        return false;
+    if (camera_read(VIEW, &camera, &error))
+        return error.code == EXIT_DONE && camera.fov > 0.0 && camera.fov < 180.0 &&
+               camera.width >= 1 && camera.height >= 1;
+    return error.code == EXIT_USAGE && strncmp(error.text, VIEW ":", strlen(VIEW) + 1) == 0 &&
+           !strchr(error.text, '\n');
+}
+
+static void test_damaged_views(void)
+{
+    static const char GOOD[] = "# a camera\r\neye 1 2.5e0 -3\nat 0 0 \\\n0\nup 0 1 0\n"
+                               "fov 39.3\nsize 64 48\n";
+    char bytes[sizeof GOOD];
+    size_t size = sizeof GOOD - 1, right = 0;
+    for (size_t cut = 0; cut <= size; cut++)
+        right += ends_well(GOOD, cut);
+    tap_ok(right == size + 1, "a view cut at every byte ends well or is refused");
+    right = 0;
+    for (size_t i = 0; i < size; i++) {
+        static const int FLIPS[] = {0x01, 0x02, 0x04, 0x08, 0x10, 0x20, 0x40, 0x80, 0xff};
+        for (size_t k = 0; k < sizeof FLIPS / sizeof FLIPS[0]; k++) {
+            memcpy(bytes, GOOD, size);
+            bytes[i] = (char)(bytes[i] ^ FLIPS[k]);
+            right += ends_well(bytes, size);
+        }
+    }
+    tap_ok(right == 9 * size, "with every bit and every byte flipped, too");
 }
 
 static void test_missing_view(void)
@@ -194,7 +235,7 @@ static void test_directions(void)
     tap_ok(right == 1000, "1000 cameras look at `at` with `up` above (%d)", right);
 }
 
-/* --- the camera of a scene --- */
+/* --- a camera that frames a scene --- */
 
 /* Whether the point is in front of the camera and in its picture. Solves
  * point - eye = depth * middle + across * (one pixel right) + down * (one pixel down). */
@@ -222,26 +263,34 @@ static struct scene *make_scene(struct vec3 low, struct vec3 high)
     return scene;
 }
 
-static bool box_is_seen(struct vec3 low, struct vec3 high)
+/* Whether a camera in the direction `towards` has the whole box in its picture, and one a fifth
+ * nearer has not. */
+static bool box_is_framed(struct vec3 low, struct vec3 high, struct vec3 towards)
 {
     struct scene *scene = make_scene(low, high);
-    struct camera camera = camera_of_scene(scene, 150, 400);
-    bool seen = error.code == EXIT_DONE && camera.fronts_only;
+    struct camera camera = {.up = {0.0, 1.0, 0.0}, .fov = 40.0, .width = 150, .height = 400};
+    camera_frame(&camera, scene, towards);
+    struct camera nearer = camera;
+    nearer.eye = vec3_add(vec3_scale(camera.eye, 0.8), vec3_scale(camera.at, 0.2));
+    bool seen = error.code == EXIT_DONE, near_sees = true;
     for (int k = 0; k < 8; k++) {
         struct vec3 corner = {k & 1 ? low.x : high.x, k & 2 ? low.y : high.y,
                               k & 4 ? low.z : high.z};
         seen = seen && camera_sees(&camera, corner);
+        near_sees = near_sees && camera_sees(&nearer, corner);
     }
     struct vec3 eye = camera.eye;
     bool inside = eye.x >= low.x && eye.x <= high.x && eye.y >= low.y && eye.y <= high.y &&
                   eye.z >= low.z && eye.z <= high.z;
     scene_destroy(scene);
-    return seen && !inside;
+    return seen && !near_sees && !inside;
 }
 
 static void check_box(const char *name, struct vec3 low, struct vec3 high)
 {
-    tap_ok(box_is_seen(low, high), "all corners are seen: %s", name);
+    tap_ok(box_is_framed(low, high, (struct vec3){0.4, 0.35, 1.0}) &&
+               box_is_framed(low, high, (struct vec3){0.0, 0.0, -1.0}),
+           "all corners are seen: %s", name);
 }
 
 static void test_boxes(void)
@@ -270,7 +319,9 @@ static void test_many_boxes(void)
         struct vec3 low = random_point(&random), size = random_point(&random);
         struct vec3 high = {low.x + fabs(size.x) * pow(10.0, i % 4), low.y + fabs(size.y),
                             low.z + fabs(size.z) * pow(10.0, -(i % 3))};
-        seen += box_is_seen(low, high);
+        struct vec3 towards = random_point(&random);
+        towards.y *= 0.9 * (fabs(towards.x) + fabs(towards.z)); /* not along up */
+        seen += box_is_framed(low, high, towards);
     }
     tap_ok(seen == 20000, "all corners of %d of 20000 boxes are seen", seen);
 }
@@ -282,6 +333,7 @@ int main(void)
     test_bad_values();
     test_bad_views();
     test_missing_view();
+    test_damaged_views();
     test_angles();
     test_directions();
     test_boxes();

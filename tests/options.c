@@ -458,19 +458,17 @@ static void test_help_is_true(const char *help)
     }
 }
 
-/* The default value stands in brackets at the end of the option's line. */
+/* The default value stands in the first brackets behind the option, on its line. */
 static void test_help_defaults(const char *help)
 {
     struct options options;
     parse("a.obj", &options);
     for (int i = 0; i < NUMBER_COUNT; i++) {
         const char *line = find_word(help, NUMBERS[i].name);
-        const char *end = line ? strchr(line, '\n') : NULL;
         if (!NUMBERS[i].in_help)
             continue;
-        while (end && end > line && *end != '(')
-            end--;
-        double said = end ? strtod(end + 1, NULL) : NAN, is = number_of(&NUMBERS[i], &options);
+        size_t ahead = line ? strcspn(line, "(\n") : 0;
+        double said = line && line[ahead] == '(' ? strtod(line + ahead + 1, NULL) : NAN, is = number_of(&NUMBERS[i], &options);
         tap_ok(said == is, "%s: the help says %g, the default is %g", NUMBERS[i].name, said, is);
     }
     options_free(&options);

@@ -132,10 +132,17 @@ static void test_automatic(void)
     check_exposure("one pixel", tone_automatic(one, 1), 0.9 / 3.0);
     for (int band = 0; band < 3; band++) {
         check_exposure("48 in 1000 are bright", exposure_of(48, 0, band), 0.9 / 2.0);
-        check_exposure("52 in 1000 are bright", exposure_of(52, 0, band), 0.9 / 50.0);
+        check_exposure("52 in 1000 are bright", exposure_of(52, 0, band), 0.9 / 8.0);
     }
-    check_exposure("40 of 500 that are not black", exposure_of(40, 500, 0), 0.9 / 50.0);
+    check_exposure("40 of 500 that are not black", exposure_of(40, 500, 0), 0.9 / 8.0);
     check_exposure("20 of 500 that are not black", exposure_of(20, 500, 0), 0.9 / 2.0);
+    float spot[3 * 10] = {0.0f}, slope[3 * 5] = {0.0f};
+    for (int i = 0; i < 10; i++)
+        spot[3 * i] = i == 9 || i == 2 ? 80.0f : 1e-9f;
+    check_exposure("a spot in the dark", tone_automatic(spot, 10), 16.0 * 0.9 / 80.0);
+    for (int i = 0; i < 5; i++)
+        slope[3 * i + 1] = (float)(i + 1);
+    check_exposure("within four medians the percentile counts", tone_automatic(slope, 5), 0.9 / 4.0);
     tap_ok(tone_automatic(black, 4) == 1.0, "all black: 1");
     tap_ok(tone_automatic(NULL, 0) == 1.0, "no pixels: 1");
 }

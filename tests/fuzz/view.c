@@ -1,0 +1,25 @@
+/* Fuzzing view files: a camera that is read has rays. */
+#include "io/camera.h"
+
+#include <math.h>
+
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct error error = {0};
+    struct camera camera;
+    struct text text;
+    bool good = text_of_bytes(&text, "fuzz.view", data, size, &error);
+    if (good) {
+        good = camera_of_text(&camera, &text, &error);
+        text_free(&text);
+    }
+    for (int k = 0; good && k < 9; k++) {
+        double x = 0.5 * (k % 3) * camera.width, y = 0.5 * (k / 3) * camera.height;
+        double length = vec3_length(camera_ray(&camera, x, y));
+        FUZZ_PROMISE(length > 0.999999 && length < HUGE_VAL);
+    }
+    fuzz_verdict(good, &error);
+    return 0;
+}
