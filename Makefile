@@ -45,8 +45,8 @@ RAD = closure conjugate flux formfactor id link method oracle patch pushpull tre
       viewfactor
 MPI = accuracy assign broadcast closing comm gather linking migrate pairs picture plan refinement \
       scatter solve solver vote
-IO = camera cases image mesh mtl obj options output render shading stats table text \
-     tone validate
+IO = binary camera cases image mesh mtl obj options output palette ply plyfile render shading stats \
+     table text tone validate
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
 MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)
