@@ -20,6 +20,14 @@ static bool fail_to_read(const char *path, struct error *error)
                      errno ? strerror(errno) : "unknown reason");
 }
 
+static bool has_magic(const struct binary *binary, const char *magic, const char *kind,
+                      struct error *error)
+{
+    if (strncmp(binary->data, magic, strlen(magic)) != 0)
+        return error_set(error, EXIT_USAGE, "%s: not %s", binary->path, kind);
+    return true;
+}
+
 static bool read_blocks(struct binary *binary, FILE *file, const char *magic, const char *kind,
                         struct error *error)
 {
@@ -32,8 +40,8 @@ static bool read_blocks(struct binary *binary, FILE *file, const char *magic, co
             return fail_to_read(binary->path, error);
         binary->size += (int64_t)got;
         binary->data[binary->size] = '\0';
-        if (strncmp(binary->data, magic, strlen(magic)) != 0)
-            return error_set(error, EXIT_USAGE, "%s: not %s", binary->path, kind);
+        if (!has_magic(binary, magic, kind, error))
+            return false;
     } while (got == BLOCK);
     return true;
 }
@@ -51,6 +59,19 @@ bool binary_read(struct binary *binary, const char *path, const char *magic, con
     if (!good)
         binary_free(binary);
     return good;
+}
+
+bool binary_of_bytes(struct binary *binary, const char *path, const void *data, size_t size,
+                     const char *magic, const char *kind, struct error *error)
+{
+    *binary = (struct binary){.path = path, .line = 1, .size = (int64_t)size};
+    binary->data = alloc_array(size + 1, 1);
+    if (size > 0)
+        memcpy(binary->data, data, size);
+    if (has_magic(binary, magic, kind, error))
+        return true;
+    binary_free(binary);
+    return false;
 }
 
 void binary_free(struct binary *binary)

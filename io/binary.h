@@ -4,6 +4,7 @@
 #define IO_BINARY_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "geom/error.h"
@@ -21,6 +22,11 @@ struct binary {
  * Errors: "PATH: cannot read: REASON"; "PATH: not KIND". Both ask for EXIT_USAGE. */
 bool binary_read(struct binary *binary, const char *path, const char *magic, const char *kind,
                 struct error *error);
+
+/* The same for a copy of `size` bytes that are in memory, as if they were the file `path`. */
+bool binary_of_bytes(struct binary *binary, const char *path, const void *data, size_t size,
+                     const char *magic, const char *kind, struct error *error);
+
 void binary_free(struct binary *binary);
 
 /* Bytes from the position to the end. */

@@ -153,10 +153,10 @@ static bool check_header(struct reader *reader)
     return true;
 }
 
-static bool read_file(struct reader *reader, const char *path)
+static bool read_file(struct reader *reader, const struct binary *binary)
 {
     struct ply_file *file = &reader->file;
-    bool good = ply_file_open(file, path, reader->error) && check_header(reader);
+    bool good = ply_file_open(file, binary, reader->error) && check_header(reader);
     for (int64_t i = 0; good && i < file->element_count; i++) {
         const struct ply_element *element = &file->elements[i];
         switch (element->kind) {
@@ -221,10 +221,10 @@ static struct scene *make_scene(const struct reader *reader)
     return scene;
 }
 
-struct scene *ply_read(const char *path, struct error *error)
+struct scene *ply_of_binary(const struct binary *binary, struct error *error)
 {
     struct reader reader = {.error = error};
-    bool good = read_file(&reader, path);
+    bool good = read_file(&reader, binary);
     if (good && reader.colours)
         mix_colours(&reader);
     ply_file_close(&reader.file);
@@ -235,6 +235,12 @@ struct scene *ply_read(const char *path, struct error *error)
     alloc_free(reader.corners);
     palette_free(&reader.palette);
     return scene;
+}
+
+struct scene *ply_read(const char *path, struct error *error)
+{
+    struct binary binary;
+    return ply_file_load(&binary, path, error) ? ply_of_binary(&binary, error) : NULL;
 }
 
 static bool has_suffix(const char *path, const char *suffix)

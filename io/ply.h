@@ -13,6 +13,7 @@
 
 #include "geom/error.h"
 #include "geom/scene.h"
+#include "io/binary.h"
 
 /* True if a scene is to be read as PLY: its name ends in .ply, or it does not end in .obj, the
  * file can be looked at without taking bytes from a pipe, and begins as a PLY file does. */
@@ -25,5 +26,8 @@ bool ply_is_meant(const char *path);
  * Errors: those of io/plyfile.h; no x y z, no faces, faces with fewer than three corners or one
  * that is out of range, negative colours or emission. */
 struct scene *ply_read(const char *path, struct error *error);
+
+/* The same for a file in memory, which it takes over. */
+struct scene *ply_of_binary(const struct binary *binary, struct error *error);
 
 #endif

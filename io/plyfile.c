@@ -218,14 +218,17 @@ static bool read_header(struct ply_file *file, struct error *error)
                              file->binary.path, file->line);
 }
 
-bool ply_file_open(struct ply_file *file, const char *path, struct error *error)
+bool ply_file_load(struct binary *binary, const char *path, struct error *error)
 {
-    *file = (struct ply_file){.row_name = ROW_NAMES[PLY_OTHER]};
-    if (!binary_read(&file->binary, path, "ply", "a PLY file", error))
-        return false;
-    char end = file->binary.data[3];
+    return binary_read(binary, path, "ply", "a PLY file", error);
+}
+
+bool ply_file_open(struct ply_file *file, const struct binary *binary, struct error *error)
+{
+    *file = (struct ply_file){.binary = *binary, .row_name = ROW_NAMES[PLY_OTHER]};
+    char end = binary->data[3];
     if (end != '\n' && end != '\r')
-        return error_set(error, EXIT_USAGE, "%s: not a PLY file", path);
+        return error_set(error, EXIT_USAGE, "%s: not a PLY file", binary->path);
     return read_header(file, error);
 }
 

@@ -63,10 +63,13 @@ struct ply_file {
     char *rest;                      /* what is left of it */
 };
 
-/* Reads the file and its header. To be closed in any case.
- * Errors: "PATH: not a PLY file", "PATH:LINE: what is wrong" in the header; EXIT_USAGE. An element
- * that claims more rows than the file has bytes for is one of them. */
-bool ply_file_open(struct ply_file *file, const char *path, struct error *error);
+/* Reads the file. Errors: "PATH: not a PLY file" among those of binary_read(). */
+bool ply_file_load(struct binary *binary, const char *path, struct error *error);
+
+/* Reads the header of a file in memory, which it takes over. To be closed in any case.
+ * Errors: "PATH:LINE: what is wrong"; EXIT_USAGE. An element that claims more rows than the file
+ * has bytes for is one of them. */
+bool ply_file_open(struct ply_file *file, const struct binary *binary, struct error *error);
 void ply_file_close(struct ply_file *file);
 
 /* The first element of the kind, or NULL. */
