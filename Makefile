@@ -6,6 +6,8 @@
 #   make bench           $(BUILD)/rays, a bench of visibility, beside Embree where it is installed
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
+#   make golden          renews the golden pictures in tests/golden (on purpose only)
+#   make portability     golden pictures on other compilers, MPIs, processors
 #   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
 #   make install         to $(DESTDIR)$(prefix)      make uninstall  make clean
 #
@@ -137,6 +139,13 @@ check: $(PHR) $(IMGDIFF) tests
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
 
+# Only on purpose: what the pictures are now becomes what is expected.
+golden: $(PHR)
+	sh tests/golden.sh tests/golden ./$(PHR)
+
+portability:
+	MAKE="$(MAKE)" sh tests/portability.sh
+
 # To be run as build/fuzz/fuzz-obj NEW tests/fuzz/corpus/obj, say: finds go to the folder NEW.
 fuzz:
 	$(MAKE) SERIAL=1 CC=clang BUILD=build/fuzz $(FUZZERS:%=build/fuzz/fuzz-%) \
@@ -161,4 +170,4 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench errors chart check fuzz install uninstall clean FORCE
+.PHONY: all demo tests room bench errors chart check golden portability fuzz install uninstall clean FORCE

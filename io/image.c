@@ -78,7 +78,7 @@ static bool next_word(struct image_reader *reader, bool comments, char word[32])
     while (is_blank(data[at]) || (comments && data[at] == '#'))
         at += data[at] == '#' ? (int64_t)strcspn(data + at, "\r\n") : 1;
     int length = 0;
-    while (data[at] != '\0' && !is_blank(data[at]) && length < 31)
+    while (data[at] != '\0' && !is_blank(data[at]) && !(comments && data[at] == '#') && length < 31)
         word[length++] = data[at++];
     word[length] = '\0';
     reader->binary->position = at;

@@ -279,8 +279,8 @@ void options_free(struct options *options)
 
 void options_print_help(FILE *file)
 {
-    fputs("usage: phr [options] SCENE.obj\n"
-          "       mpiexec -n P phr [options] SCENE.obj\n"
+    fputs("usage: phr [options] SCENE.obj|SCENE.ply\n"
+          "       mpiexec -n P phr [options] SCENE.obj|SCENE.ply\n"
           "\n"
           "Computes the light in a diffuse scene by parallel hierarchical radiosity.\n"
           "\n"

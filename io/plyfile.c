@@ -63,8 +63,7 @@ static char *next_line(struct ply_file *file)
     if (binary_left(binary) == 0)
         return NULL;
     char *line = binary->data + binary->position;
-    bool only_cr = binary->data[3] == '\r' && binary->data[4] != '\n';
-    char *end = memchr(line, only_cr ? '\r' : '\n', (size_t)binary_left(binary));
+    char *end = memchr(line, file->line_end, (size_t)binary_left(binary));
     binary->position = end ? end + 1 - binary->data : binary->size;
     end = end ? end : binary->data + binary->size;
     *end = '\0';
@@ -108,7 +107,8 @@ static bool read_element(struct ply_file *file, char *rest, struct error *error)
         element.kind = PLY_VERTEX;
     else if (name && strcmp(name, "face") == 0)
         element.kind = PLY_FACE;
-    if (!count || !text_integer(&count, &element.count) || *count || element.count < 0)
+    const char *digits = count;
+    if (!count || !text_integer(&digits, &element.count) || *digits || element.count < 0)
         return fail_word(file, error, "bad number of elements", count);
     if (element.kind != PLY_OTHER && ply_file_find(file, element.kind))
         return fail_word(file, error, "a second element", name);
@@ -229,6 +229,7 @@ bool ply_file_open(struct ply_file *file, const struct binary *binary, struct er
     char end = binary->data[3];
     if (end != '\n' && end != '\r')
         return error_set(error, EXIT_USAGE, "%s: not a PLY file", binary->path);
+    file->line_end = end == '\r' && binary->data[4] != '\n' ? '\r' : '\n';
     return read_header(file, error);
 }
 

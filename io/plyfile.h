@@ -50,6 +50,7 @@ struct ply_element {
 struct ply_file {
     struct binary binary;
     bool ascii, big_endian;
+    char line_end;                   /* the last character of a line */
     struct ply_element *elements;    /* [element_count], in the order of the file */
     int64_t element_count, element_capacity;
     struct ply_property *properties; /* [property_count], element by element */
