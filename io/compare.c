@@ -182,19 +182,24 @@ static bool read_solution(struct solution_reader *reader, struct solution *solut
     return good && ply_file_end(file, reader->error);
 }
 
-bool solution_read(struct solution *solution, const char *path, struct error *error)
+bool solution_of_binary(struct solution *solution, const struct binary *binary,
+                        struct error *error)
 {
     struct solution_reader reader = {.error = error};
-    struct binary binary;
     *solution = (struct solution){0};
-    if (!ply_file_load(&binary, path, error))
-        return false;
-    bool good = ply_file_open(&reader.file, &binary, error) && read_solution(&reader, solution);
+    bool good = ply_file_open(&reader.file, binary, error) && read_solution(&reader, solution);
     ply_file_close(&reader.file);
     alloc_free(reader.vertices);
     if (!good)
         solution_free(solution);
     return good;
+}
+
+bool solution_read(struct solution *solution, const char *path, struct error *error)
+{
+    struct binary binary;
+    *solution = (struct solution){0};
+    return ply_file_load(&binary, path, error) && solution_of_binary(solution, &binary, error);
 }
 
 void solution_free(struct solution *solution)

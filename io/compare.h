@@ -49,6 +49,11 @@ struct solution_leaf {
  * Errors: those of ply_read(); what io/mesh.h describes is missing; the leaves of a root do not
  * follow each other without gaps from its begin to its end. EXIT_USAGE. */
 bool solution_read(struct solution *solution, const char *path, struct error *error);
+
+/* The same for a file in memory, which it takes over. */
+bool solution_of_binary(struct solution *solution, const struct binary *binary,
+                        struct error *error);
+
 void solution_free(struct solution *solution);
 
 /* Compares solution a with b, the expected one, by area and band. Where one is divided more

@@ -25,7 +25,7 @@ enum {
     CORNER_MAX = 1 << 14       /* corners of one face: cutting it takes quadratic time */
 };
 
-static const struct rgb NEUTRAL = {{0.5, 0.5, 0.5}};
+static const struct material NEUTRAL = {{{0.5, 0.5, 0.5}}, {{0.0, 0.0, 0.0}}};
 
 struct face {
     int64_t first;    /* of its corners */
@@ -106,7 +106,7 @@ static bool check_corners(const struct reader *reader)
 static bool add_face(struct reader *reader, const struct ply_element *element, struct face *face)
 {
     const struct ply_file *file = &reader->file;
-    struct material material = {.reflectance = NEUTRAL};
+    struct material material = NEUTRAL;
     if (!check_corners(reader) ||
         (has_three(element, PLY_RED) &&
          !take_rgb(reader, element, PLY_RED, true, &material.reflectance)) ||

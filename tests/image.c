@@ -115,7 +115,7 @@ static void test_back(void)
     alloc_free(found.rgb);
     struct tone tone = tone_make(1.0);
     right = ppm_write(&picture, &tone, PPM, &error) && image_read(&found, &kind, PPM, &error) &&
-            kind == IMAGE_PPM && found.rgb[3] == 188 / 255.0f && found.rgb[0] == 1.0f;
+            kind == IMAGE_PPM && found.rgb[3] == (float)(188 / 255.0) && found.rgb[0] == 1.0f;
     tap_ok(right, "what is written as PPM reads back, in codes");
     alloc_free(found.rgb);
     found.rgb = NULL;

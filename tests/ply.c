@@ -166,14 +166,20 @@ static struct bytes make_binary(bool big)
     return file;
 }
 
-static void check_material(const struct scene *scene, int32_t triangle, struct material expected,
-                           const char *name)
+/* Materials that the tests expect. */
+static const struct material
+    BY_TYPE = {{{0.2, 0.2, 0.25}}, {{0, 1000, 0.5}}}, GREY = {{{0.5, 0.5, 0.5}}, {{0, 0, 0}}},
+    MEAN = {{{1.0 / 3, 0.2, 0.2}}, {{0, 0, 0}}}, OWN = {{{0.1, 0.2, 0.3}}, {{0, 0, 0}}},
+    GREY_LAMP = {{{0.5, 0.5, 0.5}}, {{5, 6, 7}}};
+
+static void check_material(const struct scene *scene, int32_t triangle,
+                           const struct material *expected, const char *name)
 {
     bool right = scene != NULL;
     for (int c = 0; right && c < BANDS; c++) {
         const struct material *found = &scene->materials[scene->material_of[triangle]];
-        right = fabs(found->reflectance.band[c] - expected.reflectance.band[c]) < 1e-15 &&
-                found->emission.band[c] == expected.emission.band[c];
+        right = fabs(found->reflectance.band[c] - expected->reflectance.band[c]) < 1e-15 &&
+                found->emission.band[c] == expected->emission.band[c];
     }
     tap_ok(right, "%s%s", name, error.text);
 }
@@ -184,7 +190,7 @@ static void test_binary(void)
         struct bytes file = make_binary(big);
         struct scene *scene = read_bytes(file.data, file.size);
         tap_ok(is_square(scene), "binary, %s endian: %s", big ? "big" : "little", error.text);
-        check_material(scene, 1, (struct material){{{0.2, 0.2, 0.25}}, {{0, 1000, 0.5}}},
+        check_material(scene, 1, &BY_TYPE,
                        "colours by type, emission as it is");
         scene_destroy(scene);
     }
@@ -230,21 +236,20 @@ static void test_binary_errors(void)
 
 static void test_colours(void)
 {
-    static const struct rgb grey = {{0.5, 0.5, 0.5}};
     struct scene *scene = read_text(ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n");
-    check_material(scene, 0, (struct material){grey, {{0, 0, 0}}}, "no colours: grey");
+    check_material(scene, 0, &GREY, "no colours: grey");
     scene_destroy(scene);
     scene = read_text(ASCII SQUARE "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                       FACE(2) "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n"
                       "0 1 0 0 0 0\n3 0 1 2\n3 2 3 0\n");
-    check_material(scene, 0, (struct material){{{1.0 / 3, 0.2, 0.2}}, {{0, 0, 0}}},
+    check_material(scene, 0, &MEAN,
                    "colours of vertices: the mean of the corners");
     scene_destroy(scene);
     scene = read_text(ASCII SQUARE "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                       FACE(3) "property double red\nproperty double green\nproperty double blue\n"
                       "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n0 1 0 0 0 0\n"
                       "3 0 1 2 0.1 0.2 0.3\n3 2 3 0 0.5 0.5 0.5\n3 0 1 3 0.1 0.2 0.3\n");
-    check_material(scene, 0, (struct material){{{0.1, 0.2, 0.3}}, {{0, 0, 0}}},
+    check_material(scene, 0, &OWN,
                    "colours of faces come first");
     tap_ok(scene && scene->material_count == 2 && scene->material_of[2] == scene->material_of[0],
            "faces of one colour share a material");
@@ -252,7 +257,7 @@ static void test_colours(void)
     scene = read_text(ASCII SQUARE FACE(2) "property float emission_r\nproperty float emission_g\n"
                       "property float emission_b\nend_header\n" CORNERS
                       "3 0 1 2 5 6 7\n3 0 2 3 0 0 0\n");
-    check_material(scene, 0, (struct material){grey, {{5, 6, 7}}}, "a lamp without colours");
+    check_material(scene, 0, &GREY_LAMP, "a lamp without colours");
     scene_destroy(scene);
 }
 

@@ -1,16 +1,21 @@
-/* Fuzzing PLY: reading a scene, and the preparation of what was read. */
+/* Fuzzing PLY: reading a scene, and the preparation of what was read; reading a solution. */
 #include "io/ply.h"
 
-#include "io/plyfile.h"
+#include "io/compare.h"
 #include "tests/fuzz/fuzz.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+static bool load(struct binary *binary, const uint8_t *data, size_t size, struct error *error)
+{
+    return binary_of_bytes(binary, "fuzz.ply", data, size, "ply", "a PLY file", error);
+}
+
+static void read_scene(const uint8_t *data, size_t size)
 {
     struct error error = {0};
     struct scene_repairs prepared;
     struct binary binary;
     struct scene *scene = NULL;
-    if (binary_of_bytes(&binary, "fuzz.ply", data, size, "ply", "a PLY file", &error))
+    if (load(&binary, data, size, &error))
         scene = ply_of_binary(&binary, &error);
     FUZZ_PROMISE(!scene == (error.code != EXIT_DONE));
     bool good = scene && scene_prepare(scene, &prepared, &error);
@@ -21,5 +26,25 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                      rgb_sum(scene->materials[i].emission) >= 0.0);
     scene_destroy(scene);
     fuzz_verdict(good, &error);
+}
+
+static void read_solution(const uint8_t *data, size_t size)
+{
+    struct error error = {0}, different = {0};
+    struct binary binary;
+    struct solution solution = {0};
+    struct difference difference = {0};
+    bool good = load(&binary, data, size, &error) &&
+                solution_of_binary(&solution, &binary, &error);
+    FUZZ_PROMISE(!good || compare_solutions(&solution, &solution, &difference, &different));
+    FUZZ_PROMISE(difference.largest == 0.0 && difference.broken == 0);
+    solution_free(&solution);
+    fuzz_verdict(good, &error);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    read_scene(data, size);
+    read_solution(data, size);
     return 0;
 }
