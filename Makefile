@@ -74,6 +74,7 @@ $(PHR): $(BUILD)/phr FORCE
 	@cmp -s $(BUILD)/phr $@ || cp $(BUILD)/phr $@
 
 $(IMGDIFF): $(BUILD)/imgdiff FORCE
+	@mkdir -p $(@D)
 	@cmp -s $(BUILD)/imgdiff $@ || cp $(BUILD)/imgdiff $@
 
 $(BUILD)/phr: $(BUILD)/phr.o $(BUILD)/libphr.a

@@ -85,7 +85,8 @@ static bool check_emission(const struct run *run, struct error *error)
         for (int c = 0; c < BANDS && scene->areas[i] > 0.0; c++)
             largest = fmax(largest, scene_root_material(scene, i)->emission.band[c]);
     if (!(largest > 0.0))
-        return error_set(error, EXIT_USAGE, "%s: nothing emits light (no face with Ke or emission_r above 0)",
+        return error_set(error, EXIT_USAGE,
+                         "%s: nothing emits light (no face with Ke or emission_r above 0)",
                          run->options.scene);
     if (largest < EMISSION_MIN || largest > EMISSION_MAX)
         return error_set(error, EXIT_USAGE, "%s: the largest Ke, %g, is not within %g and %g",

@@ -13,9 +13,8 @@
 #include <math.h>
 
 #include "geom/alloc.h"
-#include "geom/triangle.h"
+#include "io/mesh.h"
 #include "io/plyfile.h"
-#include "rad/id.h"
 
 static double ratio(double a, double b)
 {
@@ -102,8 +101,9 @@ static bool take_leaf(const struct solution_reader *reader, struct solution_leaf
 {
     const struct ply_file *file = &reader->file;
     const double *value = file->value;
-    bool good = file->corner_count == 3 && value[PLY_ROOT] >= 0.0 && value[PLY_ROOT] <= UINT32_MAX &&
-                value[PLY_HIERARCHY] >= 1.0 && value[PLY_HIERARCHY] <= UINT32_MAX;
+    bool good = file->corner_count == 3 && value[PLY_ROOT] >= 0.0 &&
+                value[PLY_ROOT] <= UINT32_MAX && value[PLY_HIERARCHY] >= 1.0 &&
+                value[PLY_HIERARCHY] <= UINT32_MAX;
     for (int k = 0; good && k < 3; k++)
         good = file->corners[k] < reader->vertex_count;
     struct patch_id id = {0, 0};
@@ -113,13 +113,12 @@ static bool take_leaf(const struct solution_reader *reader, struct solution_leaf
         return ply_fail(file, reader->error, "not a leaf of a solution");
     int level = id_level(id), below = 2 * (ID_MAX_LEVEL - level);
     int64_t path = (int64_t)id.hierarchy - ((int64_t)1 << 2 * level);
-    struct triangle triangle;
+    *leaf = (struct solution_leaf){.id = id, .start = path << below, .end = (path + 1) << below};
     for (int k = 0; k < 3; k++)
-        triangle.corner[k] = reader->vertices[file->corners[k]];
-    *leaf = (struct solution_leaf){
-        .root = id.root, .start = path << below, .end = (path + 1) << below,
-        .area = triangle_area(&triangle),
-        .radiosity = {value[PLY_RADIOSITY_R], value[PLY_RADIOSITY_G], value[PLY_RADIOSITY_B]}};
+        leaf->triangle.corner[k] = reader->vertices[file->corners[k]];
+    for (int c = 0; c < BANDS; c++)
+        leaf->radiosity.band[c] = value[PLY_RADIOSITY_R + c];
+    leaf->area = triangle_area(&leaf->triangle);
     return true;
 }
 
@@ -127,8 +126,8 @@ static bool take_leaf(const struct solution_reader *reader, struct solution_leaf
 static bool is_in_order(const struct solution_leaf *before, const struct solution_leaf *leaf)
 {
     if (before && before->end < ROOT_UNITS)
-        return leaf->root == before->root && leaf->start == before->end;
-    return leaf->start == 0 && (!before || leaf->root > before->root);
+        return leaf->id.root == before->id.root && leaf->start == before->end;
+    return leaf->start == 0 && (!before || leaf->id.root > before->id.root);
 }
 
 static bool read_leaves(struct solution_reader *reader, const struct ply_element *element,
@@ -140,7 +139,8 @@ static bool read_leaves(struct solution_reader *reader, const struct ply_element
             !take_leaf(reader, &solution->leaves[i]))
             return false;
         if (!is_in_order(i > 0 ? &solution->leaves[i - 1] : NULL, &solution->leaves[i]))
-            return ply_fail(&reader->file, reader->error, "the leaves are not those of whole roots");
+            return ply_fail(&reader->file, reader->error,
+                            "the leaves are not those of whole roots");
     }
     solution->count = element->count;
     if (solution->leaves[solution->count - 1].end < ROOT_UNITS)
@@ -209,23 +209,58 @@ void solution_free(struct solution *solution)
 }
 
 bool compare_solutions(const struct solution *a, const struct solution *b,
-                       struct difference *difference, struct error *error)
+                       struct difference *difference, struct rgb *map, struct error *error)
 {
     *difference = (struct difference){0};
     int64_t i = 0, j = 0;
     while (i < a->count && j < b->count) {
         const struct solution_leaf *left = &a->leaves[i], *right = &b->leaves[j];
-        if (left->root != right->root)
+        if (left->id.root != right->id.root)
             break;
         int64_t start = left->start > right->start ? left->start : right->start;
         int64_t end = left->end < right->end ? left->end : right->end;
         double area = right->area * (double)(end - start) / (double)(right->end - right->start);
-        for (int c = 0; c < 3; c++)
-            add_sample(difference, left->radiosity[c], right->radiosity[c], area);
+        double share = (double)(end - start) / (double)(left->end - left->start);
+        for (int c = 0; c < BANDS; c++)
+            map[i].band[c] += share * add_sample(difference, left->radiosity.band[c],
+                                                 right->radiosity.band[c], area);
         i += left->end == end;
         j += right->end == end;
     }
     if (i < a->count || j < b->count)
         return error_set(error, EXIT_USAGE, "the solutions are not of the same scene");
     return true;
+}
+
+/* A value in the range of floats. */
+static float as_float(double x)
+{
+    return x < (double)FLT_MAX ? (float)x : FLT_MAX;
+}
+
+bool solution_write(const struct solution *solution, const struct rgb *map, double white,
+                    const char *path, struct error *error)
+{
+    struct tone tone = tone_make(white > 0.0 ? 1.0 / white : 1.0);
+    struct output output;
+    if (!output_open(&output, path, error))
+        return false;
+    mesh_write_header(&output, 3 * solution->count, solution->count);
+    for (int64_t i = 0; i < 3 * solution->count; i++) {
+        struct vec3 x = solution->leaves[i / 3].triangle.corner[i % 3];
+        for (int axis = 0; axis < 3; axis++)
+            output_float(&output, (float)vec3_axis(x, axis));
+        for (int c = 0; c < BANDS; c++)
+            putc(tone_encode(&tone, map[i / 3].band[c]), output.file);
+    }
+    for (int64_t i = 0; i < solution->count; i++) {
+        putc(3, output.file);
+        for (int k = 0; k < 3; k++)
+            output_uint32(&output, (uint32_t)(3 * i + k));
+        for (int c = 0; c < BANDS; c++)
+            output_float(&output, as_float(map[i].band[c]));
+        output_uint32(&output, solution->leaves[i].id.root);
+        output_uint32(&output, solution->leaves[i].id.hierarchy);
+    }
+    return output_close(&output, error);
 }

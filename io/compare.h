@@ -6,7 +6,9 @@
 #include <stdint.h>
 
 #include "geom/error.h"
+#include "geom/triangle.h"
 #include "io/image.h"
+#include "rad/id.h"
 
 /* Of all bands of all pixels, each with the same weight, or of all leaves, weighted by area.
  * Where a sample of either side is not a finite number it is counted and left out of the rest. */
@@ -32,17 +34,18 @@ double difference_psnr(const struct difference *difference, double peak);
  * |a - b|; where a sample is not finite the largest float. */
 struct difference compare_images(const struct image *a, const struct image *b, struct image *map);
 
+struct solution_leaf {
+    struct patch_id id;
+    struct triangle triangle; /* input units */
+    int64_t start, end;  /* what it covers of the root, in 4^15ths of its area */
+    double area;         /* square input units */
+    struct rgb radiosity; /* W/m^2 */
+};
+
 /* A solution mesh that phr wrote: its leaves, in their order. */
 struct solution {
     struct solution_leaf *leaves; /* [count] */
     int64_t count;
-};
-
-struct solution_leaf {
-    uint32_t root;
-    int64_t start, end;  /* what it covers of the root, in 4^15ths of its area */
-    double area;         /* square input units */
-    double radiosity[3]; /* W/m^2 */
 };
 
 /* Reads a mesh. To be freed with solution_free().
@@ -57,9 +60,15 @@ bool solution_of_binary(struct solution *solution, const struct binary *binary,
 void solution_free(struct solution *solution);
 
 /* Compares solution a with b, the expected one, by area and band. Where one is divided more
- * finely the leaf of the other is compared with each of the leaves that it covers.
+ * finely the leaf of the other is compared with each of the leaves that it covers. `map`, [a->count],
+ * receives the mean of |a - b| over each leaf of a.
  * Errors: they do not have the same roots (EXIT_USAGE). */
 bool compare_solutions(const struct solution *a, const struct solution *b,
-                       struct difference *difference, struct error *error);
+                       struct difference *difference, struct rgb *map, struct error *error);
+
+/* Writes the leaves of a solution with the values of `map` in place of their radiosities, as a
+ * mesh of the same format, flat; in its colours `white` is full white. Errors: as output_close(). */
+bool solution_write(const struct solution *solution, const struct rgb *map, double white,
+                    const char *path, struct error *error);
 
 #endif

@@ -25,8 +25,8 @@ static const char HELP[] =
     "\n"
     "  --tolerance T  pass if no sample is off by more than T (0)\n"
     "  --rms T        pass if the RMS error is at most T; --tolerance then only if given\n"
-    "  -o FILE        write a picture of |A - B|: as it is (.pfm), or scaled so that the\n"
-    "                 largest difference is white (.ppm)\n"
+    "  -o FILE        write |A - B|: as it is (.pfm), or scaled so that the largest\n"
+    "                 difference is white (.ppm); of meshes as a mesh (.ply)\n"
     "  --help  --version\n"
     "\n"
     "T is relative to the root mean square of B's samples. Samples of a .ppm are its codes,\n"
@@ -56,8 +56,9 @@ static bool set_option(struct request *request, const char *name, const char *va
         return error_set(error, EXIT_USAGE, "unknown option %s; see --help", name);
     if (!value)
         return error_set(error, EXIT_USAGE, "%s needs a value", name);
-    if (output && !ends_with(value, ".pfm") && !ends_with(value, ".ppm"))
-        return error_set(error, EXIT_USAGE, "-o %s: the name must end in .pfm or .ppm", value);
+    if (output && !ends_with(value, ".pfm") && !ends_with(value, ".ppm") &&
+        !ends_with(value, ".ply"))
+        return error_set(error, EXIT_USAGE, "-o %s: the name must end in .pfm, .ppm or .ply", value);
     if (output)
         request->output = value;
     else if (!text_is_number(value, bound) || *bound < 0.0)
@@ -123,6 +124,15 @@ static bool write_map(const struct request *request, const struct image *map, do
     return ppm_write(map, &tone, request->output, error);
 }
 
+/* Refuses -o with the name of a mesh for pictures, and the other way round. */
+static bool check_output(const struct request *request, bool meshes, struct error *error)
+{
+    if (request->output && ends_with(request->output, ".ply") != meshes)
+        return error_set(error, EXIT_USAGE, "-o %s: the difference of %s", request->output,
+                         meshes ? "meshes is a mesh (.ply)" : "pictures is a picture");
+    return true;
+}
+
 static bool diff_images(const struct request *request, struct difference *difference,
                         struct error *error)
 {
@@ -131,7 +141,7 @@ static bool diff_images(const struct request *request, struct difference *differ
     bool good = image_read(&a, &kind_a, request->paths[0], error) &&
                 image_read(&b, &kind_b, request->paths[1], error);
     if (good && kind_a != kind_b)
-        good = error_set(error, EXIT_USAGE, "%s and %s: one is linear (PFM), the other is not (PPM)",
+        good = error_set(error, EXIT_USAGE, "%s and %s: one is linear (PFM), the other not (PPM)",
                          request->paths[0], request->paths[1]);
     if (good && (a.width != b.width || a.height != b.height))
         good = error_set(error, EXIT_USAGE, "%s is %dx%d, %s is %dx%d", request->paths[0], a.width,
@@ -154,13 +164,19 @@ static bool diff_solutions(const struct request *request, struct difference *dif
                            struct error *error)
 {
     struct solution a = {0}, b = {0};
-    if (request->output)
-        return error_set(error, EXIT_USAGE, "-o is for pictures, %s is a mesh", request->paths[0]);
+    struct rgb *map = NULL;
     bool good = solution_read(&a, request->paths[0], error) &&
-                solution_read(&b, request->paths[1], error) &&
-                compare_solutions(&a, &b, difference, error);
-    if (good)
+                solution_read(&b, request->paths[1], error);
+    if (good) {
+        map = alloc_array((size_t)a.count, sizeof *map);
+        good = compare_solutions(&a, &b, difference, map, error);
+    }
+    if (good) {
         report(difference, difference->peak);
+        if (request->output)
+            good = solution_write(&a, map, difference->largest, request->output, error);
+    }
+    alloc_free(map);
     solution_free(&a);
     solution_free(&b);
     return good;
@@ -174,6 +190,8 @@ static int diff(const struct request *request, struct error *error)
     if (meshes != ply_is_meant(request->paths[1]))
         error_set(error, EXIT_USAGE, "%s and %s: a picture and a mesh", request->paths[0],
                   request->paths[1]);
+    else if (!check_output(request, meshes, error))
+        return error->code;
     else if (meshes ? diff_solutions(request, &difference, error)
                     : diff_images(request, &difference, error))
         return passes(request, &difference) ? EXIT_DONE : EXIT_FAILED;

@@ -10,8 +10,8 @@
  * which is a wrong scene without a message. For the same reason nothing may be left behind the
  * last row but blanks.
  *
- * Values that nobody wants are passed over unseen, be they NaN. All others have to be finite. Types are
- * those of the header for binary files only: a text file may write 300 for a uchar. */
+ * Values that nobody wants are passed over unseen, be they NaN. All others have to be finite.
+ * Types are those of the header for binary files only: a text file may write 300 for a uchar. */
 #include "io/plyfile.h"
 
 #include <math.h>

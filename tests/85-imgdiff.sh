@@ -107,7 +107,15 @@ check "the way back is alike" holds \
     "$(sed -n 's/.* max, \(.*\) rms/\1/p' "$out") / $coarse > 0.9 && 1.1 > $coarse / $(
         sed -n 's/.* max, \(.*\) rms/\1/p' "$out")"
 ends 2 "solutions of two scenes" "$work/fine.ply" "$work/furnace.ply"
-ends 2 "a mesh and -o" "$work/fine.ply" "$work/fine.ply" -o "$work/map.ppm"
+ends 2 "a mesh, its difference as a picture" "$work/fine.ply" "$work/fine.ply" -o "$work/map.ppm"
+ends 2 "pictures, their difference as a mesh" "$work/b.ppm" "$work/b.ppm" -o "$work/map.ply"
+diff_of "$work/coarse.ply" "$work/coarse.ply" -o "$work/nothing.ply"
+diff_of "$work/coarse.ply" "$work/fine.ply" -o "$work/map.ply"
+mean=$(sed -n 's/^mean *//p' "$out")
+diff_of "$work/map.ply" "$work/nothing.ply"
+found=$(sed -n 's/^mean *//p' "$out")
+check "the mesh of the differences has their mean: $found" holds \
+    "$mean > 0 && $found / $mean > 0.9999 && $found / $mean < 1.0001"
 head -c 3000 "$work/fine.ply" >"$work/cut.ply"
 ends 2 "a solution cut off" "$work/cut.ply" "$work/fine.ply"
 

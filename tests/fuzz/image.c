@@ -9,7 +9,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct binary binary;
     struct image image = {0};
     enum image_kind kind;
-    bool good = binary_of_bytes(&binary, "fuzz", data, size, "P", "a picture (PFM or PPM)", &error) &&
+    bool good = binary_of_bytes(&binary, "fuzz", data, size, "P", "a picture", &error) &&
                 image_of_binary(&image, &kind, &binary, &error);
     FUZZ_PROMISE(good == (image.rgb != NULL));
     FUZZ_PROMISE(!good || (image.width > 0 && image.height > 0 &&
