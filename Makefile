@@ -7,11 +7,13 @@
 #                        $(BUILD)/parsing, a bench of reading OBJ
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
+#   make golden          renews the golden pictures in tests/golden (on purpose only)
+#   make portability     golden pictures on other compilers, MPIs, processors
 #   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
 #   make install         to $(DESTDIR)$(prefix)      make uninstall  make clean
 #
 # Knobs: MPICC, CC, MPIEXEC, CFLAGS, CPPFLAGS, LDFLAGS, prefix, DESTDIR.
-# Other builds side by side: BUILD is where objects go, PHR the program that is made of them.
+# Other builds side by side: BUILD is where objects go, PHR and IMGDIFF the programs made of them.
 
 SHELL = /bin/sh
 .SUFFIXES:
@@ -24,6 +26,7 @@ prefix ?= /usr/local
 bindir = $(prefix)/bin
 mandir = $(prefix)/share/man
 PHR ?= phr
+IMGDIFF ?= build/imgdiff
 
 # What the results depend on: C99 without extensions, no fused multiply-add.
 STRICT = -std=c99 -ffp-contract=off
@@ -47,8 +50,8 @@ RAD = boxtree closure conjugate flux formfactor id link linking method oracle pa
       viewfactor
 MPI = accuracy assign broadcast closing comm gather linking migrate pairs picture plan refinement \
       scatter solve solver vote
-IO = camera cases image library mesh mtl obj options output progress render shading stats surface \
-     table text tone validate viewpoint
+IO = binary camera cases compare image library mesh mtl obj options output palette ply plyfile \
+     progress render shading stats surface table text tone validate viewpoint
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
 MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)
@@ -56,23 +59,30 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary id triangle lambert hull scene polygon contour wall octree bundles flux patch \
-        compact formfactor link linking oracle pushpull closure treecode plan assign text obj output tone \
+        compact formfactor link linking oracle pushpull closure treecode plan assign text obj ply output tone \
         image camera viewpoint shading options progress paths norms cie furnace stability exchange conjugate exact converge
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct tracing
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
-FUZZERS = obj mtl view
+FUZZERS = obj mtl ply image view
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%) $(REPLAYS)
 
-all: $(PHR)
+all: $(PHR) $(IMGDIFF)
 
 # Linked beside the objects and copied, so that `make` after `make SERIAL=1` changes phr again.
 $(PHR): $(BUILD)/phr FORCE
 	@cmp -s $(BUILD)/phr $@ || cp $(BUILD)/phr $@
 
+$(IMGDIFF): $(BUILD)/imgdiff FORCE
+	@mkdir -p $(@D)
+	@cmp -s $(BUILD)/imgdiff $@ || cp $(BUILD)/imgdiff $@
+
 $(BUILD)/phr: $(BUILD)/phr.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/phr.o $(BUILD)/libphr.a -lm
+
+$(BUILD)/imgdiff: $(BUILD)/io/imgdiff.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/io/imgdiff.o $(BUILD)/libphr.a -lm
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
@@ -94,7 +104,7 @@ $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) -MMD -c -o $@ $<
 
--include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(TESTS:%=$(BUILD)/tests/%.d) \
+-include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/io/imgdiff.d $(TESTS:%=$(BUILD)/tests/%.d) \
     $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d) \
     $(BUILD)/tests/bench/parsing.d
 
@@ -131,9 +141,16 @@ $(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/
 chart: $(BENCHES:%=$(BUILD)/%) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/chart.sh
 
-check: $(PHR) tests build/room
+check: $(PHR) $(IMGDIFF) tests build/room
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
+
+# Only on purpose: what the pictures are now becomes what is expected.
+golden: $(PHR)
+	sh tests/golden.sh tests/golden ./$(PHR)
+
+portability:
+	MAKE="$(MAKE)" sh tests/portability.sh
 
 # To be run as build/fuzz/fuzz-obj NEW tests/fuzz/corpus/obj, say: finds go to the folder NEW.
 fuzz:
@@ -143,13 +160,15 @@ fuzz:
 $(BUILD)/fuzz-%: $(BUILD)/tests/fuzz/%.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lm
 
-install: $(PHR)
+install: $(PHR) $(IMGDIFF)
 	mkdir -p $(DESTDIR)$(bindir) $(DESTDIR)$(mandir)/man1
 	$(INSTALL) -m 755 $(PHR) $(DESTDIR)$(bindir)/phr
-	$(INSTALL) -m 644 phr.1 $(DESTDIR)$(mandir)/man1/phr.1
+	$(INSTALL) -m 755 $(IMGDIFF) $(DESTDIR)$(bindir)/imgdiff
+	$(INSTALL) -m 644 phr.1 io/imgdiff.1 $(DESTDIR)$(mandir)/man1
 
 uninstall:
-	rm -f $(DESTDIR)$(bindir)/phr $(DESTDIR)$(mandir)/man1/phr.1
+	rm -f $(DESTDIR)$(bindir)/phr $(DESTDIR)$(bindir)/imgdiff
+	rm -f $(DESTDIR)$(mandir)/man1/phr.1 $(DESTDIR)$(mandir)/man1/imgdiff.1
 
 clean:
 	rm -rf build phr cornell.ppm cornell.pfm cornell.ply
@@ -157,4 +176,4 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench errors chart check fuzz install uninstall clean FORCE
+.PHONY: all demo tests room bench errors chart check golden portability fuzz install uninstall clean FORCE

@@ -15,6 +15,7 @@
 #include "io/obj.h"
 #include "io/options.h"
 #include "io/output.h"
+#include "io/ply.h"
 #include "io/progress.h"
 #include "io/render.h"
 #include "io/stats.h"
@@ -100,7 +101,8 @@ static bool check_emission(const struct run *run, struct error *error)
         for (int c = 0; c < BANDS && scene->areas[i] > 0.0; c++)
             largest = fmax(largest, scene_root_material(scene, i)->emission.band[c]);
     if (!(largest > 0.0))
-        return error_set(error, EXIT_USAGE, "%s: nothing emits light (no face with Ke above 0)",
+        return error_set(error, EXIT_USAGE,
+                         "%s: nothing emits light (no face with Ke or emission_r above 0)",
                          run->options.scene);
     if (largest < EMISSION_MIN || largest > EMISSION_MAX)
         return error_set(error, EXIT_USAGE, "%s: the largest Ke, %g, is not within %g and %g",
@@ -121,7 +123,8 @@ static bool read_scene(struct run *run)
     struct error *error = &run->error;
     struct obj_repairs read = {0};
     struct scene_repairs prepared = {0};
-    run->scene = obj_read(run->options.scene, &read, error);
+    const char *path = run->options.scene;
+    run->scene = ply_is_meant(path) ? ply_read(path, error) : obj_read(path, &read, error);
     if (!run->scene)
         return false;
     run->scene->two_sided = run->options.two_sided;

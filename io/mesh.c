@@ -3,7 +3,6 @@
 #include "io/mesh.h"
 
 #include "geom/alloc.h"
-#include "io/output.h"
 
 /* The next leaf in canonical order after `p` (-1: the first one), or -1. */
 static int32_t next_leaf(const struct forest *forest, int32_t p)
@@ -25,7 +24,7 @@ static int32_t next_leaf(const struct forest *forest, int32_t p)
     }
 }
 
-static void write_header(struct output *output, int64_t vertices, int64_t faces)
+void mesh_write_header(struct output *output, int64_t vertices, int64_t faces)
 {
     fprintf(output->file,
             "ply\nformat binary_little_endian 1.0\ncomment radiosity in W/m^2, made by phr\n"
@@ -71,7 +70,7 @@ bool mesh_write(const struct shading *shading, const struct tone *tone, const ch
     struct output output;
     if (!output_open(&output, path, error))
         return false;
-    write_header(&output, shading->vertex_count, forest_leaf_count(forest));
+    mesh_write_header(&output, shading->vertex_count, forest_leaf_count(forest));
     write_vertices(&output, shading, tone);
     for (int32_t leaf = next_leaf(forest, -1); leaf >= 0; leaf = next_leaf(forest, leaf))
         write_face(&output, shading, leaf);

@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "io/output.h"
 #include "io/shading.h"
 #include "io/tone.h"
 
@@ -13,6 +14,9 @@
  * face per leaf, roots in order, depth first. Errors: as output_close(). */
 bool mesh_write(const struct shading *shading, const struct tone *tone, const char *path,
                 struct error *error);
+
+/* The header of such a mesh. */
+void mesh_write_header(struct output *output, int64_t vertices, int64_t faces);
 
 /* The radiosities of all leaves as linear RGB pixels, to choose an exposure where there is no
  * picture. *count receives their number; to be freed with alloc_free(). */

@@ -112,13 +112,13 @@ static double spread_of(const struct link *link, const uint8_t parts[3])
 /* Largest range of radiosity within a child. */
 static double range_within(const struct forest *forest, int32_t patch)
 {
-    double range = 0.0;
+    float range = 0.0f;
     int32_t children = forest->patches[patch].children;
     for (int k = 0; k < 4 && children > 0; k++) {
         struct extremes e = forest->extremes[children + k];
-        range = fmax(range, (double)(e.high - e.low));
+        range = e.high - e.low > range ? e.high - e.low : range;
     }
-    return range;
+    return (double)range;
 }
 
 /* What one side causes: spread of what it receives within its children, range of what it sends. */

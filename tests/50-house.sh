@@ -34,6 +34,8 @@ check "which has seven lines" [ "$(wc -l <"$work/summary")" -eq 7 ]
 $MAKE BUILD="$BUILD" install DESTDIR="$work/root" prefix=/opt/phr >"$work/install.log" 2>&1
 check "install: the program runs" [ "$("$work/root/opt/phr/bin/phr" --version)" = "$(./phr --version)" ]
 check "install: the man page is there" [ -s "$work/root/opt/phr/share/man/man1/phr.1" ]
+check "install: imgdiff runs" [ "$("$work/root/opt/phr/bin/imgdiff" --version)" = "imgdiff 0.1" ]
+check "install: its man page is there" [ -s "$work/root/opt/phr/share/man/man1/imgdiff.1" ]
 $MAKE BUILD="$BUILD" uninstall DESTDIR="$work/root" prefix=/opt/phr >>"$work/install.log" 2>&1
 check "uninstall leaves no file" [ -z "$(find "$work/root" -type f)" ]
 

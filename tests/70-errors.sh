@@ -154,6 +154,37 @@ f 1 2 5
 END
 refuse_scene ": all faces of the scene are degenerate" "only faces without area"
 
+ply_header='ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+element face 1
+property list uchar int vertex_indices'
+scene corner.ply <<END
+$ply_header
+end_header
+0 0 0
+1 0 0
+1 1 0
+3 0 1 3
+END
+refuse_scene ":13: corner 3, but the last vertex is 2" "a corner of a PLY face out of range"
+
+scene claim.ply <<END
+$(echo "$ply_header" | sed 's/vertex 3/vertex 3000000000/')
+end_header
+END
+refuse_scene ":3: the file is too short for 3000000000 elements" "a PLY header that lies"
+
+scene binary.ply <<END
+$(echo "$ply_header" | sed 's/ascii/binary_little_endian/')
+end_header
+$(printf '%037d' 0)
+END
+refuse_scene ": the file ends in face 0" "a PLY file cut off"
+
 # --- views and usage ---
 
 scene good.obj <<END

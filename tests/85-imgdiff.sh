@@ -1,0 +1,141 @@
+# imgdiff: the figures it prints, against ones worked out by hand; its exit status; what it writes.
+# Solutions of phr against themselves and against a finer one; and phr reads its own meshes.
+. tests/tap.sh
+
+: "${PHR:=./phr}" "${IMGDIFF:=build/imgdiff}"
+case $PHR in */*) ;; *) PHR=./$PHR ;; esac
+out=$work/stdout
+err=$work/stderr
+
+# diff_of ARGUMENTS...: runs imgdiff; leaves $out, $err and $status.
+diff_of() {
+    "$IMGDIFF" "$@" >"$out" 2>"$err"
+    status=$?
+}
+
+# ends CODE NAME ARGUMENTS...: imgdiff ends with the status, on an error with one line.
+ends() {
+    code=$1
+    name=$2
+    shift 2
+    diff_of "$@"
+    check "$name" [ "$status" -eq "$code" ]
+    [ "$code" -ne 2 ] || check "with one line: $(cat "$err")" is_complaint
+}
+
+is_complaint() {
+    [ ! -s "$out" ] && [ "$(wc -l <"$err")" -eq 1 ] && grep -q '^imgdiff: ' "$err"
+}
+
+says() {
+    grep -qxF -- "$1" "$out" && return
+    sed 's/^/# /' "$out" "$err"
+    return 1
+}
+
+# --- pictures: 2 x 1 pixels, of 100 ---
+
+plain() { printf 'P3 %s 100 %s\n' "$2" "$3" >"$work/$1.ppm"; }
+plain b '2 1' '60 80 0  0 0 0'
+plain off '2 1' '60 80 0  0 0 30'
+plain small '1 1' '60 80 0'
+plain cut '2 1' '60 80 0'
+
+diff_of "$work/off.ppm" "$work/b.ppm"
+check "largest difference" says 'max         0.3'
+check "mean over samples: 0.3 / 6" says 'mean        0.05'
+check "rms: sqrt(0.09 / 6)" says 'rms         0.122474'
+check "relative to sqrt(1 / 6) of the expected" says 'relative    0.734847 max, 0.3 rms'
+check "psnr: 20 lg (1 / rms)" says 'psnr        18.24 dB (peak 1)'
+check "not the same" [ "$status" -eq 1 ]
+ends 0 "the same" "$work/b.ppm" "$work/b.ppm"
+check "no difference" says 'psnr        infinite'
+ends 1 "below the difference" --tolerance 0.7348 "$work/off.ppm" "$work/b.ppm"
+ends 0 "above it" --tolerance 0.7349 "$work/off.ppm" "$work/b.ppm"
+ends 1 "below the RMS" "$work/off.ppm" "$work/b.ppm" --rms 0.29
+ends 0 "above it, whatever the largest" "$work/off.ppm" "$work/b.ppm" --rms 0.31
+ends 1 "both bounds count" "$work/off.ppm" "$work/b.ppm" --rms 0.31 --tolerance 0.5
+
+printf 'Pf 1 1 -1 \0\0\300\177' >"$work/nan.pfm"
+printf 'Pf 1 1 -1 \0\0\200\077' >"$work/one.pfm"
+printf 'PF 1 1 1 \077\200\0\0\077\200\0\0\077\200\0\0' >"$work/big.pfm"
+ends 0 "grey and colour, both byte orders" "$work/one.pfm" "$work/big.pfm"
+ends 1 "NaN never passes" --tolerance 1e30 "$work/nan.pfm" "$work/one.pfm"
+ends 1 "not against itself" --tolerance 1e30 "$work/nan.pfm" "$work/nan.pfm"
+check "and is counted" says 'not finite  3 samples'
+
+# --- the difference as a picture ---
+
+diff_of "$work/off.ppm" "$work/b.ppm" -o "$work/map.pfm"
+printf 'PF\n2 1\n-1.0\n\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\232\231\231\076' >"$work/map.expected"
+check "-o: |A - B| as PFM" cmp "$work/map.pfm" "$work/map.expected"
+diff_of "$work/off.ppm" "$work/b.ppm" -o "$work/map.ppm"
+printf 'P6\n2 1\n255\n\0\0\0\0\0\377' >"$work/map.expected"
+check "-o: the largest is white as PPM" cmp "$work/map.ppm" "$work/map.expected"
+ends 1 "-o into a missing folder" "$work/off.ppm" "$work/b.ppm" -o "$work/absent/map.ppm"
+
+# --- bad usage and input ---
+
+ends 2 "no files"
+ends 2 "one file" "$work/b.ppm"
+ends 2 "three files" "$work/b.ppm" "$work/b.ppm" "$work/b.ppm"
+ends 2 "unknown option" "$work/b.ppm" "$work/b.ppm" --fast
+ends 2 "no value" "$work/b.ppm" "$work/b.ppm" --tolerance
+ends 2 "bad tolerance" "$work/b.ppm" "$work/b.ppm" --tolerance -1
+ends 2 "bad name of the map" "$work/b.ppm" "$work/b.ppm" -o "$work/map.png"
+ends 2 "missing file" "$work/b.ppm" "$work/absent.ppm"
+ends 2 "cut off" "$work/cut.ppm" "$work/b.ppm"
+ends 2 "another size" "$work/small.ppm" "$work/b.ppm"
+ends 2 "linear and not" "$work/one.pfm" "$work/small.ppm"
+ends 2 "a picture and a mesh" "$work/one.pfm" tests/golden/mesh.ply
+ends 2 "a mesh that is no solution" tests/golden/mesh.ply tests/golden/mesh.ply
+
+# --- solutions ---
+
+solve() {
+    $MPIEXEC -n 2 "$PHR" --quiet tests/golden/room.obj --epsilon "$1" -o "$2"
+}
+solve 1e-2 "$work/coarse.ply"
+solve 1e-4 "$work/fine.ply"
+$MPIEXEC -n 2 "$PHR" --quiet tests/golden/furnace.obj -o "$work/furnace.ply"
+ends 0 "a solution and itself" "$work/fine.ply" "$work/fine.ply"
+ends 1 "a coarse one and a finer one" "$work/coarse.ply" "$work/fine.ply"
+coarse=$(sed -n 's/.* max, \(.*\) rms/\1/p' "$out")
+check "are some percent apart: $coarse" holds "$coarse > 0.001 && $coarse < 0.2"
+diff_of "$work/fine.ply" "$work/coarse.ply"
+check "the way back is alike" holds \
+    "$(sed -n 's/.* max, \(.*\) rms/\1/p' "$out") / $coarse > 0.9 && 1.1 > $coarse / $(
+        sed -n 's/.* max, \(.*\) rms/\1/p' "$out")"
+ends 2 "solutions of two scenes" "$work/fine.ply" "$work/furnace.ply"
+ends 2 "a mesh, its difference as a picture" "$work/fine.ply" "$work/fine.ply" -o "$work/map.ppm"
+ends 2 "pictures, their difference as a mesh" "$work/b.ppm" "$work/b.ppm" -o "$work/map.ply"
+diff_of "$work/coarse.ply" "$work/coarse.ply" -o "$work/nothing.ply"
+diff_of "$work/coarse.ply" "$work/fine.ply" -o "$work/map.ply"
+mean=$(sed -n 's/^mean *//p' "$out")
+diff_of "$work/map.ply" "$work/nothing.ply"
+found=$(sed -n 's/^mean *//p' "$out")
+check "the mesh of the differences has their mean: $found" holds \
+    "$mean > 0 && $found / $mean > 0.9999 && $found / $mean < 1.0001"
+head -c 3000 "$work/fine.ply" >"$work/cut.ply"
+ends 2 "a solution cut off" "$work/cut.ply" "$work/fine.ply"
+
+$MPIEXEC -n 2 "$PHR" --quiet "$work/coarse.ply" -o "$work/again.ply" 2>"$err"
+grep -q 'nothing emits light' "$err"
+tap $? "phr reads its own mesh, which has no lamps"
+area() { $MPIEXEC -n 2 "$PHR" --quiet --form-factors --max-level 0 --epsilon 1 "$1" | awk -F, '$2 == "*" { s += $3 } END { print s }'; }
+check "of the same area" holds "$(area "$work/coarse.ply") / $(area tests/golden/room.obj) - 1 < 1e-6"
+
+# --- what is no error ---
+
+diff_of --help
+check "--help" [ "$status" -eq 0 ]
+check "fits a screen" [ "$(wc -l <"$out")" -le 24 ]
+missing=
+for option in $(grep -oE '(^|[^a-zA-Z-])--[a-z]+' "$out" | grep -oE '\-\-[a-z]+' | sort -u); do
+    sed 's/\\-/-/g' io/imgdiff.1 | grep -q -- "$option" || missing="$missing $option"
+done
+check "the man page has every option:$missing" [ -z "$missing" ]
+diff_of --version
+check "--version" says "imgdiff $(./phr --version | sed 's/phr //')"
+
+tap_done

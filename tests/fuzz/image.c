@@ -1,0 +1,22 @@
+/* Fuzzing PFM and PPM. */
+#include "io/image.h"
+
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct error error = {0};
+    struct binary binary;
+    struct image image = {0};
+    enum image_kind kind;
+    bool good = binary_of_bytes(&binary, "fuzz", data, size, "P", "a picture", &error) &&
+                image_of_binary(&image, &kind, &binary, &error);
+    FUZZ_PROMISE(good == (image.rgb != NULL));
+    FUZZ_PROMISE(!good || (image.width > 0 && image.height > 0 &&
+                           (size_t)image.width * (size_t)image.height <= size));
+    for (int64_t i = 0; good && i < 3 * (int64_t)image.width * image.height; i++)
+        FUZZ_PROMISE(kind == IMAGE_PFM || (image.rgb[i] >= 0.0f && image.rgb[i] <= 1.0f));
+    alloc_free(image.rgb);
+    fuzz_verdict(good, &error);
+    return 0;
+}

@@ -1,0 +1,53 @@
+/* Fuzzing PLY: reading a scene, and the preparation of what was read; reading a solution. */
+#include "io/ply.h"
+
+#include "io/compare.h"
+#include "tests/fuzz/fuzz.h"
+
+static bool load(struct binary *binary, const uint8_t *data, size_t size, struct error *error)
+{
+    return binary_of_bytes(binary, "fuzz.ply", data, size, "ply", "a PLY file", error);
+}
+
+static void read_scene(const uint8_t *data, size_t size)
+{
+    struct error error = {0};
+    struct scene_repairs prepared;
+    struct binary binary;
+    struct scene *scene = NULL;
+    if (load(&binary, data, size, &error))
+        scene = ply_of_binary(&binary, &error);
+    FUZZ_PROMISE(!scene == (error.code != EXIT_DONE));
+    bool good = scene && scene_prepare(scene, &prepared, &error);
+    for (int32_t i = 0; scene && i < scene->input_count; i++)
+        FUZZ_PROMISE(scene->material_of[i] >= 0 && scene->material_of[i] < scene->material_count);
+    for (int32_t i = 0; scene && i < scene->material_count; i++)
+        FUZZ_PROMISE(rgb_sum(scene->materials[i].reflectance) >= 0.0 &&
+                     rgb_sum(scene->materials[i].emission) >= 0.0);
+    scene_destroy(scene);
+    fuzz_verdict(good, &error);
+}
+
+static void read_solution(const uint8_t *data, size_t size)
+{
+    struct error error = {0}, different = {0};
+    struct binary binary;
+    struct solution solution = {0};
+    struct difference difference = {0};
+    struct rgb *map = NULL;
+    bool good = load(&binary, data, size, &error) &&
+                solution_of_binary(&solution, &binary, &error);
+    map = alloc_array((size_t)solution.count, sizeof *map);
+    FUZZ_PROMISE(!good || compare_solutions(&solution, &solution, &difference, map, &different));
+    FUZZ_PROMISE(difference.largest == 0.0 && difference.broken == 0);
+    alloc_free(map);
+    solution_free(&solution);
+    fuzz_verdict(good, &error);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    read_scene(data, size);
+    read_solution(data, size);
+    return 0;
+}

@@ -1,0 +1,13 @@
+#!/bin/sh
+# golden.sh FOLDER COMMAND...: makes the pictures of tests/golden/cases in FOLDER, with COMMAND as
+# phr: NAME.pfm, or what SUFFIXES names. `make golden` has it renew tests/golden itself.
+
+folder=$1
+shift
+mkdir -p "$folder"
+grep '^[^#]' tests/golden/cases | while read -r name tolerance arguments; do
+    for suffix in ${SUFFIXES:-pfm}; do
+        arguments="$arguments -o $folder/$name.$suffix"
+    done
+    "$@" --quiet $arguments </dev/null || echo "# $name: exit status $?"
+done
