@@ -281,7 +281,7 @@ void options_free(struct options *options)
 void options_print_help(FILE *file)
 {
     fputs("usage: phr [options] SCENE         or  mpiexec -n P phr [options] SCENE\n"
-          "Computes the light in a diffuse scene, OBJ or PLY. Defaults in brackets; phr(1).\n"
+          "Computes the light in a diffuse scene, OBJ or PLY. Defaults in brackets.\n"
           "  -o FILE          .ppm picture, .pfm linear picture, .ply mesh; repeatable\n"
           "  --view FILE      eye x y z, at x y z, up x y z, fov deg, size w h (chosen)\n"
           "  --size WxH       pixels (512x512)       --samples N   N x N rays a pixel (3)\n"

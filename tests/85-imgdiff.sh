@@ -136,6 +136,6 @@ for option in $(grep -oE '(^|[^a-zA-Z-])--[a-z]+' "$out" | grep -oE '\-\-[a-z]+'
 done
 check "the man page has every option:$missing" [ -z "$missing" ]
 diff_of --version
-check "--version" says "imgdiff $(./phr --version | sed 's/phr //')"
+check "--version" says "imgdiff $(./phr --version | sed 's|phr \([0-9.]*\) .*|\1|')"
 
 tap_done
