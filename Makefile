@@ -41,11 +41,11 @@ endif
 
 GEOM = alloc contour elementary error gauss hull lambert polygon scene triangle
 OCTREE = build octree
-RAD = closure conjugate flux formfactor id link method oracle patch pushpull treecode \
+RAD = closure conjugate flux formfactor id link method oracle patch progress pushpull treecode \
       viewfactor
-MPI = accuracy assign broadcast closing comm gather linking migrate pairs picture plan refinement \
-      scatter solve solver vote
-IO = camera cases image mesh mtl obj options output render shading stats table text \
+MPI = accuracy assign broadcast closing comm funnel gather keep linking memory migrate pairs picture \
+      plan refinement scatter signals solve solver vote
+IO = camera cases image machine mesh mtl obj options output render shading stats store table text \
      tone validate
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
