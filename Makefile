@@ -6,6 +6,7 @@
 #   make bench           $(BUILD)/rays, a bench of visibility, beside Embree where it is installed
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
+#   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
 #   make install         to $(DESTDIR)$(prefix)      make uninstall  make clean
 #
 # Knobs: MPICC, CC, MPIEXEC, CFLAGS, CPPFLAGS, LDFLAGS, prefix, DESTDIR.
@@ -58,7 +59,10 @@ TESTS = alloc elementary id triangle lambert hull scene polygon contour octree b
         image camera shading options paths norms cie furnace stability exchange conjugate exact converge
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct tracing
-TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%)
+# Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
+FUZZERS = obj mtl
+REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
+TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%) $(REPLAYS)
 
 all: $(PHR)
 
@@ -79,6 +83,9 @@ $(BUILD)/tests/paths $(BUILD)/tests/norms $(BUILD)/tests/converge: $(BUILD)/test
         $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
+$(REPLAYS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/corpus.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
 $(BUILD)/libphr.a: $(OBJECTS)
 	rm -f $@ && ar rcs $@ $(OBJECTS)
 
@@ -87,7 +94,7 @@ $(BUILD)/%.o: %.c Makefile
 	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) -MMD -c -o $@ $<
 
 -include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(TESTS:%=$(BUILD)/tests/%.d) \
-    $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d)
+    $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d)
 
 demo: $(PHR)
 	$(MPIEXEC) -n 2 ./$(PHR) scenes/cornell.obj --view scenes/cornell.view \
@@ -123,6 +130,14 @@ check: $(PHR) tests
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
 
+# To be run as build/fuzz/fuzz-obj NEW tests/fuzz/corpus/obj, say: finds go to the folder NEW.
+fuzz:
+	$(MAKE) SERIAL=1 CC=clang BUILD=build/fuzz $(FUZZERS:%=build/fuzz/fuzz-%) \
+	    CFLAGS="-g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all"
+
+$(BUILD)/fuzz-%: $(BUILD)/tests/fuzz/%.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lm
+
 install: $(PHR)
 	mkdir -p $(DESTDIR)$(bindir) $(DESTDIR)$(mandir)/man1
 	$(INSTALL) -m 755 $(PHR) $(DESTDIR)$(bindir)/phr
@@ -137,4 +152,4 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench errors chart check install uninstall clean FORCE
+.PHONY: all demo tests room bench errors chart check fuzz install uninstall clean FORCE

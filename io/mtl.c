@@ -106,6 +106,15 @@ static bool read_line(struct mtl_table *table, const struct text *text, char *li
                        is_kd ? &material->reflectance : &material->emission, error);
 }
 
+bool mtl_of_text(struct mtl_table *table, struct text *text, struct error *error)
+{
+    bool good = true;
+    int32_t current = -1;
+    for (char *line; good && (line = text_line(text)) != NULL;)
+        good = read_line(table, text, line, &current, error);
+    return good;
+}
+
 bool mtl_read(struct mtl_table *table, const char *path, bool *found, struct error *error)
 {
     struct text text;
@@ -114,9 +123,7 @@ bool mtl_read(struct mtl_table *table, const char *path, bool *found, struct err
     *found = !text.unreadable;
     if (!good)
         return text.unreadable ? true : error_set(error, reason.code, "%s", reason.text);
-    int32_t current = -1;
-    for (char *line; good && (line = text_line(&text)) != NULL;)
-        good = read_line(table, &text, line, &current, error);
+    good = mtl_of_text(table, &text, error);
     text_free(&text);
     return good;
 }

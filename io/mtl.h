@@ -35,6 +35,9 @@ int32_t mtl_find(struct mtl_table *table, const char *name);
  * Errors: "FILE:LINE: what is wrong"; EXIT_USAGE. */
 bool mtl_read(struct mtl_table *table, const char *path, bool *found, struct error *error);
 
+/* The same for a text that is in memory. Its lines are used up; it stays the caller's. */
+bool mtl_of_text(struct mtl_table *table, struct text *text, struct error *error);
+
 void mtl_free(struct mtl_table *table);
 
 #endif

@@ -269,10 +269,8 @@ static bool read_line(struct obj_reader *reader, char *line)
     return true;
 }
 
-static bool read_lines(struct obj_reader *reader, const char *path)
+static bool read_lines(struct obj_reader *reader)
 {
-    if (!text_read(&reader->text, path, reader->error))
-        return false;
     reader->material = mtl_find(&reader->materials, "");
     reader->materials.entries[reader->material].defined = true;
     reader->group = text_names_add(&reader->groups, DEFAULT_GROUP);
@@ -280,7 +278,7 @@ static bool read_lines(struct obj_reader *reader, const char *path)
         if (!read_line(reader, line))
             return false;
     if (reader->triangle_count == 0)
-        return error_set(reader->error, EXIT_USAGE, "%s: no faces", path);
+        return error_set(reader->error, EXIT_USAGE, "%s: no faces", reader->text.path);
     return true;
 }
 
@@ -346,11 +344,11 @@ static struct scene *make_scene(const struct obj_reader *reader)
     return scene;
 }
 
-struct scene *obj_read(const char *path, struct obj_repairs *repairs, struct error *error)
+struct scene *obj_of_text(struct text *text, struct obj_repairs *repairs, struct error *error)
 {
     *repairs = (struct obj_repairs){0};
-    struct obj_reader reader = {.repairs = repairs, .error = error};
-    bool good = read_lines(&reader, path);
+    struct obj_reader reader = {.text = *text, .repairs = repairs, .error = error};
+    bool good = read_lines(&reader);
     text_free(&reader.text);
     struct scene *scene = good ? make_scene(&reader) : NULL;
     alloc_free(reader.vertices);
@@ -360,4 +358,10 @@ struct scene *obj_read(const char *path, struct obj_repairs *repairs, struct err
     text_names_free(&reader.libraries);
     text_names_free(&reader.groups);
     return scene;
+}
+
+struct scene *obj_read(const char *path, struct obj_repairs *repairs, struct error *error)
+{
+    struct text text;
+    return text_read(&text, path, error) ? obj_of_text(&text, repairs, error) : NULL;
 }

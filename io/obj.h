@@ -14,6 +14,7 @@
 
 #include "geom/error.h"
 #include "geom/scene.h"
+#include "io/text.h"
 
 /* What was read with a repair, for one warning per kind. */
 struct obj_repairs {
@@ -28,5 +29,8 @@ struct obj_repairs {
  * Errors: a file that cannot be read or has no faces, malformed numbers, NaN and infinities,
  * indices out of range, faces with fewer than three corners, negative reflectance or emission. */
 struct scene *obj_read(const char *path, struct obj_repairs *repairs, struct error *error);
+
+/* The same for a text that is in memory. Takes it over: it is freed. */
+struct scene *obj_of_text(struct text *text, struct obj_repairs *repairs, struct error *error);
 
 #endif

@@ -38,6 +38,13 @@ static bool is_text(const char *bytes, size_t count)
     return true;
 }
 
+/* Where the first line starts: behind a byte order mark. */
+static void start(struct text *text)
+{
+    text->bytes[text->size] = '\0';
+    text->position = strncmp(text->bytes, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+}
+
 static bool fail_to_read(struct text *text, struct error *error)
 {
     text->unreadable = true;
@@ -56,7 +63,7 @@ static bool read_blocks(struct text *text, FILE *file, struct error *error)
             return error_set(error, EXIT_USAGE, "%s: not a text file", text->path);
         text->size += (int64_t)got;
     } while (got == BLOCK);
-    text->bytes[text->size] = '\0';
+    start(text);
     return ferror(file) ? fail_to_read(text, error) : true;
 }
 
@@ -71,9 +78,20 @@ bool text_read(struct text *text, const char *path, struct error *error)
     fclose(file);
     if (!good)
         text_free(text);
-    else if (strncmp(text->bytes, "\xEF\xBB\xBF", 3) == 0)
-        text->position = 3;
     return good;
+}
+
+bool text_of_bytes(struct text *text, const char *path, const void *bytes, size_t size,
+                   struct error *error)
+{
+    *text = (struct text){.path = path, .next_line = 1};
+    if (!is_text(bytes, size))
+        return error_set(error, EXIT_USAGE, "%s: not a text file", path);
+    text->size = (int64_t)size;
+    text->bytes = alloc_array(size + 1, 1);
+    memcpy(text->bytes, bytes, size);
+    start(text);
+    return true;
 }
 
 void text_free(struct text *text)

@@ -4,6 +4,7 @@
 #define IO_TEXT_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "geom/error.h"
@@ -28,6 +29,10 @@ struct text {
  * control characters other than blanks and line ends. Both ask for EXIT_USAGE. */
 bool text_read(struct text *text, const char *path, struct error *error);
 void text_free(struct text *text);
+
+/* The same for a copy of `size` bytes in memory, which errors call `path`. */
+bool text_of_bytes(struct text *text, const char *path, const void *bytes, size_t size,
+                   struct error *error);
 
 /* The next logical line, without its end, or NULL behind the last one. Lines end in LF, CRLF,
  * CR, or with the file. A line that ends in a backslash goes on in the next one, as if after a

@@ -30,7 +30,7 @@ check "and no other: $more" [ -z "$more" ]
 
 missing=
 for file in phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] mpi/*.[ch] mpi/serial/*.h io/*.[ch] tests/*.[ch] \
-    tests/*.sh tests/bench/* scenes/*; do
+    tests/*.sh tests/bench/* tests/fuzz/*.[ch] scenes/*; do
     stem=$(echo "$file" | sed 's/\.[ch]$//')
     grep -q "\`$stem" README.md || grep -q "\`$(basename "$stem")" README.md ||
         missing="$missing $file"

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Runs all tests: the unit tests named as arguments, then the scripts tests/[0-9]*.sh in order.
+# Runs all tests: the unit tests named as arguments, the corpora of the fuzz harnesses, then the
+# scripts tests/[0-9]*.sh in order.
 # Each prints TAP lines; what fails is shown, and the last line is "N passed, N failed".
 # A test that dies or ends without its plan counts as one failure more. Called by `make check`,
 # which sets BUILD, MPIEXEC, MPICC, CC and MAKE.
@@ -53,6 +54,10 @@ for test in "$@"; do
     converge) run_on_ranks "$test" 2 ;;
     *) run "$test" "$BUILD/tests/$test" ;;
     esac
+done
+for harness in tests/fuzz/*.c; do
+    format=$(basename "$harness" .c)
+    run "fuzz-$format" "$BUILD/tests/fuzz/$format" tests/fuzz/corpus/"$format"/*
 done
 for script in tests/[0-9]*.sh; do
     run "$(basename "$script" .sh)" sh "$script"

@@ -1,0 +1,24 @@
+/* Fuzzing OBJ: reading, and the preparation of what was read. */
+#include "io/obj.h"
+
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct error error = {0};
+    struct obj_repairs read;
+    struct scene_repairs prepared;
+    struct text text;
+    struct scene *scene = NULL;
+    if (text_of_bytes(&text, "nowhere/fuzz.obj", data, size, &error))
+        scene = obj_of_text(&text, &read, &error);
+    FUZZ_PROMISE(!scene == (error.code != EXIT_DONE));
+    bool good = scene && scene_prepare(scene, &prepared, &error);
+    for (int32_t i = 0; scene && i < scene->input_count; i++) {
+        FUZZ_PROMISE(scene->material_of[i] >= 0 && scene->material_of[i] < scene->material_count);
+        FUZZ_PROMISE(scene->group_of[i] >= 0 && scene->group_of[i] < scene->group_count);
+    }
+    scene_destroy(scene);
+    fuzz_verdict(good, &error);
+    return 0;
+}
