@@ -56,11 +56,11 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary id triangle lambert hull scene polygon contour octree bundles flux patch \
         compact formfactor link oracle pushpull closure treecode plan assign text obj output tone \
-        image camera shading options paths norms cie furnace stability exchange conjugate exact converge
+        image camera shading options paths norms cie furnace stability store exchange conjugate exact converge
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct tracing
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
-FUZZERS = obj mtl
+FUZZERS = obj mtl links checkpoint
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%) $(REPLAYS)
 

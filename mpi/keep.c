@@ -280,7 +280,8 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
     }
     solver->pass = number[PROGRESS_PASSES];
     solver->iteration = number[PROGRESS_ITERATIONS];
-    solver->memory.reached = number[PROGRESS_LIMITED];
+    bool as_limited = number[PROGRESS_LIMITED] == solver->memory.limit;
+    solver->memory.reached = as_limited ? number[PROGRESS_LIMITED] : 0;
     solver->last_change = number[PROGRESS_CHANGE];
     solver->accuracy.estimate = progress->value[PROGRESS_ESTIMATE];
     solver->least_bend = progress->value[PROGRESS_LEAST_BEND];
@@ -289,7 +290,7 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
         method->link_threshold = method->criterion.epsilon * scene_emitted_power(method->scene);
     }
     *vote = (struct vote){
-        .settled = number[PROGRESS_SETTLED] != 0,
+        .settled = number[PROGRESS_SETTLED] != 0 && (as_limited || number[PROGRESS_LIMITED] == 0),
         .links = progress->link_count,
         .remaining = progress->value[PROGRESS_REMAINING],
         .absorbed = progress->value[PROGRESS_ABSORBED],

@@ -3,7 +3,8 @@
  * The handler sets a flag and nothing else, so it may come inside MPI; system calls are begun
  * again by the system. Ranks tell each other what they have seen in exchanges that there are anyway
  * (before each level of refinement, with each vote), so that all stop in the same place, wherever the
- * signal went: mpiexec passes it on to all ranks, kill to one. */
+ * signal went: mpiexec passes it on to all ranks, kill to one. What the shell has set to be ignored
+ * stays so, as for a job in the background. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _XOPEN_SOURCE 700
 #define HAVE_SIGACTION 1
@@ -23,10 +24,11 @@ static void remember(int number)
 #ifdef HAVE_SIGACTION
 static void catch_once(int number)
 {
-    struct sigaction action = {.sa_handler = remember};
+    struct sigaction before, action = {.sa_handler = remember};
     action.sa_flags = (int)(SA_RESTART | SA_RESETHAND);
     sigemptyset(&action.sa_mask);
-    sigaction(number, &action, NULL);
+    if (sigaction(number, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+        sigaction(number, &action, NULL);
 }
 #else
 static void catch_once(int number)

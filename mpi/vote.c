@@ -14,14 +14,14 @@
 #include "geom/alloc.h"
 #include "mpi/signals.h"
 
-/* What a rank says; 112 bytes, no padding. */
+/* What a rank says; 120 bytes, no padding. */
 struct ballot {
     int64_t light, absorbed, change, arriving; /* flux units */
     int64_t split, links;
     int64_t divided;                           /* own patches that are new */
     int64_t stop;                              /* the signal that it has got */
     int64_t square[BANDS];                     /* --solver cg: <z, z>, */
-    int64_t negative;                          /* and see conjugate_sum(), flux units */
+    int64_t negative, bulk;                    /* and see conjugate_sum(), flux units */
     double shrink;                             /* --solver jacobi: see push_pull() */
     double largest;                            /* --solver cg: |z| */
 };
@@ -39,6 +39,7 @@ static void add_ballot(struct ballot *sum, const struct ballot *ballot)
     for (int c = 0; c < BANDS; c++)
         sum->square[c] += ballot->square[c];
     sum->negative = flux_add(sum->negative, ballot->negative);
+    sum->bulk = flux_add(sum->bulk, ballot->bulk);
     sum->shrink = fmax(sum->shrink, ballot->shrink);
     sum->largest = fmax(sum->largest, ballot->largest);
 }
@@ -76,13 +77,13 @@ static struct vote vote_of(const struct solver *solver, const struct ballot *sum
 {
     struct flux_unit unit = solver->method.flux_unit;
     struct vote vote = {
-        .diverged = solver->diverged || sum->light >= FLUX_LIMIT,
+        .diverged = solver->diverged || sum->light >= FLUX_LIMIT || sum->bulk >= FLUX_LIMIT,
         .settled = sum->split == 0 && sum->divided == 0,
         .split = sum->split,
         .links = sum->links,
         .remaining = remaining,
         .absorbed = flux_to_watts(unit, sum->absorbed),
-        .escaped = flux_to_watts(unit, sum->light - sum->arriving),
+        .escaped = flux_to_watts(unit, flux_add(sum->light, -sum->arriving)),
     };
     vote.converged = vote.settled && remaining <= solver->method.criterion.tolerance;
     return vote;
@@ -160,7 +161,7 @@ static struct vote vote_conjugate(struct solver *solver)
     struct ballot own = {.light = sums.light, .absorbed = sums.absorbed,
                          .arriving = sums.arriving, .split = solver->split_here,
                          .links = solver->links.count, .divided = own_new_patches(solver),
-                         .negative = sums.negative, .largest = sums.largest};
+                         .negative = sums.negative, .bulk = sums.bulk, .largest = sums.largest};
     for (int c = 0; c < BANDS; c++)
         own.square[c] = sums.square[c];
     struct ballot sum = count_votes(solver, own);
