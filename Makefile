@@ -130,6 +130,10 @@ check: $(PHR) tests
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
 
+# About three minutes.
+check-long: $(PHR)
+	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/kill.sh
+
 # To be run as build/fuzz/fuzz-obj NEW tests/fuzz/corpus/obj, say: finds go to the folder NEW.
 fuzz:
 	$(MAKE) SERIAL=1 CC=clang BUILD=build/fuzz $(FUZZERS:%=build/fuzz/fuzz-%) \
@@ -152,4 +156,4 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench errors chart check fuzz install uninstall clean FORCE
+.PHONY: all demo tests room bench errors chart check check-long fuzz install uninstall clean FORCE

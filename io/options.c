@@ -437,7 +437,7 @@ void options_print_help(FILE *file)
           "                      --epsilon is relative to the smaller group's area\n"
           "  --help  --version\n"
           "\n"
-          "Exit status: 0 done; 1 the computation failed; 2 bad usage or input.\n"
+          "Exit status: 0 done; 1 the computation failed or was stopped; 2 bad usage or input.\n"
           "\n"
           "  phr room.obj -o room.ppm\n"
           "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o cornell.pfm\n",
