@@ -373,18 +373,19 @@ static const char *describe_all(const struct options *options, const char *const
 
 const char *options_link_settings(const struct options *options)
 {
-    static const char *const BY_ENERGY[] = {"--two-sided", "--oracle", "--form-factor", NULL};
-    static const char *const BY_ERROR[] = {"--two-sided", "--oracle", "--form-factor", "--epsilon",
-                                           NULL}; /* what is at stake decides how closely it looks */
+    static const char *const BY_ENERGY[] = {
+        "--two-sided", "--oracle", "--form-factor", NULL};
+    static const char *const BY_ERROR[] = { /* what is at stake decides how closely it looks */
+        "--two-sided", "--oracle", "--form-factor", "--epsilon", NULL};
     bool by_error = options->criterion.oracle == ORACLE_ERROR;
     return describe_all(options, by_error ? BY_ERROR : BY_ENERGY);
 }
 
 const char *options_run_settings(const struct options *options)
 {
-    static const char *const NAMES[] = {"--two-sided", "--oracle", "--form-factor", "--closure",
-                                        "--solver", "--epsilon", "--accuracy", "--max-level",
-                                        "--min-area", NULL};
+    static const char *const NAMES[] = {
+        "--two-sided", "--oracle", "--form-factor", "--closure", "--solver", "--epsilon",
+        "--accuracy", "--max-level", "--min-area", NULL};
     return describe_all(options, NAMES);
 }
 
