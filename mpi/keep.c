@@ -7,13 +7,13 @@
  * leaves are enclosed, for which rays are fired again.
  *
  * Links are renumbered in place (patches depth first, as in forest_order()), sorted, merged on rank
- * 0, and given their local numbers back: no copy of them is made. Reading, every block of links is
+ * 0, and given their local numbers back: no copy of them is made, since a checkpoint is wanted most
+ * where memory is short. (So they are sorted here: many a qsort() makes a copy.) Reading, every block of links is
  * sent to all ranks, and each takes those that are at home there: rank 0 need not know how many
  * that will be. */
 #include "mpi/keep.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "geom/alloc.h"
 #include "mpi/funnel.h"
@@ -117,38 +117,73 @@ static void collect_numbers(const struct solver *solver, const struct vote *vote
     progress->value[PROGRESS_LEAST_BEND] = solver->least_bend;
 }
 
+static void collect_root_changes(const struct solver *solver, struct progress *progress)
+{
+    int32_t roots = solver->method.forest->root_count;
+    int64_t *own = alloc_array((size_t)roots, sizeof *own);
+    for (int32_t root = 0; root < roots; root++)
+        own[root] = solver->own[root] ? solver->root_change[root] : 0;
+    MPI_Request request;
+    MPI_Iallreduce(own, progress->root_change, roots, MPI_INT64_T, MPI_SUM, solver->comm->handle,
+                   &request);
+    comm_wait(&request);
+    alloc_free(own);
+}
+
 void progress_collect(struct solver *solver, const struct vote *vote, struct progress *progress)
 {
     struct forest *forest = solver->method.forest;
+    bool collects = solver->comm->rank == 0;
     closure_extend(&solver->closure, forest); /* patches that refinement has made since */
     conjugate_extend(&solver->conjugate, forest, solver->own);
-    *progress = (struct progress){.root_count = forest->root_count, .patch_count = forest->count};
     int32_t *order = forest_order(forest);
-    for (int64_t p = 0; p < forest->count; p++)
+    *progress = (struct progress){.root_count = forest->root_count,
+                                  .patch_count = collects ? forest->count : forest->root_count};
+    for (int64_t p = 0; p < forest->count && collects; p++)
         progress->compared_count += is_answer(&solver->accuracy, (int32_t)p);
     progress_allocate(progress);
     collect_numbers(solver, vote, progress);
-    collect_trees(solver, order, progress);
+    if (collects)
+        collect_trees(solver, order, progress);
     collect_home_states(solver, order, progress);
-    int64_t *own = alloc_array((size_t)forest->root_count, sizeof *own);
-    for (int32_t root = 0; root < forest->root_count; root++)
-        own[root] = solver->own[root] ? solver->root_change[root] : 0;
-    MPI_Request request;
-    MPI_Iallreduce(own, progress->root_change, forest->root_count, MPI_INT64_T, MPI_SUM,
-                   solver->comm->handle, &request);
-    comm_wait(&request);
-    alloc_free(own);
+    collect_root_changes(solver, progress);
     alloc_free(order);
 }
 
 /* --- collecting links --- */
 
-static int compare_links(const void *left, const void *right)
+static bool is_before(const struct link *a, const struct link *b)
 {
-    const struct link *a = left, *b = right;
-    if (a->p != b->p)
-        return a->p < b->p ? -1 : 1;
-    return (a->q > b->q) - (a->q < b->q);
+    return a->p != b->p ? a->p < b->p : a->q < b->q;
+}
+
+static void swap_links(struct link *a, struct link *b)
+{
+    struct link kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+/* Heapsort: moves the link at `i` down to where it belongs among the first `count`. */
+static void sift_down(struct link *links, int64_t i, int64_t count)
+{
+    for (int64_t child = 2 * i + 1; child < count; child = 2 * i + 1) {
+        child += child + 1 < count && is_before(&links[child], &links[child + 1]);
+        if (!is_before(&links[i], &links[child]))
+            return;
+        swap_links(&links[i], &links[child]);
+        i = child;
+    }
+}
+
+static void sort_links(struct link *links, int64_t count)
+{
+    for (int64_t i = count / 2 - 1; i >= 0; i--)
+        sift_down(links, i, count);
+    for (int64_t last = count - 1; last > 0; last--) {
+        swap_links(&links[0], &links[last]);
+        sift_down(links, 0, last);
+    }
 }
 
 /* Rank 0: merges the sorted links of all ranks. */
@@ -161,7 +196,7 @@ static void merge(struct funnel *funnel, link_sink *sink, void *context)
         const struct link *least = NULL;
         for (int r = 0; r < funnel->comm->size; r++) {
             const struct link *link = funnel_next(funnel, r);
-            if (link && (!least || compare_links(link, least) < 0)) {
+            if (link && (!least || is_before(link, least))) {
                 least = link;
                 first = r;
             }
@@ -196,9 +231,7 @@ void links_collect(struct solver *solver, link_sink *sink, void *context)
     for (int64_t i = 0; i < forest->count; i++)
         number[order[i]] = (int32_t)i;
     renumber(&solver->links, number);
-    if (solver->links.count > 0)
-        qsort(solver->links.items, (size_t)solver->links.count, sizeof *solver->links.items,
-              compare_links);
+    sort_links(solver->links.items, solver->links.count);
     struct funnel funnel;
     funnel_start(&funnel, solver->comm, solver->links.items, solver->links.count,
                  sizeof *solver->links.items);

@@ -5,8 +5,8 @@
 #include "mpi/solver.h"
 #include "rad/progress.h"
 
-/* Collective, between two passes: fills `progress` on rank 0, and its numbers on the others. To be
- * released with progress_free() on all. */
+/* Collective, between two passes: fills `progress` on rank 0; on the others it stays without trees. To
+ * be released with progress_free() on all. */
 void progress_collect(struct solver *solver, const struct vote *vote, struct progress *progress);
 
 /* Receives links with patch numbers of the progress in place of local ones, in ascending order. */
