@@ -1,9 +1,9 @@
 /* phr: parallel hierarchical radiosity.
  *
  * This file is the algorithm: compute_light() below is the outline of the paper's Sec. 3.2, its
- * eight steps as eight calls. Around it stand reading on rank 0, pictures and reports. Errors
- * of the user or the system are values (geom/error.h) on which all ranks agree after each phase;
- * rank 0 prints them once and all ranks leave with the same exit code. */
+ * eight steps as eight calls. Around it stand reading on rank 0, stored progress, pictures and
+ * reports. Errors of the user or the system are values (geom/error.h) on which all ranks agree after
+ * each phase; rank 0 prints them once and all ranks leave with the same exit code. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -425,7 +425,7 @@ static bool show_results(struct run *run)
     float *picture = NULL;
     if (wants_picture(options)) {
         float *rows = render_rows(shading, run->octree, &run->camera, options->samples, comm->rank,
-                                  comm->size);
+                                  comm->size, signals_seen);
         picture = picture_gather(comm, rows, 3 * (size_t)run->camera.width, run->camera.height);
         alloc_free(rows);
     }

@@ -114,6 +114,16 @@ check "SIGTERM without a checkpoint: exit status 1" [ "$status" -eq 1 ]
 check "it says what happened" grep -q '^phr: stopped by SIGTERM$' "$work/err"
 check "and nothing is left" nothing_is_left
 
+start 2 scenes/cornell.obj --epsilon 1e-3 --size 1000x1000 --samples 32 -o "$work/new.ppm" \
+    --checkpoint "$work/check"
+wait_for "(0 split)"
+begun=$(date +%s)
+kill -TERM "$launched"
+finish
+check "SIGTERM while a picture is made: exit status 1" [ "$status" -eq 1 ]
+check "soon" [ $(($(date +%s) - begun)) -lt 10 ]
+check "and no picture" [ ! -e "$work/new.ppm" ]
+
 # --- a full disk ---
 
 # A limit of the size of files takes the place of a disk that fills up half way: the checkpoint of the
