@@ -42,7 +42,7 @@ endif
 
 GEOM = alloc contour elementary error gauss hull lambert polygon scene triangle
 OCTREE = build octree
-RAD = closure conjugate flux formfactor id link method oracle patch progress pushpull treecode \
+RAD = closure conjugate flux formfactor id link method oracle patch pushpull snapshot treecode \
       viewfactor
 MPI = accuracy assign broadcast closing comm funnel gather keep linking memory migrate pairs picture \
       plan refinement scatter signals solve solver vote

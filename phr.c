@@ -1,7 +1,7 @@
 /* phr: parallel hierarchical radiosity.
  *
  * This file is the algorithm: compute_light() below is the outline of the paper's Sec. 3.2, its
- * eight steps as eight calls. Around it stand reading on rank 0, stored progress, pictures and
+ * eight steps as eight calls. Around it stand reading on rank 0, stored snapshot, pictures and
  * reports. Errors of the user or the system are values (geom/error.h) on which all ranks agree after
  * each phase; rank 0 prints them once and all ranks leave with the same exit code. */
 #include <math.h>
@@ -165,7 +165,7 @@ static bool read_and_broadcast(struct run *run)
     return true;
 }
 
-/* --- stored progress --- */
+/* --- stored snapshot --- */
 
 static struct store_terms terms_of(const struct run *run, enum store_kind kind)
 {
@@ -184,16 +184,16 @@ static void put_links(void *context, const struct link *links, int64_t count)
 }
 
 /* Collective. */
-static bool save_progress(struct run *run, enum store_kind kind, const char *path)
+static bool save_snapshot(struct run *run, enum store_kind kind, const char *path)
 {
     double start = comm_seconds();
     struct store_terms terms = terms_of(run, kind);
     struct store_writer writer;
-    struct progress progress;
-    progress_collect(run->solver, &run->vote, &progress);
+    struct snapshot snapshot;
+    snapshot_collect(run->solver, &run->vote, &snapshot);
     if (run->comm.rank == 0)
-        store_create(&writer, path, &terms, &progress, &run->error);
-    progress_free(&progress);
+        store_create(&writer, path, &terms, &snapshot, &run->error);
+    snapshot_free(&snapshot);
     if (!comm_agree(&run->comm, &run->error))
         return false;
     links_collect(run->solver, put_links, &writer);
@@ -223,7 +223,7 @@ static bool load_links(struct run *run, struct store_reader *reader, const int32
 }
 
 /* Collective, after homes have been assigned. */
-static bool load_progress(struct run *run, enum store_kind kind, const char *path)
+static bool load_snapshot(struct run *run, enum store_kind kind, const char *path)
 {
     double start = comm_seconds();
     struct store_terms terms = terms_of(run, kind);
@@ -232,13 +232,13 @@ static bool load_progress(struct run *run, enum store_kind kind, const char *pat
         store_open(&reader, path, &terms, &run->error);
     bool good = comm_agree(&run->comm, &run->error);
     if (good) {
-        int32_t *order = progress_restore(run->solver, &run->vote, &reader.progress);
-        good = load_links(run, &reader, order, reader.progress.link_count);
+        int32_t *order = snapshot_restore(run->solver, &run->vote, &reader.snapshot);
+        good = load_links(run, &reader, order, reader.snapshot.link_count);
         alloc_free(order);
     }
     if (good)
         say(run, "%s: %lld links after %lld passes, %.1f s", path,
-            (long long)reader.progress.link_count, (long long)run->solver->pass,
+            (long long)reader.snapshot.link_count, (long long)run->solver->pass,
             comm_seconds() - run->start);
     store_close(&reader);
     run->solver->seconds[PHASE_LINKING] += comm_seconds() - start;
@@ -289,13 +289,13 @@ static bool start_light(struct run *run)
     if (options->load_links || options->resume) {
         enum store_kind kind = options->resume ? STORE_CHECKPOINT : STORE_LINKS;
         solver_assign_roots(solver);
-        return load_progress(run, kind, options->resume ? options->resume : options->load_links);
+        return load_snapshot(run, kind, options->resume ? options->resume : options->load_links);
     }
     say(run, "%s: %lld triangles; linking", options->scene, (long long)run->scene->input_count);
     solver_link_roots(solver);   /* 2: initial linking */
     solver_assign_roots(solver); /* 3: re-assignment by area */
     say(run, "roots are linked, %.1f s", comm_seconds() - run->start);
-    return !options->save_links || save_progress(run, STORE_LINKS, options->save_links);
+    return !options->save_links || save_snapshot(run, STORE_LINKS, options->save_links);
 }
 
 /* Collective. Steps 5 to 8, until there is no other iteration. */
@@ -350,7 +350,7 @@ static bool compute_light(struct run *run)
         } else {
             run->vote.settled = run->vote.converged = false;
         }
-        if (is_due(run) && !save_progress(run, STORE_CHECKPOINT, run->options.checkpoint))
+        if (is_due(run) && !save_snapshot(run, STORE_CHECKPOINT, run->options.checkpoint))
             return false;
     }
     if (run->vote.diverged)

@@ -1,8 +1,8 @@
-/* Stored progress; the format is in io/store.h.
+/* Stored snapshot; the format is in io/store.h.
  *
  * Reading trusts nothing: the size of the file has to be what its counts say, so no more is
  * allocated than a small multiple of it; then the checksum, the settings and the scene; then every
- * number (rad/progress.c). The file is read twice for that, which keeps the links, by far the most
+ * number (rad/snapshot.c). The file is read twice for that, which keeps the links, by far the most
  * of it, out of rank 0's memory.
  *
  * The checksum is there for accidents. Rejected: a CRC for each section, which finds no more and
@@ -57,26 +57,26 @@ static void put_rgb(struct store_writer *writer, struct rgb light)
         put_double(writer, light.band[c]);
 }
 
-static void put_progress(struct store_writer *writer, const struct progress *progress)
+static void put_snapshot(struct store_writer *writer, const struct snapshot *snapshot)
 {
-    for (int i = 0; i < PROGRESS_NUMBERS; i++)
-        put64(writer, progress->number[i]);
-    for (int i = 0; i < PROGRESS_VALUES; i++)
-        put_double(writer, progress->value[i]);
-    for (int64_t i = 0; i < progress->root_count; i++)
-        put64(writer, progress->root_change[i]);
-    put(writer, progress->kind, (size_t)progress->patch_count);
-    for (int64_t i = 0; i < progress_leaf_count(progress); i++) {
-        put_rgb(writer, progress->leaves[i].radiosity);
-        put_rgb(writer, progress->leaves[i].irradiance);
-        put_double(writer, progress->leaves[i].factor);
+    for (int i = 0; i < SNAPSHOT_NUMBERS; i++)
+        put64(writer, snapshot->number[i]);
+    for (int i = 0; i < SNAPSHOT_VALUES; i++)
+        put_double(writer, snapshot->value[i]);
+    for (int64_t i = 0; i < snapshot->root_count; i++)
+        put64(writer, snapshot->root_change[i]);
+    put(writer, snapshot->kind, (size_t)snapshot->patch_count);
+    for (int64_t i = 0; i < snapshot_leaf_count(snapshot); i++) {
+        put_rgb(writer, snapshot->leaves[i].radiosity);
+        put_rgb(writer, snapshot->leaves[i].irradiance);
+        put_double(writer, snapshot->leaves[i].factor);
     }
-    for (int64_t i = 0; i < progress->compared_count; i++)
-        put_rgb(writer, progress->compared[i]);
+    for (int64_t i = 0; i < snapshot->compared_count; i++)
+        put_rgb(writer, snapshot->compared[i]);
 }
 
 bool store_create(struct store_writer *writer, const char *path, const struct store_terms *terms,
-                  const struct progress *progress, struct error *error)
+                  const struct snapshot *snapshot, struct error *error)
 {
     *writer = (struct store_writer){.hash = HASH_START};
     if (!output_open(&writer->output, path, error))
@@ -84,12 +84,12 @@ bool store_create(struct store_writer *writer, const char *path, const struct st
     put(writer, MAGIC[terms->kind], MAGIC_BYTES);
     put64(writer, (int64_t)scene_hash(terms->scene));
     put32(writer, (uint32_t)strlen(terms->settings));
-    put32(writer, (uint32_t)progress->root_count);
-    put64(writer, progress->patch_count);
-    put64(writer, progress->compared_count);
-    put64(writer, progress->link_count);
+    put32(writer, (uint32_t)snapshot->root_count);
+    put64(writer, snapshot->patch_count);
+    put64(writer, snapshot->compared_count);
+    put64(writer, snapshot->link_count);
     put(writer, terms->settings, strlen(terms->settings));
-    put_progress(writer, progress);
+    put_snapshot(writer, snapshot);
     return true;
 }
 
@@ -168,9 +168,9 @@ static bool counts_fit(const struct header *h, int64_t size)
         h->patches > size || h->patches > INT32_MAX || (h->patches - h->roots) % 4 != 0 ||
         h->compared < 0 || h->compared > h->patches || h->links < 0 || h->links > size / LINK_BYTES)
         return false;
-    struct progress counts = {.root_count = h->roots, .patch_count = h->patches};
-    return size == HEADER_BYTES + h->settings + 8 * (PROGRESS_NUMBERS + PROGRESS_VALUES) +
-                       8 * h->roots + h->patches + LEAF_BYTES * progress_leaf_count(&counts) +
+    struct snapshot counts = {.root_count = h->roots, .patch_count = h->patches};
+    return size == HEADER_BYTES + h->settings + 8 * (SNAPSHOT_NUMBERS + SNAPSHOT_VALUES) +
+                       8 * h->roots + h->patches + LEAF_BYTES * snapshot_leaf_count(&counts) +
                        RGB_BYTES * h->compared + LINK_BYTES * h->links + 8;
 }
 
@@ -256,37 +256,37 @@ static bool get_doubles(struct store_reader *reader, double *values, int count,
     return true;
 }
 
-static bool get_progress(struct store_reader *reader, struct error *error)
+static bool get_snapshot(struct store_reader *reader, struct error *error)
 {
-    struct progress *progress = &reader->progress;
+    struct snapshot *snapshot = &reader->snapshot;
     bool good = true;
-    for (int i = 0; i < PROGRESS_NUMBERS && good; i++)
-        good = get64(reader, &progress->number[i], error);
-    for (int i = 0; i < PROGRESS_VALUES && good; i++)
-        good = get_doubles(reader, &progress->value[i], 1, error);
-    for (int64_t i = 0; i < progress->root_count && good; i++)
-        good = get64(reader, &progress->root_change[i], error);
-    good = good && get(reader, progress->kind, (size_t)progress->patch_count, error);
-    for (int64_t i = 0; i < progress_leaf_count(progress) && good; i++) {
-        struct leaf_state *leaf = &progress->leaves[i];
+    for (int i = 0; i < SNAPSHOT_NUMBERS && good; i++)
+        good = get64(reader, &snapshot->number[i], error);
+    for (int i = 0; i < SNAPSHOT_VALUES && good; i++)
+        good = get_doubles(reader, &snapshot->value[i], 1, error);
+    for (int64_t i = 0; i < snapshot->root_count && good; i++)
+        good = get64(reader, &snapshot->root_change[i], error);
+    good = good && get(reader, snapshot->kind, (size_t)snapshot->patch_count, error);
+    for (int64_t i = 0; i < snapshot_leaf_count(snapshot) && good; i++) {
+        struct leaf_state *leaf = &snapshot->leaves[i];
         good = get_doubles(reader, leaf->radiosity.band, BANDS, error) &&
                get_doubles(reader, leaf->irradiance.band, BANDS, error) &&
                get_doubles(reader, &leaf->factor, 1, error);
     }
-    for (int64_t i = 0; i < progress->compared_count && good; i++)
-        good = get_doubles(reader, progress->compared[i].band, BANDS, error);
+    for (int64_t i = 0; i < snapshot->compared_count && good; i++)
+        good = get_doubles(reader, snapshot->compared[i].band, BANDS, error);
     return good;
 }
 
-static bool check_progress(const struct store_reader *reader, enum store_kind kind,
+static bool check_snapshot(const struct store_reader *reader, enum store_kind kind,
                            struct error *error)
 {
     struct error wrong = {0};
-    const struct progress *progress = &reader->progress;
-    if (!progress_check(progress, &wrong))
+    const struct snapshot *snapshot = &reader->snapshot;
+    if (!snapshot_check(snapshot, &wrong))
         return damaged(reader, wrong.text, error);
-    if (kind == STORE_LINKS && (progress->patch_count != progress->root_count ||
-                                progress->number[PROGRESS_PASSES] != 0))
+    if (kind == STORE_LINKS && (snapshot->patch_count != snapshot->root_count ||
+                                snapshot->number[SNAPSHOT_PASSES] != 0))
         return damaged(reader, "its links are not initial ones", error);
     return true;
 }
@@ -306,14 +306,14 @@ bool store_open_file(struct store_reader *reader, FILE *file, const char *name,
         return false;
     if (header.scene != scene_hash(terms->scene) || header.roots != scene_root_count(terms->scene))
         return error_set(error, EXIT_USAGE, "%s: made from another scene", name);
-    reader->progress.root_count = header.roots;
-    reader->progress.patch_count = header.patches;
-    reader->progress.compared_count = header.compared;
-    reader->progress.link_count = reader->links_left = header.links;
-    progress_allocate(&reader->progress);
-    if (!get_progress(reader, error) || !check_progress(reader, terms->kind, error))
+    reader->snapshot.root_count = header.roots;
+    reader->snapshot.patch_count = header.patches;
+    reader->snapshot.compared_count = header.compared;
+    reader->snapshot.link_count = reader->links_left = header.links;
+    snapshot_allocate(&reader->snapshot);
+    if (!get_snapshot(reader, error) || !check_snapshot(reader, terms->kind, error))
         return false;
-    reader->check = link_check_start(&reader->progress, terms->scene);
+    reader->check = link_check_start(&reader->snapshot, terms->scene);
     return true;
 }
 
@@ -357,7 +357,7 @@ void store_close(struct store_reader *reader)
 {
     if (reader->file)
         fclose(reader->file);
-    progress_free(&reader->progress);
+    snapshot_free(&reader->snapshot);
     link_check_free(&reader->check);
     *reader = (struct store_reader){0};
 }

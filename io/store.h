@@ -1,6 +1,6 @@
-/* Stored progress: the files of --save-links and --load-links, --checkpoint and --resume.
+/* Stored snapshot: the files of --save-links and --load-links, --checkpoint and --resume.
  *
- * Both hold a progress (rad/progress.h) and its links; a link cache is one from before the first pass
+ * Both hold a snapshot (rad/snapshot.h) and its links; a link cache is one from before the first pass
  * and is bound to fewer settings. Numbers are little-endian, whole ones in two's complement,
  * others IEEE 754. With R roots, N patches, L leaves, K compared patches, M links and T bytes of
  * settings:
@@ -11,12 +11,12 @@
  *     4  4     T  R
  *     8  8  8  N  K  M
  *     T        settings: lines "--option value", each with its newline
- *     8 x 10   progress.number
- *     8 x 6    progress.value
- *     8 R      progress.root_change
- *     N        progress.kind, a byte each
+ *     8 x 10   snapshot.number
+ *     8 x 6    snapshot.value
+ *     8 R      snapshot.root_change
+ *     N        snapshot.kind, a byte each
  *     56 L     leaves: radiosity (3 doubles), irradiance (3), factor
- *     24 K     progress.compared (3 doubles)
+ *     24 K     snapshot.compared (3 doubles)
  *     24 M     links: p q (4 bytes each), area (float), blocker (4), parts_p parts_q (3 each), seen,
  *              cost (1 each); ascending by p, then q
  *     8        hash_bytes() of all that comes before
@@ -31,7 +31,7 @@
 
 #include "geom/error.h"
 #include "io/output.h"
-#include "rad/progress.h"
+#include "rad/snapshot.h"
 
 enum store_kind { STORE_LINKS, STORE_CHECKPOINT };
 
@@ -49,7 +49,7 @@ struct store_writer {
 
 /* Writes all but the links. Errors: "PATH: cannot write: REASON", EXIT_FAILED. */
 bool store_create(struct store_writer *writer, const char *path, const struct store_terms *terms,
-                  const struct progress *progress, struct error *error);
+                  const struct snapshot *snapshot, struct error *error);
 
 /* The next links. What goes wrong is told by store_finish(). */
 void store_put_links(struct store_writer *writer, const struct link *links, int64_t count);
@@ -60,7 +60,7 @@ bool store_finish(struct store_writer *writer, struct error *error);
 struct store_reader {
     FILE *file;
     const char *path;         /* borrowed */
-    struct progress progress; /* checked; owned */
+    struct snapshot snapshot; /* checked; owned */
     int64_t links_left;
     struct link_check check;
 };

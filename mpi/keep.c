@@ -1,4 +1,4 @@
-/* Collecting and restoring a run's progress.
+/* Collecting and restoring a run's snapshot.
  *
  * Between passes all ranks have the same trees with the same radiosities; what only the home of a
  * leaf knows, its irradiance and its closure factor, goes to rank 0 through a funnel, in the order
@@ -34,41 +34,41 @@ static bool is_answer(const struct accuracy *accuracy, int32_t p)
 }
 
 static void collect_trees(const struct solver *solver, const int32_t *order,
-                          struct progress *progress)
+                          struct snapshot *snapshot)
 {
     const struct accuracy *accuracy = &solver->accuracy;
     int64_t leaf = 0, compared = 0;
-    for (int64_t i = 0; i < progress->patch_count; i++) {
+    for (int64_t i = 0; i < snapshot->patch_count; i++) {
         const struct patch *patch = &solver->method.forest->patches[order[i]];
-        progress->kind[i] = patch_is_leaf(patch) ? 0 : PATCH_SPLIT;
+        snapshot->kind[i] = patch_is_leaf(patch) ? 0 : PATCH_SPLIT;
         if (patch_is_leaf(patch))
-            progress->leaves[leaf++].radiosity = patch->radiosity;
+            snapshot->leaves[leaf++].radiosity = patch->radiosity;
         if (is_answer(accuracy, order[i])) {
-            progress->kind[i] |= PATCH_COMPARED;
-            progress->compared[compared++] = accuracy->before[order[i]];
+            snapshot->kind[i] |= PATCH_COMPARED;
+            snapshot->compared[compared++] = accuracy->before[order[i]];
         }
     }
 }
 
 /* Rank 0: takes what comes from the homes, leaf by leaf. */
 static void place_home_states(const struct solver *solver, const int32_t *order,
-                              struct funnel *funnel, struct progress *progress)
+                              struct funnel *funnel, struct snapshot *snapshot)
 {
     int64_t leaf = 0;
-    for (int64_t i = 0; i < progress->patch_count; i++) {
+    for (int64_t i = 0; i < snapshot->patch_count; i++) {
         const struct patch *patch = &solver->method.forest->patches[order[i]];
         if (!patch_is_leaf(patch))
             continue;
         int home = solver->owner[patch->id.root];
         const struct home_state *state = funnel_next(funnel, home);
-        progress->leaves[leaf].irradiance = state->irradiance;
-        progress->leaves[leaf++].factor = state->factor;
+        snapshot->leaves[leaf].irradiance = state->irradiance;
+        snapshot->leaves[leaf++].factor = state->factor;
         funnel_drop(funnel, home);
     }
 }
 
 static void collect_home_states(struct solver *solver, const int32_t *order,
-                                struct progress *progress)
+                                struct snapshot *snapshot)
 {
     const struct forest *forest = solver->method.forest;
     struct home_state *own = NULL;
@@ -85,13 +85,13 @@ static void collect_home_states(struct solver *solver, const int32_t *order,
     struct funnel funnel;
     funnel_start(&funnel, solver->comm, own, count, sizeof *own);
     if (solver->comm->rank == 0)
-        place_home_states(solver, order, &funnel, progress);
+        place_home_states(solver, order, &funnel, snapshot);
     funnel_end(&funnel);
     alloc_free(own);
 }
 
 static void collect_numbers(const struct solver *solver, const struct vote *vote,
-                            struct progress *progress)
+                            struct snapshot *snapshot)
 {
     const struct method *method = &solver->method;
     int64_t own[] = {solver->links.count, method->counts.rays, method->counts.node_tests,
@@ -101,52 +101,52 @@ static void collect_numbers(const struct solver *solver, const struct vote *vote
     MPI_Iallreduce(own, sum, (int)(sizeof own / sizeof own[0]), MPI_INT64_T, MPI_SUM,
                    solver->comm->handle, &request);
     comm_wait(&request);
-    progress->link_count = sum[0];
+    snapshot->link_count = sum[0];
     for (int i = 0; i < 5; i++)
-        progress->number[PROGRESS_RAYS + i] = sum[1 + i];
-    progress->number[PROGRESS_PASSES] = solver->pass;
-    progress->number[PROGRESS_ITERATIONS] = solver->iteration;
-    progress->number[PROGRESS_SETTLED] = vote->settled;
-    progress->number[PROGRESS_LIMITED] = solver->memory.reached;
-    progress->number[PROGRESS_CHANGE] = solver->last_change;
-    progress->value[PROGRESS_REMAINING] = vote->remaining;
-    progress->value[PROGRESS_ABSORBED] = vote->absorbed;
-    progress->value[PROGRESS_ESCAPED] = vote->escaped;
-    progress->value[PROGRESS_EPSILON] = method->criterion.epsilon;
-    progress->value[PROGRESS_ESTIMATE] = solver->accuracy.estimate;
-    progress->value[PROGRESS_LEAST_BEND] = solver->least_bend;
+        snapshot->number[SNAPSHOT_RAYS + i] = sum[1 + i];
+    snapshot->number[SNAPSHOT_PASSES] = solver->pass;
+    snapshot->number[SNAPSHOT_ITERATIONS] = solver->iteration;
+    snapshot->number[SNAPSHOT_SETTLED] = vote->settled;
+    snapshot->number[SNAPSHOT_LIMITED] = solver->memory.reached;
+    snapshot->number[SNAPSHOT_CHANGE] = solver->last_change;
+    snapshot->value[SNAPSHOT_REMAINING] = vote->remaining;
+    snapshot->value[SNAPSHOT_ABSORBED] = vote->absorbed;
+    snapshot->value[SNAPSHOT_ESCAPED] = vote->escaped;
+    snapshot->value[SNAPSHOT_EPSILON] = method->criterion.epsilon;
+    snapshot->value[SNAPSHOT_ESTIMATE] = solver->accuracy.estimate;
+    snapshot->value[SNAPSHOT_LEAST_BEND] = solver->least_bend;
 }
 
-static void collect_root_changes(const struct solver *solver, struct progress *progress)
+static void collect_root_changes(const struct solver *solver, struct snapshot *snapshot)
 {
     int32_t roots = solver->method.forest->root_count;
     int64_t *own = alloc_array((size_t)roots, sizeof *own);
     for (int32_t root = 0; root < roots; root++)
         own[root] = solver->own[root] ? solver->root_change[root] : 0;
     MPI_Request request;
-    MPI_Iallreduce(own, progress->root_change, roots, MPI_INT64_T, MPI_SUM, solver->comm->handle,
+    MPI_Iallreduce(own, snapshot->root_change, roots, MPI_INT64_T, MPI_SUM, solver->comm->handle,
                    &request);
     comm_wait(&request);
     alloc_free(own);
 }
 
-void progress_collect(struct solver *solver, const struct vote *vote, struct progress *progress)
+void snapshot_collect(struct solver *solver, const struct vote *vote, struct snapshot *snapshot)
 {
     struct forest *forest = solver->method.forest;
     bool collects = solver->comm->rank == 0;
     closure_extend(&solver->closure, forest); /* patches that refinement has made since */
     conjugate_extend(&solver->conjugate, forest, solver->own);
     int32_t *order = forest_order(forest);
-    *progress = (struct progress){.root_count = forest->root_count,
+    *snapshot = (struct snapshot){.root_count = forest->root_count,
                                   .patch_count = collects ? forest->count : forest->root_count};
     for (int64_t p = 0; p < forest->count && collects; p++)
-        progress->compared_count += is_answer(&solver->accuracy, (int32_t)p);
-    progress_allocate(progress);
-    collect_numbers(solver, vote, progress);
+        snapshot->compared_count += is_answer(&solver->accuracy, (int32_t)p);
+    snapshot_allocate(snapshot);
+    collect_numbers(solver, vote, snapshot);
     if (collects)
-        collect_trees(solver, order, progress);
-    collect_home_states(solver, order, progress);
-    collect_root_changes(solver, progress);
+        collect_trees(solver, order, snapshot);
+    collect_home_states(solver, order, snapshot);
+    collect_root_changes(solver, snapshot);
     alloc_free(order);
 }
 
@@ -245,54 +245,54 @@ void links_collect(struct solver *solver, link_sink *sink, void *context)
 
 /* --- restoring --- */
 
-/* Rank 0's progress goes to all. */
-static void broadcast_progress(const struct comm *comm, struct progress *progress)
+/* Rank 0's snapshot goes to all. */
+static void broadcast_snapshot(const struct comm *comm, struct snapshot *snapshot)
 {
-    struct progress head = *progress;
+    struct snapshot head = *snapshot;
     comm_broadcast(comm, &head, sizeof head);
     if (comm->rank != 0) {
-        *progress = head;
-        progress_allocate(progress);
+        *snapshot = head;
+        snapshot_allocate(snapshot);
     }
-    comm_broadcast(comm, progress->root_change,
-                   (size_t)progress->root_count * sizeof *progress->root_change);
-    comm_broadcast(comm, progress->kind, (size_t)progress->patch_count);
-    comm_broadcast(comm, progress->leaves,
-                   (size_t)progress_leaf_count(progress) * sizeof *progress->leaves);
-    comm_broadcast(comm, progress->compared,
-                   (size_t)progress->compared_count * sizeof *progress->compared);
+    comm_broadcast(comm, snapshot->root_change,
+                   (size_t)snapshot->root_count * sizeof *snapshot->root_change);
+    comm_broadcast(comm, snapshot->kind, (size_t)snapshot->patch_count);
+    comm_broadcast(comm, snapshot->leaves,
+                   (size_t)snapshot_leaf_count(snapshot) * sizeof *snapshot->leaves);
+    comm_broadcast(comm, snapshot->compared,
+                   (size_t)snapshot->compared_count * sizeof *snapshot->compared);
 }
 
-/* Splits as in the progress, depth first: patches come to be in the same order on all ranks. */
-static void restore_trees(struct forest *forest, const struct progress *progress)
+/* Splits as in the snapshot, depth first: patches come to be in the same order on all ranks. */
+static void restore_trees(struct forest *forest, const struct snapshot *snapshot)
 {
     int64_t i = 0;
     for (int32_t root = 0; root < forest->root_count; root++)
         for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
-            if (progress->kind[i++] & PATCH_SPLIT)
+            if (snapshot->kind[i++] & PATCH_SPLIT)
                 forest_split(forest, p);
 }
 
-static void restore_leaves(struct solver *solver, const struct progress *progress,
+static void restore_leaves(struct solver *solver, const struct snapshot *snapshot,
                            const int32_t *order)
 {
     struct forest *forest = solver->method.forest;
     struct accuracy *accuracy = &solver->accuracy;
     int64_t leaf = 0, compared = 0;
-    if (progress->compared_count > 0) {
+    if (snapshot->compared_count > 0) {
         accuracy->before = alloc_array((size_t)forest->count, sizeof *accuracy->before);
         accuracy->count = forest->count;
     }
     for (int64_t i = 0; i < forest->count; i++) {
         int32_t p = order[i];
         if (patch_is_leaf(&forest->patches[p])) {
-            const struct leaf_state *state = &progress->leaves[leaf++];
+            const struct leaf_state *state = &snapshot->leaves[leaf++];
             forest->patches[p].radiosity = state->radiosity;
             solver->conjugate.irradiance[p] = state->irradiance;
             solver->closure.factor[p] = state->factor;
         }
-        if (progress->kind[i] & PATCH_COMPARED)
-            accuracy->before[p] = progress->compared[compared++];
+        if (snapshot->kind[i] & PATCH_COMPARED)
+            accuracy->before[p] = snapshot->compared[compared++];
         else if (accuracy->before)
             accuracy->before[p].band[0] = HUGE_VAL;
     }
@@ -301,49 +301,49 @@ static void restore_leaves(struct solver *solver, const struct progress *progres
 
 /* The work so far is put down to rank 0. */
 static void restore_numbers(struct solver *solver, struct vote *vote,
-                            const struct progress *progress)
+                            const struct snapshot *snapshot)
 {
     struct method *method = &solver->method;
-    const int64_t *number = progress->number;
+    const int64_t *number = snapshot->number;
     if (solver->comm->rank == 0) {
-        method->counts = (struct octree_counts){number[PROGRESS_RAYS], number[PROGRESS_NODE_TESTS],
-                                                number[PROGRESS_TRIANGLE_TESTS]};
-        method->walled_off = number[PROGRESS_WALLED_OFF];
-        method->rays_spared = number[PROGRESS_RAYS_SPARED];
+        method->counts = (struct octree_counts){number[SNAPSHOT_RAYS], number[SNAPSHOT_NODE_TESTS],
+                                                number[SNAPSHOT_TRIANGLE_TESTS]};
+        method->walled_off = number[SNAPSHOT_WALLED_OFF];
+        method->rays_spared = number[SNAPSHOT_RAYS_SPARED];
     }
-    solver->pass = number[PROGRESS_PASSES];
-    solver->iteration = number[PROGRESS_ITERATIONS];
-    bool as_limited = number[PROGRESS_LIMITED] == solver->memory.limit;
-    solver->memory.reached = as_limited ? number[PROGRESS_LIMITED] : 0;
-    solver->last_change = number[PROGRESS_CHANGE];
-    solver->accuracy.estimate = progress->value[PROGRESS_ESTIMATE];
-    solver->least_bend = progress->value[PROGRESS_LEAST_BEND];
+    solver->pass = number[SNAPSHOT_PASSES];
+    solver->iteration = number[SNAPSHOT_ITERATIONS];
+    bool as_limited = number[SNAPSHOT_LIMITED] == solver->memory.limit;
+    solver->memory.reached = as_limited ? number[SNAPSHOT_LIMITED] : 0;
+    solver->last_change = number[SNAPSHOT_CHANGE];
+    solver->accuracy.estimate = snapshot->value[SNAPSHOT_ESTIMATE];
+    solver->least_bend = snapshot->value[SNAPSHOT_LEAST_BEND];
     if (solver->pass > 0) { /* before the first pass a link cache does not bind epsilon */
-        method->criterion.epsilon = progress->value[PROGRESS_EPSILON];
+        method->criterion.epsilon = snapshot->value[SNAPSHOT_EPSILON];
         method->link_threshold = method->criterion.epsilon * scene_emitted_power(method->scene);
     }
     *vote = (struct vote){
-        .settled = number[PROGRESS_SETTLED] != 0 && (as_limited || number[PROGRESS_LIMITED] == 0),
-        .links = progress->link_count,
-        .remaining = progress->value[PROGRESS_REMAINING],
-        .absorbed = progress->value[PROGRESS_ABSORBED],
-        .escaped = progress->value[PROGRESS_ESCAPED],
+        .settled = number[SNAPSHOT_SETTLED] != 0 && (as_limited || number[SNAPSHOT_LIMITED] == 0),
+        .links = snapshot->link_count,
+        .remaining = snapshot->value[SNAPSHOT_REMAINING],
+        .absorbed = snapshot->value[SNAPSHOT_ABSORBED],
+        .escaped = snapshot->value[SNAPSHOT_ESCAPED],
     };
     vote->converged = vote->settled && vote->remaining <= method->criterion.tolerance;
 }
 
-int32_t *progress_restore(struct solver *solver, struct vote *vote, struct progress *progress)
+int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snapshot *snapshot)
 {
     struct forest *forest = solver->method.forest;
-    broadcast_progress(solver->comm, progress);
-    restore_trees(forest, progress);
+    broadcast_snapshot(solver->comm, snapshot);
+    restore_trees(forest, snapshot);
     closure_extend(&solver->closure, forest);
     conjugate_extend(&solver->conjugate, forest, solver->own);
     int32_t *order = forest_order(forest);
-    restore_leaves(solver, progress, order);
+    restore_leaves(solver, snapshot, order);
     for (int32_t root = 0; root < forest->root_count; root++)
-        solver->root_change[root] = progress->root_change[root];
-    restore_numbers(solver, vote, progress);
+        solver->root_change[root] = snapshot->root_change[root];
+    restore_numbers(solver, vote, snapshot);
     return order;
 }
 

@@ -1,4 +1,4 @@
-/* Tests of io/store.h, rad/progress.h and mpi/keep.h on one rank. Proved are: what is restored from a
+/* Tests of io/store.h, rad/snapshot.h and mpi/keep.h on one rank. Proved are: what is restored from a
  * file makes the same file again; a file of another kind, version, scene or setting is refused with
  * the reason; so is one that is cut off or changed at any byte; and numbers that no run could have
  * are refused though the checksum is right. Several ranks: tests/67-restart.sh. */
@@ -28,11 +28,11 @@ static bool save(struct solver *solver, const struct vote *vote, enum store_kind
 {
     struct error error = {0};
     struct store_terms terms = {kind, STORE_SETTINGS, scene};
-    struct progress progress;
+    struct snapshot snapshot;
     struct store_writer writer;
-    progress_collect(solver, vote, &progress);
-    bool good = store_create(&writer, path, &terms, &progress, &error);
-    progress_free(&progress);
+    snapshot_collect(solver, vote, &snapshot);
+    bool good = store_create(&writer, path, &terms, &snapshot, &error);
+    snapshot_free(&snapshot);
     links_collect(solver, put, &writer);
     return good && store_finish(&writer, &error);
 }
@@ -86,11 +86,11 @@ static void test_round_trip(void)
     struct link *links = alloc_array(ROOM, sizeof *links);
     other->memory.limit = solver->memory.limit;
     tap_ok(store_open(&reader, PATH, &terms, &error), "and read");
-    tap_ok(reader.progress.compared_count > 0 &&
-               reader.progress.patch_count > reader.progress.root_count,
+    tap_ok(reader.snapshot.compared_count > 0 &&
+               reader.snapshot.patch_count > reader.snapshot.root_count,
            "it has split patches and an answer to compare with");
     solver_assign_roots(other);
-    int32_t *order = progress_restore(other, &vote, &reader.progress);
+    int32_t *order = snapshot_restore(other, &vote, &reader.snapshot);
     int64_t count = store_get_links(&reader, links, ROOM, &error);
     links_deal(other, order, links, count);
     tap_ok(count == solver->links.count && store_get_links(&reader, links, ROOM, &error) == 0 &&
@@ -202,8 +202,8 @@ static void test_damage(const uint8_t *bytes, size_t size)
 
 /* Places in the file of a checkpoint with these settings; see io/store.h. */
 enum { SETTINGS = sizeof STORE_SETTINGS - 1, NUMBERS_AT = 48 + SETTINGS,
-       VALUES_AT = NUMBERS_AT + 8 * PROGRESS_NUMBERS,
-       KINDS_AT = VALUES_AT + 8 * PROGRESS_VALUES + 8 * 2 };
+       VALUES_AT = NUMBERS_AT + 8 * SNAPSHOT_NUMBERS,
+       KINDS_AT = VALUES_AT + 8 * SNAPSHOT_VALUES + 8 * 2 };
 
 /* With the bytes in place of those at `at`, and a checksum that is right. */
 static bool refuses_with(const uint8_t *bytes, size_t size, size_t at, const void *others,

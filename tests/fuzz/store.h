@@ -1,4 +1,4 @@
-/* Fuzzing stored progress: what the harnesses of its two kinds share.
+/* Fuzzing stored snapshot: what the harnesses of its two kinds share.
  *
  * A checksum would stop a fuzzer at the door, so the right one is put at the end of every input
  * first. What the reader takes is restored, refined and solved for one iteration: it promises to
@@ -56,14 +56,14 @@ static inline bool store_continue(struct store_reader *reader, const struct comm
     struct link block[BLOCK];
     struct vote vote;
     solver_assign_roots(solver);
-    int32_t *order = progress_restore(solver, &vote, &reader->progress);
+    int32_t *order = snapshot_restore(solver, &vote, &reader->snapshot);
     for (int64_t count = BLOCK; count > 0;) {
         count = store_get_links(reader, block, BLOCK, error);
         links_deal(solver, order, block, count);
     }
     alloc_free(order);
     if (error->code == EXIT_DONE) {
-        FUZZ_PROMISE(solver->links.count == reader->progress.link_count);
+        FUZZ_PROMISE(solver->links.count == reader->snapshot.link_count);
         solver_refine(solver);
         store_solve(solver);
     }

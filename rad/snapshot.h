@@ -3,8 +3,8 @@
  * (forest_order()), so it is the same on any number of ranks.
  *
  * The state after initial linking, before the first pass, is one of these too. */
-#ifndef RAD_PROGRESS_H
-#define RAD_PROGRESS_H
+#ifndef RAD_SNAPSHOT_H
+#define RAD_SNAPSHOT_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -14,24 +14,24 @@
 #include "rad/patch.h"
 
 /* Whole numbers, none below 0. */
-enum progress_number {
-    PROGRESS_PASSES,         /* refinements */
-    PROGRESS_ITERATIONS,     /* transfers of light */
-    PROGRESS_SETTLED,        /* 1: the last pass split nothing */
-    PROGRESS_LIMITED,        /* bytes at which refinement ended for want of memory, 0: it did not */
-    PROGRESS_CHANGE,         /* change in the last iteration, flux units (Jacobi) */
-    PROGRESS_RAYS, PROGRESS_NODE_TESTS, PROGRESS_TRIANGLE_TESTS, /* work of all ranks so far */
-    PROGRESS_WALLED_OFF, PROGRESS_RAYS_SPARED,
-    PROGRESS_NUMBERS
+enum snapshot_number {
+    SNAPSHOT_PASSES,         /* refinements */
+    SNAPSHOT_ITERATIONS,     /* transfers of light */
+    SNAPSHOT_SETTLED,        /* 1: the last pass split nothing */
+    SNAPSHOT_LIMITED,        /* bytes at which refinement ended for want of memory, 0: it did not */
+    SNAPSHOT_CHANGE,         /* change in the last iteration, flux units (Jacobi) */
+    SNAPSHOT_RAYS, SNAPSHOT_NODE_TESTS, SNAPSHOT_TRIANGLE_TESTS, /* work of all ranks so far */
+    SNAPSHOT_WALLED_OFF, SNAPSHOT_RAYS_SPARED,
+    SNAPSHOT_NUMBERS
 };
 
-enum progress_value {
-    PROGRESS_REMAINING,      /* bound on the remaining error, relative to all light; HUGE_VAL: none */
-    PROGRESS_ABSORBED, PROGRESS_ESCAPED, /* W, areas in square scene units */
-    PROGRESS_EPSILON,        /* as --accuracy has lowered it */
-    PROGRESS_ESTIMATE,       /* of the error, with --accuracy */
-    PROGRESS_LEAST_BEND,     /* of conjugate gradients */
-    PROGRESS_VALUES
+enum snapshot_value {
+    SNAPSHOT_REMAINING,      /* bound on the remaining error, relative to all light; HUGE_VAL: none */
+    SNAPSHOT_ABSORBED, SNAPSHOT_ESCAPED, /* W, areas in square scene units */
+    SNAPSHOT_EPSILON,        /* as --accuracy has lowered it */
+    SNAPSHOT_ESTIMATE,       /* of the error, with --accuracy */
+    SNAPSHOT_LEAST_BEND,     /* of conjugate gradients */
+    SNAPSHOT_VALUES
 };
 
 /* Bits of a patch's kind. */
@@ -43,34 +43,34 @@ struct leaf_state {
     double factor;         /* of the closure */
 };
 
-struct progress {
-    int64_t number[PROGRESS_NUMBERS];
-    double value[PROGRESS_VALUES];
+struct snapshot {
+    int64_t number[SNAPSHOT_NUMBERS];
+    double value[SNAPSHOT_VALUES];
     int64_t root_count, patch_count, link_count;
     int64_t compared_count;    /* patches with PATCH_COMPARED */
     int64_t *root_change;      /* [root_count] of Jacobi; see push_pull() */
     uint8_t *kind;             /* [patch_count] PATCH_SPLIT: it has children; PATCH_COMPARED: it has
                                   an answer that --accuracy compares with */
-    struct leaf_state *leaves; /* [progress_leaf_count()] */
+    struct leaf_state *leaves; /* [snapshot_leaf_count()] */
     struct rgb *compared;      /* [compared_count] these answers, W/m^2 */
 };
 
-/* Gives a progress whose four counts are set its arrays, all zero. */
-void progress_allocate(struct progress *progress);
-void progress_free(struct progress *progress);
+/* Gives a snapshot whose four counts are set its arrays, all zero. */
+void snapshot_allocate(struct snapshot *snapshot);
+void snapshot_free(struct snapshot *snapshot);
 
 /* Every split makes four patches of a leaf, which is none any more. */
-static inline int64_t progress_leaf_count(const struct progress *progress)
+static inline int64_t snapshot_leaf_count(const struct snapshot *snapshot)
 {
-    return progress->patch_count - (progress->patch_count - progress->root_count) / 4;
+    return snapshot->patch_count - (snapshot->patch_count - snapshot->root_count) / 4;
 }
 
 /* True if the kinds are those of `root_count` whole trees, no deeper than IDs reach, and every number
  * and value is one that a run could have. The counts fit each other already.
  * Errors: what is wrong, without a file's name, EXIT_USAGE. */
-bool progress_check(const struct progress *progress, struct error *error);
+bool snapshot_check(const struct snapshot *snapshot, struct error *error);
 
-/* Links of a progress, looked at one after the other; p and q are its patch numbers. */
+/* Links of a snapshot, looked at one after the other; p and q are its patch numbers. */
 struct link_check {
     const struct scene *scene; /* borrowed */
     int64_t patch_count;
@@ -82,8 +82,8 @@ struct link_check {
     bool begun;
 };
 
-/* Pre: progress_check() has said yes, and root_count is that of the scene. */
-struct link_check link_check_start(const struct progress *progress, const struct scene *scene);
+/* Pre: snapshot_check() has said yes, and root_count is that of the scene. */
+struct link_check link_check_start(const struct snapshot *snapshot, const struct scene *scene);
 void link_check_free(struct link_check *check);
 
 /* True if the next link is one that a run could have: numbers in their ranges, no pair of patches

@@ -1,33 +1,33 @@
-/* Checking a progress and its links.
+/* Checking a snapshot and its links.
  *
  * What comes from a file may say anything. Every number is held against what a run could have
  * written, so that nothing later on meets a patch that does not exist, a NaN, or a flux that
  * overflows: the transfer of light relies on what links_transfer() states, that the links of a
  * patch lead to patches that do not overlap, so their exchange areas add up to no more than the
  * area of the scene. That sum is checked as it stands, for each patch. */
-#include "rad/progress.h"
+#include "rad/snapshot.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 
-void progress_allocate(struct progress *progress)
+void snapshot_allocate(struct snapshot *snapshot)
 {
-    size_t leaves = (size_t)progress_leaf_count(progress);
-    progress->root_change = alloc_array((size_t)progress->root_count,
-                                        sizeof *progress->root_change);
-    progress->kind = alloc_array((size_t)progress->patch_count, sizeof *progress->kind);
-    progress->leaves = alloc_array(leaves, sizeof *progress->leaves);
-    progress->compared = alloc_array((size_t)progress->compared_count, sizeof *progress->compared);
+    size_t leaves = (size_t)snapshot_leaf_count(snapshot);
+    snapshot->root_change = alloc_array((size_t)snapshot->root_count,
+                                        sizeof *snapshot->root_change);
+    snapshot->kind = alloc_array((size_t)snapshot->patch_count, sizeof *snapshot->kind);
+    snapshot->leaves = alloc_array(leaves, sizeof *snapshot->leaves);
+    snapshot->compared = alloc_array((size_t)snapshot->compared_count, sizeof *snapshot->compared);
 }
 
-void progress_free(struct progress *progress)
+void snapshot_free(struct snapshot *snapshot)
 {
-    alloc_free(progress->root_change);
-    alloc_free(progress->kind);
-    alloc_free(progress->leaves);
-    alloc_free(progress->compared);
-    *progress = (struct progress){0};
+    alloc_free(snapshot->root_change);
+    alloc_free(snapshot->kind);
+    alloc_free(snapshot->leaves);
+    alloc_free(snapshot->compared);
+    *snapshot = (struct snapshot){0};
 }
 
 /* --- trees --- */
@@ -51,21 +51,21 @@ static void walk_on(struct walk *walk, uint8_t kind)
     walk->root += walk->level == 0;
 }
 
-static bool trees_are_whole(const struct progress *progress)
+static bool trees_are_whole(const struct snapshot *snapshot)
 {
     struct walk walk = {0};
     int64_t compared = 0;
-    for (int64_t i = 0; i < progress->patch_count; i++) {
-        uint8_t kind = progress->kind[i];
-        if (kind > (PATCH_SPLIT | PATCH_COMPARED) || walk.root >= progress->root_count)
+    for (int64_t i = 0; i < snapshot->patch_count; i++) {
+        uint8_t kind = snapshot->kind[i];
+        if (kind > (PATCH_SPLIT | PATCH_COMPARED) || walk.root >= snapshot->root_count)
             return false;
         if (walk.level == ID_MAX_LEVEL && kind & PATCH_SPLIT)
             return false;
         walk_on(&walk, kind);
         compared += (kind & PATCH_COMPARED) != 0;
     }
-    return walk.level == 0 && walk.root == progress->root_count &&
-           compared == progress->compared_count;
+    return walk.level == 0 && walk.root == snapshot->root_count &&
+           compared == snapshot->compared_count;
 }
 
 /* --- numbers --- */
@@ -82,62 +82,62 @@ static bool light_is_sane(struct rgb light)
     return true;
 }
 
-static bool numbers_are_sane(const struct progress *progress)
+static bool numbers_are_sane(const struct snapshot *snapshot)
 {
-    const double *value = progress->value;
-    for (int i = 0; i < PROGRESS_NUMBERS; i++)
-        if (progress->number[i] < 0 || progress->number[i] > FLUX_LIMIT ||
-            (i != PROGRESS_CHANGE && progress->number[i] > MOST_COUNTED))
+    const double *value = snapshot->value;
+    for (int i = 0; i < SNAPSHOT_NUMBERS; i++)
+        if (snapshot->number[i] < 0 || snapshot->number[i] > FLUX_LIMIT ||
+            (i != SNAPSHOT_CHANGE && snapshot->number[i] > MOST_COUNTED))
             return false;
-    for (int64_t i = 0; i < progress->root_count; i++)
-        if (progress->root_change[i] < 0 || progress->root_change[i] > FLUX_LIMIT)
+    for (int64_t i = 0; i < snapshot->root_count; i++)
+        if (snapshot->root_change[i] < 0 || snapshot->root_change[i] > FLUX_LIMIT)
             return false;
-    return progress->number[PROGRESS_SETTLED] <= 1 && value[PROGRESS_REMAINING] >= 0.0 &&
-           fabs(value[PROGRESS_ABSORBED]) <= MOST_POWER &&
-           fabs(value[PROGRESS_ESCAPED]) <= MOST_POWER && value[PROGRESS_EPSILON] >= 0.0 &&
-           value[PROGRESS_EPSILON] <= MOST_LIGHT && value[PROGRESS_ESTIMATE] >= 0.0 &&
-           value[PROGRESS_ESTIMATE] <= MOST_LIGHT && fabs(value[PROGRESS_LEAST_BEND]) <= MOST_LIGHT;
+    return snapshot->number[SNAPSHOT_SETTLED] <= 1 && value[SNAPSHOT_REMAINING] >= 0.0 &&
+           fabs(value[SNAPSHOT_ABSORBED]) <= MOST_POWER &&
+           fabs(value[SNAPSHOT_ESCAPED]) <= MOST_POWER && value[SNAPSHOT_EPSILON] >= 0.0 &&
+           value[SNAPSHOT_EPSILON] <= MOST_LIGHT && value[SNAPSHOT_ESTIMATE] >= 0.0 &&
+           value[SNAPSHOT_ESTIMATE] <= MOST_LIGHT && fabs(value[SNAPSHOT_LEAST_BEND]) <= MOST_LIGHT;
 }
 
-static bool leaves_are_sane(const struct progress *progress)
+static bool leaves_are_sane(const struct snapshot *snapshot)
 {
-    for (int64_t i = 0; i < progress_leaf_count(progress); i++) {
-        const struct leaf_state *leaf = &progress->leaves[i];
+    for (int64_t i = 0; i < snapshot_leaf_count(snapshot); i++) {
+        const struct leaf_state *leaf = &snapshot->leaves[i];
         if (!light_is_sane(leaf->radiosity) || !light_is_sane(leaf->irradiance) ||
             !(leaf->factor >= 1.0 / MOST_FACTOR && leaf->factor <= MOST_FACTOR))
             return false;
     }
-    for (int64_t i = 0; i < progress->compared_count; i++)
-        if (!light_is_sane(progress->compared[i]))
+    for (int64_t i = 0; i < snapshot->compared_count; i++)
+        if (!light_is_sane(snapshot->compared[i]))
             return false;
     return true;
 }
 
-bool progress_check(const struct progress *progress, struct error *error)
+bool snapshot_check(const struct snapshot *snapshot, struct error *error)
 {
-    if (!trees_are_whole(progress))
+    if (!trees_are_whole(snapshot))
         return error_set(error, EXIT_USAGE, "its patches are no trees");
-    if (!numbers_are_sane(progress) || !leaves_are_sane(progress))
+    if (!numbers_are_sane(snapshot) || !leaves_are_sane(snapshot))
         return error_set(error, EXIT_USAGE, "a number in it is out of range");
     return true;
 }
 
 /* --- links --- */
 
-struct link_check link_check_start(const struct progress *progress, const struct scene *scene)
+struct link_check link_check_start(const struct snapshot *snapshot, const struct scene *scene)
 {
-    size_t patches = (size_t)progress->patch_count;
-    struct link_check check = {.scene = scene, .patch_count = progress->patch_count,
+    size_t patches = (size_t)snapshot->patch_count;
+    struct link_check check = {.scene = scene, .patch_count = snapshot->patch_count,
                                .most = (1.0 + 1e-6) * scene_area(scene)};
     struct walk walk = {0};
     check.root = alloc_array(patches, sizeof *check.root);
     check.area = alloc_array(patches, sizeof *check.area);
     check.load = alloc_array(patches, sizeof *check.load);
-    for (int64_t i = 0; i < progress->patch_count; i++) {
+    for (int64_t i = 0; i < snapshot->patch_count; i++) {
         double share = 1.0 / (double)(UINT32_C(1) << (2 * walk.level));
         check.root[i] = walk.root;
         check.area[i] = scene_root_area(scene, walk.root) * share;
-        walk_on(&walk, progress->kind[i]);
+        walk_on(&walk, snapshot->kind[i]);
     }
     return check;
 }
