@@ -46,12 +46,12 @@ endif
 
 GEOM = alloc contour elementary error gauss hull lambert polygon scene triangle wall
 OCTREE = build octree
-RAD = boxtree closure conjugate flux formfactor id link linking method oracle patch pushpull treecode \
-      viewfactor
-MPI = accuracy assign broadcast closing comm gather linking migrate pairs picture plan refinement \
-      scatter solve solver vote
-IO = binary camera cases compare image library mesh mtl obj options output palette ply plyfile \
-     progress render shading stats surface table text tone validate viewpoint
+RAD = boxtree closure conjugate flux formfactor id link linking method oracle patch pushpull snapshot \
+      treecode viewfactor
+MPI = accuracy assign broadcast closing comm funnel gather keep linking memory migrate pairs picture \
+      plan refinement scatter signals solve solver vote
+IO = binary camera cases compare image library machine mesh mtl obj options output palette ply plyfile \
+     progress render shading stats store surface table text tone validate viewpoint
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
 MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)
@@ -60,11 +60,11 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary id triangle lambert hull scene polygon contour wall octree bundles flux patch \
         compact formfactor link linking oracle pushpull closure treecode plan assign text obj ply output tone \
-        image camera viewpoint shading options progress paths norms cie furnace stability exchange conjugate exact converge
+        image camera viewpoint shading options progress paths norms cie furnace stability store exchange conjugate exact converge
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct tracing
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
-FUZZERS = obj mtl ply image view
+FUZZERS = obj mtl ply image view links checkpoint
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%) $(REPLAYS)
 
@@ -152,6 +152,10 @@ golden: $(PHR)
 portability:
 	MAKE="$(MAKE)" sh tests/portability.sh
 
+# About three minutes.
+check-long: $(PHR)
+	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/kill.sh
+
 # To be run as build/fuzz/fuzz-obj NEW tests/fuzz/corpus/obj, say: finds go to the folder NEW.
 fuzz:
 	$(MAKE) SERIAL=1 CC=clang BUILD=build/fuzz $(FUZZERS:%=build/fuzz/fuzz-%) \
@@ -176,4 +180,4 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench errors chart check golden portability fuzz install uninstall clean FORCE
+.PHONY: all demo tests room bench errors chart check check-long golden portability fuzz install uninstall clean FORCE

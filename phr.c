@@ -1,16 +1,19 @@
 /* phr: parallel hierarchical radiosity.
  *
  * This file is the algorithm: compute_light() below is the outline of the paper's Sec. 3.2, its
- * eight steps as eight calls. Around it stand reading on rank 0, pictures and reports. Errors
- * of the user or the system are values (geom/error.h) on which all ranks agree after each phase;
- * rank 0 prints them once and all ranks leave with the same exit code. */
+ * eight steps as eight calls. Around it stand reading on rank 0, stored snapshot, pictures and
+ * reports. Errors of the user or the system are values (geom/error.h) on which all ranks agree after
+ * each phase; rank 0 prints them once and all ranks leave with the same exit code. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/hash.h"
 #include "io/camera.h"
 #include "io/image.h"
+#include "io/machine.h"
 #include "io/mesh.h"
 #include "io/obj.h"
 #include "io/options.h"
@@ -19,12 +22,16 @@
 #include "io/progress.h"
 #include "io/render.h"
 #include "io/stats.h"
+#include "io/store.h"
 #include "io/table.h"
 #include "io/validate.h"
 #include "io/viewpoint.h"
 #include "mpi/broadcast.h"
+#include "mpi/keep.h"
+#include "mpi/memory.h"
 #include "mpi/pairs.h"
 #include "mpi/picture.h"
+#include "mpi/signals.h"
 #include "mpi/solver.h"
 
 struct run {
@@ -150,10 +157,15 @@ static bool read_camera(struct run *run)
 
 static bool probe_outputs(struct run *run)
 {
-    for (int i = 0; i < run->options.output_count; i++)
-        if (!output_probe(run->options.outputs[i], &run->error))
+    const struct options *options = &run->options;
+    const char *others[] = {options->stats, options->save_links, options->checkpoint};
+    for (int i = 0; i < options->output_count; i++)
+        if (!output_probe(options->outputs[i], &run->error))
             return false;
-    return !run->options.stats || output_probe(run->options.stats, &run->error);
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+        if (others[i] && !output_probe(others[i], &run->error))
+            return false;
+    return true;
 }
 
 /* Collective. Step 1: rank 0 reads, all agree on errors, all receive the scene. */
@@ -167,6 +179,95 @@ static bool read_and_broadcast(struct run *run)
     comm_broadcast(&run->comm, &run->camera, sizeof run->camera);
     run->octree = octree_create(run->scene->triangles, run->scene->planes, run->scene->input_count);
     return true;
+}
+
+/* --- stored snapshot --- */
+
+static struct store_terms terms_of(const struct run *run, enum store_kind kind)
+{
+    const struct options *options = &run->options;
+    return (struct store_terms){
+        .kind = kind,
+        .settings = kind == STORE_LINKS ? options_link_settings(options)
+                                        : options_run_settings(options),
+        .scene = run->scene,
+    };
+}
+
+static void put_links(void *context, const struct link *links, int64_t count)
+{
+    store_put_links(context, links, count);
+}
+
+/* Collective. */
+static bool save_snapshot(struct run *run, enum store_kind kind, const char *path)
+{
+    double start = comm_seconds();
+    struct store_terms terms = terms_of(run, kind);
+    struct store_writer writer;
+    struct snapshot snapshot;
+    snapshot_collect(run->solver, &run->vote, &snapshot);
+    if (run->comm.rank == 0)
+        store_create(&writer, path, &terms, &snapshot, &run->error);
+    snapshot_free(&snapshot);
+    if (!comm_agree(&run->comm, &run->error))
+        return false;
+    links_collect(run->solver, put_links, &writer);
+    if (run->comm.rank == 0)
+        store_finish(&writer, &run->error);
+    run->solver->seconds[PHASE_WRITE] += comm_seconds() - start;
+    return comm_agree(&run->comm, &run->error);
+}
+
+/* Collective. Deals the links of an open file. */
+static bool load_links(struct run *run, struct store_reader *reader, const int32_t *order,
+                       int64_t count)
+{
+    enum { BLOCK = 65536 };
+    struct link *block = alloc_array(BLOCK, sizeof *block);
+    bool good = true;
+    for (int64_t left = count; left > 0 && good; left -= BLOCK) {
+        int64_t now = left < BLOCK ? left : BLOCK;
+        if (run->comm.rank == 0)
+            store_get_links(reader, block, now, &run->error);
+        good = comm_agree(&run->comm, &run->error);
+        if (good)
+            links_deal(run->solver, order, block, now);
+    }
+    alloc_free(block);
+    return good;
+}
+
+/* Collective, after homes have been assigned. */
+static bool load_snapshot(struct run *run, enum store_kind kind, const char *path)
+{
+    double start = comm_seconds();
+    struct store_terms terms = terms_of(run, kind);
+    struct store_reader reader = {0};
+    if (run->comm.rank == 0)
+        store_open(&reader, path, &terms, &run->error);
+    bool good = comm_agree(&run->comm, &run->error);
+    if (good) {
+        int32_t *order = snapshot_restore(run->solver, &run->vote, &reader.snapshot);
+        good = load_links(run, &reader, order, reader.snapshot.link_count);
+        alloc_free(order);
+    }
+    if (good)
+        say(run, "%s: %lld links after %lld passes, %.1f s", path,
+            (long long)reader.snapshot.link_count, (long long)run->solver->pass,
+            comm_seconds() - run->start);
+    store_close(&reader);
+    run->solver->seconds[PHASE_LINKING] += comm_seconds() - start;
+    return good;
+}
+
+/* Says why the run ends here. */
+static bool stopped(struct run *run)
+{
+    const char *path = run->options.checkpoint;
+    return error_set(&run->error, EXIT_FAILED, "stopped by %s%s%s",
+                     signals_name(run->solver->stop), path ? "; go on with --resume " : "",
+                     path ? path : "");
 }
 
 /* --- the algorithm --- */
@@ -201,43 +302,92 @@ static double share_solved(const struct run *run, double first)
     return known ? log(first / now) / log(first / tolerance) : 0.0;
 }
 
-/* Collective. Steps 2 to 8 of the paper's Sec. 3.2. */
-static bool compute_light(struct run *run)
+/* Collective. Steps 2 and 3 of the paper's Sec. 3.2, or what a file holds in their place. */
+static bool start_light(struct run *run)
 {
-    struct progress *progress = &run->progress.progress;
+    const struct options *options = &run->options;
     struct solver *solver = solver_create(&run->comm, run->scene, run->octree,
-                                          &run->options.criterion);
+                                          &options->criterion);
     run->solver = solver;
+    memory_watch(solver, options->memory, machine_memory());
     solver->seconds[PHASE_READ] = comm_seconds() - run->start;
-    say(run, "%s: %lld triangles; linking", run->options.scene, (long long)run->scene->input_count);
-    solver->progress = progress;
-    progress_begin(progress, "linking", -1, 0);
+    solver->progress = &run->progress.progress;
+    if (options->load_links || options->resume) {
+        enum store_kind kind = options->resume ? STORE_CHECKPOINT : STORE_LINKS;
+        solver_assign_roots(solver);
+        return load_snapshot(run, kind, options->resume ? options->resume : options->load_links);
+    }
+    progress_begin(solver->progress, "linking", -1, 0);
+    say(run, "%s: %lld triangles; linking", options->scene, (long long)run->scene->input_count);
     solver_link_roots(solver);   /* 2: initial linking */
     solver_assign_roots(solver); /* 3: re-assignment by area */
     say(run, "roots are linked, %.1f s", comm_seconds() - run->start);
+    return !options->save_links || save_snapshot(run, STORE_LINKS, options->save_links);
+}
+
+/* Collective. Steps 5 to 8, until there is no other iteration. */
+static void solve_pass(struct run *run)
+{
+    struct solver *solver = run->solver;
+    double first = HUGE_VAL; /* bound on the remaining error */
+    solver_close(solver);    /* what each row of form factors should sum to */
+    progress_begin(solver->progress, "solving", -1, 0);
     do {
-        int64_t levels = solver->level_count;
-        solver_refine(solver); /* 4: evaluate and refine, level by level */
-        solver_close(solver);  /*    what each row of form factors should sum to */
-        progress_begin(progress, "solving", -1, 0);
-        double first = HUGE_VAL; /* bound on the remaining error */
-        do {
-            solver_transfer(solver);         /* 5: light over the links, */
-            solver_gather(solver);           /*    and proxies go home */
-            solver_push_pull(solver);        /* 6: push-pull on own roots */
-            solver_scatter(solver);          /* 7: proxies are renewed */
-            run->vote = solver_vote(solver); /* 8: is there another iteration? */
-            first = first < HUGE_VAL ? first : run->vote.remaining;
-            progress_tick(progress, share_solved(run, first));
-        } while (run->vote.again);
-        report_levels(run, levels);
-        report_iteration(run);
-    } while (!(run->vote.converged && solver_is_accurate(solver)) && !run->vote.diverged &&
-             solver->iteration < run->options.criterion.max_iterations);
+        solver_transfer(solver);         /* 5: light over the links, */
+        solver_gather(solver);           /*    and proxies go home */
+        solver_push_pull(solver);        /* 6: push-pull on own roots */
+        solver_scatter(solver);          /* 7: proxies are renewed */
+        run->vote = solver_vote(solver); /* 8: is there another iteration? */
+        first = first < HUGE_VAL ? first : run->vote.remaining;
+        progress_tick(solver->progress, share_solved(run, first));
+    } while (run->vote.again);
+}
+
+/* Collective. True if there is another pass. */
+static bool goes_on(struct run *run)
+{
+    struct solver *solver = run->solver;
+    const struct vote *vote = &run->vote;
+    if (solver->stop || vote->diverged)
+        return false;
+    if (vote->converged && (solver->memory.reached > 0 || solver_is_accurate(solver)))
+        return false;
+    return solver->iteration < run->options.criterion.max_iterations;
+}
+
+/* True if the state is worth a checkpoint: that of a whole pass, or of one that a signal has broken off,
+ * which is as good as before it. */
+static bool is_due(const struct run *run)
+{
+    const struct options *options = &run->options;
+    const struct vote *vote = &run->vote;
+    if (!options->checkpoint || vote->unfinished || vote->diverged)
+        return false;
+    return run->solver->pass % options->every == 0 || run->solver->stop || vote->converged ||
+           run->solver->iteration >= options->criterion.max_iterations;
+}
+
+/* Collective. Steps 2 to 8. */
+static bool compute_light(struct run *run)
+{
+    if (!start_light(run))
+        return false;
+    while (goes_on(run)) {
+        int64_t levels = run->solver->level_count;
+        if (solver_refine(run->solver)) { /* 4: evaluate and refine, level by level */
+            solve_pass(run);
+            report_levels(run, levels);
+            report_iteration(run);
+        } else {
+            run->vote.settled = run->vote.converged = false;
+        }
+        if (is_due(run) && !save_snapshot(run, STORE_CHECKPOINT, run->options.checkpoint))
+            return false;
+    }
     if (run->vote.diverged)
         return error_set(&run->error, EXIT_FAILED,
                          "the solution diverges: surfaces reflect more light than they receive");
-    return true;
+    return !run->solver->stop || stopped(run);
 }
 
 /* --- results --- */
@@ -311,17 +461,20 @@ static bool show_results(struct run *run)
                                        camera->width, camera->height);
         progress_begin(&run->progress.progress, "rendering", -1, 0);
         float *rows = render_rows(shading, run->octree, camera, options->samples, comm->rank, comm->size,
-                                  &run->progress.progress);
+                                  signals_seen, &run->progress.progress);
         picture = picture_gather(comm, rows, 3 * (size_t)camera->width, camera->height);
         alloc_free(rows);
     }
     run->solver->seconds[PHASE_RENDER] = comm_seconds() - start;
     start = comm_seconds();
-    if (comm->rank == 0)
+    run->solver->stop = signals_agree(comm);
+    if (run->solver->stop)
+        stopped(run);
+    else if (comm->rank == 0)
         write_outputs(run, shading, picture);
     alloc_free(picture);
     shading_destroy(shading);
-    run->solver->seconds[PHASE_WRITE] = comm_seconds() - start;
+    run->solver->seconds[PHASE_WRITE] += comm_seconds() - start;
     return comm_agree(comm, &run->error);
 }
 
@@ -332,7 +485,10 @@ static bool report_run(struct run *run)
     solver_report(run->solver, &run->vote, &run->stats);
     progress_view_clear(&run->progress);
     if (run->comm.rank == 0) {
-        if (!run->vote.converged)
+        if (run->stats.memory_limited)
+            say(run, "warning: refinement ended at the memory limit of %lld bytes, with %lld links",
+                (long long)run->solver->memory.limit, (long long)run->stats.links);
+        else if (!run->vote.converged)
             say(run, "warning: not converged after %lld iterations",
                 (long long)run->stats.iterations);
         if (!run->options.quiet)
@@ -382,13 +538,9 @@ static void release(struct run *run)
 /* Collective. True if all ranks have the arguments of rank 0: they decide alike from here on. */
 static bool check_arguments(struct run *run, int argc, char **argv)
 {
-    uint64_t own = UINT64_C(14695981039346656037), first; /* FNV-1a, the zeros between included */
+    uint64_t own = HASH_START, first;
     for (int i = 1; i < argc; i++)
-        for (const char *c = argv[i];; c++) {
-            own = (own ^ (unsigned char)*c) * UINT64_C(1099511628211);
-            if (!*c)
-                break;
-        }
+        own = hash_bytes(own, argv[i], strlen(argv[i]) + 1);
     first = own;
     comm_broadcast(&run->comm, &first, sizeof first);
     if (own != first)
@@ -401,6 +553,7 @@ int main(int argc, char **argv)
     struct run run = {0};
     comm_start(&run.comm, &argc, &argv);
     run.start = comm_seconds();
+    signals_catch();
     bool parsed = check_arguments(&run, argc, argv) &&
                   options_parse(&run.options, argc, argv, &run.error);
     if (run.comm.rank == 0 && !run.options.quiet)

@@ -9,6 +9,8 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/hash.h"
+#include "geom/little.h"
 
 static const double CLAMPED_REFLECTANCE = 0.999;
 
@@ -208,6 +210,31 @@ double scene_emitted_power(const struct scene *scene)
 double scene_area_unit(const struct scene *scene)
 {
     return ldexp(1.0, 2 * scene->exponent);
+}
+
+static uint64_t hash_doubles(uint64_t hash, const double *values, int count)
+{
+    uint8_t bytes[8];
+    for (int i = 0; i < count; i++) {
+        little_put_double(bytes, values[i]);
+        hash = hash_bytes(hash, bytes, sizeof bytes);
+    }
+    return hash;
+}
+
+uint64_t scene_hash(const struct scene *scene)
+{
+    uint64_t hash = HASH_START;
+    for (int32_t i = 0; i < scene->input_count; i++) {
+        const struct material *material = scene_root_material(scene, i);
+        for (int k = 0; k < 3; k++) {
+            struct vec3 v = scene->triangles[i].corner[k];
+            hash = hash_doubles(hash, (const double[]){v.x, v.y, v.z}, 3);
+        }
+        hash = hash_doubles(hash, material->reflectance.band, BANDS);
+        hash = hash_doubles(hash, material->emission.band, BANDS);
+    }
+    return hash;
 }
 
 struct vec3 scene_to_input(const struct scene *scene, struct vec3 x)

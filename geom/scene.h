@@ -100,6 +100,10 @@ double scene_emitted_power(const struct scene *scene);
 /* Square input units in a square scene unit: turns power and areas into those of the input. */
 double scene_area_unit(const struct scene *scene);
 
+/* A number that tells prepared scenes apart by their triangles and what these are made of, in scene
+ * units; the same on every machine. Where a file lies and what names are in it do not count. */
+uint64_t scene_hash(const struct scene *scene);
+
 /* A point of the scene in input units. */
 struct vec3 scene_to_input(const struct scene *scene, struct vec3 x);
 

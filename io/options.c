@@ -14,7 +14,7 @@
 #include "io/text.h"
 
 enum kind { KIND_FLAG, KIND_TEXT, KIND_REAL, KIND_INTEGER, KIND_OUTPUT, KIND_SIZE,
-            KIND_CHOICE, KIND_SHARE, KIND_PAPER };
+            KIND_CHOICE, KIND_SHARE, KIND_BYTES, KIND_PAPER };
 
 struct option {
     const char *name;
@@ -46,6 +46,12 @@ static const struct option OPTIONS[] = {
     {"--tolerance", KIND_REAL, offsetof(struct options, criterion.tolerance), 0, 1, NULL},
     {"--max-iterations", KIND_INTEGER, offsetof(struct options, criterion.max_iterations), 1, 1e9, NULL},
     {"--two-sided", KIND_FLAG, offsetof(struct options, two_sided), 0, 0, NULL},
+    {"--save-links", KIND_TEXT, offsetof(struct options, save_links), 0, 0, NULL},
+    {"--load-links", KIND_TEXT, offsetof(struct options, load_links), 0, 0, NULL},
+    {"--checkpoint", KIND_TEXT, offsetof(struct options, checkpoint), 0, 0, NULL},
+    {"--every", KIND_INTEGER, offsetof(struct options, every), 1, 1e9, NULL},
+    {"--resume", KIND_TEXT, offsetof(struct options, resume), 0, 0, NULL},
+    {"--memory", KIND_BYTES, offsetof(struct options, memory), 0, 0, NULL},
     {"--stats", KIND_TEXT, offsetof(struct options, stats), 0, 0, NULL},
     {"--quiet", KIND_FLAG, offsetof(struct options, quiet), 0, 0, NULL},
     {"--verbose", KIND_FLAG, offsetof(struct options, verbose), 0, 0, NULL},
@@ -161,6 +167,28 @@ static bool set_share(const struct option *option, const char *value, double *fi
     return true;
 }
 
+/* A number of bytes, or of K, M, G or T: powers of 1024. */
+static bool set_bytes(const struct option *option, const char *value, int64_t *field,
+                      struct error *error)
+{
+    static const char UNITS[] = "KMGT";
+    const char *at = value;
+    int64_t number;
+    if (text_integer(&at, &number) && number >= 1) {
+        const char *unit = *at ? strchr(UNITS, *at) : NULL;
+        double bytes = (double)number;
+        for (const char *u = UNITS; unit && u <= unit; u++)
+            bytes *= 1024.0;
+        at += unit ? 1 : 0;
+        if (*at == '\0' && bytes <= 1e18) {
+            *field = (int64_t)bytes;
+            return true;
+        }
+    }
+    return error_set(error, EXIT_USAGE, "%s: '%s' is not a number of bytes, such as 512M or 2G",
+                     option->name, value);
+}
+
 static void set_paper(struct criterion *criterion)
 {
     criterion->oracle = ORACLE_BF;
@@ -184,6 +212,8 @@ static bool set_value(struct options *options, const struct option *option, cons
         return parse_number(option, value, (double *)(void *)field, error);
     case KIND_SHARE:
         return set_share(option, value, (double *)(void *)field, error);
+    case KIND_BYTES:
+        return set_bytes(option, value, (int64_t *)(void *)field, error);
     case KIND_CHOICE:
         return set_choice(option, value, (int *)(void *)field, error);
     default:
@@ -200,20 +230,48 @@ static bool add_scene(struct options *options, const char *path, struct error *e
     return true;
 }
 
-/* Refuses to write a file twice, or over what is read. */
+/* The i-th path that is written, NULL if it is not given. `count` is how many there may be. */
+static const char *written_path(const struct options *options, int i, int *count)
+{
+    const char *others[] = {options->stats, options->save_links, options->checkpoint};
+    int last = (int)(sizeof others / sizeof others[0]);
+    *count = options->output_count + last;
+    return i < options->output_count ? options->outputs[i] : others[i - options->output_count];
+}
+
+/* Refuses to write a file twice, or over what is read; but a run that is resumed from a checkpoint
+ * may renew it. */
 static bool check_paths(const struct options *options, struct error *error)
 {
-    for (int i = 0; i <= options->output_count; i++) {
-        const char *path = i < options->output_count ? options->outputs[i] : options->stats;
-        if (!path)
-            continue;
-        bool clash = strcmp(path, options->scene) == 0 ||
-                     (options->view && strcmp(path, options->view) == 0);
-        for (int j = 0; j < i; j++)
-            clash = clash || strcmp(path, options->outputs[j]) == 0;
+    const char *read[] = {options->scene, options->view, options->load_links, options->resume};
+    int count = 1;
+    for (int i = 0; i < count; i++) {
+        const char *path = written_path(options, i, &count);
+        bool clash = false;
+        for (size_t j = 0; j < sizeof read / sizeof read[0]; j++)
+            clash = clash || (path && read[j] && strcmp(path, read[j]) == 0 &&
+                              !(path == options->checkpoint && read[j] == options->resume));
+        for (int j = 0; j < i; j++) {
+            const char *other = written_path(options, j, &count);
+            clash = clash || (path && other && strcmp(path, other) == 0);
+        }
         if (clash)
             return error_set(error, EXIT_USAGE, "%s is named twice", path);
     }
+    return true;
+}
+
+static bool check_restart(const struct options *options, struct error *error)
+{
+    const char *links = options->save_links ? "--save-links" : "--load-links";
+    if (options->resume && (options->save_links || options->load_links))
+        return error_set(error, EXIT_USAGE,
+                         "--resume and %s do not go together: the initial links are long gone",
+                         links);
+    if (options->save_links && options->load_links)
+        return error_set(error, EXIT_USAGE, "--save-links and --load-links do not go together");
+    if (options->every > 0 && !options->checkpoint)
+        return error_set(error, EXIT_USAGE, "--every needs --checkpoint");
     return true;
 }
 
@@ -223,6 +281,10 @@ static bool check_table(const struct options *options, struct error *error)
     const char *other = options->output_count > 0 ? "-o"
                         : options->view           ? "--view"
                         : options->stats          ? "--stats"
+                        : options->save_links     ? "--save-links"
+                        : options->load_links     ? "--load-links"
+                        : options->checkpoint     ? "--checkpoint"
+                        : options->resume         ? "--resume"
                                                   : NULL;
     if (options->form_factors && other)
         return error_set(error, EXIT_USAGE, "--form-factors and %s do not go together", other);
@@ -269,7 +331,63 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         options->criterion.epsilon = options->criterion.accuracy > 0.0 ? COARSE : EPSILON;
     if (!options->scene && !options->help && !options->version && !options->validate)
         return error_set(error, EXIT_USAGE, "no scene given; see --help");
-    return !options->scene || (check_table(options, error) && check_paths(options, error));
+    if (options->scene && !(check_table(options, error) && check_restart(options, error) &&
+                            check_paths(options, error)))
+        return false;
+    options->every = options->every > 0 ? options->every : 1;
+    return true;
+}
+
+/* Appends a line "--option value" to `text`. */
+static void describe(const struct options *options, const char *name, char *text, size_t room)
+{
+    const struct option *option = find_option(name);
+    const char *field = (const char *)options + option->offset, *choice = option->choices;
+    size_t at = strlen(text);
+    char *line = text + at;
+    room -= at;
+    switch (option->kind) {
+    case KIND_FLAG:
+        snprintf(line, room, "%s %s\n", name, *(const bool *)(const void *)field ? "on" : "off");
+        break;
+    case KIND_INTEGER:
+        snprintf(line, room, "%s %d\n", name, *(const int *)(const void *)field);
+        break;
+    case KIND_CHOICE:
+        for (int k = *(const int *)(const void *)field; k > 0; k--)
+            choice = strchr(choice, '|') + 1;
+        snprintf(line, room, "%s %.*s\n", name, (int)strcspn(choice, "|"), choice);
+        break;
+    default:
+        snprintf(line, room, "%s %.17g\n", name, *(const double *)(const void *)field);
+    }
+}
+
+static const char *describe_all(const struct options *options, const char *const *names)
+{
+    static char text[1000];
+    text[0] = '\0';
+    for (; *names; names++)
+        describe(options, *names, text, sizeof text);
+    return text;
+}
+
+const char *options_link_settings(const struct options *options)
+{
+    static const char *const BY_ENERGY[] = {
+        "--two-sided", "--oracle", "--form-factor", NULL};
+    static const char *const BY_ERROR[] = { /* what is at stake decides how closely it looks */
+        "--two-sided", "--oracle", "--form-factor", "--epsilon", NULL};
+    bool by_error = options->criterion.oracle == ORACLE_ERROR;
+    return describe_all(options, by_error ? BY_ERROR : BY_ENERGY);
+}
+
+const char *options_run_settings(const struct options *options)
+{
+    static const char *const NAMES[] = {
+        "--two-sided", "--oracle", "--form-factor", "--closure", "--solver", "--epsilon",
+        "--accuracy", "--max-level", "--min-area", NULL};
+    return describe_all(options, NAMES);
 }
 
 void options_free(struct options *options)
@@ -294,10 +412,13 @@ void options_print_help(FILE *file)
           "  --closure none|cap|rows|symmetric       mend row sums of form factors (cap)\n"
           "  --paper          bf, disk, jacobi, none --two-sided   backs are fronts, too\n"
           "  --alpha A        inherited cost (0.5)   --stats FILE  report as JSON\n"
+          "  --save-links F   after initial linking  --load-links F  in its place\n"
+          "  --checkpoint F   after each pass        --every N     only each N-th pass (1)\n"
+          "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
           "  --form-factors   print them, as CSV     --validate    check form factors\n"
           "  --quiet          print nothing          --verbose     levels of refinement\n"
           "  --help                                  --version\n"
-          "Exit status: 0 done; 1 the computation failed; 2 bad usage or input. Examples:\n"
+          "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
           "  phr room.obj -o room.ppm\n"
           "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n",
           file);

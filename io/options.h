@@ -3,6 +3,7 @@
 #define IO_OPTIONS_H
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 
 #include "geom/error.h"
@@ -18,6 +19,10 @@ struct options {
     int output_count;
     const char *view;         /* path of the view file, or NULL */
     const char *stats;        /* path of the JSON file, or NULL */
+    const char *save_links, *load_links; /* paths of link caches, or NULL */
+    const char *checkpoint, *resume;     /* paths of checkpoints, or NULL */
+    int every;                /* passes from checkpoint to checkpoint, at least 1 */
+    int64_t memory;           /* bytes for links and patches; 0: most of what the machine has */
     int width, height;        /* of --size; 0: what the view says */
     int samples;              /* samples x samples rays a pixel */
     double exposure;          /* 0: chosen from the picture */
@@ -29,6 +34,13 @@ struct options {
  * a failure. Errors: one line that says which argument is wrong, EXIT_USAGE. */
 bool options_parse(struct options *options, int argc, char **argv, struct error *error);
 void options_free(struct options *options);
+
+/* The settings that decide what initial links are, or what the passes to come are, as lines
+ * "--option value" in a fixed order: what a link cache or a checkpoint is bound to. Not among them is
+ * what may differ from run to run: outputs, ranks, memory, and when to end (--tolerance,
+ * --max-iterations), which holds for all that was computed before. Rewritten by the next call. */
+const char *options_link_settings(const struct options *options);
+const char *options_run_settings(const struct options *options);
 
 /* Format of an output by its suffix. Pre: options_parse() has accepted it. */
 enum output_format output_format_of(const char *path);

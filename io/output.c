@@ -110,6 +110,16 @@ bool output_open(struct output *output, const char *path, struct error *error)
     return fail(path, reason, error);
 }
 
+void output_sync(struct output *output, struct error *error)
+{
+    if (fflush(output->file) != 0)
+        fail(output->shown, errno, error);
+#ifdef HAVE_POSIX
+    else if (output->temporary && fsync(fileno(output->file)) != 0)
+        fail(output->shown, errno, error);
+#endif
+}
+
 bool output_close(struct output *output, struct error *error)
 {
     if (!output->file)

@@ -28,6 +28,10 @@ bool output_open(struct output *output, const char *path, struct error *error);
  * behind and PATH stays as it was. Returns whether PATH holds the new content. */
 bool output_close(struct output *output, struct error *error);
 
+/* Makes sure that what was written so far is on the disk and not only on its way: for files whose
+ * whole point is to outlive a crash. */
+void output_sync(struct output *output, struct error *error);
+
 /* Binary numbers, byte by byte, least significant first, the same on every machine. */
 void output_uint32(struct output *output, uint32_t value);
 void output_float(struct output *output, float value);

@@ -38,12 +38,12 @@ static void render_pixel(const struct shading *shading, const struct octree *oct
 
 float *render_rows(const struct shading *shading, const struct octree *octree,
                    const struct camera *camera, int samples, int first, int step,
-                   struct progress *progress)
+                   int (*stops)(void), struct progress *progress)
 {
     size_t row = 3 * (size_t)camera->width;
     int rows = first < camera->height ? (camera->height - first - 1) / step + 1 : 0;
     float *rgb = alloc_array((size_t)rows * row, sizeof *rgb);
-    for (int i = 0; i < rows; i++) {
+    for (int i = 0; i < rows && !(stops && stops()); i++) {
         progress_tick(progress, (double)i / rows);
         for (int x = 0; x < camera->width; x++)
             render_pixel(shading, octree, camera, samples, x, first + i * step,

@@ -49,6 +49,7 @@ static void write_counts(FILE *file, const struct stats *stats)
     write_integer(file, "passes", stats->passes);
     write_integer(file, "iterations", stats->iterations);
     fprintf(file, "  \"converged\": %s,\n", stats->converged ? "true" : "false");
+    fprintf(file, "  \"memory_limited\": %s,\n", stats->memory_limited ? "true" : "false");
     write_real(file, "epsilon", stats->epsilon);
     write_real(file, "error_estimate", stats->error_estimate);
     write_real(file, "emitted_power", stats->emitted_power);

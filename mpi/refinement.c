@@ -8,8 +8,10 @@
  *
  * With the loads travel two figures of the level before, the load after migration and the tests
  * that it really took, so that prediction and work can be compared without another exchange. */
+#include "mpi/memory.h"
 #include "mpi/migrate.h"
 #include "mpi/plan.h"
+#include "mpi/signals.h"
 
 #include <string.h>
 
@@ -26,6 +28,13 @@ struct load_notice {
     int64_t last_links;      /* of the level before: links that were split here, */
     int64_t last_load;       /* their predicted cost, */
     int64_t last_work;       /* and the tests that this took */
+    int64_t kept;            /* links here that are not to be split */
+    int64_t stop;            /* the signal that this rank has got, 0: none */
+};
+
+/* Links of all ranks before a level. */
+struct level {
+    int64_t prolific, kept;
 };
 
 static int64_t load_of(const struct link_list *list)
@@ -114,26 +123,30 @@ static struct load_notice *exchange_loads(struct solver *solver, struct load_not
 }
 
 /* LoadBalance of Algorithm 1. `done` holds this rank's figures of the level before and receives
- * the load of this one. Returns the number of links to split on all ranks. */
-static int64_t balance_load(struct solver *solver, struct link_list *prolific, int64_t level,
-                            struct load_notice *done)
+ * the load of this one. Returns the links of all ranks. */
+static struct level balance_load(struct solver *solver, struct link_list *prolific, int64_t level,
+                                 struct load_notice *done)
 {
     int ranks = solver->comm->size;
     done->links = prolific->count;
     done->load = load_of(prolific);
+    done->kept = solver->links.count;
+    done->stop = signals_seen();
     struct load_notice *notices = exchange_loads(solver, *done);
     if (level > 0)
         record_level(solver, notices, level - 1);
     double start = comm_seconds();
-    int64_t total = 0;
+    struct level sum = {0, 0};
     int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
     for (int r = 0; r < ranks; r++) {
         loads[r] = notices[r].load;
-        total += notices[r].links;
+        sum.prolific += notices[r].links;
+        sum.kept += notices[r].kept;
+        solver->stop = (int)notices[r].stop > solver->stop ? (int)notices[r].stop : solver->stop;
     }
     struct transfer *transfers = alloc_array(2 * (size_t)ranks, sizeof *transfers);
     int count = plan_transfers(loads, ranks, transfers);
-    bool pays = count > 0 && total >= WORTH_MOVING * ranks;
+    bool pays = count > 0 && sum.prolific >= WORTH_MOVING * ranks;
     if (pays) { /* the same on all ranks, so all or none enter */
         int *destination = alloc_array((size_t)prolific->count, sizeof *destination);
         deal_links(solver, prolific, transfers, count, destination);
@@ -143,11 +156,11 @@ static int64_t balance_load(struct solver *solver, struct link_list *prolific, i
     alloc_free(transfers);
     alloc_free(loads);
     alloc_free(notices);
-    progress_begin(solver->progress, "refining", level, total);
+    progress_begin(solver->progress, "refining", level, sum.prolific);
     done->last_links = prolific->count;
     done->last_load = load_of(prolific);
     solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
-    return total;
+    return sum;
 }
 
 /* Splits all links of the level; their children go to `next` or to the rank's links. */
@@ -179,9 +192,9 @@ static void share_splits(struct solver *solver)
     const struct comm *comm = solver->comm;
     double start = comm_seconds();
     int64_t count = 0;
-    struct patch_id *split = alloc_array((size_t)(forest->count - solver->first_new) / 4,
+    struct patch_id *split = alloc_array((size_t)(forest->count - solver->shared) / 4,
                                          sizeof *split);
-    for (int64_t p = solver->first_new; p < forest->count; p += 4)
+    for (int64_t p = solver->shared; p < forest->count; p += 4)
         split[count++] = forest->patches[p].id;
     int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
     uint8_t *all = comm_gather_all(comm, split, count * (int64_t)sizeof *split, at);
@@ -190,6 +203,7 @@ static void share_splits(struct solver *solver)
         memcpy(&id, all + i, sizeof id);
         forest_reach(forest, id);
     }
+    solver->shared = forest->count;
     solver->bytes_scatter += count * (int64_t)sizeof *split * (comm->size - 1);
     alloc_free(all);
     alloc_free(at);
@@ -197,26 +211,71 @@ static void share_splits(struct solver *solver)
     solver->seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
 
-void solver_refine(struct solver *solver)
+/* A link that is looked at may give both its patches children; one that is split, a patch too. */
+enum { PATCHES_PER_LOOK = 8, PATCHES_PER_SPLIT = 4 + 4 * PATCHES_PER_LOOK };
+
+/* True if the memory limit lets the level be split. `made` is a bound on the patches that all ranks
+ * have made and not shared; only where it is not good enough are they shared and counted. */
+static bool level_fits(struct solver *solver, const struct level *level, int64_t *made)
 {
-    solver->pass++;
-    solver->split_here = 0;
-    solver->first_new = solver->method.forest->count;
-    struct link_list prolific = {0}, next = {0};
+    const struct memory *memory = &solver->memory;
+    if (memory_has_room(memory, level->kept, level->prolific, solver->shared + *made))
+        return true;
+    share_splits(solver);
+    *made = 0;
+    return memory_has_room(memory, level->kept, level->prolific, solver->shared);
+}
+
+/* Splits level after level. Returns false if a signal or the memory limit ended that: then the links
+ * that were to be split are in `prolific`. */
+static bool split_levels(struct solver *solver, struct link_list *prolific)
+{
+    struct link_list next = {0};
     struct load_notice done = {0};
-    double start = comm_seconds();
-    select_prolific(solver, &prolific);
-    solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
-    for (int64_t level = 0; balance_load(solver, &prolific, level, &done) > 0; level++) {
-        start = comm_seconds();
+    int64_t made = 0;
+    for (int64_t level = 0;; level++) {
+        struct level links = balance_load(solver, prolific, level, &done);
+        if (links.prolific == 0)
+            return true;
+        made += level == 0 ? PATCHES_PER_LOOK * links.kept : 0;
+        if (solver->stop)
+            return false;
+        if (!level_fits(solver, &links, &made)) {
+            solver->memory.reached = solver->memory.limit;
+            return false;
+        }
+        made += PATCHES_PER_SPLIT * links.prolific;
+        double start = comm_seconds();
         int64_t work = work_so_far(solver);
-        split_level(solver, &prolific, &next);
+        split_level(solver, prolific, &next);
         done.last_work = work_so_far(solver) - work;
-        link_list_free(&prolific);
-        prolific = next;
+        link_list_free(prolific);
+        *prolific = next;
         next = (struct link_list){0};
         solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
     }
-    link_list_free(&prolific);
-    share_splits(solver);
+}
+
+bool solver_refine(struct solver *solver)
+{
+    struct memory *memory = &solver->memory;
+    struct link_list prolific = {0};
+    double start = comm_seconds();
+    bool done = true;
+    solver->pass++;
+    solver->split_here = 0;
+    solver->first_new = solver->shared = solver->method.forest->count;
+    if (memory->limit == 0 || memory->reached != memory->limit) {
+        memory->reached = 0;
+        select_prolific(solver, &prolific);
+        solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
+        done = split_levels(solver, &prolific);
+        for (int64_t i = 0; i < prolific.count; i++) /* none, if it is done */
+            link_list_append(&solver->links, prolific.items[i]);
+        link_list_free(&prolific);
+        share_splits(solver);
+    }
+    bool stopped = !done && solver->stop != 0;
+    solver->pass -= stopped;
+    return !stopped;
 }

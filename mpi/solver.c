@@ -174,7 +174,8 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->links = vote->links;
     stats->passes = solver->pass;
     stats->iterations = solver->iteration;
-    stats->converged = vote->converged;
+    stats->memory_limited = solver->memory.reached > 0;
+    stats->converged = vote->converged && !stats->memory_limited;
     stats->epsilon = solver->method.criterion.epsilon;
     stats->error_estimate = solver->accuracy.estimate;
     stats->emitted_power = unit * scene_emitted_power(scene);

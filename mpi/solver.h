@@ -21,6 +21,13 @@ struct accuracy {
     double estimate;    /* of the error of the leaves, relative RMS; 0: none yet */
 };
 
+/* The memory limit; see mpi/memory.h. */
+struct memory {
+    int64_t limit;   /* bytes, 0: none */
+    int64_t reached; /* the limit at which refinement has ended, 0: it has not */
+    int copies;      /* of the patches that count */
+};
+
 struct solver {
     const struct comm *comm;  /* borrowed */
     struct progress *progress; /* borrowed; NULL: nobody looks */
@@ -31,6 +38,9 @@ struct solver {
     bool *touched;            /* [roots] own tree whose structure or values changed */
     int64_t *root_change;     /* [roots] see push_pull() */
     int64_t first_new;        /* patches from here on were created in this iteration */
+    int64_t shared;           /* patches up to here are the same on all ranks */
+    int stop;                 /* signal that some rank has got, 0: none; the same on all ranks */
+    struct memory memory;
     int64_t pass;             /* refinements so far */
     int64_t iteration;        /* transfers of light so far */
     struct closure closure;   /* factors of the leaves */
@@ -56,7 +66,9 @@ struct solver {
 /* Sums over all ranks after an iteration; the same on all ranks. */
 struct vote {
     bool again;        /* another transfer over the same links */
+    bool settled;      /* nothing was split */
     bool converged;
+    bool unfinished;   /* there would be another transfer, but for the limit of iterations */
     bool diverged;
     int64_t split;     /* links split in this iteration */
     int64_t links;     /* links there are */
@@ -77,8 +89,10 @@ void solver_link_roots(struct solver *solver);
 void solver_assign_roots(struct solver *solver);
 
 /* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches were
- * split. */
-void solver_refine(struct solver *solver);
+ * split. Refinement that meets the memory limit ends there, and does not begin again as long as the
+ * limit is the same. False if a signal (solver->stop) has ended it: then it counts as not begun, and
+ * what was left to split will be found again by the next. */
+bool solver_refine(struct solver *solver);
 
 /* Row sums of the links there are, and the closure. */
 void solver_close(struct solver *solver);

@@ -12,14 +12,16 @@
 #include <math.h>
 
 #include "geom/alloc.h"
+#include "mpi/signals.h"
 
-/* What a rank says; 104 bytes, no padding. */
+/* What a rank says; 120 bytes, no padding. */
 struct ballot {
     int64_t light, absorbed, change, arriving; /* flux units */
     int64_t split, links;
     int64_t divided;                           /* own patches that are new */
+    int64_t stop;                              /* the signal that it has got */
     int64_t square[BANDS];                     /* --solver cg: <z, z>, */
-    int64_t negative;                          /* and see conjugate_sum(), flux units */
+    int64_t negative, bulk;                    /* and see conjugate_sum(), flux units */
     double shrink;                             /* --solver jacobi: see push_pull() */
     double largest;                            /* --solver cg: |z| */
 };
@@ -33,9 +35,11 @@ static void add_ballot(struct ballot *sum, const struct ballot *ballot)
     sum->split += ballot->split;
     sum->links += ballot->links;
     sum->divided += ballot->divided;
+    sum->stop = sum->stop > ballot->stop ? sum->stop : ballot->stop;
     for (int c = 0; c < BANDS; c++)
         sum->square[c] += ballot->square[c];
     sum->negative = flux_add(sum->negative, ballot->negative);
+    sum->bulk = flux_add(sum->bulk, ballot->bulk);
     sum->shrink = fmax(sum->shrink, ballot->shrink);
     sum->largest = fmax(sum->largest, ballot->largest);
 }
@@ -47,12 +51,14 @@ static struct ballot count_votes(struct solver *solver, struct ballot own)
     struct ballot *all = alloc_array((size_t)comm->size, sizeof *all), sum = {0};
     MPI_Request request;
     double start = comm_seconds();
+    own.stop = signals_seen();
     MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, all, (int)sizeof own, MPI_BYTE, comm->handle,
                    &request);
     comm_wait(&request);
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
     for (int r = 0; r < comm->size; r++)
         add_ballot(&sum, &all[r]);
+    solver->stop = (int)sum.stop;
     alloc_free(all);
     return sum;
 }
@@ -71,15 +77,15 @@ static struct vote vote_of(const struct solver *solver, const struct ballot *sum
 {
     struct flux_unit unit = solver->method.flux_unit;
     struct vote vote = {
-        .diverged = solver->diverged || sum->light >= FLUX_LIMIT,
+        .diverged = solver->diverged || sum->light >= FLUX_LIMIT || sum->bulk >= FLUX_LIMIT,
+        .settled = sum->split == 0 && sum->divided == 0,
         .split = sum->split,
         .links = sum->links,
         .remaining = remaining,
         .absorbed = flux_to_watts(unit, sum->absorbed),
-        .escaped = flux_to_watts(unit, sum->light - sum->arriving),
+        .escaped = flux_to_watts(unit, flux_add(sum->light, -sum->arriving)),
     };
-    vote.converged = vote.split == 0 && sum->divided == 0 &&
-                     remaining <= solver->method.criterion.tolerance;
+    vote.converged = vote.settled && remaining <= solver->method.criterion.tolerance;
     return vote;
 }
 
@@ -155,7 +161,7 @@ static struct vote vote_conjugate(struct solver *solver)
     struct ballot own = {.light = sums.light, .absorbed = sums.absorbed,
                          .arriving = sums.arriving, .split = solver->split_here,
                          .links = solver->links.count, .divided = own_new_patches(solver),
-                         .negative = sums.negative, .largest = sums.largest};
+                         .negative = sums.negative, .bulk = sums.bulk, .largest = sums.largest};
     for (int c = 0; c < BANDS; c++)
         own.square[c] = sums.square[c];
     struct ballot sum = count_votes(solver, own);
@@ -166,8 +172,9 @@ static struct vote vote_conjugate(struct solver *solver)
     bool splitting = sum.split > 0 || sum.divided > 0;
     double wanted = splitting ? fmax(criterion->tolerance, WHILE_SPLITTING) : criterion->tolerance;
     struct vote vote = vote_of(solver, &sum, remaining);
-    vote.again = !(remaining <= wanted) && !vote.diverged &&
-                 solver->iteration < criterion->max_iterations;
+    bool more = !(remaining <= wanted) && !vote.diverged;
+    vote.unfinished = more && solver->iteration >= criterion->max_iterations;
+    vote.again = more && !vote.unfinished;
     if (remaining <= wanted && sum.negative > sum.light / NEGATIVE)
         vote.diverged = true;
     if (!vote.again)

@@ -102,7 +102,8 @@ void conjugate_apply(struct conjugate *cg, const struct method *method,
             double z = cg->residual[leaf].band[c];
             double w = z - closure_receives(closure, leaf) * h.band[c];
             cg->work[leaf].band[c] = w;
-            product[c] += flux_from_watts(unit, weight * material->reflectance.band[c] * (w * z));
+            double term = weight * material->reflectance.band[c] * (w * z);
+            product[c] = flux_add(product[c], flux_from_watts(unit, term));
         }
     }
 }
@@ -161,10 +162,12 @@ struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct met
                                       flux_from_watts(unit, weight * rho * (z * z)));
             sums.largest = fmax(sums.largest, rho > 0.0 ? fabs(z) : 0.0);
         }
-        sums.light += flux_from_watts(method->flux_unit, light);
-        sums.absorbed += flux_from_watts(method->flux_unit, absorbed);
+        double most = fmax(fabs(light), fmax(fabs(absorbed), fabs(arriving)));
+        sums.light = flux_add(sums.light, flux_from_watts(method->flux_unit, light));
+        sums.absorbed = flux_add(sums.absorbed, flux_from_watts(method->flux_unit, absorbed));
+        sums.arriving = flux_add(sums.arriving, flux_from_watts(method->flux_unit, arriving));
+        sums.bulk = flux_add(sums.bulk, flux_from_watts(method->flux_unit, most));
         sums.negative = flux_add(sums.negative, flux_from_watts(method->flux_unit, negative));
-        sums.arriving += flux_from_watts(method->flux_unit, arriving);
     }
     return sums;
 }

@@ -28,6 +28,8 @@ struct conjugate_sums {
     int64_t square[BANDS];             /* <z, z> in the unit asked for */
     int64_t light, absorbed, arriving; /* A B, A (1 - rho) H, A (H + z) over leaves and bands, in
                                           units of method.flux_unit */
+    int64_t bulk;                      /* the largest magnitude of these three, summed: while it is
+                                          below FLUX_LIMIT, none of them has met that limit */
     int64_t negative;                  /* A rho |H| where H < 0, in the same units */
     double largest;                    /* largest |z| */
 };

@@ -37,10 +37,12 @@ static inline double flux_to_watts(struct flux_unit unit, int64_t flux)
     return (double)flux * unit.watt;
 }
 
-/* min(a + b, FLUX_LIMIT). Pre: 0 <= a, b <= FLUX_LIMIT. */
+/* a + b, between -FLUX_LIMIT and FLUX_LIMIT. Pre: so are a and b. */
 static inline int64_t flux_add(int64_t a, int64_t b)
 {
-    return a < FLUX_LIMIT - b ? a + b : FLUX_LIMIT; /* a + b itself might overflow */
+    if (b > 0)
+        return a < FLUX_LIMIT - b ? a + b : FLUX_LIMIT; /* a + b itself might overflow */
+    return a > -FLUX_LIMIT - b ? a + b : -FLUX_LIMIT;
 }
 
 #endif

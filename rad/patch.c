@@ -135,3 +135,13 @@ int32_t forest_next(const struct forest *forest, int32_t patch, bool descend)
     }
     return -1;
 }
+
+int32_t *forest_order(const struct forest *forest)
+{
+    int32_t *order = alloc_array((size_t)forest->count, sizeof *order);
+    int64_t count = 0;
+    for (int32_t root = 0; root < forest->root_count; root++)
+        for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
+            order[count++] = p;
+    return order;
+}

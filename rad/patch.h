@@ -72,6 +72,10 @@ int64_t forest_leaf_count(const struct forest *forest);
 /* Number of patches under all roots that have an area. */
 int64_t forest_patch_count(const struct forest *forest);
 
+/* The local numbers of all patches, roots in order and each tree depth first: as a sequence of IDs the
+ * same on all ranks that have the same trees. [count], to be freed with alloc_free(). */
+int32_t *forest_order(const struct forest *forest);
+
 /* The next patch of root `root` depth first, children in order: start with patch = root, ends
  * with -1. `descend` false skips what is below `patch`. */
 int32_t forest_next(const struct forest *forest, int32_t patch, bool descend);

@@ -28,6 +28,7 @@ struct level_balance {
 struct stats {
     int64_t ranks, triangles, roots, patches, leaves, links, passes, iterations;
     bool converged;
+    bool memory_limited;                                /* refinement ended for want of memory */
     double epsilon;                                     /* relative to the emitted power */
     double error_estimate;                              /* of the leaves, with --accuracy, or 0 */
     double emitted_power, absorbed_power, escaped_power; /* W, input units, sum over bands */

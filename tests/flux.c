@@ -105,7 +105,9 @@ static void test_sums(void)
     tap_ok(flux_add(FLUX_LIMIT, FLUX_LIMIT) == FLUX_LIMIT &&
                flux_add(FLUX_LIMIT, 0) == FLUX_LIMIT &&
                flux_add(FLUX_LIMIT - 1, 0) == FLUX_LIMIT - 1 &&
-               flux_add(FLUX_LIMIT - 1, 1) == FLUX_LIMIT,
+               flux_add(FLUX_LIMIT - 1, 1) == FLUX_LIMIT &&
+               flux_add(-FLUX_LIMIT, -FLUX_LIMIT) == -FLUX_LIMIT &&
+               flux_add(-FLUX_LIMIT, FLUX_LIMIT) == 0 && flux_add(3, -5) == -2,
            "the limit stays");
 }
 

@@ -252,6 +252,7 @@ static const struct number NUMBERS[] = {
     {"--min-area", FIELD(criterion.min_area), false, true, "0", "1", "-1e-300", "1.0001"},
     {"--alpha", FIELD(criterion.alpha), false, true, "0", "1", "-0.1", "1.1"},
     {"--tolerance", FIELD(criterion.tolerance), false, true, "0", "1", "-1", "2"},
+    {"--every", FIELD(every), true, true, "1", "1000000000", "0", "1e10"},
     {"--max-iterations", FIELD(criterion.max_iterations), true, true, "1", "1000000000", "0",
      "1e300"},
 };
@@ -263,7 +264,8 @@ static const char *const OTHERS[][2] = {
     {"--oracle", " bf"}, {"--flat", ""},    {"--two-sided", ""}, {"--quiet", ""},
     {"--verbose", ""}, {"--validate", ""},  {"--help", ""},      {"--version", ""},
     {"--form-factor", " disk"}, {"--closure", " none"}, {"--solver", " cg"}, {"--paper", ""},
-    {"--form-factors", ""}};
+    {"--form-factors", ""}, {"--save-links", " a"}, {"--load-links", " a"}, {"--resume", " a"},
+    {"--checkpoint", " a"}, {"--memory", " 1G"}};
 enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
 
 static double number_of(const struct number *number, const struct options *options)
@@ -278,7 +280,7 @@ static bool takes(const struct number *number, const char *value)
 {
     char line[100];
     struct options options;
-    snprintf(line, sizeof line, "%s %s a.obj", number->name, value);
+    snprintf(line, sizeof line, "%s %s a.obj --checkpoint b", number->name, value);
     bool taken = parse(line, &options) && number_of(number, &options) == strtod(value, NULL);
     options_free(&options);
     return taken;
@@ -344,6 +346,83 @@ static void test_errors(void)
     check_refused("a.obj --epsilon _", "--epsilon: '' is not a number");
     check_refused("a.obj --max-level 16", "--max-level: 16 is not between 0 and 15");
     check_refused("--flat --fast --help", "unknown option --fast; see --help");
+}
+
+/* --- going on, and memory --- */
+
+static void test_memory(void)
+{
+    static const struct {
+        const char *text;
+        int64_t bytes;
+    } CASES[] = {{"1", 1}, {"1000", 1000}, {"3K", 3072}, {"512M", INT64_C(1) << 29},
+                 {"2G", INT64_C(1) << 31}, {"3T", INT64_C(3) << 40}};
+    static const char *const BAD[] = {"0", "-1G", "G", "1.5G", "1g", "1GB", "1e9", "", "x",
+                                      "9999999999T"};
+    char line[100];
+    struct options options;
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        snprintf(line, sizeof line, "a.obj --memory %s", CASES[i].text);
+        tap_ok(parse(line, &options) && options.memory == CASES[i].bytes, "--memory %s",
+               CASES[i].text);
+        options_free(&options);
+    }
+    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
+        snprintf(line, sizeof line, "a.obj --memory %s", BAD[i][0] ? BAD[i] : "_");
+        tap_ok(!parse(line, &options) && error.code == EXIT_USAGE &&
+                   strstr(error.text, "--memory: '") == error.text,
+               "--memory '%s' is refused", BAD[i]);
+        options_free(&options);
+    }
+}
+
+static void test_restart(void)
+{
+    struct options options;
+    tap_ok(parse("a.obj --resume c --checkpoint c --every 3", &options) &&
+               is_same(options.resume, "c") && is_same(options.checkpoint, "c") &&
+               options.every == 3,
+           "a checkpoint may be renewed");
+    options_free(&options);
+    tap_ok(parse("a.obj --save-links l", &options) && is_same(options.save_links, "l"),
+           "--save-links");
+    options_free(&options);
+    tap_ok(parse("a.obj --load-links l", &options) && is_same(options.load_links, "l"),
+           "--load-links");
+    options_free(&options);
+    check_refused("a.obj --every 2", "--every needs --checkpoint");
+    check_refused("a.obj --save-links l --load-links m",
+                  "--save-links and --load-links do not go together");
+    check_refused("a.obj --resume c --load-links l",
+                  "--resume and --load-links do not go together: the initial links are long gone");
+    check_refused("a.obj --resume c --save-links c",
+                  "--resume and --save-links do not go together: the initial links are long gone");
+    check_refused("a.obj --checkpoint a.obj", "a.obj is named twice");
+    check_refused("a.obj --load-links l --checkpoint l", "l is named twice");
+    check_refused("a.obj --save-links l --checkpoint l", "l is named twice");
+    check_refused("a.obj --form-factors --checkpoint c",
+                  "--form-factors and --checkpoint do not go together");
+}
+
+static void test_settings(void)
+{
+    struct options options;
+    parse("a.obj", &options);
+    tap_ok(is_same(options_link_settings(&options),
+                   "--two-sided off\n--oracle error\n--form-factor polygon\n"
+                   "--epsilon 1.0000000000000001e-05\n"),
+           "what links are bound to");
+    tap_ok(is_same(options_run_settings(&options),
+                   "--two-sided off\n--oracle error\n--form-factor polygon\n--closure cap\n"
+                   "--solver cg\n--epsilon 1.0000000000000001e-05\n--accuracy 0\n--max-level 10\n"
+                   "--min-area 9.9999999999999995e-08\n"),
+           "what a run is bound to");
+    options_free(&options);
+    parse("a.obj --paper --two-sided --epsilon 0.5", &options);
+    tap_ok(is_same(options_link_settings(&options),
+                   "--two-sided on\n--oracle bf\n--form-factor disk\n"),
+           "by energy, epsilon does not matter to links");
+    options_free(&options);
 }
 
 static void test_bad_suffixes(void)
@@ -499,6 +578,9 @@ int main(void)
     test_bad_suffixes();
     test_bad_sizes();
     test_missing_values();
+    test_memory();
+    test_restart();
+    test_settings();
     test_help();
     return tap_done();
 }

@@ -1,0 +1,35 @@
+/* Records from all ranks to rank 0, which takes them one by one from the rank it likes, while no more
+ * than a piece of each other rank's is in its memory. */
+#ifndef MPI_FUNNEL_H
+#define MPI_FUNNEL_H
+
+#include "mpi/comm.h"
+
+/* What comes from one rank. */
+struct spout {
+    const char *records; /* this rank's own, or the piece at hand */
+    char *piece;         /* owned; NULL for this rank's own */
+    int64_t at, count;   /* next record in it, and how many it has */
+    int64_t left;        /* records that are still with their rank */
+};
+
+struct funnel {
+    const struct comm *comm; /* borrowed */
+    size_t bytes;            /* of a record */
+    struct spout *spouts;    /* [ranks], owned; NULL but on rank 0 */
+};
+
+/* Collective. `count` records of `bytes` bytes without padding on each rank; on rank 0 they stay
+ * borrowed until the end. Other ranks return when theirs have been taken. */
+void funnel_start(struct funnel *funnel, const struct comm *comm, const void *records,
+                  int64_t count, size_t bytes);
+
+/* Rank 0 only: the next record of a rank, in the order in which it holds them, or NULL after the
+ * last. Good until the next funnel_drop() of that rank, which goes past it. */
+const void *funnel_next(struct funnel *funnel, int rank);
+void funnel_drop(struct funnel *funnel, int rank);
+
+/* Rank 0 has taken all records. */
+void funnel_end(struct funnel *funnel);
+
+#endif

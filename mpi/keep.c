@@ -1,0 +1,364 @@
+/* Collecting and restoring a run's snapshot.
+ *
+ * Between passes all ranks have the same trees with the same radiosities; what only the home of a
+ * leaf knows, its irradiance and its closure factor, goes to rank 0 through a funnel, in the order
+ * of the leaves. Not kept is what every pass computes anew: fluxes, bounds on rows, directions of
+ * conjugate gradients (each pass starts them afresh), inner radiosities and extremes, and which
+ * leaves are enclosed, for which rays are fired again.
+ *
+ * Links are renumbered in place (patches depth first, as in forest_order()), sorted, merged on rank
+ * 0, and given their local numbers back: no copy of them is made, since a checkpoint is wanted most
+ * where memory is short. (So they are sorted here: many a qsort() makes a copy.) Reading, every block of links is
+ * sent to all ranks, and each takes those that are at home there: rank 0 need not know how many
+ * that will be. */
+#include "mpi/keep.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "mpi/funnel.h"
+
+enum { BLOCK = 4096 };
+
+/* --- collecting --- */
+
+/* What only the home of a leaf knows; no padding. */
+struct home_state {
+    struct rgb irradiance;
+    double factor;
+};
+
+static bool is_answer(const struct accuracy *accuracy, int32_t p)
+{
+    return accuracy->before && p < accuracy->count && accuracy->before[p].band[0] < HUGE_VAL;
+}
+
+static void collect_trees(const struct solver *solver, const int32_t *order,
+                          struct snapshot *snapshot)
+{
+    const struct accuracy *accuracy = &solver->accuracy;
+    int64_t leaf = 0, compared = 0;
+    for (int64_t i = 0; i < snapshot->patch_count; i++) {
+        const struct patch *patch = &solver->method.forest->patches[order[i]];
+        snapshot->kind[i] = patch_is_leaf(patch) ? 0 : PATCH_SPLIT;
+        if (patch_is_leaf(patch))
+            snapshot->leaves[leaf++].radiosity = patch->radiosity;
+        if (is_answer(accuracy, order[i])) {
+            snapshot->kind[i] |= PATCH_COMPARED;
+            snapshot->compared[compared++] = accuracy->before[order[i]];
+        }
+    }
+}
+
+/* Rank 0: takes what comes from the homes, leaf by leaf. */
+static void place_home_states(const struct solver *solver, const int32_t *order,
+                              struct funnel *funnel, struct snapshot *snapshot)
+{
+    int64_t leaf = 0;
+    for (int64_t i = 0; i < snapshot->patch_count; i++) {
+        const struct patch *patch = &solver->method.forest->patches[order[i]];
+        if (!patch_is_leaf(patch))
+            continue;
+        int home = solver->owner[patch->id.root];
+        const struct home_state *state = funnel_next(funnel, home);
+        snapshot->leaves[leaf].irradiance = state->irradiance;
+        snapshot->leaves[leaf++].factor = state->factor;
+        funnel_drop(funnel, home);
+    }
+}
+
+static void collect_home_states(struct solver *solver, const int32_t *order,
+                                struct snapshot *snapshot)
+{
+    const struct forest *forest = solver->method.forest;
+    struct home_state *own = NULL;
+    int64_t count = 0, capacity = 0;
+    for (int64_t i = 0; i < forest->count; i++) {
+        int32_t p = order[i];
+        if (!patch_is_leaf(&forest->patches[p]) ||
+            solver->owner[forest->patches[p].id.root] != solver->comm->rank)
+            continue;
+        own = alloc_reserve(own, &capacity, count + 1, sizeof *own);
+        own[count++] = (struct home_state){solver->conjugate.irradiance[p],
+                                           solver->closure.factor[p]};
+    }
+    struct funnel funnel;
+    funnel_start(&funnel, solver->comm, own, count, sizeof *own);
+    if (solver->comm->rank == 0)
+        place_home_states(solver, order, &funnel, snapshot);
+    funnel_end(&funnel);
+    alloc_free(own);
+}
+
+static void collect_numbers(const struct solver *solver, const struct vote *vote,
+                            struct snapshot *snapshot)
+{
+    const struct method *method = &solver->method;
+    int64_t own[] = {solver->links.count, method->counts.rays, method->counts.node_tests,
+                     method->counts.triangle_tests, method->walled_off, method->rays_spared,
+                     solver->pairs_touched};
+    int64_t sum[sizeof own / sizeof own[0]];
+    MPI_Request request;
+    MPI_Iallreduce(own, sum, (int)(sizeof own / sizeof own[0]), MPI_INT64_T, MPI_SUM,
+                   solver->comm->handle, &request);
+    comm_wait(&request);
+    snapshot->link_count = sum[0];
+    for (int i = 0; i < 6; i++)
+        snapshot->number[SNAPSHOT_RAYS + i] = sum[1 + i];
+    snapshot->number[SNAPSHOT_PASSES] = solver->pass;
+    snapshot->number[SNAPSHOT_ITERATIONS] = solver->iteration;
+    snapshot->number[SNAPSHOT_SETTLED] = vote->settled;
+    snapshot->number[SNAPSHOT_LIMITED] = solver->memory.reached;
+    snapshot->number[SNAPSHOT_CHANGE] = solver->last_change;
+    snapshot->value[SNAPSHOT_REMAINING] = vote->remaining;
+    snapshot->value[SNAPSHOT_ABSORBED] = vote->absorbed;
+    snapshot->value[SNAPSHOT_ESCAPED] = vote->escaped;
+    snapshot->value[SNAPSHOT_EPSILON] = method->criterion.epsilon;
+    snapshot->value[SNAPSHOT_ESTIMATE] = solver->accuracy.estimate;
+    snapshot->value[SNAPSHOT_LEAST_BEND] = solver->least_bend;
+}
+
+static void collect_root_changes(const struct solver *solver, struct snapshot *snapshot)
+{
+    int32_t roots = solver->method.forest->root_count;
+    int64_t *own = alloc_array((size_t)roots, sizeof *own);
+    for (int32_t root = 0; root < roots; root++)
+        own[root] = solver->own[root] ? solver->root_change[root] : 0;
+    MPI_Request request;
+    MPI_Iallreduce(own, snapshot->root_change, roots, MPI_INT64_T, MPI_SUM, solver->comm->handle,
+                   &request);
+    comm_wait(&request);
+    alloc_free(own);
+}
+
+void snapshot_collect(struct solver *solver, const struct vote *vote, struct snapshot *snapshot)
+{
+    struct forest *forest = solver->method.forest;
+    bool collects = solver->comm->rank == 0;
+    closure_extend(&solver->closure, forest); /* patches that refinement has made since */
+    conjugate_extend(&solver->conjugate, forest, solver->own);
+    int32_t *order = forest_order(forest);
+    *snapshot = (struct snapshot){.root_count = forest->root_count,
+                                  .patch_count = collects ? forest->count : forest->root_count};
+    for (int64_t p = 0; p < forest->count && collects; p++)
+        snapshot->compared_count += is_answer(&solver->accuracy, (int32_t)p);
+    snapshot_allocate(snapshot);
+    collect_numbers(solver, vote, snapshot);
+    if (collects)
+        collect_trees(solver, order, snapshot);
+    collect_home_states(solver, order, snapshot);
+    collect_root_changes(solver, snapshot);
+    alloc_free(order);
+}
+
+/* --- collecting links --- */
+
+static bool is_before(const struct link *a, const struct link *b)
+{
+    return a->p != b->p ? a->p < b->p : a->q < b->q;
+}
+
+static void swap_links(struct link *a, struct link *b)
+{
+    struct link kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+/* Heapsort: moves the link at `i` down to where it belongs among the first `count`. */
+static void sift_down(struct link *links, int64_t i, int64_t count)
+{
+    for (int64_t child = 2 * i + 1; child < count; child = 2 * i + 1) {
+        child += child + 1 < count && is_before(&links[child], &links[child + 1]);
+        if (!is_before(&links[i], &links[child]))
+            return;
+        swap_links(&links[i], &links[child]);
+        i = child;
+    }
+}
+
+static void sort_links(struct link *links, int64_t count)
+{
+    for (int64_t i = count / 2 - 1; i >= 0; i--)
+        sift_down(links, i, count);
+    for (int64_t last = count - 1; last > 0; last--) {
+        swap_links(&links[0], &links[last]);
+        sift_down(links, 0, last);
+    }
+}
+
+/* Rank 0: merges the sorted links of all ranks. */
+static void merge(struct funnel *funnel, link_sink *sink, void *context)
+{
+    struct link *block = alloc_array(BLOCK, sizeof *block);
+    int64_t count = 0;
+    for (;;) {
+        int first = -1;
+        const struct link *least = NULL;
+        for (int r = 0; r < funnel->comm->size; r++) {
+            const struct link *link = funnel_next(funnel, r);
+            if (link && (!least || is_before(link, least))) {
+                least = link;
+                first = r;
+            }
+        }
+        if (least) {
+            block[count++] = *least;
+            funnel_drop(funnel, first);
+        }
+        if (count == BLOCK || !least) {
+            sink(context, block, count);
+            count = 0;
+        }
+        if (!least)
+            break;
+    }
+    alloc_free(block);
+}
+
+static void renumber(struct link_list *list, const int32_t *number)
+{
+    for (int64_t i = 0; i < list->count; i++) {
+        list->items[i].p = number[list->items[i].p];
+        list->items[i].q = number[list->items[i].q];
+    }
+}
+
+void links_collect(struct solver *solver, link_sink *sink, void *context)
+{
+    const struct forest *forest = solver->method.forest;
+    int32_t *order = forest_order(forest);
+    int32_t *number = alloc_array((size_t)forest->count, sizeof *number);
+    for (int64_t i = 0; i < forest->count; i++)
+        number[order[i]] = (int32_t)i;
+    renumber(&solver->links, number);
+    sort_links(solver->links.items, solver->links.count);
+    struct funnel funnel;
+    funnel_start(&funnel, solver->comm, solver->links.items, solver->links.count,
+                 sizeof *solver->links.items);
+    if (solver->comm->rank == 0)
+        merge(&funnel, sink, context);
+    funnel_end(&funnel);
+    renumber(&solver->links, order);
+    alloc_free(number);
+    alloc_free(order);
+}
+
+/* --- restoring --- */
+
+/* Rank 0's snapshot goes to all. */
+static void broadcast_snapshot(const struct comm *comm, struct snapshot *snapshot)
+{
+    struct snapshot head = *snapshot;
+    comm_broadcast(comm, &head, sizeof head);
+    if (comm->rank != 0) {
+        *snapshot = head;
+        snapshot_allocate(snapshot);
+    }
+    comm_broadcast(comm, snapshot->root_change,
+                   (size_t)snapshot->root_count * sizeof *snapshot->root_change);
+    comm_broadcast(comm, snapshot->kind, (size_t)snapshot->patch_count);
+    comm_broadcast(comm, snapshot->leaves,
+                   (size_t)snapshot_leaf_count(snapshot) * sizeof *snapshot->leaves);
+    comm_broadcast(comm, snapshot->compared,
+                   (size_t)snapshot->compared_count * sizeof *snapshot->compared);
+}
+
+/* Splits as in the snapshot, depth first: patches come to be in the same order on all ranks. */
+static void restore_trees(struct forest *forest, const struct snapshot *snapshot)
+{
+    int64_t i = 0;
+    for (int32_t root = 0; root < forest->root_count; root++)
+        for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
+            if (snapshot->kind[i++] & PATCH_SPLIT)
+                forest_split(forest, p);
+}
+
+static void restore_leaves(struct solver *solver, const struct snapshot *snapshot,
+                           const int32_t *order)
+{
+    struct forest *forest = solver->method.forest;
+    struct accuracy *accuracy = &solver->accuracy;
+    int64_t leaf = 0, compared = 0;
+    if (snapshot->compared_count > 0) {
+        accuracy->before = alloc_array((size_t)forest->count, sizeof *accuracy->before);
+        accuracy->count = forest->count;
+    }
+    for (int64_t i = 0; i < forest->count; i++) {
+        int32_t p = order[i];
+        if (patch_is_leaf(&forest->patches[p])) {
+            const struct leaf_state *state = &snapshot->leaves[leaf++];
+            forest->patches[p].radiosity = state->radiosity;
+            solver->conjugate.irradiance[p] = state->irradiance;
+            solver->closure.factor[p] = state->factor;
+        }
+        if (snapshot->kind[i] & PATCH_COMPARED)
+            accuracy->before[p] = snapshot->compared[compared++];
+        else if (accuracy->before)
+            accuracy->before[p].band[0] = HUGE_VAL;
+    }
+    forest_pull(forest);
+}
+
+/* The work so far is put down to rank 0. */
+static void restore_numbers(struct solver *solver, struct vote *vote,
+                            const struct snapshot *snapshot)
+{
+    struct method *method = &solver->method;
+    const int64_t *number = snapshot->number;
+    if (solver->comm->rank == 0) {
+        method->counts = (struct octree_counts){number[SNAPSHOT_RAYS], number[SNAPSHOT_NODE_TESTS],
+                                                number[SNAPSHOT_TRIANGLE_TESTS]};
+        method->walled_off = number[SNAPSHOT_WALLED_OFF];
+        method->rays_spared = number[SNAPSHOT_RAYS_SPARED];
+        solver->pairs_touched = number[SNAPSHOT_PAIRS_TOUCHED];
+    }
+    solver->pass = number[SNAPSHOT_PASSES];
+    solver->iteration = number[SNAPSHOT_ITERATIONS];
+    bool as_limited = number[SNAPSHOT_LIMITED] == solver->memory.limit;
+    solver->memory.reached = as_limited ? number[SNAPSHOT_LIMITED] : 0;
+    solver->last_change = number[SNAPSHOT_CHANGE];
+    solver->accuracy.estimate = snapshot->value[SNAPSHOT_ESTIMATE];
+    solver->least_bend = snapshot->value[SNAPSHOT_LEAST_BEND];
+    if (solver->pass > 0) { /* before the first pass a link cache does not bind epsilon */
+        method->criterion.epsilon = snapshot->value[SNAPSHOT_EPSILON];
+        method->link_threshold = method->criterion.epsilon * scene_emitted_power(method->scene);
+    }
+    *vote = (struct vote){
+        .settled = number[SNAPSHOT_SETTLED] != 0 && (as_limited || number[SNAPSHOT_LIMITED] == 0),
+        .links = snapshot->link_count,
+        .remaining = snapshot->value[SNAPSHOT_REMAINING],
+        .absorbed = snapshot->value[SNAPSHOT_ABSORBED],
+        .escaped = snapshot->value[SNAPSHOT_ESCAPED],
+    };
+    vote->converged = vote->settled && vote->remaining <= method->criterion.tolerance;
+}
+
+int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snapshot *snapshot)
+{
+    struct forest *forest = solver->method.forest;
+    broadcast_snapshot(solver->comm, snapshot);
+    restore_trees(forest, snapshot);
+    closure_extend(&solver->closure, forest);
+    conjugate_extend(&solver->conjugate, forest, solver->own);
+    int32_t *order = forest_order(forest);
+    restore_leaves(solver, snapshot, order);
+    for (int32_t root = 0; root < forest->root_count; root++)
+        solver->root_change[root] = snapshot->root_change[root];
+    restore_numbers(solver, vote, snapshot);
+    return order;
+}
+
+void links_deal(struct solver *solver, const int32_t *order, struct link *links, int64_t count)
+{
+    const struct forest *forest = solver->method.forest;
+    comm_broadcast(solver->comm, links, (size_t)count * sizeof *links);
+    for (int64_t i = 0; i < count; i++) {
+        struct link link = links[i];
+        link.p = order[link.p];
+        link.q = order[link.q];
+        uint32_t a = forest->patches[link.p].id.root, b = forest->patches[link.q].id.root;
+        if (solver->own[(a ^ b) % 2 == 0 ? a : b])
+            link_list_append(&solver->links, link);
+    }
+}

@@ -1,0 +1,78 @@
+/* The memory limit.
+ *
+ * What grows are links and patches. Before a level is split, the links there will be are known
+ * within a factor: each of the prolific ones becomes four at most, and is there itself until the level
+ * is done; a patch can get four children only once. Whether that fits into the limit is decided
+ * from counts over all ranks, so all decide alike, and a limit that the user gives means the same on
+ * any number of ranks: for that it is held against one copy of the patches, though each rank has
+ * its own. The default limit is not a promise of the same results, but of an end that is not the
+ * system's: it counts every copy, over the memory of all machines.
+ *
+ * Rejected: the memory that processes really hold, which depends on the system, on the ranks and on
+ * what was freed; a limit for the links alone, since in small patches half of the memory is. */
+#include "mpi/memory.h"
+
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "geom/hash.h"
+
+/* Bytes: a link with its share of the room that lists grow by; a patch with all that runs along with
+ * the forest (extremes, vectors of the solver, closure) and the same. */
+enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 330 };
+
+/* Of what the machines have, for links and patches. */
+static const double SHARE = 0.8;
+
+/* What a rank says of the machine that it runs on; no padding. */
+struct machine {
+    uint64_t name; /* hash */
+    int64_t bytes;
+};
+
+/* Bytes of all machines, each counted once; 0 if one of them is unknown. */
+static int64_t machines_together(const struct comm *comm, int64_t bytes)
+{
+    char name[MPI_MAX_PROCESSOR_NAME] = "";
+    int length = 0;
+    MPI_Get_processor_name(name, &length);
+    struct machine own = {hash_bytes(HASH_START, name, (size_t)length), bytes};
+    struct machine *all = alloc_array((size_t)comm->size, sizeof *all);
+    MPI_Request request;
+    MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, all, (int)sizeof own, MPI_BYTE, comm->handle,
+                   &request);
+    comm_wait(&request);
+    int64_t sum = 0;
+    bool known = true;
+    for (int r = 0; r < comm->size; r++) {
+        bool again = false;
+        for (int before = 0; before < r && !again; before++)
+            again = all[before].name == all[r].name;
+        sum += again ? 0 : all[r].bytes;
+        known = known && all[r].bytes > 0;
+    }
+    alloc_free(all);
+    return known ? sum : 0;
+}
+
+void memory_watch(struct solver *solver, int64_t limit, int64_t machine)
+{
+    struct memory *memory = &solver->memory;
+    memory->limit = limit;
+    memory->copies = 1;
+    if (limit > 0)
+        return;
+    memory->limit = (int64_t)(SHARE * (double)machines_together(solver->comm, machine));
+    memory->copies = solver->comm->size;
+}
+
+bool memory_has_room(const struct memory *memory, int64_t kept, int64_t prolific, int64_t patches)
+{
+    if (memory->limit == 0)
+        return true;
+    double links = (double)kept + 5.0 * (double)prolific;
+    double made = 4.0 * (double)(prolific < patches ? prolific : patches);
+    return BYTES_PER_LINK * links +
+               BYTES_PER_PATCH * (double)memory->copies * ((double)patches + made) <=
+           (double)memory->limit;
+}

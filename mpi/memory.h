@@ -1,0 +1,16 @@
+/* Watching what links and patches need. */
+#ifndef MPI_MEMORY_H
+#define MPI_MEMORY_H
+
+#include "mpi/solver.h"
+
+/* Collective, on a new solver. The links of all ranks and one copy of the patches may take `limit`
+ * bytes; 0: links and every rank's copy may take most of what the machines of the run have, each of
+ * which has `machine` bytes (0: unknown, and there is no limit). */
+void memory_watch(struct solver *solver, int64_t limit, int64_t machine);
+
+/* True if there is room for splitting `prolific` of all links, of which `kept` are to stay, given that
+ * there are `patches` patches. The same on all ranks. */
+bool memory_has_room(const struct memory *memory, int64_t kept, int64_t prolific, int64_t patches);
+
+#endif

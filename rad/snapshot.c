@@ -1,0 +1,182 @@
+/* Checking a snapshot and its links.
+ *
+ * What comes from a file may say anything. Every number is held against what a run could have
+ * written, so that nothing later on meets a patch that does not exist, a NaN, or a flux that
+ * overflows: the transfer of light relies on what links_transfer() states, that the links of a
+ * patch lead to patches that do not overlap, so their exchange areas add up to no more than the
+ * area of the scene. That sum is checked as it stands, for each patch. */
+#include "rad/snapshot.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+
+void snapshot_allocate(struct snapshot *snapshot)
+{
+    size_t leaves = (size_t)snapshot_leaf_count(snapshot);
+    snapshot->root_change = alloc_array((size_t)snapshot->root_count,
+                                        sizeof *snapshot->root_change);
+    snapshot->kind = alloc_array((size_t)snapshot->patch_count, sizeof *snapshot->kind);
+    snapshot->leaves = alloc_array(leaves, sizeof *snapshot->leaves);
+    snapshot->compared = alloc_array((size_t)snapshot->compared_count, sizeof *snapshot->compared);
+}
+
+void snapshot_free(struct snapshot *snapshot)
+{
+    alloc_free(snapshot->root_change);
+    alloc_free(snapshot->kind);
+    alloc_free(snapshot->leaves);
+    alloc_free(snapshot->compared);
+    *snapshot = (struct snapshot){0};
+}
+
+/* --- trees --- */
+
+/* A walk over the kinds, depth first. */
+struct walk {
+    int32_t root; /* of the patch that comes next */
+    int level;    /* its level */
+    int child[ID_MAX_LEVEL + 1]; /* which child of its parent the patch of each level is */
+};
+
+/* Goes past a patch. Pre: it is not split if its level is ID_MAX_LEVEL. */
+static void walk_on(struct walk *walk, uint8_t kind)
+{
+    if (kind & PATCH_SPLIT) {
+        walk->child[++walk->level] = 0;
+        return;
+    }
+    while (walk->level > 0 && ++walk->child[walk->level] == 4)
+        walk->level--;
+    walk->root += walk->level == 0;
+}
+
+static bool trees_are_whole(const struct snapshot *snapshot)
+{
+    struct walk walk = {0};
+    int64_t compared = 0;
+    for (int64_t i = 0; i < snapshot->patch_count; i++) {
+        uint8_t kind = snapshot->kind[i];
+        if (kind > (PATCH_SPLIT | PATCH_COMPARED) || walk.root >= snapshot->root_count)
+            return false;
+        if (walk.level == ID_MAX_LEVEL && kind & PATCH_SPLIT)
+            return false;
+        walk_on(&walk, kind);
+        compared += (kind & PATCH_COMPARED) != 0;
+    }
+    return walk.level == 0 && walk.root == snapshot->root_count &&
+           compared == snapshot->compared_count;
+}
+
+/* --- numbers --- */
+
+/* Beyond these no run gets: they leave room for sums, and for radiosities as floats. */
+static const int64_t MOST_COUNTED = INT64_C(1) << 60;
+static const double MOST_LIGHT = 1e37, MOST_POWER = 1e60, MOST_FACTOR = 1e15;
+
+static bool light_is_sane(struct rgb light)
+{
+    for (int c = 0; c < BANDS; c++)
+        if (!(fabs(light.band[c]) <= MOST_LIGHT))
+            return false;
+    return true;
+}
+
+static bool numbers_are_sane(const struct snapshot *snapshot)
+{
+    const double *value = snapshot->value;
+    for (int i = 0; i < SNAPSHOT_NUMBERS; i++)
+        if (snapshot->number[i] < 0 || snapshot->number[i] > FLUX_LIMIT ||
+            (i != SNAPSHOT_CHANGE && snapshot->number[i] > MOST_COUNTED))
+            return false;
+    for (int64_t i = 0; i < snapshot->root_count; i++)
+        if (snapshot->root_change[i] < 0 || snapshot->root_change[i] > FLUX_LIMIT)
+            return false;
+    return snapshot->number[SNAPSHOT_SETTLED] <= 1 && value[SNAPSHOT_REMAINING] >= 0.0 &&
+           fabs(value[SNAPSHOT_ABSORBED]) <= MOST_POWER &&
+           fabs(value[SNAPSHOT_ESCAPED]) <= MOST_POWER && value[SNAPSHOT_EPSILON] >= 0.0 &&
+           value[SNAPSHOT_EPSILON] <= MOST_LIGHT && value[SNAPSHOT_ESTIMATE] >= 0.0 &&
+           value[SNAPSHOT_ESTIMATE] <= MOST_LIGHT && fabs(value[SNAPSHOT_LEAST_BEND]) <= MOST_LIGHT;
+}
+
+static bool leaves_are_sane(const struct snapshot *snapshot)
+{
+    for (int64_t i = 0; i < snapshot_leaf_count(snapshot); i++) {
+        const struct leaf_state *leaf = &snapshot->leaves[i];
+        if (!light_is_sane(leaf->radiosity) || !light_is_sane(leaf->irradiance) ||
+            !(leaf->factor >= 1.0 / MOST_FACTOR && leaf->factor <= MOST_FACTOR))
+            return false;
+    }
+    for (int64_t i = 0; i < snapshot->compared_count; i++)
+        if (!light_is_sane(snapshot->compared[i]))
+            return false;
+    return true;
+}
+
+bool snapshot_check(const struct snapshot *snapshot, struct error *error)
+{
+    if (!trees_are_whole(snapshot))
+        return error_set(error, EXIT_USAGE, "its patches are no trees");
+    if (!numbers_are_sane(snapshot) || !leaves_are_sane(snapshot))
+        return error_set(error, EXIT_USAGE, "a number in it is out of range");
+    return true;
+}
+
+/* --- links --- */
+
+struct link_check link_check_start(const struct snapshot *snapshot, const struct scene *scene)
+{
+    size_t patches = (size_t)snapshot->patch_count;
+    struct link_check check = {.scene = scene, .patch_count = snapshot->patch_count,
+                               .most = (1.0 + 1e-6) * scene_area(scene)};
+    struct walk walk = {0};
+    check.root = alloc_array(patches, sizeof *check.root);
+    check.area = alloc_array(patches, sizeof *check.area);
+    check.load = alloc_array(patches, sizeof *check.load);
+    for (int64_t i = 0; i < snapshot->patch_count; i++) {
+        double share = 1.0 / (double)(UINT32_C(1) << (2 * walk.level));
+        check.root[i] = walk.root;
+        check.area[i] = scene_root_area(scene, walk.root) * share;
+        walk_on(&walk, snapshot->kind[i]);
+    }
+    return check;
+}
+
+void link_check_free(struct link_check *check)
+{
+    alloc_free(check->root);
+    alloc_free(check->area);
+    alloc_free(check->load);
+    *check = (struct link_check){0};
+}
+
+static bool parts_are_sane(const uint8_t parts[3])
+{
+    return parts[0] + parts[1] + parts[2] <= 256;
+}
+
+/* The pair of the link comes behind that of the last one. */
+static bool is_behind(const struct link_check *check, const struct link *link)
+{
+    return !check->begun || link->p > check->last.p ||
+           (link->p == check->last.p && link->q > check->last.q);
+}
+
+bool link_check_next(struct link_check *check, const struct link *link)
+{
+    int32_t p = link->p, q = link->q;
+    if (p < 0 || q < 0 || p >= check->patch_count || q >= check->patch_count ||
+        !is_behind(check, link) || check->root[p] == check->root[q])
+        return false;
+    double smaller = fmin(check->area[p], check->area[q]);
+    double most = link->seen > 0 ? smaller : check->most;
+    if (!(smaller > 0.0 && link->area >= 0.0f && (double)link->area <= most) ||
+        link->seen > LINK_OPEN || link->blocker < -1 || link->blocker >= check->scene->input_count ||
+        !parts_are_sane(link->parts_p) || !parts_are_sane(link->parts_q))
+        return false;
+    check->load[p] += link_area(link);
+    check->load[q] += link_area(link);
+    check->last = *link;
+    check->begun = true;
+    return check->load[p] <= check->most && check->load[q] <= check->most;
+}

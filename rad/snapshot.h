@@ -1,0 +1,93 @@
+/* Where a run stands between two passes, but for its links: all that the passes to come depend on.
+ * Patches have no local numbers here; they are counted roots in order, each tree depth first
+ * (forest_order()), so it is the same on any number of ranks.
+ *
+ * The state after initial linking, before the first pass, is one of these too. */
+#ifndef RAD_SNAPSHOT_H
+#define RAD_SNAPSHOT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "geom/error.h"
+#include "rad/link.h"
+#include "rad/patch.h"
+
+/* Whole numbers, none below 0. */
+enum snapshot_number {
+    SNAPSHOT_PASSES,         /* refinements */
+    SNAPSHOT_ITERATIONS,     /* transfers of light */
+    SNAPSHOT_SETTLED,        /* 1: the last pass split nothing */
+    SNAPSHOT_LIMITED,        /* bytes at which refinement ended for want of memory, 0: it did not */
+    SNAPSHOT_CHANGE,         /* change in the last iteration, flux units (Jacobi) */
+    SNAPSHOT_RAYS, SNAPSHOT_NODE_TESTS, SNAPSHOT_TRIANGLE_TESTS, /* work of all ranks so far */
+    SNAPSHOT_WALLED_OFF, SNAPSHOT_RAYS_SPARED, SNAPSHOT_PAIRS_TOUCHED,
+    SNAPSHOT_NUMBERS
+};
+
+enum snapshot_value {
+    SNAPSHOT_REMAINING,      /* bound on the remaining error, relative to all light; HUGE_VAL: none */
+    SNAPSHOT_ABSORBED, SNAPSHOT_ESCAPED, /* W, areas in square scene units */
+    SNAPSHOT_EPSILON,        /* as --accuracy has lowered it */
+    SNAPSHOT_ESTIMATE,       /* of the error, with --accuracy */
+    SNAPSHOT_LEAST_BEND,     /* of conjugate gradients */
+    SNAPSHOT_VALUES
+};
+
+/* Bits of a patch's kind. */
+enum { PATCH_SPLIT = 1, PATCH_COMPARED = 2 };
+
+struct leaf_state {
+    struct rgb radiosity;  /* B, W/m^2 */
+    struct rgb irradiance; /* H, W/m^2, of conjugate gradients */
+    double factor;         /* of the closure */
+};
+
+struct snapshot {
+    int64_t number[SNAPSHOT_NUMBERS];
+    double value[SNAPSHOT_VALUES];
+    int64_t root_count, patch_count, link_count;
+    int64_t compared_count;    /* patches with PATCH_COMPARED */
+    int64_t *root_change;      /* [root_count] of Jacobi; see push_pull() */
+    uint8_t *kind;             /* [patch_count] PATCH_SPLIT: it has children; PATCH_COMPARED: it has
+                                  an answer that --accuracy compares with */
+    struct leaf_state *leaves; /* [snapshot_leaf_count()] */
+    struct rgb *compared;      /* [compared_count] these answers, W/m^2 */
+};
+
+/* Gives a snapshot whose four counts are set its arrays, all zero. */
+void snapshot_allocate(struct snapshot *snapshot);
+void snapshot_free(struct snapshot *snapshot);
+
+/* Every split makes four patches of a leaf, which is none any more. */
+static inline int64_t snapshot_leaf_count(const struct snapshot *snapshot)
+{
+    return snapshot->patch_count - (snapshot->patch_count - snapshot->root_count) / 4;
+}
+
+/* True if the kinds are those of `root_count` whole trees, no deeper than IDs reach, and every number
+ * and value is one that a run could have. The counts fit each other already.
+ * Errors: what is wrong, without a file's name, EXIT_USAGE. */
+bool snapshot_check(const struct snapshot *snapshot, struct error *error);
+
+/* Links of a snapshot, looked at one after the other; p and q are its patch numbers. */
+struct link_check {
+    const struct scene *scene; /* borrowed */
+    int64_t patch_count;
+    int32_t *root;             /* [patch_count] */
+    double *area;              /* [patch_count] square scene units */
+    double *load;              /* [patch_count] sum of the exchange areas so far */
+    double most;               /* that no load may exceed */
+    struct link last;
+    bool begun;
+};
+
+/* Pre: snapshot_check() has said yes, and root_count is that of the scene. */
+struct link_check link_check_start(const struct snapshot *snapshot, const struct scene *scene);
+void link_check_free(struct link_check *check);
+
+/* True if the next link is one that a run could have: numbers in their ranges, no pair of patches
+ * twice, no patch that receives from more than there is, ascending order. */
+bool link_check_next(struct link_check *check, const struct link *link);
+
+#endif

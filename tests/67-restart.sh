@@ -1,0 +1,148 @@
+# Link caches, checkpoints and the memory limit: a file is the same whatever the number of ranks that
+# wrote it; what goes on from it, on any number of ranks, is what an uninterrupted run is; what was
+# made from another scene or with other settings is refused, with the reason.
+. tests/tap.sh
+
+: "${PHR:=./phr}"
+case $PHR in */*) ;; *) PHR=./$PHR ;; esac
+cornell="scenes/cornell.obj --epsilon 1e-4 --size 40x40 --quiet"
+counts="checksum links patches passes iterations rays node_tests converged memory_limited
+        absorbed_power error_estimate"
+
+# run NAME RANKS ARGUMENTS...: outputs and stats to $work/NAME.*.
+run() {
+    out=$work/$1
+    on=$2
+    shift 2
+    $MPIEXEC -n "$on" "$PHR" "$@" -o "$out.pfm" -o "$out.ppm" -o "$out.ply" \
+        --stats "$out.json" 2>"$out.err"
+}
+
+# same A B: equal files and equal counts.
+same() {
+    for suffix in pfm ppm ply; do
+        cmp "$work/$1.$suffix" "$work/$2.$suffix" || return 1
+    done
+    for key in $counts; do
+        value=$(stat_of "$work/$2.json" $key)
+        [ -n "$value" ] && [ "$(stat_of "$work/$1.json" $key)" = "$value" ] && continue
+        echo "# $key differs or is missing: $1 and $2"
+        return 1
+    done
+}
+
+# refused START ARGUMENTS...: exit status 2 and one line that begins so.
+refused() {
+    start=$1
+    shift
+    $MPIEXEC -n 2 sh -c 'exec 2>>"$0"; exec "$@"' "$work/refused" "$PHR" "$@" >/dev/null 2>&1
+    status=$?
+    line=$(cat "$work/refused")
+    rm -f "$work/refused"
+    case $line in "phr: $start"*) [ "$status" -eq 2 ] && return ;; esac
+    echo "# expected '$start', got status $status and: $line"
+    return 1
+}
+
+# --- link caches ---
+
+run plain 2 $cornell
+for ranks in 1 3 4; do
+    run save-$ranks $ranks $cornell --save-links "$work/links-$ranks"
+done
+check "a link cache by 3 ranks is that by 1" cmp "$work/links-3" "$work/links-1"
+check "and that by 4" cmp "$work/links-4" "$work/links-1"
+check "saving changes nothing" same save-3 plain
+run load 2 $cornell --load-links "$work/links-4"
+check "2 ranks go on from it" same load plain
+run load-closed 3 $cornell --load-links "$work/links-1" --closure rows --tolerance 1e-3
+run closed 1 $cornell --closure rows --tolerance 1e-3
+check "other settings than those of links are free" same load-closed closed
+
+cp scenes/cornell.obj "$work/moved.obj"
+cp scenes/cornell.mtl "$work/cornell.mtl"
+run moved 2 "$work/moved.obj" --epsilon 1e-4 --size 40x40 --quiet --load-links "$work/links-1"
+check "the scene may have moved" same moved plain
+sed 's/^Kd 0.7/Kd 0.6/' scenes/cornell.mtl >"$work/cornell.mtl"
+check "another material is another scene" refused "$work/links-1: made from another scene" \
+    "$work/moved.obj" --epsilon 1e-4 --load-links "$work/links-1"
+for other in "--epsilon 1e-3" "--oracle bf" "--form-factor disk" "--two-sided"; do
+    case $other in --epsilon*) was=0.0001 ;; --oracle*) was=error ;; *disk) was=polygon ;; *) was=off ;; esac
+    check "made without $other" \
+        refused "$work/links-1: made with ${other%% *} $was" $cornell --load-links "$work/links-1" $other
+done
+
+# --- checkpoints ---
+
+for ranks in 1 3 4; do
+    $MPIEXEC -n $ranks "$PHR" $cornell --max-iterations 8 --checkpoint "$work/check-$ranks"
+done
+check "a checkpoint by 3 ranks is that by 1" cmp "$work/check-3" "$work/check-1"
+check "and that by 4" cmp "$work/check-4" "$work/check-1"
+run resume 3 $cornell --resume "$work/check-4"
+check "3 ranks go on from a checkpoint by 4" same resume plain
+cp "$work/check-1" "$work/going"
+run going 2 $cornell --resume "$work/going" --checkpoint "$work/going" --every 2
+check "renewing it on the way" same going plain
+run final 3 $cornell --resume "$work/going"
+check "that of a finished run needs no iteration" same final plain
+run tight 2 $cornell --resume "$work/going" --tolerance 1e-8
+check "but can be taken further" \
+    holds "$(stat_of "$work/tight.json" iterations) > $(stat_of "$work/plain.json" iterations)"
+
+# resumes NAME N OPTIONS...: another method, interrupted by a limit of N iterations.
+resumes() {
+    name=$1
+    limit=$2
+    shift 2
+    run "$name" 1 $cornell "$@"
+    $MPIEXEC -n 2 "$PHR" $cornell --max-iterations "$limit" --checkpoint "$work/$name.check" "$@"
+    run "$name-on" 3 $cornell --resume "$work/$name.check" "$@"
+    check "goes on: $*" same "$name-on" "$name"
+}
+
+resumes jacobi 4 --solver jacobi --max-level 4
+resumes paper 3 --paper --max-level 4
+resumes accuracy 30 --accuracy 5% --epsilon 1e-3
+counts="checksum links patches passes iterations absorbed_power" # rays fired again are counted again
+resumes symmetric 8 --closure symmetric --max-level 3
+
+check "--closure is bound" refused "$work/check-1: made with --closure cap, this run has --closure none" \
+    $cornell --resume "$work/check-1" --closure none
+check "a link cache is no checkpoint" refused "$work/links-1: not a checkpoint but a link cache" \
+    $cornell --resume "$work/links-1"
+check "a missing one" refused "$work/absent: cannot read: " $cornell --resume "$work/absent"
+head -c 1000 "$work/check-1" >"$work/cut"
+check "one that is cut off" refused "$work/cut: damaged: " $cornell --resume "$work/cut"
+cp "$work/check-1" "$work/flipped"
+printf x | dd of="$work/flipped" bs=1 seek=5000 conv=notrunc 2>/dev/null
+check "one with a changed byte" refused "$work/flipped: damaged: its checksum" $cornell --resume "$work/flipped"
+
+# --- memory ---
+
+counts="checksum links patches passes iterations rays node_tests converged memory_limited
+        absorbed_power"
+fine="scenes/cornell.obj --epsilon 1e-5 --size 40x40"
+for ranks in 1 2 3 4; do
+    run small-$ranks $ranks $fine --memory 2M --checkpoint "$work/small-$ranks.check" >/dev/null
+done
+for ranks in 2 3 4; do
+    check "2 MiB on $ranks ranks are 2 MiB on one" same small-$ranks small-1
+    check "its checkpoint too" cmp "$work/small-$ranks.check" "$work/small-1.check"
+done
+run large 2 $fine --memory 1G >/dev/null
+check "1 GiB is enough" [ "$(stat_of "$work/large.json" memory_limited)" = false ]
+check "2 MiB are not, and the run says so" [ "$(stat_of "$work/small-1.json" memory_limited)" = true ]
+check "once" [ "$(grep -c 'phr: warning: refinement ended at the memory limit' "$work/small-3.err")" -eq 1 ]
+check "so it has not converged" [ "$(stat_of "$work/small-1.json" converged)" = false ]
+check "it has fewer links" \
+    holds "$(stat_of "$work/small-1.json" links) < $(stat_of "$work/large.json" links) / 2"
+check "which absorb within 5 % as much" \
+    holds "($(stat_of "$work/small-1.json" absorbed_power) / $(stat_of "$work/large.json" absorbed_power) - 1) ^ 2 < 0.05 ^ 2"
+run grown 3 $fine --memory 1G --resume "$work/small-2.check" >/dev/null
+check "it goes on where there is more memory" [ "$(stat_of "$work/grown.json" memory_limited)" = false ]
+check "to the end" [ "$(stat_of "$work/grown.json" converged)" = true ]
+run still 3 $fine --memory 2M --resume "$work/small-4.check" >/dev/null
+check "and not where there is not" same still small-1
+
+tap_done

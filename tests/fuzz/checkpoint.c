@@ -1,0 +1,9 @@
+/* Fuzzing checkpoints. */
+#define _POSIX_C_SOURCE 200809L /* fmemopen() */
+#include "tests/fuzz/store.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    store_try(STORE_CHECKPOINT, data, size);
+    return 0;
+}

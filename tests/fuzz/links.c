@@ -1,0 +1,9 @@
+/* Fuzzing link caches. */
+#define _POSIX_C_SOURCE 200809L /* fmemopen() */
+#include "tests/fuzz/store.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    store_try(STORE_LINKS, data, size);
+    return 0;
+}

@@ -1,0 +1,105 @@
+/* Fuzzing stored snapshot: what the harnesses of its two kinds share.
+ *
+ * A checksum would stop a fuzzer at the door, so the right one is put at the end of every input
+ * first. What the reader takes is restored, refined and solved for one iteration: it promises to
+ * let nothing in that the method cannot live with. The scene is two triangles that face each other,
+ * a lamp and a wall. */
+#ifndef TESTS_FUZZ_STORE_H
+#define TESTS_FUZZ_STORE_H
+
+#include "geom/hash.h"
+#include "geom/little.h"
+#include "io/store.h"
+#include "mpi/keep.h"
+#include "tests/fuzz/fuzz.h"
+#include "tests/scenes.h"
+
+#define STORE_SETTINGS "--oracle error\n--epsilon 0.01\n"
+
+static const struct criterion STORE_CRITERION = {
+    .oracle = ORACLE_ERROR, .form_factor = FORM_FACTOR_POLYGON, .closure = CLOSURE_CAP,
+    .solver = SOLVER_CG, .epsilon = 0.01, .max_level = 2, .tolerance = 1e-3, .max_iterations = 3};
+
+static inline struct scene *store_scene(void)
+{
+    struct scene *scene = scene_create(2, 2);
+    scene->triangles[0] = (struct triangle){{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    scene->triangles[1] = (struct triangle){{{0, 0, 1}, {0, 1, 1}, {1, 0, 1}}};
+    scene->material_of[1] = 1;
+    scene->materials[0] = material_grey(0.0, 1.0);
+    scene->materials[1] = material_grey(0.5, 0.0);
+    scene_prepare_or_exit(scene);
+    return scene;
+}
+
+static inline struct vote store_solve(struct solver *solver)
+{
+    struct vote vote;
+    solver_close(solver);
+    do {
+        solver_transfer(solver);
+        solver_gather(solver);
+        solver_push_pull(solver);
+        solver_scatter(solver);
+        vote = solver_vote(solver);
+    } while (vote.again);
+    return vote;
+}
+
+/* All links of an open file, then a pass. Returns false where the reader refuses a link. */
+static inline bool store_continue(struct store_reader *reader, const struct comm *comm,
+                                  const struct scene *scene, struct error *error)
+{
+    enum { BLOCK = 100 };
+    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct solver *solver = solver_create(comm, scene, octree, &STORE_CRITERION);
+    struct link block[BLOCK];
+    struct vote vote;
+    solver_assign_roots(solver);
+    int32_t *order = snapshot_restore(solver, &vote, &reader->snapshot);
+    for (int64_t count = BLOCK; count > 0;) {
+        count = store_get_links(reader, block, BLOCK, error);
+        links_deal(solver, order, block, count);
+    }
+    alloc_free(order);
+    if (error->code == EXIT_DONE) {
+        FUZZ_PROMISE(solver->links.count == reader->snapshot.link_count);
+        solver_refine(solver);
+        store_solve(solver);
+    }
+    solver_destroy(solver);
+    octree_destroy(octree);
+    return error->code == EXIT_DONE;
+}
+
+static struct comm store_comm;
+
+static inline void store_stop(void)
+{
+    comm_stop(&store_comm);
+}
+
+static inline void store_try(enum store_kind kind, const uint8_t *data, size_t size)
+{
+    struct error error = {0};
+    if (store_comm.size == 0) {
+        comm_start(&store_comm, NULL, NULL);
+        atexit(store_stop);
+    }
+    uint8_t *copy = malloc(size + !size);
+    memcpy(copy, data, size);
+    if (size >= 8)
+        little_put64(copy + size - 8, hash_bytes(HASH_START, copy, size - 8));
+    FILE *file = size > 0 ? fmemopen(copy, size, "rb") : tmpfile();
+    struct scene *scene = store_scene();
+    struct store_terms terms = {kind, STORE_SETTINGS, scene};
+    struct store_reader reader;
+    bool good = store_open_file(&reader, file, "fuzz", &terms, &error) &&
+                store_continue(&reader, &store_comm, scene, &error);
+    store_close(&reader);
+    scene_destroy(scene);
+    free(copy);
+    fuzz_verdict(good, &error);
+}
+
+#endif
