@@ -72,8 +72,6 @@ static void scatter_factors(struct solver *solver)
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
             forest->patches[p].radiosity.band[c] = solver->closure.factor[p];
-    for (int32_t root = 0; root < forest->root_count; root++)
-        solver->touched[root] = true;
     solver_scatter(solver);
     for (int64_t p = 0; p < forest->count; p++)
         solver->closure.factor[p] = forest->patches[p].radiosity.band[0];
@@ -114,6 +112,7 @@ void solver_close(struct solver *solver)
 {
     const struct criterion *criterion = &solver->method.criterion;
     struct forest *forest = solver->method.forest;
+    routes_renew(solver);
     closure_extend(&solver->closure, forest);
     conjugate_extend(&solver->conjugate, forest, solver->own);
     if (criterion->closure == CLOSURE_NONE && criterion->solver == SOLVER_JACOBI)

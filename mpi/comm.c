@@ -151,27 +151,64 @@ int64_t comm_displacements(const struct comm *comm, const int *counts, int *disp
     return comm_count(comm, sum);
 }
 
-void *comm_exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
-                    int64_t *arriving)
+int64_t comm_exchange_counts(const struct comm *comm, const int *counts, int *receive)
 {
-    size_t ranks = (size_t)comm->size;
-    int *receive = alloc_array(3 * ranks, sizeof *receive);
-    int *receive_at = receive + ranks, *send_at = receive + 2 * ranks;
+    int64_t arriving = 0;
     MPI_Request request;
     MPI_Ialltoall(counts, 1, MPI_INT, receive, 1, MPI_INT, comm->handle, &request);
     comm_wait(&request);
-    comm_displacements(comm, counts, send_at);
-    *arriving = comm_displacements(comm, receive, receive_at);
-    void *arrived = alloc_array((size_t)*arriving, bytes);
-    MPI_Datatype record; /* whole records, so that counts stay small */
+    for (int r = 0; r < comm->size; r++)
+        arriving += receive[r];
+    return arriving;
+}
+
+/* Whole records, so that counts stay small. */
+static MPI_Datatype record_of(size_t bytes)
+{
+    MPI_Datatype record;
     MPI_Type_contiguous((int)bytes, MPI_BYTE, &record);
     MPI_Type_commit(&record);
+    return record;
+}
+
+void comm_exchange_known(const struct comm *comm, const void *records, const int *counts,
+                         size_t bytes, void *arrived, const int *receive)
+{
+    size_t ranks = (size_t)comm->size;
+    int *send_at = alloc_array(2 * ranks, sizeof *send_at), *receive_at = send_at + ranks;
+    comm_displacements(comm, counts, send_at);
+    comm_displacements(comm, receive, receive_at);
+    MPI_Datatype record = record_of(bytes);
+    MPI_Request request;
     MPI_Ialltoallv(records, counts, send_at, record, arrived, receive, receive_at, record,
                    comm->handle, &request);
     comm_wait(&request);
     MPI_Type_free(&record);
+    alloc_free(send_at);
+}
+
+void *comm_exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
+                    int64_t *arriving)
+{
+    int *receive = alloc_array((size_t)comm->size, sizeof *receive);
+    *arriving = comm_exchange_counts(comm, counts, receive);
+    void *arrived = alloc_array((size_t)*arriving, bytes);
+    comm_exchange_known(comm, records, counts, bytes, arrived, receive);
     alloc_free(receive);
     return arrived;
+}
+
+void comm_share(const struct comm *comm, void *records, const int *counts, size_t bytes)
+{
+    int *at = alloc_array((size_t)comm->size, sizeof *at);
+    comm_displacements(comm, counts, at);
+    MPI_Datatype record = record_of(bytes);
+    MPI_Request request;
+    MPI_Iallgatherv(MPI_IN_PLACE, 0, record, records, counts, at, record, comm->handle,
+                    &request);
+    comm_wait(&request);
+    MPI_Type_free(&record);
+    alloc_free(at);
 }
 
 uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes, int *at)

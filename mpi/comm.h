@@ -46,6 +46,16 @@ int64_t comm_displacements(const struct comm *comm, const int *counts, int *disp
 void *comm_exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
                     int64_t *arriving);
 
+/* Collective. The same in two steps, for more than one exchange with the same counts: receive[r] is the
+ * number of records that come from rank r; returns their sum. Then the records, into `arrived`. */
+int64_t comm_exchange_counts(const struct comm *comm, const int *counts, int *receive);
+void comm_exchange_known(const struct comm *comm, const void *records, const int *counts,
+                         size_t bytes, void *arrived, const int *receive);
+
+/* Collective. All ranks get the records of all: `records` has room for counts[0] of rank 0, then
+ * counts[1] of rank 1, and so on; each rank's own are in place. */
+void comm_share(const struct comm *comm, void *records, const int *counts, size_t bytes);
+
 /* Collective. The bytes of all ranks, in the order of the ranks, on all ranks. at[r] is where those
  * of rank r begin, at[size] their number; at holds size + 1 ints. To be freed with alloc_free(). */
 uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes, int *at);

@@ -297,7 +297,7 @@ static void restore_leaves(struct solver *solver, const struct snapshot *snapsho
         else if (accuracy->before)
             accuracy->before[p].band[0] = HUGE_VAL;
     }
-    forest_pull(forest);
+    forest_average(forest);
 }
 
 /* The work so far is put down to rank 0. */

@@ -263,6 +263,7 @@ bool solver_refine(struct solver *solver)
     double start = comm_seconds();
     bool done = true;
     solver->pass++;
+    forest_bound(solver->method.forest);
     solver->split_here = 0;
     solver->first_new = solver->shared = solver->method.forest->count;
     if (memory->limit == 0 || memory->reached != memory->limit) {

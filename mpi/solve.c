@@ -13,8 +13,10 @@ static double largest_radiosity(const struct forest *forest)
 {
     double largest = 1e-250;
     for (int64_t p = 0; p < forest->count; p++)
-        for (int c = 0; c < BANDS; c++)
-            largest = fmax(largest, fabs(forest->patches[p].radiosity.band[c]));
+        for (int c = 0; c < BANDS; c++) {
+            double size = fabs(forest->patches[p].radiosity.band[c]);
+            largest = size > largest ? size : largest;
+        }
     return largest;
 }
 
@@ -109,8 +111,6 @@ static void push_pull_conjugate(struct solver *solver)
         step_conjugate(solver);
     solver->fresh = false;
     conjugate_publish(&solver->conjugate, &solver->method, false);
-    for (int32_t root = 0; root < solver->method.forest->root_count; root++)
-        solver->touched[root] = solver->own[root];
 }
 
 void solver_push_pull(struct solver *solver)
@@ -121,6 +121,6 @@ void solver_push_pull(struct solver *solver)
         push_pull_conjugate(solver);
     else
         solver->sums = push_pull(&solver->method, &solver->closure, solver->flux, solver->own,
-                                 solver->touched, solver->root_change);
+                                 solver->root_change);
     solver->seconds[PHASE_PUSH_PULL] += comm_seconds() - start;
 }

@@ -21,7 +21,6 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     solver->method = method_make(scene, octree, forest_create(scene), criterion);
     solver->owner = alloc_array(roots, sizeof *solver->owner);
     solver->own = alloc_array(roots, sizeof *solver->own);
-    solver->touched = alloc_array(roots, sizeof *solver->touched);
     solver->root_change = alloc_array(roots, sizeof *solver->root_change);
     solver->closure.kind = criterion->closure;
     solver->fresh = true;
@@ -37,7 +36,7 @@ void solver_destroy(struct solver *solver)
     link_list_free(&solver->links);
     alloc_free(solver->owner);
     alloc_free(solver->own);
-    alloc_free(solver->touched);
+    routes_free(&solver->routes);
     alloc_free(solver->root_change);
     alloc_free(solver->levels);
     closure_free(&solver->closure);
@@ -53,13 +52,14 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
     struct rgb *kept = forest_keep(forest);
     for (int64_t p = 0; p < forest->count; p++)
         forest->patches[p].radiosity = (struct rgb){{1.0, 0.0, 0.0}};
+    int64_t bytes = solver->bytes_gather; /* this gather is for the report, not of the method */
+    double seconds = solver->seconds[PHASE_GATHER];
+    routes_renew(solver); /* a finished run that was resumed has none */
     enum closure_kind kind = solver->closure.kind;
     solver->closure.kind = CLOSURE_NONE;
     solver_transfer(solver);
     solver->closure.kind = kind;
     forest_restore(forest, kept);
-    int64_t bytes = solver->bytes_gather; /* this gather is for the report, not of the method */
-    double seconds = solver->seconds[PHASE_GATHER];
     solver_gather(solver);
     solver->bytes_gather = bytes;
     solver->seconds[PHASE_GATHER] = seconds;

@@ -8,6 +8,7 @@
 
 #include "geom/progress.h"
 #include "mpi/comm.h"
+#include "mpi/routes.h"
 #include "rad/conjugate.h"
 #include "rad/link.h"
 #include "rad/method.h"
@@ -35,7 +36,7 @@ struct solver {
     struct link_list links;   /* the links that live here ("allInteractions") */
     int *owner;               /* [roots] home rank of each root */
     bool *own;                /* [roots] owner[root] == rank */
-    bool *touched;            /* [roots] own tree whose structure or values changed */
+    struct routes routes;     /* of light over the links there are */
     int64_t *root_change;     /* [roots] see push_pull() */
     int64_t first_new;        /* patches from here on were created in this iteration */
     int64_t shared;           /* patches up to here are the same on all ranks */

@@ -145,8 +145,6 @@ static double remaining_by_residual(const struct solver *solver, const struct ba
 static void finish_conjugate(struct solver *solver)
 {
     conjugate_publish(&solver->conjugate, &solver->method, true);
-    for (int32_t root = 0; root < solver->method.forest->root_count; root++)
-        solver->touched[root] = solver->own[root];
     solver_scatter(solver);
     solver->fresh = true;
 }

@@ -44,11 +44,6 @@ static uint8_t compact_share(const struct exchange *exchange, bool open)
     return (uint8_t)fmin(LINK_ALL_SEEN, fmax(1.0, rint(LINK_ALL_SEEN * exchange->seen)));
 }
 
-static bool parts_are_even(const uint8_t parts[3])
-{
-    return parts[0] == 64 && parts[1] == 64 && parts[2] == 64;
-}
-
 /* In 256ths, rounded from the first to the last so that none is off by more than one. */
 static void set_parts(uint8_t parts[3], const double exact[4])
 {
@@ -133,7 +128,7 @@ int link_split(struct method *method, const struct link *link, int32_t patch,
 static struct rgb take(const struct forest *forest, int32_t patch, const uint8_t parts[3])
 {
     const struct patch *at = &forest->patches[patch];
-    if (patch_is_leaf(at) || parts_are_even(parts))
+    if (!link_is_divided(forest, patch, parts))
         return at->radiosity;
     const struct patch *child = &forest->patches[at->children];
     struct rgb sum = {{0.0, 0.0, 0.0}};
@@ -148,7 +143,7 @@ static void give(struct forest *forest, int32_t patch, const uint8_t parts[3], s
                  struct flux_unit unit)
 {
     struct patch *at = &forest->patches[patch];
-    if (patch_is_leaf(at) || parts_are_even(parts)) {
+    if (!link_is_divided(forest, patch, parts)) {
         for (int c = 0; c < BANDS; c++)
             at->flux[c] += flux_from_watts(unit, light.band[c]);
         return;

@@ -65,6 +65,17 @@ static inline double link_part(const uint8_t parts[3], int k)
                  : (256 - parts[0] - parts[1] - parts[2]) * (1.0 / 256.0);
 }
 
+static inline bool parts_are_even(const uint8_t parts[3])
+{
+    return parts[0] == 64 && parts[1] == 64 && parts[2] == 64;
+}
+
+/* True if light to and from a patch is that of its children, by the parts, and not of the patch itself. */
+static inline bool link_is_divided(const struct forest *forest, int32_t patch, const uint8_t parts[3])
+{
+    return !patch_is_leaf(&forest->patches[patch]) && !parts_are_even(parts);
+}
+
 struct link_list {
     struct link *items; /* [count] */
     int64_t count, capacity;

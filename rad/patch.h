@@ -28,7 +28,7 @@ struct extremes {
 struct forest {
     const struct scene *scene; /* borrowed */
     struct patch *patches;     /* [count] */
-    struct extremes *extremes; /* [count] as of the last forest_pull(); a new patch's are equal */
+    struct extremes *extremes; /* [count] as of the last forest_bound(); a new patch's are equal */
     int64_t count, capacity, extremes_capacity;
     int32_t root_count;
 };

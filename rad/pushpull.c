@@ -42,8 +42,7 @@ struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flu
 
 /* Gives a leaf its new radiosity and adds what that means to the sums. Returns the change. */
 static int64_t update_leaf(const struct method *method, const struct closure *closure,
-                           struct flux_unit flux, int32_t leaf, bool *touched,
-                           struct push_pull_sums *sums)
+                           struct flux_unit flux, int32_t leaf, struct push_pull_sums *sums)
 {
     struct patch *patch = &method->forest->patches[leaf];
     const struct material *material = forest_material(method->forest, leaf);
@@ -58,7 +57,6 @@ static int64_t update_leaf(const struct method *method, const struct closure *cl
         absorbed += area * ((1.0 - rho) * h);
         arriving += area * h;
         change += area * fabs(b - patch->radiosity.band[c]);
-        *touched = *touched || b != patch->radiosity.band[c];
         patch->radiosity.band[c] = b;
     }
     sums->light = flux_add(sums->light, flux_from_watts(method->flux_unit, light));
@@ -86,9 +84,8 @@ void forest_average(struct forest *forest)
     pull(forest, NULL);
 }
 
-void forest_pull(struct forest *forest)
+void forest_bound(struct forest *forest)
 {
-    pull(forest, NULL);
     for (int64_t p = forest->count - 1; p >= 0; p--) {
         const struct patch *patch = &forest->patches[p];
         float brightness = (float)rgb_sum(patch->radiosity);
@@ -119,8 +116,7 @@ static double largest_shrink(const struct method *method, const bool *own, const
 }
 
 struct push_pull_sums push_pull(const struct method *method, const struct closure *closure,
-                                struct flux_unit flux, const bool *own, bool *touched,
-                                int64_t *root_change)
+                                struct flux_unit flux, const bool *own, int64_t *root_change)
 {
     struct forest *forest = method->forest;
     struct push_pull_sums sums = {0};
@@ -132,7 +128,7 @@ struct push_pull_sums push_pull(const struct method *method, const struct closur
             continue;
         if (!patch_is_leaf(patch))
             continue;
-        int64_t change = update_leaf(method, closure, flux, (int32_t)p, &touched[root], &sums);
+        int64_t change = update_leaf(method, closure, flux, (int32_t)p, &sums);
         now[root] = flux_add(now[root], change);
         sums.change = flux_add(sums.change, change);
     }

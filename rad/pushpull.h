@@ -22,17 +22,16 @@ struct push_pull_sums {
 struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flux_unit unit);
 
 /* Push and pull on the roots with own[root] set: leaves get B = E + rho H, H being corrected by
- * their closure, inner patches the mean of their children. `flux`: unit of the flux. Sets touched[root] where a leaf's B changed. root_change[root] holds
+ * their closure, inner patches the mean of their children. `flux`: unit of the flux. root_change[root] holds
  * each own root's change of the iteration before, and is renewed. */
 struct push_pull_sums push_pull(const struct method *method, const struct closure *closure,
-                                struct flux_unit flux, const bool *own, bool *touched,
-                                int64_t *root_change);
+                                struct flux_unit flux, const bool *own, int64_t *root_change);
 
 /* The pull alone, on all roots: inner patches get the mean of their children. */
 void forest_average(struct forest *forest);
 
-/* The same, and the extremes. */
-void forest_pull(struct forest *forest);
+/* The extremes of all patches. */
+void forest_bound(struct forest *forest);
 
 /* Sets the flux of all patches to 0. */
 void forest_clear_flux(struct forest *forest);

@@ -1,7 +1,6 @@
 /* Trees as bytes; the format is in rad/treecode.h.
  *
- * An ID costs 8 bytes a patch; depth first order makes it one bit. Inner values are not sent:
- * they are means of leaf values, computed by every rank with the same operations. */
+ * Depth first order takes the place of IDs. Inner values are left out: they are means of leaf values. */
 #include "rad/treecode.h"
 
 #include <string.h>
@@ -29,17 +28,6 @@ static void append_double(struct bytes *bytes, double value)
         bytes->data[bytes->count++] = (uint8_t)(bits >> (8 * k));
 }
 
-static double read_double(const uint8_t *data)
-{
-    /* written out, so that compilers see one load where the byte order allows it */
-    uint64_t bits = (uint64_t)data[0] | (uint64_t)data[1] << 8 | (uint64_t)data[2] << 16 |
-                    (uint64_t)data[3] << 24 | (uint64_t)data[4] << 32 | (uint64_t)data[5] << 40 |
-                    (uint64_t)data[6] << 48 | (uint64_t)data[7] << 56;
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 void tree_encode(const struct forest *forest, int32_t root, struct bytes *bytes)
 {
     uint8_t byte = 0;
@@ -58,24 +46,6 @@ void tree_encode(const struct forest *forest, int32_t root, struct bytes *bytes)
         if (patch_is_leaf(&forest->patches[p]))
             for (int c = 0; c < BANDS; c++)
                 append_double(bytes, forest->patches[p].radiosity.band[c]);
-}
-
-int64_t tree_decode(struct forest *forest, int32_t root, const uint8_t *data)
-{
-    int64_t bits = 0;
-    for (int32_t p = root; p >= 0; p = forest_next(forest, p, true)) {
-        if (data[bits / 8] >> (bits % 8) & 1)
-            forest_split(forest, p);
-        bits++;
-    }
-    int64_t at = (bits + 7) / 8;
-    for (int32_t p = root; p >= 0; p = forest_next(forest, p, true)) {
-        if (!patch_is_leaf(&forest->patches[p]))
-            continue;
-        for (int c = 0; c < BANDS; c++, at += 8)
-            forest->patches[p].radiosity.band[c] = read_double(data + at);
-    }
-    return at;
 }
 
 uint64_t forest_checksum(const struct forest *forest)

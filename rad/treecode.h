@@ -3,7 +3,7 @@
  * Of a root: one bit for each patch, depth first, children in order, 1 = split, 0 = leaf (least
  * significant bit first, padded to whole bytes); then for each leaf in the same order its
  * radiosity, three IEEE 754 doubles, least significant byte first. So the bytes are the same on
- * every rank and machine: they carry Step 7 (scatter) and the checksum of the solution. */
+ * every rank and machine: they give the checksum of the solution. */
 #ifndef RAD_TREECODE_H
 #define RAD_TREECODE_H
 
@@ -21,11 +21,6 @@ void bytes_free(struct bytes *bytes);
 
 /* Appends the tree of a root. */
 void tree_encode(const struct forest *forest, int32_t root, struct bytes *bytes);
-
-/* Reads the tree of a root from bytes made by tree_encode(): splits what is split there and
- * sets the leaves (forest_pull() does the rest). Returns the number of bytes read.
- * Pre: no patch is split here that is a leaf there. */
-int64_t tree_decode(struct forest *forest, int32_t root, const uint8_t *data);
 
 /* FNV-1a hash of all trees, roots in order: the same on any number of ranks. */
 uint64_t forest_checksum(const struct forest *forest);

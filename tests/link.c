@@ -312,7 +312,8 @@ static void test_dealing(void)
         p[k].radiosity = (struct rgb){{k + 1.0, 0.0, 0.0}};
         q[k].radiosity = (struct rgb){{8.0 * (k + 1), 0.0, 4.0}};
     }
-    forest_pull(forest);
+    forest_average(forest);
+    forest_bound(forest);
     struct link link = {.p = 2, .q = 4, .area = 0.5f, .parts_p = {128, 0, 96},
                         .parts_q = {0, 0, 64}, .seen = LINK_ALL_SEEN};
     struct link_list list = {0};
@@ -379,7 +380,8 @@ static void test_transfer(void)
     struct forest *forest = world.method.forest;
     struct flux_unit unit = world.method.flux_unit;
     struct link_list list = {0}, turned = {0};
-    forest_pull(forest);
+    forest_average(forest);
+    forest_bound(forest);
     make_links(forest, &list);
     links_transfer(&list, forest, unit);
     int64_t received = 0;

@@ -186,7 +186,8 @@ static void make_range(struct forest *forest, int32_t patch, double range)
     int32_t grandchild = forest->patches[child + 2].children;
     forest->patches[child].radiosity = (struct rgb){{50.0, 1.0, 1.0}};
     forest->patches[grandchild + 1].radiosity.band[1] = 1.0 + range;
-    forest_pull(forest);
+    forest_average(forest);
+    forest_bound(forest);
 }
 
 /* The error of a range is G x rho of the receiver x the range. */

@@ -1,5 +1,5 @@
 /* Tests of rad/pushpull.h: no light is lost on its way from any level to the leaves, pulls are
- * means, the sums of a push-pull, `touched`, the factor by which changes shrink, and row sums. */
+ * means, the sums of a push-pull, the factor by which changes shrink, and row sums. */
 #include "rad/pushpull.h"
 
 #include <string.h>
@@ -61,11 +61,11 @@ static void own_all(bool own[ROOTS])
 }
 
 /* push_pull() of flux in the unit of the method, nothing corrected. */
-static struct push_pull_sums pushed(struct world *world, const bool *own, bool *touched,
+static struct push_pull_sums pushed(struct world *world, const bool *own,
                                     int64_t *change)
 {
     const struct closure none = {.kind = CLOSURE_NONE};
-    return push_pull(&world->method, &none, world->method.flux_unit, own, touched, change);
+    return push_pull(&world->method, &none, world->method.flux_unit, own, change);
 }
 
 /* --- push --- */
@@ -152,7 +152,8 @@ static void test_pull(void)
         for (int c = 0; c < BANDS; c++)
             forest->patches[p].radiosity.band[c] = random_unit(&random);
     bool before = inner_are_means(forest, own);
-    forest_pull(forest);
+    forest_average(forest);
+    forest_bound(forest);
     tap_ok(!before && inner_are_means(forest, own), "a pull makes inner patches means of leaves");
     world_free(&world);
 }
@@ -163,12 +164,12 @@ static void test_radiosity(void)
 {
     struct world world = make_world();
     struct forest *forest = world.method.forest;
-    bool own[ROOTS], touched[ROOTS] = {false};
+    bool own[ROOTS];
     int64_t change[ROOTS] = {0};
     own_all(own);
     grow(forest, 4);
     pour(&world, 4);
-    pushed(&world, own, touched, change);
+    pushed(&world, own, change);
     bool right = true;
     for (int32_t p = 0; p < forest->count; p++) {
         const struct patch *patch = &forest->patches[p];
@@ -184,15 +185,12 @@ static void test_radiosity(void)
     tap_ok(right, "leaves get B = E + rho H");
     tap_ok(inner_are_means(forest, own), "and inner patches the means");
     for (int32_t r = 0; r < ROOTS; r++)
-        right = right && touched[r] == (r != NO_AREA && r != 7);
-    tap_ok(right, "what changed is touched: not the black root, nor that without an area");
-    bool none[ROOTS] = {false};
-    pushed(&world, own, none, change);
+        right = right && (change[r] > 0) == (r != NO_AREA && r != 7);
+    tap_ok(right, "all change but the black root and that without an area");
+    pushed(&world, own, change);
     for (int32_t r = 0; r < ROOTS; r++)
-        right = right && !none[r] && change[r] == 0;
-    tap_ok(right, "the same flux again touches nothing");
-    pushed(&world, own, touched, change);
-    tap_ok(touched[0], "a root that is touched stays so until the caller takes it back");
+        right = right && change[r] == 0;
+    tap_ok(right, "the same flux again changes nothing");
     forest_clear_flux(forest);
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
@@ -213,7 +211,7 @@ static void test_sums(void)
     struct world world = make_world();
     struct forest *forest = world.method.forest;
     struct flux_unit unit = world.method.flux_unit;
-    bool own[ROOTS], touched[ROOTS] = {false};
+    bool own[ROOTS];
     int64_t change[ROOTS] = {0};
     for (int32_t r = 0; r < ROOTS; r++)
         own[r] = own_of(r);
@@ -237,7 +235,7 @@ static void test_sums(void)
             changed += forest_area(forest, p) * fabs(b - patch->radiosity.band[c]);
         }
     }
-    struct push_pull_sums sums = pushed(&world, own, touched, change);
+    struct push_pull_sums sums = pushed(&world, own, change);
     tap_ok(fabs(flux_to_watts(unit, sums.light) / light - 1.0) < 1e-12, "light is A B of leaves");
     tap_ok(fabs(flux_to_watts(unit, sums.absorbed) / absorbed - 1.0) < 1e-12,
            "absorbed is A (1 - rho) H of leaves");
@@ -249,7 +247,7 @@ static void test_sums(void)
     bool others = true;
     for (int32_t r = 0; r < ROOTS; r++) {
         total += change[r];
-        others = others && (own[r] || (!touched[r] && change[r] == 0 &&
+        others = others && (own[r] || (change[r] == 0 &&
                                        forest->patches[r].radiosity.band[0] == 42.0));
     }
     tap_ok(total == sums.change, "the changes of roots add up to it");
@@ -263,13 +261,13 @@ static void test_two_ranks(void)
     struct push_pull_sums sums[3];
     for (int part = 0; part < 3; part++) {
         struct world world = make_world();
-        bool own[ROOTS], touched[ROOTS] = {false};
+        bool own[ROOTS];
         int64_t change[ROOTS] = {0};
         for (int32_t r = 0; r < ROOTS; r++)
             own[r] = part == 2 || own_of(r) == (part == 1);
         grow(world.method.forest, 6);
         pour(&world, 6);
-        sums[part] = pushed(&world, own, touched, change);
+        sums[part] = pushed(&world, own, change);
         world_free(&world);
     }
     tap_ok(sums[0].light + sums[1].light == sums[2].light &&
@@ -283,17 +281,17 @@ static void test_two_ranks(void)
 static void test_divergence(void)
 {
     struct world world = make_world();
-    bool own[ROOTS] = {false}, touched[ROOTS] = {false};
+    bool own[ROOTS] = {false};
     int64_t change[ROOTS] = {0};
     forest_split(world.method.forest, 2); /* rho 0.5 in band 0: half the limit for itself */
     world.method.forest->patches[2].flux[0] = FLUX_LIMIT; /* an inner patch counts too */
     forest_split(world.method.forest, 4);
     world.method.forest->patches[4].flux[0] = FLUX_LIMIT;
     own[0] = true;
-    struct push_pull_sums sums = pushed(&world, own, touched, change);
+    struct push_pull_sums sums = pushed(&world, own, change);
     tap_ok(sums.light < FLUX_LIMIT && sums.arriving < FLUX_LIMIT, "others' fluxes do not count");
     own[2] = own[4] = true;
-    sums = pushed(&world, own, touched, change);
+    sums = pushed(&world, own, change);
     tap_ok(sums.light == FLUX_LIMIT && sums.arriving == FLUX_LIMIT,
            "sums of light stay at the limit");
     world_free(&world);
@@ -308,7 +306,7 @@ static void test_factors(void)
     for (int k = 0; k < 2; k++) {
         struct world world = make_world();
         struct forest *forest = world.method.forest;
-        bool own[ROOTS], touched[ROOTS] = {false};
+        bool own[ROOTS];
         int64_t change[ROOTS] = {0};
         own_all(own);
         grow(forest, 7);
@@ -324,12 +322,12 @@ static void test_factors(void)
             unit.watt *= 2.0;
             unit.per_watt *= 0.5;
         }
-        struct push_pull_sums sums = push_pull(&world.method, &closure, unit, own, touched, change);
+        struct push_pull_sums sums = push_pull(&world.method, &closure, unit, own, change);
         light[k] = flux_to_watts(world.method.flux_unit, sums.light);
         arriving[k] = flux_to_watts(world.method.flux_unit, sums.arriving);
         absorbed[k] = flux_to_watts(world.method.flux_unit, sums.absorbed);
         closure.kind = CLOSURE_NONE;
-        struct push_pull_sums plain = push_pull(&world.method, &closure, unit, own, touched,
+        struct push_pull_sums plain = push_pull(&world.method, &closure, unit, own,
                                                 change);
         right = right && (k == 0) == (plain.arriving == sums.arriving);
         closure_free(&closure);
@@ -356,14 +354,14 @@ static void set_irradiance(struct world *world, int32_t root, double irradiance)
 static void test_shrink(void)
 {
     struct world world = make_world();
-    bool own[ROOTS] = {true, true}, touched[ROOTS] = {false};
+    bool own[ROOTS] = {true, true};
     int64_t change[ROOTS] = {0};
     static const double first[4] = {1.0, 1.25, 1.375, 1.375}, second[4] = {2.0, 2.5, 2.5, 2.5};
     double shrink[4], changed[4];
     for (int step = 0; step < 4; step++) {
         set_irradiance(&world, 0, first[step]);
         set_irradiance(&world, 1, second[step]);
-        struct push_pull_sums sums = pushed(&world, own, touched, change);
+        struct push_pull_sums sums = pushed(&world, own, change);
         shrink[step] = sums.shrink;
         changed[step] = flux_to_watts(world.method.flux_unit, sums.change);
         if (step == 0)
@@ -384,7 +382,7 @@ static void test_shrink(void)
 static void test_settled(void)
 {
     struct world world = make_world();
-    bool own[ROOTS] = {true}, touched[ROOTS] = {false};
+    bool own[ROOTS] = {true};
     double tolerance = world.method.criterion.tolerance * scene_emitted_power(world.scene) /
                        scene_area(world.scene);
     double shrink[2];
@@ -392,10 +390,10 @@ static void test_settled(void)
         int64_t change[ROOTS] = {0};
         double step = (k ? 1.01 : 1e-4) * tolerance / 0.5; /* rho is 0.5 */
         set_irradiance(&world, 0, 3.0);
-        pushed(&world, own, touched, change);
+        pushed(&world, own, change);
         change[0] = 0;
         set_irradiance(&world, 0, 3.0 + step);
-        shrink[k] = pushed(&world, own, touched, change).shrink;
+        shrink[k] = pushed(&world, own, change).shrink;
     }
     tap_ok(shrink[0] == 0.0 && shrink[1] == HUGE_VAL,
            "roots that change far less than the tolerance are left out, others are not");

@@ -104,56 +104,6 @@ static void test_hash(const struct scene *scene)
     forest_destroy(forest);
 }
 
-/* --- there and back --- */
-
-static bool same_trees(const struct forest *a, const struct forest *b)
-{
-    for (int32_t root = 0; root < a->root_count; root++) {
-        int32_t p = root, q = root;
-        for (; p >= 0 && q >= 0; p = forest_next(a, p, true), q = forest_next(b, q, true)) {
-            const struct patch *x = &a->patches[p], *y = &b->patches[q];
-            if (x->id.root != y->id.root || x->id.hierarchy != y->id.hierarchy ||
-                memcmp(&x->radiosity, &y->radiosity, sizeof x->radiosity) != 0)
-                return false;
-        }
-        if (p != q)
-            return false;
-    }
-    return a->count == b->count;
-}
-
-/* The receiver has part of the trees already, with other values. */
-static void test_round_trips(const struct scene *scene)
-{
-    bool same = true, lengths = true;
-    for (uint64_t seed = 1; seed <= 20; seed++) {
-        struct patch_id ids[PATHS];
-        random_ids(seed, ids);
-        struct forest *forest = make_forest(scene, ids, false), *copy = forest_create(scene);
-        for (int i = 0; i < PATHS; i += (int)seed)
-            forest_reach(copy, ids[i]);
-        struct bytes bytes = {0};
-        int64_t end[ROOTS];
-        for (int32_t root = 0; root < ROOTS; root++) {
-            tree_encode(forest, root, &bytes);
-            end[root] = bytes.count;
-        }
-        int64_t at = 0;
-        for (int32_t root = 0; root < ROOTS; root++) {
-            at += tree_decode(copy, root, bytes.data + at);
-            lengths = lengths && at == end[root];
-        }
-        forest_pull(forest);
-        forest_pull(copy);
-        same = same && same_trees(forest, copy) && forest_checksum(forest) == forest_checksum(copy);
-        bytes_free(&bytes);
-        forest_destroy(forest);
-        forest_destroy(copy);
-    }
-    tap_ok(lengths, "decoding reads as many bytes as encoding wrote");
-    tap_ok(same, "trees arrive with their structure and values, bit by bit");
-}
-
 /* --- checksum --- */
 
 static void test_order(const struct scene *scene)
@@ -208,7 +158,6 @@ int main(void)
     struct scene *scene = make_scene();
     test_format(scene);
     test_hash(scene);
-    test_round_trips(scene);
     test_order(scene);
     test_bits(scene);
     scene_destroy(scene);
