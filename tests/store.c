@@ -59,7 +59,7 @@ static struct solver *run_two_passes(struct vote *vote)
     solver_assign_roots(solver);
     for (int pass = 0; pass < 2; pass++) {
         solver_refine(solver);
-        *vote = store_solve(solver);
+        *vote = solve_links(solver);
         if (pass == 0)
             solver_is_accurate(solver);
     }

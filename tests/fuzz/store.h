@@ -13,6 +13,7 @@
 #include "mpi/keep.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/scenes.h"
+#include "tests/solve.h"
 
 #define STORE_SETTINGS "--oracle error\n--epsilon 0.01\n"
 
@@ -30,20 +31,6 @@ static inline struct scene *store_scene(void)
     scene->materials[1] = material_grey(0.5, 0.0);
     scene_prepare_or_exit(scene);
     return scene;
-}
-
-static inline struct vote store_solve(struct solver *solver)
-{
-    struct vote vote;
-    solver_close(solver);
-    do {
-        solver_transfer(solver);
-        solver_gather(solver);
-        solver_push_pull(solver);
-        solver_scatter(solver);
-        vote = solver_vote(solver);
-    } while (vote.again);
-    return vote;
 }
 
 /* All links of an open file, then a pass. Returns false where the reader refuses a link. */
@@ -65,7 +52,7 @@ static inline bool store_continue(struct store_reader *reader, const struct comm
     if (error->code == EXIT_DONE) {
         FUZZ_PROMISE(solver->links.count == reader->snapshot.link_count);
         solver_refine(solver);
-        store_solve(solver);
+        solve_links(solver);
     }
     solver_destroy(solver);
     octree_destroy(octree);
