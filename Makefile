@@ -48,8 +48,8 @@ GEOM = alloc contour elementary error gauss hull lambert polygon scene triangle 
 OCTREE = build octree
 RAD = boxtree closure conjugate flux formfactor id link linking method oracle patch pushpull snapshot \
       treecode viewfactor
-MPI = accuracy assign broadcast closing comm funnel gather keep linking memory migrate pairs picture \
-      plan refinement routes scatter signals solve solver vote
+MPI = accuracy assign broadcast closing comm funnel gather keep linking memory migrate node pairs \
+      picture plan refinement routes scatter signals solve solver vote
 IO = binary camera cases compare image library machine mesh mtl obj options output palette ply plyfile \
      progress render shading stats store surface table text tone validate viewpoint
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.

@@ -40,6 +40,7 @@ struct run {
     struct scene *scene;
     struct camera camera;
     struct octree *octree;
+    struct node_block block; /* what scene and octree look into */
     struct solver *solver;
     struct vote vote; /* of the last iteration */
     struct stats stats;
@@ -175,9 +176,11 @@ static bool read_and_broadcast(struct run *run)
         probe_outputs(run);
     if (!comm_agree(&run->comm, &run->error))
         return false;
-    run->scene = scene_broadcast(&run->comm, run->scene);
+    run->block = scene_broadcast(&run->comm, node_policy(), &run->scene, &run->octree);
     comm_broadcast(&run->comm, &run->camera, sizeof run->camera);
-    run->octree = octree_create(run->scene->triangles, run->scene->planes, run->scene->input_count);
+    if (run->block.shared && run->options.verbose)
+        say(run, "one copy of scene and octree for %d ranks, %.1f MB", run->block.node.size,
+            1e-6 * (double)run->block.bytes);
     return true;
 }
 
@@ -532,6 +535,7 @@ static void release(struct run *run)
     solver_destroy(run->solver);
     octree_destroy(run->octree);
     scene_destroy(run->scene);
+    node_block_destroy(&run->block);
     options_free(&run->options);
 }
 

@@ -48,17 +48,47 @@ void scene_add_normals(struct scene *scene)
 
 void scene_destroy(struct scene *scene)
 {
-    if (!scene)
-        return;
-    alloc_free(scene->triangles);
-    alloc_free(scene->planes);
-    alloc_free(scene->areas);
-    alloc_free(scene->material_of);
-    alloc_free(scene->materials);
-    alloc_free(scene->normals);
-    alloc_free(scene->group_of);
-    alloc_free(scene->group_names);
+    if (scene && !scene->is_view) {
+        alloc_free(scene->triangles);
+        alloc_free(scene->planes);
+        alloc_free(scene->areas);
+        alloc_free(scene->material_of);
+        alloc_free(scene->materials);
+        alloc_free(scene->normals);
+        alloc_free(scene->group_of);
+        alloc_free(scene->group_names);
+    }
     alloc_free(scene);
+}
+
+static void pack_arrays(struct scene *scene, struct pack *pack)
+{
+    size_t count = (size_t)scene->input_count, materials = (size_t)scene->material_count;
+    scene->triangles = pack_array(pack, scene->triangles, count * sizeof *scene->triangles);
+    scene->planes = pack_array(pack, scene->planes, count * sizeof *scene->planes);
+    scene->areas = pack_array(pack, scene->areas, count * sizeof *scene->areas);
+    scene->material_of = pack_array(pack, scene->material_of, count * sizeof *scene->material_of);
+    scene->materials = pack_array(pack, scene->materials, materials * sizeof *scene->materials);
+    scene->group_of = pack_array(pack, scene->group_of, count * sizeof *scene->group_of);
+    scene->group_names = pack_array(pack, scene->group_names, (size_t)scene->group_bytes);
+    if (scene->normals)
+        scene->normals = pack_array(pack, scene->normals, 3 * count * sizeof *scene->normals);
+}
+
+void scene_pack(const struct scene *scene, struct pack *pack)
+{
+    struct scene view = *scene;
+    view.is_view = true;
+    pack_array(pack, &view, sizeof view);
+    pack_arrays(&view, pack);
+}
+
+struct scene *scene_view(struct pack *pack)
+{
+    struct scene *scene = alloc_array(1, sizeof *scene);
+    memcpy(scene, pack_array(pack, NULL, sizeof *scene), sizeof *scene);
+    pack_arrays(scene, pack);
+    return scene;
 }
 
 static double smaller(double a, double b)

@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "geom/error.h"
+#include "geom/pack.h"
 #include "geom/triangle.h"
 
 struct material {
@@ -47,12 +48,17 @@ struct scene {
     struct vec3 centre;         /* of the input's bounding box, input units */
     int32_t exponent;           /* a scene unit is 2^exponent input units */
     struct vec3 low, high;      /* bounding box, scene units */
+    bool is_view;               /* the arrays lie in memory of others */
 };
 
 /* An empty scene with room for the given numbers, all of it in one group, "default". Owns its
  * arrays. */
 struct scene *scene_create(int32_t input_count, int32_t material_count);
 void scene_destroy(struct scene *scene);
+
+/* Into a block, and as it is there: read-only, valid as long as the block. */
+void scene_pack(const struct scene *scene, struct pack *pack);
+struct scene *scene_view(struct pack *pack);
 
 /* Makes room for normals at the corners, all of them 0. */
 void scene_add_normals(struct scene *scene);

@@ -330,13 +330,38 @@ int64_t walls_bytes(const struct walls *walls)
                                              sizeof *walls->of_triangle);
 }
 
+static void pack_arrays(struct walls *walls, struct pack *pack)
+{
+    walls->items = pack_array(pack, walls->items, (size_t)walls->count * sizeof *walls->items);
+    walls->corners = pack_array(pack, walls->corners,
+                                (size_t)walls->corner_count * sizeof *walls->corners);
+    walls->of_triangle = pack_array(pack, walls->of_triangle,
+                                    (size_t)walls->triangle_count * sizeof *walls->of_triangle);
+}
+
+void walls_pack(const struct walls *walls, struct pack *pack)
+{
+    struct walls view = *walls;
+    view.is_view = true;
+    pack_array(pack, &view, sizeof view);
+    pack_arrays(&view, pack);
+}
+
+struct walls *walls_view(struct pack *pack)
+{
+    struct walls *walls = alloc_array(1, sizeof *walls);
+    memcpy(walls, pack_array(pack, NULL, sizeof *walls), sizeof *walls);
+    pack_arrays(walls, pack);
+    return walls;
+}
+
 void walls_destroy(struct walls *walls)
 {
-    if (!walls)
-        return;
-    alloc_free(walls->items);
-    alloc_free(walls->corners);
-    alloc_free(walls->of_triangle);
+    if (walls && !walls->is_view) {
+        alloc_free(walls->items);
+        alloc_free(walls->corners);
+        alloc_free(walls->of_triangle);
+    }
     alloc_free(walls);
 }
 

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "geom/pack.h"
 #include "geom/triangle.h"
 
 enum { WALL_CORNERS_MAX = 32 }; /* what has more corners is left in pieces */
@@ -25,6 +26,7 @@ struct walls {
     int32_t *of_triangle;   /* [triangle_count] the wall that a triangle is part of; -1: none, it has no
                                area */
     int32_t count, corner_count, triangle_count;
+    bool is_view;           /* the arrays lie in memory of others */
 };
 
 /* The walls of a scene of `count` triangles with their planes, in scene units; triangles whose plane has
@@ -35,6 +37,10 @@ void walls_destroy(struct walls *walls);
 
 /* Bytes that they take. */
 int64_t walls_bytes(const struct walls *walls);
+
+/* Into a block, and as they are there: read-only, valid as long as the block. */
+void walls_pack(const struct walls *walls, struct pack *pack);
+struct walls *walls_view(struct pack *pack);
 
 /* What a wall hides from a triangle: the points behind the first plane, which is the wall's, and behind
  * all others, which lead through its edges. */

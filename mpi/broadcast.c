@@ -1,38 +1,46 @@
 /* Step 1: rank 0 reads, all receive.
  *
- * The prepared scene is sent, planes and areas included, so that no rank repeats the work and
- * none could end with other bits. Ranks of a run share one machine architecture: plain bytes. */
+ * The prepared scene is sent, planes and areas included, and the octree that rank 0 builds over
+ * it: no rank repeats the work, none could end with other bits, and sending an octree takes
+ * less time than building it. Both are packed into one block, of which there is one per node
+ * where that pays (mpi/node.c). Ranks of a run share one machine architecture: plain bytes.
+ *
+ * The memory of rank 0 holds both twice for a moment. A rank that is alone keeps what it has. */
 #include "mpi/broadcast.h"
 
-#include "geom/alloc.h"
-
-struct scene *scene_broadcast(const struct comm *comm, struct scene *scene)
+static void pack_both(const struct scene *scene, const struct octree *octree, struct pack *pack)
 {
-    struct scene head = {0};
-    if (comm->rank == 0)
-        head = *scene;
-    comm_broadcast(comm, &head, sizeof head);
-    if (comm->rank != 0) {
-        scene = scene_create(head.input_count, head.material_count);
-        scene->two_sided = head.two_sided;
-        scene->centre = head.centre;
-        scene->exponent = head.exponent;
-        scene->low = head.low;
-        scene->high = head.high;
-        scene_set_groups(scene, head.group_count, head.group_bytes);
-        if (head.normals)
-            scene_add_normals(scene);
+    scene_pack(scene, pack);
+    if (octree)
+        octree_pack(octree, pack);
+}
+
+struct node_block scene_broadcast(const struct comm *comm, struct node_policy policy,
+                                  struct scene **scene, struct octree **octree)
+{
+    struct node_block block = {.data = NULL};
+    struct octree *built = NULL;
+    struct pack count = {0};
+    if (comm->rank == 0 && octree)
+        built = octree_create((*scene)->triangles, (*scene)->planes, (*scene)->input_count);
+    if (comm->size == 1) {
+        if (octree)
+            *octree = built;
+        return block;
     }
-    size_t count = (size_t)head.input_count;
-    comm_broadcast(comm, scene->triangles, count * sizeof *scene->triangles);
-    comm_broadcast(comm, scene->planes, count * sizeof *scene->planes);
-    comm_broadcast(comm, scene->areas, count * sizeof *scene->areas);
-    comm_broadcast(comm, scene->material_of, count * sizeof *scene->material_of);
-    comm_broadcast(comm, scene->materials,
-                   (size_t)head.material_count * sizeof *scene->materials);
-    comm_broadcast(comm, scene->group_of, count * sizeof *scene->group_of);
-    comm_broadcast(comm, scene->group_names, (size_t)head.group_bytes);
-    if (head.normals)
-        comm_broadcast(comm, scene->normals, 3 * count * sizeof *scene->normals);
-    return scene;
+    if (comm->rank == 0)
+        pack_both(*scene, built, &count);
+    comm_broadcast(comm, &count.bytes, sizeof count.bytes);
+    node_block_create(&block, comm, count.bytes, policy);
+    if (comm->rank == 0) {
+        pack_both(*scene, built, &(struct pack){.block = block.data, .writes = true});
+        octree_destroy(built);
+        scene_destroy(*scene);
+    }
+    node_block_spread(&block, comm);
+    struct pack view = {.block = block.data};
+    *scene = scene_view(&view);
+    if (octree)
+        *octree = octree_view(&view, (*scene)->triangles, (*scene)->planes);
+    return block;
 }

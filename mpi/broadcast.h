@@ -1,12 +1,15 @@
-/* Step 1 of the paper's Sec. 3.2: broadcasting the scene. */
+/* Step 1 of the paper's Sec. 3.2: broadcasting the scene, and the octree with it. */
 #ifndef MPI_BROADCAST_H
 #define MPI_BROADCAST_H
 
 #include "geom/scene.h"
-#include "mpi/comm.h"
+#include "mpi/node.h"
+#include "octree/octree.h"
 
-/* Collective. `scene` is rank 0's prepared scene, NULL on the others. Returns the scene on
- * every rank (on rank 0 the same). */
-struct scene *scene_broadcast(const struct comm *comm, struct scene *scene);
+/* Collective. `*scene` is rank 0's prepared scene, NULL on the others, and becomes the scene on every
+ * rank; `*octree`, unless NULL is given for it, becomes the octree over it. Both look into the block that
+ * is returned, which is to be destroyed after them. */
+struct node_block scene_broadcast(const struct comm *comm, struct node_policy policy,
+                                  struct scene **scene, struct octree **octree);
 
 #endif

@@ -233,6 +233,16 @@ void tree_free(struct tree *tree)
     *tree = (struct tree){0};
 }
 
+void tree_pack_arrays(struct tree *tree, struct pack *pack)
+{
+    tree->node_capacity = tree->node_count;
+    tree->leaf_capacity = tree->leaf_count;
+    tree->nodes = pack_array(pack, tree->nodes, (size_t)tree->node_count * sizeof *tree->nodes);
+    tree->leaves = pack_array(pack, tree->leaves, (size_t)tree->leaf_count * sizeof *tree->leaves);
+    tree->records = pack_array(pack, tree->records,
+                               (size_t)tree->record_count * sizeof *tree->records);
+}
+
 /* Largest signed distance to the plane of a point of child k's box. */
 static double box_reach(const struct node *node, int k, const struct plane *plane)
 {

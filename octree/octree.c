@@ -109,11 +109,41 @@ void octree_destroy(struct octree *octree)
 {
     if (!octree)
         return;
-    tree_free(&octree->inside);
-    tree_free(&octree->hull);
     walls_destroy(octree->walls);
-    alloc_free(octree->place);
+    if (!octree->is_view) {
+        tree_free(&octree->inside);
+        tree_free(&octree->hull);
+        alloc_free(octree->place);
+    }
     alloc_free(octree);
+}
+
+static void pack_arrays(struct octree *octree, struct pack *pack)
+{
+    tree_pack_arrays(&octree->inside, pack);
+    tree_pack_arrays(&octree->hull, pack);
+    octree->place = pack_array(pack, octree->place, (size_t)octree->count * sizeof *octree->place);
+}
+
+void octree_pack(const struct octree *octree, struct pack *pack)
+{
+    struct octree view = *octree;
+    view.is_view = true;
+    pack_array(pack, &view, sizeof view);
+    pack_arrays(&view, pack);
+    walls_pack(octree->walls, pack);
+}
+
+struct octree *octree_view(struct pack *pack, const struct triangle *triangles,
+                           const struct plane *planes)
+{
+    struct octree *octree = alloc_array(1, sizeof *octree);
+    memcpy(octree, pack_array(pack, NULL, sizeof *octree), sizeof *octree);
+    octree->triangles = triangles;
+    octree->planes = planes;
+    pack_arrays(octree, pack);
+    octree->walls = walls_view(pack);
+    return octree;
 }
 
 static int64_t tree_bytes(const struct tree *tree)

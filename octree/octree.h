@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "geom/pack.h"
 #include "geom/triangle.h"
 #include "geom/wall.h"
 
@@ -50,6 +51,12 @@ void octree_destroy(struct octree *octree);
 
 /* Bytes that the octree itself takes. */
 int64_t octree_bytes(const struct octree *octree);
+
+/* Into a block, and as it is there: read-only, valid as long as the block. The triangles and planes
+ * are not packed: the view is given the same ones. */
+void octree_pack(const struct octree *octree, struct pack *pack);
+struct octree *octree_view(struct pack *pack, const struct triangle *triangles,
+                           const struct plane *planes);
 
 /* Which of the segments asked for are blocked: bits as in `asked`. `*guess` is a triangle that is
  * tested first, such as the last blocker of a similar bundle, or -1; it becomes the last one that

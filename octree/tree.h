@@ -49,12 +49,16 @@ struct octree {
     int32_t *place;     /* [count] where a triangle's record is in `inside`, or -1 */
     int64_t count;
     struct vec3 low, high; /* bounding box */
+    bool is_view;          /* the arrays lie in memory of others */
 };
 
 /* Builds a tree over `count` triangles, given by number; `order` is used up. */
 struct tree tree_build(const struct triangle *triangles, const struct plane *planes, int32_t *order,
                        int32_t count);
 void tree_free(struct tree *tree);
+
+/* The next arrays of the pack become those of the tree. */
+void tree_pack_arrays(struct tree *tree, struct pack *pack);
 
 /* True if some corner of the tree's triangles is in front of the plane by more than `margin`. */
 bool tree_reaches_above(const struct tree *tree, const struct triangle *triangles,

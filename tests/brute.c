@@ -31,6 +31,21 @@ void octree_destroy(struct octree *octree)
     alloc_free(octree);
 }
 
+void octree_pack(const struct octree *octree, struct pack *pack)
+{
+    pack_array(pack, &octree->count, sizeof octree->count);
+    walls_pack(octree->walls, pack);
+}
+
+struct octree *octree_view(struct pack *pack, const struct triangle *triangles,
+                           const struct plane *planes)
+{
+    struct octree *octree = alloc_array(1, sizeof *octree);
+    int32_t count = *(const int32_t *)pack_array(pack, NULL, sizeof count);
+    *octree = (struct octree){triangles, planes, count, walls_view(pack)};
+    return octree;
+}
+
 int64_t octree_bytes(const struct octree *octree)
 {
     return (int64_t)sizeof *octree;

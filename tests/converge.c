@@ -16,7 +16,7 @@
 
 enum { TRUTH = 6000, PATHS = 160, STEPS = 4 };
 
-static struct scene *read_cornell(const struct comm *comm)
+static struct scene *read_cornell(const struct comm *comm, struct node_block *block)
 {
     struct scene *scene = NULL;
     struct error error = {0};
@@ -29,7 +29,8 @@ static struct scene *read_cornell(const struct comm *comm)
     }
     if (!comm_agree(comm, &error))
         return NULL;
-    return scene_broadcast(comm, scene);
+    *block = scene_broadcast(comm, node_policy(), &scene, NULL);
+    return scene;
 }
 
 struct result {
@@ -106,7 +107,8 @@ int main(int argc, char **argv)
 {
     struct comm comm;
     comm_start(&comm, &argc, &argv);
-    struct scene *scene = read_cornell(&comm);
+    struct node_block block = {.data = NULL};
+    struct scene *scene = read_cornell(&comm, &block);
     if (scene) {
         struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
         struct truth truth = truth_trace(&comm, scene, octree, TRUTH, PATHS);
@@ -120,6 +122,7 @@ int main(int argc, char **argv)
         tap_ok(false, "scenes/cornell.obj can be read");
     }
     scene_destroy(scene);
+    node_block_destroy(&block);
     comm_stop(&comm);
     return comm.rank == 0 ? tap_done() : alloc_balance() != 0;
 }

@@ -6,6 +6,11 @@
  * Every rank knows all of the made-up links and holds those that a hash deals to it; beside the
  * parallel solver runs one on MPI_COMM_SELF that holds them all. To be run with mpiexec; rank 0
  * reports. */
+#define _POSIX_C_SOURCE 200112L
+#include <limits.h>
+#include <stdio.h>
+#include <sys/mman.h>
+
 #include "mpi/assign.h"
 #include "mpi/broadcast.h"
 #include "mpi/migrate.h"
@@ -241,27 +246,125 @@ static void test_sums(const struct comm *comm)
     report(comm, right, "bytes are added over all ranks, and no others");
 }
 
-/* The scene of rank 0 comes to all, with normals if it has some. */
-static void test_broadcast(const struct comm *comm, bool normals)
+/* --- the scene, once per node --- */
+
+/* What windows of shared memory are like, here in place of MPI's own. */
+enum windows { WINDOWS_WORK, WINDOWS_REFUSED, WINDOWS_EMPTY };
+static enum windows windows;
+
+#ifndef MPI_SERIAL_MPI_H
+int MPI_Win_allocate_shared(MPI_Aint size, int unit, MPI_Info info, MPI_Comm comm, void *base,
+                            MPI_Win *window)
 {
-    struct scene *scene = NULL;
-    if (comm->rank == 0) {
-        scene = make_scene();
-        scene->two_sided = true;
-        scene->exponent = 7;
-        if (normals)
-            scene_add_normals(scene);
-        for (int i = 0; i < 3 * ROOTS && normals; i++)
+    return windows == WINDOWS_REFUSED
+               ? MPI_ERR_OTHER
+               : PMPI_Win_allocate_shared(size, unit, info, comm, base, window);
+}
+
+/* A window that is empty lies in a file without a byte: to touch it is an error of the bus. */
+int MPI_Win_shared_query(MPI_Win window, int rank, MPI_Aint *size, int *unit, void *base)
+{
+    int code = PMPI_Win_shared_query(window, rank, size, unit, base);
+    if (windows == WINDOWS_EMPTY) {
+        FILE *file = tmpfile();
+        void *nothing = mmap(NULL, (size_t)*size, PROT_READ | PROT_WRITE, MAP_SHARED, fileno(file), 0);
+        memcpy(base, &nothing, sizeof nothing);
+        fclose(file);
+    }
+    return code;
+}
+#endif
+
+/* The cube on rank 0, with all that a scene can have. */
+static struct scene *full_scene(const struct comm *comm, bool normals)
+{
+    struct scene *scene = comm->rank == 0 ? cube_create() : NULL;
+    if (scene && normals) {
+        scene_add_normals(scene);
+        for (int i = 0; i < 3 * scene->input_count; i++)
             scene->normals[i] = (struct vec3){i, 0.5, -i};
     }
-    scene = scene_broadcast(comm, scene);
-    bool right = scene->input_count == ROOTS && scene->two_sided && scene->exponent == 7 &&
-                 scene->materials[1].emission.band[1] == 2.0 && scene->areas[ROOTS - 1] > 0.0 &&
+    if (scene) {
+        scene->two_sided = true;
+        scene->materials[5].emission.band[1] = 2.0;
+    }
+    return scene;
+}
+
+/* Rays through the cube meet the same as with an octree that this rank builds. */
+static bool sees_alike(const struct octree *octree, const struct scene *scene)
+{
+    struct octree *own = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct random random = random_seed(5);
+    bool alike = octree_walls(own)->count == 6;
+    for (int i = 0; i < 200; i++) {
+        struct octree_counts counts[2] = {{0}};
+        struct octree_hit hits[2];
+        struct vec3 from = {0.2 * random_unit(&random), 0.2 * random_unit(&random), 0.1};
+        struct vec3 along = {random_unit(&random) - 0.5, random_unit(&random) - 0.5, 0.01 * i - 1.0};
+        bool first = octree_first_hit(octree, from, along, false, &hits[0], &counts[0]);
+        bool second = octree_first_hit(own, from, along, false, &hits[1], &counts[1]);
+        alike = alike && first && second && hits[0].triangle == hits[1].triangle &&
+                hits[0].weight[1] == hits[1].weight[1] &&
+                counts[0].triangle_tests == counts[1].triangle_tests;
+    }
+    for (int32_t t = 0; t < scene->input_count; t++) {
+        const struct walls *here = octree_walls(octree), *there = octree_walls(own);
+        const struct wall *wall = &here->items[here->of_triangle[t]];
+        alike = alike && here->of_triangle[t] == there->of_triangle[t] && wall->count == 4 &&
+                here->corners[wall->first].x == there->corners[wall->first].x;
+    }
+    octree_destroy(own);
+    return alike;
+}
+
+/* How many ranks look into this rank's copy if `ranks_max` may: all ranks of the test run on one node. */
+static int sharing(const struct comm *comm, int ranks_max)
+{
+    if (ranks_max >= comm->size)
+        return comm->size;
+    int left = comm->size - comm->rank / ranks_max * ranks_max;
+    return left < ranks_max ? left : ranks_max;
+}
+
+/* The scene of rank 0 and an octree over it come to all, with normals if it has some. `together`: so
+ * many ranks look into this rank's copy. */
+static void test_broadcast(const struct comm *comm, struct node_policy policy, bool normals,
+                           int together, const char *name)
+{
+    struct scene *scene = full_scene(comm, normals);
+    struct octree *octree;
+    struct node_block block = scene_broadcast(comm, policy, &scene, &octree);
+    bool right = scene->input_count == 12 && scene->two_sided && scene->areas[11] > 0.0 &&
+                 scene->materials[5].emission.band[1] == 2.0 &&
                  strcmp(scene->group_names, "default") == 0 && !scene->normals == !normals;
-    for (int i = 0; i < 3 * ROOTS && right && normals; i++)
+    for (int i = 0; i < 3 * 12 && right && normals; i++)
         right = scene->normals[i].x == i && scene->normals[i].z == -i;
-    report(comm, right, normals ? "a scene comes to all ranks" : "also one without normals");
+    right = right && sees_alike(octree, scene);
+    right = right && block.shared == (together > 1) &&
+            (!block.shared || block.node.size == together);
+    report(comm, right, name);
+    octree_destroy(octree);
     scene_destroy(scene);
+    node_block_destroy(&block);
+}
+
+static void test_broadcasts(const struct comm *comm)
+{
+    struct node_policy policy = {0, INT_MAX};
+    test_broadcast(comm, policy, true, comm->size, "a scene comes to all ranks, one copy per node");
+    test_broadcast(comm, policy, false, comm->size, "also one without normals");
+    policy.ranks_max = 2;
+    test_broadcast(comm, policy, true, sharing(comm, 2), "one copy for every two ranks");
+    policy.ranks_max = 1;
+    test_broadcast(comm, policy, true, 1, "one copy per rank");
+    test_broadcast(comm, node_policy(), true, 1, "so by default what is small");
+    policy.ranks_max = INT_MAX;
+    windows = WINDOWS_REFUSED;
+    test_broadcast(comm, policy, true, 1, "and where windows are refused");
+    windows = WINDOWS_EMPTY;
+    test_broadcast(comm, policy, true, 1, "or have no memory");
+    windows = WINDOWS_WORK;
 }
 
 /* --- refinement --- */
@@ -350,8 +453,7 @@ int main(int argc, char **argv)
     test_picture(&comm);
     test_gather_all(&comm);
     test_sums(&comm);
-    test_broadcast(&comm, true);
-    test_broadcast(&comm, false);
+    test_broadcasts(&comm);
     struct criterion criterion = criterion_of(3e-4, 10, 1e-3);
     test_refinement(&comm, &self, &criterion, "the paper's method: several ranks split links");
     for (enum closure_kind kind = CLOSURE_NONE; kind <= CLOSURE_SYMMETRIC; kind++) {

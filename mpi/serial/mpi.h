@@ -3,6 +3,7 @@
 #ifndef MPI_SERIAL_MPI_H
 #define MPI_SERIAL_MPI_H
 
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,9 +14,14 @@ typedef int MPI_Comm;
 typedef int MPI_Request;
 typedef int MPI_Datatype;
 typedef int MPI_Op;
+typedef int MPI_Win;
+typedef int MPI_Info;
+typedef int MPI_Errhandler;
+typedef ptrdiff_t MPI_Aint;
 
 enum { MPI_SUCCESS = 0, MPI_COMM_WORLD = 0, MPI_COMM_SELF = 1, MPI_REQUEST_NULL = 0 };
 enum { MPI_SUM, MPI_MAX, MPI_MIN };
+enum { MPI_INFO_NULL, MPI_ERRORS_RETURN, MPI_ERRORS_ARE_FATAL, MPI_COMM_TYPE_SHARED, MPI_MODE_NOCHECK };
 
 #define MPI_STATUS_IGNORE NULL
 #define MPI_IN_PLACE ((void *)-1)
@@ -67,6 +73,28 @@ static inline int MPI_Comm_idup(MPI_Comm comm, MPI_Comm *copy, MPI_Request *requ
 {
     *copy = comm;
     *request = MPI_REQUEST_NULL;
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Comm_split(MPI_Comm comm, int colour, int key, MPI_Comm *part)
+{
+    (void)colour;
+    (void)key;
+    *part = comm;
+    return MPI_SUCCESS;
+}
+
+static inline int MPI_Comm_split_type(MPI_Comm comm, int type, int key, MPI_Info info,
+                                      MPI_Comm *part)
+{
+    (void)info;
+    return MPI_Comm_split(comm, type, key, part);
+}
+
+static inline int MPI_Comm_set_errhandler(MPI_Comm comm, MPI_Errhandler handler)
+{
+    (void)comm;
+    (void)handler;
     return MPI_SUCCESS;
 }
 
@@ -140,6 +168,47 @@ static inline int MPI_Irecv(void *buffer, int count, MPI_Datatype type, int from
                             MPI_Comm comm, MPI_Request *request)
 {
     return MPI_Isend(buffer, count, type, from, tag, comm, request);
+}
+
+/* Nor anybody to share memory with. */
+static inline int MPI_Win_allocate_shared(MPI_Aint size, int unit, MPI_Info info, MPI_Comm comm,
+                                          void *base, MPI_Win *window)
+{
+    (void)size;
+    (void)unit;
+    (void)info;
+    (void)base;
+    (void)window;
+    return MPI_Abort(comm, 1);
+}
+
+static inline int MPI_Win_shared_query(MPI_Win window, int rank, MPI_Aint *size, int *unit,
+                                       void *base)
+{
+    (void)rank;
+    return MPI_Win_allocate_shared(*size, *unit, MPI_INFO_NULL, MPI_COMM_WORLD, base, &window);
+}
+
+static inline int MPI_Win_lock_all(int mode, MPI_Win window)
+{
+    (void)mode;
+    (void)window;
+    return MPI_Abort(MPI_COMM_WORLD, 1);
+}
+
+static inline int MPI_Win_sync(MPI_Win window)
+{
+    return MPI_Win_lock_all(0, window);
+}
+
+static inline int MPI_Win_unlock_all(MPI_Win window)
+{
+    return MPI_Win_lock_all(0, window);
+}
+
+static inline int MPI_Win_free(MPI_Win *window)
+{
+    return MPI_Win_lock_all(0, *window);
 }
 
 static inline int MPI_Ibcast(void *buffer, int count, MPI_Datatype type, int root, MPI_Comm comm,

@@ -33,6 +33,7 @@ static const char *const HEADER =
 
 struct measure {
     struct comm comm;
+    struct node_block block; /* what the scene looks into */
     struct options options;
     const char *reference;
     bool header;
@@ -135,8 +136,10 @@ static struct scene *read_all(struct measure *measure)
         if (scene_prepare(scene, &prepared, error))
             truth_read(&measure->truth, measure->reference, scene, error);
     }
-    if (comm_agree(&measure->comm, error))
-        return scene_broadcast(&measure->comm, scene);
+    if (comm_agree(&measure->comm, error)) {
+        measure->block = scene_broadcast(&measure->comm, node_policy(), &scene, NULL);
+        return scene;
+    }
     scene_destroy(scene);
     return NULL;
 }
@@ -160,6 +163,7 @@ static void run(struct measure *measure, int argc, char **argv)
     }
     shading_destroy(shading);
     solution_free(&s);
+    node_block_destroy(&measure->block);
 }
 
 int main(int argc, char **argv)

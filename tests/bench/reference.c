@@ -54,7 +54,7 @@ static bool parse(struct arguments *arguments, int argc, char **argv, struct err
 
 /* Collective. The prepared scene, or NULL on all ranks. */
 static struct scene *read_scene(const struct comm *comm, const struct arguments *arguments,
-                                struct error *error)
+                                struct node_block *block, struct error *error)
 {
     struct obj_repairs read = {0};
     struct scene_repairs prepared;
@@ -65,8 +65,10 @@ static struct scene *read_scene(const struct comm *comm, const struct arguments 
         if (!(scene_emitted_power(scene) > 0.0))
             error_set(error, EXIT_USAGE, "%s: nothing emits light", arguments->scene);
     }
-    if (comm_agree(comm, error))
-        return scene_broadcast(comm, scene);
+    if (comm_agree(comm, error)) {
+        *block = scene_broadcast(comm, node_policy(), &scene, NULL);
+        return scene;
+    }
     scene_destroy(scene);
     return NULL;
 }
@@ -94,14 +96,16 @@ int main(int argc, char **argv)
     struct arguments arguments;
     comm_start(&comm, &argc, &argv);
     struct scene *scene = NULL;
+    struct node_block block = {.data = NULL};
     if (parse(&arguments, argc, argv, &error))
-        scene = read_scene(&comm, &arguments, &error);
+        scene = read_scene(&comm, &arguments, &block, &error);
     if (scene)
         make_reference(&comm, &arguments, scene, &error);
     comm_agree(&comm, &error);
     if (error.code != EXIT_DONE && comm.rank == 0)
         fprintf(stderr, "reference: %s\n", error.text);
     scene_destroy(scene);
+    node_block_destroy(&block);
     comm_stop(&comm);
     return error.code;
 }

@@ -1,0 +1,36 @@
+/* A block of memory that the ranks of a node, a computer with memory of its own, have in common. It is
+ * filled once and only looked at from then on. Where ranks cannot share, each has a block to itself. */
+#ifndef MPI_NODE_H
+#define MPI_NODE_H
+
+#include "mpi/comm.h"
+
+/* When blocks are shared. The tests vary it; phr takes node_policy(). */
+struct node_policy {
+    size_t least_bytes; /* smaller blocks are not shared */
+    int ranks_max;      /* so many ranks share a block at most; 1: none do */
+};
+
+struct node_block {
+    char *data;       /* [bytes], at a multiple of PACK_ALIGNMENT; read-only for ranks that do not fill */
+    size_t bytes;
+    bool fills;       /* this rank puts into `data` what is to be there; rank 0 always does */
+    bool shared;      /* `data` is in a window; else in `memory` */
+    void *memory;     /* owned, NULL if shared */
+    MPI_Win window;
+    struct comm node; /* the ranks that share the block; only if shared */
+};
+
+struct node_policy node_policy(void);
+
+/* Collective. A block of `bytes` bytes, the same number on all ranks. */
+void node_block_create(struct node_block *block, const struct comm *comm, size_t bytes,
+                       struct node_policy policy);
+
+/* Collective. What rank 0 has put into its block comes to all. */
+void node_block_spread(struct node_block *block, const struct comm *comm);
+
+/* Collective over the ranks that share it. A block that is all zero is none. */
+void node_block_destroy(struct node_block *block);
+
+#endif
