@@ -43,7 +43,8 @@ struct result {
 static struct result run(const struct comm *comm, struct criterion criterion,
                          const struct truth *truth)
 {
-    struct solution s = solve(comm, read_cornell(comm), criterion);
+    struct node_block block = {.data = NULL};
+    struct solution s = solve(comm, read_cornell(comm, &block), criterion);
     struct result result = {s.vote.converged, 0.0, 0.0, s.stats.error_estimate, s.stats.links};
     if (comm->rank == 0) {
         const struct forest *forest = s.solver->method.forest;
@@ -56,6 +57,7 @@ static struct result run(const struct comm *comm, struct criterion criterion,
         alloc_free(open);
     }
     solution_free(&s);
+    node_block_destroy(&block);
     return result;
 }
 
