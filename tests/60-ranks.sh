@@ -140,6 +140,27 @@ for ranks in 2 3 5; do
     check "a black lamp on $ranks ranks" same lamp-$ranks lamp-serial
 done
 
+# Enough triangles for ranks to share one copy of scene and octree: a lamp over a floor, squares between.
+cp "$work/lamp.mtl" "$work/tiles.mtl"
+awk 'function square(x, y, z, size, name) {
+         printf "usemtl %s\nv %g %g %g\nv %g %g %g\nv %g %g %g\nv %g %g %g\nf -4 -3 -2 -1\n", name,
+             x, y, z, x, y, z + size, x + size, y, z + size, x + size, y, z
+     }
+     BEGIN {
+         print "mtllib tiles.mtl\nusemtl lamp\nv 3 9 3\nv 5 9 3\nv 4 9 5\nf 1 2 3"
+         for (i = 0; i < 2000; i++)
+             square(i % 50, i % 7 == 0 ? 3 : 0, int(i / 50), 0.8, "floor")
+     }' >"$work/tiles.obj"
+produce tiles-serial "$work/serial/phr" "$work/tiles.obj"
+for ranks in 2 3; do
+    produce tiles-$ranks $MPIEXEC -n $ranks "$BUILD/phr" "$work/tiles.obj"
+    check "4001 triangles on $ranks ranks" same tiles-$ranks tiles-serial
+done
+if "$BUILD/phr" --version | grep -q "MPI build"; then
+    $MPIEXEC -n 3 "$BUILD/phr" "$work/tiles.obj" --verbose --max-level 0 >"$work/tiles.log" 2>&1
+    check "which look into one copy" grep -q "one copy of scene and octree for 3 ranks" "$work/tiles.log"
+fi
+
 check "-O0 builds without warnings" build O0 SERIAL=1 CFLAGS=-O0
 produce O0 "$work/O0/phr" $cornell
 check "-O0 gives the same bytes" same O0 serial

@@ -261,17 +261,37 @@ static void test_first_hits(const struct world *world, const char *name, bool fr
     tap_ok(counts.rays == RAYS, "%s: a ray counts once", name);
 }
 
-static void test_scene(void (*make)(struct soup *), const char *name)
+/* The octree becomes a view of its own packed bytes, moved from where they were packed. Returns
+ * their block. */
+static char *repack(struct world *world)
+{
+    struct pack count = {0}, write = {.writes = true}, read = {0};
+    octree_pack(world->octree, &count);
+    write.block = alloc_array(count.bytes, 1);
+    read.block = alloc_array(count.bytes, 1);
+    octree_pack(world->octree, &write);
+    memcpy(read.block, write.block, count.bytes);
+    alloc_free(write.block);
+    octree_destroy(world->octree);
+    world->octree = octree_view(&read, world->scene->triangles, world->scene->planes);
+    tap_ok(write.bytes == count.bytes && read.bytes == count.bytes, "%zu bytes when packed",
+           count.bytes);
+    return read.block;
+}
+
+static void test_scene(void (*make)(struct soup *), bool packed, const char *name)
 {
     struct soup soup = {0};
     make(&soup);
     struct world world = world_make(scene_of_soup(&soup, 1));
     surround(&world);
+    char *block = packed ? repack(&world) : NULL;
     test_blockers(&world, name);
     test_counters(&world, name);
     test_first_hits(&world, name, false);
     test_first_hits(&world, name, true);
     world_free(&world);
+    alloc_free(block);
     soup_free(&soup);
 }
 
@@ -451,8 +471,8 @@ int main(void)
     test_overlay(false);
     test_closed(true, "sphere");
     test_closed(false, "room");
-    test_scene(make_soup, "soup");
-    test_scene(make_room, "furnished room");
-    test_scene(make_sphere, "sphere with needles");
+    test_scene(make_soup, false, "soup");
+    test_scene(make_room, true, "furnished room, packed");
+    test_scene(make_sphere, false, "sphere with needles");
     return tap_done();
 }
