@@ -48,7 +48,7 @@ GEOM = alloc contour elementary error gauss hull lambert polygon scene triangle 
 OCTREE = build octree
 RAD = boxtree closure conjugate flux formfactor id link linking method oracle patch pushpull snapshot \
       treecode viewfactor
-MPI = accuracy assign broadcast closing comm funnel gather keep linking memory migrate pairs picture \
+MPI = accuracy assign balance broadcast closing comm funnel gather keep ledger linking memory migrate pairs picture \
       plan refinement scatter signals solve solver vote
 IO = binary camera cases compare image library machine mesh mtl obj options output palette ply plyfile \
      progress render shading stats store surface table text tone validate viewpoint
