@@ -41,7 +41,7 @@ static const struct option OPTIONS[] = {
     {"--closure", KIND_CHOICE, offsetof(struct options, criterion.closure), 0, 0,
      "none|cap|rows|symmetric"},
     {"--solver", KIND_CHOICE, offsetof(struct options, criterion.solver), 0, 0, "jacobi|cg"},
-    {"--balance", KIND_CHOICE, offsetof(struct options, criterion.balance), 0, 0, "greedy|excess"},
+    {"--balance", KIND_CHOICE, offsetof(struct options, criterion.balance), 0, 0, "greedy|even"},
     {"--paper", KIND_PAPER, 0, 0, 0, NULL},
     {"--alpha", KIND_REAL, offsetof(struct options, criterion.alpha), 0, 1, NULL},
     {"--tolerance", KIND_REAL, offsetof(struct options, criterion.tolerance), 0, 1, NULL},
@@ -301,7 +301,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
     *options = (struct options){
         .samples = 3,
         .criterion = {.oracle = ORACLE_ERROR, .form_factor = FORM_FACTOR_POLYGON,
-                      .closure = CLOSURE_CAP, .solver = SOLVER_CG, .balance = BALANCE_EXCESS,
+                      .closure = CLOSURE_CAP, .solver = SOLVER_CG, .balance = BALANCE_EVEN,
                       .epsilon = -1.0, .min_area = 1e-7, .max_level = 10, .alpha = 0.5, .tolerance = 1e-5,
                       .max_iterations = 1000},
     };

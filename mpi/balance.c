@@ -14,9 +14,10 @@
  * without shadows, and it takes 64 to be even); a counter from which ranks fetch rows, which
  * needs no prediction, but whose outcome depends on the clock and not on counts.
  *
- * Links. The ranks above the mean give their excess away, and only that. What they give is laid on a line,
- * rank after rank, and so is what the others lack; a link goes to the rank beside which the middle
- * of its cost lies. That takes a pass over the links and one over the ranks. */
+ * Links. The paper's greedy plan (mpi/plan.h) says how much goes from where to where; what is sent is taken
+ * from all of a rank's links in turn. Re-partition along a line of all links was tried: it is as even,
+ * for what is left is not the plan's fault but the prediction's: the work of a link is known
+ * within a factor of two or so, and a rank has some dozens in a level. */
 #include "mpi/balance.h"
 
 #include <stdlib.h>
@@ -72,38 +73,6 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, 
 
 /* --- links --- */
 
-/* What each rank is to have: the mean, or one more on the lowest ranks. */
-static int64_t target_of(int64_t total, int ranks, int rank)
-{
-    return total / ranks + (rank < total % ranks ? 1 : 0);
-}
-
-static void deal_excess(const int64_t *costs, int64_t count, const int64_t *loads, int ranks, int rank,
-                        int *destination)
-{
-    int64_t total = 0, before = 0;
-    for (int r = 0; r < ranks; r++)
-        total += loads[r];
-    for (int r = 0; r < rank; r++)
-        before += loads[r] > target_of(total, ranks, r) ? loads[r] - target_of(total, ranks, r) : 0;
-    int64_t excess = loads[rank] - target_of(total, ranks, rank), given = 0;
-    int to = -1;
-    int64_t end = 0; /* of what the ranks up to `to` lack */
-    for (int64_t i = 0; i < count; i++) {
-        int64_t middle = given + costs[i] / 2;
-        destination[i] = rank;
-        if (middle >= excess)
-            continue;
-        while (end <= before + middle) {
-            to++;
-            int64_t lack = target_of(total, ranks, to) - loads[to];
-            end += lack > 0 ? lack : 0;
-        }
-        destination[i] = to;
-        given += costs[i];
-    }
-}
-
 /* Deals this rank's links in turn to the receivers of its transfers. A link goes to a receiver
  * as long as at least half of its cost still fits into what is planned for it. */
 static void deal_in_turn(const int64_t *costs, int64_t count, struct transfer *transfers,
@@ -127,22 +96,13 @@ static void deal_in_turn(const int64_t *costs, int64_t count, struct transfer *t
     }
 }
 
-static void deal_greedily(const int64_t *costs, int64_t count, const int64_t *loads, int ranks,
-                          int rank, int *destination)
+void balance_links(const int64_t *costs, int64_t count, const int64_t *loads, int ranks, int rank,
+                   int *destination)
 {
     struct transfer *transfers = alloc_array(2 * (size_t)ranks, sizeof *transfers);
     int planned = plan_transfers(loads, ranks, transfers);
     deal_in_turn(costs, count, transfers, planned, rank, destination);
     alloc_free(transfers);
-}
-
-void balance_links(enum balance balance, const int64_t *costs, int64_t count, const int64_t *loads,
-                int ranks, int rank, int *destination)
-{
-    if (balance == BALANCE_GREEDY)
-        deal_greedily(costs, count, loads, ranks, rank, destination);
-    else
-        deal_excess(costs, count, loads, ranks, rank, destination);
 }
 
 /* --- rows --- */

@@ -7,8 +7,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "rad/method.h"
-
 enum { TESTS_PER_FORM_FACTOR = 8 };
 
 /* --- single items, whose costs all ranks know --- */
@@ -20,10 +18,9 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, 
 /* --- links, of whose costs each rank knows its own --- */
 
 /* Where the links of `rank` go, so that the loads become even: destination[i] is for the link with
- * costs[i]. loads[r] is the sum of costs on rank r. Links of ranks below the mean stay.
- * BALANCE_GREEDY: by the paper's plan, dealt in turn. BALANCE_EXCESS: along a line. */
-void balance_links(enum balance balance, const int64_t *costs, int64_t count, const int64_t *loads,
-                int ranks, int rank, int *destination);
+ * costs[i]. loads[r] is the sum of costs on rank r. Links of ranks below the mean stay. */
+void balance_links(const int64_t *costs, int64_t count, const int64_t *loads, int ranks, int rank,
+                   int *destination);
 
 /* --- the rows of initial linking --- */
 

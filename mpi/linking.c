@@ -99,28 +99,15 @@ void solver_link_roots(struct solver *solver)
     solver->seconds[PHASE_LINKING] += comm_seconds() - start;
 }
 
-/* All costs are 1. */
-static void even_out(struct solver *solver, int *destination)
+static void send_home(struct solver *solver)
 {
-    const struct comm *comm = solver->comm;
-    int64_t count = solver->links.count;
-    int64_t *costs = alloc_array((size_t)count, sizeof *costs);
-    int64_t *loads = alloc_array((size_t)comm->size, sizeof *loads);
-    for (int64_t i = 0; i < count; i++)
-        costs[i] = 1;
-    MPI_Request request = start_telling(comm, &count, loads);
-    wait_idle(solver, &request);
-    balance_links(BALANCE_EXCESS, costs, count, loads, comm->size, comm->rank, destination);
-    alloc_free(loads);
-    alloc_free(costs);
-}
-
-static void send_home(struct solver *solver, int *destination)
-{
+    int *destination = alloc_array((size_t)solver->links.count, sizeof *destination);
     for (int64_t i = 0; i < solver->links.count; i++) {
         const struct link *link = &solver->links.items[i]; /* p < q: both are roots */
         destination[i] = solver->owner[(link->p ^ link->q) % 2 == 0 ? link->p : link->q];
     }
+    solver->bytes_migration += links_migrate(solver, &solver->links, destination);
+    alloc_free(destination);
 }
 
 void solver_assign_roots(struct solver *solver)
@@ -129,12 +116,9 @@ void solver_assign_roots(struct solver *solver)
     roots_assign(solver->method.scene, solver->comm->size, solver->owner);
     for (int32_t root = 0; root < solver->method.forest->root_count; root++)
         solver->own[root] = solver->owner[root] == solver->comm->rank;
-    int *destination = alloc_array((size_t)solver->links.count, sizeof *destination);
     if (solver->method.criterion.balance == BALANCE_GREEDY)
-        send_home(solver, destination);
+        send_home(solver);
     else
-        even_out(solver, destination);
-    solver->bytes_migration += links_migrate(solver, &solver->links, destination);
-    alloc_free(destination);
+        links_even_out(solver);
     solver->seconds[PHASE_LINKING] += comm_seconds() - start;
 }

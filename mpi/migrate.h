@@ -9,4 +9,8 @@
  * rank lacks are created. Returns the bytes sent to other ranks. */
 int64_t links_migrate(struct solver *solver, struct link_list *list, const int *destination);
 
+/* Collective. Ranks with more links than the mean send what is above it to those with less, if any is
+ * above it by more than a fiftieth. */
+void links_even_out(struct solver *solver);
+
 #endif

@@ -5,6 +5,9 @@
  * (mpi/balance.h). Then each rank splits what it has: children that are to be split too form the next level, the
  * others join the links.
  *
+ * What was split stays where that was done; light is transferred over links where they are. So at the end
+ * their numbers are evened out, but for --balance greedy, the paper's.
+ *
  * Predicted cost and work of each level go into the ledger (mpi/ledger.h). */
 #include "mpi/balance.h"
 #include "mpi/memory.h"
@@ -88,8 +91,7 @@ static int64_t move_links(struct solver *solver, struct link_list *prolific, con
     int *destination = alloc_array(count, sizeof *destination);
     for (size_t i = 0; i < count; i++)
         costs[i] = cost_of(&prolific->items[i]);
-    balance_links(solver->method.criterion.balance, costs, prolific->count, loads, solver->comm->size,
-               solver->comm->rank, destination);
+    balance_links(costs, prolific->count, loads, solver->comm->size, solver->comm->rank, destination);
     int64_t bytes = links_migrate(solver, prolific, destination);
     solver->bytes_migration += bytes;
     alloc_free(costs);
@@ -242,6 +244,8 @@ bool solver_refine(struct solver *solver)
         link_list_free(&prolific);
         share_splits(solver);
     }
+    if (solver->method.criterion.balance == BALANCE_EVEN)
+        links_even_out(solver);
     ledger_share(&solver->ledger, solver->comm);
     bool stopped = !done && solver->stop != 0;
     solver->pass -= stopped;
