@@ -62,7 +62,7 @@ TESTS = alloc elementary id triangle lambert hull scene polygon contour wall oct
         compact formfactor link linking oracle pushpull closure treecode plan assign text obj ply output tone \
         image camera viewpoint shading options progress paths norms cie furnace stability store exchange conjugate exact converge
 # Programs that compare phr with what is true.
-BENCHES = reference measure direct tracing
+BENCHES = reference measure direct tracing simulate
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
 FUZZERS = obj mtl ply image view links checkpoint
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)

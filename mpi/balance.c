@@ -23,7 +23,6 @@
 #include <stdlib.h>
 
 #include "geom/alloc.h"
-#include "mpi/plan.h"
 #include "rad/linking.h"
 
 /* --- single items --- */
@@ -73,19 +72,36 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, 
 
 /* --- links --- */
 
-/* Deals this rank's links in turn to the receivers of its transfers. A link goes to a receiver
- * as long as at least half of its cost still fits into what is planned for it. */
-static void deal_in_turn(const int64_t *costs, int64_t count, struct transfer *transfers,
-                         int transfer_count, int rank, int *destination)
+int64_t link_load(const struct link *link)
+{
+    return (int64_t)link_cost(link) + TESTS_PER_FORM_FACTOR;
+}
+
+/* Tests in the time that a message takes. In an exchange, each rank has one for each other rank. */
+enum { TESTS_PER_MESSAGE = 50 };
+
+bool moving_pays(const int64_t *loads, int ranks)
+{
+    int64_t largest = 0, total = 0;
+    for (int r = 0; r < ranks; r++) {
+        largest = loads[r] > largest ? loads[r] : largest;
+        total += loads[r];
+    }
+    return largest - total / ranks > (int64_t)TESTS_PER_MESSAGE * (ranks - 1);
+}
+
+void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *plan, int planned,
+                    int rank, int *destination)
 {
     int mine = 0, turn = 0;
-    for (int t = 0; t < transfer_count; t++)
-        if (transfers[t].from == rank)
-            transfers[mine++] = transfers[t];
+    struct transfer *left = alloc_array((size_t)planned, sizeof *left);
+    for (int t = 0; t < planned; t++)
+        if (plan[t].from == rank)
+            left[mine++] = plan[t];
     for (int64_t i = 0; i < count; i++) {
         destination[i] = rank;
         for (int tried = 0; tried < mine; tried++) {
-            struct transfer *t = &transfers[(turn + tried) % mine];
+            struct transfer *t = &left[(turn + tried) % mine];
             if (2 * t->load < costs[i])
                 continue;
             destination[i] = t->to;
@@ -94,15 +110,7 @@ static void deal_in_turn(const int64_t *costs, int64_t count, struct transfer *t
             break;
         }
     }
-}
-
-void balance_links(const int64_t *costs, int64_t count, const int64_t *loads, int ranks, int rank,
-                   int *destination)
-{
-    struct transfer *transfers = alloc_array(2 * (size_t)ranks, sizeof *transfers);
-    int planned = plan_transfers(loads, ranks, transfers);
-    deal_in_turn(costs, count, transfers, planned, rank, destination);
-    alloc_free(transfers);
+    alloc_free(left);
 }
 
 /* --- rows --- */

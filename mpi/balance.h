@@ -7,6 +7,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "mpi/plan.h"
+#include "rad/link.h"
+
 enum { TESTS_PER_FORM_FACTOR = 8 };
 
 /* --- single items, whose costs all ranks know --- */
@@ -17,10 +20,18 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, 
 
 /* --- links, of whose costs each rank knows its own --- */
 
-/* Where the links of `rank` go, so that the loads become even: destination[i] is for the link with
- * costs[i]. loads[r] is the sum of costs on rank r. Links of ranks below the mean stay. */
-void balance_links(const int64_t *costs, int64_t count, const int64_t *loads, int ranks, int rank,
-                   int *destination);
+/* What splitting a link is predicted to take: its cost, for the tests of its children are about as many as
+ * its own were; and a form factor. Predictions are compared with each other, so factors do not matter. */
+int64_t link_load(const struct link *link);
+
+/* True if what the ranks save takes longer than sending the links. */
+bool moving_pays(const int64_t *loads, int ranks);
+
+/* Where the links of `rank` go by a plan (mpi/plan.h): destination[i] is for the link with costs[i]. They
+ * are dealt in turn to the receivers of the rank's transfers, a link to a receiver as long as at least half
+ * of its cost still fits into what is planned for it; the others stay. */
+void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *plan, int planned,
+                    int rank, int *destination);
 
 /* --- the rows of initial linking --- */
 

@@ -75,6 +75,32 @@ int64_t links_migrate(struct solver *solver, struct link_list *list, const int *
     return leaving * (int64_t)sizeof *out;
 }
 
+int64_t links_balance(struct solver *solver, struct link_list *list,
+                      int64_t (*load)(const struct link *), const int64_t *loads)
+{
+    int ranks = solver->comm->size;
+    size_t count = (size_t)list->count;
+    int64_t *costs = alloc_array(count, sizeof *costs);
+    int *destination = alloc_array(count, sizeof *destination);
+    struct transfer *plan = alloc_array(2 * (size_t)ranks, sizeof *plan);
+    int planned = plan_transfers(loads, ranks, plan);
+    for (size_t i = 0; i < count; i++)
+        costs[i] = load(&list->items[i]);
+    links_deal_out(costs, list->count, plan, planned, solver->comm->rank, destination);
+    int64_t bytes = links_migrate(solver, list, destination);
+    alloc_free(plan);
+    alloc_free(destination);
+    alloc_free(costs);
+    return bytes;
+}
+
+/* Each link takes as long as any other where light is transferred. */
+static int64_t one(const struct link *link)
+{
+    (void)link;
+    return 1;
+}
+
 /* True if the largest number is above the mean by more than a fiftieth. */
 static bool is_uneven(const int64_t *counts, int ranks)
 {
@@ -97,16 +123,8 @@ void links_even_out(struct solver *solver)
     comm_wait(&request);
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
     start = comm_seconds();
-    if (is_uneven(counts, comm->size)) { /* the same on all ranks, so all enter */
-        int64_t *costs = alloc_array((size_t)count, sizeof *costs);
-        int *destination = alloc_array((size_t)count, sizeof *destination);
-        for (int64_t i = 0; i < count; i++)
-            costs[i] = 1;
-        balance_links(costs, count, counts, comm->size, comm->rank, destination);
-        solver->bytes_migration += links_migrate(solver, &solver->links, destination);
-        alloc_free(costs);
-        alloc_free(destination);
-    }
+    if (is_uneven(counts, comm->size)) /* the same on all ranks, so all enter */
+        solver->bytes_migration += links_balance(solver, &solver->links, one, counts);
     alloc_free(counts);
     solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
 }

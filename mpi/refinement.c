@@ -19,9 +19,6 @@
 #include "geom/alloc.h"
 #include "rad/oracle.h"
 
-/* Links per rank from which a level is balanced: below, splitting takes less than an exchange. */
-enum { WORTH_MOVING = 4 };
-
 /* What ranks tell each other before a level. */
 struct load_notice {
     int64_t links;           /* prolific links here */
@@ -35,18 +32,11 @@ struct level {
     int64_t prolific, kept;
 };
 
-/* What splitting a link is predicted to take: for its four form factors, and four times the tests of
- * one; but the second is what its cost is made of. */
-static int64_t cost_of(const struct link *link)
-{
-    return (int64_t)link_cost(link) + TESTS_PER_FORM_FACTOR;
-}
-
 static int64_t load_of(const struct link_list *list)
 {
     int64_t load = 0;
     for (int64_t i = 0; i < list->count; i++)
-        load += cost_of(&list->items[i]);
+        load += link_load(&list->items[i]);
     return load;
 }
 
@@ -83,22 +73,6 @@ static struct load_notice *exchange_loads(struct solver *solver, struct load_not
     return notices;
 }
 
-/* Sends links where they are wanted. */
-static int64_t move_links(struct solver *solver, struct link_list *prolific, const int64_t *loads)
-{
-    size_t count = (size_t)prolific->count;
-    int64_t *costs = alloc_array(count, sizeof *costs);
-    int *destination = alloc_array(count, sizeof *destination);
-    for (size_t i = 0; i < count; i++)
-        costs[i] = cost_of(&prolific->items[i]);
-    balance_links(costs, prolific->count, loads, solver->comm->size, solver->comm->rank, destination);
-    int64_t bytes = links_migrate(solver, prolific, destination);
-    solver->bytes_migration += bytes;
-    alloc_free(costs);
-    alloc_free(destination);
-    return bytes;
-}
-
 /* LoadBalance of Algorithm 1. `phase` receives what this rank has of the level. Returns the links of
  * all ranks. */
 static struct level balance_load(struct solver *solver, struct link_list *prolific, int64_t level,
@@ -110,18 +84,16 @@ static struct level balance_load(struct solver *solver, struct link_list *prolif
     struct load_notice *notices = exchange_loads(solver, own);
     double start = comm_seconds();
     struct level sum = {0, 0};
-    bool even = true;
     int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
     for (int r = 0; r < ranks; r++) {
         loads[r] = notices[r].load;
-        even = even && loads[r] == loads[0];
         sum.prolific += notices[r].links;
         sum.kept += notices[r].kept;
         solver->stop = (int)notices[r].stop > solver->stop ? (int)notices[r].stop : solver->stop;
     }
     *phase = (struct phase_work){.kind = WORK_SPLITTING, .iteration = solver->pass, .level = level};
-    if (!even && sum.prolific >= WORTH_MOVING * ranks) /* the same on all ranks, so all enter */
-        phase->bytes = move_links(solver, prolific, loads);
+    if (moving_pays(loads, ranks)) /* the same on all ranks, so all enter */
+        solver->bytes_migration += phase->bytes = links_balance(solver, prolific, link_load, loads);
     alloc_free(loads);
     alloc_free(notices);
     progress_begin(solver->progress, "refining", level, sum.prolific);
