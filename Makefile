@@ -7,6 +7,7 @@
 #                        $(BUILD)/parsing, a bench of reading OBJ
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
+#   make scaling         docs/scaling.csv and docs/scaling.svg: speed-up from counted work, up to 4,096 ranks
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
 #   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
@@ -141,6 +142,10 @@ $(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/
 chart: $(BENCHES:%=$(BUILD)/%) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/chart.sh
 
+# About half an hour on two cores.
+scaling: $(PHR) $(BUILD)/simulate build/room
+	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
+
 check: $(PHR) $(IMGDIFF) tests build/room
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
@@ -180,4 +185,4 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench errors chart check check-long golden portability fuzz install uninstall clean FORCE
+.PHONY: all demo tests room bench errors chart scaling check check-long golden portability fuzz install uninstall clean FORCE

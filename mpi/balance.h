@@ -58,7 +58,7 @@ int row_parts(int64_t sample);
 
 /* Who samples a row; and whether it goes on with the row at once, while others are sampling. */
 int row_sampler(int32_t place, int ranks);
-bool row_goes_on(int32_t place, int ranks);
+bool row_goes_on(int32_t place, int64_t sample, int ranks);
 
 /* samples[place]: what the sample of each row took. */
 struct row_deal row_deal_start(const int64_t *samples, int32_t rows, int ranks);

@@ -48,11 +48,9 @@ static void link_samples(struct solver *solver, struct linking *linking, int64_t
     MPI_Request request;
     MPI_Iallreduce(own, samples, rows, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
     for (int32_t place = 0; place < rows; place++) {
-        if (row_sampler(place, ranks) != rank || !row_goes_on(place, ranks))
+        if (row_sampler(place, ranks) != rank || !row_goes_on(place, own[place], ranks))
             continue;
-        int parts = row_parts(own[place]);
-        for (int part = 0; part < parts; part++)
-            linking_add_part(linking, place, part, parts);
+        linking_add_part(linking, place, 0, 1);
     }
     wait_idle(solver, &request);
     alloc_free(own);

@@ -375,8 +375,8 @@ static void replay_linking(struct replay *replay)
     double news = latest(clocks, ranks);
     memcpy(before, done, (size_t)ranks * sizeof *done);
     for (int32_t place = 0; place < record->rows; place++)
-        for (int part = 0; row_goes_on(place, ranks) && part < row_parts(samples[place]); part++)
-            do_unit(replay, record->first_unit[place] + 1 + part, row_sampler(place, ranks), done);
+        if (row_goes_on(place, samples[place], ranks))
+            do_unit(replay, record->first_unit[place] + 1, row_sampler(place, ranks), done);
     advance(clocks, done, before, ranks);
     wait_for(clocks, ranks, news);
     exchange(replay, 8.0 * record->rows);
