@@ -419,7 +419,7 @@ void options_print_help(FILE *file)
           "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
           "  --form-factors   print them, as CSV     --validate    check form factors\n"
           "  --quiet          print nothing          --verbose     levels of refinement\n"
-          "  --help                                  --version\n"
+          "  --balance even|greedy      of links     --help        --version\n"
           "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
           "  phr room.obj -o room.ppm\n"
           "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n",
