@@ -7,6 +7,7 @@
 #                        $(BUILD)/parsing, a bench of reading OBJ
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
+#   make scaling         docs/scaling.csv and docs/scaling.svg: speed-up from counted work, up to 4,096 ranks
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
 #   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
@@ -48,8 +49,8 @@ GEOM = alloc contour elementary error gauss hull lambert polygon scene triangle 
 OCTREE = build octree
 RAD = boxtree closure conjugate flux formfactor id link linking method oracle patch pushpull snapshot \
       treecode viewfactor
-MPI = accuracy assign broadcast closing comm funnel gather keep linking memory migrate node pairs \
-      picture plan refinement routes scatter signals solve solver vote
+MPI = accuracy assign balance broadcast closing comm funnel gather keep ledger linking memory migrate \
+      node pairs picture plan refinement routes scatter signals solve solver vote
 IO = binary camera cases compare image library machine mesh mtl obj options output palette ply plyfile \
      progress render shading stats store surface table text tone validate viewpoint
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
@@ -59,10 +60,10 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary id triangle lambert hull scene polygon contour wall octree bundles flux patch \
-        compact formfactor link linking oracle pushpull closure treecode plan assign text obj ply output tone \
+        compact formfactor link linking oracle pushpull closure treecode plan balance assign text obj ply output tone \
         image camera viewpoint shading options progress paths norms cie furnace stability store exchange conjugate exact converge
 # Programs that compare phr with what is true.
-BENCHES = reference measure direct tracing
+BENCHES = reference measure direct tracing simulate
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
 FUZZERS = obj mtl ply image view links checkpoint
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
@@ -141,6 +142,10 @@ $(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/
 chart: $(BENCHES:%=$(BUILD)/%) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/chart.sh
 
+# About half an hour on two cores.
+scaling: $(PHR) $(BUILD)/simulate build/room
+	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
+
 check: $(PHR) $(IMGDIFF) tests build/room
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
@@ -180,4 +185,4 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench errors chart check check-long golden portability fuzz install uninstall clean FORCE
+.PHONY: all demo tests room bench errors chart scaling check check-long golden portability fuzz install uninstall clean FORCE

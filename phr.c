@@ -278,8 +278,8 @@ static bool stopped(struct run *run)
 /* With --verbose, the levels of refinement since `first`. */
 static void report_levels(struct run *run, int64_t first)
 {
-    for (int64_t i = first; i < run->solver->level_count && run->options.verbose; i++) {
-        const struct level_balance *level = &run->solver->levels[i];
+    for (int64_t i = first; i < run->solver->ledger.level_count && run->options.verbose; i++) {
+        const struct level_balance *level = &run->solver->ledger.levels[i];
         say(run, "iteration %lld, level %lld: %lld links split, most work %.3f of the mean",
             (long long)level->iteration, (long long)level->level, (long long)level->links,
             level->work_mean > 0.0 ? level->work_max / level->work_mean : 1.0);
@@ -376,7 +376,7 @@ static bool compute_light(struct run *run)
     if (!start_light(run))
         return false;
     while (goes_on(run)) {
-        int64_t levels = run->solver->level_count;
+        int64_t levels = run->solver->ledger.level_count;
         if (solver_refine(run->solver)) { /* 4: evaluate and refine, level by level */
             solve_pass(run);
             report_levels(run, levels);

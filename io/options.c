@@ -41,6 +41,7 @@ static const struct option OPTIONS[] = {
     {"--closure", KIND_CHOICE, offsetof(struct options, criterion.closure), 0, 0,
      "none|cap|rows|symmetric"},
     {"--solver", KIND_CHOICE, offsetof(struct options, criterion.solver), 0, 0, "jacobi|cg"},
+    {"--balance", KIND_CHOICE, offsetof(struct options, criterion.balance), 0, 0, "greedy|even"},
     {"--paper", KIND_PAPER, 0, 0, 0, NULL},
     {"--alpha", KIND_REAL, offsetof(struct options, criterion.alpha), 0, 1, NULL},
     {"--tolerance", KIND_REAL, offsetof(struct options, criterion.tolerance), 0, 1, NULL},
@@ -195,6 +196,7 @@ static void set_paper(struct criterion *criterion)
     criterion->form_factor = FORM_FACTOR_DISK;
     criterion->closure = CLOSURE_NONE;
     criterion->solver = SOLVER_JACOBI;
+    criterion->balance = BALANCE_GREEDY;
 }
 
 static bool set_value(struct options *options, const struct option *option, const char *value,
@@ -299,8 +301,8 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
     *options = (struct options){
         .samples = 3,
         .criterion = {.oracle = ORACLE_ERROR, .form_factor = FORM_FACTOR_POLYGON,
-                      .closure = CLOSURE_CAP, .solver = SOLVER_CG, .epsilon = -1.0,
-                      .min_area = 1e-7, .max_level = 10, .alpha = 0.5, .tolerance = 1e-5,
+                      .closure = CLOSURE_CAP, .solver = SOLVER_CG, .balance = BALANCE_EVEN,
+                      .epsilon = -1.0, .min_area = 1e-7, .max_level = 10, .alpha = 0.5, .tolerance = 1e-5,
                       .max_iterations = 1000},
     };
     options->outputs = alloc_array((size_t)argc, sizeof *options->outputs);
@@ -417,7 +419,7 @@ void options_print_help(FILE *file)
           "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
           "  --form-factors   print them, as CSV     --validate    check form factors\n"
           "  --quiet          print nothing          --verbose     levels of refinement\n"
-          "  --help                                  --version\n"
+          "  --balance even|greedy      of links     --help        --version\n"
           "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
           "  phr room.obj -o room.ppm\n"
           "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n",

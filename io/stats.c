@@ -11,6 +11,9 @@ static const char *const PHASE_NAMES[PHASE_COUNT] = {
     "total", "read", "linking", "refinement", "idle", "migration",
     "gather", "push_pull", "scatter", "solve", "render", "write"};
 
+static const char *const WORK_NAMES[WORK_COUNT] = {"linking", "looks", "splitting", "transfer",
+                                                   "own", "patches"};
+
 void stats_print(const struct stats *stats, FILE *file)
 {
     fprintf(file, "triangles   %" PRId64 " (%" PRId64 " roots)\n", stats->triangles, stats->roots);
@@ -95,6 +98,20 @@ static void write_balance(FILE *file, const struct stats *stats)
     fprintf(file, "%s],\n", stats->level_count ? "\n  " : "");
 }
 
+static void write_work(FILE *file, const struct stats *stats)
+{
+    fprintf(file, "  \"work\": {\n");
+    for (int kind = 0; kind < WORK_COUNT; kind++)
+        fprintf(file,
+                "    \"%s\": {\"phases\": %" PRId64 ", \"all\": %" PRId64 ", \"slowest\": %" PRId64
+                ", \"bytes\": %" PRId64 "}%s\n",
+                WORK_NAMES[kind], stats->work[kind].phases, stats->work[kind].all,
+                stats->work[kind].slowest, stats->work[kind].bytes,
+                kind + 1 < WORK_COUNT ? "," : "");
+    fprintf(file, "  },\n");
+    write_integer(file, "exchanges", stats->exchanges);
+}
+
 bool stats_write(const struct stats *stats, const char *path, struct error *error)
 {
     struct output output;
@@ -104,6 +121,7 @@ bool stats_write(const struct stats *stats, const char *path, struct error *erro
     write_counts(output.file, stats);
     write_seconds(output.file, stats);
     write_balance(output.file, stats);
+    write_work(output.file, stats);
     fprintf(output.file,
             "  \"bytes\": {\"migration\": %" PRId64 ", \"gather\": %" PRId64 ", \"scatter\": %" PRId64
             "},\n",

@@ -76,8 +76,11 @@ static void leave_processor(int tests)
 #endif
 }
 
+static int64_t exchanges;
+
 void comm_wait(MPI_Request *request)
 {
+    exchanges++;
     int done = 0;
     for (int tests = 0; !done; tests += tests < INT_MAX) {
         MPI_Test(request, &done, MPI_STATUS_IGNORE);
@@ -233,6 +236,11 @@ const char *comm_build(void)
 #else
     return "MPI";
 #endif
+}
+
+int64_t comm_exchanges(void)
+{
+    return exchanges;
 }
 
 double comm_seconds(void)

@@ -63,6 +63,9 @@ uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes
 /* "MPI", or "serial" where mpi/serial/mpi.h takes its place. */
 const char *comm_build(void);
 
+/* Exchanges that this rank has waited for. */
+int64_t comm_exchanges(void);
+
 /* Seconds since some moment in the past. */
 double comm_seconds(void);
 

@@ -3,6 +3,7 @@
  * On the way a link names its patches by their IDs. The receiver looks them up in its own copy
  * of the forest and creates what it lacks; a patch so created has its parent's radiosity, as it
  * has where it was first split, so a link means the same wherever it lives. */
+#include "mpi/balance.h"
 #include "mpi/migrate.h"
 
 #include <string.h>
@@ -72,4 +73,58 @@ int64_t links_migrate(struct solver *solver, struct link_list *list, const int *
     alloc_free(at);
     alloc_free(counts);
     return leaving * (int64_t)sizeof *out;
+}
+
+int64_t links_balance(struct solver *solver, struct link_list *list,
+                      int64_t (*load)(const struct link *), const int64_t *loads)
+{
+    int ranks = solver->comm->size;
+    size_t count = (size_t)list->count;
+    int64_t *costs = alloc_array(count, sizeof *costs);
+    int *destination = alloc_array(count, sizeof *destination);
+    struct transfer *plan = alloc_array(2 * (size_t)ranks, sizeof *plan);
+    int planned = plan_transfers(loads, ranks, plan);
+    for (size_t i = 0; i < count; i++)
+        costs[i] = load(&list->items[i]);
+    links_deal_out(costs, list->count, plan, planned, solver->comm->rank, destination);
+    int64_t bytes = links_migrate(solver, list, destination);
+    alloc_free(plan);
+    alloc_free(destination);
+    alloc_free(costs);
+    return bytes;
+}
+
+/* Each link takes as long as any other where light is transferred. */
+static int64_t one(const struct link *link)
+{
+    (void)link;
+    return 1;
+}
+
+/* True if the largest number is above the mean by more than a fiftieth. */
+static bool is_uneven(const int64_t *counts, int ranks)
+{
+    int64_t largest = 0, sum = 0;
+    for (int r = 0; r < ranks; r++) {
+        sum += counts[r];
+        largest = counts[r] > largest ? counts[r] : largest;
+    }
+    return (double)largest * ranks > 1.02 * (double)sum;
+}
+
+void links_even_out(struct solver *solver)
+{
+    const struct comm *comm = solver->comm;
+    int64_t count = solver->links.count;
+    int64_t *counts = alloc_array((size_t)comm->size, sizeof *counts);
+    double start = comm_seconds();
+    MPI_Request request;
+    MPI_Iallgather(&count, 1, MPI_INT64_T, counts, 1, MPI_INT64_T, comm->handle, &request);
+    comm_wait(&request);
+    solver->seconds[PHASE_IDLE] += comm_seconds() - start;
+    start = comm_seconds();
+    if (is_uneven(counts, comm->size)) /* the same on all ranks, so all enter */
+        solver->bytes_migration += links_balance(solver, &solver->links, one, counts);
+    alloc_free(counts);
+    solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
 }

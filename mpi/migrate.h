@@ -9,4 +9,13 @@
  * rank lacks are created. Returns the bytes sent to other ranks. */
 int64_t links_migrate(struct solver *solver, struct link_list *list, const int *destination);
 
+/* Collective. Evens out what load() says of links by the greedy plan; loads[r] is the sum over the links of
+ * rank r. Returns the bytes sent to other ranks. */
+int64_t links_balance(struct solver *solver, struct link_list *list,
+                      int64_t (*load)(const struct link *), const int64_t *loads);
+
+/* Collective. Ranks with more links than the mean send what is above it to those with less, if any is
+ * above it by more than a fiftieth. */
+void links_even_out(struct solver *solver);
+
 #endif

@@ -1,16 +1,17 @@
 /* Step 4: Algorithm 1 of the paper.
  *
  * `prolific` holds the links of one level that will be split. Before each level the ranks
- * exchange their loads, the sums of predicted costs; each computes the same greedy plan
- * (mpi/plan.h); senders deal links to their receivers in turn until the planned load is gone.
- * Then each rank splits what it has: children that are to be split too form the next level, the
+ * exchange their loads, the sums of predicted costs; each decides alike where links go
+ * (mpi/balance.h). Then each rank splits what it has: children that are to be split too form the next level, the
  * others join the links.
  *
- * With the loads travel two figures of the level before, the load after migration and the tests
- * that it really took, so that prediction and work can be compared without another exchange. */
+ * What was split stays where that was done; light is transferred over links where they are. So at the end
+ * their numbers are evened out, but for --balance greedy, the paper's.
+ *
+ * Predicted cost and work of each level go into the ledger (mpi/ledger.h). */
+#include "mpi/balance.h"
 #include "mpi/memory.h"
 #include "mpi/migrate.h"
-#include "mpi/plan.h"
 #include "mpi/signals.h"
 
 #include <string.h>
@@ -18,16 +19,10 @@
 #include "geom/alloc.h"
 #include "rad/oracle.h"
 
-/* Links per rank from which a level is balanced: below, splitting takes less than an exchange. */
-enum { WORTH_MOVING = 4 };
-
 /* What ranks tell each other before a level. */
 struct load_notice {
     int64_t links;           /* prolific links here */
     int64_t load;            /* their predicted cost */
-    int64_t last_links;      /* of the level before: links that were split here, */
-    int64_t last_load;       /* their predicted cost, */
-    int64_t last_work;       /* and the tests that this took */
     int64_t kept;            /* links here that are not to be split */
     int64_t stop;            /* the signal that this rank has got, 0: none */
 };
@@ -41,19 +36,17 @@ static int64_t load_of(const struct link_list *list)
 {
     int64_t load = 0;
     for (int64_t i = 0; i < list->count; i++)
-        load += (int64_t)link_cost(&list->items[i]);
+        load += link_load(&list->items[i]);
     return load;
-}
-
-static int64_t work_so_far(const struct solver *solver)
-{
-    return solver->method.counts.node_tests + solver->method.counts.triangle_tests;
 }
 
 /* Moves the links that are to be split from the rank's links to `prolific`. */
 static void select_prolific(struct solver *solver, struct link_list *prolific)
 {
     int64_t kept = 0;
+    struct phase_work looks = {.kind = WORK_LOOKS, .iteration = solver->pass,
+                               .work = solver->links.count};
+    ledger_add(&solver->ledger, looks);
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
         if (oracle_patch_to_split(&solver->method, &link) >= 0)
@@ -64,48 +57,6 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
         }
     }
     solver->links.count = kept;
-}
-
-/* Deals this rank's links in turn to the receivers of its transfers. A link goes to a receiver
- * as long as at least half of its cost still fits into what is planned for it. */
-static void deal_links(const struct solver *solver, const struct link_list *list,
-                       struct transfer *transfers, int count, int *destination)
-{
-    int mine = 0;
-    for (int t = 0; t < count; t++)
-        if (transfers[t].from == solver->comm->rank)
-            transfers[mine++] = transfers[t];
-    int turn = 0;
-    for (int64_t i = 0; i < list->count; i++) {
-        int64_t cost = (int64_t)link_cost(&list->items[i]);
-        destination[i] = solver->comm->rank;
-        for (int tried = 0; tried < mine; tried++) {
-            struct transfer *t = &transfers[(turn + tried) % mine];
-            if (2 * t->load < cost)
-                continue;
-            destination[i] = t->to;
-            t->load -= cost;
-            turn = (turn + tried + 1) % mine;
-            break;
-        }
-    }
-}
-
-static void record_level(struct solver *solver, const struct load_notice *notices, int64_t level)
-{
-    struct level_balance balance = {.iteration = solver->pass, .level = level};
-    int ranks = solver->comm->size;
-    for (int r = 0; r < ranks; r++) {
-        double load = (double)notices[r].last_load, work = (double)notices[r].last_work;
-        balance.links += notices[r].last_links;
-        balance.predicted_mean += load / ranks;
-        balance.work_mean += work / ranks;
-        balance.predicted_max = load > balance.predicted_max ? load : balance.predicted_max;
-        balance.work_max = work > balance.work_max ? work : balance.work_max;
-    }
-    solver->levels = alloc_reserve(solver->levels, &solver->level_capacity,
-                                   solver->level_count + 1, sizeof *solver->levels);
-    solver->levels[solver->level_count++] = balance;
 }
 
 /* The total exchange of loads. Waiting here is idle time. */
@@ -122,19 +73,15 @@ static struct load_notice *exchange_loads(struct solver *solver, struct load_not
     return notices;
 }
 
-/* LoadBalance of Algorithm 1. `done` holds this rank's figures of the level before and receives
- * the load of this one. Returns the links of all ranks. */
+/* LoadBalance of Algorithm 1. `phase` receives what this rank has of the level. Returns the links of
+ * all ranks. */
 static struct level balance_load(struct solver *solver, struct link_list *prolific, int64_t level,
-                                 struct load_notice *done)
+                                 struct phase_work *phase)
 {
     int ranks = solver->comm->size;
-    done->links = prolific->count;
-    done->load = load_of(prolific);
-    done->kept = solver->links.count;
-    done->stop = signals_seen();
-    struct load_notice *notices = exchange_loads(solver, *done);
-    if (level > 0)
-        record_level(solver, notices, level - 1);
+    struct load_notice own = {.links = prolific->count, .load = load_of(prolific),
+                              .kept = solver->links.count, .stop = signals_seen()};
+    struct load_notice *notices = exchange_loads(solver, own);
     double start = comm_seconds();
     struct level sum = {0, 0};
     int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
@@ -144,21 +91,14 @@ static struct level balance_load(struct solver *solver, struct link_list *prolif
         sum.kept += notices[r].kept;
         solver->stop = (int)notices[r].stop > solver->stop ? (int)notices[r].stop : solver->stop;
     }
-    struct transfer *transfers = alloc_array(2 * (size_t)ranks, sizeof *transfers);
-    int count = plan_transfers(loads, ranks, transfers);
-    bool pays = count > 0 && sum.prolific >= WORTH_MOVING * ranks;
-    if (pays) { /* the same on all ranks, so all or none enter */
-        int *destination = alloc_array((size_t)prolific->count, sizeof *destination);
-        deal_links(solver, prolific, transfers, count, destination);
-        solver->bytes_migration += links_migrate(solver, prolific, destination);
-        alloc_free(destination);
-    }
-    alloc_free(transfers);
+    *phase = (struct phase_work){.kind = WORK_SPLITTING, .iteration = solver->pass, .level = level};
+    if (moving_pays(loads, ranks)) /* the same on all ranks, so all enter */
+        solver->bytes_migration += phase->bytes = links_balance(solver, prolific, link_load, loads);
     alloc_free(loads);
     alloc_free(notices);
     progress_begin(solver->progress, "refining", level, sum.prolific);
-    done->last_links = prolific->count;
-    done->last_load = load_of(prolific);
+    phase->links = prolific->count;
+    phase->predicted = load_of(prolific);
     solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
     return sum;
 }
@@ -231,10 +171,10 @@ static bool level_fits(struct solver *solver, const struct level *level, int64_t
 static bool split_levels(struct solver *solver, struct link_list *prolific)
 {
     struct link_list next = {0};
-    struct load_notice done = {0};
+    struct phase_work phase;
     int64_t made = 0;
     for (int64_t level = 0;; level++) {
-        struct level links = balance_load(solver, prolific, level, &done);
+        struct level links = balance_load(solver, prolific, level, &phase);
         if (links.prolific == 0)
             return true;
         made += level == 0 ? PATCHES_PER_LOOK * links.kept : 0;
@@ -246,9 +186,10 @@ static bool split_levels(struct solver *solver, struct link_list *prolific)
         }
         made += PATCHES_PER_SPLIT * links.prolific;
         double start = comm_seconds();
-        int64_t work = work_so_far(solver);
+        phase.work = -solver_work(solver);
         split_level(solver, prolific, &next);
-        done.last_work = work_so_far(solver) - work;
+        phase.work += solver_work(solver);
+        ledger_add(&solver->ledger, phase);
         link_list_free(prolific);
         *prolific = next;
         next = (struct link_list){0};
@@ -276,6 +217,9 @@ bool solver_refine(struct solver *solver)
         link_list_free(&prolific);
         share_splits(solver);
     }
+    if (solver->method.criterion.balance == BALANCE_EVEN)
+        links_even_out(solver);
+    ledger_share(&solver->ledger, solver->comm);
     bool stopped = !done && solver->stop != 0;
     solver->pass -= stopped;
     return !stopped;

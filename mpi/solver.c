@@ -8,8 +8,10 @@
 #include "mpi/solver.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "geom/alloc.h"
+#include "mpi/balance.h"
 #include "rad/treecode.h"
 
 struct solver *solver_create(const struct comm *comm, const struct scene *scene,
@@ -38,7 +40,7 @@ void solver_destroy(struct solver *solver)
     alloc_free(solver->own);
     routes_free(&solver->routes);
     alloc_free(solver->root_change);
-    alloc_free(solver->levels);
+    ledger_free(&solver->ledger);
     closure_free(&solver->closure);
     conjugate_free(&solver->conjugate);
     accuracy_free(&solver->accuracy);
@@ -83,6 +85,33 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
     stats->closure_max = sum.max;
     stats->closure_mean = (double)sum.rows / area;
     stats->closure_rms = sqrt((double)sum.squares / area);
+}
+
+int64_t solver_work(const struct solver *solver)
+{
+    const struct octree_counts *counts = &solver->method.counts;
+    int64_t form_factors = (counts->rays + solver->method.rays_spared) / BUNDLE_RAYS;
+    return counts->node_tests + counts->triangle_tests + TESTS_PER_FORM_FACTOR * form_factors;
+}
+
+void solver_record_iteration(struct solver *solver)
+{
+    const struct forest *forest = solver->method.forest;
+    int64_t gathered = solver->bytes_gather - solver->bytes_recorded[0], own = 0;
+    int64_t scattered = solver->bytes_scatter - solver->bytes_recorded[1];
+    for (int64_t p = 0; p < forest->count; p++)
+        own += solver->own[forest->patches[p].id.root];
+    struct phase_work phase = {.kind = WORK_TRANSFER, .iteration = solver->iteration,
+                               .work = solver->links.count, .bytes = gathered};
+    ledger_add(&solver->ledger, phase);
+    phase = (struct phase_work){.kind = WORK_OWN, .iteration = solver->iteration, .work = own,
+                                .bytes = scattered};
+    ledger_add(&solver->ledger, phase);
+    phase = (struct phase_work){.kind = WORK_PATCHES, .iteration = solver->iteration,
+                                .work = forest->count};
+    ledger_add(&solver->ledger, phase);
+    solver->bytes_recorded[0] = solver->bytes_gather;
+    solver->bytes_recorded[1] = solver->bytes_scatter;
 }
 
 /* Bytes that this process held at most, 0 where the system does not tell. */
@@ -182,8 +211,11 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->absorbed_power = unit * vote->absorbed;
     stats->escaped_power = unit * vote->escaped;
     stats->checksum = forest_checksum(solver->method.forest);
-    stats->levels = solver->levels;
-    stats->level_count = solver->level_count;
+    ledger_share(&solver->ledger, solver->comm);
+    stats->levels = solver->ledger.levels;
+    stats->level_count = solver->ledger.level_count;
+    memcpy(stats->work, solver->ledger.sums, sizeof stats->work);
+    stats->exchanges = comm_exchanges();
     report_counts(solver, stats);
     report_seconds(solver, stats);
 }

@@ -8,6 +8,7 @@
 
 #include "geom/progress.h"
 #include "mpi/comm.h"
+#include "mpi/ledger.h"
 #include "mpi/routes.h"
 #include "rad/conjugate.h"
 #include "rad/link.h"
@@ -60,8 +61,8 @@ struct solver {
     int64_t split_here;       /* links that this rank split in this iteration */
     double seconds[PHASE_COUNT];
     int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent by this rank to others */
-    struct level_balance *levels;                         /* [level_count], same on all ranks */
-    int64_t level_count, level_capacity;
+    int64_t bytes_recorded[2];                            /* gather and scatter in the ledger */
+    struct ledger ledger;
 };
 
 /* Sums over all ranks after an iteration; the same on all ranks. */
@@ -83,7 +84,10 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree, const struct criterion *criterion);
 void solver_destroy(struct solver *solver);
 
-/* Step 2: initial linking. Pairs of roots are dealt evenly; each rank links its pairs. */
+/* Tests that this rank has done, form factors counted as in mpi/balance.h. */
+int64_t solver_work(const struct solver *solver);
+
+/* Step 2: initial linking. Rows of pairs of roots are dealt so that their work is even. */
 void solver_link_roots(struct solver *solver);
 
 /* Step 3: re-assignment. Roots get homes by even area sums, links go to the homes. */
@@ -106,6 +110,9 @@ void solver_gather(struct solver *solver);
 void solver_push_pull(struct solver *solver);
 void solver_scatter(struct solver *solver);
 struct vote solver_vote(struct solver *solver);
+
+/* Enters the work of the iteration into the ledger. */
+void solver_record_iteration(struct solver *solver);
 
 /* When the vote has converged: true if the accuracy asked for is reached, or none was asked for, or
  * epsilon cannot go down any more. Else epsilon is lowered, for another pass. */

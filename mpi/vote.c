@@ -182,6 +182,8 @@ static struct vote vote_conjugate(struct solver *solver)
 
 struct vote solver_vote(struct solver *solver)
 {
-    return solver->method.criterion.solver == SOLVER_CG ? vote_conjugate(solver)
-                                                        : vote_jacobi(solver);
+    struct vote vote = solver->method.criterion.solver == SOLVER_CG ? vote_conjugate(solver)
+                                                                    : vote_jacobi(solver);
+    solver_record_iteration(solver);
+    return vote;
 }

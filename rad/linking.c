@@ -9,7 +9,10 @@
  * partner, and then what comes next in the tree.
  *
  * Of n roots, row i has the next n / 2 in the order of the tree, around its end, so all rows are
- * equally long; what they take differs by where they lie.
+ * equally long. What they take differs thirtyfold, by where they lie, and next to nothing that can be
+ * known of a row tells it beforehand. So each row is begun with a sample, every sixteenth group of
+ * four: what that takes tells what the rest will take (correlation 0.97 in furnished rooms), and costs
+ * 1 % more, since shadows are found twice. The rest can be linked in parts.
  *
  * Tried and left out: groups in place of the one root (four roots are seldom hidden by one wall: half
  * as many pairs were proved, for more work), bundles of 16 segments between four roots and four
@@ -43,6 +46,7 @@ enum { SHADOWS = 8 };
 struct row {
     struct linking *linking;
     int32_t place;       /* of the root p, in the order of the tree */
+    bool is_sample;      /* the sample of the row, or the rest */
     int32_t first, end;  /* places of the roots to pair it with */
     struct boxnode node; /* of p alone */
     int32_t blocker;     /* the last */
@@ -112,6 +116,11 @@ static void link_pair(struct row *row, int32_t place)
         link_list_append(linking->links, link);
 }
 
+static bool is_sampled(int32_t row, int32_t place)
+{
+    return (place / BOX_ROOTS + row) % LINKING_SAMPLE == 0;
+}
+
 static void link_below(struct row *row, int32_t at)
 {
     const struct boxnode *node = &row->linking->tree->nodes[at];
@@ -123,24 +132,45 @@ static void link_below(struct row *row, int32_t at)
         return;
     if (boxnode_is_leaf(node)) {
         for (int32_t place = first; place < end; place++)
-            link_pair(row, place);
+            if (is_sampled(row->place, place) == row->is_sample)
+                link_pair(row, place);
     } else {
         link_below(row, node->children);
         link_below(row, node->children + 1);
     }
 }
 
-void linking_add_row(struct linking *linking, int32_t place)
+/* Links what `row` describes of the places from `first` on, around the end of the order. */
+static void link_places(struct row *row, int32_t first, int32_t end)
+{
+    struct linking *linking = row->linking;
+    int32_t n = linking->tree->root_count;
+    row->node = boxnode_of_root(linking->method->scene, linking->tree->roots[row->place]);
+    row->first = first;
+    row->end = end < n ? end : n;
+    link_below(row, 0);
+    row->first = first < n ? 0 : first - n;
+    row->end = end - n;
+    link_below(row, 0);
+}
+
+/* Roots that the row of this place has. */
+static int32_t length_of_row(const struct linking *linking, int32_t place)
 {
     int32_t n = linking->tree->root_count;
-    int32_t length = n % 2 == 1 || place < n / 2 ? n / 2 : n / 2 - 1;
-    int32_t end = place + 1 + length;
+    return n % 2 == 1 || place < n / 2 ? n / 2 : n / 2 - 1;
+}
+
+void linking_add_sample(struct linking *linking, int32_t place)
+{
+    struct row row = {.linking = linking, .place = place, .blocker = -1, .is_sample = true};
+    link_places(&row, place + 1, place + 1 + length_of_row(linking, place));
+}
+
+void linking_add_part(struct linking *linking, int32_t place, int part, int parts)
+{
     struct row row = {.linking = linking, .place = place, .blocker = -1};
-    row.node = boxnode_of_root(linking->method->scene, linking->tree->roots[place]);
-    row.first = place + 1;
-    row.end = end < n ? end : n;
-    link_below(&row, 0);
-    row.first = 0;
-    row.end = end - n;
-    link_below(&row, 0);
+    int64_t length = length_of_row(linking, place);
+    link_places(&row, place + 1 + (int32_t)(length * part / parts),
+                place + 1 + (int32_t)(length * (part + 1) / parts));
 }

@@ -11,15 +11,19 @@ struct linking {
     struct facet *facets;       /* [tree->root_count] in the order of tree->roots; owned */
     struct link_list *links;    /* borrowed: where links go */
     int64_t touched;            /* pairs of roots that were looked at one by one */
-
 };
 
 /* Borrows method and list. */
 struct linking linking_start(struct method *method, struct link_list *links);
 void linking_end(struct linking *linking);
 
-/* Links the root at this place of the tree's order with all roots of its row that it can exchange light
- * with and is not proved to be walled off from. */
-void linking_add_row(struct linking *linking, int32_t place);
+/* Of a row, one group of places in so many is its sample. */
+enum { LINKING_SAMPLE = 16 };
+
+/* Links the root at this place of the tree's order with those roots of its row that it can exchange light
+ * with and is not proved to be walled off from: with the sample of the row, or with one of `parts` equal
+ * parts of the rest. What is found depends on `parts`, but not on what was linked before. */
+void linking_add_sample(struct linking *linking, int32_t place);
+void linking_add_part(struct linking *linking, int32_t place, int part, int parts);
 
 #endif

@@ -14,6 +14,7 @@ enum oracle { ORACLE_BF, ORACLE_ERROR };                      /* rad/oracle.h */
 enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON };         /* rad/formfactor.h */
 enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS, CLOSURE_SYMMETRIC }; /* rad/closure.h */
 enum solver_kind { SOLVER_JACOBI, SOLVER_CG };                    /* rad/conjugate.h */
+enum balance { BALANCE_GREEDY, BALANCE_EVEN };                    /* mpi/linking.c */
 
 /* How links are evaluated, when and how far they are refined, and when the iterations end. */
 struct criterion {
@@ -21,6 +22,7 @@ struct criterion {
     enum form_factor form_factor;
     enum closure_kind closure;
     enum solver_kind solver;
+    enum balance balance;
     double epsilon;         /* energy or error of a link that splits it, relative to the emitted
                                power */
     double accuracy;        /* estimated error of the leaves down to which epsilon is lowered,

@@ -17,12 +17,32 @@ struct spread {
     double min, mean, max;
 };
 
-/* One level of refinement: how even the work was. Cost and work in box and triangle tests. */
+/* One level of refinement: how even the work was. Cost and work in box and triangle tests; a form
+ * factor counts as eight. Initial linking is level 0 of iteration 0. */
 struct level_balance {
     int64_t iteration, level;
-    int64_t links; /* that were split */
-    double predicted_max, predicted_mean; /* cost over ranks, after migration */
+    int64_t links; /* that were split; in initial linking, pairs that were touched */
+    double predicted_max, predicted_mean; /* cost over ranks, as it was dealt */
     double work_max, work_mean;           /* tests that were then done */
+};
+
+/* What ranks do, and in what it is counted. */
+enum work {
+    WORK_LINKING,   /* initial linking: tests, as above */
+    WORK_LOOKS,     /* what is to be split? links looked at */
+    WORK_SPLITTING, /* refinement: tests, as above */
+    WORK_TRANSFER,  /* links over which light was transferred */
+    WORK_OWN,       /* own patches in push-pull */
+    WORK_PATCHES,   /* patches kept up to date: every rank all of them */
+    WORK_COUNT
+};
+
+/* Of all phases of one kind. */
+struct work_sums {
+    int64_t phases;  /* how many */
+    int64_t all;     /* sum over ranks */
+    int64_t slowest; /* sum over phases of the rank that had most */
+    int64_t bytes;   /* sum over phases of the bytes that the rank sent that sent most */
 };
 
 struct stats {
@@ -47,6 +67,8 @@ struct stats {
     int64_t level_count;
     int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent from rank to rank, in the
                                                              refinement levels and steps 5, 7 */
+    struct work_sums work[WORK_COUNT];
+    int64_t exchanges;                                    /* collective operations of a rank */
     int64_t peak_rss_bytes;                               /* largest over ranks; 0 if unknown */
 };
 

@@ -111,6 +111,15 @@ static int free_segments(struct random *random, const struct world *world, int32
     return count;
 }
 
+/* A sample, and the rest in one to three parts, last one first. */
+static void add_row(struct linking *linking, int32_t place)
+{
+    int parts = 1 + place % 3;
+    for (int part = parts - 1; part >= 0; part--)
+        linking_add_part(linking, place, part, parts);
+    linking_add_sample(linking, place);
+}
+
 /* Links by rows against links one by one: the same where there is one, and what is left out sees
  * nothing. */
 static void compare(int more, bool two_sided)
@@ -121,7 +130,7 @@ static void compare(int more, bool two_sided)
     struct link_list links = {0};
     struct linking linking = linking_start(&world.method, &links);
     for (int32_t i = linking.tree->root_count - 1; i >= 0; i--)
-        linking_add_row(&linking, i);
+        add_row(&linking, i);
     int64_t touched = linking.touched;
     linking_end(&linking);
     int64_t *at = alloc_array((size_t)roots * (size_t)roots, sizeof *at);
@@ -178,7 +187,7 @@ static void test_few(void)
         struct linking linking = linking_start(&world.method, &links);
         int expected = 0, roots = scene_root_count(world.scene);
         for (int32_t i = 0; i < linking.tree->root_count; i++)
-            linking_add_row(&linking, i);
+            add_row(&linking, i);
         for (int32_t p = 0; p < roots; p++)
             for (int32_t q = p + 1; q < roots; q++) {
                 struct link one;

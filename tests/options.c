@@ -140,6 +140,8 @@ static const struct choice CHOICES[] = {
      {"none", "cap", "rows", "symmetric"}, "none|cap|rows|symmetric"},
     {"--solver", offsetof(struct options, criterion.solver), 2, {"jacobi", "cg", NULL},
      "jacobi|cg"},
+    {"--balance", offsetof(struct options, criterion.balance), 2, {"greedy", "even", NULL},
+     "greedy|even"},
 };
 enum { CHOICE_COUNT = sizeof CHOICES / sizeof CHOICES[0] };
 
@@ -197,7 +199,8 @@ static void test_enums(void)
                CLOSURE_ROWS == 2 && CLOSURE_SYMMETRIC == 3 && SOLVER_JACOBI == 0 && SOLVER_CG == 1,
            "the names are in the order of the enums");
     tap_ok(sizeof(enum oracle) == sizeof(int) && sizeof(enum form_factor) == sizeof(int) &&
-               sizeof(enum closure_kind) == sizeof(int) && sizeof(enum solver_kind) == sizeof(int),
+               sizeof(enum closure_kind) == sizeof(int) && sizeof(enum solver_kind) == sizeof(int) &&
+               sizeof(enum balance) == sizeof(int),
            "which are as large as an int");
 }
 
@@ -210,9 +213,10 @@ static void test_paper(void)
                options.criterion.oracle == ORACLE_BF && options.criterion.solver == SOLVER_JACOBI &&
                options.criterion.closure == CLOSURE_NONE &&
                options.criterion.form_factor == FORM_FACTOR_DISK &&
+               options.criterion.balance == BALANCE_GREEDY &&
                options.criterion.alpha == plain.criterion.alpha &&
                options.criterion.tolerance == plain.criterion.tolerance,
-           "--paper is the paper's oracle, form factor and solver, without closure");
+           "--paper is the paper's oracle, form factor, solver and balance, without closure");
     options_free(&options);
     options_free(&plain);
     tap_ok(parse("--paper --solver cg a.obj", &options) &&
@@ -263,7 +267,7 @@ static const char *const OTHERS[][2] = {
     {"-o", " a.ppm"},  {"--view", " a"},    {"--size", " 2x3"}, {"--stats", " a"},
     {"--oracle", " bf"}, {"--flat", ""},    {"--two-sided", ""}, {"--quiet", ""},
     {"--verbose", ""}, {"--validate", ""},  {"--help", ""},      {"--version", ""},
-    {"--form-factor", " disk"}, {"--closure", " none"}, {"--solver", " cg"}, {"--paper", ""},
+    {"--form-factor", " disk"}, {"--closure", " none"}, {"--solver", " cg"}, {"--balance", " greedy"}, {"--paper", ""},
     {"--form-factors", ""}, {"--save-links", " a"}, {"--load-links", " a"}, {"--resume", " a"},
     {"--checkpoint", " a"}, {"--memory", " 1G"}};
 enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };

@@ -1,0 +1,206 @@
+/* Balance: every item, link and part of a row has one owner, the same whoever asks; loads end as even
+ * as the costs allow, for up to 1,024 ranks, empty and equal loads too; wrong predictions are made good. */
+#include "mpi/balance.h"
+
+#include <string.h>
+
+#include "rad/linking.h"
+#include "tests/random.h"
+#include "tests/tap.h"
+
+static int64_t largest_of(const int64_t *values, int count)
+{
+    int64_t largest = 0;
+    for (int i = 0; i < count; i++)
+        largest = values[i] > largest ? values[i] : largest;
+    return largest;
+}
+
+static int64_t sum_of(const int64_t *values, int count)
+{
+    int64_t sum = 0;
+    for (int i = 0; i < count; i++)
+        sum += values[i];
+    return sum;
+}
+
+/* --- items --- */
+
+/* No rank may be above the mean, or above where it began, by more than the largest item. */
+static void test_items(int ranks, int count)
+{
+    struct random random = random_seed(5 + (uint64_t)ranks);
+    int64_t *costs = alloc_array((size_t)count, sizeof *costs);
+    int64_t *loads = alloc_array(3 * (size_t)ranks, sizeof *loads);
+    int64_t *expected = loads + ranks, *start = expected + ranks;
+    int *owner = alloc_array((size_t)count, sizeof *owner);
+    bool right = true;
+    for (int r = 0; r < ranks; r++)
+        start[r] = loads[r] = expected[r] = (int64_t)(random_bits(&random) % 100);
+    for (int i = 0; i < count; i++)
+        costs[i] = (int64_t)(random_bits(&random) % 1000);
+    items_deal(costs, count, loads, ranks, owner);
+    for (int i = 0; i < count; i++) {
+        int least = 0;
+        for (int r = 1; r < ranks; r++)
+            least = expected[r] < expected[least] ? r : least;
+        right = right && owner[i] == least;
+        expected[least] += costs[i];
+    }
+    right = right && memcmp(loads, expected, (size_t)ranks * sizeof *loads) == 0;
+    tap_ok(right, "%d items on %d ranks: each goes to the lowest rank with the least load", count, ranks);
+    int64_t mean = sum_of(loads, ranks) / ranks;
+    bool even = true;
+    for (int r = 0; r < ranks; r++)
+        even = even && (loads[r] <= mean + 1 + largest_of(costs, count) || loads[r] == start[r]);
+    tap_ok(even, "%d ranks: none is above the mean by more than one item", ranks);
+    alloc_free(owner);
+    alloc_free(loads);
+    alloc_free(costs);
+}
+
+/* --- links --- */
+
+/* Deals `count` links whose rank is random, some ranks having none. */
+static void test_links(int ranks, int count, int64_t modulus, const char *what)
+{
+    struct random random = random_seed(9 + (uint64_t)ranks);
+    int64_t *costs = alloc_array((size_t)count, sizeof *costs);
+    int64_t *loads = alloc_array(2 * (size_t)ranks, sizeof *loads), *after = loads + ranks;
+    int *rank_of = alloc_array(3 * (size_t)count, sizeof *rank_of);
+    int *to = rank_of + count, *again = to + count, planned, sent = 0;
+    struct transfer *plan = alloc_array(2 * (size_t)ranks, sizeof *plan);
+    int64_t *own = alloc_array((size_t)count, sizeof *own);
+    bool right = true;
+    for (int i = 0; i < count; i++) {
+        costs[i] = 1 + (int64_t)(random_bits(&random) % (uint64_t)modulus);
+        rank_of[i] = (int)(random_bits(&random) % (uint64_t)ranks) / 3 * 3;
+        loads[rank_of[i]] += costs[i];
+    }
+    planned = plan_transfers(loads, ranks, plan);
+    for (int r = 0; r < ranks; r++) {
+        int mine = 0;
+        for (int i = 0; i < count; i++)
+            if (rank_of[i] == r)
+                own[mine++] = costs[i];
+        links_deal_out(own, mine, plan, planned, r, to);
+        links_deal_out(own, mine, plan, planned, r, again);
+        right = right && memcmp(to, again, (size_t)mine * sizeof *to) == 0;
+        for (int i = 0; i < mine; i++) {
+            right = right && to[i] >= 0 && to[i] < ranks;
+            after[to[i]] += own[i];
+            sent += to[i] != r;
+        }
+    }
+    int64_t mean = sum_of(loads, ranks) / ranks, before = largest_of(loads, ranks);
+    tap_ok(right && sum_of(after, ranks) == sum_of(loads, ranks),
+           "%d %s on %d ranks: each has one rank, whenever it is asked", count, what, ranks);
+    tap_ok(largest_of(after, ranks) <= before &&
+               (ranks > 64 || largest_of(after, ranks) <= mean + 1 + ranks * modulus / 2),
+           "%d ranks: the largest load does not grow (%lld, then %lld; mean %lld; %d sent)", ranks,
+           (long long)before, (long long)largest_of(after, ranks), (long long)mean, sent);
+    alloc_free(own);
+    alloc_free(plan);
+    alloc_free(rank_of);
+    alloc_free(loads);
+    alloc_free(costs);
+}
+
+static void test_moving(void)
+{
+    const int64_t empty[4] = {0, 0, 0, 0}, equal[4] = {7, 7, 7, 7}, high[4] = {4000, 0, 0, 0};
+    const int64_t little[4] = {100, 0, 0, 0}, one[1] = {1000000};
+    tap_ok(!moving_pays(empty, 4) && !moving_pays(equal, 4) && !moving_pays(one, 1),
+           "nothing moves where loads are empty or equal, or on one rank");
+    tap_ok(moving_pays(high, 4) && !moving_pays(little, 4), "links move where that saves more than it takes");
+}
+
+/* --- rows --- */
+
+/* What a sample took, and what the rest then takes: from nothing to twice what is predicted. */
+static int64_t sample_of(int32_t place)
+{
+    struct random random = random_seed(77 + (uint64_t)place);
+    int64_t heavy = random_bits(&random) % 50 == 0 ? 20 : 1;
+    return heavy * (int64_t)(random_bits(&random) % 3000);
+}
+
+static int64_t work_of(const struct row_part *part)
+{
+    struct random random = random_seed((uint64_t)part->place * 64 + (uint64_t)part->part);
+    return part->cost * (int64_t)(random_bits(&random) % 201) / 100;
+}
+
+/* Follows a deal of rows in which predictions are wrong. */
+static void test_rows(int32_t rows, int ranks, double most)
+{
+    int64_t *samples = alloc_array((size_t)rows, sizeof *samples);
+    int64_t *done = alloc_array(2 * (size_t)ranks, sizeof *done), *before = done + ranks;
+    int *seen = alloc_array((size_t)rows, sizeof *seen);
+    bool right = true;
+    int64_t largest = 0, stages = 0;
+    for (int32_t place = 0; place < rows; place++) {
+        samples[place] = sample_of(place);
+        done[row_sampler(place, ranks)] += samples[place];
+        if (row_goes_on(place, samples[place], ranks)) {
+            done[row_sampler(place, ranks)] += (LINKING_SAMPLE - 1) * samples[place];
+            seen[place]++;
+        }
+    }
+    struct row_deal deal = row_deal_start(samples, rows, ranks);
+    for (; row_deal_next(&deal); stages++) {
+        memcpy(before, done, (size_t)ranks * sizeof *done);
+        for (int64_t i = deal.first; i < deal.end; i++) {
+            int64_t work = work_of(&deal.parts[i]);
+            right = right && deal.owner[i] >= 0 && deal.owner[i] < ranks &&
+                    deal.parts[i].parts == row_parts(samples[deal.parts[i].place]);
+            done[deal.owner[i]] += work;
+            largest = work > largest ? work : largest;
+            seen[deal.parts[i].place]++;
+        }
+        row_deal_correct(&deal, before);
+    }
+    for (int32_t place = 0; place < rows; place++) {
+        bool whole = row_goes_on(place, samples[place], ranks);
+        right = right && seen[place] == (whole ? 1 : row_parts(samples[place]));
+    }
+    double mean = (double)sum_of(done, ranks) / ranks;
+    tap_ok(right && deal.end == deal.count, "%d rows on %d ranks: each part is dealt once", (int)rows, ranks);
+    tap_ok((double)largest_of(done, ranks) <= most * mean + (double)largest,
+           "%d ranks: predictions wrong by up to all, largest %.3f of the mean after %d stages", ranks,
+           mean > 0.0 ? (double)largest_of(done, ranks) / mean : 1.0, (int)stages);
+    row_deal_end(&deal);
+    alloc_free(seen);
+    alloc_free(done);
+    alloc_free(samples);
+}
+
+static void test_parts(void)
+{
+    bool right = row_parts(0) == 1;
+    for (int64_t sample = 1; sample < INT64_C(1) << 40; sample *= 2)
+        right = right && row_parts(sample) >= row_parts(sample / 2) && row_parts(sample) <= 64;
+    tap_ok(right && row_parts(INT64_C(1) << 40) == 64, "heavier rows have more parts, up to 64");
+}
+
+int main(void)
+{
+    for (int ranks = 1; ranks <= 1024; ranks *= 4)
+        test_items(ranks, 3000);
+    test_items(7, 0);
+    for (int ranks = 1; ranks <= 1024; ranks *= 4) {
+        test_links(ranks, 5000, 1000, "links");
+        test_links(ranks, 5000, 1, "links that cost the same");
+    }
+    test_links(16, 0, 1, "links");
+    test_links(64, 10, 1000, "links");
+    test_moving();
+    test_parts();
+    for (int ranks = 1; ranks <= 64; ranks *= 4)
+        test_rows(3000, ranks, 1.02);
+    test_rows(3000, 1024, 1.5);
+    test_rows(1, 4, 4.0);
+    test_rows(0, 4, 1.0);
+    tap_ok(alloc_balance() == 0, "all is freed");
+    return tap_done();
+}

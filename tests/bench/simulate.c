@@ -1,0 +1,639 @@
+/* Replays one run on any number of ranks, in counts, and says where it stops scaling.
+ *
+ *   build/mpi/simulate SCENE.obj [options of phr]
+ *
+ * The run is made here, on one rank, and recorded: what the sample and each part of each row of initial
+ * linking took, and for each link that was split where it came from, what was predicted and what it took.
+ * The replay deals these with the functions that phr deals with (mpi/balance.h, mpi/plan.h, mpi/assign.h)
+ * and needs no clock: a phase lasts as long as its slowest rank, a rank that needs news of others
+ * waits for the slowest of them.
+ *
+ * Counts become seconds by what each took here: seconds per test (form factors included), per link looked
+ * at, per link in a transfer, per own patch, per patch that every rank keeps up to date. Messages cost
+ * ALPHA each (an exchange with all takes log2 P of them, one where each has something else for each takes
+ * P - 1), bytes BETA each. What goes to all is taken as BYTES_PER_PATCH for each patch and
+ * iteration, about what phr sends.
+ *
+ * One line of CSV for each number of ranks, as in tests/bench/scaling.sh; on stderr, what dominates.
+ * What is not in the model: a link that was moved to even out their numbers is taken to be split where it
+ * was made; memory and its bandwidth. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "geom/alloc.h"
+#include "io/obj.h"
+#include "io/options.h"
+#include "mpi/assign.h"
+#include "mpi/balance.h"
+#include "rad/linking.h"
+#include "rad/oracle.h"
+#include "tests/solve.h"
+
+/* Seconds per message and per byte: a node of today; and the paper's Ethernet of 100 Mbit/s. */
+static const double ALPHA = 2e-6, BETA = 1e-10, ALPHA_PAPER = 1e-4, BETA_PAPER = 8e-8;
+
+enum { BYTES_PER_PATCH = 24, BYTES_PER_LINK = 32, BYTES_PER_FLUX = 32, RANKS_MOST = 4096 };
+
+/* A part of a row, or its sample. */
+struct unit {
+    int64_t work, links;
+};
+
+/* A link that was split. */
+struct event {
+    int64_t origin; /* number of the event that made it; initial links: -1 - the unit */
+    int64_t load, work;
+    int64_t kept;   /* children that were not split in the same pass */
+};
+
+struct level {
+    int64_t first, end; /* events */
+};
+
+struct pass {
+    int64_t first_level, end_level;
+    int64_t looks;      /* links before it */
+    int64_t iterations, patches;
+    int32_t *of_root;   /* patches of each root */
+};
+
+struct record {
+    int32_t rows;
+    int64_t *first_unit;  /* [rows] the sample; parts follow */
+    struct unit *units;
+    struct event *events;
+    struct level *levels;
+    struct pass *passes;
+    int64_t unit_count, unit_capacity, event_count, event_capacity, level_count, level_capacity;
+    int64_t pass_count, pass_capacity;
+    int64_t *origins;     /* of the solver's links, in their order */
+    int64_t origin_count, origin_capacity;
+    double seconds[WORK_COUNT]; /* that each kind of work took, */
+    double counts[WORK_COUNT];  /* and how much of it there was */
+};
+
+/* --- recording --- */
+
+/* Of this process: others may be on the machine. */
+static double cpu_seconds(void)
+{
+    return (double)clock() / CLOCKS_PER_SEC;
+}
+
+static void add_origin(struct record *record, int64_t origin)
+{
+    record->origins = alloc_reserve(record->origins, &record->origin_capacity,
+                                    record->origin_count + 1, sizeof *record->origins);
+    record->origins[record->origin_count++] = origin;
+}
+
+static void add_unit(struct record *record, struct solver *solver, struct unit before)
+{
+    struct unit unit = {solver_work(solver) - before.work, solver->links.count - before.links};
+    record->units = alloc_reserve(record->units, &record->unit_capacity, record->unit_count + 1,
+                                  sizeof *record->units);
+    record->units[record->unit_count++] = unit;
+    while (record->origin_count < solver->links.count)
+        add_origin(record, -record->unit_count);
+}
+
+static struct unit so_far(const struct solver *solver)
+{
+    return (struct unit){solver_work(solver), solver->links.count};
+}
+
+static void record_linking(struct record *record, struct solver *solver)
+{
+    double start = cpu_seconds();
+    struct linking linking = linking_start(&solver->method, &solver->links);
+    record->rows = linking.tree->root_count;
+    record->first_unit = alloc_array((size_t)record->rows, sizeof *record->first_unit);
+    for (int32_t place = 0; place < record->rows; place++) {
+        record->first_unit[place] = record->unit_count;
+        struct unit before = so_far(solver);
+        linking_add_sample(&linking, place);
+        add_unit(record, solver, before);
+        int parts = row_parts(record->units[record->unit_count - 1].work);
+        for (int part = 0; part < parts; part++) {
+            before = so_far(solver);
+            linking_add_part(&linking, place, part, parts);
+            add_unit(record, solver, before);
+        }
+    }
+    linking_end(&linking);
+    record->seconds[WORK_LINKING] = cpu_seconds() - start;
+    record->counts[WORK_LINKING] = (double)solver_work(solver);
+}
+
+/* Links to be split, with where they came from. */
+struct batch {
+    struct link_list links;
+    int64_t *origins;
+    int64_t count, capacity;
+};
+
+static void batch_add(struct batch *batch, struct link link, int64_t origin)
+{
+    link_list_append(&batch->links, link);
+    batch->origins = alloc_reserve(batch->origins, &batch->capacity, batch->count + 1,
+                                   sizeof *batch->origins);
+    batch->origins[batch->count++] = origin;
+}
+
+static void batch_free(struct batch *batch)
+{
+    link_list_free(&batch->links);
+    alloc_free(batch->origins);
+    *batch = (struct batch){0};
+}
+
+static void record_looks(struct record *record, struct solver *solver, struct batch *batch)
+{
+    double start = cpu_seconds();
+    int64_t kept = 0;
+    for (int64_t i = 0; i < solver->links.count; i++) {
+        struct link link = solver->links.items[i];
+        if (oracle_patch_to_split(&solver->method, &link) >= 0) {
+            batch_add(batch, link, record->origins[i]);
+            continue;
+        }
+        oracle_divide_patches(&solver->method, &link);
+        record->origins[kept] = record->origins[i];
+        solver->links.items[kept++] = link;
+    }
+    record->counts[WORK_LOOKS] += (double)solver->links.count;
+    solver->links.count = record->origin_count = kept;
+    record->seconds[WORK_LOOKS] += cpu_seconds() - start;
+}
+
+static void split_one(struct record *record, struct solver *solver, const struct batch *batch,
+                      int64_t i, struct batch *next)
+{
+    const struct link *link = &batch->links.items[i];
+    struct event event = {.origin = batch->origins[i], .load = link_load(link),
+                          .work = -solver_work(solver)};
+    struct link children[4];
+    int32_t patch = oracle_patch_to_split(&solver->method, link);
+    int count = link_split(&solver->method, link, patch, children);
+    for (int k = 0; k < count; k++) {
+        if (oracle_patch_to_split(&solver->method, &children[k]) >= 0) {
+            batch_add(next, children[k], record->event_count);
+            continue;
+        }
+        oracle_divide_patches(&solver->method, &children[k]);
+        link_list_append(&solver->links, children[k]);
+        add_origin(record, record->event_count);
+        event.kept++;
+    }
+    event.work += solver_work(solver);
+    record->events = alloc_reserve(record->events, &record->event_capacity,
+                                   record->event_count + 1, sizeof *record->events);
+    record->events[record->event_count++] = event;
+}
+
+static void record_levels(struct record *record, struct solver *solver, struct batch *batch)
+{
+    double start = cpu_seconds();
+    int64_t before = solver_work(solver);
+    while (batch->count > 0) {
+        struct batch next = {.count = 0};
+        struct level level = {.first = record->event_count};
+        for (int64_t i = 0; i < batch->count; i++)
+            split_one(record, solver, batch, i, &next);
+        solver->split_here += batch->count;
+        level.end = record->event_count;
+        record->levels = alloc_reserve(record->levels, &record->level_capacity,
+                                       record->level_count + 1, sizeof *record->levels);
+        record->levels[record->level_count++] = level;
+        batch_free(batch);
+        *batch = next;
+    }
+    batch_free(batch);
+    record->seconds[WORK_SPLITTING] += cpu_seconds() - start;
+    record->counts[WORK_SPLITTING] += (double)(solver_work(solver) - before);
+}
+
+/* The seconds of what comes between the clocks. */
+static void charge(struct record *record, enum work kind, double *clock)
+{
+    double now = cpu_seconds();
+    record->seconds[kind] += now - *clock;
+    *clock = now;
+}
+
+/* What solve_links() does. */
+static struct vote record_solution(struct record *record, struct solver *solver)
+{
+    struct vote vote;
+    solver_close(solver);
+    double clock = cpu_seconds();
+    do {
+        solver_transfer(solver);
+        charge(record, WORK_TRANSFER, &clock);
+        solver_gather(solver);
+        charge(record, WORK_PATCHES, &clock);
+        solver_push_pull(solver);
+        charge(record, WORK_OWN, &clock);
+        solver_scatter(solver);
+        charge(record, WORK_PATCHES, &clock);
+        vote = solver_vote(solver);
+        charge(record, WORK_OWN, &clock);
+    } while (vote.again);
+    return vote;
+}
+
+/* What solver_refine() does on one rank; then the solution. */
+static struct vote record_pass(struct record *record, struct solver *solver)
+{
+    struct forest *forest = solver->method.forest;
+    struct pass pass = {.first_level = record->level_count, .looks = solver->links.count};
+    struct batch batch = {.count = 0};
+    solver->pass++;
+    solver->split_here = 0;
+    solver->first_new = forest->count;
+    record_looks(record, solver, &batch);
+    record_levels(record, solver, &batch);
+    solver->shared = forest->count;
+    pass.end_level = record->level_count;
+    pass.patches = forest->count;
+    pass.of_root = alloc_array((size_t)forest->root_count, sizeof *pass.of_root);
+    for (int64_t p = 0; p < forest->count; p++)
+        pass.of_root[forest->patches[p].id.root]++;
+    int64_t before = solver->iteration;
+    struct vote vote = record_solution(record, solver);
+    pass.iterations = solver->iteration - before;
+    record->counts[WORK_TRANSFER] += (double)(pass.iterations * solver->links.count);
+    record->counts[WORK_OWN] += (double)(pass.iterations * pass.patches);
+    record->passes = alloc_reserve(record->passes, &record->pass_capacity, record->pass_count + 1,
+                                   sizeof *record->passes);
+    record->passes[record->pass_count++] = pass;
+    return vote;
+}
+
+static void record_run(struct record *record, struct solver *solver, const struct criterion *criterion)
+{
+    struct vote vote;
+    record_linking(record, solver);
+    solver_assign_roots(solver);
+    do {
+        vote = record_pass(record, solver);
+    } while (!(vote.converged && solver_is_accurate(solver)) && !vote.diverged &&
+             solver->iteration < criterion->max_iterations);
+    record->counts[WORK_PATCHES] = record->counts[WORK_OWN];
+}
+
+static void record_free(struct record *record)
+{
+    for (int64_t i = 0; i < record->pass_count; i++)
+        alloc_free(record->passes[i].of_root);
+    alloc_free(record->first_unit);
+    alloc_free(record->units);
+    alloc_free(record->events);
+    alloc_free(record->levels);
+    alloc_free(record->passes);
+    alloc_free(record->origins);
+}
+
+/* --- replaying --- */
+
+struct replay {
+    const struct record *record;
+    int ranks;
+    int32_t *of_unit, *of_event; /* the rank that had it */
+    int64_t *links;              /* [ranks] that live there */
+    double slowest[WORK_COUNT], all[WORK_COUNT];
+    double messages, bytes;      /* of the rank that has most, one after the other */
+    double migration;            /* bytes of all ranks */
+};
+
+static double most_of(const int64_t *values, int ranks)
+{
+    int64_t most = 0;
+    for (int r = 0; r < ranks; r++)
+        most = values[r] > most ? values[r] : most;
+    return (double)most;
+}
+
+static double sum_of(const int64_t *values, int ranks)
+{
+    double sum = 0.0;
+    for (int r = 0; r < ranks; r++)
+        sum += (double)values[r];
+    return sum;
+}
+
+/* An exchange with all of `bytes` arriving. */
+static void exchange(struct replay *replay, double bytes)
+{
+    replay->messages += ceil(log2(replay->ranks));
+    replay->bytes += bytes;
+}
+
+/* A unit is done by a rank: `done` grows by its work. */
+static void do_unit(struct replay *replay, int64_t unit, int rank, int64_t *done)
+{
+    done[rank] += replay->record->units[unit].work;
+    replay->links[rank] += replay->record->units[unit].links;
+    replay->of_unit[unit] = rank;
+}
+
+/* Each rank's clock is its work and its waits. `news` is when the last rank has told. */
+static void wait_for(double *clocks, int ranks, double news)
+{
+    for (int r = 0; r < ranks; r++)
+        clocks[r] = fmax(clocks[r], news);
+}
+
+static double latest(const double *clocks, int ranks)
+{
+    double last = 0.0;
+    for (int r = 0; r < ranks; r++)
+        last = fmax(last, clocks[r]);
+    return last;
+}
+
+static void advance(double *clocks, const int64_t *done, const int64_t *before, int ranks)
+{
+    for (int r = 0; r < ranks; r++)
+        clocks[r] += (double)(done[r] - before[r]);
+}
+
+static void replay_linking(struct replay *replay)
+{
+    const struct record *record = replay->record;
+    int ranks = replay->ranks;
+    int64_t *samples = alloc_array((size_t)record->rows, sizeof *samples);
+    int64_t *done = alloc_array(2 * (size_t)ranks, sizeof *done), *before = done + ranks;
+    double *clocks = alloc_array((size_t)ranks, sizeof *clocks);
+    for (int32_t place = 0; place < record->rows; place++) {
+        samples[place] = record->units[record->first_unit[place]].work;
+        do_unit(replay, record->first_unit[place], row_sampler(place, ranks), done);
+    }
+    advance(clocks, done, before, ranks);
+    double news = latest(clocks, ranks);
+    memcpy(before, done, (size_t)ranks * sizeof *done);
+    for (int32_t place = 0; place < record->rows; place++)
+        if (row_goes_on(place, samples[place], ranks))
+            do_unit(replay, record->first_unit[place] + 1, row_sampler(place, ranks), done);
+    advance(clocks, done, before, ranks);
+    wait_for(clocks, ranks, news);
+    exchange(replay, 8.0 * record->rows);
+    struct row_deal deal = row_deal_start(samples, record->rows, ranks);
+    while (row_deal_next(&deal)) {
+        news = latest(clocks, ranks);
+        memcpy(before, done, (size_t)ranks * sizeof *done);
+        for (int64_t i = deal.first; i < deal.end; i++)
+            do_unit(replay, record->first_unit[deal.parts[i].place] + 1 + deal.parts[i].part,
+                    deal.owner[i], done);
+        advance(clocks, done, before, ranks);
+        wait_for(clocks, ranks, news);
+        exchange(replay, 8.0 * ranks);
+        row_deal_correct(&deal, before);
+    }
+    replay->slowest[WORK_LINKING] = latest(clocks, ranks);
+    replay->all[WORK_LINKING] = sum_of(done, ranks);
+    row_deal_end(&deal);
+    alloc_free(clocks);
+    alloc_free(done);
+    alloc_free(samples);
+}
+
+/* As links_even_out(). */
+static void even_out(struct replay *replay)
+{
+    int ranks = replay->ranks;
+    double sum = sum_of(replay->links, ranks), most = most_of(replay->links, ranks);
+    exchange(replay, 8.0 * ranks);
+    if (most * ranks <= 1.02 * sum)
+        return;
+    for (int r = 0; r < ranks; r++)
+        replay->migration += BYTES_PER_LINK * fmax(0.0, (double)replay->links[r] - sum / ranks);
+    replay->messages += ranks - 1;
+    replay->bytes += BYTES_PER_LINK * (most - sum / ranks);
+    for (int r = 0; r < ranks; r++)
+        replay->links[r] = (int64_t)sum / ranks + (r < (int64_t)sum % ranks);
+}
+
+/* Deals one level's events that are on `rank`, at[0 .. count - 1]. */
+static void deal_events(struct replay *replay, const int64_t *at, int64_t count, int rank,
+                        const struct transfer *plan, int planned, int64_t *sent)
+{
+    int64_t *costs = alloc_array((size_t)count, sizeof *costs);
+    int *destination = alloc_array((size_t)count, sizeof *destination);
+    for (int64_t i = 0; i < count; i++)
+        costs[i] = replay->record->events[at[i]].load;
+    links_deal_out(costs, count, plan, planned, rank, destination);
+    for (int64_t i = 0; i < count; i++) {
+        replay->of_event[at[i]] = destination[i];
+        sent[rank] += destination[i] != rank ? BYTES_PER_LINK : 0;
+    }
+    alloc_free(destination);
+    alloc_free(costs);
+}
+
+/* As in mpi/refinement.c. */
+static void balance_level(struct replay *replay, const struct level *level)
+{
+    const struct record *record = replay->record;
+    int ranks = replay->ranks;
+    int64_t count = level->end - level->first;
+    int64_t *loads = alloc_array(3 * (size_t)ranks + 1, sizeof *loads);
+    int64_t *sent = loads + ranks, *first = sent + ranks;
+    int64_t *sorted = alloc_array((size_t)count, sizeof *sorted);
+    struct transfer *plan = alloc_array(2 * (size_t)ranks, sizeof *plan);
+    for (int64_t i = level->first; i < level->end; i++) {
+        int64_t origin = record->events[i].origin;
+        int rank = origin < 0 ? replay->of_unit[-1 - origin] : replay->of_event[origin];
+        replay->of_event[i] = rank;
+        loads[rank] += record->events[i].load;
+        first[rank + 1]++;
+    }
+    for (int r = 0; r < ranks; r++)
+        first[r + 1] += first[r];
+    int planned = moving_pays(loads, ranks) ? plan_transfers(loads, ranks, plan) : 0;
+    for (int64_t i = level->end - 1; i >= level->first; i--) /* ranks end where they began */
+        sorted[--first[replay->of_event[i] + 1]] = i;
+    if (planned > 0) {
+        for (int r = 0; r < ranks; r++)
+            deal_events(replay, sorted + first[r + 1], (r + 1 < ranks ? first[r + 2] : count) - first[r + 1],
+                        r, plan, planned, sent);
+        replay->messages += ranks - 1;
+        replay->bytes += most_of(sent, ranks);
+        replay->migration += sum_of(sent, ranks);
+    }
+    exchange(replay, 32.0 * ranks);
+    alloc_free(plan);
+    alloc_free(sorted);
+    alloc_free(loads);
+}
+
+static void replay_level(struct replay *replay, const struct level *level)
+{
+    const struct record *record = replay->record;
+    int64_t *work = alloc_array((size_t)replay->ranks, sizeof *work);
+    balance_level(replay, level);
+    for (int64_t i = level->first; i < level->end; i++) {
+        work[replay->of_event[i]] += record->events[i].work;
+        replay->links[replay->of_event[i]] += record->events[i].kept;
+    }
+    replay->slowest[WORK_SPLITTING] += most_of(work, replay->ranks);
+    replay->all[WORK_SPLITTING] += sum_of(work, replay->ranks);
+    alloc_free(work);
+}
+
+/* Own patches of the rank that has most. */
+static double most_own(const struct replay *replay, const struct pass *pass, const int *owner,
+                       int32_t roots)
+{
+    int64_t *own = alloc_array((size_t)replay->ranks, sizeof *own);
+    for (int32_t root = 0; root < roots; root++)
+        own[owner[root]] += pass->of_root[root];
+    double most = most_of(own, replay->ranks);
+    alloc_free(own);
+    return most;
+}
+
+static void replay_solution(struct replay *replay, const struct pass *pass, double own)
+{
+    double ranks = replay->ranks, times = (double)pass->iterations;
+    double links = most_of(replay->links, replay->ranks), patches = (double)pass->patches;
+    replay->slowest[WORK_TRANSFER] += times * links;
+    replay->all[WORK_TRANSFER] += times * sum_of(replay->links, replay->ranks);
+    replay->slowest[WORK_OWN] += times * own;
+    replay->all[WORK_OWN] += times * patches;
+    replay->slowest[WORK_PATCHES] += times * patches;
+    replay->all[WORK_PATCHES] += times * patches * ranks;
+    if (replay->ranks == 1)
+        return;
+    double proxies = fmin(2.0 * links, patches * (ranks - 1.0) / ranks);
+    replay->messages += times * (ranks - 1.0 + 4.0 * ceil(log2(ranks)));
+    replay->bytes += times * (BYTES_PER_FLUX * proxies + BYTES_PER_PATCH * patches);
+}
+
+static void replay_run(struct replay *replay, const struct scene *scene)
+{
+    const struct record *record = replay->record;
+    int32_t roots = scene_root_count(scene);
+    int *owner = alloc_array((size_t)roots, sizeof *owner);
+    replay->of_unit = alloc_array((size_t)record->unit_count, sizeof *replay->of_unit);
+    replay->of_event = alloc_array((size_t)record->event_count, sizeof *replay->of_event);
+    replay->links = alloc_array((size_t)replay->ranks, sizeof *replay->links);
+    roots_assign(scene, replay->ranks, owner);
+    replay_linking(replay);
+    even_out(replay);
+    for (int64_t k = 0; k < record->pass_count; k++) {
+        const struct pass *pass = &record->passes[k];
+        replay->slowest[WORK_LOOKS] += most_of(replay->links, replay->ranks);
+        replay->all[WORK_LOOKS] += (double)pass->looks;
+        for (int64_t l = pass->first_level; l < pass->end_level; l++) {
+            const struct level *level = &record->levels[l];
+            for (int64_t i = level->first; i < level->end; i++) {
+                int64_t origin = record->events[i].origin;
+                if (l == pass->first_level)
+                    replay->links[origin < 0 ? replay->of_unit[-1 - origin]
+                                             : replay->of_event[origin]]--;
+            }
+            replay_level(replay, level);
+        }
+        even_out(replay);
+        replay_solution(replay, pass, most_own(replay, pass, owner, roots));
+    }
+    alloc_free(owner);
+    alloc_free(replay->of_unit);
+    alloc_free(replay->of_event);
+    alloc_free(replay->links);
+}
+
+/* --- what comes out --- */
+
+static const char *const NAMES[WORK_COUNT] = {"linking", "looks", "splitting", "transfer",
+                                              "own patches", "all patches"};
+
+static double price_of(const struct record *record, int kind)
+{
+    return record->counts[kind] > 0.0 ? record->seconds[kind] / record->counts[kind] : 0.0;
+}
+
+static void print_replay(const struct replay *replay, const char *scene)
+{
+    const struct record *record = replay->record;
+    double ranks = replay->ranks, once = 0.0, shared = 0.0, parts = 0.0;
+    for (int kind = 0; kind < WORK_COUNT; kind++)
+        once += record->seconds[kind];
+    for (int kind = 0; kind < WORK_PATCHES; kind++) {
+        shared += price_of(record, kind) * replay->slowest[kind];
+        parts += price_of(record, kind) * replay->all[kind] / ranks;
+    }
+    double copies = price_of(record, WORK_PATCHES) * replay->slowest[WORK_PATCHES];
+    double talk = ALPHA * replay->messages + BETA * replay->bytes;
+    double paper = ALPHA_PAPER * replay->messages + BETA_PAPER * replay->bytes;
+    printf("%s,simulated,%d,%.6g,%.2f,%.4f,%.2f,%.2f,%.4f,%.2f\n", scene, replay->ranks,
+           shared + copies + talk, parts / shared * ranks, 1.0 - parts / shared,
+           once / (shared + copies), once / (shared + copies + talk),
+           1e-6 * replay->migration, once / (shared + copies + paper));
+    fprintf(stderr, "%5d ranks:", replay->ranks);
+    for (int kind = 0; kind < WORK_COUNT; kind++)
+        fprintf(stderr, " %s %.4g s (idle %.1f %%),", NAMES[kind],
+                price_of(record, kind) * replay->slowest[kind],
+                kind == WORK_PATCHES || replay->slowest[kind] <= 0.0
+                    ? 0.0 : 100.0 * (1.0 - replay->all[kind] / ranks / replay->slowest[kind]));
+    fprintf(stderr, " messages %.4g s, bytes %.4g s\n", ALPHA * replay->messages, BETA * replay->bytes);
+}
+
+static void print_record(const struct record *record, const char *scene)
+{
+    int64_t largest = 0;
+    for (int64_t i = 0; i < record->unit_count; i++)
+        largest = record->units[i].work > largest ? record->units[i].work : largest;
+    fprintf(stderr, "%s: %lld parts of rows, the largest %.2g of all; %lld links split in %lld levels, "
+            "%lld passes\n", scene, (long long)record->unit_count,
+            (double)largest / record->counts[WORK_LINKING], (long long)record->event_count,
+            (long long)record->level_count, (long long)record->pass_count);
+    for (int kind = 0; kind < WORK_COUNT; kind++)
+        fprintf(stderr, "  %s: %.4g, %.4g ns each\n", NAMES[kind], record->counts[kind],
+                1e9 * price_of(record, kind));
+}
+
+static void simulate(const struct comm *comm, const struct options *options, struct error *error)
+{
+    struct obj_repairs read = {0};
+    struct scene_repairs prepared;
+    struct scene *scene = obj_read(options->scene, &read, error);
+    if (!scene)
+        return;
+    if (scene_prepare(scene, &prepared, error)) {
+        struct record record = {.rows = 0};
+        struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+        struct solver *solver = solver_create(comm, scene, octree, &options->criterion);
+        record_run(&record, solver, &options->criterion);
+        print_record(&record, options->scene);
+        for (int ranks = 1; ranks <= RANKS_MOST; ranks *= 2) {
+            struct replay replay = {.record = &record, .ranks = ranks};
+            replay_run(&replay, scene);
+            print_replay(&replay, options->scene);
+        }
+        record_free(&record);
+        solver_destroy(solver);
+        octree_destroy(octree);
+    }
+    scene_destroy(scene);
+}
+
+int main(int argc, char **argv)
+{
+    struct comm comm;
+    struct options options;
+    struct error error = {0};
+    comm_start(&comm, &argc, &argv);
+    if (comm.size > 1)
+        error_set(&error, EXIT_USAGE, "simulate runs on one rank");
+    else if (options_parse(&options, argc, argv, &error))
+        simulate(&comm, &options, &error);
+    if (error.code != EXIT_DONE && comm.rank == 0)
+        fprintf(stderr, "simulate: %s\n", error.text);
+    options_free(&options);
+    comm_stop(&comm);
+    return error.code;
+}
