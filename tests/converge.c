@@ -19,6 +19,7 @@ enum { TRUTH = 6000, PATHS = 160, STEPS = 4 };
 static struct scene *read_cornell(const struct comm *comm, struct node_block *block)
 {
     struct scene *scene = NULL;
+    *block = (struct node_block){.data = NULL};
     struct error error = {0};
     struct obj_repairs read = {0};
     struct scene_repairs prepared;
@@ -43,7 +44,7 @@ struct result {
 static struct result run(const struct comm *comm, struct criterion criterion,
                          const struct truth *truth)
 {
-    struct node_block block = {.data = NULL};
+    struct node_block block;
     struct solution s = solve(comm, read_cornell(comm, &block), criterion);
     struct result result = {s.vote.converged, 0.0, 0.0, s.stats.error_estimate, s.stats.links};
     if (comm->rank == 0) {
@@ -109,7 +110,7 @@ int main(int argc, char **argv)
 {
     struct comm comm;
     comm_start(&comm, &argc, &argv);
-    struct node_block block = {.data = NULL};
+    struct node_block block;
     struct scene *scene = read_cornell(&comm, &block);
     if (scene) {
         struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
