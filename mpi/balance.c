@@ -3,7 +3,7 @@
  * Rows of initial linking. Of each row a sample is linked first (rad/linking.h), rows in turn, and
  * what that took is told to all: so all know what each row will take, within a third. Heavy rows are cut;
  * by their samples alone, so that links do not depend on the ranks. The parts are sorted, heavy
- * ones first, and dealt in stages, each of half of what is left: always to the rank with the smallest
+ * ones first, and dealt in stages, each of half of what is left, but for the last: always to the rank with the smallest
  * load. What was wrong in the prediction of one stage is made good in a later one. A stage is
  * dealt with what is known of all but the last, so nobody waits for the news of a stage that
  * somebody still works on; for the same reason, ranks go on with one in eight of their own rows, unless
@@ -186,13 +186,18 @@ void row_deal_end(struct row_deal *deal)
     *deal = (struct row_deal){0};
 }
 
+/* The last stage is dealt when no more is left than this part of all. Shorter ones are not worth it:
+ * in each, somebody waits for the heaviest part of the one before. */
+enum { LAST_SHARE = 16 };
+
 bool row_deal_next(struct row_deal *deal)
 {
     int64_t left = 0, taken = 0;
     deal->first = deal->end;
     for (int64_t i = deal->first; i < deal->count; i++)
         left += deal->parts[i].cost;
-    bool is_last = deal->count - deal->first <= 2 * (int64_t)deal->ranks;
+    deal->all = deal->first == 0 ? left : deal->all;
+    bool is_last = left <= deal->all / LAST_SHARE;
     while (deal->end < deal->count && (is_last || 2 * taken < left))
         taken += deal->parts[deal->end++].cost;
     int64_t count = deal->end - deal->first;

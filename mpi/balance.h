@@ -48,6 +48,7 @@ struct row_deal {
     int *owner;             /* [count] up to `end` */
     int64_t count;
     int64_t first, end;     /* the parts of this stage */
+    int64_t all;            /* predicted, of all parts */
     int ranks;
     int64_t *loads;         /* [ranks] what is done, and predicted of what is not known to be done */
     int64_t *planned;       /* [ranks] predicted, of this stage */

@@ -136,7 +136,7 @@ static void test_rows(int32_t rows, int ranks, double most)
 {
     int64_t *samples = alloc_array((size_t)rows, sizeof *samples);
     int64_t *done = alloc_array(2 * (size_t)ranks, sizeof *done), *before = done + ranks;
-    int *seen = alloc_array((size_t)rows, sizeof *seen);
+    uint64_t *seen = alloc_array((size_t)rows, sizeof *seen); /* a bit for each part */
     bool right = true;
     int64_t largest = 0, stages = 0;
     for (int32_t place = 0; place < rows; place++) {
@@ -144,7 +144,7 @@ static void test_rows(int32_t rows, int ranks, double most)
         done[row_sampler(place, ranks)] += samples[place];
         if (row_goes_on(place, samples[place], ranks)) {
             done[row_sampler(place, ranks)] += (LINKING_SAMPLE - 1) * samples[place];
-            seen[place]++;
+            seen[place] = 1;
         }
     }
     struct row_deal deal = row_deal_start(samples, rows, ranks);
@@ -156,13 +156,15 @@ static void test_rows(int32_t rows, int ranks, double most)
                     deal.parts[i].parts == row_parts(samples[deal.parts[i].place]);
             done[deal.owner[i]] += work;
             largest = work > largest ? work : largest;
-            seen[deal.parts[i].place]++;
+            uint64_t bit = UINT64_C(1) << deal.parts[i].part;
+            right = right && (seen[deal.parts[i].place] & bit) == 0;
+            seen[deal.parts[i].place] |= bit;
         }
         row_deal_correct(&deal, before);
     }
     for (int32_t place = 0; place < rows; place++) {
-        bool whole = row_goes_on(place, samples[place], ranks);
-        right = right && seen[place] == (whole ? 1 : row_parts(samples[place]));
+        uint64_t last = UINT64_C(1) << (row_parts(samples[place]) - 1);
+        right = right && seen[place] == last + (last - 1);
     }
     double mean = (double)sum_of(done, ranks) / ranks;
     tap_ok(right && deal.end == deal.count, "%d rows on %d ranks: each part is dealt once", (int)rows, ranks);

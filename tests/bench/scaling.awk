@@ -1,23 +1,27 @@
 # The lines of docs/scaling.csv for one scene, and on stderr the paper's Tables 1 and 2, from the --stats
-# of runs on 1, 2, 4, ... ranks, in this order. -v name=SCENE
+# of runs on 1, 2, 4, ... ranks, in this order. -v name=SCENE -v replay=FILE
 #
-# Counts become seconds by what they took on one rank. A phase lasts as long as its slowest rank.
+# Counts become seconds by what one of each took on one rank, as the replay (tests/bench/simulate.c) has
+# told on stderr: in seconds of the processor, whatever else the machine does. A phase lasts as long as its slowest rank.
 
-function price(kind) { return all[kind] > 0 ? took[kind] / all[kind] : 0 }
+BEGIN {
+    split("linking looks splitting transfer own patches", KINDS, " ")
+    while ((getline line <replay) > 0)
+        if (line ~ / ns each$/) {
+            sub(/all patches/, "patches", line)
+            split(line, word, /[ :]+/)
+            sub(/ ns each$/, "", line)
+            sub(/.*, /, "", line)
+            worth[word[2]] = 1e-9 * line
+        }
+}
+
 function log2(n) { return int(log(n) / log(2) + 0.999999) }
 
 function finish_file(   k, kind, shared, parts, copies, messages, bytes, mega) {
     if (ranks == 1) {
-        split("linking looks splitting transfer own patches", KINDS, " ")
-        took["linking"] = seconds["linking"]
-        took["splitting"] = seconds["linking"] / all["linking"] * all["splitting"]
-        took["looks"] = seconds["refinement"] > took["splitting"] ? seconds["refinement"] - took["splitting"] : 0
-        took["transfer"] = seconds["solve"]
-        took["own"] = seconds["push_pull"]
-        took["patches"] = seconds["gather"] + seconds["scatter"]
         for (k = 1; k <= 6; k++) {
-            worth[KINDS[k]] = price(KINDS[k])
-            once += took[KINDS[k]]
+            once += worth[KINDS[k]] * all[KINDS[k]]
             prices = prices sprintf("%s %s %.3g ns", k > 1 ? "," : "", KINDS[k], 1e9 * worth[KINDS[k]])
         }
         first = seconds["total"]

@@ -37,9 +37,11 @@ fi
                 --stats "$folder/$name-$ranks.json" || exit 1
             files="$files $folder/$name-$ranks.json"
         done
+        "$BUILD/simulate" "$scene" --epsilon "$EPSILON" >"$folder/$name.lines" 2>"$folder/$name.replay" || exit 1
         # Unquoted: one word for each file.
-        awk -v name="$name" -f tests/bench/scaling.awk $files || exit 1
-        "$BUILD/simulate" "$scene" --epsilon "$EPSILON" | sed "s|^[^,]*,|$name,|; s|\$|,|"
+        awk -v name="$name" -v replay="$folder/$name.replay" -f tests/bench/scaling.awk $files || exit 1
+        sed "s|^[^,]*,|$name,|; s|\$|,|" "$folder/$name.lines"
+        cat "$folder/$name.replay" >&2
     done
 } >"$folder/scaling.csv" || exit 1
 mv "$folder/scaling.csv" "$CSV"
