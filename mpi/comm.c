@@ -20,6 +20,7 @@
 
 #include <limits.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "geom/alloc.h"
 
@@ -30,6 +31,8 @@ enum {
     LONGEST_SLEEP = 1000,
     SLEEP_GROWTH = 4 /* microseconds for each test in vain */
 };
+
+enum { EXCHANGE = 7 }; /* tag of comm_exchange(); messages of one pair never overtake each other */
 
 static MPI_Comm failing_comm; /* for the handler of exhausted memory, which has no argument */
 
@@ -47,6 +50,7 @@ void comm_start(struct comm *comm, int *argc, char ***argv)
     comm_wait(&request);
     MPI_Comm_rank(comm->handle, &comm->rank);
     MPI_Comm_size(comm->handle, &comm->size);
+    comm->limit = 0;
     failing_comm = comm->handle;
     alloc_on_failure(out_of_memory);
 }
@@ -174,23 +178,68 @@ static MPI_Datatype record_of(size_t bytes)
     return record;
 }
 
-void comm_exchange_known(const struct comm *comm, const void *records, const int *counts,
-                         size_t bytes, void *arrived, const int *receive)
+/* Records of a message at most. */
+static int piece_of(const struct comm *comm)
 {
-    size_t ranks = (size_t)comm->size;
-    int *send_at = alloc_array(2 * ranks, sizeof *send_at), *receive_at = send_at + ranks;
-    comm_displacements(comm, counts, send_at);
-    comm_displacements(comm, receive, receive_at);
-    MPI_Datatype record = record_of(bytes);
-    MPI_Request request;
-    MPI_Ialltoallv(records, counts, send_at, record, arrived, receive, receive_at, record,
-                   comm->handle, &request);
-    comm_wait(&request);
-    MPI_Type_free(&record);
-    alloc_free(send_at);
+    return comm->limit > 0 ? comm->limit : INT_MAX;
 }
 
-void *comm_exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
+/* Pieces that records for one rank, or from one, take. */
+static int64_t pieces_of(const struct comm *comm, int count)
+{
+    return ((int64_t)count + piece_of(comm) - 1) / piece_of(comm);
+}
+
+/* Receives, or sends, `count` records from or to another rank, piece by piece. Returns how many. */
+static int64_t pass(const struct comm *comm, bool receives, char *records, int64_t count, size_t bytes,
+                    MPI_Datatype record, int other, MPI_Request *requests)
+{
+    int64_t pieces = 0;
+    for (int64_t at = 0; at < count; at += piece_of(comm)) {
+        int now = (int)(count - at < piece_of(comm) ? count - at : piece_of(comm));
+        char *piece = records + (size_t)at * bytes;
+        if (receives)
+            MPI_Irecv(piece, now, record, other, EXCHANGE, comm->handle, &requests[pieces++]);
+        else
+            MPI_Isend(piece, now, record, other, EXCHANGE, comm->handle, &requests[pieces++]);
+    }
+    return pieces;
+}
+
+/* One message to each rank that gets something, in pieces where it is long: no count is ever too large
+ * for MPI, and those who have nothing for each other need not meet. What a rank has for itself is
+ * copied. */
+void comm_exchange_known(const struct comm *comm, void *records, const int *counts, size_t bytes,
+                         void *arrived, const int *receive)
+{
+    char *out = records, *in = arrived, *own_out = NULL, *own_in = NULL;
+    int64_t count = 0;
+    for (int r = 0; r < comm->size; r++)
+        count += pieces_of(comm, counts[r]) + pieces_of(comm, receive[r]);
+    MPI_Request *requests = alloc_array((size_t)count, sizeof *requests);
+    MPI_Datatype record = record_of(bytes);
+    count = 0;
+    for (int r = 0; r < comm->size; in += (size_t)receive[r++] * bytes) {
+        if (r == comm->rank)
+            own_in = in;
+        else
+            count += pass(comm, true, in, receive[r], bytes, record, r, requests + count);
+    }
+    for (int r = 0; r < comm->size; out += (size_t)counts[r++] * bytes) {
+        if (r == comm->rank)
+            own_out = out;
+        else
+            count += pass(comm, false, out, counts[r], bytes, record, r, requests + count);
+    }
+    if (counts[comm->rank] > 0)
+        memcpy(own_in, own_out, (size_t)counts[comm->rank] * bytes);
+    for (int64_t i = 0; i < count; i++)
+        comm_wait(&requests[i]);
+    MPI_Type_free(&record);
+    alloc_free(requests);
+}
+
+void *comm_exchange(const struct comm *comm, void *records, const int *counts, size_t bytes,
                     int64_t *arriving)
 {
     int *receive = alloc_array((size_t)comm->size, sizeof *receive);

@@ -369,7 +369,7 @@ static void test_ranks(const struct comm *comm, const struct comm *self, enum cl
 
 int main(int argc, char **argv)
 {
-    struct comm comm, self = {MPI_COMM_SELF, 0, 1};
+    struct comm comm, self = {.handle = MPI_COMM_SELF, .size = 1};
     comm_start(&comm, &argc, &argv);
     test_dense(&comm, CLOSURE_NONE, 0.5, 0);
     test_dense(&comm, CLOSURE_NONE, 0.99, 0);

@@ -442,9 +442,41 @@ static void test_picture(const struct comm *comm)
     alloc_free(picture);
 }
 
+/* Records in pieces of any size arrive as they do in one: from rank s to rank r go (7 s + 3 r) mod 11. */
+static void test_pieces(struct comm *comm)
+{
+    enum { MOST = 11 };
+    struct note {
+        int32_t from, to, number;
+    };
+    for (int limit = 0; limit <= 4; limit++) {
+        int *counts = alloc_array((size_t)comm->size, sizeof *counts);
+        struct note *notes = alloc_array((size_t)comm->size * MOST, sizeof *notes);
+        int64_t sent = 0, arriving, expected = 0;
+        for (int r = 0; r < comm->size; r++) {
+            counts[r] = (7 * comm->rank + 3 * r) % MOST;
+            for (int i = 0; i < counts[r]; i++)
+                notes[sent++] = (struct note){comm->rank, r, i};
+        }
+        comm->limit = limit;
+        struct note *in = comm_exchange(comm, notes, counts, sizeof *notes, &arriving);
+        comm->limit = 0;
+        bool right = true;
+        for (int s = 0; s < comm->size; s++)
+            for (int i = 0; i < (7 * s + 3 * comm->rank) % MOST; i++, expected++)
+                right = right && expected < arriving && in[expected].from == s &&
+                        in[expected].to == comm->rank && in[expected].number == i;
+        report(comm, right && arriving == expected,
+               limit == 0 ? "records arrive in order" : "also a few at a time");
+        alloc_free(in);
+        alloc_free(notes);
+        alloc_free(counts);
+    }
+}
+
 int main(int argc, char **argv)
 {
-    struct comm comm, self = {MPI_COMM_SELF, 0, 1};
+    struct comm comm, self = {.handle = MPI_COMM_SELF, .size = 1};
     comm_start(&comm, &argc, &argv);
     struct scene *scene = make_scene();
     struct solver *parallel = make_solver(&comm, scene), *alone = make_solver(&self, scene);
@@ -452,6 +484,7 @@ int main(int argc, char **argv)
     test_migration(parallel, alone);
     test_picture(&comm);
     test_gather_all(&comm);
+    test_pieces(&comm);
     test_sums(&comm);
     test_broadcasts(&comm);
     struct criterion criterion = criterion_of(3e-4, 10, 1e-3);

@@ -267,14 +267,4 @@ static inline int MPI_Ialltoall(const void *send, int count, MPI_Datatype type, 
     return MPI_Iallgather(send, count, type, receive, receive_count, receive_type, comm, request);
 }
 
-static inline int MPI_Ialltoallv(const void *send, const int *counts, const int *displacements,
-                                 MPI_Datatype type, void *receive, const int *receive_counts,
-                                 const int *receive_displacements, MPI_Datatype receive_type,
-                                 MPI_Comm comm, MPI_Request *request)
-{
-    (void)displacements;
-    return MPI_Iallgatherv(send, counts[0], type, receive, receive_counts, receive_displacements,
-                           receive_type, comm, request);
-}
-
 #endif
