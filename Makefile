@@ -7,6 +7,7 @@
 #                        $(BUILD)/parsing, a bench of reading OBJ
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
+#   make growth          docs/growth.csv, docs/growth.svg: rooms of 1,000 to 32,000 triangles
 #   make scaling         docs/scaling.csv and docs/scaling.svg: speed-up from counted work, up to 4,096 ranks
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
@@ -142,6 +143,10 @@ $(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/
 chart: $(BENCHES:%=$(BUILD)/%) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/chart.sh
 
+# About four minutes on two cores.
+growth: $(PHR) build/room
+	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/growth.sh
+
 # About half an hour on two cores.
 scaling: $(PHR) $(BUILD)/simulate build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
@@ -185,4 +190,4 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench errors chart scaling check check-long golden portability fuzz install uninstall clean FORCE
+.PHONY: all demo tests room bench errors chart growth scaling check check-long golden portability fuzz install uninstall clean FORCE

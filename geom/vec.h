@@ -59,6 +59,17 @@ static inline double vec3_axis(struct vec3 a, int axis)
     return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
 }
 
+/* As fmin() and fmax() for what is not NaN; compilers make one instruction of them. */
+static inline double real_min(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double real_max(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 static inline double rgb_sum(struct rgb c)
 {
     return c.band[0] + c.band[1] + c.band[2];

@@ -376,7 +376,7 @@ static struct range distances(const struct plane *plane, const struct triangle *
     double a = plane_distance(plane, t->corner[0]);
     double b = plane_distance(plane, t->corner[1]);
     double c = plane_distance(plane, t->corner[2]);
-    return (struct range){fmin(a, fmin(b, c)), fmax(a, fmax(b, c))};
+    return (struct range){real_min(a, real_min(b, c)), real_max(a, real_max(b, c))};
 }
 
 /* The plane through the edge ab and the point u in front of the wall, its front outwards. */

@@ -158,7 +158,7 @@ void boxtree_destroy(struct boxtree *tree)
 /* The largest product of a number in [a, b] and one in [c, d]. */
 static double largest_product(double a, double b, double c, double d)
 {
-    return fmax(fmax(a * c, a * d), fmax(b * c, b * d));
+    return real_max(real_max(a * c, a * d), real_max(b * c, b * d));
 }
 
 /* No corner of q is further in front of a plane of p than this. */

@@ -47,7 +47,7 @@ static double reach_above(const struct plane *plane, const struct triangle *t)
     double a = plane_distance(plane, t->corner[0]);
     double b = plane_distance(plane, t->corner[1]);
     double c = plane_distance(plane, t->corner[2]);
-    return fmax(a, fmax(b, c));
+    return real_max(a, real_max(b, c));
 }
 
 bool facets_face(const struct facet *p, const struct facet *q)
