@@ -91,26 +91,16 @@ struct scene *scene_view(struct pack *pack)
     return scene;
 }
 
-static double smaller(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static double larger(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 static void find_bounds(struct scene *scene)
 {
     scene->low = scene->high = scene->triangles[0].corner[0];
     for (int32_t i = 0; i < scene->input_count; i++) {
         for (int k = 0; k < 3; k++) {
             struct vec3 x = scene->triangles[i].corner[k];
-            scene->low = (struct vec3){smaller(scene->low.x, x.x), smaller(scene->low.y, x.y),
-                                       smaller(scene->low.z, x.z)};
-            scene->high = (struct vec3){larger(scene->high.x, x.x), larger(scene->high.y, x.y),
-                                        larger(scene->high.z, x.z)};
+            scene->low = (struct vec3){real_min(scene->low.x, x.x), real_min(scene->low.y, x.y),
+                                       real_min(scene->low.z, x.z)};
+            scene->high = (struct vec3){real_max(scene->high.x, x.x), real_max(scene->high.y, x.y),
+                                        real_max(scene->high.z, x.z)};
         }
     }
 }
@@ -134,7 +124,7 @@ static bool normalise(struct scene *scene, struct error *error)
         return error_set(error, EXIT_USAGE, "a coordinate is out of range");
     find_bounds(scene);
     struct vec3 size = vec3_sub(scene->high, scene->low);
-    double extent = larger(size.x, larger(size.y, size.z));
+    double extent = real_max(size.x, real_max(size.y, size.z));
     int exponent;
     frexp(extent, &exponent);
     if (!(extent > 0.0))

@@ -190,18 +190,19 @@ static int64_t pieces_of(const struct comm *comm, int count)
     return ((int64_t)count + piece_of(comm) - 1) / piece_of(comm);
 }
 
-/* Receives, or sends, `count` records from or to another rank, piece by piece. Returns how many. */
-static int64_t pass(const struct comm *comm, bool receives, char *records, int64_t count, size_t bytes,
+/* Receives `count` records from another rank, or sends them to it, piece by piece: one of `in` and
+ * `out` is NULL. Returns how many pieces. */
+static int64_t pass(const struct comm *comm, char *in, const char *out, int64_t count, size_t bytes,
                     MPI_Datatype record, int other, MPI_Request *requests)
 {
     int64_t pieces = 0;
     for (int64_t at = 0; at < count; at += piece_of(comm)) {
         int now = (int)(count - at < piece_of(comm) ? count - at : piece_of(comm));
-        char *piece = records + (size_t)at * bytes;
-        if (receives)
-            MPI_Irecv(piece, now, record, other, EXCHANGE, comm->handle, &requests[pieces++]);
+        size_t skip = (size_t)at * bytes;
+        if (in)
+            MPI_Irecv(in + skip, now, record, other, EXCHANGE, comm->handle, &requests[pieces++]);
         else
-            MPI_Isend(piece, now, record, other, EXCHANGE, comm->handle, &requests[pieces++]);
+            MPI_Isend(out + skip, now, record, other, EXCHANGE, comm->handle, &requests[pieces++]);
     }
     return pieces;
 }
@@ -209,10 +210,11 @@ static int64_t pass(const struct comm *comm, bool receives, char *records, int64
 /* One message to each rank that gets something, in pieces where it is long: no count is ever too large
  * for MPI, and those who have nothing for each other need not meet. What a rank has for itself is
  * copied. */
-void comm_exchange_known(const struct comm *comm, void *records, const int *counts, size_t bytes,
-                         void *arrived, const int *receive)
+void comm_exchange_known(const struct comm *comm, const void *records, const int *counts,
+                         size_t bytes, void *arrived, const int *receive)
 {
-    char *out = records, *in = arrived, *own_out = NULL, *own_in = NULL;
+    const char *out = records, *own_out = NULL;
+    char *in = arrived, *own_in = NULL;
     int64_t count = 0;
     for (int r = 0; r < comm->size; r++)
         count += pieces_of(comm, counts[r]) + pieces_of(comm, receive[r]);
@@ -223,13 +225,13 @@ void comm_exchange_known(const struct comm *comm, void *records, const int *coun
         if (r == comm->rank)
             own_in = in;
         else
-            count += pass(comm, true, in, receive[r], bytes, record, r, requests + count);
+            count += pass(comm, in, NULL, receive[r], bytes, record, r, requests + count);
     }
     for (int r = 0; r < comm->size; out += (size_t)counts[r++] * bytes) {
         if (r == comm->rank)
             own_out = out;
         else
-            count += pass(comm, false, out, counts[r], bytes, record, r, requests + count);
+            count += pass(comm, NULL, out, counts[r], bytes, record, r, requests + count);
     }
     if (counts[comm->rank] > 0)
         memcpy(own_in, own_out, (size_t)counts[comm->rank] * bytes);
@@ -239,7 +241,7 @@ void comm_exchange_known(const struct comm *comm, void *records, const int *coun
     alloc_free(requests);
 }
 
-void *comm_exchange(const struct comm *comm, void *records, const int *counts, size_t bytes,
+void *comm_exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
                     int64_t *arriving)
 {
     int *receive = alloc_array((size_t)comm->size, sizeof *receive);

@@ -10,8 +10,8 @@
  *
  * Of n roots, row i has the next n / 2 in the order of the tree, around its end, so all rows are
  * equally long. What they take differs thirtyfold, by where they lie, and next to nothing that can be
- * known of a row tells it beforehand. So each row is begun with a sample, every sixteenth group of
- * four: what that takes tells what the rest will take (correlation 0.97 in furnished rooms), and costs
+ * known of a row tells it beforehand. So each row is begun with a sample, every sixteenth leaf of
+ * the tree: what that takes tells what the rest will take (correlation 0.97 in furnished rooms), and costs
  * 1 % more, since shadows are found twice. The rest can be linked in parts.
  *
  * Tried and left out: groups in place of the one root (four roots are seldom hidden by one wall: half

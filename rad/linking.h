@@ -1,4 +1,4 @@
-/* Initial linking of roots in groups. */
+/* Initial linking: the pairs of roots, row by row. */
 #ifndef RAD_LINKING_H
 #define RAD_LINKING_H
 
@@ -17,7 +17,7 @@ struct linking {
 struct linking linking_start(struct method *method, struct link_list *links);
 void linking_end(struct linking *linking);
 
-/* Of a row, one group of places in so many is its sample. */
+/* Of a row, one leaf of the tree in so many is its sample. */
 enum { LINKING_SAMPLE = 16 };
 
 /* Links the root at this place of the tree's order with those roots of its row that it can exchange light
