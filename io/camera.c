@@ -152,7 +152,7 @@ void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 
         struct vec3 arm = vec3_sub(corner, middle);
         double across = fabs(vec3_dot(arm, right)) / (slope * aspect);
         double up = fabs(vec3_dot(arm, above)) / slope;
-        distance = fmax(distance, MARGIN * fmax(across, up) + vec3_dot(arm, back));
+        distance = real_max(distance, MARGIN * real_max(across, up) + vec3_dot(arm, back));
     }
     camera->at = scene_to_input(scene, middle);
     camera->eye = scene_to_input(scene, vec3_add(middle, vec3_scale(back, distance)));
