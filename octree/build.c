@@ -2,10 +2,15 @@
  *
  * A triangle belongs to the one cell that holds its centroid, however far it sticks out, and the
  * box of a cell is the box of its triangles. So each triangle is recorded once, nothing can fall
- * between two cells, and the memory is known beforehand. Cells are split where that pays: with
- * the chance p_i that a line which meets the cell's box meets that of child i, the ratio of the
- * boxes' areas, splitting costs NODE_COST + sum p_i n_i triangle tests, and not splitting n. The
- * queue of cells replaces recursion, and TREE_DEPTH ends the splitting of what lies in one point.
+ * between two cells, and the memory is known beforehand.
+ *
+ * The octants of a cell are not cubes: it is cut across z, the halves across y and the quarters
+ * across x, each where that pays most. With the chance p_i that a line which meets a box meets that
+ * of part i, the ratio of the boxes' areas, a cell that is cut costs sum p_i n_i triangle tests, one
+ * that is not n. Cut through their middles, cells took a third more node and triangle tests in
+ * furnished rooms; the longest axis first saved only 2 % more. Cells are split as long as that saves more
+ * than the NODE_COST of looking at eight boxes. The queue of cells replaces recursion, and TREE_DEPTH
+ * ends the splitting of what lies in one point.
  *
  * A record holds the triangle's affine maps in float, with a bound on their error: for |x| <= 1
  * each product and sum is off by at most 2^-24 of r1 = |r0| + |r1| + |r2| + |r3|, there are seven
@@ -17,7 +22,10 @@
 #include "geom/alloc.h"
 #include "octree/tree.h"
 
-enum { LEAF_MAX = 16 }; /* a larger cell is always split */
+enum {
+    LEAF_MAX = 16, /* a larger cell is always split */
+    BINS = 16      /* a cut is looked for at their edges */
+};
 
 static const double NODE_COST = 2.0;          /* of a node, in triangle tests */
 static const double ERROR = 16.0 / 16777216.0; /* 16 x 2^-24 */
@@ -29,8 +37,6 @@ struct box {
 
 /* A cell that waits to be split or made a leaf. */
 struct cell {
-    struct vec3 centre;
-    double half;
     int32_t begin, end, depth;
     int32_t node, octant; /* where it hangs */
 };
@@ -49,8 +55,8 @@ static struct box box_of(const struct builder *builder, int32_t begin, int32_t e
     for (int32_t i = begin; i < end; i++) {
         for (int k = 0; k < 3; k++) {
             struct vec3 x = builder->triangles[builder->order[i]].corner[k];
-            low = (struct vec3){fmin(low.x, x.x), fmin(low.y, x.y), fmin(low.z, x.z)};
-            high = (struct vec3){fmax(high.x, x.x), fmax(high.y, x.y), fmax(high.z, x.z)};
+            low = (struct vec3){real_min(low.x, x.x), real_min(low.y, x.y), real_min(low.z, x.z)};
+            high = (struct vec3){real_max(high.x, x.x), real_max(high.y, x.y), real_max(high.z, x.z)};
         }
     }
     return (struct box){low, high};
@@ -62,35 +68,103 @@ static double box_area(struct box box)
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-static int octant_of(struct vec3 x, struct vec3 centre)
+static double centroid_of(const struct builder *builder, int32_t i, int axis)
 {
-    return (x.x >= centre.x ? 1 : 0) | (x.y >= centre.y ? 2 : 0) | (x.z >= centre.z ? 4 : 0);
+    return vec3_axis(triangle_centroid(&builder->triangles[builder->order[i]]), axis);
 }
 
-/* Sorts the cell's run of `order` by octant, keeping the order within each; octant k is then
- * start[k] to start[k + 1]. */
-static void sort_by_octant(struct builder *builder, const struct cell *cell, int32_t start[9])
+/* Triangles with their centroids in one slice, and the box around them. */
+struct bin {
+    struct box box;
+    int32_t count;
+};
+
+static void bin_add(struct bin *bin, const struct bin *more)
 {
-    int32_t size[LANES] = {0}, next[LANES];
-    for (int32_t i = cell->begin; i < cell->end; i++) {
-        builder->scratch[i] = builder->order[i];
-        struct vec3 x = triangle_centroid(&builder->triangles[builder->order[i]]);
-        size[octant_of(x, cell->centre)]++;
+    struct box a = bin->box, b = more->box;
+    if (more->count == 0)
+        return;
+    if (bin->count > 0)
+        b = (struct box){{real_min(a.low.x, b.low.x), real_min(a.low.y, b.low.y), real_min(a.low.z, b.low.z)},
+                         {real_max(a.high.x, b.high.x), real_max(a.high.y, b.high.y),
+                          real_max(a.high.z, b.high.z)}};
+    *bin = (struct bin){b, bin->count + more->count};
+}
+
+static double bin_cost(const struct bin *bin)
+{
+    return bin->count > 0 ? bin->count * box_area(bin->box) : 0.0;
+}
+
+/* Sorts what has its centroid between low and high, low < high, into bins. */
+static void fill_bins(const struct builder *builder, int32_t begin, int32_t end, int axis,
+                      double low, double high, struct bin bins[BINS])
+{
+    for (int32_t i = begin; i < end; i++) {
+        int k = (int)(BINS * ((centroid_of(builder, i, axis) - low) / (high - low)));
+        struct bin one = {box_of(builder, i, i + 1), 1};
+        bin_add(&bins[k < BINS ? k : BINS - 1], &one);
     }
+}
+
+/* Where to cut a run across an axis: centroids below go to the first part. All do if they are in one
+ * place. */
+static double find_cut(const struct builder *builder, int32_t begin, int32_t end, int axis)
+{
+    double low = HUGE_VAL, high = -HUGE_VAL, left[BINS], least = HUGE_VAL;
+    struct bin bins[BINS] = {{.count = 0}}, sum = {.count = 0};
+    int best = BINS;
+    for (int32_t i = begin; i < end; i++) {
+        low = real_min(low, centroid_of(builder, i, axis));
+        high = real_max(high, centroid_of(builder, i, axis));
+    }
+    if (!(high - low > GEOM_ROUNDING))
+        return HUGE_VAL;
+    fill_bins(builder, begin, end, axis, low, high, bins);
+    for (int k = 0; k < BINS; k++) {
+        left[k] = bin_cost(&sum);
+        bin_add(&sum, &bins[k]);
+    }
+    sum.count = 0;
+    for (int k = BINS - 1; k > 0; k--) {
+        bin_add(&sum, &bins[k]);
+        double cost = left[k] + bin_cost(&sum);
+        if (cost < least) {
+            least = cost;
+            best = k;
+        }
+    }
+    return low + (high - low) * best / BINS;
+}
+
+/* Cuts a run of `order`, keeping the order within each part. Returns where the second begins. */
+static int32_t cut(struct builder *builder, int32_t begin, int32_t end, int axis)
+{
+    double at = find_cut(builder, begin, end, axis);
+    int32_t middle = begin, above = 0;
+    for (int32_t i = begin; i < end; i++)
+        if (centroid_of(builder, i, axis) < at)
+            builder->order[middle++] = builder->order[i];
+        else
+            builder->scratch[above++] = builder->order[i];
+    for (int32_t i = 0; i < above; i++)
+        builder->order[middle + i] = builder->scratch[i];
+    return middle;
+}
+
+/* Sorts the cell's run of `order` by octant; octant k is then start[k] to start[k + 1]. */
+static void sort_by_octant(struct builder *builder, const struct cell *cell, int32_t start[LANES + 1])
+{
     start[0] = cell->begin;
-    for (int k = 0; k < LANES; k++) {
-        next[k] = start[k];
-        start[k + 1] = start[k] + size[k];
-    }
-    for (int32_t i = cell->begin; i < cell->end; i++) {
-        struct vec3 x = triangle_centroid(&builder->triangles[builder->scratch[i]]);
-        builder->order[next[octant_of(x, cell->centre)]++] = builder->scratch[i];
-    }
+    start[LANES] = cell->end;
+    for (int axis = 2, step = LANES; axis >= 0; axis--, step /= 2)
+        for (int k = 0; k < LANES; k += step)
+            start[k + step / 2] = cut(builder, start[k], start[k + step], axis);
 }
 
 /* True if splitting costs less than testing all triangles of the cell. */
 static bool split_pays(const struct builder *builder, const struct cell *cell,
-                       const int32_t start[9])
+                       const int32_t start[LANES + 1])
 {
     double whole = box_area(box_of(builder, cell->begin, cell->end)), cost = NODE_COST;
     for (int k = 0; k < LANES; k++)
@@ -104,7 +178,7 @@ static bool split_pays(const struct builder *builder, const struct cell *cell,
 static void set_interval(float *middle, float *half, double low, double high)
 {
     *middle = (float)(0.5 * (low + high));
-    double reach = fmax(high - (double)*middle, (double)*middle - low);
+    double reach = real_max(high - (double)*middle, (double)*middle - low);
     *half = (float)(reach * (1.0 + 1e-6) + 1e-30);
 }
 
@@ -137,34 +211,29 @@ static void append_cell(struct builder *builder, struct cell cell)
 }
 
 /* Hangs a new node below the cell's place and its non-empty octants below that. */
-static int32_t split_cell(struct builder *builder, const struct cell *cell, const int32_t start[9])
+static int32_t split_cell(struct builder *builder, const struct cell *cell, const int32_t start[LANES + 1])
 {
     int32_t node = append_node(builder);
-    double h = 0.5 * cell->half;
     for (int k = 0; k < LANES; k++) {
         if (start[k] == start[k + 1])
             continue;
-        struct vec3 step = {k & 1 ? h : -h, k & 2 ? h : -h, k & 4 ? h : -h};
         struct box box = box_of(builder, start[k], start[k + 1]);
         struct node *at = &builder->tree.nodes[node];
         set_interval(&at->middle[0][k], &at->half[0][k], box.low.x, box.high.x);
         set_interval(&at->middle[1][k], &at->half[1][k], box.low.y, box.high.y);
         set_interval(&at->middle[2][k], &at->half[2][k], box.low.z, box.high.z);
-        append_cell(builder, (struct cell){vec3_add(cell->centre, step), h, start[k], start[k + 1],
-                                           cell->depth + 1, node, k});
+        append_cell(builder, (struct cell){start[k], start[k + 1], cell->depth + 1, node, k});
     }
     return node;
 }
 
 static void process_cell(struct builder *builder, struct cell cell)
 {
-    int32_t count = cell.end - cell.begin, start[9], child;
-    bool is_root = cell.node < 0, splits = is_root;
-    if (count > 1 && cell.depth < TREE_DEPTH) {
+    int32_t count = cell.end - cell.begin, start[LANES + 1], child;
+    bool is_root = cell.node < 0, splits = false;
+    if (is_root || (count > 1 && cell.depth < TREE_DEPTH)) {
         sort_by_octant(builder, &cell, start);
-        splits = splits || count > LEAF_MAX || split_pays(builder, &cell, start);
-    } else if (is_root) {
-        sort_by_octant(builder, &cell, start);
+        splits = is_root || count > LEAF_MAX || split_pays(builder, &cell, start);
     }
     child = splits ? split_cell(builder, &cell, start) : ~append_leaf(builder, &cell);
     if (!is_root)
@@ -207,10 +276,7 @@ struct tree tree_build(const struct triangle *triangles, const struct plane *pla
         return builder.tree;
     builder.scratch = alloc_array((size_t)count, sizeof *builder.scratch);
     struct box box = box_of(&builder, 0, count);
-    struct vec3 size = vec3_sub(box.high, box.low);
-    append_cell(&builder, (struct cell){.centre = vec3_middle(box.low, box.high),
-                                        .half = 0.5 * fmax(size.x, fmax(size.y, size.z)),
-                                        .end = count, .node = -1});
+    append_cell(&builder, (struct cell){.end = count, .node = -1});
     for (int64_t at = 0; at < builder.queue_count; at++)
         process_cell(&builder, builder.queue[at]);
     struct tree *tree = &builder.tree;
