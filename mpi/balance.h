@@ -10,8 +10,6 @@
 #include "mpi/plan.h"
 #include "rad/link.h"
 
-enum { TESTS_PER_FORM_FACTOR = 8 };
-
 /* --- single items, whose costs all ranks know --- */
 
 /* Deals items in the given order, each to the rank with the smallest load, of equal ones the lowest.

@@ -41,9 +41,9 @@ static void link_samples(struct solver *solver, struct linking *linking, int64_t
     for (int32_t place = 0; place < rows; place++) {
         if (row_sampler(place, ranks) != rank)
             continue;
-        own[place] = -solver_work(solver);
+        own[place] = -method_work(&solver->method);
         linking_add_sample(linking, place);
-        own[place] += solver_work(solver);
+        own[place] += method_work(&solver->method);
     }
     MPI_Request request;
     MPI_Iallreduce(own, samples, rows, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
@@ -75,11 +75,11 @@ void solver_link_roots(struct solver *solver)
     int32_t rows = linking.tree->root_count;
     int64_t *samples = alloc_array((size_t)rows, sizeof *samples);
     int64_t *done = alloc_array((size_t)comm->size, sizeof *done);
-    int64_t before = solver_work(solver), own;
+    int64_t before = method_work(&solver->method), own;
     link_samples(solver, &linking, samples);
     struct row_deal deal = row_deal_start(samples, rows, comm->size);
     while (row_deal_next(&deal)) {
-        own = solver_work(solver) - before;
+        own = method_work(&solver->method) - before;
         MPI_Request request = start_telling(comm, &own, done);
         link_stage(solver, &linking, &deal);
         wait_idle(solver, &request);
@@ -87,7 +87,7 @@ void solver_link_roots(struct solver *solver)
     }
     struct phase_work phase = {.kind = WORK_LINKING, .links = linking.touched,
                                .predicted = deal.loads[comm->rank],
-                               .work = solver_work(solver) - before};
+                               .work = method_work(&solver->method) - before};
     ledger_add(&solver->ledger, phase);
     solver->pairs_touched = linking.touched;
     row_deal_end(&deal);

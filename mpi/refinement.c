@@ -2,11 +2,11 @@
  *
  * `prolific` holds the links of one level that will be split. Before each level the ranks
  * exchange their loads, the sums of predicted costs; each decides alike where links go
- * (mpi/balance.h). Then each rank splits what it has: children that are to be split too form the next level, the
- * others join the links.
+ * (mpi/balance.h). Then each rank splits what it has: children that are to be split too form the
+ * next level, the others join the links.
  *
- * What was split stays where that was done; light is transferred over links where they are. So at the end
- * their numbers are evened out, but for --balance greedy, the paper's.
+ * What was split stays where that was done; light is transferred over links where they are. So
+ * at the end their numbers are evened out, but for --balance greedy, the paper's.
  *
  * Predicted cost and work of each level go into the ledger (mpi/ledger.h). */
 #include "mpi/balance.h"
@@ -59,6 +59,15 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
     solver->links.count = kept;
 }
 
+/* The largest sum of a patch's radiosities. */
+static double brightest_patch(const struct forest *forest)
+{
+    double brightest = 0.0;
+    for (int64_t p = 0; p < forest->count; p++)
+        brightest = real_max(brightest, rgb_sum(forest->patches[p].radiosity));
+    return brightest;
+}
+
 /* The total exchange of loads. Waiting here is idle time. */
 static struct load_notice *exchange_loads(struct solver *solver, struct load_notice own)
 {
@@ -73,8 +82,8 @@ static struct load_notice *exchange_loads(struct solver *solver, struct load_not
     return notices;
 }
 
-/* LoadBalance of Algorithm 1. `phase` receives what this rank has of the level. Returns the links of
- * all ranks. */
+/* LoadBalance of Algorithm 1. `phase` receives what this rank has of the level. Returns the
+ * links of all ranks. */
 static struct level balance_load(struct solver *solver, struct link_list *prolific, int64_t level,
                                  struct phase_work *phase)
 {
@@ -166,8 +175,8 @@ static bool level_fits(struct solver *solver, const struct level *level, int64_t
     return memory_has_room(memory, level->kept, level->prolific, solver->shared);
 }
 
-/* Splits level after level. Returns false if a signal or the memory limit ended that: then the links
- * that were to be split are in `prolific`. */
+/* Splits level after level. Returns false if a signal or the memory limit ended that: then the
+ * links that were to be split are in `prolific`. */
 static bool split_levels(struct solver *solver, struct link_list *prolific)
 {
     struct link_list next = {0};
@@ -186,9 +195,9 @@ static bool split_levels(struct solver *solver, struct link_list *prolific)
         }
         made += PATCHES_PER_SPLIT * links.prolific;
         double start = comm_seconds();
-        phase.work = -solver_work(solver);
+        phase.work = -method_work(&solver->method);
         split_level(solver, prolific, &next);
-        phase.work += solver_work(solver);
+        phase.work += method_work(&solver->method);
         ledger_add(&solver->ledger, phase);
         link_list_free(prolific);
         *prolific = next;
@@ -197,16 +206,22 @@ static bool split_levels(struct solver *solver, struct link_list *prolific)
     }
 }
 
+void solver_begin_pass(struct solver *solver)
+{
+    solver->pass++;
+    forest_bound(solver->method.forest);
+    solver->method.brightest = brightest_patch(solver->method.forest);
+    solver->split_here = 0;
+    solver->first_new = solver->shared = solver->method.forest->count;
+}
+
 bool solver_refine(struct solver *solver)
 {
     struct memory *memory = &solver->memory;
     struct link_list prolific = {0};
     double start = comm_seconds();
     bool done = true;
-    solver->pass++;
-    forest_bound(solver->method.forest);
-    solver->split_here = 0;
-    solver->first_new = solver->shared = solver->method.forest->count;
+    solver_begin_pass(solver);
     if (memory->limit == 0 || memory->reached != memory->limit) {
         memory->reached = 0;
         select_prolific(solver, &prolific);

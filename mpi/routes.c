@@ -37,10 +37,8 @@ static bool *mark_receivers(const struct solver *solver)
 {
     const struct forest *forest = solver->method.forest;
     bool *marked = alloc_array((size_t)forest->count, sizeof *marked);
-    for (int64_t i = 0; i < solver->links.count; i++) {
+    for (int64_t i = 0; i < solver->links.seen; i++) {
         const struct link *link = &solver->links.items[i];
-        if (link->seen == 0)
-            continue;
         mark(forest, link->p, link->parts_p, marked);
         mark(forest, link->q, link->parts_q, marked);
     }

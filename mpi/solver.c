@@ -87,13 +87,6 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
     stats->closure_rms = sqrt((double)sum.squares / area);
 }
 
-int64_t solver_work(const struct solver *solver)
-{
-    const struct octree_counts *counts = &solver->method.counts;
-    int64_t form_factors = (counts->rays + solver->method.rays_spared) / BUNDLE_RAYS;
-    return counts->node_tests + counts->triangle_tests + TESTS_PER_FORM_FACTOR * form_factors;
-}
-
 void solver_record_iteration(struct solver *solver)
 {
     const struct forest *forest = solver->method.forest;

@@ -84,14 +84,14 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree, const struct criterion *criterion);
 void solver_destroy(struct solver *solver);
 
-/* Tests that this rank has done, form factors counted as in mpi/balance.h. */
-int64_t solver_work(const struct solver *solver);
-
 /* Step 2: initial linking. Rows of pairs of roots are dealt so that their work is even. */
 void solver_link_roots(struct solver *solver);
 
 /* Step 3: re-assignment. Roots get homes by even area sums, links go to the homes. */
 void solver_assign_roots(struct solver *solver);
+
+/* Begins a pass: what refinement reads of the solution so far. */
+void solver_begin_pass(struct solver *solver);
 
 /* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches were
  * split. Refinement that meets the memory limit ends there, and does not begin again as long as the

@@ -5,12 +5,12 @@
  * between two cells, and the memory is known beforehand.
  *
  * The octants of a cell are not cubes: it is cut across z, the halves across y and the quarters
- * across x, each where that pays most. With the chance p_i that a line which meets a box meets that
- * of part i, the ratio of the boxes' areas, a cell that is cut costs sum p_i n_i triangle tests, one
- * that is not n. Cut through their middles, cells took a third more node and triangle tests in
- * furnished rooms; the longest axis first saved only 2 % more. Cells are split as long as that saves more
- * than the NODE_COST of looking at eight boxes. The queue of cells replaces recursion, and TREE_DEPTH
- * ends the splitting of what lies in one point.
+ * across x, each where that pays most. With the chance p_i that a line which meets a box meets
+ * that of part i, the ratio of the boxes' areas, a cell that is cut costs sum p_i n_i triangle
+ * tests, one that is not n. Cut through their middles, cells took a third more node and triangle
+ * tests in furnished rooms; the longest axis first saved only 2 % more. Cells are split as long
+ * as that saves more than the NODE_COST of looking at eight boxes. The queue of cells replaces
+ * recursion, and TREE_DEPTH ends the splitting of what lies in one point.
  *
  * A record holds the triangle's affine maps in float, with a bound on their error: for |x| <= 1
  * each product and sum is off by at most 2^-24 of r1 = |r0| + |r1| + |r2| + |r3|, there are seven
@@ -56,7 +56,8 @@ static struct box box_of(const struct builder *builder, int32_t begin, int32_t e
         for (int k = 0; k < 3; k++) {
             struct vec3 x = builder->triangles[builder->order[i]].corner[k];
             low = (struct vec3){real_min(low.x, x.x), real_min(low.y, x.y), real_min(low.z, x.z)};
-            high = (struct vec3){real_max(high.x, x.x), real_max(high.y, x.y), real_max(high.z, x.z)};
+            high = (struct vec3){real_max(high.x, x.x), real_max(high.y, x.y),
+                                 real_max(high.z, x.z)};
         }
     }
     return (struct box){low, high};
@@ -85,7 +86,8 @@ static void bin_add(struct bin *bin, const struct bin *more)
     if (more->count == 0)
         return;
     if (bin->count > 0)
-        b = (struct box){{real_min(a.low.x, b.low.x), real_min(a.low.y, b.low.y), real_min(a.low.z, b.low.z)},
+        b = (struct box){{real_min(a.low.x, b.low.x), real_min(a.low.y, b.low.y),
+                          real_min(a.low.z, b.low.z)},
                          {real_max(a.high.x, b.high.x), real_max(a.high.y, b.high.y),
                           real_max(a.high.z, b.high.z)}};
     *bin = (struct bin){b, bin->count + more->count};
@@ -107,8 +109,8 @@ static void fill_bins(const struct builder *builder, int32_t begin, int32_t end,
     }
 }
 
-/* Where to cut a run across an axis: centroids below go to the first part. All do if they are in one
- * place. */
+/* Where to cut a run across an axis: centroids below go to the first part. All do if they are in
+ * one place. */
 static double find_cut(const struct builder *builder, int32_t begin, int32_t end, int axis)
 {
     double low = HUGE_VAL, high = -HUGE_VAL, left[BINS], least = HUGE_VAL;
@@ -153,7 +155,8 @@ static int32_t cut(struct builder *builder, int32_t begin, int32_t end, int axis
 }
 
 /* Sorts the cell's run of `order` by octant; octant k is then start[k] to start[k + 1]. */
-static void sort_by_octant(struct builder *builder, const struct cell *cell, int32_t start[LANES + 1])
+static void sort_by_octant(struct builder *builder, const struct cell *cell,
+                           int32_t start[LANES + 1])
 {
     start[0] = cell->begin;
     start[LANES] = cell->end;
@@ -211,7 +214,8 @@ static void append_cell(struct builder *builder, struct cell cell)
 }
 
 /* Hangs a new node below the cell's place and its non-empty octants below that. */
-static int32_t split_cell(struct builder *builder, const struct cell *cell, const int32_t start[LANES + 1])
+static int32_t split_cell(struct builder *builder, const struct cell *cell,
+                          const int32_t start[LANES + 1])
 {
     int32_t node = append_node(builder);
     for (int k = 0; k < LANES; k++) {

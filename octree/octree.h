@@ -36,6 +36,13 @@ struct octree_counts {
     int64_t triangle_tests; /* triangles tested against a bundle */
 };
 
+static inline void octree_counts_add(struct octree_counts *counts, const struct octree_counts *more)
+{
+    counts->rays += more->rays;
+    counts->node_tests += more->node_tests;
+    counts->triangle_tests += more->triangle_tests;
+}
+
 struct octree_hit {
     int32_t triangle;
     bool front;       /* the front of the triangle is met */

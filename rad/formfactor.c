@@ -56,9 +56,8 @@ bool facets_face(const struct facet *p, const struct facet *q)
            reach_above(&q->plane, &p->triangle) > GEOM_ROUNDING;
 }
 
-/* A A' cos cos' / (pi r^2 + max(A, A')) of two small areas at x and y; 0 below a horizon. */
-static double disk_kernel(struct vec3 x, struct vec3 normal_x, double area_x, struct vec3 y,
-                          struct vec3 normal_y, double area_y)
+double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x, struct vec3 y,
+                     struct vec3 normal_y, double area_y)
 {
     struct vec3 d = vec3_sub(y, x);
     double rise_x = vec3_dot(normal_x, d), rise_y = -vec3_dot(normal_y, d); /* r cos theta */
@@ -68,10 +67,9 @@ static double disk_kernel(struct vec3 x, struct vec3 normal_x, double area_x, st
     return area_x * area_y * (rise_x * rise_y / r2) / (PI * r2 + fmax(area_x, area_y));
 }
 
-/* For patches that the other's plane cuts: the centroids may all lie below the horizon while
- * the corners do not. A disk estimate with the heights of the highest corners, so that such a
- * pair stays in play. */
-static double horizon_estimate(const struct facet *p, const struct facet *q)
+/* The centroids may all lie below the horizon while the corners do not: such a pair stays in
+ * play. */
+double exchange_across_horizon(const struct facet *p, const struct facet *q)
 {
     struct vec3 d = vec3_sub(triangle_centroid(&q->triangle), triangle_centroid(&p->triangle));
     double r2 = vec3_dot(d, d);
@@ -106,7 +104,7 @@ static void pair_aim(struct pair *pair, const struct facet *p, const struct face
     subarea_centroids(&p->triangle, bundle->from);
     subarea_centroids(&q->triangle, bundle->to);
     for (int ray = 0; ray < RAYS; ray++) {
-        pair->kernels[ray] = disk_kernel(bundle->from[ray / SUBAREAS], p->plane.normal,
+        pair->kernels[ray] = disk_exchange(bundle->from[ray / SUBAREAS], p->plane.normal,
                                          0.25 * p->area, bundle->to[ray % SUBAREAS],
                                          q->plane.normal, 0.25 * q->area);
         bundle->asked |= (unsigned)(pair->kernels[ray] > 0.0) << ray;
@@ -143,7 +141,8 @@ static void pair_look(struct pair *pair, enum look look, const struct octree *oc
     pair->visible = facing & ~blocked;
 }
 
-/* Sums of the kernels of one sub-area of p (`of_p`) or q: all that face, and those that are seen. */
+/* Sums of the kernels of one sub-area of p (`of_p`) or q: all that face, and those that are
+ * seen. */
 static void sum_kernels(const struct pair *pair, bool of_p, int sub, double *all, double *seen)
 {
     *all = *seen = 0.0;
@@ -205,26 +204,24 @@ static void set_parts(const struct side *side, double parts[SUBAREAS])
 
 double exchange_guess(const struct facet *p, const struct facet *q)
 {
-    return disk_kernel(triangle_centroid(&p->triangle), p->plane.normal, p->area,
+    return disk_exchange(triangle_centroid(&p->triangle), p->plane.normal, p->area,
                        triangle_centroid(&q->triangle), q->plane.normal, q->area);
 }
 
-static double radius_of(const struct triangle *t, struct vec3 centre)
-{
-    double a = vec3_length(vec3_sub(t->corner[0], centre));
-    double b = vec3_length(vec3_sub(t->corner[1], centre));
-    return fmax(a, fmax(b, vec3_length(vec3_sub(t->corner[2], centre))));
-}
-
-/* Beyond this distance, over the sum of the radii, one disk is good enough for what is little
- * (within 15 % or so); nearer, it might say that a patch receives more than all there is. */
+/* Over the sum of the radii. Nearer, one disk might say that a patch receives more than all
+ * there is. */
 static const double FAR = 1.5;
+
+bool radii_are_apart(double radius_p, double radius_q, double distance)
+{
+    return distance > FAR * (radius_p + radius_q);
+}
 
 static bool is_apart(const struct facet *p, const struct facet *q)
 {
     struct vec3 x = triangle_centroid(&p->triangle), y = triangle_centroid(&q->triangle);
-    double reach = radius_of(&p->triangle, x) + radius_of(&q->triangle, y);
-    return vec3_length(vec3_sub(y, x)) > FAR * reach;
+    return radii_are_apart(triangle_radius(&p->triangle), triangle_radius(&q->triangle),
+                           vec3_length(vec3_sub(y, x)));
 }
 
 static struct exchange exchange_by_one(const struct facet *p, const struct facet *q,
@@ -263,7 +260,7 @@ static struct exchange exchange_by_all(const struct facet *p, const struct facet
     set_parts(&side_p, exchange.parts_p);
     set_parts(&side_q, exchange.parts_q);
     if (pair.bundle.asked != ALL_RAYS)
-        exchange.unoccluded = fmax(exchange.unoccluded, horizon_estimate(p, q));
+        exchange.unoccluded = fmax(exchange.unoccluded, exchange_across_horizon(p, q));
     return exchange;
 }
 

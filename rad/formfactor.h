@@ -53,9 +53,21 @@ struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
                                   const struct octree *octree, struct sight *sight,
                                   struct octree_counts *counts);
 
+/* True if patches of these radii about their centroids, so far from each other, are far enough
+ * apart for one disk to be good enough for what is little (within 15 % or so). */
+bool radii_are_apart(double radius_p, double radius_q, double distance);
+
+/* A A' cos cos' / (pi r^2 + max(A, A')) of two small areas at x and y; 0 below a horizon. */
+double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x, struct vec3 y,
+                     struct vec3 normal_y, double area_y);
+
 /* What the pair would exchange without blockers, by one disk from centroid to centroid: quick and
  * rough, for deciding how closely to look. 0 if the centroids do not face each other. */
 double exchange_guess(const struct facet *p, const struct facet *q);
+
+/* The same for patches that the other's plane cuts, with the heights of the highest corners in
+ * place of those of the centroids: rather too much. Pre: facets_face(p, q). */
+double exchange_across_horizon(const struct facet *p, const struct facet *q);
 
 /* True if it is proved that nothing of one facet sees anything of the other: one wall stops all
  * nine segments between their corners. */

@@ -22,6 +22,21 @@ void link_list_append(struct link_list *list, struct link link)
     list->items[list->count++] = link;
 }
 
+void link_list_sort(struct link_list *list)
+{
+    int64_t first = 0, end = list->count;
+    while (first < end) {
+        struct link link = list->items[first];
+        if (link.seen > 0) {
+            first++;
+        } else {
+            list->items[first] = list->items[--end];
+            list->items[end] = link;
+        }
+    }
+    list->seen = first;
+}
+
 void link_list_free(struct link_list *list)
 {
     alloc_free(list->items);
@@ -29,9 +44,9 @@ void link_list_free(struct link_list *list)
 }
 
 /* The tests that its form factor took, plus a share of its parent's cost (Sec. 3.3.1). */
-static double predict_cost(int64_t tests, double alpha, double inherited)
+static double predict_cost(double tests, double alpha, double inherited)
 {
-    return fmax(1.0, (double)tests + alpha * inherited);
+    return fmax(1.0, tests + alpha * inherited);
 }
 
 /* The field `seen` of a link. */
@@ -57,6 +72,22 @@ static void set_parts(uint8_t parts[3], const double exact[4])
     }
 }
 
+/* With even parts. */
+static struct link link_of(int32_t p, int32_t q, const struct exchange *exchange,
+                           const struct sight *sight, double cost)
+{
+    return (struct link){
+        .p = p,
+        .q = q,
+        .area = float_below(exchange->seen > 0.0 ? exchange->area : exchange->unoccluded),
+        .blocker = sight->blocker,
+        .parts_p = {64, 64, 64},
+        .parts_q = {64, 64, 64},
+        .seen = compact_share(exchange, sight->open),
+        .cost = compact8(cost),
+    };
+}
+
 bool link_make(struct method *method, int32_t p, const struct facet *facet_p, int32_t q,
                const struct facet *facet_q, double inherited, struct sight *sight,
                struct link *link)
@@ -70,29 +101,26 @@ bool link_make(struct method *method, int32_t p, const struct facet *facet_p, in
     enum look look = oracle_look(method, p, q, exchange_guess(facet_p, facet_q));
     struct exchange exchange = exchange_estimate(facet_p, facet_q, method->criterion.form_factor,
                                                  look, method->octree, sight, &work);
-    method->counts.rays += work.rays;
+    octree_counts_add(&method->counts, &work);
     method->rays_spared += BUNDLE_RAYS - work.rays;
-    method->counts.node_tests += work.node_tests;
-    method->counts.triangle_tests += work.triangle_tests;
-    double cost = predict_cost(work.node_tests + work.triangle_tests, method->criterion.alpha,
-                               inherited);
-    *link = (struct link){
-        .p = p,
-        .q = q,
-        .area = float_below(exchange.seen > 0.0 ? exchange.area : exchange.unoccluded),
-        .blocker = sight->blocker,
-        .seen = compact_share(&exchange, sight->open),
-        .cost = compact8(cost),
-    };
-    if (method->criterion.oracle == ORACLE_BF) {
-        const double even[4] = {0.25, 0.25, 0.25, 0.25};
-        set_parts(link->parts_p, even);
-        set_parts(link->parts_q, even);
-    } else {
+    method->estimating += TESTS_PER_FORM_FACTOR;
+    double cost = predict_cost((double)(work.node_tests + work.triangle_tests),
+                               method->criterion.alpha, inherited);
+    *link = link_of(p, q, &exchange, sight, cost);
+    if (method->criterion.oracle != ORACLE_BF) {
         set_parts(link->parts_p, exchange.parts_p);
         set_parts(link->parts_q, exchange.parts_q);
     }
     return true;
+}
+
+struct link link_make_little(int32_t p, int32_t q, double unoccluded, bool seen, int32_t blocker,
+                             double cost)
+{
+    struct exchange exchange = {.area = seen ? unoccluded : 0.0, .unoccluded = unoccluded,
+                                .seen = seen ? 1.0 : 0.0, .apart = true};
+    struct sight sight = {.blocker = blocker};
+    return link_of(p, q, &exchange, &sight, predict_cost(cost, 0.0, 0.0));
 }
 
 int link_split(struct method *method, const struct link *link, int32_t patch,
@@ -156,10 +184,8 @@ static void give(struct forest *forest, int32_t patch, const uint8_t parts[3], s
 
 void links_transfer(const struct link_list *list, struct forest *forest, struct flux_unit unit)
 {
-    for (int64_t i = 0; i < list->count; i++) {
+    for (int64_t i = 0; i < list->seen; i++) {
         const struct link *link = &list->items[i];
-        if (link->seen == 0)
-            continue;
         struct rgb from_p = take(forest, link->p, link->parts_p);
         struct rgb from_q = take(forest, link->q, link->parts_q);
         for (int c = 0; c < BANDS; c++) {

@@ -70,7 +70,8 @@ static inline bool parts_are_even(const uint8_t parts[3])
     return parts[0] == 64 && parts[1] == 64 && parts[2] == 64;
 }
 
-/* True if light to and from a patch is that of its children, by the parts, and not of the patch itself. */
+/* True if light to and from a patch is that of its children, by the parts, and not of the patch
+ * itself. */
 static inline bool link_is_divided(const struct forest *forest, int32_t patch, const uint8_t parts[3])
 {
     return !patch_is_leaf(&forest->patches[patch]) && !parts_are_even(parts);
@@ -79,7 +80,11 @@ static inline bool link_is_divided(const struct forest *forest, int32_t patch, c
 struct link_list {
     struct link *items; /* [count] */
     int64_t count, capacity;
+    int64_t seen; /* as of the last link_list_sort(): only the first ones carry light */
 };
+
+/* Brings those of which something is seen to the front. */
+void link_list_sort(struct link_list *list);
 
 void link_list_append(struct link_list *list, struct link link);
 void link_list_free(struct link_list *list);
@@ -93,16 +98,21 @@ bool link_make(struct method *method, int32_t p, const struct facet *facet_p, in
                const struct facet *facet_q, double inherited, struct sight *sight,
                struct link *link);
 
+/* The link of two patches with little at stake, of which segments between others told whether they
+ * see each other; `unoccluded`: what they exchange then. */
+struct link link_make_little(int32_t p, int32_t q, double unoccluded, bool seen, int32_t blocker,
+                             double cost);
+
 /* Splits `patch` (p or q of the link) unless it is split already and makes the links of its
  * children with the other side. Returns how many there are, 0..4; none, and nothing is split, if
  * no ray had arrived and the two patches are proved to be walled off. */
 int link_split(struct method *method, const struct link *link, int32_t patch,
                struct link children[4]);
 
-/* Transfers light over all links: adds G B of either side to the flux of the other. B may have any
- * sign. Pre: the largest |B| times the area of the scene is below FLUX_LIMIT units; then no flux
- * can overflow, since the links of a patch lead to patches that do not overlap, and G is at most
- * the area of each. */
+/* Transfers light over all links that are seen: adds G B of either side to the flux of the
+ * other. B may have any sign. Pre: the list is sorted, and the largest |B| times the area of the
+ * scene is below FLUX_LIMIT units; then no flux can overflow, since the links of a patch lead to
+ * patches that do not overlap, and G is at most the area of each. */
 void links_transfer(const struct link_list *list, struct forest *forest, struct flux_unit unit);
 
 #endif

@@ -5,10 +5,24 @@
 #include "rad/boxtree.h"
 #include "rad/link.h"
 
+/* The largest radiosity and reflectance in a node, band by band. */
+struct brightness {
+    struct rgb radiosity, reflectance;
+};
+
+/* A root as it is seen from afar. */
+struct spot {
+    struct vec3 centre, normal;
+    double area, radius;
+    bool is_dark; /* neither emits nor reflects */
+};
+
 struct linking {
     struct method *method;      /* borrowed; its counters count */
     struct boxtree *tree;       /* owned */
     struct facet *facets;       /* [tree->root_count] in the order of tree->roots; owned */
+    struct spot *spots;         /* [tree->root_count] in the same order; owned */
+    struct brightness *brightest; /* [tree->node_count]; owned */
     struct link_list *links;    /* borrowed: where links go */
     int64_t touched;            /* pairs of roots that were looked at one by one */
 };
@@ -17,12 +31,13 @@ struct linking {
 struct linking linking_start(struct method *method, struct link_list *links);
 void linking_end(struct linking *linking);
 
-/* Of a row, one leaf of the tree in so many is its sample. */
+/* Of a row, one block of the tree in so many is its sample. */
 enum { LINKING_SAMPLE = 16 };
 
-/* Links the root at this place of the tree's order with those roots of its row that it can exchange light
- * with and is not proved to be walled off from: with the sample of the row, or with one of `parts` equal
- * parts of the rest. What is found depends on `parts`, but not on what was linked before. */
+/* Links the root at this place of the tree's order with those roots of its row that it can
+ * exchange light with and is not proved to be walled off from: with the sample of the row, or
+ * with one of `parts` equal parts of the rest. What is found depends on `parts`, but not on what
+ * was linked before. */
 void linking_add_sample(struct linking *linking, int32_t place);
 void linking_add_part(struct linking *linking, int32_t place, int part, int parts);
 

@@ -34,6 +34,8 @@ struct criterion {
     int max_iterations;     /* at least 1 */
 };
 
+enum { TESTS_PER_FORM_FACTOR = 8 }; /* a form factor takes as long as so many tests */
+
 struct method {
     const struct scene *scene;
     const struct octree *octree;
@@ -43,10 +45,19 @@ struct method {
     double link_threshold;  /* W, areas in square scene units: epsilon times the emitted power */
     double patch_threshold; /* square scene units: no patch smaller than this is made */
     struct rgb typical;     /* a guess at the mean radiosity, W/m^2, before there is an answer */
+    double brightest;       /* no patch has a larger sum of radiosities over the bands, W/m^2 */
     struct octree_counts counts; /* work of this rank so far */
+    int64_t estimating;     /* work of this rank so far besides that, on boxes of roots, disks and form factors;
+                               in tests */
     int64_t rays_spared;    /* of 16 for each link that this rank has made, those not fired */
     int64_t walled_off;     /* links that ended here since they are proved to be blocked */
 };
+
+/* Work of this rank so far, in tests of the octree. */
+static inline int64_t method_work(const struct method *method)
+{
+    return method->counts.node_tests + method->counts.triangle_tests + method->estimating;
+}
 
 /* Fills a method; borrows scene, octree and forest. */
 struct method method_make(const struct scene *scene, const struct octree *octree,

@@ -259,15 +259,18 @@ static void test_one_transfer(void)
     forest->patches[3].flux[0] = 5;
     struct link_list list = {0};
     link_list_append(&list, PLAIN);
+    link_list_sort(&list);
     links_transfer(&list, forest, unit);
     const int64_t *p = forest->patches[3].flux, *q = forest->patches[7].flux;
     tap_ok(p[0] == 5 && p[1] == 4096 && p[2] == -1024 && q[0] == 256 && q[1] == 512 && q[2] == 0,
            "G B of either side is added to the flux of the other, whatever its sign");
     forest_clear_flux(forest);
     list.items[0].seen = 0;
+    link_list_sort(&list);
     links_transfer(&list, forest, unit);
     tap_ok(p[1] == 0 && p[2] == 0 && q[0] == 0 && q[1] == 0, "a blocked link carries nothing");
     list.items[0].seen = 1;
+    link_list_sort(&list);
     links_transfer(&list, forest, unit);
     tap_ok(p[1] == 4096 && q[1] == 512, "one that is seen at all carries its area");
     link_list_free(&list);
@@ -318,6 +321,7 @@ static void test_dealing(void)
                         .parts_q = {0, 0, 64}, .seen = LINK_ALL_SEEN};
     struct link_list list = {0};
     link_list_append(&list, link);
+    link_list_sort(&list);
     links_transfer(&list, forest, unit);
     /* From q: 8 (3/4 + 4 x 3/4) = 30 and 4, times G = 1/2: 15 and 2 W to the children of p. From
      * p: 1/2 + 9/8 + 4/8 = 17/8, times 1/2: 17/16 W. */
@@ -335,6 +339,7 @@ static void test_dealing(void)
     list.items[0].p = 2;
     list.items[0].q = 4;
     list.items[0].area = 0.5f;
+    link_list_sort(&list);
     links_transfer(&list, forest, unit);
     double due = 10.0 / forest_area(forest, 2);
     bool same = forest->patches[2].flux[0] == 10240 && forest->patches[4].flux[0] == 1280;
@@ -348,6 +353,7 @@ static void test_dealing(void)
     forest_clear_flux(forest);
     list.items[0].parts_p[0] = 65;
     list.items[0].parts_q[2] = 63;
+    link_list_sort(&list);
     links_transfer(&list, forest, unit);
     bool dealt = forest->patches[2].flux[0] == 0 && forest->patches[4].flux[0] == 0;
     for (int k = 0; k < 4; k++) {
@@ -383,6 +389,7 @@ static void test_transfer(void)
     forest_average(forest);
     forest_bound(forest);
     make_links(forest, &list);
+    link_list_sort(&list);
     links_transfer(&list, forest, unit);
     int64_t received = 0;
     double sent = 0.0;
@@ -408,17 +415,20 @@ static void test_transfer(void)
         memcpy(link->parts_p, old.parts_q, sizeof link->parts_p);
         memcpy(link->parts_q, old.parts_p, sizeof link->parts_q);
     }
+    link_list_sort(&turned);
     links_transfer(&turned, forest, unit);
     tap_ok(flux_hash(forest) == hash, "bit by bit the same in another order of links");
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
             forest->patches[p].radiosity.band[c] = -forest->patches[p].radiosity.band[c];
     int64_t darkness = 0, nonzero = 0;
+    link_list_sort(&list);
     links_transfer(&list, forest, unit);
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
             darkness += forest->patches[p].flux[c] != 0;
     forest_clear_flux(forest);
+    link_list_sort(&list);
     links_transfer(&list, forest, unit);
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++) {

@@ -91,7 +91,7 @@ static void add_origin(struct record *record, int64_t origin)
 
 static void add_unit(struct record *record, struct solver *solver, struct unit before)
 {
-    struct unit unit = {solver_work(solver) - before.work, solver->links.count - before.links};
+    struct unit unit = {method_work(&solver->method) - before.work, solver->links.count - before.links};
     record->units = alloc_reserve(record->units, &record->unit_capacity, record->unit_count + 1,
                                   sizeof *record->units);
     record->units[record->unit_count++] = unit;
@@ -101,7 +101,7 @@ static void add_unit(struct record *record, struct solver *solver, struct unit b
 
 static struct unit so_far(const struct solver *solver)
 {
-    return (struct unit){solver_work(solver), solver->links.count};
+    return (struct unit){method_work(&solver->method), solver->links.count};
 }
 
 static void record_linking(struct record *record, struct solver *solver)
@@ -124,7 +124,7 @@ static void record_linking(struct record *record, struct solver *solver)
     }
     linking_end(&linking);
     record->seconds[WORK_LINKING] = cpu_seconds() - start;
-    record->counts[WORK_LINKING] = (double)solver_work(solver);
+    record->counts[WORK_LINKING] = (double)method_work(&solver->method);
 }
 
 /* Links to be split, with where they came from. */
@@ -173,7 +173,7 @@ static void split_one(struct record *record, struct solver *solver, const struct
 {
     const struct link *link = &batch->links.items[i];
     struct event event = {.origin = batch->origins[i], .load = link_load(link),
-                          .work = -solver_work(solver)};
+                          .work = -method_work(&solver->method)};
     struct link children[4];
     int32_t patch = oracle_patch_to_split(&solver->method, link);
     int count = link_split(&solver->method, link, patch, children);
@@ -187,7 +187,7 @@ static void split_one(struct record *record, struct solver *solver, const struct
         add_origin(record, record->event_count);
         event.kept++;
     }
-    event.work += solver_work(solver);
+    event.work += method_work(&solver->method);
     record->events = alloc_reserve(record->events, &record->event_capacity,
                                    record->event_count + 1, sizeof *record->events);
     record->events[record->event_count++] = event;
@@ -196,7 +196,7 @@ static void split_one(struct record *record, struct solver *solver, const struct
 static void record_levels(struct record *record, struct solver *solver, struct batch *batch)
 {
     double start = cpu_seconds();
-    int64_t before = solver_work(solver);
+    int64_t before = method_work(&solver->method);
     while (batch->count > 0) {
         struct batch next = {.count = 0};
         struct level level = {.first = record->event_count};
@@ -212,7 +212,7 @@ static void record_levels(struct record *record, struct solver *solver, struct b
     }
     batch_free(batch);
     record->seconds[WORK_SPLITTING] += cpu_seconds() - start;
-    record->counts[WORK_SPLITTING] += (double)(solver_work(solver) - before);
+    record->counts[WORK_SPLITTING] += (double)(method_work(&solver->method) - before);
 }
 
 /* The seconds of what comes between the clocks. */
@@ -223,10 +223,25 @@ static void charge(struct record *record, enum work kind, double *clock)
     *clock = now;
 }
 
+/* Moves origins as link_list_sort() is going to move the links. */
+static void sort_origins(struct record *record, const struct link_list *links)
+{
+    int64_t *sorted = alloc_array((size_t)links->count, sizeof *sorted), first = 0;
+    int64_t end = links->count, at = 0;
+    while (first < end) {
+        bool is_seen = links->items[at].seen > 0;
+        sorted[is_seen ? first++ : --end] = record->origins[at];
+        at = is_seen ? first : end;
+    }
+    memcpy(record->origins, sorted, (size_t)links->count * sizeof *sorted);
+    alloc_free(sorted);
+}
+
 /* What solve_links() does. */
 static struct vote record_solution(struct record *record, struct solver *solver)
 {
     struct vote vote;
+    sort_origins(record, &solver->links);
     solver_close(solver);
     double clock = cpu_seconds();
     do {
@@ -250,9 +265,7 @@ static struct vote record_pass(struct record *record, struct solver *solver)
     struct forest *forest = solver->method.forest;
     struct pass pass = {.first_level = record->level_count, .looks = solver->links.count};
     struct batch batch = {.count = 0};
-    solver->pass++;
-    solver->split_here = 0;
-    solver->first_new = forest->count;
+    solver_begin_pass(solver);
     record_looks(record, solver, &batch);
     record_levels(record, solver, &batch);
     solver->shared = forest->count;
