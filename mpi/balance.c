@@ -1,23 +1,23 @@
 /* Balance.
  *
  * Rows of initial linking. Of each row a sample is linked first (rad/linking.h), rows in turn, and
- * what that took is told to all: so all know what each row will take, within a third. Heavy rows are cut;
- * by their samples alone, so that links do not depend on the ranks. The parts are sorted, heavy
- * ones first, and dealt in stages, each of half of what is left, but for the last: always to the rank with the smallest
- * load. What was wrong in the prediction of one stage is made good in a later one. A stage is
- * dealt with what is known of all but the last, so nobody waits for the news of a stage that
- * somebody still works on; for the same reason, ranks go on with one in eight of their own rows, unless
- * it is heavy, while others are sampling.
+ * what the rest is expected to take is told to all. Heavy rows are cut, by that alone, so that links
+ * do not depend on the ranks. The parts are sorted, heavy ones first, and dealt in stages, each of
+ * half of what is left, but for the last: always to the rank with the smallest load. What was wrong
+ * in the prediction of one stage is made good in a later one. A stage is dealt with what is known
+ * of all but the last, so nobody waits for the news of a stage that somebody still works on; for
+ * the same reason, ranks go on with one in eight of their own rows, unless it is heavy, while
+ * others are sampling.
  *
  * Rejected: rows in turn, without any prediction (of 32 ranks 13 % idle, of 1,024 80 %: rows differ
  * thirtyfold); all rows in equal parts, one after the other (4 % more work for 8 parts: each begins
  * without shadows, and it takes 64 to be even); a counter from which ranks fetch rows, which
  * needs no prediction, but whose outcome depends on the clock and not on counts.
  *
- * Links. The paper's greedy plan (mpi/plan.h) says how much goes from where to where; what is sent is taken
- * from all of a rank's links in turn. Re-partition along a line of all links was tried: it is as even,
- * for what is left is not the plan's fault but the prediction's: the work of a link is known
- * within a factor of two or so, and a rank has some dozens in a level. */
+ * Links. The paper's greedy plan (mpi/plan.h) says how much goes from where to where; what is
+ * sent is taken from all of a rank's links in turn. Re-partition along a line of all links was
+ * tried: it is as even, for what is left is not the plan's fault but the prediction's: the work
+ * of a link is known within a factor of two or so, and a rank has some dozens in a level. */
 #include "mpi/balance.h"
 
 #include <stdlib.h>
@@ -77,6 +77,11 @@ int64_t link_load(const struct link *link)
     return (int64_t)link_cost(link) + TESTS_PER_FORM_FACTOR;
 }
 
+int64_t link_look_load(const struct link *link)
+{
+    return link->seen > 0 ? LOOK_LOAD : 1;
+}
+
 /* Tests in the time that a message takes. In an exchange, each rank has one for each other rank. */
 enum { TESTS_PER_MESSAGE = 50 };
 
@@ -100,7 +105,7 @@ void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *
             left[mine++] = plan[t];
     for (int64_t i = 0; i < count; i++) {
         destination[i] = rank;
-        for (int tried = 0; tried < mine; tried++) {
+        for (int tried = 0; tried < mine && costs[i] > 0; tried++) {
             struct transfer *t = &left[(turn + tried) % mine];
             if (2 * t->load < costs[i])
                 continue;
@@ -115,19 +120,13 @@ void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *
 
 /* --- rows --- */
 
-/* Work of a part, about 2 ms: a hundredth of what a rank has where balance matters; and parts of a row
- * at most. One row in so many is its sampler's from the start. */
-enum { PART_WORK = 50000, PARTS_MAX = 64, GOES_ON = 8 };
+/* Work of a part, about 2 ms: a hundredth of what a rank has where balance matters; and parts of
+ * a row at most. One row in so many is its sampler's from the start. */
+enum { PART_WORK = 25000, PARTS_MAX = 64, GOES_ON = 8 };
 
-/* What is left of a row, predicted. */
-static int64_t rest_of(int64_t sample)
+int row_parts(int64_t rest)
 {
-    return (LINKING_SAMPLE - 1) * sample;
-}
-
-int row_parts(int64_t sample)
-{
-    int64_t parts = 1 + rest_of(sample) / PART_WORK;
+    int64_t parts = 1 + rest / PART_WORK;
     return parts < PARTS_MAX ? (int)parts : PARTS_MAX;
 }
 
@@ -136,9 +135,9 @@ int row_sampler(int32_t place, int ranks)
     return place % ranks;
 }
 
-bool row_goes_on(int32_t place, int64_t sample, int ranks)
+bool row_goes_on(int32_t place, int64_t rest, int ranks)
 {
-    return place / ranks % GOES_ON == 0 && row_parts(sample) == 1;
+    return place / ranks % GOES_ON == 0 && row_parts(rest) == 1;
 }
 
 static int compare_parts(const void *left, const void *right)
@@ -151,26 +150,25 @@ static int compare_parts(const void *left, const void *right)
     return a->part < b->part ? -1 : 1;
 }
 
-struct row_deal row_deal_start(const int64_t *samples, int32_t rows, int ranks)
+struct row_deal row_deal_start(const int64_t *rests, int32_t rows, int ranks)
 {
     struct row_deal deal = {.ranks = ranks};
     size_t most = 0;
     for (int32_t place = 0; place < rows; place++)
-        most += (size_t)row_parts(samples[place]);
+        most += (size_t)row_parts(rests[place]);
     deal.parts = alloc_array(most, sizeof *deal.parts);
     deal.owner = alloc_array(most, sizeof *deal.owner);
     deal.loads = alloc_array((size_t)ranks, sizeof *deal.loads);
     deal.planned = alloc_array((size_t)ranks, sizeof *deal.planned);
     for (int32_t place = 0; place < rows; place++) {
-        int parts = row_parts(samples[place]), sampler = row_sampler(place, ranks);
-        deal.loads[sampler] += samples[place];
-        if (row_goes_on(place, samples[place], ranks)) {
-            deal.loads[sampler] += rest_of(samples[place]);
+        int parts = row_parts(rests[place]);
+        if (row_goes_on(place, rests[place], ranks)) {
+            deal.loads[row_sampler(place, ranks)] += rests[place];
             continue;
         }
         for (int part = 0; part < parts; part++)
             deal.parts[deal.count++] = (struct row_part){
-                .cost = 1 + rest_of(samples[place]) / parts, .place = place, .part = part,
+                .cost = 1 + rests[place] / parts, .place = place, .part = part,
                 .parts = parts};
     }
     qsort(deal.parts, (size_t)deal.count, sizeof *deal.parts, compare_parts);
@@ -186,9 +184,9 @@ void row_deal_end(struct row_deal *deal)
     *deal = (struct row_deal){0};
 }
 
-/* The last stage is dealt when no more is left than this part of all. Shorter ones are not worth it:
- * in each, somebody waits for the heaviest part of the one before. */
-enum { LAST_SHARE = 16 };
+/* The last stage is dealt when no more is left than this part of all. Shorter ones are not worth
+ * it: in each, somebody waits for the heaviest part of the one before. */
+enum { LAST_SHARE = 32 };
 
 bool row_deal_next(struct row_deal *deal)
 {

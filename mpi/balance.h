@@ -12,22 +12,28 @@
 
 /* --- single items, whose costs all ranks know --- */
 
-/* Deals items in the given order, each to the rank with the smallest load, of equal ones the lowest.
- * owner[i] is who gets item i; loads grow by what is dealt. */
+/* Deals items in the given order, each to the rank with the smallest load, of equal ones the
+ * lowest. owner[i] is who gets item i; loads grow by what is dealt. */
 void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, int *owner);
 
 /* --- links, of whose costs each rank knows its own --- */
 
-/* What splitting a link is predicted to take: its cost, for the tests of its children are about as many as
- * its own were; and a form factor. Predictions are compared with each other, so factors do not matter. */
+/* What splitting a link is predicted to take: its cost, for the tests of its children are about
+ * as many as its own were; and a form factor. Predictions are compared with each other, so
+ * factors do not matter. */
 int64_t link_load(const struct link *link);
+
+/* What it takes to look at a link: next to nothing where nothing is seen, else so much. */
+enum { LOOK_LOAD = 16 };
+int64_t link_look_load(const struct link *link);
 
 /* True if what the ranks save takes longer than sending the links. */
 bool moving_pays(const int64_t *loads, int ranks);
 
-/* Where the links of `rank` go by a plan (mpi/plan.h): destination[i] is for the link with costs[i]. They
- * are dealt in turn to the receivers of the rank's transfers, a link to a receiver as long as at least half
- * of its cost still fits into what is planned for it; the others stay. */
+/* Where the links of `rank` go by a plan (mpi/plan.h): destination[i] is for the link with
+ * costs[i]. They are dealt in turn to the receivers of the rank's transfers, a link to a
+ * receiver as long as at least half of its cost still fits into what is planned for it; the
+ * others, and those that cost nothing, stay. */
 void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *plan, int planned,
                     int rank, int *destination);
 
@@ -52,15 +58,15 @@ struct row_deal {
     int64_t *planned;       /* [ranks] predicted, of this stage */
 };
 
-/* In how many parts what is left of a row is cut, given what its sample took. */
-int row_parts(int64_t sample);
+/* In how many parts what is left of a row is cut, given what that is expected to take. */
+int row_parts(int64_t rest);
 
 /* Who samples a row; and whether it goes on with the row at once, while others are sampling. */
 int row_sampler(int32_t place, int ranks);
-bool row_goes_on(int32_t place, int64_t sample, int ranks);
+bool row_goes_on(int32_t place, int64_t rest, int ranks);
 
-/* samples[place]: what the sample of each row took. */
-struct row_deal row_deal_start(const int64_t *samples, int32_t rows, int ranks);
+/* rests[place]: what the rest of each row is expected to take. */
+struct row_deal row_deal_start(const int64_t *rests, int32_t rows, int ranks);
 void row_deal_end(struct row_deal *deal);
 
 /* Deals the next stage. False if nothing is left. */

@@ -1,13 +1,15 @@
 /* Steps 2 and 3: initial linking, and the homes of roots and links.
  *
- * Rows of the pairs of roots (rad/linking.h) are dealt by what their samples took, in stages that make
- * good what was wrong in the ones before (mpi/balance.h): while a stage is worked on, the work done
- * before it is exchanged.
+ * Rows of the pairs of roots (rad/linking.h) are dealt by what they are expected to take, in
+ * stages that make good what was wrong in the ones before (mpi/balance.h): while a stage is
+ * worked on, the work done before it is exchanged.
  *
- * Light is transferred over links where they live, so all ranks should have as many: those that have
- * more than the mean give the excess away, and all others stay where they were made. The paper (and
- * --balance greedy) sends each to the home of one of its two roots, here the lower or the higher one by
- * the parity of i + j; but the areas of roots say little about the number of their links. */
+ * Light is transferred over links where they live, so all ranks should have as many that carry
+ * light: those that
+ * have more than the mean give the excess away, and all others stay where they were made. The
+ * paper (and --balance greedy) sends each to the home of one of its two roots, here the lower or
+ * the higher one by the parity of i + j; but the areas of roots say little about the number of
+ * their links. */
 #include "mpi/assign.h"
 #include "mpi/balance.h"
 #include "mpi/migrate.h"
@@ -32,8 +34,8 @@ static void wait_idle(struct solver *solver, MPI_Request *request)
     solver->seconds[PHASE_LINKING] -= idle;
 }
 
-/* Samples this rank's rows, and goes on with some of them until all know all samples. */
-static void link_samples(struct solver *solver, struct linking *linking, int64_t *samples)
+/* Samples this rank's rows, and goes on with some of them until all know all rests. */
+static void link_rests(struct solver *solver, struct linking *linking, int64_t *rests)
 {
     int ranks = solver->comm->size, rank = solver->comm->rank;
     int32_t rows = linking->tree->root_count;
@@ -41,12 +43,10 @@ static void link_samples(struct solver *solver, struct linking *linking, int64_t
     for (int32_t place = 0; place < rows; place++) {
         if (row_sampler(place, ranks) != rank)
             continue;
-        own[place] = -method_work(&solver->method);
-        linking_add_sample(linking, place);
-        own[place] += method_work(&solver->method);
+        own[place] = linking_add_sample(linking, place);
     }
     MPI_Request request;
-    MPI_Iallreduce(own, samples, rows, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
+    MPI_Iallreduce(own, rests, rows, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
     for (int32_t place = 0; place < rows; place++) {
         if (row_sampler(place, ranks) != rank || !row_goes_on(place, own[place], ranks))
             continue;
@@ -73,11 +73,11 @@ void solver_link_roots(struct solver *solver)
     double start = comm_seconds();
     struct linking linking = linking_start(&solver->method, &solver->links);
     int32_t rows = linking.tree->root_count;
-    int64_t *samples = alloc_array((size_t)rows, sizeof *samples);
+    int64_t *rests = alloc_array((size_t)rows, sizeof *rests);
     int64_t *done = alloc_array((size_t)comm->size, sizeof *done);
     int64_t before = method_work(&solver->method), own;
-    link_samples(solver, &linking, samples);
-    struct row_deal deal = row_deal_start(samples, rows, comm->size);
+    link_rests(solver, &linking, rests);
+    struct row_deal deal = row_deal_start(rests, rows, comm->size);
     while (row_deal_next(&deal)) {
         own = method_work(&solver->method) - before;
         MPI_Request request = start_telling(comm, &own, done);
@@ -92,7 +92,7 @@ void solver_link_roots(struct solver *solver)
     solver->pairs_touched = linking.touched;
     row_deal_end(&deal);
     linking_end(&linking);
-    alloc_free(samples);
+    alloc_free(rests);
     alloc_free(done);
     solver->seconds[PHASE_LINKING] += comm_seconds() - start;
 }

@@ -94,11 +94,10 @@ int64_t links_balance(struct solver *solver, struct link_list *list,
     return bytes;
 }
 
-/* Each link takes as long as any other where light is transferred. */
-static int64_t one(const struct link *link)
+/* In the transfer of light each link takes as long as any other, if something is seen. */
+static int64_t carries_light(const struct link *link)
 {
-    (void)link;
-    return 1;
+    return link->seen > 0;
 }
 
 /* True if the largest number is above the mean by more than a fiftieth. */
@@ -115,8 +114,10 @@ static bool is_uneven(const int64_t *counts, int ranks)
 void links_even_out(struct solver *solver)
 {
     const struct comm *comm = solver->comm;
-    int64_t count = solver->links.count;
+    int64_t count = 0;
     int64_t *counts = alloc_array((size_t)comm->size, sizeof *counts);
+    for (int64_t i = 0; i < solver->links.count; i++)
+        count += carries_light(&solver->links.items[i]);
     double start = comm_seconds();
     MPI_Request request;
     MPI_Iallgather(&count, 1, MPI_INT64_T, counts, 1, MPI_INT64_T, comm->handle, &request);
@@ -124,7 +125,7 @@ void links_even_out(struct solver *solver)
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
     start = comm_seconds();
     if (is_uneven(counts, comm->size)) /* the same on all ranks, so all enter */
-        solver->bytes_migration += links_balance(solver, &solver->links, one, counts);
+        solver->bytes_migration += links_balance(solver, &solver->links, carries_light, counts);
     alloc_free(counts);
     solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
 }

@@ -44,11 +44,10 @@ static int64_t load_of(const struct link_list *list)
 static void select_prolific(struct solver *solver, struct link_list *prolific)
 {
     int64_t kept = 0;
-    struct phase_work looks = {.kind = WORK_LOOKS, .iteration = solver->pass,
-                               .work = solver->links.count};
-    ledger_add(&solver->ledger, looks);
+    struct phase_work looks = {.kind = WORK_LOOKS, .iteration = solver->pass};
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
+        looks.work += link_look_load(&link);
         if (oracle_patch_to_split(&solver->method, &link) >= 0)
             link_list_append(prolific, link);
         else {
@@ -57,6 +56,7 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
         }
     }
     solver->links.count = kept;
+    ledger_add(&solver->ledger, looks);
 }
 
 /* The largest sum of a patch's radiosities. */

@@ -95,7 +95,7 @@ void solver_record_iteration(struct solver *solver)
     for (int64_t p = 0; p < forest->count; p++)
         own += solver->own[forest->patches[p].id.root];
     struct phase_work phase = {.kind = WORK_TRANSFER, .iteration = solver->iteration,
-                               .work = solver->links.count, .bytes = gathered};
+                               .work = solver->links.seen, .bytes = gathered};
     ledger_add(&solver->ledger, phase);
     phase = (struct phase_work){.kind = WORK_OWN, .iteration = solver->iteration, .work = own,
                                 .bytes = scattered};

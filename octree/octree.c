@@ -353,8 +353,15 @@ INLINE int all_above(const lanes *a, const lanes *b)
     return mask_is_full(&mask);
 }
 
-/* Looks at the eight points, then at the 16 pairs. All pairs are missed if the verdict says so;
- * what is in neither set has to be decided in double. */
+/* Bit k, k < 4, is that of pair k, k. */
+INLINE unsigned on_diagonal(unsigned bits)
+{
+    return (bits & 1u) | (bits & 2u) << 4 | (bits & 4u) << 8 | (bits & 8u) << 12;
+}
+
+/* Looks at the eight points, then at the 16 pairs; at the four of the diagonal alone where these
+ * are all that is wanted. All pairs are missed if the verdict says so; what is in neither set
+ * has to be decided in double. */
 INLINE struct verdict judge(const struct record *r, const struct shaft *shaft, unsigned wanted)
 {
     const struct verdict none = {0, 0xffffu};
@@ -369,6 +376,11 @@ INLINE struct verdict judge(const struct record *r, const struct shaft *shaft, u
     if (all_above(&nu, &u) | all_above(&nv, &v) | all_above(&sum, &one))
         return none;
     lanes us = lanes_twice_high(u), vs = lanes_twice_high(v), ws = lanes_twice_high(w);
+    if ((wanted & ~BUNDLE_DIAGONAL) == 0) {
+        lanes ud = lanes_twice_low(u), vd = lanes_twice_low(v), wd = lanes_twice_low(w);
+        struct verdict d = judge_half(r, &ud, &us, &vd, &vs, &wd, &ws);
+        return (struct verdict){on_diagonal(d.hit), on_diagonal(d.miss)};
+    }
     lanes u0 = lanes_spread_01(u), v0 = lanes_spread_01(v), w0 = lanes_spread_01(w);
     struct verdict a = {0, 0xffu}, b = {0, 0xffu};
     if (wanted & 0xffu)

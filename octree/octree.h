@@ -21,6 +21,9 @@ enum {
     BUNDLE_RAYS = BUNDLE_ENDS * BUNDLE_ENDS /* segments of a bundle */
 };
 
+/* Of the segments of a bundle, those from a point to the one of the same number. */
+#define BUNDLE_DIAGONAL 0x8421u
+
 /* The 16 segments between four points and four others. Segment 4 a + b runs from from[a] to
  * to[b]. The points lie in the convex hull of the scene, such as on its triangles. */
 struct bundle {

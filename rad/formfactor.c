@@ -111,10 +111,7 @@ static void pair_aim(struct pair *pair, const struct facet *p, const struct face
     }
 }
 
-/* One segment for each sub-area of p and of q: four of the 16. */
-static const unsigned DIAGONAL = 0x8421u;
-
-/* With four segments that agree, all others are taken to be like them. */
+/* With four segments, one for each sub-area of p and of q, that agree, all others are taken to be like them. */
 static void pair_look(struct pair *pair, enum look look, const struct octree *octree,
                       struct sight *sight, struct octree_counts *counts)
 {
@@ -122,8 +119,8 @@ static void pair_look(struct pair *pair, enum look look, const struct octree *oc
     pair->visible = facing;
     if (sight->open || facing == 0)
         return;
-    if (look == LOOK_FOUR_FIRST && (facing & DIAGONAL) != 0) {
-        pair->bundle.asked = facing & DIAGONAL;
+    if (look == LOOK_FOUR_FIRST && (facing & BUNDLE_DIAGONAL) != 0) {
+        pair->bundle.asked = facing & BUNDLE_DIAGONAL;
         blocked = octree_block(octree, &pair->bundle, &sight->blocker, counts);
         unsigned asked = pair->bundle.asked;
         pair->bundle.asked = facing;
@@ -133,7 +130,7 @@ static void pair_look(struct pair *pair, enum look look, const struct octree *oc
             pair->visible = 0;
             return;
         }
-        pair->bundle.asked = facing & ~DIAGONAL;
+        pair->bundle.asked = facing & ~BUNDLE_DIAGONAL;
     }
     if (pair->bundle.asked)
         blocked |= octree_block(octree, &pair->bundle, &sight->blocker, counts);

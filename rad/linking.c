@@ -21,9 +21,9 @@
  * Of n roots, row i has the next n / 2 in the order of the tree, around its end, so all rows are
  * equally long. What they take differs thirtyfold, by where they lie, and next to nothing that
  * can be known of a row tells it beforehand. So each row is begun with a sample, every sixteenth
- * block of the tree: what that takes tells what the rest will take. The rest can be linked in
- * parts. No group is larger than a block, and what is seen of a group depends on nothing else:
- * so neither on ranks nor on parts.
+ * block of the tree: what that takes, and how large the root is, tells what the rest will take.
+ * The rest can be linked in parts. No group is larger than a block, and what is seen of a group
+ * depends on nothing else: so neither on ranks nor on parts.
  *
  * Tried and left out: groups in place of the one root (four roots are seldom hidden by one wall:
  * half as many pairs were proved, for more work), bundles of 16 segments between four roots and
@@ -111,6 +111,7 @@ struct row {
     int32_t blocker;     /* the last */
     struct shadow shadows[SHADOWS]; /* as seen from p */
     int count, next;     /* shadows there are; the oldest */
+    int64_t sampled, work, left; /* roots of blocks in the sample, work on them; roots of the others */
 };
 
 static bool is_in_row(const struct row *row, int32_t place)
@@ -223,13 +224,12 @@ static struct bundle aim(const struct linking *linking, int32_t place,
                          const int32_t chosen[BUNDLE_ENDS])
 {
     const struct facet *own = &linking->facets[place];
-    struct bundle bundle = {.own = {own->input, -1}};
+    struct bundle bundle = {.asked = BUNDLE_DIAGONAL, .own = {own->input, -1}};
     for (int k = 0; k < BUNDLE_ENDS; k++) {
         struct triangle from = triangle_child(&own->triangle, k);
         struct triangle to = triangle_child(&linking->facets[chosen[k]].triangle, k);
         bundle.from[k] = triangle_centroid(&from);
         bundle.to[k] = triangle_centroid(&to);
-        bundle.asked |= 1u << (BUNDLE_ENDS + 1) * k;
     }
     return bundle;
 }
@@ -336,19 +336,32 @@ static bool is_sampled(int32_t row, int32_t block)
     return (block + row) % LINKING_SAMPLE == 0;
 }
 
+static void link_block(struct row *row, int32_t at)
+{
+    struct method *method = row->linking->method;
+    const struct boxnode *block = &row->linking->tree->nodes[at];
+    struct sighting sightings[BLOCK_MAX];
+    int64_t before = method_work(method);
+    link_in_block(row, at, sightings, look_at_block(row, block, sightings));
+    row->sampled += block->count;
+    row->work += method_work(method) - before;
+}
+
 static void link_below(struct row *row, int32_t at)
 {
     const struct boxnode *node = &row->linking->tree->nodes[at];
     bool is_block = node->block >= 0;
+    bool is_due = !is_block || is_sampled(row->place, node->block) == row->is_sample;
     if (node->first >= row->end || node->first + node->count <= row->first ||
-        (is_block && is_sampled(row->place, node->block) != row->is_sample))
+        !(is_due || row->is_sample))
         return;
     row->linking->method->estimating++;
     if (!boxnodes_may_face(&row->node, node) || is_all_in_shadow(row, node))
         return;
-    if (is_block) {
-        struct sighting sightings[BLOCK_MAX];
-        link_in_block(row, at, sightings, look_at_block(row, node, sightings));
+    if (!is_due) {
+        row->left += node->count;
+    } else if (is_block) {
+        link_block(row, at);
     } else {
         link_below(row, node->children);
         link_below(row, node->children + 1);
@@ -378,10 +391,20 @@ static int32_t length_of_row(const struct linking *linking, int32_t place)
     return n % 2 == 1 || place < n / 2 ? n / 2 : n / 2 - 1;
 }
 
-void linking_add_sample(struct linking *linking, int32_t place)
+/* Work for each root of a block as it usually is: a large root is near to many, which it is
+ * paired with one by one. It counts as much as a sample of so many roots. (From furnished rooms;
+ * with it, what is expected and what is found have a correlation of 0.93, without it, of 0.91;
+ * by the sample's work alone, of 0.87.) */
+static const double WORK_LEAST = 4.0, WORK_LARGE = 1400.0, USUAL_ROOTS = 64.0;
+
+int64_t linking_add_sample(struct linking *linking, int32_t place)
 {
     struct row row = {.linking = linking, .place = place, .blocker = -1, .is_sample = true};
+    double radius = linking->spots[place].radius;
     link_places(&row, place + 1, place + 1 + length_of_row(linking, place));
+    double usual = WORK_LEAST + WORK_LARGE * radius * radius;
+    return (int64_t)((double)row.left * ((double)row.work + USUAL_ROOTS * usual) /
+                     ((double)row.sampled + USUAL_ROOTS));
 }
 
 void linking_add_part(struct linking *linking, int32_t place, int part, int parts)

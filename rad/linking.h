@@ -37,8 +37,8 @@ enum { LINKING_SAMPLE = 16 };
 /* Links the root at this place of the tree's order with those roots of its row that it can
  * exchange light with and is not proved to be walled off from: with the sample of the row, or
  * with one of `parts` equal parts of the rest. What is found depends on `parts`, but not on what
- * was linked before. */
-void linking_add_sample(struct linking *linking, int32_t place);
+ * was linked before. The sample returns what work the rest is expected to take. */
+int64_t linking_add_sample(struct linking *linking, int32_t place);
 void linking_add_part(struct linking *linking, int32_t place, int part, int parts);
 
 #endif

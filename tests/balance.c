@@ -117,12 +117,12 @@ static void test_moving(void)
 
 /* --- rows --- */
 
-/* What a sample took, and what the rest then takes: from nothing to twice what is predicted. */
-static int64_t sample_of(int32_t place)
+/* What is expected of a row, and what its parts then take: from nothing to twice that. */
+static int64_t rest_of(int32_t place)
 {
     struct random random = random_seed(77 + (uint64_t)place);
     int64_t heavy = random_bits(&random) % 50 == 0 ? 20 : 1;
-    return heavy * (int64_t)(random_bits(&random) % 3000);
+    return heavy * (int64_t)(random_bits(&random) % 45000);
 }
 
 static int64_t work_of(const struct row_part *part)
@@ -134,26 +134,26 @@ static int64_t work_of(const struct row_part *part)
 /* Follows a deal of rows in which predictions are wrong. */
 static void test_rows(int32_t rows, int ranks, double most)
 {
-    int64_t *samples = alloc_array((size_t)rows, sizeof *samples);
+    int64_t *rests = alloc_array((size_t)rows, sizeof *rests);
     int64_t *done = alloc_array(2 * (size_t)ranks, sizeof *done), *before = done + ranks;
     uint64_t *seen = alloc_array((size_t)rows, sizeof *seen); /* a bit for each part */
     bool right = true;
     int64_t largest = 0, stages = 0;
     for (int32_t place = 0; place < rows; place++) {
-        samples[place] = sample_of(place);
-        done[row_sampler(place, ranks)] += samples[place];
-        if (row_goes_on(place, samples[place], ranks)) {
-            done[row_sampler(place, ranks)] += (LINKING_SAMPLE - 1) * samples[place];
+        rests[place] = rest_of(place);
+        done[row_sampler(place, ranks)] += rests[place] / LINKING_SAMPLE;
+        if (row_goes_on(place, rests[place], ranks)) {
+            done[row_sampler(place, ranks)] += rests[place];
             seen[place] = 1;
         }
     }
-    struct row_deal deal = row_deal_start(samples, rows, ranks);
+    struct row_deal deal = row_deal_start(rests, rows, ranks);
     for (; row_deal_next(&deal); stages++) {
         memcpy(before, done, (size_t)ranks * sizeof *done);
         for (int64_t i = deal.first; i < deal.end; i++) {
             int64_t work = work_of(&deal.parts[i]);
             right = right && deal.owner[i] >= 0 && deal.owner[i] < ranks &&
-                    deal.parts[i].parts == row_parts(samples[deal.parts[i].place]);
+                    deal.parts[i].parts == row_parts(rests[deal.parts[i].place]);
             done[deal.owner[i]] += work;
             largest = work > largest ? work : largest;
             uint64_t bit = UINT64_C(1) << deal.parts[i].part;
@@ -163,7 +163,7 @@ static void test_rows(int32_t rows, int ranks, double most)
         row_deal_correct(&deal, before);
     }
     for (int32_t place = 0; place < rows; place++) {
-        uint64_t last = UINT64_C(1) << (row_parts(samples[place]) - 1);
+        uint64_t last = UINT64_C(1) << (row_parts(rests[place]) - 1);
         right = right && seen[place] == last + (last - 1);
     }
     double mean = (double)sum_of(done, ranks) / ranks;
@@ -174,14 +174,14 @@ static void test_rows(int32_t rows, int ranks, double most)
     row_deal_end(&deal);
     alloc_free(seen);
     alloc_free(done);
-    alloc_free(samples);
+    alloc_free(rests);
 }
 
 static void test_parts(void)
 {
     bool right = row_parts(0) == 1;
-    for (int64_t sample = 1; sample < INT64_C(1) << 40; sample *= 2)
-        right = right && row_parts(sample) >= row_parts(sample / 2) && row_parts(sample) <= 64;
+    for (int64_t rest = 1; rest < INT64_C(1) << 40; rest *= 2)
+        right = right && row_parts(rest) >= row_parts(rest / 2) && row_parts(rest) <= 64;
     tap_ok(right && row_parts(INT64_C(1) << 40) == 64, "heavier rows have more parts, up to 64");
 }
 

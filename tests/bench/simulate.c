@@ -2,21 +2,21 @@
  *
  *   build/mpi/simulate SCENE.obj [options of phr]
  *
- * The run is made here, on one rank, and recorded: what the sample and each part of each row of initial
- * linking took, and for each link that was split where it came from, what was predicted and what it took.
- * The replay deals these with the functions that phr deals with (mpi/balance.h, mpi/plan.h, mpi/assign.h)
- * and needs no clock: a phase lasts as long as its slowest rank, a rank that needs news of others
- * waits for the slowest of them.
+ * The run is made here, on one rank, and recorded: what the sample and each part of each row of
+ * initial linking took, and for each link that was split where it came from, what was predicted
+ * and what it took. The replay deals these with the functions that phr deals with
+ * (mpi/balance.h, mpi/plan.h, mpi/assign.h) and needs no clock: a phase lasts as long as its
+ * slowest rank, a rank that needs news of others waits for the slowest of them.
  *
- * Counts become seconds by what each took here: seconds per test (form factors included), per link looked
- * at, per link in a transfer, per own patch, per patch that every rank keeps up to date. Messages cost
- * ALPHA each (an exchange with all takes log2 P of them, one where each has something else for each takes
- * P - 1), bytes BETA each. What goes to all is taken as BYTES_PER_PATCH for each patch and
- * iteration, about what phr sends.
+ * Counts become seconds by what each took here: seconds per test (form factors included), per
+ * link looked at, per link in a transfer, per own patch, per patch that every rank keeps up to
+ * date. Messages cost ALPHA each (an exchange with all takes log2 P of them, one where each has
+ * something else for each takes P - 1), bytes BETA each. What goes to all is taken as
+ * BYTES_PER_PATCH for each patch and iteration, about what phr sends.
  *
- * One line of CSV for each number of ranks, as in tests/bench/scaling.sh; on stderr, what dominates.
- * What is not in the model: a link that was moved to even out their numbers is taken to be split where it
- * was made; memory and its bandwidth. */
+ * One line of CSV for each number of ranks, as in tests/bench/scaling.sh; on stderr, what
+ * dominates. What is not in the model: a link that was moved to even out their numbers is taken
+ * to be split where it was made; memory and its bandwidth. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -36,16 +36,17 @@ static const double ALPHA = 2e-6, BETA = 1e-10, ALPHA_PAPER = 1e-4, BETA_PAPER =
 
 enum { BYTES_PER_PATCH = 24, BYTES_PER_LINK = 32, BYTES_PER_FLUX = 32, RANKS_MOST = 4096 };
 
-/* A part of a row, or its sample. */
+/* A part of a row, or its sample: its work, and its links that carry light and that do not. */
 struct unit {
-    int64_t work, links;
+    int64_t work, lit, dim;
 };
 
 /* A link that was split. */
 struct event {
     int64_t origin; /* number of the event that made it; initial links: -1 - the unit */
     int64_t load, work;
-    int64_t kept;   /* children that were not split in the same pass */
+    bool was_lit;   /* something was seen of it */
+    int64_t kept;   /* children of which something is seen and that were not split in the same pass */
 };
 
 struct level {
@@ -54,7 +55,7 @@ struct level {
 
 struct pass {
     int64_t first_level, end_level;
-    int64_t looks;      /* links before it */
+    int64_t looks;      /* what these took */
     int64_t iterations, patches;
     int32_t *of_root;   /* patches of each root */
 };
@@ -62,6 +63,7 @@ struct pass {
 struct record {
     int32_t rows;
     int64_t *first_unit;  /* [rows] the sample; parts follow */
+    int64_t *rests;       /* [rows] what these are expected to take */
     struct unit *units;
     struct event *events;
     struct level *levels;
@@ -89,19 +91,18 @@ static void add_origin(struct record *record, int64_t origin)
     record->origins[record->origin_count++] = origin;
 }
 
-static void add_unit(struct record *record, struct solver *solver, struct unit before)
+static void add_unit(struct record *record, struct solver *solver, int64_t before)
 {
-    struct unit unit = {method_work(&solver->method) - before.work, solver->links.count - before.links};
+    struct unit unit = {.work = method_work(&solver->method) - before};
+    for (int64_t i = record->origin_count; i < solver->links.count; i++) {
+        unit.lit += solver->links.items[i].seen > 0;
+        unit.dim += solver->links.items[i].seen == 0;
+    }
     record->units = alloc_reserve(record->units, &record->unit_capacity, record->unit_count + 1,
                                   sizeof *record->units);
     record->units[record->unit_count++] = unit;
     while (record->origin_count < solver->links.count)
         add_origin(record, -record->unit_count);
-}
-
-static struct unit so_far(const struct solver *solver)
-{
-    return (struct unit){method_work(&solver->method), solver->links.count};
 }
 
 static void record_linking(struct record *record, struct solver *solver)
@@ -110,14 +111,15 @@ static void record_linking(struct record *record, struct solver *solver)
     struct linking linking = linking_start(&solver->method, &solver->links);
     record->rows = linking.tree->root_count;
     record->first_unit = alloc_array((size_t)record->rows, sizeof *record->first_unit);
+    record->rests = alloc_array((size_t)record->rows, sizeof *record->rests);
     for (int32_t place = 0; place < record->rows; place++) {
         record->first_unit[place] = record->unit_count;
-        struct unit before = so_far(solver);
-        linking_add_sample(&linking, place);
+        int64_t before = method_work(&solver->method);
+        record->rests[place] = linking_add_sample(&linking, place);
         add_unit(record, solver, before);
-        int parts = row_parts(record->units[record->unit_count - 1].work);
+        int parts = row_parts(record->rests[place]);
         for (int part = 0; part < parts; part++) {
-            before = so_far(solver);
+            before = method_work(&solver->method);
             linking_add_part(&linking, place, part, parts);
             add_unit(record, solver, before);
         }
@@ -149,12 +151,14 @@ static void batch_free(struct batch *batch)
     *batch = (struct batch){0};
 }
 
-static void record_looks(struct record *record, struct solver *solver, struct batch *batch)
+/* Returns what the looks took. */
+static int64_t record_looks(struct record *record, struct solver *solver, struct batch *batch)
 {
     double start = cpu_seconds();
-    int64_t kept = 0;
+    int64_t kept = 0, looks = 0;
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
+        looks += link_look_load(&link);
         if (oracle_patch_to_split(&solver->method, &link) >= 0) {
             batch_add(batch, link, record->origins[i]);
             continue;
@@ -163,16 +167,17 @@ static void record_looks(struct record *record, struct solver *solver, struct ba
         record->origins[kept] = record->origins[i];
         solver->links.items[kept++] = link;
     }
-    record->counts[WORK_LOOKS] += (double)solver->links.count;
+    record->counts[WORK_LOOKS] += (double)looks;
     solver->links.count = record->origin_count = kept;
     record->seconds[WORK_LOOKS] += cpu_seconds() - start;
+    return looks;
 }
 
 static void split_one(struct record *record, struct solver *solver, const struct batch *batch,
                       int64_t i, struct batch *next)
 {
     const struct link *link = &batch->links.items[i];
-    struct event event = {.origin = batch->origins[i], .load = link_load(link),
+    struct event event = {.origin = batch->origins[i], .load = link_load(link), .was_lit = link->seen > 0,
                           .work = -method_work(&solver->method)};
     struct link children[4];
     int32_t patch = oracle_patch_to_split(&solver->method, link);
@@ -185,7 +190,7 @@ static void split_one(struct record *record, struct solver *solver, const struct
         oracle_divide_patches(&solver->method, &children[k]);
         link_list_append(&solver->links, children[k]);
         add_origin(record, record->event_count);
-        event.kept++;
+        event.kept += children[k].seen > 0;
     }
     event.work += method_work(&solver->method);
     record->events = alloc_reserve(record->events, &record->event_capacity,
@@ -263,10 +268,10 @@ static struct vote record_solution(struct record *record, struct solver *solver)
 static struct vote record_pass(struct record *record, struct solver *solver)
 {
     struct forest *forest = solver->method.forest;
-    struct pass pass = {.first_level = record->level_count, .looks = solver->links.count};
+    struct pass pass = {.first_level = record->level_count};
     struct batch batch = {.count = 0};
     solver_begin_pass(solver);
-    record_looks(record, solver, &batch);
+    pass.looks = record_looks(record, solver, &batch);
     record_levels(record, solver, &batch);
     solver->shared = forest->count;
     pass.end_level = record->level_count;
@@ -277,7 +282,7 @@ static struct vote record_pass(struct record *record, struct solver *solver)
     int64_t before = solver->iteration;
     struct vote vote = record_solution(record, solver);
     pass.iterations = solver->iteration - before;
-    record->counts[WORK_TRANSFER] += (double)(pass.iterations * solver->links.count);
+    record->counts[WORK_TRANSFER] += (double)(pass.iterations * solver->links.seen);
     record->counts[WORK_OWN] += (double)(pass.iterations * pass.patches);
     record->passes = alloc_reserve(record->passes, &record->pass_capacity, record->pass_count + 1,
                                    sizeof *record->passes);
@@ -302,6 +307,7 @@ static void record_free(struct record *record)
     for (int64_t i = 0; i < record->pass_count; i++)
         alloc_free(record->passes[i].of_root);
     alloc_free(record->first_unit);
+    alloc_free(record->rests);
     alloc_free(record->units);
     alloc_free(record->events);
     alloc_free(record->levels);
@@ -315,7 +321,8 @@ struct replay {
     const struct record *record;
     int ranks;
     int32_t *of_unit, *of_event; /* the rank that had it */
-    int64_t *links;              /* [ranks] that live there */
+    int64_t *links;              /* [ranks] that live there and carry light */
+    int64_t *dim;                /* [ranks] others */
     double slowest[WORK_COUNT], all[WORK_COUNT];
     double messages, bytes;      /* of the rank that has most, one after the other */
     double migration;            /* bytes of all ranks */
@@ -348,7 +355,8 @@ static void exchange(struct replay *replay, double bytes)
 static void do_unit(struct replay *replay, int64_t unit, int rank, int64_t *done)
 {
     done[rank] += replay->record->units[unit].work;
-    replay->links[rank] += replay->record->units[unit].links;
+    replay->links[rank] += replay->record->units[unit].lit;
+    replay->dim[rank] += replay->record->units[unit].dim;
     replay->of_unit[unit] = rank;
 }
 
@@ -377,23 +385,20 @@ static void replay_linking(struct replay *replay)
 {
     const struct record *record = replay->record;
     int ranks = replay->ranks;
-    int64_t *samples = alloc_array((size_t)record->rows, sizeof *samples);
     int64_t *done = alloc_array(2 * (size_t)ranks, sizeof *done), *before = done + ranks;
     double *clocks = alloc_array((size_t)ranks, sizeof *clocks);
-    for (int32_t place = 0; place < record->rows; place++) {
-        samples[place] = record->units[record->first_unit[place]].work;
+    for (int32_t place = 0; place < record->rows; place++)
         do_unit(replay, record->first_unit[place], row_sampler(place, ranks), done);
-    }
     advance(clocks, done, before, ranks);
     double news = latest(clocks, ranks);
     memcpy(before, done, (size_t)ranks * sizeof *done);
     for (int32_t place = 0; place < record->rows; place++)
-        if (row_goes_on(place, samples[place], ranks))
+        if (row_goes_on(place, record->rests[place], ranks))
             do_unit(replay, record->first_unit[place] + 1, row_sampler(place, ranks), done);
     advance(clocks, done, before, ranks);
     wait_for(clocks, ranks, news);
     exchange(replay, 8.0 * record->rows);
-    struct row_deal deal = row_deal_start(samples, record->rows, ranks);
+    struct row_deal deal = row_deal_start(record->rests, record->rows, ranks);
     while (row_deal_next(&deal)) {
         news = latest(clocks, ranks);
         memcpy(before, done, (size_t)ranks * sizeof *done);
@@ -410,7 +415,6 @@ static void replay_linking(struct replay *replay)
     row_deal_end(&deal);
     alloc_free(clocks);
     alloc_free(done);
-    alloc_free(samples);
 }
 
 /* As links_even_out(). */
@@ -525,6 +529,17 @@ static void replay_solution(struct replay *replay, const struct pass *pass, doub
     replay->bytes += times * (BYTES_PER_FLUX * proxies + BYTES_PER_PATCH * patches);
 }
 
+/* Of the rank that has most to look at. */
+static double most_looks(const struct replay *replay)
+{
+    int64_t most = 0;
+    for (int r = 0; r < replay->ranks; r++) {
+        int64_t looks = LOOK_LOAD * replay->links[r] + replay->dim[r];
+        most = looks > most ? looks : most;
+    }
+    return (double)most;
+}
+
 static void replay_run(struct replay *replay, const struct scene *scene)
 {
     const struct record *record = replay->record;
@@ -533,18 +548,19 @@ static void replay_run(struct replay *replay, const struct scene *scene)
     replay->of_unit = alloc_array((size_t)record->unit_count, sizeof *replay->of_unit);
     replay->of_event = alloc_array((size_t)record->event_count, sizeof *replay->of_event);
     replay->links = alloc_array((size_t)replay->ranks, sizeof *replay->links);
+    replay->dim = alloc_array((size_t)replay->ranks, sizeof *replay->dim);
     roots_assign(scene, replay->ranks, owner);
     replay_linking(replay);
     even_out(replay);
     for (int64_t k = 0; k < record->pass_count; k++) {
         const struct pass *pass = &record->passes[k];
-        replay->slowest[WORK_LOOKS] += most_of(replay->links, replay->ranks);
+        replay->slowest[WORK_LOOKS] += most_looks(replay);
         replay->all[WORK_LOOKS] += (double)pass->looks;
         for (int64_t l = pass->first_level; l < pass->end_level; l++) {
             const struct level *level = &record->levels[l];
             for (int64_t i = level->first; i < level->end; i++) {
                 int64_t origin = record->events[i].origin;
-                if (l == pass->first_level)
+                if (l == pass->first_level && record->events[i].was_lit)
                     replay->links[origin < 0 ? replay->of_unit[-1 - origin]
                                              : replay->of_event[origin]]--;
             }
@@ -557,6 +573,7 @@ static void replay_run(struct replay *replay, const struct scene *scene)
     alloc_free(replay->of_unit);
     alloc_free(replay->of_event);
     alloc_free(replay->links);
+    alloc_free(replay->dim);
 }
 
 /* --- what comes out --- */
