@@ -82,15 +82,20 @@ static void leave_processor(int tests)
 
 static int64_t exchanges;
 
-void comm_wait(MPI_Request *request)
+static void finish(MPI_Request *request)
 {
-    exchanges++;
     int done = 0;
     for (int tests = 0; !done; tests += tests < INT_MAX) {
         MPI_Test(request, &done, MPI_STATUS_IGNORE);
         if (!done)
             leave_processor(tests);
     }
+}
+
+void comm_wait(MPI_Request *request)
+{
+    exchanges++;
+    finish(request);
 }
 
 void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes)
@@ -235,8 +240,9 @@ void comm_exchange_known(const struct comm *comm, const void *records, const int
     }
     if (counts[comm->rank] > 0)
         memcpy(own_in, own_out, (size_t)counts[comm->rank] * bytes);
+    exchanges++;
     for (int64_t i = 0; i < count; i++)
-        comm_wait(&requests[i]);
+        finish(&requests[i]);
     MPI_Type_free(&record);
     alloc_free(requests);
 }

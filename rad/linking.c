@@ -176,7 +176,7 @@ static void link_pair(struct row *row, int32_t place)
     struct sight sight = {.blocker = row->blocker};
     struct link link;
     linking->touched++;
-    if (!facets_face(own, other) || is_in_shadow(row, other))
+    if (is_in_shadow(row, other))
         return;
     bool made = p < q ? link_make(linking->method, p, own, q, other, 0.0, &sight, &link)
                       : link_make(linking->method, q, other, p, own, 0.0, &sight, &link);
@@ -248,8 +248,9 @@ static void link_little(struct row *row, const struct sighting *sighting, bool h
                                                       row->blocker, cost));
 }
 
-/* Links the root with those of the group that are in its row. What is seen is looked at again by
- * itself where a disk does not tell what it exchanges. */
+/* Links the root with those of the group that are in its row. Where a disk does not tell what is
+ * exchanged, pairs are looked at by themselves, unless nothing is seen of the whole group: to trust
+ * its quarters only where they are hidden would lose light. */
 static void link_group(struct row *row, const struct group *group)
 {
     struct method *method = row->linking->method;
@@ -301,8 +302,7 @@ static int look_at_block(const struct row *row, const struct boxnode *block,
     return count;
 }
 
-/* Links the root with what it sees of a node, at once if so little is at stake. `sightings` are
- * those of the node, or of more; the first of the node is at `first`. */
+/* Links the root with what it sees of a node, `sightings`: all at once if so little is at stake. */
 static void link_in_block(struct row *row, int32_t at, struct sighting *sightings, int count)
 {
     struct linking *linking = row->linking;
