@@ -3,8 +3,8 @@
  * What is asked of each pair of roots: do they face each other, is a wall between them, and how
  * much do they exchange? Asked one by one that is quadratic in the number of roots, and most of
  * them exchange next to nothing: in furnished rooms the median pair has 1e-5 of the power for
- * which one segment is enough. No pair is dropped for that, since together they carry most of
- * the light. But a row goes down the tree of boxes, and whole groups are treated at once:
+ * which one segment is enough. No pair is dropped for that, since many together carry much light.
+ * But a row goes down the tree of boxes, and whole groups are treated at once:
  *
  *  - those that the root cannot face (rad/boxtree.c), or that lie in a shadow, are left out. The
  *    last few shadows in which something was found are remembered: to a book on a shelf, its two

@@ -29,7 +29,7 @@ struct level_balance {
 /* What ranks do, and in what it is counted. */
 enum work {
     WORK_LINKING,   /* initial linking: tests, as above */
-    WORK_LOOKS,     /* what is to be split? links looked at */
+    WORK_LOOKS,     /* what is to be split? links looked at, one that carries light as 16 */
     WORK_SPLITTING, /* refinement: tests, as above */
     WORK_TRANSFER,  /* links over which light was transferred */
     WORK_OWN,       /* own patches in push-pull */

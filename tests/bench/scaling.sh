@@ -2,7 +2,7 @@
 # How phr scales: the paper's Tables 1 and 2 from counted work and from seconds (on stderr),
 # docs/scaling.csv and, where gnuplot is installed, docs/scaling.svg.
 #
-#   make scaling                                        the paper's three rooms, about half an hour
+#   make scaling                                        the paper's three rooms, about eight minutes
 #   CSV=build/x.csv sh tests/bench/scaling.sh scenes/cornell.obj      one scene, nothing drawn
 #
 # Each scene is really run on RANKS ranks, and replayed on up to 4,096 (tests/bench/simulate.c). Counts do
