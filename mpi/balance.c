@@ -23,7 +23,6 @@
 #include <stdlib.h>
 
 #include "geom/alloc.h"
-#include "rad/linking.h"
 
 /* --- single items --- */
 
@@ -120,8 +119,8 @@ void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *
 
 /* --- rows --- */
 
-/* Work of a part, about 2 ms: a hundredth of what a rank has where balance matters; and parts of
- * a row at most. One row in so many is its sampler's from the start. */
+/* Work of a part, below a millisecond; and parts of a row at most. One row in so many is its
+ * sampler's from the start. */
 enum { PART_WORK = 25000, PARTS_MAX = 64, GOES_ON = 8 };
 
 int row_parts(int64_t rest)

@@ -54,11 +54,12 @@ struct row_deal {
     int64_t first, end;     /* the parts of this stage */
     int64_t all;            /* predicted, of all parts */
     int ranks;
-    int64_t *loads;         /* [ranks] what is done, and predicted of what is not known to be done */
+    int64_t *loads;         /* [ranks] what is done, and predicted of what is not known to be done;
+                               without the samples, until row_deal_correct() knows of them */
     int64_t *planned;       /* [ranks] predicted, of this stage */
 };
 
-/* In how many parts what is left of a row is cut, given what that is expected to take. */
+/* In how many parts the rest of a row is cut that is expected to take so much. */
 int row_parts(int64_t rest);
 
 /* Who samples a row; and whether it goes on with the row at once, while others are sampling. */

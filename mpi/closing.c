@@ -112,7 +112,6 @@ void solver_close(struct solver *solver)
 {
     const struct criterion *criterion = &solver->method.criterion;
     struct forest *forest = solver->method.forest;
-    link_list_sort(&solver->links);
     routes_renew(solver);
     closure_extend(&solver->closure, forest);
     conjugate_extend(&solver->conjugate, forest, solver->own);

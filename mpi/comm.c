@@ -82,7 +82,7 @@ static void leave_processor(int tests)
 
 static int64_t exchanges;
 
-static void finish(MPI_Request *request)
+static void wait_for(MPI_Request *request)
 {
     int done = 0;
     for (int tests = 0; !done; tests += tests < INT_MAX) {
@@ -95,7 +95,7 @@ static void finish(MPI_Request *request)
 void comm_wait(MPI_Request *request)
 {
     exchanges++;
-    finish(request);
+    wait_for(request);
 }
 
 void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes)
@@ -242,7 +242,7 @@ void comm_exchange_known(const struct comm *comm, const void *records, const int
         memcpy(own_in, own_out, (size_t)counts[comm->rank] * bytes);
     exchanges++;
     for (int64_t i = 0; i < count; i++)
-        finish(&requests[i]);
+        wait_for(&requests[i]);
     MPI_Type_free(&record);
     alloc_free(requests);
 }

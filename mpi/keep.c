@@ -240,6 +240,7 @@ void links_collect(struct solver *solver, link_sink *sink, void *context)
         merge(&funnel, sink, context);
     funnel_end(&funnel);
     renumber(&solver->links, order);
+    link_list_sort(&solver->links);
     alloc_free(number);
     alloc_free(order);
 }

@@ -5,11 +5,10 @@
  * worked on, the work done before it is exchanged.
  *
  * Light is transferred over links where they live, so all ranks should have as many that carry
- * light: those that
- * have more than the mean give the excess away, and all others stay where they were made. The
- * paper (and --balance greedy) sends each to the home of one of its two roots, here the lower or
- * the higher one by the parity of i + j; but the areas of roots say little about the number of
- * their links. */
+ * light: those that have more than the mean give the excess away, and all others stay where they
+ * were made. The paper (and --balance greedy) sends each to the home of one of its two roots, here
+ * the lower or the higher one by the parity of i + j; but the areas of roots say little about the
+ * number of their links. */
 #include "mpi/assign.h"
 #include "mpi/balance.h"
 #include "mpi/migrate.h"
@@ -35,7 +34,7 @@ static void wait_idle(struct solver *solver, MPI_Request *request)
 }
 
 /* Samples this rank's rows, and goes on with some of them until all know all rests. */
-static void link_rests(struct solver *solver, struct linking *linking, int64_t *rests)
+static void link_samples(struct solver *solver, struct linking *linking, int64_t *rests)
 {
     int ranks = solver->comm->size, rank = solver->comm->rank;
     int32_t rows = linking->tree->root_count;
@@ -76,7 +75,7 @@ void solver_link_roots(struct solver *solver)
     int64_t *rests = alloc_array((size_t)rows, sizeof *rests);
     int64_t *done = alloc_array((size_t)comm->size, sizeof *done);
     int64_t before = method_work(&solver->method), own;
-    link_rests(solver, &linking, rests);
+    link_samples(solver, &linking, rests);
     struct row_deal deal = row_deal_start(rests, rows, comm->size);
     while (row_deal_next(&deal)) {
         own = method_work(&solver->method) - before;

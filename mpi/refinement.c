@@ -59,12 +59,21 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
     ledger_add(&solver->ledger, looks);
 }
 
-/* The largest sum of a patch's radiosities. */
+static double positive_sum(struct rgb light)
+{
+    double sum = 0.0;
+    for (int c = 0; c < BANDS; c++)
+        sum += real_max(0.0, light.band[c]);
+    return sum;
+}
+
+/* The largest sum over bands of a patch's radiosity, as far as that is positive: no light that a
+ * patch reflects is more. */
 static double brightest_patch(const struct forest *forest)
 {
     double brightest = 0.0;
     for (int64_t p = 0; p < forest->count; p++)
-        brightest = real_max(brightest, rgb_sum(forest->patches[p].radiosity));
+        brightest = real_max(brightest, positive_sum(forest->patches[p].radiosity));
     return brightest;
 }
 

@@ -118,6 +118,7 @@ static void list_leaves(struct solver *solver)
 
 void routes_renew(struct solver *solver)
 {
+    link_list_sort(&solver->links);
     size_t ranks = (size_t)solver->comm->size;
     routes_free(&solver->routes);
     solver->routes.out_counts = alloc_array(ranks, sizeof *solver->routes.out_counts);

@@ -11,7 +11,6 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "mpi/balance.h"
 #include "rad/treecode.h"
 
 struct solver *solver_create(const struct comm *comm, const struct scene *scene,

@@ -57,7 +57,7 @@ struct solver {
     double bound_residual, bound_image; /* |z| and |K p| are nowhere larger */
     double least_bend;          /* least <K z, z> / <z, z> seen */
     struct accuracy accuracy;
-    int64_t pairs_touched;    /* pairs of roots that this rank looked at one by one */
+    int64_t pairs_touched;    /* pairs of roots whose exchange this rank estimated */
     int64_t split_here;       /* links that this rank split in this iteration */
     double seconds[PHASE_COUNT];
     int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent by this rank to others */

@@ -22,7 +22,8 @@ static const double DIRECTION_WEIGHT = 0.05;
 
 enum { KEYS = 6 };
 
-enum { BLOCKS_LEAST = 64 }; /* blocks are smaller in a small scene, so that there are enough of them */
+/* Blocks are smaller in a small scene, so that there are enough of them. */
+enum { BLOCKS_LEAST = 64 };
 
 struct entry {
     double key;
@@ -62,7 +63,6 @@ struct boxnode boxnode_of_root(const struct scene *scene, int32_t root)
     return (struct boxnode){.low = least(t.corner[0], least(t.corner[1], t.corner[2])),
                             .high = most(t.corner[0], most(t.corner[1], t.corner[2])),
                             .normal_low = normal, .normal_high = normal,
-                            .area = scene_root_area(scene, root), .radius = triangle_radius(&t),
                             .count = 1, .block = -1};
 }
 
@@ -75,8 +75,6 @@ static void bound(const struct boxtree *tree, const struct scene *scene, struct 
         node->high = fresh ? one.high : most(node->high, one.high);
         node->normal_low = fresh ? one.normal_low : least(node->normal_low, one.normal_low);
         node->normal_high = fresh ? one.normal_high : most(node->normal_high, one.normal_high);
-        node->radius = real_max(node->radius, one.radius);
-        node->area += one.area;
     }
 }
 
@@ -147,9 +145,10 @@ struct boxtree *boxtree_create(const struct scene *scene)
         if (scene_root_area(scene, root) > 0.0)
             tree->roots[tree->root_count++] = root;
     tree->block_roots = tree->root_count / BLOCKS_LEAST;
-    tree->block_roots = tree->block_roots < BOX_ROOTS    ? BOX_ROOTS
-                        : tree->block_roots > BLOCK_MAX ? BLOCK_MAX
-                                                        : tree->block_roots;
+    if (tree->block_roots < BOX_ROOTS)
+        tree->block_roots = BOX_ROOTS;
+    if (tree->block_roots > BLOCK_MAX)
+        tree->block_roots = BLOCK_MAX;
     size_t leaves = (size_t)tree->root_count / BOX_ROOTS + 1;
     tree->nodes = alloc_array(2 * leaves, sizeof *tree->nodes);
     struct entry *entries = alloc_array((size_t)roots, sizeof *entries);

@@ -8,14 +8,14 @@
 
 #include "geom/scene.h"
 
-enum { BOX_ROOTS = 2 }; /* roots in a leaf at most: with 4 a third more pairs are looked at, with 1 more groups */
-
-enum { BLOCK_MAX = 128 }; /* roots in a block at most */
+enum {
+    BOX_ROOTS = 2,  /* roots in a leaf at most */
+    BLOCK_MAX = 128 /* roots in a block at most */
+};
 
 struct boxnode {
     struct vec3 low, high;               /* box around the roots, scene units */
     struct vec3 normal_low, normal_high; /* box around their unit normals */
-    double area, radius;                 /* of all its roots; the largest of one about its centroid */
     int32_t first, count;                /* its roots are roots[first] to roots[first + count - 1] */
     int32_t children;                    /* number of the first child, the other one follows;
                                             0: a leaf */

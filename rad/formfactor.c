@@ -105,13 +105,14 @@ static void pair_aim(struct pair *pair, const struct facet *p, const struct face
     subarea_centroids(&q->triangle, bundle->to);
     for (int ray = 0; ray < RAYS; ray++) {
         pair->kernels[ray] = disk_exchange(bundle->from[ray / SUBAREAS], p->plane.normal,
-                                         0.25 * p->area, bundle->to[ray % SUBAREAS],
-                                         q->plane.normal, 0.25 * q->area);
+                                           0.25 * p->area, bundle->to[ray % SUBAREAS],
+                                           q->plane.normal, 0.25 * q->area);
         bundle->asked |= (unsigned)(pair->kernels[ray] > 0.0) << ray;
     }
 }
 
-/* With four segments, one for each sub-area of p and of q, that agree, all others are taken to be like them. */
+/* With four segments that agree, one for each sub-area of p and of q, all others are taken to be
+ * like them. */
 static void pair_look(struct pair *pair, enum look look, const struct octree *octree,
                       struct sight *sight, struct octree_counts *counts)
 {
@@ -202,7 +203,7 @@ static void set_parts(const struct side *side, double parts[SUBAREAS])
 double exchange_guess(const struct facet *p, const struct facet *q)
 {
     return disk_exchange(triangle_centroid(&p->triangle), p->plane.normal, p->area,
-                       triangle_centroid(&q->triangle), q->plane.normal, q->area);
+                         triangle_centroid(&q->triangle), q->plane.normal, q->area);
 }
 
 /* Over the sum of the radii. Nearer, one disk might say that a patch receives more than all
@@ -275,6 +276,17 @@ struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
         exchange.unoccluded = limit;
     }
     return exchange;
+}
+
+double exchange_from_points(const struct facet *p, const struct facet *q)
+{
+    const struct facet *small = p->area <= q->area ? p : q, *large = small == p ? q : p;
+    struct vec3 points[SUBAREAS];
+    double factors = 0.0;
+    subarea_centroids(&small->triangle, points);
+    for (int sub = 0; sub < SUBAREAS; sub++)
+        factors += point_triangle_factor(points[sub], small->plane.normal, &large->triangle);
+    return small->area * fmin(1.0, 0.25 * factors);
 }
 
 bool facets_are_walled_off(const struct facet *p, const struct facet *q,

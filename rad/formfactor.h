@@ -69,6 +69,9 @@ double exchange_guess(const struct facet *p, const struct facet *q);
  * place of those of the centroids: rather too much. Pre: facets_face(p, q). */
 double exchange_across_horizon(const struct facet *p, const struct facet *q);
 
+/* The same from points on the smaller one: good wherever they are. */
+double exchange_from_points(const struct facet *p, const struct facet *q);
+
 /* True if it is proved that nothing of one facet sees anything of the other: one wall stops all
  * nine segments between their corners. */
 bool facets_are_walled_off(const struct facet *p, const struct facet *q,

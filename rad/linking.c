@@ -15,20 +15,20 @@
  *  - where there is little power at stake between the root and all of a group together, four
  *    segments decide for all, each for a quarter of that power. They lead from the four children
  *    of the root to four roots of the group. How much would be exchanged is still estimated for
- *    each pair; those too near for one disk to tell are looked at by themselves, unless all four
- *    segments are blocked.
+ *    each pair; those too near for one disk to tell, which see more of the root than others do,
+ *    have four segments of their own. (If they were trusted to be hidden where all four segments
+ *    of the group are blocked, rows of form factors would lose a tenth of their sum.)
  *
  * Of n roots, row i has the next n / 2 in the order of the tree, around its end, so all rows are
- * equally long. What they take differs thirtyfold, by where they lie, and next to nothing that
- * can be known of a row tells it beforehand. So each row is begun with a sample, every sixteenth
- * block of the tree: what that takes, and how large the root is, tells what the rest will take.
+ * equally long. What they take differs thirtyfold, by how large the root is and where it lies. So
+ * each row is begun with a sample, every sixteenth block of the tree: what that takes, and how
+ * large the root is, tell what the rest will take.
  * The rest can be linked in parts. No group is larger than a block, and what is seen of a group
  * depends on nothing else: so neither on ranks nor on parts.
  *
  * Tried and left out: groups in place of the one root (four roots are seldom hidden by one wall:
  * half as many pairs were proved, for more work), bundles of 16 segments between four roots and
- * four others (each is blocked by something else: three times the triangle tests), and one
- * segment to each of four partners in a bundle (2 % less work). */
+ * four others (each is blocked by something else: three times the triangle tests). */
 #include "rad/linking.h"
 
 #include "geom/alloc.h"
@@ -111,7 +111,7 @@ struct row {
     int32_t blocker;     /* the last */
     struct shadow shadows[SHADOWS]; /* as seen from p */
     int count, next;     /* shadows there are; the oldest */
-    int64_t sampled, work, left; /* roots of blocks in the sample, work on them; roots of the others */
+    int64_t sampled, work, left; /* of a sample: roots of its blocks, work on them; other roots */
 };
 
 static bool is_in_row(const struct row *row, int32_t place)
@@ -219,60 +219,102 @@ static void quarter_group(const struct group *group, int32_t chosen[BUNDLE_ENDS]
     }
 }
 
-/* Segments from the four children of the root to one child each of four others. */
-static struct bundle aim(const struct linking *linking, int32_t place,
-                         const int32_t chosen[BUNDLE_ENDS])
-{
-    const struct facet *own = &linking->facets[place];
-    struct bundle bundle = {.asked = BUNDLE_DIAGONAL, .own = {own->input, -1}};
-    for (int k = 0; k < BUNDLE_ENDS; k++) {
-        struct triangle from = triangle_child(&own->triangle, k);
-        struct triangle to = triangle_child(&linking->facets[chosen[k]].triangle, k);
-        bundle.from[k] = triangle_centroid(&from);
-        bundle.to[k] = triangle_centroid(&to);
-    }
-    return bundle;
-}
+/* Four segments, from the four children of the root to one child each of four others. */
+struct look_at_four {
+    struct bundle bundle;
+    unsigned blocked;
+    struct octree_counts work;
+};
 
-static void link_little(struct row *row, const struct sighting *sighting, bool hidden, double cost)
+/* Asks for those segments that do not begin or end below a horizon. */
+static struct look_at_four look_at_four(struct row *row, const int32_t chosen[BUNDLE_ENDS])
 {
     struct linking *linking = row->linking;
-    int32_t p = linking->tree->roots[row->place], q = linking->tree->roots[sighting->place];
+    const struct facet *own = &linking->facets[row->place];
+    struct look_at_four look = {.bundle = {.own = {own->input, -1}}};
+    for (int k = 0; k < BUNDLE_ENDS; k++) {
+        const struct facet *other = &linking->facets[chosen[k]];
+        struct triangle from = triangle_child(&own->triangle, k);
+        struct triangle to = triangle_child(&other->triangle, k);
+        look.bundle.from[k] = triangle_centroid(&from);
+        look.bundle.to[k] = triangle_centroid(&to);
+        if (plane_distance(&own->plane, look.bundle.to[k]) > 0.0 &&
+            plane_distance(&other->plane, look.bundle.from[k]) > 0.0)
+            look.bundle.asked |= 1u << (BUNDLE_ENDS + 1) * k;
+    }
+    if (look.bundle.asked)
+        look.blocked = octree_block(linking->method->octree, &look.bundle, &row->blocker, &look.work);
+    octree_counts_add(&linking->method->counts, &look.work);
+    linking->method->rays_spared -= look.work.rays;
+    return look;
+}
+
+/* With little at stake: the share `seen` of what would be exchanged without blockers. */
+static void link_little(struct row *row, int32_t place, double unoccluded, double seen, double cost)
+{
+    struct linking *linking = row->linking;
+    int32_t p = linking->tree->roots[row->place], q = linking->tree->roots[place];
     linking->touched++;
     linking->method->estimating++;
-    if (hidden && is_in_shadow(row, &linking->facets[sighting->place]))
-        return;
     linking->method->rays_spared += BUNDLE_RAYS;
-    link_list_append(linking->links, link_make_little(p < q ? p : q, p < q ? q : p,
-                                                      sighting->unoccluded, !hidden,
+    if (seen == 0.0 && is_in_shadow(row, &linking->facets[place]))
+        return;
+    link_list_append(linking->links, link_make_little(p < q ? p : q, p < q ? q : p, unoccluded, seen,
                                                       row->blocker, cost));
 }
 
-/* Links the root with those of the group that are in its row. Where a disk does not tell what is
- * exchanged, pairs are looked at by themselves, unless nothing is seen of the whole group: to trust
- * its quarters only where they are hidden would lose light. */
+static double tests_of(const struct octree_counts *work)
+{
+    return (double)(work->node_tests + work->triangle_tests);
+}
+
+/* A pair of which a disk does not tell what it exchanges: four segments of its own, and points. */
+static void link_near(struct row *row, const struct sighting *sighting)
+{
+    struct linking *linking = row->linking;
+    const int32_t place = sighting->place, chosen[BUNDLE_ENDS] = {place, place, place, place};
+    struct look_at_four look = look_at_four(row, chosen);
+    unsigned asked = look.bundle.asked, seen = asked & ~look.blocked;
+    double exact = 0.0;
+    if (asked == 0) {
+        link_pair(row, place);
+        return;
+    }
+    if (seen == 0) {
+        find_shadow(row, row->blocker, chosen, 1);
+    } else {
+        exact = exchange_from_points(&linking->facets[row->place], &linking->facets[place]);
+        linking->method->estimating += TESTS_PER_FORM_FACTOR / 2;
+    }
+    link_little(row, place, exact > 0.0 ? exact : sighting->unoccluded,
+                exact > 0.0 ? bit_count(seen) / (double)bit_count(asked) : 0.0,
+                tests_of(&look.work));
+}
+
+/* Links the root with those of the group that are in its row. Those of which a disk does not tell what
+ * they exchange see more of it than others: they are looked at by themselves. */
 static void link_group(struct row *row, const struct group *group)
 {
-    struct method *method = row->linking->method;
     int32_t chosen[BUNDLE_ENDS];
-    struct octree_counts work = {0};
+    int mine = 0;
+    for (int i = 0; i < group->count; i++)
+        mine += is_in_row(row, group->sightings[i].place);
+    if (mine == 0)
+        return;
     quarter_group(group, chosen);
-    struct bundle bundle = aim(row->linking, row->place, chosen);
-    unsigned blocked = octree_block(method->octree, &bundle, &row->blocker, &work);
-    octree_counts_add(&method->counts, &work);
-    method->rays_spared -= work.rays;
-    if (blocked == bundle.asked)
+    struct look_at_four look = look_at_four(row, chosen);
+    if (look.blocked == BUNDLE_DIAGONAL)
         find_shadow(row, row->blocker, chosen, BUNDLE_ENDS);
     for (int i = 0; i < group->count; i++) {
         const struct sighting *sighting = &group->sightings[i];
-        bool hidden = blocked >> (BUNDLE_ENDS + 1) * sighting->quarter & 1u;
+        bool hidden = look.blocked >> (BUNDLE_ENDS + 1) * sighting->quarter & 1u;
         if (!is_in_row(row, sighting->place))
             continue;
-        if (sighting->is_far || blocked == bundle.asked)
-            link_little(row, sighting, hidden,
-                        (double)(work.node_tests + work.triangle_tests) / group->count);
+        if (sighting->is_far)
+            link_little(row, sighting->place, sighting->unoccluded, hidden ? 0.0 : 1.0,
+                        tests_of(&look.work) / group->count);
         else
-            link_pair(row, sighting->place);
+            link_near(row, sighting);
     }
 }
 
@@ -289,15 +331,18 @@ static int look_at_block(const struct row *row, const struct boxnode *block,
     for (int32_t place = block->first; place < block->first + block->count; place++) {
         const struct spot *other = &linking->spots[place];
         const struct facet *p = &linking->facets[row->place], *q = &linking->facets[place];
-        double guess = disk_exchange(own->centre, own->normal, own->area, other->centre,
-                                     other->normal, other->area);
-        double distance = vec3_length(vec3_sub(other->centre, own->centre));
-        bool is_far = guess > 0.0 && radii_are_apart(own->radius, other->radius, distance);
-        if (!(guess > 0.0) && facets_face(p, q))
-            guess = exchange_across_horizon(p, q);
-        if (guess > 0.0 && !(own->is_dark && other->is_dark))
-            sightings[count++] = (struct sighting){.place = place, .unoccluded = guess,
-                                                   .is_far = is_far};
+        struct vec3 d = vec3_sub(other->centre, own->centre);
+        bool centres_face = vec3_dot(own->normal, d) > GEOM_ROUNDING &&
+                            vec3_dot(other->normal, d) < -GEOM_ROUNDING;
+        if ((own->is_dark && other->is_dark) || !(centres_face || facets_face(p, q)))
+            continue;
+        sightings[count++] = (struct sighting){
+            .place = place,
+            .is_far = centres_face && radii_are_apart(own->radius, other->radius, vec3_length(d)),
+            .unoccluded = centres_face ? disk_exchange(own->centre, own->normal, own->area,
+                                                       other->centre, other->normal, other->area)
+                                       : exchange_across_horizon(p, q),
+        };
     }
     return count;
 }

@@ -24,7 +24,7 @@ struct linking {
     struct spot *spots;         /* [tree->root_count] in the same order; owned */
     struct brightness *brightest; /* [tree->node_count]; owned */
     struct link_list *links;    /* borrowed: where links go */
-    int64_t touched;            /* pairs of roots that were looked at one by one */
+    int64_t touched;            /* pairs of roots of which the exchange was estimated */
 };
 
 /* Borrows method and list. */

@@ -45,11 +45,11 @@ struct method {
     double link_threshold;  /* W, areas in square scene units: epsilon times the emitted power */
     double patch_threshold; /* square scene units: no patch smaller than this is made */
     struct rgb typical;     /* a guess at the mean radiosity, W/m^2, before there is an answer */
-    double brightest;       /* no patch has a larger sum of radiosities over the bands, W/m^2 */
+    double brightest;       /* no patch reflects more, summed over the bands, W/m^2 */
     struct octree_counts counts; /* work of this rank so far */
-    int64_t estimating;     /* work of this rank so far besides that, on boxes of roots, disks and form factors;
-                               in tests */
-    int64_t rays_spared;    /* of 16 for each link that this rank has made, those not fired */
+    int64_t estimating;     /* work of this rank so far besides that, on boxes of roots, disks and
+                               form factors; in tests */
+    int64_t rays_spared;    /* of 16 for each pair that this rank has looked at, those not fired */
     int64_t walled_off;     /* links that ended here since they are proved to be blocked */
 };
 

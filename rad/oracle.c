@@ -31,7 +31,6 @@
 
 #include <math.h>
 
-
 static bool patch_may_split(const struct method *method, int32_t patch)
 {
     const struct forest *forest = method->forest;

@@ -18,7 +18,7 @@ struct spread {
 };
 
 /* One level of refinement: how even the work was. Cost and work in box and triangle tests; a form
- * factor counts as eight. Initial linking is level 0 of iteration 0. */
+ * factor counts as eight, a disk or a box of roots in initial linking as one. Initial linking is level 0 of iteration 0. */
 struct level_balance {
     int64_t iteration, level;
     int64_t links; /* that were split; in initial linking, pairs that were touched */
@@ -59,7 +59,7 @@ struct stats {
     int64_t links_partly;  /* some, */
     int64_t links_unseen;  /* or none; these four are all links */
     int64_t walled_off;    /* links that ended since they were proved to be blocked */
-    int64_t pairs_touched; /* of roots, looked at one by one in initial linking */
+    int64_t pairs_touched; /* of roots, whose exchange was estimated in initial linking */
     int64_t rays_spared;   /* of 16 for each link ever made, those that were not fired */
     double closure_min, closure_mean, closure_max, closure_rms;    /* row sums, rms of R - 1 */
     struct spread seconds[PHASE_COUNT];

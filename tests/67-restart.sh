@@ -29,6 +29,9 @@ same() {
         echo "# $key differs or is missing: $1 and $2"
         return 1
     done
+    [ "$(grep '"closure"' "$work/$1.json")" = "$(grep '"closure"' "$work/$2.json")" ] && return
+    echo "# row sums differ: $1 and $2"
+    return 1
 }
 
 # refused START ARGUMENTS...: exit status 2 and one line that begins so.

@@ -4,7 +4,8 @@
 #include "tests/pairs.h"
 #include "tests/tap.h"
 
-/* A room with boxes in it and a few loose triangles: `more` of them. Sides of the room are cut
+/* A room with boxes in it and a few loose triangles: `more` of them. If it is fine, boxes stand on
+ * the floor and touch, and there is a row of thin ones, like books. Sides of the room are cut
  * in 3 times `fine`, those of boxes in 2 times `fine`, along each edge. */
 static struct world furnished(int more, bool two_sided, double epsilon, int fine)
 {
@@ -12,8 +13,14 @@ static struct world furnished(int more, bool two_sided, double epsilon, int fine
     struct soup soup = {0};
     soup_add_box(&soup, point(-0.5, -0.5, -0.5), point(0.5, 0.5, 0.5), 3 * fine, true);
     for (int k = 0; k < 6; k++) {
-        struct vec3 low = {-0.4 + 0.13 * k, k % 2 ? -0.3 : 0.05, -0.49};
+        bool stands = fine > 1;
+        struct vec3 low = {-0.4 + (stands ? 0.1 : 0.13) * k, k % 2 ? -0.3 : stands ? -0.1 : 0.05,
+                           stands ? -0.5 : -0.49};
         soup_add_box(&soup, low, vec3_add(low, point(0.1, 0.2, 0.3)), 2 * fine, false);
+    }
+    for (int k = 0; k < 30 && fine > 1; k++) {
+        struct vec3 low = {-0.2 + 0.012 * k, 0.2, -0.5 + 0.02 * (k % 3)};
+        soup_add_box(&soup, low, vec3_add(low, point(0.01, 0.1, 0.1)), 1, false);
     }
     soup_add_sphere(&soup, 0.1, 1);
     for (int k = 0; k < more; k++)
@@ -264,8 +271,8 @@ static struct link *links_one_by_one(struct world *world)
 }
 
 /* Groups against links one by one: with 16 segments for each pair (the truth), and looked at as
- * closely as what is at stake asks for. Groups may add half as much error again as that leaves,
- * and no bias. */
+ * closely as what is at stake asks for. Four segments where there were up to 16 make twice the
+ * error of a pair; what roots receive of all is as good, and there is no bias. */
 static void test_groups(double epsilon)
 {
     struct world world = furnished(41, false, epsilon, 2), exact = furnished(41, false, 1e-15, 2);
@@ -276,7 +283,7 @@ static void test_groups(double epsilon)
     struct link *single = links_one_by_one(&world), *truth = links_one_by_one(&exact);
     struct deviation ours = deviation_of(groups, truth, roots);
     struct deviation theirs = deviation_of(single, truth, roots);
-    tap_ok(ours.pairs < 1.5 * theirs.pairs && ours.roots < 1.5 * theirs.roots,
+    tap_ok(ours.pairs < 2.5 * theirs.pairs && ours.roots < 1.5 * theirs.roots,
            "epsilon %g, groups: pairs are off by %.2f %%, what roots receive by %.2f %%; "
            "one by one %.2f and %.2f %%", epsilon, 100.0 * ours.pairs, 100.0 * ours.roots,
            100.0 * theirs.pairs, 100.0 * theirs.roots);
