@@ -30,7 +30,7 @@ struct segment {
 struct vec3 triangle_cross(const struct triangle *t);   /* normal times twice the area */
 double triangle_area(const struct triangle *t);         /* m^2 in scene units */
 struct vec3 triangle_centroid(const struct triangle *t);
-double triangle_radius(const struct triangle *t); /* largest distance of a corner from the centroid */
+double triangle_radius(const struct triangle *t);       /* of a corner from the centroid, at most */
 
 /* Pre: the area is not zero. */
 struct plane triangle_plane(const struct triangle *t);

@@ -182,8 +182,7 @@ void oracle_divide_patches(struct method *method, const struct link *link)
 
 /* Powers at stake, relative to the threshold, up to which one segment, and four, tell enough of
  * a pair, and four of a group: of groups there are many, and what is wrong in one is wrong
- * together. Ten times as much saved a tenth of linking and added a tenth to the errors, a tenth
- * of it the other way round (RenderPark's office). */
+ * together. */
 static const double STAKE_ONE = 0.1, STAKE_FOUR = 1.0, STAKE_GROUP = 0.01;
 
 double oracle_light(const struct method *method, struct rgb radiosity_p, struct rgb reflectance_p,

@@ -18,7 +18,8 @@ struct spread {
 };
 
 /* One level of refinement: how even the work was. Cost and work in box and triangle tests; a form
- * factor counts as eight, a disk or a box of roots in initial linking as one. Initial linking is level 0 of iteration 0. */
+ * factor counts as eight, a disk or a box of roots in initial linking as one. Initial linking is
+ * level 0 of iteration 0. */
 struct level_balance {
     int64_t iteration, level;
     int64_t links; /* that were split; in initial linking, pairs that were touched */

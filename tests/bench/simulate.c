@@ -177,7 +177,8 @@ static void split_one(struct record *record, struct solver *solver, const struct
                       int64_t i, struct batch *next)
 {
     const struct link *link = &batch->links.items[i];
-    struct event event = {.origin = batch->origins[i], .load = link_load(link), .was_lit = link->seen > 0,
+    struct event event = {.origin = batch->origins[i], .load = link_load(link),
+                          .was_lit = link->seen > 0,
                           .work = -method_work(&solver->method)};
     struct link children[4];
     int32_t patch = oracle_patch_to_split(&solver->method, link);
