@@ -433,7 +433,8 @@ bool shadow_holds_triangle(const struct shadow *shadow, const struct triangle *q
     if (!(range.low < -GEOM_ROUNDING && range.high <= GEOM_ROUNDING))
         return false;
     for (int k = 1; k < shadow->count; k++)
-        if (!(distances(&shadow->planes[k], q).high <= 0.0))
-            return false;
+        for (int i = 0; i < 3; i++)
+            if (!(plane_distance(&shadow->planes[k], q->corner[i]) <= 0.0))
+                return false;
     return true;
 }

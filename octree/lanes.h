@@ -46,7 +46,6 @@ typedef float lanes_in_memory __attribute__((vector_size(32), aligned(4), may_al
 /* (a0 a0 a0 a0 a1 a1 a1 a1), (a2 a2 a2 a2 a3 a3 a3 a3) and (a4 a5 a6 a7 a4 a5 a6 a7) */
 #define lanes_spread_01(a) __builtin_shufflevector((a), (a), 0, 0, 0, 0, 1, 1, 1, 1)
 #define lanes_spread_23(a) __builtin_shufflevector((a), (a), 2, 2, 2, 2, 3, 3, 3, 3)
-#define lanes_twice_low(a) __builtin_shufflevector((a), (a), 0, 1, 2, 3, 0, 1, 2, 3)
 #define lanes_twice_high(a) __builtin_shufflevector((a), (a), 4, 5, 6, 7, 4, 5, 6, 7)
 
 /* Bit k of the result: lane k of the mask. */
@@ -152,11 +151,6 @@ FOUR_INLINE lanes lanes_spread_01(lanes a)
 FOUR_INLINE lanes lanes_spread_23(lanes a)
 {
     return (lanes){four_all(a.low[2]), four_all(a.low[3])};
-}
-
-FOUR_INLINE lanes lanes_twice_low(lanes a)
-{
-    return (lanes){a.low, a.low};
 }
 
 FOUR_INLINE lanes lanes_twice_high(lanes a)
@@ -278,14 +272,6 @@ static inline lanes lanes_spread_23(lanes a)
     lanes r;
     for (int k = 0; k < LANES; k++)
         r.lane[k] = a.lane[2 + k / 4];
-    return r;
-}
-
-static inline lanes lanes_twice_low(lanes a)
-{
-    lanes r;
-    for (int k = 0; k < LANES; k++)
-        r.lane[k] = a.lane[k % 4];
     return r;
 }
 

@@ -242,6 +242,42 @@ static void shaft_set(struct shaft *shaft, const struct vec3 from[BUNDLE_ENDS],
     shaft_set_slabs(shaft);
 }
 
+/* The end points of one segment, as they are in a record's maps. */
+struct ends {
+    float from[3], to[3];
+};
+
+static struct ends ends_of(struct vec3 from, struct vec3 to)
+{
+    return (struct ends){{(float)from.x, (float)from.y, (float)from.z},
+                         {(float)to.x, (float)to.y, (float)to.z}};
+}
+
+static struct slab slab_between(float a, float b)
+{
+    return (struct slab){lanes_all(0.5f * (a + b)), lanes_all(0.5f * fabsf(b - a) + BOX_MARGIN)};
+}
+
+/* The shaft of one segment: as above, but for the points, which no walk needs. */
+static void shaft_set_segment(struct shaft *shaft, const struct ends *ends)
+{
+    const float *a = ends->from, *b = ends->to;
+    float d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    float largest = 1e-30f;
+    for (int axis = 0; axis < 3; axis++)
+        largest = fabsf(d[axis]) > largest ? fabsf(d[axis]) : largest;
+    shaft->flip = (d[0] < 0.0f) | (d[1] < 0.0f) << 1 | (d[2] < 0.0f) << 2;
+    for (int axis = 0; axis < 3; axis++)
+        d[axis] /= largest;
+    for (int axis = 0; axis < 3; axis++) {
+        int i = (axis + 1) % 3, j = (axis + 2) % 3;
+        shaft->own[axis] = slab_between(a[axis], b[axis]);
+        shaft->cross[axis] = slab_between(d[j] * a[i] - d[i] * a[j], d[j] * b[i] - d[i] * b[j]);
+        shaft->direction[axis] = lanes_all(d[axis]);
+        shaft->steepness[axis] = lanes_all(fabsf(d[axis]));
+    }
+}
+
 /* Boxes that the slab of an axis shuts out, and that of the axis's cross product with the
  * direction, which lies across the axes i and j. */
 #define SHUT_OUT(shaft, axis, i, j)                                                          \
@@ -353,15 +389,8 @@ INLINE int all_above(const lanes *a, const lanes *b)
     return mask_is_full(&mask);
 }
 
-/* Bit k, k < 4, is that of pair k, k. */
-INLINE unsigned on_diagonal(unsigned bits)
-{
-    return (bits & 1u) | (bits & 2u) << 4 | (bits & 4u) << 8 | (bits & 8u) << 12;
-}
-
-/* Looks at the eight points, then at the 16 pairs; at the four of the diagonal alone where these
- * are all that is wanted. All pairs are missed if the verdict says so; what is in neither set
- * has to be decided in double. */
+/* Looks at the eight points, then at the 16 pairs. What is in neither set has to be decided in
+ * double. */
 INLINE struct verdict judge(const struct record *r, const struct shaft *shaft, unsigned wanted)
 {
     const struct verdict none = {0, 0xffffu};
@@ -376,11 +405,6 @@ INLINE struct verdict judge(const struct record *r, const struct shaft *shaft, u
     if (all_above(&nu, &u) | all_above(&nv, &v) | all_above(&sum, &one))
         return none;
     lanes us = lanes_twice_high(u), vs = lanes_twice_high(v), ws = lanes_twice_high(w);
-    if ((wanted & ~BUNDLE_DIAGONAL) == 0) {
-        lanes ud = lanes_twice_low(u), vd = lanes_twice_low(v), wd = lanes_twice_low(w);
-        struct verdict d = judge_half(r, &ud, &us, &vd, &vs, &wd, &ws);
-        return (struct verdict){on_diagonal(d.hit), on_diagonal(d.miss)};
-    }
     lanes u0 = lanes_spread_01(u), v0 = lanes_spread_01(v), w0 = lanes_spread_01(w);
     struct verdict a = {0, 0xffu}, b = {0, 0xffu};
     if (wanted & 0xffu)
@@ -456,6 +480,97 @@ unsigned octree_block(const struct octree *octree, const struct bundle *bundle, 
     return blocked;
 }
 
+/* --- one segment --- */
+
+INLINE float map_at(const float r[4], const float x[3])
+{
+    return r[0] * x[0] + r[1] * x[1] + r[2] * x[2] + r[3];
+}
+
+/* judge() for a single pair: the same comparisons, and the same margins. */
+INLINE struct verdict judge_segment(const struct record *r, const struct ends *ends)
+{
+    const struct verdict miss = {0, 1}, hit = {1, 0}, open = {0, 0};
+    float eu = r->error_u, ev = r->error_v, ew = r->error_w;
+    float w0 = map_at(r->w, ends->from), w1 = map_at(r->w, ends->to);
+    if ((w0 > ew && w1 > ew) || (w0 < -ew && w1 < -ew))
+        return miss;
+    float u0 = map_at(r->u, ends->from), u1 = map_at(r->u, ends->to);
+    if (u0 < -eu && u1 < -eu)
+        return miss;
+    float v0 = map_at(r->v, ends->from), v1 = map_at(r->v, ends->to);
+    if (v0 < -ev && v1 < -ev)
+        return miss;
+    float s = w1 - w0, size = fabsf(s), sign = s < 0.0f ? -1.0f : 1.0f;
+    float u = sign * (u0 * w1 - u1 * w0), v = sign * (v0 * w1 - v1 * w0), third = size - (u + v);
+    float far = fabsf(w0) + fabsf(w1);
+    float mu = eu * far + ew * (fabsf(u0) + fabsf(u1));
+    float mv = ev * far + ew * (fabsf(v0) + fabsf(v1));
+    float ms = mu + mv + 3.0f * ew;
+    if (size > 3.0f * ew && (u < -mu || v < -mv || third < -ms))
+        return miss;
+    bool crosses = (w0 > ew && w1 < -ew) || (w1 > ew && w0 < -ew);
+    return crosses && u > mu && v > mv && third > ms ? hit : open;
+}
+
+/* One segment on its way. */
+struct query {
+    struct vec3 from, to;
+    struct ends ends;
+};
+
+INLINE bool is_blocked_by(const struct octree *octree, const struct query *query,
+                          const struct record *r)
+{
+    struct verdict verdict = judge_segment(r, &query->ends);
+    if (verdict.hit | verdict.miss)
+        return verdict.hit;
+    struct segment s = segment_make(query->from, query->to);
+    return segment_is_blocked_by(&s, &octree->triangles[r->triangle],
+                                 &octree->planes[r->triangle]);
+}
+
+static bool is_blocked_in(const struct octree *octree, struct leaf run, const struct query *query,
+                          const int32_t own[2], int32_t *guess, struct octree_counts *counts)
+{
+    const struct record *records = octree->inside.records + run.first;
+    for (int32_t i = 0; i < run.count; i++) {
+        int32_t t = records[i].triangle;
+        if (t == own[0] || t == own[1])
+            continue;
+        counts->triangle_tests++;
+        if (is_blocked_by(octree, query, &records[i])) {
+            *guess = t;
+            return true;
+        }
+    }
+    return false;
+}
+
+bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct vec3 to,
+                           const int32_t own[2], int32_t *guess, struct octree_counts *counts)
+{
+    const struct tree *tree = &octree->inside;
+    const struct query query = {from, to, ends_of(from, to)};
+    struct shaft shaft;
+    int32_t stack[TREE_STACK];
+    int height = 0;
+    counts->rays++;
+    if (*guess >= 0 && octree->place[*guess] >= 0 &&
+        is_blocked_in(octree, (struct leaf){octree->place[*guess], 1}, &query, own, guess, counts))
+        return true;
+    shaft_set_segment(&shaft, &query.ends);
+    if (tree->node_count > 0)
+        stack[height++] = 0;
+    while (height > 0) {
+        if (stack[height - 1] >= 0)
+            height = descend(tree, &shaft, stack, height, counts);
+        else if (is_blocked_in(octree, tree->leaves[~stack[--height]], &query, own, guess, counts))
+            return true;
+    }
+    return false;
+}
+
 /* --- walls --- */
 
 const struct walls *octree_walls(const struct octree *octree)
@@ -463,16 +578,16 @@ const struct walls *octree_walls(const struct octree *octree)
     return octree->walls;
 }
 
-/* True if a record that blocks the bundle's one segment is part of a wall between p and q. */
-static bool run_has_wall(const struct octree *octree, struct leaf run, const struct bundle *middle,
-                         const struct shaft *thin, const struct triangle *p,
-                         const struct triangle *q, struct octree_counts *counts)
+/* True if a record that blocks the segment is part of a wall between p and q. */
+static bool run_has_wall(const struct octree *octree, struct leaf run, const struct query *middle,
+                         const struct triangle *p, const struct triangle *q,
+                         struct octree_counts *counts)
 {
     const struct record *records = octree->inside.records + run.first;
     for (int32_t i = 0; i < run.count; i++) {
         struct shadow shadow;
         counts->triangle_tests++;
-        if (pairs_blocked(octree, middle, thin, &records[i], 1u) != 0 &&
+        if (is_blocked_by(octree, middle, &records[i]) &&
             shadow_make(&shadow, octree->walls, octree->walls->of_triangle[records[i].triangle],
                         p) &&
             shadow_holds_triangle(&shadow, q))
@@ -485,13 +600,10 @@ bool octree_has_wall(const struct octree *octree, const struct triangle *p,
                      const struct triangle *q, struct octree_counts *counts)
 {
     const struct tree *tree = &octree->inside;
-    struct bundle middle = {.asked = 1u};
-    for (int k = 0; k < BUNDLE_ENDS; k++) {
-        middle.from[k] = triangle_centroid(p);
-        middle.to[k] = triangle_centroid(q);
-    }
+    struct query middle = {.from = triangle_centroid(p), .to = triangle_centroid(q)};
     struct shaft thin;
-    shaft_set(&thin, middle.from, middle.to);
+    middle.ends = ends_of(middle.from, middle.to);
+    shaft_set_segment(&thin, &middle.ends);
     int32_t stack[TREE_STACK];
     int height = 0;
     if (tree->node_count > 0)
@@ -499,7 +611,7 @@ bool octree_has_wall(const struct octree *octree, const struct triangle *p,
     while (height > 0) {
         if (stack[height - 1] >= 0)
             height = descend(tree, &thin, stack, height, counts);
-        else if (run_has_wall(octree, tree->leaves[~stack[--height]], &middle, &thin, p, q, counts))
+        else if (run_has_wall(octree, tree->leaves[~stack[--height]], &middle, p, q, counts))
             return true;
     }
     return false;
@@ -559,12 +671,8 @@ static void set_reach(struct search *search, double reach)
 {
     struct vec3 span = vec3_sub(search->to, search->from);
     struct vec3 end = vec3_add(search->from, vec3_scale(span, reach));
-    struct vec3 from[BUNDLE_ENDS], to[BUNDLE_ENDS];
-    for (int k = 0; k < BUNDLE_ENDS; k++) {
-        from[k] = search->from;
-        to[k] = end;
-    }
-    shaft_set(&search->shaft, from, to);
+    struct ends ends = ends_of(search->from, end);
+    shaft_set_segment(&search->shaft, &ends);
 }
 
 /* Cuts the ray to a segment that ends behind the scene and begins no further from it than its own

@@ -21,9 +21,6 @@ enum {
     BUNDLE_RAYS = BUNDLE_ENDS * BUNDLE_ENDS /* segments of a bundle */
 };
 
-/* Of the segments of a bundle, those from a point to the one of the same number. */
-#define BUNDLE_DIAGONAL 0x8421u
-
 /* The 16 segments between four points and four others. Segment 4 a + b runs from from[a] to
  * to[b]. The points lie in the convex hull of the scene, such as on its triangles. */
 struct bundle {
@@ -35,8 +32,8 @@ struct bundle {
 /* Work done, for predicting and reporting cost. */
 struct octree_counts {
     int64_t rays;           /* segments asked about */
-    int64_t node_tests;     /* nodes, with all their children's boxes, tested against a bundle */
-    int64_t triangle_tests; /* triangles tested against a bundle */
+    int64_t node_tests;     /* nodes, with all their children's boxes, against a bundle or segment */
+    int64_t triangle_tests; /* triangles against a bundle or segment */
 };
 
 static inline void octree_counts_add(struct octree_counts *counts, const struct octree_counts *more)
@@ -73,6 +70,12 @@ struct octree *octree_view(struct pack *pack, const struct triangle *triangles,
  * blocked some segment. It saves time and never changes the answer. */
 unsigned octree_block(const struct octree *octree, const struct bundle *bundle, int32_t *guess,
                       struct octree_counts *counts);
+
+/* True if the segment between two points of the hull of the scene is blocked; own and guess as above.
+ * A few segments that go different ways are cheaper one by one than as part of a bundle, which goes
+ * down wherever anything between its outermost points might be. */
+bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct vec3 to,
+                           const int32_t own[2], int32_t *guess, struct octree_counts *counts);
 
 /* The walls that the triangles make up. */
 const struct walls *octree_walls(const struct octree *octree);

@@ -23,11 +23,3 @@ struct flux_unit flux_unit_choose(const struct scene *scene)
             largest = fmax(largest, scene_root_material(scene, root)->reflectance.band[c]);
     return flux_unit_for(16.0 * scene_emitted_power(scene) / (1.0 - largest));
 }
-
-int64_t flux_from_watts(struct flux_unit unit, double watts)
-{
-    double scaled = watts * unit.per_watt;
-    if (!(fabs(scaled) < (double)FLUX_LIMIT))
-        return scaled < 0.0 ? -FLUX_LIMIT : FLUX_LIMIT;
-    return (int64_t)llrint(scaled);
-}

@@ -8,6 +8,7 @@
 #ifndef RAD_FLUX_H
 #define RAD_FLUX_H
 
+#include <math.h>
 #include <stdint.h>
 
 #include "geom/scene.h"
@@ -30,7 +31,13 @@ struct flux_unit flux_unit_for(double largest);
 struct flux_unit flux_unit_choose(const struct scene *scene);
 
 /* Watts in integer units, between -FLUX_LIMIT and FLUX_LIMIT, which NaN counts as. */
-int64_t flux_from_watts(struct flux_unit unit, double watts);
+static inline int64_t flux_from_watts(struct flux_unit unit, double watts)
+{
+    double scaled = watts * unit.per_watt;
+    if (!(fabs(scaled) < (double)FLUX_LIMIT))
+        return scaled < 0.0 ? -FLUX_LIMIT : FLUX_LIMIT;
+    return (int64_t)llrint(scaled);
+}
 
 static inline double flux_to_watts(struct flux_unit unit, int64_t flux)
 {

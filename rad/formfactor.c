@@ -28,6 +28,9 @@
 
 enum { SUBAREAS = BUNDLE_ENDS, RAYS = BUNDLE_RAYS, ALL_RAYS = (1 << RAYS) - 1 };
 
+/* Segments from a sub-area to the one of the same number. */
+#define DIAGONAL 0x8421u
+
 static const double PI = 3.14159265358979323846;
 
 struct facet facet_make(const struct forest *forest, int32_t patch)
@@ -111,27 +114,40 @@ static void pair_aim(struct pair *pair, const struct facet *p, const struct face
     }
 }
 
+/* The four segments from each sub-area of p to one of q, as far as they are in `asked`: what of them is
+ * blocked. */
+static unsigned block_diagonal(const struct bundle *bundle, unsigned asked,
+                               const struct octree *octree, int32_t *blocker,
+                               struct octree_counts *counts)
+{
+    unsigned blocked = 0;
+    for (int k = 0; k < SUBAREAS; k++) {
+        unsigned bit = 1u << (SUBAREAS + 1) * k;
+        if ((asked & bit) && octree_blocks_segment(octree, bundle->from[k], bundle->to[k],
+                                                   bundle->own, blocker, counts))
+            blocked |= bit;
+    }
+    return blocked;
+}
+
 /* With four segments that agree, one for each sub-area of p and of q, all others are taken to be
  * like them. */
 static void pair_look(struct pair *pair, enum look look, const struct octree *octree,
                       struct sight *sight, struct octree_counts *counts)
 {
-    unsigned facing = pair->bundle.asked, blocked = 0;
+    unsigned facing = pair->bundle.asked, diagonal = facing & DIAGONAL, blocked = 0;
     pair->visible = facing;
     if (sight->open || facing == 0)
         return;
-    if (look == LOOK_FOUR_FIRST && (facing & BUNDLE_DIAGONAL) != 0) {
-        pair->bundle.asked = facing & BUNDLE_DIAGONAL;
-        blocked = octree_block(octree, &pair->bundle, &sight->blocker, counts);
-        unsigned asked = pair->bundle.asked;
-        pair->bundle.asked = facing;
+    if (look == LOOK_FOUR_FIRST && diagonal != 0) {
+        blocked = block_diagonal(&pair->bundle, diagonal, octree, &sight->blocker, counts);
         if (blocked == 0)
             return;
-        if (blocked == asked) {
+        if (blocked == diagonal) {
             pair->visible = 0;
             return;
         }
-        pair->bundle.asked = facing & ~BUNDLE_DIAGONAL;
+        pair->bundle.asked = facing & ~DIAGONAL;
     }
     if (pair->bundle.asked)
         blocked |= octree_block(octree, &pair->bundle, &sight->blocker, counts);
@@ -227,12 +243,10 @@ static struct exchange exchange_by_one(const struct facet *p, const struct facet
                                        struct octree_counts *counts)
 {
     double unoccluded = exchange_guess(p, q);
-    struct bundle bundle = {.asked = 1, .own = {p->input, q->input}};
-    for (int k = 0; k < SUBAREAS; k++) {
-        bundle.from[k] = triangle_centroid(&p->triangle);
-        bundle.to[k] = triangle_centroid(&q->triangle);
-    }
-    bool seen = sight->open || octree_block(octree, &bundle, &sight->blocker, counts) == 0;
+    const int32_t own[2] = {p->input, q->input};
+    bool seen = sight->open ||
+                !octree_blocks_segment(octree, triangle_centroid(&p->triangle),
+                                       triangle_centroid(&q->triangle), own, &sight->blocker, counts);
     return (struct exchange){.area = seen ? unoccluded : 0.0, .unoccluded = unoccluded,
                              .seen = seen ? 1.0 : 0.0, .apart = true,
                              .parts_p = {0.25, 0.25, 0.25, 0.25},

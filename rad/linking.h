@@ -14,6 +14,7 @@ struct brightness {
 struct spot {
     struct vec3 centre, normal;
     double area, radius;
+    struct vec3 points[BUNDLE_ENDS]; /* centroids of its four children */
     bool is_dark; /* neither emits nor reflects */
 };
 

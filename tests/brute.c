@@ -57,20 +57,26 @@ static bool is_blocked_by(const struct octree *octree, int32_t t, struct vec3 fr
     return segment_is_blocked_by(&s, &octree->triangles[t], &octree->planes[t]);
 }
 
+bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct vec3 to,
+                           const int32_t own[2], int32_t *guess, struct octree_counts *counts)
+{
+    bool blocked = false;
+    (void)guess;
+    counts->rays++;
+    for (int32_t t = 0; t < octree->count && !blocked; t++)
+        blocked = t != own[0] && t != own[1] && is_blocked_by(octree, t, from, to);
+    return blocked;
+}
+
 unsigned octree_block(const struct octree *octree, const struct bundle *bundle, int32_t *guess,
                       struct octree_counts *counts)
 {
     unsigned blocked = 0;
-    (void)guess;
-    for (int k = 0; k < BUNDLE_RAYS; k++) {
-        if (!(bundle->asked >> k & 1u))
-            continue;
-        counts->rays++;
-        for (int32_t t = 0; t < octree->count; t++)
-            if (t != bundle->own[0] && t != bundle->own[1] &&
-                is_blocked_by(octree, t, bundle->from[k / BUNDLE_ENDS], bundle->to[k % BUNDLE_ENDS]))
-                blocked |= 1u << k;
-    }
+    for (int k = 0; k < BUNDLE_RAYS; k++)
+        if ((bundle->asked >> k & 1u) &&
+            octree_blocks_segment(octree, bundle->from[k / BUNDLE_ENDS],
+                                  bundle->to[k % BUNDLE_ENDS], bundle->own, guess, counts))
+            blocked |= 1u << k;
     return blocked;
 }
 

@@ -271,8 +271,10 @@ static struct link *links_one_by_one(struct world *world)
 }
 
 /* Groups against links one by one: with 16 segments for each pair (the truth), and looked at as
- * closely as what is at stake asks for. Four segments where there were up to 16 make twice the
- * error of a pair; what roots receive of all is as good, and there is no bias. */
+ * closely as what is at stake asks for. One segment, or the quarter of a group, says all or
+ * nothing where 16 see a share: the error of a pair is up to four times as large, as that of one
+ * sample to that of 16. It averages out in what a root receives, of hundreds, and there is no
+ * bias. */
 static void test_groups(double epsilon)
 {
     struct world world = furnished(41, false, epsilon, 2), exact = furnished(41, false, 1e-15, 2);
@@ -283,7 +285,7 @@ static void test_groups(double epsilon)
     struct link *single = links_one_by_one(&world), *truth = links_one_by_one(&exact);
     struct deviation ours = deviation_of(groups, truth, roots);
     struct deviation theirs = deviation_of(single, truth, roots);
-    tap_ok(ours.pairs < 2.5 * theirs.pairs && ours.roots < 1.5 * theirs.roots,
+    tap_ok(ours.pairs < 5.0 * theirs.pairs && ours.roots < 2.0 * theirs.roots,
            "epsilon %g, groups: pairs are off by %.2f %%, what roots receive by %.2f %%; "
            "one by one %.2f and %.2f %%", epsilon, 100.0 * ours.pairs, 100.0 * ours.roots,
            100.0 * theirs.pairs, 100.0 * theirs.roots);

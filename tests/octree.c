@@ -30,16 +30,11 @@ static void surround(struct world *world)
     world->octree = octree_create(scene->triangles, scene->planes, (int32_t)count);
 }
 
-/* A bundle of one segment: the triangle that blocks it, or -1. */
+/* The triangle that blocks a segment, or -1. */
 static int32_t octree_blocker(const struct octree *octree, struct vec3 from, struct vec3 to,
                               const int32_t own[2], int32_t guess, struct octree_counts *counts)
 {
-    struct bundle bundle = {.asked = 1, .own = {own[0], own[1]}};
-    for (int k = 0; k < BUNDLE_ENDS; k++) {
-        bundle.from[k] = from;
-        bundle.to[k] = to;
-    }
-    return octree_block(octree, &bundle, &guess, counts) ? guess : -1;
+    return octree_blocks_segment(octree, from, to, own, &guess, counts) ? guess : -1;
 }
 
 enum { SEGMENTS = 100000, RAYS = 8000, CROSSINGS = 20000 };

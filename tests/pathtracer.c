@@ -161,15 +161,11 @@ static double coupling(const struct pathtracer *pathtracer, const struct spot *p
 static bool is_blocked(const struct pathtracer *pathtracer, const struct spot *p,
                        const struct spot *q)
 {
-    struct bundle bundle = {.asked = 1, .own = {scene_input_of(pathtracer->scene, p->root),
-                                                scene_input_of(pathtracer->scene, q->root)}};
-    for (int k = 0; k < BUNDLE_ENDS; k++) {
-        bundle.from[k] = p->x;
-        bundle.to[k] = q->x;
-    }
+    const int32_t own[2] = {scene_input_of(pathtracer->scene, p->root),
+                            scene_input_of(pathtracer->scene, q->root)};
     struct octree_counts counts = {0};
     int32_t guess = -1;
-    return octree_block(pathtracer->octree, &bundle, &guess, &counts) != 0;
+    return octree_blocks_segment(pathtracer->octree, p->x, q->x, own, &guess, &counts);
 }
 
 /* sum += throughput * factor * colour, band by band. */
