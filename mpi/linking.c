@@ -2,7 +2,7 @@
  *
  * Rows of the pairs of roots (rad/linking.h) are dealt by what they are expected to take, in
  * stages that make good what was wrong in the ones before (mpi/balance.h): while a stage is
- * worked on, the work done before it is exchanged.
+ * worked on, all tell each other what they did before it, and what they left.
  *
  * Light is transferred over links where they live, so all ranks should have as many that carry
  * light: those that have more than the mean give the excess away, and all others stay where they
@@ -16,13 +16,15 @@
 #include "geom/alloc.h"
 #include "rad/linking.h"
 
-/* Every rank's number on all ranks; to be waited for before `all` is read. */
-static MPI_Request start_telling(const struct comm *comm, const int64_t *own, int64_t *all)
-{
-    MPI_Request request;
-    MPI_Iallgather(own, 1, MPI_INT64_T, all, 1, MPI_INT64_T, comm->handle, &request);
-    return request;
-}
+/* The rows while this rank links its parts of them. */
+struct rows {
+    struct solver *solver;
+    struct linking *linking;
+    int32_t count;
+    struct row_news news; /* what is going to be told; news.clock as of `counted` */
+    int64_t counted;      /* work of the method */
+    int64_t predicted;    /* of the parts begun here */
+};
 
 static void wait_idle(struct solver *solver, MPI_Request *request)
 {
@@ -33,66 +35,133 @@ static void wait_idle(struct solver *solver, MPI_Request *request)
     solver->seconds[PHASE_LINKING] -= idle;
 }
 
-/* Samples this rank's rows, and goes on with some of them until all know all rests. */
-static void link_samples(struct solver *solver, struct linking *linking, int64_t *rests)
+/* The clock goes on by the work since it was last asked for. */
+static int64_t clock_now(struct rows *rows)
 {
-    int ranks = solver->comm->size, rank = solver->comm->rank;
-    int32_t rows = linking->tree->root_count;
-    int64_t *own = alloc_array((size_t)rows, sizeof *own);
-    for (int32_t place = 0; place < rows; place++) {
-        if (row_sampler(place, ranks) != rank)
-            continue;
-        own[place] = linking_add_sample(linking, place);
+    int64_t now = method_work(&rows->solver->method);
+    rows->news.clock += now - rows->counted;
+    rows->counted = now;
+    return rows->news.clock;
+}
+
+/* Links a part. If it is stopped, what is left is told to all, as far as there is room and there are
+ * others, or else linked here, cut as they would. Returns what the rest of the row is expected to take,
+ * if this is its sample. */
+static int64_t link_row_part(struct rows *rows, const struct row_part *part, int64_t limit)
+{
+    int64_t before = method_work(&rows->solver->method), expected = 0;
+    int32_t stop = part->is_sample ? linking_add_sample(rows->linking, part->place, part->from,
+                                                        part->to, limit, &expected)
+                                   : linking_add_part(rows->linking, part->place, part->from,
+                                                      part->to, limit);
+    struct row_part rest = row_rest(part, stop, method_work(&rows->solver->method) - before);
+    rows->predicted += part->cost;
+    if (stop == part->to)
+        return expected;
+    rows->predicted -= rest.cost < part->cost ? rest.cost : part->cost;
+    if (rows->solver->comm->size > 1 && rows->news.count < ROW_NEWS) {
+        rows->news.left[rows->news.count++] = rest;
+        return expected;
     }
+    struct row_part cut[ROW_PARTS_MAX];
+    int count = row_cut(&rest, cut);
+    for (int i = 0; i < count; i++)
+        link_row_part(rows, &cut[i], row_limit(&cut[i]));
+    return expected;
+}
+
+/* Samples this rank's rows, and goes on with some of them until all know what the rests are expected to
+ * take, rests[count], and what the samples of each rank took, rests[count + r]. */
+static void link_samples(struct rows *rows, const int *sampler, int64_t *rests)
+{
+    const struct comm *comm = rows->solver->comm;
+    size_t told = (size_t)rows->count + (size_t)comm->size;
+    int64_t *own = alloc_array(told, sizeof *own);
+    for (int32_t place = 0; place < rows->count; place++) {
+        struct row_part sample = row_sample(rows->count, place,
+                                            linking_sample_cost(rows->linking, place));
+        if (sampler[place] == comm->rank)
+            own[place] = link_row_part(rows, &sample, ROW_SAMPLE_LIMIT);
+    }
+    own[rows->count + comm->rank] = clock_now(rows);
     MPI_Request request;
-    MPI_Iallreduce(own, rests, rows, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
-    for (int32_t place = 0; place < rows; place++) {
-        if (row_sampler(place, ranks) != rank || !row_goes_on(place, own[place], ranks))
-            continue;
-        linking_add_part(linking, place, 0, 1);
+    MPI_Iallreduce(own, rests, (int)told, MPI_INT64_T, MPI_SUM, comm->handle, &request);
+    for (int32_t place = 0; place < rows->count; place++) {
+        struct row_part whole = row_whole(rows->count, place, own[place]);
+        if (sampler[place] == comm->rank && row_goes_on(place, own[place]))
+            link_row_part(rows, &whole, row_limit(&whole));
     }
-    wait_idle(solver, &request);
+    wait_idle(rows->solver, &request);
     alloc_free(own);
 }
 
-static void link_stage(struct solver *solver, struct linking *linking, const struct row_deal *deal)
+static void link_stage(struct rows *rows, const struct row_deal *deal)
 {
+    const struct comm *comm = rows->solver->comm;
+    int64_t before = method_work(&rows->solver->method);
     for (int64_t i = deal->first; i < deal->end; i++) {
-        const struct row_part *part = &deal->parts[i];
-        if (deal->owner[i] != solver->comm->rank)
+        int64_t worked = method_work(&rows->solver->method) - before;
+        if (deal->owner[i] != comm->rank || row_stage_is_over(deal, comm->rank, worked))
             continue;
-        progress_tick(solver->progress, (double)i / (double)deal->count);
-        linking_add_part(linking, part->place, part->part, part->parts);
+        progress_tick(rows->solver->progress, (double)i / (double)deal->count);
+        link_row_part(rows, &deal->parts[i], row_limit(&deal->parts[i]));
+        rows->news.begun++;
     }
+}
+
+static int *deal_samples(const struct comm *comm, const struct linking *linking)
+{
+    int32_t rows = linking->tree->root_count;
+    int *sampler = alloc_array((size_t)rows, sizeof *sampler);
+    int64_t *costs = alloc_array((size_t)rows, sizeof *costs);
+    for (int32_t place = 0; place < rows; place++)
+        costs[place] = linking_sample_cost(linking, place);
+    row_deal_samples(costs, rows, comm->size, sampler);
+    alloc_free(costs);
+    return sampler;
+}
+
+static void link_rows(struct rows *rows)
+{
+    const struct comm *comm = rows->solver->comm;
+    int *sampler = deal_samples(comm, rows->linking);
+    int64_t *rests = alloc_array((size_t)rows->count + (size_t)comm->size, sizeof *rests);
+    struct row_news *all = alloc_array((size_t)comm->size, sizeof *all), told;
+    link_samples(rows, sampler, rests);
+    struct row_deal deal = row_deal_start(rests, sampler, rows->count, rests + rows->count,
+                                          comm->size);
+    do {
+        MPI_Request request;
+        clock_now(rows);
+        rows->news.clock = row_clock(&deal, rows->news.clock);
+        told = rows->news;
+        rows->news.count = rows->news.begun = 0;
+        row_deal_next(&deal);
+        MPI_Iallgather(&told, (int)sizeof told, MPI_BYTE, all, (int)sizeof told, MPI_BYTE,
+                       comm->handle, &request);
+        link_stage(rows, &deal);
+        wait_idle(rows->solver, &request);
+    } while (row_deal_hear(&deal, all));
+    row_deal_end(&deal);
+    alloc_free(all);
+    alloc_free(rests);
+    alloc_free(sampler);
 }
 
 void solver_link_roots(struct solver *solver)
 {
-    const struct comm *comm = solver->comm;
     double start = comm_seconds();
     struct linking linking = linking_start(&solver->method, &solver->links);
-    int32_t rows = linking.tree->root_count;
-    int64_t *rests = alloc_array((size_t)rows, sizeof *rests);
-    int64_t *done = alloc_array((size_t)comm->size, sizeof *done);
-    int64_t before = method_work(&solver->method), own;
-    link_samples(solver, &linking, rests);
-    struct row_deal deal = row_deal_start(rests, rows, comm->size);
-    while (row_deal_next(&deal)) {
-        own = method_work(&solver->method) - before;
-        MPI_Request request = start_telling(comm, &own, done);
-        link_stage(solver, &linking, &deal);
-        wait_idle(solver, &request);
-        row_deal_correct(&deal, done);
-    }
+    struct rows rows = {.solver = solver, .linking = &linking, .count = linking.tree->root_count,
+                        .counted = method_work(&solver->method)};
+    int64_t before = rows.counted;
+    link_rows(&rows);
     struct phase_work phase = {.kind = WORK_LINKING, .links = linking.touched,
-                               .predicted = deal.loads[comm->rank],
+                               .predicted = rows.predicted,
                                .work = method_work(&solver->method) - before};
     ledger_add(&solver->ledger, phase);
     solver->pairs_touched = linking.touched;
-    row_deal_end(&deal);
     linking_end(&linking);
-    alloc_free(rests);
-    alloc_free(done);
     solver->seconds[PHASE_LINKING] += comm_seconds() - start;
 }
 

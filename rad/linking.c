@@ -24,8 +24,8 @@
  * equally long. What they take differs thirtyfold, by how large the root is and where it lies. So
  * each row is begun with a sample, every sixteenth block of the tree: what that takes, and how
  * large the root is, tell what the rest will take.
- * The rest can be linked in parts. No group is larger than a block, and what is seen of a group
- * depends on nothing else: so neither on ranks nor on parts.
+ * The rest can be linked in parts, and a part that takes too long stops at any root. No group is larger
+ * than a block, and what is seen of a group depends on nothing else: so neither on ranks nor on parts.
  *
  * Tried and left out: groups in place of the one root (four roots are seldom hidden by one wall:
  * half as many pairs were proved, for more work), bundles of 16 segments between four roots and
@@ -112,6 +112,7 @@ struct row {
     int32_t place;       /* of the root p, in the order of the tree */
     bool is_sample;      /* the sample of the row, or the rest */
     int32_t first, end;  /* places of the roots to pair it with */
+    int64_t limit;       /* of the method's work: when it is passed, `end` is where the row stands */
     struct boxnode node; /* of p alone */
     struct brightness brightness;
     int32_t blocker;     /* the last */
@@ -365,6 +366,13 @@ static int look_at_block(const struct row *row, const struct boxnode *block,
     return count;
 }
 
+/* What comes after this place is left for later if the row has had its share of work. */
+static void stop_at_limit(struct row *row, int32_t place)
+{
+    if (is_in_row(row, place) && method_work(row->linking->method) >= row->limit)
+        row->end = place + 1;
+}
+
 /* Links the root with what it sees of a node, `sightings`: all at once if so little is at stake. */
 static void link_in_block(struct row *row, int32_t at, struct sighting *sightings, int count)
 {
@@ -378,10 +386,13 @@ static void link_in_block(struct row *row, int32_t at, struct sighting *sighting
                                 most->reflectance);
     if (count > 1 && oracle_trusts_few(linking->method, group.sum * light)) {
         link_group(row, &group);
+        stop_at_limit(row, sightings[count - 1].place);
     } else if (boxnode_is_leaf(node)) {
         for (int i = 0; i < count; i++)
-            if (is_in_row(row, sightings[i].place))
+            if (is_in_row(row, sightings[i].place)) {
                 link_pair(row, sightings[i].place);
+                stop_at_limit(row, sightings[i].place);
+            }
     } else if (count > 0) {
         int32_t middle = linking->tree->nodes[node->children + 1].first;
         int left = 0;
@@ -431,27 +442,24 @@ static void link_below(struct row *row, int32_t at)
     }
 }
 
-/* Links what `row` describes of the places from `first` on, around the end of the order. */
-static void link_places(struct row *row, int32_t first, int32_t end)
+/* Links what `row` describes of the places from `first` on, around the end of the order. Returns where
+ * it stops, `end` or before. */
+static int32_t link_places(struct row *row, int32_t first, int32_t end)
 {
     struct linking *linking = row->linking;
-    int32_t n = linking->tree->root_count;
+    int32_t n = linking->tree->root_count, middle = end < n ? end : n;
     int32_t root = linking->tree->roots[row->place];
     row->node = boxnode_of_root(linking->method->scene, root);
     row->brightness = brightness_of_root(linking, root);
     row->first = first;
-    row->end = end < n ? end : n;
+    row->end = middle;
     link_below(row, 0);
+    if (row->end < middle || end <= n)
+        return row->end;
     row->first = first < n ? 0 : first - n;
     row->end = end - n;
     link_below(row, 0);
-}
-
-/* Roots that the row of this place has. */
-static int32_t length_of_row(const struct linking *linking, int32_t place)
-{
-    int32_t n = linking->tree->root_count;
-    return n % 2 == 1 || place < n / 2 ? n / 2 : n / 2 - 1;
+    return row->end + n;
 }
 
 /* Work for each root of a block as it usually is: a large root is near to many, which it is
@@ -460,20 +468,41 @@ static int32_t length_of_row(const struct linking *linking, int32_t place)
  * by the sample's work alone, of 0.87.) */
 static const double WORK_LEAST = 4.0, WORK_LARGE = 1400.0, USUAL_ROOTS = 64.0;
 
-int64_t linking_add_sample(struct linking *linking, int32_t place)
+static double usual_work(const struct linking *linking, int32_t place)
 {
-    struct row row = {.linking = linking, .place = place, .blocker = -1, .is_sample = true};
     double radius = linking->spots[place].radius;
-    link_places(&row, place + 1, place + 1 + length_of_row(linking, place));
-    double usual = WORK_LEAST + WORK_LARGE * radius * radius;
-    return (int64_t)((double)row.left * ((double)row.work + USUAL_ROOTS * usual) /
-                     ((double)row.sampled + USUAL_ROOTS));
+    return WORK_LEAST + WORK_LARGE * radius * radius;
 }
 
-void linking_add_part(struct linking *linking, int32_t place, int part, int parts)
+int64_t linking_sample_cost(const struct linking *linking, int32_t place)
 {
-    struct row row = {.linking = linking, .place = place, .blocker = -1};
-    int64_t length = length_of_row(linking, place);
-    link_places(&row, place + 1 + (int32_t)(length * part / parts),
-                place + 1 + (int32_t)(length * (part + 1) / parts));
+    int32_t length = linking_row_length(linking->tree->root_count, place);
+    return (int64_t)(usual_work(linking, place) * length / LINKING_SAMPLE);
+}
+
+/* What the rest of a row is expected to take, by its sample up to root number `stop`. */
+static int64_t expected_rest(const struct row *row, int32_t stop, int32_t to)
+{
+    double each = ((double)row->work + USUAL_ROOTS * usual_work(row->linking, row->place)) /
+                  ((double)row->sampled + USUAL_ROOTS);
+    return stop > 0 ? (int64_t)((double)row->left * each * (double)to / (double)stop) : 0;
+}
+
+int32_t linking_add_sample(struct linking *linking, int32_t place, int32_t from, int32_t to,
+                           int64_t limit, int64_t *rest)
+{
+    struct row row = {.linking = linking, .place = place, .blocker = -1, .is_sample = true,
+                      .limit = method_work(linking->method) + limit};
+    int32_t stop = link_places(&row, place + 1 + from, place + 1 + to) - (place + 1);
+    if (rest)
+        *rest = expected_rest(&row, stop, to);
+    return stop;
+}
+
+int32_t linking_add_part(struct linking *linking, int32_t place, int32_t from, int32_t to,
+                         int64_t limit)
+{
+    struct row row = {.linking = linking, .place = place, .blocker = -1,
+                      .limit = method_work(linking->method) + limit};
+    return link_places(&row, place + 1 + from, place + 1 + to) - (place + 1);
 }

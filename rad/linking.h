@@ -35,11 +35,25 @@ void linking_end(struct linking *linking);
 /* Of a row, one block of the tree in so many is its sample. */
 enum { LINKING_SAMPLE = 16 };
 
+/* Roots in the row of a place, of `roots` in all. */
+static inline int32_t linking_row_length(int32_t roots, int32_t place)
+{
+    return roots % 2 == 1 || place < roots / 2 ? roots / 2 : roots / 2 - 1;
+}
+
+/* About what the sample of a row takes, before anything is known but the root's size. */
+int64_t linking_sample_cost(const struct linking *linking, int32_t place);
+
 /* Links the root at this place of the tree's order with those roots of its row that it can
- * exchange light with and is not proved to be walled off from: with the sample of the row, or
- * with one of `parts` equal parts of the rest. What is found depends on `parts`, but not on what
- * was linked before. The sample returns what work the rest is expected to take. */
-int64_t linking_add_sample(struct linking *linking, int32_t place);
-void linking_add_part(struct linking *linking, int32_t place, int part, int parts);
+ * exchange light with and is not proved to be walled off from: with those of the sample of the row, or
+ * with those of the rest, that are roots number `from` to before number `to` of the row. Both stop when
+ * they have taken `limit` of work (below 2^62), and return where: what is left is from there to `to`.
+ * What is found depends on where a row is cut (what is seen does not), but not on what was linked before.
+ * *rest, unless NULL, receives what work the rest of the row is expected to take, as far as that is known
+ * from this sample. */
+int32_t linking_add_sample(struct linking *linking, int32_t place, int32_t from, int32_t to,
+                           int64_t limit, int64_t *rest);
+int32_t linking_add_part(struct linking *linking, int32_t place, int32_t from, int32_t to,
+                         int64_t limit);
 
 #endif

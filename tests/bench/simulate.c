@@ -36,8 +36,11 @@ static const double ALPHA = 2e-6, BETA = 1e-10, ALPHA_PAPER = 1e-4, BETA_PAPER =
 
 enum { BYTES_PER_PATCH = 24, BYTES_PER_LINK = 32, BYTES_PER_FLUX = 32, RANKS_MOST = 4096 };
 
-/* A part of a row, or its sample: its work, and its links that carry light and that do not. */
+/* A part of a row, or its sample: its work, where it stopped, and its links that carry light and that do
+ * not. */
 struct unit {
+    struct row_part part;
+    int32_t stop;
     int64_t work, lit, dim;
 };
 
@@ -62,8 +65,8 @@ struct pass {
 
 struct record {
     int32_t rows;
-    int64_t *first_unit;  /* [rows] the sample; parts follow */
-    int64_t *rests;       /* [rows] what these are expected to take */
+    int64_t *first_unit;  /* [rows + 1] the sample; parts follow */
+    int64_t *samples, *rests; /* [rows] what the sample, and what these are expected to take */
     struct unit *units;
     struct event *events;
     struct level *levels;
@@ -91,9 +94,8 @@ static void add_origin(struct record *record, int64_t origin)
     record->origins[record->origin_count++] = origin;
 }
 
-static void add_unit(struct record *record, struct solver *solver, int64_t before)
+static void add_unit(struct record *record, struct solver *solver, struct unit unit)
 {
-    struct unit unit = {.work = method_work(&solver->method) - before};
     for (int64_t i = record->origin_count; i < solver->links.count; i++) {
         unit.lit += solver->links.items[i].seen > 0;
         unit.dim += solver->links.items[i].seen == 0;
@@ -105,25 +107,51 @@ static void add_unit(struct record *record, struct solver *solver, int64_t befor
         add_origin(record, -record->unit_count);
 }
 
+static void record_rest(struct record *record, struct solver *solver, struct linking *linking,
+                        const struct row_part *rest);
+
+/* Records a part, and what is left of it; *expected: for the sample of a row. */
+static void record_part(struct record *record, struct solver *solver, struct linking *linking,
+                        const struct row_part *part, int64_t limit, int64_t *expected)
+{
+    int64_t before = method_work(&solver->method);
+    struct unit unit = {.part = *part};
+    unit.stop = part->is_sample ? linking_add_sample(linking, part->place, part->from, part->to, limit,
+                                                     expected)
+                                : linking_add_part(linking, part->place, part->from, part->to, limit);
+    unit.work = method_work(&solver->method) - before;
+    add_unit(record, solver, unit);
+    struct row_part rest = row_rest(part, unit.stop, unit.work);
+    if (unit.stop < part->to)
+        record_rest(record, solver, linking, &rest);
+}
+
+static void record_rest(struct record *record, struct solver *solver, struct linking *linking,
+                        const struct row_part *rest)
+{
+    struct row_part cut[ROW_PARTS_MAX];
+    int count = row_cut(rest, cut);
+    for (int i = 0; i < count; i++)
+        record_part(record, solver, linking, &cut[i], row_limit(&cut[i]), NULL);
+}
+
 static void record_linking(struct record *record, struct solver *solver)
 {
     double start = cpu_seconds();
     struct linking linking = linking_start(&solver->method, &solver->links);
     record->rows = linking.tree->root_count;
-    record->first_unit = alloc_array((size_t)record->rows, sizeof *record->first_unit);
+    record->first_unit = alloc_array((size_t)record->rows + 1, sizeof *record->first_unit);
     record->rests = alloc_array((size_t)record->rows, sizeof *record->rests);
+    record->samples = alloc_array((size_t)record->rows, sizeof *record->samples);
     for (int32_t place = 0; place < record->rows; place++) {
+        record->samples[place] = linking_sample_cost(&linking, place);
         record->first_unit[place] = record->unit_count;
-        int64_t before = method_work(&solver->method);
-        record->rests[place] = linking_add_sample(&linking, place);
-        add_unit(record, solver, before);
-        int parts = row_parts(record->rests[place]);
-        for (int part = 0; part < parts; part++) {
-            before = method_work(&solver->method);
-            linking_add_part(&linking, place, part, parts);
-            add_unit(record, solver, before);
-        }
+        struct row_part sample = row_sample(record->rows, place, record->samples[place]);
+        record_part(record, solver, &linking, &sample, ROW_SAMPLE_LIMIT, &record->rests[place]);
+        struct row_part whole = row_whole(record->rows, place, record->rests[place]);
+        record_rest(record, solver, &linking, &whole);
     }
+    record->first_unit[record->rows] = record->unit_count;
     linking_end(&linking);
     record->seconds[WORK_LINKING] = cpu_seconds() - start;
     record->counts[WORK_LINKING] = (double)method_work(&solver->method);
@@ -308,6 +336,7 @@ static void record_free(struct record *record)
     for (int64_t i = 0; i < record->pass_count; i++)
         alloc_free(record->passes[i].of_root);
     alloc_free(record->first_unit);
+    alloc_free(record->samples);
     alloc_free(record->rests);
     alloc_free(record->units);
     alloc_free(record->events);
@@ -382,40 +411,83 @@ static void advance(double *clocks, const int64_t *done, const int64_t *before, 
         clocks[r] += (double)(done[r] - before[r]);
 }
 
+/* As link_row_part() in mpi/linking.c. */
+static void do_part(struct replay *replay, const struct row_part *part, int rank, int64_t *done,
+                    struct row_news *news)
+{
+    const struct record *record = replay->record;
+    int64_t at = record->first_unit[part->place];
+    while (record->units[at].part.from != part->from ||
+           record->units[at].part.is_sample != part->is_sample)
+        at++;
+    const struct unit *unit = &record->units[at];
+    do_unit(replay, at, rank, done);
+    if (unit->stop == part->to)
+        return;
+    struct row_part rest = row_rest(part, unit->stop, unit->work), cut[ROW_PARTS_MAX];
+    if (replay->ranks > 1 && news->count < ROW_NEWS) {
+        news->left[news->count++] = rest;
+        return;
+    }
+    int count = row_cut(&rest, cut);
+    for (int i = 0; i < count; i++)
+        do_part(replay, &cut[i], rank, done, news);
+}
+
+/* As in mpi/linking.c. */
 static void replay_linking(struct replay *replay)
 {
     const struct record *record = replay->record;
     int ranks = replay->ranks;
     int64_t *done = alloc_array(2 * (size_t)ranks, sizeof *done), *before = done + ranks;
     double *clocks = alloc_array((size_t)ranks, sizeof *clocks);
-    for (int32_t place = 0; place < record->rows; place++)
-        do_unit(replay, record->first_unit[place], row_sampler(place, ranks), done);
+    struct row_news *own = alloc_array(2 * (size_t)ranks, sizeof *own), *told = own + ranks;
+    int *sampler = alloc_array((size_t)record->rows, sizeof *sampler);
+    row_deal_samples(record->samples, record->rows, ranks, sampler);
+    for (int32_t place = 0; place < record->rows; place++) {
+        struct row_part sample = row_sample(record->rows, place, record->samples[place]);
+        do_part(replay, &sample, sampler[place], done, &own[sampler[place]]);
+    }
     advance(clocks, done, before, ranks);
     double news = latest(clocks, ranks);
     memcpy(before, done, (size_t)ranks * sizeof *done);
-    for (int32_t place = 0; place < record->rows; place++)
-        if (row_goes_on(place, record->rests[place], ranks))
-            do_unit(replay, record->first_unit[place] + 1, row_sampler(place, ranks), done);
+    struct row_deal deal = row_deal_start(record->rests, sampler, record->rows, done, ranks);
+    for (int32_t place = 0; place < record->rows; place++) {
+        struct row_part whole = row_whole(record->rows, place, record->rests[place]);
+        int rank = sampler[place];
+        if (row_goes_on(place, whole.cost))
+            do_part(replay, &whole, rank, done, &own[rank]);
+    }
     advance(clocks, done, before, ranks);
     wait_for(clocks, ranks, news);
-    exchange(replay, 8.0 * record->rows);
-    struct row_deal deal = row_deal_start(record->rests, record->rows, ranks);
-    while (row_deal_next(&deal)) {
+    exchange(replay, 8.0 * (record->rows + ranks));
+    do {
         news = latest(clocks, ranks);
         memcpy(before, done, (size_t)ranks * sizeof *done);
-        for (int64_t i = deal.first; i < deal.end; i++)
-            do_unit(replay, record->first_unit[deal.parts[i].place] + 1 + deal.parts[i].part,
-                    deal.owner[i], done);
+        for (int r = 0; r < ranks; r++) {
+            told[r] = own[r];
+            told[r].clock = (int64_t)clocks[r];
+            own[r].count = own[r].begun = 0;
+        }
+        row_deal_next(&deal);
+        for (int64_t i = deal.first; i < deal.end; i++) {
+            int rank = deal.owner[i];
+            if (row_stage_is_over(&deal, rank, done[rank] - before[rank]))
+                continue;
+            do_part(replay, &deal.parts[i], rank, done, &own[rank]);
+            own[rank].begun++;
+        }
         advance(clocks, done, before, ranks);
         wait_for(clocks, ranks, news);
-        exchange(replay, 8.0 * ranks);
-        row_deal_correct(&deal, before);
-    }
+        exchange(replay, (double)sizeof *own * ranks);
+    } while (row_deal_hear(&deal, told));
     replay->slowest[WORK_LINKING] = latest(clocks, ranks);
     replay->all[WORK_LINKING] = sum_of(done, ranks);
     row_deal_end(&deal);
+    alloc_free(sampler);
     alloc_free(clocks);
     alloc_free(done);
+    alloc_free(own);
 }
 
 /* As links_even_out(). */
