@@ -163,17 +163,6 @@ int64_t comm_displacements(const struct comm *comm, const int *counts, int *disp
     return comm_count(comm, sum);
 }
 
-int64_t comm_exchange_counts(const struct comm *comm, const int *counts, int *receive)
-{
-    int64_t arriving = 0;
-    MPI_Request request;
-    MPI_Ialltoall(counts, 1, MPI_INT, receive, 1, MPI_INT, comm->handle, &request);
-    comm_wait(&request);
-    for (int r = 0; r < comm->size; r++)
-        arriving += receive[r];
-    return arriving;
-}
-
 /* Whole records, so that counts stay small. */
 static MPI_Datatype record_of(size_t bytes)
 {
@@ -215,8 +204,8 @@ static int64_t pass(const struct comm *comm, char *in, const char *out, int64_t 
 /* One message to each rank that gets something, in pieces where it is long: no count is ever too large
  * for MPI, and those who have nothing for each other need not meet. What a rank has for itself is
  * copied. */
-void comm_exchange_known(const struct comm *comm, const void *records, const int *counts,
-                         size_t bytes, void *arrived, const int *receive)
+static void exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
+                     void *arrived, const int *receive)
 {
     const char *out = records, *own_out = NULL;
     char *in = arrived, *own_in = NULL;
@@ -251,11 +240,28 @@ void *comm_exchange(const struct comm *comm, const void *records, const int *cou
                     int64_t *arriving)
 {
     int *receive = alloc_array((size_t)comm->size, sizeof *receive);
-    *arriving = comm_exchange_counts(comm, counts, receive);
+    MPI_Request request;
+    MPI_Ialltoall(counts, 1, MPI_INT, receive, 1, MPI_INT, comm->handle, &request);
+    comm_wait(&request);
+    *arriving = 0;
+    for (int r = 0; r < comm->size; r++)
+        *arriving += receive[r];
     void *arrived = alloc_array((size_t)*arriving, bytes);
-    comm_exchange_known(comm, records, counts, bytes, arrived, receive);
+    exchange(comm, records, counts, bytes, arrived, receive);
     alloc_free(receive);
     return arrived;
+}
+
+void comm_add_home(const struct comm *comm, const int64_t *values, const int *counts, int width,
+                   int64_t *own)
+{
+    int *numbers = alloc_array((size_t)comm->size, sizeof *numbers);
+    for (int r = 0; r < comm->size; r++)
+        numbers[r] = comm_count(comm, (int64_t)counts[r] * width);
+    MPI_Request request;
+    MPI_Ireduce_scatter(values, own, numbers, MPI_INT64_T, MPI_SUM, comm->handle, &request);
+    comm_wait(&request);
+    alloc_free(numbers);
 }
 
 void comm_share(const struct comm *comm, void *records, const int *counts, size_t bytes)

@@ -47,11 +47,10 @@ int64_t comm_displacements(const struct comm *comm, const int *counts, int *disp
 void *comm_exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
                     int64_t *arriving);
 
-/* Collective. The same in two steps, for more than one exchange with the same counts: receive[r] is the
- * number of records that come from rank r; returns their sum. Then the records, into `arrived`. */
-int64_t comm_exchange_counts(const struct comm *comm, const int *counts, int *receive);
-void comm_exchange_known(const struct comm *comm, const void *records, const int *counts,
-                         size_t bytes, void *arrived, const int *receive);
+/* Collective. Every rank gets sums over all ranks: `values` holds counts[0] groups of `width` for rank 0,
+ * then counts[1] for rank 1, and so on; `own` receives the sums of those for this rank. */
+void comm_add_home(const struct comm *comm, const int64_t *values, const int *counts, int width,
+                   int64_t *own);
 
 /* Collective. All ranks get the records of all: `records` has room for counts[0] of rank 0, then
  * counts[1] of rank 1, and so on; each rank's own are in place. */

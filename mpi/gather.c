@@ -1,23 +1,12 @@
 /* Step 5: what proxies received goes home.
  *
- * A rank's links add flux to patches of all homes. The flux of each proxy is sent, in the order of the
- * routes; the home adds: integers, so in any order. */
+ * A rank's links add flux to patches of all homes. One reduction adds up what all ranks have, and each
+ * home gets the sums of its patches: integers, so in any order. From P ranks to P homes that takes log P
+ * messages a rank, where one to each home would take P - 1, and about as many bytes: the links of a rank
+ * lead nearly everywhere. */
 #include "mpi/solver.h"
 
 #include "geom/alloc.h"
-
-/* 24 bytes, no padding. */
-struct wire_flux {
-    int64_t flux[BANDS];
-};
-
-static int64_t sum_of(const int *counts, int ranks)
-{
-    int64_t sum = 0;
-    for (int r = 0; r < ranks; r++)
-        sum += counts[r];
-    return sum;
-}
 
 void solver_gather(struct solver *solver)
 {
@@ -25,19 +14,22 @@ void solver_gather(struct solver *solver)
     const struct comm *comm = solver->comm;
     const struct routes *routes = &solver->routes;
     struct patch *patches = solver->method.forest->patches;
-    int64_t leaving = sum_of(routes->out_counts, comm->size);
-    int64_t arriving = sum_of(routes->in_counts, comm->size);
-    struct wire_flux *out = alloc_array((size_t)leaving, sizeof *out);
-    struct wire_flux *in = alloc_array((size_t)arriving, sizeof *in);
-    for (int64_t i = 0; i < leaving; i++)
+    int *at = alloc_array((size_t)comm->size, sizeof *at);
+    int64_t count = comm_displacements(comm, routes->receiver_counts, at);
+    int64_t own_count = routes->receiver_counts[comm->rank];
+    const int32_t *own_patches = routes->receivers + at[comm->rank];
+    int64_t *all = alloc_array(BANDS * (size_t)count, sizeof *all);
+    int64_t *own = alloc_array(BANDS * (size_t)own_count, sizeof *own);
+    for (int64_t i = 0; i < count; i++)
         for (int c = 0; c < BANDS; c++)
-            out[i].flux[c] = patches[routes->out[i]].flux[c];
-    comm_exchange_known(comm, out, routes->out_counts, sizeof *out, in, routes->in_counts);
-    for (int64_t i = 0; i < arriving; i++)
+            all[BANDS * i + c] = patches[routes->receivers[i]].flux[c];
+    comm_add_home(comm, all, routes->receiver_counts, BANDS, own);
+    for (int64_t i = 0; i < own_count; i++)
         for (int c = 0; c < BANDS; c++)
-            patches[routes->in[i]].flux[c] += in[i].flux[c];
-    solver->bytes_gather += leaving * (int64_t)sizeof *out;
-    alloc_free(in);
-    alloc_free(out);
+            patches[own_patches[i]].flux[c] = own[BANDS * i + c];
+    solver->bytes_gather += (count - own_count) * (int64_t)(BANDS * sizeof *all);
+    alloc_free(own);
+    alloc_free(all);
+    alloc_free(at);
     solver->seconds[PHASE_GATHER] += comm_seconds() - start;
 }

@@ -32,7 +32,7 @@ function finish_file(   k, kind, shared, parts, copies, messages, bytes, mega) {
     }
     copies = worth["patches"] * slowest["patches"]
     if (ranks > 1) {
-        messages = exchanges * log2(ranks) + (phases["transfer"] + phases["splitting"]) * (ranks - 1)
+        messages = exchanges * log2(ranks) + phases["splitting"] * (ranks - 1)
         bytes = sent["transfer"] + sent["splitting"] + (scattered + migrated) / ranks
     }
     talk = 2e-6 * messages + 1e-10 * bytes

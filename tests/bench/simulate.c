@@ -11,8 +11,8 @@
  * Counts become seconds by what each took here: seconds per test (form factors included), per
  * link looked at, per link in a transfer, per own patch, per patch that every rank keeps up to
  * date. Messages cost ALPHA each (an exchange with all takes log2 P of them, one where each has
- * something else for each takes P - 1), bytes BETA each. What goes to all is taken as
- * BYTES_PER_PATCH for each patch and iteration, about what phr sends.
+ * something else for each takes P - 1), bytes BETA each. Flux home, and radiosities to all, are
+ * BYTES_PER_PATCH for each patch and iteration, which has so many EXCHANGES.
  *
  * One line of CSV for each number of ranks, as in tests/bench/scaling.sh; on stderr, what
  * dominates. What is not in the model: a link that was moved to even out their numbers is taken
@@ -34,7 +34,7 @@
 /* Seconds per message and per byte: a node of today; and the paper's Ethernet of 100 Mbit/s. */
 static const double ALPHA = 2e-6, BETA = 1e-10, ALPHA_PAPER = 1e-4, BETA_PAPER = 8e-8;
 
-enum { BYTES_PER_PATCH = 24, BYTES_PER_LINK = 32, BYTES_PER_FLUX = 32, RANKS_MOST = 4096 };
+enum { BYTES_PER_PATCH = 24, BYTES_PER_LINK = 32, EXCHANGES = 4, RANKS_MOST = 4096 };
 
 /* A part of a row, or its sample: its work, where it stopped, and its links that carry light and that do
  * not. */
@@ -597,9 +597,8 @@ static void replay_solution(struct replay *replay, const struct pass *pass, doub
     replay->all[WORK_PATCHES] += times * patches * ranks;
     if (replay->ranks == 1)
         return;
-    double proxies = fmin(2.0 * links, patches * (ranks - 1.0) / ranks);
-    replay->messages += times * (ranks - 1.0 + 4.0 * ceil(log2(ranks)));
-    replay->bytes += times * (BYTES_PER_FLUX * proxies + BYTES_PER_PATCH * patches);
+    replay->messages += times * EXCHANGES * ceil(log2(ranks));
+    replay->bytes += times * 2.0 * BYTES_PER_PATCH * patches * (ranks - 1.0) / ranks;
 }
 
 /* Of the rank that has most to look at. */
