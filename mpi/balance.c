@@ -1,19 +1,20 @@
 /* Balance.
  *
- * Rows of initial linking. Of each row a sample is linked first (rad/linking.h), rows in turn, and
- * what the rest is expected to take is told to all. Heavy rows are cut, by that alone, so that links
- * do not depend on the ranks. The parts are sorted, heavy ones first, and dealt in stages, each of
- * half of what is left, but for the last: always to the rank with the smallest load. What was wrong
- * in the prediction of one stage is made good in a later one: a rank begins parts until it has worked as
- * long as planned, and those that it has not begun are dealt anew. So is what is left of a part, or of a
- * sample, that takes much longer than predicted: it is stopped, by its work alone again, and cut. A stage
- * is dealt with what is known of all but the last, so nobody waits for the news of a stage that somebody
- * still works on; for the same reason, ranks go on with one in eight of their own rows, unless it is
- * heavy, while others are sampling. What ranks wait for all the same is part of their load, or in the end
- * those would get most that have worked least, and all would wait for them.
+ * Rows of initial linking. Of each row a sample is linked first (rad/linking.h), samples being
+ * dealt by the sizes of the roots, and what the rest is expected to take is told to all. Heavy
+ * rows are cut, by that alone, so that links do not depend on the ranks. The parts are sorted,
+ * heavy ones first, and dealt in stages, each of half of what is left, but for the last: always
+ * to the rank with the smallest load. What was wrong in the prediction of one stage is made good
+ * in a later one: a rank begins parts until it has worked as long as planned, and those that it
+ * has not begun are dealt anew. So is what is left of a part, or of a sample, that takes much
+ * longer than predicted: it is stopped, by its work alone again, and cut. A stage is dealt with
+ * what is known of all but the last, so nobody waits for the news of a stage that somebody still
+ * works on; for the same reason, ranks go on with one in eight of their own rows, unless it is
+ * heavy, while others are sampling. What ranks wait for all the same is part of their load, or
+ * in the end those would get most that have worked least, and all would wait for them.
  *
- * In a room of 31,933 triangles on 1,024 ranks, replayed, 12 % of this are idle; 39 % were when parts
- * were not stopped and waits were no load.
+ * In a room of 31,933 triangles on 1,024 ranks, replayed, 12 % of this are idle; 39 % were when
+ * parts were not stopped and waits were no load.
  *
  * Rejected: rows in turn, without any prediction (of 32 ranks 13 % idle, of 1,024 80 %: rows differ
  * thirtyfold); all rows in equal parts, one after the other (4 % more work for 8 parts: each begins
@@ -127,9 +128,9 @@ void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *
 
 /* --- rows --- */
 
-/* Work of a part, below a millisecond; of what is left of one, of which there are few, but late; and how
- * much more than planned a rank works in a stage, so that nothing small is given back. One row in so many
- * is its sampler's from the start. */
+/* Work of a part, below a millisecond; of what is left of one, of which there are few, but late;
+ * and how much more than planned a rank works in a stage, so that nothing small is given back.
+ * One row in so many is its sampler's from the start. */
 enum { PART_WORK = 25000, LEFT_WORK = 4000, STAGE_MORE = 1000, GOES_ON = 8 };
 
 int row_cut(const struct row_part *whole, struct row_part parts[ROW_PARTS_MAX])
@@ -140,8 +141,9 @@ int row_cut(const struct row_part *whole, struct row_part parts[ROW_PARTS_MAX])
     count = count < ROW_PARTS_MAX ? count : ROW_PARTS_MAX;
     count = count < length ? count : length;
     for (int64_t i = 0; i < count; i++)
-        parts[i] = (struct row_part){.cost = 1 + whole->cost / count, .place = whole->place,
-                                     .is_sample = whole->is_sample, .from = whole->from + (int32_t)(length * i / count),
+        parts[i] = (struct row_part){.cost = 1 + whole->cost / count,
+                                     .place = whole->place, .is_sample = whole->is_sample,
+                                     .from = whole->from + (int32_t)(length * i / count),
                                      .to = whole->from + (int32_t)(length * (i + 1) / count)};
     return (int)count;
 }
@@ -158,11 +160,12 @@ struct row_part row_rest(const struct row_part *part, int32_t stop, int64_t work
     double roots = (double)(part->to - part->from) + (double)(stop - part->from);
     double each = (double)(part->cost + work) / roots;
     return (struct row_part){.cost = (int64_t)(each * (double)(part->to - stop)),
-                             .place = part->place, .is_sample = part->is_sample, .from = stop, .to = part->to};
+                             .place = part->place, .is_sample = part->is_sample,
+                             .from = stop, .to = part->to};
 }
 
-/* Those that take several times the mean first, each of which may be more than a rank's share of the
- * rest. */
+/* Those that take several times the mean first, each of which may be more than a rank's share of
+ * the rest. */
 void row_deal_samples(const int64_t *costs, int32_t rows, int ranks, int *owner)
 {
     int64_t *sorted = alloc_array((size_t)rows, sizeof *sorted);
@@ -186,9 +189,10 @@ void row_deal_samples(const int64_t *costs, int32_t rows, int ranks, int *owner)
     alloc_free(sorted);
 }
 
+/* Which rows, must have nothing to do with how samples are dealt, in turn where they are alike. */
 bool row_goes_on(int32_t place, int64_t rest)
 {
-    return place % GOES_ON == 0 && rest < PART_WORK;
+    return (uint32_t)place * UINT32_C(2654435769) / (UINT32_MAX / GOES_ON + 1) == 0 && rest < PART_WORK;
 }
 
 struct row_part row_sample(int32_t rows, int32_t place, int64_t cost)
@@ -221,7 +225,9 @@ static int compare_parts(const void *left, const void *right)
         return a->cost > b->cost ? -1 : 1;
     if (a->place != b->place)
         return a->place < b->place ? -1 : 1;
-    return a->from < b->from ? -1 : 1;
+    if (a->from != b->from)
+        return a->from < b->from ? -1 : 1;
+    return a->is_sample - b->is_sample;
 }
 
 /* Parts to be dealt; to be sorted before they are. */
@@ -234,8 +240,9 @@ static void add_parts(struct row_deal *deal, const struct row_part *whole)
 
 static void sort_parts(struct row_deal *deal)
 {
-    qsort(deal->parts + deal->end, (size_t)(deal->count - deal->end), sizeof *deal->parts,
-          compare_parts);
+    if (deal->count > deal->end)
+        qsort(deal->parts + deal->end, (size_t)(deal->count - deal->end), sizeof *deal->parts,
+              compare_parts);
 }
 
 struct row_deal row_deal_start(const int64_t *rests, const int *sampler, int32_t rows,

@@ -47,7 +47,8 @@ struct row_part {
     int32_t from, to;
 };
 
-/* Parts that a row is cut into at most, and stopped parts that a rank can tell of at a time. */
+/* Parts that a row is cut into at most; stopped parts that a rank can tell of at a time; and the work after
+ * which the sample of a row is stopped, whatever was expected of it. */
 enum { ROW_PARTS_MAX = 64, ROW_NEWS = 16, ROW_SAMPLE_LIMIT = 10000 };
 
 /* What a rank tells all between two stages: the work that it has done and waited for, how many of its
@@ -75,10 +76,10 @@ struct row_deal {
  * Returns their number. */
 int row_cut(const struct row_part *whole, struct row_part parts[ROW_PARTS_MAX]);
 
-/* The work after which a part is stopped. */
+/* The work after which a part is stopped, be it of a sample or of the rest. */
 int64_t row_limit(const struct row_part *part);
 
-/* What is left of a part that was stopped at root number `stop` after so much work. */
+/* What is left of a part that was stopped at root number `stop`, before its end, after so much work. */
 struct row_part row_rest(const struct row_part *part, int32_t stop, int64_t work);
 
 /* Who samples which row: owner[place]. costs[place]: what the samples are expected to take. */

@@ -256,8 +256,13 @@ void comm_add_home(const struct comm *comm, const int64_t *values, const int *co
                    int64_t *own)
 {
     int *numbers = alloc_array((size_t)comm->size, sizeof *numbers);
-    for (int r = 0; r < comm->size; r++)
-        numbers[r] = comm_count(comm, (int64_t)counts[r] * width);
+    int64_t sum = 0; /* what libraries add up as int */
+    for (int r = 0; r < comm->size; r++) {
+        int64_t number = (int64_t)counts[r] * width;
+        sum += number;
+        comm_count(comm, sum);
+        numbers[r] = (int)number;
+    }
     MPI_Request request;
     MPI_Ireduce_scatter(values, own, numbers, MPI_INT64_T, MPI_SUM, comm->handle, &request);
     comm_wait(&request);

@@ -54,10 +54,11 @@ static int64_t link_row_part(struct rows *rows, const struct row_part *part, int
                                                         part->to, limit, &expected)
                                    : linking_add_part(rows->linking, part->place, part->from,
                                                       part->to, limit);
-    struct row_part rest = row_rest(part, stop, method_work(&rows->solver->method) - before);
+    int64_t work = method_work(&rows->solver->method) - before;
     rows->predicted += part->cost;
     if (stop == part->to)
         return expected;
+    struct row_part rest = row_rest(part, stop, work);
     rows->predicted -= rest.cost < part->cost ? rest.cost : part->cost;
     if (rows->solver->comm->size > 1 && rows->news.count < ROW_NEWS) {
         rows->news.left[rows->news.count++] = rest;

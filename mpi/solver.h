@@ -37,7 +37,7 @@ struct solver {
     struct link_list links;   /* the links that live here ("allInteractions") */
     int *owner;               /* [roots] home rank of each root */
     bool *own;                /* [roots] owner[root] == rank */
-    struct routes routes;     /* of light over the links there are */
+    struct routes routes;     /* of light between the ranks */
     int64_t *root_change;     /* [roots] see push_pull() */
     int64_t first_new;        /* patches from here on were created in this iteration */
     int64_t shared;           /* patches up to here are the same on all ranks */

@@ -24,8 +24,9 @@
  * equally long. What they take differs thirtyfold, by how large the root is and where it lies. So
  * each row is begun with a sample, every sixteenth block of the tree: what that takes, and how
  * large the root is, tell what the rest will take.
- * The rest can be linked in parts, and a part that takes too long stops at any root. No group is larger
- * than a block, and what is seen of a group depends on nothing else: so neither on ranks nor on parts.
+ *
+ * The rest can be linked in parts, and what takes too long stops at any root. No group is larger than a
+ * block, and what is seen of a group depends on nothing else: so neither on ranks nor on parts.
  *
  * Tried and left out: groups in place of the one root (four roots are seldom hidden by one wall:
  * half as many pairs were proved, for more work), bundles of 16 segments between four roots and
@@ -279,7 +280,8 @@ static double tests_of(const struct octree_counts *work)
 
 /* A pair of which a disk does not tell what it exchanges: a segment of its own, and points. The segment
  * leads from one of the children that can see the other root to one of the other's, which take turns
- * from pair to pair: so what is seen is right on the average. */
+ * from pair to pair: so what is seen is right on the average. Where there is no such child, with the
+ * centroid above the other's horizon, nothing is seen, as by all 16 segments. */
 static void link_near(struct row *row, const struct sighting *sighting)
 {
     struct linking *linking = row->linking;

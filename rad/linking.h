@@ -49,8 +49,8 @@ int64_t linking_sample_cost(const struct linking *linking, int32_t place);
  * with those of the rest, that are roots number `from` to before number `to` of the row. Both stop when
  * they have taken `limit` of work (below 2^62), and return where: what is left is from there to `to`.
  * What is found depends on where a row is cut (what is seen does not), but not on what was linked before.
- * *rest, unless NULL, receives what work the rest of the row is expected to take, as far as that is known
- * from this sample. */
+ * *rest, unless NULL, receives what work the rest of the row is expected to take, by its sample as far as
+ * that was linked; pre: from is 0. */
 int32_t linking_add_sample(struct linking *linking, int32_t place, int32_t from, int32_t to,
                            int64_t limit, int64_t *rest);
 int32_t linking_add_part(struct linking *linking, int32_t place, int32_t from, int32_t to,

@@ -19,6 +19,7 @@
  * to be split where it was made; memory and its bandwidth. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -121,9 +122,10 @@ static void record_part(struct record *record, struct solver *solver, struct lin
                                 : linking_add_part(linking, part->place, part->from, part->to, limit);
     unit.work = method_work(&solver->method) - before;
     add_unit(record, solver, unit);
+    if (unit.stop == part->to)
+        return;
     struct row_part rest = row_rest(part, unit.stop, unit.work);
-    if (unit.stop < part->to)
-        record_rest(record, solver, linking, &rest);
+    record_rest(record, solver, linking, &rest);
 }
 
 static void record_rest(struct record *record, struct solver *solver, struct linking *linking,
@@ -149,7 +151,10 @@ static void record_linking(struct record *record, struct solver *solver)
         struct row_part sample = row_sample(record->rows, place, record->samples[place]);
         record_part(record, solver, &linking, &sample, ROW_SAMPLE_LIMIT, &record->rests[place]);
         struct row_part whole = row_whole(record->rows, place, record->rests[place]);
-        record_rest(record, solver, &linking, &whole);
+        if (row_goes_on(place, whole.cost))
+            record_part(record, solver, &linking, &whole, row_limit(&whole), NULL);
+        else
+            record_rest(record, solver, &linking, &whole);
     }
     record->first_unit[record->rows] = record->unit_count;
     linking_end(&linking);
@@ -417,9 +422,14 @@ static void do_part(struct replay *replay, const struct row_part *part, int rank
 {
     const struct record *record = replay->record;
     int64_t at = record->first_unit[part->place];
-    while (record->units[at].part.from != part->from ||
-           record->units[at].part.is_sample != part->is_sample)
+    while (at < record->first_unit[part->place + 1] &&
+           (record->units[at].part.from != part->from ||
+            record->units[at].part.is_sample != part->is_sample))
         at++;
+    if (at == record->first_unit[part->place + 1]) {
+        fprintf(stderr, "simulate: the replay cuts other parts than the run did\n");
+        exit(EXIT_FAILURE);
+    }
     const struct unit *unit = &record->units[at];
     do_unit(replay, at, rank, done);
     if (unit->stop == part->to)
