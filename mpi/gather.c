@@ -18,8 +18,7 @@ void solver_gather(struct solver *solver)
     int64_t count = comm_displacements(comm, routes->receiver_counts, at);
     int64_t own_count = routes->receiver_counts[comm->rank];
     const int32_t *own_patches = routes->receivers + at[comm->rank];
-    int64_t *all = alloc_array(BANDS * (size_t)count, sizeof *all);
-    int64_t *own = alloc_array(BANDS * (size_t)own_count, sizeof *own);
+    int64_t *all = routes->flux, *own = routes->own_flux;
     for (int64_t i = 0; i < count; i++)
         for (int c = 0; c < BANDS; c++)
             all[BANDS * i + c] = patches[routes->receivers[i]].flux[c];
@@ -28,8 +27,6 @@ void solver_gather(struct solver *solver)
         for (int c = 0; c < BANDS; c++)
             patches[own_patches[i]].flux[c] = own[BANDS * i + c];
     solver->bytes_gather += (count - own_count) * (int64_t)(BANDS * sizeof *all);
-    alloc_free(own);
-    alloc_free(all);
     alloc_free(at);
     solver->seconds[PHASE_GATHER] += comm_seconds() - start;
 }

@@ -10,6 +10,9 @@ void routes_free(struct routes *routes)
     alloc_free(routes->leaves);
     alloc_free(routes->receiver_counts);
     alloc_free(routes->leaf_counts);
+    alloc_free(routes->flux);
+    alloc_free(routes->own_flux);
+    alloc_free(routes->radiosities);
     *routes = (struct routes){0};
 }
 
@@ -29,16 +32,17 @@ static bool is_leaf_that_changes(const struct solver *solver, int32_t patch)
             !material_is_dark(forest_material(solver->method.forest, patch)));
 }
 
-/* The patches for which `is_listed` is true, home by home, and how many each has. */
+/* The patches for which `is_listed` is true, home by home; how many each has, and all. */
 static int32_t *list_patches(const struct solver *solver,
-                             bool (*is_listed)(const struct solver *, int32_t), int *counts)
+                             bool (*is_listed)(const struct solver *, int32_t), int *counts,
+                             int64_t *count)
 {
     const struct forest *forest = solver->method.forest;
     int *at = alloc_array((size_t)solver->comm->size, sizeof *at);
     for (int64_t p = 0; p < forest->count; p++)
         counts[solver->owner[forest->patches[p].id.root]] += is_listed(solver, (int32_t)p);
-    int64_t count = comm_displacements(solver->comm, counts, at);
-    int32_t *list = alloc_array((size_t)count, sizeof *list);
+    *count = comm_displacements(solver->comm, counts, at);
+    int32_t *list = alloc_array((size_t)*count, sizeof *list);
     for (int32_t root = 0; root < forest->root_count; root++)
         for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
             if (is_listed(solver, p))
@@ -55,6 +59,11 @@ void routes_renew(struct solver *solver)
     routes_free(routes);
     routes->receiver_counts = alloc_array(ranks, sizeof *routes->receiver_counts);
     routes->leaf_counts = alloc_array(ranks, sizeof *routes->leaf_counts);
-    routes->receivers = list_patches(solver, can_receive, routes->receiver_counts);
-    routes->leaves = list_patches(solver, is_leaf_that_changes, routes->leaf_counts);
+    int64_t receivers, leaves;
+    routes->receivers = list_patches(solver, can_receive, routes->receiver_counts, &receivers);
+    routes->leaves = list_patches(solver, is_leaf_that_changes, routes->leaf_counts, &leaves);
+    size_t own = (size_t)routes->receiver_counts[solver->comm->rank];
+    routes->flux = alloc_array(BANDS * (size_t)receivers, sizeof *routes->flux);
+    routes->own_flux = alloc_array(BANDS * own, sizeof *routes->own_flux);
+    routes->radiosities = alloc_array((size_t)leaves, sizeof *routes->radiosities);
 }

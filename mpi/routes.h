@@ -5,6 +5,8 @@
 
 #include <stdint.h>
 
+#include "geom/scene.h"
+
 struct solver;
 
 /* Lists of local patch numbers, home by home; of each home roots in order, depth first: the same on all
@@ -13,6 +15,8 @@ struct routes {
     int32_t *receivers; /* [sum of receiver_counts] patches that can receive light */
     int32_t *leaves;    /* [sum of leaf_counts] leaves whose B can change */
     int *receiver_counts, *leaf_counts; /* [ranks] */
+    int64_t *flux, *own_flux;   /* [3 * sum of receiver_counts], [3 * this rank's]: room for what travels */
+    struct rgb *radiosities;    /* [sum of leaf_counts] */
 };
 
 /* Renews the routes of the solver, and sorts its links. Pre: all ranks have the same trees. */

@@ -15,7 +15,7 @@ void solver_scatter(struct solver *solver)
     int *at = alloc_array((size_t)comm->size, sizeof *at);
     int64_t count = comm_displacements(comm, routes->leaf_counts, at);
     int own_count = routes->leaf_counts[comm->rank], own_at = at[comm->rank];
-    struct rgb *all = alloc_array((size_t)count, sizeof *all);
+    struct rgb *all = routes->radiosities;
     for (int i = own_at; i < own_at + own_count; i++)
         all[i] = forest->patches[routes->leaves[i]].radiosity;
     comm_share(comm, all, routes->leaf_counts, sizeof *all);
@@ -23,7 +23,6 @@ void solver_scatter(struct solver *solver)
         forest->patches[routes->leaves[i]].radiosity = all[i];
     forest_average(forest);
     solver->bytes_scatter += own_count * (int64_t)sizeof *all * (comm->size - 1);
-    alloc_free(all);
     alloc_free(at);
     solver->seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
