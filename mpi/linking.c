@@ -86,7 +86,8 @@ static void link_samples(struct rows *rows, const int *sampler, int64_t *rests)
     }
     own[rows->count + comm->rank] = clock_now(rows);
     MPI_Request request;
-    MPI_Iallreduce(own, rests, (int)told, MPI_INT64_T, MPI_SUM, comm->handle, &request);
+    MPI_Iallreduce(own, rests, comm_count(comm, (int64_t)told), MPI_INT64_T, MPI_SUM, comm->handle,
+                   &request);
     for (int32_t place = 0; place < rows->count; place++) {
         struct row_part whole = row_whole(rows->count, place, own[place]);
         if (sampler[place] == comm->rank && row_goes_on(place, own[place]))

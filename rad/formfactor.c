@@ -82,7 +82,7 @@ double exchange_across_horizon(const struct facet *p, const struct facet *q)
     return p->area * q->area * cosines / (PI * r2 + fmax(p->area, q->area));
 }
 
-static void subarea_centroids(const struct triangle *t, struct vec3 centroids[SUBAREAS])
+void subarea_centroids(const struct triangle *t, struct vec3 centroids[SUBAREAS])
 {
     for (int k = 0; k < SUBAREAS; k++) {
         struct triangle child = triangle_child(t, k);

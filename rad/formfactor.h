@@ -72,6 +72,9 @@ double exchange_across_horizon(const struct facet *p, const struct facet *q);
 /* The same from points on the smaller one: good wherever they are. */
 double exchange_from_points(const struct facet *p, const struct facet *q);
 
+/* The points that stand for a patch: the centroids of its four children. */
+void subarea_centroids(const struct triangle *t, struct vec3 centroids[BUNDLE_ENDS]);
+
 /* True if it is proved that nothing of one facet sees anything of the other: one wall stops all
  * nine segments between their corners. */
 bool facets_are_walled_off(const struct facet *p, const struct facet *q,

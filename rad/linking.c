@@ -70,10 +70,7 @@ static struct spot spot_of(const struct facet *facet, bool is_dark)
     struct spot spot = {.centre = triangle_centroid(&facet->triangle), .normal = facet->plane.normal,
                         .area = facet->area, .radius = triangle_radius(&facet->triangle),
                         .is_dark = is_dark};
-    for (int k = 0; k < BUNDLE_ENDS; k++) {
-        struct triangle child = triangle_child(&facet->triangle, k);
-        spot.points[k] = triangle_centroid(&child);
-    }
+    subarea_centroids(&facet->triangle, spot.points);
     return spot;
 }
 
@@ -227,11 +224,6 @@ static void quarter_group(const struct group *group, int32_t chosen[BUNDLE_ENDS]
     }
 }
 
-static double height_above(const struct facet *facet, struct vec3 x)
-{
-    return plane_distance(&facet->plane, x);
-}
-
 /* True if the segment from a child of the row's root to one of another is blocked. */
 static bool is_blocked(struct row *row, int own_child, int32_t place, int child,
                        struct octree_counts *work)
@@ -254,20 +246,20 @@ static int children_above(const struct facet *horizon, const struct spot *spot,
 {
     int count = 0;
     for (int k = 0; k < BUNDLE_ENDS; k++)
-        if (height_above(horizon, spot->points[k]) > 0.0)
+        if (plane_distance(&horizon->plane, spot->points[k]) > 0.0)
             above[count++] = k;
     return count;
 }
 
-/* With little at stake: the share `seen` of what would be exchanged without blockers. */
-static void link_little(struct row *row, int32_t place, double unoccluded, double seen, double cost)
+/* With little at stake: all that would be exchanged without blockers, or nothing. */
+static void link_little(struct row *row, int32_t place, double unoccluded, bool seen, double cost)
 {
     struct linking *linking = row->linking;
     int32_t p = linking->tree->roots[row->place], q = linking->tree->roots[place];
     linking->touched++;
     linking->method->estimating++;
     linking->method->rays_spared += BUNDLE_RAYS;
-    if (seen == 0.0 && is_in_shadow(row, &linking->facets[place]))
+    if (!seen && is_in_shadow(row, &linking->facets[place]))
         return;
     link_list_append(linking->links, link_make_little(p < q ? p : q, p < q ? q : p, unoccluded, seen,
                                                       row->blocker, cost));
@@ -291,7 +283,7 @@ static void link_near(struct row *row, const struct sighting *sighting)
     int from[BUNDLE_ENDS], to[BUNDLE_ENDS];
     int own = children_above(q, &linking->spots[row->place], from);
     int others = children_above(p, &linking->spots[place], to);
-    double unoccluded = sighting->unoccluded, exact = 0.0;
+    double exact = 0.0;
     if (own > 0 && others > 0) {
         if (is_blocked(row, from[place % own], place, to[row->place % others], &work)) {
             find_shadow(row, row->blocker, &place, 1);
@@ -300,7 +292,7 @@ static void link_near(struct row *row, const struct sighting *sighting)
             linking->method->estimating += TESTS_PER_FORM_FACTOR / 2;
         }
     }
-    link_little(row, place, exact > 0.0 ? exact : unoccluded, exact > 0.0 ? 1.0 : 0.0,
+    link_little(row, place, exact > 0.0 ? exact : sighting->unoccluded, exact > 0.0,
                 tests_of(&work));
 }
 
@@ -320,8 +312,8 @@ static void link_group(struct row *row, const struct group *group)
     quarter_group(group, chosen);
     for (int k = 0; k < BUNDLE_ENDS; k++) {
         const struct facet *p = &linking->facets[row->place], *q = &linking->facets[chosen[k]];
-        bool facing = height_above(p, linking->spots[chosen[k]].points[k]) > 0.0 &&
-                      height_above(q, linking->spots[row->place].points[k]) > 0.0;
+        bool facing = plane_distance(&p->plane, linking->spots[chosen[k]].points[k]) > 0.0 &&
+                      plane_distance(&q->plane, linking->spots[row->place].points[k]) > 0.0;
         hidden[k] = facing && is_blocked(row, k, chosen[k], k, &work);
         all_hidden = all_hidden && hidden[k];
     }
@@ -333,7 +325,7 @@ static void link_group(struct row *row, const struct group *group)
             continue;
         if (sighting->is_far)
             link_little(row, sighting->place, sighting->unoccluded,
-                        hidden[sighting->quarter] ? 0.0 : 1.0, tests_of(&work) / group->count);
+                        !hidden[sighting->quarter], tests_of(&work) / group->count);
         else
             link_near(row, sighting);
     }

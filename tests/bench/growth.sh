@@ -1,6 +1,6 @@
 # make growth: rooms of 1,000 to 32,000 triangles, from reading to a picture, on two ranks. Writes
 # docs/growth.csv and, with gnuplot, docs/growth.svg: links, pairs of roots touched and seconds against
-# the number of triangles. About a minute and a half on two cores.
+# the number of triangles. About a minute on two cores.
 set -eu
 : "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}"
 epsilon=1e-4
