@@ -85,11 +85,6 @@ int64_t link_load(const struct link *link)
     return (int64_t)link_cost(link) + TESTS_PER_FORM_FACTOR;
 }
 
-int64_t link_look_load(const struct link *link)
-{
-    return link->seen > 0 ? LOOK_LOAD : 1;
-}
-
 /* Tests in the time that a message takes. In an exchange, each rank has one for each other rank. */
 enum { TESTS_PER_MESSAGE = 50 };
 

@@ -23,9 +23,8 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, 
  * factors do not matter. */
 int64_t link_load(const struct link *link);
 
-/* What it takes to look at a link: next to nothing where nothing is seen, else so much. */
+/* What it takes to look at a link and its patches; at a clear one (rad/oracle.h): 1. */
 enum { LOOK_LOAD = 16 };
-int64_t link_look_load(const struct link *link);
 
 /* True if what the ranks save takes longer than sending the links. */
 bool moving_pays(const int64_t *loads, int ranks);

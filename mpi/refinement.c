@@ -47,34 +47,18 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
     struct phase_work looks = {.kind = WORK_LOOKS, .iteration = solver->pass};
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
-        looks.work += link_look_load(&link);
-        if (oracle_patch_to_split(&solver->method, &link) >= 0)
+        bool clear = oracle_is_clear(&solver->method, &link);
+        looks.work += clear ? 1 : LOOK_LOAD;
+        if (!clear && oracle_patch_to_split(&solver->method, &link) >= 0) {
             link_list_append(prolific, link);
-        else {
-            oracle_divide_patches(&solver->method, &link);
-            solver->links.items[kept++] = link;
+            continue;
         }
+        if (!clear)
+            oracle_divide_patches(&solver->method, &link);
+        solver->links.items[kept++] = link;
     }
     solver->links.count = kept;
     ledger_add(&solver->ledger, looks);
-}
-
-static double positive_sum(struct rgb light)
-{
-    double sum = 0.0;
-    for (int c = 0; c < BANDS; c++)
-        sum += real_max(0.0, light.band[c]);
-    return sum;
-}
-
-/* The largest sum over bands of a patch's radiosity, as far as that is positive: no light that a
- * patch reflects is more. */
-static double brightest_patch(const struct forest *forest)
-{
-    double brightest = 0.0;
-    for (int64_t p = 0; p < forest->count; p++)
-        brightest = real_max(brightest, positive_sum(forest->patches[p].radiosity));
-    return brightest;
 }
 
 /* The total exchange of loads. Waiting here is idle time. */
@@ -218,8 +202,7 @@ static bool split_levels(struct solver *solver, struct link_list *prolific)
 void solver_begin_pass(struct solver *solver)
 {
     solver->pass++;
-    forest_bound(solver->method.forest);
-    solver->method.brightest = brightest_patch(solver->method.forest);
+    oracle_prepare(&solver->method);
     solver->split_here = 0;
     solver->first_new = solver->shared = solver->method.forest->count;
 }

@@ -34,6 +34,7 @@ struct method method_make(const struct scene *scene, const struct octree *octree
         .flux_unit = flux_unit_choose(scene),
         .link_threshold = criterion->epsilon * scene_emitted_power(scene),
         .brightest = HUGE_VAL,
+        .contrast = HUGE_VAL,
         .typical = typical_radiosity(scene),
         .patch_threshold = criterion->min_area * scene_area(scene),
     };

@@ -46,6 +46,7 @@ struct method {
     double patch_threshold; /* square scene units: no patch smaller than this is made */
     struct rgb typical;     /* a guess at the mean radiosity, W/m^2, before there is an answer */
     double brightest;       /* no patch reflects more, summed over the bands, W/m^2 */
+    double contrast;        /* nor do radiosities within a root differ by more, W/m^2 */
     struct octree_counts counts; /* work of this rank so far */
     int64_t estimating;     /* work of this rank so far besides that, on boxes of roots, disks and
                                form factors; in tests */

@@ -31,6 +31,8 @@
 
 #include <math.h>
 
+#include "rad/pushpull.h"
+
 static bool patch_may_split(const struct method *method, int32_t patch)
 {
     const struct forest *forest = method->forest;
@@ -101,12 +103,12 @@ static double doubt_of(const struct link *link)
 /* Largest less smallest part, as an exchange area if all of the patch were like that. */
 static double spread_of(const struct link *link, const uint8_t parts[3])
 {
-    double least = 1.0, most = 0.0;
-    for (int k = 0; k < 4; k++) {
-        least = fmin(least, link_part(parts, k));
-        most = fmax(most, link_part(parts, k));
+    int last = 256 - parts[0] - parts[1] - parts[2], least = last, most = last;
+    for (int k = 0; k < 3; k++) {
+        least = parts[k] < least ? parts[k] : least;
+        most = parts[k] > most ? parts[k] : most;
     }
-    return 4.0 * (most - least) * link_area(link);
+    return 4.0 / 256.0 * (most - least) * link_area(link);
 }
 
 /* Largest range of radiosity within a child. */
@@ -130,21 +132,25 @@ static double error_of(const struct method *method, const struct link *link, int
            link_area(link) * mean_reflectance(forest, other) * range_within(forest, own);
 }
 
-/* True if the doubt about a link of which nothing is seen, and so all that is wrong with it, is
- * below the threshold whatever light there is: most links of most scenes, and no patch had to be
- * read. */
-static bool is_too_small_unseen(const struct method *method, const struct link *link)
+/* The bound is rounded otherwise than the error: so much room is left. */
+static const double BELOW = 0.999;
+
+bool oracle_is_clear(const struct method *method, const struct link *link)
 {
-    return link->seen == 0 &&
-           DOUBT_AGREED * (double)link->area * 2.0 * method->brightest <=
-               0.999 * method->link_threshold;
+    if (method->criterion.oracle == ORACLE_BF)
+        return false;
+    double spread = 0.0, range = 0.0;
+    if (link->seen > 0) {
+        spread = spread_of(link, link->parts_p) + spread_of(link, link->parts_q);
+        range = 2.0 * link_area(link) * method->contrast;
+    }
+    return (2.0 * doubt_of(link) + spread) * method->brightest + range <=
+           BELOW * method->link_threshold;
 }
 
 static int32_t split_by_error(const struct method *method, const struct link *link)
 {
     const struct forest *forest = method->forest;
-    if (is_too_small_unseen(method, link))
-        return -1;
     double to_p = light_reflected(forest, link->q, link->p);
     double to_q = light_reflected(forest, link->p, link->q);
     double error_p = error_of(method, link, link->p, link->q, link->parts_p, to_p);
@@ -195,6 +201,28 @@ double oracle_light(const struct method *method, struct rgb radiosity_p, struct 
                  reflectance_p.band[c] * real_max(typical, radiosity_q.band[c]);
     }
     return light;
+}
+
+static double positive_sum(struct rgb light)
+{
+    double sum = 0.0;
+    for (int c = 0; c < BANDS; c++)
+        sum += real_max(0.0, light.band[c]);
+    return sum;
+}
+
+void oracle_prepare(struct method *method)
+{
+    struct forest *forest = method->forest;
+    forest_bound(forest);
+    method->brightest = method->contrast = 0.0;
+    for (int64_t p = 0; p < forest->count; p++)
+        method->brightest = real_max(method->brightest,
+                                     positive_sum(forest->patches[p].radiosity));
+    for (int32_t root = 0; root < forest->root_count; root++) {
+        struct extremes e = forest->extremes[root];
+        method->contrast = real_max(method->contrast, (double)(e.high - e.low));
+    }
 }
 
 bool oracle_trusts_few(const struct method *method, double power)

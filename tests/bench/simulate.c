@@ -59,7 +59,8 @@ struct level {
 
 struct pass {
     int64_t first_level, end_level;
-    int64_t looks;      /* what these took */
+    int64_t looks;      /* what these took, */
+    int32_t *looked;    /* [unit_count + events before] and how many links from each were not clear */
     int64_t iterations, patches;
     int32_t *of_root;   /* patches of each root */
 };
@@ -184,26 +185,37 @@ static void batch_free(struct batch *batch)
     *batch = (struct batch){0};
 }
 
-/* Returns what the looks took. */
-static int64_t record_looks(struct record *record, struct solver *solver, struct batch *batch)
+/* Units first, then events. */
+static int64_t place_of_origin(const struct record *record, int64_t origin)
+{
+    return origin < 0 ? -1 - origin : record->unit_count + origin;
+}
+
+static void record_looks(struct record *record, struct solver *solver, struct pass *pass,
+                         struct batch *batch)
 {
     double start = cpu_seconds();
-    int64_t kept = 0, looks = 0;
+    int64_t kept = 0;
+    pass->looks = solver->links.count;
+    pass->looked = alloc_array((size_t)(record->unit_count + record->event_count),
+                               sizeof *pass->looked);
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
-        looks += link_look_load(&link);
-        if (oracle_patch_to_split(&solver->method, &link) >= 0) {
-            batch_add(batch, link, record->origins[i]);
-            continue;
+        if (!oracle_is_clear(&solver->method, &link)) {
+            pass->looks += LOOK_LOAD - 1;
+            pass->looked[place_of_origin(record, record->origins[i])]++;
+            if (oracle_patch_to_split(&solver->method, &link) >= 0) {
+                batch_add(batch, link, record->origins[i]);
+                continue;
+            }
+            oracle_divide_patches(&solver->method, &link);
         }
-        oracle_divide_patches(&solver->method, &link);
         record->origins[kept] = record->origins[i];
         solver->links.items[kept++] = link;
     }
-    record->counts[WORK_LOOKS] += (double)looks;
+    record->counts[WORK_LOOKS] += (double)pass->looks;
     solver->links.count = record->origin_count = kept;
     record->seconds[WORK_LOOKS] += cpu_seconds() - start;
-    return looks;
 }
 
 static void split_one(struct record *record, struct solver *solver, const struct batch *batch,
@@ -305,7 +317,7 @@ static struct vote record_pass(struct record *record, struct solver *solver)
     struct pass pass = {.first_level = record->level_count};
     struct batch batch = {.count = 0};
     solver_begin_pass(solver);
-    pass.looks = record_looks(record, solver, &batch);
+    record_looks(record, solver, &pass, &batch);
     record_levels(record, solver, &batch);
     solver->shared = forest->count;
     pass.end_level = record->level_count;
@@ -338,8 +350,10 @@ static void record_run(struct record *record, struct solver *solver, const struc
 
 static void record_free(struct record *record)
 {
-    for (int64_t i = 0; i < record->pass_count; i++)
+    for (int64_t i = 0; i < record->pass_count; i++) {
         alloc_free(record->passes[i].of_root);
+        alloc_free(record->passes[i].looked);
+    }
     alloc_free(record->first_unit);
     alloc_free(record->samples);
     alloc_free(record->rests);
@@ -611,15 +625,22 @@ static void replay_solution(struct replay *replay, const struct pass *pass, doub
     replay->bytes += times * 2.0 * BYTES_PER_PATCH * patches * (ranks - 1.0) / ranks;
 }
 
-/* Of the rank that has most to look at. */
-static double most_looks(const struct replay *replay)
+/* Of the rank that has most to look at, before its pass. */
+static double most_looks(const struct replay *replay, const struct pass *pass)
 {
-    int64_t most = 0;
-    for (int r = 0; r < replay->ranks; r++) {
-        int64_t looks = LOOK_LOAD * replay->links[r] + replay->dim[r];
-        most = looks > most ? looks : most;
-    }
-    return (double)most;
+    const struct record *record = replay->record;
+    int64_t events = pass->first_level < record->level_count
+                         ? record->levels[pass->first_level].first : record->event_count;
+    int64_t *looks = alloc_array((size_t)replay->ranks, sizeof *looks);
+    for (int r = 0; r < replay->ranks; r++)
+        looks[r] = replay->links[r] + replay->dim[r];
+    for (int64_t i = 0; i < record->unit_count; i++)
+        looks[replay->of_unit[i]] += (LOOK_LOAD - 1) * pass->looked[i];
+    for (int64_t i = 0; i < events; i++)
+        looks[replay->of_event[i]] += (LOOK_LOAD - 1) * pass->looked[record->unit_count + i];
+    double most = most_of(looks, replay->ranks);
+    alloc_free(looks);
+    return most;
 }
 
 static void replay_run(struct replay *replay, const struct scene *scene)
@@ -636,7 +657,7 @@ static void replay_run(struct replay *replay, const struct scene *scene)
     even_out(replay);
     for (int64_t k = 0; k < record->pass_count; k++) {
         const struct pass *pass = &record->passes[k];
-        replay->slowest[WORK_LOOKS] += most_looks(replay);
+        replay->slowest[WORK_LOOKS] += most_looks(replay, pass);
         replay->all[WORK_LOOKS] += (double)pass->looks;
         for (int64_t l = pass->first_level; l < pass->end_level; l++) {
             const struct level *level = &record->levels[l];
