@@ -1,9 +1,7 @@
 /* Smooth shading.
  *
  * A vertex is a corner of leaves. Leaves share a vertex where they have the same point and lie
- * on one smooth surface (io/surface.h). The value of a vertex is the mean of the leaves around
- * it, each weighted by one over the distance of its centroid: a linear function comes out right
- * where the leaves lie evenly around the vertex, whatever their sizes.
+ * on one smooth surface (io/surface.h). The value of a vertex is the mean of the leaves around it.
  *
  * On a curved surface that facets stand for, the light jumps from facet to facet as their planes
  * do, and blending the leaves along an edge would only blur the facet's outline. So all values of
@@ -13,6 +11,13 @@
  * says: a flat face with rounded edges, whose normals are its own, keeps its light and the strip
  * beside it bends. Roots in one plane count as one facet: nothing flat is shifted. Rejected:
  * values at the facets' corners alone, which would lose the shadows on the facets.
+ *
+ * Means blur: where the light changes fast, as at a lamp, the leaves around are bright and dim, and
+ * a leaf shows more or less light than it has. So what each leaf lacks, its own radiosity less the
+ * mean of its corners, is given to its corners, where leaves count by their areas; within the
+ * range of the leaves around, so that shadows get no bright rims. The error of pictures falls by a
+ * tenth to a third (furnished room, Cornell box). Giving again gains a few percent more, but makes
+ * every difference between leaves stand out.
  *
  * Where a box stands on the floor, leaves are covered in part. The covered part is dark, is not
  * seen and must not leak. It is found with the four points where the rays of the leaf's links
@@ -350,9 +355,13 @@ static struct rgb shifted(struct rgb value, const struct rgb *shifts, struct vec
 struct blend {
     struct shading *shading;
     struct table table;
-    const uint8_t *open; /* shading_open_quarters(), used up leaf by leaf */
+    const uint8_t *open; /* shading_open_quarters(), */
+    int64_t next;        /* and how many of it are used up, leaf by leaf */
     int32_t *surface;    /* [roots] */
     struct rgb *shifts;  /* find_shifts(), or NULL */
+    struct rgb *lacking; /* [vertex_count] what leaves lack, weighted; */
+    double *areas;       /* [vertex_count] the weights; */
+    struct rgb *least, *most; /* [vertex_count] and the range of the leaves around */
 };
 
 static void add_flat_leaf(void *context, int32_t leaf)
@@ -368,25 +377,33 @@ static void add_flat_leaf(void *context, int32_t leaf)
     }
 }
 
+/* What the next leaf has at its corners. Returns its open share. */
+static double leaf_values(struct blend *blend, int32_t leaf, struct rgb values[3])
+{
+    const struct forest *forest = blend->shading->forest;
+    struct patch_id id = forest->patches[leaf].id;
+    double share = open_share(blend->open[blend->next++]);
+    values[0] = values[1] = values[2] = open_radiosity(forest, leaf, share);
+    if (blend->shifts) {
+        struct triangle at = weights_in_root(id);
+        for (int k = 0; k < 3; k++)
+            values[k] = shifted(values[k], &blend->shifts[3 * (int64_t)id.root], at.corner[k]);
+    }
+    return share;
+}
+
 static void add_leaf(void *context, int32_t leaf)
 {
     struct blend *blend = context;
     const struct forest *forest = blend->shading->forest;
-    struct patch_id id = forest->patches[leaf].id;
-    struct triangle t = forest_triangle(forest, leaf), at = {0};
-    struct vec3 centroid = triangle_centroid(&t);
-    double share = open_share(*blend->open++);
-    struct rgb radiosity = open_radiosity(forest, leaf, share);
-    if (blend->shifts)
-        at = weights_in_root(id);
+    struct triangle t = forest_triangle(forest, leaf);
+    struct rgb values[3];
+    double share = leaf_values(blend, leaf, values);
     for (int k = 0; k < 3; k++) {
-        int32_t v = reach_vertex(&blend->table, t.corner[k], blend->surface[id.root]);
-        double weight = fmax(share, COVERED) / vec3_length(vec3_sub(centroid, t.corner[k]));
-        struct rgb value = radiosity;
-        if (blend->shifts)
-            value = shifted(radiosity, &blend->shifts[3 * (int64_t)id.root], at.corner[k]);
+        int32_t v = reach_vertex(&blend->table, t.corner[k],
+                                 blend->surface[forest->patches[leaf].id.root]);
         blend->shading->corners[3 * (int64_t)leaf + k] = v;
-        add_value(&blend->table, v, value, weight);
+        add_value(&blend->table, v, values[k], fmax(share, COVERED));
     }
 }
 
@@ -412,6 +429,60 @@ static void settle_leaf(void *context, int32_t leaf)
         settle_edge(&blend->table, corner[k], corner[(k + 1) % 3]);
 }
 
+static void settle_edges(struct blend *blend)
+{
+    for (int level = 0; level <= ID_MAX_LEVEL; level++)
+        for_each_leaf(blend->shading->forest, level, settle_leaf, blend);
+}
+
+static void add_lacking(void *context, int32_t leaf)
+{
+    struct blend *blend = context;
+    const int32_t *corner = &blend->shading->corners[3 * (int64_t)leaf];
+    struct rgb values[3];
+    double share = leaf_values(blend, leaf, values);
+    double area = fmax(share, COVERED) * forest_area(blend->shading->forest, leaf);
+    for (int c = 0; c < BANDS; c++) {
+        double lacking = 0.0;
+        for (int k = 0; k < 3; k++)
+            lacking += (values[k].band[c] - blend->table.values[corner[k]].band[c]) / 3.0;
+        for (int k = 0; k < 3; k++) {
+            double *least = &blend->least[corner[k]].band[c], *most = &blend->most[corner[k]].band[c];
+            blend->lacking[corner[k]].band[c] += area * lacking;
+            *least = share > 0.0 ? fmin(*least, values[k].band[c]) : *least;
+            *most = share > 0.0 ? fmax(*most, values[k].band[c]) : *most;
+        }
+    }
+    for (int k = 0; k < 3; k++)
+        blend->areas[corner[k]] += area;
+}
+
+/* Vertices with nothing but covered leaves around them keep their values. */
+static void give_what_lacks(struct blend *blend)
+{
+    size_t count = (size_t)blend->table.count;
+    blend->lacking = alloc_array(count, sizeof *blend->lacking);
+    blend->areas = alloc_array(count, sizeof *blend->areas);
+    blend->least = alloc_array(count, sizeof *blend->least);
+    blend->most = alloc_array(count, sizeof *blend->most);
+    for (size_t v = 0; v < count; v++) {
+        blend->least[v] = (struct rgb){{HUGE_VAL, HUGE_VAL, HUGE_VAL}};
+        blend->most[v] = (struct rgb){{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+    }
+    blend->next = 0;
+    for_each_leaf(blend->shading->forest, -1, add_lacking, blend);
+    for (size_t v = 0; v < count; v++)
+        for (int c = 0; c < BANDS && blend->least[v].band[c] <= blend->most[v].band[c]; c++) {
+            double *value = &blend->table.values[v].band[c];
+            *value += blend->lacking[v].band[c] / blend->areas[v];
+            *value = fmin(blend->most[v].band[c], fmax(blend->least[v].band[c], *value));
+        }
+    alloc_free(blend->lacking);
+    alloc_free(blend->areas);
+    alloc_free(blend->least);
+    alloc_free(blend->most);
+}
+
 static void blend_leaves(struct blend *blend)
 {
     const struct forest *forest = blend->shading->forest;
@@ -420,8 +491,9 @@ static void blend_leaves(struct blend *blend)
         blend->shifts = find_shifts(forest, blend->open, blend->surface);
     for_each_leaf(forest, -1, add_leaf, blend);
     find_means(&blend->table);
-    for (int level = 0; level <= ID_MAX_LEVEL; level++)
-        for_each_leaf(forest, level, settle_leaf, blend);
+    settle_edges(blend);
+    give_what_lacks(blend);
+    settle_edges(blend);
     alloc_free(blend->surface);
     alloc_free(blend->shifts);
 }
