@@ -181,9 +181,23 @@ static struct side side_by_disks(const struct pair *pair, bool of_p)
     return side;
 }
 
+/* Mean over a sub-area of what it sees of the other patch, from three points: right where that
+ * varies with the square of the place (Stroud's formula of degree 2). */
+static double factor_close_by(const struct facet *own, int sub, const struct facet *other)
+{
+    struct triangle area = triangle_child(&own->triangle, sub);
+    struct vec3 centroid = triangle_centroid(&area);
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++) {
+        struct vec3 point = vec3_middle(centroid, area.corner[k]);
+        sum += point_triangle_factor(point, own->plane.normal, &other->triangle);
+    }
+    return sum / 3.0;
+}
+
 /* A sub-area none of whose segments faces has no kernels to tell what is seen: then what the whole
  * pair sees counts. */
-static struct side side_by_points(const struct pair *pair, bool of_p)
+static struct side side_by_points(const struct pair *pair, bool of_p, bool apart)
 {
     const struct facet *own = of_p ? pair->p : pair->q, *other = of_p ? pair->q : pair->p;
     const struct vec3 *points = of_p ? pair->bundle.from : pair->bundle.to;
@@ -196,7 +210,8 @@ static struct side side_by_points(const struct pair *pair, bool of_p)
     }
     double share = all_sum > 0.0 ? seen_sum / all_sum : 0.0;
     for (int sub = 0; sub < SUBAREAS; sub++) {
-        double factor = point_triangle_factor(points[sub], own->plane.normal, &other->triangle);
+        double factor = apart ? point_triangle_factor(points[sub], own->plane.normal, &other->triangle)
+                              : factor_close_by(own, sub, other);
         side.unoccluded[sub] = 0.25 * own->area * factor;
         side.area[sub] = side.unoccluded[sub] * (all[sub] > 0.0 ? seen[sub] / all[sub] : share);
     }
@@ -261,12 +276,12 @@ static struct exchange exchange_by_all(const struct facet *p, const struct facet
     struct pair pair;
     pair_aim(&pair, p, q);
     pair_look(&pair, look, octree, sight, counts);
-    bool points = kind == FORM_FACTOR_POLYGON;
-    struct side side_p = points ? side_by_points(&pair, true) : side_by_disks(&pair, true);
-    struct side side_q = points ? side_by_points(&pair, false) : side_by_disks(&pair, false);
+    bool points = kind == FORM_FACTOR_POLYGON, apart = is_apart(p, q);
+    struct side side_p = points ? side_by_points(&pair, true, apart) : side_by_disks(&pair, true);
+    struct side side_q = points ? side_by_points(&pair, false, apart) : side_by_disks(&pair, false);
     const struct side *smaller = p->area <= q->area ? &side_p : &side_q;
     double sum = sum_of(smaller->unoccluded);
-    struct exchange exchange = {.unoccluded = sum, .apart = is_apart(p, q)};
+    struct exchange exchange = {.unoccluded = sum, .apart = apart};
     exchange.seen = sum > 0.0 ? sum_of(smaller->area) / sum : 0.0;
     exchange.area = exchange.seen * exchange.unoccluded;
     set_parts(&side_p, exchange.parts_p);

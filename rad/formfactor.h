@@ -46,7 +46,8 @@ bool facets_face(const struct facet *p, const struct facet *q);
 enum look { LOOK_ONE, LOOK_FOUR_FIRST, LOOK_ALL };
 
 /* The exchange of a pair: visibility from segments between sub-areas that face each other, unless
- * it is known; form factors by the disk or from points to the whole other patch.
+ * it is known; form factors by the disk or from points to the whole other patch: one for each
+ * sub-area, or three where the patches are not apart.
  * Pre: facets_face(p, q). */
 struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
                                   enum form_factor kind, enum look look,
@@ -69,7 +70,7 @@ double exchange_guess(const struct facet *p, const struct facet *q);
  * place of those of the centroids: rather too much. Pre: facets_face(p, q). */
 double exchange_across_horizon(const struct facet *p, const struct facet *q);
 
-/* The same from points on the smaller one: good wherever they are. */
+/* The same from four points on the smaller one: good wherever they are. */
 double exchange_from_points(const struct facet *p, const struct facet *q);
 
 /* The points that stand for a patch: the centroids of its four children. */

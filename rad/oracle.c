@@ -24,7 +24,7 @@
  * about half as large, and the range within each child of q. A sampled link may be wrong about
  * what it did not see: a part of what G would be is in doubt, less if all segments agree,
  * nothing if the way is proved to be open. (Then it is still in doubt if the patches are near:
- * four points on a lamp do not tell what the ceiling close above it receives.) All these are
+ * points on a lamp do not tell what the ceiling close above it receives.) All these are
  * powers; their sum is compared with the threshold, and the side that causes more of it is
  * split. */
 #include "rad/oracle.h"
