@@ -120,11 +120,13 @@ static struct vote vote_jacobi(struct solver *solver)
 /* --- conjugate gradients --- */
 
 /* Light is not negative. Where rows sum to so much that there is no solution, the equation may have
- * one all the same, with more negative light than one part in so many. */
+ * one all the same, with more negative light than the remaining error can make and one part in so many. */
 enum { NEGATIVE = 100 };
 
-/* While links are still being split the light is wanted only this well. */
-static const double WHILE_SPLITTING = 0.01;
+/* While links are still being split the light is wanted only this well. With 3 % links and errors grow
+ * by at most 0.3 % of what they are with 1 %, and a tenth of the iterations is saved; from 4 % on, dim ends
+ * of scenes are left undivided, in which there is next to nothing of all light. */
+static const double WHILE_SPLITTING = 0.03;
 
 /* Bound on the remaining error relative to all light. The error e of H solves K e = z, and K is at
  * least 1 - q in the norm of the scalar product, q being the largest row sum times rho: so
@@ -173,7 +175,8 @@ static struct vote vote_conjugate(struct solver *solver)
     bool more = !(remaining <= wanted) && !vote.diverged;
     vote.unfinished = more && solver->iteration >= criterion->max_iterations;
     vote.again = more && !vote.unfinished;
-    if (remaining <= wanted && sum.negative > sum.light / NEGATIVE)
+    double negative = (remaining + 1.0 / NEGATIVE) * (double)sum.light;
+    if (remaining <= wanted && (double)sum.negative > negative)
         vote.diverged = true;
     if (!vote.again)
         finish_conjugate(solver);

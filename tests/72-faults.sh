@@ -14,16 +14,17 @@ patience=60 # seconds that nothing here may take
 start() {
     on=$1
     shift
-    rm -f "$work/ranks" "$work/err" "$work/out" "$work/launcher"
+    rm -f "$work/ranks" "$work/out" "$work/launcher"
+    : >"$work/err"
     $MPIEXEC -n "$on" sh -c 'echo $$ >>"$0/ranks"; exec 2>>"$0/err" >>"$0/out"; exec "$@"' "$work" \
         "$PHR" "$@" >"$work/launcher" 2>&1 </dev/null &
     launched=$!
 }
 
-# wait_for TEXT: until stderr of the ranks has it.
+# wait_for N TEXT: until so many lines of stderr of the ranks have it.
 wait_for() {
     ticks=$((patience * 20))
-    until grep -q "$1" "$work/err" 2>/dev/null; do
+    until [ "$(grep -c "$2" "$work/err")" -ge "$1" ]; do
         ticks=$((ticks - 1))
         [ $ticks -gt 0 ] && kill -0 "$launched" 2>/dev/null || return 1
         sleep 0.05
@@ -79,7 +80,7 @@ $MPIEXEC -n 2 "$PHR" $scene --quiet -o "$work/whole.pfm" -o "$work/whole.ply" --
 
 # Under a launcher the others are ended by it; alone there is none.
 start 2 $scene -o "$work/new.pfm" --checkpoint "$work/check"
-check "a checkpoint comes before the end" wait_for "iteration 11"
+check "a checkpoint comes before the end" wait_for 2 " split)"
 kill -9 "$(tail -n 1 "$work/ranks")"
 finish
 check "a rank is killed: no hang, and not 0 ($status)" [ "$status" != 0 ] && [ "$status" != hang ]
@@ -91,7 +92,7 @@ check "the checkpoint is whole" goes_on check
 # --- SIGTERM ---
 
 start 3 $scene -o "$work/new.pfm" --checkpoint "$work/check" --every 1000
-check "a run to be stopped has begun" wait_for "iteration 6"
+check "a run to be stopped has begun" wait_for 1 " split)"
 kill -TERM "$launched"
 finish
 check "SIGTERM to the launcher ends the run ($status); one rank says so" was_stopped
@@ -101,14 +102,14 @@ check "the checkpoint made for it is whole" goes_on check
 
 rm -f "$work/check"
 start 3 $scene -o "$work/new.pfm" --checkpoint "$work/check" --every 1000
-wait_for "iteration 6"
+wait_for 1 " split)"
 kill -TERM "$(tail -n 1 "$work/ranks")"
 finish
 check "SIGTERM to one rank ends the run: exit status 1 ($status)" [ "$status" -eq 1 ]
 check "it goes on as well" goes_on check
 
 start 2 $scene -o "$work/new.pfm"
-wait_for "iteration 6"
+wait_for 1 " split)"
 kill -TERM "$launched"
 finish
 check "SIGTERM without a checkpoint ends it too ($status)" was_stopped
@@ -117,7 +118,7 @@ check "and nothing is left" nothing_is_left
 
 start 2 scenes/cornell.obj --epsilon 1e-3 --size 1000x1000 --samples 32 -o "$work/new.ppm" \
     --checkpoint "$work/check"
-wait_for "(0 split)"
+wait_for 1 "(0 split)"
 begun=$(date +%s)
 kill -TERM "$launched"
 finish
