@@ -6,6 +6,8 @@
  * lead nearly everywhere. */
 #include "mpi/solver.h"
 
+#include <string.h>
+
 #include "geom/alloc.h"
 
 void solver_gather(struct solver *solver)
@@ -20,12 +22,10 @@ void solver_gather(struct solver *solver)
     const int32_t *own_patches = routes->receivers + at[comm->rank];
     int64_t *all = routes->flux, *own = routes->own_flux;
     for (int64_t i = 0; i < count; i++)
-        for (int c = 0; c < BANDS; c++)
-            all[BANDS * i + c] = patches[routes->receivers[i]].flux[c];
+        memcpy(all + BANDS * i, patches[routes->receivers[i]].flux, sizeof patches->flux);
     comm_add_home(comm, all, routes->receiver_counts, BANDS, own);
     for (int64_t i = 0; i < own_count; i++)
-        for (int c = 0; c < BANDS; c++)
-            patches[own_patches[i]].flux[c] = own[BANDS * i + c];
+        memcpy(patches[own_patches[i]].flux, own + BANDS * i, sizeof patches->flux);
     solver->bytes_gather += (count - own_count) * (int64_t)(BANDS * sizeof *all);
     alloc_free(at);
     solver->seconds[PHASE_GATHER] += comm_seconds() - start;

@@ -66,12 +66,6 @@ struct flux_unit conjugate_unit(const struct scene *scene, double a, double b, d
     return flux_unit_for(fmax(a * b * weight * scene_area(scene), 1e-250));
 }
 
-/* w of the scalar product, without rho. */
-static double weight_of(const struct method *method, const struct closure *closure, int32_t leaf)
-{
-    return forest_area(method->forest, leaf) * closure_weight(closure, leaf);
-}
-
 void conjugate_start(struct conjugate *cg, const struct method *method,
                      const struct closure *closure, struct flux_unit flux)
 {
@@ -97,7 +91,7 @@ void conjugate_apply(struct conjugate *cg, const struct method *method,
         int32_t leaf = cg->leaves[i];
         const struct material *material = forest_material(method->forest, leaf);
         struct rgb h = leaf_irradiance(method->forest, leaf, flux);
-        double weight = weight_of(method, closure, leaf);
+        double weight = forest_area(method->forest, leaf) * closure_weight(closure, leaf);
         for (int c = 0; c < BANDS; c++) {
             double z = cg->residual[leaf].band[c];
             double w = z - closure_receives(closure, leaf) * h.band[c];
@@ -149,7 +143,7 @@ struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct met
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t leaf = cg->leaves[i];
         const struct material *material = forest_material(method->forest, leaf);
-        double area = forest_area(method->forest, leaf), weight = weight_of(method, closure, leaf);
+        double area = forest_area(method->forest, leaf), weight = area * closure_weight(closure, leaf);
         double light = 0.0, absorbed = 0.0, arriving = 0.0, negative = 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = material->reflectance.band[c], h = cg->irradiance[leaf].band[c];

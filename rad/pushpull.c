@@ -31,9 +31,9 @@ struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flu
     for (int32_t p = leaf; p >= 0; p = forest->patches[p].parent)
         line[length++] = p;
     struct rgb irradiance = {{0.0, 0.0, 0.0}};
-    while (length > 0) {
+    double area = forest_area(forest, line[length - 1]);
+    for (; length > 0; area *= 0.25) {
         int32_t p = line[--length];
-        double area = forest_area(forest, p);
         for (int c = 0; c < BANDS; c++)
             irradiance.band[c] += flux_to_watts(unit, forest->patches[p].flux[c]) / area;
     }
