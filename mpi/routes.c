@@ -65,5 +65,6 @@ void routes_renew(struct solver *solver)
     size_t own = (size_t)routes->receiver_counts[solver->comm->rank];
     routes->flux = alloc_array(BANDS * (size_t)receivers, sizeof *routes->flux);
     routes->own_flux = alloc_array(BANDS * own, sizeof *routes->own_flux);
-    routes->radiosities = alloc_array((size_t)leaves, sizeof *routes->radiosities);
+    routes->radiosities = alloc_array((size_t)leaves + BALLOT_RECORDS * ranks,
+                                      sizeof *routes->radiosities);
 }

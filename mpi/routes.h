@@ -16,7 +16,7 @@ struct routes {
     int32_t *leaves;    /* [sum of leaf_counts] leaves whose B can change */
     int *receiver_counts, *leaf_counts; /* [ranks] */
     int64_t *flux, *own_flux;   /* [3 * sum of receiver_counts], [3 * this rank's]: room for what travels */
-    struct rgb *radiosities;    /* [sum of leaf_counts] */
+    struct rgb *radiosities;    /* [sum of leaf_counts, and BALLOT_RECORDS more for each rank] */
 };
 
 /* Renews the routes of the solver, and sorts its links. Pre: all ranks have the same trees. */

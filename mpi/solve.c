@@ -122,5 +122,6 @@ void solver_push_pull(struct solver *solver)
     else
         solver->sums = push_pull(&solver->method, &solver->closure, solver->flux, solver->own,
                                  solver->root_change);
+    solver_cast_ballot(solver);
     solver->seconds[PHASE_PUSH_PULL] += comm_seconds() - start;
 }

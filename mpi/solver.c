@@ -23,6 +23,7 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     solver->owner = alloc_array(roots, sizeof *solver->owner);
     solver->own = alloc_array(roots, sizeof *solver->own);
     solver->root_change = alloc_array(roots, sizeof *solver->root_change);
+    solver->ballots = alloc_array((size_t)comm->size, sizeof *solver->ballots);
     solver->closure.kind = criterion->closure;
     solver->fresh = true;
     solver->least_bend = 1.0;
@@ -39,6 +40,7 @@ void solver_destroy(struct solver *solver)
     alloc_free(solver->own);
     routes_free(&solver->routes);
     alloc_free(solver->root_change);
+    alloc_free(solver->ballots);
     ledger_free(&solver->ledger);
     closure_free(&solver->closure);
     conjugate_free(&solver->conjugate);

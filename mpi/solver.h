@@ -30,6 +30,21 @@ struct memory {
     int copies;      /* of the patches that count */
 };
 
+/* What a rank says about an iteration; 120 bytes, no padding. */
+struct ballot {
+    int64_t light, absorbed, change, arriving; /* flux units */
+    int64_t split, links;
+    int64_t divided;                           /* own patches that are new */
+    int64_t stop;                              /* the signal that it has got */
+    int64_t square[BANDS];                     /* --solver cg: <z, z>, */
+    int64_t negative, bulk;                    /* and see conjugate_sum(), flux units */
+    double shrink;                             /* --solver jacobi: see push_pull() */
+    double largest;                            /* --solver cg: |z| */
+};
+
+/* It travels with radiosities, in the place of so many. */
+enum { BALLOT_RECORDS = (sizeof(struct ballot) + sizeof(struct rgb) - 1) / sizeof(struct rgb) };
+
 struct solver {
     const struct comm *comm;  /* borrowed */
     struct progress *progress; /* borrowed; NULL: nobody looks */
@@ -48,6 +63,7 @@ struct solver {
     struct closure closure;   /* factors of the leaves */
     struct flux_unit flux;    /* unit of the flux of the last transfer */
     struct push_pull_sums sums; /* of the last push-pull */
+    struct ballot *ballots;   /* [ranks] as of the last scatter; this rank's own of the last push-pull */
     int64_t last_change;      /* change of all ranks in the iteration before */
     struct conjugate conjugate; /* of --solver cg, like all up to `diverged` */
     bool fresh;                 /* the links have changed: the next transfer is of B */
@@ -106,8 +122,10 @@ void solver_close(struct solver *solver);
 void solver_transfer(struct solver *solver);
 void solver_gather(struct solver *solver);
 
-/* Steps 6 to 8: push-pull on the own roots; scatter of the own trees that changed; the vote. */
+/* Steps 6 to 8: push-pull on the own roots, which ends with this rank's ballot; scatter of the own
+ * radiosities and of the ballots; the vote. */
 void solver_push_pull(struct solver *solver);
+void solver_cast_ballot(struct solver *solver);
 void solver_scatter(struct solver *solver);
 struct vote solver_vote(struct solver *solver);
 

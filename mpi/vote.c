@@ -1,9 +1,9 @@
-/* Steps 6 and 8: push-pull, and the vote on another iteration.
+/* Step 8: the vote on another iteration.
  *
- * Each rank casts a ballot of integers and one maximum; all ranks add all ballots, so the
- * outcome is the same on any number of them. The iterations end when nothing was split and the
- * bound on what further ones could add, q / (1 - q) of the last change (rad/pushpull.c), is
- * small enough.
+ * Each rank casts a ballot of integers and maxima, which travels with the radiosities of its leaves;
+ * all ranks add all ballots, so the outcome is the same on any number of them. The iterations end
+ * when nothing was split and the bound on what further ones could add, q / (1 - q) of the last change
+ * (rad/pushpull.c), is small enough.
  *
  * The power that escapes is what leaves the surfaces, emitted or reflected, less what the links
  * delivered: an open scene's real loss plus whatever the form factors lack or have too much. */
@@ -11,20 +11,7 @@
 
 #include <math.h>
 
-#include "geom/alloc.h"
 #include "mpi/signals.h"
-
-/* What a rank says; 120 bytes, no padding. */
-struct ballot {
-    int64_t light, absorbed, change, arriving; /* flux units */
-    int64_t split, links;
-    int64_t divided;                           /* own patches that are new */
-    int64_t stop;                              /* the signal that it has got */
-    int64_t square[BANDS];                     /* --solver cg: <z, z>, */
-    int64_t negative, bulk;                    /* and see conjugate_sum(), flux units */
-    double shrink;                             /* --solver jacobi: see push_pull() */
-    double largest;                            /* --solver cg: |z| */
-};
 
 static void add_ballot(struct ballot *sum, const struct ballot *ballot)
 {
@@ -45,21 +32,11 @@ static void add_ballot(struct ballot *sum, const struct ballot *ballot)
 }
 
 /* The sums of all ranks. */
-static struct ballot count_votes(struct solver *solver, struct ballot own)
+static struct ballot count_ballots(const struct solver *solver)
 {
-    const struct comm *comm = solver->comm;
-    struct ballot *all = alloc_array((size_t)comm->size, sizeof *all), sum = {0};
-    MPI_Request request;
-    double start = comm_seconds();
-    own.stop = signals_seen();
-    MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, all, (int)sizeof own, MPI_BYTE, comm->handle,
-                   &request);
-    comm_wait(&request);
-    solver->seconds[PHASE_IDLE] += comm_seconds() - start;
-    for (int r = 0; r < comm->size; r++)
-        add_ballot(&sum, &all[r]);
-    solver->stop = (int)sum.stop;
-    alloc_free(all);
+    struct ballot sum = {0};
+    for (int r = 0; r < solver->comm->size; r++)
+        add_ballot(&sum, &solver->ballots[r]);
     return sum;
 }
 
@@ -104,17 +81,18 @@ static double remaining_by_change(const struct ballot *sum, int64_t before)
     return shrink / (1.0 - shrink) * ((double)sum->change / (double)sum->light);
 }
 
-static struct vote vote_jacobi(struct solver *solver)
+static struct ballot ballot_jacobi(const struct solver *solver)
 {
     const struct push_pull_sums *sums = &solver->sums;
-    struct ballot own = {.light = sums->light, .absorbed = sums->absorbed, .change = sums->change,
-                         .arriving = sums->arriving, .split = solver->split_here,
-                         .links = solver->links.count, .divided = own_new_patches(solver),
-                         .shrink = sums->shrink};
-    struct ballot sum = count_votes(solver, own);
-    double remaining = remaining_by_change(&sum, solver->last_change);
-    solver->last_change = sum.change;
-    return vote_of(solver, &sum, remaining);
+    return (struct ballot){.light = sums->light, .absorbed = sums->absorbed, .change = sums->change,
+                           .arriving = sums->arriving, .shrink = sums->shrink};
+}
+
+static struct vote vote_jacobi(struct solver *solver, const struct ballot *sum)
+{
+    double remaining = remaining_by_change(sum, solver->last_change);
+    solver->last_change = sum->change;
+    return vote_of(solver, sum, remaining);
 }
 
 /* --- conjugate gradients --- */
@@ -151,42 +129,65 @@ static void finish_conjugate(struct solver *solver)
     solver->fresh = true;
 }
 
-static struct vote vote_conjugate(struct solver *solver)
+/* The unit of <z, z>. */
+static struct flux_unit square_unit(const struct solver *solver)
 {
-    const struct criterion *criterion = &solver->method.criterion;
-    struct flux_unit unit = conjugate_unit(solver->method.scene, solver->bound_residual,
-                                           solver->bound_residual, solver->weight);
-    struct conjugate_sums sums = conjugate_sum(&solver->conjugate, &solver->method,
-                                               &solver->closure, unit);
-    struct ballot own = {.light = sums.light, .absorbed = sums.absorbed,
-                         .arriving = sums.arriving, .split = solver->split_here,
-                         .links = solver->links.count, .divided = own_new_patches(solver),
+    return conjugate_unit(solver->method.scene, solver->bound_residual, solver->bound_residual,
+                          solver->weight);
+}
+
+static struct ballot ballot_conjugate(const struct solver *solver)
+{
+    struct conjugate_sums sums = conjugate_sum(&solver->conjugate, &solver->method, &solver->closure,
+                                               square_unit(solver));
+    struct ballot own = {.light = sums.light, .absorbed = sums.absorbed, .arriving = sums.arriving,
                          .negative = sums.negative, .bulk = sums.bulk, .largest = sums.largest};
     for (int c = 0; c < BANDS; c++)
         own.square[c] = sums.square[c];
-    struct ballot sum = count_votes(solver, own);
+    return own;
+}
+
+static struct vote vote_conjugate(struct solver *solver, const struct ballot *sum)
+{
+    const struct criterion *criterion = &solver->method.criterion;
+    struct flux_unit unit = square_unit(solver);
     for (int c = 0; c < BANDS; c++)
-        solver->gamma[c] = flux_to_watts(unit, sum.square[c]);
-    solver->bound_residual = sum.largest;
-    double remaining = remaining_by_residual(solver, &sum);
-    bool splitting = sum.split > 0 || sum.divided > 0;
+        solver->gamma[c] = flux_to_watts(unit, sum->square[c]);
+    solver->bound_residual = sum->largest;
+    double remaining = remaining_by_residual(solver, sum);
+    bool splitting = sum->split > 0 || sum->divided > 0;
     double wanted = splitting ? fmax(criterion->tolerance, WHILE_SPLITTING) : criterion->tolerance;
-    struct vote vote = vote_of(solver, &sum, remaining);
+    struct vote vote = vote_of(solver, sum, remaining);
     bool more = !(remaining <= wanted) && !vote.diverged;
     vote.unfinished = more && solver->iteration >= criterion->max_iterations;
     vote.again = more && !vote.unfinished;
-    double negative = (remaining + 1.0 / NEGATIVE) * (double)sum.light;
-    if (remaining <= wanted && (double)sum.negative > negative)
+    double negative = (remaining + 1.0 / NEGATIVE) * (double)sum->light;
+    if (remaining <= wanted && (double)sum->negative > negative)
         vote.diverged = true;
     if (!vote.again)
         finish_conjugate(solver);
     return vote;
 }
 
+/* --- both --- */
+
+void solver_cast_ballot(struct solver *solver)
+{
+    struct ballot *own = &solver->ballots[solver->comm->rank];
+    *own = solver->method.criterion.solver == SOLVER_CG ? ballot_conjugate(solver)
+                                                        : ballot_jacobi(solver);
+    own->split = solver->split_here;
+    own->links = solver->links.count;
+    own->divided = own_new_patches(solver);
+    own->stop = signals_seen();
+}
+
 struct vote solver_vote(struct solver *solver)
 {
-    struct vote vote = solver->method.criterion.solver == SOLVER_CG ? vote_conjugate(solver)
-                                                                    : vote_jacobi(solver);
+    struct ballot sum = count_ballots(solver);
+    solver->stop = (int)sum.stop;
+    struct vote vote = solver->method.criterion.solver == SOLVER_CG ? vote_conjugate(solver, &sum)
+                                                                    : vote_jacobi(solver, &sum);
     solver_record_iteration(solver);
     return vote;
 }

@@ -10,8 +10,8 @@
  * rho, and surfaces that reflect nothing take no part: their w is 0. The three bands are three
  * systems, solved side by side.
  *
- * In the form of Chronopoulos and Gear one step costs one transfer of light and two exchanges of
- * a few numbers: with w = K z, gamma = <z, z>, delta = <w, z>,
+ * In the form of Chronopoulos and Gear one step costs one transfer of light and two sums of a few
+ * numbers over all ranks: with w = K z, gamma = <z, z>, delta = <w, z>,
  *
  *     turn = gamma / gamma_before            p = z + turn p       K p = w + turn K p
  *     step = gamma / (delta - turn gamma / step_before)           H += step p   z -= step K p.

@@ -12,7 +12,8 @@
  * link looked at, per link in a transfer, per own patch, per patch that every rank keeps up to
  * date. Messages cost ALPHA each (an exchange with all takes log2 P of them, one where each has
  * something else for each takes P - 1), bytes BETA each. Flux home, and radiosities to all, are
- * BYTES_PER_PATCH for each patch and iteration, which has so many EXCHANGES.
+ * BYTES_PER_PATCH for each patch and iteration, which has so many EXCHANGES: these two, and the sums
+ * for a step. Ballots travel with the radiosities.
  *
  * One line of CSV for each number of ranks, as in tests/bench/scaling.sh; on stderr, what
  * dominates. What is not in the model: a link that was moved to even out their numbers is taken
@@ -35,7 +36,7 @@
 /* Seconds per message and per byte: a node of today; and the paper's Ethernet of 100 Mbit/s. */
 static const double ALPHA = 2e-6, BETA = 1e-10, ALPHA_PAPER = 1e-4, BETA_PAPER = 8e-8;
 
-enum { BYTES_PER_PATCH = 24, BYTES_PER_LINK = 32, EXCHANGES = 4, RANKS_MOST = 4096 };
+enum { BYTES_PER_PATCH = 24, BYTES_PER_LINK = 32, EXCHANGES = 3, RANKS_MOST = 4096 };
 
 /* A part of a row, or its sample: its work, where it stopped, and its links that carry light and that do
  * not. */
@@ -622,7 +623,8 @@ static void replay_solution(struct replay *replay, const struct pass *pass, doub
     if (replay->ranks == 1)
         return;
     replay->messages += times * EXCHANGES * ceil(log2(ranks));
-    replay->bytes += times * 2.0 * BYTES_PER_PATCH * patches * (ranks - 1.0) / ranks;
+    replay->bytes += times * (2.0 * BYTES_PER_PATCH * patches + (double)sizeof(struct ballot) * ranks) *
+                     (ranks - 1.0) / ranks;
 }
 
 /* Of the rank that has most to look at, before its pass. */
