@@ -110,6 +110,7 @@ static void write_work(FILE *file, const struct stats *stats)
                 kind + 1 < WORK_COUNT ? "," : "");
     fprintf(file, "  },\n");
     write_integer(file, "exchanges", stats->exchanges);
+    write_integer(file, "messages", stats->messages);
 }
 
 bool stats_write(const struct stats *stats, const char *path, struct error *error)

@@ -80,7 +80,7 @@ static void leave_processor(int tests)
 #endif
 }
 
-static int64_t exchanges;
+static int64_t exchanges, messages;
 
 static void wait_for(MPI_Request *request)
 {
@@ -229,7 +229,7 @@ static void exchange(const struct comm *comm, const void *records, const int *co
     }
     if (counts[comm->rank] > 0)
         memcpy(own_in, own_out, (size_t)counts[comm->rank] * bytes);
-    exchanges++;
+    messages += count;
     for (int64_t i = 0; i < count; i++)
         wait_for(&requests[i]);
     MPI_Type_free(&record);
@@ -309,6 +309,11 @@ const char *comm_build(void)
 int64_t comm_exchanges(void)
 {
     return exchanges;
+}
+
+int64_t comm_messages(void)
+{
+    return messages;
 }
 
 double comm_seconds(void)

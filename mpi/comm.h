@@ -63,8 +63,10 @@ uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes
 /* "MPI", or "serial" where mpi/serial/mpi.h takes its place. */
 const char *comm_build(void);
 
-/* Exchanges that this rank has waited for. */
+/* Exchanges of all ranks that this one has waited for; messages in comm_exchange() that it has sent or
+ * received. */
 int64_t comm_exchanges(void);
+int64_t comm_messages(void);
 
 /* Seconds since some moment in the past. */
 double comm_seconds(void);

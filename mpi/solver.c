@@ -159,7 +159,7 @@ static void report_counts(const struct solver *solver, struct stats *stats)
                                solver->bytes_migration, solver->bytes_gather,
                                solver->bytes_scatter, solver->method.walled_off,
                                solver->method.rays_spared, solver->pairs_touched};
-    int64_t sum[COUNT_SUMS], memory = peak_memory();
+    int64_t sum[COUNT_SUMS], largest[2] = {peak_memory(), comm_messages()};
     for (int64_t i = 0; i < solver->links.count; i++)
         own[9 + kind_of(&solver->links.items[i])]++;
     MPI_Request request;
@@ -178,9 +178,10 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     stats->links_seen = sum[10];
     stats->links_partly = sum[11];
     stats->links_unseen = sum[12];
-    MPI_Iallreduce(&memory, &stats->peak_rss_bytes, 1, MPI_INT64_T, MPI_MAX,
-                   solver->comm->handle, &request);
+    MPI_Iallreduce(MPI_IN_PLACE, largest, 2, MPI_INT64_T, MPI_MAX, solver->comm->handle, &request);
     comm_wait(&request);
+    stats->peak_rss_bytes = largest[0];
+    stats->messages = largest[1];
 }
 
 void solver_report(struct solver *solver, const struct vote *vote, struct stats *stats)

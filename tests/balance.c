@@ -109,10 +109,11 @@ static void test_links(int ranks, int count, int64_t modulus, const char *what)
 static void test_moving(void)
 {
     const int64_t empty[4] = {0, 0, 0, 0}, equal[4] = {7, 7, 7, 7}, high[4] = {4000, 0, 0, 0};
-    const int64_t little[4] = {100, 0, 0, 0}, one[1] = {1000000};
+    const int64_t little[4] = {100, 0, 0, 0}, one[1] = {1000000}, many[1024] = {2000};
     tap_ok(!moving_pays(empty, 4) && !moving_pays(equal, 4) && !moving_pays(one, 1),
            "nothing moves where loads are empty or equal, or on one rank");
     tap_ok(moving_pays(high, 4) && !moving_pays(little, 4), "links move where that saves more than it takes");
+    tap_ok(moving_pays(many, 1024), "to few of many ranks, too");
 }
 
 /* --- rows --- */

@@ -279,7 +279,7 @@ static void test_balance(const struct comm *comm)
         if (level->iteration == 0 || level->links < 100 * comm->size)
             continue;
         large++;
-        if (excess > 50.0 * (comm->size - 1))
+        if (excess > 50.0 * (4.0 + ceil(log2(comm->size))))
             worst = fmax(worst, level->predicted_max / level->predicted_mean);
     }
     if (comm->rank == 0) {

@@ -32,7 +32,7 @@ function finish_file(   k, kind, shared, parts, copies, messages, bytes, mega) {
     }
     copies = worth["patches"] * slowest["patches"]
     if (ranks > 1) {
-        messages = exchanges * log2(ranks) + phases["splitting"] * (ranks - 1)
+        messages = exchanges * log2(ranks) + passed
         bytes = sent["transfer"] + sent["splitting"] + (scattered + migrated) / ranks
     }
     talk = 2e-6 * messages + 1e-10 * bytes
@@ -53,6 +53,7 @@ function share(kind) { return 100 * worth[kind] * all[kind] / ranks / total }
 /"work":/ { section = "work"; next }
 /^  }/ { section = "" }
 /"exchanges":/ { exchanges = $2 + 0 }
+/"messages":/ { passed = $2 + 0 }
 section == "seconds" { gsub(/[",:{}]/, " "); seconds[$1] = $7 }
 section == "work" { gsub(/[",:{}]/, " "); phases[$1] = $3; all[$1] = $5; slowest[$1] = $7; sent[$1] = $9 }
 /"bytes": {"migration"/ { gsub(/[",:{}]/, " "); migrated = $3; scattered = $7 }

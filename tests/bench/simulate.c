@@ -10,8 +10,8 @@
  *
  * Counts become seconds by what each took here: seconds per test (form factors included), per
  * link looked at, per link in a transfer, per own patch, per patch that every rank keeps up to
- * date. Messages cost ALPHA each (an exchange with all takes log2 P of them, one where each has
- * something else for each takes P - 1), bytes BETA each. Flux home, and radiosities to all, are
+ * date. Messages cost ALPHA each (an exchange with all takes log2 P of them, links take one from each
+ * rank that sends some to each that gets some), bytes BETA each. Flux home, and radiosities to all, are
  * BYTES_PER_PATCH for each patch and iteration, which has so many EXCHANGES: these two, and the sums
  * for a step. Ballots travel with the radiosities.
  *
@@ -515,6 +515,20 @@ static void replay_linking(struct replay *replay)
     alloc_free(own);
 }
 
+/* Links move as planned: they are counted, and packed into messages. */
+static void move_links(struct replay *replay, const struct transfer *plan, int planned, double bytes)
+{
+    int64_t *partners = alloc_array((size_t)replay->ranks, sizeof *partners);
+    for (int t = 0; t < planned; t++) {
+        partners[plan[t].from]++;
+        partners[plan[t].to]++;
+    }
+    exchange(replay, 0.0);
+    replay->messages += most_of(partners, replay->ranks);
+    replay->bytes += bytes;
+    alloc_free(partners);
+}
+
 /* As links_even_out(). */
 static void even_out(struct replay *replay)
 {
@@ -523,10 +537,12 @@ static void even_out(struct replay *replay)
     exchange(replay, 8.0 * ranks);
     if (most * ranks <= 1.02 * sum)
         return;
-    for (int r = 0; r < ranks; r++)
-        replay->migration += BYTES_PER_LINK * fmax(0.0, (double)replay->links[r] - sum / ranks);
-    replay->messages += ranks - 1;
-    replay->bytes += BYTES_PER_LINK * (most - sum / ranks);
+    struct transfer *plan = alloc_array(2 * (size_t)ranks, sizeof *plan);
+    int planned = plan_transfers(replay->links, ranks, plan);
+    for (int t = 0; t < planned; t++)
+        replay->migration += BYTES_PER_LINK * (double)plan[t].load;
+    move_links(replay, plan, planned, BYTES_PER_LINK * (most - sum / ranks));
+    alloc_free(plan);
     for (int r = 0; r < ranks; r++)
         replay->links[r] = (int64_t)sum / ranks + (r < (int64_t)sum % ranks);
 }
@@ -574,8 +590,7 @@ static void balance_level(struct replay *replay, const struct level *level)
         for (int r = 0; r < ranks; r++)
             deal_events(replay, sorted + first[r + 1], (r + 1 < ranks ? first[r + 2] : count) - first[r + 1],
                         r, plan, planned, sent);
-        replay->messages += ranks - 1;
-        replay->bytes += most_of(sent, ranks);
+        move_links(replay, plan, planned, most_of(sent, ranks));
         replay->migration += sum_of(sent, ranks);
     }
     exchange(replay, 32.0 * ranks);
