@@ -51,7 +51,11 @@ for test in "$@"; do
     exchange) run_on_ranks "$test" 1 2 3 4 7 ;;
     conjugate) run_on_ranks "$test" 1 3 ;;
     exact) run_on_ranks "$test" 1 3 ;;
-    converge) run_on_ranks "$test" 2 ;;
+    converge)
+        cp scenes/room.mtl "$BUILD/tests"
+        build/room 1000 1 >"$BUILD/tests/room.obj"
+        run "$test" $MPIEXEC -n 2 "$BUILD/tests/$test" "$BUILD/tests/room.obj"
+        ;;
     *) run "$test" "$BUILD/tests/$test" ;;
     esac
 done
