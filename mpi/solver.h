@@ -122,12 +122,13 @@ void solver_close(struct solver *solver);
 void solver_transfer(struct solver *solver);
 void solver_gather(struct solver *solver);
 
-/* Steps 6 to 8: push-pull on the own roots, which ends with this rank's ballot; scatter of the own
- * radiosities and of the ballots; the vote. */
+/* Steps 6 to 8: push-pull on the own roots; scatter of the own radiosities and of the ballots; the vote. */
 void solver_push_pull(struct solver *solver);
-void solver_cast_ballot(struct solver *solver);
 void solver_scatter(struct solver *solver);
 struct vote solver_vote(struct solver *solver);
+
+/* This rank's ballot, when its roots are pushed and pulled: the end of solver_push_pull(). */
+void solver_cast_ballot(struct solver *solver);
 
 /* Enters the work of the iteration into the ledger. */
 void solver_record_iteration(struct solver *solver);

@@ -70,7 +70,8 @@ double exchange_guess(const struct facet *p, const struct facet *q);
  * place of those of the centroids: rather too much. Pre: facets_face(p, q). */
 double exchange_across_horizon(const struct facet *p, const struct facet *q);
 
-/* The same from four points on the smaller one: good wherever they are. */
+/* The same from four points on the smaller one: a tenth too much or too little where
+ * patches touch. */
 double exchange_from_points(const struct facet *p, const struct facet *q);
 
 /* The points that stand for a patch: the centroids of its four children. */

@@ -34,7 +34,7 @@ struct criterion {
     int max_iterations;     /* at least 1 */
 };
 
-enum { TESTS_PER_FORM_FACTOR = 8 }; /* a form factor takes as long as so many tests */
+enum { TESTS_PER_FORM_FACTOR = 8 }; /* a form factor takes about as long as so many tests */
 
 struct method {
     const struct scene *scene;

@@ -69,8 +69,8 @@ struct stats {
     int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent from rank to rank, in the
                                                              refinement levels and steps 5, 7 */
     struct work_sums work[WORK_COUNT];
-    int64_t exchanges, messages; /* collective operations; messages of links of the rank that has
-                                    most */
+    int64_t exchanges; /* collective operations */
+    int64_t messages;  /* with links, that one rank sent or received; the most of any rank */
     int64_t peak_rss_bytes;                               /* largest over ranks; 0 if unknown */
 };
 

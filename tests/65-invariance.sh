@@ -44,4 +44,19 @@ b=$(stat_of "$work/metres.json" absorbed_power)
 check "in metres: a million times less power, within 1e-4" \
     holds "($a - 1e6 * $b < 1e-4 * $a) && (1e6 * $b - $a < 1e-4 * $a)"
 
+# A lamp far away that shines into the void, with 200 times the power of the other, is no reason to look less
+# closely at what the other lights: with as much less epsilon, as many links.
+cp scenes/cornell.mtl "$work/void.mtl"
+printf 'newmtl away\nKd 0 0 0\nKe 200 200 200\n' >>"$work/void.mtl"
+{
+    sed 's/^mtllib .*/mtllib void.mtl/' scenes/cornell.obj
+    printf 'v 0 -2000 0\nv 1000 -2000 0\nv 0 -2000 1000\nusemtl away\nf -3 -2 -1\n'
+} >"$work/void.obj"
+emitted=$(stat_of "$work/plain.json" emitted_power)
+./phr "$work/void.obj" --quiet --stats "$work/void.json" \
+    --epsilon "$(awk "BEGIN { printf \"%.9g\", 1e-4 * $emitted / ($emitted + 3e8) }")"
+a=$(stat_of "$work/plain.json" links)
+b=$(stat_of "$work/void.json" links)
+check "beside a strong lamp that shines into the void: links $a, $b" holds "($b - $a)^2 < (0.05 * $a)^2"
+
 tap_done

@@ -365,10 +365,20 @@ static void test_clear(void)
     tap_ok(wrong == 0 && clear > 2000, "a clear link is fine: %d of 20000, %d wrongly, %d missed",
            clear, wrong, missed);
     struct world world = make_grey(2.0);
+    struct method *method = &world.method;
     struct link link = link_of(0, 1);
-    world.method.criterion.oracle = ORACLE_BF;
-    oracle_prepare(&world.method);
-    tap_ok(!oracle_is_clear(&world.method, &link), "the paper looks at each");
+    link.seen = LINK_ALL_SEEN; /* 1/64 in doubt, rho B = 1/2 each way */
+    for (int32_t p = 0; p < 2; p++)
+        method->forest->patches[p].radiosity = (struct rgb){{-1.0, 1.0, -1.0}};
+    world.scene->materials[0].reflectance = world.scene->materials[1].reflectance =
+        (struct rgb){{0.0, 0.5, 0.0}};
+    method->link_threshold = 0.99 / 64.0;
+    oracle_prepare(method);
+    tap_ok(!oracle_is_clear(method, &link) && oracle_patch_to_split(method, &link) >= 0,
+           "bands below 0 take nothing from others");
+    method->criterion.oracle = ORACLE_BF;
+    method->link_threshold = 1e9;
+    tap_ok(!oracle_is_clear(method, &link), "the paper looks at each");
     world_free(&world);
 }
 

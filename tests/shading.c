@@ -426,7 +426,28 @@ static void test_bright_edge(void)
     tap_ok(smooth < 0.6 * flat && fabs(mean / flat_mean - 1.0) < 0.05,
            "light that falls off within a few leaves: RMS error %.4f, flat %.4f; %.2f of the light",
            smooth, flat, mean / flat_mean);
-    tap_ok(least >= darkest * (1.0 - 1e-12), "nothing is shown darker than the darkest leaf (%.2g, %.2g)", least, darkest);
+    tap_ok(least >= darkest * (1.0 - 1e-12), "nothing is shown darker than the darkest leaf (%.2g, %.2g)",
+           least, darkest);
+    dismantle(&stage);
+}
+
+/* Where small bright leaves meet a large dark one, each gives the vertex what it lacks as far as it is
+ * large: so what is shown there is hardly brighter than the large one. */
+static void test_large_leaf_counts(void)
+{
+    const double corner[3] = {1.0, 0.0, 0.0};
+    struct stage stage = square_stage();
+    struct patch_id id = id_of_root(1);
+    while (id_level(id) < 4)
+        id = id_child(id, 0);
+    forest_reach(stage.forest, id);
+    set_constant(stage.forest, 0.0);
+    for (int64_t p = 0; p < stage.forest->count; p++)
+        if (stage.forest->patches[p].id.root == 1)
+            stage.forest->patches[p].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
+    shade(&stage, false);
+    double shown = shading_at(stage.shading, 0, corner).band[0];
+    tap_ok(shown < 0.2, "a bright leaf of 1/256 of its area makes a dark one shine little: %.2f", shown);
     dismantle(&stage);
 }
 
@@ -862,6 +883,7 @@ int main(void)
     test_constant();
     test_linear();
     test_bright_edge();
+    test_large_leaf_counts();
     test_flat();
     test_numbering();
     test_vertex_order();
