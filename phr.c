@@ -241,7 +241,7 @@ static bool load_links(struct run *run, struct store_reader *reader, const int32
     return good;
 }
 
-/* Collective, after homes have been assigned. */
+/* Collective, before homes are assigned. */
 static bool load_snapshot(struct run *run, enum store_kind kind, const char *path)
 {
     double start = comm_seconds();
@@ -275,9 +275,11 @@ static bool stopped(struct run *run)
 
 /* --- the algorithm --- */
 
-/* With --verbose, the levels of refinement since `first`. */
+/* Collective. With --verbose, the levels of refinement since `first`. */
 static void report_levels(struct run *run, int64_t first)
 {
+    if (run->options.verbose)
+        ledger_share(&run->solver->ledger, &run->comm);
     for (int64_t i = first; i < run->solver->ledger.level_count && run->options.verbose; i++) {
         const struct level_balance *level = &run->solver->ledger.levels[i];
         say(run, "iteration %lld, level %lld: %lld links split, most work %.3f of the mean",
@@ -317,13 +319,15 @@ static bool start_light(struct run *run)
     solver->progress = &run->progress.progress;
     if (options->load_links || options->resume) {
         enum store_kind kind = options->resume ? STORE_CHECKPOINT : STORE_LINKS;
+        if (!load_snapshot(run, kind, options->resume ? options->resume : options->load_links))
+            return false;
         solver_assign_roots(solver);
-        return load_snapshot(run, kind, options->resume ? options->resume : options->load_links);
+        return true;
     }
     progress_begin(solver->progress, "linking", -1, 0);
     say(run, "%s: %lld triangles; linking", options->scene, (long long)run->scene->input_count);
     solver_link_roots(solver);   /* 2: initial linking */
-    solver_assign_roots(solver); /* 3: re-assignment by area */
+    solver_assign_roots(solver); /* 3: re-assignment */
     say(run, "roots are linked, %.1f s", comm_seconds() - run->start);
     return !options->save_links || save_snapshot(run, STORE_LINKS, options->save_links);
 }

@@ -1,41 +1,51 @@
-/* Step 3: roots in descending order of area, each to the rank with the smallest sum so far
+/* Step 3: roots in descending order of weight, each to the rank with the smallest sum so far
  * (Graham's rule: no sum is above 4/3 of the best possible maximum). The paper's root processor
- * decides and informs the others; here everyone has the areas and decides alike. */
+ * decides and informs the others; here everyone has the weights and decides alike. */
 #include "mpi/assign.h"
 
 #include <stdlib.h>
 
 #include "geom/alloc.h"
+#include "mpi/balance.h"
+
+/* A patch in an iteration; and large roots are going to have many. */
+enum { LINKS_PER_PATCH = 7 };
+
+int64_t root_weight(const struct scene *scene, int32_t root)
+{
+    double share = scene_root_area(scene, root) / scene_area(scene);
+    return LINKS_PER_PATCH + (int64_t)(LINKS_PER_PATCH * share * scene_root_count(scene));
+}
 
 struct candidate {
-    double area;
+    int64_t weight;
     int32_t root;
 };
 
 static int compare_candidates(const void *left, const void *right)
 {
     const struct candidate *a = left, *b = right;
-    if (a->area != b->area)
-        return a->area > b->area ? -1 : 1;
+    if (a->weight != b->weight)
+        return a->weight > b->weight ? -1 : 1;
     return a->root < b->root ? -1 : 1;
 }
 
-void roots_assign(const struct scene *scene, int ranks, int *owner)
+void roots_assign(const int64_t *weights, int32_t roots, int ranks, int *owner)
 {
-    int32_t roots = scene_root_count(scene);
     struct candidate *candidates = alloc_array((size_t)roots, sizeof *candidates);
-    double *sums = alloc_array((size_t)ranks, sizeof *sums);
+    int64_t *sorted = alloc_array((size_t)roots, sizeof *sorted);
+    int64_t *sums = alloc_array((size_t)ranks, sizeof *sums);
+    int *homes = alloc_array((size_t)roots, sizeof *homes);
     for (int32_t root = 0; root < roots; root++)
-        candidates[root] = (struct candidate){scene_root_area(scene, root), root};
+        candidates[root] = (struct candidate){weights[root], root};
     qsort(candidates, (size_t)roots, sizeof *candidates, compare_candidates);
-    for (int32_t i = 0; i < roots; i++) {
-        int emptiest = 0;
-        for (int r = 1; r < ranks; r++)
-            if (sums[r] < sums[emptiest])
-                emptiest = r;
-        sums[emptiest] += candidates[i].area;
-        owner[candidates[i].root] = emptiest;
-    }
-    alloc_free(candidates);
+    for (int32_t i = 0; i < roots; i++)
+        sorted[i] = candidates[i].weight;
+    items_deal(sorted, roots, sums, ranks, homes);
+    for (int32_t i = 0; i < roots; i++)
+        owner[candidates[i].root] = homes[i];
+    alloc_free(homes);
     alloc_free(sums);
+    alloc_free(sorted);
+    alloc_free(candidates);
 }

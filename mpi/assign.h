@@ -4,8 +4,11 @@
 
 #include "geom/scene.h"
 
-/* Deals the roots to `ranks` ranks so that the sums of their areas are even: owner[root] is the
- * home of a root. A pure function of the scene, so all ranks get the same answer. */
-void roots_assign(const struct scene *scene, int ranks, int *owner);
+/* What a root is going to take at its home, in links over which light takes as long. */
+int64_t root_weight(const struct scene *scene, int32_t root);
+
+/* Deals the roots to `ranks` ranks so that the sums of their weights are even: owner[root] is the
+ * home of a root. A pure function, so all ranks get the same answer. */
+void roots_assign(const int64_t *weights, int32_t roots, int ranks, int *owner);
 
 #endif

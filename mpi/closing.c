@@ -41,7 +41,7 @@ static double largest_row(const struct solver *solver, int32_t leaf)
     return largest > 0.0 ? fmax(MOST_REFLECTED, 0.5 * (1.0 + largest)) / largest : HUGE_VAL;
 }
 
-/* One round: renews the factors of own leaves that are to be closed. Returns the largest
+/* One round: renews the factors of own leaves that are to be closed. Returns their largest
  * deviation of a corrected row sum from 1 before it. */
 static double renew_factors(struct solver *solver)
 {
@@ -62,7 +62,7 @@ static double renew_factors(struct solver *solver)
         off = fmax(off, fabs(d * row - 1.0));
         closure->factor[p] = symmetric ? sqrt(d / row) : 1.0 / row;
     }
-    return comm_largest(solver->comm, off);
+    return off;
 }
 
 /* The factors of all leaves go to all ranks, as radiosities. */
@@ -72,7 +72,7 @@ static void scatter_factors(struct solver *solver)
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
             forest->patches[p].radiosity.band[c] = solver->closure.factor[p];
-    solver_scatter(solver);
+    solver_scatter_to_all(solver);
     for (int64_t p = 0; p < forest->count; p++)
         solver->closure.factor[p] = forest->patches[p].radiosity.band[0];
 }
@@ -81,7 +81,7 @@ static void close_symmetrically(struct solver *solver)
 {
     for (int round = 0; round < ROUNDS; round++) {
         transfer_ones(solver);
-        double off = renew_factors(solver);
+        double off = comm_largest(solver->comm, renew_factors(solver));
         scatter_factors(solver);
         if (off <= CLOSED)
             return;
@@ -93,19 +93,22 @@ static void close_symmetrically(struct solver *solver)
 static void bound_rows(struct solver *solver)
 {
     const struct method *method = &solver->method;
-    double gain = 1.0, shrink = 0.0, weight = 1.0;
+    double bound[3] = {1.0, 0.0, 1.0}; /* gain, shrink, weight */
     for (int64_t i = 0; i < solver->conjugate.leaf_count; i++) {
         int32_t leaf = solver->conjugate.leaves[i];
         double row = closure_receives(&solver->closure, leaf) *
                      leaf_irradiance(method->forest, leaf, solver->flux).band[0];
         struct rgb rho = forest_material(method->forest, leaf)->reflectance;
-        gain = fmax(gain, row);
-        shrink = fmax(shrink, row * fmax(rho.band[0], fmax(rho.band[1], rho.band[2])));
-        weight = fmax(weight, closure_weight(&solver->closure, leaf));
+        bound[0] = fmax(bound[0], row);
+        bound[1] = fmax(bound[1], row * fmax(rho.band[0], fmax(rho.band[1], rho.band[2])));
+        bound[2] = fmax(bound[2], closure_weight(&solver->closure, leaf));
     }
-    solver->gain = comm_largest(solver->comm, gain);
-    solver->shrink = comm_largest(solver->comm, shrink);
-    solver->weight = comm_largest(solver->comm, weight);
+    MPI_Request request;
+    MPI_Iallreduce(MPI_IN_PLACE, bound, 3, MPI_DOUBLE, MPI_MAX, solver->comm->handle, &request);
+    comm_wait(&request);
+    solver->gain = bound[0];
+    solver->shrink = bound[1];
+    solver->weight = bound[2];
 }
 
 void solver_close(struct solver *solver)

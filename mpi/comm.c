@@ -36,6 +36,9 @@ enum { EXCHANGE = 7 }; /* tag of comm_exchange(); messages of one pair never ove
 
 static MPI_Comm failing_comm; /* for the handler of exhausted memory, which has no argument */
 
+static int all_ranks; /* size of the first communicator */
+static int64_t exchanges, messages;
+
 static void out_of_memory(size_t bytes)
 {
     fprintf(stderr, "phr: out of memory (%zu bytes more were needed)\n", bytes);
@@ -51,6 +54,7 @@ void comm_start(struct comm *comm, int *argc, char ***argv)
     MPI_Comm_rank(comm->handle, &comm->rank);
     MPI_Comm_size(comm->handle, &comm->size);
     comm->limit = 0;
+    all_ranks = comm->size;
     failing_comm = comm->handle;
     alloc_on_failure(out_of_memory);
 }
@@ -63,6 +67,29 @@ void comm_stop(struct comm *comm)
     alloc_on_failure(NULL);
     MPI_Comm_free(&comm->handle);
     MPI_Finalize();
+}
+
+/* A collective of so many ranks takes log2 of them messages. */
+static void count_collective(int ranks)
+{
+    exchanges++;
+    for (int reached = 1; reached < ranks; reached *= 2)
+        messages++;
+}
+
+struct comm comm_part(const struct comm *comm, int colour)
+{
+    struct comm part = {.limit = comm->limit};
+    count_collective(comm->size);
+    MPI_Comm_split(comm->handle, colour, comm->rank, &part.handle);
+    MPI_Comm_rank(part.handle, &part.rank);
+    MPI_Comm_size(part.handle, &part.size);
+    return part;
+}
+
+void comm_part_end(struct comm *part)
+{
+    MPI_Comm_free(&part->handle);
 }
 
 static void leave_processor(int tests)
@@ -80,8 +107,6 @@ static void leave_processor(int tests)
 #endif
 }
 
-static int64_t exchanges, messages;
-
 static void wait_for(MPI_Request *request)
 {
     int done = 0;
@@ -92,10 +117,15 @@ static void wait_for(MPI_Request *request)
     }
 }
 
+static void wait_for_ranks(MPI_Request *request, int ranks)
+{
+    count_collective(ranks);
+    wait_for(request);
+}
+
 void comm_wait(MPI_Request *request)
 {
-    exchanges++;
-    wait_for(request);
+    wait_for_ranks(request, all_ranks);
 }
 
 void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes)
@@ -265,21 +295,19 @@ void comm_add_home(const struct comm *comm, const int64_t *values, const int *co
     }
     MPI_Request request;
     MPI_Ireduce_scatter(values, own, numbers, MPI_INT64_T, MPI_SUM, comm->handle, &request);
-    comm_wait(&request);
+    wait_for_ranks(&request, comm->size);
     alloc_free(numbers);
 }
 
-void comm_share(const struct comm *comm, void *records, const int *counts, size_t bytes)
+void comm_share(const struct comm *comm, void *records, const int *counts, const int *at,
+                size_t bytes)
 {
-    int *at = alloc_array((size_t)comm->size, sizeof *at);
-    comm_displacements(comm, counts, at);
     MPI_Datatype record = record_of(bytes);
     MPI_Request request;
     MPI_Iallgatherv(MPI_IN_PLACE, 0, record, records, counts, at, record, comm->handle,
                     &request);
-    comm_wait(&request);
+    wait_for_ranks(&request, comm->size);
     MPI_Type_free(&record);
-    alloc_free(at);
 }
 
 uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes, int *at)

@@ -20,6 +20,10 @@ void comm_start(struct comm *comm, int *argc, char ***argv);
 /* Collective. Waits for all ranks and finalises MPI. */
 void comm_stop(struct comm *comm);
 
+/* Collective. Those of the ranks that give the same colour, in their order; ended by all of them. */
+struct comm comm_part(const struct comm *comm, int colour);
+void comm_part_end(struct comm *part);
+
 /* Waits for a non-blocking operation and leaves the processor to others meanwhile. */
 void comm_wait(MPI_Request *request);
 
@@ -52,9 +56,10 @@ void *comm_exchange(const struct comm *comm, const void *records, const int *cou
 void comm_add_home(const struct comm *comm, const int64_t *values, const int *counts, int width,
                    int64_t *own);
 
-/* Collective. All ranks get the records of all: `records` has room for counts[0] of rank 0, then
- * counts[1] of rank 1, and so on; each rank's own are in place. */
-void comm_share(const struct comm *comm, void *records, const int *counts, size_t bytes);
+/* Collective. All ranks get the records of all: counts[r] of rank r begin at[r] records behind `records`;
+ * each rank's own are in place. */
+void comm_share(const struct comm *comm, void *records, const int *counts, const int *at,
+                size_t bytes);
 
 /* Collective. The bytes of all ranks, in the order of the ranks, on all ranks. at[r] is where those
  * of rank r begin, at[size] their number; at holds size + 1 ints. To be freed with alloc_free(). */
@@ -63,8 +68,8 @@ uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes
 /* "MPI", or "serial" where mpi/serial/mpi.h takes its place. */
 const char *comm_build(void);
 
-/* Exchanges of all ranks that this one has waited for; messages in comm_exchange() that it has sent or
- * received. */
+/* Collectives that this rank has waited for; messages, log P for a collective of P ranks, and those that
+ * this one has sent or received in comm_exchange(). */
 int64_t comm_exchanges(void);
 int64_t comm_messages(void);
 

@@ -9,8 +9,7 @@
  * Links are renumbered in place (patches depth first, as in forest_order()), sorted, merged on rank
  * 0, and given their local numbers back: no copy of them is made, since a checkpoint is wanted most
  * where memory is short. (So they are sorted here: many a qsort() makes a copy.) Reading, every block of links is
- * sent to all ranks, and each takes those that are at home there: rank 0 need not know how many
- * that will be. */
+ * sent to all ranks, which take them in turn; homes are found when all are there. */
 #include "mpi/keep.h"
 
 #include <math.h>
@@ -352,14 +351,11 @@ int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snaps
 
 void links_deal(struct solver *solver, const int32_t *order, struct link *links, int64_t count)
 {
-    const struct forest *forest = solver->method.forest;
     comm_broadcast(solver->comm, links, (size_t)count * sizeof *links);
-    for (int64_t i = 0; i < count; i++) {
+    for (int64_t i = solver->comm->rank; i < count; i += solver->comm->size) {
         struct link link = links[i];
         link.p = order[link.p];
         link.q = order[link.q];
-        uint32_t a = forest->patches[link.p].id.root, b = forest->patches[link.q].id.root;
-        if (solver->own[(a ^ b) % 2 == 0 ? a : b])
-            link_list_append(&solver->links, link);
+        link_list_append(&solver->links, link);
     }
 }

@@ -16,13 +16,13 @@ typedef void link_sink(void *context, const struct link *links, int64_t count);
  * order of the links here changes. */
 void links_collect(struct solver *solver, link_sink *sink, void *context);
 
-/* Collective, on a solver that has homes but no links: what snapshot_collect() took. `snapshot` is
+/* Collective, on a solver that has neither links nor homes: what snapshot_collect() took. `snapshot` is
  * rank 0's and has passed snapshot_check(). Returns the local numbers of its patches, to be freed
  * with alloc_free(). */
 int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snapshot *snapshot);
 
-/* Collective: each link of `links`, rank 0's with numbers of the snapshot, goes to the home of one of
- * its two roots. `order` is what snapshot_restore() returned, `count` the same on all ranks. */
+/* Collective: the links of `links`, rank 0's with numbers of the snapshot, are dealt to the ranks in
+ * turn. `order` is what snapshot_restore() returned, `count` the same on all ranks. */
 void links_deal(struct solver *solver, const int32_t *order, struct link *links, int64_t count);
 
 #endif

@@ -5,10 +5,9 @@
  * worked on, all tell each other what they did before it, and what they left.
  *
  * Light is transferred over links where they live, so all ranks should have as many that carry
- * light: those that have more than the mean give the excess away, and all others stay where they
- * were made. The paper (and --balance greedy) sends each to the home of one of its two roots, here
- * the lower or the higher one by the parity of i + j; but the areas of roots say little about the
- * number of their links. */
+ * light (mpi/migrate.h). The paper (and --balance greedy) deals roots by their areas, and sends each link to
+ * the home of one of its two roots, here the lower or the higher one by the parity of i + j; but the areas
+ * of roots say little about the number of their links. */
 #include "mpi/assign.h"
 #include "mpi/balance.h"
 #include "mpi/migrate.h"
@@ -167,26 +166,64 @@ void solver_link_roots(struct solver *solver)
     solver->seconds[PHASE_LINKING] += comm_seconds() - start;
 }
 
+static uint32_t root_of(const struct solver *solver, int32_t patch)
+{
+    return solver->method.forest->patches[patch].id.root;
+}
+
 static void send_home(struct solver *solver)
 {
     int *destination = alloc_array((size_t)solver->links.count, sizeof *destination);
     for (int64_t i = 0; i < solver->links.count; i++) {
-        const struct link *link = &solver->links.items[i]; /* p < q: both are roots */
-        destination[i] = solver->owner[(link->p ^ link->q) % 2 == 0 ? link->p : link->q];
+        const struct link *link = &solver->links.items[i];
+        uint32_t a = root_of(solver, link->p), b = root_of(solver, link->q);
+        destination[i] = solver->owner[(a ^ b) % 2 == 0 ? a : b];
     }
     solver->bytes_migration += links_migrate(solver, &solver->links, destination);
     alloc_free(destination);
 }
 
+/* Areas, in parts of 2^-40 of all. */
+static void weigh_by_area(const struct scene *scene, int64_t *weights)
+{
+    for (int32_t root = 0; root < scene_root_count(scene); root++)
+        weights[root] = (int64_t)(scene_root_area(scene, root) / scene_area(scene) * 0x1p40);
+}
+
+/* Links that carry light, over all ranks. */
+static void weigh_by_links(struct solver *solver, int64_t *weights)
+{
+    const struct scene *scene = solver->method.scene;
+    int32_t roots = solver->method.forest->root_count;
+    for (int64_t i = 0; i < solver->links.count; i++) {
+        const struct link *link = &solver->links.items[i];
+        weights[root_of(solver, link->p)] += link->seen > 0;
+        weights[root_of(solver, link->q)] += link->seen > 0;
+    }
+    MPI_Request request;
+    MPI_Iallreduce(MPI_IN_PLACE, weights, roots, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
+    wait_idle(solver, &request);
+    for (int32_t root = 0; root < roots; root++)
+        weights[root] += root_weight(scene, root);
+}
+
 void solver_assign_roots(struct solver *solver)
 {
     double start = comm_seconds();
-    roots_assign(solver->method.scene, solver->comm->size, solver->owner);
-    for (int32_t root = 0; root < solver->method.forest->root_count; root++)
+    int32_t roots = solver->method.forest->root_count;
+    bool greedy = solver->method.criterion.balance == BALANCE_GREEDY;
+    int64_t *weights = alloc_array((size_t)roots, sizeof *weights);
+    if (greedy)
+        weigh_by_area(solver->method.scene, weights);
+    else
+        weigh_by_links(solver, weights);
+    roots_assign(weights, roots, solver->comm->size, solver->owner);
+    alloc_free(weights);
+    for (int32_t root = 0; root < roots; root++)
         solver->own[root] = solver->owner[root] == solver->comm->rank;
-    if (solver->method.criterion.balance == BALANCE_GREEDY)
+    if (greedy)
         send_home(solver);
     else
-        links_even_out(solver);
+        links_place(solver);
     solver->seconds[PHASE_LINKING] += comm_seconds() - start;
 }

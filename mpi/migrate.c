@@ -111,21 +111,73 @@ static bool is_uneven(const int64_t *counts, int ranks)
     return (double)largest * ranks > 1.02 * (double)sum;
 }
 
-void links_even_out(struct solver *solver)
+/* --- where links are for the transfer of light --- */
+
+static int cell_of(const struct solver *solver, const struct link *link)
 {
-    const struct comm *comm = solver->comm;
-    int64_t count = 0;
-    int64_t *counts = alloc_array((size_t)comm->size, sizeof *counts);
-    for (int64_t i = 0; i < solver->links.count; i++)
-        count += carries_light(&solver->links.items[i]);
+    const struct patch *patches = solver->method.forest->patches;
+    struct patch_id p = patches[link->p].id, q = patches[link->q].id;
+    int home_p = solver->owner[p.root], home_q = solver->owner[q.root];
+    return grid_turns(p, q) ? grid_cell(solver->square, home_q, home_p)
+                            : grid_cell(solver->square, home_p, home_q);
+}
+
+/* Sums over all ranks in place of what this one has. Waiting is idle time. */
+static void add_counts(struct solver *solver, int64_t *counts, int ranks)
+{
     double start = comm_seconds();
     MPI_Request request;
-    MPI_Iallgather(&count, 1, MPI_INT64_T, counts, 1, MPI_INT64_T, comm->handle, &request);
+    MPI_Iallreduce(MPI_IN_PLACE, counts, ranks, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
     comm_wait(&request);
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
-    start = comm_seconds();
-    if (is_uneven(counts, comm->size)) /* the same on all ranks, so all enter */
-        solver->bytes_migration += links_balance(solver, &solver->links, carries_light, counts);
-    alloc_free(counts);
+}
+
+/* Links that carry light, by rank: where they are, and where their cells are. Returns how many are
+ * elsewhere. */
+static int64_t count_links(struct solver *solver, int64_t *here, int64_t *cells)
+{
+    int64_t astray = 0;
+    for (int64_t i = 0; i < solver->links.count; i++)
+        if (carries_light(&solver->links.items[i])) {
+            int cell = cell_of(solver, &solver->links.items[i]);
+            here[solver->comm->rank]++;
+            cells[cell]++;
+            astray += cell != solver->comm->rank;
+        }
+    return astray;
+}
+
+/* First along the row to the right column, then along the column: so a rank sends to few others. */
+static void send_to_cells(struct solver *solver)
+{
+    int columns = solver->square.columns;
+    for (int hop = 0; hop < 2; hop++) {
+        int *destination = alloc_array((size_t)solver->links.count, sizeof *destination);
+        for (int64_t i = 0; i < solver->links.count; i++) {
+            const struct link *link = &solver->links.items[i];
+            int cell = carries_light(link) ? cell_of(solver, link) : solver->comm->rank;
+            int row = (hop == 0 ? solver->comm->rank : cell) / columns;
+            destination[i] = row * columns + cell % columns;
+        }
+        solver->bytes_migration += links_migrate(solver, &solver->links, destination);
+        alloc_free(destination);
+    }
+}
+
+void links_place(struct solver *solver)
+{
+    int ranks = solver->comm->size;
+    int64_t *here = alloc_array(2 * (size_t)ranks + 1, sizeof *here), *cells = here + ranks;
+    here[2 * ranks] = count_links(solver, here, cells);
+    add_counts(solver, here, 2 * ranks + 1);
+    double start = comm_seconds();
+    bool in_cells = solver->method.criterion.balance == BALANCE_CELLS ||
+                    grid_pays(solver->square, cells, solver->method.forest->count, here[2 * ranks]);
+    solver->grid = in_cells ? solver->square : (struct grid){1, ranks};
+    if (in_cells)
+        send_to_cells(solver);
+    else if (is_uneven(here, ranks)) /* the same on all ranks, so all enter */
+        solver->bytes_migration += links_balance(solver, &solver->links, carries_light, here);
+    alloc_free(here);
     solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
 }

@@ -14,8 +14,9 @@ int64_t links_migrate(struct solver *solver, struct link_list *list, const int *
 int64_t links_balance(struct solver *solver, struct link_list *list,
                       int64_t (*load)(const struct link *), const int64_t *loads);
 
-/* Collective. Ranks with more links than the mean send what is above it to those with less, if any is
- * above it by more than a fiftieth. */
-void links_even_out(struct solver *solver);
+/* Collective. Links that carry light go where it is best transferred over them: to their cells of the
+ * square grid, with --balance cells or where grid_pays() (mpi/balance.h); else ranks that have more of them than the mean send
+ * what is above it to those with less, if any is above it by more than a fiftieth. */
+void links_place(struct solver *solver);
 
 #endif

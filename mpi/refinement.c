@@ -6,7 +6,7 @@
  * next level, the others join the links.
  *
  * What was split stays where that was done; light is transferred over links where they are. So
- * at the end their numbers are evened out, but for --balance greedy, the paper's.
+ * at the end they go where that is best done, but for --balance greedy, the paper's.
  *
  * Predicted cost and work of each level go into the ledger (mpi/ledger.h). */
 #include "mpi/balance.h"
@@ -146,7 +146,7 @@ static void share_splits(struct solver *solver)
         forest_reach(forest, id);
     }
     solver->shared = forest->count;
-    solver->bytes_scatter += count * (int64_t)sizeof *split * (comm->size - 1);
+    solver->bytes_scatter += at[comm->size] - count * (int64_t)sizeof *split;
     alloc_free(all);
     alloc_free(at);
     alloc_free(split);
@@ -224,9 +224,8 @@ bool solver_refine(struct solver *solver)
         link_list_free(&prolific);
         share_splits(solver);
     }
-    if (solver->method.criterion.balance == BALANCE_EVEN)
-        links_even_out(solver);
-    ledger_share(&solver->ledger, solver->comm);
+    if (solver->method.criterion.balance != BALANCE_GREEDY)
+        links_place(solver);
     bool stopped = !done && solver->stop != 0;
     solver->pass -= stopped;
     return !stopped;

@@ -10,8 +10,12 @@ void routes_free(struct routes *routes)
     alloc_free(routes->leaves);
     alloc_free(routes->receiver_counts);
     alloc_free(routes->leaf_counts);
+    alloc_free(routes->receiver_at);
+    alloc_free(routes->leaf_at);
+    alloc_free(routes->record_at);
     alloc_free(routes->flux);
-    alloc_free(routes->own_flux);
+    alloc_free(routes->own_flux[0]);
+    alloc_free(routes->own_flux[1]);
     alloc_free(routes->radiosities);
     *routes = (struct routes){0};
 }
@@ -32,13 +36,13 @@ static bool is_leaf_that_changes(const struct solver *solver, int32_t patch)
             !material_is_dark(forest_material(solver->method.forest, patch)));
 }
 
-/* The patches for which `is_listed` is true, home by home; how many each has, and all. */
+/* The patches for which `is_listed` is true, home by home; how many each has, and where they begin. Returns
+ * their number too. */
 static int32_t *list_patches(const struct solver *solver,
                              bool (*is_listed)(const struct solver *, int32_t), int *counts,
-                             int64_t *count)
+                             int *at, int64_t *count)
 {
     const struct forest *forest = solver->method.forest;
-    int *at = alloc_array((size_t)solver->comm->size, sizeof *at);
     for (int64_t p = 0; p < forest->count; p++)
         counts[solver->owner[forest->patches[p].id.root]] += is_listed(solver, (int32_t)p);
     *count = comm_displacements(solver->comm, counts, at);
@@ -47,7 +51,7 @@ static int32_t *list_patches(const struct solver *solver,
         for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
             if (is_listed(solver, p))
                 list[at[solver->owner[root]]++] = p;
-    alloc_free(at);
+    comm_displacements(solver->comm, counts, at);
     return list;
 }
 
@@ -59,12 +63,26 @@ void routes_renew(struct solver *solver)
     routes_free(routes);
     routes->receiver_counts = alloc_array(ranks, sizeof *routes->receiver_counts);
     routes->leaf_counts = alloc_array(ranks, sizeof *routes->leaf_counts);
+    routes->receiver_at = alloc_array(ranks, sizeof *routes->receiver_at);
+    routes->leaf_at = alloc_array(ranks, sizeof *routes->leaf_at);
+    routes->record_at = alloc_array(ranks + 1, sizeof *routes->record_at);
     int64_t receivers, leaves;
-    routes->receivers = list_patches(solver, can_receive, routes->receiver_counts, &receivers);
-    routes->leaves = list_patches(solver, is_leaf_that_changes, routes->leaf_counts, &leaves);
+    routes->receivers = list_patches(solver, can_receive, routes->receiver_counts,
+                                     routes->receiver_at, &receivers);
+    routes->leaves = list_patches(solver, is_leaf_that_changes, routes->leaf_counts,
+                                  routes->leaf_at, &leaves);
+    int64_t records = leaves + BALLOT_RECORDS * (int64_t)ranks;
+    routes->record_at[ranks] = comm_count(solver->comm, records);
+    for (size_t r = 0; r < ranks; r++)
+        routes->record_at[r] = routes->leaf_at[r] + BALLOT_RECORDS * (int)r;
     size_t own = (size_t)routes->receiver_counts[solver->comm->rank];
     routes->flux = alloc_array(BANDS * (size_t)receivers, sizeof *routes->flux);
-    routes->own_flux = alloc_array(BANDS * own, sizeof *routes->own_flux);
-    routes->radiosities = alloc_array((size_t)leaves + BALLOT_RECORDS * ranks,
-                                      sizeof *routes->radiosities);
+    for (int k = 0; k < 2; k++)
+        routes->own_flux[k] = alloc_array(BANDS * own, sizeof *routes->own_flux[k]);
+    routes->radiosities = alloc_array((size_t)records, sizeof *routes->radiosities);
+}
+
+const struct comm *routes_row(const struct solver *solver)
+{
+    return solver->grid.rows == 1 ? solver->comm : &solver->row;
 }

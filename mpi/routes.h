@@ -1,11 +1,15 @@
 /* What travels in every transfer of light over the same trees: flux to the homes of patches, and
- * radiosities back. Found out once, so that the transfers need no IDs, no counts and no searching. */
+ * radiosities back. Found out once, so that the transfers need no IDs, no counts and no searching.
+ *
+ * Where links are in the cells of a grid of ranks (mpi/balance.h), both stay within the row and the
+ * column of a rank. Else the grid has one row, of all ranks. */
 #ifndef MPI_ROUTES_H
 #define MPI_ROUTES_H
 
 #include <stdint.h>
 
 #include "geom/scene.h"
+#include "mpi/comm.h"
 
 struct solver;
 
@@ -15,12 +19,18 @@ struct routes {
     int32_t *receivers; /* [sum of receiver_counts] patches that can receive light */
     int32_t *leaves;    /* [sum of leaf_counts] leaves whose B can change */
     int *receiver_counts, *leaf_counts; /* [ranks] */
-    int64_t *flux, *own_flux;   /* [3 * sum of receiver_counts], [3 * this rank's]: room for what travels */
-    struct rgb *radiosities;    /* [sum of leaf_counts, and BALLOT_RECORDS more for each rank] */
+    int *receiver_at, *leaf_at;         /* [ranks] where those of a home begin */
+    int *record_at;             /* [ranks + 1] where its leaves and its ballot begin in `radiosities` */
+    int64_t *flux, *own_flux[2];   /* room for what travels: [3 * sum of receiver_counts], and for this
+                                      rank's sums in its row and its column, [3 * its receivers] */
+    struct rgb *radiosities;    /* [record_at[ranks]] */
 };
 
 /* Renews the routes of the solver, and sorts its links. Pre: all ranks have the same trees. */
 void routes_renew(struct solver *solver);
 void routes_free(struct routes *routes);
+
+/* The ranks of this rank's row of the grid in use. */
+const struct comm *routes_row(const struct solver *solver);
 
 #endif

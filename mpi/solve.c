@@ -9,15 +9,27 @@
 
 /* --- the transfer of light --- */
 
-static double largest_radiosity(const struct forest *forest)
+/* At most; the same on all ranks. When links have changed all ranks know all radiosities. */
+static double largest_radiosity(const struct solver *solver)
 {
-    double largest = 1e-250;
-    for (int64_t p = 0; p < forest->count; p++)
+    const struct forest *forest = solver->method.forest;
+    double largest = fmax(solver->fresh ? 0.0 : solver->ballot.brightest, 1e-250);
+    for (int64_t p = 0; p < forest->count && solver->fresh; p++)
         for (int c = 0; c < BANDS; c++) {
             double size = fabs(forest->patches[p].radiosity.band[c]);
             largest = size > largest ? size : largest;
         }
     return largest;
+}
+
+/* Own patches keep their flux from the gather on; all others have given theirs away. */
+static void clear_own_flux(struct solver *solver)
+{
+    const struct routes *routes = &solver->routes;
+    const int32_t *own = routes->receivers + routes->receiver_at[solver->comm->rank];
+    for (int i = 0; i < routes->receiver_counts[solver->comm->rank]; i++)
+        for (int c = 0; c < BANDS; c++)
+            solver->method.forest->patches[own[i]].flux[c] = 0;
 }
 
 /* What leaves send with --closure symmetric. */
@@ -37,8 +49,8 @@ void solver_transfer(struct solver *solver)
     struct rgb *kept = corrects ? forest_keep(forest) : NULL;
     if (corrects)
         correct_senders(forest, &solver->closure);
-    forest_clear_flux(forest);
-    solver->flux = flux_unit_for(largest_radiosity(forest) * scene_area(solver->method.scene));
+    clear_own_flux(solver);
+    solver->flux = flux_unit_for(largest_radiosity(solver) * scene_area(solver->method.scene));
     links_transfer(&solver->links, forest, solver->flux);
     if (corrects)
         forest_restore(forest, kept);

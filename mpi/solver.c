@@ -23,7 +23,10 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     solver->owner = alloc_array(roots, sizeof *solver->owner);
     solver->own = alloc_array(roots, sizeof *solver->own);
     solver->root_change = alloc_array(roots, sizeof *solver->root_change);
-    solver->ballots = alloc_array((size_t)comm->size, sizeof *solver->ballots);
+    solver->grid = (struct grid){1, comm->size};
+    solver->square = grid_make(comm->size);
+    solver->row = comm_part(comm, comm->rank / solver->square.columns);
+    solver->column = comm_part(comm, comm->rank % solver->square.columns);
     solver->closure.kind = criterion->closure;
     solver->fresh = true;
     solver->least_bend = 1.0;
@@ -40,7 +43,8 @@ void solver_destroy(struct solver *solver)
     alloc_free(solver->own);
     routes_free(&solver->routes);
     alloc_free(solver->root_change);
-    alloc_free(solver->ballots);
+    comm_part_end(&solver->row);
+    comm_part_end(&solver->column);
     ledger_free(&solver->ledger);
     closure_free(&solver->closure);
     conjugate_free(&solver->conjugate);
@@ -55,7 +59,7 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
     struct rgb *kept = forest_keep(forest);
     for (int64_t p = 0; p < forest->count; p++)
         forest->patches[p].radiosity = (struct rgb){{1.0, 0.0, 0.0}};
-    int64_t bytes = solver->bytes_gather; /* this gather is for the report, not of the method */
+    int64_t bytes = solver->bytes_gather, copied = solver->copied; /* not of the method */
     double seconds = solver->seconds[PHASE_GATHER];
     routes_renew(solver); /* a finished run that was resumed has none */
     enum closure_kind kind = solver->closure.kind;
@@ -65,6 +69,7 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
     forest_restore(forest, kept);
     solver_gather(solver);
     solver->bytes_gather = bytes;
+    solver->copied = copied;
     solver->seconds[PHASE_GATHER] = seconds;
     struct closure_sums own = closure_measure(forest, solver->own, solver->flux);
     struct closure_sums *all = alloc_array((size_t)comm->size, sizeof *all);
@@ -91,21 +96,19 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
 void solver_record_iteration(struct solver *solver)
 {
     const struct forest *forest = solver->method.forest;
-    int64_t gathered = solver->bytes_gather - solver->bytes_recorded[0], own = 0;
-    int64_t scattered = solver->bytes_scatter - solver->bytes_recorded[1];
+    int64_t now[] = {solver->bytes_gather, solver->bytes_scatter, solver->copied}, own = 0;
     for (int64_t p = 0; p < forest->count; p++)
         own += solver->own[forest->patches[p].id.root];
     struct phase_work phase = {.kind = WORK_TRANSFER, .iteration = solver->iteration,
-                               .work = solver->links.seen, .bytes = gathered};
+                               .work = solver->links.seen, .bytes = now[0] - solver->recorded[0]};
     ledger_add(&solver->ledger, phase);
     phase = (struct phase_work){.kind = WORK_OWN, .iteration = solver->iteration, .work = own,
-                                .bytes = scattered};
+                                .bytes = now[1] - solver->recorded[1]};
     ledger_add(&solver->ledger, phase);
     phase = (struct phase_work){.kind = WORK_PATCHES, .iteration = solver->iteration,
-                                .work = forest->count};
+                                .work = now[2] - solver->recorded[2]};
     ledger_add(&solver->ledger, phase);
-    solver->bytes_recorded[0] = solver->bytes_gather;
-    solver->bytes_recorded[1] = solver->bytes_scatter;
+    memcpy(solver->recorded, now, sizeof now);
 }
 
 /* Bytes that this process held at most, 0 where the system does not tell. */

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "geom/progress.h"
+#include "mpi/balance.h"
 #include "mpi/comm.h"
 #include "mpi/ledger.h"
 #include "mpi/routes.h"
@@ -30,7 +31,7 @@ struct memory {
     int copies;      /* of the patches that count */
 };
 
-/* What a rank says about an iteration; 120 bytes, no padding. */
+/* What a rank says about an iteration; 128 bytes, no padding. */
 struct ballot {
     int64_t light, absorbed, change, arriving; /* flux units */
     int64_t split, links;
@@ -40,7 +41,11 @@ struct ballot {
     int64_t negative, bulk;                    /* and see conjugate_sum(), flux units */
     double shrink;                             /* --solver jacobi: see push_pull() */
     double largest;                            /* --solver cg: |z| */
+    double brightest;                          /* what leaves send, W/m^2 and band */
 };
+
+/* Adds a ballot to a sum of ballots, in any order. */
+void ballot_add(struct ballot *sum, const struct ballot *ballot);
 
 /* It travels with radiosities, in the place of so many. */
 enum { BALLOT_RECORDS = (sizeof(struct ballot) + sizeof(struct rgb) - 1) / sizeof(struct rgb) };
@@ -52,6 +57,9 @@ struct solver {
     struct link_list links;   /* the links that live here ("allInteractions") */
     int *owner;               /* [roots] home rank of each root */
     bool *own;                /* [roots] owner[root] == rank */
+    struct grid grid;         /* of ranks, as links lie: either of one row, or `square`, */
+    struct grid square;
+    struct comm row, column;  /* of which these are this rank's */
     struct routes routes;     /* of light between the ranks */
     int64_t *root_change;     /* [roots] see push_pull() */
     int64_t first_new;        /* patches from here on were created in this iteration */
@@ -63,7 +71,7 @@ struct solver {
     struct closure closure;   /* factors of the leaves */
     struct flux_unit flux;    /* unit of the flux of the last transfer */
     struct push_pull_sums sums; /* of the last push-pull */
-    struct ballot *ballots;   /* [ranks] as of the last scatter; this rank's own of the last push-pull */
+    struct ballot ballot;     /* this rank's after push-pull, the sum over all ranks after scatter */
     int64_t last_change;      /* change of all ranks in the iteration before */
     struct conjugate conjugate; /* of --solver cg, like all up to `diverged` */
     bool fresh;                 /* the links have changed: the next transfer is of B */
@@ -76,8 +84,10 @@ struct solver {
     int64_t pairs_touched;    /* pairs of roots whose exchange this rank estimated */
     int64_t split_here;       /* links that this rank split in this iteration */
     double seconds[PHASE_COUNT];
-    int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent by this rank to others */
-    int64_t bytes_recorded[2];                            /* gather and scatter in the ledger */
+    int64_t bytes_migration, bytes_gather, bytes_scatter; /* that this rank sent to others, or (scatter)
+                                                             got from them */
+    int64_t copied;           /* patches whose flux or radiosity was copied to be sent, or that were sent */
+    int64_t recorded[3];                                  /* of the last three, in the ledger */
     struct ledger ledger;
 };
 
@@ -103,7 +113,8 @@ void solver_destroy(struct solver *solver);
 /* Step 2: initial linking. Rows of pairs of roots are dealt so that their work is even. */
 void solver_link_roots(struct solver *solver);
 
-/* Step 3: re-assignment. Roots get homes by even area sums, links go to the homes. */
+/* Step 3: re-assignment. Roots get homes with even numbers of links that carry light, and these go to their
+ * cells (mpi/balance.h); the paper's: even sums of areas, and links go to the homes. */
 void solver_assign_roots(struct solver *solver);
 
 /* Begins a pass: what refinement reads of the solution so far. */
@@ -122,9 +133,12 @@ void solver_close(struct solver *solver);
 void solver_transfer(struct solver *solver);
 void solver_gather(struct solver *solver);
 
-/* Steps 6 to 8: push-pull on the own roots; scatter of the own radiosities and of the ballots; the vote. */
+/* Steps 6 to 8: push-pull on the own roots; scatter of the own radiosities and of the ballots, as far as
+ * the next iteration needs them, or to all ranks; the vote. With --solver cg radiosities are known to all
+ * when there is no other iteration. */
 void solver_push_pull(struct solver *solver);
 void solver_scatter(struct solver *solver);
+void solver_scatter_to_all(struct solver *solver);
 struct vote solver_vote(struct solver *solver);
 
 /* This rank's ballot, when its roots are pushed and pulled: the end of solver_push_pull(). */

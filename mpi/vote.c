@@ -1,7 +1,7 @@
 /* Step 8: the vote on another iteration.
  *
- * Each rank casts a ballot of integers and maxima, which travels with the radiosities of its leaves;
- * all ranks add all ballots, so the outcome is the same on any number of them. The iterations end
+ * Each rank casts a ballot of integers and maxima, which travels with the radiosities of its leaves, and
+ * is added up on the way, so the outcome is the same on any number of ranks. The iterations end
  * when nothing was split and the bound on what further ones could add, q / (1 - q) of the last change
  * (rad/pushpull.c), is small enough.
  *
@@ -13,7 +13,7 @@
 
 #include "mpi/signals.h"
 
-static void add_ballot(struct ballot *sum, const struct ballot *ballot)
+void ballot_add(struct ballot *sum, const struct ballot *ballot)
 {
     sum->light = flux_add(sum->light, ballot->light);
     sum->absorbed = flux_add(sum->absorbed, ballot->absorbed);
@@ -29,15 +29,7 @@ static void add_ballot(struct ballot *sum, const struct ballot *ballot)
     sum->bulk = flux_add(sum->bulk, ballot->bulk);
     sum->shrink = fmax(sum->shrink, ballot->shrink);
     sum->largest = fmax(sum->largest, ballot->largest);
-}
-
-/* The sums of all ranks. */
-static struct ballot count_ballots(const struct solver *solver)
-{
-    struct ballot sum = {0};
-    for (int r = 0; r < solver->comm->size; r++)
-        add_ballot(&sum, &solver->ballots[r]);
-    return sum;
+    sum->brightest = fmax(sum->brightest, ballot->brightest);
 }
 
 static int64_t own_new_patches(const struct solver *solver)
@@ -137,7 +129,7 @@ static double wanted_of(const struct solver *solver, const struct ballot *sum)
 static void finish_conjugate(struct solver *solver)
 {
     conjugate_publish(&solver->conjugate, &solver->method, true);
-    solver_scatter(solver);
+    solver_scatter_to_all(solver);
     solver->fresh = true;
 }
 
@@ -181,20 +173,34 @@ static struct vote vote_conjugate(struct solver *solver, const struct ballot *su
 
 /* --- both --- */
 
+/* The largest that an own leaf sends. */
+static double brightest_own(const struct solver *solver)
+{
+    double brightest = 0.0;
+    for (int64_t i = 0; i < solver->conjugate.leaf_count; i++) {
+        int32_t leaf = solver->conjugate.leaves[i];
+        for (int c = 0; c < BANDS; c++)
+            brightest = fmax(brightest, fabs(closure_sends(&solver->closure, leaf) *
+                                             solver->method.forest->patches[leaf].radiosity.band[c]));
+    }
+    return brightest;
+}
+
 void solver_cast_ballot(struct solver *solver)
 {
-    struct ballot *own = &solver->ballots[solver->comm->rank];
+    struct ballot *own = &solver->ballot;
     *own = solver->method.criterion.solver == SOLVER_CG ? ballot_conjugate(solver)
                                                         : ballot_jacobi(solver);
     own->split = solver->split_here;
     own->links = solver->links.count;
     own->divided = own_new_patches(solver);
     own->stop = signals_seen();
+    own->brightest = brightest_own(solver);
 }
 
 struct vote solver_vote(struct solver *solver)
 {
-    struct ballot sum = count_ballots(solver);
+    struct ballot sum = solver->ballot;
     solver->stop = (int)sum.stop;
     struct vote vote = solver->method.criterion.solver == SOLVER_CG ? vote_conjugate(solver, &sum)
                                                                     : vote_jacobi(solver, &sum);

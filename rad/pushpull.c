@@ -65,23 +65,22 @@ static int64_t update_leaf(const struct method *method, const struct closure *cl
     return flux_from_watts(method->flux_unit, change);
 }
 
-static void pull(struct forest *forest, const bool *own)
+void forest_average_patch(struct forest *forest, int32_t p)
 {
-    for (int64_t p = forest->count - 1; p >= 0; p--) {
-        struct patch *patch = &forest->patches[p];
-        if (patch_is_leaf(patch) || (own && !own[patch->id.root]))
-            continue;
-        const struct patch *child = &forest->patches[patch->children];
-        for (int c = 0; c < BANDS; c++)
-            patch->radiosity.band[c] =
-                0.25 * ((child[0].radiosity.band[c] + child[1].radiosity.band[c]) +
-                        (child[2].radiosity.band[c] + child[3].radiosity.band[c]));
-    }
+    struct patch *patch = &forest->patches[p];
+    if (patch_is_leaf(patch))
+        return;
+    const struct patch *child = &forest->patches[patch->children];
+    for (int c = 0; c < BANDS; c++)
+        patch->radiosity.band[c] =
+            0.25 * ((child[0].radiosity.band[c] + child[1].radiosity.band[c]) +
+                    (child[2].radiosity.band[c] + child[3].radiosity.band[c]));
 }
 
 void forest_average(struct forest *forest)
 {
-    pull(forest, NULL);
+    for (int64_t p = forest->count - 1; p >= 0; p--)
+        forest_average_patch(forest, (int32_t)p);
 }
 
 void forest_bound(struct forest *forest)
@@ -136,7 +135,9 @@ struct push_pull_sums push_pull(const struct method *method, const struct closur
     for (int32_t root = 0; root < forest->root_count; root++)
         root_change[root] = now[root];
     alloc_free(now);
-    pull(forest, own);
+    for (int64_t p = forest->count - 1; p >= 0; p--)
+        if (own[forest->patches[p].id.root])
+            forest_average_patch(forest, (int32_t)p);
     return sums;
 }
 

@@ -27,7 +27,8 @@ struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flu
 struct push_pull_sums push_pull(const struct method *method, const struct closure *closure,
                                 struct flux_unit flux, const bool *own, int64_t *root_change);
 
-/* The pull alone, on all roots: inner patches get the mean of their children. */
+/* The pull alone, on one patch and on all: inner patches get the mean of their children. */
+void forest_average_patch(struct forest *forest, int32_t patch);
 void forest_average(struct forest *forest);
 
 /* The extremes of all patches. */

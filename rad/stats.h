@@ -34,7 +34,7 @@ enum work {
     WORK_SPLITTING, /* refinement: tests, as above */
     WORK_TRANSFER,  /* links over which light was transferred */
     WORK_OWN,       /* own patches in push-pull */
-    WORK_PATCHES,   /* patches kept up to date: every rank all of them */
+    WORK_PATCHES,   /* patches copied: out to be sent, own ones too; in when they have come */
     WORK_COUNT
 };
 
@@ -70,7 +70,7 @@ struct stats {
                                                              refinement levels and steps 5, 7 */
     struct work_sums work[WORK_COUNT];
     int64_t exchanges; /* collective operations */
-    int64_t messages;  /* with links, that one rank sent or received; the most of any rank */
+    int64_t messages;  /* log P for each, and links sent or received; the most of any rank */
     int64_t peak_rss_bytes;                               /* largest over ranks; 0 if unknown */
 };
 

@@ -75,6 +75,11 @@ for ranks in 1 2 3 4 7 16; do
     check "Cornell box: $ranks ranks give the bytes of the serial build" same ranks-$ranks serial
 done
 
+for ranks in 4 6 12; do
+    produce cells-$ranks $MPIEXEC -n $ranks "$BUILD/phr" $cornell --balance cells
+    check "the same on $ranks ranks with --balance cells" same cells-$ranks serial
+done
+
 produce flat-serial "$work/serial/phr" $cornell --flat --two-sided
 produce flat-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided
 check "the same with --flat --two-sided" same flat-3 flat-serial

@@ -1,4 +1,4 @@
-/* Balance: every item, link and root of a row has one owner, the same whoever asks; loads end as even
+/* Balance: every item, link, cell and root of a row has one owner, the same whoever asks; loads end as even
  * as the costs allow, for up to 1,024 ranks, empty and equal loads too; wrong predictions are made good. */
 #include "mpi/balance.h"
 
@@ -275,6 +275,65 @@ static void test_parts(void)
     tap_ok(row_cut(&few, cut) == 3, "no part is without a root");
 }
 
+/* --- cells --- */
+
+static void test_grid(void)
+{
+    bool square = true, right = true;
+    for (int ranks = 1; ranks <= 1100; ranks++) {
+        struct grid grid = grid_make(ranks);
+        square = square && grid.rows * grid.columns == ranks && grid.rows <= grid.columns;
+        for (int rows = grid.rows + 1; rows * rows <= ranks; rows++)
+            square = square && ranks % rows != 0;
+    }
+    tap_ok(square, "the grid of 1 to 1,100 ranks is the squarest there is");
+    for (int ranks = 1; ranks <= 40; ranks++) {
+        struct grid grid = grid_make(ranks);
+        for (int p = 0; p < ranks; p++)
+            for (int q = 0; q < ranks; q++) {
+                int cell = grid_cell(grid, p, q);
+                right = right && cell / grid.columns == p / grid.columns &&
+                        cell % grid.columns == q % grid.columns;
+            }
+    }
+    tap_ok(right, "a cell is in the row of one home and in the column of the other");
+}
+
+/* Half of the links between any two homes of roots are turned. */
+static void test_turns(void)
+{
+    int64_t most = 0, least = 1000;
+    for (uint32_t a = 0; a < 10; a++)
+        for (uint32_t b = 0; b < 10; b++) {
+            int64_t turned = 0;
+            for (uint32_t i = 0; i < 1000; i++) { /* roots 10 apart, and their descendants */
+                struct patch_id p = {10 * (i % 100) + a, 1u << (2 * (i / 100))};
+                struct patch_id q = {10 * (i * 7 % 100) + b, 1};
+                turned += grid_turns(p, q);
+            }
+            most = turned > most ? turned : most;
+            least = turned < least ? turned : least;
+        }
+    tap_ok(least > 420 && most < 580, "of 1,000 links %d to %d are turned (5 standard deviations)",
+           (int)least, (int)most);
+}
+
+/* 12 ranks, 3 rows of 4: a rank keeps 7 of 12 patches up to date, and has 1,200 links with cells or without. */
+static void test_grid_pays(void)
+{
+    struct grid grid = grid_make(12);
+    int64_t lit[12];
+    for (int r = 0; r < 12; r++)
+        lit[r] = 1200;
+    tap_ok(grid_pays(grid, lit, 120, 0), "cells pay where links are even in them");
+    lit[3] = 1200 + 99, lit[4] = 1200 - 99;
+    tap_ok(grid_pays(grid, lit, 120, 0), "and nearly even: 99 links more are less than 50 patches");
+    tap_ok(!grid_pays(grid, lit, 120, 12 * 100), "but not for one iteration, if all have to be sent");
+    lit[3]++, lit[4]--;
+    tap_ok(!grid_pays(grid, lit, 120, 0), "nor where few roots have most of the links");
+    tap_ok(!grid_pays(grid_make(11), lit, 120, 0), "a prime number of ranks has one row");
+}
+
 int main(void)
 {
     for (int ranks = 1; ranks <= 1024; ranks *= 4)
@@ -296,5 +355,8 @@ int main(void)
     test_rows(1, 4, false, 4.0);
     test_rows(0, 4, false, 1.0);
     tap_ok(alloc_balance() == 0, "all is freed");
+    test_grid();
+    test_turns();
+    test_grid_pays();
     return tap_done();
 }

@@ -68,15 +68,13 @@ static struct problem problem_make(const struct comm *comm, double rho, int spli
     problem.solver = solver_create(comm, problem.scene, NULL, criterion);
     struct solver *solver = problem.solver;
     struct forest *forest = solver->method.forest;
-    roots_assign(problem.scene, comm->size, solver->owner);
-    for (int32_t root = 0; root < ROOTS; root++)
-        solver->own[root] = solver->owner[root] == comm->rank;
     for (int32_t root = 0; root < splits; root++) {
         forest_split(forest, root);
         forest_split(forest, forest->patches[root].children + root % 4);
     }
     solver->first_new = forest->count;
     add_links(solver);
+    solver_assign_roots(solver);
     closure_extend(&solver->closure, forest); /* without geometry no ray can look around */
     for (int32_t p = 0; p < forest->count; p++) {
         solver->closure.enclosure[p] = forest->patches[p].id.root == OPEN_ROOT ? OPEN : ENCLOSED;
@@ -349,7 +347,8 @@ static void test_bound(const struct comm *comm)
 static void test_ranks(const struct comm *comm, const struct comm *self, enum closure_kind kind)
 {
     struct criterion criterion = {.oracle = ORACLE_ERROR, .closure = kind, .solver = SOLVER_CG,
-                                  .tolerance = 1e-9, .max_level = 15, .max_iterations = 1000};
+                                  .tolerance = 1e-9, .max_level = 15, .max_iterations = 1000,
+                                  .balance = BALANCE_CELLS};
     struct problem parallel = problem_make(comm, 0.97, 5, &criterion);
     struct problem alone = problem_make(self, 0.97, 5, &criterion);
     struct vote a = solve_links(parallel.solver), b = solve_links(alone.solver);

@@ -69,13 +69,13 @@ static void add_links(struct solver *solver, int round)
     }
 }
 
-static struct solver *make_solver(const struct comm *comm, const struct scene *scene)
+static struct solver *make_solver(const struct comm *comm, const struct scene *scene,
+                                  enum balance balance)
 {
-    const struct criterion criterion = {.epsilon = 1.0, .tolerance = 1e-3, .max_level = 15};
+    const struct criterion criterion = {.epsilon = 1.0, .tolerance = 1e-3, .max_level = 15,
+                                        .balance = balance};
     struct solver *solver = solver_create(comm, scene, NULL, &criterion);
-    roots_assign(scene, comm->size, solver->owner);
-    for (int32_t root = 0; root < ROOTS; root++)
-        solver->own[root] = solver->owner[root] == comm->rank;
+    solver_assign_roots(solver);
     return solver;
 }
 
@@ -108,6 +108,8 @@ static struct vote iterate(struct solver *solver, int round)
     if (round < 2)
         add_links(solver, round);
     share_patches(solver);
+    if (solver->method.criterion.balance == BALANCE_CELLS)
+        links_place(solver);
     solver_close(solver);
     solver_transfer(solver);
     solver_gather(solver);
@@ -144,6 +146,9 @@ static void test_rounds(struct solver *parallel, struct solver *alone)
         same_vote = same_vote && a.links == b.links && a.absorbed == b.absorbed &&
                     a.escaped == b.escaped && a.remaining == b.remaining;
     }
+    bool in_cells = parallel->method.criterion.balance == BALANCE_CELLS;
+    report(comm, parallel->grid.rows == (in_cells ? grid_make(comm->size).rows : 1),
+           in_cells ? "links are in the cells of a grid" : "links are anywhere");
     report(comm, same_forest, "four iterations: the same trees as on one rank, to the bit");
     report(comm, same_size, "no rank has a patch that another lacks");
     report(comm, same_vote, "the votes agree with one rank's, to the bit");
@@ -176,6 +181,22 @@ static int64_t fingerprint(const struct solver *solver)
     return (int64_t)(sum & UINT64_C(0xffffffffffff));
 }
 
+/* Of the links that carry light. */
+static bool are_in_cells(const struct solver *solver)
+{
+    const struct patch *patches = solver->method.forest->patches;
+    int columns = solver->grid.columns, rank = solver->comm->rank;
+    bool all = true;
+    for (int64_t i = 0; i < solver->links.count; i++) {
+        const struct link *link = &solver->links.items[i];
+        int p = solver->owner[patches[link->p].id.root], q = solver->owner[patches[link->q].id.root];
+        bool here = (p / columns == rank / columns && q % columns == rank % columns) ||
+                    (q / columns == rank / columns && p % columns == rank % columns);
+        all = all && (link->seen == 0 || here);
+    }
+    return all;
+}
+
 static void test_migration(struct solver *parallel, struct solver *alone)
 {
     const struct comm *comm = parallel->comm;
@@ -196,6 +217,8 @@ static void test_migration(struct solver *parallel, struct solver *alone)
     report(comm, right_place, "each link is where it was sent");
     report(comm, count == total_of(comm, parallel->links.count) && before == after,
            "links that migrate arrive once and unchanged");
+    if (parallel->method.criterion.balance == BALANCE_CELLS)
+        report(comm, parallel->grid.rows == 1 || !are_in_cells(parallel), "and not in their cells");
     iterate(parallel, 2);
     iterate(alone, 2);
     report(comm, forest_checksum(parallel->method.forest) == forest_checksum(alone->method.forest),
@@ -479,9 +502,15 @@ int main(int argc, char **argv)
     struct comm comm, self = {.handle = MPI_COMM_SELF, .size = 1};
     comm_start(&comm, &argc, &argv);
     struct scene *scene = make_scene();
-    struct solver *parallel = make_solver(&comm, scene), *alone = make_solver(&self, scene);
-    test_rounds(parallel, alone);
-    test_migration(parallel, alone);
+    for (int in_cells = 0; in_cells < 2; in_cells++) {
+        enum balance balance = in_cells ? BALANCE_CELLS : BALANCE_GREEDY;
+        struct solver *parallel = make_solver(&comm, scene, balance);
+        struct solver *alone = make_solver(&self, scene, balance);
+        test_rounds(parallel, alone);
+        test_migration(parallel, alone);
+        solver_destroy(parallel);
+        solver_destroy(alone);
+    }
     test_picture(&comm);
     test_gather_all(&comm);
     test_pieces(&comm);
@@ -491,10 +520,9 @@ int main(int argc, char **argv)
     test_refinement(&comm, &self, &criterion, "the paper's method: several ranks split links");
     for (enum closure_kind kind = CLOSURE_NONE; kind <= CLOSURE_SYMMETRIC; kind++) {
         criterion = criterion_best(3e-4, 10, 1e-4, kind);
+        criterion.balance = BALANCE_CELLS;
         test_refinement(&comm, &self, &criterion, "error oracle and cg: several ranks split links");
     }
-    solver_destroy(parallel);
-    solver_destroy(alone);
     scene_destroy(scene);
     comm_stop(&comm);
     return comm.rank == 0 ? tap_done() : alloc_balance() != 0;

@@ -16,8 +16,6 @@ BEGIN {
         }
 }
 
-function log2(n) { return int(log(n) / log(2) + 0.999999) }
-
 function finish_file(   k, kind, shared, parts, copies, messages, bytes, mega) {
     if (ranks == 1) {
         for (k = 1; k <= 6; k++) {
@@ -32,7 +30,7 @@ function finish_file(   k, kind, shared, parts, copies, messages, bytes, mega) {
     }
     copies = worth["patches"] * slowest["patches"]
     if (ranks > 1) {
-        messages = exchanges * log2(ranks) + passed
+        messages = passed
         bytes = sent["transfer"] + sent["splitting"] + (scattered + migrated) / ranks
     }
     talk = 2e-6 * messages + 1e-10 * bytes
@@ -52,7 +50,6 @@ function share(kind) { return 100 * worth[kind] * all[kind] / ranks / total }
 /"seconds":/ { section = "seconds"; next }
 /"work":/ { section = "work"; next }
 /^  }/ { section = "" }
-/"exchanges":/ { exchanges = $2 + 0 }
 /"messages":/ { passed = $2 + 0 }
 section == "seconds" { gsub(/[",:{}]/, " "); seconds[$1] = $7 }
 section == "work" { gsub(/[",:{}]/, " "); phases[$1] = $3; all[$1] = $5; slowest[$1] = $7; sent[$1] = $9 }

@@ -9,15 +9,15 @@
  * slowest rank, a rank that needs news of others waits for the slowest of them.
  *
  * Counts become seconds by what each took here: seconds per test (form factors included), per
- * link looked at, per link in a transfer, per own patch, per patch that every rank keeps up to
- * date. Messages cost ALPHA each (an exchange with all takes log2 P of them, links take one from each
- * rank that sends some to each that gets some), bytes BETA each. Flux home, and radiosities to all, are
- * BYTES_PER_PATCH for each patch and iteration, which has so many EXCHANGES: these two, and the sums
- * for a step. Ballots travel with the radiosities.
+ * link looked at, per link in a transfer, per own patch, per patch whose flux or radiosity is copied, own
+ * ones out and in. Messages cost ALPHA each (an exchange with all takes log2 P of them, links take one from each
+ * rank that sends some to each that gets some), bytes BETA each. Flux home, and radiosities back, are
+ * BYTES_PER_PATCH for each patch that a rank keeps up to date and iteration, which has so many EXCHANGES:
+ * these two, and the sums for a step. Ballots travel with the radiosities.
  *
  * One line of CSV for each number of ranks, as in tests/bench/scaling.sh; on stderr, what
- * dominates. What is not in the model: a link that was moved to even out their numbers is taken
- * to be split where it was made; memory and its bandwidth. */
+ * dominates. What is not in the model: where links are not in cells, one that was moved to even out their
+ * numbers is taken to be split where it was made; memory and its bandwidth. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,8 +46,19 @@ struct unit {
     int64_t work, lit, dim;
 };
 
+/* A link that carries light, by the roots of its patches: that for the row of its cell first. */
+struct pair {
+    int32_t row, column;
+};
+
+struct pair_list {
+    struct pair *items;
+    int64_t count, capacity;
+};
+
 /* A link that was split. */
 struct event {
+    struct pair pair;
     int64_t origin; /* number of the event that made it; initial links: -1 - the unit */
     int64_t load, work;
     bool was_lit;   /* something was seen of it */
@@ -61,15 +72,20 @@ struct level {
 struct pass {
     int64_t first_level, end_level;
     int64_t looks;      /* what these took, */
-    int32_t *looked;    /* [unit_count + events before] and how many links from each were not clear */
+    int32_t *looked[2]; /* [unit_count + events before] and how many links from each were not clear: dark
+                           ones, and those that carry light, */
+    struct pair_list looked_lit; /* which are these */
     int64_t iterations, patches;
     int32_t *of_root;   /* patches of each root */
+    struct pair_list gained; /* links that carry light and that its splits have made, if they were not
+                                split themselves */
 };
 
 struct record {
     int32_t rows;
     int64_t *first_unit;  /* [rows + 1] the sample; parts follow */
     int64_t *samples, *rests; /* [rows] what the sample, and what these are expected to take */
+    struct pair_list initial; /* links that carry light */
     struct unit *units;
     struct event *events;
     struct level *levels;
@@ -97,11 +113,28 @@ static void add_origin(struct record *record, int64_t origin)
     record->origins[record->origin_count++] = origin;
 }
 
+static struct pair pair_of(const struct forest *forest, const struct link *link)
+{
+    struct patch_id p = forest->patches[link->p].id, q = forest->patches[link->q].id;
+    int32_t a = (int32_t)p.root, b = (int32_t)q.root;
+    return grid_turns(p, q) ? (struct pair){b, a} : (struct pair){a, b};
+}
+
+static void add_pair(struct pair_list *list, const struct forest *forest, const struct link *link)
+{
+    if (link->seen == 0)
+        return;
+    list->items = alloc_reserve(list->items, &list->capacity, list->count + 1, sizeof *list->items);
+    list->items[list->count++] = pair_of(forest, link);
+}
+
 static void add_unit(struct record *record, struct solver *solver, struct unit unit)
 {
     for (int64_t i = record->origin_count; i < solver->links.count; i++) {
-        unit.lit += solver->links.items[i].seen > 0;
-        unit.dim += solver->links.items[i].seen == 0;
+        const struct link *link = &solver->links.items[i];
+        unit.lit += link->seen > 0;
+        unit.dim += link->seen == 0;
+        add_pair(&record->initial, solver->method.forest, link);
     }
     record->units = alloc_reserve(record->units, &record->unit_capacity, record->unit_count + 1,
                                   sizeof *record->units);
@@ -198,13 +231,15 @@ static void record_looks(struct record *record, struct solver *solver, struct pa
     double start = cpu_seconds();
     int64_t kept = 0;
     pass->looks = solver->links.count;
-    pass->looked = alloc_array((size_t)(record->unit_count + record->event_count),
-                               sizeof *pass->looked);
+    for (int lit = 0; lit < 2; lit++)
+        pass->looked[lit] = alloc_array((size_t)(record->unit_count + record->event_count),
+                                        sizeof *pass->looked[lit]);
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
         if (!oracle_is_clear(&solver->method, &link)) {
             pass->looks += LOOK_LOAD - 1;
-            pass->looked[place_of_origin(record, record->origins[i])]++;
+            pass->looked[link.seen > 0][place_of_origin(record, record->origins[i])]++;
+            add_pair(&pass->looked_lit, solver->method.forest, &link);
             if (oracle_patch_to_split(&solver->method, &link) >= 0) {
                 batch_add(batch, link, record->origins[i]);
                 continue;
@@ -220,10 +255,10 @@ static void record_looks(struct record *record, struct solver *solver, struct pa
 }
 
 static void split_one(struct record *record, struct solver *solver, const struct batch *batch,
-                      int64_t i, struct batch *next)
+                      int64_t i, struct batch *next, struct pair_list *gained)
 {
     const struct link *link = &batch->links.items[i];
-    struct event event = {.origin = batch->origins[i], .load = link_load(link),
+    struct event event = {.pair = pair_of(solver->method.forest, link), .origin = batch->origins[i], .load = link_load(link),
                           .was_lit = link->seen > 0,
                           .work = -method_work(&solver->method)};
     struct link children[4];
@@ -238,6 +273,7 @@ static void split_one(struct record *record, struct solver *solver, const struct
         link_list_append(&solver->links, children[k]);
         add_origin(record, record->event_count);
         event.kept += children[k].seen > 0;
+        add_pair(gained, solver->method.forest, &children[k]);
     }
     event.work += method_work(&solver->method);
     record->events = alloc_reserve(record->events, &record->event_capacity,
@@ -245,7 +281,8 @@ static void split_one(struct record *record, struct solver *solver, const struct
     record->events[record->event_count++] = event;
 }
 
-static void record_levels(struct record *record, struct solver *solver, struct batch *batch)
+static void record_levels(struct record *record, struct solver *solver, struct batch *batch,
+                          struct pair_list *gained)
 {
     double start = cpu_seconds();
     int64_t before = method_work(&solver->method);
@@ -253,7 +290,7 @@ static void record_levels(struct record *record, struct solver *solver, struct b
         struct batch next = {.count = 0};
         struct level level = {.first = record->event_count};
         for (int64_t i = 0; i < batch->count; i++)
-            split_one(record, solver, batch, i, &next);
+            split_one(record, solver, batch, i, &next, gained);
         solver->split_here += batch->count;
         level.end = record->event_count;
         record->levels = alloc_reserve(record->levels, &record->level_capacity,
@@ -297,6 +334,7 @@ static struct vote record_solution(struct record *record, struct solver *solver)
     solver_close(solver);
     double clock = cpu_seconds();
     do {
+        int64_t before = solver->copied;
         solver_transfer(solver);
         charge(record, WORK_TRANSFER, &clock);
         solver_gather(solver);
@@ -305,6 +343,7 @@ static struct vote record_solution(struct record *record, struct solver *solver)
         charge(record, WORK_OWN, &clock);
         solver_scatter(solver);
         charge(record, WORK_PATCHES, &clock);
+        record->counts[WORK_PATCHES] += (double)(solver->copied - before);
         vote = solver_vote(solver);
         charge(record, WORK_OWN, &clock);
     } while (vote.again);
@@ -319,7 +358,7 @@ static struct vote record_pass(struct record *record, struct solver *solver)
     struct batch batch = {.count = 0};
     solver_begin_pass(solver);
     record_looks(record, solver, &pass, &batch);
-    record_levels(record, solver, &batch);
+    record_levels(record, solver, &batch, &pass.gained);
     solver->shared = forest->count;
     pass.end_level = record->level_count;
     pass.patches = forest->count;
@@ -346,15 +385,18 @@ static void record_run(struct record *record, struct solver *solver, const struc
         vote = record_pass(record, solver);
     } while (!(vote.converged && solver_is_accurate(solver)) && !vote.diverged &&
              solver->iteration < criterion->max_iterations);
-    record->counts[WORK_PATCHES] = record->counts[WORK_OWN];
 }
 
 static void record_free(struct record *record)
 {
     for (int64_t i = 0; i < record->pass_count; i++) {
         alloc_free(record->passes[i].of_root);
-        alloc_free(record->passes[i].looked);
+        alloc_free(record->passes[i].looked[0]);
+        alloc_free(record->passes[i].looked[1]);
+        alloc_free(record->passes[i].looked_lit.items);
+        alloc_free(record->passes[i].gained.items);
     }
+    alloc_free(record->initial.items);
     alloc_free(record->first_unit);
     alloc_free(record->samples);
     alloc_free(record->rests);
@@ -370,6 +412,11 @@ static void record_free(struct record *record)
 struct replay {
     const struct record *record;
     int ranks;
+    struct grid square;
+    bool in_cells;               /* links that carry light are in the cells of the square grid */
+    int *owner;                  /* [roots] */
+    int64_t *cells;              /* [ranks] how many would be there */
+    int64_t *astray;             /* [ranks] made there since they were last placed, or all */
     int32_t *of_unit, *of_event; /* the rank that had it */
     int64_t *links;              /* [ranks] that live there and carry light */
     int64_t *dim;                /* [ranks] others */
@@ -406,6 +453,7 @@ static void do_unit(struct replay *replay, int64_t unit, int rank, int64_t *done
 {
     done[rank] += replay->record->units[unit].work;
     replay->links[rank] += replay->record->units[unit].lit;
+    replay->astray[rank] += replay->record->units[unit].lit;
     replay->dim[rank] += replay->record->units[unit].dim;
     replay->of_unit[unit] = rank;
 }
@@ -529,12 +577,36 @@ static void move_links(struct replay *replay, const struct transfer *plan, int p
     alloc_free(partners);
 }
 
-/* As links_even_out(). */
+static int cell_of(const struct replay *replay, struct pair pair)
+{
+    return grid_cell(replay->square, replay->owner[pair.row], replay->owner[pair.column]);
+}
+
+static void count_cells(struct replay *replay, const struct pair_list *pairs)
+{
+    for (int64_t i = 0; i < pairs->count; i++)
+        replay->cells[cell_of(replay, pairs->items[i])]++;
+}
+
+/* As send_to_cells(): in two hops, and to fewer ranks than there are links. */
+static void send_to_cells(struct replay *replay)
+{
+    int ranks = replay->ranks, reached[] = {replay->square.columns, replay->square.rows};
+    double most = most_of(replay->astray, ranks);
+    for (int hop = 0; hop < 2; hop++) {
+        exchange(replay, 0.0);
+        replay->messages += 2.0 * fmin(most, reached[hop] - 1);
+        replay->bytes += BYTES_PER_LINK * most;
+        replay->migration += BYTES_PER_LINK * sum_of(replay->astray, ranks);
+    }
+    memcpy(replay->links, replay->cells, (size_t)ranks * sizeof *replay->links);
+}
+
+/* As where links are too uneven in cells. */
 static void even_out(struct replay *replay)
 {
     int ranks = replay->ranks;
     double sum = sum_of(replay->links, ranks), most = most_of(replay->links, ranks);
-    exchange(replay, 8.0 * ranks);
     if (most * ranks <= 1.02 * sum)
         return;
     struct transfer *plan = alloc_array(2 * (size_t)ranks, sizeof *plan);
@@ -545,6 +617,23 @@ static void even_out(struct replay *replay)
     alloc_free(plan);
     for (int r = 0; r < ranks; r++)
         replay->links[r] = (int64_t)sum / ranks + (r < (int64_t)sum % ranks);
+}
+
+/* As links_place(). */
+static void place_links(struct replay *replay, int64_t patches)
+{
+    size_t bytes = (size_t)replay->ranks * sizeof *replay->links;
+    exchange(replay, 16.0 * replay->ranks);
+    if (!replay->in_cells)
+        memcpy(replay->astray, replay->links, bytes);
+    int64_t astray = (int64_t)sum_of(replay->astray, replay->ranks);
+    bool pays = grid_pays(replay->square, replay->cells, patches, astray);
+    replay->in_cells = pays;
+    if (pays)
+        send_to_cells(replay);
+    else
+        even_out(replay);
+    memset(replay->astray, 0, bytes);
 }
 
 /* Deals one level's events that are on `rank`, at[0 .. count - 1]. */
@@ -575,9 +664,7 @@ static void balance_level(struct replay *replay, const struct level *level)
     int64_t *sorted = alloc_array((size_t)count, sizeof *sorted);
     struct transfer *plan = alloc_array(2 * (size_t)ranks, sizeof *plan);
     for (int64_t i = level->first; i < level->end; i++) {
-        int64_t origin = record->events[i].origin;
-        int rank = origin < 0 ? replay->of_unit[-1 - origin] : replay->of_event[origin];
-        replay->of_event[i] = rank;
+        int rank = replay->of_event[i];
         loads[rank] += record->events[i].load;
         first[rank + 1]++;
     }
@@ -607,38 +694,58 @@ static void replay_level(struct replay *replay, const struct level *level)
     for (int64_t i = level->first; i < level->end; i++) {
         work[replay->of_event[i]] += record->events[i].work;
         replay->links[replay->of_event[i]] += record->events[i].kept;
+        replay->astray[replay->of_event[i]] += record->events[i].kept;
     }
     replay->slowest[WORK_SPLITTING] += most_of(work, replay->ranks);
     replay->all[WORK_SPLITTING] += sum_of(work, replay->ranks);
     alloc_free(work);
 }
 
-/* Own patches of the rank that has most. */
-static double most_own(const struct replay *replay, const struct pass *pass, const int *owner,
-                       int32_t roots)
+/* Own patches of the rank that has most, and those that the rank with most keeps up to date. */
+struct share {
+    int64_t own, renewed;
+};
+
+static struct share largest_share(const struct replay *replay, const struct pass *pass, int32_t roots)
 {
-    int64_t *own = alloc_array((size_t)replay->ranks, sizeof *own);
-    for (int32_t root = 0; root < roots; root++)
-        own[owner[root]] += pass->of_root[root];
-    double most = most_of(own, replay->ranks);
+    struct grid grid = replay->in_cells ? replay->square : (struct grid){1, replay->ranks};
+    int64_t *own = alloc_array(3 * (size_t)replay->ranks, sizeof *own);
+    int64_t *in_row = own + replay->ranks, *in_column = in_row + replay->ranks;
+    struct share most = {0, 0};
+    for (int32_t root = 0; root < roots; root++) {
+        int home = replay->owner[root];
+        own[home] += pass->of_root[root];
+        in_row[home / grid.columns] += pass->of_root[root];
+        in_column[home % grid.columns] += pass->of_root[root];
+    }
+    for (int r = 0; r < replay->ranks; r++) {
+        int64_t renewed = in_row[r / grid.columns];
+        renewed += grid.rows > 1 ? in_column[r % grid.columns] : 0;
+        most.own = own[r] > most.own ? own[r] : most.own;
+        most.renewed = renewed > most.renewed ? renewed : most.renewed;
+    }
     alloc_free(own);
     return most;
 }
 
-static void replay_solution(struct replay *replay, const struct pass *pass, double own)
+static void replay_solution(struct replay *replay, const struct pass *pass, int32_t roots)
 {
     double ranks = replay->ranks, times = (double)pass->iterations;
     double links = most_of(replay->links, replay->ranks), patches = (double)pass->patches;
+    struct share most = largest_share(replay, pass, roots);
+    double renewed = times * 2.0 * (double)most.renewed + patches; /* and in the end all */
+    double copied = renewed + (times * 2.0 + 1.0) * (double)most.own;
     replay->slowest[WORK_TRANSFER] += times * links;
     replay->all[WORK_TRANSFER] += times * sum_of(replay->links, replay->ranks);
-    replay->slowest[WORK_OWN] += times * own;
+    replay->slowest[WORK_OWN] += times * (double)most.own;
     replay->all[WORK_OWN] += times * patches;
-    replay->slowest[WORK_PATCHES] += times * patches;
-    replay->all[WORK_PATCHES] += times * patches * ranks;
+    replay->slowest[WORK_PATCHES] += copied;
+    replay->all[WORK_PATCHES] += copied * ranks;
     if (replay->ranks == 1)
         return;
-    replay->messages += times * EXCHANGES * ceil(log2(ranks));
-    replay->bytes += times * (2.0 * BYTES_PER_PATCH * patches + (double)sizeof(struct ballot) * ranks) *
+    double ballots = replay->in_cells ? replay->square.rows + replay->square.columns : ranks;
+    replay->messages += (times * EXCHANGES + 1.0) * ceil(log2(ranks));
+    replay->bytes += (BYTES_PER_PATCH * renewed + (times + 1.0) * (double)sizeof(struct ballot) * ballots) *
                      (ranks - 1.0) / ranks;
 }
 
@@ -651,27 +758,52 @@ static double most_looks(const struct replay *replay, const struct pass *pass)
     int64_t *looks = alloc_array((size_t)replay->ranks, sizeof *looks);
     for (int r = 0; r < replay->ranks; r++)
         looks[r] = replay->links[r] + replay->dim[r];
-    for (int64_t i = 0; i < record->unit_count; i++)
-        looks[replay->of_unit[i]] += (LOOK_LOAD - 1) * pass->looked[i];
-    for (int64_t i = 0; i < events; i++)
-        looks[replay->of_event[i]] += (LOOK_LOAD - 1) * pass->looked[record->unit_count + i];
+    for (int lit = 0; lit < 2 - replay->in_cells; lit++) {
+        const int32_t *looked = pass->looked[lit];
+        for (int64_t i = 0; i < record->unit_count; i++)
+            looks[replay->of_unit[i]] += (LOOK_LOAD - 1) * looked[i];
+        for (int64_t i = 0; i < events; i++)
+            looks[replay->of_event[i]] += (LOOK_LOAD - 1) * looked[record->unit_count + i];
+    }
+    for (int64_t i = 0; i < pass->looked_lit.count && replay->in_cells; i++)
+        looks[cell_of(replay, pass->looked_lit.items[i])] += LOOK_LOAD - 1;
     double most = most_of(looks, replay->ranks);
     alloc_free(looks);
     return most;
+}
+
+/* As solver_assign_roots(). */
+static void assign_roots(struct replay *replay, const struct scene *scene)
+{
+    const struct pair_list *initial = &replay->record->initial;
+    int32_t roots = scene_root_count(scene);
+    int64_t *weights = alloc_array((size_t)roots, sizeof *weights);
+    for (int32_t root = 0; root < roots; root++)
+        weights[root] = root_weight(scene, root);
+    for (int64_t i = 0; i < initial->count; i++) {
+        weights[initial->items[i].row]++;
+        weights[initial->items[i].column]++;
+    }
+    roots_assign(weights, roots, replay->ranks, replay->owner);
+    exchange(replay, 8.0 * roots);
+    alloc_free(weights);
 }
 
 static void replay_run(struct replay *replay, const struct scene *scene)
 {
     const struct record *record = replay->record;
     int32_t roots = scene_root_count(scene);
-    int *owner = alloc_array((size_t)roots, sizeof *owner);
+    replay->owner = alloc_array((size_t)roots, sizeof *replay->owner);
+    replay->cells = alloc_array((size_t)replay->ranks, sizeof *replay->cells);
+    replay->astray = alloc_array((size_t)replay->ranks, sizeof *replay->astray);
     replay->of_unit = alloc_array((size_t)record->unit_count, sizeof *replay->of_unit);
     replay->of_event = alloc_array((size_t)record->event_count, sizeof *replay->of_event);
     replay->links = alloc_array((size_t)replay->ranks, sizeof *replay->links);
     replay->dim = alloc_array((size_t)replay->ranks, sizeof *replay->dim);
-    roots_assign(scene, replay->ranks, owner);
     replay_linking(replay);
-    even_out(replay);
+    assign_roots(replay, scene);
+    count_cells(replay, &record->initial);
+    place_links(replay, roots);
     for (int64_t k = 0; k < record->pass_count; k++) {
         const struct pass *pass = &record->passes[k];
         replay->slowest[WORK_LOOKS] += most_looks(replay, pass);
@@ -679,17 +811,24 @@ static void replay_run(struct replay *replay, const struct scene *scene)
         for (int64_t l = pass->first_level; l < pass->end_level; l++) {
             const struct level *level = &record->levels[l];
             for (int64_t i = level->first; i < level->end; i++) {
-                int64_t origin = record->events[i].origin;
-                if (l == pass->first_level && record->events[i].was_lit)
-                    replay->links[origin < 0 ? replay->of_unit[-1 - origin]
-                                             : replay->of_event[origin]]--;
+                const struct event *event = &record->events[i];
+                bool selected = l == pass->first_level && event->was_lit;
+                int cell = cell_of(replay, event->pair);
+                replay->of_event[i] = selected && replay->in_cells ? cell
+                                      : event->origin < 0 ? replay->of_unit[-1 - event->origin]
+                                                          : replay->of_event[event->origin];
+                replay->links[replay->of_event[i]] -= selected;
+                replay->cells[cell] -= selected;
             }
             replay_level(replay, level);
         }
-        even_out(replay);
-        replay_solution(replay, pass, most_own(replay, pass, owner, roots));
+        count_cells(replay, &pass->gained);
+        place_links(replay, pass->patches);
+        replay_solution(replay, pass, roots);
     }
-    alloc_free(owner);
+    alloc_free(replay->owner);
+    alloc_free(replay->cells);
+    alloc_free(replay->astray);
     alloc_free(replay->of_unit);
     alloc_free(replay->of_event);
     alloc_free(replay->links);
@@ -760,7 +899,7 @@ static void simulate(const struct comm *comm, const struct options *options, str
         record_run(&record, solver, &options->criterion);
         print_record(&record, options->scene);
         for (int ranks = 1; ranks <= RANKS_MOST; ranks *= 2) {
-            struct replay replay = {.record = &record, .ranks = ranks};
+            struct replay replay = {.record = &record, .ranks = ranks, .square = grid_make(ranks)};
             replay_run(&replay, scene);
             print_replay(&replay, options->scene);
         }

@@ -42,7 +42,6 @@ static inline bool store_continue(struct store_reader *reader, const struct comm
     struct solver *solver = solver_create(comm, scene, octree, &STORE_CRITERION);
     struct link block[BLOCK];
     struct vote vote;
-    solver_assign_roots(solver);
     int32_t *order = snapshot_restore(solver, &vote, &reader->snapshot);
     for (int64_t count = BLOCK; count > 0;) {
         count = store_get_links(reader, block, BLOCK, error);
@@ -51,6 +50,7 @@ static inline bool store_continue(struct store_reader *reader, const struct comm
     alloc_free(order);
     if (error->code == EXIT_DONE) {
         FUZZ_PROMISE(solver->links.count == reader->snapshot.link_count);
+        solver_assign_roots(solver);
         solver_refine(solver);
         solve_links(solver);
     }
