@@ -69,7 +69,7 @@ static double difference(const struct solver *solver)
         for (int c = 0; c < BANDS; c++)
             largest = fmax(largest, fabs(forest->patches[p].radiosity.band[c]));
     struct flux_unit unit = flux_unit_for(4.0 * BANDS * largest * largest *
-                                          scene_area(solver->method.scene));
+                                          solver->method.area);
     int64_t own[2] = {0, 0}, all[2];
     compare(solver, unit, own);
     MPI_Request request;

@@ -8,13 +8,14 @@
 #include "geom/alloc.h"
 #include "mpi/balance.h"
 
-/* A patch in an iteration; and large roots are going to have many. */
-enum { LINKS_PER_PATCH = 7 };
+/* Push-pull and a step of the solver take as long for a patch as light over so many links. */
+enum { LINKS_PER_OWN = 7 };
 
-int64_t root_weight(const struct scene *scene, int32_t root)
+/* Itself, and by its part of the area as many patches more as there are roots. */
+int64_t root_weight(const struct method *method, int32_t root)
 {
-    double share = scene_root_area(scene, root) / scene_area(scene);
-    return LINKS_PER_PATCH + (int64_t)(LINKS_PER_PATCH * share * scene_root_count(scene));
+    double share = scene_root_area(method->scene, root) / method->area;
+    return LINKS_PER_OWN + (int64_t)(LINKS_PER_OWN * share * scene_root_count(method->scene));
 }
 
 struct candidate {

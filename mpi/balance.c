@@ -97,6 +97,8 @@ enum { LOAD_OPEN = 4 * TESTS_PER_FORM_FACTOR, LOAD_LEAST = 80 };
 
 int64_t link_load(const struct link *link)
 {
+    if (link->seen == LINK_UNMADE)
+        return (LOAD_LEAST + (int64_t)link_cost(link)) / 4;
     return link_is_open(link) ? LOAD_OPEN : LOAD_LEAST + (int64_t)link_cost(link);
 }
 
@@ -166,25 +168,21 @@ bool grid_turns(struct patch_id p, struct patch_id q)
  * takes as long as light over so many links; iterations that follow, as long as links are split. */
 static const double LINKS_PER_PATCH = 2.0, LINKS_PER_MOVE = 11.0, ITERATIONS_AHEAD = 30.0;
 
-bool grid_pays(struct grid grid, const int64_t *lit, int64_t patches, int64_t astray)
+bool grid_pays(struct grid grid, int64_t lit, int64_t largest, int64_t patches, int64_t astray)
 {
     int ranks = grid.rows * grid.columns;
-    int64_t largest = 0, sum = 0;
-    for (int r = 0; r < ranks; r++) {
-        sum += lit[r];
-        largest = lit[r] > largest ? lit[r] : largest;
-    }
     double all = LINKS_PER_PATCH * (double)patches;
-    double saved = all - all / grid.rows - all / grid.columns - ((double)largest - (double)sum / ranks);
+    double saved = all - all / grid.rows - all / grid.columns - ((double)largest - (double)lit / ranks);
     return ITERATIONS_AHEAD * saved > LINKS_PER_MOVE * (double)astray / ranks;
 }
 
 /* --- rows --- */
 
-/* Work of a part, below a millisecond; of what is left of one, of which there are few, but late;
- * and how much more than planned a rank works in a stage, so that nothing small is given back.
- * One row in so many is its sampler's from the start. */
-enum { PART_WORK = 25000, LEFT_WORK = 4000, STAGE_MORE = 1000, GOES_ON = 8 };
+/* Work of a part, below a millisecond; of what is left of one, of which there are few, but late, and
+ * what it takes is foretold badly; what a part may take beyond half more than predicted; and how much more
+ * than planned a rank works in a stage, so that nothing small is given back. One row in so many is its
+ * sampler's from the start. */
+enum { PART_WORK = 25000, LEFT_WORK = 300, LIMIT_MORE = 2000, STAGE_MORE = 1000, GOES_ON = 8 };
 
 int row_cut(const struct row_part *whole, struct row_part parts[ROW_PARTS_MAX])
 {
@@ -204,7 +202,7 @@ int row_cut(const struct row_part *whole, struct row_part parts[ROW_PARTS_MAX])
 /* Half more than predicted, and somewhat more. */
 int64_t row_limit(const struct row_part *part)
 {
-    return part->cost + part->cost / 2 + LEFT_WORK / 2;
+    return part->cost + part->cost / 2 + LIMIT_MORE;
 }
 
 /* Of what was expected per root, and of what was found, the mean by their numbers of roots. */

@@ -19,7 +19,7 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, 
 /* --- links, of whose costs each rank knows its own --- */
 
 /* What splitting a link is predicted to take, in tests: its cost, for those of its children are about
- * as many as its own were; and what there is to do besides. */
+ * as many as its own were; and what there is to do besides. An unmade child takes a quarter. */
 int64_t link_load(const struct link *link);
 
 /* What it takes to look at a link and its patches; at a clear one (rad/oracle.h): 1. */
@@ -52,10 +52,10 @@ int grid_cell(struct grid grid, int home_p, int home_q);
 /* True if a link is in the row of q's home and the column of p's: of half of them, by their IDs. */
 bool grid_turns(struct patch_id p, struct patch_id q);
 
-/* True if it is better for the transfer of light to have links in their cells, lit[r] of them on rank r,
- * than as many on each rank, anywhere: then only the patches of a row and of a column have to be kept up
- * to date on a rank, of `patches` in all. `astray` links would have to be sent there. */
-bool grid_pays(struct grid grid, const int64_t *lit, int64_t patches, int64_t astray);
+/* True if it is better for the transfer of light to have the `lit` links that carry it in their cells, at
+ * most `largest` of them in one, than as many on each rank, anywhere: then only the patches of a row and of a
+ * column have to be kept up to date on a rank, of `patches` in all. `astray` links have to be sent there. */
+bool grid_pays(struct grid grid, int64_t lit, int64_t largest, int64_t patches, int64_t astray);
 
 /* --- the rows of initial linking --- */
 

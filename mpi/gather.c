@@ -10,9 +10,9 @@
 
 #include "geom/alloc.h"
 
-/* Adds what the ranks of a row or a column have for its homes, and takes it from their patches: the
- * sums for this rank are in routes.own_flux[place]. */
-static void add_up(struct solver *solver, const struct comm *part, int first, int step, int place)
+/* Adds up what the ranks of a row or a column have for its homes, which are first, first + step ..., and
+ * takes it from their patches. `own` receives the sums for this rank. */
+static void add_up(struct solver *solver, const struct comm *part, int first, int step, int64_t *own)
 {
     struct routes *routes = &solver->routes;
     struct patch *patches = solver->method.forest->patches;
@@ -27,7 +27,7 @@ static void add_up(struct solver *solver, const struct comm *part, int first, in
             memset(flux, 0, sizeof patches->flux);
         }
     }
-    comm_add_home(part, routes->flux, counts, BANDS, routes->own_flux[place]);
+    comm_add_home(part, routes->flux, counts, BANDS, own);
     solver->bytes_gather += (count - counts[part->rank]) * (int64_t)sizeof patches->flux;
     solver->copied += count;
     alloc_free(counts);
@@ -39,9 +39,9 @@ void solver_gather(struct solver *solver)
     const struct routes *routes = &solver->routes;
     int rank = solver->comm->rank, columns = solver->grid.columns;
     const int32_t *own = routes->receivers + routes->receiver_at[rank];
-    add_up(solver, routes_row(solver), rank - rank % columns, 1, 0);
+    add_up(solver, routes_row(solver), rank - rank % columns, 1, routes->own_flux[0]);
     if (solver->grid.rows > 1)
-        add_up(solver, &solver->column, rank % columns, columns, 1);
+        add_up(solver, &solver->column, rank % columns, columns, routes->own_flux[1]);
     for (int i = 0; i < routes->receiver_counts[rank]; i++)
         for (int c = 0; c < BANDS; c++) {
             int64_t *flux = &solver->method.forest->patches[own[i]].flux[c];

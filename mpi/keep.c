@@ -322,7 +322,7 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
     solver->least_bend = snapshot->value[SNAPSHOT_LEAST_BEND];
     if (solver->pass > 0) { /* before the first pass a link cache does not bind epsilon */
         method->criterion.epsilon = snapshot->value[SNAPSHOT_EPSILON];
-        method->link_threshold = method->criterion.epsilon * scene_emitted_power(method->scene);
+        method->link_threshold = method->criterion.epsilon * method->emitted_power;
     }
     *vote = (struct vote){
         .settled = number[SNAPSHOT_SETTLED] != 0 && (as_limited || number[SNAPSHOT_LIMITED] == 0),
@@ -340,7 +340,7 @@ int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snaps
     broadcast_snapshot(solver->comm, snapshot);
     restore_trees(forest, snapshot);
     closure_extend(&solver->closure, forest);
-    conjugate_extend(&solver->conjugate, forest, solver->own);
+    conjugate_extend(&solver->conjugate, forest, solver->own); /* own leaves are listed by solver_close() */
     int32_t *order = forest_order(forest);
     restore_leaves(solver, snapshot, order);
     for (int32_t root = 0; root < forest->root_count; root++)

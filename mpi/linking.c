@@ -184,16 +184,15 @@ static void send_home(struct solver *solver)
 }
 
 /* Areas, in parts of 2^-40 of all. */
-static void weigh_by_area(const struct scene *scene, int64_t *weights)
+static void weigh_by_area(const struct method *method, int64_t *weights)
 {
-    for (int32_t root = 0; root < scene_root_count(scene); root++)
-        weights[root] = (int64_t)(scene_root_area(scene, root) / scene_area(scene) * 0x1p40);
+    for (int32_t root = 0; root < scene_root_count(method->scene); root++)
+        weights[root] = (int64_t)(scene_root_area(method->scene, root) / method->area * 0x1p40);
 }
 
 /* Links that carry light, over all ranks. */
 static void weigh_by_links(struct solver *solver, int64_t *weights)
 {
-    const struct scene *scene = solver->method.scene;
     int32_t roots = solver->method.forest->root_count;
     for (int64_t i = 0; i < solver->links.count; i++) {
         const struct link *link = &solver->links.items[i];
@@ -204,7 +203,7 @@ static void weigh_by_links(struct solver *solver, int64_t *weights)
     MPI_Iallreduce(MPI_IN_PLACE, weights, roots, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
     wait_idle(solver, &request);
     for (int32_t root = 0; root < roots; root++)
-        weights[root] += root_weight(scene, root);
+        weights[root] += root_weight(&solver->method, root);
 }
 
 void solver_assign_roots(struct solver *solver)
@@ -214,7 +213,7 @@ void solver_assign_roots(struct solver *solver)
     bool greedy = solver->method.criterion.balance == BALANCE_GREEDY;
     int64_t *weights = alloc_array((size_t)roots, sizeof *weights);
     if (greedy)
-        weigh_by_area(solver->method.scene, weights);
+        weigh_by_area(&solver->method, weights);
     else
         weigh_by_links(solver, weights);
     roots_assign(weights, roots, solver->comm->size, solver->owner);

@@ -66,13 +66,12 @@ void memory_watch(struct solver *solver, int64_t limit, int64_t machine)
     memory->copies = solver->comm->size;
 }
 
-bool memory_has_room(const struct memory *memory, int64_t kept, int64_t prolific, int64_t patches)
+bool memory_has_room(const struct memory *memory, int64_t links, int64_t prolific, int64_t patches)
 {
     if (memory->limit == 0)
         return true;
-    double links = (double)kept + 5.0 * (double)prolific;
     double made = 4.0 * (double)(prolific < patches ? prolific : patches);
-    return BYTES_PER_LINK * links +
+    return BYTES_PER_LINK * (double)links +
                BYTES_PER_PATCH * (double)memory->copies * ((double)patches + made) <=
            (double)memory->limit;
 }

@@ -9,8 +9,8 @@
  * which has `machine` bytes (0: unknown, and there is no limit). */
 void memory_watch(struct solver *solver, int64_t limit, int64_t machine);
 
-/* True if there is room for splitting `prolific` of all links, of which `kept` are to stay, given that
- * there are `patches` patches. The same on all ranks. */
-bool memory_has_room(const struct memory *memory, int64_t kept, int64_t prolific, int64_t patches);
+/* True if there is room for so many links, and for what splitting `prolific` of them adds to `patches`
+ * patches. The same on all ranks. */
+bool memory_has_room(const struct memory *memory, int64_t links, int64_t prolific, int64_t patches);
 
 #endif

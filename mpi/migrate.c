@@ -123,27 +123,54 @@ static int cell_of(const struct solver *solver, const struct link *link)
 }
 
 /* Sums over all ranks in place of what this one has. Waiting is idle time. */
-static void add_counts(struct solver *solver, int64_t *counts, int ranks)
+static void add_counts(struct solver *solver, int64_t *counts, int count)
 {
     double start = comm_seconds();
     MPI_Request request;
-    MPI_Iallreduce(MPI_IN_PLACE, counts, ranks, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
+    MPI_Iallreduce(MPI_IN_PLACE, counts, count, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
     comm_wait(&request);
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
 }
 
-/* Links that carry light, by rank: where they are, and where their cells are. Returns how many are
- * elsewhere. */
-static int64_t count_links(struct solver *solver, int64_t *here, int64_t *cells)
+/* True if links are better in their cells; here[r] of them are on rank r now. The cells are looked for only
+ * where that can pay at all: if they were as even as can be. */
+static bool cells_pay(struct solver *solver, const int64_t *here)
 {
-    int64_t astray = 0;
+    int ranks = solver->comm->size, rank = solver->comm->rank;
+    int64_t patches = solver->method.forest->count, lit = 0, largest = 0;
+    for (int r = 0; r < ranks; r++)
+        lit += here[r];
+    int64_t astray = solver->placed > 0 ? 0 : lit - lit / ranks;
+    if (!grid_pays(solver->square, lit, lit / ranks, patches, astray) && solver->placed == 0)
+        return false;
+    int64_t *cells = alloc_array((size_t)ranks + 1, sizeof *cells);
     for (int64_t i = 0; i < solver->links.count; i++)
         if (carries_light(&solver->links.items[i])) {
-            int cell = cell_of(solver, &solver->links.items[i]);
-            here[solver->comm->rank]++;
+            int cell = i < solver->placed ? rank : cell_of(solver, &solver->links.items[i]);
             cells[cell]++;
-            astray += cell != solver->comm->rank;
+            cells[ranks] += cell != rank;
         }
+    add_counts(solver, cells, ranks + 1);
+    for (int r = 0; r < ranks; r++)
+        largest = cells[r] > largest ? cells[r] : largest;
+    astray = cells[ranks];
+    alloc_free(cells);
+    return grid_pays(solver->square, lit, largest, patches, astray);
+}
+
+/* Takes the links that carry light elsewhere out of the rank's links. */
+static struct link_list take_astray(struct solver *solver)
+{
+    struct link_list *links = &solver->links, astray = {0};
+    int64_t kept = solver->placed;
+    for (int64_t i = kept; i < links->count; i++) {
+        struct link link = links->items[i];
+        if (carries_light(&link) && cell_of(solver, &link) != solver->comm->rank)
+            link_list_append(&astray, link);
+        else
+            links->items[kept++] = link;
+    }
+    links->count = kept;
     return astray;
 }
 
@@ -151,33 +178,36 @@ static int64_t count_links(struct solver *solver, int64_t *here, int64_t *cells)
 static void send_to_cells(struct solver *solver)
 {
     int columns = solver->square.columns;
+    struct link_list astray = take_astray(solver);
     for (int hop = 0; hop < 2; hop++) {
-        int *destination = alloc_array((size_t)solver->links.count, sizeof *destination);
-        for (int64_t i = 0; i < solver->links.count; i++) {
-            const struct link *link = &solver->links.items[i];
-            int cell = carries_light(link) ? cell_of(solver, link) : solver->comm->rank;
-            int row = (hop == 0 ? solver->comm->rank : cell) / columns;
-            destination[i] = row * columns + cell % columns;
+        int *destination = alloc_array((size_t)astray.count, sizeof *destination);
+        for (int64_t i = 0; i < astray.count; i++) {
+            int cell = cell_of(solver, &astray.items[i]);
+            destination[i] = (hop == 0 ? solver->comm->rank : cell) / columns * columns + cell % columns;
         }
-        solver->bytes_migration += links_migrate(solver, &solver->links, destination);
+        solver->bytes_migration += links_migrate(solver, &astray, destination);
         alloc_free(destination);
     }
+    for (int64_t i = 0; i < astray.count; i++)
+        link_list_append(&solver->links, astray.items[i]);
+    link_list_free(&astray);
 }
 
 void links_place(struct solver *solver)
 {
     int ranks = solver->comm->size;
-    int64_t *here = alloc_array(2 * (size_t)ranks + 1, sizeof *here), *cells = here + ranks;
-    here[2 * ranks] = count_links(solver, here, cells);
-    add_counts(solver, here, 2 * ranks + 1);
+    int64_t *here = alloc_array((size_t)ranks, sizeof *here);
+    for (int64_t i = 0; i < solver->links.count; i++)
+        here[solver->comm->rank] += carries_light(&solver->links.items[i]);
+    add_counts(solver, here, ranks);
     double start = comm_seconds();
-    bool in_cells = solver->method.criterion.balance == BALANCE_CELLS ||
-                    grid_pays(solver->square, cells, solver->method.forest->count, here[2 * ranks]);
-    solver->grid = in_cells ? solver->square : (struct grid){1, ranks};
+    bool in_cells = solver->method.criterion.balance == BALANCE_CELLS || cells_pay(solver, here);
     if (in_cells)
         send_to_cells(solver);
     else if (is_uneven(here, ranks)) /* the same on all ranks, so all enter */
         solver->bytes_migration += links_balance(solver, &solver->links, carries_light, here);
+    solver->grid = in_cells ? solver->square : (struct grid){1, ranks};
+    solver->placed = in_cells ? solver->links.count : 0;
     alloc_free(here);
     solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
 }

@@ -21,15 +21,16 @@
 
 /* What ranks tell each other before a level. */
 struct load_notice {
-    int64_t links;           /* prolific links here */
-    int64_t load;            /* their predicted cost */
+    int64_t links;           /* prolific links here, unmade children too, */
+    int64_t load;            /* their predicted cost, */
+    int64_t room;            /* and links there may be in their place at a time */
     int64_t kept;            /* links here that are not to be split */
     int64_t stop;            /* the signal that this rank has got, 0: none */
 };
 
 /* Links of all ranks before a level. */
 struct level {
-    int64_t prolific, kept;
+    int64_t prolific, room, kept;
 };
 
 static int64_t load_of(const struct link_list *list)
@@ -58,7 +59,41 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
         solver->links.items[kept++] = link;
     }
     solver->links.count = kept;
+    solver->placed = solver->placed > 0 ? kept : 0;
     ledger_add(&solver->ledger, looks);
+}
+
+/* Names the children of links that are partly seen in place of these: a link may take many times as long as
+ * a rank's share of the level, and its four children can go to four ranks. Returns how many links. */
+static int64_t name_children(struct solver *solver, struct link_list *prolific)
+{
+    struct link_list named = {0};
+    int64_t split = 0;
+    for (int64_t i = 0; i < prolific->count; i++) {
+        const struct link *link = &prolific->items[i];
+        struct link children[4];
+        if (!link_is_partly_seen(link)) {
+            link_list_append(&named, *link);
+            continue;
+        }
+        link_split_unmade(&solver->method, link, oracle_patch_to_split(&solver->method, link), children);
+        for (int k = 0; k < 4; k++)
+            link_list_append(&named, children[k]);
+        split++;
+    }
+    link_list_free(prolific);
+    *prolific = named;
+    solver->split_here += split;
+    return split;
+}
+
+/* A link and its four children, or an unmade one and what is made of it. */
+static int64_t room_of(const struct link_list *list)
+{
+    int64_t room = 0;
+    for (int64_t i = 0; i < list->count; i++)
+        room += list->items[i].seen == LINK_UNMADE ? 2 : 5;
+    return room;
 }
 
 /* The total exchange of loads. Waiting here is idle time. */
@@ -75,21 +110,33 @@ static struct load_notice *exchange_loads(struct solver *solver, struct load_not
     return notices;
 }
 
+/* Those that are not unmade children. */
+static int64_t count_whole(const struct link_list *list)
+{
+    int64_t count = 0;
+    for (int64_t i = 0; i < list->count; i++)
+        count += list->items[i].seen != LINK_UNMADE;
+    return count;
+}
+
 /* LoadBalance of Algorithm 1. `phase` receives what this rank has of the level. Returns the
  * links of all ranks. */
 static struct level balance_load(struct solver *solver, struct link_list *prolific, int64_t level,
                                  struct phase_work *phase)
 {
     int ranks = solver->comm->size;
+    int64_t named = name_children(solver, prolific);
     struct load_notice own = {.links = prolific->count, .load = load_of(prolific),
-                              .kept = solver->links.count, .stop = signals_seen()};
+                              .room = room_of(prolific), .kept = solver->links.count,
+                              .stop = signals_seen()};
     struct load_notice *notices = exchange_loads(solver, own);
     double start = comm_seconds();
-    struct level sum = {0, 0};
+    struct level sum = {0, 0, 0};
     int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
     for (int r = 0; r < ranks; r++) {
         loads[r] = notices[r].load;
         sum.prolific += notices[r].links;
+        sum.room += notices[r].room;
         sum.kept += notices[r].kept;
         solver->stop = (int)notices[r].stop > solver->stop ? (int)notices[r].stop : solver->stop;
     }
@@ -99,10 +146,19 @@ static struct level balance_load(struct solver *solver, struct link_list *prolif
     alloc_free(loads);
     alloc_free(notices);
     progress_begin(solver->progress, "refining", level, sum.prolific);
-    phase->links = prolific->count;
+    phase->links = named + count_whole(prolific);
     phase->predicted = load_of(prolific);
     solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
     return sum;
+}
+
+/* The links that have been split, or the one that has been made; their number. */
+static int make_children(struct solver *solver, const struct link *link, struct link children[4])
+{
+    children[0] = *link;
+    if (link->seen == LINK_UNMADE)
+        return link_finish(&solver->method, children);
+    return link_split(&solver->method, link, oracle_patch_to_split(&solver->method, link), children);
 }
 
 /* Splits all links of the level; their children go to `next` or to the rank's links. */
@@ -112,10 +168,8 @@ static void split_level(struct solver *solver, const struct link_list *prolific,
     for (int64_t i = 0; i < prolific->count; i++) {
         if (i % 64 == 0)
             progress_tick(solver->progress, (double)i / (double)prolific->count);
-        const struct link *link = &prolific->items[i];
         struct link children[4];
-        int32_t patch = oracle_patch_to_split(&solver->method, link);
-        int count = link_split(&solver->method, link, patch, children);
+        int count = make_children(solver, &prolific->items[i], children);
         for (int k = 0; k < count; k++) {
             bool goes_on = oracle_patch_to_split(&solver->method, &children[k]) >= 0;
             if (!goes_on)
@@ -123,7 +177,17 @@ static void split_level(struct solver *solver, const struct link_list *prolific,
             link_list_append(goes_on ? next : &solver->links, children[k]);
         }
     }
-    solver->split_here += prolific->count;
+    solver->split_here += count_whole(prolific);
+}
+
+/* Links that are left to be split are links like all others; unmade ones are made. */
+static void keep_prolific(struct solver *solver, const struct link_list *prolific)
+{
+    for (int64_t i = 0; i < prolific->count; i++) {
+        struct link link = prolific->items[i];
+        if (link.seen != LINK_UNMADE || link_finish(&solver->method, &link))
+            link_list_append(&solver->links, link);
+    }
 }
 
 /* All ranks learn which patches were split here: the trees are the same everywhere before light is
@@ -161,11 +225,11 @@ enum { PATCHES_PER_LOOK = 8, PATCHES_PER_SPLIT = 4 + 4 * PATCHES_PER_LOOK };
 static bool level_fits(struct solver *solver, const struct level *level, int64_t *made)
 {
     const struct memory *memory = &solver->memory;
-    if (memory_has_room(memory, level->kept, level->prolific, solver->shared + *made))
+    if (memory_has_room(memory, level->kept + level->room, level->prolific, solver->shared + *made))
         return true;
     share_splits(solver);
     *made = 0;
-    return memory_has_room(memory, level->kept, level->prolific, solver->shared);
+    return memory_has_room(memory, level->kept + level->room, level->prolific, solver->shared);
 }
 
 /* Splits level after level. Returns false if a signal or the memory limit ended that: then the
@@ -219,8 +283,7 @@ bool solver_refine(struct solver *solver)
         select_prolific(solver, &prolific);
         solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
         done = split_levels(solver, &prolific);
-        for (int64_t i = 0; i < prolific.count; i++) /* none, if it is done */
-            link_list_append(&solver->links, prolific.items[i]);
+        keep_prolific(solver, &prolific); /* none, if it is done */
         link_list_free(&prolific);
         share_splits(solver);
     }

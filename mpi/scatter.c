@@ -38,7 +38,7 @@ static void pack(struct solver *solver)
     for (int i = 0; i < routes->leaf_counts[rank]; i++)
         records[i] = solver->method.forest->patches[leaves[i]].radiosity;
     memcpy(ballot_of(solver, rank), &solver->ballot, sizeof solver->ballot);
-    solver->copied += routes->receiver_counts[rank];
+    solver->copied += routes->leaf_counts[rank];
 }
 
 /* Gives the leaves of a home what it has sent. */
@@ -89,7 +89,7 @@ static void share_in_row(struct solver *solver)
     alloc_free(counts);
 }
 
-static void share_in_column(struct solver *solver, bool rows)
+static void share_in_column(struct solver *solver, bool whole_rows)
 {
     const struct routes *routes = &solver->routes;
     int columns = solver->grid.columns, first = solver->comm->rank % columns;
@@ -97,8 +97,8 @@ static void share_in_column(struct solver *solver, bool rows)
     int *counts = alloc_array(2 * ranks, sizeof *counts), *at = counts + ranks;
     for (int k = 0; k < solver->grid.rows; k++) {
         int home = first + k * columns;
-        counts[k] = rows ? row_count(solver, home) : routes->leaf_counts[home] + BALLOT_RECORDS;
-        at[k] = rows ? row_at(solver, home) : routes->record_at[home];
+        counts[k] = whole_rows ? row_count(solver, home) : routes->leaf_counts[home] + BALLOT_RECORDS;
+        at[k] = whole_rows ? row_at(solver, home) : routes->record_at[home];
     }
     share(solver, &solver->column, counts, at);
     add_ballots(solver, first, solver->grid.rows, columns);
@@ -119,6 +119,7 @@ static void scatter(struct solver *solver, bool to_all)
     solver->seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
 
+/* Jacobi refines after each iteration, and reads all radiosities then. */
 void solver_scatter(struct solver *solver)
 {
     scatter(solver, solver->method.criterion.solver == SOLVER_JACOBI);

@@ -50,7 +50,7 @@ void solver_transfer(struct solver *solver)
     if (corrects)
         correct_senders(forest, &solver->closure);
     clear_own_flux(solver);
-    solver->flux = flux_unit_for(largest_radiosity(solver) * scene_area(solver->method.scene));
+    solver->flux = flux_unit_for(largest_radiosity(solver) * solver->method.area);
     links_transfer(&solver->links, forest, solver->flux);
     if (corrects)
         forest_restore(forest, kept);
@@ -74,7 +74,7 @@ static void start_conjugate(struct solver *solver)
 /* <K z, z> over all ranks, W^2 m^-2. */
 static void multiply(struct solver *solver, double bound, double product[BANDS])
 {
-    struct flux_unit unit = conjugate_unit(solver->method.scene, bound, solver->bound_residual,
+    struct flux_unit unit = conjugate_unit(&solver->method, bound, solver->bound_residual,
                                            solver->weight);
     int64_t own[BANDS] = {0, 0, 0}, all[BANDS];
     conjugate_apply(&solver->conjugate, &solver->method, &solver->closure,

@@ -95,10 +95,8 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
 
 void solver_record_iteration(struct solver *solver)
 {
-    const struct forest *forest = solver->method.forest;
-    int64_t now[] = {solver->bytes_gather, solver->bytes_scatter, solver->copied}, own = 0;
-    for (int64_t p = 0; p < forest->count; p++)
-        own += solver->own[forest->patches[p].id.root];
+    int64_t now[] = {solver->bytes_gather, solver->bytes_scatter, solver->copied};
+    int own = solver->routes.receiver_counts[solver->comm->rank];
     struct phase_work phase = {.kind = WORK_TRANSFER, .iteration = solver->iteration,
                                .work = solver->links.seen, .bytes = now[0] - solver->recorded[0]};
     ledger_add(&solver->ledger, phase);

@@ -55,11 +55,12 @@ struct solver {
     struct progress *progress; /* borrowed; NULL: nobody looks */
     struct method method;     /* scene, octree, forest and criterion; the forest is owned */
     struct link_list links;   /* the links that live here ("allInteractions") */
+    int64_t placed;           /* the first ones that are in their cells, if the grid in use is `square` */
     int *owner;               /* [roots] home rank of each root */
     bool *own;                /* [roots] owner[root] == rank */
-    struct grid grid;         /* of ranks, as links lie: either of one row, or `square`, */
+    struct grid grid;         /* of the ranks, as links lie: one row, or `square` */
     struct grid square;
-    struct comm row, column;  /* of which these are this rank's */
+    struct comm row, column;  /* of `square`, those of this rank */
     struct routes routes;     /* of light between the ranks */
     int64_t *root_change;     /* [roots] see push_pull() */
     int64_t first_new;        /* patches from here on were created in this iteration */
@@ -86,7 +87,7 @@ struct solver {
     double seconds[PHASE_COUNT];
     int64_t bytes_migration, bytes_gather, bytes_scatter; /* that this rank sent to others, or (scatter)
                                                              got from them */
-    int64_t copied;           /* patches whose flux or radiosity was copied to be sent, or that were sent */
+    int64_t copied;           /* patches whose flux or radiosity was copied, to be sent or as it came */
     int64_t recorded[3];                                  /* of the last three, in the ledger */
     struct ledger ledger;
 };

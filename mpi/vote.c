@@ -105,11 +105,10 @@ static const double WHILE_SPLITTING = 0.03;
  * below 1, half of the least K seen takes the place of 1 - q: an estimate. */
 static double remaining_by_residual(const struct solver *solver, const struct ballot *sum)
 {
-    const struct scene *scene = solver->method.scene;
     double least = solver->shrink < 1.0 ? 1.0 - solver->shrink : 0.5 * solver->least_bend;
     double missing = 0.0;
     for (int c = 0; c < BANDS; c++)
-        missing += sqrt(scene_area(scene) * solver->gamma[c]);
+        missing += sqrt(solver->method.area * solver->gamma[c]);
     double light = flux_to_watts(solver->method.flux_unit, sum->light);
     return light > 0.0 ? missing / least / light : 0.0;
 }
@@ -121,7 +120,7 @@ static double wanted_of(const struct solver *solver, const struct ballot *sum)
     if (sum->split == 0 && sum->divided == 0)
         return tolerance;
     double light = flux_to_watts(solver->method.flux_unit, sum->light);
-    double reflected = light - scene_emitted_power(solver->method.scene);
+    double reflected = light - solver->method.emitted_power;
     return reflected > 0.0 ? fmax(tolerance, WHILE_SPLITTING * reflected / light) : tolerance;
 }
 
@@ -136,7 +135,7 @@ static void finish_conjugate(struct solver *solver)
 /* The unit of <z, z>. */
 static struct flux_unit square_unit(const struct solver *solver)
 {
-    return conjugate_unit(solver->method.scene, solver->bound_residual, solver->bound_residual,
+    return conjugate_unit(&solver->method, solver->bound_residual, solver->bound_residual,
                           solver->weight);
 }
 

@@ -61,9 +61,9 @@ void conjugate_extend(struct conjugate *cg, const struct forest *forest, const b
     }
 }
 
-struct flux_unit conjugate_unit(const struct scene *scene, double a, double b, double weight)
+struct flux_unit conjugate_unit(const struct method *method, double a, double b, double weight)
 {
-    return flux_unit_for(fmax(a * b * weight * scene_area(scene), 1e-250));
+    return flux_unit_for(fmax(a * b * weight * method->area, 1e-250));
 }
 
 void conjugate_start(struct conjugate *cg, const struct method *method,

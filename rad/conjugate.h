@@ -42,7 +42,7 @@ void conjugate_extend(struct conjugate *cg, const struct forest *forest, const b
 
 /* The unit in which scalar products of vectors that are nowhere larger than a and b are summed.
  * `weight`: the largest closure_weight(). */
-struct flux_unit conjugate_unit(const struct scene *scene, double a, double b, double weight);
+struct flux_unit conjugate_unit(const struct method *method, double a, double b, double weight);
 
 /* After B has been transferred: z = F' B - H. Where nothing is reflected, H = F' B and z = 0. */
 void conjugate_start(struct conjugate *cg, const struct method *method,

@@ -32,6 +32,8 @@ struct method method_make(const struct scene *scene, const struct octree *octree
         .forest = forest,
         .criterion = *criterion,
         .flux_unit = flux_unit_choose(scene),
+        .area = scene_area(scene),
+        .emitted_power = scene_emitted_power(scene),
         .link_threshold = criterion->epsilon * scene_emitted_power(scene),
         .brightest = HUGE_VAL,
         .contrast = HUGE_VAL,

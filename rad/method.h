@@ -42,6 +42,7 @@ struct method {
     struct forest *forest;
     struct criterion criterion;
     struct flux_unit flux_unit;
+    double area, emitted_power; /* of the scene: square scene units, W */
     double link_threshold;  /* W, areas in square scene units: epsilon times the emitted power */
     double patch_threshold; /* square scene units: no patch smaller than this is made */
     struct rgb typical;     /* a guess at the mean radiosity, W/m^2, before there is an answer */

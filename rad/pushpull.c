@@ -101,8 +101,8 @@ static double largest_shrink(const struct method *method, const bool *own, const
                              const int64_t *now)
 {
     const struct scene *scene = method->scene;
-    double settled = SETTLED * method->criterion.tolerance * scene_emitted_power(scene) /
-                     scene_area(scene); /* change per area at which a root is settled, W/m^2 */
+    double settled = SETTLED * method->criterion.tolerance * method->emitted_power /
+                     method->area; /* change per area at which a root is settled, W/m^2 */
     double largest = 0.0;
     for (int32_t root = 0; root < method->forest->root_count; root++) {
         double watts = settled * scene_root_area(scene, root);
@@ -139,11 +139,4 @@ struct push_pull_sums push_pull(const struct method *method, const struct closur
         if (own[forest->patches[p].id.root])
             forest_average_patch(forest, (int32_t)p);
     return sums;
-}
-
-void forest_clear_flux(struct forest *forest)
-{
-    for (int64_t p = 0; p < forest->count; p++)
-        for (int c = 0; c < BANDS; c++)
-            forest->patches[p].flux[c] = 0;
 }

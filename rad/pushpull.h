@@ -34,7 +34,4 @@ void forest_average(struct forest *forest);
 /* The extremes of all patches. */
 void forest_bound(struct forest *forest);
 
-/* Sets the flux of all patches to 0. */
-void forest_clear_flux(struct forest *forest);
-
 #endif

@@ -106,6 +106,17 @@ static void test_links(int ranks, int count, int64_t modulus, const char *what)
     alloc_free(costs);
 }
 
+static void test_loads(void)
+{
+    struct link link = {.seen = 100, .cost = compact8(1000.0)};
+    int64_t whole = link_load(&link);
+    link.seen = LINK_UNMADE;
+    tap_ok(4 * link_load(&link) <= whole && 4 * link_load(&link) > whole - 4,
+           "four unmade children are predicted to take what their link does");
+    link.seen = LINK_OPEN;
+    tap_ok(link_load(&link) < whole / 10, "and an open link takes little, whatever it took before");
+}
+
 static void test_moving(void)
 {
     const int64_t empty[4] = {0, 0, 0, 0}, equal[4] = {7, 7, 7, 7}, high[4] = {4000, 0, 0, 0};
@@ -322,16 +333,12 @@ static void test_turns(void)
 static void test_grid_pays(void)
 {
     struct grid grid = grid_make(12);
-    int64_t lit[12];
-    for (int r = 0; r < 12; r++)
-        lit[r] = 1200;
-    tap_ok(grid_pays(grid, lit, 120, 0), "cells pay where links are even in them");
-    lit[3] = 1200 + 99, lit[4] = 1200 - 99;
-    tap_ok(grid_pays(grid, lit, 120, 0), "and nearly even: 99 links more are less than 50 patches");
-    tap_ok(!grid_pays(grid, lit, 120, 12 * 100), "but not for one iteration, if all have to be sent");
-    lit[3]++, lit[4]--;
-    tap_ok(!grid_pays(grid, lit, 120, 0), "nor where few roots have most of the links");
-    tap_ok(!grid_pays(grid_make(11), lit, 120, 0), "a prime number of ranks has one row");
+    tap_ok(grid_pays(grid, 14400, 1200, 120, 0), "cells pay where links are even in them");
+    tap_ok(grid_pays(grid, 14400, 1299, 120, 0), "and nearly even: 99 links more are less than 50 patches");
+    tap_ok(!grid_pays(grid, 14400, 1300, 120, 0), "but not where few roots have most of the links");
+    tap_ok(!grid_pays(grid, 14400, 1200, 120, 14400), "nor if all have to be sent, and are many");
+    tap_ok(grid_pays(grid, 14400, 1200, 1200, 14400), "which is worth it for more patches");
+    tap_ok(!grid_pays(grid_make(11), 14400, 1310, 120, 0), "a prime number of ranks has one row");
 }
 
 int main(void)
@@ -345,6 +352,7 @@ int main(void)
     }
     test_links(16, 0, 1, "links");
     test_links(64, 10, 1000, "links");
+    test_loads();
     test_moving();
     test_parts();
     for (int ranks = 1; ranks <= 64; ranks *= 4)

@@ -356,6 +356,9 @@ static void test_ranks(const struct comm *comm, const struct comm *self, enum cl
                 parallel.solver->iteration == alone.solver->iteration &&
                 forest_checksum(parallel.solver->method.forest) ==
                     forest_checksum(alone.solver->method.forest);
+    for (int64_t p = 0; p < alone.solver->method.forest->count; p++) /* all ranks know all radiosities */
+        same = same && memcmp(&parallel.solver->method.forest->patches[p].radiosity,
+                              &alone.solver->method.forest->patches[p].radiosity, sizeof(struct rgb)) == 0;
     struct error error = {0};
     if (!same)
         error_set(&error, EXIT_FAILED, "rank %d", comm->rank);

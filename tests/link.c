@@ -264,7 +264,7 @@ static void test_one_transfer(void)
     const int64_t *p = forest->patches[3].flux, *q = forest->patches[7].flux;
     tap_ok(p[0] == 5 && p[1] == 4096 && p[2] == -1024 && q[0] == 256 && q[1] == 512 && q[2] == 0,
            "G B of either side is added to the flux of the other, whatever its sign");
-    forest_clear_flux(forest);
+    clear_flux(forest);
     list.items[0].seen = 0;
     link_list_sort(&list);
     links_transfer(&list, forest, unit);
@@ -334,7 +334,7 @@ static void test_dealing(void)
     tap_ok(forest->patches[2].flux[0] == 0 && forest->patches[4].flux[0] == 0,
            "and nothing to the patches themselves");
     /* The same with even parts: 20 x 1/2 W to p, and 2.5 x 1/2 to q. */
-    forest_clear_flux(forest);
+    clear_flux(forest);
     list.items[0] = PLAIN;
     list.items[0].p = 2;
     list.items[0].q = 4;
@@ -350,7 +350,7 @@ static void test_dealing(void)
     }
     tap_ok(same, "with even parts it is light of the patch and to the patch");
     /* Parts that are even but for 1 in 256 are dealt, and come to nearly the same. */
-    forest_clear_flux(forest);
+    clear_flux(forest);
     list.items[0].parts_p[0] = 65;
     list.items[0].parts_q[2] = 63;
     link_list_sort(&list);
@@ -407,7 +407,7 @@ static void test_transfer(void)
     tap_ok(received > 0 && fabs(flux_to_watts(unit, received) - sent) <= slack,
            "what is received is what is sent");
     uint64_t hash = flux_hash(forest);
-    forest_clear_flux(forest);
+    clear_flux(forest);
     for (int64_t i = 0; i < turned.count; i += 2) { /* and the sides of half of them swapped */
         struct link old = turned.items[i], *link = &turned.items[i];
         link->p = old.q;
@@ -427,7 +427,7 @@ static void test_transfer(void)
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
             darkness += forest->patches[p].flux[c] != 0;
-    forest_clear_flux(forest);
+    clear_flux(forest);
     link_list_sort(&list);
     links_transfer(&list, forest, unit);
     for (int64_t p = 0; p < forest->count; p++)
@@ -487,6 +487,51 @@ static void test_parts(void)
     tap_ok(odd == 0, "the paper's are even");
 }
 
+static bool are_alike(const struct link *a, const struct link *b)
+{
+    return a->p == b->p && a->q == b->q && a->area == b->area && a->seen == b->seen &&
+           memcmp(a->parts_p, b->parts_p, 3) == 0 && memcmp(a->parts_q, b->parts_q, 3) == 0;
+}
+
+/* Children that are made one by one, here from the last to the first, are those of link_split(), but for the
+ * blocker and what it took to find it. */
+static void test_unmade(void)
+{
+    struct random random = random_seed(6);
+    int split = 0, off = 0, dropped = 0;
+    for (int i = 0; i < 1000; i++) {
+        struct soup soup = {0};
+        for (int k = 0; k < 8; k++)
+            soup_add(&soup, random_triangle(&random, 0.4, 0.4));
+        struct scene *scene = scene_of_soup(&soup, 1);
+        scene->materials[0] = material_grey(0.5, 1);
+        soup_free(&soup);
+        struct world world = world_make(scene);
+        world.method.criterion.oracle = ORACLE_ERROR;
+        world.method.link_threshold = 0.0;
+        struct link link, unmade[4], children[4];
+        if (make(&world, 0, 1, &link) && link_is_partly_seen(&link)) {
+            int32_t patch = i % 2;
+            int count = 0, expected = link_split(&world.method, &link, patch, children);
+            link_split_unmade(&world.method, &link, patch, unmade);
+            for (int k = 3; k >= 0; k--) {
+                off += unmade[k].seen != LINK_UNMADE;
+                if (link_finish(&world.method, &unmade[k])) {
+                    count++;
+                    off += count > expected || !are_alike(&unmade[k], &children[expected - count]);
+                }
+            }
+            split++;
+            dropped += expected < 4;
+            off += count != expected;
+        }
+        world_free(&world);
+    }
+    tap_ok(split > 40 && dropped > 0 && off == 0,
+           "%d links, %d of them with children that do not face: the same children made one by one",
+           split, dropped);
+}
+
 /* A child of an open link is open, and fires no ray. */
 static void test_inheriting(void)
 {
@@ -525,6 +570,7 @@ int main(void)
     test_dealing();
     test_transfer();
     test_parts();
+    test_unmade();
     test_inheriting();
     return tap_done();
 }

@@ -17,7 +17,7 @@ run() {
     name=$1
     shift
     log=$logs/$name.tap
-    timeout 600 "$@" >"$log" 2>&1
+    timeout -k 10 600 "$@" >"$log" 2>&1
     status=$?
     good=$(grep -c '^ok ' "$log")
     bad=$(grep -c '^not ok ' "$log")

@@ -199,6 +199,13 @@ static inline void world_free(struct world *world)
     scene_destroy(world->scene);
 }
 
+static inline void clear_flux(struct forest *forest)
+{
+    for (int64_t p = 0; p < forest->count; p++)
+        for (int c = 0; c < BANDS; c++)
+            forest->patches[p].flux[c] = 0;
+}
+
 /* --- answers by brute force --- */
 
 /* The first of the triangles that blocks the segment, `own` left out, or -1. */

@@ -9,7 +9,7 @@
 # not depend on how many processors there are; measured seconds do, and only mean something up to that.
 #
 # Columns: scene; counted or simulated; ranks; modelled seconds; speed-up from counted work; idle part of it;
-# speed-up with what every rank does for all patches; with messages too (2 us each, 10 GB/s); MB of links
+# speed-up with copies of patches and links too; with messages too (2 us each, 10 GB/s); MB of links
 # that moved; speed-up on the paper's Ethernet (100 us, 100 Mbit/s); measured seconds.
 
 cd "$(dirname "$0")/../.." || exit 2

@@ -36,6 +36,9 @@
 /* Seconds per message and per byte: a node of today; and the paper's Ethernet of 100 Mbit/s. */
 static const double ALPHA = 2e-6, BETA = 1e-10, ALPHA_PAPER = 1e-4, BETA_PAPER = 8e-8;
 
+/* Seconds to pack and unpack a byte of the links that move: 48 ns a link, as measured. */
+static const double PACKING = 1.5e-9;
+
 enum { BYTES_PER_PATCH = 24, BYTES_PER_LINK = 32, EXCHANGES = 3, RANKS_MOST = 4096 };
 
 /* A part of a row, or its sample: its work, where it stopped, and its links that carry light and that do
@@ -56,12 +59,12 @@ struct pair_list {
     int64_t count, capacity;
 };
 
-/* A link that was split. */
+/* A link that was split, or one of the four children of a link, where these are made one by one. */
 struct event {
     struct pair pair;
-    int64_t origin; /* number of the event that made it; initial links: -1 - the unit */
+    int64_t origin; /* number of the event that made the link; initial links: -1 - the unit */
     int64_t load, work;
-    bool was_lit;   /* something was seen of it */
+    bool was_lit;   /* something was seen of the link (and the event is that of its first child) */
     int64_t kept;   /* children of which something is seen and that were not split in the same pass */
 };
 
@@ -197,16 +200,20 @@ static void record_linking(struct record *record, struct solver *solver)
     record->counts[WORK_LINKING] = (double)method_work(&solver->method);
 }
 
-/* Links to be split, with where they came from. */
+/* Links to be split, with where they came from; of unmade children one is the first. */
 struct batch {
     struct link_list links;
     int64_t *origins;
-    int64_t count, capacity;
+    bool *first;
+    int64_t count, capacity, first_capacity;
 };
 
-static void batch_add(struct batch *batch, struct link link, int64_t origin)
+static void batch_add(struct batch *batch, struct link link, int64_t origin, bool is_first)
 {
     link_list_append(&batch->links, link);
+    batch->first = alloc_reserve(batch->first, &batch->first_capacity, batch->count + 1,
+                                 sizeof *batch->first);
+    batch->first[batch->count] = is_first;
     batch->origins = alloc_reserve(batch->origins, &batch->capacity, batch->count + 1,
                                    sizeof *batch->origins);
     batch->origins[batch->count++] = origin;
@@ -216,7 +223,27 @@ static void batch_free(struct batch *batch)
 {
     link_list_free(&batch->links);
     alloc_free(batch->origins);
+    alloc_free(batch->first);
     *batch = (struct batch){0};
+}
+
+/* As in mpi/refinement.c. Returns how many links have been split. */
+static int64_t name_children(struct solver *solver, struct batch *batch)
+{
+    struct batch named = {.count = 0};
+    int64_t split = batch->count;
+    for (int64_t i = 0; i < batch->count; i++) {
+        const struct link *link = &batch->links.items[i];
+        struct link children[4] = {*link};
+        bool partly = link_is_partly_seen(link);
+        if (partly)
+            link_split_unmade(&solver->method, link, oracle_patch_to_split(&solver->method, link), children);
+        for (int k = 0; k < (partly ? 4 : 1); k++)
+            batch_add(&named, children[k], batch->origins[i], k == 0);
+    }
+    batch_free(batch);
+    *batch = named;
+    return split;
 }
 
 /* Units first, then events. */
@@ -241,7 +268,7 @@ static void record_looks(struct record *record, struct solver *solver, struct pa
             pass->looked[link.seen > 0][place_of_origin(record, record->origins[i])]++;
             add_pair(&pass->looked_lit, solver->method.forest, &link);
             if (oracle_patch_to_split(&solver->method, &link) >= 0) {
-                batch_add(batch, link, record->origins[i]);
+                batch_add(batch, link, record->origins[i], true);
                 continue;
             }
             oracle_divide_patches(&solver->method, &link);
@@ -258,15 +285,17 @@ static void split_one(struct record *record, struct solver *solver, const struct
                       int64_t i, struct batch *next, struct pair_list *gained)
 {
     const struct link *link = &batch->links.items[i];
-    struct event event = {.pair = pair_of(solver->method.forest, link), .origin = batch->origins[i], .load = link_load(link),
-                          .was_lit = link->seen > 0,
+    struct event event = {.pair = pair_of(solver->method.forest, link), .origin = batch->origins[i],
+                          .load = link_load(link), .was_lit = batch->first[i] && link->seen > 0,
                           .work = -method_work(&solver->method)};
-    struct link children[4];
-    int32_t patch = oracle_patch_to_split(&solver->method, link);
-    int count = link_split(&solver->method, link, patch, children);
+    struct link children[4] = {*link};
+    int count = link->seen == LINK_UNMADE
+                    ? link_finish(&solver->method, children)
+                    : link_split(&solver->method, link, oracle_patch_to_split(&solver->method, link),
+                                 children);
     for (int k = 0; k < count; k++) {
         if (oracle_patch_to_split(&solver->method, &children[k]) >= 0) {
-            batch_add(next, children[k], record->event_count);
+            batch_add(next, children[k], record->event_count, true);
             continue;
         }
         oracle_divide_patches(&solver->method, &children[k]);
@@ -289,9 +318,9 @@ static void record_levels(struct record *record, struct solver *solver, struct b
     while (batch->count > 0) {
         struct batch next = {.count = 0};
         struct level level = {.first = record->event_count};
+        solver->split_here += name_children(solver, batch);
         for (int64_t i = 0; i < batch->count; i++)
             split_one(record, solver, batch, i, &next, gained);
-        solver->split_here += batch->count;
         level.end = record->event_count;
         record->levels = alloc_reserve(record->levels, &record->level_capacity,
                                        record->level_count + 1, sizeof *record->levels);
@@ -623,13 +652,17 @@ static void even_out(struct replay *replay)
 static void place_links(struct replay *replay, int64_t patches)
 {
     size_t bytes = (size_t)replay->ranks * sizeof *replay->links;
-    exchange(replay, 16.0 * replay->ranks);
+    int64_t lit = (int64_t)sum_of(replay->links, replay->ranks);
+    exchange(replay, 8.0 * replay->ranks);
     if (!replay->in_cells)
         memcpy(replay->astray, replay->links, bytes);
-    int64_t astray = (int64_t)sum_of(replay->astray, replay->ranks);
-    bool pays = grid_pays(replay->square, replay->cells, patches, astray);
-    replay->in_cells = pays;
-    if (pays)
+    int64_t even = replay->in_cells ? 0 : lit - lit / replay->ranks;
+    bool may = replay->in_cells || grid_pays(replay->square, lit, lit / replay->ranks, patches, even);
+    if (may)
+        exchange(replay, 8.0 * replay->ranks);
+    replay->in_cells = may && grid_pays(replay->square, lit, (int64_t)most_of(replay->cells, replay->ranks),
+                                        patches, (int64_t)sum_of(replay->astray, replay->ranks));
+    if (replay->in_cells)
         send_to_cells(replay);
     else
         even_out(replay);
@@ -773,13 +806,13 @@ static double most_looks(const struct replay *replay, const struct pass *pass)
 }
 
 /* As solver_assign_roots(). */
-static void assign_roots(struct replay *replay, const struct scene *scene)
+static void assign_roots(struct replay *replay, const struct method *method)
 {
     const struct pair_list *initial = &replay->record->initial;
-    int32_t roots = scene_root_count(scene);
+    int32_t roots = method->forest->root_count;
     int64_t *weights = alloc_array((size_t)roots, sizeof *weights);
     for (int32_t root = 0; root < roots; root++)
-        weights[root] = root_weight(scene, root);
+        weights[root] = root_weight(method, root);
     for (int64_t i = 0; i < initial->count; i++) {
         weights[initial->items[i].row]++;
         weights[initial->items[i].column]++;
@@ -789,10 +822,10 @@ static void assign_roots(struct replay *replay, const struct scene *scene)
     alloc_free(weights);
 }
 
-static void replay_run(struct replay *replay, const struct scene *scene)
+static void replay_run(struct replay *replay, const struct method *method)
 {
     const struct record *record = replay->record;
-    int32_t roots = scene_root_count(scene);
+    int32_t roots = method->forest->root_count;
     replay->owner = alloc_array((size_t)roots, sizeof *replay->owner);
     replay->cells = alloc_array((size_t)replay->ranks, sizeof *replay->cells);
     replay->astray = alloc_array((size_t)replay->ranks, sizeof *replay->astray);
@@ -801,7 +834,7 @@ static void replay_run(struct replay *replay, const struct scene *scene)
     replay->links = alloc_array((size_t)replay->ranks, sizeof *replay->links);
     replay->dim = alloc_array((size_t)replay->ranks, sizeof *replay->dim);
     replay_linking(replay);
-    assign_roots(replay, scene);
+    assign_roots(replay, method);
     count_cells(replay, &record->initial);
     place_links(replay, roots);
     for (int64_t k = 0; k < record->pass_count; k++) {
@@ -855,7 +888,8 @@ static void print_replay(const struct replay *replay, const char *scene)
         shared += price_of(record, kind) * replay->slowest[kind];
         parts += price_of(record, kind) * replay->all[kind] / ranks;
     }
-    double copies = price_of(record, WORK_PATCHES) * replay->slowest[WORK_PATCHES];
+    double copies = price_of(record, WORK_PATCHES) * replay->slowest[WORK_PATCHES] +
+                    PACKING * replay->migration / ranks;
     double talk = ALPHA * replay->messages + BETA * replay->bytes;
     double paper = ALPHA_PAPER * replay->messages + BETA_PAPER * replay->bytes;
     printf("%s,simulated,%d,%.6g,%.2f,%.4f,%.2f,%.2f,%.4f,%.2f\n", scene, replay->ranks,
@@ -900,7 +934,7 @@ static void simulate(const struct comm *comm, const struct options *options, str
         print_record(&record, options->scene);
         for (int ranks = 1; ranks <= RANKS_MOST; ranks *= 2) {
             struct replay replay = {.record = &record, .ranks = ranks, .square = grid_make(ranks)};
-            replay_run(&replay, scene);
+            replay_run(&replay, &solver->method);
             print_replay(&replay, options->scene);
         }
         record_free(&record);
