@@ -19,7 +19,7 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, 
 /* --- links, of whose costs each rank knows its own --- */
 
 /* What splitting a link is predicted to take, in tests: its cost, for those of its children are about
- * as many as its own were; and what there is to do besides. An unmade child takes a quarter. */
+ * as many as its own were; and what there is to do besides. Of an unmade child, what it takes. */
 int64_t link_load(const struct link *link);
 
 /* What it takes to look at a link and its patches; at a clear one (rad/oracle.h): 1. */
@@ -29,9 +29,10 @@ enum { LOOK_LOAD = 16 };
 bool moving_pays(const int64_t *loads, int ranks);
 
 /* Where the links of `rank` go by a plan (mpi/plan.h): destination[i] is for the link with
- * costs[i]. They are dealt in turn to the receivers of the rank's transfers, a link to a
- * receiver as long as at least half of its cost still fits into what is planned for it; the
- * others, and those that cost nothing, stay. */
+ * costs[i]. They are dealt in turn to the rank itself and to the receivers of its transfers, for
+ * what is wrong in the prediction of one link is likely to be wrong in that of the next: a link to
+ * each as long as at least half of its cost still fits into what is planned; the others, and those
+ * that cost nothing, stay. */
 void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *plan, int planned,
                     int rank, int *destination);
 

@@ -190,18 +190,29 @@ static void weigh_by_area(const struct method *method, int64_t *weights)
         weights[root] = (int64_t)(scene_root_area(method->scene, root) / method->area * 0x1p40);
 }
 
-/* Links that carry light, over all ranks. */
-static void weigh_by_links(struct solver *solver, int64_t *weights)
+static void add_up(struct solver *solver, int64_t *counts, int count)
 {
-    int32_t roots = solver->method.forest->root_count;
-    for (int64_t i = 0; i < solver->links.count; i++) {
-        const struct link *link = &solver->links.items[i];
-        weights[root_of(solver, link->p)] += link->seen > 0;
-        weights[root_of(solver, link->q)] += link->seen > 0;
-    }
     MPI_Request request;
-    MPI_Iallreduce(MPI_IN_PLACE, weights, roots, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
+    MPI_Iallreduce(MPI_IN_PLACE, counts, count, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
     wait_idle(solver, &request);
+}
+
+/* What there is to do at home; and, so that cells are even, links that carry light, over all ranks. */
+static void weigh_by_work(struct solver *solver, int64_t *weights)
+{
+    const struct link_list *links = &solver->links;
+    int32_t roots = solver->method.forest->root_count;
+    int64_t lit = 0;
+    for (int64_t i = 0; i < links->count; i++)
+        lit += links->items[i].seen > 0;
+    add_up(solver, &lit, 1);
+    if (links_want_cells(solver, lit)) {
+        for (int64_t i = 0; i < links->count; i++) {
+            weights[root_of(solver, links->items[i].p)] += links->items[i].seen > 0;
+            weights[root_of(solver, links->items[i].q)] += links->items[i].seen > 0;
+        }
+        add_up(solver, weights, roots);
+    }
     for (int32_t root = 0; root < roots; root++)
         weights[root] += root_weight(&solver->method, root);
 }
@@ -215,7 +226,7 @@ void solver_assign_roots(struct solver *solver)
     if (greedy)
         weigh_by_area(&solver->method, weights);
     else
-        weigh_by_links(solver, weights);
+        weigh_by_work(solver, weights);
     roots_assign(weights, roots, solver->comm->size, solver->owner);
     alloc_free(weights);
     for (int32_t root = 0; root < roots; root++)

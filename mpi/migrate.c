@@ -132,16 +132,23 @@ static void add_counts(struct solver *solver, int64_t *counts, int count)
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
 }
 
-/* True if links are better in their cells; here[r] of them are on rank r now. The cells are looked for only
- * where that can pay at all: if they were as even as can be. */
+/* If they were as even as can be. */
+bool links_want_cells(const struct solver *solver, int64_t lit)
+{
+    int ranks = solver->comm->size;
+    int64_t astray = solver->placed > 0 ? 0 : lit - lit / ranks;
+    return solver->method.criterion.balance == BALANCE_CELLS ||
+           grid_pays(solver->square, lit, lit / ranks, solver->method.forest->count, astray);
+}
+
+/* True if links are better in their cells; here[r] of them are on rank r now. */
 static bool cells_pay(struct solver *solver, const int64_t *here)
 {
     int ranks = solver->comm->size, rank = solver->comm->rank;
-    int64_t patches = solver->method.forest->count, lit = 0, largest = 0;
+    int64_t lit = 0, largest = 0;
     for (int r = 0; r < ranks; r++)
         lit += here[r];
-    int64_t astray = solver->placed > 0 ? 0 : lit - lit / ranks;
-    if (!grid_pays(solver->square, lit, lit / ranks, patches, astray) && solver->placed == 0)
+    if (solver->placed == 0 && !links_want_cells(solver, lit))
         return false;
     int64_t *cells = alloc_array((size_t)ranks + 1, sizeof *cells);
     for (int64_t i = 0; i < solver->links.count; i++)
@@ -153,9 +160,10 @@ static bool cells_pay(struct solver *solver, const int64_t *here)
     add_counts(solver, cells, ranks + 1);
     for (int r = 0; r < ranks; r++)
         largest = cells[r] > largest ? cells[r] : largest;
-    astray = cells[ranks];
+    int64_t astray = cells[ranks];
     alloc_free(cells);
-    return grid_pays(solver->square, lit, largest, patches, astray);
+    return solver->method.criterion.balance == BALANCE_CELLS ||
+           grid_pays(solver->square, lit, largest, solver->method.forest->count, astray);
 }
 
 /* Takes the links that carry light elsewhere out of the rank's links. */
@@ -201,7 +209,7 @@ void links_place(struct solver *solver)
         here[solver->comm->rank] += carries_light(&solver->links.items[i]);
     add_counts(solver, here, ranks);
     double start = comm_seconds();
-    bool in_cells = solver->method.criterion.balance == BALANCE_CELLS || cells_pay(solver, here);
+    bool in_cells = cells_pay(solver, here);
     if (in_cells)
         send_to_cells(solver);
     else if (is_uneven(here, ranks)) /* the same on all ranks, so all enter */

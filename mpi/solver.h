@@ -114,8 +114,8 @@ void solver_destroy(struct solver *solver);
 /* Step 2: initial linking. Rows of pairs of roots are dealt so that their work is even. */
 void solver_link_roots(struct solver *solver);
 
-/* Step 3: re-assignment. Roots get homes with even numbers of links that carry light, and these go to their
- * cells (mpi/balance.h); the paper's: even sums of areas, and links go to the homes. */
+/* Step 3: re-assignment. Roots get homes so that what there is to do at home is even, and links that carry
+ * light go where that is best done (mpi/migrate.h); the paper's: so that areas are even, and links go home. */
 void solver_assign_roots(struct solver *solver);
 
 /* Begins a pass: what refinement reads of the solution so far. */

@@ -648,6 +648,13 @@ static void even_out(struct replay *replay)
         replay->links[r] = (int64_t)sum / ranks + (r < (int64_t)sum % ranks);
 }
 
+/* As links_want_cells(). */
+static bool cells_may_pay(const struct replay *replay, int64_t lit, int64_t patches)
+{
+    int64_t astray = replay->in_cells ? 0 : lit - lit / replay->ranks;
+    return grid_pays(replay->square, lit, lit / replay->ranks, patches, astray);
+}
+
 /* As links_place(). */
 static void place_links(struct replay *replay, int64_t patches)
 {
@@ -656,8 +663,7 @@ static void place_links(struct replay *replay, int64_t patches)
     exchange(replay, 8.0 * replay->ranks);
     if (!replay->in_cells)
         memcpy(replay->astray, replay->links, bytes);
-    int64_t even = replay->in_cells ? 0 : lit - lit / replay->ranks;
-    bool may = replay->in_cells || grid_pays(replay->square, lit, lit / replay->ranks, patches, even);
+    bool may = replay->in_cells || cells_may_pay(replay, lit, patches);
     if (may)
         exchange(replay, 8.0 * replay->ranks);
     replay->in_cells = may && grid_pays(replay->square, lit, (int64_t)most_of(replay->cells, replay->ranks),
@@ -813,12 +819,15 @@ static void assign_roots(struct replay *replay, const struct method *method)
     int64_t *weights = alloc_array((size_t)roots, sizeof *weights);
     for (int32_t root = 0; root < roots; root++)
         weights[root] = root_weight(method, root);
-    for (int64_t i = 0; i < initial->count; i++) {
+    bool want_cells = cells_may_pay(replay, initial->count, roots);
+    for (int64_t i = 0; i < initial->count && want_cells; i++) {
         weights[initial->items[i].row]++;
         weights[initial->items[i].column]++;
     }
     roots_assign(weights, roots, replay->ranks, replay->owner);
-    exchange(replay, 8.0 * roots);
+    exchange(replay, 8.0);
+    if (want_cells)
+        exchange(replay, 8.0 * roots);
     alloc_free(weights);
 }
 
