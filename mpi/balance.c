@@ -32,8 +32,9 @@
  * in place of O(n) a rank), a link between patches of two homes lives in the row of one and the column
  * of the other. Either will do, and a bit of its IDs says which; with homes that have equally many links
  * of roots, cells have nearly equally many too (2.5 % more at most on 1,024 ranks). Where few roots
- * have most of the links that is not so; and to send all links there takes longer than it saves on less than
- * some hundred ranks. Then links are evened out instead, wherever they lead. */
+ * have most of the links that is not so; and to send all links there takes longer than it saves where
+ * they are many: with 400 for each patch, as in the rooms, on less than some hundred ranks. Then links
+ * are evened out instead, wherever they lead. */
 #include "mpi/balance.h"
 
 #include <math.h>

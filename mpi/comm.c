@@ -150,6 +150,14 @@ void comm_add_bytes(const struct comm *comm, uint8_t *bytes, int64_t count)
     comm_wait(&request);
 }
 
+void comm_add(const struct comm *comm, int64_t *numbers, int64_t count)
+{
+    MPI_Request request;
+    MPI_Iallreduce(MPI_IN_PLACE, numbers, comm_count(comm, count), MPI_INT64_T, MPI_SUM, comm->handle,
+                   &request);
+    comm_wait(&request);
+}
+
 double comm_largest(const struct comm *comm, double value)
 {
     double largest;

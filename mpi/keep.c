@@ -8,8 +8,8 @@
  *
  * Links are renumbered in place (patches depth first, as in forest_order()), sorted, merged on rank
  * 0, and given their local numbers back: no copy of them is made, since a checkpoint is wanted most
- * where memory is short. (So they are sorted here: many a qsort() makes a copy.) Reading, every block of links is
- * sent to all ranks, which take them in turn; homes are found when all are there. */
+ * where memory is short. (So they are sorted here: many a qsort() makes a copy.) Reading, every block
+ * of links is sent to all ranks, which take them in turn; homes are found when all are there. */
 #include "mpi/keep.h"
 
 #include <math.h>
@@ -340,7 +340,7 @@ int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snaps
     broadcast_snapshot(solver->comm, snapshot);
     restore_trees(forest, snapshot);
     closure_extend(&solver->closure, forest);
-    conjugate_extend(&solver->conjugate, forest, solver->own); /* own leaves are listed by solver_close() */
+    conjugate_extend(&solver->conjugate, forest, solver->own); /* own leaves: see solver_close() */
     int32_t *order = forest_order(forest);
     restore_leaves(solver, snapshot, order);
     for (int32_t root = 0; root < forest->root_count; root++)

@@ -190,13 +190,6 @@ static void weigh_by_area(const struct method *method, int64_t *weights)
         weights[root] = (int64_t)(scene_root_area(method->scene, root) / method->area * 0x1p40);
 }
 
-static void add_up(struct solver *solver, int64_t *counts, int count)
-{
-    MPI_Request request;
-    MPI_Iallreduce(MPI_IN_PLACE, counts, count, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
-    wait_idle(solver, &request);
-}
-
 /* What there is to do at home; and, so that cells are even, links that carry light, over all ranks. */
 static void weigh_by_work(struct solver *solver, int64_t *weights)
 {
@@ -205,13 +198,13 @@ static void weigh_by_work(struct solver *solver, int64_t *weights)
     int64_t lit = 0;
     for (int64_t i = 0; i < links->count; i++)
         lit += links->items[i].seen > 0;
-    add_up(solver, &lit, 1);
+    comm_add(solver->comm, &lit, 1);
     if (links_want_cells(solver, lit)) {
         for (int64_t i = 0; i < links->count; i++) {
             weights[root_of(solver, links->items[i].p)] += links->items[i].seen > 0;
             weights[root_of(solver, links->items[i].q)] += links->items[i].seen > 0;
         }
-        add_up(solver, weights, roots);
+        comm_add(solver->comm, weights, roots);
     }
     for (int32_t root = 0; root < roots; root++)
         weights[root] += root_weight(&solver->method, root);

@@ -122,13 +122,11 @@ static int cell_of(const struct solver *solver, const struct link *link)
                             : grid_cell(solver->square, home_p, home_q);
 }
 
-/* Sums over all ranks in place of what this one has. Waiting is idle time. */
+/* Waiting is idle time. */
 static void add_counts(struct solver *solver, int64_t *counts, int count)
 {
     double start = comm_seconds();
-    MPI_Request request;
-    MPI_Iallreduce(MPI_IN_PLACE, counts, count, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
-    comm_wait(&request);
+    comm_add(solver->comm, counts, count);
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
 }
 
@@ -136,7 +134,7 @@ static void add_counts(struct solver *solver, int64_t *counts, int count)
 bool links_want_cells(const struct solver *solver, int64_t lit)
 {
     int ranks = solver->comm->size;
-    int64_t astray = solver->placed > 0 ? 0 : lit - lit / ranks;
+    int64_t astray = solver->in_cells ? 0 : lit - lit / ranks;
     return solver->method.criterion.balance == BALANCE_CELLS ||
            grid_pays(solver->square, lit, lit / ranks, solver->method.forest->count, astray);
 }
@@ -148,7 +146,7 @@ static bool cells_pay(struct solver *solver, const int64_t *here)
     int64_t lit = 0, largest = 0;
     for (int r = 0; r < ranks; r++)
         lit += here[r];
-    if (solver->placed == 0 && !links_want_cells(solver, lit))
+    if (!solver->in_cells && !links_want_cells(solver, lit)) /* the same on all ranks */
         return false;
     int64_t *cells = alloc_array((size_t)ranks + 1, sizeof *cells);
     for (int64_t i = 0; i < solver->links.count; i++)
@@ -209,13 +207,13 @@ void links_place(struct solver *solver)
         here[solver->comm->rank] += carries_light(&solver->links.items[i]);
     add_counts(solver, here, ranks);
     double start = comm_seconds();
-    bool in_cells = cells_pay(solver, here);
-    if (in_cells)
+    solver->in_cells = cells_pay(solver, here);
+    if (solver->in_cells)
         send_to_cells(solver);
     else if (is_uneven(here, ranks)) /* the same on all ranks, so all enter */
         solver->bytes_migration += links_balance(solver, &solver->links, carries_light, here);
-    solver->grid = in_cells ? solver->square : (struct grid){1, ranks};
-    solver->placed = in_cells ? solver->links.count : 0;
+    solver->grid = solver->in_cells ? solver->square : (struct grid){1, ranks};
+    solver->placed = solver->in_cells ? solver->links.count : 0;
     alloc_free(here);
     solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
 }

@@ -21,9 +21,9 @@
 
 /* What ranks tell each other before a level. */
 struct load_notice {
-    int64_t links;           /* prolific links here, unmade children too, */
+    int64_t links;           /* prolific links here, */
     int64_t load;            /* their predicted cost, */
-    int64_t room;            /* and links there may be in their place at a time */
+    int64_t room;            /* and how many links there may be in their place at a time */
     int64_t kept;            /* links here that are not to be split */
     int64_t stop;            /* the signal that this rank has got, 0: none */
 };
@@ -59,7 +59,7 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
         solver->links.items[kept++] = link;
     }
     solver->links.count = kept;
-    solver->placed = solver->placed > 0 ? kept : 0;
+    solver->placed = solver->in_cells ? kept : 0;
     ledger_add(&solver->ledger, looks);
 }
 
@@ -126,7 +126,7 @@ static struct level balance_load(struct solver *solver, struct link_list *prolif
 {
     int ranks = solver->comm->size;
     int64_t named = name_children(solver, prolific);
-    struct load_notice own = {.links = prolific->count, .load = load_of(prolific),
+    struct load_notice own = {.links = named + count_whole(prolific), .load = load_of(prolific),
                               .room = room_of(prolific), .kept = solver->links.count,
                               .stop = signals_seen()};
     struct load_notice *notices = exchange_loads(solver, own);
@@ -221,7 +221,7 @@ static void share_splits(struct solver *solver)
 enum { PATCHES_PER_LOOK = 8, PATCHES_PER_SPLIT = 4 + 4 * PATCHES_PER_LOOK };
 
 /* True if the memory limit lets the level be split. `made` is a bound on the patches that all ranks
- * have made and not shared; only where it is not good enough are they shared and counted. */
+ * have made before and not shared; only where it is not good enough are they shared and counted. */
 static bool level_fits(struct solver *solver, const struct level *level, int64_t *made)
 {
     const struct memory *memory = &solver->memory;

@@ -55,11 +55,12 @@ struct solver {
     struct progress *progress; /* borrowed; NULL: nobody looks */
     struct method method;     /* scene, octree, forest and criterion; the forest is owned */
     struct link_list links;   /* the links that live here ("allInteractions") */
-    int64_t placed;           /* the first ones that are in their cells, if the grid in use is `square` */
+    bool in_cells;            /* those that carry light are in the cells of `square`: the same on all ranks; */
+    int64_t placed;           /* of the first ones here that is known, and not of what was made since */
     int *owner;               /* [roots] home rank of each root */
     bool *own;                /* [roots] owner[root] == rank */
-    struct grid grid;         /* of the ranks, as links lie: one row, or `square` */
     struct grid square;
+    struct grid grid;         /* of the ranks, as links lie: `square` if they are in its cells, or one row */
     struct comm row, column;  /* of `square`, those of this rank */
     struct routes routes;     /* of light between the ranks */
     int64_t *root_change;     /* [roots] see push_pull() */

@@ -120,7 +120,8 @@ int link_split(struct method *method, const struct link *link, int32_t patch,
                struct link children[4]);
 
 /* The same in two steps, where all of the work is in the children: here they are left unmade, and each can
- * be made anywhere. Pre: link_is_partly_seen(). */
+ * be made anywhere. They differ from those of link_split() in their blockers at most, since none knows what
+ * has blocked another. Pre: link_is_partly_seen(). */
 void link_split_unmade(struct method *method, const struct link *link, int32_t patch,
                        struct link children[4]);
 

@@ -80,6 +80,40 @@ for ranks in 4 6 12; do
     check "the same on $ranks ranks with --balance cells" same cells-$ranks serial
 done
 
+# Plates with a speck between them, on a grid with empty cells: links go into cells and come back.
+cat >"$work/plates.mtl" <<END
+newmtl lamp
+Kd 0.5 0.5 0.5
+Ke 10 10 10
+newmtl white
+Kd 0.7 0.7 0.7
+END
+cat >"$work/plates.obj" <<END
+mtllib plates.mtl
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 0 1 1
+v 1 1 1
+v 1 0 1
+v 0.5 0.5 0.5
+v 0.5 0.501 0.5
+v 0.501 0.5 0.5
+usemtl lamp
+f 1 2 3 4
+usemtl white
+f 5 6 7 8
+f 9 10 11
+END
+produce plates-serial "$work/serial/phr" "$work/plates.obj" --oracle bf --max-level 3
+for ranks in 6 9; do
+    produce plates-$ranks timeout -s KILL 100 $MPIEXEC -n $ranks "$BUILD/phr" "$work/plates.obj" \
+        --oracle bf --max-level 3
+    check "plates on $ranks ranks" same plates-$ranks plates-serial
+done
+
 produce flat-serial "$work/serial/phr" $cornell --flat --two-sided
 produce flat-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided
 check "the same with --flat --two-sided" same flat-3 flat-serial

@@ -213,6 +213,7 @@ static void test_migration(struct solver *parallel, struct solver *alone)
             right_place = right_place && parallel->links.items[i].blocker / turn % comm->size ==
                                              comm->rank;
     }
+    parallel->in_cells = false;
     parallel->placed = 0;
     int64_t after = total_of(comm, fingerprint(parallel)) & INT64_C(0xffffffffffff);
     report(comm, right_place, "each link is where it was sent");
