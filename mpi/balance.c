@@ -178,15 +178,18 @@ bool grid_turns(struct patch_id p, struct patch_id q)
     return (mixed * UINT32_C(0x85EBCA6B) >> 31) != 0;
 }
 
-/* To keep a patch up to date for an iteration (four copies and 48 bytes), and to send a link, in two hops,
- * takes as long as light over so many links; iterations that follow, as long as links are split. */
-static const double LINKS_PER_PATCH = 2.0, LINKS_PER_MOVE = 11.0, ITERATIONS_AHEAD = 30.0;
+/* To keep a patch up to date for an iteration (four copies and 48 bytes), an exchange (in a row and then
+ * in a column, so there are two more in each iteration), and to send a link, in two hops, take as long as
+ * light over so many links; iterations that follow, as long as links are split. */
+static const double LINKS_PER_PATCH = 2.0, LINKS_PER_EXCHANGE = 2000.0, LINKS_PER_MOVE = 11.0;
+static const double ITERATIONS_AHEAD = 30.0;
 
 bool grid_pays(struct grid grid, int64_t lit, int64_t largest, int64_t patches, int64_t astray)
 {
     int ranks = grid.rows * grid.columns;
     double all = LINKS_PER_PATCH * (double)patches;
-    double saved = all - all / grid.rows - all / grid.columns - ((double)largest - (double)lit / ranks);
+    double saved = all - all / grid.rows - all / grid.columns - ((double)largest - (double)lit / ranks) -
+                   2.0 * LINKS_PER_EXCHANGE;
     return ITERATIONS_AHEAD * saved > LINKS_PER_MOVE * (double)astray / ranks;
 }
 

@@ -199,6 +199,17 @@ static void send_to_cells(struct solver *solver)
     link_list_free(&astray);
 }
 
+/* The ranks of the row and of the column. (To make them takes tens of milliseconds where ranks are more
+ * than cores, for MPI has no way to do it without blocking: so it is done when they are wanted.) */
+static void find_neighbours(struct solver *solver)
+{
+    const struct comm *comm = solver->comm;
+    if (solver->row.size > 0)
+        return;
+    solver->row = comm_part(comm, comm->rank / solver->square.columns);
+    solver->column = comm_part(comm, comm->rank % solver->square.columns);
+}
+
 void links_place(struct solver *solver)
 {
     int ranks = solver->comm->size;
@@ -208,10 +219,12 @@ void links_place(struct solver *solver)
     add_counts(solver, here, ranks);
     double start = comm_seconds();
     solver->in_cells = cells_pay(solver, here);
-    if (solver->in_cells)
+    if (solver->in_cells) {
+        find_neighbours(solver);
         send_to_cells(solver);
-    else if (is_uneven(here, ranks)) /* the same on all ranks, so all enter */
+    } else if (is_uneven(here, ranks)) { /* the same on all ranks, so all enter */
         solver->bytes_migration += links_balance(solver, &solver->links, carries_light, here);
+    }
     solver->grid = solver->in_cells ? solver->square : (struct grid){1, ranks};
     solver->placed = solver->in_cells ? solver->links.count : 0;
     alloc_free(here);

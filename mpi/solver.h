@@ -61,7 +61,7 @@ struct solver {
     bool *own;                /* [roots] owner[root] == rank */
     struct grid square;
     struct grid grid;         /* of the ranks, as links lie: `square` if they are in its cells, or one row */
-    struct comm row, column;  /* of `square`, those of this rank */
+    struct comm row, column;  /* of `square`, those of this rank; of no ranks while there was no need */
     struct routes routes;     /* of light between the ranks */
     int64_t *root_change;     /* [roots] see push_pull() */
     int64_t first_new;        /* patches from here on were created in this iteration */

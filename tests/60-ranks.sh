@@ -80,39 +80,35 @@ for ranks in 4 6 12; do
     check "the same on $ranks ranks with --balance cells" same cells-$ranks serial
 done
 
-# Plates with a speck between them, on a grid with empty cells: links go into cells and come back.
-cat >"$work/plates.mtl" <<END
+# Many tiles with few links, so that on 9 ranks these go into cells, of which some stay empty; then a lamp and
+# a plate before it have so many that they come back.
+cat >"$work/mixed.mtl" <<END
 newmtl lamp
 Kd 0.5 0.5 0.5
 Ke 10 10 10
 newmtl white
 Kd 0.7 0.7 0.7
 END
-cat >"$work/plates.obj" <<END
-mtllib plates.mtl
-v 0 0 0
-v 1 0 0
-v 1 1 0
-v 0 1 0
-v 0 0 1
-v 0 1 1
-v 1 1 1
-v 1 0 1
-v 0.5 0.5 0.5
-v 0.5 0.501 0.5
-v 0.501 0.5 0.5
-usemtl lamp
-f 1 2 3 4
-usemtl white
-f 5 6 7 8
-f 9 10 11
-END
-produce plates-serial "$work/serial/phr" "$work/plates.obj" --oracle bf --max-level 3
+awk 'function square(x, y, z, size, up) {
+         printf "v %g %g %g\nv %g %g %g\nv %g %g %g\nv %g %g %g\nf %s\n", x, y, z, x, y, z + size,
+             x + size, y, z + size, x + size, y, z, up ? "-4 -3 -2 -1" : "-1 -2 -3 -4"
+     }
+     BEGIN {
+         print "mtllib mixed.mtl\nusemtl lamp"
+         square(40, 40, 40, 4, 0)
+         print "usemtl white"
+         square(40, 36, 40, 4, 1)
+         for (i = 0; i < 6000; i++)
+             square(i % 80, i % 7 == 0 ? 3 : 0, int(i / 80), 0.8, 1)
+     }' >"$work/mixed.obj"
+usual=$quiet
+quiet="--quiet --epsilon 3e-6 --size 96x96"
+produce mixed-serial "$work/serial/phr" "$work/mixed.obj" --oracle bf
 for ranks in 6 9; do
-    produce plates-$ranks timeout -s KILL 100 $MPIEXEC -n $ranks "$BUILD/phr" "$work/plates.obj" \
-        --oracle bf --max-level 3
-    check "plates on $ranks ranks" same plates-$ranks plates-serial
+    produce mixed-$ranks timeout -s KILL 100 $MPIEXEC -n $ranks "$BUILD/phr" "$work/mixed.obj" --oracle bf
+    check "tiles and plates on $ranks ranks" same mixed-$ranks mixed-serial
 done
+quiet=$usual
 
 produce flat-serial "$work/serial/phr" $cornell --flat --two-sided
 produce flat-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided

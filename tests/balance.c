@@ -337,12 +337,14 @@ static void test_turns(void)
 static void test_grid_pays(void)
 {
     struct grid grid = grid_make(12);
-    tap_ok(grid_pays(grid, 14400, 1200, 120, 0), "cells pay where links are even in them");
-    tap_ok(grid_pays(grid, 14400, 1299, 120, 0), "and nearly even: 99 links more are less than 50 patches");
-    tap_ok(!grid_pays(grid, 14400, 1300, 120, 0), "but not where few roots have most of the links");
-    tap_ok(!grid_pays(grid, 14400, 1200, 120, 14400), "nor if all have to be sent, and are many");
-    tap_ok(grid_pays(grid, 14400, 1200, 1200, 14400), "which is worth it for more patches");
-    tap_ok(!grid_pays(grid_make(11), 14400, 1310, 120, 0), "a prime number of ranks has one row");
+    tap_ok(grid_pays(grid, 240000, 20000, 12000, 0), "cells pay where links are even in them");
+    tap_ok(grid_pays(grid, 240000, 25999, 12000, 0),
+           "and nearly even: 5,999 links more take less than 5,000 patches less, and two exchanges more");
+    tap_ok(!grid_pays(grid, 240000, 26000, 12000, 0), "but not where few roots have most of the links");
+    tap_ok(!grid_pays(grid, 240000, 20000, 12000, 240000), "nor if all have to be sent, and are many");
+    tap_ok(grid_pays(grid, 240000, 20000, 24000, 240000), "which is worth it for more patches");
+    tap_ok(!grid_pays(grid, 2400, 200, 4000, 0), "exchanges are too dear for few patches");
+    tap_ok(!grid_pays(grid_make(11), 240000, 21819, 12000, 0), "a prime number of ranks has one row");
 }
 
 int main(void)
