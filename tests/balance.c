@@ -333,7 +333,7 @@ static void test_turns(void)
            (int)least, (int)most);
 }
 
-/* 12 ranks, 3 rows of 4: a rank keeps 7 of 12 patches up to date, and has 1,200 links with cells or without. */
+/* 12 ranks, 3 rows of 4: a rank keeps 7 of 12 patches up to date in place of all. */
 static void test_grid_pays(void)
 {
     struct grid grid = grid_make(12);
