@@ -88,27 +88,31 @@ static void close_symmetrically(struct solver *solver)
     }
 }
 
-/* Largest corrected row sum, and that times the largest reflectance of the leaf; both over all
- * leaves of all ranks. */
+/* Over all leaves of all ranks: the largest corrected row sum; that times the largest reflectance of the leaf;
+ * weight; and reflectance over weight. */
 static void bound_rows(struct solver *solver)
 {
     const struct method *method = &solver->method;
-    double bound[3] = {1.0, 0.0, 1.0}; /* gain, shrink, weight */
+    double bound[4] = {1.0, 0.0, 1.0, 0.0}; /* gain, shrink, weight, share */
     for (int64_t i = 0; i < solver->conjugate.leaf_count; i++) {
         int32_t leaf = solver->conjugate.leaves[i];
         double row = closure_receives(&solver->closure, leaf) *
                      leaf_irradiance(method->forest, leaf, solver->flux).band[0];
         struct rgb rho = forest_material(method->forest, leaf)->reflectance;
+        double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2]));
+        double weight = closure_weight(&solver->closure, leaf);
         bound[0] = fmax(bound[0], row);
-        bound[1] = fmax(bound[1], row * fmax(rho.band[0], fmax(rho.band[1], rho.band[2])));
-        bound[2] = fmax(bound[2], closure_weight(&solver->closure, leaf));
+        bound[1] = fmax(bound[1], row * largest);
+        bound[2] = fmax(bound[2], weight);
+        bound[3] = fmax(bound[3], largest / weight);
     }
     MPI_Request request;
-    MPI_Iallreduce(MPI_IN_PLACE, bound, 3, MPI_DOUBLE, MPI_MAX, solver->comm->handle, &request);
+    MPI_Iallreduce(MPI_IN_PLACE, bound, 4, MPI_DOUBLE, MPI_MAX, solver->comm->handle, &request);
     comm_wait(&request);
     solver->gain = bound[0];
     solver->shrink = bound[1];
     solver->weight = bound[2];
+    solver->share = bound[3];
 }
 
 void solver_close(struct solver *solver)

@@ -31,14 +31,14 @@ struct memory {
     int copies;      /* of the patches that count */
 };
 
-/* What a rank says about an iteration; 128 bytes, no padding. */
+/* What a rank says about an iteration; 136 bytes, no padding. */
 struct ballot {
     int64_t light, absorbed, change, arriving; /* flux units */
     int64_t split, links;
     int64_t divided;                           /* own patches that are new */
     int64_t stop;                              /* the signal that it has got */
     int64_t square[BANDS];                     /* --solver cg: <z, z>, */
-    int64_t negative, bulk;                    /* and see conjugate_sum(), flux units */
+    int64_t negative, bulk, missing;           /* and see conjugate_sum(), flux units */
     double shrink;                             /* --solver jacobi: see push_pull() */
     double largest;                            /* --solver cg: |z| */
     double brightest;                          /* what leaves send, W/m^2 and band */
@@ -78,7 +78,7 @@ struct solver {
     struct conjugate conjugate; /* of --solver cg, like all up to `diverged` */
     bool fresh;                 /* the links have changed: the next transfer is of B */
     bool diverged;              /* K is not positive: more is reflected than arrives */
-    double gain, shrink, weight; /* bounds: row sum, row sum times rho, closure_weight() */
+    double gain, shrink, weight, share; /* at most: row sum, that times rho, closure_weight(), rho over that */
     double gamma[BANDS], gamma_before[BANDS], step_before[BANDS];
     double bound_residual, bound_image; /* |z| and |K p| are nowhere larger */
     double least_bend;          /* least <K z, z> / <z, z> seen */

@@ -144,7 +144,7 @@ struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct met
         int32_t leaf = cg->leaves[i];
         const struct material *material = forest_material(method->forest, leaf);
         double area = forest_area(method->forest, leaf), weight = area * closure_weight(closure, leaf);
-        double light = 0.0, absorbed = 0.0, arriving = 0.0, negative = 0.0;
+        double light = 0.0, absorbed = 0.0, arriving = 0.0, negative = 0.0, missing = 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = material->reflectance.band[c], h = cg->irradiance[leaf].band[c];
             double z = cg->residual[leaf].band[c];
@@ -152,6 +152,7 @@ struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct met
             absorbed += area * ((1.0 - rho) * h);
             arriving += area * (h + z);
             negative += area * (rho * fmax(0.0, -h));
+            missing += weight * fabs(z);
             sums.square[c] = flux_add(sums.square[c],
                                       flux_from_watts(unit, weight * rho * (z * z)));
             sums.largest = fmax(sums.largest, rho > 0.0 ? fabs(z) : 0.0);
@@ -162,6 +163,7 @@ struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct met
         sums.arriving = flux_add(sums.arriving, flux_from_watts(method->flux_unit, arriving));
         sums.bulk = flux_add(sums.bulk, flux_from_watts(method->flux_unit, most));
         sums.negative = flux_add(sums.negative, flux_from_watts(method->flux_unit, negative));
+        sums.missing = flux_add(sums.missing, flux_from_watts(method->flux_unit, missing));
     }
     return sums;
 }

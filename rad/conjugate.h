@@ -30,7 +30,8 @@ struct conjugate_sums {
                                           units of method.flux_unit */
     int64_t bulk;                      /* the largest magnitude of these three, summed: while it is
                                           below FLUX_LIMIT, none of them has met that limit */
-    int64_t negative;                  /* A rho |H| where H < 0, in the same units */
+    int64_t negative;                  /* A rho |H| where H < 0, in the same units, */
+    int64_t missing;                   /* and A closure_weight() |z| */
     double largest;                    /* largest |z| */
 };
 
