@@ -5,6 +5,7 @@
 #define MPI_BALANCE_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "mpi/plan.h"
@@ -27,6 +28,10 @@ enum { LOOK_LOAD = 16 };
 
 /* True if what the ranks save takes longer than sending the links. */
 bool moving_pays(const int64_t *loads, int ranks);
+
+/* The work, in tests, after which a rank leaves the rest of a level to be dealt anew, when it has been dealt so
+ * often before; INT64_MAX: it leaves none. loads[r]: what rank r has to split. */
+int64_t links_limit(const int64_t *loads, int ranks, int stage);
 
 /* Where the links of `rank` go by a plan (mpi/plan.h): destination[i] is for the link with
  * costs[i]. They are dealt in turn to the rank itself and to the receivers of its transfers, for
@@ -68,9 +73,9 @@ struct row_part {
     int32_t from, to;
 };
 
-/* Parts that a row is cut into at most; stopped parts that a rank can tell of at a time; and the work after
- * which the sample of a row is stopped, whatever was expected of it. */
-enum { ROW_PARTS_MAX = 64, ROW_NEWS = 16, ROW_SAMPLE_LIMIT = 10000 };
+/* Parts that a row is cut into at most; stopped parts that a rank can tell of at a time, at most; and the work
+ * after which the sample of a row is stopped, whatever was expected of it. */
+enum { ROW_PARTS_MAX = 64, ROW_NEWS = 64, ROW_SAMPLE_LIMIT = 10000 };
 
 /* What a rank tells all between two stages: the work that it has done and waited for, how many of its
  * parts of the last stage it has begun, and what it has left of those that took too long. No padding. */
@@ -78,6 +83,12 @@ struct row_news {
     int64_t clock, begun, count;
     struct row_part left[ROW_NEWS]; /* [count] */
 };
+
+/* Bytes of its news that one of so many ranks tells. */
+size_t row_news_size(int ranks);
+
+/* Adds what is left of a part. False if there is no room for it, or nobody to be told. */
+bool row_news_add(struct row_news *news, const struct row_part *rest, int ranks);
 
 /* Rows are dealt in stages, each of half of what is left. */
 struct row_deal {
@@ -125,8 +136,9 @@ void row_deal_end(struct row_deal *deal);
  * order until it has worked as long as planned. */
 void row_deal_next(struct row_deal *deal);
 
-/* True if a rank that has worked so much in this stage is not to begin another of its parts. */
-bool row_stage_is_over(const struct row_deal *deal, int rank, int64_t worked);
+/* True if a rank that has worked so much in this stage, and has this to tell, is not to begin another of its
+ * parts. */
+bool row_stage_is_over(const struct row_deal *deal, int rank, int64_t worked, const struct row_news *news);
 
 /* A rank's clock when it has heard what all had to tell so far: it has waited for the latest. */
 int64_t row_clock(const struct row_deal *deal, int64_t clock);

@@ -12,6 +12,8 @@
 #include "mpi/balance.h"
 #include "mpi/migrate.h"
 
+#include <string.h>
+
 #include "geom/alloc.h"
 #include "rad/linking.h"
 
@@ -59,10 +61,8 @@ static int64_t link_row_part(struct rows *rows, const struct row_part *part, int
         return expected;
     struct row_part rest = row_rest(part, stop, work);
     rows->predicted -= rest.cost < part->cost ? rest.cost : part->cost;
-    if (rows->solver->comm->size > 1 && rows->news.count < ROW_NEWS) {
-        rows->news.left[rows->news.count++] = rest;
+    if (row_news_add(&rows->news, &rest, rows->solver->comm->size))
         return expected;
-    }
     struct row_part cut[ROW_PARTS_MAX];
     int count = row_cut(&rest, cut);
     for (int i = 0; i < count; i++)
@@ -102,7 +102,7 @@ static void link_stage(struct rows *rows, const struct row_deal *deal)
     int64_t before = method_work(&rows->solver->method);
     for (int64_t i = deal->first; i < deal->end; i++) {
         int64_t worked = method_work(&rows->solver->method) - before;
-        if (deal->owner[i] != comm->rank || row_stage_is_over(deal, comm->rank, worked))
+        if (deal->owner[i] != comm->rank || row_stage_is_over(deal, comm->rank, worked, &rows->news))
             continue;
         progress_tick(rows->solver->progress, (double)i / (double)deal->count);
         link_row_part(rows, &deal->parts[i], row_limit(&deal->parts[i]));
@@ -128,6 +128,8 @@ static void link_rows(struct rows *rows)
     int *sampler = deal_samples(comm, rows->linking);
     int64_t *rests = alloc_array((size_t)rows->count + (size_t)comm->size, sizeof *rests);
     struct row_news *all = alloc_array((size_t)comm->size, sizeof *all), told;
+    size_t size = row_news_size(comm->size);
+    uint8_t *heard = alloc_array((size_t)comm->size, size);
     link_samples(rows, sampler, rests);
     struct row_deal deal = row_deal_start(rests, sampler, rows->count, rests + rows->count,
                                           comm->size);
@@ -138,12 +140,14 @@ static void link_rows(struct rows *rows)
         told = rows->news;
         rows->news.count = rows->news.begun = 0;
         row_deal_next(&deal);
-        MPI_Iallgather(&told, (int)sizeof told, MPI_BYTE, all, (int)sizeof told, MPI_BYTE,
-                       comm->handle, &request);
+        MPI_Iallgather(&told, (int)size, MPI_BYTE, heard, (int)size, MPI_BYTE, comm->handle, &request);
         link_stage(rows, &deal);
         wait_idle(rows->solver, &request);
+        for (int r = 0; r < comm->size; r++)
+            memcpy(&all[r], heard + (size_t)r * size, size);
     } while (row_deal_hear(&deal, all));
     row_deal_end(&deal);
+    alloc_free(heard);
     alloc_free(all);
     alloc_free(rests);
     alloc_free(sampler);

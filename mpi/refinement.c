@@ -3,7 +3,8 @@
  * `prolific` holds the links of one level that will be split. Before each level the ranks
  * exchange their loads, the sums of predicted costs; each decides alike where links go
  * (mpi/balance.h). Then each rank splits what it has: children that are to be split too form the
- * next level, the others join the links.
+ * next level, the others join the links. Where there is much to do, ranks stop after a time that all
+ * know, and the rest of the level is dealt anew, but for --balance greedy, the paper's.
  *
  * What was split stays where that was done; light is transferred over links where they are. So
  * at the end they go where that is best done, but for --balance greedy, the paper's.
@@ -28,9 +29,10 @@ struct load_notice {
     int64_t stop;            /* the signal that this rank has got, 0: none */
 };
 
-/* Links of all ranks before a level. */
+/* Links of all ranks before a stage of a level; and the work after which a rank ends it. */
 struct level {
     int64_t prolific, room, kept;
+    int64_t limit;
 };
 
 static int64_t load_of(const struct link_list *list)
@@ -119,9 +121,8 @@ static int64_t count_whole(const struct link_list *list)
     return count;
 }
 
-/* LoadBalance of Algorithm 1. `phase` receives what this rank has of the level. Returns the
- * links of all ranks. */
-static struct level balance_load(struct solver *solver, struct link_list *prolific, int64_t level,
+/* LoadBalance of Algorithm 1. `phase` receives what this rank has sent. Returns the links of all ranks. */
+static struct level balance_load(struct solver *solver, struct link_list *prolific, int64_t level, int stage,
                                  struct phase_work *phase)
 {
     int ranks = solver->comm->size;
@@ -131,7 +132,7 @@ static struct level balance_load(struct solver *solver, struct link_list *prolif
                               .stop = signals_seen()};
     struct load_notice *notices = exchange_loads(solver, own);
     double start = comm_seconds();
-    struct level sum = {0, 0, 0};
+    struct level sum = {.limit = INT64_MAX};
     int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
     for (int r = 0; r < ranks; r++) {
         loads[r] = notices[r].load;
@@ -141,13 +142,14 @@ static struct level balance_load(struct solver *solver, struct link_list *prolif
         solver->stop = (int)notices[r].stop > solver->stop ? (int)notices[r].stop : solver->stop;
     }
     *phase = (struct phase_work){.kind = WORK_SPLITTING, .iteration = solver->pass, .level = level};
+    if (solver->method.criterion.balance != BALANCE_GREEDY)
+        sum.limit = links_limit(loads, ranks, stage);
     if (moving_pays(loads, ranks)) /* the same on all ranks, so all enter */
         solver->bytes_migration += phase->bytes = links_balance(solver, prolific, link_load, loads);
     alloc_free(loads);
     alloc_free(notices);
     progress_begin(solver->progress, "refining", level, sum.prolific);
-    phase->links = named + count_whole(prolific);
-    phase->predicted = load_of(prolific);
+    phase->links = named;
     solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
     return sum;
 }
@@ -161,15 +163,22 @@ static int make_children(struct solver *solver, const struct link *link, struct 
     return link_split(&solver->method, link, oracle_patch_to_split(&solver->method, link), children);
 }
 
-/* Splits all links of the level; their children go to `next` or to the rank's links. */
-static void split_level(struct solver *solver, const struct link_list *prolific,
-                        struct link_list *next)
+/* Splits links until that took as much work as the limit; their children go to `next` or to the rank's links,
+ * the others stay in `prolific`. */
+static void split_stage(struct solver *solver, struct link_list *prolific, int64_t limit,
+                        struct link_list *next, struct phase_work *phase)
 {
-    for (int64_t i = 0; i < prolific->count; i++) {
-        if (i % 64 == 0)
-            progress_tick(solver->progress, (double)i / (double)prolific->count);
+    double start = comm_seconds();
+    int64_t before = method_work(&solver->method), done = 0;
+    for (; done < prolific->count && method_work(&solver->method) - before < limit; done++) {
+        const struct link *link = &prolific->items[done];
+        if (done % 64 == 0)
+            progress_tick(solver->progress, (double)done / (double)prolific->count);
+        phase->links += link->seen != LINK_UNMADE;
+        phase->predicted += link_load(link);
+        solver->split_here += link->seen != LINK_UNMADE;
         struct link children[4];
-        int count = make_children(solver, &prolific->items[i], children);
+        int count = make_children(solver, link, children);
         for (int k = 0; k < count; k++) {
             bool goes_on = oracle_patch_to_split(&solver->method, &children[k]) >= 0;
             if (!goes_on)
@@ -177,7 +186,12 @@ static void split_level(struct solver *solver, const struct link_list *prolific,
             link_list_append(goes_on ? next : &solver->links, children[k]);
         }
     }
-    solver->split_here += count_whole(prolific);
+    prolific->count -= done;
+    if (prolific->count > 0)
+        memmove(prolific->items, prolific->items + done, (size_t)prolific->count * sizeof *prolific->items);
+    phase->work = method_work(&solver->method) - before;
+    ledger_add(&solver->ledger, *phase);
+    solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
 }
 
 /* Links that are left to be split are links like all others; unmade ones are made. */
@@ -240,7 +254,7 @@ static bool split_levels(struct solver *solver, struct link_list *prolific)
     struct phase_work phase;
     int64_t made = 0;
     for (int64_t level = 0;; level++) {
-        struct level links = balance_load(solver, prolific, level, &phase);
+        struct level links = balance_load(solver, prolific, level, 0, &phase);
         if (links.prolific == 0)
             return true;
         made += level == 0 ? PATCHES_PER_LOOK * links.kept : 0;
@@ -251,15 +265,14 @@ static bool split_levels(struct solver *solver, struct link_list *prolific)
             return false;
         }
         made += PATCHES_PER_SPLIT * links.prolific;
-        double start = comm_seconds();
-        phase.work = -method_work(&solver->method);
-        split_level(solver, prolific, &next);
-        phase.work += method_work(&solver->method);
-        ledger_add(&solver->ledger, phase);
+        split_stage(solver, prolific, links.limit, &next, &phase);
+        for (int stage = 1; links.limit < INT64_MAX; stage++) {
+            links = balance_load(solver, prolific, level, stage, &phase);
+            split_stage(solver, prolific, links.limit, &next, &phase);
+        }
         link_list_free(prolific);
         *prolific = next;
         next = (struct link_list){0};
-        solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
     }
 }
 

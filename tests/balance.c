@@ -131,11 +131,24 @@ static void test_moving(void)
     tap_ok(moving_pays(many, 1024), "to few of many ranks, too");
 }
 
+static void test_limit(void)
+{
+    const int64_t much[4] = {400000, 0, 0, 0}, little[4] = {100, 100, 100, 100};
+    int stages = 0;
+    while (stages < 100 && links_limit(much, 4, stages) < INT64_MAX)
+        stages++;
+    tap_ok(stages > 0 && stages < 10 && links_limit(much, 4, 0) > 50000 && links_limit(much, 4, 0) < 100000,
+           "ranks stop before they have done what the mean rank has to do, %d times", stages);
+    tap_ok(links_limit(much, 1, 0) == INT64_MAX && links_limit(little, 4, 0) == INT64_MAX,
+           "but not one rank alone, nor where there is little to do");
+}
+
 /* --- rows --- */
 
 /* Rows of which the prediction is wrong: what a root really takes, thousandths. */
 struct rows {
     int32_t count;
+    int ranks;
     int64_t *rests, *samples, *each; /* [count] predicted, of the rest and of the sample; really */
     uint8_t *seen;                   /* [count * count] how often a root was linked */
     bool is_right;
@@ -185,10 +198,8 @@ static int64_t do_part(struct rows *rows, const struct row_part *part, struct ro
         return work;
     struct row_part rest = row_rest(part, stop, work), cut[ROW_PARTS_MAX];
     rows->is_right = rows->is_right && rest.from == stop && rest.to == part->to && rest.cost >= 0;
-    if (news->count < ROW_NEWS) {
-        news->left[news->count++] = rest;
+    if (row_news_add(news, &rest, rows->ranks))
         return work;
-    }
     int count = row_cut(&rest, cut);
     for (int i = 0; i < count; i++)
         work += do_part(rows, &cut[i], news);
@@ -203,7 +214,7 @@ static void do_stage(struct rows *rows, const struct row_deal *deal, struct row_
     for (int64_t i = deal->first; i < deal->end; i++) {
         int rank = deal->owner[i];
         rows->is_right = rows->is_right && rank >= 0 && rank < deal->ranks;
-        if (row_stage_is_over(deal, rank, worked[rank]))
+        if (row_stage_is_over(deal, rank, worked[rank], &own[rank]))
             continue;
         worked[rank] += do_part(rows, &deal->parts[i], &own[rank]);
         own[rank].begun++;
@@ -230,6 +241,7 @@ static void do_samples(struct rows *rows, const int *sampler, struct row_news *o
 static void test_rows(int32_t count, int ranks, bool alike, double most)
 {
     struct rows rows = rows_make(count, alike);
+    rows.ranks = ranks;
     size_t n = (size_t)ranks;
     int64_t *sampled = alloc_array(n, sizeof *sampled), *clocks = alloc_array(n, sizeof *clocks);
     struct row_news *own = alloc_array(n, sizeof *own), *told = alloc_array(n, sizeof *told);
@@ -270,6 +282,25 @@ static void test_rows(int32_t count, int ranks, bool alike, double most)
     alloc_free(own);
     alloc_free(clocks);
     alloc_free(sampled);
+}
+
+/* What ranks tell has room for as much as they may add, and a rank that has no room left begins nothing. */
+static void test_news(int ranks, int64_t least)
+{
+    const struct row_part rest = {.cost = 1, .to = 1};
+    const int64_t sampled[1024] = {0}, rests = 0;
+    struct row_news news = {0};
+    int sampler = 0;
+    struct row_deal deal = row_deal_start(&rests, &sampler, 0, sampled, ranks);
+    int64_t before = 0; /* additions after which the stage is not over */
+    while (news.count < 100 && row_news_add(&news, &rest, ranks))
+        before += !row_stage_is_over(&deal, 0, 0, &news);
+    tap_ok(before == (ranks > 1 ? news.count - 1 : 0) && news.count >= least && news.count <= ROW_NEWS &&
+               row_news_size(ranks) >= offsetof(struct row_news, left) + (size_t)news.count * sizeof rest &&
+               row_news_size(ranks) * (size_t)ranks <= 1 << 19,
+           "%d ranks: %lld stopped parts are told, in %lld bytes; then a rank has done enough", ranks,
+           (long long)news.count, (long long)row_news_size(ranks));
+    row_deal_end(&deal);
 }
 
 static void test_parts(void)
@@ -360,7 +391,11 @@ int main(void)
     test_links(64, 10, 1000, "links");
     test_loads();
     test_moving();
+    test_limit();
     test_parts();
+    test_news(1, 0);
+    test_news(8, 64);
+    test_news(1024, 16);
     for (int ranks = 1; ranks <= 64; ranks *= 4)
         test_rows(3000, ranks, false, 1.01);
     test_rows(3000, 256, false, 1.12);

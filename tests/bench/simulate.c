@@ -527,10 +527,8 @@ static void do_part(struct replay *replay, const struct row_part *part, int rank
     if (unit->stop == part->to)
         return;
     struct row_part rest = row_rest(part, unit->stop, unit->work), cut[ROW_PARTS_MAX];
-    if (replay->ranks > 1 && news->count < ROW_NEWS) {
-        news->left[news->count++] = rest;
+    if (row_news_add(news, &rest, replay->ranks))
         return;
-    }
     int count = row_cut(&rest, cut);
     for (int i = 0; i < count; i++)
         do_part(replay, &cut[i], rank, done, news);
@@ -574,14 +572,14 @@ static void replay_linking(struct replay *replay)
         row_deal_next(&deal);
         for (int64_t i = deal.first; i < deal.end; i++) {
             int rank = deal.owner[i];
-            if (row_stage_is_over(&deal, rank, done[rank] - before[rank]))
+            if (row_stage_is_over(&deal, rank, done[rank] - before[rank], &own[rank]))
                 continue;
             do_part(replay, &deal.parts[i], rank, done, &own[rank]);
             own[rank].begun++;
         }
         advance(clocks, done, before, ranks);
         wait_for(clocks, ranks, news);
-        exchange(replay, (double)sizeof *own * ranks);
+        exchange(replay, (double)row_news_size(ranks) * ranks);
     } while (row_deal_hear(&deal, told));
     replay->slowest[WORK_LINKING] = latest(clocks, ranks);
     replay->all[WORK_LINKING] = sum_of(done, ranks);
@@ -692,30 +690,32 @@ static void deal_events(struct replay *replay, const int64_t *at, int64_t count,
     alloc_free(costs);
 }
 
-/* As in mpi/refinement.c. */
-static void balance_level(struct replay *replay, const struct level *level)
+/* As balance_load(): deals the events `at`, puts them in the order of their ranks before that, and returns the work
+ * after which ranks leave the rest. */
+static int64_t balance_stage(struct replay *replay, int64_t *at, int64_t count, int stage)
 {
     const struct record *record = replay->record;
     int ranks = replay->ranks;
-    int64_t count = level->end - level->first;
     int64_t *loads = alloc_array(3 * (size_t)ranks + 1, sizeof *loads);
     int64_t *sent = loads + ranks, *first = sent + ranks;
     int64_t *sorted = alloc_array((size_t)count, sizeof *sorted);
     struct transfer *plan = alloc_array(2 * (size_t)ranks, sizeof *plan);
-    for (int64_t i = level->first; i < level->end; i++) {
-        int rank = replay->of_event[i];
-        loads[rank] += record->events[i].load;
+    for (int64_t i = 0; i < count; i++) {
+        int rank = replay->of_event[at[i]];
+        loads[rank] += record->events[at[i]].load;
         first[rank + 1]++;
     }
     for (int r = 0; r < ranks; r++)
         first[r + 1] += first[r];
+    int64_t limit = links_limit(loads, ranks, stage);
     int planned = moving_pays(loads, ranks) ? plan_transfers(loads, ranks, plan) : 0;
-    for (int64_t i = level->end - 1; i >= level->first; i--) /* ranks end where they began */
-        sorted[--first[replay->of_event[i] + 1]] = i;
+    for (int64_t i = count - 1; i >= 0; i--) /* ranks end where they began */
+        sorted[--first[replay->of_event[at[i]] + 1]] = at[i];
+    memcpy(at, sorted, (size_t)count * sizeof *at);
     if (planned > 0) {
         for (int r = 0; r < ranks; r++)
-            deal_events(replay, sorted + first[r + 1], (r + 1 < ranks ? first[r + 2] : count) - first[r + 1],
-                        r, plan, planned, sent);
+            deal_events(replay, at + first[r + 1], (r + 1 < ranks ? first[r + 2] : count) - first[r + 1], r,
+                        plan, planned, sent);
         move_links(replay, plan, planned, most_of(sent, ranks));
         replay->migration += sum_of(sent, ranks);
     }
@@ -723,21 +723,36 @@ static void balance_level(struct replay *replay, const struct level *level)
     alloc_free(plan);
     alloc_free(sorted);
     alloc_free(loads);
+    return limit;
 }
 
 static void replay_level(struct replay *replay, const struct level *level)
 {
     const struct record *record = replay->record;
-    int64_t *work = alloc_array((size_t)replay->ranks, sizeof *work);
-    balance_level(replay, level);
-    for (int64_t i = level->first; i < level->end; i++) {
-        work[replay->of_event[i]] += record->events[i].work;
-        replay->links[replay->of_event[i]] += record->events[i].kept;
-        replay->astray[replay->of_event[i]] += record->events[i].kept;
+    int64_t count = level->end - level->first, limit = 0;
+    int64_t *at = alloc_array((size_t)count, sizeof *at);
+    for (int64_t i = 0; i < count; i++)
+        at[i] = level->first + i;
+    for (int stage = 0; limit < INT64_MAX; stage++) {
+        int64_t *work = alloc_array((size_t)replay->ranks, sizeof *work), left = 0;
+        limit = balance_stage(replay, at, count, stage);
+        for (int64_t i = 0; i < count; i++) {
+            const struct event *event = &record->events[at[i]];
+            int rank = replay->of_event[at[i]];
+            if (work[rank] >= limit) {
+                at[left++] = at[i];
+                continue;
+            }
+            work[rank] += event->work;
+            replay->links[rank] += event->kept;
+            replay->astray[rank] += event->kept;
+        }
+        count = left;
+        replay->slowest[WORK_SPLITTING] += most_of(work, replay->ranks);
+        replay->all[WORK_SPLITTING] += sum_of(work, replay->ranks);
+        alloc_free(work);
     }
-    replay->slowest[WORK_SPLITTING] += most_of(work, replay->ranks);
-    replay->all[WORK_SPLITTING] += sum_of(work, replay->ranks);
-    alloc_free(work);
+    alloc_free(at);
 }
 
 /* Own patches of the rank that has most, and those that the rank with most keeps up to date. */
