@@ -136,7 +136,7 @@ bool moving_pays(const int64_t *loads, int ranks)
 /* A stage takes so much of what is predicted of the mean rank that hardly any is done before it ends. The last of
  * three takes what is left, and so does one of less than so many tests, which is not worth a new deal. */
 static const double STAGE_SHARE = 0.7;
-enum { STAGES = 3, STAGE_LEAST = 8000 };
+enum { STAGES = 3, STAGE_LEAST = 3000 };
 
 int64_t links_limit(const int64_t *loads, int ranks, int stage)
 {
@@ -199,9 +199,10 @@ bool grid_turns(struct patch_id p, struct patch_id q)
 
 /* To keep a patch up to date for an iteration (four copies and 48 bytes), an exchange (in a row and then
  * in a column, so there are two more in each iteration), and to send a link, in two hops, take as long as
- * light over so many links; iterations that follow, as long as links are split. */
+ * light over so many links. Some 30 iterations follow in rooms, but with half of that the choice is the better
+ * one of the two: the more links are split, the less even are cells. */
 static const double LINKS_PER_PATCH = 2.0, LINKS_PER_EXCHANGE = 2000.0, LINKS_PER_MOVE = 11.0;
-static const double ITERATIONS_AHEAD = 30.0;
+static const double ITERATIONS_AHEAD = 15.0;
 
 bool grid_pays(struct grid grid, int64_t lit, int64_t largest, int64_t patches, int64_t astray)
 {
