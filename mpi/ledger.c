@@ -14,15 +14,23 @@ void ledger_add(struct ledger *ledger, struct phase_work phase)
     ledger->items[ledger->count++] = phase;
 }
 
+/* Stages of a level follow each other; it lasts as long as all of them. */
 static void add_level(struct ledger *ledger, const struct phase_work *phase, const int64_t *sum,
                       const int64_t *most, int ranks)
 {
-    ledger->levels = alloc_reserve(ledger->levels, &ledger->level_capacity,
-                                   ledger->level_count + 1, sizeof *ledger->levels);
-    ledger->levels[ledger->level_count++] = (struct level_balance){
-        .iteration = phase->iteration, .level = phase->level, .links = sum[0],
-        .predicted_max = (double)most[1], .predicted_mean = (double)sum[1] / ranks,
-        .work_max = (double)most[2], .work_mean = (double)sum[2] / ranks};
+    int64_t count = ledger->level_count;
+    if (count == 0 || ledger->levels[count - 1].iteration != phase->iteration ||
+        ledger->levels[count - 1].level != phase->level) {
+        ledger->levels = alloc_reserve(ledger->levels, &ledger->level_capacity, ++count, sizeof *ledger->levels);
+        ledger->levels[count - 1] = (struct level_balance){.iteration = phase->iteration, .level = phase->level};
+        ledger->level_count = count;
+    }
+    struct level_balance *level = &ledger->levels[count - 1];
+    level->links += sum[0];
+    level->predicted_max += (double)most[1];
+    level->predicted_mean += (double)sum[1] / ranks;
+    level->work_max += (double)most[2];
+    level->work_mean += (double)sum[2] / ranks;
 }
 
 void ledger_share(struct ledger *ledger, const struct comm *comm)

@@ -5,7 +5,7 @@
 #include "mpi/comm.h"
 #include "rad/stats.h"
 
-/* One phase on one rank. All ranks have the same phases in the same order. */
+/* One phase on one rank, or a stage of one. All ranks have the same in the same order. */
 struct phase_work {
     enum work kind;
     int64_t iteration, level; /* as in struct level_balance */

@@ -3,13 +3,13 @@
  * `prolific` holds the links of one level that will be split. Before each level the ranks
  * exchange their loads, the sums of predicted costs; each decides alike where links go
  * (mpi/balance.h). Then each rank splits what it has: children that are to be split too form the
- * next level, the others join the links. Where there is much to do, ranks stop after a time that all
- * know, and the rest of the level is dealt anew, but for --balance greedy, the paper's.
+ * next level, the others join the links. Where there is much to do, ranks leave a part of the level, and that is
+ * dealt anew, but for --balance greedy, the paper's.
  *
  * What was split stays where that was done; light is transferred over links where they are. So
- * at the end they go where that is best done, but for --balance greedy, the paper's.
+ * at the end they go where that is best done, but for --balance greedy.
  *
- * Predicted cost and work of each level go into the ledger (mpi/ledger.h). */
+ * Predicted cost and work of each stage of a level go into the ledger (mpi/ledger.h). */
 #include "mpi/balance.h"
 #include "mpi/memory.h"
 #include "mpi/migrate.h"
@@ -20,19 +20,18 @@
 #include "geom/alloc.h"
 #include "rad/oracle.h"
 
-/* What ranks tell each other before a level. */
+/* What ranks tell each other before a stage of a level. */
 struct load_notice {
-    int64_t links;           /* prolific links here, */
-    int64_t load;            /* their predicted cost, */
+    int64_t links;           /* links here that are to be split, */
+    int64_t load;            /* the predicted cost of that, */
     int64_t room;            /* and how many links there may be in their place at a time */
     int64_t kept;            /* links here that are not to be split */
     int64_t stop;            /* the signal that this rank has got, 0: none */
 };
 
-/* Links of all ranks before a stage of a level; and the work after which a rank ends it. */
+/* Links of all ranks before a stage. */
 struct level {
     int64_t prolific, room, kept;
-    int64_t limit;
 };
 
 static int64_t load_of(const struct link_list *list)
@@ -65,28 +64,21 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
     ledger_add(&solver->ledger, looks);
 }
 
-/* Names the children of links that are partly seen in place of these: a link may take many times as long as
- * a rank's share of the level, and its four children can go to four ranks. Returns how many links. */
-static int64_t name_children(struct solver *solver, struct link_list *prolific)
+/* The links, but in place of those that are partly seen the names of their children: a link may take many times as
+ * long as a rank's share of the level, and its four children can go to four ranks. */
+static struct link_list name_children(struct solver *solver, const struct link_list *prolific)
 {
     struct link_list named = {0};
-    int64_t split = 0;
     for (int64_t i = 0; i < prolific->count; i++) {
         const struct link *link = &prolific->items[i];
-        struct link children[4];
-        if (!link_is_partly_seen(link)) {
-            link_list_append(&named, *link);
-            continue;
-        }
-        link_split_unmade(&solver->method, link, oracle_patch_to_split(&solver->method, link), children);
-        for (int k = 0; k < 4; k++)
+        struct link children[4] = {*link};
+        bool partly = link_is_partly_seen(link);
+        if (partly)
+            link_split_unmade(&solver->method, link, oracle_patch_to_split(&solver->method, link), children);
+        for (int k = 0; k < (partly ? 4 : 1); k++)
             link_list_append(&named, children[k]);
-        split++;
     }
-    link_list_free(prolific);
-    *prolific = named;
-    solver->split_here += split;
-    return split;
+    return named;
 }
 
 /* A link and its four children, or an unmade one and what is made of it. */
@@ -98,10 +90,14 @@ static int64_t room_of(const struct link_list *list)
     return room;
 }
 
-/* The total exchange of loads. Waiting here is idle time. */
-static struct load_notice *exchange_loads(struct solver *solver, struct load_notice own)
+/* LoadBalance of Algorithm 1: first the total exchange of loads. `links`, `prolific` of them here, are to be split;
+ * loads[r]: what that is predicted to take on rank r. Waiting is idle time. */
+static struct level exchange_loads(struct solver *solver, int64_t prolific, const struct link_list *links,
+                                   int64_t *loads)
 {
     const struct comm *comm = solver->comm;
+    struct load_notice own = {.links = prolific, .load = load_of(links), .room = room_of(links),
+                              .kept = solver->links.count, .stop = signals_seen()};
     struct load_notice *notices = alloc_array((size_t)comm->size, sizeof *notices);
     double start = comm_seconds();
     MPI_Request request;
@@ -109,49 +105,28 @@ static struct load_notice *exchange_loads(struct solver *solver, struct load_not
                    comm->handle, &request);
     comm_wait(&request);
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
-    return notices;
-}
-
-/* Those that are not unmade children. */
-static int64_t count_whole(const struct link_list *list)
-{
-    int64_t count = 0;
-    for (int64_t i = 0; i < list->count; i++)
-        count += list->items[i].seen != LINK_UNMADE;
-    return count;
-}
-
-/* LoadBalance of Algorithm 1. `phase` receives what this rank has sent. Returns the links of all ranks. */
-static struct level balance_load(struct solver *solver, struct link_list *prolific, int64_t level, int stage,
-                                 struct phase_work *phase)
-{
-    int ranks = solver->comm->size;
-    int64_t named = name_children(solver, prolific);
-    struct load_notice own = {.links = named + count_whole(prolific), .load = load_of(prolific),
-                              .room = room_of(prolific), .kept = solver->links.count,
-                              .stop = signals_seen()};
-    struct load_notice *notices = exchange_loads(solver, own);
-    double start = comm_seconds();
-    struct level sum = {.limit = INT64_MAX};
-    int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
-    for (int r = 0; r < ranks; r++) {
+    struct level sum = {0, 0, 0};
+    for (int r = 0; r < comm->size; r++) {
         loads[r] = notices[r].load;
         sum.prolific += notices[r].links;
         sum.room += notices[r].room;
         sum.kept += notices[r].kept;
         solver->stop = (int)notices[r].stop > solver->stop ? (int)notices[r].stop : solver->stop;
     }
-    *phase = (struct phase_work){.kind = WORK_SPLITTING, .iteration = solver->pass, .level = level};
-    if (solver->method.criterion.balance != BALANCE_GREEDY)
-        sum.limit = links_limit(loads, ranks, stage);
-    if (moving_pays(loads, ranks)) /* the same on all ranks, so all enter */
-        solver->bytes_migration += phase->bytes = links_balance(solver, prolific, link_load, loads);
-    alloc_free(loads);
     alloc_free(notices);
-    progress_begin(solver->progress, "refining", level, sum.prolific);
-    phase->links = named;
-    solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
     return sum;
+}
+
+/* Then links move. Returns the bytes sent. */
+static int64_t deal_links(struct solver *solver, struct link_list *links, const int64_t *loads)
+{
+    if (!moving_pays(loads, solver->comm->size)) /* the same on all ranks, so all enter, or none */
+        return 0;
+    double start = comm_seconds();
+    int64_t bytes = links_balance(solver, links, link_load, loads);
+    solver->bytes_migration += bytes;
+    solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
+    return bytes;
 }
 
 /* The links that have been split, or the one that has been made; their number. */
@@ -164,19 +139,17 @@ static int make_children(struct solver *solver, const struct link *link, struct 
 }
 
 /* Splits links until that took as much work as the limit; their children go to `next` or to the rank's links,
- * the others stay in `prolific`. */
-static void split_stage(struct solver *solver, struct link_list *prolific, int64_t limit,
+ * the others stay. `part`: of the level, that which is left. */
+static void split_stage(struct solver *solver, struct link_list *links, double part, int64_t limit,
                         struct link_list *next, struct phase_work *phase)
 {
     double start = comm_seconds();
     int64_t before = method_work(&solver->method), done = 0;
-    for (; done < prolific->count && method_work(&solver->method) - before < limit; done++) {
-        const struct link *link = &prolific->items[done];
+    for (; done < links->count && method_work(&solver->method) - before < limit; done++) {
+        const struct link *link = &links->items[done];
         if (done % 64 == 0)
-            progress_tick(solver->progress, (double)done / (double)prolific->count);
-        phase->links += link->seen != LINK_UNMADE;
+            progress_tick(solver->progress, 1.0 - part * (double)(links->count - done) / (double)links->count);
         phase->predicted += link_load(link);
-        solver->split_here += link->seen != LINK_UNMADE;
         struct link children[4];
         int count = make_children(solver, link, children);
         for (int k = 0; k < count; k++) {
@@ -186,21 +159,30 @@ static void split_stage(struct solver *solver, struct link_list *prolific, int64
             link_list_append(goes_on ? next : &solver->links, children[k]);
         }
     }
-    prolific->count -= done;
-    if (prolific->count > 0)
-        memmove(prolific->items, prolific->items + done, (size_t)prolific->count * sizeof *prolific->items);
+    links->count -= done;
+    if (links->count > 0)
+        memmove(links->items, links->items + done, (size_t)links->count * sizeof *links->items);
     phase->work = method_work(&solver->method) - before;
     ledger_add(&solver->ledger, *phase);
     solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
 }
 
-/* Links that are left to be split are links like all others; unmade ones are made. */
-static void keep_prolific(struct solver *solver, const struct link_list *prolific)
+/* Splits all links of a level, stage by stage. loads[r]: as exchanged. */
+static void split_level(struct solver *solver, struct link_list *links, struct phase_work phase, int64_t *loads,
+                        struct link_list *next)
 {
-    for (int64_t i = 0; i < prolific->count; i++) {
-        struct link link = prolific->items[i];
-        if (link.seen != LINK_UNMADE || link_finish(&solver->method, &link))
-            link_list_append(&solver->links, link);
+    int64_t limit = 0;
+    double part = 1.0;
+    for (int stage = 0; limit < INT64_MAX; stage++) {
+        if (stage > 0)
+            exchange_loads(solver, 0, links, loads);
+        limit = solver->method.criterion.balance == BALANCE_GREEDY
+                    ? INT64_MAX : links_limit(loads, solver->comm->size, stage);
+        phase.bytes = deal_links(solver, links, loads);
+        double count = (double)links->count;
+        split_stage(solver, links, part, limit, next, &phase);
+        part *= count > 0.0 ? (double)links->count / count : 1.0;
+        phase.links = phase.predicted = 0;
     }
 }
 
@@ -248,31 +230,31 @@ static bool level_fits(struct solver *solver, const struct level *level, int64_t
 
 /* Splits level after level. Returns false if a signal or the memory limit ended that: then the
  * links that were to be split are in `prolific`. */
-static bool split_levels(struct solver *solver, struct link_list *prolific)
+static bool split_levels(struct solver *solver, struct link_list *prolific, int64_t *loads)
 {
-    struct link_list next = {0};
-    struct phase_work phase;
     int64_t made = 0;
     for (int64_t level = 0;; level++) {
-        struct level links = balance_load(solver, prolific, level, 0, &phase);
+        struct link_list named = name_children(solver, prolific), next = {0};
+        struct level links = exchange_loads(solver, prolific->count, &named, loads);
         if (links.prolific == 0)
             return true;
         made += level == 0 ? PATCHES_PER_LOOK * links.kept : 0;
-        if (solver->stop)
-            return false;
-        if (!level_fits(solver, &links, &made)) {
+        bool fits = solver->stop || level_fits(solver, &links, &made);
+        if (!fits)
             solver->memory.reached = solver->memory.limit;
+        if (!fits || solver->stop) {
+            link_list_free(&named);
             return false;
         }
         made += PATCHES_PER_SPLIT * links.prolific;
-        split_stage(solver, prolific, links.limit, &next, &phase);
-        for (int stage = 1; links.limit < INT64_MAX; stage++) {
-            links = balance_load(solver, prolific, level, stage, &phase);
-            split_stage(solver, prolific, links.limit, &next, &phase);
-        }
+        progress_begin(solver->progress, "refining", level, links.prolific);
+        struct phase_work phase = {.kind = WORK_SPLITTING, .iteration = solver->pass, .level = level,
+                                   .links = prolific->count};
+        solver->split_here += prolific->count;
         link_list_free(prolific);
+        split_level(solver, &named, phase, loads, &next);
+        link_list_free(&named);
         *prolific = next;
-        next = (struct link_list){0};
     }
 }
 
@@ -295,8 +277,11 @@ bool solver_refine(struct solver *solver)
         memory->reached = 0;
         select_prolific(solver, &prolific);
         solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
-        done = split_levels(solver, &prolific);
-        keep_prolific(solver, &prolific); /* none, if it is done */
+        int64_t *loads = alloc_array((size_t)solver->comm->size, sizeof *loads);
+        done = split_levels(solver, &prolific, loads);
+        for (int64_t i = 0; i < prolific.count; i++) /* none, if it is done */
+            link_list_append(&solver->links, prolific.items[i]);
+        alloc_free(loads);
         link_list_free(&prolific);
         share_splits(solver);
     }

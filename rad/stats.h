@@ -17,7 +17,7 @@ struct spread {
     double min, mean, max;
 };
 
-/* One level of refinement, or a stage of one (mpi/balance.h): how even the work was. Cost and work in box and triangle tests; a form
+/* One level of refinement: how even the work was. Cost and work in box and triangle tests; a form
  * factor counts as eight, a disk or a box of roots in initial linking as one. Initial linking is
  * level 0 of iteration 0. */
 struct level_balance {

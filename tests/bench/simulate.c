@@ -719,7 +719,7 @@ static int64_t balance_stage(struct replay *replay, int64_t *at, int64_t count, 
         move_links(replay, plan, planned, most_of(sent, ranks));
         replay->migration += sum_of(sent, ranks);
     }
-    exchange(replay, 32.0 * ranks);
+    exchange(replay, 40.0 * ranks);
     alloc_free(plan);
     alloc_free(sorted);
     alloc_free(loads);
