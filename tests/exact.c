@@ -1,5 +1,5 @@
 /* Exact answers, whole runs: the furnace, the cube that glows on one side, and where the power
- * goes. On any number of ranks; rank 0 reports.
+ * goes; and what a signal leaves. On any number of ranks; rank 0 reports.
  *
  * The method is the paper's: disk form factors by 16 rays and links at mixed levels. Its row
  * sums in a closed cube are not 1, so B = E / (1 - rho R) where R should be 1, and an error of
@@ -12,9 +12,13 @@
  * the tolerance of the iteration and rounding. With form factors from points to polygons one level
  * of the cube is right within the errors of the points. */
 #include <math.h>
+#include <signal.h>
 #include <string.h>
 
 #include "geom/contour.h"
+#include "mpi/signals.h"
+#include "rad/oracle.h"
+#include "tests/scenes.h"
 #include "tests/solve.h"
 #include "tests/tap.h"
 
@@ -292,6 +296,52 @@ static void test_balance(const struct comm *comm)
     solution_free(&s);
 }
 
+/* A room with a lamp in its ceiling and a box in the middle. */
+static struct scene *room_with_box(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, (struct vec3){0, 0, 0}, (struct vec3){3, 2, 3}, 1, true);
+    soup_add_box(&soup, (struct vec3){1, 0.5, 1}, (struct vec3){2, 1, 2}, 1, false);
+    struct scene *scene = scene_of_soup(&soup, 2);
+    scene->materials[0] = material_grey(0.5, 0.0);
+    scene->materials[1] = material_grey(0.5, 10.0);
+    scene->material_of[6] = scene->material_of[7] = 1;
+    scene_prepare_or_exit(scene);
+    soup_free(&soup);
+    return scene;
+}
+
+/* A refinement that a signal ends leaves links that are yet to be split as they are: whoever goes on from there has
+ * to find them. The last test, for the signal stays. */
+static void test_stopped(const struct comm *comm)
+{
+    struct scene *scene = room_with_box();
+    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct criterion criterion = criterion_best(1e-3, 10, 1e-3, CLOSURE_NONE);
+    struct solver *solver = solver_create(comm, scene, octree, &criterion);
+    int64_t counts[3] = {0}; /* links before and after, and those that are partly seen and to be split */
+    solver_link_roots(solver);
+    solver_assign_roots(solver);
+    oracle_prepare(&solver->method);
+    for (int64_t i = 0; i < solver->links.count; i++)
+        counts[2] += link_is_partly_seen(&solver->links.items[i]) &&
+                     oracle_patch_to_split(&solver->method, &solver->links.items[i]) >= 0;
+    counts[0] = solver->links.count;
+    signals_catch();
+    if (comm->rank == comm->size - 1)
+        raise(SIGTERM);
+    bool whole = solver_refine(solver);
+    counts[1] = solver->links.count;
+    comm_add(comm, counts, 3);
+    if (comm->rank == 0)
+        tap_ok(!whole && solver->pass == 0 && solver->stop == SIGTERM && counts[2] > 0 && counts[0] == counts[1],
+               "a signal to the last rank ends refinement: of %lld links %lld partly seen ones were to be split, "
+               "and %lld are there", (long long)counts[0], (long long)counts[2], (long long)counts[1]);
+    solver_destroy(solver);
+    octree_destroy(octree);
+    scene_destroy(scene);
+}
+
 int main(int argc, char **argv)
 {
     struct comm comm;
@@ -328,6 +378,7 @@ int main(int argc, char **argv)
     power = criterion_best(1e-4, 10, 1e-12, CLOSURE_NONE);
     test_power(&comm, &power, "error oracle, polygons, cg");
     test_balance(&comm);
+    test_stopped(&comm);
     comm_stop(&comm);
     return comm.rank == 0 ? tap_done() : alloc_balance() != 0;
 }
