@@ -25,7 +25,7 @@
  * sent is taken from all of a rank's links in turn. Re-partition along a line of all links was
  * tried: it is as even, for what is left is not the plan's fault but the prediction's: the work
  * of a link is known within a factor of two or so. So a level with much to do is split in stages: a rank
- * stops before it has worked as long as predicted of all, and the rest is dealt anew. In a room of 6,350
+ * stops before it has worked as long as predicted of the mean rank, and the rest is dealt anew. In a room of 6,350
  * triangles at epsilon 1e-5 on 32 ranks that leaves 5 % of refinement idle, where 12 % were. To go on with
  * the next level meanwhile is a little better still (4 %), but then what fits into memory would depend
  * on the number of ranks.
@@ -133,8 +133,9 @@ bool moving_pays(const int64_t *loads, int ranks)
     return largest - total / ranks > TESTS_PER_MESSAGE * messages;
 }
 
-/* A stage takes so much of what is predicted of the mean rank that hardly any is done before it ends. The last of
- * three takes what is left, and so does one of less than so many tests, which is not worth a new deal. */
+/* A stage takes so much of what is predicted of the mean rank: unless that was by far too much, hardly any rank is
+ * done before it ends. The last of three takes what is left, and so does one of less than so many tests, which
+ * is not worth a new deal. */
 static const double STAGE_SHARE = 0.7;
 enum { STAGES = 3, STAGE_LEAST = 3000 };
 

@@ -104,7 +104,8 @@ static const double WHILE_SPLITTING = 0.03;
  * (F' rho)^2 z + ... Let |x| be the sum of A d' / d |x| over leaves and bands. A F being symmetric, |F' rho x| is at
  * most q |x|, q being the largest row sum times rho: what light is multiplied by from one bounce to the next,
  * at most. So |e| is at most |z| / (1 - q), and what B lacks, the sum of A rho |e|, at most |e| times the largest
- * rho d / d'. Where q is not below 1, half of the least K seen takes the place of 1 - q: an estimate.
+ * rho d / d'. Where q is not below 1, half of the least K seen, in the norm of <x, y>, takes the place
+ * of 1 - q: an estimate.
  *
  * Rejected: |z| as the norm of <x, y>, from which Schwarz leads to the sum of A rho |e|. Where what is
  * missing is on a few bright leaves, as after a refinement, that is many times too large; it took a sixth

@@ -351,6 +351,40 @@ static void test_bound(const struct comm *comm, enum closure_kind kind)
     problem_free(&exact);
 }
 
+/* Where all rows, reflectances and emissions are the same, the bound is what is missing. Rows sum to 1/2, so that
+ * factors are 2. */
+static void test_bound_is_sharp(const struct comm *comm)
+{
+    const double rho = 0.6, area = 0.1;
+    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG, .closure = CLOSURE_ROWS,
+                                  .tolerance = 1e-12, .max_level = 15, .max_iterations = 1};
+    struct scene *scene = make_scene(0.0);
+    for (int32_t i = 0; i < ROOTS; i++) {
+        scene->areas[i] = area;
+        scene->materials[i] = (struct material){{{rho, rho, rho}}, {{1.0, 1.0, 1.0}}};
+    }
+    struct solver *solver = solver_create(comm, scene, NULL, &criterion);
+    solver->first_new = solver->method.forest->count;
+    int number = 0;
+    for (int32_t p = 0; p < ROOTS; p++)
+        for (int32_t q = p + 1; q < ROOTS; q++) {
+            struct link link = {.p = p, .q = q, .seen = LINK_ALL_SEEN, .parts_p = {64, 64, 64},
+                                .parts_q = {64, 64, 64}, .area = (float)(0.5 * area / (ROOTS - 1))};
+            if (number++ % comm->size == comm->rank)
+                link_list_append(&solver->links, link);
+        }
+    solver_assign_roots(solver);
+    closure_extend(&solver->closure, solver->method.forest);
+    memset(solver->closure.enclosure, ENCLOSED, (size_t)solver->method.forest->count);
+    struct vote vote = solve_links(solver);
+    double missing = 1.0 / (1.0 - rho) - 1.0; /* B is E as yet */
+    if (comm->rank == 0)
+        tap_ok(fabs(vote.remaining / missing - 1.0) < 1e-6, "what a furnace lacks after one transfer is %.7f of the "
+               "bound", missing / vote.remaining);
+    solver_destroy(solver);
+    scene_destroy(scene);
+}
+
 /* On any number of ranks the same bits as on one. */
 static void test_ranks(const struct comm *comm, const struct comm *self, enum closure_kind kind)
 {
@@ -392,6 +426,7 @@ int main(int argc, char **argv)
     }
     test_dense(&comm, CLOSURE_NONE, 0.0, 3); /* nothing is reflected: H = F E, at once */
     test_restart(&comm);
+    test_bound_is_sharp(&comm);
     comm_stop(&comm);
     return comm.rank == 0 ? tap_done() : alloc_balance() != 0;
 }
