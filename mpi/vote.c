@@ -108,7 +108,7 @@ static const double WHILE_SPLITTING = 0.03;
  * of 1 - q: an estimate.
  *
  * Rejected: |z| as the norm of <x, y>, from which Schwarz leads to the sum of A rho |e|. Where what is
- * missing is on a few bright leaves, as after a refinement, that is many times too large; it took a sixth
+ * missing is on a few bright leaves, as after a refinement, that is many times too large; it took a seventh
  * more iterations in the rooms. */
 static double remaining_by_residual(const struct solver *solver, const struct ballot *sum)
 {

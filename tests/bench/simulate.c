@@ -690,8 +690,8 @@ static void deal_events(struct replay *replay, const int64_t *at, int64_t count,
     alloc_free(costs);
 }
 
-/* As balance_load(): deals the events `at`, puts them in the order of their ranks before that, and returns the work
- * after which ranks leave the rest. */
+/* As exchange_loads() and deal_links() in mpi/refinement.c: deals the events `at`, puts them in the order of their
+ * ranks before that, and returns the work after which ranks leave the rest. */
 static int64_t balance_stage(struct replay *replay, int64_t *at, int64_t count, int stage)
 {
     const struct record *record = replay->record;
