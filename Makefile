@@ -8,7 +8,6 @@
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
 #   make growth          docs/growth.csv, docs/growth.svg: rooms of 1,000 to 32,000 triangles
-#   make scaling         docs/scaling.csv and docs/scaling.svg: speed-up from counted work, up to 4,096 ranks
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
 #   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
@@ -65,7 +64,7 @@ TESTS = alloc elementary id triangle lambert hull scene polygon contour wall oct
         compact formfactor link linking oracle pushpull closure treecode plan balance assign text obj ply output tone \
         image camera viewpoint shading options progress paths norms cie furnace stability store exchange conjugate exact converge
 # Programs that compare phr with what is true.
-BENCHES = reference measure direct tracing simulate
+BENCHES = reference measure direct tracing
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
 FUZZERS = obj mtl ply image view links checkpoint
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
@@ -148,10 +147,6 @@ chart: $(BENCHES:%=$(BUILD)/%) build/room
 growth: $(PHR) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/growth.sh
 
-# About eight minutes on two cores.
-scaling: $(PHR) $(BUILD)/simulate build/room
-	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
-
 check: $(PHR) $(IMGDIFF) tests build/room
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
@@ -191,4 +186,5 @@ clean:
 FORCE:
 
 
-.PHONY: all demo tests room bench errors chart growth scaling check check-long golden portability fuzz install uninstall clean FORCE
+.PHONY: all demo tests room bench errors chart growth check check-long golden portability fuzz install \
+        uninstall clean FORCE
