@@ -41,7 +41,8 @@ static const struct option OPTIONS[] = {
     {"--closure", KIND_CHOICE, offsetof(struct options, criterion.closure), 0, 0,
      "none|cap|rows|symmetric"},
     {"--solver", KIND_CHOICE, offsetof(struct options, criterion.solver), 0, 0, "jacobi|cg"},
-    {"--balance", KIND_CHOICE, offsetof(struct options, criterion.balance), 0, 0, "greedy|even|cells"},
+    {"--balance", KIND_CHOICE, offsetof(struct options, criterion.balance), 0, 0,
+     "greedy|even"},
     {"--paper", KIND_PAPER, 0, 0, 0, NULL},
     {"--alpha", KIND_REAL, offsetof(struct options, criterion.alpha), 0, 1, NULL},
     {"--tolerance", KIND_REAL, offsetof(struct options, criterion.tolerance), 0, 1, NULL},
@@ -419,7 +420,7 @@ void options_print_help(FILE *file)
           "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
           "  --form-factors   print them, as CSV     --validate    check form factors\n"
           "  --quiet          print nothing          --verbose     levels of refinement\n"
-          "  --balance even|cells|greedy  of links   --help        --version\n"
+          "  --balance even|greedy      of links     --help        --version\n"
           "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
           "  phr room.obj -o room.ppm\n"
           "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n",

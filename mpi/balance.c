@@ -28,17 +28,7 @@
  * stops before it has worked as long as predicted of the mean rank, and the rest is dealt anew. In a room of 6,350
  * triangles at epsilon 1e-5 on 32 ranks that leaves 5 % of refinement idle, where 12 % were. To go on with
  * the next level meanwhile is a little better still (4 %), but then what fits into memory would depend
- * on the number of ranks.
- *
- * Light. A rank's links lead nearly everywhere, so with P ranks each had to have all radiosities, and to
- * send flux to all homes, in every iteration: on 1,024 ranks that took five times as long as the
- * links did. In a grid of ranks (of which a matrix is multiplied with a vector in this way: O(n / sqrt P)
- * in place of O(n) a rank), a link between patches of two homes lives in the row of one and the column
- * of the other. Either will do, and a bit of its IDs says which; with homes that have equally many links
- * of roots, cells have nearly equally many too (3 % more at most in the largest room on 1,024 ranks). Where few roots
- * have most of the links that is not so; and to send all links there takes longer than it saves where
- * they are many: with 400 for each patch, as in the rooms, on less than some hundred ranks. Then links
- * are evened out instead, wherever they lead. */
+ * on the number of ranks. */
 #include "mpi/balance.h"
 
 #include <math.h>
@@ -174,44 +164,6 @@ void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *
         }
     }
     alloc_free(left);
-}
-
-/* --- cells --- */
-
-struct grid grid_make(int ranks)
-{
-    int rows = 1;
-    for (int divisor = 2; divisor <= ranks / divisor; divisor++)
-        rows = ranks % divisor == 0 ? divisor : rows;
-    return (struct grid){rows, ranks / rows};
-}
-
-int grid_cell(struct grid grid, int home_p, int home_q)
-{
-    return home_p / grid.columns * grid.columns + home_q % grid.columns;
-}
-
-bool grid_turns(struct patch_id p, struct patch_id q)
-{
-    uint32_t mixed = p.root + 31u * p.hierarchy + UINT32_C(0x9E3779B9) * (q.root + 31u * q.hierarchy);
-    mixed ^= mixed >> 16;
-    return (mixed * UINT32_C(0x85EBCA6B) >> 31) != 0;
-}
-
-/* To keep a patch up to date for an iteration (four copies and 48 bytes), an exchange (in a row and then
- * in a column, so there are two more in each iteration), and to send a link, in two hops, take as long as
- * light over so many links. Some 30 iterations follow in rooms, but with half of that the choice is the better
- * one of the two: the more links are split, the less even are cells. */
-static const double LINKS_PER_PATCH = 2.0, LINKS_PER_EXCHANGE = 2000.0, LINKS_PER_MOVE = 11.0;
-static const double ITERATIONS_AHEAD = 15.0;
-
-bool grid_pays(struct grid grid, int64_t lit, int64_t largest, int64_t patches, int64_t astray)
-{
-    int ranks = grid.rows * grid.columns;
-    double all = LINKS_PER_PATCH * (double)patches;
-    double saved = all - all / grid.rows - all / grid.columns - ((double)largest - (double)lit / ranks) -
-                   2.0 * LINKS_PER_EXCHANGE;
-    return ITERATIONS_AHEAD * saved > LINKS_PER_MOVE * (double)astray / ranks;
 }
 
 /* --- rows --- */

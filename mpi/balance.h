@@ -1,6 +1,5 @@
-/* Who does what: pure functions of costs and loads, so that all ranks decide alike, and a
- * simulation of any number of ranks decides as a run would. Cost and work are counted in box and
- * triangle tests; a form factor counts as so many. */
+/* Who does what: pure functions of costs and loads, so that all ranks decide alike. Cost
+ * and work are counted in box and triangle tests; a form factor counts as so many. */
 #ifndef MPI_BALANCE_H
 #define MPI_BALANCE_H
 
@@ -40,28 +39,6 @@ int64_t links_limit(const int64_t *loads, int ranks, int stage);
  * that cost nothing, stay. */
 void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *plan, int planned,
                     int rank, int *destination);
-
-/* --- links that carry light, in cells --- */
-
-/* The ranks as a grid: rank r is in row r / columns and column r % columns. Light over a link in row i and
- * column j is between a patch that is at home in row i and one that is at home in column j. */
-struct grid {
-    int rows, columns;
-};
-
-/* The squarest grid of so many ranks, with no more rows than columns; one row if they are a prime number. */
-struct grid grid_make(int ranks);
-
-/* The rank in the row of home_p and the column of home_q. */
-int grid_cell(struct grid grid, int home_p, int home_q);
-
-/* True if a link is in the row of q's home and the column of p's: of half of them, by their IDs. */
-bool grid_turns(struct patch_id p, struct patch_id q);
-
-/* True if it is better for the transfer of light to have the `lit` links that carry it in their cells, at
- * most `largest` of them in one, than as many on each rank, anywhere: then only the patches of a row and of a
- * column have to be kept up to date on a rank, of `patches` in all. `astray` links have to be sent there. */
-bool grid_pays(struct grid grid, int64_t lit, int64_t largest, int64_t patches, int64_t astray);
 
 /* --- the rows of initial linking --- */
 

@@ -72,7 +72,7 @@ static void scatter_factors(struct solver *solver)
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
             forest->patches[p].radiosity.band[c] = solver->closure.factor[p];
-    solver_scatter_to_all(solver);
+    solver_scatter_unvoted(solver);
     for (int64_t p = 0; p < forest->count; p++)
         solver->closure.factor[p] = forest->patches[p].radiosity.band[0];
 }

@@ -69,29 +69,6 @@ void comm_stop(struct comm *comm)
     MPI_Finalize();
 }
 
-/* A collective of so many ranks takes log2 of them messages. */
-static void count_collective(int ranks)
-{
-    exchanges++;
-    for (int reached = 1; reached < ranks; reached *= 2)
-        messages++;
-}
-
-struct comm comm_part(const struct comm *comm, int colour)
-{
-    struct comm part = {.limit = comm->limit};
-    count_collective(comm->size);
-    MPI_Comm_split(comm->handle, colour, comm->rank, &part.handle);
-    MPI_Comm_rank(part.handle, &part.rank);
-    MPI_Comm_size(part.handle, &part.size);
-    return part;
-}
-
-void comm_part_end(struct comm *part)
-{
-    MPI_Comm_free(&part->handle);
-}
-
 static void leave_processor(int tests)
 {
 #ifdef HAVE_YIELD
@@ -117,15 +94,12 @@ static void wait_for(MPI_Request *request)
     }
 }
 
-static void wait_for_ranks(MPI_Request *request, int ranks)
-{
-    count_collective(ranks);
-    wait_for(request);
-}
-
 void comm_wait(MPI_Request *request)
 {
-    wait_for_ranks(request, all_ranks);
+    exchanges++;
+    for (int reached = 1; reached < all_ranks; reached *= 2)
+        messages++;
+    wait_for(request);
 }
 
 void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes)
@@ -303,7 +277,7 @@ void comm_add_home(const struct comm *comm, const int64_t *values, const int *co
     }
     MPI_Request request;
     MPI_Ireduce_scatter(values, own, numbers, MPI_INT64_T, MPI_SUM, comm->handle, &request);
-    wait_for_ranks(&request, comm->size);
+    comm_wait(&request);
     alloc_free(numbers);
 }
 
@@ -314,7 +288,7 @@ void comm_share(const struct comm *comm, void *records, const int *counts, const
     MPI_Request request;
     MPI_Iallgatherv(MPI_IN_PLACE, 0, record, records, counts, at, record, comm->handle,
                     &request);
-    wait_for_ranks(&request, comm->size);
+    comm_wait(&request);
     MPI_Type_free(&record);
 }
 

@@ -20,10 +20,6 @@ void comm_start(struct comm *comm, int *argc, char ***argv);
 /* Collective. Waits for all ranks and finalises MPI. */
 void comm_stop(struct comm *comm);
 
-/* Collective. Those of the ranks that give the same colour, in their order; ended by all of them. */
-struct comm comm_part(const struct comm *comm, int colour);
-void comm_part_end(struct comm *part);
-
 /* Waits for a non-blocking operation and leaves the processor to others meanwhile. */
 void comm_wait(MPI_Request *request);
 

@@ -194,24 +194,11 @@ static void weigh_by_area(const struct method *method, int64_t *weights)
         weights[root] = (int64_t)(scene_root_area(method->scene, root) / method->area * 0x1p40);
 }
 
-/* What there is to do at home; and, so that cells are even, links that carry light, over all ranks. */
-static void weigh_by_work(struct solver *solver, int64_t *weights)
+/* What there is to do at home. */
+static void weigh_by_work(const struct method *method, int64_t *weights)
 {
-    const struct link_list *links = &solver->links;
-    int32_t roots = solver->method.forest->root_count;
-    int64_t lit = 0;
-    for (int64_t i = 0; i < links->count; i++)
-        lit += links->items[i].seen > 0;
-    comm_add(solver->comm, &lit, 1);
-    if (links_want_cells(solver, lit)) {
-        for (int64_t i = 0; i < links->count; i++) {
-            weights[root_of(solver, links->items[i].p)] += links->items[i].seen > 0;
-            weights[root_of(solver, links->items[i].q)] += links->items[i].seen > 0;
-        }
-        comm_add(solver->comm, weights, roots);
-    }
-    for (int32_t root = 0; root < roots; root++)
-        weights[root] += root_weight(&solver->method, root);
+    for (int32_t root = 0; root < method->forest->root_count; root++)
+        weights[root] = root_weight(method, root);
 }
 
 void solver_assign_roots(struct solver *solver)
@@ -223,7 +210,7 @@ void solver_assign_roots(struct solver *solver)
     if (greedy)
         weigh_by_area(&solver->method, weights);
     else
-        weigh_by_work(solver, weights);
+        weigh_by_work(&solver->method, weights);
     roots_assign(weights, roots, solver->comm->size, solver->owner);
     alloc_free(weights);
     for (int32_t root = 0; root < roots; root++)
@@ -231,6 +218,6 @@ void solver_assign_roots(struct solver *solver)
     if (greedy)
         send_home(solver);
     else
-        links_place(solver);
+        links_even_out(solver);
     solver->seconds[PHASE_LINKING] += comm_seconds() - start;
 }

@@ -111,18 +111,7 @@ static bool is_uneven(const int64_t *counts, int ranks)
     return (double)largest * ranks > 1.02 * (double)sum;
 }
 
-/* --- where links are for the transfer of light --- */
-
-static int cell_of(const struct solver *solver, const struct link *link)
-{
-    const struct patch *patches = solver->method.forest->patches;
-    struct patch_id p = patches[link->p].id, q = patches[link->q].id;
-    int home_p = solver->owner[p.root], home_q = solver->owner[q.root];
-    return grid_turns(p, q) ? grid_cell(solver->square, home_q, home_p)
-                            : grid_cell(solver->square, home_p, home_q);
-}
-
-/* Waiting is idle time. */
+/* Adds up over all ranks. Waiting is idle time. */
 static void add_counts(struct solver *solver, int64_t *counts, int count)
 {
     double start = comm_seconds();
@@ -130,87 +119,7 @@ static void add_counts(struct solver *solver, int64_t *counts, int count)
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
 }
 
-/* If they were as even as can be. */
-bool links_want_cells(const struct solver *solver, int64_t lit)
-{
-    int ranks = solver->comm->size;
-    int64_t astray = solver->in_cells ? 0 : lit - lit / ranks;
-    return solver->method.criterion.balance == BALANCE_CELLS ||
-           grid_pays(solver->square, lit, lit / ranks, solver->method.forest->count, astray);
-}
-
-/* True if links are better in their cells; here[r] of them are on rank r now. */
-static bool cells_pay(struct solver *solver, const int64_t *here)
-{
-    int ranks = solver->comm->size, rank = solver->comm->rank;
-    int64_t lit = 0, largest = 0;
-    for (int r = 0; r < ranks; r++)
-        lit += here[r];
-    if (!solver->in_cells && !links_want_cells(solver, lit)) /* the same on all ranks */
-        return false;
-    int64_t *cells = alloc_array((size_t)ranks + 1, sizeof *cells);
-    for (int64_t i = 0; i < solver->links.count; i++)
-        if (carries_light(&solver->links.items[i])) {
-            int cell = i < solver->placed ? rank : cell_of(solver, &solver->links.items[i]);
-            cells[cell]++;
-            cells[ranks] += cell != rank;
-        }
-    add_counts(solver, cells, ranks + 1);
-    for (int r = 0; r < ranks; r++)
-        largest = cells[r] > largest ? cells[r] : largest;
-    int64_t astray = cells[ranks];
-    alloc_free(cells);
-    return solver->method.criterion.balance == BALANCE_CELLS ||
-           grid_pays(solver->square, lit, largest, solver->method.forest->count, astray);
-}
-
-/* Takes the links that carry light elsewhere out of the rank's links. */
-static struct link_list take_astray(struct solver *solver)
-{
-    struct link_list *links = &solver->links, astray = {0};
-    int64_t kept = solver->placed;
-    for (int64_t i = kept; i < links->count; i++) {
-        struct link link = links->items[i];
-        if (carries_light(&link) && cell_of(solver, &link) != solver->comm->rank)
-            link_list_append(&astray, link);
-        else
-            links->items[kept++] = link;
-    }
-    links->count = kept;
-    return astray;
-}
-
-/* First along the row to the right column, then along the column: so a rank sends to few others. */
-static void send_to_cells(struct solver *solver)
-{
-    int columns = solver->square.columns;
-    struct link_list astray = take_astray(solver);
-    for (int hop = 0; hop < 2; hop++) {
-        int *destination = alloc_array((size_t)astray.count, sizeof *destination);
-        for (int64_t i = 0; i < astray.count; i++) {
-            int cell = cell_of(solver, &astray.items[i]);
-            destination[i] = (hop == 0 ? solver->comm->rank : cell) / columns * columns + cell % columns;
-        }
-        solver->bytes_migration += links_migrate(solver, &astray, destination);
-        alloc_free(destination);
-    }
-    for (int64_t i = 0; i < astray.count; i++)
-        link_list_append(&solver->links, astray.items[i]);
-    link_list_free(&astray);
-}
-
-/* The ranks of the row and of the column. (To make them takes tens of milliseconds where ranks are more
- * than cores, for MPI has no way to do it without blocking: so it is done when they are wanted.) */
-static void find_neighbours(struct solver *solver)
-{
-    const struct comm *comm = solver->comm;
-    if (solver->row.size > 0)
-        return;
-    solver->row = comm_part(comm, comm->rank / solver->square.columns);
-    solver->column = comm_part(comm, comm->rank % solver->square.columns);
-}
-
-void links_place(struct solver *solver)
+void links_even_out(struct solver *solver)
 {
     int ranks = solver->comm->size;
     int64_t *here = alloc_array((size_t)ranks, sizeof *here);
@@ -218,15 +127,8 @@ void links_place(struct solver *solver)
         here[solver->comm->rank] += carries_light(&solver->links.items[i]);
     add_counts(solver, here, ranks);
     double start = comm_seconds();
-    solver->in_cells = cells_pay(solver, here);
-    if (solver->in_cells) {
-        find_neighbours(solver);
-        send_to_cells(solver);
-    } else if (is_uneven(here, ranks)) { /* the same on all ranks, so all enter */
+    if (is_uneven(here, ranks)) /* the same on all ranks, so all enter */
         solver->bytes_migration += links_balance(solver, &solver->links, carries_light, here);
-    }
-    solver->grid = solver->in_cells ? solver->square : (struct grid){1, ranks};
-    solver->placed = solver->in_cells ? solver->links.count : 0;
     alloc_free(here);
     solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
 }

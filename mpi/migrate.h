@@ -14,14 +14,9 @@ int64_t links_migrate(struct solver *solver, struct link_list *list, const int *
 int64_t links_balance(struct solver *solver, struct link_list *list,
                       int64_t (*load)(const struct link *), const int64_t *loads);
 
-/* True if the cells of the square grid may be where links are best that carry light, `lit` on all ranks
- * together. The same on all ranks. */
-bool links_want_cells(const struct solver *solver, int64_t lit);
-
-/* Collective. Links that carry light go where it is best transferred over them: to their cells of the
- * square grid, with --balance cells or where grid_pays() (mpi/balance.h); else ranks that have more of
- * them than the mean send what is above it to those with less, if any is above it by more than a
- * fiftieth. */
-void links_place(struct solver *solver);
+/* Collective. Evens out the numbers of links that carry light, if a rank has more of them
+ * than the mean by more than a fiftieth: light is transferred over links where they are.
+ * */
+void links_even_out(struct solver *solver);
 
 #endif

@@ -7,7 +7,7 @@
  * dealt anew, but for --balance greedy, the paper's.
  *
  * What was split stays where that was done; light is transferred over links where they are. So
- * at the end they go where that is best done, but for --balance greedy.
+ * at the end their numbers are evened out, but for --balance greedy.
  *
  * Predicted cost and work of each stage of a level go into the ledger (mpi/ledger.h). */
 #include "mpi/balance.h"
@@ -60,7 +60,6 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
         solver->links.items[kept++] = link;
     }
     solver->links.count = kept;
-    solver->placed = solver->in_cells ? kept : 0;
     ledger_add(&solver->ledger, looks);
 }
 
@@ -286,7 +285,7 @@ bool solver_refine(struct solver *solver)
         share_splits(solver);
     }
     if (solver->method.criterion.balance != BALANCE_GREEDY)
-        links_place(solver);
+        links_even_out(solver);
     bool stopped = !done && solver->stop != 0;
     solver->pass -= stopped;
     return !stopped;

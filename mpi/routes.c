@@ -14,8 +14,7 @@ void routes_free(struct routes *routes)
     alloc_free(routes->leaf_at);
     alloc_free(routes->record_at);
     alloc_free(routes->flux);
-    alloc_free(routes->own_flux[0]);
-    alloc_free(routes->own_flux[1]);
+    alloc_free(routes->own_flux);
     alloc_free(routes->radiosities);
     *routes = (struct routes){0};
 }
@@ -77,12 +76,6 @@ void routes_renew(struct solver *solver)
         routes->record_at[r] = routes->leaf_at[r] + BALLOT_RECORDS * (int)r;
     size_t own = (size_t)routes->receiver_counts[solver->comm->rank];
     routes->flux = alloc_array(BANDS * (size_t)receivers, sizeof *routes->flux);
-    for (int k = 0; k < 2; k++)
-        routes->own_flux[k] = alloc_array(BANDS * own, sizeof *routes->own_flux[k]);
+    routes->own_flux = alloc_array(BANDS * own, sizeof *routes->own_flux);
     routes->radiosities = alloc_array((size_t)records, sizeof *routes->radiosities);
-}
-
-const struct comm *routes_row(const struct solver *solver)
-{
-    return solver->grid.rows == 1 ? solver->comm : &solver->row;
 }

@@ -1,8 +1,6 @@
-/* What travels in every transfer of light over the same trees: flux to the homes of patches, and
- * radiosities back. Found out once, so that the transfers need no IDs, no counts and no searching.
- *
- * Where links are in the cells of a grid of ranks (mpi/balance.h), both stay within the row and the
- * column of a rank. Else the grid has one row, of all ranks. */
+/* What travels in every transfer of light over the same trees: flux to the homes of
+ * patches, and radiosities back. Found out once, so that the transfers need no IDs, no
+ * counts and no searching. */
 #ifndef MPI_ROUTES_H
 #define MPI_ROUTES_H
 
@@ -21,16 +19,13 @@ struct routes {
     int *receiver_counts, *leaf_counts; /* [ranks] */
     int *receiver_at, *leaf_at;         /* [ranks] where those of a home begin */
     int *record_at;             /* [ranks + 1] where its leaves and its ballot begin in `radiosities` */
-    int64_t *flux, *own_flux[2];   /* room for what travels: [3 * sum of receiver_counts], and for this
-                                      rank's sums in its row and its column, [3 * its receivers] */
-    struct rgb *radiosities;    /* [record_at[ranks]] */
+    int64_t *flux;           /* [3 * sum of receiver_counts] room for flux sent home */
+    int64_t *own_flux;       /* [3 * receivers of this rank] room for its sums at home */
+    struct rgb *radiosities; /* [record_at[ranks]] room for all leaves and ballots */
 };
 
 /* Renews the routes of the solver, and sorts its links. Pre: all ranks have the same trees. */
 void routes_renew(struct solver *solver);
 void routes_free(struct routes *routes);
-
-/* The ranks of this rank's row of the grid in use. */
-const struct comm *routes_row(const struct solver *solver);
 
 #endif

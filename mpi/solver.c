@@ -23,8 +23,6 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     solver->owner = alloc_array(roots, sizeof *solver->owner);
     solver->own = alloc_array(roots, sizeof *solver->own);
     solver->root_change = alloc_array(roots, sizeof *solver->root_change);
-    solver->grid = (struct grid){1, comm->size};
-    solver->square = grid_make(comm->size);
     solver->closure.kind = criterion->closure;
     solver->fresh = true;
     solver->least_bend = 1.0;
@@ -41,10 +39,6 @@ void solver_destroy(struct solver *solver)
     alloc_free(solver->own);
     routes_free(&solver->routes);
     alloc_free(solver->root_change);
-    if (solver->row.size > 0) {
-        comm_part_end(&solver->row);
-        comm_part_end(&solver->column);
-    }
     ledger_free(&solver->ledger);
     closure_free(&solver->closure);
     conjugate_free(&solver->conjugate);

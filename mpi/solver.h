@@ -7,7 +7,6 @@
 #include <stdint.h>
 
 #include "geom/progress.h"
-#include "mpi/balance.h"
 #include "mpi/comm.h"
 #include "mpi/ledger.h"
 #include "mpi/routes.h"
@@ -55,13 +54,8 @@ struct solver {
     struct progress *progress; /* borrowed; NULL: nobody looks */
     struct method method;     /* scene, octree, forest and criterion; the forest is owned */
     struct link_list links;   /* the links that live here ("allInteractions") */
-    bool in_cells;            /* those that carry light are in the cells of `square`: the same on all ranks; */
-    int64_t placed;           /* of the first ones here that is known, and not of what was made since */
     int *owner;               /* [roots] home rank of each root */
     bool *own;                /* [roots] owner[root] == rank */
-    struct grid square;
-    struct grid grid;         /* of the ranks, as links lie: `square` if they are in its cells, or one row */
-    struct comm row, column;  /* of `square`, those of this rank; of no ranks while there was no need */
     struct routes routes;     /* of light between the ranks */
     int64_t *root_change;     /* [roots] see push_pull() */
     int64_t first_new;        /* patches from here on were created in this iteration */
@@ -115,8 +109,9 @@ void solver_destroy(struct solver *solver);
 /* Step 2: initial linking. Rows of pairs of roots are dealt so that their work is even. */
 void solver_link_roots(struct solver *solver);
 
-/* Step 3: re-assignment. Roots get homes so that what there is to do at home is even, and links that carry
- * light go where that is best done (mpi/migrate.h); the paper's: so that areas are even, and links go home. */
+/* Step 3: re-assignment. Roots get homes so that their work there is even, and the
+ * numbers of links that carry light are evened out; the paper's: so that areas are even,
+ * and links go home. */
 void solver_assign_roots(struct solver *solver);
 
 /* Begins a pass: what refinement reads of the solution so far. */
@@ -135,12 +130,12 @@ void solver_close(struct solver *solver);
 void solver_transfer(struct solver *solver);
 void solver_gather(struct solver *solver);
 
-/* Steps 6 to 8: push-pull on the own roots; scatter of the own radiosities and of the ballots, as far as
- * the next iteration needs them, or to all ranks; the vote. With --solver cg radiosities are known to all
- * when there is no other iteration. */
+/* Steps 6 to 8: push-pull on the own roots; scatter of the own radiosities and of the
+ * ballots, or of radiosities that nobody votes on; the vote. With --solver cg B takes the
+ * place of rho z when there is no other iteration. */
 void solver_push_pull(struct solver *solver);
 void solver_scatter(struct solver *solver);
-void solver_scatter_to_all(struct solver *solver);
+void solver_scatter_unvoted(struct solver *solver);
 struct vote solver_vote(struct solver *solver);
 
 /* This rank's ballot, when its roots are pushed and pulled: the end of solver_push_pull(). */

@@ -1,7 +1,7 @@
 /* Step 8: the vote on another iteration.
  *
  * Each rank casts a ballot of integers and maxima, which travels with the radiosities of its leaves, and
- * is added up on the way, so the outcome is the same on any number of ranks. The iterations end
+ * all add them up, so the outcome is the same on any number of ranks. The iterations end
  * when nothing was split and the bound on what further ones could add, q / (1 - q) of the last change
  * (rad/pushpull.c), is small enough.
  *
@@ -131,7 +131,7 @@ static double wanted_of(const struct solver *solver, const struct ballot *sum)
 static void finish_conjugate(struct solver *solver)
 {
     conjugate_publish(&solver->conjugate, &solver->method, true);
-    solver_scatter_to_all(solver);
+    solver_scatter_unvoted(solver);
     solver->fresh = true;
 }
 

@@ -14,7 +14,7 @@ enum oracle { ORACLE_BF, ORACLE_ERROR };                      /* rad/oracle.h */
 enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON };         /* rad/formfactor.h */
 enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS, CLOSURE_SYMMETRIC }; /* rad/closure.h */
 enum solver_kind { SOLVER_JACOBI, SOLVER_CG };                    /* rad/conjugate.h */
-enum balance { BALANCE_GREEDY, BALANCE_EVEN, BALANCE_CELLS };     /* mpi/migrate.h */
+enum balance { BALANCE_GREEDY, BALANCE_EVEN };                    /* mpi/migrate.h */
 
 /* How links are evaluated, when and how far they are refined, and when the iterations end. */
 struct criterion {

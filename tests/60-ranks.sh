@@ -75,41 +75,6 @@ for ranks in 1 2 3 4 7 16; do
     check "Cornell box: $ranks ranks give the bytes of the serial build" same ranks-$ranks serial
 done
 
-for ranks in 4 6 12; do
-    produce cells-$ranks $MPIEXEC -n $ranks "$BUILD/phr" $cornell --balance cells
-    check "the same on $ranks ranks with --balance cells" same cells-$ranks serial
-done
-
-# Many tiles with few links, so that on 9 ranks these go into cells, of which some stay empty; then a lamp and
-# a plate before it have so many that they come back.
-cat >"$work/mixed.mtl" <<END
-newmtl lamp
-Kd 0.5 0.5 0.5
-Ke 10 10 10
-newmtl white
-Kd 0.7 0.7 0.7
-END
-awk 'function square(x, y, z, size, up) {
-         printf "v %g %g %g\nv %g %g %g\nv %g %g %g\nv %g %g %g\nf %s\n", x, y, z, x, y, z + size,
-             x + size, y, z + size, x + size, y, z, up ? "-4 -3 -2 -1" : "-1 -2 -3 -4"
-     }
-     BEGIN {
-         print "mtllib mixed.mtl\nusemtl lamp"
-         square(40, 40, 40, 4, 0)
-         print "usemtl white"
-         square(40, 36, 40, 4, 1)
-         for (i = 0; i < 6000; i++)
-             square(i % 80, i % 7 == 0 ? 3 : 0, int(i / 80), 0.8, 1)
-     }' >"$work/mixed.obj"
-usual=$quiet
-quiet="--quiet --epsilon 3e-6 --size 96x96"
-produce mixed-serial "$work/serial/phr" "$work/mixed.obj" --oracle bf
-for ranks in 6 9; do
-    produce mixed-$ranks timeout -s KILL 100 $MPIEXEC -n $ranks "$BUILD/phr" "$work/mixed.obj" --oracle bf
-    check "tiles and plates on $ranks ranks" same mixed-$ranks mixed-serial
-done
-quiet=$usual
-
 produce flat-serial "$work/serial/phr" $cornell --flat --two-sided
 produce flat-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided
 check "the same with --flat --two-sided" same flat-3 flat-serial

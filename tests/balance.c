@@ -1,5 +1,6 @@
-/* Balance: every item, link, cell and root of a row has one owner, the same whoever asks; loads end as even
- * as the costs allow, for up to 1,024 ranks, empty and equal loads too; wrong predictions are made good. */
+/* Balance: every item, link and root of a row has one owner, the same whoever asks; loads
+ * end as even as the costs allow, for up to 1,024 ranks, empty and equal loads too; wrong
+ * predictions are made good. */
 #include "mpi/balance.h"
 
 #include <math.h>
@@ -321,63 +322,6 @@ static void test_parts(void)
     tap_ok(row_cut(&few, cut) == 3, "no part is without a root");
 }
 
-/* --- cells --- */
-
-static void test_grid(void)
-{
-    bool square = true, right = true;
-    for (int ranks = 1; ranks <= 1100; ranks++) {
-        struct grid grid = grid_make(ranks);
-        square = square && grid.rows * grid.columns == ranks && grid.rows <= grid.columns;
-        for (int rows = grid.rows + 1; rows * rows <= ranks; rows++)
-            square = square && ranks % rows != 0;
-    }
-    tap_ok(square, "the grid of 1 to 1,100 ranks is the squarest there is");
-    for (int ranks = 1; ranks <= 40; ranks++) {
-        struct grid grid = grid_make(ranks);
-        for (int p = 0; p < ranks; p++)
-            for (int q = 0; q < ranks; q++) {
-                int cell = grid_cell(grid, p, q);
-                right = right && cell / grid.columns == p / grid.columns &&
-                        cell % grid.columns == q % grid.columns;
-            }
-    }
-    tap_ok(right, "a cell is in the row of one home and in the column of the other");
-}
-
-/* Half of the links between any two homes of roots are turned. */
-static void test_turns(void)
-{
-    int64_t most = 0, least = 1000;
-    for (uint32_t a = 0; a < 10; a++)
-        for (uint32_t b = 0; b < 10; b++) {
-            int64_t turned = 0;
-            for (uint32_t i = 0; i < 1000; i++) { /* roots 10 apart, and their descendants */
-                struct patch_id p = {10 * (i % 100) + a, 1u << (2 * (i / 100))};
-                struct patch_id q = {10 * (i * 7 % 100) + b, 1};
-                turned += grid_turns(p, q);
-            }
-            most = turned > most ? turned : most;
-            least = turned < least ? turned : least;
-        }
-    tap_ok(least > 420 && most < 580, "of 1,000 links %d to %d are turned (5 standard deviations)",
-           (int)least, (int)most);
-}
-
-/* 12 ranks, 3 rows of 4: a rank keeps 7 of 12 patches up to date in place of all. */
-static void test_grid_pays(void)
-{
-    struct grid grid = grid_make(12);
-    tap_ok(grid_pays(grid, 240000, 20000, 12000, 0), "cells pay where links are even in them");
-    tap_ok(grid_pays(grid, 240000, 25999, 12000, 0),
-           "and nearly even: 5,999 links more take less than 5,000 patches less, and two exchanges more");
-    tap_ok(!grid_pays(grid, 240000, 26000, 12000, 0), "but not where few roots have most of the links");
-    tap_ok(!grid_pays(grid, 240000, 20000, 12000, 240000), "nor if all have to be sent, and are many");
-    tap_ok(grid_pays(grid, 240000, 20000, 24000, 240000), "which is worth it for more patches");
-    tap_ok(!grid_pays(grid, 2400, 200, 4000, 0), "exchanges are too dear for few patches");
-    tap_ok(!grid_pays(grid_make(11), 240000, 21819, 12000, 0), "a prime number of ranks has one row");
-}
-
 int main(void)
 {
     for (int ranks = 1; ranks <= 1024; ranks *= 4)
@@ -404,8 +348,5 @@ int main(void)
     test_rows(1, 4, false, 4.0);
     test_rows(0, 4, false, 1.0);
     tap_ok(alloc_balance() == 0, "all is freed");
-    test_grid();
-    test_turns();
-    test_grid_pays();
     return tap_done();
 }

@@ -140,8 +140,9 @@ static const struct choice CHOICES[] = {
      {"none", "cap", "rows", "symmetric"}, "none|cap|rows|symmetric"},
     {"--solver", offsetof(struct options, criterion.solver), 2, {"jacobi", "cg", NULL},
      "jacobi|cg"},
-    {"--balance", offsetof(struct options, criterion.balance), 3, {"greedy", "even", "cells", NULL},
-     "greedy|even|cells"},
+    {"--balance", offsetof(struct options, criterion.balance), 2,
+     {"greedy", "even", NULL},
+     "greedy|even"},
 };
 enum { CHOICE_COUNT = sizeof CHOICES / sizeof CHOICES[0] };
 
