@@ -24,14 +24,14 @@
  * Links. The paper's greedy plan (mpi/plan.h) says how much goes from where to where; what is
  * sent is taken from all of a rank's links in turn. Re-partition along a line of all links was
  * tried: it is as even, for what is left is not the plan's fault but the prediction's: the work
- * of a link is known within a factor of two or so. So a level with much to do is split in stages: a rank
- * stops before it has worked as long as predicted of the mean rank, and the rest is dealt anew. In a room of 6,350
- * triangles at epsilon 1e-5 on 32 ranks that leaves 5 % of refinement idle, where 12 % were. To go on with
- * the next level meanwhile is a little better still (4 %), but then what fits into memory would depend
- * on the number of ranks. */
+ * of a link is known within a factor of two or so. So a level with much to do is split in
+ * stages: a rank stops before it has worked as long as predicted of the mean rank, and the
+ * rest is dealt anew. In a room of 6,350 triangles on 32 ranks (--stats, "splitting") 7 %
+ * of refinement are idle; 16 % are where levels are dealt once (--balance greedy). To go on
+ * with the next level meanwhile is a little better still, but then what fits into memory
+ * would depend on the number of ranks. */
 #include "mpi/balance.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -91,18 +91,8 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, 
  * one form factor in place of that a third more of a level was idle.) */
 enum { LOAD_OPEN = 4 * TESTS_PER_FORM_FACTOR, LOAD_LEAST = 80 };
 
-/* One child of a link takes 20 tests, two fifths of what that took, and a fifth of what is above 400 tests.
- * The mean over links of like cost, 8 to 5,000, was within a third of that in two rooms and an office; in
- * the Cornell box it was two thirds of that. */
-static int64_t load_of_unmade(double cost)
-{
-    return LOAD_LEAST / 4 + (int64_t)(0.4 * fmin(cost, 400.0) + 0.2 * fmax(0.0, cost - 400.0));
-}
-
 int64_t link_load(const struct link *link)
 {
-    if (link->seen == LINK_UNMADE)
-        return load_of_unmade(link_cost(link));
     return link_is_open(link) ? LOAD_OPEN : LOAD_LEAST + (int64_t)link_cost(link);
 }
 

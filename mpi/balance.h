@@ -19,7 +19,7 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, 
 /* --- links, of whose costs each rank knows its own --- */
 
 /* What splitting a link is predicted to take, in tests: its cost, for those of its children are about
- * as many as its own were; and what there is to do besides. Of an unmade child, what it takes. */
+ * as many as its own were; and what there is to do besides. */
 int64_t link_load(const struct link *link);
 
 /* What it takes to look at a link and its patches; at a clear one (rad/oracle.h): 1. */

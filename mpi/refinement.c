@@ -23,15 +23,14 @@
 /* What ranks tell each other before a stage of a level. */
 struct load_notice {
     int64_t links;           /* links here that are to be split, */
-    int64_t load;            /* the predicted cost of that, */
-    int64_t room;            /* and how many links there may be in their place at a time */
+    int64_t load;            /* and the predicted cost of that */
     int64_t kept;            /* links here that are not to be split */
     int64_t stop;            /* the signal that this rank has got, 0: none */
 };
 
 /* Links of all ranks before a stage. */
 struct level {
-    int64_t prolific, room, kept;
+    int64_t prolific, kept;
 };
 
 static int64_t load_of(const struct link_list *list)
@@ -63,39 +62,13 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
     ledger_add(&solver->ledger, looks);
 }
 
-/* The links, but in place of those that are partly seen the names of their children: a link may take many times as
- * long as a rank's share of the level, and its four children can go to four ranks. */
-static struct link_list name_children(struct solver *solver, const struct link_list *prolific)
-{
-    struct link_list named = {0};
-    for (int64_t i = 0; i < prolific->count; i++) {
-        const struct link *link = &prolific->items[i];
-        struct link children[4] = {*link};
-        bool partly = link_is_partly_seen(link);
-        if (partly)
-            link_split_unmade(&solver->method, link, oracle_patch_to_split(&solver->method, link), children);
-        for (int k = 0; k < (partly ? 4 : 1); k++)
-            link_list_append(&named, children[k]);
-    }
-    return named;
-}
-
-/* A link and its four children, or an unmade one and what is made of it. */
-static int64_t room_of(const struct link_list *list)
-{
-    int64_t room = 0;
-    for (int64_t i = 0; i < list->count; i++)
-        room += list->items[i].seen == LINK_UNMADE ? 2 : 5;
-    return room;
-}
-
-/* LoadBalance of Algorithm 1: first the total exchange of loads. `links`, `prolific` of them here, are to be split;
- * loads[r]: what that is predicted to take on rank r. Waiting is idle time. */
-static struct level exchange_loads(struct solver *solver, int64_t prolific, const struct link_list *links,
-                                   int64_t *loads)
+/* LoadBalance of Algorithm 1: first the total exchange of loads. loads[r]: what it is
+ * predicted to take to split the prolific links of rank r. Waiting is idle time. */
+static struct level exchange_loads(struct solver *solver,
+                                   const struct link_list *prolific, int64_t *loads)
 {
     const struct comm *comm = solver->comm;
-    struct load_notice own = {.links = prolific, .load = load_of(links), .room = room_of(links),
+    struct load_notice own = {.links = prolific->count, .load = load_of(prolific),
                               .kept = solver->links.count, .stop = signals_seen()};
     struct load_notice *notices = alloc_array((size_t)comm->size, sizeof *notices);
     double start = comm_seconds();
@@ -104,11 +77,10 @@ static struct level exchange_loads(struct solver *solver, int64_t prolific, cons
                    comm->handle, &request);
     comm_wait(&request);
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
-    struct level sum = {0, 0, 0};
+    struct level sum = {0, 0};
     for (int r = 0; r < comm->size; r++) {
         loads[r] = notices[r].load;
         sum.prolific += notices[r].links;
-        sum.room += notices[r].room;
         sum.kept += notices[r].kept;
         solver->stop = (int)notices[r].stop > solver->stop ? (int)notices[r].stop : solver->stop;
     }
@@ -128,15 +100,6 @@ static int64_t deal_links(struct solver *solver, struct link_list *links, const 
     return bytes;
 }
 
-/* The links that have been split, or the one that has been made; their number. */
-static int make_children(struct solver *solver, const struct link *link, struct link children[4])
-{
-    children[0] = *link;
-    if (link->seen == LINK_UNMADE)
-        return link_finish(&solver->method, children);
-    return link_split(&solver->method, link, oracle_patch_to_split(&solver->method, link), children);
-}
-
 /* Splits links until that took as much work as the limit; their children go to `next` or to the rank's links,
  * the others stay. `part`: of the level, that which is left. */
 static void split_stage(struct solver *solver, struct link_list *links, double part, int64_t limit,
@@ -150,7 +113,8 @@ static void split_stage(struct solver *solver, struct link_list *links, double p
             progress_tick(solver->progress, 1.0 - part * (double)(links->count - done) / (double)links->count);
         phase->predicted += link_load(link);
         struct link children[4];
-        int count = make_children(solver, link, children);
+        int count = link_split(&solver->method, link,
+                               oracle_patch_to_split(&solver->method, link), children);
         for (int k = 0; k < count; k++) {
             bool goes_on = oracle_patch_to_split(&solver->method, &children[k]) >= 0;
             if (!goes_on)
@@ -174,7 +138,7 @@ static void split_level(struct solver *solver, struct link_list *links, struct p
     double part = 1.0;
     for (int stage = 0; limit < INT64_MAX; stage++) {
         if (stage > 0)
-            exchange_loads(solver, 0, links, loads);
+            exchange_loads(solver, links, loads);
         limit = solver->method.criterion.balance == BALANCE_GREEDY
                     ? INT64_MAX : links_limit(loads, solver->comm->size, stage);
         phase.bytes = deal_links(solver, links, loads);
@@ -212,6 +176,9 @@ static void share_splits(struct solver *solver)
     solver->seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
 
+/* A link that is being split and its four children. */
+enum { LINKS_PER_SPLIT = 5 };
+
 /* A link that is looked at may give both its patches children; one that is split, a patch too. */
 enum { PATCHES_PER_LOOK = 8, PATCHES_PER_SPLIT = 4 + 4 * PATCHES_PER_LOOK };
 
@@ -220,11 +187,12 @@ enum { PATCHES_PER_LOOK = 8, PATCHES_PER_SPLIT = 4 + 4 * PATCHES_PER_LOOK };
 static bool level_fits(struct solver *solver, const struct level *level, int64_t *made)
 {
     const struct memory *memory = &solver->memory;
-    if (memory_has_room(memory, level->kept + level->room, level->prolific, solver->shared + *made))
+    int64_t links = level->kept + LINKS_PER_SPLIT * level->prolific;
+    if (memory_has_room(memory, links, level->prolific, solver->shared + *made))
         return true;
     share_splits(solver);
     *made = 0;
-    return memory_has_room(memory, level->kept + level->room, level->prolific, solver->shared);
+    return memory_has_room(memory, links, level->prolific, solver->shared);
 }
 
 /* Splits level after level. Returns false if a signal or the memory limit ended that: then the
@@ -233,26 +201,23 @@ static bool split_levels(struct solver *solver, struct link_list *prolific, int6
 {
     int64_t made = 0;
     for (int64_t level = 0;; level++) {
-        struct link_list named = name_children(solver, prolific), next = {0};
-        struct level links = exchange_loads(solver, prolific->count, &named, loads);
+        struct level links = exchange_loads(solver, prolific, loads);
         if (links.prolific == 0)
             return true;
         made += level == 0 ? PATCHES_PER_LOOK * links.kept : 0;
         bool fits = solver->stop || level_fits(solver, &links, &made);
         if (!fits)
             solver->memory.reached = solver->memory.limit;
-        if (!fits || solver->stop) {
-            link_list_free(&named);
+        if (!fits || solver->stop)
             return false;
-        }
         made += PATCHES_PER_SPLIT * links.prolific;
         progress_begin(solver->progress, "refining", level, links.prolific);
         struct phase_work phase = {.kind = WORK_SPLITTING, .iteration = solver->pass, .level = level,
                                    .links = prolific->count};
+        struct link_list next = {0};
         solver->split_here += prolific->count;
+        split_level(solver, prolific, phase, loads, &next);
         link_list_free(prolific);
-        split_level(solver, &named, phase, loads, &next);
-        link_list_free(&named);
         *prolific = next;
     }
 }

@@ -152,26 +152,6 @@ int link_split(struct method *method, const struct link *link, int32_t patch,
     return count;
 }
 
-void link_split_unmade(struct method *method, const struct link *link, int32_t patch,
-                       struct link children[4])
-{
-    forest_split(method->forest, patch);
-    for (int k = 0; k < 4; k++) {
-        int32_t child = method->forest->patches[patch].children + k;
-        children[k] = *link;
-        *(patch == link->p ? &children[k].p : &children[k].q) = child;
-        children[k].seen = LINK_UNMADE;
-    }
-}
-
-bool link_finish(struct method *method, struct link *link)
-{
-    struct facet facet_p = facet_make(method->forest, link->p);
-    struct facet facet_q = facet_make(method->forest, link->q);
-    struct sight sight = {.open = false, .blocker = link->blocker};
-    return link_make(method, link->p, &facet_p, link->q, &facet_q, link_cost(link), &sight, link);
-}
-
 /* What a link takes from a patch: B, or that of its children weighted by the parts, summed in `sum`.
  * (A transfer with copies of colours took half as long again.) */
 static const struct rgb *take(const struct forest *forest, int32_t patch, const uint8_t parts[3],

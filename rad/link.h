@@ -35,10 +35,6 @@ struct link {
  * size to trust the form factor from points, or not. */
 enum { LINK_ALL_SEEN = 252, LINK_OPEN_NEAR = 253, LINK_OPEN = 254 };
 
-/* In place of that: the child of a link that is being split, not made yet. Of it there are p, q, the
- * blocker and the cost of its parent. */
-enum { LINK_UNMADE = 255 };
-
 static inline bool link_is_open(const struct link *link)
 {
     return link->seen >= LINK_OPEN_NEAR;
@@ -118,15 +114,6 @@ struct link link_make_little(int32_t p, int32_t q, double unoccluded, bool seen,
  * no ray had arrived and the two patches are proved to be walled off. */
 int link_split(struct method *method, const struct link *link, int32_t patch,
                struct link children[4]);
-
-/* The same in two steps, where all of the work is in the children: here they are left unmade, and each can
- * be made anywhere. They differ from those of link_split() in their blockers at most, since none knows what
- * has blocked another. Pre: link_is_partly_seen(). */
-void link_split_unmade(struct method *method, const struct link *link, int32_t patch,
-                       struct link children[4]);
-
-/* Makes an unmade child. False if no light can ever pass. */
-bool link_finish(struct method *method, struct link *link);
 
 /* Transfers light over all links that are seen: adds G B of either side to the flux of the
  * other. B may have any sign. Pre: the list is sorted, and the largest |B| times the area of the

@@ -487,51 +487,6 @@ static void test_parts(void)
     tap_ok(odd == 0, "the paper's are even");
 }
 
-static bool are_alike(const struct link *a, const struct link *b)
-{
-    return a->p == b->p && a->q == b->q && a->area == b->area && a->seen == b->seen &&
-           memcmp(a->parts_p, b->parts_p, 3) == 0 && memcmp(a->parts_q, b->parts_q, 3) == 0;
-}
-
-/* Children that are made one by one, here from the last to the first, are those of link_split(), but for the
- * blocker and what it took to find it. */
-static void test_unmade(void)
-{
-    struct random random = random_seed(6);
-    int split = 0, off = 0, dropped = 0;
-    for (int i = 0; i < 1000; i++) {
-        struct soup soup = {0};
-        for (int k = 0; k < 8; k++)
-            soup_add(&soup, random_triangle(&random, 0.4, 0.4));
-        struct scene *scene = scene_of_soup(&soup, 1);
-        scene->materials[0] = material_grey(0.5, 1);
-        soup_free(&soup);
-        struct world world = world_make(scene);
-        world.method.criterion.oracle = ORACLE_ERROR;
-        world.method.link_threshold = 0.0;
-        struct link link, unmade[4], children[4];
-        if (make(&world, 0, 1, &link) && link_is_partly_seen(&link)) {
-            int32_t patch = i % 2;
-            int count = 0, expected = link_split(&world.method, &link, patch, children);
-            link_split_unmade(&world.method, &link, patch, unmade);
-            for (int k = 3; k >= 0; k--) {
-                off += unmade[k].seen != LINK_UNMADE;
-                if (link_finish(&world.method, &unmade[k])) {
-                    count++;
-                    off += count > expected || !are_alike(&unmade[k], &children[expected - count]);
-                }
-            }
-            split++;
-            dropped += expected < 4;
-            off += count != expected;
-        }
-        world_free(&world);
-    }
-    tap_ok(split > 40 && dropped > 0 && off == 0,
-           "%d links, %d of them with children that do not face: the same children made one by one",
-           split, dropped);
-}
-
 /* A child of an open link is open, and fires no ray. */
 static void test_inheriting(void)
 {
@@ -570,7 +525,6 @@ int main(void)
     test_dealing();
     test_transfer();
     test_parts();
-    test_unmade();
     test_inheriting();
     return tap_done();
 }
