@@ -185,6 +185,5 @@ clean:
 
 FORCE:
 
-
 .PHONY: all demo tests room bench errors chart growth check check-long golden portability fuzz install \
         uninstall clean FORCE

@@ -22,9 +22,6 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, 
  * as many as its own were; and what there is to do besides. */
 int64_t link_load(const struct link *link);
 
-/* What it takes to look at a link and its patches; at a clear one (rad/oracle.h): 1. */
-enum { LOOK_LOAD = 16 };
-
 /* True if what the ranks save takes longer than sending the links. */
 bool moving_pays(const int64_t *loads, int ranks);
 

@@ -111,24 +111,19 @@ static bool is_uneven(const int64_t *counts, int ranks)
     return (double)largest * ranks > 1.02 * (double)sum;
 }
 
-/* Adds up over all ranks. Waiting is idle time. */
-static void add_counts(struct solver *solver, int64_t *counts, int count)
-{
-    double start = comm_seconds();
-    comm_add(solver->comm, counts, count);
-    solver->seconds[PHASE_IDLE] += comm_seconds() - start;
-}
-
+/* Waiting for the numbers of all ranks is idle time. */
 void links_even_out(struct solver *solver)
 {
     int ranks = solver->comm->size;
     int64_t *here = alloc_array((size_t)ranks, sizeof *here);
     for (int64_t i = 0; i < solver->links.count; i++)
         here[solver->comm->rank] += carries_light(&solver->links.items[i]);
-    add_counts(solver, here, ranks);
     double start = comm_seconds();
+    comm_add(solver->comm, here, ranks);
+    double counted = comm_seconds();
     if (is_uneven(here, ranks)) /* the same on all ranks, so all enter */
         solver->bytes_migration += links_balance(solver, &solver->links, carries_light, here);
     alloc_free(here);
-    solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
+    solver->seconds[PHASE_IDLE] += counted - start;
+    solver->seconds[PHASE_MIGRATION] += comm_seconds() - counted;
 }

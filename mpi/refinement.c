@@ -41,6 +41,9 @@ static int64_t load_of(const struct link_list *list)
     return load;
 }
 
+/* What it takes to look at a link and its patches; at a clear one (rad/oracle.h): 1. */
+enum { LOOK_LOAD = 16 };
+
 /* Moves the links that are to be split from the rank's links to `prolific`. */
 static void select_prolific(struct solver *solver, struct link_list *prolific)
 {
@@ -222,7 +225,8 @@ static bool split_levels(struct solver *solver, struct link_list *prolific, int6
     }
 }
 
-void solver_begin_pass(struct solver *solver)
+/* Begins a pass: what refinement reads of the solution so far. */
+static void begin_pass(struct solver *solver)
 {
     solver->pass++;
     oracle_prepare(&solver->method);
@@ -236,7 +240,7 @@ bool solver_refine(struct solver *solver)
     struct link_list prolific = {0};
     double start = comm_seconds();
     bool done = true;
-    solver_begin_pass(solver);
+    begin_pass(solver);
     if (memory->limit == 0 || memory->reached != memory->limit) {
         memory->reached = 0;
         select_prolific(solver, &prolific);

@@ -114,9 +114,6 @@ void solver_link_roots(struct solver *solver);
  * and links go home. */
 void solver_assign_roots(struct solver *solver);
 
-/* Begins a pass: what refinement reads of the solution so far. */
-void solver_begin_pass(struct solver *solver);
-
 /* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches were
  * split. Refinement that meets the memory limit ends there, and does not begin again as long as the
  * limit is the same. False if a signal (solver->stop) has ended it: then it counts as not begun, and

@@ -141,8 +141,7 @@ static const struct choice CHOICES[] = {
     {"--solver", offsetof(struct options, criterion.solver), 2, {"jacobi", "cg", NULL},
      "jacobi|cg"},
     {"--balance", offsetof(struct options, criterion.balance), 2,
-     {"greedy", "even", NULL},
-     "greedy|even"},
+     {"greedy", "even", NULL}, "greedy|even"},
 };
 enum { CHOICE_COUNT = sizeof CHOICES / sizeof CHOICES[0] };
 
