@@ -87,7 +87,7 @@ double truth_noise(const struct truth *truth, const struct scene *scene, bool po
     return noise;
 }
 
-/* --- the two answers --- */
+/* --- the three answers --- */
 
 struct list {
     struct sample *items; /* [count] */
@@ -112,35 +112,58 @@ static struct rgb mean_of(const struct element *elements, int64_t count, int hal
     return mean;
 }
 
+/* A patch, which holds these elements, as a sample. */
+static struct sample sample_of(const struct forest *forest, int32_t patch,
+                               const struct element *elements, int64_t count)
+{
+    const struct patch *at = &forest->patches[patch];
+    struct sample sample = {
+        .area = forest_area(forest, patch),
+        .value = reflected(forest->scene, (int32_t)at->id.root, at->radiosity)};
+    for (int half = 0; half < TRUTH_HALVES; half++)
+        sample.truth[half] = mean_of(elements, count, half);
+    return sample;
+}
+
 /* The leaves of a patch, which holds these elements, or the patch if it is one element. */
 static void add_leaves(const struct forest *forest, int32_t patch, const struct element *elements,
                        int64_t count, struct list *list)
 {
     const struct patch *at = &forest->patches[patch];
-    if (count > 1 && !patch_is_leaf(at)) {
+    if (count > 1 && !patch_is_leaf(at))
         for (int k = 0; k < 4; k++)
             add_leaves(forest, at->children + k, elements + k * (count / 4), count / 4, list);
-        return;
-    }
-    struct sample *sample = &list->items[list->count++];
-    sample->area = forest_area(forest, patch);
-    sample->value = reflected(forest->scene, (int32_t)at->id.root, at->radiosity);
-    for (int half = 0; half < TRUTH_HALVES; half++)
-        sample->truth[half] = mean_of(elements, count, half);
+    else
+        list->items[list->count++] = sample_of(forest, patch, elements, count);
 }
 
-struct deviation deviation_of_leaves(const struct forest *forest, const struct truth *truth)
+static struct deviation deviation_of_patches(const struct forest *forest, const struct truth *truth,
+                                             bool roots)
 {
     struct list list = {alloc_array((size_t)truth->count, sizeof *list.items), 0};
     for (int64_t i = 0; i < truth->count;) {
-        struct patch_id id = truth->items[i].id;
-        int64_t count = INT64_C(1) << 2 * id_level(id);
-        add_leaves(forest, (int32_t)id.root, &truth->items[i], count, &list);
+        const struct element *elements = &truth->items[i];
+        int32_t root = (int32_t)elements->id.root;
+        int64_t count = INT64_C(1) << 2 * id_level(elements->id);
+        if (roots)
+            list.items[list.count++] = sample_of(forest, root, elements, count);
+        else
+            add_leaves(forest, root, elements, count, &list);
         i += count;
     }
     struct deviation deviation = deviation_of(list.items, list.count);
     alloc_free(list.items);
     return deviation;
+}
+
+struct deviation deviation_of_leaves(const struct forest *forest, const struct truth *truth)
+{
+    return deviation_of_patches(forest, truth, false);
+}
+
+struct deviation deviation_of_roots(const struct forest *forest, const struct truth *truth)
+{
+    return deviation_of_patches(forest, truth, true);
 }
 
 static bool is_black(const struct element *element)

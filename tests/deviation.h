@@ -47,6 +47,10 @@ double truth_noise(const struct truth *truth, const struct scene *scene, bool po
  * than an element of the truth, their mean over the element. */
 struct deviation deviation_of_leaves(const struct forest *forest, const struct truth *truth);
 
+/* `root`: the mean radiosity of a root, with the mean of the truth over that root. Errors inside a
+ * root cancel, so solutions on any meshes can be compared, with truths in elements of any size. */
+struct deviation deviation_of_roots(const struct forest *forest, const struct truth *truth);
+
 /* `shown`: the radiosity that pictures show, with the truth at the points of the elements. Points
  * that no light reaches at all, such as those that a box covers, are left out. */
 struct deviation deviation_of_points(const struct shading *shading, const struct truth *truth);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "rad/pushpull.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
@@ -92,6 +93,61 @@ static void test_noise(void)
     alloc_free(samples);
 }
 
+/* Two triangles in the plane z = 0 with areas 2 and 4, both with E = 0.5. */
+static struct world two_roots(void)
+{
+    struct soup soup = {0};
+    soup_add(&soup, (struct triangle){{{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}}});
+    soup_add(&soup, (struct triangle){{{2, -1, 0}, {6, -1, 0}, {2, 1, 0}}});
+    struct scene *scene = scene_of_soup(&soup, 1);
+    scene->materials[0] = material_grey(0.5, 0.5);
+    soup_free(&soup);
+    return world_make(scene);
+}
+
+/* Truth of root 0: 3 and 5 in turn, swapped in the other half, so 4 without noise over any patch of
+ * several elements. Of root 1: 5 and 3 for the halves, so 4 with a noise of 1. */
+static struct truth two_truths(const struct scene *scene)
+{
+    struct truth truth = truth_make(scene, 32);
+    for (int64_t i = 0; i < truth.count; i++) {
+        int64_t turn = truth.items[i].id.root == 0 ? i & 1 : 0;
+        truth.items[i].mean[0] = grey(turn ? 3.0 : 5.0);
+        truth.items[i].mean[1] = grey(turn ? 5.0 : 3.0);
+    }
+    return truth;
+}
+
+/* B - E is 1, 2, 3, 6 on the children of root 0, whose mean is off by -1, and 6 on root 1, which is
+ * not divided: off by 2, its product of deviations 1 * 3. Squares of truths are 16 and 5 * 3. All
+ * weighted with the areas 2 and 4. */
+static void test_roots(void)
+{
+    static const double reflected[4] = {1.0, 2.0, 3.0, 6.0};
+    struct world world = two_roots();
+    struct forest *forest = world.method.forest;
+    struct truth truth = two_truths(world.scene);
+    forest_split(forest, 0);
+    for (int k = 0; k < 4; k++)
+        forest->patches[forest->patches[0].children + k].radiosity = grey(0.5 + reflected[k]);
+    forest_average_patch(forest, 0);
+    forest->patches[1].radiosity = grey(0.5 + 6.0);
+    struct deviation root = deviation_of_roots(forest, &truth);
+    struct deviation leaf = deviation_of_leaves(forest, &truth);
+    tap_ok(truth.count == 16 + 64, "roots of 16 and 64 elements");
+    tap_ok(near(root.rms, sqrt((2.0 + 12.0) / 92.0), 1e-15), "root rms %.6f", root.rms);
+    tap_ok(near(root.l1, 10.0 / 24.0, 1e-15), "root l1 %.6f", root.l1);
+    tap_ok(near(root.median, 0.5, 1e-15), "root median %.6f", root.median);
+    tap_ok(near(root.bias, 6.0 / 24.0, 1e-15), "root bias %.6f", root.bias);
+    tap_ok(near(root.noise, sqrt(4.0 / 92.0), 1e-15), "root noise %.6f", root.noise);
+    tap_ok(near(leaf.rms, sqrt((2.0 * 18.0 / 4.0 + 12.0) / 92.0), 1e-15) &&
+               near(leaf.l1, 12.0 / 24.0, 1e-15) && near(leaf.bias, root.bias, 1e-15),
+           "leaf rms %.6f, l1 %.6f: errors inside a root count, the bias is that of roots",
+           leaf.rms, leaf.l1);
+    truth_free(&truth);
+    world_free(&world);
+}
+
 /* A floor of two triangles, and a black light of two above it. */
 static struct world floor_and_light(void)
 {
@@ -156,6 +212,7 @@ int main(void)
     test_ends();
     test_bands();
     test_noise();
+    test_roots();
     struct world world = floor_and_light();
     struct pathtracer pathtracer = pathtracer_make(world.scene, world.octree);
     struct truth truth = truth_make(world.scene, 64);

@@ -6,14 +6,16 @@
  * The scene and the reference come first; --two-sided has to be given where the reference was made
  * with it. Outputs that are asked for are not written.
  *
- * The norms are those of tests/deviation.h, for two answers. `leaf`: the constant of a leaf, with
+ * The norms are those of tests/deviation.h, for three answers. `leaf`: the constant of a leaf, with
  * the mean of the truth over that leaf; where leaves are smaller than an element of the truth,
  * their mean over the element. The errors of small leaves cancel in that mean, so only numbers
  * that one reference gives can be compared. `shown`: the radiosity that pictures show, with the
  * truth at one point of each element; points that no light reaches at all, such as those that a
- * box covers, are left out. The seconds are those of linking and iterating, with the octree; on
- * several ranks, until the last is done. `emitters` is what turns the relative RMS, which is that
- * of the reflected light, into one relative to all radiosity, emission included: multiply by it. */
+ * box covers, are left out. `root`: the mean of a root triangle, with the mean of the truth over
+ * it; it judges the light that roots exchange, not the mesh. The seconds are those of linking and
+ * iterating, with the octree; on several ranks, until the last is done. `emitters` is what turns
+ * the relative RMS, which is that of the reflected light, into one relative to all radiosity,
+ * emission included: multiply by it. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -29,7 +31,7 @@
 static const char *const HEADER =
     "scene,options,seconds,links,rays,node_tests,triangle_tests,iterations,patches,leaf_rms,"
     "leaf_l1,leaf_median,shown_rms,shown_l1,shown_median,noise,shown_noise,emitters,"
-    "leaf_bias,shown_bias";
+    "leaf_bias,shown_bias,root_rms,root_l1,root_median,root_bias,root_noise";
 
 struct measure {
     struct comm comm;
@@ -92,7 +94,8 @@ static double share_of_reflected(const struct truth *truth, const struct scene *
 }
 
 static void print_line(const struct measure *measure, const struct solution *s,
-                       const struct deviation *leaf, const struct deviation *shown)
+                       const struct deviation *leaf, const struct deviation *root,
+                       const struct deviation *shown)
 {
     const struct stats *stats = &s->stats;
     printf(",%.3f,%lld,%lld,%lld,%lld,%lld,%lld", s->seconds, (long long)stats->links,
@@ -102,8 +105,10 @@ static void print_line(const struct measure *measure, const struct solution *s,
         fprintf(stderr, "estimate %.5f at epsilon %g\n", stats->error_estimate, stats->epsilon);
     printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f", leaf->rms, leaf->l1, leaf->median,
            shown->rms, shown->l1, shown->median, leaf->noise, shown->noise);
-    printf(",%.4f,%.5f,%.5f\n", share_of_reflected(&measure->truth, s->scene, leaf), leaf->bias,
+    printf(",%.4f,%.5f,%.5f", share_of_reflected(&measure->truth, s->scene, leaf), leaf->bias,
            shown->bias);
+    printf(",%.5f,%.5f,%.5f,%.5f,%.5f\n", root->rms, root->l1, root->median, root->bias,
+           root->noise);
 }
 
 /* --- running --- */
@@ -154,12 +159,14 @@ static void run(struct measure *measure, int argc, char **argv)
     if (s.vote.diverged)
         error_set(&measure->error, EXIT_FAILED, "the solution diverges");
     if (measure->comm.rank == 0 && !s.vote.diverged) {
-        struct deviation leaf = deviation_of_leaves(s.solver->method.forest, &measure->truth);
+        const struct forest *forest = s.solver->method.forest;
+        struct deviation leaf = deviation_of_leaves(forest, &measure->truth);
+        struct deviation root = deviation_of_roots(forest, &measure->truth);
         struct deviation shown = deviation_of_points(shading, &measure->truth);
         if (measure->header)
             printf("%s\n", HEADER);
         print_options(measure, argc, argv);
-        print_line(measure, &s, &leaf, &shown);
+        print_line(measure, &s, &leaf, &root, &shown);
     }
     shading_destroy(shading);
     solution_free(&s);
