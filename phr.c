@@ -136,6 +136,7 @@ static bool read_scene(struct run *run)
     if (!run->scene)
         return false;
     run->scene->two_sided = run->options.two_sided;
+    run->scene->two_sided_lamps = run->options.two_sided_lamps;
     struct error wrong = {0};
     if (!scene_prepare(run->scene, &prepared, &wrong))
         return error_set(error, wrong.code, "%s: %s", run->options.scene, wrong.text);

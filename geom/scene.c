@@ -181,6 +181,19 @@ int32_t scene_root_count(const struct scene *scene)
     return scene->two_sided ? 2 * scene->input_count : scene->input_count;
 }
 
+bool scene_has_twin(const struct scene *scene, int32_t input)
+{
+    return scene->two_sided &&
+           (scene->two_sided_lamps || !material_emits(scene_root_material(scene, input)));
+}
+
+int32_t scene_root_on(const struct scene *scene, int32_t input, bool front)
+{
+    if (front)
+        return input;
+    return scene_has_twin(scene, input) ? input + scene->input_count : -1;
+}
+
 struct triangle scene_root_triangle(const struct scene *scene, int32_t root)
 {
     struct triangle t = scene->triangles[scene_input_of(scene, root)];
@@ -194,10 +207,13 @@ struct triangle scene_root_triangle(const struct scene *scene, int32_t root)
 
 struct plane scene_root_plane(const struct scene *scene, int32_t root)
 {
-    struct plane plane = scene->planes[scene_input_of(scene, root)];
-    if (root >= scene->input_count)
-        plane = (struct plane){vec3_scale(plane.normal, -1.0), -plane.offset};
-    return plane;
+    int32_t input = scene_input_of(scene, root);
+    struct plane plane = scene->planes[input];
+    if (root == input)
+        return plane;
+    if (!scene_has_twin(scene, input))
+        return (struct plane){{0.0, 0.0, 0.0}, 0.0};
+    return (struct plane){vec3_scale(plane.normal, -1.0), -plane.offset};
 }
 
 struct vec3 scene_root_normal(const struct scene *scene, int32_t root, int corner)

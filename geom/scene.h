@@ -24,6 +24,12 @@ static inline bool material_is_dark(const struct material *material)
     return rgb_sum(material->reflectance) == 0.0 && rgb_sum(material->emission) == 0.0;
 }
 
+/* True for a lamp. */
+static inline bool material_emits(const struct material *material)
+{
+    return rgb_sum(material->emission) > 0.0;
+}
+
 /* What the repair of an input changed, for one warning per kind. */
 struct scene_repairs {
     int64_t degenerate; /* triangles without area, dropped (their numbers stay) */
@@ -44,7 +50,8 @@ struct scene {
     int32_t material_count;
     int32_t group_count;        /* at least 1 */
     int64_t group_bytes;
-    bool two_sided;             /* each triangle i has a twin root i + input_count */
+    bool two_sided;             /* triangles have twins: of i, root i + input_count */
+    bool two_sided_lamps;       /* if two_sided: those that emit have twins, too */
     struct vec3 centre;         /* of the input's bounding box, input units */
     int32_t exponent;           /* a scene unit is 2^exponent input units */
     struct vec3 low, high;      /* bounding box, scene units */
@@ -71,7 +78,8 @@ void scene_set_groups(struct scene *scene, int32_t count, int64_t bytes);
  * Errors: no triangle with an area; a coordinate or extent out of the range of the numbers. */
 bool scene_prepare(struct scene *scene, struct scene_repairs *repairs, struct error *error);
 
-/* Number of roots, twins and dropped ones included: IDs run from 0 to this. */
+/* Number of roots, twins and dropped ones included: IDs run from 0 to this. Where a
+ * triangle has no twin, the twin's root is absent: its area is 0, and so is its plane. */
 int32_t scene_root_count(const struct scene *scene);
 
 /* The input triangle behind a root: itself, or the one whose twin it is. */
@@ -80,6 +88,13 @@ static inline int32_t scene_input_of(const struct scene *scene, int32_t root)
     return root < scene->input_count ? root : root - scene->input_count;
 }
 
+/* True if the back of an input triangle is the front of a twin. */
+bool scene_has_twin(const struct scene *scene, int32_t input);
+
+/* The root whose front is on the front, or the back, of an input triangle; -1 if that
+ * side is black. */
+int32_t scene_root_on(const struct scene *scene, int32_t input, bool front);
+
 /* Geometry of a root. A twin has its corners in the order (a, c, b) and faces the other way. */
 struct triangle scene_root_triangle(const struct scene *scene, int32_t root);
 struct plane scene_root_plane(const struct scene *scene, int32_t root);
@@ -87,9 +102,11 @@ struct plane scene_root_plane(const struct scene *scene, int32_t root);
 /* The normal for shading at a corner of a root, turned to the root's front; 0 if there is none. */
 struct vec3 scene_root_normal(const struct scene *scene, int32_t root, int corner);
 
+/* Square scene units; 0 for a dropped root and an absent one. */
 static inline double scene_root_area(const struct scene *scene, int32_t root)
 {
-    return scene->areas[scene_input_of(scene, root)];
+    int32_t input = scene_input_of(scene, root);
+    return root == input || scene_has_twin(scene, input) ? scene->areas[input] : 0.0;
 }
 
 static inline const struct material *scene_root_material(const struct scene *scene, int32_t root)

@@ -48,6 +48,8 @@ static const struct option OPTIONS[] = {
     {"--tolerance", KIND_REAL, offsetof(struct options, criterion.tolerance), 0, 1, NULL},
     {"--max-iterations", KIND_INTEGER, offsetof(struct options, criterion.max_iterations), 1, 1e9, NULL},
     {"--two-sided", KIND_FLAG, offsetof(struct options, two_sided), 0, 0, NULL},
+    {"--two-sided-lamps", KIND_FLAG, offsetof(struct options, two_sided_lamps), 0, 0,
+     NULL},
     {"--save-links", KIND_TEXT, offsetof(struct options, save_links), 0, 0, NULL},
     {"--load-links", KIND_TEXT, offsetof(struct options, load_links), 0, 0, NULL},
     {"--checkpoint", KIND_TEXT, offsetof(struct options, checkpoint), 0, 0, NULL},
@@ -330,6 +332,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         if (!set_value(options, option, argv[i], error))
             return false;
     }
+    options->two_sided = options->two_sided || options->two_sided_lamps;
     if (options->criterion.epsilon < 0.0) /* not given */
         options->criterion.epsilon = options->criterion.accuracy > 0.0 ? COARSE : EPSILON;
     if (!options->scene && !options->help && !options->version && !options->validate)
@@ -378,9 +381,10 @@ static const char *describe_all(const struct options *options, const char *const
 const char *options_link_settings(const struct options *options)
 {
     static const char *const BY_ENERGY[] = {
-        "--two-sided", "--oracle", "--form-factor", NULL};
+        "--two-sided", "--two-sided-lamps", "--oracle", "--form-factor", NULL};
     static const char *const BY_ERROR[] = { /* what is at stake decides how closely it looks */
-        "--two-sided", "--oracle", "--form-factor", "--epsilon", NULL};
+        "--two-sided", "--two-sided-lamps", "--oracle", "--form-factor", "--epsilon",
+        NULL};
     bool by_error = options->criterion.oracle == ORACLE_ERROR;
     return describe_all(options, by_error ? BY_ERROR : BY_ENERGY);
 }
@@ -388,8 +392,8 @@ const char *options_link_settings(const struct options *options)
 const char *options_run_settings(const struct options *options)
 {
     static const char *const NAMES[] = {
-        "--two-sided", "--oracle", "--form-factor", "--closure", "--solver", "--epsilon",
-        "--accuracy", "--max-level", "--min-area", NULL};
+        "--two-sided", "--two-sided-lamps", "--oracle", "--form-factor", "--closure",
+        "--solver", "--epsilon", "--accuracy", "--max-level", "--min-area", NULL};
     return describe_all(options, NAMES);
 }
 
@@ -413,14 +417,15 @@ void options_print_help(FILE *file)
           "  --oracle error|bf          what splits a link: its error, or its energy\n"
           "  --form-factor polygon|disk              --solver cg|jacobi\n"
           "  --closure none|cap|rows|symmetric       mend row sums of form factors (cap)\n"
-          "  --paper          bf, disk, jacobi, none --two-sided   backs are fronts, too\n"
-          "  --alpha A        inherited cost (0.5)   --stats FILE  report as JSON\n"
+          "  --paper          bf, disk, jacobi, none --alpha A     inherited cost (0.5)\n"
+          "  --two-sided      backs reflect, too     --two-sided-lamps  those of lamps\n"
           "  --save-links F   after initial linking  --load-links F  in its place\n"
           "  --checkpoint F   after each pass        --every N     only each N-th pass (1)\n"
           "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
           "  --form-factors   print them, as CSV     --validate    check form factors\n"
-          "  --quiet          print nothing          --verbose     levels of refinement\n"
-          "  --balance even|greedy      of links     --help        --version\n"
+          "  --stats FILE     report as JSON         --verbose     levels of refinement\n"
+          "  --balance even|greedy      of links     --quiet       print nothing\n"
+          "  --help           print this             --version     and licence\n"
           "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
           "  phr room.obj -o room.ppm\n"
           "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n",

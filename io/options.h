@@ -26,7 +26,8 @@ struct options {
     int width, height;        /* of --size; 0: what the view says */
     int samples;              /* samples x samples rays a pixel */
     double exposure;          /* 0: chosen from the picture */
-    bool flat, two_sided, quiet, verbose, help, version, validate, form_factors;
+    bool two_sided, two_sided_lamps; /* the second is never without the first */
+    bool flat, quiet, verbose, help, version, validate, form_factors;
     struct criterion criterion;
 };
 

@@ -1,5 +1,5 @@
 /* Rendering. A pixel depends on nothing but its place, so rows can be dealt to ranks in any
- * way. A triangle of a two-sided scene shows its twin where its back is met. */
+ * way. A triangle shows its twin, if it has one, where its back is met. */
 #include "io/render.h"
 
 #include "geom/alloc.h"
@@ -14,12 +14,11 @@ static struct rgb trace(const struct shading *shading, const struct octree *octr
     if (!octree_first_hit(octree, scene_from_input(scene, camera->eye), camera_ray(camera, x, y),
                           camera->fronts_only, &hit, &counts))
         return black;
-    if (hit.front)
-        return shading_at(shading, hit.triangle, hit.weight);
-    if (!scene->two_sided)
+    int32_t root = scene_root_on(scene, hit.triangle, hit.front);
+    if (root < 0)
         return black;
     double twin_weight[3] = {hit.weight[0], hit.weight[2], hit.weight[1]}; /* (a, c, b) */
-    return shading_at(shading, hit.triangle + scene->input_count, twin_weight);
+    return shading_at(shading, root, hit.front ? hit.weight : twin_weight);
 }
 
 static void render_pixel(const struct shading *shading, const struct octree *octree,

@@ -58,35 +58,37 @@ static void for_each_leaf(const struct forest *forest, int level,
     }
 }
 
-static bool meets_back(const struct octree *octree, struct vec3 start, struct vec3 direction)
-{
-    struct octree_counts counts = {0};
-    struct octree_hit hit;
-    return octree_first_hit(octree, start, direction, false, &hit, &counts) && !hit.front;
-}
-
-/* `aside`: a triangle about the point, whose corners give three directions along the surface. */
-static bool is_covered(const struct octree *octree, struct vec3 point, struct vec3 normal,
-                       const struct triangle *aside)
-{
-    struct vec3 start = vec3_add(point, vec3_scale(normal, 1024.0 * GEOM_ROUNDING));
-    if (!meets_back(octree, start, normal))
-        return false;
-    for (int k = 0; k < 3; k++) {
-        struct vec3 along = vec3_sub(aside->corner[k], point);
-        struct vec3 up = vec3_scale(normal, 0.25 * vec3_length(along));
-        if (!meets_back(octree, start, vec3_add(along, up)))
-            return false;
-    }
-    return true;
-}
-
 struct survey {
     const struct forest *forest;
     const struct octree *octree;
     int64_t count, first, step; /* leaves seen, those to look at */
     uint8_t *open;              /* [count], NULL while only counting */
 };
+
+static bool meets_back(const struct survey *survey, struct vec3 start,
+                       struct vec3 direction)
+{
+    struct octree_counts counts = {0};
+    struct octree_hit hit;
+    return octree_first_hit(survey->octree, start, direction, false, &hit, &counts) &&
+           scene_root_on(survey->forest->scene, hit.triangle, hit.front) < 0;
+}
+
+/* `aside`: a triangle about the point, whose corners give three directions along the surface. */
+static bool is_covered(const struct survey *survey, struct vec3 point, struct vec3 normal,
+                       const struct triangle *aside)
+{
+    struct vec3 start = vec3_add(point, vec3_scale(normal, 1024.0 * GEOM_ROUNDING));
+    if (!meets_back(survey, start, normal))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        struct vec3 along = vec3_sub(aside->corner[k], point);
+        struct vec3 up = vec3_scale(normal, 0.25 * vec3_length(along));
+        if (!meets_back(survey, start, vec3_add(along, up)))
+            return false;
+    }
+    return true;
+}
 
 static void survey_leaf(void *context, int32_t leaf)
 {
@@ -99,8 +101,7 @@ static void survey_leaf(void *context, int32_t leaf)
     struct plane plane = scene_root_plane(forest->scene, (int32_t)forest->patches[leaf].id.root);
     for (int k = 0; k < 4; k++) {
         struct triangle child = triangle_child(&t, k);
-        if (forest->scene->two_sided ||
-            !is_covered(survey->octree, triangle_centroid(&child), plane.normal, &child))
+        if (!is_covered(survey, triangle_centroid(&child), plane.normal, &child))
             survey->open[number]++;
     }
 }

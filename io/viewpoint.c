@@ -61,7 +61,7 @@ static double look_at(const struct site *site, struct vec3 from, struct vec3 dir
     if (!octree_first_hit(site->octree, from, direction, false, &hit, &counts))
         return NOTHING;
     *triangle = hit.triangle;
-    if (!hit.front && !site->scene->two_sided)
+    if (scene_root_on(site->scene, hit.triangle, hit.front) < 0)
         return BACK;
     const struct triangle *t = &site->scene->triangles[hit.triangle];
     struct vec3 point = {0.0, 0.0, 0.0};
@@ -140,7 +140,7 @@ static bool find_up(const struct scene *scene, bool is_room)
     double power = 0.0;
     for (int32_t i = 0; i < scene->input_count; i++) {
         double emitted = scene->areas[i] * rgb_sum(scene_root_material(scene, i)->emission);
-        if (!(emitted > 0.0) || scene->two_sided)
+        if (!(emitted > 0.0) || scene_has_twin(scene, i))
             continue;
         shine = vec3_add(shine, vec3_scale(scene->planes[i].normal, emitted));
         power += emitted;
@@ -166,9 +166,9 @@ static struct vec3 stand(const struct site *site, struct vec3 point)
 static bool is_lit(const struct site *site, int32_t triangle)
 {
     const struct forest *forest = site->forest;
-    int32_t twin = site->scene->two_sided ? triangle + site->scene->input_count : triangle;
+    int32_t twin = scene_root_on(site->scene, triangle, false);
     return !forest || rgb_sum(forest->patches[triangle].radiosity) > 0.0 ||
-           rgb_sum(forest->patches[twin].radiosity) > 0.0;
+           (twin >= 0 && rgb_sum(forest->patches[twin].radiosity) > 0.0);
 }
 
 /* How good the rays above and below one azimuth are. */

@@ -85,7 +85,7 @@ static struct view look_around(struct method *method, int32_t patch, int quarter
         struct vec3 direction = ring_direction(id, quarter, ring, x, y, normal);
         if (!octree_first_hit(method->octree, start, direction, false, &hit, &method->counts))
             view.escapes++;
-        else if (hit.front || forest->scene->two_sided)
+        else if (scene_root_on(forest->scene, hit.triangle, hit.front) >= 0)
             view.fronts++;
         else
             view.backs++;

@@ -21,7 +21,7 @@ struct viewfactors {
     double epsilon;              /* see viewfactors_add() */
     int max_level;               /* deepest subdivision, 0..ID_MAX_LEVEL */
     int32_t count;               /* groups */
-    double *areas;               /* [count] of both sides if two-sided, square scene units */
+    double *areas;               /* [count] of the roots, square scene units */
     int32_t *roots;              /* [count] number of roots with an area */
     int64_t *sums;               /* [pairs] G_ij of i <= j row by row, each in a unit of its own */
     int64_t pairs;               /* count (count + 1) / 2 */

@@ -105,17 +105,26 @@ static void test_standing_box(void)
 /* A panel half-way up, its front upwards, wide enough to be seen from all of the floor. */
 static void test_visible_back(void)
 {
-    for (int two_sided = 0; two_sided < 2; two_sided++) {
+    static const struct {
+        bool two_sided, lamp, two_sided_lamps, way_out;
+        const char *name;
+    } CASES[] = {
+        {false, false, false, true, "a back that is seen is a way out; a front is not"},
+        {true, false, false, false, "two-sided, it is no way out"},
+        {true, true, false, true, "but that of a lamp is"},
+        {true, true, true, false, "unless lamps are two-sided, too"}};
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         struct soup soup = room_of(false, 1);
         soup_add_quad(&soup, point(0.1, 0.1, 0.5), point(0.8, 0, 0), point(0, 0.8, 0), 1);
-        struct scene *scene = scene_of_soup(&soup, 1);
-        scene->two_sided = two_sided;
+        struct scene *scene = scene_of_soup(&soup, 2);
+        scene->two_sided = CASES[i].two_sided;
+        scene->two_sided_lamps = CASES[i].two_sided_lamps;
+        scene->materials[1] = material_grey(0.5, CASES[i].lamp ? 1.0 : 0.0);
+        scene->material_of[12] = scene->material_of[13] = 1;
         soup_free(&soup);
         struct world world = world_make(scene);
         int floor = due_leaves(&world, 8, 10), ceiling = due_leaves(&world, 10, 12);
-        tap_ok(floor == (two_sided ? 2 : 0) && ceiling == 2, "%s",
-               two_sided ? "two-sided, it is no way out"
-                         : "a back that is seen is a way out; a front is not");
+        tap_ok(floor == (CASES[i].way_out ? 0 : 2) && ceiling == 2, "%s", CASES[i].name);
         world_free(&world);
     }
 }

@@ -310,7 +310,7 @@ static struct scene *full_scene(const struct comm *comm, bool normals)
             scene->normals[i] = (struct vec3){i, 0.5, -i};
     }
     if (scene) {
-        scene->two_sided = true;
+        scene->two_sided = scene->two_sided_lamps = true;
         scene->materials[5].emission.band[1] = 2.0;
     }
     return scene;
@@ -360,7 +360,8 @@ static void test_broadcast(const struct comm *comm, struct node_policy policy, b
     struct scene *scene = full_scene(comm, normals);
     struct octree *octree;
     struct node_block block = scene_broadcast(comm, policy, &scene, &octree);
-    bool right = scene->input_count == 12 && scene->two_sided && scene->areas[11] > 0.0 &&
+    bool right = scene->input_count == 12 && scene->two_sided && scene->two_sided_lamps &&
+                 scene->areas[11] > 0.0 &&
                  scene->materials[5].emission.band[1] == 2.0 &&
                  strcmp(scene->group_names, "default") == 0 && !scene->normals == !normals;
     for (int i = 0; i < 3 * 12 && right && normals; i++)

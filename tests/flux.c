@@ -130,7 +130,7 @@ static void test_choice(void)
         fits = fits && flux_from_watts(unit, 16.0 * light) < FLUX_LIMIT &&
                flux_from_watts(unit, 64.0 * light) == FLUX_LIMIT;
         power_of_two = power_of_two && is_power_of_two(unit.per_watt);
-        scene->two_sided = true;
+        scene->two_sided = scene->two_sided_lamps = true;
         fits = fits && flux_from_watts(flux_unit_choose(scene), 32.0 * light) < FLUX_LIMIT;
         scene_destroy(scene);
     }

@@ -26,7 +26,7 @@ static struct world furnished(int more, bool two_sided, double epsilon, int fine
     for (int k = 0; k < more; k++)
         soup_add(&soup, random_triangle(&random, 0.4, 0.1));
     struct scene *scene = scene_of_soup(&soup, 1);
-    scene->two_sided = two_sided;
+    scene->two_sided = scene->two_sided_lamps = two_sided;
     scene->materials[0] = material_grey(0.5, 1.0);
     soup_free(&soup);
     struct world world = world_make(scene);
@@ -316,7 +316,7 @@ static void test_few(void)
             soup_add(&soup, (struct triangle){{a, b, c}});
         }
         struct scene *scene = scene_of_soup(&soup, 1);
-        scene->two_sided = true;
+        scene->two_sided = scene->two_sided_lamps = true;
         scene->materials[0] = material_grey(0.5, 1.0);
         struct world world = world_make(scene);
         struct link_list links = {0};
@@ -340,6 +340,45 @@ static void test_few(void)
     }
 }
 
+/* A closed two-sided room of which every other triangle is a lamp. */
+static void test_absent_twins(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(-0.5, -0.5, -0.5), point(0.5, 0.5, 0.5), 2, true);
+    soup_add_sphere(&soup, 0.1, 1);
+    struct scene *scene = scene_of_soup(&soup, 2);
+    soup_free(&soup);
+    scene->two_sided = true;
+    scene->materials[0] = material_grey(0.5, 0.0);
+    scene->materials[1] = material_grey(0.5, 1.0);
+    for (int32_t i = 0; i < scene->input_count; i++)
+        scene->material_of[i] = i % 2;
+    struct world world = world_make(scene);
+    struct link_list links = {0};
+    struct linking linking = linking_start(&world.method, &links);
+    int32_t count = scene->input_count, absent = 0;
+    bool right = linking.tree->root_count == count + count / 2;
+    for (int32_t i = 0; i < linking.tree->root_count; i++) {
+        int32_t root = linking.tree->roots[i];
+        right = right && (root < count || root % 2 == 0);
+        add_row(&linking, i);
+    }
+    for (int64_t i = 0; i < links.count; i++) {
+        const int32_t ends[2] = {links.items[i].p, links.items[i].q};
+        for (int k = 0; k < 2; k++)
+            absent += ends[k] >= count && ends[k] % 2 == 1;
+    }
+    for (int32_t p = count + 1, q = 0; q < count; q++) {
+        struct link one;
+        absent += make(&world, p, q, &one);
+    }
+    tap_ok(right && links.count > 0 && absent == 0, "a lamp's back: none of %lld links",
+           (long long)links.count);
+    linking_end(&linking);
+    link_list_free(&links);
+    world_free(&world);
+}
+
 int main(void)
 {
     test_tree();
@@ -351,5 +390,6 @@ int main(void)
     test_groups(1e-2);
     test_groups(1.0);
     test_few();
+    test_absent_twins();
     return tap_done();
 }

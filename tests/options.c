@@ -43,8 +43,8 @@ static void test_defaults(void)
                !options.stats && options.width == 0 && options.height == 0 &&
                options.exposure == 0.0,
            "a scene alone");
-    tap_ok(!options.flat && !options.two_sided && !options.quiet && !options.verbose &&
-               !options.help && !options.version,
+    tap_ok(!options.flat && !options.two_sided && !options.two_sided_lamps &&
+               !options.quiet && !options.verbose && !options.help && !options.version,
            "all switches are off");
     options_free(&options);
 }
@@ -84,8 +84,13 @@ static void test_switches(void)
     struct options options;
     tap_ok(parse("--flat a.obj", &options) && options.flat && !options.two_sided, "--flat");
     options_free(&options);
-    tap_ok(parse("--two-sided a.obj", &options) && options.two_sided && !options.flat,
+    tap_ok(parse("--two-sided a.obj", &options) && options.two_sided && !options.flat &&
+               !options.two_sided_lamps,
            "--two-sided");
+    options_free(&options);
+    tap_ok(parse("--two-sided-lamps a.obj", &options) && options.two_sided &&
+               options.two_sided_lamps,
+           "--two-sided-lamps includes --two-sided");
     options_free(&options);
     tap_ok(parse("--quiet a.obj", &options) && options.quiet && !options.verbose, "--quiet");
     options_free(&options);
@@ -266,7 +271,8 @@ enum { NUMBER_COUNT = sizeof NUMBERS / sizeof NUMBERS[0] };
 static const char *const OTHERS[][2] = {
     {"-o", " a.ppm"},  {"--view", " a"},    {"--size", " 2x3"}, {"--stats", " a"},
     {"--oracle", " bf"}, {"--flat", ""},    {"--two-sided", ""}, {"--quiet", ""},
-    {"--verbose", ""}, {"--validate", ""},  {"--help", ""},      {"--version", ""},
+    {"--two-sided-lamps", ""}, {"--verbose", ""}, {"--validate", ""},
+    {"--help", ""},    {"--version", ""},
     {"--form-factor", " disk"}, {"--closure", " none"}, {"--solver", " cg"}, {"--balance", " greedy"}, {"--paper", ""},
     {"--form-factors", ""}, {"--save-links", " a"}, {"--load-links", " a"}, {"--resume", " a"},
     {"--checkpoint", " a"}, {"--memory", " 1G"}};
@@ -413,19 +419,27 @@ static void test_settings(void)
     struct options options;
     parse("a.obj", &options);
     tap_ok(is_same(options_link_settings(&options),
-                   "--two-sided off\n--oracle error\n--form-factor polygon\n"
-                   "--epsilon 1.0000000000000001e-05\n"),
+                   "--two-sided off\n--two-sided-lamps off\n--oracle error\n"
+                   "--form-factor polygon\n--epsilon 1.0000000000000001e-05\n"),
            "what links are bound to");
     tap_ok(is_same(options_run_settings(&options),
-                   "--two-sided off\n--oracle error\n--form-factor polygon\n--closure cap\n"
-                   "--solver cg\n--epsilon 1.0000000000000001e-05\n--accuracy 0\n--max-level 10\n"
+                   "--two-sided off\n--two-sided-lamps off\n--oracle error\n"
+                   "--form-factor polygon\n--closure cap\n--solver cg\n"
+                   "--epsilon 1.0000000000000001e-05\n--accuracy 0\n--max-level 10\n"
                    "--min-area 9.9999999999999995e-08\n"),
            "what a run is bound to");
     options_free(&options);
     parse("a.obj --paper --two-sided --epsilon 0.5", &options);
     tap_ok(is_same(options_link_settings(&options),
-                   "--two-sided on\n--oracle bf\n--form-factor disk\n"),
+                   "--two-sided on\n--two-sided-lamps off\n--oracle bf\n"
+                   "--form-factor disk\n"),
            "by energy, epsilon does not matter to links");
+    options_free(&options);
+    parse("a.obj --two-sided-lamps", &options);
+    static const char BOTH[] = "--two-sided on\n--two-sided-lamps on\n";
+    tap_ok(strncmp(options_link_settings(&options), BOTH, strlen(BOTH)) == 0 &&
+               strncmp(options_run_settings(&options), BOTH, strlen(BOTH)) == 0,
+           "twins of lamps do");
     options_free(&options);
 }
 

@@ -53,7 +53,7 @@ static struct world furnace(bool two_sided)
     soup_add_box(&soup, (struct vec3){-1, -1, -1}, (struct vec3){1, 2, 1}, 1, !two_sided);
     struct scene *scene = scene_of_soup(&soup, 1);
     scene->materials[0] = (struct material){{{0.5, 0.8, 0.0}}, {{1.0, 2.0, 3.0}}};
-    scene->two_sided = two_sided;
+    scene->two_sided = scene->two_sided_lamps = two_sided;
     soup_free(&soup);
     return world_make(scene);
 }
@@ -115,7 +115,7 @@ enum { FLOOR, LIGHT, BLOCKER, MATERIALS };
 /* A floor that reflects 0.5, a black light of side 1 with E = 4 at height 1 that faces down, and
  * on request a black screen halfway up. Under the centre of root 0, which is (1, 0, 0), the
  * screen hides the half of the light with y below 1/2. */
-static struct world lamp(bool with_screen, double *seen)
+static struct scene *lamp_scene(bool with_screen, double *seen)
 {
     struct soup soup = {0};
     struct vec3 x = {1, 0, 0}, y = {0, 1, 0};
@@ -132,7 +132,36 @@ static struct world lamp(bool with_screen, double *seen)
     struct vec3 light[4] = {{0, low, 1}, {1, low, 1}, {1, 1, 1}, {0, 1, 1}};
     *seen = lambert(light, 4, x, (struct vec3){0, 0, 1});
     soup_free(&soup);
+    return scene;
+}
+
+static struct world lamp(bool with_screen, double *seen)
+{
+    return world_make(lamp_scene(with_screen, seen));
+}
+
+/* The same, upside down: the light shows the floor its back, black without a twin. */
+static struct world lamp_turned(bool two_sided_lamps, double *seen)
+{
+    struct scene *scene = lamp_scene(false, seen);
+    for (int32_t i = 2; i < 4; i++) {
+        struct vec3 *corner = scene->triangles[i].corner, swap = corner[1];
+        corner[1] = corner[2];
+        corner[2] = swap;
+    }
+    scene->two_sided = true;
+    scene->two_sided_lamps = two_sided_lamps;
     return world_make(scene);
+}
+
+static void test_turned(void)
+{
+    double seen;
+    struct world black = lamp_turned(false, &seen), both = lamp_turned(true, &seen);
+    expect(trace(&black, 0, &CENTRE, 0), 0.0, 0.0, "under the back of a light: rho H");
+    world_free(&black);
+    expect(trace(&both, 0, &CENTRE, 0), 0.5 * 4.0 * seen, 0.004, "under its twin: rho H");
+    world_free(&both);
 }
 
 static void test_direct(void)
@@ -153,5 +182,6 @@ int main(void)
     test_row();
     test_two_sided();
     test_direct();
+    test_turned();
     return tap_done();
 }

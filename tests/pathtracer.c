@@ -7,8 +7,8 @@
  *
  * A path goes from x in a direction whose density is the cosine over pi. Where it arrives, at y,
  * the density by area is G(x, y) itself: nothing but rho(y) remains as its factor. It goes on with
- * the probability of y's largest reflectance. A miss or a back ends it; in a two-sided scene a
- * back is the front of the twin.
+ * the probability of y's largest reflectance. A miss or a back ends it; a back with a
+ * twin is the front of the twin.
  *
  * Emission is found in two ways, by a point chosen on the lights (by power, evenly over the area
  * of one: a density L(y) of its emission, all bands, over all power) with a shadow segment, and by
@@ -215,13 +215,12 @@ static bool follow(const struct pathtracer *pathtracer, const struct spot *p, st
     struct octree_hit hit;
     struct vec3 normal = scene_root_plane(pathtracer->scene, p->root).normal;
     struct vec3 start = vec3_add(p->x, vec3_scale(normal, LIFT));
-    if (!octree_first_hit(pathtracer->octree, start, direction, false, &hit, &counts) ||
-        (!hit.front && !pathtracer->scene->two_sided))
+    if (!octree_first_hit(pathtracer->octree, start, direction, false, &hit, &counts))
         return false;
+    q->root = scene_root_on(pathtracer->scene, hit.triangle, hit.front);
     q->x = triangle_point(&pathtracer->scene->triangles[hit.triangle],
                           (struct vec3){hit.weight[0], hit.weight[1], hit.weight[2]});
-    q->root = hit.front ? hit.triangle : hit.triangle + pathtracer->scene->input_count;
-    return true;
+    return q->root >= 0;
 }
 
 static struct rgb irradiance(const struct pathtracer *pathtracer, struct spot p, struct draw *draw)

@@ -125,7 +125,7 @@ static void test_normals(void)
     struct soup soup = {0};
     make_soup(&soup);
     struct scene *scene = prepared(&soup, 1.0, 0.0);
-    scene->two_sided = true;
+    scene->two_sided = scene->two_sided_lamps = true;
     struct vec3 none = scene_root_normal(scene, COUNT - 1, 2);
     tap_ok(vec3_length(none) == 0.0, "no normals, no normal");
     scene_add_normals(scene);
@@ -157,7 +157,7 @@ static void test_twins(void)
     struct scene *scene = prepared(&soup, 1.0, 0.0);
     double area = scene_area(scene), power = scene_emitted_power(scene);
     tap_ok(scene_root_count(scene) == COUNT, "a root for each triangle");
-    scene->two_sided = true;
+    scene->two_sided = scene->two_sided_lamps = true;
     tap_ok(scene_root_count(scene) == 2 * COUNT, "two if two-sided");
     bool right = true;
     for (int32_t i = 0; i < COUNT; i++) {
@@ -182,6 +182,62 @@ static void test_twins(void)
            "twice the area and twice the power");
     scene_destroy(scene);
     soup_free(&soup);
+}
+
+/* True if the back of every lamp is black, without a root, and each other back is a twin's
+ * front. */
+static bool lamps_are_single(const struct scene *scene)
+{
+    bool right = true;
+    for (int32_t i = 0; i < COUNT; i++) {
+        bool lamp = scene->material_of[i] == 1;
+        int32_t twin = i + COUNT;
+        struct plane plane = scene_root_plane(scene, twin);
+        right = right && scene_has_twin(scene, i) == !lamp &&
+                scene_root_on(scene, i, true) == i &&
+                scene_root_on(scene, i, false) == (lamp ? -1 : twin) &&
+                scene_root_area(scene, i) == scene->areas[i] &&
+                scene_root_area(scene, twin) == (lamp ? 0.0 : scene->areas[i]) &&
+                plane.offset == (lamp ? 0.0 : -scene->planes[i].offset) &&
+                (vec3_length(plane.normal) > 0.0) == !lamp;
+    }
+    return right;
+}
+
+/* Every third triangle is a lamp, of one band alone. */
+static void test_lamps(void)
+{
+    struct soup soup = {0};
+    make_soup(&soup);
+    struct scene *scene = scene_of_soup(&soup, 2);
+    soup_free(&soup);
+    double area = 0.0;
+    scene->materials[1].emission.band[2] = 3.0;
+    for (int32_t i = 0; i < COUNT; i += 3)
+        scene->material_of[i] = 1;
+    scene_prepare_or_exit(scene);
+    for (int32_t i = 0; i < COUNT; i++)
+        area += scene->material_of[i] == 1 ? scene->areas[i] : 2.0 * scene->areas[i];
+    double power = scene_emitted_power(scene);
+    tap_ok(scene_root_on(scene, 1, true) == 1 && scene_root_on(scene, 1, false) == -1 &&
+               !scene_has_twin(scene, 1),
+           "no twins, black backs");
+    scene->two_sided = true;
+    tap_ok(scene_root_count(scene) == 2 * COUNT && lamps_are_single(scene),
+           "two-sided: a lamp has no twin, and its back is black");
+    /* The zeros of the absent roots leave the sums' bits as they are. */
+    tap_ok(scene_emitted_power(scene) == power &&
+               fabs(scene_area(scene) / area - 1.0) < 1e-13,
+           "the power of one side of each lamp, the area of both sides of all else");
+    scene->two_sided_lamps = true;
+    tap_ok(scene_has_twin(scene, 0) && scene_root_on(scene, 0, false) == COUNT &&
+               scene_root_area(scene, COUNT) == scene->areas[0] &&
+               fabs(scene_emitted_power(scene) / power - 2.0) < 1e-13,
+           "with two-sided lamps they have, and twice the power");
+    scene->two_sided = false;
+    tap_ok(!scene_has_twin(scene, 0) && scene_root_count(scene) == COUNT,
+           "but not in a scene without twins");
+    scene_destroy(scene);
 }
 
 static void test_power(void)
@@ -305,6 +361,7 @@ int main(void)
     test_box();
     test_normals();
     test_twins();
+    test_lamps();
     test_power();
     test_clamping();
     test_degenerate();

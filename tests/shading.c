@@ -812,6 +812,13 @@ static void test_covered(void)
     shade_floor(&stage, &low, &high, &inside);
     tap_ok(low < 0.9, "two-sided, nothing is covered (%.2f)", low);
     dismantle(&stage);
+    scene = floor_scene(true);
+    scene->two_sided = true;
+    scene->materials[0].emission = (struct rgb){{1.0, 1.0, 1.0}};
+    stage = stage_of(scene);
+    shade_floor(&stage, &low, &high, &inside);
+    tap_ok(low > 1.0 - 1e-10, "but by a box of lamps, whose backs are black");
+    dismantle(&stage);
 }
 
 /* Share of a leaf of the floor that is not under the box, in quarters. */

@@ -37,7 +37,7 @@ static struct sight look(const struct scene *scene, const struct octree *octree,
         for (int k = 0; k < 3; k++)
             point = vec3_add(point, vec3_scale(scene->triangles[hit.triangle].corner[k],
                                                hit.weight[k]));
-        bool front = hit.front || scene->two_sided;
+        bool front = scene_root_on(scene, hit.triangle, hit.front) >= 0;
         sight.fronts += front;
         sight.backs += !front;
         sight.depth += front ? vec3_length(vec3_sub(point, eye)) / diagonal : 0.0;
@@ -195,8 +195,29 @@ static void test_two_sided(void)
     struct scene *scene = scene_of_soup(&soup, 1);
     soup_free(&soup);
     scene->materials[0] = material_grey(0.5, 1.0);
-    scene->two_sided = true;
+    scene->two_sided = scene->two_sided_lamps = true;
     check_room("two-sided faces", shoot(scene, 512, 512), 0.2, true);
+}
+
+/* A two-sided room, higher than wide: nothing but a lamp at the top tells which way is
+ * up. One with a black back does, one that shines both ways does not. */
+static void test_two_sided_lamps(void)
+{
+    for (int both = 0; both < 2; both++) {
+        struct soup soup = {0};
+        soup_add_box(&soup, ZERO, (struct vec3){2.0, 2.0, 3.0}, 1, true);
+        soup_add_quad(&soup, (struct vec3){0.5, 0.5, 2.95}, (struct vec3){0.0, 1.0, 0.0},
+                      (struct vec3){1.0, 0.0, 0.0}, 1);
+        struct scene *scene = scene_of_soup(&soup, 2);
+        soup_free(&soup);
+        scene->material_of[12] = scene->material_of[13] = 1;
+        scene->materials[0] = material_grey(0.5, 0.0);
+        scene->materials[1] = material_grey(0.5, 1.0);
+        scene->two_sided = true;
+        scene->two_sided_lamps = both;
+        check_room(both ? "a lamp that shines both ways" : "a lamp in a two-sided room",
+                   shoot(scene, 512, 512), 0.2, !both);
+    }
 }
 
 /* Two rooms, the larger one dark, no light between them. */
@@ -281,6 +302,7 @@ int main(void)
     test_furniture();
     test_generated();
     test_two_sided();
+    test_two_sided_lamps();
     test_dark_room();
     test_objects();
     test_lamp_above();

@@ -3,8 +3,8 @@
  *
  *   build/mpi/measure [--header] SCENE.obj REF [options of phr]
  *
- * The scene and the reference come first; --two-sided has to be given where the reference was made
- * with it. Outputs that are asked for are not written.
+ * The scene and the reference come first; --two-sided or --two-sided-lamps has to be
+ * given where the reference was made with it. Outputs that are asked for are not written.
  *
  * The norms are those of tests/deviation.h, for three answers. `leaf`: the constant of a leaf, with
  * the mean of the truth over that leaf; where leaves are smaller than an element of the truth,
@@ -138,6 +138,7 @@ static struct scene *read_all(struct measure *measure)
     struct scene *scene = NULL;
     if (measure->comm.rank == 0 && (scene = obj_read(measure->options.scene, &read, error))) {
         scene->two_sided = measure->options.two_sided;
+        scene->two_sided_lamps = measure->options.two_sided_lamps;
         if (scene_prepare(scene, &prepared, error))
             truth_read(&measure->truth, measure->reference, scene, error);
     }

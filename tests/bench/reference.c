@@ -24,7 +24,7 @@ enum { ELEMENTS = 20000, SAMPLES = 1000, MOST = 1000000000 };
 
 struct arguments {
     const char *scene, *out;
-    bool two_sided;
+    bool two_sided, two_sided_lamps;
     long long numbers[2]; /* elements, samples */
 };
 
@@ -42,6 +42,8 @@ static bool parse(struct arguments *arguments, int argc, char **argv, struct err
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--two-sided") == 0)
             arguments->two_sided = true;
+        else if (strcmp(argv[i], "--two-sided-lamps") == 0)
+            arguments->two_sided = arguments->two_sided_lamps = true;
         else if (paths < 2)
             *(paths++ == 0 ? &arguments->scene : &arguments->out) = argv[i];
         else if (numbers == 2 || !is_count(argv[i], &arguments->numbers[numbers++]))
@@ -49,7 +51,8 @@ static bool parse(struct arguments *arguments, int argc, char **argv, struct err
     }
     return paths == 2 ||
            error_set(error, EXIT_USAGE,
-                     "usage: reference SCENE.obj OUT.ref [--two-sided] [ELEMENTS [SAMPLES]]");
+                     "usage: reference SCENE.obj OUT.ref [--two-sided[-lamps]] "
+                     "[ELEMENTS [SAMPLES]]");
 }
 
 /* Collective. The prepared scene, or NULL on all ranks. */
@@ -61,6 +64,7 @@ static struct scene *read_scene(const struct comm *comm, const struct arguments 
     struct scene *scene = comm->rank == 0 ? obj_read(arguments->scene, &read, error) : NULL;
     if (scene) {
         scene->two_sided = arguments->two_sided;
+        scene->two_sided_lamps = arguments->two_sided_lamps;
         scene_prepare(scene, &prepared, error);
         if (!(scene_emitted_power(scene) > 0.0))
             error_set(error, EXIT_USAGE, "%s: nothing emits light", arguments->scene);
