@@ -225,6 +225,18 @@ check "squares back to back" [ "$(value back a b)" = 0 ]
 table back --two-sided
 check "see each other with --two-sided" near "$(value back a b)" 0.0999124478491935 1e-9 0
 check "where both sides count" [ "$(awk -F, 'NR == 2 { print $3 }' "$work/back.csv")" = 2 ]
+# The first is a lamp.
+printf 'newmtl lamp\nKe 1 1 1\nnewmtl grey\n' >"$work/lamp.mtl"
+awk 'BEGIN { print "mtllib lamp.mtl" }
+    { print }
+    $1 == "g" { print "usemtl", $2 == "a" ? "lamp" : "grey" }' \
+    "$work/back.obj" >"$work/lamps.obj"
+table lamps --two-sided
+check "the back of a lamp is not seen" [ "$(value lamps a b)" = 0 ]
+check "one side of it counts" grep -q '^a,b,1,' "$work/lamps.csv"
+table lamps --two-sided-lamps
+check "with --two-sided-lamps both do" grep -q '^a,b,2,' "$work/lamps.csv"
+check "and it is seen" near "$(value lamps a b)" 0.0999124478491935 1e-9 0
 table OB1 --two-sided
 check "a blocked pair with --two-sided" near "$(value OB1 p1 p2)" 0.074934335887 0.01 0
 

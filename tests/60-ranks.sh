@@ -78,6 +78,33 @@ done
 produce flat-serial "$work/serial/phr" $cornell --flat --two-sided
 produce flat-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided
 check "the same with --flat --two-sided" same flat-3 flat-serial
+produce lamps-serial "$work/serial/phr" $cornell --flat --two-sided-lamps
+produce lamps-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided-lamps
+check "and with --flat --two-sided-lamps" same lamps-3 lamps-serial
+
+# power NAME: what is emitted, W.
+power() {
+    stat_of "$work/$1/s.json" emitted_power
+}
+
+# roots NAME: the roots of the leaves in the mesh, as ranges "FIRST-LAST ". A face has 33
+# bytes.
+roots() {
+    faces=$(LC_ALL=C sed -n 's/^element face //p; /^end_header/q' "$work/$1/a.ply")
+    tail -c $((33 * faces)) "$work/$1/a.ply" | od -An -v -w33 -t u1 | awk '
+        { root = $26 + 256 * $27 }
+        NR == 1 { first = root }
+        NR > 1 && root > last + 1 { printf "%d-%d ", first, last; first = root }
+        { last = root }
+        END { printf "%d-%d ", first, last }'
+}
+
+# The Cornell box has 38 triangles, of which 2 and 3 are the lamp.
+check "--two-sided leaves the power as it is" [ "$(power flat-3)" = "$(power serial)" ]
+check "and the lamp without a twin" [ "$(roots flat-3)" = "0-39 42-75 " ]
+check "--two-sided-lamps doubles the power" \
+    holds "($(power lamps-3) / $(power serial) - 2)^2 < 1e-24"
+check "and gives the lamp one" [ "$(roots lamps-3)" = "0-75 " ]
 
 # method NAME OPTIONS...: another method, on 2, 3 and 7 ranks.
 method() {

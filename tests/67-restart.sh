@@ -74,6 +74,10 @@ for other in "--epsilon 1e-3" "--oracle bf" "--form-factor disk" "--two-sided"; 
     check "made without $other" \
         refused "$work/links-1: made with ${other%% *} $was" $cornell --load-links "$work/links-1" $other
 done
+$MPIEXEC -n 2 "$PHR" $cornell --two-sided --save-links "$work/links-two"
+check "made without --two-sided-lamps" \
+    refused "$work/links-two: made with --two-sided-lamps off" $cornell \
+    --load-links "$work/links-two" --two-sided-lamps
 
 # --- checkpoints ---
 
@@ -108,10 +112,14 @@ resumes jacobi 4 --solver jacobi --max-level 4
 resumes paper 3 --paper --max-level 4
 resumes accuracy 30 --accuracy 5% --epsilon 1e-3
 counts="checksum links patches passes iterations absorbed_power" # rays fired again are counted again
+resumes two-sided 8 --two-sided --max-level 4
 resumes symmetric 8 --closure symmetric --max-level 3
 
 check "--closure is bound" refused "$work/check-1: made with --closure cap, this run has --closure none" \
     $cornell --resume "$work/check-1" --closure none
+check "so are twins of lamps" refused \
+    "$work/two-sided.check: made with --two-sided-lamps off" \
+    $cornell --max-level 4 --resume "$work/two-sided.check" --two-sided-lamps
 check "a link cache is no checkpoint" refused "$work/links-1: not a checkpoint but a link cache" \
     $cornell --resume "$work/links-1"
 check "a missing one" refused "$work/absent: cannot read: " $cornell --resume "$work/absent"
