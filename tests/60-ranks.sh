@@ -106,6 +106,17 @@ check "--two-sided-lamps doubles the power" \
     holds "($(power lamps-3) / $(power serial) - 2)^2 < 1e-24"
 check "and gives the lamp one" [ "$(roots lamps-3)" = "0-75 " ]
 
+# from_above OPTIONS...: the sum of a picture of nothing but the lamp's back.
+from_above() {
+    printf 'eye 278 900 280\nat 278 548.8 280\nup 0 0 1\nfov 8\nsize 9 9\n' >"$work/above.view"
+    "$work/serial/phr" scenes/cornell.obj --view "$work/above.view" $quiet --size 9x9 "$@" \
+        -o "$work/above.ppm" && tail -c 243 "$work/above.ppm" | od -An -v -t u1 |
+        awk '{ for (i = 1; i <= NF; i++) sum += $i } END { print sum }'
+}
+
+check "the back of the lamp is black" [ "$(from_above --two-sided)" = 0 ]
+check "that of a two-sided one shines" holds "$(from_above --two-sided-lamps) > 0"
+
 # method NAME OPTIONS...: another method, on 2, 3 and 7 ranks.
 method() {
     name=$1

@@ -267,6 +267,18 @@ static void test_objects(void)
     check_open("a wall", shoot_soup(&soup, 0, 512, 512), 0.1, false);
 }
 
+/* A lamp at the ceiling is seen from below, also where other things are two-sided. */
+static void test_lamp_from_below(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, ZERO, (struct vec3){1.0, 0.0, 0.0}, (struct vec3){0.0, 0.0, 1.0}, 1);
+    struct scene *scene = scene_of_soup(&soup, 1);
+    soup_free(&soup);
+    scene->materials[0] = material_grey(0.5, 1.0);
+    scene->two_sided = true;
+    check_open("a lamp with a black back", shoot(scene, 512, 512), 0.05, false);
+}
+
 /* Floor and lamp along z. */
 static void test_lamp_above(void)
 {
@@ -305,6 +317,7 @@ int main(void)
     test_two_sided_lamps();
     test_dark_room();
     test_objects();
+    test_lamp_from_below();
     test_lamp_above();
     test_cornell();
     return tap_done();
