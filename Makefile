@@ -48,7 +48,7 @@ endif
 
 GEOM = alloc contour elementary error gauss hull lambert polygon scene triangle wall
 OCTREE = build octree
-RAD = boxtree closure conjugate flux formfactor id link linking method oracle patch pushpull snapshot \
+RAD = beyond/cluster beyond/cluster_light beyond/node_link boxtree closure conjugate flux formfactor id link linking method oracle patch pushpull snapshot \
       treecode viewfactor
 MPI = accuracy assign balance broadcast closing comm funnel gather keep ledger linking memory migrate \
       node pairs picture plan refinement routes scatter signals solve solver vote

@@ -17,4 +17,19 @@ static inline uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count
     return hash;
 }
 
+/* A bijection of 64 bits after which no bit tells anything about another (splitmix64). */
+static inline uint64_t hash_mix(uint64_t bits)
+{
+    bits += UINT64_C(0x9E3779B97F4A7C15);
+    bits = (bits ^ bits >> 30) * UINT64_C(0xBF58476D1CE4E5B9);
+    bits = (bits ^ bits >> 27) * UINT64_C(0x94D049BB133111EB);
+    return bits ^ bits >> 31;
+}
+
+/* A number in 0 <= u < 1 from a seed. */
+static inline double hash_unit(uint64_t seed)
+{
+    return (double)(hash_mix(seed) >> 11) * 0x1p-53;
+}
+
 #endif

@@ -36,6 +36,7 @@ static const struct option OPTIONS[] = {
     {"--max-level", KIND_INTEGER, offsetof(struct options, criterion.max_level), 0, ID_MAX_LEVEL, NULL},
     {"--min-area", KIND_REAL, offsetof(struct options, criterion.min_area), 0, 1, NULL},
     {"--oracle", KIND_CHOICE, offsetof(struct options, criterion.oracle), 0, 0, "bf|error"},
+    {"--linking", KIND_CHOICE, offsetof(struct options, criterion.linking), 0, 0, "pairs|tree"},
     {"--form-factor", KIND_CHOICE, offsetof(struct options, criterion.form_factor), 0, 0,
      "disk|polygon"},
     {"--closure", KIND_CHOICE, offsetof(struct options, criterion.closure), 0, 0,

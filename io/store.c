@@ -313,7 +313,7 @@ bool store_open_file(struct store_reader *reader, FILE *file, const char *name,
     snapshot_allocate(&reader->snapshot);
     if (!get_snapshot(reader, error) || !check_snapshot(reader, terms->kind, error))
         return false;
-    reader->check = link_check_start(&reader->snapshot, terms->scene);
+    reader->check = link_check_start(&reader->snapshot, terms->scene, terms->tree);
     return true;
 }
 

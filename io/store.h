@@ -40,6 +40,7 @@ struct store_terms {
     enum store_kind kind;
     const char *settings;      /* as in the file; borrowed */
     const struct scene *scene; /* prepared; borrowed */
+    const struct cluster_tree *tree; /* borrowed; NULL: links are between patches alone */
 };
 
 struct store_writer {

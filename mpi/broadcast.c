@@ -44,3 +44,24 @@ struct node_block scene_broadcast(const struct comm *comm, struct node_policy po
         *octree = octree_view(&view, (*scene)->triangles, (*scene)->planes);
     return block;
 }
+
+struct node_block tree_broadcast(const struct comm *comm, struct node_policy policy,
+                                 const struct scene *scene, struct cluster_tree **tree)
+{
+    struct node_block block = {.data = NULL};
+    struct pack count = {0};
+    *tree = comm->rank == 0 ? cluster_tree_create(scene) : NULL;
+    if (comm->size == 1)
+        return block;
+    if (comm->rank == 0)
+        cluster_tree_pack(*tree, &count);
+    comm_broadcast(comm, &count.bytes, sizeof count.bytes);
+    node_block_create(&block, comm, count.bytes, policy);
+    if (comm->rank == 0) {
+        cluster_tree_pack(*tree, &(struct pack){.block = block.data, .writes = true});
+        cluster_tree_destroy(*tree);
+    }
+    node_block_spread(&block, comm);
+    *tree = cluster_tree_view(&(struct pack){.block = block.data});
+    return block;
+}

@@ -38,5 +38,10 @@ void solver_gather(struct solver *solver)
         memcpy(patches[own[i]].flux, routes->own_flux + BANDS * i, sizeof patches->flux);
     solver->bytes_gather += (count - own_count) * (int64_t)sizeof patches->flux;
     solver->copied += count + own_count;
+    if (solver->tree) {
+        comm_add(solver->comm, solver->method.clusters->flux,
+                 BANDS * (int64_t)solver->tree->count);
+        cluster_light_push(solver->method.clusters, solver->method.forest, solver->flux);
+    }
     solver->seconds[PHASE_GATHER] += comm_seconds() - start;
 }

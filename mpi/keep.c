@@ -218,8 +218,9 @@ static void merge(struct funnel *funnel, link_sink *sink, void *context)
 static void renumber(struct link_list *list, const int32_t *number)
 {
     for (int64_t i = 0; i < list->count; i++) {
-        list->items[i].p = number[list->items[i].p];
-        list->items[i].q = number[list->items[i].q];
+        struct link *link = &list->items[i];
+        link->p = node_is_cluster(link->p) ? link->p : number[link->p];
+        link->q = node_is_cluster(link->q) ? link->q : number[link->q];
     }
 }
 
@@ -354,8 +355,8 @@ void links_deal(struct solver *solver, const int32_t *order, struct link *links,
     comm_broadcast(solver->comm, links, (size_t)count * sizeof *links);
     for (int64_t i = solver->comm->rank; i < count; i += solver->comm->size) {
         struct link link = links[i];
-        link.p = order[link.p];
-        link.q = order[link.q];
+        link.p = node_is_cluster(link.p) ? link.p : order[link.p];
+        link.q = node_is_cluster(link.q) ? link.q : order[link.q];
         link_list_append(&solver->links, link);
     }
 }

@@ -156,6 +156,10 @@ static void link_rows(struct rows *rows)
 void solver_link_roots(struct solver *solver)
 {
     double start = comm_seconds();
+    if (solver->tree) {
+        solver_link_top(solver);
+        return;
+    }
     struct linking linking = linking_start(&solver->method, &solver->links);
     struct rows rows = {.solver = solver, .linking = &linking, .count = linking.tree->root_count,
                         .counted = method_work(&solver->method)};

@@ -19,7 +19,7 @@
 
 /* Bytes: a link with its share of the room that lists grow by; a patch with all that runs along with
  * the forest (extremes, vectors of the solver, closure) and the same. */
-enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 330 };
+enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 330, BYTES_PER_CLUSTER = 250 };
 
 /* Of what the machines have, for links and patches. */
 static const double SHARE = 0.8;
@@ -66,12 +66,17 @@ void memory_watch(struct solver *solver, int64_t limit, int64_t machine)
     memory->copies = solver->comm->size;
 }
 
-bool memory_has_room(const struct memory *memory, int64_t links, int64_t prolific, int64_t patches)
+int64_t memory_needed(const struct memory *memory, int64_t links, int64_t patches,
+                      int64_t clusters)
 {
-    if (memory->limit == 0)
-        return true;
-    double made = 4.0 * (double)(prolific < patches ? prolific : patches);
-    return BYTES_PER_LINK * (double)links +
-               BYTES_PER_PATCH * (double)memory->copies * ((double)patches + made) <=
-           (double)memory->limit;
+    return BYTES_PER_LINK * links +
+           memory->copies * (BYTES_PER_PATCH * patches + BYTES_PER_CLUSTER * clusters);
+}
+
+bool memory_has_room(const struct memory *memory, int64_t links, int64_t prolific, int64_t patches,
+                     int64_t clusters)
+{
+    int64_t made = 4 * (prolific < patches ? prolific : patches);
+    return memory->limit == 0 ||
+           memory_needed(memory, links, patches + made, clusters) <= memory->limit;
 }

@@ -9,8 +9,14 @@
  * which has `machine` bytes (0: unknown, and there is no limit). */
 void memory_watch(struct solver *solver, int64_t limit, int64_t machine);
 
+/* Bytes that so many links, patches and clusters take: links once, the others in all copies that the
+ * limit counts. */
+int64_t memory_needed(const struct memory *memory, int64_t links, int64_t patches,
+                      int64_t clusters);
+
 /* True if there is room for so many links, and for what splitting `prolific` of them adds to `patches`
  * patches. The same on all ranks. */
-bool memory_has_room(const struct memory *memory, int64_t links, int64_t prolific, int64_t patches);
+bool memory_has_room(const struct memory *memory, int64_t links, int64_t prolific, int64_t patches,
+                     int64_t clusters);
 
 #endif

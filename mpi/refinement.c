@@ -51,14 +51,14 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
     struct phase_work looks = {.kind = WORK_LOOKS, .iteration = solver->pass};
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
-        bool clear = oracle_is_clear(&solver->method, &link);
+        bool clear = !node_is_cluster(link.p) && !node_is_cluster(link.q) && oracle_is_clear(&solver->method, &link);
         looks.work += clear ? 1 : LOOK_LOAD;
-        if (!clear && oracle_patch_to_split(&solver->method, &link) >= 0) {
+        if (!clear && node_to_split(&solver->method, &link) != NODE_NONE) {
             link_list_append(prolific, link);
             continue;
         }
         if (!clear)
-            oracle_divide_patches(&solver->method, &link);
+            node_divide_patches(&solver->method, &link);
         solver->links.items[kept++] = link;
     }
     solver->links.count = kept;
@@ -103,27 +103,36 @@ static int64_t deal_links(struct solver *solver, struct link_list *links, const 
     return bytes;
 }
 
-/* Splits links until that took as much work as the limit; their children go to `next` or to the rank's links,
- * the others stay. `part`: of the level, that which is left. */
+/* Splits a link; its children go to `next` or to the rank's links. */
+static void split_link(struct solver *solver, const struct link *link, struct link_list *next)
+{
+    struct method *method = &solver->method;
+    struct link children[NODE_CHILDREN_MAX];
+    int count = node_link_split(method, link, node_to_split(method, link), children);
+    for (int k = 0; k < count; k++) {
+        bool goes_on = node_to_split(method, &children[k]) != NODE_NONE;
+        if (!goes_on)
+            node_link_settle(method, &children[k]);
+        link_list_append(goes_on ? next : &solver->links, children[k]);
+    }
+}
+
+/* Splits links until that took as much work as the limit, or a signal has come; the others stay.
+ * `part`: of the level, that which is left. */
 static void split_stage(struct solver *solver, struct link_list *links, double part, int64_t limit,
                         struct link_list *next, struct phase_work *phase)
 {
     double start = comm_seconds();
     int64_t before = method_work(&solver->method), done = 0;
+    double count = (double)links->count;
     for (; done < links->count && method_work(&solver->method) - before < limit; done++) {
-        const struct link *link = &links->items[done];
-        if (done % 64 == 0)
-            progress_tick(solver->progress, 1.0 - part * (double)(links->count - done) / (double)links->count);
-        phase->predicted += link_load(link);
-        struct link children[4];
-        int count = link_split(&solver->method, link,
-                               oracle_patch_to_split(&solver->method, link), children);
-        for (int k = 0; k < count; k++) {
-            bool goes_on = oracle_patch_to_split(&solver->method, &children[k]) >= 0;
-            if (!goes_on)
-                oracle_divide_patches(&solver->method, &children[k]);
-            link_list_append(goes_on ? next : &solver->links, children[k]);
+        if (done % 64 == 0) {
+            progress_tick(solver->progress, 1.0 - part * (count - (double)done) / count);
+            if (signals_seen())
+                break;
         }
+        phase->predicted += link_load(&links->items[done]);
+        split_link(solver, &links->items[done], next);
     }
     links->count -= done;
     if (links->count > 0)
@@ -191,21 +200,22 @@ static bool level_fits(struct solver *solver, const struct level *level, int64_t
 {
     const struct memory *memory = &solver->memory;
     int64_t links = level->kept + LINKS_PER_SPLIT * level->prolific;
-    if (memory_has_room(memory, links, level->prolific, solver->shared + *made))
+    int64_t clusters = solver->tree ? solver->tree->count : 0;
+    if (memory_has_room(memory, links, level->prolific, solver->shared + *made, clusters))
         return true;
     share_splits(solver);
     *made = 0;
-    return memory_has_room(memory, links, level->prolific, solver->shared);
+    return memory_has_room(memory, links, level->prolific, solver->shared, clusters);
 }
 
-/* Splits level after level. Returns false if a signal or the memory limit ended that: then the
- * links that were to be split are in `prolific`. */
+/* Splits level after level. Returns false if a signal ended that, and links are lost, or the memory
+ * limit: then the links that were to be split are in `prolific`. */
 static bool split_levels(struct solver *solver, struct link_list *prolific, int64_t *loads)
 {
     int64_t made = 0;
     for (int64_t level = 0;; level++) {
         struct level links = exchange_loads(solver, prolific, loads);
-        if (links.prolific == 0)
+        if (links.prolific == 0 && !solver->stop)
             return true;
         made += level == 0 ? PATCHES_PER_LOOK * links.kept : 0;
         bool fits = solver->stop || level_fits(solver, &links, &made);
@@ -225,13 +235,71 @@ static bool split_levels(struct solver *solver, struct link_list *prolific, int6
     }
 }
 
-/* Begins a pass: what refinement reads of the solution so far. */
+/* What refinement reads of the solution so far. */
+static void prepare(struct solver *solver)
+{
+    oracle_prepare(&solver->method);
+    if (solver->tree) {
+        cluster_light_pull(solver->method.clusters, solver->method.forest);
+        cluster_light_bound(solver->method.clusters, solver->method.forest);
+    }
+}
+
 static void begin_pass(struct solver *solver)
 {
     solver->pass++;
-    oracle_prepare(&solver->method);
+    prepare(solver);
     solver->split_here = 0;
     solver->first_new = solver->shared = solver->method.forest->count;
+}
+
+/* --- the first levels --- */
+
+void solver_link_top(struct solver *solver)
+{
+    link_list_append(&solver->links, node_link_top());
+}
+
+/* Keeps every P-th link. */
+static void keep_share(const struct comm *comm, struct link_list *list)
+{
+    int64_t kept = 0;
+    for (int64_t i = comm->rank; i < list->count; i += comm->size)
+        list->items[kept++] = list->items[i];
+    list->count = kept;
+}
+
+/* A level is dealt when it has so many links for each rank. */
+enum { LINKS_TO_DEAL = 64 };
+
+/* All ranks have the same links, and split the same ones level by level until there are enough to deal.
+ * Then each keeps its share. What all did alike counts once. */
+static void split_alike(struct solver *solver, struct link_list *level)
+{
+    struct method *method = &solver->method;
+    struct octree_counts counts = method->counts;
+    int64_t before = method_work(method), estimating = method->estimating;
+    int64_t spared = method->rays_spared, split = 0;
+    while (level->count > 0 && level->count < LINKS_TO_DEAL * solver->comm->size) {
+        struct link_list next = {0};
+        for (int64_t i = 0; i < level->count; i++)
+            split_link(solver, &level->items[i], &next);
+        split += level->count;
+        link_list_free(level);
+        *level = next;
+    }
+    struct phase_work phase = {.kind = WORK_LINKING, .links = split,
+                               .work = method_work(method) - before};
+    ledger_add(&solver->ledger, phase);
+    keep_share(solver->comm, &solver->links);
+    keep_share(solver->comm, level);
+    if (solver->comm->rank == 0) {
+        solver->split_here += split;
+    } else {
+        method->counts = counts;
+        method->estimating = estimating;
+        method->rays_spared = spared;
+    }
 }
 
 bool solver_refine(struct solver *solver)
@@ -244,11 +312,15 @@ bool solver_refine(struct solver *solver)
     if (memory->limit == 0 || memory->reached != memory->limit) {
         memory->reached = 0;
         select_prolific(solver, &prolific);
+        if (solver->tree && solver->pass == 1)
+            split_alike(solver, &prolific);
         solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
         int64_t *loads = alloc_array((size_t)solver->comm->size, sizeof *loads);
         done = split_levels(solver, &prolific, loads);
-        for (int64_t i = 0; i < prolific.count; i++) /* none, if it is done */
+        for (int64_t i = 0; i < prolific.count; i++) { /* none, if it is done */
+            node_link_settle(&solver->method, &prolific.items[i]);
             link_list_append(&solver->links, prolific.items[i]);
+        }
         alloc_free(loads);
         link_list_free(&prolific);
         share_splits(solver);

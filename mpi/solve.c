@@ -4,6 +4,7 @@
 #include "mpi/solver.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "geom/alloc.h"
 
@@ -51,7 +52,14 @@ void solver_transfer(struct solver *solver)
         correct_senders(forest, &solver->closure);
     clear_own_flux(solver);
     solver->flux = flux_unit_for(largest_radiosity(solver) * solver->method.area);
-    links_transfer(&solver->links, forest, solver->flux);
+    if (solver->tree) {
+        cluster_light_pull(solver->method.clusters, forest);
+        memset(solver->method.clusters->flux, 0,
+               BANDS * (size_t)solver->tree->count * sizeof *solver->method.clusters->flux);
+        node_links_transfer(&solver->links, &solver->method, solver->flux);
+    } else {
+        links_transfer(&solver->links, forest, solver->flux);
+    }
     if (corrects)
         forest_restore(forest, kept);
     solver->seconds[PHASE_SOLVE] += comm_seconds() - start;

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "mpi/broadcast.h"
 #include "rad/treecode.h"
 
 struct solver *solver_create(const struct comm *comm, const struct scene *scene,
@@ -20,6 +21,11 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     size_t roots = (size_t)scene_root_count(scene);
     solver->comm = comm;
     solver->method = method_make(scene, octree, forest_create(scene), criterion);
+    if (criterion->linking == LINKING_TREE) {
+        solver->tree_block = tree_broadcast(comm, node_policy(), scene, &solver->tree);
+        solver->method.clusters = cluster_light_create(solver->tree);
+        solver->method.forest->above = alloc_array(roots, sizeof *solver->method.forest->above);
+    }
     solver->owner = alloc_array(roots, sizeof *solver->owner);
     solver->own = alloc_array(roots, sizeof *solver->own);
     solver->root_change = alloc_array(roots, sizeof *solver->root_change);
@@ -34,6 +40,9 @@ void solver_destroy(struct solver *solver)
     if (!solver)
         return;
     forest_destroy(solver->method.forest);
+    cluster_light_destroy(solver->method.clusters);
+    cluster_tree_destroy(solver->tree);
+    node_block_destroy(&solver->tree_block);
     link_list_free(&solver->links);
     alloc_free(solver->owner);
     alloc_free(solver->own);

@@ -9,7 +9,9 @@
 #include "geom/progress.h"
 #include "mpi/comm.h"
 #include "mpi/ledger.h"
+#include "mpi/node.h"
 #include "mpi/routes.h"
+#include "rad/beyond/node_link.h"
 #include "rad/conjugate.h"
 #include "rad/link.h"
 #include "rad/method.h"
@@ -53,6 +55,8 @@ struct solver {
     const struct comm *comm;  /* borrowed */
     struct progress *progress; /* borrowed; NULL: nobody looks */
     struct method method;     /* scene, octree, forest and criterion; the forest is owned */
+    struct cluster_tree *tree;    /* above the roots; NULL: none. Owned, like all up to `links` */
+    struct node_block tree_block; /* what it looks into */
     struct link_list links;   /* the links that live here ("allInteractions") */
     int *owner;               /* [roots] home rank of each root */
     bool *own;                /* [roots] owner[root] == rank */
@@ -101,13 +105,17 @@ struct vote {
     double escaped;    /* the same: what leaves the surfaces less what the links deliver */
 };
 
-/* Borrows comm, scene and octree. */
+/* Collective. Borrows comm, scene and octree. */
 struct solver *solver_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree, const struct criterion *criterion);
 void solver_destroy(struct solver *solver);
 
 /* Step 2: initial linking. Rows of pairs of roots are dealt so that their work is even. */
 void solver_link_roots(struct solver *solver);
+
+/* Instead, with a tree above the roots: the link of its top with itself, on all ranks; the first
+ * refinement splits it on all of them alike, until there are enough links to deal. */
+void solver_link_top(struct solver *solver);
 
 /* Step 3: re-assignment. Roots get homes so that their work there is even, and the
  * numbers of links that carry light are evened out; the paper's: so that areas are even,

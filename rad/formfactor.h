@@ -23,6 +23,7 @@ struct exchange {
 struct sight {
     bool open;       /* proved: nothing can stand between the patches */
     int32_t blocker; /* in and out: as *guess of octree_block() */
+    uint64_t seed;   /* of the points between which segments run; 0: the centroids of sub-areas */
 };
 
 /* One patch of a pair, as the kernel needs it. */
@@ -73,6 +74,9 @@ double exchange_across_horizon(const struct facet *p, const struct facet *q);
 /* The same from four points on the smaller one: a tenth too much or too little where
  * patches touch. */
 double exchange_from_points(const struct facet *p, const struct facet *q);
+
+/* A point on a triangle, evenly distributed over seeds. */
+struct vec3 triangle_sample(const struct triangle *t, uint64_t seed);
 
 /* The points that stand for a patch: the centroids of its four children. */
 void subarea_centroids(const struct triangle *t, struct vec3 centroids[BUNDLE_ENDS]);

@@ -49,18 +49,22 @@ static double predict_cost(double tests, double alpha, double inherited)
     return fmax(1.0, tests + alpha * inherited);
 }
 
+uint8_t link_seen(double share)
+{
+    if (!(share > 0.0))
+        return 0;
+    return (uint8_t)fmin(LINK_ALL_SEEN, fmax(1.0, rint(LINK_ALL_SEEN * share)));
+}
+
 /* The field `seen` of a link. */
 static uint8_t compact_share(const struct exchange *exchange, bool open)
 {
-    if (!(exchange->seen > 0.0))
-        return 0;
-    if (open)
+    if (exchange->seen > 0.0 && open)
         return exchange->apart ? LINK_OPEN : LINK_OPEN_NEAR;
-    return (uint8_t)fmin(LINK_ALL_SEEN, fmax(1.0, rint(LINK_ALL_SEEN * exchange->seen)));
+    return link_seen(exchange->seen);
 }
 
-/* In 256ths, rounded from the first to the last so that none is off by more than one. */
-static void set_parts(uint8_t parts[3], const double exact[4])
+void link_set_parts(uint8_t parts[3], const double exact[4])
 {
     double sum = 0.0;
     int before = 0;
@@ -108,8 +112,8 @@ bool link_make(struct method *method, int32_t p, const struct facet *facet_p, in
                                method->criterion.alpha, inherited);
     *link = link_of(p, q, &exchange, sight, cost);
     if (method->criterion.oracle != ORACLE_BF) {
-        set_parts(link->parts_p, exchange.parts_p);
-        set_parts(link->parts_q, exchange.parts_q);
+        link_set_parts(link->parts_p, exchange.parts_p);
+        link_set_parts(link->parts_q, exchange.parts_q);
     }
     return true;
 }

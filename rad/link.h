@@ -83,6 +83,12 @@ static inline bool link_is_divided(const struct forest *forest, int32_t patch, c
     return !patch_is_leaf(&forest->patches[patch]) && !parts_are_even(parts);
 }
 
+/* Parts in 256ths, rounded from the first to the last so that none is off by more than one. */
+void link_set_parts(uint8_t parts[3], const double exact[4]);
+
+/* A share of what arrives, 0..1, as the field `seen` has it. */
+uint8_t link_seen(double share);
+
 struct link_list {
     struct link *items; /* [count] */
     int64_t count, capacity;

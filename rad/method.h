@@ -14,11 +14,13 @@ enum oracle { ORACLE_BF, ORACLE_ERROR };                      /* rad/oracle.h */
 enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON };         /* rad/formfactor.h */
 enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS, CLOSURE_SYMMETRIC }; /* rad/closure.h */
 enum solver_kind { SOLVER_JACOBI, SOLVER_CG };                    /* rad/conjugate.h */
+enum linking_kind { LINKING_PAIRS, LINKING_TREE };                    /* mpi/linking.c */
 enum balance { BALANCE_GREEDY, BALANCE_EVEN };                    /* mpi/migrate.h */
 
 /* How links are evaluated, when and how far they are refined, and when the iterations end. */
 struct criterion {
     enum oracle oracle;
+    enum linking_kind linking;
     enum form_factor form_factor;
     enum closure_kind closure;
     enum solver_kind solver;
@@ -36,10 +38,13 @@ struct criterion {
 
 enum { TESTS_PER_FORM_FACTOR = 8 }; /* a form factor takes about as long as so many tests */
 
+struct cluster_light;
+
 struct method {
     const struct scene *scene;
     const struct octree *octree;
     struct forest *forest;
+    struct cluster_light *clusters; /* above the roots; NULL: none */
     struct criterion criterion;
     struct flux_unit flux_unit;
     double area, emitted_power; /* of the scene: square scene units, W */

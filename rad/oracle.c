@@ -33,7 +33,7 @@
 
 #include "rad/pushpull.h"
 
-static bool patch_may_split(const struct method *method, int32_t patch)
+bool oracle_patch_may_split(const struct method *method, int32_t patch)
 {
     const struct forest *forest = method->forest;
     return id_level(forest->patches[patch].id) < method->criterion.max_level &&
@@ -67,7 +67,7 @@ static int32_t split_by_energy(const struct method *method, const struct link *l
         return -1;
     bool p_first = p_goes_first(forest, link);
     int32_t first = p_first ? link->p : link->q, second = p_first ? link->q : link->p;
-    return patch_may_split(method, first) ? first : patch_may_split(method, second) ? second : -1;
+    return oracle_patch_may_split(method, first) ? first : oracle_patch_may_split(method, second) ? second : -1;
 }
 
 /* --- by error --- */
@@ -111,8 +111,7 @@ static double spread_of(const struct link *link, const uint8_t parts[3])
     return 4.0 / 256.0 * (most - least) * link_area(link);
 }
 
-/* Largest range of radiosity within a child. */
-static double range_within(const struct forest *forest, int32_t patch)
+double oracle_range_within(const struct forest *forest, int32_t patch)
 {
     float range = 0.0f;
     int32_t children = forest->patches[patch].children;
@@ -129,7 +128,7 @@ static double error_of(const struct method *method, const struct link *link, int
 {
     const struct forest *forest = method->forest;
     return SPREAD_LEFT * spread_of(link, parts) * light +
-           link_area(link) * mean_reflectance(forest, other) * range_within(forest, own);
+           link_area(link) * mean_reflectance(forest, other) * oracle_range_within(forest, own);
 }
 
 /* The bound is rounded otherwise than the error: so much room is left. */
@@ -163,10 +162,10 @@ static int32_t split_by_error(const struct method *method, const struct link *li
     error_q += p_larger ? 0.0 : doubt;
     bool p_first = error_p != error_q ? error_p > error_q : p_larger;
     int32_t first = p_first ? link->p : link->q, second = p_first ? link->q : link->p;
-    if (patch_may_split(method, first))
+    if (oracle_patch_may_split(method, first))
         return first;
     bool helps = fmin(error_p, error_q) > 0.5 * method->link_threshold;
-    return helps && patch_may_split(method, second) ? second : -1;
+    return helps && oracle_patch_may_split(method, second) ? second : -1;
 }
 
 /* Divides the patch `to`, which receives. */
@@ -174,7 +173,7 @@ static void divide(struct method *method, const struct link *link, int32_t to, i
                    const uint8_t parts[3])
 {
     double error = spread_of(link, parts) * light_reflected(method->forest, from, to);
-    if (error > method->link_threshold && patch_may_split(method, to))
+    if (error > method->link_threshold && oracle_patch_may_split(method, to))
         forest_split(method->forest, to);
 }
 

@@ -33,4 +33,10 @@ int32_t oracle_patch_to_split(const struct method *method, const struct link *li
  * the criterion allows: it deals its light to them. */
 void oracle_divide_patches(struct method *method, const struct link *link);
 
+/* True if the patch is neither too deep nor too small to be split. */
+bool oracle_patch_may_split(const struct method *method, int32_t patch);
+
+/* Largest range of radiosity within a child of a patch, summed over bands, W/m^2. */
+double oracle_range_within(const struct forest *forest, int32_t patch);
+
 #endif

@@ -32,6 +32,7 @@ void forest_destroy(struct forest *forest)
         return;
     alloc_free(forest->patches);
     alloc_free(forest->extremes);
+    alloc_free(forest->above);
     alloc_free(forest);
 }
 

@@ -29,6 +29,8 @@ struct forest {
     const struct scene *scene; /* borrowed */
     struct patch *patches;     /* [count] */
     struct extremes *extremes; /* [count] as of the last forest_bound(); a new patch's are equal */
+    struct rgb *above;         /* [root_count] irradiance that clusters hand down to each root, W/m^2;
+                                  NULL: there are none */
     int64_t count, capacity, extremes_capacity;
     int32_t root_count;
 };

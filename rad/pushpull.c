@@ -31,6 +31,8 @@ struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flu
     for (int32_t p = leaf; p >= 0; p = forest->patches[p].parent)
         line[length++] = p;
     struct rgb irradiance = {{0.0, 0.0, 0.0}};
+    if (forest->above)
+        irradiance = forest->above[line[length - 1]];
     double area = forest_area(forest, line[length - 1]);
     for (; length > 0; area *= 0.25) {
         int32_t p = line[--length];

@@ -124,19 +124,23 @@ bool snapshot_check(const struct snapshot *snapshot, struct error *error)
 
 /* --- links --- */
 
-struct link_check link_check_start(const struct snapshot *snapshot, const struct scene *scene)
+struct link_check link_check_start(const struct snapshot *snapshot, const struct scene *scene,
+                                   const struct cluster_tree *tree)
 {
-    size_t patches = (size_t)snapshot->patch_count;
-    struct link_check check = {.scene = scene, .patch_count = snapshot->patch_count,
+    struct link_check check = {.scene = scene, .tree = tree, .patch_count = snapshot->patch_count,
+                               .cluster_count = tree ? tree->count : 0,
                                .most = (1.0 + 1e-6) * scene_area(scene)};
+    size_t nodes = (size_t)(check.patch_count + check.cluster_count);
     struct walk walk = {0};
-    check.root = alloc_array(patches, sizeof *check.root);
-    check.area = alloc_array(patches, sizeof *check.area);
-    check.load = alloc_array(patches, sizeof *check.load);
+    check.root = alloc_array((size_t)check.patch_count, sizeof *check.root);
+    check.area = alloc_array(nodes, sizeof *check.area);
+    check.load = alloc_array(nodes, sizeof *check.load);
+    for (int64_t i = 0; i < check.cluster_count; i++)
+        check.area[check.cluster_count + ~i] = tree->clusters[i].area;
     for (int64_t i = 0; i < snapshot->patch_count; i++) {
         double share = 1.0 / (double)(UINT32_C(1) << (2 * walk.level));
         check.root[i] = walk.root;
-        check.area[i] = scene_root_area(scene, walk.root) * share;
+        check.area[check.cluster_count + i] = scene_root_area(scene, walk.root) * share;
         walk_on(&walk, snapshot->kind[i]);
     }
     return check;
@@ -162,16 +166,33 @@ static bool is_behind(const struct link_check *check, const struct link *link)
            (link->p == check->last.p && link->q > check->last.q);
 }
 
+/* Both are nodes there are, and neither is part of the other, as far as that is easily told; a cluster may be
+ * linked with itself. */
+static bool are_nodes(const struct link_check *check, int32_t p, int32_t q)
+{
+    int64_t first = -check->cluster_count, end = check->patch_count;
+    if (p < first || q < first || p >= end || q >= end)
+        return false;
+    return node_is_cluster(p) || node_is_cluster(q) || check->root[p] != check->root[q];
+}
+
+/* What is in the place of the blocker: a triangle, or the judgement of a link of a cluster. */
+static bool blocker_is_sane(const struct link_check *check, const struct link *link)
+{
+    if (node_is_cluster(link->p) || node_is_cluster(link->q))
+        return link->blocker >= 0 && link->seen <= LINK_ALL_SEEN;
+    return link->blocker >= -1 && link->blocker < check->scene->input_count;
+}
+
 bool link_check_next(struct link_check *check, const struct link *link)
 {
-    int32_t p = link->p, q = link->q;
-    if (p < 0 || q < 0 || p >= check->patch_count || q >= check->patch_count ||
-        !is_behind(check, link) || check->root[p] == check->root[q])
+    if (!are_nodes(check, link->p, link->q) || !is_behind(check, link))
         return false;
+    int64_t p = check->cluster_count + link->p, q = check->cluster_count + link->q;
     double smaller = fmin(check->area[p], check->area[q]);
     double most = link->seen > 0 ? smaller : check->most;
     if (!(smaller > 0.0 && link->area >= 0.0f && (double)link->area <= most) ||
-        link->seen > LINK_OPEN || link->blocker < -1 || link->blocker >= check->scene->input_count ||
+        link->seen > LINK_OPEN || !blocker_is_sane(check, link) ||
         !parts_are_sane(link->parts_p) || !parts_are_sane(link->parts_q))
         return false;
     check->load[p] += link_area(link);

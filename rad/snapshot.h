@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "geom/error.h"
+#include "rad/beyond/cluster.h"
 #include "rad/link.h"
 #include "rad/patch.h"
 
@@ -72,18 +73,21 @@ bool snapshot_check(const struct snapshot *snapshot, struct error *error);
 
 /* Links of a snapshot, looked at one after the other; p and q are its patch numbers. */
 struct link_check {
-    const struct scene *scene; /* borrowed */
-    int64_t patch_count;
+    const struct scene *scene; /* borrowed, */
+    const struct cluster_tree *tree; /* as is the tree; NULL: there are no clusters */
+    int64_t patch_count, cluster_count;
     int32_t *root;             /* [patch_count] */
-    double *area;              /* [patch_count] square scene units */
-    double *load;              /* [patch_count] sum of the exchange areas so far */
+    double *area;              /* [cluster_count + patch_count] square scene units; that of a node at
+                                  its number + cluster_count */
+    double *load;              /* the same: sum of the exchange areas so far */
     double most;               /* that no load may exceed */
     struct link last;
     bool begun;
 };
 
-/* Pre: snapshot_check() has said yes, and root_count is that of the scene. */
-struct link_check link_check_start(const struct snapshot *snapshot, const struct scene *scene);
+/* Pre: snapshot_check() has said yes, and root_count is that of the scene. Borrows scene and tree. */
+struct link_check link_check_start(const struct snapshot *snapshot, const struct scene *scene,
+                                   const struct cluster_tree *tree);
 void link_check_free(struct link_check *check);
 
 /* True if the next link is one that a run could have: numbers in their ranges, no pair of patches

@@ -27,7 +27,7 @@ static bool save(struct solver *solver, const struct vote *vote, enum store_kind
                  const char *path)
 {
     struct error error = {0};
-    struct store_terms terms = {kind, STORE_SETTINGS, scene};
+    struct store_terms terms = {kind, STORE_SETTINGS, scene, NULL};
     struct snapshot snapshot;
     struct store_writer writer;
     snapshot_collect(solver, vote, &snapshot);
@@ -79,7 +79,7 @@ static void test_round_trip(void)
     struct error error = {0};
     struct solver *solver = run_two_passes(&vote);
     tap_ok(save(solver, &vote, STORE_CHECKPOINT, PATH), "a checkpoint is written");
-    struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, scene};
+    struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, scene, NULL};
     struct store_reader reader;
     struct criterion criterion = solver->method.criterion;
     struct solver *other = solver_create(&comm, scene, octree, &criterion);
@@ -147,7 +147,7 @@ static bool refuses(const uint8_t *bytes, size_t size, const struct store_terms 
 static void test_refusals(const uint8_t *bytes, size_t size)
 {
     static uint8_t changed[ROOM];
-    struct store_terms right = {STORE_CHECKPOINT, STORE_SETTINGS, scene}, wrong = right;
+    struct store_terms right = {STORE_CHECKPOINT, STORE_SETTINGS, scene, NULL}, wrong = right;
     struct error error;
     tap_ok(takes(bytes, size, &right, &error), "the file is taken");
     wrong.kind = STORE_LINKS;
@@ -160,7 +160,7 @@ static void test_refusals(const uint8_t *bytes, size_t size)
     tap_ok(refuses(bytes, size, &wrong, "F: made with --epsilon 0.01, this run has --epsilon 0.02"),
            "another number");
     struct scene *other = store_scene();
-    wrong = (struct store_terms){STORE_CHECKPOINT, STORE_SETTINGS, other};
+    wrong = (struct store_terms){STORE_CHECKPOINT, STORE_SETTINGS, other, NULL};
     tap_ok(takes(bytes, size, &wrong, &error), "the same scene again is the same scene");
     other->materials[1].reflectance.band[2] = 0.25;
     tap_ok(refuses(bytes, size, &wrong, "F: made from another scene"), "another material");
@@ -181,7 +181,7 @@ static void test_refusals(const uint8_t *bytes, size_t size)
 static void test_damage(const uint8_t *bytes, size_t size)
 {
     static uint8_t changed[ROOM];
-    struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, scene};
+    struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, scene, NULL};
     struct error error;
     size_t taken = 0;
     for (size_t cut = 0; cut < size; cut++)
@@ -210,7 +210,7 @@ static bool refuses_with(const uint8_t *bytes, size_t size, size_t at, const voi
                          size_t count, const char *text)
 {
     static uint8_t changed[ROOM];
-    struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, scene};
+    struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, scene, NULL};
     memcpy(changed, bytes, size);
     memcpy(changed + at, others, count);
     little_put64(changed + size - 8, hash_bytes(HASH_START, changed, size - 8));

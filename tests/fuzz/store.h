@@ -79,7 +79,7 @@ static inline void store_try(enum store_kind kind, const uint8_t *data, size_t s
         little_put64(copy + size - 8, hash_bytes(HASH_START, copy, size - 8));
     FILE *file = size > 0 ? fmemopen(copy, size, "rb") : tmpfile();
     struct scene *scene = store_scene();
-    struct store_terms terms = {kind, STORE_SETTINGS, scene};
+    struct store_terms terms = {kind, STORE_SETTINGS, scene, NULL};
     struct store_reader reader;
     bool good = store_open_file(&reader, file, "fuzz", &terms, &error) &&
                 store_continue(&reader, &store_comm, scene, &error);

@@ -1,0 +1,363 @@
+/* Building the tree above the roots.
+ *
+ * A node is cut twice in two. Each cut is across the coordinate in which its roots differ most:
+ * three of place, three of direction, and size, so that groups come out that lie together, look the
+ * same way, and are alike in size. The cut is where the sums of squares of both halves are least
+ * (of 64 places). Where lamps and other surfaces are mixed, the cut is between these: a lamp is what
+ * others are compared with, and means over both mean nothing.
+ *
+ * Roots are weighed by their area plus the mean area: by area alone, a large wall decides where the
+ * furniture before it is cut; by number alone, the furniture decides where walls are.
+ *
+ * Each level costs O(k), since roots are dealt into bins and not sorted. Roots that differ in
+ * nothing, and halves too large for the levels that IDs have left, are cut by number.
+ *
+ * Rejected: one tree for each class of orientation (a tenth more links at the same error); places
+ * alone (half more error: what looks another way receives other light); harmonics of order 2 in
+ * place of one mean B (no less error for 27 numbers a cluster). */
+#include "rad/beyond/cluster.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+
+enum { KEYS = 7, BINS = 64 };
+
+/* What one unit of direction, and of the square root of area, counts, in scene units. */
+static const double DIRECTION_WEIGHT = 0.3, SIZE_WEIGHT = 3.0;
+
+struct item {
+    double key[KEYS], weight;
+    int32_t root;
+    bool is_lamp;
+};
+
+struct builder {
+    struct cluster_tree *tree;
+    const struct scene *scene;
+    struct item *items, *spare; /* [tree->root_count] in the tree's order; room for a cut */
+};
+
+static struct item item_of(const struct scene *scene, int32_t root, double mean_area)
+{
+    struct triangle t = scene_root_triangle(scene, root);
+    struct vec3 centre = triangle_centroid(&t), normal = scene_root_plane(scene, root).normal;
+    double area = scene_root_area(scene, root);
+    struct item item = {.weight = area + mean_area, .root = root};
+    for (int axis = 0; axis < 3; axis++) {
+        item.key[axis] = vec3_axis(centre, axis);
+        item.key[3 + axis] = DIRECTION_WEIGHT * vec3_axis(normal, axis);
+    }
+    item.key[6] = SIZE_WEIGHT * sqrt(area);
+    item.is_lamp = rgb_sum(scene_root_material(scene, root)->emission) > 0.0;
+    return item;
+}
+
+/* Brings the items for which `first` is set to the front, each half in its order. Returns how many. */
+static int32_t part_items(struct builder *builder, int32_t from, int32_t to,
+                          bool (*first)(const struct item *, int, double), int key, double limit)
+{
+    int32_t front = from, back = 0;
+    for (int32_t i = from; i < to; i++) {
+        if (first(&builder->items[i], key, limit))
+            builder->items[front++] = builder->items[i];
+        else
+            builder->spare[back++] = builder->items[i];
+    }
+    memcpy(builder->items + front, builder->spare, (size_t)back * sizeof *builder->spare);
+    return front - from;
+}
+
+static bool is_lamp(const struct item *item, int key, double limit)
+{
+    (void)key;
+    (void)limit;
+    return item->is_lamp;
+}
+
+static bool is_below(const struct item *item, int key, double limit)
+{
+    return item->key[key] < limit;
+}
+
+/* Weighted moments of a key over some items. */
+struct moments {
+    double weight, sum, square;
+};
+
+static void moments_add(struct moments *to, double weight, double key)
+{
+    to->weight += weight;
+    to->sum += weight * key;
+    to->square += weight * key * key;
+}
+
+/* The sum of squares about the mean. */
+static double scatter_of(const struct moments *m)
+{
+    return m->weight > 0.0 ? real_max(0.0, m->square - m->sum * m->sum / m->weight) : 0.0;
+}
+
+/* The key that scatters most, and its range. Keys are taken from the first item's, so that those of
+ * like items have no rounding. */
+static int widest_key(const struct item *items, int32_t count, double *low, double *high)
+{
+    int widest = 0;
+    *low = *high = 0.0;
+    double most = -1.0;
+    for (int key = 0; key < KEYS; key++) {
+        struct moments moments = {0};
+        double least = items[0].key[key], largest = least;
+        for (int32_t i = 0; i < count; i++) {
+            double value = items[i].key[key];
+            moments_add(&moments, items[i].weight, value - items[0].key[key]);
+            least = real_min(least, value);
+            largest = real_max(largest, value);
+        }
+        if (scatter_of(&moments) > most) {
+            most = scatter_of(&moments);
+            widest = key;
+            *low = least;
+            *high = largest;
+        }
+    }
+    return widest;
+}
+
+/* The value of the key below which the first half ends: of the edges between bins that with the
+ * least scatter in both halves. */
+static double best_limit(const struct item *items, int32_t count, int key, double low, double high)
+{
+    struct moments bins[BINS] = {{0}}, above = {0}, below = {0};
+    double width = (high - low) / BINS, best = low, least = HUGE_VAL;
+    if (!(width > 0.0))
+        return low;
+    for (int32_t i = 0; i < count; i++) {
+        int bin = (int)((items[i].key[key] - low) / width);
+        moments_add(&bins[bin < BINS ? bin : BINS - 1], items[i].weight, items[i].key[key] - low);
+        moments_add(&above, items[i].weight, items[i].key[key] - low);
+    }
+    for (int bin = 0; bin + 1 < BINS; bin++) {
+        below.weight += bins[bin].weight;
+        below.sum += bins[bin].sum;
+        below.square += bins[bin].square;
+        above.weight -= bins[bin].weight;
+        above.sum -= bins[bin].sum;
+        above.square -= bins[bin].square;
+        double scatter = scatter_of(&below) + scatter_of(&above);
+        if (scatter < least) {
+            least = scatter;
+            best = low + (bin + 1) * width;
+        }
+    }
+    return best;
+}
+
+/* Cuts items in two, neither half larger than `most`. Returns the size of the first. */
+static int32_t cut(struct builder *builder, int32_t from, int32_t to, int64_t most)
+{
+    int32_t count = to - from;
+    if (count < 2)
+        return count;
+    int32_t first = part_items(builder, from, to, is_lamp, 0, 0.0);
+    if (first == 0 || first == count) {
+        double low, high;
+        int key = widest_key(builder->items + from, count, &low, &high);
+        double limit = best_limit(builder->items + from, count, key, low, high);
+        first = part_items(builder, from, to, is_below, key, limit);
+    }
+    bool fits = first > 0 && first < count && first <= most && count - first <= most;
+    return fits ? first : count / 2;
+}
+
+static struct vec3 least(struct vec3 a, struct vec3 b)
+{
+    return (struct vec3){fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z)};
+}
+
+static struct vec3 most(struct vec3 a, struct vec3 b)
+{
+    return (struct vec3){fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z)};
+}
+
+/* A root as if it were a cluster. */
+static struct cluster cluster_of_root(const struct scene *scene, int32_t root)
+{
+    struct triangle t = scene_root_triangle(scene, root);
+    struct vec3 normal = scene_root_plane(scene, root).normal;
+    const struct material *material = scene_root_material(scene, root);
+    return (struct cluster){
+        .low = least(t.corner[0], least(t.corner[1], t.corner[2])),
+        .high = most(t.corner[0], most(t.corner[1], t.corner[2])),
+        .normal_low = normal,
+        .normal_high = normal,
+        .area = scene_root_area(scene, root),
+        .reflectance = material->reflectance,
+        .is_dark = material_is_dark(material),
+    };
+}
+
+/* Adds what a child is to its parent, whose reflectance is a sum over its area until all are added. */
+static void add_child(struct cluster *parent, const struct cluster *child)
+{
+    bool fresh = parent->area == 0.0;
+    parent->low = fresh ? child->low : least(parent->low, child->low);
+    parent->high = fresh ? child->high : most(parent->high, child->high);
+    parent->normal_low = fresh ? child->normal_low : least(parent->normal_low, child->normal_low);
+    parent->normal_high = fresh ? child->normal_high : most(parent->normal_high, child->normal_high);
+    for (int c = 0; c < BANDS; c++)
+        parent->reflectance.band[c] += child->area * child->reflectance.band[c];
+    parent->area += child->area;
+    parent->is_dark = (fresh || parent->is_dark) && child->is_dark;
+}
+
+/* Pre: the same is known of the clusters below it. */
+static void sum_up(struct builder *builder, struct cluster *cluster)
+{
+    const struct cluster_tree *tree = builder->tree;
+    for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
+        int32_t node = cluster->child[k];
+        struct cluster child = node_is_cluster(node) ? tree->clusters[~node]
+                                                     : cluster_of_root(builder->scene, node);
+        add_child(cluster, &child);
+    }
+    for (int c = 0; c < BANDS; c++)
+        cluster->reflectance.band[c] /= cluster->area;
+}
+
+/* Where the four parts of a cluster end. `below`: roots that a child can hold at most. */
+static void cut_in_four(struct builder *builder, int32_t from, int32_t to, int64_t below,
+                        int32_t ends[4])
+{
+    if (to - from <= 4) {
+        for (int k = 0; k < 4; k++)
+            ends[k] = from + k + 1 < to ? from + k + 1 : to;
+        return;
+    }
+    int32_t middle = from + cut(builder, from, to, 2 * below);
+    ends[0] = from + cut(builder, from, middle, below);
+    ends[1] = middle;
+    ends[2] = middle + cut(builder, middle, to, below);
+    ends[3] = to;
+}
+
+/* Makes the cluster over the items from..to. Returns its node. */
+static int32_t build(struct builder *builder, int32_t from, int32_t to, uint32_t hierarchy, int level)
+{
+    struct cluster_tree *tree = builder->tree;
+    int32_t number = tree->count++, ends[4], begin = from;
+    int children = 0;
+    struct cluster cluster = {.first = from, .end = to, .hierarchy = hierarchy,
+                              .child = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE}};
+    cut_in_four(builder, from, to, INT64_C(1) << 2 * (ID_MAX_LEVEL - level), ends);
+    for (int k = 0; k < 4; k++) {
+        if (ends[k] - begin == 1) {
+            cluster.child[children++] = builder->items[begin].root;
+            tree->parent[builder->items[begin].root] = number;
+        } else if (ends[k] > begin) {
+            cluster.child[children] = build(builder, begin, ends[k],
+                                            hierarchy << 2 | (uint32_t)children, level + 1);
+            children++;
+        }
+        begin = ends[k];
+    }
+    sum_up(builder, &cluster);
+    tree->clusters[number] = cluster;
+    return ~number;
+}
+
+static void list_items(struct builder *builder)
+{
+    const struct scene *scene = builder->scene;
+    int32_t count = 0, all = scene_root_count(scene);
+    for (int32_t root = 0; root < all; root++)
+        count += scene_root_area(scene, root) > 0.0;
+    builder->items = alloc_array((size_t)count, sizeof *builder->items);
+    builder->spare = alloc_array((size_t)count, sizeof *builder->spare);
+    double mean_area = scene_area(scene) / count;
+    for (int32_t root = 0; root < all; root++)
+        if (scene_root_area(scene, root) > 0.0)
+            builder->items[builder->tree->root_count++] = item_of(scene, root, mean_area);
+}
+
+/* The arrays by place and by root. */
+static void list_places(struct builder *builder)
+{
+    struct cluster_tree *tree = builder->tree;
+    for (int32_t i = 0; i < tree->root_count; i++) {
+        int32_t root = builder->items[i].root;
+        tree->roots[i] = root;
+        tree->place[root] = i;
+        tree->area_before[i + 1] = tree->area_before[i] + scene_root_area(builder->scene, root);
+    }
+}
+
+struct cluster_tree *cluster_tree_create(const struct scene *scene)
+{
+    struct cluster_tree *tree = alloc_array(1, sizeof *tree);
+    struct builder builder = {.tree = tree, .scene = scene};
+    list_items(&builder);
+    size_t count = (size_t)tree->root_count, all = (size_t)scene_root_count(scene);
+    tree->all_roots = (int32_t)all;
+    tree->clusters = alloc_array(count, sizeof *tree->clusters);
+    tree->roots = alloc_array(count, sizeof *tree->roots);
+    tree->area_before = alloc_array(count + 1, sizeof *tree->area_before);
+    tree->place = alloc_array(all, sizeof *tree->place);
+    tree->parent = alloc_array(all, sizeof *tree->parent);
+    for (size_t root = 0; root < all; root++)
+        tree->place[root] = tree->parent[root] = -1;
+    build(&builder, 0, tree->root_count, 1, 0);
+    list_places(&builder);
+    tree->clusters = alloc_resize(tree->clusters, (size_t)tree->count, sizeof *tree->clusters);
+    alloc_free(builder.items);
+    alloc_free(builder.spare);
+    return tree;
+}
+
+void cluster_tree_destroy(struct cluster_tree *tree)
+{
+    if (tree && !tree->is_view) {
+        alloc_free(tree->clusters);
+        alloc_free(tree->roots);
+        alloc_free(tree->place);
+        alloc_free(tree->parent);
+        alloc_free(tree->area_before);
+    }
+    alloc_free(tree);
+}
+
+static void pack_arrays(struct cluster_tree *tree, struct pack *pack)
+{
+    size_t roots = (size_t)tree->root_count, all = (size_t)tree->all_roots;
+    tree->clusters = pack_array(pack, tree->clusters, (size_t)tree->count * sizeof *tree->clusters);
+    tree->roots = pack_array(pack, tree->roots, roots * sizeof *tree->roots);
+    tree->place = pack_array(pack, tree->place, all * sizeof *tree->place);
+    tree->parent = pack_array(pack, tree->parent, all * sizeof *tree->parent);
+    tree->area_before = pack_array(pack, tree->area_before, (roots + 1) * sizeof *tree->area_before);
+}
+
+void cluster_tree_pack(const struct cluster_tree *tree, struct pack *pack)
+{
+    struct cluster_tree view = *tree;
+    view.is_view = true;
+    pack_array(pack, &view, sizeof view);
+    pack_arrays(&view, pack);
+}
+
+struct cluster_tree *cluster_tree_view(struct pack *pack)
+{
+    struct cluster_tree *tree = alloc_array(1, sizeof *tree);
+    memcpy(tree, pack_array(pack, NULL, sizeof *tree), sizeof *tree);
+    pack_arrays(tree, pack);
+    return tree;
+}
+
+int32_t cluster_reach(const struct cluster_tree *tree, uint32_t hierarchy)
+{
+    struct patch_id id = {CLUSTER_ROOT, hierarchy};
+    int32_t node = NODE_TOP;
+    for (int step = 0; step < id_level(id) && node_is_cluster(node) && node != NODE_NONE; step++)
+        node = tree->clusters[~node].child[id_step(id, step)];
+    return node_is_cluster(node) ? node : NODE_NONE;
+}

@@ -1,0 +1,100 @@
+/* Push-pull through the clusters, as rad/pushpull.c does it in the patches. Children differ in area
+ * here, so means are weighted. Children come after their parents, so a loop downwards meets them
+ * first. */
+#include "rad/beyond/cluster_light.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+
+struct cluster_light *cluster_light_create(const struct cluster_tree *tree)
+{
+    struct cluster_light *light = alloc_array(1, sizeof *light);
+    size_t count = (size_t)tree->count;
+    light->tree = tree;
+    light->radiosity = alloc_array(count, sizeof *light->radiosity);
+    light->range = alloc_array(count, sizeof *light->range);
+    light->flux = alloc_array(BANDS * count, sizeof *light->flux);
+    light->irradiance = alloc_array(count, sizeof *light->irradiance);
+    return light;
+}
+
+void cluster_light_destroy(struct cluster_light *light)
+{
+    if (!light)
+        return;
+    alloc_free(light->radiosity);
+    alloc_free(light->range);
+    alloc_free(light->flux);
+    alloc_free(light->irradiance);
+    alloc_free(light);
+}
+
+static double area_of(const struct cluster_light *light, const struct forest *forest, int32_t node)
+{
+    return node_is_cluster(node) ? light->tree->clusters[~node].area : forest_area(forest, node);
+}
+
+static const struct rgb *radiosity_of(const struct cluster_light *light, const struct forest *forest,
+                                      int32_t node)
+{
+    return node_is_cluster(node) ? &light->radiosity[~node] : &forest->patches[node].radiosity;
+}
+
+void cluster_light_pull(struct cluster_light *light, const struct forest *forest)
+{
+    for (int32_t i = light->tree->count - 1; i >= 0; i--) {
+        const struct cluster *cluster = &light->tree->clusters[i];
+        struct rgb sum = {{0.0, 0.0, 0.0}};
+        for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
+            double share = area_of(light, forest, cluster->child[k]) / cluster->area;
+            const struct rgb *child = radiosity_of(light, forest, cluster->child[k]);
+            for (int c = 0; c < BANDS; c++)
+                sum.band[c] += share * child->band[c];
+        }
+        light->radiosity[i] = sum;
+    }
+}
+
+/* The variance of B in a root is that of its extremes; in a cluster, that within its children, and
+ * that between them. */
+void cluster_light_bound(struct cluster_light *light, const struct forest *forest)
+{
+    double *variance = alloc_array((size_t)light->tree->count, sizeof *variance);
+    for (int32_t i = light->tree->count - 1; i >= 0; i--) {
+        const struct cluster *cluster = &light->tree->clusters[i];
+        double mean = rgb_sum(light->radiosity[i]), within = 0.0, between = 0.0;
+        for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
+            int32_t node = cluster->child[k];
+            double share = area_of(light, forest, node) / cluster->area;
+            double off = rgb_sum(*radiosity_of(light, forest, node)) - mean;
+            if (node_is_cluster(node)) {
+                within += share * variance[~node];
+            } else {
+                double half = 0.5 * (double)(forest->extremes[node].high - forest->extremes[node].low);
+                within += share * half * half;
+            }
+            between += share * off * off;
+        }
+        variance[i] = within + between;
+        light->range[i] = 2.0 * sqrt(within);
+    }
+    alloc_free(variance);
+}
+
+void cluster_light_push(struct cluster_light *light, struct forest *forest, struct flux_unit unit)
+{
+    const struct cluster_tree *tree = light->tree;
+    for (int32_t i = 0; i < tree->count; i++) {
+        const struct cluster *cluster = &tree->clusters[i];
+        struct rgb *h = &light->irradiance[i]; /* so far that of the parent */
+        for (int c = 0; c < BANDS; c++) {
+            double own = flux_to_watts(unit, light->flux[BANDS * i + c]) / cluster->area;
+            h->band[c] = (i > 0 ? h->band[c] : 0.0) + own;
+        }
+        for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
+            int32_t node = cluster->child[k];
+            *(node_is_cluster(node) ? &light->irradiance[~node] : &forest->above[node]) = *h;
+        }
+    }
+}
