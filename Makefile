@@ -46,7 +46,7 @@ MPI_INCLUDE =
 MPIEXEC ?= mpiexec
 endif
 
-GEOM = alloc contour elementary error gauss hull lambert polygon scene triangle wall
+GEOM = alloc contour elementary error gauss hull lambert polygon scene stop triangle wall
 OCTREE = build octree
 RAD = beyond/cluster beyond/cluster_light beyond/node_link boxtree closure conjugate flux formfactor id link linking method oracle patch pushpull snapshot \
       treecode viewfactor

@@ -21,6 +21,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/stop.h"
 
 /* Triangles are in one plane if none has a corner further off the other's than this. */
 static const double COPLANAR = 4.0 * GEOM_ROUNDING;
@@ -293,7 +294,7 @@ static void add_walls(struct walls *walls, const struct mesh *mesh, const int32_
     for (int32_t t = 0; t < mesh->count; t++)
         sorted[t] = (struct member){region[t], t};
     qsort(sorted, (size_t)mesh->count, sizeof *sorted, compare_members);
-    for (int32_t i = 0; i < mesh->count; i = end) {
+    for (int32_t i = 0; i < mesh->count && !stop_is_asked(); i = end) {
         for (end = i; end < mesh->count && sorted[end].region == sorted[i].region; end++)
             members[end - i] = sorted[end].triangle;
         bool whole = end - i > 1 && add_region(walls, mesh, members, end - i);
@@ -313,6 +314,8 @@ struct walls *walls_create(const struct triangle *triangles, const struct plane 
 {
     struct walls *walls = alloc_array(1, sizeof *walls);
     struct mesh mesh = {triangles, planes, count, number_corners(triangles, count)};
+    if (stop_is_asked())
+        mesh.count = 0;
     walls->triangle_count = count;
     walls->items = alloc_array((size_t)count, sizeof *walls->items);
     walls->corners = alloc_array(3 * (size_t)count, sizeof *walls->corners);

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/stop.h"
 
 enum { BLOCK = 65536 };
 
@@ -36,6 +37,8 @@ static bool read_blocks(struct binary *binary, FILE *file, const char *magic, co
     do {
         binary->data = alloc_reserve(binary->data, &capacity, binary->size + BLOCK + 1, 1);
         got = fread(binary->data + binary->size, 1, BLOCK, file);
+        if (!stop_check(error))
+            return false;
         if (ferror(file))
             return fail_to_read(binary->path, error);
         binary->size += (int64_t)got;

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/stop.h"
 #include "io/output.h"
 #include "io/text.h"
 
@@ -26,7 +27,7 @@ bool pfm_write(const struct image *image, const char *path, struct error *error)
     if (!output_open(&output, path, error))
         return false;
     fprintf(output.file, "PF\n%d %d\n-1.0\n", image->width, image->height);
-    for (int y = image->height - 1; y >= 0; y--) {
+    for (int y = image->height - 1; y >= 0 && stop_check(error); y--) {
         const float *row = image->rgb + (size_t)y * (size_t)image->width * 3;
         for (int i = 0; i < 3 * image->width; i++)
             output_float(&output, row[i]);
@@ -42,7 +43,7 @@ bool ppm_write(const struct image *image, const struct tone *tone, const char *p
         return false;
     fprintf(output.file, "P6\n%d %d\n255\n", image->width, image->height);
     size_t samples = (size_t)image->width * (size_t)image->height * 3;
-    for (size_t i = 0; i < samples; i++)
+    for (size_t i = 0; i < samples && stop_check(error); i++)
         putc(tone_encode(tone, (double)image->rgb[i]), output.file);
     return output_close(&output, error);
 }

@@ -3,6 +3,7 @@
 #include "io/mesh.h"
 
 #include "geom/alloc.h"
+#include "geom/stop.h"
 
 /* The next leaf in canonical order after `p` (-1: the first one), or -1. */
 static int32_t next_leaf(const struct forest *forest, int32_t p)
@@ -41,7 +42,7 @@ void mesh_write_header(struct output *output, int64_t vertices, int64_t faces)
 static void write_vertices(struct output *output, const struct shading *shading,
                            const struct tone *tone)
 {
-    for (int64_t v = 0; v < shading->vertex_count; v++) {
+    for (int64_t v = 0; v < shading->vertex_count && !stop_is_asked(); v++) {
         struct vec3 x = scene_to_input(shading->forest->scene, shading->positions[v]);
         output_float(output, (float)x.x);
         output_float(output, (float)x.y);
@@ -72,7 +73,8 @@ bool mesh_write(const struct shading *shading, const struct tone *tone, const ch
         return false;
     mesh_write_header(&output, shading->vertex_count, forest_leaf_count(forest));
     write_vertices(&output, shading, tone);
-    for (int32_t leaf = next_leaf(forest, -1); leaf >= 0; leaf = next_leaf(forest, leaf))
+    int32_t leaf = next_leaf(forest, -1);
+    for (; leaf >= 0 && stop_check(error); leaf = next_leaf(forest, leaf))
         write_face(&output, shading, leaf);
     return output_close(&output, error);
 }

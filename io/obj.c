@@ -21,6 +21,7 @@
 
 #include "geom/alloc.h"
 #include "geom/polygon.h"
+#include "geom/stop.h"
 #include "io/library.h"
 #include "io/mtl.h"
 #include "io/text.h"
@@ -282,7 +283,7 @@ static bool read_lines(struct obj_reader *reader)
     reader->materials.entries[reader->material].defined = true;
     reader->group = text_names_add(&reader->groups, DEFAULT_GROUP);
     for (char *line; (line = text_line(&reader->text)) != NULL;)
-        if (!read_line(reader, line))
+        if (!stop_check(reader->error) || !read_line(reader, line))
             return false;
     if (reader->triangle_count == 0)
         return error_set(reader->error, EXIT_USAGE, "%s: no faces", reader->text.path);

@@ -17,6 +17,7 @@
 
 #include "geom/alloc.h"
 #include "geom/polygon.h"
+#include "geom/stop.h"
 #include "io/palette.h"
 #include "io/plyfile.h"
 
@@ -208,6 +209,7 @@ static void cut_face(const struct reader *reader, const struct face *face, struc
         alloc_free(cut);
 }
 
+/* NULL if it is stopped. */
 static struct scene *make_scene(const struct reader *reader)
 {
     struct scene *scene = scene_create((int32_t)reader->triangle_count, reader->palette.count);
@@ -215,6 +217,10 @@ static struct scene *make_scene(const struct reader *reader)
            (size_t)reader->palette.count * sizeof *scene->materials);
     int32_t at = 0;
     for (int64_t i = 0; i < reader->face_count; i++) {
+        if (!stop_check(reader->error)) {
+            scene_destroy(scene);
+            return NULL;
+        }
         cut_face(reader, &reader->faces[i], scene, at);
         at += reader->faces[i].count - 2;
     }

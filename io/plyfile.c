@@ -19,6 +19,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/stop.h"
 #include "io/text.h"
 
 static const struct {
@@ -380,7 +381,7 @@ bool ply_file_row(struct ply_file *file, const struct ply_element *element, int6
 {
     file->row = row;
     file->row_name = ROW_NAMES[element->kind];
-    if (file->ascii && !find_row(file, error))
+    if (!stop_check(error) || (file->ascii && !find_row(file, error)))
         return false;
     for (int64_t i = 0; i < element->property_count; i++)
         if (!take_property(file, &file->properties[element->property + i], error))

@@ -38,6 +38,7 @@
 
 #include "geom/alloc.h"
 #include "geom/elementary.h"
+#include "geom/stop.h"
 #include "io/surface.h"
 
 /* --- leaves, and how much of each is covered --- */
@@ -49,7 +50,7 @@ static void for_each_leaf(const struct forest *forest, int level,
     for (int32_t root = 0; root < forest->root_count; root++) {
         if (scene_root_area(forest->scene, root) <= 0.0)
             continue;
-        for (int32_t p = root; p >= 0;) {
+        for (int32_t p = root; p >= 0 && !stop_is_asked();) {
             int at = id_level(forest->patches[p].id);
             if (patch_is_leaf(&forest->patches[p]) && (level < 0 || at == level))
                 visit(context, p);
@@ -488,7 +489,7 @@ static void blend_leaves(struct blend *blend)
 {
     const struct forest *forest = blend->shading->forest;
     blend->surface = surface_of_roots(forest->scene, true);
-    if (forest->scene->normals)
+    if (forest->scene->normals && !stop_is_asked())
         blend->shifts = find_shifts(forest, blend->open, blend->surface);
     for_each_leaf(forest, -1, add_leaf, blend);
     find_means(&blend->table);

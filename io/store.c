@@ -15,6 +15,7 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "geom/little.h"
+#include "geom/stop.h"
 
 enum { MAGIC_BYTES = 8, HEADER_BYTES = 48, LEAF_BYTES = 56, RGB_BYTES = 24, LINK_BYTES = 24,
        BLOCK = 4096, SETTINGS_MAX = 4096 };
@@ -142,7 +143,8 @@ static bool unreadable(const struct store_reader *reader, struct error *error)
 static bool get(struct store_reader *reader, void *bytes, size_t count, struct error *error)
 {
     errno = 0;
-    return fread(bytes, 1, count, reader->file) == count || unreadable(reader, error);
+    return stop_check(error) &&
+           (fread(bytes, 1, count, reader->file) == count || unreadable(reader, error));
 }
 
 /* The first bytes tell the kind and the version. */

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/stop.h"
 
 static void print_name(const char *name, FILE *file)
 {
@@ -44,7 +45,7 @@ void table_print(const struct viewfactors *factors, FILE *file)
     for (int32_t i = 0; i < factors->count; i++, name += strlen(name) + 1)
         names[i] = name;
     fputs("from,to,area_from,F\n", file);
-    for (int32_t i = 0; i < factors->count; i++) {
+    for (int32_t i = 0; i < factors->count && !stop_is_asked(); i++) {
         double area = factors->areas[i] * unit, sum = 0.0;
         for (int32_t j = 0; j < factors->count; j++) {
             double factor = viewfactors_factor(factors, i, j);

@@ -26,6 +26,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/stop.h"
 
 enum { BLOCK = 65536 };
 
@@ -91,7 +92,8 @@ static bool read_blocks(struct text *text, FILE *file, struct error *error)
     do {
         text->bytes = alloc_reserve(text->bytes, &capacity, text->size + BLOCK + 1, 1);
         got = fread(text->bytes + text->size, 1, BLOCK, file);
-        if (!check_bytes(text, text->bytes + text->size, got, error))
+        if (!stop_check(error) ||
+            !check_bytes(text, text->bytes + text->size, got, error))
             return false;
         text->size += (int64_t)got;
     } while (got == BLOCK);

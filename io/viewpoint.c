@@ -24,6 +24,7 @@
 #include "io/viewpoint.h"
 
 #include "geom/elementary.h"
+#include "geom/stop.h"
 
 enum {
     GRID = 6,      /* points along a side of the bounding box */
@@ -58,7 +59,8 @@ static double look_at(const struct site *site, struct vec3 from, struct vec3 dir
 {
     struct octree_hit hit;
     struct octree_counts counts = {0};
-    if (!octree_first_hit(site->octree, from, direction, false, &hit, &counts))
+    if (stop_is_asked() ||
+        !octree_first_hit(site->octree, from, direction, false, &hit, &counts))
         return NOTHING;
     *triangle = hit.triangle;
     if (scene_root_on(site->scene, hit.triangle, hit.front) < 0)

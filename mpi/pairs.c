@@ -7,6 +7,7 @@
 #include "mpi/pairs.h"
 
 #include "geom/alloc.h"
+#include "geom/stop.h"
 
 static void add_own_pairs(const struct comm *comm, struct viewfactors *factors,
                           struct progress *progress)
@@ -18,7 +19,7 @@ static void add_own_pairs(const struct comm *comm, struct viewfactors *factors,
         facets[i] = (struct facet){scene_root_triangle(scene, i), scene_root_plane(scene, i),
                                    scene_root_area(scene, i), scene_input_of(scene, i)};
     int64_t dealt = 0;
-    for (int32_t i = 0; i < roots; i++) {
+    for (int32_t i = 0; i < roots && !stop_is_asked(); i++) {
         progress_tick_pairs(progress, i, roots);
         for (int32_t j = i + 1; j < roots; j++)
             if (facets[i].area > 0.0 && facets[j].area > 0.0 &&

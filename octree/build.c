@@ -20,6 +20,7 @@
 #include <stddef.h>
 
 #include "geom/alloc.h"
+#include "geom/stop.h"
 #include "octree/tree.h"
 
 enum {
@@ -281,7 +282,7 @@ struct tree tree_build(const struct triangle *triangles, const struct plane *pla
     builder.scratch = alloc_array((size_t)count, sizeof *builder.scratch);
     struct box box = box_of(&builder, 0, count);
     append_cell(&builder, (struct cell){.end = count, .node = -1});
-    for (int64_t at = 0; at < builder.queue_count; at++)
+    for (int64_t at = 0; at < builder.queue_count && !stop_is_asked(); at++)
         process_cell(&builder, builder.queue[at]);
     struct tree *tree = &builder.tree;
     tree->low = box.low;

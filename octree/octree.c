@@ -49,6 +49,7 @@
 
 #include "geom/alloc.h"
 #include "geom/hull.h"
+#include "geom/stop.h"
 #include "octree/tree.h"
 
 /* Margin for the rounding of box tests: coordinates are below 1 and direction components at most
@@ -72,7 +73,7 @@ static void plant_trees(struct octree *octree, int32_t *order, int32_t kept)
     struct tree all = tree_build(octree->triangles, octree->planes, order, kept);
     octree->low = all.low;
     octree->high = all.high;
-    for (int32_t i = 0; i < kept; i++) {
+    for (int32_t i = 0; i < kept && !stop_is_asked(); i++) {
         int32_t t = order[i];
         if (is_on_hull(&all, octree->triangles, octree->planes[t]))
             hull[hull_count++] = t;
@@ -100,7 +101,7 @@ struct octree *octree_create(const struct triangle *triangles, const struct plan
             order[kept++] = i;
     plant_trees(octree, order, kept);
     alloc_free(order);
-    octree->walls = walls_create(triangles, planes, count);
+    octree->walls = walls_create(triangles, planes, stop_is_asked() ? 0 : count);
     octree->place = alloc_array((size_t)count, sizeof *octree->place);
     for (int32_t i = 0; i < count; i++)
         octree->place[i] = -1;

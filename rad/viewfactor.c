@@ -40,6 +40,7 @@
 
 #include "geom/alloc.h"
 #include "geom/contour.h"
+#include "geom/stop.h"
 #include "rad/id.h"
 
 /* A patch of a pair. */
@@ -201,7 +202,7 @@ static bool is_settled(struct search *search, const struct piece *p, const struc
 static void add_pair(struct search *search, const struct piece *p, const struct piece *q,
                      double otherwise)
 {
-    if (!facets_face(&p->facet, &q->facet))
+    if (stop_is_asked() || !facets_face(&p->facet, &q->facet))
         return;
     double exchange = triangle_exchange(&p->facet.triangle, &q->facet.triangle);
     if (!(exchange > 0.0))

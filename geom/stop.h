@@ -1,0 +1,21 @@
+/* Being asked to stop, as the long loops of all layers see it. Who asks, and how, is the
+ * business of the caller of stop_when() (mpi/signals.h). */
+#ifndef GEOM_STOP_H
+#define GEOM_STOP_H
+
+#include <stdbool.h>
+
+#include "geom/error.h"
+
+/* `asked()` tells whether the program is asked to stop, and never takes that back. NULL:
+ * it is not. */
+void stop_when(bool (*asked)(void));
+
+/* True if the loop that asks is to break off. What it leaves can be packed and freed, and is of
+ * no other use. */
+bool stop_is_asked(void);
+
+/* True if nobody asks the program to stop. Else fills `error`, as error_set() does. */
+bool stop_check(struct error *error);
+
+#endif
