@@ -11,6 +11,7 @@
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "geom/stop.h"
 #include "io/camera.h"
 #include "io/image.h"
 #include "io/machine.h"
@@ -45,6 +46,7 @@ struct run {
     struct vote vote; /* of the last iteration */
     struct stats stats;
     struct progress_view progress; /* on rank 0, unless --quiet */
+    const char *kept; /* path of the last checkpoint made or read, NULL: there is none */
     struct error error;
     double start; /* comm_seconds() at the beginning */
 };
@@ -64,6 +66,35 @@ static void say(struct run *run, const char *format, ...)
     vfprintf(stderr, format, arguments);
     fputc('\n', stderr);
     va_end(arguments);
+}
+
+/* --- errors and signals --- */
+
+/* Says why the run ends here. */
+static bool stopped(struct run *run, int signal)
+{
+    const char *path = run->kept;
+    return error_set(&run->error, EXIT_FAILED, "stopped by %s%s%s", signals_name(signal),
+                     path ? "; go on with --resume " : "", path ? path : "");
+}
+
+/* Collective. All ranks end with the error of one of them, if one has got any. On a rank
+ * that is asked to stop, an error comes from that. */
+static bool agree(struct run *run)
+{
+    if (run->error.code != EXIT_DONE && signals_seen() != 0) {
+        run->error = (struct error){.code = EXIT_DONE};
+        stopped(run, signals_seen());
+    }
+    return comm_agree(&run->comm, &run->error);
+}
+
+/* Collective. The end of a phase that breaks off when it is asked to: false if it was,
+ * on any rank. */
+static bool goes_on_from_phase(struct run *run)
+{
+    stop_check(&run->error);
+    return agree(run);
 }
 
 /* --- reading, on rank 0 --- */
@@ -133,7 +164,7 @@ static bool read_scene(struct run *run)
     struct scene_repairs prepared = {0};
     const char *path = run->options.scene;
     run->scene = ply_is_meant(path) ? ply_read(path, error) : obj_read(path, &read, error);
-    if (!run->scene)
+    if (!run->scene || !stop_check(error))
         return false;
     run->scene->two_sided = run->options.two_sided;
     run->scene->two_sided_lamps = run->options.two_sided_lamps;
@@ -170,19 +201,27 @@ static bool probe_outputs(struct run *run)
     return true;
 }
 
+static void read_input(struct run *run)
+{
+    signals_end_calls(true);
+    if (read_scene(run) && read_camera(run))
+        probe_outputs(run);
+    signals_end_calls(false);
+}
+
 /* Collective. Step 1: rank 0 reads, all agree on errors, all receive the scene. */
 static bool read_and_broadcast(struct run *run)
 {
-    if (run->comm.rank == 0 && read_scene(run) && read_camera(run))
-        probe_outputs(run);
-    if (!comm_agree(&run->comm, &run->error))
+    if (run->comm.rank == 0)
+        read_input(run);
+    if (!agree(run))
         return false;
     run->block = scene_broadcast(&run->comm, node_policy(), &run->scene, &run->octree);
     comm_broadcast(&run->comm, &run->camera, sizeof run->camera);
     if (run->block.shared && run->options.verbose)
         say(run, "one copy of scene and octree for %d ranks, %.1f MB", run->block.node.size,
             1e-6 * (double)run->block.bytes);
-    return true;
+    return goes_on_from_phase(run);
 }
 
 /* --- stored snapshot --- */
@@ -221,7 +260,10 @@ static bool save_snapshot(struct run *run, enum store_kind kind, const char *pat
     if (run->comm.rank == 0)
         store_finish(&writer, &run->error);
     run->solver->seconds[PHASE_WRITE] += comm_seconds() - start;
-    return comm_agree(&run->comm, &run->error);
+    bool good = comm_agree(&run->comm, &run->error);
+    if (good && kind == STORE_CHECKPOINT)
+        run->kept = path;
+    return good;
 }
 
 /* Collective. Deals the links of an open file. */
@@ -235,7 +277,7 @@ static bool load_links(struct run *run, struct store_reader *reader, const int32
         int64_t now = left < BLOCK ? left : BLOCK;
         if (run->comm.rank == 0)
             store_get_links(reader, block, now, &run->error);
-        good = comm_agree(&run->comm, &run->error);
+        good = agree(run);
         if (good)
             links_deal(run->solver, order, block, now);
     }
@@ -251,12 +293,14 @@ static bool load_snapshot(struct run *run, enum store_kind kind, const char *pat
     struct store_reader reader = {0};
     if (run->comm.rank == 0)
         store_open(&reader, path, &terms, &run->error);
-    bool good = comm_agree(&run->comm, &run->error);
+    bool good = agree(run);
     if (good) {
         int32_t *order = snapshot_restore(run->solver, &run->vote, &reader.snapshot);
         good = load_links(run, &reader, order, reader.snapshot.link_count);
         alloc_free(order);
     }
+    if (good && kind == STORE_CHECKPOINT)
+        run->kept = path;
     if (good)
         say(run, "%s: %lld links after %lld passes, %.1f s", path,
             (long long)reader.snapshot.link_count, (long long)run->solver->pass,
@@ -264,15 +308,6 @@ static bool load_snapshot(struct run *run, enum store_kind kind, const char *pat
     store_close(&reader);
     run->solver->seconds[PHASE_LINKING] += comm_seconds() - start;
     return good;
-}
-
-/* Says why the run ends here. */
-static bool stopped(struct run *run)
-{
-    const char *path = run->options.checkpoint;
-    return error_set(&run->error, EXIT_FAILED, "stopped by %s%s%s",
-                     signals_name(run->solver->stop), path ? "; go on with --resume " : "",
-                     path ? path : "");
 }
 
 /* --- the algorithm --- */
@@ -334,6 +369,14 @@ static bool start_light(struct run *run)
     return !options->save_links || save_snapshot(run, STORE_LINKS, options->save_links);
 }
 
+/* True if there is another iteration over the same links. A signal ends them, unless
+ * there is to be a checkpoint: that is of a whole pass, and without it the refinement
+ * would be lost. */
+static bool iterates(const struct run *run)
+{
+    return run->vote.again && (!run->solver->stop || run->options.checkpoint);
+}
+
 /* Collective. Steps 5 to 8, until there is no other iteration. */
 static void solve_pass(struct run *run)
 {
@@ -349,7 +392,7 @@ static void solve_pass(struct run *run)
         run->vote = solver_vote(solver); /* 8: is there another iteration? */
         first = first < HUGE_VAL ? first : run->vote.remaining;
         progress_tick(solver->progress, share_solved(run, first));
-    } while (run->vote.again);
+    } while (iterates(run));
 }
 
 /* Collective. True if there is another pass. */
@@ -396,7 +439,7 @@ static bool compute_light(struct run *run)
     if (run->vote.diverged)
         return error_set(&run->error, EXIT_FAILED,
                          "the solution diverges: surfaces reflect more light than they receive");
-    return !run->solver->stop || stopped(run);
+    return !run->solver->stop || stopped(run, run->solver->stop);
 }
 
 /* --- results --- */
@@ -453,38 +496,40 @@ static struct shading *shade_leaves(struct run *run)
     return shading;
 }
 
+/* Collective. The picture of the camera, on rank 0; NULL on the others. */
+static float *make_picture(struct run *run, const struct shading *shading)
+{
+    const struct options *options = &run->options;
+    const struct comm *comm = &run->comm;
+    struct camera *camera = &run->camera;
+    if (!options->view) /* all ranks choose alike */
+        *camera = viewpoint_choose(run->scene, run->octree, run->solver->method.forest,
+                                   camera->width, camera->height);
+    progress_begin(&run->progress.progress, "rendering", -1, 0);
+    float *rows = render_rows(shading, run->octree, camera, options->samples, comm->rank,
+                              comm->size, &run->progress.progress);
+    size_t row = 3 * (size_t)camera->width;
+    float *picture = picture_gather(comm, rows, row, camera->height);
+    alloc_free(rows);
+    return picture;
+}
+
 /* Collective. Renders by rows and writes. */
 static bool show_results(struct run *run)
 {
     double start = comm_seconds();
-    const struct options *options = &run->options;
-    struct comm *comm = &run->comm;
-    if (options->output_count == 0)
+    if (run->options.output_count == 0)
         return true;
     struct shading *shading = shade_leaves(run);
-    float *picture = NULL;
-    if (wants_picture(options)) {
-        struct camera *camera = &run->camera;
-        if (!options->view) /* all ranks choose alike */
-            *camera = viewpoint_choose(run->scene, run->octree, run->solver->method.forest,
-                                       camera->width, camera->height);
-        progress_begin(&run->progress.progress, "rendering", -1, 0);
-        float *rows = render_rows(shading, run->octree, camera, options->samples, comm->rank, comm->size,
-                                  signals_seen, &run->progress.progress);
-        picture = picture_gather(comm, rows, 3 * (size_t)camera->width, camera->height);
-        alloc_free(rows);
-    }
+    float *picture = wants_picture(&run->options) ? make_picture(run, shading) : NULL;
     run->solver->seconds[PHASE_RENDER] = comm_seconds() - start;
     start = comm_seconds();
-    run->solver->stop = signals_agree(comm);
-    if (run->solver->stop)
-        stopped(run);
-    else if (comm->rank == 0)
+    if (goes_on_from_phase(run) && run->comm.rank == 0)
         write_outputs(run, shading, picture);
     alloc_free(picture);
     shading_destroy(shading);
     run->solver->seconds[PHASE_WRITE] += comm_seconds() - start;
-    return comm_agree(comm, &run->error);
+    return agree(run);
 }
 
 /* Collective. The summary and --stats. */
@@ -530,9 +575,12 @@ static void tabulate_factors(struct run *run)
     progress_begin(&run->progress.progress, "form factors", -1, 0);
     pairs_add(&run->comm, factors, &run->progress.progress);
     progress_view_clear(&run->progress);
-    if (run->comm.rank == 0)
+    if (goes_on_from_phase(run) && run->comm.rank == 0) {
         table_print(factors, stdout);
-    say(run, "%.1f s", comm_seconds() - run->start);
+        stop_check(&run->error);
+    }
+    if (agree(run))
+        say(run, "%.1f s", comm_seconds() - run->start);
     viewfactors_destroy(factors);
 }
 

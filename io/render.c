@@ -3,6 +3,7 @@
 #include "io/render.h"
 
 #include "geom/alloc.h"
+#include "geom/stop.h"
 
 static struct rgb trace(const struct shading *shading, const struct octree *octree,
                         const struct camera *camera, double x, double y)
@@ -37,14 +38,14 @@ static void render_pixel(const struct shading *shading, const struct octree *oct
 
 float *render_rows(const struct shading *shading, const struct octree *octree,
                    const struct camera *camera, int samples, int first, int step,
-                   int (*stops)(void), struct progress *progress)
+                   struct progress *progress)
 {
     size_t row = 3 * (size_t)camera->width;
     int rows = first < camera->height ? (camera->height - first - 1) / step + 1 : 0;
     float *rgb = alloc_array((size_t)rows * row, sizeof *rgb);
-    for (int i = 0; i < rows && !(stops && stops()); i++) {
+    for (int i = 0; i < rows; i++) {
         progress_tick(progress, (double)i / rows);
-        for (int x = 0; x < camera->width; x++)
+        for (int x = 0; x < camera->width && !stop_is_asked(); x++)
             render_pixel(shading, octree, camera, samples, x, first + i * step,
                          rgb + (size_t)i * row + 3 * (size_t)x);
     }

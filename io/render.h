@@ -8,12 +8,11 @@
 #include "octree/octree.h"
 
 /* Renders the rows first, first + step, ... of the picture, top row first. Each pixel is the
- * mean of samples x samples rays; where nothing is met, or a back, it is black. When `stops` (NULL:
- * never) no longer says 0, which it is asked before each row, the rest stays black. Ticks `progress`,
- * which may be NULL, once a row.
+ * mean of samples x samples rays; where nothing is met, or a back, it is black. Ticks
+ * `progress`, which may be NULL, once a row.
  * Returns RGB floats, 3 * width for each row; to be freed with alloc_free(). */
 float *render_rows(const struct shading *shading, const struct octree *octree,
                    const struct camera *camera, int samples, int first, int step,
-                   int (*stops)(void), struct progress *progress);
+                   struct progress *progress);
 
 #endif

@@ -1,10 +1,15 @@
 /* Being asked to stop.
  *
- * The handler sets a flag and nothing else, so it may come inside MPI; system calls are begun
- * again by the system. Ranks tell each other what they have seen in exchanges that there are anyway
- * (before each level of refinement, with each vote), so that all stop in the same place, wherever the
- * signal went: mpiexec passes it on to all ranks, kill to one. What the shell has set to be ignored
- * stays so, as for a job in the background. */
+ * The handler sets a flag and nothing else, so it may come inside MPI. The long loops of
+ * all layers look at the flag (geom/stop.h). Ranks tell each other of it in exchanges
+ * that there are anyway (before each level of refinement, with each vote, when they
+ * agree on errors), so that all stop in the same place, wherever the signal went:
+ * mpiexec passes it on to all ranks, kill to one. A signal that the shell has set to be
+ * ignored stays so, as for a job in the background.
+ *
+ * The system begins system calls again that a signal has met, since MPI is not made for
+ * calls that end early. While a file is read there is no MPI, and calls end: a pipe that
+ * nobody writes to does not keep the program from ending. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _XOPEN_SOURCE 700
 #define HAVE_SIGACTION 1
@@ -13,6 +18,9 @@
 #include "mpi/signals.h"
 
 #include <signal.h>
+#include <stddef.h>
+
+#include "geom/stop.h"
 
 static volatile sig_atomic_t seen;
 
@@ -30,34 +38,53 @@ static void catch_once(int number)
     if (sigaction(number, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
         sigaction(number, &action, NULL);
 }
+
+/* Unless it has come already, or is ignored. */
+static void set_restart(int number, bool restarts)
+{
+    struct sigaction action;
+    if (sigaction(number, NULL, &action) != 0 || action.sa_handler != remember)
+        return;
+    action.sa_flags = (int)(SA_RESETHAND | (restarts ? SA_RESTART : 0));
+    sigaction(number, &action, NULL);
+}
 #else
 static void catch_once(int number)
 {
     signal(number, remember); /* C99: the first one only, as a rule */
 }
+
+static void set_restart(int number, bool restarts)
+{
+    (void)number;
+    (void)restarts;
+}
 #endif
+
+static bool is_seen(void)
+{
+    return seen != 0;
+}
 
 void signals_catch(void)
 {
     catch_once(SIGTERM);
     catch_once(SIGINT);
+    stop_when(is_seen);
 #ifdef SIGXFSZ
     signal(SIGXFSZ, SIG_IGN);
 #endif
 }
 
+void signals_end_calls(bool ends)
+{
+    set_restart(SIGTERM, !ends);
+    set_restart(SIGINT, !ends);
+}
+
 int signals_seen(void)
 {
     return (int)seen;
-}
-
-int signals_agree(const struct comm *comm)
-{
-    int own = signals_seen(), all;
-    MPI_Request request;
-    MPI_Iallreduce(&own, &all, 1, MPI_INT, MPI_MAX, comm->handle, &request);
-    comm_wait(&request);
-    return all;
 }
 
 const char *signals_name(int number)

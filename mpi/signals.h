@@ -2,17 +2,19 @@
 #ifndef MPI_SIGNALS_H
 #define MPI_SIGNALS_H
 
-#include "mpi/comm.h"
+#include <stdbool.h>
 
-/* From here on the first SIGTERM or SIGINT is remembered and a second one has its usual effect; a write
- * beyond the limit of a file's size (SIGXFSZ) is an error like a full disk. */
+/* From here on the first SIGTERM or SIGINT is remembered and stops loops that ask
+ * stop_is_asked(); a second one has its usual effect; a write beyond the limit of a
+ * file's size (SIGXFSZ) is an error like a full disk. */
 void signals_catch(void);
+
+/* Whether a signal ends a system call that waits, such as for a pipe, with an error. At
+ * first it does not. Pre: no MPI is called while it does. */
+void signals_end_calls(bool ends);
 
 /* The signal that this rank has got, 0: none. */
 int signals_seen(void);
-
-/* Collective. The largest number of a signal that any rank has got, 0: none. */
-int signals_agree(const struct comm *comm);
 
 /* "SIGTERM", "SIGINT". */
 const char *signals_name(int number);

@@ -125,6 +125,42 @@ finish
 check "SIGTERM while a picture is made ends it ($status)" was_stopped
 check "soon" [ $(($(date +%s) - begun)) -lt 10 ]
 check "and no picture" [ ! -e "$work/new.ppm" ]
+check "it goes on from the checkpoint of the solution" \
+    grep -q "^phr: stopped by SIGTERM; go on with --resume $work/check\$" "$work/err"
+
+# stopped_early NAME: what runs is stopped before there is anything to go on from.
+stopped_early() {
+    kill -TERM "$launched"
+    finish
+    check "SIGTERM $1 ends it ($status)" was_stopped
+    check "it does not say how to go on" grep -q '^phr: stopped by SIGTERM$' "$work/err"
+    check "nothing is printed" [ ! -s "$work/out" ]
+    check "nothing is written" [ ! -e "$work/new.ppm" -a ! -e "$work/early" ]
+    check "all ranks are gone" ranks_are_gone
+}
+
+# Opening a pipe waits for phr, writing to it for phr to read.
+cp scenes/room.mtl "$work"
+mkfifo "$work/pipe.obj"
+start 2 "$work/pipe.obj" -o "$work/new.ppm" --checkpoint "$work/early"
+exec 3>"$work/pipe.obj"
+cat scenes/cornell.obj >&3
+sleep 0.3
+stopped_early "while a pipe is read that stays open"
+exec 3>&-
+
+build/room 300000 1 >"$work/large.obj"
+start 2 "$work/pipe.obj" -o "$work/new.ppm" --checkpoint "$work/early"
+cat "$work/large.obj" >"$work/pipe.obj"
+sleep 0.1
+stopped_early "while an octree is built"
+check "before linking" [ "$(grep -c linking "$work/err")" -eq 0 ]
+
+build/room 3000 1 >"$work/room.obj"
+start 2 "$work/room.obj" --form-factors --epsilon 1e-9
+check "form factors have begun" wait_for 1 " groups"
+sleep 0.3
+stopped_early "while form factors are computed"
 
 # --- a full disk ---
 
