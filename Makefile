@@ -48,8 +48,8 @@ endif
 
 GEOM = alloc contour elementary error gauss hull lambert polygon scene stop triangle wall
 OCTREE = build octree
-RAD = beyond/cluster beyond/cluster_light beyond/node_link boxtree closure conjugate flux formfactor id link linking method oracle patch pushpull snapshot \
-      treecode viewfactor
+RAD = beyond/cluster beyond/cluster_light beyond/node_link closure conjugate flux formfactor id link \
+      linking method oracle patch pushpull snapshot treecode viewfactor
 MPI = accuracy assign balance broadcast closing comm funnel gather keep ledger linking memory migrate \
       node pairs picture plan refinement routes scatter signals solve solver vote
 IO = binary camera cases compare image library machine mesh mtl obj options output palette ply plyfile \

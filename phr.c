@@ -43,6 +43,7 @@ struct run {
     struct octree *octree;
     struct node_block block; /* what scene and octree look into */
     struct solver *solver;
+    bool half_linked; /* linking has ended at the memory limit */
     struct vote vote; /* of the last iteration */
     struct stats stats;
     struct progress_view progress; /* on rank 0, unless --quiet */
@@ -363,8 +364,15 @@ static bool start_light(struct run *run)
     }
     progress_begin(solver->progress, "linking", -1, 0);
     say(run, "%s: %lld triangles; linking", options->scene, (long long)run->scene->input_count);
-    solver_link_roots(solver);   /* 2: initial linking */
-    solver_assign_roots(solver); /* 3: re-assignment */
+    run->half_linked = !solver_link_roots(solver); /* 2: initial linking */
+    if (solver->stop)
+        return error_set(&run->error, EXIT_FAILED, "stopped by %s",
+                         signals_name(solver->stop));
+    solver_assign_roots(solver);                   /* 3: re-assignment */
+    if (run->half_linked && options->save_links)
+        return error_set(&run->error, EXIT_FAILED,
+                         "%s: not written: linking ended at the memory limit",
+                         options->save_links);
     say(run, "roots are linked, %.1f s", comm_seconds() - run->start);
     return !options->save_links || save_snapshot(run, STORE_LINKS, options->save_links);
 }
@@ -407,13 +415,13 @@ static bool goes_on(struct run *run)
     return solver->iteration < run->options.criterion.max_iterations;
 }
 
-/* True if the state is worth a checkpoint: that of a whole pass, or of one that a signal has broken off,
- * which is as good as before it. */
+/* True if the state is worth a checkpoint: all roots are linked, and it is that of a
+ * whole pass, or of one that a signal has broken off, which is as good as before it. */
 static bool is_due(const struct run *run)
 {
     const struct options *options = &run->options;
     const struct vote *vote = &run->vote;
-    if (!options->checkpoint || vote->unfinished || vote->diverged)
+    if (!options->checkpoint || run->half_linked || vote->unfinished || vote->diverged)
         return false;
     return run->solver->pass % options->every == 0 || run->solver->stop || vote->converged ||
            run->solver->iteration >= options->criterion.max_iterations;
@@ -540,8 +548,11 @@ static bool report_run(struct run *run)
     progress_view_clear(&run->progress);
     if (run->comm.rank == 0) {
         if (run->stats.memory_limited)
-            say(run, "warning: refinement ended at the memory limit of %lld bytes, with %lld links",
-                (long long)run->solver->memory.limit, (long long)run->stats.links);
+            say(run,
+                "warning: %s ended at the memory limit of %lld bytes, with %lld links%s",
+                run->half_linked ? "linking" : "refinement",
+                (long long)run->solver->memory.limit, (long long)run->stats.links,
+                run->half_linked ? ": light is missing" : "");
         else if (!run->vote.converged)
             say(run, "warning: not converged after %lld iterations",
                 (long long)run->stats.iterations);

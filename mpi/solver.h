@@ -28,7 +28,7 @@ struct accuracy {
 /* The memory limit; see mpi/memory.h. */
 struct memory {
     int64_t limit;   /* bytes, 0: none */
-    int64_t reached; /* the limit at which refinement has ended, 0: it has not */
+    int64_t reached; /* the limit that has ended linking or refinement, 0: none has */
     int copies;      /* of the patches that count */
 };
 
@@ -110,8 +110,9 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree, const struct criterion *criterion);
 void solver_destroy(struct solver *solver);
 
-/* Step 2: initial linking. Rows of pairs of roots are dealt so that their work is even. */
-void solver_link_roots(struct solver *solver);
+/* Step 2: initial linking of all pairs of roots. False if a signal (solver->stop) or the
+ * memory limit (memory.reached) has ended it: then only the first pairs have links. */
+bool solver_link_roots(struct solver *solver);
 
 /* Instead, with a tree above the roots: the link of its top with itself, on all ranks; the first
  * refinement splits it on all of them alike, until there are enough links to deal. */

@@ -54,8 +54,7 @@ struct method {
     double brightest;       /* no patch reflects more, summed over the bands, W/m^2 */
     double contrast;        /* nor do radiosities within a root differ by more, W/m^2 */
     struct octree_counts counts; /* work of this rank so far */
-    int64_t estimating;     /* work of this rank so far besides that, on boxes of roots, disks and
-                               form factors; in tests */
+    int64_t estimating;     /* work of this rank so far on form factors, in tests */
     int64_t rays_spared;    /* of 16 for each pair that this rank has looked at, those not fired */
     int64_t walled_off;     /* links that ended here since they are proved to be blocked */
 };

@@ -17,12 +17,12 @@ struct spread {
     double min, mean, max;
 };
 
-/* One level of refinement: how even the work was. Cost and work in box and triangle tests; a form
- * factor counts as eight, a disk or a box of roots in initial linking as one. Initial linking is
- * level 0 of iteration 0. */
+/* One level of refinement: how even the work was. Cost and work in box and triangle
+ * tests; a form factor counts as eight. Initial linking, of which nothing is predicted,
+ * is level 0 of iteration 0. */
 struct level_balance {
     int64_t iteration, level;
-    int64_t links; /* that were split; in initial linking, pairs that were touched */
+    int64_t links; /* that were split; in initial linking, that were made */
     double predicted_max, predicted_mean; /* cost over ranks, as it was dealt */
     double work_max, work_mean;           /* tests that were then done */
 };

@@ -156,4 +156,28 @@ check "to the end" [ "$(stat_of "$work/grown.json" converged)" = true ]
 run still 3 $fine --memory 2M --resume "$work/small-4.check" >/dev/null
 check "and not where there is not" same still small-1
 
+# Linking ends there too: the roots of a room have six times as many links as fit.
+build/room 1000 1 >"$work/room.obj"
+cp scenes/room.mtl "$work"
+room="$work/room.obj --paper --size 40x40"
+for ranks in 1 2 3; do
+    run part-$ranks $ranks $room --memory 3M --checkpoint "$work/part.check" >/dev/null
+done
+check "linking that does not fit: 2 ranks give the bytes of 1" same part-2 part-1
+check "and 3" same part-3 part-1
+check "a warning says so" \
+    [ "$(grep -c 'phr: warning: linking ended at the memory limit .*: light is missing' "$work/part-3.err")" -eq 1 ]
+check "the links fit" holds "36 * $(stat_of "$work/part-1.json" links) < 3 * 1048576"
+check "there are some" holds "$(stat_of "$work/part-1.json" links) > 10000"
+check "there is light" \
+    holds "$(stat_of "$work/part-1.json" absorbed_power) > 0.1 * $(stat_of "$work/part-1.json" emitted_power)"
+check "no checkpoint is made of that" [ ! -e "$work/part.check" ]
+$MPIEXEC -n 2 sh -c 'exec 2>>"$0/part.err"; exec "$@"' "$work" "$PHR" $room --quiet --memory 3M \
+    --save-links "$work/part.links" >/dev/null 2>&1
+status=$?
+check "nor a link cache: exit status 1" [ "$status" -eq 1 ]
+check "with one line" [ "$(cat "$work/part.err")" = \
+    "phr: $work/part.links: not written: linking ended at the memory limit" ]
+check "and no file" [ ! -e "$work/part.links" ]
+
 tap_done

@@ -162,6 +162,22 @@ check "form factors have begun" wait_for 1 " groups"
 sleep 0.3
 stopped_early "while form factors are computed"
 
+# Linking of all pairs takes longer than the three seconds that are allowed.
+build/room 16000 1 >"$work/room.obj"
+cp scenes/room.mtl "$work"
+start 3 "$work/room.obj" --paper -o "$work/new.ppm" --checkpoint "$work/early"
+wait_for 1 "; linking"
+sleep 0.5
+begun=$(date +%s)
+kill -TERM "$(tail -n 1 "$work/ranks")"
+finish
+check "SIGTERM to one rank while roots are linked ends it: exit status 1 ($status)" \
+    [ "$status" -eq 1 ]
+check "within 3 s" [ $(($(date +%s) - begun)) -le 3 ]
+check "before roots are linked" [ "$(grep -c 'roots are linked' "$work/err")" -eq 0 ]
+check "it does not say how to go on" grep -q '^phr: stopped by SIGTERM$' "$work/err"
+check "for there is nothing" [ ! -e "$work/early" -a ! -e "$work/new.ppm" ]
+
 # --- a full disk ---
 
 # A limit of the size of files takes the place of a disk that fills up half way: the checkpoint of the
