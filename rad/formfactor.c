@@ -60,8 +60,10 @@ bool facets_face(const struct facet *p, const struct facet *q)
            reach_above(&q->plane, &p->triangle) > GEOM_ROUNDING;
 }
 
-double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x, struct vec3 y,
-                     struct vec3 normal_y, double area_y)
+/* A A' cos cos' / (pi r^2 + max(A, A')) of two small areas at x and y; 0 below a
+ * horizon. */
+static double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x,
+                            struct vec3 y, struct vec3 normal_y, double area_y)
 {
     struct vec3 d = vec3_sub(y, x);
     double rise_x = vec3_dot(normal_x, d), rise_y = -vec3_dot(normal_y, d); /* r cos theta */
@@ -71,9 +73,10 @@ double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x, struct 
     return area_x * area_y * (rise_x * rise_y / r2) / (PI * r2 + fmax(area_x, area_y));
 }
 
-/* The centroids may all lie below the horizon while the corners do not: such a pair stays in
- * play. */
-double exchange_across_horizon(const struct facet *p, const struct facet *q)
+/* A guess for patches that the other's plane cuts, by a disk with the heights of the
+ * highest corners in place of those of the centroids: rather too much. The centroids may
+ * all lie below the horizon while the corners do not: such a pair stays in play. */
+static double exchange_across_horizon(const struct facet *p, const struct facet *q)
 {
     struct vec3 d = vec3_sub(triangle_centroid(&q->triangle), triangle_centroid(&p->triangle));
     double r2 = vec3_dot(d, d);
@@ -83,7 +86,8 @@ double exchange_across_horizon(const struct facet *p, const struct facet *q)
     return p->area * q->area * cosines / (PI * r2 + fmax(p->area, q->area));
 }
 
-void subarea_centroids(const struct triangle *t, struct vec3 centroids[SUBAREAS])
+/* The points that stand for a patch: the centroids of its four children. */
+static void subarea_centroids(const struct triangle *t, struct vec3 centroids[SUBAREAS])
 {
     for (int k = 0; k < SUBAREAS; k++) {
         struct triangle child = triangle_child(t, k);
@@ -267,16 +271,13 @@ double exchange_guess(const struct facet *p, const struct facet *q)
  * there is. */
 static const double FAR = 1.5;
 
-bool radii_are_apart(double radius_p, double radius_q, double distance)
-{
-    return distance > FAR * (radius_p + radius_q);
-}
-
+/* True if patches are far enough apart for their size for one disk to be good enough for
+ * what is little (within 15 % or so). */
 static bool is_apart(const struct facet *p, const struct facet *q)
 {
     struct vec3 x = triangle_centroid(&p->triangle), y = triangle_centroid(&q->triangle);
-    return radii_are_apart(triangle_radius(&p->triangle), triangle_radius(&q->triangle),
-                           vec3_length(vec3_sub(y, x)));
+    double radii = triangle_radius(&p->triangle) + triangle_radius(&q->triangle);
+    return vec3_length(vec3_sub(y, x)) > FAR * radii;
 }
 
 static struct exchange exchange_by_one(const struct facet *p, const struct facet *q,
@@ -335,17 +336,6 @@ struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
         exchange.unoccluded = limit;
     }
     return exchange;
-}
-
-double exchange_from_points(const struct facet *p, const struct facet *q)
-{
-    const struct facet *small = p->area <= q->area ? p : q, *large = small == p ? q : p;
-    struct vec3 points[SUBAREAS];
-    double factors = 0.0;
-    subarea_centroids(&small->triangle, points);
-    for (int sub = 0; sub < SUBAREAS; sub++)
-        factors += point_triangle_factor(points[sub], small->plane.normal, &large->triangle);
-    return small->area * fmin(1.0, 0.25 * factors);
 }
 
 bool facets_are_walled_off(const struct facet *p, const struct facet *q,

@@ -55,31 +55,12 @@ struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
                                   const struct octree *octree, struct sight *sight,
                                   struct octree_counts *counts);
 
-/* True if patches of these radii about their centroids, so far from each other, are far enough
- * apart for one disk to be good enough for what is little (within 15 % or so). */
-bool radii_are_apart(double radius_p, double radius_q, double distance);
-
-/* A A' cos cos' / (pi r^2 + max(A, A')) of two small areas at x and y; 0 below a horizon. */
-double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x, struct vec3 y,
-                     struct vec3 normal_y, double area_y);
-
 /* What the pair would exchange without blockers, by one disk from centroid to centroid: quick and
  * rough, for deciding how closely to look. 0 if the centroids do not face each other. */
 double exchange_guess(const struct facet *p, const struct facet *q);
 
-/* The same for patches that the other's plane cuts, with the heights of the highest corners in
- * place of those of the centroids: rather too much. Pre: facets_face(p, q). */
-double exchange_across_horizon(const struct facet *p, const struct facet *q);
-
-/* The same from four points on the smaller one: a tenth too much or too little where
- * patches touch. */
-double exchange_from_points(const struct facet *p, const struct facet *q);
-
 /* A point on a triangle, evenly distributed over seeds. */
 struct vec3 triangle_sample(const struct triangle *t, uint64_t seed);
-
-/* The points that stand for a patch: the centroids of its four children. */
-void subarea_centroids(const struct triangle *t, struct vec3 centroids[BUNDLE_ENDS]);
 
 /* True if it is proved that nothing of one facet sees anything of the other: one wall stops all
  * nine segments between their corners. */

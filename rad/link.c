@@ -118,15 +118,6 @@ bool link_make(struct method *method, int32_t p, const struct facet *facet_p, in
     return true;
 }
 
-struct link link_make_little(int32_t p, int32_t q, double unoccluded, bool seen, int32_t blocker,
-                             double cost)
-{
-    struct exchange exchange = {.area = seen ? unoccluded : 0.0, .unoccluded = unoccluded,
-                                .seen = seen ? 1.0 : 0.0};
-    struct sight sight = {.blocker = blocker};
-    return link_of(p, q, &exchange, &sight, predict_cost(cost, 0.0, 0.0));
-}
-
 int link_split(struct method *method, const struct link *link, int32_t patch,
                struct link children[4])
 {

@@ -110,11 +110,6 @@ bool link_make(struct method *method, int32_t p, const struct facet *facet_p, in
                const struct facet *facet_q, double inherited, struct sight *sight,
                struct link *link);
 
-/* The link of two patches with little at stake, of which is known whether they see each other, and
- * what they exchange without blockers. */
-struct link link_make_little(int32_t p, int32_t q, double unoccluded, bool seen, int32_t blocker,
-                             double cost);
-
 /* Splits `patch` (p or q of the link) unless it is split already and makes the links of its
  * children with the other side. Returns how many there are, 0..4; none, and nothing is split, if
  * no ray had arrived and the two patches are proved to be walled off. */

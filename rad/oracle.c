@@ -186,13 +186,19 @@ void oracle_divide_patches(struct method *method, const struct link *link)
 }
 
 /* Powers at stake, relative to the threshold, up to which one segment, and four, tell enough of
- * a pair, and four of a group: of groups there are many, and what is wrong in one is wrong
- * together. */
-static const double STAKE_ONE = 0.1, STAKE_FOUR = 1.0, STAKE_GROUP = 0.01;
+ * a pair. */
+static const double STAKE_ONE = 0.1, STAKE_FOUR = 1.0;
 
-double oracle_light(const struct method *method, struct rgb radiosity_p, struct rgb reflectance_p,
-                    struct rgb radiosity_q, struct rgb reflectance_q)
+/* The power that a pair makes of what it exchanges, W per square scene unit of G, both
+ * ways together: with the radiosity of either and what the other reflects. In the first
+ * pass little is lit yet, so radiosities count as at least what is typical. */
+static double light_at_stake(const struct method *method, int32_t p, int32_t q)
 {
+    const struct forest *forest = method->forest;
+    struct rgb radiosity_p = forest->patches[p].radiosity;
+    struct rgb radiosity_q = forest->patches[q].radiosity;
+    struct rgb reflectance_p = forest_material(forest, p)->reflectance;
+    struct rgb reflectance_q = forest_material(forest, q)->reflectance;
     double light = 0.0;
     for (int c = 0; c < BANDS; c++) {
         double typical = method->typical.band[c];
@@ -224,20 +230,11 @@ void oracle_prepare(struct method *method)
     }
 }
 
-bool oracle_trusts_few(const struct method *method, double power)
-{
-    return method->criterion.oracle != ORACLE_BF && power <= STAKE_GROUP * method->link_threshold;
-}
-
 enum look oracle_look(const struct method *method, int32_t p, int32_t q, double guess)
 {
-    const struct forest *forest = method->forest;
     if (method->criterion.oracle == ORACLE_BF || !(guess > 0.0))
         return LOOK_ALL;
-    double stake = guess * oracle_light(method, forest->patches[p].radiosity,
-                                        forest_material(forest, p)->reflectance,
-                                        forest->patches[q].radiosity,
-                                        forest_material(forest, q)->reflectance);
+    double stake = guess * light_at_stake(method, p, q);
     return stake <= STAKE_ONE * method->link_threshold    ? LOOK_ONE
            : stake <= STAKE_FOUR * method->link_threshold ? LOOK_FOUR_FIRST
                                                           : LOOK_ALL;

@@ -7,16 +7,6 @@
 /* How closely a pair has to be looked at of which `guess` would be exchanged without blockers. */
 enum look oracle_look(const struct method *method, int32_t p, int32_t q, double guess);
 
-/* The power that a pair makes of what it exchanges, W per square scene unit of G, both ways
- * together: with the radiosity of either and what the other reflects. In the first pass little
- * is lit yet, so radiosities count as at least what is typical. */
-double oracle_light(const struct method *method, struct rgb radiosity_p, struct rgb reflectance_p,
-                    struct rgb radiosity_q, struct rgb reflectance_q);
-
-/* True if so little power is at stake between a patch and a group of others that a few segments
- * tell enough of what is seen of all of them. */
-bool oracle_trusts_few(const struct method *method, double power);
-
 /* Bounds on the light there is, before a pass: extremes of the forest, brightest and contrast of the
  * method. No radiosity may change until the next time. */
 void oracle_prepare(struct method *method);
