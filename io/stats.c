@@ -59,7 +59,6 @@ static void write_counts(FILE *file, const struct stats *stats)
     write_real(file, "absorbed_power", stats->absorbed_power);
     write_real(file, "escaped_power", stats->escaped_power);
     fprintf(file, "  \"checksum\": \"%016" PRIx64 "\",\n", stats->checksum);
-    write_integer(file, "pairs_touched", stats->pairs_touched);
     write_integer(file, "rays", stats->rays);
     write_integer(file, "node_tests", stats->node_tests);
     write_integer(file, "triangle_tests", stats->triangle_tests);

@@ -20,7 +20,7 @@
 enum { MAGIC_BYTES = 8, HEADER_BYTES = 48, LEAF_BYTES = 56, RGB_BYTES = 24, LINK_BYTES = 24,
        BLOCK = 4096, SETTINGS_MAX = 4096 };
 
-static const char *const MAGIC[] = {"PHRLINK1", "PHRCHKP1"};
+static const char *const MAGIC[] = {"PHRLINK2", "PHRCHKP2"};
 static const char *const NAMES[] = {"link cache", "checkpoint"};
 
 /* --- writing --- */

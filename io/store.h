@@ -6,12 +6,12 @@
  * settings:
  *
  *     bytes    what
- *     8        "PHRLINK1" a link cache, "PHRCHKP1" a checkpoint; the digit is the version
+ *     8        "PHRLINK2" a link cache, "PHRCHKP2" a checkpoint; the digit is the version
  *     8        scene_hash()
  *     4  4     T  R
  *     8  8  8  N  K  M
  *     T        settings: lines "--option value", each with its newline
- *     8 x 11   snapshot.number
+ *     8 x 10   snapshot.number
  *     8 x 6    snapshot.value
  *     8 R      snapshot.root_change
  *     N        snapshot.kind, a byte each

@@ -94,15 +94,15 @@ static void collect_numbers(const struct solver *solver, const struct vote *vote
 {
     const struct method *method = &solver->method;
     int64_t own[] = {solver->links.count, method->counts.rays, method->counts.node_tests,
-                     method->counts.triangle_tests, method->walled_off, method->rays_spared,
-                     solver->pairs_touched};
+                     method->counts.triangle_tests, method->walled_off,
+                     method->rays_spared};
     int64_t sum[sizeof own / sizeof own[0]];
     MPI_Request request;
     MPI_Iallreduce(own, sum, (int)(sizeof own / sizeof own[0]), MPI_INT64_T, MPI_SUM,
                    solver->comm->handle, &request);
     comm_wait(&request);
     snapshot->link_count = sum[0];
-    for (int i = 0; i < 6; i++)
+    for (int i = 0; i < 5; i++)
         snapshot->number[SNAPSHOT_RAYS + i] = sum[1 + i];
     snapshot->number[SNAPSHOT_PASSES] = solver->pass;
     snapshot->number[SNAPSHOT_ITERATIONS] = solver->iteration;
@@ -312,7 +312,6 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
                                                 number[SNAPSHOT_TRIANGLE_TESTS]};
         method->walled_off = number[SNAPSHOT_WALLED_OFF];
         method->rays_spared = number[SNAPSHOT_RAYS_SPARED];
-        solver->pairs_touched = number[SNAPSHOT_PAIRS_TOUCHED];
     }
     solver->pass = number[SNAPSHOT_PASSES];
     solver->iteration = number[SNAPSHOT_ITERATIONS];

@@ -148,7 +148,7 @@ static void report_seconds(const struct solver *solver, struct stats *stats)
     alloc_free(all);
 }
 
-enum { COUNT_SUMS = 9 + 4 };
+enum { COUNT_SUMS = 8 + 4 };
 
 /* 0: open, 1: seen, 2: partly, 3: unseen. */
 static int kind_of(const struct link *link)
@@ -162,10 +162,10 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     int64_t own[COUNT_SUMS] = {counts->rays, counts->node_tests, counts->triangle_tests,
                                solver->bytes_migration, solver->bytes_gather,
                                solver->bytes_scatter, solver->method.walled_off,
-                               solver->method.rays_spared, solver->pairs_touched};
+                               solver->method.rays_spared};
     int64_t sum[COUNT_SUMS], largest[2] = {peak_memory(), comm_messages()};
     for (int64_t i = 0; i < solver->links.count; i++)
-        own[9 + kind_of(&solver->links.items[i])]++;
+        own[8 + kind_of(&solver->links.items[i])]++;
     MPI_Request request;
     MPI_Iallreduce(own, sum, COUNT_SUMS, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
     comm_wait(&request);
@@ -177,11 +177,10 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     stats->bytes_scatter = sum[5];
     stats->walled_off = sum[6];
     stats->rays_spared = sum[7];
-    stats->pairs_touched = sum[8];
-    stats->links_open = sum[9];
-    stats->links_seen = sum[10];
-    stats->links_partly = sum[11];
-    stats->links_unseen = sum[12];
+    stats->links_open = sum[8];
+    stats->links_seen = sum[9];
+    stats->links_partly = sum[10];
+    stats->links_unseen = sum[11];
     MPI_Iallreduce(MPI_IN_PLACE, largest, 2, MPI_INT64_T, MPI_MAX, solver->comm->handle, &request);
     comm_wait(&request);
     stats->peak_rss_bytes = largest[0];

@@ -81,7 +81,6 @@ struct solver {
     double bound_residual, bound_image; /* |z| and |K p| are nowhere larger */
     double least_bend;          /* least <K z, z> / <z, z> seen */
     struct accuracy accuracy;
-    int64_t pairs_touched;    /* pairs of roots whose exchange this rank estimated */
     int64_t split_here;       /* links that this rank split in this iteration */
     double seconds[PHASE_COUNT];
     int64_t bytes_migration, bytes_gather, bytes_scatter; /* that this rank sent to others, or (scatter)

@@ -22,7 +22,7 @@ enum snapshot_number {
     SNAPSHOT_LIMITED,        /* bytes at which refinement ended for want of memory, 0: it did not */
     SNAPSHOT_CHANGE,         /* change in the last iteration, flux units (Jacobi) */
     SNAPSHOT_RAYS, SNAPSHOT_NODE_TESTS, SNAPSHOT_TRIANGLE_TESTS, /* work of all ranks so far */
-    SNAPSHOT_WALLED_OFF, SNAPSHOT_RAYS_SPARED, SNAPSHOT_PAIRS_TOUCHED,
+    SNAPSHOT_WALLED_OFF, SNAPSHOT_RAYS_SPARED,
     SNAPSHOT_NUMBERS
 };
 

@@ -60,7 +60,6 @@ struct stats {
     int64_t links_partly;  /* some, */
     int64_t links_unseen;  /* or none; these four are all links */
     int64_t walled_off;    /* links that ended since they were proved to be blocked */
-    int64_t pairs_touched; /* of roots, whose exchange was estimated in initial linking */
     int64_t rays_spared;   /* of 16 for each link ever made, those that were not fired */
     double closure_min, closure_mean, closure_max, closure_rms;    /* row sums, rms of R - 1 */
     struct spread seconds[PHASE_COUNT];

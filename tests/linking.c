@@ -15,7 +15,7 @@ static struct world world_of(struct soup *soup, enum oracle oracle)
         scene->material_of[i] = 1;
     scene->materials[0] = material_grey(0.5, 1.0);
     scene->materials[1] = material_grey(0.0, 0.0);
-    scene->two_sided = true;
+    scene->two_sided = scene->two_sided_lamps = true;
     soup_free(soup);
     struct world world = world_make(scene);
     world.method.criterion.oracle = oracle;
