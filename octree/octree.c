@@ -50,6 +50,7 @@
 #include "geom/alloc.h"
 #include "geom/hull.h"
 #include "geom/stop.h"
+#include "geom/wall.h"
 #include "octree/tree.h"
 
 /* Margin for the rounding of box tests: coordinates are below 1 and direction components at most
@@ -101,7 +102,7 @@ struct octree *octree_create(const struct triangle *triangles, const struct plan
             order[kept++] = i;
     plant_trees(octree, order, kept);
     alloc_free(order);
-    octree->walls = walls_create(triangles, planes, stop_is_asked() ? 0 : count);
+    octree->neighbours = walls_find_neighbours(triangles, planes, count);
     octree->place = alloc_array((size_t)count, sizeof *octree->place);
     for (int32_t i = 0; i < count; i++)
         octree->place[i] = -1;
@@ -114,11 +115,11 @@ void octree_destroy(struct octree *octree)
 {
     if (!octree)
         return;
-    walls_destroy(octree->walls);
     if (!octree->is_view) {
         tree_free(&octree->inside);
         tree_free(&octree->hull);
         alloc_free(octree->place);
+        alloc_free(octree->neighbours);
     }
     alloc_free(octree);
 }
@@ -128,6 +129,8 @@ static void pack_arrays(struct octree *octree, struct pack *pack)
     tree_pack_arrays(&octree->inside, pack);
     tree_pack_arrays(&octree->hull, pack);
     octree->place = pack_array(pack, octree->place, (size_t)octree->count * sizeof *octree->place);
+    octree->neighbours = pack_array(pack, octree->neighbours,
+                                    3 * (size_t)octree->count * sizeof *octree->neighbours);
 }
 
 void octree_pack(const struct octree *octree, struct pack *pack)
@@ -136,7 +139,6 @@ void octree_pack(const struct octree *octree, struct pack *pack)
     view.is_view = true;
     pack_array(pack, &view, sizeof view);
     pack_arrays(&view, pack);
-    walls_pack(octree->walls, pack);
 }
 
 struct octree *octree_view(struct pack *pack, const struct triangle *triangles,
@@ -147,7 +149,6 @@ struct octree *octree_view(struct pack *pack, const struct triangle *triangles,
     octree->triangles = triangles;
     octree->planes = planes;
     pack_arrays(octree, pack);
-    octree->walls = walls_view(pack);
     return octree;
 }
 
@@ -161,7 +162,7 @@ static int64_t tree_bytes(const struct tree *tree)
 int64_t octree_bytes(const struct octree *octree)
 {
     return tree_bytes(&octree->inside) + tree_bytes(&octree->hull) +
-           octree->count * (int64_t)sizeof *octree->place + walls_bytes(octree->walls);
+           octree->count * (int64_t)(sizeof *octree->place + 3 * sizeof *octree->neighbours);
 }
 
 /* The functions below are small and are called millions of times from two places each, where a
@@ -578,34 +579,20 @@ bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct
 
 /* --- walls --- */
 
-const struct walls *octree_walls(const struct octree *octree)
+static struct vec3 mean_of(const struct vec3 *corners, int count)
 {
-    return octree->walls;
+    struct vec3 sum = {0.0, 0.0, 0.0};
+    for (int k = 0; k < count; k++)
+        sum = vec3_add(sum, corners[k]);
+    return vec3_scale(sum, 1.0 / count);
 }
 
-/* True if a record that blocks the segment is part of a wall between p and q. */
-static bool run_has_wall(const struct octree *octree, struct leaf run, const struct query *middle,
-                         const struct triangle *p, const struct triangle *q,
-                         struct octree_counts *counts)
-{
-    const struct record *records = octree->inside.records + run.first;
-    for (int32_t i = 0; i < run.count; i++) {
-        struct shadow shadow;
-        counts->triangle_tests++;
-        if (is_blocked_by(octree, middle, &records[i]) &&
-            shadow_make(&shadow, octree->walls, octree->walls->of_triangle[records[i].triangle],
-                        p) &&
-            shadow_holds_triangle(&shadow, q))
-            return true;
-    }
-    return false;
-}
-
-bool octree_has_wall(const struct octree *octree, const struct triangle *p,
-                     const struct triangle *q, struct octree_counts *counts)
+bool octree_has_wall(const struct octree *octree, const struct vec3 *p, int count_p,
+                     const struct vec3 *q, int count_q, struct octree_counts *counts)
 {
     const struct tree *tree = &octree->inside;
-    struct query middle = {.from = triangle_centroid(p), .to = triangle_centroid(q)};
+    const struct walls walls = {octree->triangles, octree->planes, octree->neighbours};
+    struct query middle = {.from = mean_of(p, count_p), .to = mean_of(q, count_q)};
     struct shaft thin;
     middle.ends = ends_of(middle.from, middle.to);
     shaft_set_segment(&thin, &middle.ends);
@@ -614,10 +601,16 @@ bool octree_has_wall(const struct octree *octree, const struct triangle *p,
     if (tree->node_count > 0)
         stack[height++] = 0;
     while (height > 0) {
-        if (stack[height - 1] >= 0)
+        if (stack[height - 1] >= 0) {
             height = descend(tree, &thin, stack, height, counts);
-        else if (run_has_wall(octree, tree->leaves[~stack[--height]], &middle, p, q, counts))
-            return true;
+            continue;
+        }
+        struct leaf run = tree->leaves[~stack[--height]];
+        counts->triangle_tests += run.count;
+        for (int32_t i = run.first; i < run.first + run.count; i++)
+            if (is_blocked_by(octree, &middle, &tree->records[i]) &&
+                walls_stand_between(&walls, tree->records[i].triangle, p, count_p, q, count_q))
+                return true;
     }
     return false;
 }

@@ -12,7 +12,6 @@
 
 #include "geom/pack.h"
 #include "geom/triangle.h"
-#include "geom/wall.h"
 
 struct octree;
 
@@ -77,13 +76,11 @@ unsigned octree_block(const struct octree *octree, const struct bundle *bundle, 
 bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct vec3 to,
                            const int32_t own[2], int32_t *guess, struct octree_counts *counts);
 
-/* The walls that the triangles make up. */
-const struct walls *octree_walls(const struct octree *octree);
-
-/* True if it is proved that nothing of p sees anything of q: one wall hides all. It is found if it
- * blocks the segment between the centroids. */
-bool octree_has_wall(const struct octree *octree, const struct triangle *p,
-                     const struct triangle *q, struct octree_counts *counts);
+/* True if it is proved that a wall blocks all segments between two convex sets, given by
+ * their corners (geom/wall.h). Walls that block the one between the means of the corners
+ * are tried; no other can. */
+bool octree_has_wall(const struct octree *octree, const struct vec3 *p, int count_p,
+                     const struct vec3 *q, int count_q, struct octree_counts *counts);
 
 /* True if it is proved that nothing can block a segment from the front of one triangle to the front
  * of another: no triangle reaches into the shaft between them, their convex hull, in front of both

@@ -45,8 +45,8 @@ struct octree {
     const struct plane *planes;
     struct tree inside; /* triangles that can block something between two points of the scene */
     struct tree hull;   /* triangles that have the whole scene on one side of their plane */
-    struct walls *walls;
-    int32_t *place;     /* [count] where a triangle's record is in `inside`, or -1 */
+    int32_t *place;      /* [count] where a triangle's record is in `inside`, or -1 */
+    int32_t *neighbours; /* [3 count] of the triangles in their walls, or -1 */
     int64_t count;
     struct vec3 low, high; /* bounding box */
     bool is_view;          /* the arrays lie in memory of others */

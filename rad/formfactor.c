@@ -341,7 +341,7 @@ struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
 bool facets_are_walled_off(const struct facet *p, const struct facet *q,
                            const struct octree *octree, struct octree_counts *counts)
 {
-    return octree_has_wall(octree, &p->triangle, &q->triangle, counts);
+    return octree_has_wall(octree, p->triangle.corner, 3, q->triangle.corner, 3, counts);
 }
 
 bool facets_are_open(const struct facet *p, const struct facet *q, const struct octree *octree,

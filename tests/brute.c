@@ -7,12 +7,14 @@
 
 #include "geom/alloc.h"
 #include "geom/hull.h"
+#include "geom/wall.h"
 
 struct octree {
     const struct triangle *triangles;
     const struct plane *planes;
     int32_t count;
-    struct walls *walls;
+    int32_t *neighbours;
+    bool is_view;
 };
 
 struct octree *octree_create(const struct triangle *triangles, const struct plane *planes,
@@ -20,21 +22,21 @@ struct octree *octree_create(const struct triangle *triangles, const struct plan
 {
     struct octree *octree = alloc_array(1, sizeof *octree);
     *octree = (struct octree){triangles, planes, count,
-                              walls_create(triangles, planes, count)};
+                              walls_find_neighbours(triangles, planes, count), false};
     return octree;
 }
 
 void octree_destroy(struct octree *octree)
 {
-    if (octree)
-        walls_destroy(octree->walls);
+    if (octree && !octree->is_view)
+        alloc_free(octree->neighbours);
     alloc_free(octree);
 }
 
 void octree_pack(const struct octree *octree, struct pack *pack)
 {
     pack_array(pack, &octree->count, sizeof octree->count);
-    walls_pack(octree->walls, pack);
+    pack_array(pack, octree->neighbours, 3 * (size_t)octree->count * sizeof(int32_t));
 }
 
 struct octree *octree_view(struct pack *pack, const struct triangle *triangles,
@@ -42,7 +44,8 @@ struct octree *octree_view(struct pack *pack, const struct triangle *triangles,
 {
     struct octree *octree = alloc_array(1, sizeof *octree);
     int32_t count = *(const int32_t *)pack_array(pack, NULL, sizeof count);
-    *octree = (struct octree){triangles, planes, count, walls_view(pack)};
+    int32_t *neighbours = pack_array(pack, NULL, 3 * (size_t)count * sizeof *neighbours);
+    *octree = (struct octree){triangles, planes, count, neighbours, true};
     return octree;
 }
 
@@ -80,22 +83,22 @@ unsigned octree_block(const struct octree *octree, const struct bundle *bundle, 
     return blocked;
 }
 
-const struct walls *octree_walls(const struct octree *octree)
+bool octree_has_wall(const struct octree *octree, const struct vec3 *p, int count_p,
+                     const struct vec3 *q, int count_q, struct octree_counts *counts)
 {
-    return octree->walls;
-}
-
-bool octree_has_wall(const struct octree *octree, const struct triangle *p,
-                     const struct triangle *q, struct octree_counts *counts)
-{
+    const struct walls walls = {octree->triangles, octree->planes, octree->neighbours};
+    struct vec3 from = {0.0, 0.0, 0.0}, to = from;
     (void)counts;
-    for (int32_t t = 0; t < octree->count; t++) {
-        struct shadow shadow;
-        if (is_blocked_by(octree, t, triangle_centroid(p), triangle_centroid(q)) &&
-            shadow_make(&shadow, octree->walls, octree->walls->of_triangle[t], p) &&
-            shadow_holds_triangle(&shadow, q))
+    for (int k = 0; k < count_p; k++)
+        from = vec3_add(from, p[k]);
+    for (int k = 0; k < count_q; k++)
+        to = vec3_add(to, q[k]);
+    from = vec3_scale(from, 1.0 / count_p);
+    to = vec3_scale(to, 1.0 / count_q);
+    for (int32_t t = 0; t < octree->count; t++)
+        if (is_blocked_by(octree, t, from, to) &&
+            walls_stand_between(&walls, t, p, count_p, q, count_q))
             return true;
-    }
     return false;
 }
 

@@ -8,6 +8,7 @@
 
 #include <string.h>
 
+#include "geom/wall.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
@@ -37,7 +38,7 @@ static int32_t octree_blocker(const struct octree *octree, struct vec3 from, str
     return octree_blocks_segment(octree, from, to, own, &guess, counts) ? guess : -1;
 }
 
-enum { SEGMENTS = 100000, RAYS = 8000, CROSSINGS = 20000 };
+enum { SEGMENTS = 100000, RAYS = 8000, CROSSINGS = 20000, WALLS = 20000 };
 
 /* --- scenes --- */
 
@@ -256,6 +257,59 @@ static void test_first_hits(const struct world *world, const char *name, bool fr
     tap_ok(counts.rays == RAYS, "%s: a ray counts once", name);
 }
 
+/* A random triangle, or a box at a corner of it. Returns the number of corners. */
+static int random_corners(struct random *random, const struct scene *scene,
+                          struct vec3 corners[8])
+{
+    int32_t number = random_below(random, scene->input_count);
+    const struct triangle *t = &scene->triangles[number];
+    bool is_box = random_below(random, 2) == 0;
+    struct vec3 low = t->corner[0], high = vec3_add(low, random_point(random, 0.1));
+    for (int k = 0; k < 8; k++)
+        corners[k] = (struct vec3){k & 1 ? high.x : low.x, k & 2 ? high.y : low.y,
+                                   k & 4 ? high.z : low.z};
+    for (int k = 0; k < 3 && !is_box; k++)
+        corners[k] = t->corner[k];
+    return is_box ? 8 : 3;
+}
+
+static struct vec3 mean_of(const struct vec3 *corners, int count)
+{
+    struct vec3 sum = {0.0, 0.0, 0.0};
+    for (int k = 0; k < count; k++)
+        sum = vec3_add(sum, corners[k]);
+    return vec3_scale(sum, 1.0 / count);
+}
+
+/* Walls are found if there are any, as by looking at all triangles. */
+static void test_walls(const struct world *world, const char *name)
+{
+    const struct scene *scene = world->scene;
+    int32_t *neighbours = walls_find_neighbours(scene->triangles, scene->planes,
+                                                scene->input_count);
+    const struct walls walls = {scene->triangles, scene->planes, neighbours};
+    struct random random = random_seed(12);
+    struct octree_counts counts = {0};
+    int found = 0, wrong = 0;
+    for (int i = 0; i < WALLS; i++) {
+        struct vec3 p[8], q[8];
+        int count_p = random_corners(&random, scene, p);
+        int count_q = random_corners(&random, scene, q);
+        struct segment s = segment_make(mean_of(p, count_p), mean_of(q, count_q));
+        bool has = octree_has_wall(world->octree, p, count_p, q, count_q, &counts);
+        bool expected = false;
+        for (int32_t t = 0; t < scene->input_count && !expected; t++)
+            expected = segment_is_blocked_by(&s, &scene->triangles[t],
+                                             &scene->planes[t]) &&
+                       walls_stand_between(&walls, t, p, count_p, q, count_q);
+        found += has;
+        wrong += has != expected;
+    }
+    alloc_free(neighbours);
+    tap_ok(found > 0 && wrong == 0, "%s: %d walls are found, %d answers are wrong", name,
+           found, wrong);
+}
+
 /* The octree becomes a view of its own packed bytes, moved from where they were packed. Returns
  * their block. */
 static char *repack(struct world *world)
@@ -285,6 +339,7 @@ static void test_scene(void (*make)(struct soup *), bool packed, const char *nam
     test_counters(&world, name);
     test_first_hits(&world, name, false);
     test_first_hits(&world, name, true);
+    test_walls(&world, name);
     world_free(&world);
     alloc_free(block);
     soup_free(&soup);

@@ -1,194 +1,217 @@
-/* Tests of geom/wall.h: which triangles make up a wall, and what it hides. */
+/* Tests of geom/wall.h: with which triangles walls go on, and what they block. */
 #include "geom/wall.h"
+
+#include <string.h>
 
 #include "tests/pairs.h"
 #include "tests/tap.h"
 
-/* --- making --- */
+/* Triangles with all that walls are made of. */
+struct surface {
+    struct soup soup;
+    struct plane *planes;
+    int32_t *neighbours;
+    int32_t count;
+};
 
-static struct walls *walls_of(const struct soup *soup)
+/* Takes over the soup. */
+static struct surface surface_make(struct soup soup)
 {
-    struct plane *planes = alloc_array((size_t)soup->count, sizeof *planes);
-    for (int64_t i = 0; i < soup->count; i++)
-        if (!triangle_is_degenerate(&soup->items[i]))
-            planes[i] = triangle_plane(&soup->items[i]);
-    struct walls *walls = walls_create(soup->items, planes, (int32_t)soup->count);
-    alloc_free(planes);
-    return walls;
+    struct surface surface = {.soup = soup, .count = (int32_t)soup.count};
+    surface.planes = alloc_array((size_t)soup.count, sizeof *surface.planes);
+    for (int64_t i = 0; i < soup.count; i++)
+        if (!triangle_is_degenerate(&soup.items[i]))
+            surface.planes[i] = triangle_plane(&soup.items[i]);
+    surface.neighbours = walls_find_neighbours(soup.items, surface.planes, surface.count);
+    return surface;
 }
 
-/* Checks how many walls there are and how many corners they have together, frees the soup. */
-static void expect(struct soup *soup, int32_t walls, int32_t corners, const char *name)
+static void surface_free(struct surface *surface)
 {
-    struct walls *made = walls_of(soup);
-    double all = 0.0, sum = 0.0;
-    for (int64_t i = 0; i < soup->count; i++)
-        all += triangle_area(&soup->items[i]);
-    for (int32_t i = 0; i < made->count; i++)
-        sum += made->items[i].area;
-    tap_ok(made->count == walls && made->corner_count == corners && fabs(sum - all) < 1e-12,
-           "%s: %d walls with %d corners", name, made->count, made->corner_count);
-    walls_destroy(made);
-    soup_free(soup);
+    soup_free(&surface->soup);
+    alloc_free(surface->planes);
+    alloc_free(surface->neighbours);
 }
 
-/* n x n cells in the plane z = x / 4, but for the cells from `hole` on, side by side. */
+/* n x n cells of the unit square in the plane z = 0, but for `holes` from `hole` on. */
 static struct soup grid(int n, int hole, int holes)
 {
     struct soup soup = {0};
-    double step = 1.0 / 16; /* exact: cells share corners and lie in one plane to the bit */
-    for (int i = 0; i < n * n; i++)
-        if (i < hole || i >= hole + holes)
-            soup_add_quad(&soup, point(step * (i % n), step * (i / n), 0.25 * step * (i % n)),
-                          point(step, 0, 0.25 * step), point(0, step, 0), 1);
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), n);
+    memmove(soup.items + 2 * hole, soup.items + 2 * (hole + holes),
+            (size_t)(soup.count - 2 * (hole + holes)) * sizeof *soup.items);
+    soup.count -= 2 * holes;
     return soup;
 }
 
-static void test_making(void)
+/* --- neighbours --- */
+
+/* Checks at how many sides walls go on, each of them both ways; takes over the soup. */
+static void expect(struct soup soup, int joined, const char *name)
 {
-    struct soup soup = grid(5, 0, 0);
-    expect(&soup, 1, 4, "25 cells in one plane");
-    soup = grid(5, 12, 1);
-    expect(&soup, 48, 3 * 48, "with a hole");
-    soup = grid(5, 24, 1);
-    expect(&soup, 48, 3 * 48, "without a corner: not convex");
-    soup = grid(5, 0, 5);
-    expect(&soup, 1, 4, "without a whole row");
-    soup = grid(5, 0, 0);
-    for (int64_t i = 0; i < soup.count; i += 3) {
-        struct triangle t = soup.items[i];
-        soup.items[i] = (struct triangle){{t.corner[0], t.corner[2], t.corner[1]}};
+    struct surface made = surface_make(soup);
+    int count = 0, mutual = 0;
+    for (int32_t n = 0; n < 3 * made.count; n++) {
+        const int32_t *back = made.neighbours + 3 * made.neighbours[n];
+        count += made.neighbours[n] >= 0;
+        mutual += made.neighbours[n] >= 0 &&
+                  (back[0] == n / 3 || back[1] == n / 3 || back[2] == n / 3);
     }
-    expect(&soup, 1, 4, "some with their backs up");
-    soup = (struct soup){0};
-    soup_add_box(&soup, point(0, 0, 0), point(1, 0.5, 0.25), 3, false);
-    expect(&soup, 6, 24, "a box");
-    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    soup_add_quad(&soup, point(0, -1, 0), point(0.5, 0, 0), point(0, 1, 0), 1);
-    expect(&soup, 2, 8, "two squares whose edges do not match");
-    soup_add_sphere(&soup, 0.4, 2);
-    expect(&soup, 128, 3 * 128, "a sphere");
-    soup_add(&soup, (struct triangle){{point(0, 0, 0), point(1, 0, 0), point(2, 0, 0)}});
-    soup_add(&soup, tile(0, 0, 1, true));
-    expect(&soup, 1, 3, "a degenerate triangle is no wall");
-    soup_add(&soup, tile(0, 0, 1, true));
-    soup_add(&soup, tile(0, 0, 1, true));
-    struct walls *twice = walls_of(&soup);
-    tap_ok(twice->count >= 1 && twice->of_triangle[0] >= 0 && twice->of_triangle[1] >= 0,
-           "one triangle twice: %d walls", twice->count);
-    walls_destroy(twice);
-    soup_free(&soup);
+    tap_ok(count == joined && mutual == joined, "%s: %d sides have a neighbour", name,
+           count);
+    surface_free(&made);
 }
 
-/* --- hiding --- */
+static void test_neighbours(void)
+{
+    expect(grid(4, 0, 0), 2 * (16 + 2 * 12), "16 cells in one plane");
+    expect(grid(4, 5, 1), 2 * (15 + 2 * 12 - 4), "one of them missing");
+    struct soup soup = grid(4, 0, 0);
+    for (int k = 0; k < 32; k++) {
+        struct triangle t = soup.items[k];
+        soup_add(&soup, (struct triangle){{t.corner[0], t.corner[2], t.corner[1]}});
+    }
+    expect(soup, 4 * (16 + 2 * 12), "a wall with two faces: each by itself");
+    soup = grid(4, 0, 0);
+    soup.items[12].corner[0].z += 1e-6;
+    expect(soup, 2 * (16 + 2 * 12 - 3), "one triangle is a little higher");
+    soup = grid(1, 0, 0);
+    soup_add_quad(&soup, point(1, 0, 0), point(0.5, 0, 0), point(0, 0.5, 0), 1);
+    soup_add(&soup, (struct triangle){{point(0, 0, 0), point(1, 0, 0), point(2, 0, 0)}});
+    for (int k = 0; k < 3; k++)
+        soup_add(&soup, tile(3, 0, 1, true));
+    expect(soup, 4, "sides that do not match, no area, three in one place");
+}
 
-enum { TRIALS = 20000, SEGMENTS = 200 };
+/* --- proofs, all of them tilted, so that coordinates are rounded --- */
 
-struct findings {
-    int shadows, nines, less, wrong, boxes, boxes_wrong;
+static void tilt(struct vec3 *points, int count)
+{
+    for (int k = 0; k < count; k++) {
+        struct vec3 x = points[k];
+        points[k] = point(0.8 * x.x - 0.6 * x.z, 0.96 * x.y - 0.28 * x.x,
+                          0.6 * x.x + 0.8 * x.z + 0.28 * x.y);
+    }
+}
+
+static struct surface tilted(struct soup soup)
+{
+    for (int64_t k = 0; k < soup.count; k++)
+        tilt(soup.items[k].corner, 3);
+    return surface_make(soup);
+}
+
+/* A convex set. */
+struct body {
+    struct vec3 corners[8];
+    int count;
 };
 
-/* Nine segments between corners, each stopped by one of the two triangles. */
-static bool nine_are_blocked(const struct triangle wall[2], const struct plane planes[2],
-                             const struct triangle *p, const struct triangle *q)
+static struct body box(struct vec3 low, struct vec3 high)
 {
-    const int32_t none[2] = {-1, -1};
-    for (int k = 0; k < 9; k++)
-        if (brute_blocker(wall, planes, 2, p->corner[k / 3], q->corner[k % 3], none) < 0)
-            return false;
-    return true;
+    struct body body = {.count = 8};
+    for (int k = 0; k < 8; k++)
+        body.corners[k] = point(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y,
+                                k & 4 ? high.z : low.z);
+    tilt(body.corners, body.count);
+    return body;
 }
 
-static void hold_against(struct random *random, const struct triangle wall[2],
-                         const struct plane planes[2], const struct walls *walls,
-                         const struct triangle *p, const struct triangle *q, struct findings *found)
+/* A box or a triangle on the side of the square that `up` says, 1 or -1; one in three
+ * touches its plane. */
+static struct body random_body(struct random *random, double up)
 {
-    const int32_t none[2] = {-1, -1};
-    struct shadow shadow;
-    bool made = shadow_make(&shadow, walls, 0, p), hides = made && shadow_holds_triangle(&shadow, q);
-    bool nine = nine_are_blocked(wall, planes, p, q);
-    found->shadows += hides;
-    found->nines += nine;
-    found->less += nine && !hides;
-    for (int k = 0; k < SEGMENTS && hides; k++)
-        found->wrong += brute_blocker(wall, planes, 2, random_point_on(random, p),
-                                      random_point_on(random, q), none) < 0;
-    struct vec3 low = q->corner[0], high = vec3_add(low, point(0.2, 0.1, 0.05));
-    bool holds = made && shadow_holds_box(&shadow, low, high);
-    found->boxes += holds;
-    for (int k = 0; k < SEGMENTS && holds; k++) {
-        struct vec3 to = {random_between(random, low.x, high.x),
-                          random_between(random, low.y, high.y),
-                          random_between(random, low.z, high.z)};
-        found->boxes_wrong += brute_blocker(wall, planes, 2, random_point_on(random, p), to, none) < 0;
+    double x = random_unit(random), y = random_unit(random);
+    double z = 0.05 * random_below(random, 3), size = random_between(random, 0.0, 0.5);
+    struct body body = box(point(x, y, up * z),
+                           point(x + size, y + 0.5 * size, up * (z + 0.1)));
+    for (int k = 0; k < 3; k++)
+        body.corners[k] = body.corners[3 * k];
+    body.count = random_below(random, 2) ? 3 : 8;
+    return body;
+}
+
+static struct vec3 random_point_in(struct random *random, const struct body *body)
+{
+    struct vec3 sum = {0, 0, 0};
+    double weights = 0.0;
+    for (int k = 0; k < body->count; k++) {
+        double weight = random_unit(random) * random_unit(random) * random_unit(random);
+        weights += weight;
+        sum = vec3_add(sum, vec3_scale(body->corners[k], weight));
     }
+    return vec3_scale(sum, 1.0 / weights);
 }
 
-/* A tilted square in two triangles, and pairs of triangles around it. */
-static void test_hiding(void)
+static bool is_blocked(const struct surface *surface, struct vec3 x, struct vec3 y)
+{
+    const int32_t none[2] = {-1, -1};
+    return brute_blocker(surface->soup.items, surface->planes, surface->count, x, y,
+                         none) >= 0;
+}
+
+/* From how many triangles it is proved that the wall blocks all. */
+static int proofs(const struct surface *wall, const struct body *p, const struct body *q)
+{
+    const struct walls walls = {wall->soup.items, wall->planes, wall->neighbours};
+    int count = 0;
+    for (int32_t t = 0; t < wall->count; t++)
+        count += walls_stand_between(&walls, t, p->corners, p->count, q->corners,
+                                     q->count);
+    return count;
+}
+
+enum { TRIALS = 4000, SEGMENTS = 200 };
+
+/* Random pairs on both sides of `wall`, which blocks segments; proofs are of `claimed`.
+ * Convex: where all segments between corners are blocked, there is a proof. */
+static void test_proofs(const struct surface *claimed, const struct surface *wall,
+                        bool convex, bool right, const char *name)
 {
     struct random random = random_seed(31);
-    struct findings found = {0};
+    int proved = 0, passing = 0, missed = 0;
     for (int i = 0; i < TRIALS; i++) {
-        struct soup soup = {0};
-        struct vec3 u = {random_between(&random, 0.3, 0.6), 0, random_between(&random, -0.2, 0.2)};
-        struct vec3 v = {0, random_between(&random, 0.3, 0.6), random_between(&random, -0.2, 0.2)};
-        soup_add_quad(&soup, vec3_scale(vec3_add(u, v), -0.5), u, v, 1);
-        struct plane planes[2] = {triangle_plane(&soup.items[0]), triangle_plane(&soup.items[1])};
-        struct walls *walls = walls_of(&soup);
-        struct triangle p = random_triangle(&random, 0.15, 0.1), q = random_triangle(&random, 0.15, 0.1);
-        for (int k = 0; k < 3; k++) {
-            p.corner[k].z += 0.1;
-            q.corner[k].z -= 0.1;
-        }
-        if (walls->count == 1)
-            hold_against(&random, soup.items, planes, walls, i % 2 ? &p : &q, i % 2 ? &q : &p, &found);
-        walls_destroy(walls);
-        soup_free(&soup);
+        double up = i % 2 ? 1.0 : -1.0;
+        struct body p = random_body(&random, up), q = random_body(&random, -up);
+        bool is_proved = proofs(claimed, &p, &q) > 0, all = true;
+        for (int k = 0; k < p.count * q.count && all; k++)
+            all = is_blocked(wall, p.corners[k / q.count], q.corners[k % q.count]);
+        proved += is_proved;
+        missed += convex && all && !is_proved;
+        for (int k = 0; k < SEGMENTS && is_proved; k++)
+            passing += !is_blocked(wall, random_point_in(&random, &p),
+                                   random_point_in(&random, &q));
     }
-    tap_ok(found.shadows > TRIALS / 20 && found.wrong == 0,
-           "%d of %d pairs are hidden; of %d segments each %d get through", found.shadows, TRIALS,
-           SEGMENTS, found.wrong);
-    tap_ok(found.nines > TRIALS / 20 && found.less == 0,
-           "in all %d cases where nine segments are stopped a pair is hidden", found.nines);
-    tap_ok(found.boxes > TRIALS / 100 && found.boxes_wrong == 0,
-           "%d boxes are hidden; %d segments get through", found.boxes, found.boxes_wrong);
+    tap_ok(proved > TRIALS / 10 && missed == 0 && (passing == 0) == right,
+           "%s: %d pairs are proved, %d missed, %d segments pass", name, proved, missed,
+           passing);
 }
 
-/* Inside a box no face sees what lies outside, through the face opposite or the one beside it. */
-static void test_touching(void)
+/* Two rooms fill all up to the wall between them. */
+static void test_rooms(int n)
 {
-    struct soup soup = {0};
-    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
-    struct walls *walls = walls_of(&soup);
-    struct triangle floor = soup.items[0], outside = tile(0.2, 1.5, 0.1, false);
-    int hidden = 0, own = 0, lid = 0;
-    for (int32_t w = 0; w < walls->count; w++) {
-        struct shadow shadow;
-        bool made = shadow_make(&shadow, walls, w, &floor);
-        bool holds = made && shadow_holds_triangle(&shadow, &outside);
-        hidden += holds;
-        own += made && w == walls->of_triangle[0];
-        lid += holds && fabs(walls->items[w].plane.normal.z) > 0.5;
-    }
-    tap_ok(walls->count == 6 && own == 0, "no triangle lies in the shadow of its own wall");
-    tap_ok(hidden == 1 && lid == 1, "through the lid only");
-    struct triangle beside = {{point(5, 0.4, 0.5), point(5, 0.6, 0.5), point(5, 0.5, 0.6)}};
-    int far = 0;
-    for (int32_t w = 0; w < walls->count; w++) {
-        struct shadow shadow;
-        far += shadow_make(&shadow, walls, w, &soup.items[0]) &&
-               shadow_holds_triangle(&shadow, &beside);
-    }
-    tap_ok(far == 1, "a face that shares an edge with the floor hides what is far behind it");
-    walls_destroy(walls);
-    soup_free(&soup);
+    struct surface wall = tilted(grid(n, 0, 0)), holed = tilted(grid(n, n * n / 2, 1));
+    struct body low = box(point(0, 0, -1), point(1, 1, 0));
+    struct body high = box(point(0, 0, 0), point(1, 1, 1));
+    struct body larger = box(point(0, -1e-9, 0), point(1, 1, 1));
+    tap_ok(proofs(&wall, &low, &high) == wall.count && proofs(&holed, &low, &high) == 0 &&
+               proofs(&wall, &larger, &low) == 0,
+           "a wall of %d cells parts two rooms, unless it has a window or ends", n * n);
+    surface_free(&wall);
+    surface_free(&holed);
 }
 
 int main(void)
 {
-    test_making();
-    test_hiding();
-    test_touching();
+    struct surface whole = tilted(grid(4, 0, 0)), holed = tilted(grid(4, 5, 1));
+    test_neighbours();
+    test_proofs(&whole, &whole, true, true, "16 cells");
+    test_proofs(&holed, &holed, false, true, "with a window");
+    test_proofs(&whole, &holed, false, false, "with one that proofs do not know of");
+    test_rooms(1);
+    test_rooms(3);
+    test_rooms(30);
+    surface_free(&whole);
+    surface_free(&holed);
     return tap_done();
 }
