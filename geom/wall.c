@@ -149,8 +149,8 @@ enum { GROWN_MAX = 2048, SLOTS = 2 * GROWN_MAX };
 
 /* The triangles of a growing wall. */
 struct growth {
-    int32_t triangles[GROWN_MAX]; /* [count] */
-    uint16_t slots[SLOTS];        /* a hash table of their places here, plus 1; 0: empty */
+    int32_t triangles[GROWN_MAX];
+    uint16_t slots[SLOTS]; /* a hash table: 1 + place in triangles[]; 0: empty */
     int count;
 };
 

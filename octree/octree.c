@@ -129,8 +129,8 @@ static void pack_arrays(struct octree *octree, struct pack *pack)
     tree_pack_arrays(&octree->inside, pack);
     tree_pack_arrays(&octree->hull, pack);
     octree->place = pack_array(pack, octree->place, (size_t)octree->count * sizeof *octree->place);
-    octree->neighbours = pack_array(pack, octree->neighbours,
-                                    3 * (size_t)octree->count * sizeof *octree->neighbours);
+    size_t bytes = 3 * (size_t)octree->count * sizeof *octree->neighbours;
+    octree->neighbours = pack_array(pack, octree->neighbours, bytes);
 }
 
 void octree_pack(const struct octree *octree, struct pack *pack)
@@ -162,7 +162,8 @@ static int64_t tree_bytes(const struct tree *tree)
 int64_t octree_bytes(const struct octree *octree)
 {
     return tree_bytes(&octree->inside) + tree_bytes(&octree->hull) +
-           octree->count * (int64_t)(sizeof *octree->place + 3 * sizeof *octree->neighbours);
+           octree->count * (int64_t)sizeof *octree->place +
+           3 * octree->count * (int64_t)sizeof *octree->neighbours;
 }
 
 /* The functions below are small and are called millions of times from two places each, where a
@@ -609,7 +610,8 @@ bool octree_has_wall(const struct octree *octree, const struct vec3 *p, int coun
         counts->triangle_tests += run.count;
         for (int32_t i = run.first; i < run.first + run.count; i++)
             if (is_blocked_by(octree, &middle, &tree->records[i]) &&
-                walls_stand_between(&walls, tree->records[i].triangle, p, count_p, q, count_q))
+                walls_stand_between(&walls, tree->records[i].triangle, p, count_p, q,
+                                    count_q))
                 return true;
     }
     return false;
