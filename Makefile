@@ -62,7 +62,7 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary id triangle lambert hull scene polygon contour wall octree bundles flux patch \
         compact formfactor link linking oracle pushpull closure treecode plan balance assign text obj ply output tone \
-        image camera viewpoint shading stop options progress paths norms cie furnace stability store exchange conjugate exact converge
+        image camera viewpoint shading stop options progress paths norms cie furnace stability store exchange conjugate exact converge leaks
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct tracing
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
