@@ -7,7 +7,9 @@
 #                        $(BUILD)/parsing, a bench of reading OBJ
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
-#   make growth          docs/growth.csv, docs/growth.svg: rooms of 1,000 to 32,000 triangles
+#   make growth          docs/growth.csv, docs/growth.svg: rooms of 6,348 to a million triangles
+#   make scaling         docs/scaling.md: seconds on 1, 32 and 1,024 ranks, line by line
+#   make prove           what takes longer: errors over six fourfold steps of epsilon; kills at forty moments
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
 #   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
@@ -48,8 +50,8 @@ endif
 
 GEOM = alloc contour elementary error gauss hull lambert polygon scene stop triangle wall
 OCTREE = build octree
-RAD = beyond/cluster beyond/cluster_light beyond/node_link closure conjugate flux formfactor id link \
-      linking method oracle patch pushpull snapshot treecode viewfactor
+RAD = beyond/cluster beyond/cluster_light beyond/node beyond/node_exchange beyond/node_link closure conjugate flux formfactor id link \
+      linking method oracle patch pushpull sample snapshot treecode viewfactor
 MPI = accuracy assign balance broadcast closing comm funnel gather keep ledger linking memory migrate \
       node pairs picture plan refinement routes scatter signals solve solver vote
 IO = binary camera cases compare image library machine mesh mtl obj options output palette ply plyfile \
@@ -61,12 +63,12 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary id triangle lambert hull scene polygon contour wall octree bundles flux patch \
-        compact formfactor link linking oracle pushpull closure treecode plan balance assign text obj ply output tone \
+        compact formfactor link linking cluster node oracle pushpull closure treecode plan balance assign text obj ply output tone \
         image camera viewpoint shading stop options progress paths norms cie furnace stability store exchange conjugate exact converge leaks
 # Programs that compare phr with what is true.
-BENCHES = reference measure direct tracing
+BENCHES = reference measure direct tracing replay
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
-FUZZERS = obj mtl ply image view links checkpoint
+FUZZERS = obj mtl ply image view links checkpoint clusters
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%) $(REPLAYS)
 
@@ -143,9 +145,13 @@ $(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/
 chart: $(BENCHES:%=$(BUILD)/%) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/chart.sh
 
-# About a minute on two cores.
+# About eight minutes on two cores.
 growth: $(PHR) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/growth.sh
+
+# About two minutes on two cores; ROOM=1000000 takes ten.
+scaling: $(PHR) $(BUILD)/replay build/room
+	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
 
 check: $(PHR) $(IMGDIFF) tests build/room
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
@@ -161,6 +167,10 @@ portability:
 # About three minutes.
 check-long: $(PHR)
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/kill.sh
+
+# About an hour, most of it for references that are kept in $(BUILD)/prove.
+prove: errors build/room check-long
+	BUILD="$(BUILD)" sh tests/prove.sh
 
 # To be run as build/fuzz/fuzz-obj NEW tests/fuzz/corpus/obj, say: finds go to the folder NEW.
 fuzz:
@@ -185,5 +195,5 @@ clean:
 
 FORCE:
 
-.PHONY: all demo tests room bench errors chart growth check check-long golden portability fuzz install \
+.PHONY: all demo tests room bench errors chart growth scaling check check-long prove golden portability fuzz install \
         uninstall clean FORCE

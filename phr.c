@@ -345,6 +345,19 @@ static double share_solved(const struct run *run, double first)
     return known ? log(first / now) / log(first / tolerance) : 0.0;
 }
 
+/* What the run holds before it has links, and the limit. */
+static void say_forecast(struct run *run)
+{
+    const struct solver *solver = run->solver;
+    int64_t clusters = solver->tree ? solver->tree->count : 0;
+    int64_t bytes = memory_needed(solver->memory.copies, 0, solver->method.forest->count, clusters);
+    say(run, "%s: %lld triangles; linking", run->options.scene,
+        (long long)run->scene->input_count);
+    if (run->options.verbose)
+        say(run, "%lld clusters; %.1f MB before links, of %.0f MB", (long long)clusters,
+            1e-6 * (double)bytes, 1e-6 * (double)solver->memory.limit);
+}
+
 /* Collective. Steps 2 and 3 of the paper's Sec. 3.2, or what a file holds in their place. */
 static bool start_light(struct run *run)
 {
@@ -354,6 +367,7 @@ static bool start_light(struct run *run)
     run->solver = solver;
     memory_watch(solver, options->memory, machine_memory());
     solver->seconds[PHASE_READ] = comm_seconds() - run->start;
+    solver->seconds[PHASE_OCTREE] = run->block.seconds;
     solver->progress = &run->progress.progress;
     if (options->load_links || options->resume) {
         enum store_kind kind = options->resume ? STORE_CHECKPOINT : STORE_LINKS;
@@ -363,7 +377,7 @@ static bool start_light(struct run *run)
         return true;
     }
     progress_begin(solver->progress, "linking", -1, 0);
-    say(run, "%s: %lld triangles; linking", options->scene, (long long)run->scene->input_count);
+    say_forecast(run);
     run->half_linked = !solver_link_roots(solver); /* 2: initial linking */
     if (solver->stop)
         return error_set(&run->error, EXIT_FAILED, "stopped by %s",
@@ -415,8 +429,7 @@ static bool goes_on(struct run *run)
     return solver->iteration < run->options.criterion.max_iterations;
 }
 
-/* True if the state is worth a checkpoint: all roots are linked, and it is that of a
- * whole pass, or of one that a signal has broken off, which is as good as before it. */
+/* True if the state of a whole pass is worth a checkpoint. */
 static bool is_due(const struct run *run)
 {
     const struct options *options = &run->options;
@@ -434,13 +447,11 @@ static bool compute_light(struct run *run)
         return false;
     while (goes_on(run)) {
         int64_t levels = run->solver->ledger.level_count;
-        if (solver_refine(run->solver)) { /* 4: evaluate and refine, level by level */
-            solve_pass(run);
-            report_levels(run, levels);
-            report_iteration(run);
-        } else {
-            run->vote.settled = run->vote.converged = false;
-        }
+        if (!solver_refine(run->solver)) /* 4: evaluate and refine, level by level */
+            break;                       /* a signal: this pass is lost */
+        solve_pass(run);
+        report_levels(run, levels);
+        report_iteration(run);
         if (is_due(run) && !save_snapshot(run, STORE_CHECKPOINT, run->options.checkpoint))
             return false;
     }
@@ -499,7 +510,9 @@ static struct shading *shade_leaves(struct run *run)
     uint8_t *open = shading_open_quarters(forest, run->octree, run->comm.rank, run->comm.size,
                                           &leaves);
     comm_add_bytes(&run->comm, open, leaves);
+    double start = comm_seconds();
     struct shading *shading = shading_create(forest, open);
+    run->solver->seconds[PHASE_SHADING] = comm_seconds() - start;
     alloc_free(open);
     return shading;
 }
@@ -510,9 +523,11 @@ static float *make_picture(struct run *run, const struct shading *shading)
     const struct options *options = &run->options;
     const struct comm *comm = &run->comm;
     struct camera *camera = &run->camera;
+    double start = comm_seconds();
     if (!options->view) /* all ranks choose alike */
         *camera = viewpoint_choose(run->scene, run->octree, run->solver->method.forest,
                                    camera->width, camera->height);
+    run->solver->seconds[PHASE_VIEWPOINT] = comm_seconds() - start;
     progress_begin(&run->progress.progress, "rendering", -1, 0);
     float *rows = render_rows(shading, run->octree, camera, options->samples, comm->rank,
                               comm->size, &run->progress.progress);
@@ -545,6 +560,7 @@ static bool report_run(struct run *run)
 {
     run->solver->seconds[PHASE_TOTAL] = comm_seconds() - run->start;
     solver_report(run->solver, &run->vote, &run->stats);
+    run->stats.bytes_broadcast = (int64_t)(run->block.bytes + run->solver->tree_block.bytes);
     progress_view_clear(&run->progress);
     if (run->comm.rank == 0) {
         if (run->stats.memory_limited)

@@ -197,6 +197,7 @@ static bool set_bytes(const struct option *option, const char *value, int64_t *f
 static void set_paper(struct criterion *criterion)
 {
     criterion->oracle = ORACLE_BF;
+    criterion->linking = LINKING_PAIRS;
     criterion->form_factor = FORM_FACTOR_DISK;
     criterion->closure = CLOSURE_NONE;
     criterion->solver = SOLVER_JACOBI;
@@ -276,6 +277,9 @@ static bool check_restart(const struct options *options, struct error *error)
                          links);
     if (options->save_links && options->load_links)
         return error_set(error, EXIT_USAGE, "--save-links and --load-links do not go together");
+    if ((options->save_links || options->load_links) &&
+        options->criterion.linking != LINKING_PAIRS)
+        return error_set(error, EXIT_USAGE, "%s goes with --linking pairs (--paper)", links);
     if (options->every > 0 && !options->checkpoint)
         return error_set(error, EXIT_USAGE, "--every needs --checkpoint");
     return true;
@@ -304,7 +308,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
 {
     *options = (struct options){
         .samples = 3,
-        .criterion = {.oracle = ORACLE_ERROR, .form_factor = FORM_FACTOR_POLYGON,
+        .criterion = {.oracle = ORACLE_ERROR, .linking = LINKING_TREE, .form_factor = FORM_FACTOR_POLYGON,
                       .closure = CLOSURE_CAP, .solver = SOLVER_CG, .balance = BALANCE_EVEN,
                       .epsilon = -1.0, .min_area = 1e-7, .max_level = 10, .alpha = 0.5, .tolerance = 1e-5,
                       .max_iterations = 1000},
@@ -393,7 +397,7 @@ const char *options_link_settings(const struct options *options)
 const char *options_run_settings(const struct options *options)
 {
     static const char *const NAMES[] = {
-        "--two-sided", "--two-sided-lamps", "--oracle", "--form-factor", "--closure",
+        "--two-sided", "--two-sided-lamps", "--oracle", "--linking", "--form-factor", "--closure",
         "--solver", "--epsilon", "--accuracy", "--max-level", "--min-area", NULL};
     return describe_all(options, NAMES);
 }
@@ -415,12 +419,12 @@ void options_print_help(FILE *file)
           "  --epsilon E      error of a link (1e-5) --accuracy A  lower it down to this\n"
           "  --max-level N    of subdivision (10)    --min-area A  of a patch (1e-7)\n"
           "  --tolerance T    of the solution (1e-5) --max-iterations N   at most (1000)\n"
-          "  --oracle error|bf          what splits a link: its error, or its energy\n"
-          "  --form-factor polygon|disk              --solver cg|jacobi\n"
+          "  --oracle error|bf   what splits a link  --form-factor polygon|disk\n"
+          "  --linking tree|pairs  where links begin --solver cg|jacobi\n"
           "  --closure none|cap|rows|symmetric       mend row sums of form factors (cap)\n"
-          "  --paper          bf, disk, jacobi, none --alpha A     inherited cost (0.5)\n"
+          "  --paper          the paper's of these   --alpha A     inherited cost (0.5)\n"
           "  --two-sided      backs reflect, too     --two-sided-lamps  those of lamps\n"
-          "  --save-links F   after initial linking  --load-links F  in its place\n"
+          "  --save-links F   those of all pairs     --load-links F  in their place\n"
           "  --checkpoint F   after each pass        --every N     only each N-th pass (1)\n"
           "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
           "  --form-factors   print them, as CSV     --validate    check form factors\n"

@@ -9,7 +9,7 @@
 #include "geom/error.h"
 #include "rad/method.h"
 
-#define PHR_VERSION "0.1"
+#define PHR_VERSION "0.2"
 
 enum output_format { FORMAT_PPM, FORMAT_PFM, FORMAT_PLY };
 
@@ -36,10 +36,11 @@ struct options {
 bool options_parse(struct options *options, int argc, char **argv, struct error *error);
 void options_free(struct options *options);
 
-/* The settings that decide what initial links are, or what the passes to come are, as lines
- * "--option value" in a fixed order: what a link cache or a checkpoint is bound to. Not among them is
- * what may differ from run to run: outputs, ranks, memory, and when to end (--tolerance,
- * --max-iterations), which holds for all that was computed before. Rewritten by the next call. */
+/* The settings that decide what the links of all pairs are, or what the passes to come
+ * are, as lines "--option value" in a fixed order: what a link cache or a checkpoint is
+ * bound to. Not among them is what may differ from run to run: outputs, ranks, memory,
+ * and when to end (--tolerance, --max-iterations), which holds for all that was computed
+ * before. Rewritten by the next call. */
 const char *options_link_settings(const struct options *options);
 const char *options_run_settings(const struct options *options);
 

@@ -9,7 +9,8 @@
 
 static const char *const PHASE_NAMES[PHASE_COUNT] = {
     "total", "read", "linking", "refinement", "idle", "migration",
-    "gather", "push_pull", "scatter", "solve", "render", "write"};
+    "gather", "push_pull", "scatter", "solve", "render", "write", "octree", "spaces",
+    "tree", "prepare", "looks", "sums", "routes", "row_sums", "shading", "viewpoint"};
 
 static const char *const WORK_NAMES[WORK_COUNT] = {"linking", "looks", "splitting", "transfer",
                                                    "own", "patches"};
@@ -52,6 +53,8 @@ static void write_counts(FILE *file, const struct stats *stats)
     write_integer(file, "passes", stats->passes);
     write_integer(file, "iterations", stats->iterations);
     fprintf(file, "  \"converged\": %s,\n", stats->converged ? "true" : "false");
+    write_integer(file, "clusters", stats->clusters);
+    write_integer(file, "counted_bytes", stats->counted_bytes);
     fprintf(file, "  \"memory_limited\": %s,\n", stats->memory_limited ? "true" : "false");
     write_real(file, "epsilon", stats->epsilon);
     write_real(file, "error_estimate", stats->error_estimate);
@@ -124,8 +127,11 @@ bool stats_write(const struct stats *stats, const char *path, struct error *erro
     write_work(output.file, stats);
     fprintf(output.file,
             "  \"bytes\": {\"migration\": %" PRId64 ", \"gather\": %" PRId64 ", \"scatter\": %" PRId64
-            "},\n",
-            stats->bytes_migration, stats->bytes_gather, stats->bytes_scatter);
-    fprintf(output.file, "  \"peak_rss_bytes\": %" PRId64 "\n}\n", stats->peak_rss_bytes);
+            ", \"broadcast\": %" PRId64 "},\n",
+            stats->bytes_migration, stats->bytes_gather, stats->bytes_scatter,
+            stats->bytes_broadcast);
+    write_integer(output.file, "peak_rss_bytes", stats->peak_rss_bytes);
+    fprintf(output.file, "  \"peak_rss_bytes_sum\": %" PRId64 "\n}\n",
+            stats->peak_rss_bytes_sum);
     return output_close(&output, error);
 }

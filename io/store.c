@@ -158,8 +158,9 @@ static bool check_magic(const struct store_reader *reader, const uint8_t *magic,
         return error_set(error, EXIT_USAGE, "%s: not a %s but a %s", reader->path, NAMES[kind],
                          NAMES[other]);
     if (memcmp(magic, MAGIC[kind], MAGIC_BYTES - 1) == 0)
-        return error_set(error, EXIT_USAGE, "%s: a %s of version %c, and this program knows 1",
-                         reader->path, NAMES[kind], magic[MAGIC_BYTES - 1]);
+        return error_set(error, EXIT_USAGE, "%s: a %s of version %c, and this program knows %c",
+                         reader->path, NAMES[kind], magic[MAGIC_BYTES - 1],
+                         MAGIC[kind][MAGIC_BYTES - 1]);
     return error_set(error, EXIT_USAGE, "%s: not a %s", reader->path, NAMES[kind]);
 }
 

@@ -1,9 +1,9 @@
 /* Stored snapshot: the files of --save-links and --load-links, --checkpoint and --resume.
  *
- * Both hold a snapshot (rad/snapshot.h) and its links; a link cache is one from before the first pass
- * and is bound to fewer settings. Numbers are little-endian, whole ones in two's complement,
- * others IEEE 754. With R roots, N patches, L leaves, K compared patches, M links and T bytes of
- * settings:
+ * Both hold a snapshot (rad/snapshot.h) and its links; a link cache is one from before
+ * the first pass, with the links of all pairs of roots, and is bound to fewer settings.
+ * Numbers are little-endian, whole ones in two's complement, others IEEE 754. With R
+ * roots, N patches, L leaves, K compared patches, M links and T bytes of settings:
  *
  *     bytes    what
  *     8        "PHRLINK2" a link cache, "PHRCHKP2" a checkpoint; the digit is the version
@@ -17,8 +17,8 @@
  *     N        snapshot.kind, a byte each
  *     56 L     leaves: radiosity (3 doubles), irradiance (3), factor
  *     24 K     snapshot.compared (3 doubles)
- *     24 M     links: p q (4 bytes each), area (float), blocker (4), parts_p parts_q (3 each), seen,
- *              cost (1 each); ascending by p, then q
+ *     24 M     links: p q (4 bytes each; below 0: clusters), area (float), blocker (4),
+ *              parts_p parts_q (3 each), seen, cost (1 each); ascending by p, then q
  *     8        hash_bytes() of all that comes before
  *
  * Nothing in it depends on the number of ranks that wrote it, and no two files hold the same. */

@@ -1,17 +1,19 @@
 /* Balance.
  *
  * The paper's greedy plan (mpi/plan.h) says how much goes from where to where; what is
- * sent is taken from all of a rank's links in turn. Re-partition along a line of all links was
- * tried: it is as even, for what is left is not the plan's fault but the prediction's: the work
- * of a link is known within a factor of two or so. So a level with much to do is split in
- * stages: a rank stops before it has worked as long as predicted of the mean rank, and the
- * rest is dealt anew. In a room of 6,350 triangles on 32 ranks (--stats, "splitting") 7 %
- * of refinement are idle; 16 % are where levels are dealt once (--balance greedy). To go on
- * with the next level meanwhile is a little better still, but then what fits into memory
- * would depend on the number of ranks. */
+ * sent is taken from all of a rank's links in turn. Re-partition along a line of all
+ * links was tried: it is as even, for what is left is not the plan's fault but the
+ * prediction's: the work of a link is known within a factor of two or so. So a level with
+ * much to do is split in stages: a rank stops before it has worked as long as predicted
+ * of the mean rank, and the rest is dealt anew. In a room of 6,348 triangles on 32 ranks
+ * (--epsilon 1e-4; --stats, "splitting") the slowest ranks have 1.67 of the mean work,
+ * and 1.82 where levels are dealt once. To go on with the next level meanwhile is a
+ * little better still, but then what fits into memory would depend on the number of
+ * ranks. */
 #include "mpi/balance.h"
 
 #include "geom/alloc.h"
+#include "rad/beyond/cluster.h"
 
 /* --- single items --- */
 
@@ -31,7 +33,8 @@ static bool goes_before(const struct heap *heap, int a, int b)
 static void sink(struct heap *heap, int at)
 {
     for (int child = 2 * at + 1; child < heap->count; child = 2 * at + 1) {
-        if (child + 1 < heap->count && goes_before(heap, heap->ranks[child + 1], heap->ranks[child]))
+        if (child + 1 < heap->count &&
+            goes_before(heap, heap->ranks[child + 1], heap->ranks[child]))
             child++;
         int rank = heap->ranks[at], below = heap->ranks[child];
         if (!goes_before(heap, below, rank))
@@ -42,9 +45,11 @@ static void sink(struct heap *heap, int at)
     }
 }
 
-void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, int *owner)
+void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks,
+                int *owner)
 {
-    struct heap heap = {.ranks = alloc_array((size_t)ranks, sizeof *heap.ranks), .count = ranks,
+    struct heap heap = {.ranks = alloc_array((size_t)ranks, sizeof *heap.ranks),
+                        .count = ranks,
                         .loads = loads};
     for (int r = 0; r < ranks; r++)
         heap.ranks[r] = r;
@@ -60,19 +65,44 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks, 
 
 /* --- links --- */
 
-/* What four form factors take where the way is open, for then it is for the children; and beside the
- * tests where it is not, for however few there were, four times 16 segments have to be followed. (In
- * furnished rooms a link takes 60 to 110 tests more than its cost says, in the Cornell box 30. With
- * one form factor in place of that a third more of a level was idle.) */
+/* What four form factors take where the way is open, for then it is for the children; and
+ * beside the tests where it is not, for however few there were, four times 16 segments
+ * have to be followed. (In furnished rooms a link takes 60 to 110 tests more than its
+ * cost says, in the Cornell box 30. With one form factor in place of that a third more of
+ * a level was idle.) */
 enum { LOAD_OPEN = 4 * TESTS_PER_FORM_FACTOR, LOAD_LEAST = 80 };
+
+/* With a cluster in it: for each child a look, and a second one where it is not to be
+ * split. What nobody has looked at (cost 1) has a cost that is not known, and the link of
+ * a cluster with itself has up to ten children. */
+enum { LOAD_CLUSTER = 300, LOAD_CLUSTER_UNSEEN = 1000, LOAD_CLUSTER_ITSELF = 4000 };
+enum { LOOKS_PER_CLUSTER = 4 };
+
+static int64_t cluster_load(const struct link *link)
+{
+    if (link->p == link->q)
+        return LOAD_CLUSTER_ITSELF;
+    int64_t cost = (int64_t)link_cost(link);
+    return cost > 1 ? LOAD_CLUSTER + LOOKS_PER_CLUSTER * cost : LOAD_CLUSTER_UNSEEN;
+}
 
 int64_t link_load(const struct link *link)
 {
+    if (node_is_cluster(link->p) || node_is_cluster(link->q))
+        return cluster_load(link);
     return link_is_open(link) ? LOAD_OPEN : LOAD_LEAST + (int64_t)link_cost(link);
 }
 
-/* Tests in the time that a message takes. Ranks tell each other how many links come in log P messages,
- * and few have more than so many others to send to or to receive from. */
+/* So many links take longer than the messages of a level, on any number of ranks. */
+enum { LINKS_TO_DEAL = 16 };
+
+bool level_is_dealt(int64_t links)
+{
+    return links >= LINKS_TO_DEAL;
+}
+
+/* Tests in the time that a message takes. Ranks tell each other how many links come in
+ * log P messages, and few have more than so many others to send to or to receive from. */
 enum { TESTS_PER_MESSAGE = 50, PARTNERS = 4 };
 
 bool moving_pays(const int64_t *loads, int ranks)
@@ -88,11 +118,11 @@ bool moving_pays(const int64_t *loads, int ranks)
     return largest - total / ranks > TESTS_PER_MESSAGE * messages;
 }
 
-/* A stage takes so much of what is predicted of the mean rank: unless that was by far too much, hardly any rank is
- * done before it ends. The last of three takes what is left, and so does one of less than so many tests, which
- * is not worth a new deal. */
+/* A stage takes so much of what is predicted of the mean rank: unless that was by far too
+ * much, hardly any rank is done before it ends. The last of six takes what is left, and
+ * so does one of less than so many tests, which is not worth a new deal. */
 static const double STAGE_SHARE = 0.7;
-enum { STAGES = 3, STAGE_LEAST = 3000 };
+enum { STAGES = 6, STAGE_LEAST = 6000 };
 
 int64_t links_limit(const int64_t *loads, int ranks, int stage)
 {
@@ -103,8 +133,8 @@ int64_t links_limit(const int64_t *loads, int ranks, int stage)
     return last ? INT64_MAX : (int64_t)(STAGE_SHARE * (double)mean);
 }
 
-void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *plan, int planned,
-                    int rank, int *destination)
+void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *plan,
+                    int planned, int rank, int *destination)
 {
     int mine = 1, turn = 0;
     struct transfer *left = alloc_array((size_t)planned + 1, sizeof *left);

@@ -1,12 +1,16 @@
 /* Step 1: rank 0 reads, all receive.
  *
- * The prepared scene is sent, planes and areas included, and the octree that rank 0 builds over
- * it: no rank repeats the work, none could end with other bits, and sending an octree takes
- * less time than building it. Both are packed into one block, of which there is one per node
- * where that pays (mpi/node.c). Ranks of a run share one machine architecture: plain bytes.
+ * The prepared scene is sent, planes and areas included, and the octree that rank 0
+ * builds over it: no rank repeats the work, none could end with other bits, and sending
+ * an octree takes less time than building it. Both are packed into one block, of which
+ * there is one per node where that pays (mpi/node.c). Ranks of a run share one machine
+ * architecture: plain bytes. The tree above the roots goes the same way, in a block of
+ * its own.
  *
  * The memory of rank 0 holds both twice for a moment. A rank that is alone keeps what it has. */
 #include "mpi/broadcast.h"
+
+#include "geom/alloc.h"
 
 static void pack_both(const struct scene *scene, const struct octree *octree, struct pack *pack)
 {
@@ -21,11 +25,14 @@ struct node_block scene_broadcast(const struct comm *comm, struct node_policy po
     struct node_block block = {.data = NULL};
     struct octree *built = NULL;
     struct pack count = {0};
+    double start = comm_seconds();
     if (comm->rank == 0 && octree)
         built = octree_create((*scene)->triangles, (*scene)->planes, (*scene)->input_count);
+    double seconds = comm_seconds() - start;
     if (comm->size == 1) {
         if (octree)
             *octree = built;
+        block.seconds = seconds;
         return block;
     }
     if (comm->rank == 0)
@@ -38,6 +45,7 @@ struct node_block scene_broadcast(const struct comm *comm, struct node_policy po
         scene_destroy(*scene);
     }
     node_block_spread(&block, comm);
+    block.seconds = seconds;
     struct pack view = {.block = block.data};
     *scene = scene_view(&view);
     if (octree)
@@ -45,12 +53,33 @@ struct node_block scene_broadcast(const struct comm *comm, struct node_policy po
     return block;
 }
 
+int32_t *places_gather(const struct comm *comm, const struct scene *scene,
+                       const struct octree *octree)
+{
+    int64_t all = scene_root_count(scene);
+    int32_t first = (int32_t)(all * comm->rank / comm->size);
+    int32_t end = (int32_t)(all * (comm->rank + 1) / comm->size);
+    int32_t *own = places_met(scene, octree, first, end);
+    if (comm->size == 1)
+        return own;
+    int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
+    int64_t bytes = SPACE_RAYS * (int64_t)(end - first) * (int64_t)sizeof *own;
+    void *met = comm_gather_all(comm, own, bytes, at);
+    alloc_free(at);
+    alloc_free(own);
+    return met;
+}
+
 struct node_block tree_broadcast(const struct comm *comm, struct node_policy policy,
-                                 const struct scene *scene, struct cluster_tree **tree)
+                                 const struct scene *scene, const int32_t *met,
+                                 struct cluster_tree **tree)
 {
     struct node_block block = {.data = NULL};
     struct pack count = {0};
-    *tree = comm->rank == 0 ? cluster_tree_create(scene) : NULL;
+    double start = comm_seconds();
+    *tree = comm->rank == 0 ? cluster_tree_build(scene, met) : NULL;
+    double seconds = comm_seconds() - start;
+    block.seconds = seconds;
     if (comm->size == 1)
         return block;
     if (comm->rank == 0)
@@ -62,6 +91,7 @@ struct node_block tree_broadcast(const struct comm *comm, struct node_policy pol
         cluster_tree_destroy(*tree);
     }
     node_block_spread(&block, comm);
+    block.seconds = seconds;
     *tree = cluster_tree_view(&(struct pack){.block = block.data});
     return block;
 }

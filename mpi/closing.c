@@ -119,9 +119,11 @@ void solver_close(struct solver *solver)
 {
     const struct criterion *criterion = &solver->method.criterion;
     struct forest *forest = solver->method.forest;
+    double start = comm_seconds();
     routes_renew(solver);
     closure_extend(&solver->closure, forest);
     conjugate_extend(&solver->conjugate, forest, solver->own);
+    solver->seconds[PHASE_ROUTES] += comm_seconds() - start;
     if (criterion->closure == CLOSURE_NONE && criterion->solver == SOLVER_JACOBI)
         return;
     struct rgb *kept = forest_keep(forest);

@@ -24,6 +24,21 @@ static int64_t take_flux(struct solver *solver)
     return count;
 }
 
+/* All ranks get the sums of the flux of all clusters: a reduction and its result sent back. */
+static void gather_clusters(struct solver *solver)
+{
+    struct cluster_light *clusters = solver->method.clusters;
+    int64_t count = BANDS * (int64_t)solver->tree->count;
+    comm_add(solver->comm, clusters->flux, count);
+    if (solver->comm->size > 1)
+        solver->bytes_gather += 2 * count * (int64_t)sizeof *clusters->flux;
+    double start = comm_seconds();
+    cluster_light_push(clusters, solver->method.forest, solver->flux);
+    double pushing = comm_seconds() - start;
+    solver->seconds[PHASE_SUMS] += pushing;
+    solver->seconds[PHASE_GATHER] -= pushing;
+}
+
 void solver_gather(struct solver *solver)
 {
     double start = comm_seconds();
@@ -38,10 +53,7 @@ void solver_gather(struct solver *solver)
         memcpy(patches[own[i]].flux, routes->own_flux + BANDS * i, sizeof patches->flux);
     solver->bytes_gather += (count - own_count) * (int64_t)sizeof patches->flux;
     solver->copied += count + own_count;
-    if (solver->tree) {
-        comm_add(solver->comm, solver->method.clusters->flux,
-                 BANDS * (int64_t)solver->tree->count);
-        cluster_light_push(solver->method.clusters, solver->method.forest, solver->flux);
-    }
+    if (solver->tree)
+        gather_clusters(solver);
     solver->seconds[PHASE_GATHER] += comm_seconds() - start;
 }

@@ -9,7 +9,8 @@
  * be released with snapshot_free() on all. */
 void snapshot_collect(struct solver *solver, const struct vote *vote, struct snapshot *snapshot);
 
-/* Receives links with patch numbers of the snapshot in place of local ones, in ascending order. */
+/* Receives links with patch numbers of the snapshot in place of local ones (clusters keep
+ * theirs), in ascending order. */
 typedef void link_sink(void *context, const struct link *links, int64_t count);
 
 /* Collective: all links go to the sink of rank 0, each once; the other ranks' is not called. The

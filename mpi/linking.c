@@ -1,10 +1,12 @@
 /* Steps 2 and 3: initial linking, and the homes of roots and links.
  *
- * Pairs of roots are dealt in turn (rad/linking.h) and linked in rounds of so many pairs,
- * by number. Between two rounds all ranks agree whether there is a next one: not if any
- * of them has got a signal, nor if, with a link for each of its pairs, the links of all
- * ranks might take more memory than there may be. So linking ends at a pair that does not
- * depend on the ranks. A rank that has got a signal leaves the rest of its round.
+ * With a tree above the roots there is one link to begin with (mpi/refinement.c).
+ * Without, pairs of roots are dealt in turn (rad/linking.h) and linked in rounds of so
+ * many pairs, by number. Between two rounds all ranks agree whether there is a next one:
+ * not if any of them has got a signal, nor if, with a link for each of its pairs, the
+ * links of all ranks might take more memory than there may be. So linking ends at a pair
+ * that does not depend on the ranks. A rank that has got a signal leaves the rest of its
+ * round.
  *
  * Light is transferred over links where they live, so all ranks should have as many that
  * carry light (mpi/migrate.h). The paper (and --balance greedy) deals roots by their
@@ -129,7 +131,8 @@ static void send_home(struct solver *solver)
 static void weigh_by_area(const struct method *method, int64_t *weights)
 {
     for (int32_t root = 0; root < scene_root_count(method->scene); root++)
-        weights[root] = (int64_t)(scene_root_area(method->scene, root) / method->area * 0x1p40);
+        weights[root] =
+            (int64_t)(scene_root_area(method->scene, root) / method->area * 0x1p40);
 }
 
 /* What there is to do at home. */
@@ -153,7 +156,7 @@ void solver_assign_roots(struct solver *solver)
     alloc_free(weights);
     for (int32_t root = 0; root < roots; root++)
         solver->own[root] = solver->owner[root] == solver->comm->rank;
-    if (greedy)
+    if (greedy && !solver->tree) /* clusters have no home */
         send_home(solver);
     else
         links_even_out(solver);

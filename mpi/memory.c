@@ -1,15 +1,18 @@
 /* The memory limit.
  *
- * What grows are links and patches. Before a level is split, the links there will be are known
- * within a factor: each of the prolific ones becomes four at most, and is there itself until the level
- * is done; a patch can get four children only once. Whether that fits into the limit is decided
- * from counts over all ranks, so all decide alike, and a limit that the user gives means the same on
- * any number of ranks: for that it is held against one copy of the patches, though each rank has
- * its own. The default limit is not a promise of the same results, but of an end that is not the
- * system's: it counts every copy, over the memory of all machines.
+ * What grows are links and patches; clusters are there from the beginning. Before a level
+ * is split, the links there will be are known within a factor: each of the prolific ones
+ * becomes four at most (of a cluster with itself, ten), and is there itself until the
+ * level is done; a patch can get four children only once. Whether that fits into the
+ * limit is decided from counts over all ranks, so all decide alike, and a limit that the
+ * user gives means the same on any number of ranks: for that it is held against one copy
+ * of the patches and clusters, though each rank has its own patches. The default limit is
+ * not a promise of the same results, but of an end that is not the system's: it counts
+ * every copy, over the memory of all machines.
  *
- * Rejected: the memory that processes really hold, which depends on the system, on the ranks and on
- * what was freed; a limit for the links alone, since in small patches half of the memory is. */
+ * Rejected: the memory that processes really hold, which depends on the system, on the
+ * ranks and on what was freed; a limit for the links alone, since in small patches half
+ * of the memory is. */
 #include "mpi/memory.h"
 
 #include <string.h>
@@ -17,11 +20,11 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 
-/* Bytes: a link with its share of the room that lists grow by; a patch with all that runs along with
- * the forest (extremes, vectors of the solver, closure) and the same. */
-enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 330, BYTES_PER_CLUSTER = 250 };
+/* Bytes: a link with its share of the room that lists grow by; a patch with all that runs
+ * along with the forest (extremes, vectors of the solver, closure) and the same. */
+enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 380, BYTES_PER_CLUSTER = 290 };
 
-/* Of what the machines have, for links and patches. */
+/* Of what the machines have, for links, patches and clusters. */
 static const double SHARE = 0.8;
 
 /* What a rank says of the machine that it runs on; no padding. */
@@ -39,8 +42,8 @@ static int64_t machines_together(const struct comm *comm, int64_t bytes)
     struct machine own = {hash_bytes(HASH_START, name, (size_t)length), bytes};
     struct machine *all = alloc_array((size_t)comm->size, sizeof *all);
     MPI_Request request;
-    MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, all, (int)sizeof own, MPI_BYTE, comm->handle,
-                   &request);
+    MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, all, (int)sizeof own, MPI_BYTE,
+                   comm->handle, &request);
     comm_wait(&request);
     int64_t sum = 0;
     bool known = true;
@@ -66,17 +69,16 @@ void memory_watch(struct solver *solver, int64_t limit, int64_t machine)
     memory->copies = solver->comm->size;
 }
 
-int64_t memory_needed(const struct memory *memory, int64_t links, int64_t patches,
-                      int64_t clusters)
+int64_t memory_needed(int copies, int64_t links, int64_t patches, int64_t clusters)
 {
     return BYTES_PER_LINK * links +
-           memory->copies * (BYTES_PER_PATCH * patches + BYTES_PER_CLUSTER * clusters);
+           copies * (BYTES_PER_PATCH * patches + BYTES_PER_CLUSTER * clusters);
 }
 
-bool memory_has_room(const struct memory *memory, int64_t links, int64_t prolific, int64_t patches,
-                     int64_t clusters)
+bool memory_has_room(const struct memory *memory, int64_t links, int64_t prolific,
+                     int64_t patches, int64_t clusters)
 {
     int64_t made = 4 * (prolific < patches ? prolific : patches);
-    return memory->limit == 0 ||
-           memory_needed(memory, links, patches + made, clusters) <= memory->limit;
+    return memory->limit == 0 || memory_needed(memory->copies, links, patches + made,
+                                               clusters) <= memory->limit;
 }

@@ -1,8 +1,9 @@
 /* Sending links: count, allocate, pack, one collective, unpack.
  *
- * On the way a link names its patches by their IDs. The receiver looks them up in its own copy
- * of the forest and creates what it lacks; a patch so created has its parent's radiosity, as it
- * has where it was first split, so a link means the same wherever it lives. */
+ * On the way a link names its patches by their IDs. The receiver looks them up in its own
+ * copy of the forest and creates what it lacks; a patch so created has its parent's
+ * radiosity, as it has where it was first split, so a link means the same wherever it
+ * lives. */
 #include "mpi/balance.h"
 #include "mpi/migrate.h"
 
@@ -21,7 +22,8 @@ struct wire_link {
 static struct patch_id id_of_node(const struct method *method, int32_t node)
 {
     if (node_is_cluster(node))
-        return (struct patch_id){CLUSTER_ROOT, method->clusters->tree->clusters[~node].hierarchy};
+        return (struct patch_id){CLUSTER_ROOT,
+                                 method->clusters->tree->clusters[~node].hierarchy};
     return method->forest->patches[node].id;
 }
 
@@ -33,8 +35,11 @@ static int32_t reach_node(const struct method *method, struct patch_id id)
 
 static struct wire_link pack(const struct method *method, const struct link *link)
 {
-    struct wire_link wire = {.p = id_of_node(method, link->p), .q = id_of_node(method, link->q),
-                             .area = link->area, .blocker = link->blocker, .seen = link->seen,
+    struct wire_link wire = {.p = id_of_node(method, link->p),
+                             .q = id_of_node(method, link->q),
+                             .area = link->area,
+                             .blocker = link->blocker,
+                             .seen = link->seen,
                              .cost = link->cost};
     memcpy(wire.parts_p, link->parts_p, sizeof wire.parts_p);
     memcpy(wire.parts_q, link->parts_q, sizeof wire.parts_q);
@@ -43,16 +48,19 @@ static struct wire_link pack(const struct method *method, const struct link *lin
 
 static struct link unpack(const struct method *method, const struct wire_link *wire)
 {
-    struct link link = {.p = reach_node(method, wire->p), .q = reach_node(method, wire->q),
-                        .area = wire->area, .blocker = wire->blocker, .seen = wire->seen,
+    struct link link = {.p = reach_node(method, wire->p),
+                        .q = reach_node(method, wire->q),
+                        .area = wire->area,
+                        .blocker = wire->blocker,
+                        .seen = wire->seen,
                         .cost = wire->cost};
     memcpy(link.parts_p, wire->parts_p, sizeof link.parts_p);
     memcpy(link.parts_q, wire->parts_q, sizeof link.parts_q);
     return link;
 }
 
-/* Packs what leaves, destination by destination, and closes the gaps in `list`. `at` is where
- * each destination's records begin, and is used up. */
+/* Packs what leaves, destination by destination, and closes the gaps in `list`. `at` is
+ * where each destination's records begin, and is used up. */
 static struct wire_link *pack_leaving(const struct solver *solver, struct link_list *list,
                                       const int *destination, int *at, int64_t total)
 {
@@ -68,11 +76,13 @@ static struct wire_link *pack_leaving(const struct solver *solver, struct link_l
     return wire;
 }
 
-int64_t links_migrate(struct solver *solver, struct link_list *list, const int *destination)
+int64_t links_migrate(struct solver *solver, struct link_list *list,
+                      const int *destination)
 {
     const struct comm *comm = solver->comm;
     size_t ranks = (size_t)comm->size;
-    int *counts = alloc_array(ranks, sizeof *counts), *at = alloc_array(ranks, sizeof *at);
+    int *counts = alloc_array(ranks, sizeof *counts),
+        *at = alloc_array(ranks, sizeof *at);
     comm_count(comm, list->count);
     for (int64_t i = 0; i < list->count; i++)
         counts[destination[i]] += destination[i] != comm->rank;
@@ -135,7 +145,8 @@ void links_even_out(struct solver *solver)
     comm_add(solver->comm, here, ranks);
     double counted = comm_seconds();
     if (is_uneven(here, ranks)) /* the same on all ranks, so all enter */
-        solver->bytes_migration += links_balance(solver, &solver->links, carries_light, here);
+        solver->bytes_migration +=
+            links_balance(solver, &solver->links, carries_light, here);
     alloc_free(here);
     solver->seconds[PHASE_IDLE] += counted - start;
     solver->seconds[PHASE_MIGRATION] += comm_seconds() - counted;

@@ -16,6 +16,7 @@ struct node_block {
     size_t bytes;
     bool fills;       /* this rank puts into `data` what is to be there; rank 0 always does */
     bool shared;      /* `data` is in a window; else in `memory` */
+    double seconds;   /* that making what is in it took here; 0 on ranks that only receive */
     void *memory;     /* owned, NULL if shared */
     MPI_Win window;
     struct comm node; /* the ranks that share the block; only if shared */

@@ -2,12 +2,12 @@
  *
  * `prolific` holds the links of one level that will be split. Before each level the ranks
  * exchange their loads, the sums of predicted costs; each decides alike where links go
- * (mpi/balance.h). Then each rank splits what it has: children that are to be split too form the
- * next level, the others join the links. Where there is much to do, ranks leave a part of the level, and that is
- * dealt anew, but for --balance greedy, the paper's.
+ * (mpi/balance.h). Then each rank splits what it has: children that are to be split too
+ * form the next level, the others join the links. Where there is much to do, ranks leave
+ * a part of the level, and that is dealt anew, but for --balance greedy, the paper's.
  *
- * What was split stays where that was done; light is transferred over links where they are. So
- * at the end their numbers are evened out, but for --balance greedy.
+ * What was split stays where that was done; light is transferred over links where they
+ * are. So at the end their numbers are evened out, but for --balance greedy.
  *
  * Predicted cost and work of each stage of a level go into the ledger (mpi/ledger.h). */
 #include "mpi/balance.h"
@@ -26,12 +26,23 @@ struct load_notice {
     int64_t load;            /* and the predicted cost of that */
     int64_t kept;            /* links here that are not to be split */
     int64_t stop;            /* the signal that this rank has got, 0: none */
+    int64_t of_patches; /* links here that are to be split and have a patch in them */
 };
 
 /* Links of all ranks before a stage. */
 struct level {
     int64_t prolific, kept;
+    int64_t of_patches; /* prolific ones with a patch in them: clusters need no new
+                           children */
 };
+
+static int64_t count_of_patches(const struct link_list *list)
+{
+    int64_t count = 0;
+    for (int64_t i = 0; i < list->count; i++)
+        count += !node_is_cluster(list->items[i].p) || !node_is_cluster(list->items[i].q);
+    return count;
+}
 
 static int64_t load_of(const struct link_list *list)
 {
@@ -41,28 +52,25 @@ static int64_t load_of(const struct link_list *list)
     return load;
 }
 
-/* What it takes to look at a link and its patches; at a clear one (rad/oracle.h): 1. */
-enum { LOOK_LOAD = 16 };
-
 /* Moves the links that are to be split from the rank's links to `prolific`. */
 static void select_prolific(struct solver *solver, struct link_list *prolific)
 {
     int64_t kept = 0;
-    struct phase_work looks = {.kind = WORK_LOOKS, .iteration = solver->pass};
+    double start = comm_seconds();
+    struct phase_work looks = {.kind = WORK_LOOKS, .iteration = solver->pass,
+                               .work = solver->links.count};
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
-        bool clear = !node_is_cluster(link.p) && !node_is_cluster(link.q) && oracle_is_clear(&solver->method, &link);
-        looks.work += clear ? 1 : LOOK_LOAD;
-        if (!clear && node_to_split(&solver->method, &link) != NODE_NONE) {
+        if (node_to_split(&solver->method, &link) != NODE_NONE) {
             link_list_append(prolific, link);
             continue;
         }
-        if (!clear)
-            node_divide_patches(&solver->method, &link);
+        node_divide_patches(&solver->method, &link);
         solver->links.items[kept++] = link;
     }
     solver->links.count = kept;
     ledger_add(&solver->ledger, looks);
+    solver->seconds[PHASE_LOOKS] += comm_seconds() - start;
 }
 
 /* LoadBalance of Algorithm 1: first the total exchange of loads. loads[r]: what it is
@@ -72,7 +80,8 @@ static struct level exchange_loads(struct solver *solver,
 {
     const struct comm *comm = solver->comm;
     struct load_notice own = {.links = prolific->count, .load = load_of(prolific),
-                              .kept = solver->links.count, .stop = signals_seen()};
+                              .kept = solver->links.count, .stop = signals_seen(),
+                              .of_patches = count_of_patches(prolific)};
     struct load_notice *notices = alloc_array((size_t)comm->size, sizeof *notices);
     double start = comm_seconds();
     MPI_Request request;
@@ -80,21 +89,25 @@ static struct level exchange_loads(struct solver *solver,
                    comm->handle, &request);
     comm_wait(&request);
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
-    struct level sum = {0, 0};
+    struct level sum = {0, 0, 0};
     for (int r = 0; r < comm->size; r++) {
         loads[r] = notices[r].load;
         sum.prolific += notices[r].links;
         sum.kept += notices[r].kept;
-        solver->stop = (int)notices[r].stop > solver->stop ? (int)notices[r].stop : solver->stop;
+        sum.of_patches += notices[r].of_patches;
+        solver->stop =
+            (int)notices[r].stop > solver->stop ? (int)notices[r].stop : solver->stop;
     }
     alloc_free(notices);
     return sum;
 }
 
 /* Then links move. Returns the bytes sent. */
-static int64_t deal_links(struct solver *solver, struct link_list *links, const int64_t *loads)
+static int64_t deal_links(struct solver *solver, struct link_list *links,
+                          const int64_t *loads)
 {
-    if (!moving_pays(loads, solver->comm->size)) /* the same on all ranks, so all enter, or none */
+    if (!moving_pays(
+            loads, solver->comm->size)) /* the same on all ranks, so all enter, or none */
         return 0;
     double start = comm_seconds();
     int64_t bytes = links_balance(solver, links, link_load, loads);
@@ -104,10 +117,12 @@ static int64_t deal_links(struct solver *solver, struct link_list *links, const 
 }
 
 /* Splits a link; its children go to `next` or to the rank's links. */
-static void split_link(struct solver *solver, const struct link *link, struct link_list *next)
+static void split_link(struct solver *solver, const struct link *link,
+                       struct link_list *next)
 {
     struct method *method = &solver->method;
     struct link children[NODE_CHILDREN_MAX];
+    int64_t before = method_work(method), waiting = next->count;
     int count = node_link_split(method, link, node_to_split(method, link), children);
     for (int k = 0; k < count; k++) {
         bool goes_on = node_to_split(method, &children[k]) != NODE_NONE;
@@ -115,12 +130,15 @@ static void split_link(struct solver *solver, const struct link *link, struct li
             node_link_settle(method, &children[k]);
         link_list_append(goes_on ? next : &solver->links, children[k]);
     }
+    if (solver->watch)
+        solver->watch(solver->watcher, link_load(link), method_work(method) - before,
+                      next->count - waiting);
 }
 
-/* Splits links until that took as much work as the limit, or a signal has come; the others stay.
- * `part`: of the level, that which is left. */
-static void split_stage(struct solver *solver, struct link_list *links, double part, int64_t limit,
-                        struct link_list *next, struct phase_work *phase)
+/* Splits links until that took as much work as the limit, or a signal has come; the
+ * others stay. `part`: of the level, that which is left. */
+static void split_stage(struct solver *solver, struct link_list *links, double part,
+                        int64_t limit, struct link_list *next, struct phase_work *phase)
 {
     double start = comm_seconds();
     int64_t before = method_work(&solver->method), done = 0;
@@ -136,21 +154,24 @@ static void split_stage(struct solver *solver, struct link_list *links, double p
     }
     links->count -= done;
     if (links->count > 0)
-        memmove(links->items, links->items + done, (size_t)links->count * sizeof *links->items);
+        memmove(links->items, links->items + done,
+                (size_t)links->count * sizeof *links->items);
     phase->work = method_work(&solver->method) - before;
     ledger_add(&solver->ledger, *phase);
     solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
 }
 
 /* Splits all links of a level, stage by stage. loads[r]: as exchanged. */
-static void split_level(struct solver *solver, struct link_list *links, struct phase_work phase, int64_t *loads,
-                        struct link_list *next)
+static void split_level(struct solver *solver, struct link_list *links,
+                        struct phase_work phase, int64_t *loads, struct link_list *next)
 {
     int64_t limit = 0;
     double part = 1.0;
     for (int stage = 0; limit < INT64_MAX; stage++) {
         if (stage > 0)
             exchange_loads(solver, links, loads);
+        if (solver->stop) /* the same on all ranks; the pass is lost */
+            return;
         limit = solver->method.criterion.balance == BALANCE_GREEDY
                     ? INT64_MAX : links_limit(loads, solver->comm->size, stage);
         phase.bytes = deal_links(solver, links, loads);
@@ -161,8 +182,9 @@ static void split_level(struct solver *solver, struct link_list *links, struct p
     }
 }
 
-/* All ranks learn which patches were split here: the trees are the same everywhere before light is
- * transferred, since a link deals light to the children of a patch, if there are any. */
+/* All ranks learn which patches were split here: the trees are the same everywhere before
+ * light is transferred, since a link deals light to the children of a patch, if there are
+ * any. */
 static void share_splits(struct solver *solver)
 {
     struct forest *forest = solver->method.forest;
@@ -191,26 +213,35 @@ static void share_splits(struct solver *solver)
 /* A link that is being split and its four children. */
 enum { LINKS_PER_SPLIT = 5 };
 
-/* A link that is looked at may give both its patches children; one that is split, a patch too. */
-enum { PATCHES_PER_LOOK = 8, PATCHES_PER_SPLIT = 4 + 4 * PATCHES_PER_LOOK };
+/* A link that is looked at may give both its patches children; one that is split, a patch
+ * too. */
+enum { PATCHES_PER_LOOK = 8, LOOKS_PER_SPLIT = 4 };
 
-/* True if the memory limit lets the level be split. `made` is a bound on the patches that all ranks
- * have made before and not shared; only where it is not good enough are they shared and counted. */
+/* True if there is room for splitting a level when there are so many patches. */
+static bool has_room(const struct solver *solver, const struct level *level,
+                     int64_t patches)
+{
+    int64_t links = level->kept + LINKS_PER_SPLIT * level->prolific;
+    return memory_has_room(&solver->memory, links, level->of_patches, patches,
+                           solver->tree ? solver->tree->count : 0);
+}
+
+/* True if the memory limit lets the level be split. `made` is a bound on the patches that
+ * all ranks have made before and not shared; only where it is not good enough are they
+ * shared and counted. */
 static bool level_fits(struct solver *solver, const struct level *level, int64_t *made)
 {
-    const struct memory *memory = &solver->memory;
-    int64_t links = level->kept + LINKS_PER_SPLIT * level->prolific;
-    int64_t clusters = solver->tree ? solver->tree->count : 0;
-    if (memory_has_room(memory, links, level->prolific, solver->shared + *made, clusters))
+    if (has_room(solver, level, solver->shared + *made))
         return true;
     share_splits(solver);
     *made = 0;
-    return memory_has_room(memory, links, level->prolific, solver->shared, clusters);
+    return has_room(solver, level, solver->shared);
 }
 
-/* Splits level after level. Returns false if a signal ended that, and links are lost, or the memory
- * limit: then the links that were to be split are in `prolific`. */
-static bool split_levels(struct solver *solver, struct link_list *prolific, int64_t *loads)
+/* Splits level after level. Returns false if a signal ended that, and links are lost, or
+ * the memory limit: then the links that were to be split are in `prolific`. */
+static bool split_levels(struct solver *solver, struct link_list *prolific,
+                         int64_t *loads)
 {
     int64_t made = 0;
     for (int64_t level = 0;; level++) {
@@ -223,9 +254,12 @@ static bool split_levels(struct solver *solver, struct link_list *prolific, int6
             solver->memory.reached = solver->memory.limit;
         if (!fits || solver->stop)
             return false;
-        made += PATCHES_PER_SPLIT * links.prolific;
+        made +=
+            LOOKS_PER_SPLIT * PATCHES_PER_LOOK * links.prolific + 4 * links.of_patches;
         progress_begin(solver->progress, "refining", level, links.prolific);
-        struct phase_work phase = {.kind = WORK_SPLITTING, .iteration = solver->pass, .level = level,
+        struct phase_work phase = {.kind = WORK_SPLITTING,
+                                   .iteration = solver->pass,
+                                   .level = level,
                                    .links = prolific->count};
         struct link_list next = {0};
         solver->split_here += prolific->count;
@@ -238,11 +272,13 @@ static bool split_levels(struct solver *solver, struct link_list *prolific, int6
 /* What refinement reads of the solution so far. */
 static void prepare(struct solver *solver)
 {
-    oracle_prepare(&solver->method);
+    double start = comm_seconds();
+    forest_bound(solver->method.forest);
     if (solver->tree) {
         cluster_light_pull(solver->method.clusters, solver->method.forest);
         cluster_light_bound(solver->method.clusters, solver->method.forest);
     }
+    solver->seconds[PHASE_PREPARE] += comm_seconds() - start;
 }
 
 static void begin_pass(struct solver *solver)
@@ -258,6 +294,7 @@ static void begin_pass(struct solver *solver)
 void solver_link_top(struct solver *solver)
 {
     link_list_append(&solver->links, node_link_top());
+    solver->alike = true;
 }
 
 /* Keeps every P-th link. */
@@ -269,19 +306,22 @@ static void keep_share(const struct comm *comm, struct link_list *list)
     list->count = kept;
 }
 
-/* A level is dealt when it has so many links for each rank. */
-enum { LINKS_TO_DEAL = 64 };
-
-/* All ranks have the same links, and split the same ones level by level until there are enough to deal.
- * Then each keeps its share. What all did alike counts once. */
+/* All ranks have the same links, and split the same ones level by level until there are
+ * enough to deal. Then each keeps its share. What all did alike counts once. */
 static void split_alike(struct solver *solver, struct link_list *level)
 {
     struct method *method = &solver->method;
     struct octree_counts counts = method->counts;
     int64_t before = method_work(method), estimating = method->estimating;
-    int64_t spared = method->rays_spared, split = 0;
-    while (level->count > 0 && level->count < LINKS_TO_DEAL * solver->comm->size) {
+    int64_t spared = method->rays_spared, walled_off = method->walled_off, split = 0;
+    for (int64_t i = 0; i < solver->links.count;
+         i++) /* the top, if it is not to be split */
+        node_link_settle(method, &solver->links.items[i]);
+    while (level->count > 0 && !level_is_dealt(level->count)) {
+        struct level links = {level->count, solver->links.count, count_of_patches(level)};
         struct link_list next = {0};
+        if (!has_room(solver, &links, method->forest->count))
+            break;
         for (int64_t i = 0; i < level->count; i++)
             split_link(solver, &level->items[i], &next);
         split += level->count;
@@ -293,13 +333,27 @@ static void split_alike(struct solver *solver, struct link_list *level)
     ledger_add(&solver->ledger, phase);
     keep_share(solver->comm, &solver->links);
     keep_share(solver->comm, level);
+    solver->alike = false;
     if (solver->comm->rank == 0) {
         solver->split_here += split;
     } else {
         method->counts = counts;
         method->estimating = estimating;
         method->rays_spared = spared;
+        method->walled_off = walled_off;
     }
+}
+
+/* The links that the memory limit leaves as they are join the others. At the end all ranks agree on
+ * whether a signal has come meanwhile. */
+static void keep_unsplit(struct solver *solver, const struct link_list *prolific, int64_t *loads)
+{
+    for (int64_t i = 0; i < prolific->count && !(i % 64 == 0 && signals_seen()); i++) {
+        struct link link = prolific->items[i];
+        node_link_settle(&solver->method, &link);
+        link_list_append(&solver->links, link);
+    }
+    exchange_loads(solver, prolific, loads);
 }
 
 bool solver_refine(struct solver *solver)
@@ -312,15 +366,13 @@ bool solver_refine(struct solver *solver)
     if (memory->limit == 0 || memory->reached != memory->limit) {
         memory->reached = 0;
         select_prolific(solver, &prolific);
-        if (solver->tree && solver->pass == 1)
+        if (solver->alike)
             split_alike(solver, &prolific);
         solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
         int64_t *loads = alloc_array((size_t)solver->comm->size, sizeof *loads);
         done = split_levels(solver, &prolific, loads);
-        for (int64_t i = 0; i < prolific.count; i++) { /* none, if it is done */
-            node_link_settle(&solver->method, &prolific.items[i]);
-            link_list_append(&solver->links, prolific.items[i]);
-        }
+        if (!done && !solver->stop) /* the same on all ranks */
+            keep_unsplit(solver, &prolific, loads);
         alloc_free(loads);
         link_list_free(&prolific);
         share_splits(solver);

@@ -51,18 +51,23 @@ void solver_transfer(struct solver *solver)
     if (corrects)
         correct_senders(forest, &solver->closure);
     clear_own_flux(solver);
-    solver->flux = flux_unit_for(largest_radiosity(solver) * solver->method.area);
+    double room = solver->tree ? 2.0 : 1.0; /* a node receives over links of its cluster, too */
+    solver->flux = flux_unit_for(room * largest_radiosity(solver) * solver->method.area);
     if (solver->tree) {
         cluster_light_pull(solver->method.clusters, forest);
         memset(solver->method.clusters->flux, 0,
                BANDS * (size_t)solver->tree->count * sizeof *solver->method.clusters->flux);
-        node_links_transfer(&solver->links, &solver->method, solver->flux);
-    } else {
-        links_transfer(&solver->links, forest, solver->flux);
     }
+    double begun = comm_seconds();
+    if (solver->tree)
+        node_links_transfer(&solver->links, &solver->method, solver->flux);
+    else
+        links_transfer(&solver->links, forest, solver->flux);
+    double done = comm_seconds();
     if (corrects)
         forest_restore(forest, kept);
-    solver->seconds[PHASE_SOLVE] += comm_seconds() - start;
+    solver->seconds[PHASE_SOLVE] += done - begun;
+    solver->seconds[PHASE_SUMS] += comm_seconds() - done + begun - start;
 }
 
 /* --- conjugate gradients --- */

@@ -12,6 +12,7 @@
 
 #include "geom/alloc.h"
 #include "mpi/broadcast.h"
+#include "mpi/memory.h"
 #include "rad/treecode.h"
 
 struct solver *solver_create(const struct comm *comm, const struct scene *scene,
@@ -22,7 +23,12 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     solver->comm = comm;
     solver->method = method_make(scene, octree, forest_create(scene), criterion);
     if (criterion->linking == LINKING_TREE) {
-        solver->tree_block = tree_broadcast(comm, node_policy(), scene, &solver->tree);
+        double start = comm_seconds();
+        int32_t *met = octree ? places_gather(comm, scene, octree) : NULL;
+        solver->seconds[PHASE_SPACES] = comm_seconds() - start;
+        solver->tree_block = tree_broadcast(comm, node_policy(), scene, met, &solver->tree);
+        alloc_free(met);
+        solver->seconds[PHASE_TREE] = solver->tree_block.seconds;
         solver->method.clusters = cluster_light_create(solver->tree);
         solver->method.forest->above = alloc_array(roots, sizeof *solver->method.forest->above);
     }
@@ -63,7 +69,8 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
     for (int64_t p = 0; p < forest->count; p++)
         forest->patches[p].radiosity = (struct rgb){{1.0, 0.0, 0.0}};
     int64_t bytes = solver->bytes_gather, copied = solver->copied; /* not of the method */
-    double seconds = solver->seconds[PHASE_GATHER];
+    double start = comm_seconds(), seconds[PHASE_COUNT];
+    memcpy(seconds, solver->seconds, sizeof seconds);
     routes_renew(solver); /* a finished run that was resumed has none */
     enum closure_kind kind = solver->closure.kind;
     solver->closure.kind = CLOSURE_NONE;
@@ -73,7 +80,7 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
     solver_gather(solver);
     solver->bytes_gather = bytes;
     solver->copied = copied;
-    solver->seconds[PHASE_GATHER] = seconds;
+    memcpy(solver->seconds, seconds, sizeof seconds);
     struct closure_sums own = closure_measure(forest, solver->own, solver->flux);
     struct closure_sums *all = alloc_array((size_t)comm->size, sizeof *all);
     struct closure_sums sum = {.min = HUGE_VAL, .max = -HUGE_VAL};
@@ -94,6 +101,7 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
     stats->closure_max = sum.max;
     stats->closure_mean = (double)sum.rows / area;
     stats->closure_rms = sqrt((double)sum.squares / area);
+    solver->seconds[PHASE_ROW_SUMS] += comm_seconds() - start;
 }
 
 void solver_record_iteration(struct solver *solver)
@@ -148,7 +156,7 @@ static void report_seconds(const struct solver *solver, struct stats *stats)
     alloc_free(all);
 }
 
-enum { COUNT_SUMS = 8 + 4 };
+enum { COUNT_SUMS = 9 + 4 };
 
 /* 0: open, 1: seen, 2: partly, 3: unseen. */
 static int kind_of(const struct link *link)
@@ -162,10 +170,10 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     int64_t own[COUNT_SUMS] = {counts->rays, counts->node_tests, counts->triangle_tests,
                                solver->bytes_migration, solver->bytes_gather,
                                solver->bytes_scatter, solver->method.walled_off,
-                               solver->method.rays_spared};
-    int64_t sum[COUNT_SUMS], largest[2] = {peak_memory(), comm_messages()};
+                               solver->method.rays_spared, peak_memory()};
+    int64_t sum[COUNT_SUMS], largest[2] = {own[8], comm_messages()};
     for (int64_t i = 0; i < solver->links.count; i++)
-        own[8 + kind_of(&solver->links.items[i])]++;
+        own[9 + kind_of(&solver->links.items[i])]++;
     MPI_Request request;
     MPI_Iallreduce(own, sum, COUNT_SUMS, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
     comm_wait(&request);
@@ -177,10 +185,11 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     stats->bytes_scatter = sum[5];
     stats->walled_off = sum[6];
     stats->rays_spared = sum[7];
-    stats->links_open = sum[8];
-    stats->links_seen = sum[9];
-    stats->links_partly = sum[10];
-    stats->links_unseen = sum[11];
+    stats->peak_rss_bytes_sum = sum[8];
+    stats->links_open = sum[9];
+    stats->links_seen = sum[10];
+    stats->links_partly = sum[11];
+    stats->links_unseen = sum[12];
     MPI_Iallreduce(MPI_IN_PLACE, largest, 2, MPI_INT64_T, MPI_MAX, solver->comm->handle, &request);
     comm_wait(&request);
     stats->peak_rss_bytes = largest[0];
@@ -201,6 +210,9 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->links = vote->links;
     stats->passes = solver->pass;
     stats->iterations = solver->iteration;
+    stats->clusters = solver->tree ? solver->tree->count : 0;
+    stats->counted_bytes = memory_needed(1, stats->links, solver->method.forest->count,
+                                         stats->clusters);
     stats->memory_limited = solver->memory.reached > 0;
     stats->converged = vote->converged && !stats->memory_limited;
     stats->epsilon = solver->method.criterion.epsilon;

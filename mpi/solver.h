@@ -29,7 +29,7 @@ struct accuracy {
 struct memory {
     int64_t limit;   /* bytes, 0: none */
     int64_t reached; /* the limit that has ended linking or refinement, 0: none has */
-    int copies;      /* of the patches that count */
+    int copies;      /* of patches and clusters, that count */
 };
 
 /* What a rank says about an iteration; 136 bytes, no padding. */
@@ -57,6 +57,7 @@ struct solver {
     struct method method;     /* scene, octree, forest and criterion; the forest is owned */
     struct cluster_tree *tree;    /* above the roots; NULL: none. Owned, like all up to `links` */
     struct node_block tree_block; /* what it looks into */
+    bool alike;               /* all ranks have the same links: that of the top of the tree */
     struct link_list links;   /* the links that live here ("allInteractions") */
     int *owner;               /* [roots] home rank of each root */
     bool *own;                /* [roots] owner[root] == rank */
@@ -88,6 +89,10 @@ struct solver {
     int64_t copied;           /* patches whose flux or radiosity was copied, to be sent or as it came */
     int64_t recorded[3];                                  /* of the last three, in the ledger */
     struct ledger ledger;
+    /* For benches: is told of each link split here what that was predicted to take and took, in
+     * tests, and how many of its children are to be split too. NULL: nobody listens. */
+    void (*watch)(void *watcher, int64_t load, int64_t work, int64_t children);
+    void *watcher;
 };
 
 /* Sums over all ranks after an iteration; the same on all ranks. */
@@ -109,12 +114,13 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree, const struct criterion *criterion);
 void solver_destroy(struct solver *solver);
 
-/* Step 2: initial linking of all pairs of roots. False if a signal (solver->stop) or the
- * memory limit (memory.reached) has ended it: then only the first pairs have links. */
+/* Step 2: initial linking, of all pairs of roots, or, with a tree above the roots, as
+ * below. False if a signal (solver->stop) or the memory limit (memory.reached) has ended
+ * it: then only the first pairs have links. */
 bool solver_link_roots(struct solver *solver);
 
-/* Instead, with a tree above the roots: the link of its top with itself, on all ranks; the first
- * refinement splits it on all of them alike, until there are enough links to deal. */
+/* The link of the top of the tree with itself, on all ranks; the first refinement splits
+ * it on all of them alike, until there are enough links to deal. */
 void solver_link_top(struct solver *solver);
 
 /* Step 3: re-assignment. Roots get homes so that their work there is even, and the
@@ -125,7 +131,7 @@ void solver_assign_roots(struct solver *solver);
 /* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches were
  * split. Refinement that meets the memory limit ends there, and does not begin again as long as the
  * limit is the same. False if a signal (solver->stop) has ended it: then it counts as not begun, and
- * what was left to split will be found again by the next. */
+ * there is no light over the links there are. */
 bool solver_refine(struct solver *solver);
 
 /* Row sums of the links there are, and the closure. */

@@ -18,9 +18,10 @@
  * looked at, in two vectors: from w, u at one end and w', u' at the other, the crossing point has
  * u = (u w' - u' w) / (w' - w), and only signs matter.
  *
- * One segment alone goes down the same way, as a shaft without width, and sees a triangle by the same
- * comparisons in scalars. Segments that lead to places far apart are better off so: initial linking, which
- * asks for few segments of many pairs, took half as long when it was changed to that.
+ * One segment alone goes down the same way, as a shaft without width, and sees a triangle
+ * by the same comparisons in scalars. Segments that lead to places far apart are better
+ * off so: links of clusters ask for few segments each, and linking all pairs of roots by
+ * single ones takes half as long as by bundles.
  *
  * All of this is float, and every comparison keeps a margin for its rounding. A pair for which
  * the signs are not certain, near an edge or where an end point lies in the plane, is decided by

@@ -24,7 +24,6 @@
 
 #include <math.h>
 
-#include "geom/hash.h"
 #include "geom/lambert.h"
 
 enum { SUBAREAS = BUNDLE_ENDS, RAYS = BUNDLE_RAYS, ALL_RAYS = (1 << RAYS) - 1 };
@@ -95,26 +94,6 @@ static void subarea_centroids(const struct triangle *t, struct vec3 centroids[SU
     }
 }
 
-struct vec3 triangle_sample(const struct triangle *t, uint64_t seed)
-{
-    double u = hash_unit(seed), v = hash_unit(seed + 1);
-    bool beyond = u + v > 1.0;
-    u = beyond ? 1.0 - u : u;
-    v = beyond ? 1.0 - v : v;
-    struct vec3 along = vec3_add(vec3_scale(vec3_sub(t->corner[1], t->corner[0]), u),
-                                 vec3_scale(vec3_sub(t->corner[2], t->corner[0]), v));
-    return vec3_add(t->corner[0], along);
-}
-
-/* A point in each sub-area. */
-static void subarea_points(const struct triangle *t, uint64_t seed, struct vec3 points[SUBAREAS])
-{
-    for (int k = 0; k < SUBAREAS; k++) {
-        struct triangle child = triangle_child(t, k);
-        points[k] = triangle_sample(&child, seed + 2 * (uint64_t)k);
-    }
-}
-
 /* A pair while it is estimated. */
 struct pair {
     const struct facet *p, *q;
@@ -123,19 +102,14 @@ struct pair {
     unsigned visible;
 };
 
-static void pair_aim(struct pair *pair, const struct facet *p, const struct facet *q, uint64_t seed)
+static void pair_aim(struct pair *pair, const struct facet *p, const struct facet *q)
 {
     struct bundle *bundle = &pair->bundle;
     *bundle = (struct bundle){.own = {p->input, q->input}};
     pair->p = p;
     pair->q = q;
-    if (seed) {
-        subarea_points(&p->triangle, seed, bundle->from);
-        subarea_points(&q->triangle, seed + 2 * SUBAREAS, bundle->to);
-    } else {
-        subarea_centroids(&p->triangle, bundle->from);
-        subarea_centroids(&q->triangle, bundle->to);
-    }
+    subarea_centroids(&p->triangle, bundle->from);
+    subarea_centroids(&q->triangle, bundle->to);
     for (int ray = 0; ray < RAYS; ray++) {
         pair->kernels[ray] = disk_exchange(bundle->from[ray / SUBAREAS], p->plane.normal,
                                            0.25 * p->area, bundle->to[ray % SUBAREAS],
@@ -286,13 +260,9 @@ static struct exchange exchange_by_one(const struct facet *p, const struct facet
 {
     double unoccluded = exchange_guess(p, q);
     const int32_t own[2] = {p->input, q->input};
-    struct vec3 from = triangle_centroid(&p->triangle), to = triangle_centroid(&q->triangle);
-    if (sight->seed) {
-        from = triangle_sample(&p->triangle, sight->seed);
-        to = triangle_sample(&q->triangle, sight->seed + 2);
-    }
     bool seen = sight->open ||
-                !octree_blocks_segment(octree, from, to, own, &sight->blocker, counts);
+                !octree_blocks_segment(octree, triangle_centroid(&p->triangle),
+                                       triangle_centroid(&q->triangle), own, &sight->blocker, counts);
     return (struct exchange){.area = seen ? unoccluded : 0.0, .unoccluded = unoccluded,
                              .seen = seen ? 1.0 : 0.0, .apart = true,
                              .parts_p = {0.25, 0.25, 0.25, 0.25},
@@ -305,7 +275,7 @@ static struct exchange exchange_by_all(const struct facet *p, const struct facet
                                        struct octree_counts *counts)
 {
     struct pair pair;
-    pair_aim(&pair, p, q, sight->seed);
+    pair_aim(&pair, p, q);
     pair_look(&pair, look, octree, sight, counts);
     bool points = kind == FORM_FACTOR_POLYGON, apart = is_apart(p, q);
     struct side side_p = points ? side_by_points(&pair, true, apart) : side_by_disks(&pair, true);

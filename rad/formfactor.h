@@ -23,7 +23,6 @@ struct exchange {
 struct sight {
     bool open;       /* proved: nothing can stand between the patches */
     int32_t blocker; /* in and out: as *guess of octree_block() */
-    uint64_t seed;   /* of the points between which segments run; 0: the centroids of sub-areas */
 };
 
 /* One patch of a pair, as the kernel needs it. */
@@ -58,9 +57,6 @@ struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
 /* What the pair would exchange without blockers, by one disk from centroid to centroid: quick and
  * rough, for deciding how closely to look. 0 if the centroids do not face each other. */
 double exchange_guess(const struct facet *p, const struct facet *q);
-
-/* A point on a triangle, evenly distributed over seeds. */
-struct vec3 triangle_sample(const struct triangle *t, uint64_t seed);
 
 /* True if it is proved that nothing of one facet sees anything of the other: one wall stops all
  * nine segments between their corners. */

@@ -1,4 +1,5 @@
-/* Links, the paper's interactions: pairs of patches that exchange light.
+/* Links, the paper's interactions: pairs of patches that exchange light. (Of links with a
+ * cluster in them, which have the same fields, see rad/beyond/node_link.h.)
  *
  * Where a link lives can change no result: it reads the radiosities of the last iteration,
  * which are the same on all ranks, and adds integers. */
@@ -20,10 +21,11 @@
  *     G  x  (k0 k1 k2 k3)/256  x  (k0 k1 k2 k3)/256      both sum to 1
  */
 struct link {
-    int32_t p, q;        /* local numbers of the two patches */
+    int32_t p, q;        /* local numbers of the two patches; below 0: a cluster */
     float area;          /* exchange area, square scene units: G, visibility included, or, if
                             nothing is seen (seen = 0), what it would be without blockers */
-    int32_t blocker;     /* triangle that blocked last on the way here, -1: none */
+    int32_t blocker;     /* triangle that blocked last on the way here, -1: none; with a
+                            cluster: see rad/beyond/node_link.c */
     uint8_t parts_p[3], parts_q[3];
     uint8_t seen;        /* share of the segments' weight that arrives, in 252nds; 0 only if none
                             does; or one of the two below */
@@ -101,11 +103,11 @@ void link_list_sort(struct link_list *list);
 void link_list_append(struct link_list *list, struct link link);
 void link_list_free(struct link_list *list);
 
-/* Makes the link between two patches, given as facets too, with its form factor and its cost.
- * `inherited` is the cost of the link that it comes from, 0 for an initial link; `*sight` is what
- * is known of its visibility, and receives the last blocker.
- * False if no light can ever pass: both patches black and dark, or not facing each other. That no
- * ray arrived is no reason: such a link lives on with area 0. */
+/* Makes the link between two patches, given as facets too, with its form factor and its
+ * cost. `inherited` is the cost of the link of patches that it comes from, 0: of none;
+ * `*sight` is what is known of its visibility, and receives the last blocker. False if no
+ * light can ever pass: both patches black and dark, or not facing each other. That no ray
+ * arrived is no reason: such a link lives on with area 0. */
 bool link_make(struct method *method, int32_t p, const struct facet *facet_p, int32_t q,
                const struct facet *facet_q, double inherited, struct sight *sight,
                struct link *link);

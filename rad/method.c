@@ -4,8 +4,6 @@
  * every colour of light. */
 #include "rad/method.h"
 
-#include <math.h>
-
 /* The mean radiosity if all light were spread evenly in a closed scene: E / (1 - rho) of means. */
 static struct rgb typical_radiosity(const struct scene *scene)
 {
@@ -35,8 +33,6 @@ struct method method_make(const struct scene *scene, const struct octree *octree
         .area = scene_area(scene),
         .emitted_power = scene_emitted_power(scene),
         .link_threshold = criterion->epsilon * scene_emitted_power(scene),
-        .brightest = HUGE_VAL,
-        .contrast = HUGE_VAL,
         .typical = typical_radiosity(scene),
         .patch_threshold = criterion->min_area * scene_area(scene),
     };

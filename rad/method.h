@@ -51,8 +51,6 @@ struct method {
     double link_threshold;  /* W, areas in square scene units: epsilon times the emitted power */
     double patch_threshold; /* square scene units: no patch smaller than this is made */
     struct rgb typical;     /* a guess at the mean radiosity, W/m^2, before there is an answer */
-    double brightest;       /* no patch reflects more, summed over the bands, W/m^2 */
-    double contrast;        /* nor do radiosities within a root differ by more, W/m^2 */
     struct octree_counts counts; /* work of this rank so far */
     int64_t estimating;     /* work of this rank so far on form factors, in tests */
     int64_t rays_spared;    /* of 16 for each pair that this rank has looked at, those not fired */

@@ -131,22 +131,6 @@ static double error_of(const struct method *method, const struct link *link, int
            link_area(link) * mean_reflectance(forest, other) * oracle_range_within(forest, own);
 }
 
-/* The bound is rounded otherwise than the error: so much room is left. */
-static const double BELOW = 0.999;
-
-bool oracle_is_clear(const struct method *method, const struct link *link)
-{
-    if (method->criterion.oracle == ORACLE_BF)
-        return false;
-    double spread = 0.0, range = 0.0;
-    if (link->seen > 0) {
-        spread = spread_of(link, link->parts_p) + spread_of(link, link->parts_q);
-        range = 2.0 * link_area(link) * method->contrast;
-    }
-    return (2.0 * doubt_of(link) + spread) * method->brightest + range <=
-           BELOW * method->link_threshold;
-}
-
 static int32_t split_by_error(const struct method *method, const struct link *link)
 {
     const struct forest *forest = method->forest;
@@ -206,28 +190,6 @@ static double light_at_stake(const struct method *method, int32_t p, int32_t q)
                  reflectance_p.band[c] * real_max(typical, radiosity_q.band[c]);
     }
     return light;
-}
-
-static double positive_sum(struct rgb light)
-{
-    double sum = 0.0;
-    for (int c = 0; c < BANDS; c++)
-        sum += real_max(0.0, light.band[c]);
-    return sum;
-}
-
-void oracle_prepare(struct method *method)
-{
-    struct forest *forest = method->forest;
-    forest_bound(forest);
-    method->brightest = method->contrast = 0.0;
-    for (int64_t p = 0; p < forest->count; p++)
-        method->brightest = real_max(method->brightest,
-                                     positive_sum(forest->patches[p].radiosity));
-    for (int32_t root = 0; root < forest->root_count; root++) {
-        struct extremes e = forest->extremes[root];
-        method->contrast = real_max(method->contrast, (double)(e.high - e.low));
-    }
 }
 
 enum look oracle_look(const struct method *method, int32_t p, int32_t q, double guess)

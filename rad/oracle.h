@@ -7,14 +7,6 @@
 /* How closely a pair has to be looked at of which `guess` would be exchanged without blockers. */
 enum look oracle_look(const struct method *method, int32_t p, int32_t q, double guess);
 
-/* Bounds on the light there is, before a pass: extremes of the forest, brightest and contrast of the
- * method. No radiosity may change until the next time. */
-void oracle_prepare(struct method *method);
-
-/* True if these bounds tell that the link is fine and its patches need no children: most links of
- * most scenes, for which no patch has to be read. */
-bool oracle_is_clear(const struct method *method, const struct link *link);
-
 /* The patch of the link that the criterion wants to split, or -1 if the link is fine or splitting
  * is not allowed. Reads the radiosities of the last iteration. */
 int32_t oracle_patch_to_split(const struct method *method, const struct link *link);

@@ -127,7 +127,7 @@ bool snapshot_check(const struct snapshot *snapshot, struct error *error)
 struct link_check link_check_start(const struct snapshot *snapshot, const struct scene *scene,
                                    const struct cluster_tree *tree)
 {
-    struct link_check check = {.scene = scene, .tree = tree, .patch_count = snapshot->patch_count,
+    struct link_check check = {.scene = scene, .patch_count = snapshot->patch_count,
                                .cluster_count = tree ? tree->count : 0,
                                .most = (1.0 + 1e-6) * scene_area(scene)};
     size_t nodes = (size_t)(check.patch_count + check.cluster_count);
@@ -176,11 +176,13 @@ static bool are_nodes(const struct link_check *check, int32_t p, int32_t q)
     return node_is_cluster(p) || node_is_cluster(q) || check->root[p] != check->root[q];
 }
 
-/* What is in the place of the blocker: a triangle, or the judgement of a link of a cluster. */
+/* In the place of the blocker: a triangle, or the judgement of a link of a cluster, whose upper half
+ * is a number, finite and not negative. */
 static bool blocker_is_sane(const struct link_check *check, const struct link *link)
 {
+    const int32_t infinite = 0x7f800000;
     if (node_is_cluster(link->p) || node_is_cluster(link->q))
-        return link->blocker >= 0 && link->seen <= LINK_ALL_SEEN;
+        return link->blocker >= 0 && link->blocker < infinite && link->seen <= LINK_ALL_SEEN;
     return link->blocker >= -1 && link->blocker < check->scene->input_count;
 }
 
@@ -190,7 +192,7 @@ bool link_check_next(struct link_check *check, const struct link *link)
         return false;
     int64_t p = check->cluster_count + link->p, q = check->cluster_count + link->q;
     double smaller = fmin(check->area[p], check->area[q]);
-    double most = link->seen > 0 ? smaller : check->most;
+    double most = link->seen > 0 ? (1.0 + 1e-6) * smaller : check->most; /* rounding */
     if (!(smaller > 0.0 && link->area >= 0.0f && (double)link->area <= most) ||
         link->seen > LINK_OPEN || !blocker_is_sane(check, link) ||
         !parts_are_sane(link->parts_p) || !parts_are_sane(link->parts_q))

@@ -2,7 +2,7 @@
  * Patches have no local numbers here; they are counted roots in order, each tree depth first
  * (forest_order()), so it is the same on any number of ranks.
  *
- * The state after initial linking, before the first pass, is one of these too. */
+ * That all pairs of roots are linked, before the first pass, is such a state, too. */
 #ifndef RAD_SNAPSHOT_H
 #define RAD_SNAPSHOT_H
 
@@ -71,10 +71,10 @@ static inline int64_t snapshot_leaf_count(const struct snapshot *snapshot)
  * Errors: what is wrong, without a file's name, EXIT_USAGE. */
 bool snapshot_check(const struct snapshot *snapshot, struct error *error);
 
-/* Links of a snapshot, looked at one after the other; p and q are its patch numbers. */
+/* Links of a snapshot, looked at one after the other; p and q are its patch numbers, or
+ * below 0: clusters. */
 struct link_check {
     const struct scene *scene; /* borrowed, */
-    const struct cluster_tree *tree; /* as is the tree; NULL: there are no clusters */
     int64_t patch_count, cluster_count;
     int32_t *root;             /* [patch_count] */
     double *area;              /* [cluster_count + patch_count] square scene units; that of a node at
@@ -85,13 +85,14 @@ struct link_check {
     bool begun;
 };
 
-/* Pre: snapshot_check() has said yes, and root_count is that of the scene. Borrows scene and tree. */
+/* Pre: snapshot_check() has said yes, and root_count is that of the scene. Borrows the scene.
+ * `tree`: NULL if there are no clusters. */
 struct link_check link_check_start(const struct snapshot *snapshot, const struct scene *scene,
                                    const struct cluster_tree *tree);
 void link_check_free(struct link_check *check);
 
-/* True if the next link is one that a run could have: numbers in their ranges, no pair of patches
- * twice, no patch that receives from more than there is, ascending order. */
+/* True if the next link is one that a run could have: numbers in their ranges, no pair of
+ * nodes twice, no node that receives from more than there is, ascending order. */
 bool link_check_next(struct link_check *check, const struct link *link);
 
 #endif

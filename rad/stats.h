@@ -9,6 +9,16 @@
 enum phase {
     PHASE_TOTAL, PHASE_READ, PHASE_LINKING, PHASE_REFINEMENT, PHASE_IDLE, PHASE_MIGRATION,
     PHASE_GATHER, PHASE_PUSH_PULL, PHASE_SCATTER, PHASE_SOLVE, PHASE_RENDER, PHASE_WRITE,
+    PHASE_OCTREE,    /* part of READ: rank 0 builds the octree */
+    PHASE_SPACES,    /* part of READ: rays by which the tree tells spaces apart */
+    PHASE_TREE,      /* part of READ: rank 0 builds the tree above the roots */
+    PHASE_PREPARE,   /* part of REFINEMENT: the solution so far is made ready, on all ranks */
+    PHASE_LOOKS,     /* part of REFINEMENT: which links are to be split? */
+    PHASE_SUMS,      /* sums through clusters and over all patches, on all ranks */
+    PHASE_ROUTES,    /* the routes and what belongs to each patch, on all ranks */
+    PHASE_ROW_SUMS,  /* the row sums that a run reports */
+    PHASE_SHADING,   /* part of RENDER: the blend of all leaves, on all ranks */
+    PHASE_VIEWPOINT, /* part of RENDER: a place for the camera, on all ranks */
     PHASE_COUNT
 };
 
@@ -18,20 +28,21 @@ struct spread {
 };
 
 /* One level of refinement: how even the work was. Cost and work in box and triangle
- * tests; a form factor counts as eight. Initial linking, of which nothing is predicted,
- * is level 0 of iteration 0. */
+ * tests; a form factor counts as eight. Linking, of which nothing is predicted, is level
+ * 0 of iteration 0: all pairs of roots, or the levels below the top of the tree that all
+ * ranks split alike. */
 struct level_balance {
     int64_t iteration, level;
-    int64_t links; /* that were split; in initial linking, that were made */
+    int64_t links; /* that were split; of all pairs, that were made */
     double predicted_max, predicted_mean; /* cost over ranks, as it was dealt */
     double work_max, work_mean;           /* tests that were then done */
 };
 
 /* What ranks do, and in what it is counted. */
 enum work {
-    WORK_LINKING,   /* initial linking: tests, as above */
-    WORK_LOOKS,     /* what is to be split? links looked at, one that carries light as 16 */
-    WORK_SPLITTING, /* refinement: tests, as above */
+    WORK_LINKING,   /* linking, as above: tests */
+    WORK_LOOKS,     /* links looked at between passes */
+    WORK_SPLITTING, /* refinement: tests */
     WORK_TRANSFER,  /* links over which light was transferred */
     WORK_OWN,       /* own patches in push-pull */
     WORK_PATCHES,   /* patches copied: out to be sent, own ones too; in when they have come */
@@ -49,7 +60,9 @@ struct work_sums {
 struct stats {
     int64_t ranks, triangles, roots, patches, leaves, links, passes, iterations;
     bool converged;
-    bool memory_limited;                                /* refinement ended for want of memory */
+    int64_t clusters;      /* of the tree above the roots, 0: there is none */
+    int64_t counted_bytes; /* of links, patches and clusters, as --memory counts them: one copy */
+    bool memory_limited;                                /* linking or refinement ended there */
     double epsilon;                                     /* relative to the emitted power */
     double error_estimate;                              /* of the leaves, with --accuracy, or 0 */
     double emitted_power, absorbed_power, escaped_power; /* W, input units, sum over bands */
@@ -70,7 +83,9 @@ struct stats {
     struct work_sums work[WORK_COUNT];
     int64_t exchanges; /* collective operations */
     int64_t messages;  /* log P for each, and links sent or received; the most of any rank */
+    int64_t bytes_broadcast;                              /* scene, octree and tree, one copy */
     int64_t peak_rss_bytes;                               /* largest over ranks; 0 if unknown */
+    int64_t peak_rss_bytes_sum; /* sum over ranks; what they share counts for each */
 };
 
 #endif

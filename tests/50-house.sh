@@ -11,14 +11,15 @@ forbidden() {
 check "geom/ includes no other layer" forbidden geom 'octree|rad|mpi|io'
 check "octree/ includes geom/ only" forbidden octree 'rad|mpi|io'
 check "rad/ includes neither mpi/ nor io/" forbidden rad 'mpi|io'
+check "nor does rad/beyond/" forbidden rad/beyond 'mpi|io'
 check "io/ does not include mpi/" forbidden io 'mpi'
 check "mpi/ does not include io/" forbidden mpi 'io'
 
-mpi_outside=$(grep -lE '<mpi\.h>|\bMPI_[A-Z]' phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] io/*.[ch])
+mpi_outside=$(grep -lE '<mpi\.h>|\bMPI_[A-Z]' phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] io/*.[ch])
 check "MPI is used in mpi/ only" [ -z "$mpi_outside" ]
 
 missing=
-for file in phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] mpi/*.[ch] mpi/serial/*.h io/*.[ch] tests/*.[ch] \
+for file in phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] mpi/*.[ch] mpi/serial/*.h io/*.[ch] tests/*.[ch] \
     tests/*.sh tests/bench/* tests/fuzz/*.[ch] scenes/*; do
     stem=$(echo "$file" | sed 's/\.[ch]$//')
     grep -q "\`$stem" README.md || grep -q "\`$(basename "$stem")" README.md ||
@@ -34,7 +35,7 @@ check "which has seven lines" [ "$(wc -l <"$work/summary")" -eq 7 ]
 $MAKE BUILD="$BUILD" install DESTDIR="$work/root" prefix=/opt/phr >"$work/install.log" 2>&1
 check "install: the program runs" [ "$("$work/root/opt/phr/bin/phr" --version)" = "$(./phr --version)" ]
 check "install: the man page is there" [ -s "$work/root/opt/phr/share/man/man1/phr.1" ]
-check "install: imgdiff runs" [ "$("$work/root/opt/phr/bin/imgdiff" --version)" = "imgdiff 0.1" ]
+check "install: imgdiff runs" [ "$("$work/root/opt/phr/bin/imgdiff" --version)" = "imgdiff 0.2" ]
 check "install: its man page is there" [ -s "$work/root/opt/phr/share/man/man1/imgdiff.1" ]
 $MAKE BUILD="$BUILD" uninstall DESTDIR="$work/root" prefix=/opt/phr >>"$work/install.log" 2>&1
 check "uninstall leaves no file" [ -z "$(find "$work/root" -type f)" ]

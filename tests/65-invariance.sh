@@ -45,7 +45,8 @@ check "in metres: a million times less power, within 1e-4" \
     holds "($a - 1e6 * $b < 1e-4 * $a) && (1e6 * $b - $a < 1e-4 * $a)"
 
 # A lamp far away that shines into the void, with 200 times the power of the other, is no reason to look less
-# closely at what the other lights: with as much less epsilon, as many links.
+# closely at what the other lights: with as much less epsilon, as many links. A fifth more or less, since
+# clusters are cut by place, direction and size, of which place is told in units of the scene's box.
 cp scenes/cornell.mtl "$work/void.mtl"
 printf 'newmtl away\nKd 0 0 0\nKe 200 200 200\n' >>"$work/void.mtl"
 {
@@ -57,6 +58,6 @@ emitted=$(stat_of "$work/plain.json" emitted_power)
     --epsilon "$(awk "BEGIN { printf \"%.9g\", 1e-4 * $emitted / ($emitted + 3e8) }")"
 a=$(stat_of "$work/plain.json" links)
 b=$(stat_of "$work/void.json" links)
-check "beside a strong lamp that shines into the void: links $a, $b" holds "($b - $a)^2 < (0.05 * $a)^2"
+check "beside a strong lamp that shines into the void: links $a, $b" holds "($b - $a)^2 < (0.2 * $a)^2"
 
 tap_done

@@ -47,40 +47,46 @@ refused() {
     return 1
 }
 
-# --- link caches ---
+# --- link caches: of all pairs ---
 
-run plain 2 $cornell
+pairs="$cornell --linking pairs"
+run plain 2 $pairs
 for ranks in 1 3 4; do
-    run save-$ranks $ranks $cornell --save-links "$work/links-$ranks"
+    run save-$ranks $ranks $pairs --save-links "$work/links-$ranks"
 done
 check "a link cache by 3 ranks is that by 1" cmp "$work/links-3" "$work/links-1"
 check "and that by 4" cmp "$work/links-4" "$work/links-1"
 check "saving changes nothing" same save-3 plain
-run load 2 $cornell --load-links "$work/links-4"
+run load 2 $pairs --load-links "$work/links-4"
 check "2 ranks go on from it" same load plain
-run load-closed 3 $cornell --load-links "$work/links-1" --closure rows --tolerance 1e-3
-run closed 1 $cornell --closure rows --tolerance 1e-3
+run load-closed 3 $pairs --load-links "$work/links-1" --closure rows --tolerance 1e-3
+run closed 1 $pairs --closure rows --tolerance 1e-3
 check "other settings than those of links are free" same load-closed closed
 
 cp scenes/cornell.obj "$work/moved.obj"
 cp scenes/cornell.mtl "$work/cornell.mtl"
-run moved 2 "$work/moved.obj" --epsilon 1e-4 --size 40x40 --quiet --load-links "$work/links-1"
+run moved 2 "$work/moved.obj" --epsilon 1e-4 --linking pairs --size 40x40 --quiet --load-links "$work/links-1"
 check "the scene may have moved" same moved plain
 sed 's/^Kd 0.7/Kd 0.6/' scenes/cornell.mtl >"$work/cornell.mtl"
 check "another material is another scene" refused "$work/links-1: made from another scene" \
-    "$work/moved.obj" --epsilon 1e-4 --load-links "$work/links-1"
+    "$work/moved.obj" --epsilon 1e-4 --linking pairs --load-links "$work/links-1"
 for other in "--epsilon 1e-3" "--oracle bf" "--form-factor disk" "--two-sided"; do
     case $other in --epsilon*) was=0.0001 ;; --oracle*) was=error ;; *disk) was=polygon ;; *) was=off ;; esac
     check "made without $other" \
-        refused "$work/links-1: made with ${other%% *} $was" $cornell --load-links "$work/links-1" $other
+        refused "$work/links-1: made with ${other%% *} $was" $pairs --load-links "$work/links-1" $other
 done
-$MPIEXEC -n 2 "$PHR" $cornell --two-sided --save-links "$work/links-two"
+$MPIEXEC -n 2 "$PHR" $pairs --two-sided --save-links "$work/links-two"
 check "made without --two-sided-lamps" \
-    refused "$work/links-two: made with --two-sided-lamps off" $cornell \
+    refused "$work/links-two: made with --two-sided-lamps off" $pairs \
     --load-links "$work/links-two" --two-sided-lamps
+for option in --save-links --load-links; do
+    check "the tree has none: $option" refused "$option goes with --linking pairs (--paper)" \
+        $cornell $option "$work/links-1"
+done
 
 # --- checkpoints ---
 
+run plain 2 $cornell
 for ranks in 1 3 4; do
     $MPIEXEC -n $ranks "$PHR" $cornell --max-iterations 8 --checkpoint "$work/check-$ranks"
 done
@@ -117,6 +123,9 @@ resumes symmetric 8 --closure symmetric --max-level 3
 
 check "--closure is bound" refused "$work/check-1: made with --closure cap, this run has --closure none" \
     $cornell --resume "$work/check-1" --closure none
+check "so is --linking" \
+    refused "$work/check-1: made with --linking tree, this run has --linking pairs" \
+    $pairs --resume "$work/check-1"
 check "so are twins of lamps" refused \
     "$work/two-sided.check: made with --two-sided-lamps off" \
     $cornell --max-level 4 --resume "$work/two-sided.check" --two-sided-lamps
@@ -128,6 +137,34 @@ check "one that is cut off" refused "$work/cut: damaged: " $cornell --resume "$w
 cp "$work/check-1" "$work/flipped"
 printf x | dd of="$work/flipped" bs=1 seek=5000 conv=notrunc 2>/dev/null
 check "one with a changed byte" refused "$work/flipped: damaged: its checksum" $cornell --resume "$work/flipped"
+
+# --- stopped at ten moments ---
+
+# A run that is stopped N ms after it began, and goes on elsewhere: on 1, 2 or 4 ranks. One that has
+# no checkpoint yet says nothing of it; then there is nothing to go on from, and one too late to be
+# stopped goes on as well.
+fine="scenes/cornell.obj --epsilon 3e-6 --size 40x40"
+run straight 2 $fine --quiet
+begun=0
+for moment in 1 2 3 4 5 6 7 8 9 10; do
+    rm -f "$work/stopped"
+    $MPIEXEC -n 3 "$PHR" $fine --checkpoint "$work/stopped" >/dev/null 2>"$work/stopped.err" &
+    launched=$!
+    sleep "$(awk "BEGIN { print 0.15 * $moment }")"
+    kill -TERM $launched 2>/dev/null
+    asked=$(date +%s)
+    wait $launched
+    check "stopped at moment $moment, within 3 s" [ $(($(date +%s) - asked)) -le 3 ]
+    if [ -e "$work/stopped" ]; then
+        begun=$((begun + 1))
+        run stopped $((1 << moment % 3)) $fine --quiet --resume "$work/stopped"
+        check "and goes on to the same bytes" same stopped straight
+    else
+        check "which does not say how to go on" \
+            [ "$(grep -c -- --resume "$work/stopped.err")" -eq 0 ]
+    fi
+done
+check "most of these had begun ($begun)" [ $begun -ge 5 ]
 
 # --- memory ---
 

@@ -91,17 +91,17 @@ check "the checkpoint is whole" goes_on check
 
 # --- SIGTERM ---
 
-start 3 $scene -o "$work/new.pfm" --checkpoint "$work/check" --every 1000
+start 3 $scene -o "$work/new.pfm" --checkpoint "$work/check"
 check "a run to be stopped has begun" wait_for 1 " split)"
 kill -TERM "$launched"
 finish
 check "SIGTERM to the launcher ends the run ($status); one rank says so" was_stopped
 check "and how to go on" grep -q '^phr: stopped by SIGTERM; go on with --resume ' "$work/err"
 check "nothing is left" nothing_is_left
-check "the checkpoint made for it is whole" goes_on check
+check "the checkpoint is whole" goes_on check
 
 rm -f "$work/check"
-start 3 $scene -o "$work/new.pfm" --checkpoint "$work/check" --every 1000
+start 3 $scene -o "$work/new.pfm" --checkpoint "$work/check"
 wait_for 1 " split)"
 kill -TERM "$(tail -n 1 "$work/ranks")"
 finish
@@ -192,7 +192,7 @@ check "nor beside the checkpoint" [ -z "$(find "$work" -name 'full*.tmp')" ]
 check "which is the one before, whole" goes_on full
 
 if [ -c /dev/full ]; then
-    for option in --checkpoint --save-links; do
+    for option in --checkpoint "--paper --save-links"; do
         $MPIEXEC -n 2 sh -c 'exec 2>"$0/full.err"; exec "$@"' "$work" "$PHR" $scene --quiet $option /dev/full \
             >/dev/null 2>&1
         status=$?

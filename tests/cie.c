@@ -9,8 +9,8 @@
  * from the interpolated radiosity. The limit is 1 % of the value; no value is below 1 % of the source
  * but two that are 0. Of these one lies on the very edge of the shadow: from there on it gets
  * brighter by 6 % a metre, and of this a leaf's mean and the interpolation show some at the edge.
- * What is allowed, 0.1 %, is reached 1.6 cm away. The other, half a metre into the shadow, has to
- * be 0. */
+ * What is allowed, 0.1 %, is reached 1.6 cm away. The other, half a metre into the shadow, may have
+ * what a link is allowed to be off by, epsilon. */
 #include "tests/defaults.h"
 #include "tests/tap.h"
 
@@ -63,7 +63,7 @@ static void test_samples(const struct comm *comm, const char *name, struct paint
         if (exact > 0.0)
             worst = fmax(worst, off / exact);
         else
-            printf("# %s: %.4f %% where it is dark, %g %% allowed\n", name, off, samples[i].slack);
+            printf("# %s: %.2g %% where it is dark, %g %% allowed\n", name, off, samples[i].slack);
     }
     tap_ok(right, "%s, %s: worst of %d points off by %.2f %% (%lld links)", name, words, count,
            100.0 * worst, (long long)s.stats.links);
@@ -118,7 +118,7 @@ static void test_slab(const struct comm *comm)
     static const struct sample wall[] = {{2.75, 16.070642, 0}, {2.25, 16.329677, 0},
         {1.75, 15.398810, 0}, {1.25, 13.322018, 0}, {0.75, 10.316924, 0}, {0.25, 7.078969, 0}};
     static const struct sample ground[] = {{0.25, 3.382335, 0}, {0.75, 3.628986, 0},
-        {1.25, 3.012951, 0}, {1.75, 0.0, 0.1}, {2.25, 0.0, 0.0}};
+        {1.25, 3.012951, 0}, {1.75, 0.0, 0.1}, {2.25, 0.0, 100.0 * 1e-9}};
     struct painted painted = {0};
     add_planes(&painted, WALL, OPPOSITE);
     soup_add_box(&painted.soup, point(0, 2.5, 0), point(4, 2.7, 1), 1, false);
@@ -167,6 +167,11 @@ static void test_interreflection(const struct comm *comm, double rho, double exa
     solution_free(&s);
 }
 
+/* The clusters sample what arrives from the source itself, which is 0.1 to 0.2 % off at the default
+ * epsilon; a quarter of the 1 % that sums of light may be. Of indirect light it is (1 - rho) / rho
+ * times as much. */
+static const double FIRST = 0.0025;
+
 /* The CIE's column. */
 static const struct {
     double rho, lux;
@@ -186,7 +191,8 @@ int main(int argc, char **argv)
     for (int i = 0; i < COUNT(INTERREFLECTION); i++) {
         double rho = INTERREFLECTION[i].rho, exact = INTERREFLECTION[i].lux;
         if (rho <= 0.7) /* what row sums are off by is multiplied by rho / (1 - rho) */
-            test_interreflection(&comm, rho, exact, "--tolerance 1e-4", LIMIT);
+            test_interreflection(&comm, rho, exact, "--tolerance 1e-4",
+                                 fmax(LIMIT, FIRST * (1.0 - rho) / rho));
         /* Closed symmetrically the form factors are reciprocal and sum to 1, so the mean is exact
          * at any epsilon. 1e-6: seven digits of the numbers above. */
         test_interreflection(&comm, rho, exact,

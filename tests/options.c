@@ -139,6 +139,8 @@ struct choice {
 
 static const struct choice CHOICES[] = {
     {"--oracle", offsetof(struct options, criterion.oracle), 2, {"bf", "error", NULL}, "bf|error"},
+    {"--linking", offsetof(struct options, criterion.linking), 2, {"pairs", "tree", NULL},
+     "pairs|tree"},
     {"--form-factor", offsetof(struct options, criterion.form_factor), 2,
      {"disk", "polygon", NULL}, "disk|polygon"},
     {"--closure", offsetof(struct options, criterion.closure), 4,
@@ -201,11 +203,12 @@ static void test_enums(void)
 {
     tap_ok(ORACLE_BF == 0 && ORACLE_ERROR == 1 && FORM_FACTOR_DISK == 0 &&
                FORM_FACTOR_POLYGON == 1 && CLOSURE_NONE == 0 && CLOSURE_CAP == 1 &&
-               CLOSURE_ROWS == 2 && CLOSURE_SYMMETRIC == 3 && SOLVER_JACOBI == 0 && SOLVER_CG == 1,
+               CLOSURE_ROWS == 2 && CLOSURE_SYMMETRIC == 3 && SOLVER_JACOBI == 0 && SOLVER_CG == 1 &&
+               LINKING_PAIRS == 0 && LINKING_TREE == 1,
            "the names are in the order of the enums");
     tap_ok(sizeof(enum oracle) == sizeof(int) && sizeof(enum form_factor) == sizeof(int) &&
                sizeof(enum closure_kind) == sizeof(int) && sizeof(enum solver_kind) == sizeof(int) &&
-               sizeof(enum balance) == sizeof(int),
+               sizeof(enum balance) == sizeof(int) && sizeof(enum linking_kind) == sizeof(int),
            "which are as large as an int");
 }
 
@@ -219,9 +222,10 @@ static void test_paper(void)
                options.criterion.closure == CLOSURE_NONE &&
                options.criterion.form_factor == FORM_FACTOR_DISK &&
                options.criterion.balance == BALANCE_GREEDY &&
+               options.criterion.linking == LINKING_PAIRS &&
                options.criterion.alpha == plain.criterion.alpha &&
                options.criterion.tolerance == plain.criterion.tolerance,
-           "--paper is the paper's oracle, form factor, solver and balance, without closure");
+           "--paper is the paper's oracle, linking, form factor, solver and balance, without closure");
     options_free(&options);
     options_free(&plain);
     tap_ok(parse("--paper --solver cg a.obj", &options) &&
@@ -273,7 +277,7 @@ static const char *const OTHERS[][2] = {
     {"--oracle", " bf"}, {"--flat", ""},    {"--two-sided", ""}, {"--quiet", ""},
     {"--two-sided-lamps", ""}, {"--verbose", ""}, {"--validate", ""},
     {"--help", ""},    {"--version", ""},
-    {"--form-factor", " disk"}, {"--closure", " none"}, {"--solver", " cg"}, {"--balance", " greedy"}, {"--paper", ""},
+    {"--linking", " pairs"}, {"--form-factor", " disk"}, {"--closure", " none"}, {"--solver", " cg"}, {"--balance", " greedy"}, {"--paper", ""},
     {"--form-factors", ""}, {"--save-links", " a"}, {"--load-links", " a"}, {"--resume", " a"},
     {"--checkpoint", " a"}, {"--memory", " 1G"}};
 enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
@@ -394,12 +398,16 @@ static void test_restart(void)
                options.every == 3,
            "a checkpoint may be renewed");
     options_free(&options);
-    tap_ok(parse("a.obj --save-links l", &options) && is_same(options.save_links, "l"),
+    tap_ok(parse("a.obj --paper --save-links l", &options) && is_same(options.save_links, "l"),
            "--save-links");
     options_free(&options);
-    tap_ok(parse("a.obj --load-links l", &options) && is_same(options.load_links, "l"),
+    tap_ok(parse("a.obj --load-links l --linking pairs", &options) &&
+               is_same(options.load_links, "l"),
            "--load-links");
     options_free(&options);
+    check_refused("a.obj --save-links l", "--save-links goes with --linking pairs (--paper)");
+    check_refused("a.obj --paper --linking tree --load-links l",
+                  "--load-links goes with --linking pairs (--paper)");
     check_refused("a.obj --every 2", "--every needs --checkpoint");
     check_refused("a.obj --save-links l --load-links m",
                   "--save-links and --load-links do not go together");
@@ -408,8 +416,8 @@ static void test_restart(void)
     check_refused("a.obj --resume c --save-links c",
                   "--resume and --save-links do not go together: the initial links are long gone");
     check_refused("a.obj --checkpoint a.obj", "a.obj is named twice");
-    check_refused("a.obj --load-links l --checkpoint l", "l is named twice");
-    check_refused("a.obj --save-links l --checkpoint l", "l is named twice");
+    check_refused("a.obj --paper --load-links l --checkpoint l", "l is named twice");
+    check_refused("a.obj --paper --save-links l --checkpoint l", "l is named twice");
     check_refused("a.obj --form-factors --checkpoint c",
                   "--form-factors and --checkpoint do not go together");
 }
@@ -424,7 +432,7 @@ static void test_settings(void)
            "what links are bound to");
     tap_ok(is_same(options_run_settings(&options),
                    "--two-sided off\n--two-sided-lamps off\n--oracle error\n"
-                   "--form-factor polygon\n--closure cap\n--solver cg\n"
+                   "--linking tree\n--form-factor polygon\n--closure cap\n--solver cg\n"
                    "--epsilon 1.0000000000000001e-05\n--accuracy 0\n--max-level 10\n"
                    "--min-area 9.9999999999999995e-08\n"),
            "what a run is bound to");

@@ -310,78 +310,6 @@ static void test_dividing(void)
 
 /* --- clear links --- */
 
-/* Children of two levels, alike or not, some with less than no light. */
-static void make_lights(struct forest *forest, struct random *random, bool alike)
-{
-    for (int32_t root = 0; root < 2; root++) {
-        forest_split(forest, root);
-        for (int k = 0; k < 4; k++)
-            forest_split(forest, forest->patches[root].children + k);
-    }
-    for (int64_t p = 0; p < forest->count; p++)
-        for (int c = 0; c < BANDS; c++)
-            forest->patches[p].radiosity.band[c] = alike ? 1.0 : random_unit(random) - 0.4;
-    forest_average(forest);
-}
-
-/* Any kind of link between any patches of two trees. */
-static struct link random_link(const struct forest *forest, struct random *random, bool even)
-{
-    static const uint8_t KINDS[] = {0, 1, 100, LINK_ALL_SEEN, LINK_OPEN_NEAR, LINK_OPEN};
-    struct link link = link_of((int32_t)(random_bits(random) % (uint64_t)forest->count), 0);
-    link.q = forest->patches[link.p].id.root == 0 ? 1 : 0;
-    link.area = (float)random_unit(random);
-    link.seen = KINDS[random_bits(random) % 6];
-    uint8_t *parts[2] = {link.parts_p, link.parts_q};
-    for (int i = 0; i < 2; i++)
-        for (int k = 0; k < 3 && !even; k++)
-            parts[i][k] = (uint8_t)(random_bits(random) % 86);
-    return link;
-}
-
-/* Colours that lie on what a bound may assume: nothing is absorbed, all bands alike or one alone. */
-static void test_clear(void)
-{
-    struct random random = random_seed(7);
-    int clear = 0, missed = 0, wrong = 0;
-    for (int i = 0; i < 20000; i++) {
-        struct world world = make_grey(2.0);
-        struct method *method = &world.method;
-        world.scene->materials[0].reflectance = world.scene->materials[1].reflectance =
-            i % 2 ? (struct rgb){{1.0, 1.0, 1.0}} : (struct rgb){{0.0, 1.0, 0.0}};
-        bool alike = i % 4 < 2; /* what is wrong then is of the form factor, else of the lights */
-        make_lights(method->forest, &random, alike);
-        oracle_prepare(method);
-        struct link link = random_link(method->forest, &random, !alike);
-        method->link_threshold = 4.0 * random_unit(&random);
-        bool is_clear = oracle_is_clear(method, &link);
-        bool is_fine = oracle_patch_to_split(method, &link) < 0 &&
-                       divides(&world, &link, method->link_threshold, -1);
-        clear += is_clear;
-        missed += is_fine && !is_clear;
-        wrong += is_clear && !is_fine;
-        world_free(&world);
-    }
-    tap_ok(wrong == 0 && clear > 2000, "a clear link is fine: %d of 20000, %d wrongly, %d missed",
-           clear, wrong, missed);
-    struct world world = make_grey(2.0);
-    struct method *method = &world.method;
-    struct link link = link_of(0, 1);
-    link.seen = LINK_ALL_SEEN; /* 1/64 in doubt, rho B = 1/2 each way */
-    for (int32_t p = 0; p < 2; p++)
-        method->forest->patches[p].radiosity = (struct rgb){{-1.0, 1.0, -1.0}};
-    world.scene->materials[0].reflectance = world.scene->materials[1].reflectance =
-        (struct rgb){{0.0, 0.5, 0.0}};
-    method->link_threshold = 0.99 / 64.0;
-    oracle_prepare(method);
-    tap_ok(!oracle_is_clear(method, &link) && oracle_patch_to_split(method, &link) >= 0,
-           "bands below 0 take nothing from others");
-    method->criterion.oracle = ORACLE_BF;
-    method->link_threshold = 1e9;
-    tap_ok(!oracle_is_clear(method, &link), "the paper looks at each");
-    world_free(&world);
-}
-
 /* --- looking --- */
 
 /* The floor sends 1 and 3, the ceiling nothing: what is typical counts as long as there is less. */
@@ -500,7 +428,6 @@ int main(void)
     test_error_doubt();
     test_error_limits();
     test_dividing();
-    test_clear();
     test_look();
     test_scale();
     return tap_done();

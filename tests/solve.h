@@ -26,6 +26,7 @@ static inline struct criterion criterion_best(double epsilon, int max_level, dou
 {
     struct criterion criterion = criterion_of(epsilon, max_level, tolerance);
     criterion.oracle = ORACLE_ERROR;
+    criterion.linking = LINKING_TREE;
     criterion.form_factor = FORM_FACTOR_POLYGON;
     criterion.closure = closure;
     criterion.solver = SOLVER_CG;

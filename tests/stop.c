@@ -3,6 +3,7 @@
  * wherever it is asked to stop it comes back, and all memory is freed; readers give an
  * error and no scene, writers an error and the old file. */
 #include "geom/stop.h"
+#include "geom/wall.h"
 
 #include <math.h>
 #include <stdint.h>

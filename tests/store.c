@@ -27,7 +27,7 @@ static bool save(struct solver *solver, const struct vote *vote, enum store_kind
                  const char *path)
 {
     struct error error = {0};
-    struct store_terms terms = {kind, STORE_SETTINGS, scene, NULL};
+    struct store_terms terms = {kind, STORE_SETTINGS, solver->method.scene, solver->tree};
     struct snapshot snapshot;
     struct store_writer writer;
     snapshot_collect(solver, vote, &snapshot);
@@ -259,6 +259,74 @@ static void test_lies(const uint8_t *bytes, size_t size)
     tap_ok(refuses_with(bytes, size, last + 22, "\xff", 1, LINK), "a visibility that is none");
 }
 
+/* --- clusters --- */
+
+/* A box with a lamp in it, coarsely linked. */
+static struct solver *run_with_clusters(struct scene *box, struct octree *over,
+                                        struct vote *vote)
+{
+    struct criterion criterion = store_criterion_tree();
+    struct solver *solver = solver_create(&comm, box, over, &criterion);
+    solver_link_roots(solver);
+    solver_assign_roots(solver);
+    solver_refine(solver);
+    *vote = solve_links(solver);
+    return solver;
+}
+
+/* The first link has a cluster for p, and is forged. */
+static void test_forged_clusters(const uint8_t *bytes, size_t size,
+                                 const struct store_terms *terms)
+{
+    static const struct {
+        size_t at;
+        const char *bytes; /* 4 of them */
+        const char *name;
+    } LIES[] = {{0, "\0\0\0\x80", "the lowest number there is"},
+                {0, "\x9c\xff\xff\xff", "cluster 99"},
+                {8, "\0\0\x80\x3f", "an area of 1"},
+                {8, "\0\0\xc0\x7f", "an area that is no number"},
+                {12, "\xff\xff\xff\xff", "a blocker"},
+                {12, "\0\0\x80\x7f", "a judgement that is infinite"},
+                {20, "\x40\x40\xfd\1", "a way that is proved to be open"}};
+    static uint8_t changed[ROOM];
+    size_t first = size - 8 - 24 * (size_t)little_get64(bytes + 40);
+    for (size_t i = 0; i < sizeof LIES / sizeof LIES[0]; i++) {
+        memcpy(changed, bytes, size);
+        memcpy(changed + first + LIES[i].at, LIES[i].bytes, 4);
+        little_put64(changed + size - 8, hash_bytes(HASH_START, changed, size - 8));
+        tap_ok(refuses(changed, size, terms, "F: damaged: a link in it cannot be"),
+               "a link of a cluster: %s", LIES[i].name);
+    }
+}
+
+static void test_clusters(void)
+{
+    static uint8_t bytes[ROOM];
+    struct scene *box = store_box();
+    struct octree *over = octree_create(box->triangles, box->planes, box->input_count);
+    struct vote vote;
+    struct solver *solver = run_with_clusters(box, over, &vote);
+    struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, box, solver->tree};
+    struct error error;
+    int64_t clusters = 0;
+    for (int64_t i = 0; i < solver->links.count; i++)
+        clusters += node_is_cluster(solver->links.items[i].p);
+    bool saved = save(solver, &vote, STORE_CHECKPOINT, PATH);
+    size_t size = load(PATH, bytes);
+    tap_ok(saved && solver->tree->count < 99 && clusters > 0 &&
+               takes(bytes, size, &terms, &error),
+           "a checkpoint with links of clusters: %lld of %lld", (long long)clusters,
+           (long long)solver->links.count);
+    test_forged_clusters(bytes, size, &terms);
+    terms.tree = NULL;
+    tap_ok(refuses(bytes, size, &terms, "F: damaged: a link in it cannot be"),
+           "where there are no clusters there are no links of them");
+    solver_destroy(solver);
+    octree_destroy(over);
+    scene_destroy(box);
+}
+
 int main(int argc, char **argv)
 {
     static uint8_t bytes[ROOM];
@@ -270,6 +338,7 @@ int main(int argc, char **argv)
     test_refusals(bytes, size);
     test_damage(bytes, size);
     test_lies(bytes, size);
+    test_clusters();
     remove(PATH);
     octree_destroy(octree);
     scene_destroy(scene);

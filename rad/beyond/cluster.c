@@ -1,26 +1,35 @@
 /* Building the tree above the roots.
  *
- * A node is cut twice in two. Each cut is across the coordinate in which its roots differ most:
- * three of place, three of direction, and size, so that groups come out that lie together, look the
- * same way, and are alike in size. The cut is where the sums of squares of both halves are least
- * (of 64 places). Where lamps and other surfaces are mixed, the cut is between these: a lamp is what
- * others are compared with, and means over both mean nothing.
+ * A node is cut twice in two. Each cut is across the coordinate in which its roots differ
+ * most: three of place, three of direction, and size, so that groups come out that lie
+ * together, look the same way, and are alike in size. The cut is where the sums of
+ * squares of both halves are least (of 64 places). Where lamps and other surfaces are
+ * mixed, the cut is between these: a lamp is what others are compared with, and means
+ * over both mean nothing. Then it is between spaces, of which a few rays from each root
+ * find no way from one to the other: a cluster of both would carry light through what
+ * parts them.
  *
- * Roots are weighed by their area plus the mean area: by area alone, a large wall decides where the
- * furniture before it is cut; by number alone, the furniture decides where walls are.
+ * Roots are weighed by their area plus the mean area: by area alone, a large wall decides
+ * where the furniture before it is cut; by number alone, the furniture decides where
+ * walls are.
  *
- * Each level costs O(k), since roots are dealt into bins and not sorted. Roots that differ in
- * nothing, and halves too large for the levels that IDs have left, are cut by number.
+ * Each level costs O(k), since roots are dealt into bins and not sorted. Roots that
+ * differ in nothing, and halves too large for the levels that IDs have left, are cut by
+ * number.
  *
- * Rejected: one tree for each class of orientation (a tenth more links at the same error); places
- * alone (half more error: what looks another way receives other light); harmonics of order 2 in
- * place of one mean B (no less error for 27 numbers a cluster). */
+ * Rejected: one tree for each class of orientation (a tenth more links at the same
+ * error); places alone (half more error: what looks another way receives other light);
+ * harmonics of order 2 in place of one mean B (no less error for 27 numbers a cluster).
+ */
 #include "rad/beyond/cluster.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/hash.h"
+#include "geom/stop.h"
+#include "rad/sample.h"
 
 enum { KEYS = 7, BINS = 64 };
 
@@ -30,19 +39,24 @@ static const double DIRECTION_WEIGHT = 0.3, SIZE_WEIGHT = 3.0;
 struct item {
     double key[KEYS], weight;
     int32_t root;
+    int32_t space; /* roots that see each other, by way of others too, have the same */
     bool is_lamp;
 };
 
 struct builder {
     struct cluster_tree *tree;
     const struct scene *scene;
-    struct item *items, *spare; /* [tree->root_count] in the tree's order; room for a cut */
+    double *share; /* [all roots + 1] 0 between uses: of what is cut, the area in each
+                      space */
+    struct item *items,
+        *spare; /* [tree->root_count] in the tree's order; room for a cut */
 };
 
 static struct item item_of(const struct scene *scene, int32_t root, double mean_area)
 {
     struct triangle t = scene_root_triangle(scene, root);
-    struct vec3 centre = triangle_centroid(&t), normal = scene_root_plane(scene, root).normal;
+    struct vec3 centre = triangle_centroid(&t),
+                normal = scene_root_plane(scene, root).normal;
     double area = scene_root_area(scene, root);
     struct item item = {.weight = area + mean_area, .root = root};
     for (int axis = 0; axis < 3; axis++) {
@@ -54,9 +68,11 @@ static struct item item_of(const struct scene *scene, int32_t root, double mean_
     return item;
 }
 
-/* Brings the items for which `first` is set to the front, each half in its order. Returns how many. */
+/* Brings the items for which `first` is set to the front, each half in its order. Returns
+ * how many. */
 static int32_t part_items(struct builder *builder, int32_t from, int32_t to,
-                          bool (*first)(const struct item *, int, double), int key, double limit)
+                          bool (*first)(const struct item *, int, double), int key,
+                          double limit)
 {
     int32_t front = from, back = 0;
     for (int32_t i = from; i < to; i++) {
@@ -74,6 +90,12 @@ static bool is_lamp(const struct item *item, int key, double limit)
     (void)key;
     (void)limit;
     return item->is_lamp;
+}
+
+static bool is_in_space(const struct item *item, int space, double limit)
+{
+    (void)limit;
+    return item->space == space;
 }
 
 static bool is_below(const struct item *item, int key, double limit)
@@ -99,8 +121,8 @@ static double scatter_of(const struct moments *m)
     return m->weight > 0.0 ? real_max(0.0, m->square - m->sum * m->sum / m->weight) : 0.0;
 }
 
-/* The key that scatters most, and its range. Keys are taken from the first item's, so that those of
- * like items have no rounding. */
+/* The key that scatters most, and its range. Keys are taken from the first item's, so
+ * that those of like items have no rounding. */
 static int widest_key(const struct item *items, int32_t count, double *low, double *high)
 {
     int widest = 0;
@@ -125,9 +147,10 @@ static int widest_key(const struct item *items, int32_t count, double *low, doub
     return widest;
 }
 
-/* The value of the key below which the first half ends: of the edges between bins that with the
- * least scatter in both halves. */
-static double best_limit(const struct item *items, int32_t count, int key, double low, double high)
+/* The value of the key below which the first half ends: of the edges between bins that
+ * with the least scatter in both halves. */
+static double best_limit(const struct item *items, int32_t count, int key, double low,
+                         double high)
 {
     struct moments bins[BINS] = {{0}}, above = {0}, below = {0};
     double width = (high - low) / BINS, best = low, least = HUGE_VAL;
@@ -135,7 +158,8 @@ static double best_limit(const struct item *items, int32_t count, int key, doubl
         return low;
     for (int32_t i = 0; i < count; i++) {
         int bin = (int)((items[i].key[key] - low) / width);
-        moments_add(&bins[bin < BINS ? bin : BINS - 1], items[i].weight, items[i].key[key] - low);
+        moments_add(&bins[bin < BINS ? bin : BINS - 1], items[i].weight,
+                    items[i].key[key] - low);
         moments_add(&above, items[i].weight, items[i].key[key] - low);
     }
     for (int bin = 0; bin + 1 < BINS; bin++) {
@@ -154,13 +178,130 @@ static double best_limit(const struct item *items, int32_t count, int key, doubl
     return best;
 }
 
+/* --- spaces --- */
+
+/* The least part of an area that is a space worth a cut. */
+static const double SPACE_LEAST = 1.0 / 16.0;
+
+static int32_t space_of(int32_t *up, int32_t root)
+{
+    while (up[root] != root) {
+        up[root] = up[up[root]];
+        root = up[root];
+    }
+    return root;
+}
+
+int32_t root_met(const struct scene *scene, const struct octree *octree,
+                 const struct ray *ray, struct octree_counts *counts)
+{
+    struct octree_hit hit;
+    if (!octree_first_hit(octree, ray->origin, ray->direction, false, &hit, counts))
+        return -1;
+    return scene_root_on(scene, hit.triangle, hit.front);
+}
+
+/* Where a ray from a root ends: a root, `outside` if it meets nothing, or -1 on a back.
+ */
+static int32_t place_met(const struct scene *scene, const struct octree *octree,
+                         const struct ray *ray, int32_t outside)
+{
+    struct octree_counts counts = {0};
+    struct octree_hit hit;
+    if (!octree_first_hit(octree, ray->origin, ray->direction, false, &hit, &counts))
+        return outside;
+    return scene_root_on(scene, hit.triangle, hit.front);
+}
+
+/* Roots of a space too few to enclose it are taken to be outside. */
+static void join_small_spaces(int32_t *space, int32_t all)
+{
+    enum { TETRAHEDRON = 4 };
+    int32_t *roots = alloc_array((size_t)all + 1, sizeof *roots);
+    for (int32_t root = 0; root < all; root++)
+        roots[space[root]]++;
+    for (int32_t root = 0; root < all; root++)
+        if (roots[space[root]] < TETRAHEDRON)
+            space[root] = space[all];
+    alloc_free(roots);
+}
+
+int32_t *places_met(const struct scene *scene, const struct octree *octree,
+                    int32_t first, int32_t end)
+{
+    int32_t all = scene_root_count(scene);
+    int32_t *met = alloc_array(SPACE_RAYS * (size_t)(end - first), sizeof *met);
+    int32_t *at = met;
+    for (int32_t root = first; root < end && !stop_is_asked(); root++) {
+        struct triangle t = scene_root_triangle(scene, root);
+        for (int i = 0; i < SPACE_RAYS; i++, at++) {
+            *at = -1;
+            if (!(scene_root_area(scene, root) > 0.0))
+                continue;
+            uint64_t seed = hash_mix((uint64_t)root) + 8 * (uint64_t)i;
+            struct vec3 normal = scene_root_plane(scene, root).normal;
+            struct ray ray = ray_sample(&t, normal, seed, i, SPACE_RAYS);
+            *at = place_met(scene, octree, &ray, all);
+        }
+    }
+    return met;
+}
+
+/* [all roots + 1] the space of each, by one of its roots: those that a few rays find each
+ * other by. What sees the outside, which has the last number, is in one space with it.
+ * Without rays there is but one. */
+static int32_t *find_spaces(const struct scene *scene, const int32_t *met)
+{
+    int32_t all = scene_root_count(scene);
+    int32_t *up = alloc_array((size_t)all + 1, sizeof *up);
+    for (int32_t root = 0; root <= all; root++)
+        up[root] = met ? root : 0;
+    for (int32_t root = 0; root < all && met; root++)
+        for (int i = 0; i < SPACE_RAYS; i++, met++)
+            if (*met >= 0)
+                up[space_of(up, root)] = space_of(up, *met);
+    for (int32_t root = 0; root <= all; root++)
+        up[root] = space_of(up, root);
+    join_small_spaces(up, all);
+    return up;
+}
+
+/* The space with the largest part of the items' area, if it has not all, but enough for a
+ * cut; or -1. */
+static int32_t largest_space(struct builder *builder, const struct item *items,
+                             int32_t count)
+{
+    double sum = 0.0;
+    int32_t largest = items[0].space;
+    for (int32_t i = 0; i < count; i++) {
+        double area = scene_root_area(builder->scene, items[i].root);
+        builder->share[items[i].space] += area;
+        sum += area;
+    }
+    for (int32_t i = 0; i < count; i++)
+        if (builder->share[items[i].space] > builder->share[largest])
+            largest = items[i].space;
+    double share = builder->share[largest];
+    bool worth = false;
+    for (int32_t i = 0; i < count; i++) {
+        worth = worth || items[i].space != largest;
+        builder->share[items[i].space] = 0.0;
+    }
+    return worth && share >= SPACE_LEAST * sum ? largest : -1;
+}
+
 /* Cuts items in two, neither half larger than `most`. Returns the size of the first. */
 static int32_t cut(struct builder *builder, int32_t from, int32_t to, int64_t most)
 {
     int32_t count = to - from;
-    if (count < 2)
-        return count;
+    if (count < 2 ||
+        stop_is_asked()) /* then any tree will do: nobody is going to use it */
+        return (count + 1) / 2;
     int32_t first = part_items(builder, from, to, is_lamp, 0, 0.0);
+    if (first == 0 || first == count) {
+        int32_t space = largest_space(builder, builder->items + from, count);
+        first = space < 0 ? 0 : part_items(builder, from, to, is_in_space, space, 0.0);
+    }
     if (first == 0 || first == count) {
         double low, high;
         int key = widest_key(builder->items + from, count, &low, &high);
@@ -198,14 +339,17 @@ static struct cluster cluster_of_root(const struct scene *scene, int32_t root)
     };
 }
 
-/* Adds what a child is to its parent, whose reflectance is a sum over its area until all are added. */
+/* Adds what a child is to its parent, whose reflectance is a sum over its area until all
+ * are added. */
 static void add_child(struct cluster *parent, const struct cluster *child)
 {
     bool fresh = parent->area == 0.0;
     parent->low = fresh ? child->low : least(parent->low, child->low);
     parent->high = fresh ? child->high : most(parent->high, child->high);
-    parent->normal_low = fresh ? child->normal_low : least(parent->normal_low, child->normal_low);
-    parent->normal_high = fresh ? child->normal_high : most(parent->normal_high, child->normal_high);
+    parent->normal_low =
+        fresh ? child->normal_low : least(parent->normal_low, child->normal_low);
+    parent->normal_high =
+        fresh ? child->normal_high : most(parent->normal_high, child->normal_high);
     for (int c = 0; c < BANDS; c++)
         parent->reflectance.band[c] += child->area * child->reflectance.band[c];
     parent->area += child->area;
@@ -218,8 +362,9 @@ static void sum_up(struct builder *builder, struct cluster *cluster)
     const struct cluster_tree *tree = builder->tree;
     for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
         int32_t node = cluster->child[k];
-        struct cluster child = node_is_cluster(node) ? tree->clusters[~node]
-                                                     : cluster_of_root(builder->scene, node);
+        struct cluster child = node_is_cluster(node)
+                                   ? tree->clusters[~node]
+                                   : cluster_of_root(builder->scene, node);
         add_child(cluster, &child);
     }
     for (int c = 0; c < BANDS; c++)
@@ -243,7 +388,8 @@ static void cut_in_four(struct builder *builder, int32_t from, int32_t to, int64
 }
 
 /* Makes the cluster over the items from..to. Returns its node. */
-static int32_t build(struct builder *builder, int32_t from, int32_t to, uint32_t hierarchy, int level)
+static int32_t build(struct builder *builder, int32_t from, int32_t to,
+                     uint32_t hierarchy, int level)
 {
     struct cluster_tree *tree = builder->tree;
     int32_t number = tree->count++, ends[4], begin = from;
@@ -256,8 +402,8 @@ static int32_t build(struct builder *builder, int32_t from, int32_t to, uint32_t
             cluster.child[children++] = builder->items[begin].root;
             tree->parent[builder->items[begin].root] = number;
         } else if (ends[k] > begin) {
-            cluster.child[children] = build(builder, begin, ends[k],
-                                            hierarchy << 2 | (uint32_t)children, level + 1);
+            cluster.child[children] = build(
+                builder, begin, ends[k], hierarchy << 2 | (uint32_t)children, level + 1);
             children++;
         }
         begin = ends[k];
@@ -289,15 +435,22 @@ static void list_places(struct builder *builder)
         int32_t root = builder->items[i].root;
         tree->roots[i] = root;
         tree->place[root] = i;
-        tree->area_before[i + 1] = tree->area_before[i] + scene_root_area(builder->scene, root);
+        tree->area_before[i + 1] =
+            tree->area_before[i] + scene_root_area(builder->scene, root);
     }
 }
 
-struct cluster_tree *cluster_tree_create(const struct scene *scene)
+struct cluster_tree *cluster_tree_build(const struct scene *scene, const int32_t *met)
 {
     struct cluster_tree *tree = alloc_array(1, sizeof *tree);
     struct builder builder = {.tree = tree, .scene = scene};
     list_items(&builder);
+    builder.share =
+        alloc_array((size_t)scene_root_count(scene) + 1, sizeof *builder.share);
+    int32_t *space = find_spaces(scene, met);
+    for (int32_t i = 0; i < tree->root_count; i++)
+        builder.items[i].space = space[builder.items[i].root];
+    alloc_free(space);
     size_t count = (size_t)tree->root_count, all = (size_t)scene_root_count(scene);
     tree->all_roots = (int32_t)all;
     tree->clusters = alloc_array(count, sizeof *tree->clusters);
@@ -309,9 +462,20 @@ struct cluster_tree *cluster_tree_create(const struct scene *scene)
         tree->place[root] = tree->parent[root] = -1;
     build(&builder, 0, tree->root_count, 1, 0);
     list_places(&builder);
-    tree->clusters = alloc_resize(tree->clusters, (size_t)tree->count, sizeof *tree->clusters);
+    tree->clusters =
+        alloc_resize(tree->clusters, (size_t)tree->count, sizeof *tree->clusters);
+    alloc_free(builder.share);
     alloc_free(builder.items);
     alloc_free(builder.spare);
+    return tree;
+}
+
+struct cluster_tree *cluster_tree_create(const struct scene *scene,
+                                         const struct octree *octree)
+{
+    int32_t *met = octree ? places_met(scene, octree, 0, scene_root_count(scene)) : NULL;
+    struct cluster_tree *tree = cluster_tree_build(scene, met);
+    alloc_free(met);
     return tree;
 }
 
@@ -330,11 +494,13 @@ void cluster_tree_destroy(struct cluster_tree *tree)
 static void pack_arrays(struct cluster_tree *tree, struct pack *pack)
 {
     size_t roots = (size_t)tree->root_count, all = (size_t)tree->all_roots;
-    tree->clusters = pack_array(pack, tree->clusters, (size_t)tree->count * sizeof *tree->clusters);
+    tree->clusters =
+        pack_array(pack, tree->clusters, (size_t)tree->count * sizeof *tree->clusters);
     tree->roots = pack_array(pack, tree->roots, roots * sizeof *tree->roots);
     tree->place = pack_array(pack, tree->place, all * sizeof *tree->place);
     tree->parent = pack_array(pack, tree->parent, all * sizeof *tree->parent);
-    tree->area_before = pack_array(pack, tree->area_before, (roots + 1) * sizeof *tree->area_before);
+    tree->area_before =
+        pack_array(pack, tree->area_before, (roots + 1) * sizeof *tree->area_before);
 }
 
 void cluster_tree_pack(const struct cluster_tree *tree, struct pack *pack)
@@ -357,7 +523,8 @@ int32_t cluster_reach(const struct cluster_tree *tree, uint32_t hierarchy)
 {
     struct patch_id id = {CLUSTER_ROOT, hierarchy};
     int32_t node = NODE_TOP;
-    for (int step = 0; step < id_level(id) && node_is_cluster(node) && node != NODE_NONE; step++)
+    for (int step = 0; step < id_level(id) && node_is_cluster(node) && node != NODE_NONE;
+         step++)
         node = tree->clusters[~node].child[id_step(id, step)];
     return node_is_cluster(node) ? node : NODE_NONE;
 }

@@ -1,11 +1,13 @@
-/* The tree above the roots: the quadtrees of the patches, continued upwards until one node, the top,
- * holds the whole scene.
+/* The tree above the roots: the quadtrees of the patches, continued upwards until one
+ * node, the top, holds the whole scene.
  *
- * A cluster is a node of it: up to four children, each a cluster or a root. It is a pure function of
- * the prepared scene, the same on all ranks and machines; one copy serves all ranks of a node.
+ * A cluster is a node of it: up to four children, each a cluster or a root. It is a pure
+ * function of the prepared scene, the same on all ranks and machines; one copy serves all
+ * ranks of a node.
  *
- * A node is a patch or a cluster: number n >= 0 is patch n, number n < 0 is cluster ~n. As an ID a
- * cluster has CLUSTER_ROOT for its root, and its path from the top as a patch has its from a root. */
+ * A node is a patch or a cluster: number n >= 0 is patch n, number n < 0 is cluster ~n.
+ * As an ID a cluster has CLUSTER_ROOT for its root, and its path from the top as a patch
+ * has its from a root. */
 #ifndef RAD_BEYOND_CLUSTER_H
 #define RAD_BEYOND_CLUSTER_H
 
@@ -14,10 +16,12 @@
 
 #include "geom/pack.h"
 #include "geom/scene.h"
+#include "octree/octree.h"
 #include "rad/patch.h"
+#include "rad/sample.h"
 
 /* The top is cluster 0. */
-enum { NODE_TOP = -1, NODE_NONE = INT32_MIN };
+enum { NODE_TOP = -1, NODE_NONE = INT32_MIN }; /* none is to be asked for first: it is below 0, too */
 
 /* No root has this number. */
 #define CLUSTER_ROOT UINT32_MAX
@@ -28,23 +32,38 @@ struct cluster {
     double area;                         /* sum over its roots, square scene units */
     struct rgb reflectance;              /* mean over its area, 1 */
     int32_t child[4];                    /* nodes; NODE_NONE where there are fewer */
-    int32_t first, end;                  /* its roots are roots[first] to before roots[end] */
+    int32_t first, end; /* its roots are roots[first] to before roots[end] */
     uint32_t hierarchy;                  /* of its ID */
     bool is_dark;                        /* none of its roots reflects or emits */
 };
 
 struct cluster_tree {
     struct cluster *clusters; /* [count] children after their parents */
-    int32_t *roots;           /* [root_count] those that have an area, in the tree's order */
-    int32_t *place;           /* [all roots] where a root is in `roots`; -1: it has no area */
-    int32_t *parent;          /* [all roots] the cluster that a root is child of; -1: none */
+    int32_t *roots; /* [root_count] those that have an area, in the tree's order */
+    int32_t *place; /* [all roots] where a root is in `roots`; -1: it has no area */
+    int32_t *parent; /* [all roots] the cluster that a root is child of; -1: none */
     double *area_before;      /* [root_count + 1] sum over the roots before a place */
     int32_t count, root_count, all_roots;
     bool is_view;             /* the arrays lie in memory of others */
 };
 
-/* The tree over all roots that have an area; at least one has. O(k log k) for k roots. */
-struct cluster_tree *cluster_tree_create(const struct scene *scene);
+/* Rays from each root, by which it is found out which roots are in one space. */
+enum { SPACE_RAYS = 4 };
+
+/* [SPACE_RAYS for each of the roots first .. end - 1] where its rays end: a root, the
+ * number of all roots for the outside, or -1 (on a back, or the root has no area). To be
+ * freed with alloc_free(). */
+int32_t *places_met(const struct scene *scene, const struct octree *octree,
+                    int32_t first, int32_t end);
+
+/* The tree over all roots that have an area; at least one has. Roots are parted into
+ * spaces by the places that all roots meet; NULL: all are in one. O(k log k) for k
+ * roots. */
+struct cluster_tree *cluster_tree_build(const struct scene *scene, const int32_t *met);
+
+/* The same with rays through the octree; NULL: without. */
+struct cluster_tree *cluster_tree_create(const struct scene *scene,
+                                         const struct octree *octree);
 void cluster_tree_destroy(struct cluster_tree *tree);
 
 /* Into a block, and as it is there: read-only, valid as long as the block. */
@@ -56,7 +75,11 @@ static inline bool node_is_cluster(int32_t node)
     return node < 0;
 }
 
-/* The cluster with this path from the top, or NODE_NONE if there is none. */
+/* The root whose front the ray meets first, or -1. */
+int32_t root_met(const struct scene *scene, const struct octree *octree,
+                 const struct ray *ray, struct octree_counts *counts);
+
+/* The cluster with this path from the top, or NODE_NONE if there is none. Pre: id_is_valid(). */
 int32_t cluster_reach(const struct cluster_tree *tree, uint32_t hierarchy);
 
 #endif

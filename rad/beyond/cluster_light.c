@@ -1,6 +1,6 @@
-/* Push-pull through the clusters, as rad/pushpull.c does it in the patches. Children differ in area
- * here, so means are weighted. Children come after their parents, so a loop downwards meets them
- * first. */
+/* Push-pull through the clusters, as rad/pushpull.c does it in the patches. Children
+ * differ in area here, so means are weighted. Children come after their parents, so a
+ * loop downwards meets them first. */
 #include "rad/beyond/cluster_light.h"
 
 #include <math.h>
@@ -30,15 +30,18 @@ void cluster_light_destroy(struct cluster_light *light)
     alloc_free(light);
 }
 
-static double area_of(const struct cluster_light *light, const struct forest *forest, int32_t node)
+static double area_of(const struct cluster_light *light, const struct forest *forest,
+                      int32_t node)
 {
-    return node_is_cluster(node) ? light->tree->clusters[~node].area : forest_area(forest, node);
+    return node_is_cluster(node) ? light->tree->clusters[~node].area
+                                 : forest_area(forest, node);
 }
 
-static const struct rgb *radiosity_of(const struct cluster_light *light, const struct forest *forest,
-                                      int32_t node)
+static const struct rgb *radiosity_of(const struct cluster_light *light,
+                                      const struct forest *forest, int32_t node)
 {
-    return node_is_cluster(node) ? &light->radiosity[~node] : &forest->patches[node].radiosity;
+    return node_is_cluster(node) ? &light->radiosity[~node]
+                                 : &forest->patches[node].radiosity;
 }
 
 void cluster_light_pull(struct cluster_light *light, const struct forest *forest)
@@ -56,8 +59,8 @@ void cluster_light_pull(struct cluster_light *light, const struct forest *forest
     }
 }
 
-/* The variance of B in a root is that of its extremes; in a cluster, that within its children, and
- * that between them. */
+/* The variance of B in a root is that of its extremes; in a cluster, that within its
+ * children, and that between them. */
 void cluster_light_bound(struct cluster_light *light, const struct forest *forest)
 {
     double *variance = alloc_array((size_t)light->tree->count, sizeof *variance);
@@ -71,7 +74,8 @@ void cluster_light_bound(struct cluster_light *light, const struct forest *fores
             if (node_is_cluster(node)) {
                 within += share * variance[~node];
             } else {
-                double half = 0.5 * (double)(forest->extremes[node].high - forest->extremes[node].low);
+                double half = 0.5 * (double)(forest->extremes[node].high -
+                                             forest->extremes[node].low);
                 within += share * half * half;
             }
             between += share * off * off;
@@ -82,7 +86,8 @@ void cluster_light_bound(struct cluster_light *light, const struct forest *fores
     alloc_free(variance);
 }
 
-void cluster_light_push(struct cluster_light *light, struct forest *forest, struct flux_unit unit)
+void cluster_light_push(struct cluster_light *light, struct forest *forest,
+                        struct flux_unit unit)
 {
     const struct cluster_tree *tree = light->tree;
     for (int32_t i = 0; i < tree->count; i++) {
@@ -94,7 +99,8 @@ void cluster_light_push(struct cluster_light *light, struct forest *forest, stru
         }
         for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
             int32_t node = cluster->child[k];
-            *(node_is_cluster(node) ? &light->irradiance[~node] : &forest->above[node]) = *h;
+            *(node_is_cluster(node) ? &light->irradiance[~node] : &forest->above[node]) =
+                *h;
         }
     }
 }

@@ -1,28 +1,64 @@
-# make growth: rooms of 1,000 to 32,000 triangles, from reading to a picture, on two ranks. Writes
-# docs/growth.csv and, with gnuplot, docs/growth.svg: links and seconds against the number of triangles. About a minute on two cores.
+# make growth: rooms of 6,348 to a million triangles, from reading to a picture, on two ranks, at
+# epsilon 1e-3, and the smaller four at 1e-4. Writes docs/growth.csv and, with gnuplot,
+# docs/growth.svg; prints by which power of the triangles links and work grow. Sizes are those that
+# the generator is asked for. OFFICE3= and CLASSROOM= name two-sided scenes that join the table.
+# Memory is the sum of the ranks' peaks; what they share counts for each.
 set -eu
-: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}"
-epsilon=1e-4
+: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${OFFICE3:=}" "${CLASSROOM:=}"
+: "${SIZES:=6350 18510 31933 100000 300000 1000000}" "${FINE_SIZES:=6350 18510 31933 100000}"
 work=$BUILD/growth
 mkdir -p "$work"
 cp scenes/room.mtl "$work"
 
-# stat_of FILE KEY: the first number that JSON key has.
-stat_of() { grep -o "\"$2\": *[0-9.e+-]*" "$1" | head -n 1 | sed 's/.*: *//'; }
+# number_of FILE KEY: the first number that a JSON key has.
+number_of() { grep -o "\"$2\": *[0-9.e+-]*" "$1" | head -n 1 | sed 's/.*: *//'; }
 
 # most_of FILE PHASE: the seconds of the slowest rank.
-most_of() { sed -n "s/.*\"$2\": {\"min\": [^,]*, \"mean\": [^,]*, \"max\": \([0-9.e+-]*\)}.*/\1/p" "$1"; }
+most_of() { sed -n "s/.*\"$2\": {.*\"max\": \([0-9.e+-]*\)}.*/\1/p" "$1"; }
 
-echo "triangles,pairs,links,linking_seconds,seconds,peak_rss_megabytes" >docs/growth.csv
-for size in 1000 2000 4000 6350 12000 18510 31933; do
-    room=$work/room$size
-    build/room $size 1 >"$room.obj"
-    $MPIEXEC -n 2 ./phr "$room.obj" --epsilon $epsilon --quiet -o "$room.ppm" --stats "$room.json"
-    count=$(stat_of "$room.json" triangles)
-    printf '%s,%s,%s,%s,%s,%s\n' "$count" $((count * (count - 1) / 2)) \
-        "$(stat_of "$room.json" links)" "$(most_of "$room.json" linking)" "$(most_of "$room.json" total)" \
-        $(($(stat_of "$room.json" peak_rss_bytes) / 1000000)) | tee -a docs/growth.csv
+# all_of FILE KIND: the work of all ranks; first levels, which all ranks split alike, count once.
+all_of() { sed -n "s/.*\"$2\": {\"phases\": [0-9]*, \"all\": \([0-9]*\).*/\1/p" "$1"; }
+
+# grow NAME SCENE EPSILON OPTIONS: one run and its line.
+grow() {
+    name=$1 scene=$2 epsilon=$3 json=$work/$1-$3.json
+    shift 3
+    $MPIEXEC -n 2 ./phr "$scene" --epsilon "$epsilon" "$@" --quiet -o "$work/$name-$epsilon.ppm" \
+        --stats "$json"
+    first=$(($(all_of "$json" linking) / 2))
+    tests=$(($(number_of "$json" node_tests) + $(number_of "$json" triangle_tests)))
+    echo "$name,$epsilon,$(number_of "$json" triangles),$(number_of "$json" patches)," \
+        "$(number_of "$json" links),$(number_of "$json" rays),$tests," \
+        "$((first + $(all_of "$json" splitting)))," \
+        "$(number_of "$json" peak_rss_bytes_sum),$(most_of "$json" tree)," \
+        "$(most_of "$json" refinement),$(most_of "$json" total)" |
+        tr -d ' ' | tee -a docs/growth.csv
+}
+
+echo "scene,epsilon,triangles,patches,links,rays,tests,work,bytes,tree,refinement,total" \
+    >docs/growth.csv
+for size in $SIZES; do
+    build/room "$size" 1 >"$work/room$size.obj"
+    grow room "$work/room$size.obj" 1e-3
 done
+for size in $FINE_SIZES; do
+    grow room "$work/room$size.obj" 1e-4
+done
+for epsilon in 1e-3 1e-4; do
+    [ -z "$OFFICE3" ] || grow office3 "$OFFICE3" $epsilon --two-sided
+    [ -z "$CLASSROOM" ] || grow classroom "$CLASSROOM" $epsilon --two-sided
+done
+# From the smallest to the largest room: log (y / y0) / log (k / k0).
+awk -F, '$1 == "room" {
+    if (!($2 in k0)) { k0[$2] = $3; links0[$2] = $5; work0[$2] = $8 }
+    k[$2] = $3; links[$2] = $5; work[$2] = $8
+} END {
+    for (e in k) if (k[e] > k0[e]) {
+        span = log(k[e] / k0[e])
+        printf "epsilon %s, %d to %d triangles: links grow as k^%.2f, refinement work as k^%.2f\n",
+               e, k0[e], k[e], log(links[e] / links0[e]) / span, log(work[e] / work0[e]) / span
+    }
+}' docs/growth.csv
 if command -v gnuplot >/dev/null; then
     gnuplot tests/bench/growth.gp
 else

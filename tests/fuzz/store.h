@@ -2,8 +2,8 @@
  *
  * A checksum would stop a fuzzer at the door, so the right one is put at the end of every input
  * first. What the reader takes is restored, refined and solved for one iteration: it promises to
- * let nothing in that the method cannot live with. The scene is two triangles that face each other,
- * a lamp and a wall. */
+ * let nothing in that the method cannot live with. The scene is two triangles that face each
+ * other, a lamp and a wall; with a tree above the roots, a box with a lamp in it. */
 #ifndef TESTS_FUZZ_STORE_H
 #define TESTS_FUZZ_STORE_H
 
@@ -33,13 +33,34 @@ static inline struct scene *store_scene(void)
     return scene;
 }
 
+static inline struct scene *store_box(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, (struct vec3){0, 0, 0}, (struct vec3){1, 1, 1}, 1, true);
+    struct scene *scene = scene_of_soup(&soup, 2);
+    scene->materials[0] = material_grey(0.5, 0.0);
+    scene->materials[1] = material_grey(0.0, 10.0);
+    scene->material_of[0] = scene->material_of[1] = 1;
+    scene_prepare_or_exit(scene);
+    soup_free(&soup);
+    return scene;
+}
+
+/* The same for runs with links of clusters. */
+static inline struct criterion store_criterion_tree(void)
+{
+    struct criterion criterion = STORE_CRITERION;
+    criterion.linking = LINKING_TREE;
+    criterion.epsilon = 1.0;
+    criterion.max_level = 0;
+    return criterion;
+}
+
 /* All links of an open file, then a pass. Returns false where the reader refuses a link. */
-static inline bool store_continue(struct store_reader *reader, const struct comm *comm,
-                                  const struct scene *scene, struct error *error)
+static inline bool store_continue(struct store_reader *reader, struct solver *solver,
+                                  struct error *error)
 {
     enum { BLOCK = 100 };
-    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
-    struct solver *solver = solver_create(comm, scene, octree, &STORE_CRITERION);
     struct link block[BLOCK];
     struct vote vote;
     int32_t *order = snapshot_restore(solver, &vote, &reader->snapshot);
@@ -54,8 +75,6 @@ static inline bool store_continue(struct store_reader *reader, const struct comm
         solver_refine(solver);
         solve_links(solver);
     }
-    solver_destroy(solver);
-    octree_destroy(octree);
     return error->code == EXIT_DONE;
 }
 
@@ -66,7 +85,8 @@ static inline void store_stop(void)
     comm_stop(&store_comm);
 }
 
-static inline void store_try(enum store_kind kind, const uint8_t *data, size_t size)
+static inline void store_try(enum store_kind kind, enum linking_kind linking,
+                             const uint8_t *data, size_t size)
 {
     struct error error = {0};
     if (store_comm.size == 0) {
@@ -78,12 +98,18 @@ static inline void store_try(enum store_kind kind, const uint8_t *data, size_t s
     if (size >= 8)
         little_put64(copy + size - 8, hash_bytes(HASH_START, copy, size - 8));
     FILE *file = size > 0 ? fmemopen(copy, size, "rb") : tmpfile();
-    struct scene *scene = store_scene();
-    struct store_terms terms = {kind, STORE_SETTINGS, scene, NULL};
+    bool pairs = linking == LINKING_PAIRS;
+    struct criterion criterion = pairs ? STORE_CRITERION : store_criterion_tree();
+    struct scene *scene = pairs ? store_scene() : store_box();
+    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct solver *solver = solver_create(&store_comm, scene, octree, &criterion);
+    struct store_terms terms = {kind, STORE_SETTINGS, scene, solver->tree};
     struct store_reader reader;
     bool good = store_open_file(&reader, file, "fuzz", &terms, &error) &&
-                store_continue(&reader, &store_comm, scene, &error);
+                store_continue(&reader, solver, &error);
     store_close(&reader);
+    solver_destroy(solver);
+    octree_destroy(octree);
     scene_destroy(scene);
     free(copy);
     fuzz_verdict(good, &error);

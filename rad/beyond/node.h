@@ -1,0 +1,47 @@
+/* Nodes as ends of links: patches and clusters alike, and what is known of two of them
+ * before they are looked at. */
+#ifndef RAD_BEYOND_NODE_H
+#define RAD_BEYOND_NODE_H
+
+#include "rad/beyond/cluster_light.h"
+#include "rad/formfactor.h"
+
+struct end {
+    int32_t node;
+    const struct cluster *cluster; /* NULL: a patch */
+    struct facet facet;            /* of a patch */
+    struct patch_id id;
+    struct vec3 low, high;         /* box */
+    double area, radius;
+    struct rgb reflectance, radiosity;
+    bool is_dark;
+};
+
+struct end end_of(const struct method *method, int32_t node);
+
+/* The node of child k, or NODE_NONE; its area, 0 where there is none. */
+int32_t end_child(const struct method *method, const struct end *end, int k);
+double end_child_area(const struct method *method, const struct end *end, int k);
+
+/* False if it is certain that nothing of one end faces anything of the other. */
+bool ends_may_face(const struct end *a, const struct end *b);
+
+/* True if it is proved that nothing of one end sees anything of the other: one wall hides
+ * all. */
+bool ends_are_walled_off(const struct end *a, const struct end *b,
+                         const struct octree *octree, struct octree_counts *counts);
+
+/* What a receiver makes of a sender's light, W per square scene unit of G. */
+double light_to(const struct end *to, const struct end *from);
+
+/* Two ends, of which one at least is a cluster. */
+struct meeting {
+    struct end p, q;
+    bool near;    /* their boxes are closer than half of the sum of their radii */
+    double most;  /* no more can be exchanged than this, G */
+    double light; /* what is made of G both ways, W per square scene unit */
+};
+
+struct meeting ends_meet(const struct end *p, const struct end *q);
+
+#endif

@@ -1,0 +1,284 @@
+/* The exchange of clusters.
+ *
+ * G of two patches comes from exact factors between points and polygons; a cluster is no
+ * polygon. What it exchanges is sampled at points on its roots, one in each child, chosen
+ * by area:
+ *
+ *  - of a patch and a cluster that is far or smaller, the exact factor from each point to
+ *    each quarter of the patch, and a segment to the middle of what of that quarter is in front: points on
+ *    the patch would miss what stands on it;
+ *
+ *  - of two clusters far apart, A_a A_b cos cos / (pi r^2) for each pair of points, and a
+ *    segment;
+ *
+ *  - of a cluster with itself, or with what is near and not larger, 16 cosine-distributed
+ *    rays from the smaller one. A ray that ends on a root of the other, which its place
+ *    in the tree's order tells, counts A / 16: no 1 / r^2, no clamp, and visibility is in
+ *    it. (By pairs of points, books in a shelf lose a quarter of their light: they miss
+ *    the pairs that matter.)
+ *
+ * The points are chosen by a hash of both IDs, so that the errors of different links are
+ * not alike and a link means the same on any rank. */
+#include "rad/beyond/node_exchange.h"
+
+#include <math.h>
+
+#include "geom/hash.h"
+#include "geom/lambert.h"
+
+enum { SAMPLES = 4, RINGS = 4 };
+
+static const double PI = 3.14159265358979323846;
+
+/* Near ends are sampled by rays from the smaller one, but for a cluster before a larger
+ * patch: the exact factor of the patch does as well. */
+bool is_by_rays(const struct meeting *m)
+{
+    return m->near && (m->p.area <= m->q.area ? m->q.cluster : m->p.cluster) != NULL;
+}
+
+static uint64_t id_number(struct patch_id id)
+{
+    return (uint64_t)id.root << 32 | id.hierarchy;
+}
+
+static uint64_t seed_of(const struct meeting *m, int salt)
+{
+    return hash_mix(hash_mix(id_number(m->p.id) + (uint64_t)salt) ^ id_number(m->q.id));
+}
+
+/* Part of a root that a sample is taken of: a triangle, in whole or a quarter of a patch.
+ */
+struct spot {
+    int32_t root;
+    struct triangle triangle;
+    struct vec3 normal;
+};
+
+static int32_t root_by_area(const struct cluster_tree *tree,
+                            const struct cluster *cluster, double u)
+{
+    int32_t low = cluster->first, high = cluster->end - 1;
+    double from = tree->area_before[low], to = tree->area_before[high + 1];
+    double wanted = from + u * (to - from);
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (tree->area_before[middle + 1] > wanted)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return tree->roots[low];
+}
+
+/* In child k of an end: a quarter of a patch, or a root of a cluster, chosen by area. */
+static struct spot spot_in(const struct method *method, const struct end *end, int k,
+                           uint64_t seed)
+{
+    const struct cluster_tree *tree = method->clusters->tree;
+    int32_t root = (int32_t)end->id.root;
+    if (end->cluster) {
+        int32_t child = end->cluster->child[k];
+        root = node_is_cluster(child)
+                   ? root_by_area(tree, &tree->clusters[~child], hash_unit(seed))
+                   : child;
+    }
+    return (struct spot){root,
+                         end->cluster ? scene_root_triangle(method->scene, root)
+                                      : triangle_child(&end->facet.triangle, k),
+                         scene_root_plane(method->scene, root).normal};
+}
+
+/* A point on a root of each child of a cluster. */
+struct sample {
+    int32_t root;
+    struct vec3 point, normal;
+};
+
+/* Samples of all children. Returns their number. */
+static int sample_children(const struct method *method, const struct end *end,
+                           uint64_t seed, struct sample samples[SAMPLES])
+{
+    int count = 0;
+    for (; count < SAMPLES && end->cluster->child[count] != NODE_NONE; count++) {
+        uint64_t own = seed + 4 * (uint64_t)count;
+        struct spot spot = spot_in(method, end, count, own);
+        samples[count] = (struct sample){
+            spot.root, triangle_sample(&spot.triangle, own + 1), spot.normal};
+    }
+    return count;
+}
+
+/* --- looking --- */
+
+static void add_exchange(struct node_exchange *found, int a, int b, double g, bool seen)
+{
+    found->unoccluded += g;
+    if (!seen)
+        return;
+    found->area += g;
+    found->g_p[a] += g;
+    found->g_q[b] += g;
+}
+
+/* The 16 pairs of quarters and samples, or four of them for all: each of a with one of b,
+ * which is as likely to be any, there or not, so that four times what the pair has is
+ * right in the mean. */
+static bool is_asked(bool all, int a, int b, uint64_t seed)
+{
+    return all || b == (int)((hash_mix(seed + 16) + (uint64_t)a) % SAMPLES);
+}
+
+static bool is_seen(struct method *method, struct vec3 from, int32_t on, struct vec3 to,
+                    int32_t at, int32_t *blocker)
+{
+    const int32_t own[2] = {on, at};
+    return !octree_blocks_segment(method->octree, from, to, own, blocker,
+                                  &method->counts);
+}
+
+/* The middle of that part of a triangle which is in front of a sample: a segment to any other point
+ * would go behind the surface that the sample is on, past all that is before it. */
+static struct vec3 middle_in_front(const struct sample *s, const struct triangle *t)
+{
+    struct vec3 sum = {0.0, 0.0, 0.0};
+    double rise[3];
+    int count = 0;
+    for (int k = 0; k < 3; k++)
+        rise[k] = vec3_dot(s->normal, vec3_sub(t->corner[k], s->point));
+    for (int k = 0; k < 3; k++) {
+        struct vec3 from = t->corner[k], along = vec3_sub(t->corner[(k + 1) % 3], from);
+        double next = rise[(k + 1) % 3];
+        if (rise[k] > 0.0) {
+            sum = vec3_add(sum, from);
+            count++;
+        }
+        if ((rise[k] > 0.0) != (next > 0.0)) {
+            sum = vec3_add(sum, vec3_add(from, vec3_scale(along, rise[k] / (rise[k] - next))));
+            count++;
+        }
+    }
+    return count > 0 ? vec3_scale(sum, 1.0 / count) : triangle_centroid(t);
+}
+
+/* `patch` is p or q of the meeting, the cluster the other. */
+static void look_at_patch(struct method *method, const struct meeting *m, uint64_t seed,
+                          bool all, struct node_exchange *found)
+{
+    bool of_p = !m->p.cluster;
+    const struct end *patch = of_p ? &m->p : &m->q, *group = of_p ? &m->q : &m->p;
+    struct sample samples[SAMPLES];
+    int count = sample_children(method, group, seed, samples);
+    int32_t blocker = -1;
+    for (int b = 0; b < count; b++) {
+        const struct sample *s = &samples[b];
+        double area = end_child_area(method, group, b);
+        int32_t input = scene_input_of(method->scene, s->root);
+        for (int a = 0; a < 4; a++) {
+            struct triangle quarter = triangle_child(&patch->facet.triangle, a);
+            double g = area * point_triangle_factor(s->point, s->normal, &quarter);
+            if (!(g > 0.0) || !is_asked(all, a, b, seed))
+                continue;
+            bool seen = is_seen(method, s->point, input, middle_in_front(s, &quarter),
+                                patch->facet.input, &blocker);
+            add_exchange(found, of_p ? a : b, of_p ? b : a, all ? g : 4.0 * g, seen);
+        }
+    }
+}
+
+static void look_from_afar(struct method *method, const struct meeting *m, uint64_t seed,
+                           bool all, struct node_exchange *found)
+{
+    struct sample from[SAMPLES], to[SAMPLES];
+    int count_p = sample_children(method, &m->p, seed, from);
+    int count_q = sample_children(method, &m->q, seed + 32, to);
+    int32_t blocker = -1;
+    for (int a = 0; a < count_p; a++)
+        for (int b = 0; b < count_q; b++) {
+            struct vec3 d = vec3_sub(to[b].point, from[a].point);
+            double rise_a = vec3_dot(from[a].normal, d),
+                   rise_b = -vec3_dot(to[b].normal, d);
+            if (!(rise_a > 0.0 && rise_b > 0.0) || !is_asked(all, a, b, seed))
+                continue;
+            double r2 = vec3_dot(d, d), area_a = end_child_area(method, &m->p, a);
+            double g = area_a * end_child_area(method, &m->q, b) *
+                       (rise_a * rise_b / r2) / (PI * r2);
+            bool seen = is_seen(method, from[a].point,
+                                scene_input_of(method->scene, from[a].root), to[b].point,
+                                scene_input_of(method->scene, to[b].root), &blocker);
+            add_exchange(found, a, b, all ? g : 4.0 * g, seen);
+        }
+}
+
+/* The child of the cluster of which this root is part, or -1. */
+static int cluster_child_at(const struct cluster_tree *tree,
+                            const struct cluster *cluster, int32_t root)
+{
+    int32_t place = root < 0 ? -1 : tree->place[root];
+    if (place < cluster->first || place >= cluster->end)
+        return -1;
+    for (int k = 0; k < 3 && cluster->child[k] != NODE_NONE; k++) {
+        int32_t node = cluster->child[k];
+        if (node == root || (node_is_cluster(node) && place < tree->clusters[~node].end))
+            return k;
+    }
+    return 3;
+}
+
+static void look_nearby(struct method *method, const struct meeting *m, uint64_t seed,
+                        struct node_exchange *found)
+{
+    bool from_p = m->p.area <= m->q.area;
+    const struct end *from = from_p ? &m->p : &m->q, *to = from_p ? &m->q : &m->p;
+    for (int a = 0; a < SAMPLES && end_child_area(method, from, a) > 0.0; a++)
+        for (int ring = 0; ring < RINGS; ring++) {
+            uint64_t own = seed + 64 + 8 * (uint64_t)(RINGS * a + ring);
+            struct spot spot = spot_in(method, from, a, own);
+            struct ray ray =
+                ray_sample(&spot.triangle, spot.normal, own + 1, ring, RINGS);
+            int32_t root = root_met(method->scene, method->octree, &ray, &method->counts);
+            int b = cluster_child_at(method->clusters->tree, to->cluster, root);
+            if (b >= 0)
+                add_exchange(found, from_p ? a : b, from_p ? b : a,
+                             end_child_area(method, from, a) / RINGS, true);
+        }
+}
+
+/* Both directions of what a cluster exchanges with itself are one. */
+static void make_even(struct node_exchange *found)
+{
+    for (int k = 0; k < 4; k++)
+        found->g_p[k] = found->g_q[k] = 0.5 * (found->g_p[k] + found->g_q[k]);
+}
+
+/* No more than the smaller area. */
+static void limit_exchange(struct node_exchange *found, double limit)
+{
+    if (found->unoccluded <= limit)
+        return;
+    double scale = limit / found->unoccluded;
+    for (int k = 0; k < 4; k++) {
+        found->g_p[k] *= scale;
+        found->g_q[k] *= scale;
+    }
+    found->area *= scale;
+    found->unoccluded = limit;
+}
+
+struct node_exchange node_exchange_estimate(struct method *method,
+                                            const struct meeting *m, int salt,
+                                            bool closely)
+{
+    struct node_exchange found = {.area = 0.0};
+    uint64_t seed = seed_of(m, salt);
+    if (is_by_rays(m))
+        look_nearby(method, m, seed, &found);
+    else if (m->p.cluster && m->q.cluster)
+        look_from_afar(method, m, seed, closely, &found);
+    else
+        look_at_patch(method, m, seed, closely, &found);
+    if (m->p.node == m->q.node)
+        make_even(&found);
+    limit_exchange(&found, real_min(m->p.area, m->q.area));
+    return found;
+}

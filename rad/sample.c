@@ -1,0 +1,32 @@
+/* Samples: two numbers give a point of the parallelogram of two edges, of which one half
+ * is folded onto the other; the direction around the normal is that of a point in a
+ * square, which is good enough and needs no sine. */
+#include "rad/sample.h"
+
+#include "geom/hash.h"
+
+struct vec3 triangle_sample(const struct triangle *t, uint64_t seed)
+{
+    double u = hash_unit(seed), v = hash_unit(seed + 1);
+    bool beyond = u + v > 1.0;
+    u = beyond ? 1.0 - u : u;
+    v = beyond ? 1.0 - v : v;
+    struct vec3 along = vec3_add(vec3_scale(vec3_sub(t->corner[1], t->corner[0]), u),
+                                 vec3_scale(vec3_sub(t->corner[2], t->corner[0]), v));
+    return vec3_add(t->corner[0], along);
+}
+
+struct ray ray_sample(const struct triangle *t, struct vec3 normal, uint64_t seed,
+                      int ring, int rings)
+{
+    struct vec3 x = vec3_sub(t->corner[1], t->corner[0]);
+    x = vec3_scale(x, 1.0 / vec3_length(x));
+    double a = 2.0 * hash_unit(seed + 2) - 1.0, b = 2.0 * hash_unit(seed + 3) - 1.0;
+    double sine2 = (ring + hash_unit(seed + 4)) / rings;
+    double scale = sqrt(sine2) / (sqrt(a * a + b * b) + 1e-300);
+    struct vec3 along = vec3_add(vec3_scale(x, a * scale),
+                                 vec3_scale(vec3_cross(normal, x), b * scale));
+    struct vec3 above = vec3_scale(normal, 1024.0 * GEOM_ROUNDING);
+    return (struct ray){vec3_add(triangle_sample(t, seed), above),
+                        vec3_add(along, vec3_scale(normal, sqrt(1.0 - sine2)))};
+}

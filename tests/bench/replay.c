@@ -1,0 +1,231 @@
+/* replay RANKS[,RANKS...] SCENE [OPTIONS of phr]: refinement on more ranks than there are.
+ *
+ * A run on one rank tells of each link that it splits the predicted load, the work that it took,
+ * and the number of its children that are to be split too. Links come level by level, each behind
+ * its parent's other children, so these three numbers are the whole tree of a pass. It is then dealt
+ * to so many ranks by the functions that phr deals by (mpi/balance.h, mpi/plan.h).
+ *
+ * What the replay does not know is where the links live that a later pass begins with: they are
+ * spread evenly, in turn. One line for each number of ranks: ranks, work that all ranks repeat, work of
+ * all that is dealt, sum over stages of the slowest rank's and of the most bytes that a rank sends. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "io/obj.h"
+#include "io/options.h"
+#include "mpi/balance.h"
+#include "tests/solve.h"
+
+enum { BYTES_PER_LINK = 32, PASSES_MAX = 1000 };
+
+struct split {
+    int64_t load, work, children, first_child;
+};
+
+struct record {
+    struct split *splits; /* [count] */
+    int64_t count, capacity;
+    int64_t pass_at[PASSES_MAX + 1]; /* a pass begins at splits[pass_at[pass]] */
+    int passes;
+};
+
+struct pile { /* links of one rank, by number */
+    int64_t *items, count, capacity;
+};
+
+struct totals {
+    int64_t repeated, dealt, slowest, bytes;
+};
+
+/* --- recording --- */
+
+static void note(void *context, int64_t load, int64_t work, int64_t children)
+{
+    struct record *record = context;
+    record->splits = alloc_reserve(record->splits, &record->capacity, record->count + 1,
+                                   sizeof *record->splits);
+    record->splits[record->count++] = (struct split){load, work, children, 0};
+}
+
+static void record_run(const struct comm *comm, const struct scene *scene,
+                       const struct criterion *criterion, struct record *record)
+{
+    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct solver *solver = solver_create(comm, scene, octree, criterion);
+    struct vote vote;
+    solver->watch = note;
+    solver->watcher = record;
+    solver_link_roots(solver);
+    solver_assign_roots(solver);
+    do {
+        solver_refine(solver);
+        record->pass_at[++record->passes] = record->count;
+        vote = solve_links(solver);
+    } while (!vote.converged && !vote.diverged && record->passes < PASSES_MAX);
+    solver_destroy(solver);
+    octree_destroy(octree);
+}
+
+/* Numbers the children. Returns how many links the pass begins with. */
+static int64_t number_children(struct record *record, int64_t begin, int64_t end)
+{
+    int64_t roots = end - begin;
+    for (int64_t i = begin; i < end; i++)
+        roots -= record->splits[i].children;
+    for (int64_t i = begin, next = begin + roots; i < end; i++) {
+        record->splits[i].first_child = next;
+        next += record->splits[i].children;
+    }
+    return roots;
+}
+
+/* --- replay --- */
+
+static void put(struct pile *pile, int64_t item)
+{
+    pile->items = alloc_reserve(pile->items, &pile->capacity, pile->count + 1, sizeof *pile->items);
+    pile->items[pile->count++] = item;
+}
+
+/* As links_balance(): each rank keeps the order of what stays; what comes, comes behind it. Returns
+ * the most bytes that a rank sends. */
+static int64_t deal(const struct record *record, struct pile *piles, int ranks, const int64_t *loads)
+{
+    struct transfer *plan = alloc_array(2 * (size_t)ranks, sizeof *plan);
+    struct pile *arriving = alloc_array((size_t)ranks, sizeof *arriving);
+    int planned = plan_transfers(loads, ranks, plan);
+    int64_t most = 0;
+    for (int r = 0; r < ranks; r++) {
+        int64_t count = piles[r].count, kept = 0;
+        int64_t *costs = alloc_array((size_t)count, sizeof *costs);
+        int *destination = alloc_array((size_t)count, sizeof *destination);
+        for (int64_t i = 0; i < count; i++)
+            costs[i] = record->splits[piles[r].items[i]].load;
+        links_deal_out(costs, count, plan, planned, r, destination);
+        for (int64_t i = 0; i < count; i++) {
+            if (destination[i] == r)
+                piles[r].items[kept++] = piles[r].items[i];
+            else
+                put(&arriving[destination[i]], piles[r].items[i]);
+        }
+        most = BYTES_PER_LINK * (count - kept) > most ? BYTES_PER_LINK * (count - kept) : most;
+        piles[r].count = kept;
+        alloc_free(destination);
+        alloc_free(costs);
+    }
+    for (int r = 0; r < ranks; r++) {
+        for (int64_t i = 0; i < arriving[r].count; i++)
+            put(&piles[r], arriving[r].items[i]);
+        alloc_free(arriving[r].items);
+    }
+    alloc_free(arriving);
+    alloc_free(plan);
+    return most;
+}
+
+/* Splits what a rank has up to the limit; the rest moves to the front. Returns the work. */
+static int64_t split(const struct record *record, struct pile *pile, int64_t limit,
+                     struct pile *next)
+{
+    int64_t work = 0, done = 0;
+    for (; done < pile->count && work < limit; done++) {
+        const struct split *split = &record->splits[pile->items[done]];
+        work += split->work;
+        for (int64_t child = 0; child < split->children; child++)
+            put(next, split->first_child + child);
+    }
+    pile->count -= done;
+    if (pile->count > 0)
+        memmove(pile->items, pile->items + done, (size_t)pile->count * sizeof *pile->items);
+    return work;
+}
+
+/* As split_level() in mpi/refinement.c. Returns the number of links of the next level. */
+static int64_t replay_level(const struct record *record, enum balance balance, struct pile *piles,
+                            int ranks, struct totals *totals)
+{
+    struct pile *next = alloc_array((size_t)ranks, sizeof *next);
+    int64_t *loads = alloc_array((size_t)ranks, sizeof *loads), limit = 0, links = 0;
+    for (int stage = 0; limit < INT64_MAX; stage++) {
+        int64_t slowest = 0;
+        for (int r = 0; r < ranks; r++) {
+            loads[r] = 0;
+            for (int64_t i = 0; i < piles[r].count; i++)
+                loads[r] += record->splits[piles[r].items[i]].load;
+        }
+        limit = balance == BALANCE_GREEDY ? INT64_MAX : links_limit(loads, ranks, stage);
+        totals->bytes += moving_pays(loads, ranks) ? deal(record, piles, ranks, loads) : 0;
+        for (int r = 0; r < ranks; r++) {
+            int64_t work = split(record, &piles[r], limit, &next[r]);
+            totals->dealt += work;
+            slowest = work > slowest ? work : slowest;
+        }
+        totals->slowest += slowest;
+    }
+    for (int r = 0; r < ranks; r++) {
+        alloc_free(piles[r].items);
+        links += next[r].count;
+    }
+    memcpy(piles, next, (size_t)ranks * sizeof *piles);
+    alloc_free(loads);
+    alloc_free(next);
+    return links;
+}
+
+static void replay_pass(struct record *record, const struct criterion *criterion, int pass,
+                        int ranks, struct totals *totals)
+{
+    int64_t at = record->pass_at[pass], end = record->pass_at[pass + 1];
+    int64_t links = number_children(record, at, end);
+    bool alike = pass == 0 && criterion->linking == LINKING_TREE;
+    while (alike && links > 0 && !level_is_dealt(links)) {
+        int64_t next = 0;
+        for (int64_t i = at; i < at + links; i++) {
+            totals->repeated += record->splits[i].work;
+            next += record->splits[i].children;
+        }
+        at += links;
+        links = next;
+    }
+    struct pile *piles = alloc_array((size_t)ranks, sizeof *piles);
+    for (int64_t i = 0; i < links; i++)
+        put(&piles[i % ranks], at + i);
+    while (links > 0)
+        links = replay_level(record, criterion->balance, piles, ranks, totals);
+    for (int r = 0; r < ranks; r++)
+        alloc_free(piles[r].items);
+    alloc_free(piles);
+}
+
+int main(int argc, char **argv)
+{
+    struct comm comm;
+    struct options options = {0};
+    struct error error = {0};
+    struct record record = {0};
+    struct scene_repairs prepared;
+    struct obj_repairs read = {0};
+    comm_start(&comm, &argc, &argv);
+    struct scene *scene = NULL;
+    if (argc < 3 || !options_parse(&options, argc - 1, argv + 1, &error) ||
+        !(scene = obj_read(options.scene, &read, &error)) ||
+        !scene_prepare(scene, &prepared, &error)) {
+        fprintf(stderr, "replay RANKS[,RANKS...] SCENE [OPTIONS of phr] %s\n", error.text);
+        return EXIT_FAILURE;
+    }
+    record_run(&comm, scene, &options.criterion, &record);
+    for (char *ranks = strtok(argv[1], ","); ranks; ranks = strtok(NULL, ",")) {
+        struct totals totals = {0};
+        for (int pass = 0; pass < record.passes; pass++)
+            replay_pass(&record, &options.criterion, pass, atoi(ranks), &totals);
+        printf("%s %lld %lld %lld %lld\n", ranks, (long long)totals.repeated,
+               (long long)totals.dealt, (long long)totals.slowest, (long long)totals.bytes);
+    }
+    alloc_free(record.splits);
+    scene_destroy(scene);
+    options_free(&options);
+    comm_stop(&comm);
+    return EXIT_SUCCESS;
+}

@@ -1,0 +1,9 @@
+/* Fuzzing checkpoints with links of clusters. */
+#define _POSIX_C_SOURCE 200809L /* fmemopen() */
+#include "tests/fuzz/store.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    store_try(STORE_CHECKPOINT, LINKING_TREE, data, size);
+    return 0;
+}

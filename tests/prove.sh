@@ -1,0 +1,46 @@
+# `make prove`, the long sweeps: errors fall with every fourfold step of epsilon, over six steps, in the
+# Cornell box and in rooms of 1,004 and 6,348 triangles; with OFFICE3=FILE.obj also in that
+# scene, two-sided. References are made first, where $BUILD/prove has none: about an hour.
+#
+# A step counts as a fall where RMS and L1, of leaves and of roots, become smaller by more than the noise
+# of the reference, or both are below it. Each step is four times the epsilon before.
+. tests/tap.sh
+
+: "${ELEMENTS:=20000}" "${SAMPLES:=2000}"
+folder=$BUILD/prove
+mkdir -p "$folder"
+cp scenes/room.mtl "$folder"
+
+# prove NAME SCENE OPTIONS...: one line for each step.
+prove() {
+    name=$1 scene=$2
+    shift 2
+    truth=$folder/$name.ref
+    [ -e "$truth" ] || "$BUILD/reference" "$scene" "$truth" "$@" "$ELEMENTS" "$SAMPLES" >/dev/null
+    before=""
+    for epsilon in 4e-3 1e-3 2.5e-4 6.25e-5 1.5625e-5 3.90625e-6 9.765625e-7; do
+        now=$("$BUILD/measure" "$scene" "$truth" "$@" --epsilon $epsilon |
+            awk -F, '{ print $10, $11, $21, $22, $16 }')
+        if [ -z "$now" ]; then
+            tap 1 "$name, $epsilon: no measurement"
+        elif [ -n "$before" ]; then
+            check "$name, $epsilon: $now" falls $before $now
+        fi
+        before=$now
+    done
+}
+
+# falls RMS L1 ROOT_RMS ROOT_L1 NOISE, twice: before and now.
+falls() {
+    awk "BEGIN { exit !(($6 < $1 || $6 < ${10}) && ($7 < $2 || $7 < ${10}) &&
+                        ($8 < $3 || $8 < ${10}) && ($9 < $4 || $9 < ${10})) }"
+}
+
+for size in 1000 6350; do
+    build/room $size 1 >"$folder/room$size.obj"
+done
+prove cornell scenes/cornell.obj
+prove room1000 "$folder/room1000.obj"
+prove room6350 "$folder/room6350.obj"
+[ -z "${OFFICE3-}" ] || prove office3 "$OFFICE3" --two-sided
+tap_done
