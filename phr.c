@@ -345,23 +345,22 @@ static double share_solved(const struct run *run, double first)
     return known ? log(first / now) / log(first / tolerance) : 0.0;
 }
 
-/* What the run holds before it has links, and the limit. */
+/* What each rank is going to hold before there are links; a cluster has two children at least. */
 static void say_forecast(struct run *run)
 {
-    const struct solver *solver = run->solver;
-    int64_t clusters = solver->tree ? solver->tree->count : 0;
-    int64_t bytes = memory_needed(solver->memory.copies, 0, solver->method.forest->count, clusters);
-    say(run, "%s: %lld triangles; linking", run->options.scene,
-        (long long)run->scene->input_count);
+    int64_t roots = scene_root_count(run->scene);
+    int64_t clusters = run->options.criterion.linking == LINKING_TREE ? roots / 2 : 0;
     if (run->options.verbose)
-        say(run, "%lld clusters; %.1f MB before links, of %.0f MB", (long long)clusters,
-            1e-6 * (double)bytes, 1e-6 * (double)solver->memory.limit);
+        say(run, "%lld roots and some %lld clusters: %.1f MB on each rank before there are links",
+            (long long)roots, (long long)clusters,
+            1e-6 * (double)memory_needed(1, 0, roots, clusters));
 }
 
 /* Collective. Steps 2 and 3 of the paper's Sec. 3.2, or what a file holds in their place. */
 static bool start_light(struct run *run)
 {
     const struct options *options = &run->options;
+    say_forecast(run);
     struct solver *solver = solver_create(&run->comm, run->scene, run->octree,
                                           &options->criterion);
     run->solver = solver;
@@ -377,7 +376,7 @@ static bool start_light(struct run *run)
         return true;
     }
     progress_begin(solver->progress, "linking", -1, 0);
-    say_forecast(run);
+    say(run, "%s: %lld triangles; linking", options->scene, (long long)run->scene->input_count);
     run->half_linked = !solver_link_roots(solver); /* 2: initial linking */
     if (solver->stop)
         return error_set(&run->error, EXIT_FAILED, "stopped by %s",

@@ -70,6 +70,17 @@ static inline double real_max(double a, double b)
     return a > b ? a : b;
 }
 
+/* Axis by axis: the lower and the upper corner of the box around two points. */
+static inline struct vec3 vec3_least(struct vec3 a, struct vec3 b)
+{
+    return (struct vec3){real_min(a.x, b.x), real_min(a.y, b.y), real_min(a.z, b.z)};
+}
+
+static inline struct vec3 vec3_most(struct vec3 a, struct vec3 b)
+{
+    return (struct vec3){real_max(a.x, b.x), real_max(a.y, b.y), real_max(a.z, b.z)};
+}
+
 static inline double rgb_sum(struct rgb c)
 {
     return c.band[0] + c.band[1] + c.band[2];

@@ -206,7 +206,7 @@ static void look_around(const struct wood *wood, int32_t root, int32_t first, in
     for (int i = 0; i < RAYS; i++) {
         uint64_t seed = hash_mix((uint64_t)root << 32 | (uint64_t)i);
         struct ray ray = ray_sample(&t, scene_root_plane(scene, root).normal, seed, 0, 1);
-        int32_t met = root_met(scene, wood->world.octree, &ray, &counts);
+        int32_t met = root_met(scene, wood->world.octree, &ray, -1, &counts);
         int32_t place = met < 0 ? -1 : wood->tree->place[met];
         mean_add(&hits, place >= first && place < end);
     }

@@ -193,22 +193,10 @@ static int32_t space_of(int32_t *up, int32_t root)
 }
 
 int32_t root_met(const struct scene *scene, const struct octree *octree,
-                 const struct ray *ray, struct octree_counts *counts)
+                 const struct ray *ray, int32_t outside, struct octree_counts *counts)
 {
     struct octree_hit hit;
     if (!octree_first_hit(octree, ray->origin, ray->direction, false, &hit, counts))
-        return -1;
-    return scene_root_on(scene, hit.triangle, hit.front);
-}
-
-/* Where a ray from a root ends: a root, `outside` if it meets nothing, or -1 on a back.
- */
-static int32_t place_met(const struct scene *scene, const struct octree *octree,
-                         const struct ray *ray, int32_t outside)
-{
-    struct octree_counts counts = {0};
-    struct octree_hit hit;
-    if (!octree_first_hit(octree, ray->origin, ray->direction, false, &hit, &counts))
         return outside;
     return scene_root_on(scene, hit.triangle, hit.front);
 }
@@ -232,6 +220,7 @@ int32_t *places_met(const struct scene *scene, const struct octree *octree,
     int32_t all = scene_root_count(scene);
     int32_t *met = alloc_array(SPACE_RAYS * (size_t)(end - first), sizeof *met);
     int32_t *at = met;
+    struct octree_counts counts = {0};
     for (int32_t root = first; root < end && !stop_is_asked(); root++) {
         struct triangle t = scene_root_triangle(scene, root);
         for (int i = 0; i < SPACE_RAYS; i++, at++) {
@@ -241,7 +230,7 @@ int32_t *places_met(const struct scene *scene, const struct octree *octree,
             uint64_t seed = hash_mix((uint64_t)root) + 8 * (uint64_t)i;
             struct vec3 normal = scene_root_plane(scene, root).normal;
             struct ray ray = ray_sample(&t, normal, seed, i, SPACE_RAYS);
-            *at = place_met(scene, octree, &ray, all);
+            *at = root_met(scene, octree, &ray, all, &counts);
         }
     }
     return met;
@@ -312,16 +301,6 @@ static int32_t cut(struct builder *builder, int32_t from, int32_t to, int64_t mo
     return fits ? first : count / 2;
 }
 
-static struct vec3 least(struct vec3 a, struct vec3 b)
-{
-    return (struct vec3){fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z)};
-}
-
-static struct vec3 most(struct vec3 a, struct vec3 b)
-{
-    return (struct vec3){fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z)};
-}
-
 /* A root as if it were a cluster. */
 static struct cluster cluster_of_root(const struct scene *scene, int32_t root)
 {
@@ -329,8 +308,8 @@ static struct cluster cluster_of_root(const struct scene *scene, int32_t root)
     struct vec3 normal = scene_root_plane(scene, root).normal;
     const struct material *material = scene_root_material(scene, root);
     return (struct cluster){
-        .low = least(t.corner[0], least(t.corner[1], t.corner[2])),
-        .high = most(t.corner[0], most(t.corner[1], t.corner[2])),
+        .low = vec3_least(t.corner[0], vec3_least(t.corner[1], t.corner[2])),
+        .high = vec3_most(t.corner[0], vec3_most(t.corner[1], t.corner[2])),
         .normal_low = normal,
         .normal_high = normal,
         .area = scene_root_area(scene, root),
@@ -344,12 +323,12 @@ static struct cluster cluster_of_root(const struct scene *scene, int32_t root)
 static void add_child(struct cluster *parent, const struct cluster *child)
 {
     bool fresh = parent->area == 0.0;
-    parent->low = fresh ? child->low : least(parent->low, child->low);
-    parent->high = fresh ? child->high : most(parent->high, child->high);
+    parent->low = fresh ? child->low : vec3_least(parent->low, child->low);
+    parent->high = fresh ? child->high : vec3_most(parent->high, child->high);
     parent->normal_low =
-        fresh ? child->normal_low : least(parent->normal_low, child->normal_low);
+        fresh ? child->normal_low : vec3_least(parent->normal_low, child->normal_low);
     parent->normal_high =
-        fresh ? child->normal_high : most(parent->normal_high, child->normal_high);
+        fresh ? child->normal_high : vec3_most(parent->normal_high, child->normal_high);
     for (int c = 0; c < BANDS; c++)
         parent->reflectance.band[c] += child->area * child->reflectance.band[c];
     parent->area += child->area;

@@ -11,16 +11,6 @@
 
 static const double PI = 3.14159265358979323846;
 
-static struct vec3 least(struct vec3 a, struct vec3 b)
-{
-    return (struct vec3){real_min(a.x, b.x), real_min(a.y, b.y), real_min(a.z, b.z)};
-}
-
-static struct vec3 most(struct vec3 a, struct vec3 b)
-{
-    return (struct vec3){real_max(a.x, b.x), real_max(a.y, b.y), real_max(a.z, b.z)};
-}
-
 static struct end end_of_cluster(const struct method *method, int32_t node)
 {
     const struct cluster_light *light = method->clusters;
@@ -50,8 +40,8 @@ struct end end_of(const struct method *method, int32_t node)
                       .radiosity = method->forest->patches[node].radiosity,
                       .is_dark = material_is_dark(material)};
     const struct vec3 *corner = end.facet.triangle.corner;
-    end.low = least(corner[0], least(corner[1], corner[2]));
-    end.high = most(corner[0], most(corner[1], corner[2]));
+    end.low = vec3_least(corner[0], vec3_least(corner[1], corner[2]));
+    end.high = vec3_most(corner[0], vec3_most(corner[1], corner[2]));
     end.area = end.facet.area;
     end.radius = triangle_radius(&end.facet.triangle);
     return end;

@@ -236,7 +236,8 @@ static void look_nearby(struct method *method, const struct meeting *m, uint64_t
             struct spot spot = spot_in(method, from, a, own);
             struct ray ray =
                 ray_sample(&spot.triangle, spot.normal, own + 1, ring, RINGS);
-            int32_t root = root_met(method->scene, method->octree, &ray, &method->counts);
+            int32_t root = root_met(method->scene, method->octree, &ray, -1,
+                                     &method->counts);
             int b = cluster_child_at(method->clusters->tree, to->cluster, root);
             if (b >= 0)
                 add_exchange(found, from_p ? a : b, from_p ? b : a,
