@@ -386,7 +386,8 @@ static bool start_light(struct run *run)
         return error_set(&run->error, EXIT_FAILED,
                          "%s: not written: linking ended at the memory limit",
                          options->save_links);
-    say(run, "roots are linked, %.1f s", comm_seconds() - run->start);
+    if (!solver->tree)
+        say(run, "roots are linked, %.1f s", comm_seconds() - run->start);
     return !options->save_links || save_snapshot(run, STORE_LINKS, options->save_links);
 }
 
