@@ -143,8 +143,7 @@ static int32_t end_of_child(const struct cluster_tree *tree, int32_t number, int
     const struct cluster *cluster = &tree->clusters[number];
     int32_t node = cluster->child[k];
     if (!node_is_cluster(node))
-        return tree->roots[place] == node && tree->parent[node] == number &&
-                       is_reached(tree, cluster, k, NODE_NONE)
+        return tree->roots[place] == node && is_reached(tree, cluster, k, NODE_NONE)
                    ? place + 1 : -1;
     const struct cluster *child = &tree->clusters[~node];
     bool right = ~node > number && child->first == place && child->end - place >= 2 &&
@@ -177,7 +176,7 @@ static bool has_all_roots(const struct cluster_tree *tree, const struct scene *s
         bool wanted = scene_root_area(scene, root) > 0.0;
         count += wanted;
         if (wanted ? place < 0 || place >= tree->root_count || tree->roots[place] != root
-                   : place != -1 || tree->parent[root] != -1)
+                   : place != -1)
             return false;
     }
     for (int32_t i = 0; i < tree->root_count; i++) {
@@ -277,7 +276,6 @@ static bool same_trees(const struct cluster_tree *a, const struct cluster_tree *
            same_bytes(a->clusters, b->clusters, count, sizeof *a->clusters) &&
            same_bytes(a->roots, b->roots, roots, sizeof *a->roots) &&
            same_bytes(a->place, b->place, all, sizeof *a->place) &&
-           same_bytes(a->parent, b->parent, all, sizeof *a->parent) &&
            same_bytes(a->area_before, b->area_before, roots + 1, sizeof *a->area_before);
 }
 

@@ -379,7 +379,6 @@ static int32_t build(struct builder *builder, int32_t from, int32_t to,
     for (int k = 0; k < 4; k++) {
         if (ends[k] - begin == 1) {
             cluster.child[children++] = builder->items[begin].root;
-            tree->parent[builder->items[begin].root] = number;
         } else if (ends[k] > begin) {
             cluster.child[children] = build(
                 builder, begin, ends[k], hierarchy << 2 | (uint32_t)children, level + 1);
@@ -436,9 +435,8 @@ struct cluster_tree *cluster_tree_build(const struct scene *scene, const int32_t
     tree->roots = alloc_array(count, sizeof *tree->roots);
     tree->area_before = alloc_array(count + 1, sizeof *tree->area_before);
     tree->place = alloc_array(all, sizeof *tree->place);
-    tree->parent = alloc_array(all, sizeof *tree->parent);
     for (size_t root = 0; root < all; root++)
-        tree->place[root] = tree->parent[root] = -1;
+        tree->place[root] = -1;
     build(&builder, 0, tree->root_count, 1, 0);
     list_places(&builder);
     tree->clusters =
@@ -464,7 +462,6 @@ void cluster_tree_destroy(struct cluster_tree *tree)
         alloc_free(tree->clusters);
         alloc_free(tree->roots);
         alloc_free(tree->place);
-        alloc_free(tree->parent);
         alloc_free(tree->area_before);
     }
     alloc_free(tree);
@@ -477,7 +474,6 @@ static void pack_arrays(struct cluster_tree *tree, struct pack *pack)
         pack_array(pack, tree->clusters, (size_t)tree->count * sizeof *tree->clusters);
     tree->roots = pack_array(pack, tree->roots, roots * sizeof *tree->roots);
     tree->place = pack_array(pack, tree->place, all * sizeof *tree->place);
-    tree->parent = pack_array(pack, tree->parent, all * sizeof *tree->parent);
     tree->area_before =
         pack_array(pack, tree->area_before, (roots + 1) * sizeof *tree->area_before);
 }

@@ -41,7 +41,6 @@ struct cluster_tree {
     struct cluster *clusters; /* [count] children after their parents */
     int32_t *roots; /* [root_count] those that have an area, in the tree's order */
     int32_t *place; /* [all roots] where a root is in `roots`; -1: it has no area */
-    int32_t *parent; /* [all roots] the cluster that a root is child of; -1: none */
     double *area_before;      /* [root_count + 1] sum over the roots before a place */
     int32_t count, root_count, all_roots;
     bool is_view;             /* the arrays lie in memory of others */
