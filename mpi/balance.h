@@ -29,10 +29,9 @@ bool level_is_dealt(int64_t links);
 /* True if what the ranks save takes longer than sending the links. */
 bool moving_pays(const int64_t *loads, int ranks);
 
-/* The work, in tests, after which a rank leaves the rest of a level to be dealt anew,
- * when it has been dealt so often before; INT64_MAX: it leaves none. loads[r]: what rank
- * r has to split. */
-int64_t links_limit(const int64_t *loads, int ranks, int stage);
+/* The work, in tests, after which a rank leaves the rest of its links to be dealt anew;
+ * INT64_MAX: it leaves none. loads[r]: predicted work of rank r. */
+int64_t links_limit(const int64_t *loads, int ranks);
 
 /* Where the links of `rank` go by a plan (mpi/plan.h): destination[i] is for the link
  * with costs[i]. They are dealt in turn to the rank itself and to the receivers of its

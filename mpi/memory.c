@@ -1,7 +1,7 @@
 /* The memory limit.
  *
  * What grows are links and patches; clusters are there from the beginning. Before a level
- * is split, the links there will be are known within a factor: each of the prolific ones
+ * (or a stage, mpi/refinement.c) is split, the links there will be are known within a factor: each of the prolific ones
  * becomes four at most (of a cluster with itself, ten), and is there itself until the
  * level is done; a patch can get four children only once. Whether that fits into the
  * limit is decided from counts over all ranks, so all decide alike, and a limit that the

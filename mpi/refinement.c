@@ -3,8 +3,13 @@
  * `prolific` holds the links of one level that will be split. Before each level the ranks
  * exchange their loads, the sums of predicted costs; each decides alike where links go
  * (mpi/balance.h). Then each rank splits what it has: children that are to be split too
- * form the next level, the others join the links. Where there is much to do, ranks leave
- * a part of the level, and that is dealt anew, but for --balance greedy, the paper's.
+ * form the next level, the others join the links.
+ *
+ * With --balance greedy, the paper's, a level is dealt once, and ends before the next one
+ * begins. Else the ranks work in stages: each splits links, and children of theirs, up to
+ * the same amount of work; then all links that are left are dealt anew, and "level" counts
+ * stages. Only under --memory M, which has to stop at the same level on any number of
+ * ranks, do levels end here too, each after one or more stages.
  *
  * What was split stays where that was done; light is transferred over links where they
  * are. So at the end their numbers are evened out, but for --balance greedy.
@@ -27,13 +32,15 @@ struct load_notice {
     int64_t kept;            /* links here that are not to be split */
     int64_t stop;            /* the signal that this rank has got, 0: none */
     int64_t of_patches; /* links here that are to be split and have a patch in them */
+    int64_t made;       /* patches made here that the others have not heard of */
 };
 
-/* Links of all ranks before a stage. */
+/* Links and new patches of all ranks before a stage. */
 struct level {
     int64_t prolific, kept;
     int64_t of_patches; /* prolific ones with a patch in them: clusters need no new
                            children */
+    int64_t made;       /* patches of one rank or more, each counted on each of them */
 };
 
 static int64_t count_of_patches(const struct link_list *list)
@@ -81,7 +88,8 @@ static struct level exchange_loads(struct solver *solver,
     const struct comm *comm = solver->comm;
     struct load_notice own = {.links = prolific->count, .load = load_of(prolific),
                               .kept = solver->links.count, .stop = signals_seen(),
-                              .of_patches = count_of_patches(prolific)};
+                              .of_patches = count_of_patches(prolific),
+                              .made = solver->method.forest->count - solver->shared};
     struct load_notice *notices = alloc_array((size_t)comm->size, sizeof *notices);
     double start = comm_seconds();
     MPI_Request request;
@@ -89,12 +97,13 @@ static struct level exchange_loads(struct solver *solver,
                    comm->handle, &request);
     comm_wait(&request);
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
-    struct level sum = {0, 0, 0};
+    struct level sum = {0};
     for (int r = 0; r < comm->size; r++) {
         loads[r] = notices[r].load;
         sum.prolific += notices[r].links;
         sum.kept += notices[r].kept;
         sum.of_patches += notices[r].of_patches;
+        sum.made += notices[r].made;
         solver->stop =
             (int)notices[r].stop > solver->stop ? (int)notices[r].stop : solver->stop;
     }
@@ -136,49 +145,66 @@ static void split_link(struct solver *solver, const struct link *link,
 }
 
 /* Splits links until that took as much work as the limit, or a signal has come; the
- * others stay. `part`: of the level, that which is left. */
+ * others stay. `next` may be `links`: then children come behind what is there. `part`: of
+ * the level, the part that is left. */
 static void split_stage(struct solver *solver, struct link_list *links, double part,
                         int64_t limit, struct link_list *next, struct phase_work *phase)
 {
-    double start = comm_seconds();
+    double start = comm_seconds(), count = (double)links->count;
     int64_t before = method_work(&solver->method), done = 0;
-    double count = (double)links->count;
+    phase->predicted = 0;
     for (; done < links->count && method_work(&solver->method) - before < limit; done++) {
         if (done % 64 == 0) {
-            progress_tick(solver->progress, 1.0 - part * (count - (double)done) / count);
+            double left = real_max(0.0, count - (double)done);
+            progress_tick(solver->progress, 1.0 - part * left / count);
             if (signals_seen())
                 break;
         }
-        phase->predicted += link_load(&links->items[done]);
-        split_link(solver, &links->items[done], next);
+        struct link link = links->items[done];
+        phase->predicted += link_load(&link);
+        split_link(solver, &link, next);
     }
     links->count -= done;
     if (links->count > 0)
         memmove(links->items, links->items + done,
                 (size_t)links->count * sizeof *links->items);
+    solver->split_here += done;
+    phase->links = done;
     phase->work = method_work(&solver->method) - before;
     ledger_add(&solver->ledger, *phase);
     solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
 }
 
-/* Splits all links of a level, stage by stage. loads[r]: as exchanged. */
-static void split_level(struct solver *solver, struct link_list *links,
-                        struct phase_work phase, int64_t *loads, struct link_list *next)
+/* True if a level ends before the next one begins: the paper's do, and under a memory
+ * limit of the user (mpi/memory.h) all do. */
+static bool levels_end(const struct solver *solver)
 {
-    int64_t limit = 0;
+    const struct memory *memory = &solver->memory;
+    return solver->method.criterion.balance == BALANCE_GREEDY ||
+           (memory->limit > 0 && memory->copies == 1);
+}
+
+/* Splits all links of a level and puts their children in their place; where levels do not
+ * end, splits the links of one stage. loads[r]: as exchanged. */
+static void split_level(struct solver *solver, struct link_list *links,
+                        struct phase_work phase, int64_t *loads)
+{
+    bool ends = levels_end(solver), again = true;
+    struct link_list next = {0};
     double part = 1.0;
-    for (int stage = 0; limit < INT64_MAX; stage++) {
-        if (stage > 0)
-            exchange_loads(solver, links, loads);
-        if (solver->stop) /* the same on all ranks; the pass is lost */
-            return;
-        limit = solver->method.criterion.balance == BALANCE_GREEDY
-                    ? INT64_MAX : links_limit(loads, solver->comm->size, stage);
+    while (again) {
+        int64_t limit = solver->method.criterion.balance == BALANCE_GREEDY
+                            ? INT64_MAX : links_limit(loads, solver->comm->size);
         phase.bytes = deal_links(solver, links, loads);
         double count = (double)links->count;
-        split_stage(solver, links, part, limit, next, &phase);
+        split_stage(solver, links, part, limit, ends ? &next : links, &phase);
         part *= count > 0.0 ? (double)links->count / count : 1.0;
-        phase.links = phase.predicted = 0;
+        again = ends && limit < INT64_MAX &&
+                exchange_loads(solver, links, loads).prolific > 0 && !solver->stop;
+    }
+    if (ends) {
+        link_list_free(links);
+        *links = next;
     }
 }
 
@@ -213,10 +239,6 @@ static void share_splits(struct solver *solver)
 /* A link that is being split and its four children. */
 enum { LINKS_PER_SPLIT = 5 };
 
-/* A link that is looked at may give both its patches children; one that is split, a patch
- * too. */
-enum { PATCHES_PER_LOOK = 8, LOOKS_PER_SPLIT = 4 };
-
 /* True if there is room for splitting a level when there are so many patches. */
 static bool has_room(const struct solver *solver, const struct level *level,
                      int64_t patches)
@@ -226,15 +248,13 @@ static bool has_room(const struct solver *solver, const struct level *level,
                            solver->tree ? solver->tree->count : 0);
 }
 
-/* True if the memory limit lets the level be split. `made` is a bound on the patches that
- * all ranks have made before and not shared; only where it is not good enough are they
- * shared and counted. */
-static bool level_fits(struct solver *solver, const struct level *level, int64_t *made)
+/* True if the memory limit lets the level be split. Ranks may have made the same patches:
+ * only where there is no room for all of them are they shared and counted. */
+static bool level_fits(struct solver *solver, const struct level *level)
 {
-    if (has_room(solver, level, solver->shared + *made))
+    if (has_room(solver, level, solver->shared + level->made))
         return true;
     share_splits(solver);
-    *made = 0;
     return has_room(solver, level, solver->shared);
 }
 
@@ -243,29 +263,19 @@ static bool level_fits(struct solver *solver, const struct level *level, int64_t
 static bool split_levels(struct solver *solver, struct link_list *prolific,
                          int64_t *loads)
 {
-    int64_t made = 0;
     for (int64_t level = 0;; level++) {
         struct level links = exchange_loads(solver, prolific, loads);
         if (links.prolific == 0 && !solver->stop)
             return true;
-        made += level == 0 ? PATCHES_PER_LOOK * links.kept : 0;
-        bool fits = solver->stop || level_fits(solver, &links, &made);
+        bool fits = solver->stop || level_fits(solver, &links);
         if (!fits)
             solver->memory.reached = solver->memory.limit;
         if (!fits || solver->stop)
             return false;
-        made +=
-            LOOKS_PER_SPLIT * PATCHES_PER_LOOK * links.prolific + 4 * links.of_patches;
         progress_begin(solver->progress, "refining", level, links.prolific);
-        struct phase_work phase = {.kind = WORK_SPLITTING,
-                                   .iteration = solver->pass,
-                                   .level = level,
-                                   .links = prolific->count};
-        struct link_list next = {0};
-        solver->split_here += prolific->count;
-        split_level(solver, prolific, phase, loads, &next);
-        link_list_free(prolific);
-        *prolific = next;
+        struct phase_work phase = {.kind = WORK_SPLITTING, .iteration = solver->pass,
+                                   .level = level};
+        split_level(solver, prolific, phase, loads);
     }
 }
 
@@ -318,7 +328,8 @@ static void split_alike(struct solver *solver, struct link_list *level)
          i++) /* the top, if it is not to be split */
         node_link_settle(method, &solver->links.items[i]);
     while (level->count > 0 && !level_is_dealt(level->count)) {
-        struct level links = {level->count, solver->links.count, count_of_patches(level)};
+        struct level links = {.prolific = level->count, .kept = solver->links.count,
+                              .of_patches = count_of_patches(level)};
         struct link_list next = {0};
         if (!has_room(solver, &links, method->forest->count))
             break;

@@ -27,7 +27,7 @@ struct spread {
     double min, mean, max;
 };
 
-/* One level of refinement: how even the work was. Cost and work in box and triangle
+/* One level of refinement, or stage (mpi/refinement.c): how even the work was. Cost and work in box and triangle
  * tests; a form factor counts as eight. Linking, of which nothing is predicted, is level
  * 0 of iteration 0: all pairs of roots, or the levels below the top of the tree that all
  * ranks split alike. */

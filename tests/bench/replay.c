@@ -3,7 +3,8 @@
  * A run on one rank tells of each link that it splits the predicted load, the work that it took,
  * and the number of its children that are to be split too. Links come level by level, each behind
  * its parent's other children, so these three numbers are the whole tree of a pass. It is then dealt
- * to so many ranks by the functions that phr deals by (mpi/balance.h, mpi/plan.h).
+ * to so many ranks by the functions that phr deals by (mpi/balance.h, mpi/plan.h), without a
+ * memory limit.
  *
  * What the replay does not know is where the links live that a later pass begins with: they are
  * spread evenly, in turn. One line for each number of ranks: ranks, work that all ranks repeat, work of
@@ -125,7 +126,8 @@ static int64_t deal(const struct record *record, struct pile *piles, int ranks, 
     return most;
 }
 
-/* Splits what a rank has up to the limit; the rest moves to the front. Returns the work. */
+/* Splits what a rank has up to the limit; the rest moves to the front. `next` may be `pile`.
+ * Returns the work. */
 static int64_t split(const struct record *record, struct pile *pile, int64_t limit,
                      struct pile *next)
 {
@@ -142,36 +144,39 @@ static int64_t split(const struct record *record, struct pile *pile, int64_t lim
     return work;
 }
 
-/* As split_level() in mpi/refinement.c. Returns the number of links of the next level. */
-static int64_t replay_level(const struct record *record, enum balance balance, struct pile *piles,
-                            int ranks, struct totals *totals)
+/* Returns the sum of the loads. */
+static int64_t find_loads(const struct record *record, const struct pile *piles, int ranks,
+                          int64_t *loads)
 {
-    struct pile *next = alloc_array((size_t)ranks, sizeof *next);
-    int64_t *loads = alloc_array((size_t)ranks, sizeof *loads), limit = 0, links = 0;
-    for (int stage = 0; limit < INT64_MAX; stage++) {
-        int64_t slowest = 0;
-        for (int r = 0; r < ranks; r++) {
-            loads[r] = 0;
-            for (int64_t i = 0; i < piles[r].count; i++)
-                loads[r] += record->splits[piles[r].items[i]].load;
-        }
-        limit = balance == BALANCE_GREEDY ? INT64_MAX : links_limit(loads, ranks, stage);
-        totals->bytes += moving_pays(loads, ranks) ? deal(record, piles, ranks, loads) : 0;
-        for (int r = 0; r < ranks; r++) {
-            int64_t work = split(record, &piles[r], limit, &next[r]);
-            totals->dealt += work;
-            slowest = work > slowest ? work : slowest;
-        }
-        totals->slowest += slowest;
-    }
+    int64_t sum = 0;
     for (int r = 0; r < ranks; r++) {
-        alloc_free(piles[r].items);
-        links += next[r].count;
+        loads[r] = 0;
+        for (int64_t i = 0; i < piles[r].count; i++)
+            loads[r] += record->splits[piles[r].items[i]].load;
+        sum += loads[r];
     }
-    memcpy(piles, next, (size_t)ranks * sizeof *piles);
-    alloc_free(loads);
-    alloc_free(next);
-    return links;
+    return sum;
+}
+
+/* As split_level() in mpi/refinement.c: one stage, or, if levels end, all of a level. loads[r]: of
+ * the piles. */
+static void replay_level(const struct record *record, enum balance balance, struct pile *piles,
+                         int ranks, const int64_t *loads, struct totals *totals)
+{
+    bool ends = balance == BALANCE_GREEDY;
+    int64_t slowest = 0, limit = ends ? INT64_MAX : links_limit(loads, ranks);
+    totals->bytes += moving_pays(loads, ranks) ? deal(record, piles, ranks, loads) : 0;
+    for (int r = 0; r < ranks; r++) {
+        struct pile next = {0};
+        int64_t work = split(record, &piles[r], limit, ends ? &next : &piles[r]);
+        totals->dealt += work;
+        slowest = work > slowest ? work : slowest;
+        if (ends) {
+            alloc_free(piles[r].items);
+            piles[r] = next;
+        }
+    }
+    totals->slowest += slowest;
 }
 
 static void replay_pass(struct record *record, const struct criterion *criterion, int pass,
@@ -192,8 +197,10 @@ static void replay_pass(struct record *record, const struct criterion *criterion
     struct pile *piles = alloc_array((size_t)ranks, sizeof *piles);
     for (int64_t i = 0; i < links; i++)
         put(&piles[i % ranks], at + i);
-    while (links > 0)
-        links = replay_level(record, criterion->balance, piles, ranks, totals);
+    int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
+    while (find_loads(record, piles, ranks, loads) > 0)
+        replay_level(record, criterion->balance, piles, ranks, loads, totals);
+    alloc_free(loads);
     for (int r = 0; r < ranks; r++)
         alloc_free(piles[r].items);
     alloc_free(piles);

@@ -120,7 +120,7 @@ END {
     mean = all["many", "splitting"] / ranks
     printf "A test takes %.1f ns. The slowest of %d ranks splits %.3f times the mean, ", \
            1e9 * price, ranks, slowest["many", "splitting"] / mean
-    printf "level by level; the replay says %.3f, and of 1,024 %.1f. ", \
+    printf "stage by stage; the replay says %.3f, and of 1,024 %.1f. ", \
            most[ranks] / (dealt[ranks] / ranks), most[1024] / (dealt[1024] / 1024)
     printf "Of %d: looks %.2f, transfer %.2f, push-pull %.2f.\n", ranks, uneven["looks"], \
            uneven["transfer"], uneven["own"]
