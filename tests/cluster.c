@@ -7,6 +7,7 @@
 #include "geom/hash.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
+#include "tests/trees.h"
 
 enum { MANY = 100000 };
 
@@ -211,7 +212,7 @@ static void test_scene(struct scene *scene, const char *name, int most)
     struct octree *octree = NULL;
     if (scene->input_count < MANY) /* of as many in one place it takes too long */
         octree = octree_create(scene->triangles, scene->planes, scene->input_count);
-    struct cluster_tree *tree = cluster_tree_create(scene, octree);
+    struct cluster_tree *tree = tree_create(scene, octree);
     int depth;
     bool right = check_tree(tree, scene, &depth);
     tap_ok(right && depth <= most, "%s: %d roots, %d clusters, %d levels (at most %d)",
@@ -224,7 +225,7 @@ static void test_scene(struct scene *scene, const char *name, int most)
 static void test_few(int count)
 {
     struct scene *scene = coincident(count);
-    struct cluster_tree *tree = cluster_tree_create(scene, NULL);
+    struct cluster_tree *tree = tree_create(scene, NULL);
     int depth;
     bool right = check_tree(tree, scene, &depth) && tree->count == 1;
     for (int k = 0; k < 4; k++)
@@ -239,7 +240,7 @@ static void test_few(int count)
 static void test_checks(void)
 {
     struct scene *scene = mixture(300);
-    struct cluster_tree *tree = cluster_tree_create(scene, NULL);
+    struct cluster_tree *tree = tree_create(scene, NULL);
     int depth, seen = 0;
     struct cluster *cluster = &tree->clusters[tree->count / 2], kept = *cluster;
     for (int error = 0; error < 7; error++) {
@@ -282,8 +283,8 @@ static bool same_trees(const struct cluster_tree *a, const struct cluster_tree *
 static void test_pack(void)
 {
     struct scene *scene = mixture(1000);
-    struct cluster_tree *tree = cluster_tree_create(scene, NULL);
-    struct cluster_tree *again = cluster_tree_create(scene, NULL);
+    struct cluster_tree *tree = tree_create(scene, NULL);
+    struct cluster_tree *again = tree_create(scene, NULL);
     struct pack count = {0};
     cluster_tree_pack(tree, &count);
     char *block = alloc_array(count.bytes, 1);
@@ -323,7 +324,7 @@ static uint64_t sets_of(const struct cluster_tree *tree, int32_t step)
 static void test_order(void)
 {
     struct scene *plain = mixture(MIXED);
-    struct cluster_tree *tree = cluster_tree_create(plain, NULL);
+    struct cluster_tree *tree = tree_create(plain, NULL);
     uint64_t expected = sets_of(tree, 1);
     static const int32_t steps[] = {699, 11, 333};
     int same = 0;
@@ -336,7 +337,7 @@ static void test_order(void)
             mixed->areas[i] = plain->areas[from];
             mixed->material_of[i] = plain->material_of[from];
         }
-        struct cluster_tree *other = cluster_tree_create(mixed, NULL);
+        struct cluster_tree *other = tree_create(mixed, NULL);
         same += sets_of(other, steps[k]) == expected && sets_of(other, 1) != expected;
         cluster_tree_destroy(other);
         scene_destroy(mixed);
@@ -381,8 +382,8 @@ static void test_spaces(void)
     soup_free(&soup);
     struct octree *octree = octree_create(scene->triangles, scene->planes,
                                           scene->input_count);
-    struct cluster_tree *blind = cluster_tree_create(scene, NULL);
-    struct cluster_tree *tree = cluster_tree_create(scene, octree);
+    struct cluster_tree *blind = tree_create(scene, NULL);
+    struct cluster_tree *tree = tree_create(scene, octree);
     int depth;
     tap_ok(parts_at(tree, inside) && check_tree(tree, scene, &depth),
            "a sealed space is cut off first");
@@ -407,7 +408,7 @@ static void test_lamps(void)
         scene->material_of[i] = 1;
     scene_prepare_or_exit(scene);
     soup_free(&soup);
-    struct cluster_tree *tree = cluster_tree_create(scene, NULL);
+    struct cluster_tree *tree = tree_create(scene, NULL);
     tap_ok(parts_at(tree, others), "lamps are cut off from what they light");
     cluster_tree_destroy(tree);
     scene_destroy(scene);

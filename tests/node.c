@@ -11,6 +11,7 @@
 #include "tests/scenes.h"
 #include "tests/solve.h"
 #include "tests/tap.h"
+#include "tests/trees.h"
 
 static const struct comm *world_comm;
 
@@ -60,7 +61,7 @@ static struct wood wood_make(struct scene *scene)
     struct method *method = &wood.world.method;
     method->criterion = criterion_best(0.0, 0, 1e-3, CLOSURE_NONE);
     method->link_threshold = 0.0;
-    wood.tree = cluster_tree_create(scene, wood.world.octree);
+    wood.tree = tree_create(scene, wood.world.octree);
     method->clusters = cluster_light_create(wood.tree);
     cluster_light_pull(method->clusters, method->forest);
     cluster_light_bound(method->clusters, method->forest);

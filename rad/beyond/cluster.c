@@ -447,15 +447,6 @@ struct cluster_tree *cluster_tree_build(const struct scene *scene, const int32_t
     return tree;
 }
 
-struct cluster_tree *cluster_tree_create(const struct scene *scene,
-                                         const struct octree *octree)
-{
-    int32_t *met = octree ? places_met(scene, octree, 0, scene_root_count(scene)) : NULL;
-    struct cluster_tree *tree = cluster_tree_build(scene, met);
-    alloc_free(met);
-    return tree;
-}
-
 void cluster_tree_destroy(struct cluster_tree *tree)
 {
     if (tree && !tree->is_view) {

@@ -59,10 +59,6 @@ int32_t *places_met(const struct scene *scene, const struct octree *octree,
  * spaces by the places that all roots meet; NULL: all are in one. O(k log k) for k
  * roots. */
 struct cluster_tree *cluster_tree_build(const struct scene *scene, const int32_t *met);
-
-/* The same with rays through the octree; NULL: without. */
-struct cluster_tree *cluster_tree_create(const struct scene *scene,
-                                         const struct octree *octree);
 void cluster_tree_destroy(struct cluster_tree *tree);
 
 /* Into a block, and as it is there: read-only, valid as long as the block. */
