@@ -147,10 +147,8 @@ int link_split(struct method *method, const struct link *link, int32_t patch,
     return count;
 }
 
-/* What a link takes from a patch: B, or that of its children weighted by the parts, summed in `sum`.
- * (A transfer with copies of colours took half as long again.) */
-static const struct rgb *take(const struct forest *forest, int32_t patch, const uint8_t parts[3],
-                              struct rgb *sum)
+const struct rgb *link_take(const struct forest *forest, int32_t patch,
+                            const uint8_t parts[3], struct rgb *sum)
 {
     const struct patch *at = &forest->patches[patch];
     if (!link_is_divided(forest, patch, parts))
@@ -165,9 +163,8 @@ static const struct rgb *take(const struct forest *forest, int32_t patch, const 
     return sum;
 }
 
-/* Adds light, G B, to a patch, or to its children by the parts. */
-static void give(struct forest *forest, int32_t patch, const uint8_t parts[3], double area,
-                 const struct rgb *radiosity, struct flux_unit unit)
+void link_give(struct forest *forest, int32_t patch, const uint8_t parts[3], double area,
+               const struct rgb *radiosity, struct flux_unit unit)
 {
     struct patch *at = &forest->patches[patch];
     if (!link_is_divided(forest, patch, parts)) {
@@ -188,9 +185,9 @@ void links_transfer(const struct link_list *list, struct forest *forest, struct 
     for (int64_t i = 0; i < list->seen; i++) {
         const struct link *link = &list->items[i];
         struct rgb sum_p, sum_q;
-        const struct rgb *from_p = take(forest, link->p, link->parts_p, &sum_p);
-        const struct rgb *from_q = take(forest, link->q, link->parts_q, &sum_q);
-        give(forest, link->p, link->parts_p, (double)link->area, from_q, unit);
-        give(forest, link->q, link->parts_q, (double)link->area, from_p, unit);
+        const struct rgb *from_p = link_take(forest, link->p, link->parts_p, &sum_p);
+        const struct rgb *from_q = link_take(forest, link->q, link->parts_q, &sum_q);
+        link_give(forest, link->p, link->parts_p, (double)link->area, from_q, unit);
+        link_give(forest, link->q, link->parts_q, (double)link->area, from_p, unit);
     }
 }

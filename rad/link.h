@@ -118,6 +118,15 @@ bool link_make(struct method *method, int32_t p, const struct facet *facet_p, in
 int link_split(struct method *method, const struct link *link, int32_t patch,
                struct link children[4]);
 
+/* What a link takes from a patch: its B, or that of its children weighted by the parts, which
+ * is summed in `*sum`. (A transfer with copies of colours took half as long again.) */
+const struct rgb *link_take(const struct forest *forest, int32_t patch,
+                            const uint8_t parts[3], struct rgb *sum);
+
+/* Adds light, G B, to the flux of a patch, or of its children by the parts. */
+void link_give(struct forest *forest, int32_t patch, const uint8_t parts[3], double area,
+               const struct rgb *radiosity, struct flux_unit unit);
+
 /* Transfers light over all links that are seen: adds G B of either side to the flux of the
  * other. B may have any sign. Pre: the list is sorted, and the largest |B| times the area of the
  * scene is below FLUX_LIMIT units; then no flux can overflow, since the links of a patch lead to

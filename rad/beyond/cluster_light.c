@@ -37,8 +37,8 @@ static double area_of(const struct cluster_light *light, const struct forest *fo
                                  : forest_area(forest, node);
 }
 
-static const struct rgb *radiosity_of(const struct cluster_light *light,
-                                      const struct forest *forest, int32_t node)
+const struct rgb *cluster_light_radiosity(const struct cluster_light *light,
+                                          const struct forest *forest, int32_t node)
 {
     return node_is_cluster(node) ? &light->radiosity[~node]
                                  : &forest->patches[node].radiosity;
@@ -51,7 +51,8 @@ void cluster_light_pull(struct cluster_light *light, const struct forest *forest
         struct rgb sum = {{0.0, 0.0, 0.0}};
         for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
             double share = area_of(light, forest, cluster->child[k]) / cluster->area;
-            const struct rgb *child = radiosity_of(light, forest, cluster->child[k]);
+            const struct rgb *child =
+                cluster_light_radiosity(light, forest, cluster->child[k]);
             for (int c = 0; c < BANDS; c++)
                 sum.band[c] += share * child->band[c];
         }
@@ -70,7 +71,7 @@ void cluster_light_bound(struct cluster_light *light, const struct forest *fores
         for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
             int32_t node = cluster->child[k];
             double share = area_of(light, forest, node) / cluster->area;
-            double off = rgb_sum(*radiosity_of(light, forest, node)) - mean;
+            double off = rgb_sum(*cluster_light_radiosity(light, forest, node)) - mean;
             if (node_is_cluster(node)) {
                 within += share * variance[~node];
             } else {

@@ -313,15 +313,10 @@ void node_link_settle(struct method *method, struct link *link)
 
 /* --- transfer --- */
 
-/* Flux units of one link: no more than this is given. */
-static const double FLUX_MOST = (double)(FLUX_LIMIT - 1);
-
-/* The part of child k of a node: the last one that a cluster has gets the rest. */
-static double part_of(const struct method *method, int32_t node, const uint8_t parts[3],
-                      int k)
+/* The part of child k of a cluster: the last child that it has gets the rest. */
+static double part_of(const struct cluster *cluster, const uint8_t parts[3], int k)
 {
-    if (!node_is_cluster(node) || k == 3 ||
-        method->clusters->tree->clusters[~node].child[k + 1] != NODE_NONE)
+    if (k == 3 || cluster->child[k + 1] != NODE_NONE)
         return link_part(parts, k);
     int rest = 256;
     for (int i = 0; i < k; i++)
@@ -329,51 +324,42 @@ static double part_of(const struct method *method, int32_t node, const uint8_t p
     return rest * (1.0 / 256.0);
 }
 
-/* What a link takes from a node: B, or that of its children weighted by the parts. */
-static struct rgb take(const struct method *method, int32_t node, const uint8_t parts[3])
+/* As link_take(), of a node. */
+static const struct rgb *take(const struct method *method, int32_t node,
+                              const uint8_t parts[3], struct rgb *sum)
 {
-    const struct forest *forest = method->forest;
-    if (!node_is_cluster(node) && !link_is_divided(forest, node, parts))
-        return forest->patches[node].radiosity;
-    struct rgb sum = {{0.0, 0.0, 0.0}};
-    for (int k = 0; k < 4; k++) {
-        int32_t child = node_is_cluster(node)
-                            ? method->clusters->tree->clusters[~node].child[k]
-                            : forest->patches[node].children + k;
-        if (child == NODE_NONE)
-            break;
-        const struct rgb *b = node_is_cluster(child)
-                                  ? &method->clusters->radiosity[~child]
-                                  : &forest->patches[child].radiosity;
+    const struct cluster_light *light = method->clusters;
+    if (!node_is_cluster(node))
+        return link_take(method->forest, node, parts, sum);
+    const struct cluster *cluster = &light->tree->clusters[~node];
+    *sum = (struct rgb){{0.0, 0.0, 0.0}};
+    for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
+        double part = part_of(cluster, parts, k);
+        const struct rgb *b =
+            cluster_light_radiosity(light, method->forest, cluster->child[k]);
         for (int c = 0; c < BANDS; c++)
-            sum.band[c] += part_of(method, node, parts, k) * b->band[c];
+            sum->band[c] += part * b->band[c];
     }
     return sum;
 }
 
-/* Adds light, G B, to a node, or to its children by the parts. */
+/* As link_give(), to a node. */
 static void give(const struct method *method, int32_t node, const uint8_t parts[3],
-                 double area, const struct rgb *b, struct flux_unit unit)
+                 double area, const struct rgb *radiosity, struct flux_unit unit)
 {
-    const struct forest *forest = method->forest;
-    bool divided = node_is_cluster(node) || link_is_divided(forest, node, parts);
-    double whole[BANDS];
-    for (int c = 0; c < BANDS; c++)
-        whole[c] =
-            real_max(-FLUX_MOST, real_min(FLUX_MOST, area * b->band[c] * unit.per_watt));
-    for (int k = 0; k < (divided ? 4 : 1); k++) {
-        int32_t to = !divided ? node
-                     : node_is_cluster(node)
-                         ? method->clusters->tree->clusters[~node].child[k]
-                         : forest->patches[node].children + k;
-        if (to == NODE_NONE)
-            return;
-        double part = divided ? part_of(method, node, parts, k) : 1.0;
-        int64_t *flux = node_is_cluster(to)
-                            ? method->clusters->flux + BANDS * (int64_t)~to
-                            : forest->patches[to].flux;
+    const struct cluster_light *light = method->clusters;
+    if (!node_is_cluster(node)) {
+        link_give(method->forest, node, parts, area, radiosity, unit);
+        return;
+    }
+    const struct cluster *cluster = &light->tree->clusters[~node];
+    for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
+        int32_t child = cluster->child[k];
+        double part = part_of(cluster, parts, k);
+        int64_t *flux = node_is_cluster(child) ? light->flux + BANDS * (int64_t)~child
+                                               : method->forest->patches[child].flux;
         for (int c = 0; c < BANDS; c++)
-            flux[c] += llrint(part * whole[c]);
+            flux[c] += flux_from_watts(unit, part * (area * radiosity->band[c]));
     }
 }
 
@@ -382,9 +368,10 @@ void node_links_transfer(const struct link_list *list, const struct method *meth
 {
     for (int64_t i = 0; i < list->seen; i++) {
         const struct link *link = &list->items[i];
-        struct rgb from_p = take(method, link->p, link->parts_p);
-        struct rgb from_q = take(method, link->q, link->parts_q);
-        give(method, link->p, link->parts_p, (double)link->area, &from_q, unit);
-        give(method, link->q, link->parts_q, (double)link->area, &from_p, unit);
+        struct rgb sum_p, sum_q;
+        const struct rgb *from_p = take(method, link->p, link->parts_p, &sum_p);
+        const struct rgb *from_q = take(method, link->q, link->parts_q, &sum_q);
+        give(method, link->p, link->parts_p, (double)link->area, from_q, unit);
+        give(method, link->q, link->parts_q, (double)link->area, from_p, unit);
     }
 }
