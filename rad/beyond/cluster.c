@@ -31,16 +31,16 @@
 #include "geom/stop.h"
 #include "rad/sample.h"
 
-enum { KEYS = 7, BINS = 64 };
+/* Keys that are compared by scatter: place, direction, size; and two of 0 and 1. */
+enum { KEYS = 7, NO_LAMP = KEYS, OTHER_SPACE, ALL_KEYS, BINS = 64 };
 
 /* What one unit of direction, and of the square root of area, counts, in scene units. */
 static const double DIRECTION_WEIGHT = 0.3, SIZE_WEIGHT = 3.0;
 
 struct item {
-    double key[KEYS], weight;
+    double key[ALL_KEYS], weight;
     int32_t root;
     int32_t space; /* roots that see each other, by way of others too, have the same */
-    bool is_lamp;
 };
 
 struct builder {
@@ -64,43 +64,24 @@ static struct item item_of(const struct scene *scene, int32_t root, double mean_
         item.key[3 + axis] = DIRECTION_WEIGHT * vec3_axis(normal, axis);
     }
     item.key[6] = SIZE_WEIGHT * sqrt(area);
-    item.is_lamp = rgb_sum(scene_root_material(scene, root)->emission) > 0.0;
+    item.key[NO_LAMP] = !material_emits(scene_root_material(scene, root));
     return item;
 }
 
-/* Brings the items for which `first` is set to the front, each half in its order. Returns
- * how many. */
-static int32_t part_items(struct builder *builder, int32_t from, int32_t to,
-                          bool (*first)(const struct item *, int, double), int key,
+/* Brings the items whose key is below the limit to the front, each half in its order.
+ * Returns their number. */
+static int32_t part_items(struct builder *builder, int32_t from, int32_t to, int key,
                           double limit)
 {
     int32_t front = from, back = 0;
     for (int32_t i = from; i < to; i++) {
-        if (first(&builder->items[i], key, limit))
+        if (builder->items[i].key[key] < limit)
             builder->items[front++] = builder->items[i];
         else
             builder->spare[back++] = builder->items[i];
     }
     memcpy(builder->items + front, builder->spare, (size_t)back * sizeof *builder->spare);
     return front - from;
-}
-
-static bool is_lamp(const struct item *item, int key, double limit)
-{
-    (void)key;
-    (void)limit;
-    return item->is_lamp;
-}
-
-static bool is_in_space(const struct item *item, int space, double limit)
-{
-    (void)limit;
-    return item->space == space;
-}
-
-static bool is_below(const struct item *item, int key, double limit)
-{
-    return item->key[key] < limit;
 }
 
 /* Weighted moments of a key over some items. */
@@ -255,10 +236,9 @@ static int32_t *find_spaces(const struct scene *scene, const int32_t *met)
     return up;
 }
 
-/* The space with the largest part of the items' area, if it has not all, but enough for a
- * cut; or -1. */
-static int32_t largest_space(struct builder *builder, const struct item *items,
-                             int32_t count)
+/* Finds the space with the largest part of the items' area, and the key OTHER_SPACE of the
+ * items. True if the space has not all, but enough for a cut. */
+static bool find_largest_space(struct builder *builder, struct item *items, int32_t count)
 {
     double sum = 0.0;
     int32_t largest = items[0].space;
@@ -271,12 +251,13 @@ static int32_t largest_space(struct builder *builder, const struct item *items,
         if (builder->share[items[i].space] > builder->share[largest])
             largest = items[i].space;
     double share = builder->share[largest];
-    bool worth = false;
+    bool has_others = false;
     for (int32_t i = 0; i < count; i++) {
-        worth = worth || items[i].space != largest;
+        items[i].key[OTHER_SPACE] = items[i].space != largest;
+        has_others = has_others || items[i].space != largest;
         builder->share[items[i].space] = 0.0;
     }
-    return worth && share >= SPACE_LEAST * sum ? largest : -1;
+    return has_others && share >= SPACE_LEAST * sum;
 }
 
 /* Cuts items in two, neither half larger than `most`. Returns the size of the first. */
@@ -286,16 +267,16 @@ static int32_t cut(struct builder *builder, int32_t from, int32_t to, int64_t mo
     if (count < 2 ||
         stop_is_asked()) /* then any tree will do: nobody is going to use it */
         return (count + 1) / 2;
-    int32_t first = part_items(builder, from, to, is_lamp, 0, 0.0);
-    if (first == 0 || first == count) {
-        int32_t space = largest_space(builder, builder->items + from, count);
-        first = space < 0 ? 0 : part_items(builder, from, to, is_in_space, space, 0.0);
-    }
+    struct item *items = builder->items + from;
+    int32_t first = part_items(builder, from, to, NO_LAMP, 1.0);
+    if (first == 0 || first == count)
+        first = find_largest_space(builder, items, count)
+                    ? part_items(builder, from, to, OTHER_SPACE, 1.0) : 0;
     if (first == 0 || first == count) {
         double low, high;
-        int key = widest_key(builder->items + from, count, &low, &high);
-        double limit = best_limit(builder->items + from, count, key, low, high);
-        first = part_items(builder, from, to, is_below, key, limit);
+        int key = widest_key(items, count, &low, &high);
+        double limit = best_limit(items, count, key, low, high);
+        first = part_items(builder, from, to, key, limit);
     }
     bool fits = first > 0 && first < count && first <= most && count - first <= most;
     return fits ? first : count / 2;
