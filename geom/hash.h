@@ -17,10 +17,13 @@ static inline uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count
     return hash;
 }
 
+/* 2^64 by the golden ratio: seeds that differ by multiples of it are far apart. */
+#define HASH_STEP UINT64_C(0x9E3779B97F4A7C15)
+
 /* A bijection of 64 bits after which no bit tells anything about another (splitmix64). */
 static inline uint64_t hash_mix(uint64_t bits)
 {
-    bits += UINT64_C(0x9E3779B97F4A7C15);
+    bits += HASH_STEP;
     bits = (bits ^ bits >> 30) * UINT64_C(0xBF58476D1CE4E5B9);
     bits = (bits ^ bits >> 27) * UINT64_C(0x94D049BB133111EB);
     return bits ^ bits >> 31;

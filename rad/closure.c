@@ -16,7 +16,9 @@
 #include <math.h>
 
 #include "geom/alloc.h"
+#include "geom/hash.h"
 #include "rad/pushpull.h"
+#include "rad/sample.h"
 
 enum { QUARTERS = 4, RINGS = 4 };
 
@@ -41,26 +43,11 @@ void closure_extend(struct closure *closure, const struct forest *forest)
     closure->count = forest->count;
 }
 
-/* A number in -1 .. 1 from a patch ID and a count. */
-static double scatter_id(struct patch_id id, uint32_t number)
+/* The seed of number `number` of a patch; hash_unit() adds the last step. */
+static uint64_t seed_of(struct patch_id id, int number)
 {
-    uint64_t bits = ((uint64_t)id.root << 32 | id.hierarchy) + UINT64_C(0x9E3779B97F4A7C15) * number;
-    bits = (bits ^ bits >> 30) * UINT64_C(0xBF58476D1CE4E5B9);
-    bits = (bits ^ bits >> 27) * UINT64_C(0x94D049BB133111EB);
-    bits ^= bits >> 31;
-    return (double)(bits >> 11) * 0x1p-52 - 1.0;
-}
-
-/* A direction of ring `ring` of quarter `quarter`; x, y and the normal are at right angles. */
-static struct vec3 ring_direction(struct patch_id id, int quarter, int ring, struct vec3 x,
-                                  struct vec3 y, struct vec3 normal)
-{
-    uint32_t number = (uint32_t)(2 * (RINGS * quarter + ring));
-    double a = scatter_id(id, number), b = scatter_id(id, number + 1);
-    double length = sqrt(a * a + b * b) + 1e-300;
-    double sine2 = (ring + 0.5) / RINGS, scale = sqrt(sine2) / length;
-    struct vec3 along = vec3_add(vec3_scale(x, a * scale), vec3_scale(y, b * scale));
-    return vec3_add(along, vec3_scale(normal, sqrt(1.0 - sine2)));
+    uint64_t whole = (uint64_t)id.root << 32 | id.hierarchy;
+    return whole + HASH_STEP * (uint64_t)(int64_t)(number - 1);
 }
 
 /* What the rays of one leaf or of one of its quarters found. */
@@ -74,21 +61,19 @@ static struct view look_around(struct method *method, int32_t patch, int quarter
     struct patch_id id = forest->patches[patch].id;
     struct triangle t = forest_triangle(forest, patch), child = triangle_child(&t, quarter);
     struct vec3 normal = scene_root_plane(forest->scene, (int32_t)id.root).normal;
-    struct vec3 start = vec3_add(triangle_centroid(&child),
-                                 vec3_scale(normal, 1024.0 * GEOM_ROUNDING));
-    struct vec3 x = vec3_sub(t.corner[1], t.corner[0]);
-    x = vec3_scale(x, 1.0 / vec3_length(x));
-    struct vec3 y = vec3_cross(normal, x);
+    struct ray ray = {.origin = point_above(triangle_centroid(&child), normal)};
+    int32_t outside = forest->root_count;
     struct view view = {0, 0, 0};
     for (int ring = 0; ring < RINGS; ring++) {
-        struct octree_hit hit;
-        struct vec3 direction = ring_direction(id, quarter, ring, x, y, normal);
-        if (!octree_first_hit(method->octree, start, direction, false, &hit, &method->counts))
-            view.escapes++;
-        else if (scene_root_on(forest->scene, hit.triangle, hit.front) >= 0)
-            view.fronts++;
-        else
-            view.backs++;
+        int number = 2 * (RINGS * quarter + ring);
+        ray.direction = direction_above(&t, normal, hash_unit(seed_of(id, number)),
+                                        hash_unit(seed_of(id, number + 1)),
+                                        (ring + 0.5) / RINGS);
+        int32_t root = root_met(forest->scene, method->octree, &ray, outside,
+                                &method->counts);
+        view.escapes += root == outside;
+        view.backs += root < 0;
+        view.fronts += root >= 0 && root != outside;
     }
     return view;
 }

@@ -16,17 +16,32 @@ struct vec3 triangle_sample(const struct triangle *t, uint64_t seed)
     return vec3_add(t->corner[0], along);
 }
 
-struct ray ray_sample(const struct triangle *t, struct vec3 normal, uint64_t seed,
-                      int ring, int rings)
+struct vec3 direction_above(const struct triangle *t, struct vec3 normal, double u, double v,
+                            double sine2)
 {
     struct vec3 x = vec3_sub(t->corner[1], t->corner[0]);
     x = vec3_scale(x, 1.0 / vec3_length(x));
-    double a = 2.0 * hash_unit(seed + 2) - 1.0, b = 2.0 * hash_unit(seed + 3) - 1.0;
-    double sine2 = (ring + hash_unit(seed + 4)) / rings;
+    double a = 2.0 * u - 1.0, b = 2.0 * v - 1.0;
     double scale = sqrt(sine2) / (sqrt(a * a + b * b) + 1e-300);
     struct vec3 along = vec3_add(vec3_scale(x, a * scale),
                                  vec3_scale(vec3_cross(normal, x), b * scale));
-    struct vec3 above = vec3_scale(normal, 1024.0 * GEOM_ROUNDING);
-    return (struct ray){vec3_add(triangle_sample(t, seed), above),
-                        vec3_add(along, vec3_scale(normal, sqrt(1.0 - sine2)))};
+    return vec3_add(along, vec3_scale(normal, sqrt(1.0 - sine2)));
+}
+
+struct ray ray_sample(const struct triangle *t, struct vec3 normal, uint64_t seed,
+                      int ring, int rings)
+{
+    double sine2 = (ring + hash_unit(seed + 4)) / rings;
+    return (struct ray){point_above(triangle_sample(t, seed), normal),
+                        direction_above(t, normal, hash_unit(seed + 2), hash_unit(seed + 3),
+                                        sine2)};
+}
+
+int32_t root_met(const struct scene *scene, const struct octree *octree,
+                 const struct ray *ray, int32_t outside, struct octree_counts *counts)
+{
+    struct octree_hit hit;
+    if (!octree_first_hit(octree, ray->origin, ray->direction, false, &hit, counts))
+        return outside;
+    return scene_root_on(scene, hit.triangle, hit.front);
 }

@@ -173,15 +173,6 @@ static int32_t space_of(int32_t *up, int32_t root)
     return root;
 }
 
-int32_t root_met(const struct scene *scene, const struct octree *octree,
-                 const struct ray *ray, int32_t outside, struct octree_counts *counts)
-{
-    struct octree_hit hit;
-    if (!octree_first_hit(octree, ray->origin, ray->direction, false, &hit, counts))
-        return outside;
-    return scene_root_on(scene, hit.triangle, hit.front);
-}
-
 /* Roots of a space too few to enclose it are taken to be outside. */
 static void join_small_spaces(int32_t *space, int32_t all)
 {

@@ -70,10 +70,6 @@ static inline bool node_is_cluster(int32_t node)
     return node < 0;
 }
 
-/* The root whose front the ray meets first, -1 if it meets a back, `outside` if nothing. */
-int32_t root_met(const struct scene *scene, const struct octree *octree, const struct ray *ray,
-                 int32_t outside, struct octree_counts *counts);
-
 /* The cluster with this path from the top, or NODE_NONE if there is none. Pre: id_is_valid(). */
 int32_t cluster_reach(const struct cluster_tree *tree, uint32_t hierarchy);
 
