@@ -141,13 +141,19 @@ double comm_largest(const struct comm *comm, double value)
     return largest;
 }
 
+void *comm_gather_each(const struct comm *comm, const void *own, size_t bytes)
+{
+    void *all = alloc_array((size_t)comm->size, bytes);
+    MPI_Request request;
+    MPI_Iallgather(own, (int)bytes, MPI_BYTE, all, (int)bytes, MPI_BYTE, comm->handle,
+                   &request);
+    comm_wait(&request);
+    return all;
+}
+
 bool comm_agree(const struct comm *comm, struct error *error)
 {
-    struct error *all = alloc_array((size_t)comm->size, sizeof *all);
-    MPI_Request request;
-    MPI_Iallgather(error, (int)sizeof *error, MPI_BYTE, all, (int)sizeof *error, MPI_BYTE,
-                   comm->handle, &request);
-    comm_wait(&request);
+    struct error *all = comm_gather_each(comm, error, sizeof *error);
     for (int r = comm->size - 1; r >= 0; r--)
         if (all[r].code != EXIT_DONE)
             *error = all[r];
@@ -294,11 +300,9 @@ void comm_share(const struct comm *comm, void *records, const int *counts, const
 
 uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes, int *at)
 {
-    int *sizes = alloc_array((size_t)comm->size, sizeof *sizes);
     int size = comm_count(comm, bytes);
+    int *sizes = comm_gather_each(comm, &size, sizeof size);
     MPI_Request request;
-    MPI_Iallgather(&size, 1, MPI_INT, sizes, 1, MPI_INT, comm->handle, &request);
-    comm_wait(&request);
     at[comm->size] = comm_count(comm, comm_displacements(comm, sizes, at));
     uint8_t *all = alloc_array((size_t)at[comm->size], 1);
     MPI_Iallgatherv(own, size, MPI_BYTE, all, sizes, at, MPI_BYTE, comm->handle, &request);

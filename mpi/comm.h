@@ -60,6 +60,10 @@ void comm_add_home(const struct comm *comm, const int64_t *values, const int *co
 void comm_share(const struct comm *comm, void *records, const int *counts, const int *at,
                 size_t bytes);
 
+/* Collective. The records of all ranks, one of `bytes` bytes of each, on all ranks. To be freed with
+ * alloc_free(). */
+void *comm_gather_each(const struct comm *comm, const void *own, size_t bytes);
+
 /* Collective. The bytes of all ranks, in the order of the ranks, on all ranks. at[r] is where those
  * of rank r begin, at[size] their number; at holds size + 1 ints. To be freed with alloc_free(). */
 uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes, int *at);

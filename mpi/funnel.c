@@ -24,10 +24,7 @@ static void send_all(const struct comm *comm, const char *records, int64_t count
 void funnel_start(struct funnel *funnel, const struct comm *comm, const void *records,
                   int64_t count, size_t bytes)
 {
-    int64_t *counts = alloc_array((size_t)comm->size, sizeof *counts);
-    MPI_Request request;
-    MPI_Iallgather(&count, 1, MPI_INT64_T, counts, 1, MPI_INT64_T, comm->handle, &request);
-    comm_wait(&request);
+    int64_t *counts = comm_gather_each(comm, &count, sizeof count);
     *funnel = (struct funnel){.comm = comm, .bytes = bytes};
     if (comm->rank != 0) {
         send_all(comm, records, count, bytes);

@@ -38,12 +38,8 @@ static int64_t exchange_notices(struct solver *solver)
 {
     const struct comm *comm = solver->comm;
     struct linking_notice own = {.links = solver->links.count, .stop = signals_seen()};
-    struct linking_notice *notices = alloc_array((size_t)comm->size, sizeof *notices);
     double start = comm_seconds();
-    MPI_Request request;
-    MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, notices, (int)sizeof own, MPI_BYTE,
-                   comm->handle, &request);
-    comm_wait(&request);
+    struct linking_notice *notices = comm_gather_each(comm, &own, sizeof own);
     double idle = comm_seconds() - start;
     solver->seconds[PHASE_IDLE] += idle;
     solver->seconds[PHASE_LINKING] -= idle;

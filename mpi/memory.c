@@ -40,11 +40,7 @@ static int64_t machines_together(const struct comm *comm, int64_t bytes)
     int length = 0;
     MPI_Get_processor_name(name, &length);
     struct machine own = {hash_bytes(HASH_START, name, (size_t)length), bytes};
-    struct machine *all = alloc_array((size_t)comm->size, sizeof *all);
-    MPI_Request request;
-    MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, all, (int)sizeof own, MPI_BYTE,
-                   comm->handle, &request);
-    comm_wait(&request);
+    struct machine *all = comm_gather_each(comm, &own, sizeof own);
     int64_t sum = 0;
     bool known = true;
     for (int r = 0; r < comm->size; r++) {

@@ -90,12 +90,8 @@ static struct level exchange_loads(struct solver *solver,
                               .kept = solver->links.count, .stop = signals_seen(),
                               .of_patches = count_of_patches(prolific),
                               .made = solver->method.forest->count - solver->shared};
-    struct load_notice *notices = alloc_array((size_t)comm->size, sizeof *notices);
     double start = comm_seconds();
-    MPI_Request request;
-    MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, notices, (int)sizeof own, MPI_BYTE,
-                   comm->handle, &request);
-    comm_wait(&request);
+    struct load_notice *notices = comm_gather_each(comm, &own, sizeof own);
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
     struct level sum = {0};
     for (int r = 0; r < comm->size; r++) {

@@ -82,12 +82,8 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
     solver->copied = copied;
     memcpy(solver->seconds, seconds, sizeof seconds);
     struct closure_sums own = closure_measure(forest, solver->own, solver->flux);
-    struct closure_sums *all = alloc_array((size_t)comm->size, sizeof *all);
+    struct closure_sums *all = comm_gather_each(comm, &own, sizeof own);
     struct closure_sums sum = {.min = HUGE_VAL, .max = -HUGE_VAL};
-    MPI_Request request;
-    MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, all, (int)sizeof own, MPI_BYTE, comm->handle,
-                   &request);
-    comm_wait(&request);
     for (int r = 0; r < comm->size; r++) {
         sum.min = fmin(sum.min, all[r].min);
         sum.max = fmax(sum.max, all[r].max);
@@ -138,11 +134,7 @@ static int64_t peak_memory(void)
 static void report_seconds(const struct solver *solver, struct stats *stats)
 {
     const struct comm *comm = solver->comm;
-    double *all = alloc_array((size_t)comm->size * PHASE_COUNT, sizeof *all);
-    MPI_Request request;
-    MPI_Iallgather(solver->seconds, PHASE_COUNT, MPI_DOUBLE, all, PHASE_COUNT, MPI_DOUBLE,
-                   comm->handle, &request);
-    comm_wait(&request);
+    double *all = comm_gather_each(comm, solver->seconds, sizeof solver->seconds);
     for (int phase = 0; phase < PHASE_COUNT; phase++) {
         struct spread spread = {all[phase], 0.0, all[phase]};
         for (int r = 0; r < comm->size; r++) {
