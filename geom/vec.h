@@ -86,4 +86,15 @@ static inline double rgb_sum(struct rgb c)
     return c.band[0] + c.band[1] + c.band[2];
 }
 
+static inline double rgb_mean(struct rgb c)
+{
+    return rgb_sum(c) / BANDS;
+}
+
+/* Sum over bands of the products. */
+static inline double rgb_dot(struct rgb a, struct rgb b)
+{
+    return a.band[0] * b.band[0] + a.band[1] * b.band[1] + a.band[2] * b.band[2];
+}
+
 #endif

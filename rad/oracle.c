@@ -75,13 +75,7 @@ static int32_t split_by_energy(const struct method *method, const struct link *l
 /* Sum over bands of rho B: what the receiver makes of the sender's light, W/m^2. */
 static double light_reflected(const struct forest *forest, int32_t from, int32_t to)
 {
-    struct rgb b = forest->patches[from].radiosity, rho = forest_material(forest, to)->reflectance;
-    return rho.band[0] * b.band[0] + rho.band[1] * b.band[1] + rho.band[2] * b.band[2];
-}
-
-static double mean_reflectance(const struct forest *forest, int32_t patch)
-{
-    return rgb_sum(forest_material(forest, patch)->reflectance) / BANDS;
+    return rgb_dot(forest_material(forest, to)->reflectance, forest->patches[from].radiosity);
 }
 
 /* Part of the exchange that is in doubt when segments disagree, when all agree, and when it is open
@@ -128,7 +122,8 @@ static double error_of(const struct method *method, const struct link *link, int
 {
     const struct forest *forest = method->forest;
     return SPREAD_LEFT * spread_of(link, parts) * light +
-           link_area(link) * mean_reflectance(forest, other) * oracle_range_within(forest, own);
+           link_area(link) * rgb_mean(forest_material(forest, other)->reflectance) *
+               oracle_range_within(forest, own);
 }
 
 static int32_t split_by_error(const struct method *method, const struct link *link)

@@ -21,6 +21,8 @@ static struct end end_of_cluster(const struct method *method, int32_t node)
         .id = {CLUSTER_ROOT, cluster->hierarchy},
         .low = cluster->low,
         .high = cluster->high,
+        .normal_low = cluster->normal_low,
+        .normal_high = cluster->normal_high,
         .area = cluster->area,
         .radius = 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low)),
         .reflectance = cluster->reflectance,
@@ -42,6 +44,7 @@ struct end end_of(const struct method *method, int32_t node)
     const struct vec3 *corner = end.facet.triangle.corner;
     end.low = vec3_least(corner[0], vec3_least(corner[1], corner[2]));
     end.high = vec3_most(corner[0], vec3_most(corner[1], corner[2]));
+    end.normal_low = end.normal_high = end.facet.plane.normal;
     end.area = end.facet.area;
     end.radius = triangle_radius(&end.facet.triangle);
     return end;
@@ -74,12 +77,11 @@ static double largest_product(double a, double b, double c, double d)
 static double reach_above(const struct end *a, const struct end *b)
 {
     double reach = 0.0;
-    struct vec3 n_low = a->cluster ? a->cluster->normal_low : a->facet.plane.normal;
-    struct vec3 n_high = a->cluster ? a->cluster->normal_high : n_low;
     for (int axis = 0; axis < 3; axis++) {
         double from = a->cluster ? vec3_axis(a->high, axis) : 0.0;
         double to = a->cluster ? vec3_axis(a->low, axis) : 0.0;
-        reach += largest_product(vec3_axis(n_low, axis), vec3_axis(n_high, axis),
+        reach += largest_product(vec3_axis(a->normal_low, axis),
+                                 vec3_axis(a->normal_high, axis),
                                  vec3_axis(b->low, axis) - from,
                                  vec3_axis(b->high, axis) - to);
     }
@@ -95,19 +97,17 @@ static bool vec3_is_equal(struct vec3 a, struct vec3 b)
  * behind the other. */
 static bool look_the_same_way(const struct end *a, const struct end *b)
 {
-    struct vec3 normal = a->cluster ? a->cluster->normal_low : a->facet.plane.normal;
-    return (!a->cluster || vec3_is_equal(normal, a->cluster->normal_high)) &&
-           vec3_is_equal(normal,
-                         b->cluster ? b->cluster->normal_low : b->facet.plane.normal) &&
-           (!b->cluster || vec3_is_equal(normal, b->cluster->normal_high));
+    return vec3_is_equal(a->normal_low, a->normal_high) &&
+           vec3_is_equal(a->normal_low, b->normal_low) &&
+           vec3_is_equal(a->normal_low, b->normal_high);
 }
 
 bool ends_may_face(const struct end *a, const struct end *b)
 {
     if (!a->cluster && !b->cluster)
         return facets_face(&a->facet, &b->facet);
-    const double margin =
-        0.5 * GEOM_ROUNDING; /* beyond rounding, facets_face() is stricter */
+    /* Beyond rounding: facets_face() is stricter. */
+    const double margin = 0.5 * GEOM_ROUNDING;
     return !look_the_same_way(a, b) && reach_above(a, b) > margin &&
            reach_above(b, a) > margin;
 }
@@ -142,14 +142,6 @@ static double gap_between(const struct end *a, const struct end *b)
         square += gap * gap;
     }
     return sqrt(square);
-}
-
-double light_to(const struct end *to, const struct end *from)
-{
-    double light = 0.0;
-    for (int c = 0; c < BANDS; c++)
-        light += to->reflectance.band[c] * from->radiosity.band[c];
-    return light;
 }
 
 struct meeting ends_meet(const struct end *p, const struct end *q)

@@ -11,7 +11,8 @@ struct end {
     const struct cluster *cluster; /* NULL: a patch */
     struct facet facet;            /* of a patch */
     struct patch_id id;
-    struct vec3 low, high;         /* box */
+    struct vec3 low, high;         /* box around its points */
+    struct vec3 normal_low, normal_high; /* box around its unit normals */
     double area, radius;
     struct rgb reflectance, radiosity;
     bool is_dark;
@@ -32,7 +33,10 @@ bool ends_are_walled_off(const struct end *a, const struct end *b,
                          const struct octree *octree, struct octree_counts *counts);
 
 /* What a receiver makes of a sender's light, W per square scene unit of G. */
-double light_to(const struct end *to, const struct end *from);
+static inline double light_to(const struct end *to, const struct end *from)
+{
+    return rgb_dot(to->reflectance, from->radiosity);
+}
 
 /* Two ends, of which one at least is a cluster. */
 struct meeting {

@@ -201,11 +201,6 @@ static double range_within(const struct method *method, const struct end *end)
                         : oracle_range_within(method->forest, end->node);
 }
 
-static double mean_reflectance(const struct end *end)
-{
-    return rgb_sum(end->reflectance) / BANDS;
-}
-
 /* Of the spread over an end: the children of a cluster are no quarters of a plane, over
  * which light varies smoothly. */
 static const double SPREAD_LEFT = 2.0;
@@ -216,7 +211,7 @@ static double error_of(const struct method *method, const struct end *own,
                        const struct end *other, double spread, double area)
 {
     return area * (SPREAD_LEFT * spread * light_to(own, other) +
-                   mean_reflectance(other) * range_within(method, own));
+                   rgb_mean(other->reflectance) * range_within(method, own));
 }
 
 static bool may_split(const struct method *method, const struct end *end)
