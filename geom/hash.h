@@ -20,13 +20,18 @@ static inline uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count
 /* 2^64 by the golden ratio: seeds that differ by multiples of it are far apart. */
 #define HASH_STEP UINT64_C(0x9E3779B97F4A7C15)
 
-/* A bijection of 64 bits after which no bit tells anything about another (splitmix64). */
-static inline uint64_t hash_mix(uint64_t bits)
+/* Mixes all bits: the finaliser of splitmix64 (Steele et al. 2014). */
+static inline uint64_t hash_finish(uint64_t bits)
 {
-    bits += HASH_STEP;
     bits = (bits ^ bits >> 30) * UINT64_C(0xBF58476D1CE4E5B9);
     bits = (bits ^ bits >> 27) * UINT64_C(0x94D049BB133111EB);
     return bits ^ bits >> 31;
+}
+
+/* A bijection of 64 bits after which no bit tells anything about another (splitmix64). */
+static inline uint64_t hash_mix(uint64_t bits)
+{
+    return hash_finish(bits + HASH_STEP);
 }
 
 /* A number in 0 <= u < 1 from a seed. */

@@ -123,19 +123,10 @@ static void send_home(struct solver *solver)
     alloc_free(destination);
 }
 
-/* Areas, in parts of 2^-40 of all. */
-static void weigh_by_area(const struct method *method, int64_t *weights)
+/* The area of a root, in parts of 2^-40 of all. */
+static int64_t root_area(const struct method *method, int32_t root)
 {
-    for (int32_t root = 0; root < scene_root_count(method->scene); root++)
-        weights[root] =
-            (int64_t)(scene_root_area(method->scene, root) / method->area * 0x1p40);
-}
-
-/* What there is to do at home. */
-static void weigh_by_work(const struct method *method, int64_t *weights)
-{
-    for (int32_t root = 0; root < method->forest->root_count; root++)
-        weights[root] = root_weight(method, root);
+    return (int64_t)(scene_root_area(method->scene, root) / method->area * 0x1p40);
 }
 
 void solver_assign_roots(struct solver *solver)
@@ -144,10 +135,9 @@ void solver_assign_roots(struct solver *solver)
     int32_t roots = solver->method.forest->root_count;
     bool greedy = solver->method.criterion.balance == BALANCE_GREEDY;
     int64_t *weights = alloc_array((size_t)roots, sizeof *weights);
-    if (greedy)
-        weigh_by_area(&solver->method, weights);
-    else
-        weigh_by_work(&solver->method, weights);
+    for (int32_t root = 0; root < roots; root++)
+        weights[root] = greedy ? root_area(&solver->method, root)
+                               : root_weight(&solver->method, root);
     roots_assign(weights, roots, solver->comm->size, solver->owner);
     alloc_free(weights);
     for (int32_t root = 0; root < roots; root++)

@@ -46,8 +46,7 @@ void closure_extend(struct closure *closure, const struct forest *forest)
 /* The seed of number `number` of a patch; hash_unit() adds the last step. */
 static uint64_t seed_of(struct patch_id id, int number)
 {
-    uint64_t whole = (uint64_t)id.root << 32 | id.hierarchy;
-    return whole + HASH_STEP * (uint64_t)(int64_t)(number - 1);
+    return id_number(id) + HASH_STEP * (uint64_t)(int64_t)(number - 1);
 }
 
 /* What the rays of one leaf or of one of its quarters found. */

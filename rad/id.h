@@ -22,6 +22,12 @@ struct patch_id {
     uint32_t hierarchy; /* path from the root */
 };
 
+/* Both parts as one number. */
+static inline uint64_t id_number(struct patch_id id)
+{
+    return (uint64_t)id.root << 32 | id.hierarchy;
+}
+
 struct patch_id id_of_root(uint32_t root);
 
 /* Pre: child in 0..3 and id_level(id) < ID_MAX_LEVEL. */

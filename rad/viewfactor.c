@@ -39,6 +39,7 @@
 #include <math.h>
 
 #include "geom/alloc.h"
+#include "geom/hash.h"
 #include "geom/contour.h"
 #include "geom/stop.h"
 #include "rad/id.h"
@@ -91,19 +92,6 @@ void viewfactors_destroy(struct viewfactors *factors)
 
 /* --- one pair of roots --- */
 
-/* Mixes all bits of x: the finaliser of splitmix64 (Steele et al. 2014). */
-static uint64_t mix(uint64_t x)
-{
-    x = (x ^ x >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    x = (x ^ x >> 27) * UINT64_C(0x94d049bb133111eb);
-    return x ^ x >> 31;
-}
-
-static uint64_t seed_of(struct patch_id id)
-{
-    return mix(((uint64_t)id.root << 32 | id.hierarchy) + UINT64_C(0x9e3779b97f4a7c15));
-}
-
 /* A point of the triangle, anywhere with the same chance; never on its edges. */
 static struct vec3 point_of(const struct triangle *t, uint64_t bits)
 {
@@ -123,7 +111,7 @@ static void points_of(const struct piece *piece, uint64_t seed, struct vec3 poin
 {
     for (int k = 0; k < BUNDLE_ENDS; k++) {
         struct triangle quarter = triangle_child(&piece->facet.triangle, k);
-        seed = mix(seed + UINT64_C(0x9e3779b97f4a7c15));
+        seed = hash_mix(seed);
         points[k] = point_of(&quarter, seed);
     }
 }
@@ -148,7 +136,7 @@ static double share_seen(struct search *search, const struct piece *p, const str
                          double otherwise)
 {
     struct bundle bundle = {.own = {p->facet.input, q->facet.input}};
-    uint64_t seed = mix(seed_of(p->id) + 3 * seed_of(q->id));
+    uint64_t seed = hash_finish(hash_mix(id_number(p->id)) + 3 * hash_mix(id_number(q->id)));
     points_of(p, seed, bundle.from);
     points_of(q, ~seed, bundle.to);
     double weights[BUNDLE_RAYS], all = 0.0, seen = 0.0;

@@ -70,6 +70,14 @@ static inline bool node_is_cluster(int32_t node)
     return node < 0;
 }
 
+/* Area of a root or a cluster, square scene units. */
+static inline double cluster_node_area(const struct cluster_tree *tree,
+                                       const struct scene *scene, int32_t node)
+{
+    return node_is_cluster(node) ? tree->clusters[~node].area
+                                 : scene_root_area(scene, node);
+}
+
 /* The cluster with this path from the top, or NODE_NONE if there is none. Pre: id_is_valid(). */
 int32_t cluster_reach(const struct cluster_tree *tree, uint32_t hierarchy);
 

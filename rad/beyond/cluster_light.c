@@ -30,13 +30,6 @@ void cluster_light_destroy(struct cluster_light *light)
     alloc_free(light);
 }
 
-static double area_of(const struct cluster_light *light, const struct forest *forest,
-                      int32_t node)
-{
-    return node_is_cluster(node) ? light->tree->clusters[~node].area
-                                 : forest_area(forest, node);
-}
-
 const struct rgb *cluster_light_radiosity(const struct cluster_light *light,
                                           const struct forest *forest, int32_t node)
 {
@@ -50,7 +43,8 @@ void cluster_light_pull(struct cluster_light *light, const struct forest *forest
         const struct cluster *cluster = &light->tree->clusters[i];
         struct rgb sum = {{0.0, 0.0, 0.0}};
         for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
-            double share = area_of(light, forest, cluster->child[k]) / cluster->area;
+            double area = cluster_node_area(light->tree, forest->scene, cluster->child[k]);
+            double share = area / cluster->area;
             const struct rgb *child =
                 cluster_light_radiosity(light, forest, cluster->child[k]);
             for (int c = 0; c < BANDS; c++)
@@ -70,7 +64,8 @@ void cluster_light_bound(struct cluster_light *light, const struct forest *fores
         double mean = rgb_sum(light->radiosity[i]), within = 0.0, between = 0.0;
         for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
             int32_t node = cluster->child[k];
-            double share = area_of(light, forest, node) / cluster->area;
+            double area = cluster_node_area(light->tree, forest->scene, node);
+            double share = area / cluster->area;
             double off = rgb_sum(*cluster_light_radiosity(light, forest, node)) - mean;
             if (node_is_cluster(node)) {
                 within += share * variance[~node];

@@ -63,8 +63,7 @@ double end_child_area(const struct method *method, const struct end *end, int k)
     int32_t node = end->cluster->child[k];
     if (node == NODE_NONE)
         return 0.0;
-    return node_is_cluster(node) ? method->clusters->tree->clusters[~node].area
-                                 : scene_root_area(method->scene, node);
+    return cluster_node_area(method->clusters->tree, method->scene, node);
 }
 
 /* The largest product of a number in [a, b] and one in [c, d]. */

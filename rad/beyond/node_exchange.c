@@ -37,11 +37,6 @@ bool is_by_rays(const struct meeting *m)
     return m->near && (m->p.area <= m->q.area ? m->q.cluster : m->p.cluster) != NULL;
 }
 
-static uint64_t id_number(struct patch_id id)
-{
-    return (uint64_t)id.root << 32 | id.hierarchy;
-}
-
 static uint64_t seed_of(const struct meeting *m, int salt)
 {
     return hash_mix(hash_mix(id_number(m->p.id) + (uint64_t)salt) ^ id_number(m->q.id));
