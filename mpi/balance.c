@@ -1,14 +1,15 @@
 /* Balance.
  *
- * The paper's greedy plan (mpi/plan.h) says how much goes from where to where; what is
- * sent is taken from all of a rank's links in turn. Re-partition along a line of all
- * links was tried: it is as even, for what is left is not the plan's fault but the
- * prediction's: the work of a link is known within a factor of two or so. So links are
- * split in stages: each rank stops at the same amount of work, less than is predicted of
- * the mean rank, and the rest is dealt anew. What remains is the grain, the last link of
- * a rank in each stage, so stages should be few. That is why they do not end with a level
- * (mpi/refinement.c): in a room of 999,960 triangles on 32 ranks the slowest rank has
- * 1.07 of the mean work, with stages that do 1.24 (make scaling ROOM=1000000). */
+ * The paper's greedy plan (mpi/plan.h) says how much load goes from which rank to which;
+ * links are taken from all of a rank's links in turn. The work of a link is predicted
+ * within a factor of two or so. So links are split in stages: each rank stops at the same
+ * amount of work, less than is predicted of the mean rank, and the rest is dealt anew.
+ * Then the grain remains, the last link of a rank in each stage, so stages should be few.
+ * That is why they do not end with a level (mpi/refinement.c): in a room of 999,960
+ * triangles on 32 ranks the slowest rank has 1.07 of the mean work, with stages that do
+ * 1.24 (make scaling ROOM=1000000).
+ *
+ * Rejected: re-partition along a line of all links, which is as even as the plan is. */
 #include "mpi/balance.h"
 
 #include "geom/alloc.h"
@@ -64,16 +65,15 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks,
 
 /* --- links --- */
 
-/* What four form factors take where the way is open, for then it is for the children; and
- * beside the tests where it is not, for however few there were, four times 16 segments
- * have to be followed. (In furnished rooms a link takes 60 to 110 tests more than its
- * cost says, in the Cornell box 30. With one form factor in place of that a third more of
- * a level was idle.) */
+/* Tests for the children of two patches. Those of an open link are open, and take four
+ * form factors. Else four times 16 segments are followed: that takes as many tests as the
+ * cost of the link, and some more. (In furnished rooms 60 to 110 more, in the Cornell box
+ * 30. With one form factor in place of that a third more of a level was idle.) */
 enum { LOAD_OPEN = 4 * TESTS_PER_FORM_FACTOR, LOAD_LEAST = 80 };
 
 /* With a cluster in it: for each child a look, and a second one where it is not to be
- * split. What nobody has looked at (cost 1) has a cost that is not known, and the link of
- * a cluster with itself has up to ten children. */
+ * split. The cost is unknown of a link that nobody has looked at (cost 1); the link of a
+ * cluster with itself has up to ten children. */
 enum { LOAD_CLUSTER = 300, LOAD_CLUSTER_UNSEEN = 1000, LOAD_CLUSTER_ITSELF = 4000 };
 enum { LOOKS_PER_CLUSTER = 4 };
 
@@ -92,7 +92,7 @@ int64_t link_load(const struct link *link)
     return link_is_open(link) ? LOAD_OPEN : LOAD_LEAST + (int64_t)link_cost(link);
 }
 
-/* So many links take longer than the messages of a level, on any number of ranks. */
+/* This many links take longer than the messages of a level, on any number of ranks. */
 enum { LINKS_TO_DEAL = 16 };
 
 bool level_is_dealt(int64_t links)
@@ -100,8 +100,8 @@ bool level_is_dealt(int64_t links)
     return links >= LINKS_TO_DEAL;
 }
 
-/* Tests in the time that a message takes. Ranks tell each other how many links come in
- * log P messages, and few have more than so many others to send to or to receive from. */
+/* Tests in the time of a message. Ranks tell each other the numbers of links in log P
+ * messages, and few of them exchange links with more than four others. */
 enum { TESTS_PER_MESSAGE = 50, PARTNERS = 4 };
 
 bool moving_pays(const int64_t *loads, int ranks)
@@ -117,9 +117,9 @@ bool moving_pays(const int64_t *loads, int ranks)
     return largest - total / ranks > TESTS_PER_MESSAGE * messages;
 }
 
-/* A stage takes a part of the work that is predicted of the mean rank: unless that was by
- * far too much, hardly any rank is done before it ends. It takes at least so many tests,
- * a few links: less is not worth a new deal. */
+/* A stage takes a part of the predicted work of the mean rank: unless the prediction is
+ * much too high, hardly any rank runs out of links before the others. It takes no less
+ * than a few links do, in tests: less is not worth a new deal. */
 static const double STAGE_SHARE = 0.8;
 enum { STAGE_LEAST = 4000 };
 

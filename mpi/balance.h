@@ -1,5 +1,6 @@
-/* Who does what: pure functions of costs and loads, so that all ranks decide alike. Cost
- * and work are counted in box and triangle tests; a form factor counts as so many. */
+/* Dealing of roots and links: pure functions of costs and loads, so that all ranks decide
+ * alike. Cost and work are counted in box and triangle tests; a form factor counts as
+ * TESTS_PER_FORM_FACTOR. */
 #ifndef MPI_BALANCE_H
 #define MPI_BALANCE_H
 
@@ -18,15 +19,15 @@ void items_deal(const int64_t *costs, int64_t count, int64_t *loads, int ranks,
 
 /* --- links, of whose costs each rank knows its own --- */
 
-/* What splitting a link is predicted to take, in tests: its cost, for those of its
- * children are about as many as its own were; and what there is to do besides. */
+/* Predicted work of splitting a link, in tests: its cost, since the looks at its children
+ * take about as much as that at itself, and the form factors. */
 int64_t link_load(const struct link *link);
 
 /* True if a level that all ranks have alike is worth dealing, each rank taking its share.
  */
 bool level_is_dealt(int64_t links);
 
-/* True if what the ranks save takes longer than sending the links. */
+/* True if evening out the loads saves more time than sending the links takes. */
 bool moving_pays(const int64_t *loads, int ranks);
 
 /* The work, in tests, after which a rank leaves the rest of its links to be dealt anew;
@@ -35,9 +36,9 @@ int64_t links_limit(const int64_t *loads, int ranks);
 
 /* Where the links of `rank` go by a plan (mpi/plan.h): destination[i] is for the link
  * with costs[i]. They are dealt in turn to the rank itself and to the receivers of its
- * transfers, for what is wrong in the prediction of one link is likely to be wrong in
- * that of the next: a link to each as long as at least half of its cost still fits into
- * what is planned; the others, and those that cost nothing, stay. */
+ * transfers, since neighbours in the list tend to be predicted wrong alike: a link to
+ * each as long as at least half of its cost still fits into the planned load; the others,
+ * and links that cost nothing, stay. */
 void links_deal_out(const int64_t *costs, int64_t count, const struct transfer *plan,
                     int planned, int rank, int *destination);
 

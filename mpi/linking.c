@@ -1,8 +1,8 @@
 /* Steps 2 and 3: initial linking, and the homes of roots and links.
  *
  * With a tree above the roots there is one link to begin with (mpi/refinement.c).
- * Without, pairs of roots are dealt in turn (rad/linking.h) and linked in rounds of so
- * many pairs, by number. Between two rounds all ranks agree whether there is a next one:
+ * Without, pairs of roots are dealt in turn (rad/linking.h) and linked in rounds, by
+ * number. Between two rounds all ranks agree whether there is a next one:
  * not if any of them has got a signal, nor if, with a link for each of its pairs, the
  * links of all ranks might take more memory than there may be. So linking ends at a pair
  * that does not depend on the ranks. A rank that has got a signal leaves the rest of its
@@ -27,10 +27,10 @@ enum { ROUND = 65536 };
 /* Pairs of a rank from one look at signals, and tick of the progress, to the next. */
 enum { PAIRS_PER_TICK = 64 };
 
-/* What ranks tell each other before a round. */
+/* A rank's state before a round, for the others. */
 struct linking_notice {
-    int64_t links; /* made here so far */
-    int64_t stop;  /* the signal that this rank has got, 0: none */
+    int64_t links; /* made so far */
+    int64_t stop;  /* the signal that the rank has got, 0: none */
 };
 
 /* The links of all ranks so far. Waiting is idle time. */

@@ -1,14 +1,14 @@
 /* The memory limit.
  *
- * What grows are links and patches; clusters are there from the beginning. Before a level
- * (or a stage, mpi/refinement.c) is split, the links there will be are known within a factor: each of the prolific ones
- * becomes four at most (of a cluster with itself, ten), and is there itself until the
- * level is done; a patch can get four children only once. Whether that fits into the
- * limit is decided from counts over all ranks, so all decide alike, and a limit that the
- * user gives means the same on any number of ranks: for that it is held against one copy
- * of the patches and clusters, though each rank has its own patches. The default limit is
- * not a promise of the same results, but of an end that is not the system's: it counts
- * every copy, over the memory of all machines.
+ * Links and patches grow; clusters are there from the beginning. Before a level is split,
+ * or a stage (mpi/refinement.c), the number of links after it is known within a factor:
+ * each of the prolific ones becomes four at most (of a cluster with itself, ten), and is
+ * there itself until the end; a patch can get four children only once. Whether that fits
+ * into the limit is decided from counts over all ranks, so all decide alike, and a limit
+ * that the user gives means the same on any number of ranks: for that it is held against
+ * one copy of the patches and clusters, though each rank has its own patches. The default
+ * limit is not a promise of the same results, but of an end that is not the system's: it
+ * counts every copy, over the memory of all machines.
  *
  * Rejected: the memory that processes really hold, which depends on the system, on the
  * ranks and on what was freed; a limit for the links alone, since in small patches half

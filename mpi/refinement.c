@@ -7,9 +7,9 @@
  *
  * With --balance greedy, the paper's, a level is dealt once, and ends before the next one
  * begins. Else the ranks work in stages: each splits links, and children of theirs, up to
- * the same amount of work; then all links that are left are dealt anew, and "level" counts
- * stages. Only under --memory M, which has to stop at the same level on any number of
- * ranks, do levels end here too, each after one or more stages.
+ * the same amount of work; then all links that are left are dealt anew, and "level"
+ * counts stages. Only under --memory M, which has to stop at the same level on any number
+ * of ranks, do levels end here too, each after one or more stages.
  *
  * What was split stays where that was done; light is transferred over links where they
  * are. So at the end their numbers are evened out, but for --balance greedy.
@@ -25,22 +25,19 @@
 #include "geom/alloc.h"
 #include "rad/oracle.h"
 
-/* What ranks tell each other before a stage of a level. */
+/* A rank's state before a stage, for the others. */
 struct load_notice {
-    int64_t links;           /* links here that are to be split, */
-    int64_t load;            /* and the predicted cost of that */
-    int64_t kept;            /* links here that are not to be split */
-    int64_t stop;            /* the signal that this rank has got, 0: none */
-    int64_t of_patches; /* links here that are to be split and have a patch in them */
-    int64_t made;       /* patches made here that the others have not heard of */
+    int64_t links;      /* prolific links */
+    int64_t load;       /* predicted work of splitting them, in tests */
+    int64_t kept;       /* links that are not to be split */
+    int64_t stop;       /* the signal that the rank has got, 0: none */
+    int64_t of_patches; /* prolific links with a patch in them */
+    int64_t made;       /* patches that the rank has made and not shared */
 };
 
-/* Links and new patches of all ranks before a stage. */
+/* Sums over all ranks. A patch that several ranks have made counts for each of them. */
 struct level {
-    int64_t prolific, kept;
-    int64_t of_patches; /* prolific ones with a patch in them: clusters need no new
-                           children */
-    int64_t made;       /* patches of one rank or more, each counted on each of them */
+    int64_t prolific, kept, of_patches, made;
 };
 
 static int64_t count_of_patches(const struct link_list *list)
@@ -80,8 +77,8 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
     solver->seconds[PHASE_LOOKS] += comm_seconds() - start;
 }
 
-/* LoadBalance of Algorithm 1: first the total exchange of loads. loads[r]: what it is
- * predicted to take to split the prolific links of rank r. Waiting is idle time. */
+/* LoadBalance of Algorithm 1: first the total exchange of loads. loads[r] becomes the
+ * predicted work of rank r. Waiting is idle time. */
 static struct level exchange_loads(struct solver *solver,
                                    const struct link_list *prolific, int64_t *loads)
 {
@@ -140,9 +137,8 @@ static void split_link(struct solver *solver, const struct link *link,
                       next->count - waiting);
 }
 
-/* Splits links until that took as much work as the limit, or a signal has come; the
- * others stay. `next` may be `links`: then children come behind what is there. `part`: of
- * the level, the part that is left. */
+/* Splits links until their work has reached the limit, or a signal has come; the others
+ * stay. `next` may be `links`: then children go to its end. `part`: left of the level. */
 static void split_stage(struct solver *solver, struct link_list *links, double part,
                         int64_t limit, struct link_list *next, struct phase_work *phase)
 {
@@ -235,7 +231,7 @@ static void share_splits(struct solver *solver)
 /* A link that is being split and its four children. */
 enum { LINKS_PER_SPLIT = 5 };
 
-/* True if there is room for splitting a level when there are so many patches. */
+/* True if there is room for splitting a level, beside this number of patches. */
 static bool has_room(const struct solver *solver, const struct level *level,
                      int64_t patches)
 {
@@ -351,9 +347,10 @@ static void split_alike(struct solver *solver, struct link_list *level)
     }
 }
 
-/* The links that the memory limit leaves as they are join the others. At the end all ranks agree on
- * whether a signal has come meanwhile. */
-static void keep_unsplit(struct solver *solver, const struct link_list *prolific, int64_t *loads)
+/* The links that the memory limit leaves unsplit join the others. At the end all ranks
+ * agree on whether a signal has come meanwhile. */
+static void keep_unsplit(struct solver *solver, const struct link_list *prolific,
+                         int64_t *loads)
 {
     for (int64_t i = 0; i < prolific->count && !(i % 64 == 0 && signals_seen()); i++) {
         struct link link = prolific->items[i];

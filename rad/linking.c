@@ -16,7 +16,7 @@
 
 #include "geom/alloc.h"
 
-/* Goes on by so many pairs. */
+/* Goes on by this number of pairs. */
 static void step(struct linking *linking, int pairs)
 {
     linking->number += pairs;

@@ -16,8 +16,8 @@ struct vec3 triangle_sample(const struct triangle *t, uint64_t seed)
     return vec3_add(t->corner[0], along);
 }
 
-struct vec3 direction_above(const struct triangle *t, struct vec3 normal, double u, double v,
-                            double sine2)
+struct vec3 direction_above(const struct triangle *t, struct vec3 normal, double u,
+                            double v, double sine2)
 {
     struct vec3 x = vec3_sub(t->corner[1], t->corner[0]);
     x = vec3_scale(x, 1.0 / vec3_length(x));
@@ -33,8 +33,8 @@ struct ray ray_sample(const struct triangle *t, struct vec3 normal, uint64_t see
 {
     double sine2 = (ring + hash_unit(seed + 4)) / rings;
     return (struct ray){point_above(triangle_sample(t, seed), normal),
-                        direction_above(t, normal, hash_unit(seed + 2), hash_unit(seed + 3),
-                                        sine2)};
+                        direction_above(t, normal, hash_unit(seed + 2),
+                                        hash_unit(seed + 3), sine2)};
 }
 
 int32_t root_met(const struct scene *scene, const struct octree *octree,

@@ -1,4 +1,4 @@
-/* Points on triangles and directions above them, evenly distributed over seeds; and rays. */
+/* Points on triangles and rays from them, evenly distributed over seeds. */
 #ifndef RAD_SAMPLE_H
 #define RAD_SAMPLE_H
 
@@ -21,10 +21,10 @@ static inline struct vec3 point_above(struct vec3 point, struct vec3 normal)
     return vec3_add(point, vec3_scale(normal, 1024.0 * GEOM_ROUNDING));
 }
 
-/* The direction with this square of the sine to the triangle's unit normal, turned about it
- * by an angle that depends on u and v in 0..1. */
-struct vec3 direction_above(const struct triangle *t, struct vec3 normal, double u, double v,
-                            double sine2);
+/* The direction with this square of the sine to the triangle's unit normal, turned about
+ * that by an angle that depends on u and v in 0..1. */
+struct vec3 direction_above(const struct triangle *t, struct vec3 normal, double u,
+                            double v, double sine2);
 
 /* A ray from a point of the triangle's front, distributed as the cosine to its unit
  * normal; `ring` of `rings` rings that are equally probable, from the normal outwards.
@@ -32,7 +32,7 @@ struct vec3 direction_above(const struct triangle *t, struct vec3 normal, double
 struct ray ray_sample(const struct triangle *t, struct vec3 normal, uint64_t seed,
                       int ring, int rings);
 
-/* The root whose front the ray meets first, -1 if it meets a back, `outside` if nothing. */
+/* The root whose front the ray meets first; -1 if it meets a back, `outside` if none. */
 int32_t root_met(const struct scene *scene, const struct octree *octree,
                  const struct ray *ray, int32_t outside, struct octree_counts *counts);
 

@@ -4,10 +4,9 @@
  * most: three of place, three of direction, and size, so that groups come out that lie
  * together, look the same way, and are alike in size. The cut is where the sums of
  * squares of both halves are least (of 64 places). Where lamps and other surfaces are
- * mixed, the cut is between these: a lamp is what others are compared with, and means
- * over both mean nothing. Then it is between spaces, of which a few rays from each root
- * find no way from one to the other: a cluster of both would carry light through what
- * parts them.
+ * mixed, the cut is between these: a mean over both describes neither. Then it is between
+ * spaces that a few rays from each root do not connect: a cluster of both would carry
+ * light through the wall between them.
  *
  * Roots are weighed by their area plus the mean area: by area alone, a large wall decides
  * where the furniture before it is cut; by number alone, the furniture decides where
@@ -18,7 +17,7 @@
  * number.
  *
  * Rejected: one tree for each class of orientation (a tenth more links at the same
- * error); places alone (half more error: what looks another way receives other light);
+ * error); places alone (half more error: the other side of a thing receives other light);
  * harmonics of order 2 in place of one mean B (no less error for 27 numbers a cluster).
  */
 #include "rad/beyond/cluster.h"
@@ -34,7 +33,7 @@
 /* Keys that are compared by scatter: place, direction, size; and two of 0 and 1. */
 enum { KEYS = 7, NO_LAMP = KEYS, OTHER_SPACE, ALL_KEYS, BINS = 64 };
 
-/* What one unit of direction, and of the square root of area, counts, in scene units. */
+/* Scene units of place that count like a unit of direction, and of the root of area. */
 static const double DIRECTION_WEIGHT = 0.3, SIZE_WEIGHT = 3.0;
 
 struct item {
@@ -46,10 +45,9 @@ struct item {
 struct builder {
     struct cluster_tree *tree;
     const struct scene *scene;
-    double *share; /* [all roots + 1] 0 between uses: of what is cut, the area in each
-                      space */
-    struct item *items,
-        *spare; /* [tree->root_count] in the tree's order; room for a cut */
+    double *share;      /* [all roots + 1] area of the items in each space; else 0 */
+    struct item *items; /* [tree->root_count] in the tree's order */
+    struct item *spare; /* [tree->root_count] room for a cut */
 };
 
 static struct item item_of(const struct scene *scene, int32_t root, double mean_area)
@@ -209,7 +207,7 @@ int32_t *places_met(const struct scene *scene, const struct octree *octree,
 }
 
 /* [all roots + 1] the space of each, by one of its roots: those that a few rays find each
- * other by. What sees the outside, which has the last number, is in one space with it.
+ * other by. A root that sees the outside, which has the last number, is in its space.
  * Without rays there is but one. */
 static int32_t *find_spaces(const struct scene *scene, const int32_t *met)
 {
@@ -227,8 +225,8 @@ static int32_t *find_spaces(const struct scene *scene, const int32_t *met)
     return up;
 }
 
-/* Finds the space with the largest part of the items' area, and the key OTHER_SPACE of the
- * items. True if the space has not all, but enough for a cut. */
+/* Finds the space with the largest part of the items' area, and sets the items' key
+ * OTHER_SPACE. True if the space has not all, but enough for a cut. */
 static bool find_largest_space(struct builder *builder, struct item *items, int32_t count)
 {
     double sum = 0.0;
@@ -290,7 +288,7 @@ static struct cluster cluster_of_root(const struct scene *scene, int32_t root)
     };
 }
 
-/* Adds what a child is to its parent, whose reflectance is a sum over its area until all
+/* Adds a child to its parent, whose reflectance is a sum over its area until all
  * are added. */
 static void add_child(struct cluster *parent, const struct cluster *child)
 {

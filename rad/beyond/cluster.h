@@ -20,8 +20,8 @@
 #include "rad/patch.h"
 #include "rad/sample.h"
 
-/* The top is cluster 0. */
-enum { NODE_TOP = -1, NODE_NONE = INT32_MIN }; /* none is to be asked for first: it is below 0, too */
+/* The top is cluster 0. Ask for NODE_NONE first: it is below 0, too. */
+enum { NODE_TOP = -1, NODE_NONE = INT32_MIN };
 
 /* No root has this number. */
 #define CLUSTER_ROOT UINT32_MAX
@@ -46,7 +46,7 @@ struct cluster_tree {
     bool is_view;             /* the arrays lie in memory of others */
 };
 
-/* Rays from each root, by which it is found out which roots are in one space. */
+/* Rays from each root, which tell its space. */
 enum { SPACE_RAYS = 4 };
 
 /* [SPACE_RAYS for each of the roots first .. end - 1] where its rays end: a root, the
@@ -78,7 +78,7 @@ static inline double cluster_node_area(const struct cluster_tree *tree,
                                  : scene_root_area(scene, node);
 }
 
-/* The cluster with this path from the top, or NODE_NONE if there is none. Pre: id_is_valid(). */
+/* The cluster with this path from the top, or NODE_NONE. Pre: id_is_valid(). */
 int32_t cluster_reach(const struct cluster_tree *tree, uint32_t hierarchy);
 
 #endif

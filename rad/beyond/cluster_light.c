@@ -43,10 +43,10 @@ void cluster_light_pull(struct cluster_light *light, const struct forest *forest
         const struct cluster *cluster = &light->tree->clusters[i];
         struct rgb sum = {{0.0, 0.0, 0.0}};
         for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
-            double area = cluster_node_area(light->tree, forest->scene, cluster->child[k]);
+            int32_t node = cluster->child[k];
+            double area = cluster_node_area(light->tree, forest->scene, node);
             double share = area / cluster->area;
-            const struct rgb *child =
-                cluster_light_radiosity(light, forest, cluster->child[k]);
+            const struct rgb *child = cluster_light_radiosity(light, forest, node);
             for (int c = 0; c < BANDS; c++)
                 sum.band[c] += share * child->band[c];
         }

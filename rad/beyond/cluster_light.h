@@ -1,5 +1,5 @@
-/* What clusters have of the light: a mean radiosity, flux that links bring, and what they
- * hand down. All ranks know the radiosities of all clusters. */
+/* The light of clusters: mean radiosity, flux that links bring, and the irradiance that
+ * they hand down. All ranks know the radiosities of all clusters. */
 #ifndef RAD_BEYOND_CLUSTER_LIGHT_H
 #define RAD_BEYOND_CLUSTER_LIGHT_H
 
@@ -9,10 +9,9 @@
 struct cluster_light {
     const struct cluster_tree *tree; /* borrowed */
     struct rgb *radiosity;  /* [tree->count] B, W/m^2: the mean over the area */
-    double *range; /* [tree->count] of B, summed over bands, within the children: twice
-                      its deviation, W/m^2 */
-    int64_t
-        *flux; /* [BANDS * tree->count] Phi received over links of these very clusters */
+    double *range;          /* [tree->count] twice the deviation of B, summed over bands,
+                               within the children, W/m^2 */
+    int64_t *flux;          /* [BANDS * tree->count] Phi of links of clusters themselves */
     struct rgb *irradiance; /* [tree->count] H of a cluster and all above it, W/m^2 */
 };
 
@@ -30,8 +29,7 @@ void cluster_light_pull(struct cluster_light *light, const struct forest *forest
 /* The ranges, after a pull; the extremes of the roots are those of forest_bound(). */
 void cluster_light_bound(struct cluster_light *light, const struct forest *forest);
 
-/* The push: each root is handed the irradiance of all clusters above it (forest->above).
- */
+/* The push: forest->above of a root is the irradiance of all clusters above it. */
 void cluster_light_push(struct cluster_light *light, struct forest *forest,
                         struct flux_unit unit);
 

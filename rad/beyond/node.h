@@ -1,5 +1,5 @@
-/* Nodes as ends of links: patches and clusters alike, and what is known of two of them
- * before they are looked at. */
+/* Nodes as ends of links, patches and clusters alike, and the bounds that two of them
+ * have before they are looked at. */
 #ifndef RAD_BEYOND_NODE_H
 #define RAD_BEYOND_NODE_H
 
@@ -32,7 +32,7 @@ bool ends_may_face(const struct end *a, const struct end *b);
 bool ends_are_walled_off(const struct end *a, const struct end *b,
                          const struct octree *octree, struct octree_counts *counts);
 
-/* What a receiver makes of a sender's light, W per square scene unit of G. */
+/* Power that a receiver reflects of a sender's light, W per square scene unit of G. */
 static inline double light_to(const struct end *to, const struct end *from)
 {
     return rgb_dot(to->reflectance, from->radiosity);
@@ -42,8 +42,8 @@ static inline double light_to(const struct end *to, const struct end *from)
 struct meeting {
     struct end p, q;
     bool near;    /* their boxes are closer than half of the sum of their radii */
-    double most;  /* no more can be exchanged than this, G */
-    double light; /* what is made of G both ways, W per square scene unit */
+    double most;  /* bound on G */
+    double light; /* light_to() both ways together */
 };
 
 struct meeting ends_meet(const struct end *p, const struct end *q);

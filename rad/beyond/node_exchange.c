@@ -1,17 +1,16 @@
 /* The exchange of clusters.
  *
  * G of two patches comes from exact factors between points and polygons; a cluster is no
- * polygon. What it exchanges is sampled at points on its roots, one in each child, chosen
- * by area:
+ * polygon. It is sampled at points on its roots, one in each child, chosen by area:
  *
- *  - of a patch and a cluster that is far or smaller, the exact factor from each point to
- *    each quarter of the patch, and a segment to the middle of what of that quarter is in front: points on
- *    the patch would miss what stands on it;
+ *  - with a patch, if the cluster is far or smaller: by the exact factor from each point
+ *    to each quarter of the patch, and a segment to the middle of the quarter's part in
+ *    front (points on the patch would miss the things that stand on it);
  *
- *  - of two clusters far apart, A_a A_b cos cos / (pi r^2) for each pair of points, and a
- *    segment;
+ *  - with a cluster far away: by A_a A_b cos cos / (pi r^2) for each pair of points, and
+ *    a segment;
  *
- *  - of a cluster with itself, or with what is near and not larger, 16 cosine-distributed
+ *  - with itself, or with a node that is near and not larger: by 16 cosine-distributed
  *    rays from the smaller one. A ray that ends on a root of the other, which its place
  *    in the tree's order tells, counts A / 16: no 1 / r^2, no clamp, and visibility is in
  *    it. (By pairs of points, books in a shelf lose a quarter of their light: they miss
@@ -42,11 +41,10 @@ static uint64_t seed_of(const struct meeting *m, int salt)
     return hash_mix(hash_mix(id_number(m->p.id) + (uint64_t)salt) ^ id_number(m->q.id));
 }
 
-/* Part of a root that a sample is taken of: a triangle, in whole or a quarter of a patch.
- */
+/* Part of a root in which a sample lies. */
 struct spot {
     int32_t root;
-    struct triangle triangle;
+    struct triangle triangle; /* the root, or a quarter of a patch */
     struct vec3 normal;
 };
 
@@ -116,8 +114,8 @@ static void add_exchange(struct node_exchange *found, int a, int b, double g, bo
     found->g_q[b] += g;
 }
 
-/* The 16 pairs of quarters and samples, or four of them for all: each of a with one of b,
- * which is as likely to be any, there or not, so that four times what the pair has is
+/* All 16 pairs of children, or four of them: each a with one b, which may be any with the
+ * same chance, even one that does not exist; so four times the G of the four pairs is
  * right in the mean. */
 static bool is_asked(bool all, int a, int b, uint64_t seed)
 {
@@ -132,8 +130,8 @@ static bool is_seen(struct method *method, struct vec3 from, int32_t on, struct 
                                   &method->counts);
 }
 
-/* The middle of that part of a triangle which is in front of a sample: a segment to any other point
- * would go behind the surface that the sample is on, past all that is before it. */
+/* The middle of the part of a triangle in front of a sample: a segment to any other point
+ * would begin behind the sample's surface, and pass by all that stands before it. */
 static struct vec3 middle_in_front(const struct sample *s, const struct triangle *t)
 {
     struct vec3 sum = {0.0, 0.0, 0.0};
@@ -149,7 +147,8 @@ static struct vec3 middle_in_front(const struct sample *s, const struct triangle
             count++;
         }
         if ((rise[k] > 0.0) != (next > 0.0)) {
-            sum = vec3_add(sum, vec3_add(from, vec3_scale(along, rise[k] / (rise[k] - next))));
+            struct vec3 step = vec3_scale(along, rise[k] / (rise[k] - next));
+            sum = vec3_add(sum, vec3_add(from, step));
             count++;
         }
     }
@@ -240,7 +239,7 @@ static void look_nearby(struct method *method, const struct meeting *m, uint64_t
         }
 }
 
-/* Both directions of what a cluster exchanges with itself are one. */
+/* In the exchange of a cluster with itself both directions are one. */
 static void make_even(struct node_exchange *found)
 {
     for (int k = 0; k < 4; k++)

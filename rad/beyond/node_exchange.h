@@ -1,4 +1,4 @@
-/* What two nodes exchange, where one of them at least is a cluster. */
+/* The exchange area of two nodes, one of which at least is a cluster. */
 #ifndef RAD_BEYOND_NODE_EXCHANGE_H
 #define RAD_BEYOND_NODE_EXCHANGE_H
 
@@ -6,17 +6,16 @@
 
 /* An estimate. G of a cluster with itself is that of both directions. */
 struct node_exchange {
-    double g_p[4], g_q[4]; /* what the children of p and of q exchange, with visibility,
-                              G; sums: area */
-    double unoccluded;     /* G without blockers, at most the smaller area */
-    double area;           /* G with */
+    double g_p[4];     /* G of each child of p, visibility included; sum: area */
+    double g_q[4];     /* the same of q */
+    double unoccluded; /* G without blockers, at most the smaller area */
+    double area;       /* G with them */
 };
 
 /* True if the two are sampled by rays and not by points. */
 bool is_by_rays(const struct meeting *m);
 
-/* Another `salt`, other points. `closely`: by all pairs of points, not by four of them.
- */
+/* Another `salt`, other points. `closely`: by all pairs of points, not four of them. */
 struct node_exchange node_exchange_estimate(struct method *method,
                                             const struct meeting *m, int salt,
                                             bool closely);

@@ -3,7 +3,7 @@
  * Stopping bias (Kirk and Arvo 1991): a link whose few samples happen to miss its light
  * looks good, is accepted, and stays too dark: 2.4 % of all light in a room of 18,000
  * triangles. So a link that is accepted is estimated afresh, from points that had no say
- * in that, and what its first look found stays with it for the passes to come.
+ * in that; and it keeps the findings of its first look for the passes to come.
  *
  * A link that sees nothing stays, at the cost of 24 bytes, unless one wall is proved to
  * hide all: that no sample arrives is no proof. */
@@ -15,11 +15,11 @@
 #include "rad/beyond/node_exchange.h"
 #include "rad/oracle.h"
 
-/* --- what a look finds --- */
+/* --- looks --- */
 
-/* What the first look found, which the criterion goes by: if it went by the G that
- * counts, links that happen to lack light would stay, and those that have too much be
- * split. In the place of the blocker, which a link with a cluster in it has none of:
+/* The findings of the first look, by which the criterion decides: by the G that counts,
+ * links that happen to lack light would stay, and those with too much be split. They are
+ * in the place of the blocker, which a link with a cluster in it has none of:
  *
  *     0eeeeeeeemmmmmmm  ssss  pppppp  qqqqqq
  *     G as a float      seen  spread  spread
@@ -56,8 +56,7 @@ static struct judgement judgement_of(const struct link *link)
                               .spread_q = (bits & 63u) * (4.0 / 63.0)};
 }
 
-/* What the children get beyond or below their even share, twice: 1 for all in one half.
- */
+/* Twice the sum of the parts' deviations from shares by area: 2 for all in one half. */
 static double spread_of(const struct method *method, const struct end *end,
                         const uint8_t parts[3])
 {
@@ -67,12 +66,12 @@ static double spread_of(const struct method *method, const struct end *end,
     return 2.0 * off;
 }
 
-/* A part of a cluster's light is dealt by area, as if so many samples of 16 had told so:
+/* A part of a cluster's light is dealt by area, as if four samples of 16 had found it so:
  * one ray into a tiny child would make it far too bright. */
 static const double PRIOR = 4.0 / 16.0;
 
-/* The parts of the children that exchange `area` in these proportions, none more than its
- * own area. Returns what is left of `area`. */
+/* Finds the parts of children that exchange `area` in the proportions of `g`, none more
+ * than its own area. Returns the exchange area that this leaves. */
 static double find_parts(const struct method *method, const struct end *end,
                          const double g[4], double area, uint8_t parts[3])
 {
@@ -205,8 +204,8 @@ static double range_within(const struct method *method, const struct end *end)
  * which light varies smoothly. */
 static const double SPREAD_LEFT = 2.0;
 
-/* What one side causes: spread of what it receives within its children, range of what it
- * sends. */
+/* The error that one side causes: spread of its received light within its children, and
+ * range of its own. */
 static double error_of(const struct method *method, const struct end *own,
                        const struct end *other, double spread, double area)
 {
@@ -235,16 +234,15 @@ static int32_t choose(const struct method *method, const struct meeting *m, bool
            : may_split(method, second) ? second->node : NODE_NONE;
 }
 
-/* What near ends might exchange at most is in doubt by so much, whatever a look would say
- * of it: it may be all in a few pairs of roots. */
+/* The part in doubt of the bound on G of near ends, whatever a look would find: it may be
+ * all in a few pairs of roots. */
 static const double DOUBT_NEAR = 0.6;
 
-/* And of far ends by so much, though a look have found nothing at all. */
+/* The same of far ends, should a look find nothing at all. */
 static const double DOUBT_MISSED = 1.0 / 16.0;
 
-/* A far link, by what its first look found: all of that is in doubt. (With a quarter and
- * an eighth of it, as for patches, a room of 18,512 triangles has 5 % fewer links and 15
- * % more error.) */
+/* A far link, by its first look: all of its G is in doubt. (With a quarter and an eighth,
+ * as for patches, a room of 18,512 triangles has 5 % fewer links and 15 % more error.) */
 static int32_t far_to_split(const struct method *method, const struct link *link,
                             const struct meeting *m)
 {
