@@ -25,19 +25,14 @@
 #include "geom/alloc.h"
 #include "rad/oracle.h"
 
-/* A rank's state before a stage, for the others. */
-struct load_notice {
-    int64_t links;      /* prolific links */
+/* Counts before a stage, of a rank or of all together. */
+struct level {
+    int64_t prolific;   /* links that are to be split */
+    int64_t of_patches; /* of these, links with a patch in them */
     int64_t load;       /* predicted work of splitting them, in tests */
     int64_t kept;       /* links that are not to be split */
-    int64_t stop;       /* the signal that the rank has got, 0: none */
-    int64_t of_patches; /* prolific links with a patch in them */
-    int64_t made;       /* patches that the rank has made and not shared */
-};
-
-/* Sums over all ranks. A patch that several ranks have made counts for each of them. */
-struct level {
-    int64_t prolific, kept, of_patches, made;
+    int64_t made;       /* patches that ranks have made and not shared */
+    int64_t stop;       /* the largest signal that a rank has got, 0: none */
 };
 
 static int64_t count_of_patches(const struct link_list *list)
@@ -83,25 +78,27 @@ static struct level exchange_loads(struct solver *solver,
                                    const struct link_list *prolific, int64_t *loads)
 {
     const struct comm *comm = solver->comm;
-    struct load_notice own = {.links = prolific->count, .load = load_of(prolific),
-                              .kept = solver->links.count, .stop = signals_seen(),
-                              .of_patches = count_of_patches(prolific),
-                              .made = solver->method.forest->count - solver->shared};
+    struct level own = {.prolific = prolific->count,
+                        .of_patches = count_of_patches(prolific),
+                        .load = load_of(prolific),
+                        .kept = solver->links.count,
+                        .made = solver->method.forest->count - solver->shared,
+                        .stop = signals_seen()};
     double start = comm_seconds();
-    struct load_notice *notices = comm_gather_each(comm, &own, sizeof own);
+    struct level *levels = comm_gather_each(comm, &own, sizeof own), all = {0};
     solver->seconds[PHASE_IDLE] += comm_seconds() - start;
-    struct level sum = {0};
     for (int r = 0; r < comm->size; r++) {
-        loads[r] = notices[r].load;
-        sum.prolific += notices[r].links;
-        sum.kept += notices[r].kept;
-        sum.of_patches += notices[r].of_patches;
-        sum.made += notices[r].made;
-        solver->stop =
-            (int)notices[r].stop > solver->stop ? (int)notices[r].stop : solver->stop;
+        loads[r] = levels[r].load;
+        all.prolific += levels[r].prolific;
+        all.of_patches += levels[r].of_patches;
+        all.load += levels[r].load;
+        all.kept += levels[r].kept;
+        all.made += levels[r].made;
+        all.stop = levels[r].stop > all.stop ? levels[r].stop : all.stop;
     }
-    alloc_free(notices);
-    return sum;
+    solver->stop = (int)all.stop > solver->stop ? (int)all.stop : solver->stop;
+    alloc_free(levels);
+    return all;
 }
 
 /* Then links move. Returns the bytes sent. */

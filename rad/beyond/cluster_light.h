@@ -11,7 +11,7 @@ struct cluster_light {
     struct rgb *radiosity;  /* [tree->count] B, W/m^2: the mean over the area */
     double *range;          /* [tree->count] twice the deviation of B, summed over bands,
                                within the children, W/m^2 */
-    int64_t *flux;          /* [BANDS * tree->count] Phi of links of clusters themselves */
+    int64_t *flux;          /* [BANDS * tree->count] Phi of the links of clusters */
     struct rgb *irradiance; /* [tree->count] H of a cluster and all above it, W/m^2 */
 };
 
