@@ -10,7 +10,7 @@
  * tests, one that is not n. Cut through their middles, cells took a third more node and triangle
  * tests in furnished rooms; the longest axis first saved only 2 % more. Cells are split as long
  * as that saves more than the NODE_COST of looking at eight boxes. The queue of cells replaces
- * recursion, and TREE_DEPTH ends the splitting of what lies in one point.
+ * recursion. What lies in one point is cut by number below TREE_DEPTH.
  *
  * A record holds the triangle's affine maps in float, with a bound on their error: for |x| <= 1
  * each product and sum is off by at most 2^-24 of r1 = |r0| + |r1| + |r2| + |r3|, there are seven
@@ -23,10 +23,7 @@
 #include "geom/stop.h"
 #include "octree/tree.h"
 
-enum {
-    LEAF_MAX = 16, /* a larger cell is always split */
-    BINS = 16      /* a cut is looked for at their edges */
-};
+enum { BINS = 16 }; /* a cut is looked for at their edges */
 
 static const double NODE_COST = 2.0;          /* of a node, in triangle tests */
 static const double ERROR = 16.0 / 16777216.0; /* 16 x 2^-24 */
@@ -198,15 +195,6 @@ static int32_t append_node(struct builder *builder)
     return (int32_t)tree->node_count++;
 }
 
-static int32_t append_leaf(struct builder *builder, const struct cell *cell)
-{
-    struct tree *tree = &builder->tree;
-    tree->leaves = alloc_reserve(tree->leaves, &tree->leaf_capacity, tree->leaf_count + 1,
-                                 sizeof *tree->leaves);
-    tree->leaves[tree->leaf_count] = (struct leaf){cell->begin, cell->end - cell->begin};
-    return (int32_t)tree->leaf_count++;
-}
-
 static void append_cell(struct builder *builder, struct cell cell)
 {
     builder->queue = alloc_reserve(builder->queue, &builder->queue_capacity,
@@ -232,15 +220,24 @@ static int32_t split_cell(struct builder *builder, const struct cell *cell,
     return node;
 }
 
+/* Eight parts of about the same number of triangles. */
+static void cut_by_number(const struct cell *cell, int32_t start[LANES + 1])
+{
+    for (int k = 0; k <= LANES; k++)
+        start[k] = cell->begin + (int32_t)((int64_t)(cell->end - cell->begin) * k / LANES);
+}
+
 static void process_cell(struct builder *builder, struct cell cell)
 {
     int32_t count = cell.end - cell.begin, start[LANES + 1], child;
-    bool is_root = cell.node < 0, splits = false;
-    if (is_root || (count > 1 && cell.depth < TREE_DEPTH)) {
+    bool is_root = cell.node < 0, splits = is_root || count > LEAF_MAX;
+    if (cell.depth >= TREE_DEPTH) {
+        cut_by_number(&cell, start);
+    } else if (is_root || count > 1) {
         sort_by_octant(builder, &cell, start);
-        splits = is_root || count > LEAF_MAX || split_pays(builder, &cell, start);
+        splits = splits || split_pays(builder, &cell, start);
     }
-    child = splits ? split_cell(builder, &cell, start) : ~append_leaf(builder, &cell);
+    child = splits ? split_cell(builder, &cell, start) : ~(LEAF_MAX * cell.begin + count - 1);
     if (!is_root)
         builder->tree.nodes[cell.node].child[cell.octant] = child;
 }
@@ -279,6 +276,8 @@ struct tree tree_build(const struct triangle *triangles, const struct plane *pla
     struct builder builder = {.triangles = triangles, .order = order};
     if (count == 0)
         return builder.tree;
+    if (count > INT32_MAX / LEAF_MAX)
+        alloc_fail((size_t)count * sizeof(struct record)); /* no child could say where it is */
     builder.scratch = alloc_array((size_t)count, sizeof *builder.scratch);
     struct box box = box_of(&builder, 0, count);
     append_cell(&builder, (struct cell){.end = count, .node = -1});
@@ -299,7 +298,6 @@ struct tree tree_build(const struct triangle *triangles, const struct plane *pla
 void tree_free(struct tree *tree)
 {
     alloc_free(tree->nodes);
-    alloc_free(tree->leaves);
     alloc_free(tree->records);
     *tree = (struct tree){0};
 }
@@ -307,9 +305,7 @@ void tree_free(struct tree *tree)
 void tree_pack_arrays(struct tree *tree, struct pack *pack)
 {
     tree->node_capacity = tree->node_count;
-    tree->leaf_capacity = tree->leaf_count;
     tree->nodes = pack_array(pack, tree->nodes, (size_t)tree->node_count * sizeof *tree->nodes);
-    tree->leaves = pack_array(pack, tree->leaves, (size_t)tree->leaf_count * sizeof *tree->leaves);
     tree->records = pack_array(pack, tree->records,
                                (size_t)tree->record_count * sizeof *tree->records);
 }
@@ -340,8 +336,8 @@ bool tree_reaches_above(const struct tree *tree, const struct triangle *triangle
                     stack[height++] = node->child[k];
             continue;
         }
-        const struct leaf *leaf = &tree->leaves[~at];
-        for (int32_t i = leaf->first; i < leaf->first + leaf->count; i++)
+        struct leaf leaf = leaf_of(at);
+        for (int32_t i = leaf.first; i < leaf.first + leaf.count; i++)
             for (int k = 0; k < 3; k++)
                 if (plane_distance(plane, triangles[tree->records[i].triangle].corner[k]) > margin)
                     return true;

@@ -156,7 +156,6 @@ struct octree *octree_view(struct pack *pack, const struct triangle *triangles,
 static int64_t tree_bytes(const struct tree *tree)
 {
     return tree->node_capacity * (int64_t)sizeof *tree->nodes +
-           tree->leaf_capacity * (int64_t)sizeof *tree->leaves +
            tree->record_count * (int64_t)sizeof *tree->records;
 }
 
@@ -482,7 +481,7 @@ unsigned octree_block(const struct octree *octree, const struct bundle *bundle, 
         if (stack[height - 1] >= 0)
             height = descend(tree, &shaft, stack, height, counts);
         else
-            blocked = block_by_records(octree, tree->leaves[~stack[--height]], bundle, &shaft,
+            blocked = block_by_records(octree, leaf_of(stack[--height]), bundle, &shaft,
                                        blocked, guess, counts);
     }
     return blocked;
@@ -573,7 +572,7 @@ bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct
     while (height > 0) {
         if (stack[height - 1] >= 0)
             height = descend(tree, &shaft, stack, height, counts);
-        else if (is_blocked_in(octree, tree->leaves[~stack[--height]], &query, own, guess, counts))
+        else if (is_blocked_in(octree, leaf_of(stack[--height]), &query, own, guess, counts))
             return true;
     }
     return false;
@@ -607,7 +606,7 @@ bool octree_has_wall(const struct octree *octree, const struct vec3 *p, int coun
             height = descend(tree, &thin, stack, height, counts);
             continue;
         }
-        struct leaf run = tree->leaves[~stack[--height]];
+        struct leaf run = leaf_of(stack[--height]);
         counts->triangle_tests += run.count;
         for (int32_t i = run.first; i < run.first + run.count; i++)
             if (is_blocked_by(octree, &middle, &tree->records[i]) &&
@@ -643,8 +642,8 @@ bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p
             height = descend(tree, &shaft, stack, height, counts);
             continue;
         }
-        const struct leaf *run = &tree->leaves[~stack[--height]];
-        for (int32_t i = run->first; i < run->first + run->count; i++) {
+        struct leaf run = leaf_of(stack[--height]);
+        for (int32_t i = run.first; i < run.first + run.count; i++) {
             int32_t t = tree->records[i].triangle;
             if (t == own[0] || t == own[1])
                 continue;
@@ -732,9 +731,9 @@ static void search_tree(const struct octree *octree, const struct tree *tree, st
             height = descend(tree, &search->shaft, stack, height, counts);
             continue;
         }
-        const struct leaf *leaf = &tree->leaves[~stack[--height]];
+        struct leaf leaf = leaf_of(stack[--height]);
         bool improved = false;
-        for (int32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
+        for (int32_t i = leaf.first; i < leaf.first + leaf.count; i++) {
             counts->triangle_tests++;
             improved |= improve_hit(octree, tree->records[i].triangle, search);
         }

@@ -6,8 +6,10 @@
 #include "octree/octree.h"
 
 enum {
-    TREE_DEPTH = 24,                   /* deepest level of a tree */
-    TREE_STACK = 2 * LANES * (TREE_DEPTH + 1) /* room for a walk: what waits on all levels */
+    LEAF_MAX = 16,    /* triangles of a leaf, at most */
+    TREE_DEPTH = 24,  /* from this level on cells are cut by number, not by place */
+    TREE_LEVELS = 36, /* a number below 2^31 is at most LEAF_MAX after 9 such cuts in eight */
+    TREE_STACK = 2 * LANES * TREE_LEVELS /* room for a walk: what waits on all levels */
 };
 
 /* An inner node: the boxes of its eight children side by side, so that one instruction looks at
@@ -15,13 +17,19 @@ enum {
  * away that nothing meets it. Children are in the order of the cell's octants. */
 struct node {
     float middle[3][LANES], half[3][LANES];
-    int32_t child[LANES]; /* an inner node if >= 0, leaf ~child if < 0 */
+    int32_t child[LANES]; /* an inner node if >= 0; a leaf if < 0, see leaf_of() */
 };
 
 /* A run of records. */
 struct leaf {
-    int32_t first, count;
+    int32_t first, count; /* 1 <= count <= LEAF_MAX */
 };
+
+/* The leaf that a negative child stands for: ~(LEAF_MAX * first + count - 1). */
+static inline struct leaf leaf_of(int32_t child)
+{
+    return (struct leaf){~child / LEAF_MAX, ~child % LEAF_MAX + 1};
+}
 
 /* A triangle as three affine maps r(x) = r[0] x + r[1] y + r[2] z + r[3]: the barycentric
  * coordinates of corners b and c, and the signed distance to the plane. 64 bytes. */
@@ -34,9 +42,8 @@ struct record {
 /* One tree over some of the triangles. */
 struct tree {
     struct node *nodes;     /* [node_count]; the first is the root */
-    struct leaf *leaves;    /* [leaf_count] */
     struct record *records; /* [record_count], leaf by leaf */
-    int64_t node_count, node_capacity, leaf_count, leaf_capacity, record_count;
+    int64_t node_count, node_capacity, record_count;
     struct vec3 low, high;  /* bounding box */
 };
 

@@ -186,13 +186,13 @@ awk 'function square(x, y, z, size, name) {
      }
      BEGIN {
          print "mtllib tiles.mtl\nusemtl lamp\nv 3 9 3\nv 5 9 3\nv 4 9 5\nf 1 2 3"
-         for (i = 0; i < 2000; i++)
+         for (i = 0; i < 2500; i++)
              square(i % 50, i % 7 == 0 ? 3 : 0, int(i / 50), 0.8, "floor")
      }' >"$work/tiles.obj"
 produce tiles-serial "$work/serial/phr" "$work/tiles.obj"
 for ranks in 2 3; do
     produce tiles-$ranks $MPIEXEC -n $ranks "$BUILD/phr" "$work/tiles.obj"
-    check "4001 triangles on $ranks ranks" same tiles-$ranks tiles-serial
+    check "5001 triangles on $ranks ranks" same tiles-$ranks tiles-serial
 done
 if "$BUILD/phr" --version | grep -q "MPI build"; then
     $MPIEXEC -n 3 "$BUILD/phr" "$work/tiles.obj" --verbose --max-level 0 >"$work/tiles.log" 2>&1
