@@ -49,7 +49,7 @@ MPIEXEC ?= mpiexec
 endif
 
 GEOM = alloc contour elementary error gauss hull lambert polygon scene stop triangle wall
-OCTREE = build octree
+OCTREE = build hit octree
 RAD = beyond/cluster beyond/cluster_light beyond/node beyond/node_exchange beyond/node_link closure conjugate flux formfactor id link \
       linking method oracle patch pushpull sample snapshot treecode viewfactor
 MPI = accuracy assign balance broadcast closing comm funnel gather keep ledger linking memory migrate \

@@ -54,10 +54,6 @@
 #include "geom/wall.h"
 #include "octree/tree.h"
 
-/* Margin for the rounding of box tests: coordinates are below 1 and direction components at most
- * 1, so that each of some ten operations is off by at most 2^-24. */
-static const float BOX_MARGIN = 2e-6f;
-
 /* True if no corner of the scene is in front of the plane, or none behind it. */
 static bool is_on_hull(const struct tree *all, const struct triangle *triangles, struct plane plane)
 {
@@ -166,14 +162,6 @@ int64_t octree_bytes(const struct octree *octree)
            3 * octree->count * (int64_t)sizeof *octree->neighbours;
 }
 
-/* The functions below are small and are called millions of times from two places each, where a
- * compiler's own judgement is not to inline them. */
-#ifdef __GNUC__
-#define INLINE static inline __attribute__((always_inline))
-#else
-#define INLINE static inline
-#endif
-
 /* --- walking down with a shaft --- */
 
 /* A slab of the shaft: the points x with |n . x - middle| <= reach hold all end points. */
@@ -247,17 +235,6 @@ static void shaft_set(struct shaft *shaft, const struct vec3 from[BUNDLE_ENDS],
 {
     shaft_set_points(shaft, from, to);
     shaft_set_slabs(shaft);
-}
-
-/* The end points of one segment, as they are in a record's maps. */
-struct ends {
-    float from[3], to[3];
-};
-
-static struct ends ends_of(struct vec3 from, struct vec3 to)
-{
-    return (struct ends){{(float)from.x, (float)from.y, (float)from.z},
-                         {(float)to.x, (float)to.y, (float)to.z}};
 }
 
 static struct slab slab_between(float a, float b)
@@ -489,11 +466,6 @@ unsigned octree_block(const struct octree *octree, const struct bundle *bundle, 
 
 /* --- one segment --- */
 
-INLINE float map_at(const float r[4], const float x[3])
-{
-    return r[0] * x[0] + r[1] * x[1] + r[2] * x[2] + r[3];
-}
-
 /* judge() for a single pair: the same comparisons, and the same margins. */
 INLINE struct verdict judge_segment(const struct record *r, const struct ends *ends)
 {
@@ -653,107 +625,4 @@ bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p
         }
     }
     return true;
-}
-
-/* --- first hit --- */
-
-/* What a camera ray has met so far. */
-struct search {
-    struct vec3 from, to;
-    struct segment segment;
-    struct shaft shaft; /* of the part of the ray before the hit */
-    bool fronts_only;
-    double nearest;     /* parameter of the hit on the segment; 2 before there is one */
-    struct octree_hit hit;
-};
-
-static void set_reach(struct search *search, double reach)
-{
-    struct vec3 span = vec3_sub(search->to, search->from);
-    struct vec3 end = vec3_add(search->from, vec3_scale(span, reach));
-    struct ends ends = ends_of(search->from, end);
-    shaft_set_segment(&search->shaft, &ends);
-}
-
-/* Cuts the ray to a segment that ends behind the scene and begins no further from it than its own
- * size: what a camera far away needs to keep its digits. False if it misses. */
-static bool clip_to_scene(struct vec3 low, struct vec3 high, struct vec3 *origin,
-                          struct vec3 direction, struct vec3 *end)
-{
-    struct vec3 middle = vec3_middle(low, high);
-    double radius = 0.5 * vec3_length(vec3_sub(high, low)) * 1.0001 + GEOM_ROUNDING;
-    struct vec3 d = vec3_scale(direction, 1.0 / vec3_length(direction));
-    double along = vec3_dot(vec3_sub(middle, *origin), d), begin = along - radius;
-    if (along + radius <= 0.0)
-        return false;
-    *end = vec3_add(*origin, vec3_scale(d, along + radius));
-    if (begin > 0.0)
-        *origin = vec3_add(*origin, vec3_scale(d, begin));
-    struct vec3 nearest = vec3_add(*origin, vec3_scale(d, begin > 0.0 ? radius : along));
-    return vec3_length(vec3_sub(nearest, middle)) <= radius;
-}
-
-/* Of two triangles met in the same place, a front counts before a back (the wall of the next room
- * lies back to back with ours), then the one that comes later in the file. */
-static bool wins_tie(const struct octree_hit *hit, int32_t t, bool front)
-{
-    return front != hit->front ? front : t > hit->triangle;
-}
-
-/* Tests one triangle; it counts if it is met before the hit so far, or in the same place and wins
- * the tie. */
-static bool improve_hit(const struct octree *octree, int32_t t, struct search *search)
-{
-    const struct plane *plane = &octree->planes[t];
-    double start = plane_distance(plane, search->from), end = plane_distance(plane, search->to);
-    if ((start > 0.0) == (end > 0.0) || (search->fronts_only && start <= 0.0))
-        return false;
-    double at = start / (start - end), tie = 64.0 * GEOM_ROUNDING, weight[3];
-    if (at > search->nearest + tie ||
-        (at > search->nearest - tie && !wins_tie(&search->hit, t, start > 0.0)))
-        return false;
-    if (!segment_line_meets(&search->segment, &octree->triangles[t], weight))
-        return false;
-    search->nearest = at < search->nearest ? at : search->nearest;
-    search->hit = (struct octree_hit){t, start > 0.0, {weight[0], weight[1], weight[2]}};
-    return true;
-}
-
-static void search_tree(const struct octree *octree, const struct tree *tree, struct search *search,
-                        struct octree_counts *counts)
-{
-    int32_t stack[TREE_STACK];
-    int height = 0;
-    if (tree->node_count > 0)
-        stack[height++] = 0;
-    while (height > 0) {
-        if (stack[height - 1] >= 0) {
-            height = descend(tree, &search->shaft, stack, height, counts);
-            continue;
-        }
-        struct leaf leaf = leaf_of(stack[--height]);
-        bool improved = false;
-        for (int32_t i = leaf.first; i < leaf.first + leaf.count; i++) {
-            counts->triangle_tests++;
-            improved |= improve_hit(octree, tree->records[i].triangle, search);
-        }
-        if (improved)
-            set_reach(search, search->nearest + 1e-9); /* boxes behind the hit are of no use */
-    }
-}
-
-bool octree_first_hit(const struct octree *octree, struct vec3 origin, struct vec3 direction,
-                      bool fronts_only, struct octree_hit *hit, struct octree_counts *counts)
-{
-    struct search search = {.fronts_only = fronts_only, .nearest = 2.0, .hit = {.triangle = -1}};
-    counts->rays++;
-    if (!clip_to_scene(octree->low, octree->high, &origin, direction, &search.to))
-        return false;
-    search.from = origin;
-    search.segment = segment_make(origin, search.to);
-    set_reach(&search, 1.0);
-    search_tree(octree, &octree->inside, &search, counts);
-    search_tree(octree, &octree->hull, &search, counts);
-    *hit = search.hit;
-    return hit->triangle >= 0;
 }

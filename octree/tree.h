@@ -12,6 +12,18 @@ enum {
     TREE_STACK = 2 * LANES * TREE_LEVELS /* room for a walk: what waits on all levels */
 };
 
+/* For small functions that are called millions of times from a few places each, where a
+ * compiler's own judgement is not to inline them. */
+#ifdef __GNUC__
+#define INLINE static inline __attribute__((always_inline))
+#else
+#define INLINE static inline
+#endif
+
+/* Margin for the rounding of box tests, in scene units: coordinates are below 1.3 and direction
+ * components at most 1, so that each of some ten operations is off by at most 2^-24. */
+static const float BOX_MARGIN = 2e-6f;
+
 /* An inner node: the boxes of its eight children side by side, so that one instruction looks at
  * all of them. A box is middle +- half, rounded outwards; that of an absent child is so far
  * away that nothing meets it. Children are in the order of the cell's octants. */
@@ -38,6 +50,23 @@ struct record {
     float error_u, error_v, error_w; /* bounds on |r(x) - its exact value| for |x| <= 1 */
     int32_t triangle;
 };
+
+/* A record's map r at x. */
+INLINE float map_at(const float r[4], const float x[3])
+{
+    return r[0] * x[0] + r[1] * x[1] + r[2] * x[2] + r[3];
+}
+
+/* The end points of one segment, as they are in a record's maps. */
+struct ends {
+    float from[3], to[3];
+};
+
+INLINE struct ends ends_of(struct vec3 from, struct vec3 to)
+{
+    return (struct ends){{(float)from.x, (float)from.y, (float)from.z},
+                         {(float)to.x, (float)to.y, (float)to.z}};
+}
 
 /* One tree over some of the triangles. */
 struct tree {

@@ -216,8 +216,27 @@ static double hit_distance(const struct scene *scene, int32_t t, const struct se
     return start / speed;
 }
 
-/* Random rays, from within and from far away. Where two triangles are met at once any will do
- * that is no further away than rounding. */
+/* A ray from within, from far away, or from just above the front of a triangle; each in
+ * turn with no step along one axis, or along two. */
+static void random_ray(struct random *random, const struct scene *scene, int number,
+                       struct vec3 *origin, struct vec3 *direction)
+{
+    *origin = random_point(random, number % 2 ? 0.3 : 2.0);
+    *direction = vec3_scale(vec3_sub(random_point(random, 0.5), *origin),
+                            random_between(random, 0.1, 9));
+    if (number % 5 == 0) {
+        int32_t t = random_below(random, scene->input_count);
+        *origin = vec3_add(random_point_on(random, &scene->triangles[t]),
+                           vec3_scale(scene->planes[t].normal, 1024.0 * GEOM_ROUNDING));
+    }
+    if (number % 7 < 2)
+        direction->x = 0.0;
+    if (number % 7 == 1)
+        direction->y = 0.0;
+}
+
+/* Where two triangles are met at once any will do that is no further away than
+ * rounding. */
 static void test_first_hits(const struct world *world, const char *name, bool fronts_only)
 {
     const struct scene *scene = world->scene;
@@ -225,9 +244,8 @@ static void test_first_hits(const struct world *world, const char *name, bool fr
     struct octree_counts counts = {0};
     int wrong = 0, hits = 0, wrong_weights = 0;
     for (int i = 0; i < RAYS; i++) {
-        struct vec3 origin = random_point(&random, i % 2 ? 0.3 : 2.0);
-        struct vec3 aim = random_point(&random, 0.5);
-        struct vec3 direction = vec3_scale(vec3_sub(aim, origin), random_between(&random, 0.1, 9));
+        struct vec3 origin, direction;
+        random_ray(&random, scene, i, &origin, &direction);
         struct segment ray = segment_make(origin, vec3_add(origin, direction));
         double nearest = HUGE_VAL;
         for (int32_t t = 0; t < scene->input_count; t++) {
