@@ -3,6 +3,7 @@
 #   make                 phr with mpicc              make SERIAL=1   the same without MPI, with cc
 #   make demo            the Cornell box, 2 ranks    make check      all tests
 #   make room            build/room, a scene generator
+#   make pathtracer      build/pathtracer, what phr's pictures and meshes are compared with
 #   make bench           $(BUILD)/rays, a bench of visibility, beside Embree where it is installed;
 #                        $(BUILD)/parsing, a bench of reading OBJ
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
@@ -92,11 +93,18 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
 
 # What is true, for the tests and benches that compare phr with it.
-TRUTH = $(BUILD)/tests/pathtracer.o $(BUILD)/tests/truth.o $(BUILD)/tests/deviation.o
+TRUTH = $(BUILD)/tools/paths.o $(BUILD)/tests/truth.o $(BUILD)/tests/deviation.o
 
 $(BUILD)/tests/paths $(BUILD)/tests/norms $(BUILD)/tests/converge: $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TRUTH) \
         $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
+$(BUILD)/pathtracer: $(BUILD)/tools/pathtracer.o $(BUILD)/tools/paths.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
+pathtracer: $(BUILD)/pathtracer
+	@mkdir -p build
+	@cmp -s $(BUILD)/pathtracer build/pathtracer || cp $(BUILD)/pathtracer build/pathtracer
 
 $(REPLAYS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/corpus.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
@@ -108,7 +116,7 @@ $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) -MMD -c -o $@ $<
 
--include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/io/imgdiff.d $(TESTS:%=$(BUILD)/tests/%.d) \
+-include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/io/imgdiff.d $(BUILD)/tools/pathtracer.d $(TESTS:%=$(BUILD)/tests/%.d) \
     $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d) \
     $(BUILD)/tests/bench/parsing.d
 
@@ -153,7 +161,7 @@ growth: $(PHR) build/room
 scaling: $(PHR) $(BUILD)/replay build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
 
-check: $(PHR) $(IMGDIFF) tests build/room
+check: $(PHR) $(IMGDIFF) pathtracer tests build/room
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
 
@@ -195,5 +203,5 @@ clean:
 
 FORCE:
 
-.PHONY: all demo tests room bench errors chart growth scaling check check-long prove golden portability fuzz install \
+.PHONY: all demo tests room pathtracer bench errors chart growth scaling check check-long prove golden portability fuzz install \
         uninstall clean FORCE

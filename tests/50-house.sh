@@ -14,13 +14,14 @@ check "rad/ includes neither mpi/ nor io/" forbidden rad 'mpi|io'
 check "nor does rad/beyond/" forbidden rad/beyond 'mpi|io'
 check "io/ does not include mpi/" forbidden io 'mpi'
 check "mpi/ does not include io/" forbidden mpi 'io'
+check "tools/ does not include tests/" forbidden tools 'tests'
 
-mpi_outside=$(grep -lE '<mpi\.h>|\bMPI_[A-Z]' phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] io/*.[ch])
+mpi_outside=$(grep -lE '<mpi\.h>|\bMPI_[A-Z]' phr.c tools/*.[ch] geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] io/*.[ch])
 check "MPI is used in mpi/ only" [ -z "$mpi_outside" ]
 
 missing=
 for file in phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] mpi/*.[ch] mpi/serial/*.h io/*.[ch] tests/*.[ch] \
-    tests/*.sh tests/bench/* tests/fuzz/*.[ch] scenes/*; do
+    tools/*.[ch] tests/*.sh tests/bench/* tests/fuzz/*.[ch] scenes/*; do
     stem=$(echo "$file" | sed 's/\.[ch]$//')
     grep -q "\`$stem" README.md || grep -q "\`$(basename "$stem")" README.md ||
         missing="$missing $file"

@@ -6,7 +6,7 @@
  * well, or a check could not fail; each says how small. */
 #include <math.h>
 
-#include "tests/pathtracer.h"
+#include "tools/paths.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
@@ -66,6 +66,34 @@ static void test_furnace(void)
     expect(trace(&room, 4, &CENTRE, 1), 8.0, 0.004, "rho 0.8, E 2: rho H at a point");
     expect(trace(&room, 3, &WHOLE, 2), 0.0, 0.0, "rho 0, E 3: rho H");
     world_free(&room);
+}
+
+/* The same as trace() of a pixel in the middle of a picture that looks from the middle of
+ * the room into a corner. */
+static struct outcome trace_pixel(const struct world *world, int band)
+{
+    struct camera camera = {.eye = {0, 0.5, 0}, .at = {1, 2, 1}, .up = {0, 1, 0},
+                            .fov = 90.0, .width = 3, .height = 3};
+    struct pathtracer pathtracer = pathtracer_make(world->scene, world->octree);
+    double sum = 0.0, squares = 0.0;
+    for (int run = 0; run < RUNS; run++) {
+        struct rgb b = pathtracer_pixel(&pathtracer, &camera, 1, 1, SAMPLES, (uint64_t)run);
+        sum += b.band[band];
+        squares += b.band[band] * b.band[band];
+    }
+    pathtracer_free(&pathtracer);
+    double mean = sum / RUNS, variance = fmax(squares / RUNS - mean * mean, 0.0);
+    return (struct outcome){mean, sqrt(variance / (RUNS - 1))};
+}
+
+static void test_pixel(void)
+{
+    struct world room = furnace(false), twins = furnace(true);
+    expect(trace_pixel(&room, 1), 10.0, 0.004, "rho 0.8, E 2: E + rho H through a pixel");
+    expect(trace_pixel(&room, 2), 3.0, 0.0, "rho 0, E 3: E through a pixel");
+    expect(trace_pixel(&twins, 1), 10.0, 0.004, "two-sided furnace: through a pixel");
+    world_free(&room);
+    world_free(&twins);
 }
 
 /* A row of form factors: one reflecting triangle in a closed black room that glows receives E. */
@@ -179,6 +207,7 @@ static void test_direct(void)
 int main(void)
 {
     test_furnace();
+    test_pixel();
     test_row();
     test_two_sided();
     test_direct();

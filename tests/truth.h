@@ -1,5 +1,5 @@
 /* The truth about a scene: the reflected radiosity of elements and of points, each estimated twice
- * by tests/pathtracer.h.
+ * by tools/paths.h.
  *
  * Elements are patches of a forest in which each root that reflects is divided evenly. Each holds
  * one point. What is kept is rho H, the radiosity less the emission: that is what a program has to
@@ -10,7 +10,7 @@
 #include "geom/error.h"
 #include "mpi/comm.h"
 #include "rad/id.h"
-#include "tests/pathtracer.h"
+#include "tools/paths.h"
 
 enum { TRUTH_HALVES = 2, TRUTH_MAX_LEVEL = 10 };
 

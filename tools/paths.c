@@ -5,30 +5,31 @@
  *     H(x) = integral over y of  G(x, y) V(x, y) (E(y) + rho(y) H(y)) dA(y),
  *     G(x, y) = cos cos' / (pi r^2).
  *
- * A path goes from x in a direction whose density is the cosine over pi. Where it arrives, at y,
- * the density by area is G(x, y) itself: nothing but rho(y) remains as its factor. It goes on with
- * the probability of y's largest reflectance. A miss or a back ends it; a back with a
- * twin is the front of the twin.
+ * A path goes from x in a direction whose density is the cosine over pi. Where it
+ * arrives, at y, the density by area is G(x, y) itself: nothing but rho(y) remains as its
+ * factor. It goes on with the probability of y's largest reflectance. A miss or a back
+ * ends it; a back with a twin is the front of the twin.
  *
- * Emission is found in two ways, by a point chosen on the lights (by power, evenly over the area
- * of one: a density L(y) of its emission, all bands, over all power) with a shadow segment, and by
- * the paths that meet a light. Each light path is counted with the share of the way that found it,
- * L / (L + G) and G / (L + G) (the balance heuristic of Veach and Guibas, SIGGRAPH 1995), so the
- * shares add up to 1 and nothing is counted twice. Rejected: the lights alone. G has no bound
- * where a light touches a surface, nor has the variance there; here both terms are at most the
- * light's own E.
+ * Emission is found in two ways, by a point chosen on the lights (by power, evenly over
+ * the area of one: a density L(y) of its emission, all bands, over all power) with a
+ * shadow segment, and by the paths that meet a light. Each light path is counted with the
+ * share of the way that found it, L / (L + G) and G / (L + G) (the balance heuristic of
+ * Veach and Guibas, SIGGRAPH 1995), so the shares add up to 1 and nothing is counted
+ * twice. Rejected: the lights alone. G has no bound where a light touches a surface, nor
+ * has the variance there; here both terms are at most the light's own E.
  *
- * The first seven numbers of a path (its start, its first light point, its first direction) are
- * those of a lattice that is moved by a random vector: sample i has shift + i * step, modulo 1, in
- * each dimension. Each sample alone is uniform, so the mean is exact whatever the lattice; spread
- * evenly, they take away most of the noise. The step is that of Roberts: powers of 1 / g with
- * g^8 = g + 1. The rest of the path is plain random numbers. */
-#include "tests/pathtracer.h"
+ * The first seven numbers of a path (its start, or its place in a pixel, its first light
+ * point, its first direction) are those of a lattice that is moved by a random vector:
+ * sample i has shift + i * step, modulo 1, in each dimension. Each sample alone is
+ * uniform, so the mean is exact whatever the lattice; spread evenly, they take away most
+ * of the noise. The step is that of Roberts: powers of 1 / g with g^8 = g + 1. The rest
+ * of the path is plain random numbers. */
+#include "tools/paths.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
-#include "tests/random.h"
+#include "geom/hash.h"
 
 static const double PI = 3.141592653589793238;
 
@@ -41,25 +42,18 @@ static const double STEP[DIMENSIONS] = {
     0.629511064928756, 0.5738574732213994, 0.5231240845771608};
 
 struct draw {
-    struct random random;
+    uint64_t next; /* seed of the next plain number */
     double shift[DIMENSIONS];
     int sample; /* number of the path */
     int used;   /* numbers that the path has taken */
 };
 
-/* Neighbouring seeds must not give related numbers: the finaliser of MurmurHash3. */
-static uint64_t scramble(uint64_t seed)
-{
-    seed = (seed ^ seed >> 33) * UINT64_C(0xFF51AFD7ED558CCD);
-    seed = (seed ^ seed >> 33) * UINT64_C(0xC4CEB9FE1A85EC53);
-    return seed ^ seed >> 33;
-}
-
+/* Neighbouring seeds must not give related numbers. */
 static struct draw draw_make(uint64_t seed)
 {
-    struct draw draw = {.random = random_seed(scramble(seed + 1))};
+    struct draw draw = {.next = hash_mix(hash_mix(seed))};
     for (int k = 0; k < DIMENSIONS; k++)
-        draw.shift[k] = random_unit(&draw.random);
+        draw.shift[k] = hash_unit(draw.next++);
     return draw;
 }
 
@@ -67,7 +61,7 @@ static double draw_next(struct draw *draw)
 {
     int k = draw->used++;
     if (k >= DIMENSIONS)
-        return random_unit(&draw->random);
+        return hash_unit(draw->next++);
     double moved = draw->shift[k] + draw->sample * STEP[k];
     return moved - floor(moved);
 }
@@ -76,7 +70,8 @@ static double draw_next(struct draw *draw)
 
 struct vec3 triangle_point(const struct triangle *t, struct vec3 weight)
 {
-    struct vec3 a = vec3_scale(t->corner[0], weight.x), b = vec3_scale(t->corner[1], weight.y);
+    struct vec3 a = vec3_scale(t->corner[0], weight.x);
+    struct vec3 b = vec3_scale(t->corner[1], weight.y);
     return vec3_add(vec3_add(a, b), vec3_scale(t->corner[2], weight.z));
 }
 
@@ -95,7 +90,7 @@ static struct vec3 cosine_direction(struct vec3 normal, struct draw *draw)
 {
     double height = draw_next(draw), angle = 2.0 * PI * draw_next(draw);
     double up = sqrt(1.0 - height), aside = sqrt(height);
-    struct vec3 axis = fabs(normal.x) < 0.5 ? (struct vec3){1, 0, 0} : (struct vec3){0, 1, 0};
+    struct vec3 x = {1, 0, 0}, y = {0, 1, 0}, axis = fabs(normal.x) < 0.5 ? x : y;
     struct vec3 u = vec3_cross(normal, axis);
     u = vec3_scale(u, 1.0 / vec3_length(u));
     struct vec3 v = vec3_cross(normal, u);
@@ -112,7 +107,8 @@ struct spot {
 
 struct pathtracer pathtracer_make(const struct scene *scene, const struct octree *octree)
 {
-    struct pathtracer pathtracer = {scene, octree, NULL};
+    struct pathtracer pathtracer = {.scene = scene, .octree = octree};
+    pathtracer.counts = alloc_array(1, sizeof *pathtracer.counts);
     int32_t roots = scene_root_count(scene);
     pathtracer.power = alloc_array((size_t)roots, sizeof *pathtracer.power);
     double sum = 0.0;
@@ -125,7 +121,8 @@ struct pathtracer pathtracer_make(const struct scene *scene, const struct octree
 void pathtracer_free(struct pathtracer *pathtracer)
 {
     alloc_free(pathtracer->power);
-    pathtracer->power = NULL;
+    alloc_free(pathtracer->counts);
+    *pathtracer = (struct pathtracer){.scene = NULL};
 }
 
 static double all_power(const struct pathtracer *pathtracer)
@@ -163,13 +160,14 @@ static bool is_blocked(const struct pathtracer *pathtracer, const struct spot *p
 {
     const int32_t own[2] = {scene_input_of(pathtracer->scene, p->root),
                             scene_input_of(pathtracer->scene, q->root)};
-    struct octree_counts counts = {0};
     int32_t guess = -1;
-    return octree_blocks_segment(pathtracer->octree, p->x, q->x, own, &guess, &counts);
+    return octree_blocks_segment(pathtracer->octree, p->x, q->x, own, &guess,
+                                 pathtracer->counts);
 }
 
 /* sum += throughput * factor * colour, band by band. */
-static void add_light(struct rgb *sum, struct rgb throughput, double factor, struct rgb colour)
+static void add_light(struct rgb *sum, struct rgb throughput, double factor,
+                      struct rgb colour)
 {
     for (int c = 0; c < BANDS; c++)
         sum->band[c] += throughput.band[c] * factor * colour.band[c];
@@ -197,25 +195,25 @@ static void add_met_light(const struct pathtracer *pathtracer, const struct spot
     struct rgb emission = scene_root_material(pathtracer->scene, q->root)->emission;
     if (!(rgb_sum(emission) > 0.0))
         return;
-    double g = coupling(pathtracer, p, q), density = rgb_sum(emission) / all_power(pathtracer);
+    double density = rgb_sum(emission) / all_power(pathtracer);
+    double g = coupling(pathtracer, p, q);
     if (g > 0.0)
         add_light(sum, throughput, g / (density + g), emission);
 }
 
 /* --- paths --- */
 
-/* A ray begins this far above its surface, beyond rounding, so that it does not meet it. */
+/* A ray begins this far above its surface, beyond rounding, so that it does not meet
+ * it. */
 static const double LIFT = 1024.0 * GEOM_ROUNDING;
 
 /* Where the ray arrives. False for a miss or a black back. */
-static bool follow(const struct pathtracer *pathtracer, const struct spot *p, struct vec3 direction,
-                   struct spot *q)
+static bool arrive(const struct pathtracer *pathtracer, struct vec3 origin,
+                   struct vec3 direction, bool fronts_only, struct spot *q)
 {
-    struct octree_counts counts = {0};
     struct octree_hit hit;
-    struct vec3 normal = scene_root_plane(pathtracer->scene, p->root).normal;
-    struct vec3 start = vec3_add(p->x, vec3_scale(normal, LIFT));
-    if (!octree_first_hit(pathtracer->octree, start, direction, false, &hit, &counts))
+    if (!octree_first_hit(pathtracer->octree, origin, direction, fronts_only, &hit,
+                          pathtracer->counts))
         return false;
     q->root = scene_root_on(pathtracer->scene, hit.triangle, hit.front);
     q->x = triangle_point(&pathtracer->scene->triangles[hit.triangle],
@@ -223,7 +221,17 @@ static bool follow(const struct pathtracer *pathtracer, const struct spot *p, st
     return q->root >= 0;
 }
 
-static struct rgb irradiance(const struct pathtracer *pathtracer, struct spot p, struct draw *draw)
+/* The same for a ray that leaves a surface. */
+static bool follow(const struct pathtracer *pathtracer, const struct spot *p,
+                   struct vec3 direction, struct spot *q)
+{
+    struct vec3 normal = scene_root_plane(pathtracer->scene, p->root).normal;
+    struct vec3 start = vec3_add(p->x, vec3_scale(normal, LIFT));
+    return arrive(pathtracer, start, direction, false, q);
+}
+
+static struct rgb irradiance(const struct pathtracer *pathtracer, struct spot p,
+                             struct draw *draw)
 {
     struct rgb sum = {{0.0, 0.0, 0.0}}, throughput = {{1.0, 1.0, 1.0}};
     for (;;) {
@@ -233,9 +241,10 @@ static struct rgb irradiance(const struct pathtracer *pathtracer, struct spot p,
         if (!follow(pathtracer, &p, cosine_direction(normal, draw), &q))
             return sum;
         add_met_light(pathtracer, &p, &q, throughput, &sum);
-        const double *rho = scene_root_material(pathtracer->scene, q.root)->reflectance.band;
+        const struct material *material = scene_root_material(pathtracer->scene, q.root);
+        const double *rho = material->reflectance.band;
         double survival = fmax(rho[0], fmax(rho[1], rho[2]));
-        if (random_unit(&draw->random) >= survival)
+        if (hash_unit(draw->next++) >= survival)
             return sum;
         for (int c = 0; c < BANDS; c++)
             throughput.band[c] *= rho[c] / survival;
@@ -254,6 +263,29 @@ struct rgb pathtracer_reflected(const struct pathtracer *pathtracer, int32_t roo
         draw.used = 0;
         struct spot start = {triangle_point(&t, point_on(part, &draw)), root};
         add_light(&sum, rho, 1.0 / samples, irradiance(pathtracer, start, &draw));
+    }
+    return sum;
+}
+
+struct rgb pathtracer_pixel(const struct pathtracer *pathtracer,
+                            const struct camera *camera, int x, int y, int samples,
+                            uint64_t seed)
+{
+    struct rgb sum = {{0.0, 0.0, 0.0}}, one = {{1.0, 1.0, 1.0}};
+    struct vec3 eye = scene_from_input(pathtracer->scene, camera->eye);
+    struct draw draw = draw_make(seed);
+    for (draw.sample = 0; draw.sample < samples; draw.sample++) {
+        struct spot seen;
+        draw.used = 0;
+        double at_x = x + draw_next(&draw), at_y = y + draw_next(&draw);
+        if (!arrive(pathtracer, eye, camera_ray(camera, at_x, at_y), camera->fronts_only,
+                    &seen))
+            continue;
+        const struct material *material;
+        material = scene_root_material(pathtracer->scene, seen.root);
+        add_light(&sum, one, 1.0 / samples, material->emission);
+        add_light(&sum, material->reflectance, 1.0 / samples,
+                  irradiance(pathtracer, seen, &draw));
     }
     return sum;
 }

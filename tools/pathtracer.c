@@ -1,0 +1,399 @@
+/* pathtracer: pictures and solution meshes by path tracing alone, which phr's own are
+ * compared with.
+ *
+ *   make pathtracer
+ *   build/pathtracer room.obj --view room.view --samples 256 -o truth.pfm
+ *   build/pathtracer room.obj --leaves room.ply --samples 256 -o truth.ply
+ *   imgdiff room.ply truth.ply -o error.ply
+ *
+ * Options are phr's, those that concern the scene, the camera and the files; --samples is
+ * the number of paths a pixel, or a leaf. With --leaves the answer is a mesh with the
+ * leaves of that solution, each with the mean of E + rho H over it, and the norms of
+ * the solution's error are printed, those of tests/deviation.h: of the reflected light
+ * rho H alone, since E is given and would hide any error; so black lamps are left out.
+ *
+ * Half of a leaf's paths make one estimate, half another that is independent of it. The
+ * product of the deviations from both has the square of the error as its expectation,
+ * whatever the noise; L1 and median go by the mean of both, and see no error that is
+ * much below `noise`.
+ *
+ * Seeds are the numbers of pixels and leaves, which are dealt to the ranks in turn: files
+ * are the same on any number of ranks. Each rank reads the input for itself. Times and
+ * rates are on stderr. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "io/compare.h"
+#include "io/image.h"
+#include "io/obj.h"
+#include "io/options.h"
+#include "io/output.h"
+#include "io/ply.h"
+#include "io/text.h"
+#include "io/viewpoint.h"
+#include "mpi/picture.h"
+#include "tools/paths.h"
+
+enum { SAMPLES = 64, SAMPLES_MAX = 1 << 24, HALVES = 2 };
+
+static const char USAGE[] = "usage: pathtracer SCENE [--leaves SOLUTION.ply] "
+                            "[--samples N] [options of phr] -o FILE...";
+
+struct run {
+    struct comm comm;
+    struct options options;
+    const char *leaves; /* path of a solution, or NULL */
+    int samples;        /* paths a pixel, or a leaf */
+    struct scene *scene;
+    struct octree *octree;
+    struct camera camera;
+    struct solution solution; /* that of --leaves */
+    struct pathtracer pathtracer;
+    struct error error;
+};
+
+/* --- input --- */
+
+/* Takes --leaves and --samples out of the arguments. Returns the number of those left. */
+static int take_own(struct run *run, int argc, char **argv)
+{
+    double samples = SAMPLES;
+    int kept = 1;
+    for (int i = 1; i < argc; i++) {
+        bool leaves = strcmp(argv[i], "--leaves") == 0;
+        if (!leaves && strcmp(argv[i], "--samples") != 0)
+            argv[kept++] = argv[i];
+        else if (++i >= argc)
+            error_set(&run->error, EXIT_USAGE, "%s needs a value", argv[i - 1]);
+        else if (leaves)
+            run->leaves = argv[i];
+        else if (!text_is_number(argv[i], &samples) || !(samples >= HALVES) ||
+                 samples > SAMPLES_MAX)
+            error_set(&run->error, EXIT_USAGE, "--samples: %s is not between %d and %d",
+                      argv[i], HALVES, SAMPLES_MAX);
+    }
+    run->samples = run->error.code == EXIT_DONE ? (int)samples : 0;
+    return kept;
+}
+
+static bool is_mesh(const char *path)
+{
+    return output_format_of(path) == FORMAT_PLY;
+}
+
+/* Every output has to be possible: a mesh with --leaves, which nothing else needs. */
+static bool check_outputs(struct run *run)
+{
+    bool meshes = false;
+    for (int i = 0; i < run->options.output_count; i++)
+        meshes = meshes || is_mesh(run->options.outputs[i]);
+    if (run->options.output_count == 0 || !run->options.scene)
+        return error_set(&run->error, EXIT_USAGE, "%s", USAGE);
+    if (meshes != (run->leaves != NULL))
+        return error_set(&run->error, EXIT_USAGE, "-o FILE.ply and --leaves go together");
+    return true;
+}
+
+static bool read_scene(struct run *run)
+{
+    struct obj_repairs read = {0};
+    struct scene_repairs prepared = {0};
+    const char *path = run->options.scene;
+    run->scene = ply_is_meant(path) ? ply_read(path, &run->error)
+                                    : obj_read(path, &read, &run->error);
+    if (!run->scene)
+        return false;
+    run->scene->two_sided = run->options.two_sided;
+    run->scene->two_sided_lamps = run->options.two_sided_lamps;
+    if (!scene_prepare(run->scene, &prepared, &run->error))
+        return false;
+    return scene_emitted_power(run->scene) > 0.0 ||
+           error_set(&run->error, EXIT_USAGE, "%s: nothing emits light", path);
+}
+
+/* The solution of --leaves. */
+static bool read_leaves(struct run *run)
+{
+    if (!run->leaves)
+        return true;
+    if (!solution_read(&run->solution, run->leaves, &run->error))
+        return false;
+    for (int64_t i = 0; i < run->solution.count; i++) {
+        uint32_t root = run->solution.leaves[i].id.root;
+        if (root >= (uint32_t)scene_root_count(run->scene) ||
+            !(scene_root_area(run->scene, (int32_t)root) > 0.0))
+            return error_set(&run->error, EXIT_USAGE, "%s: not a solution of %s",
+                             run->leaves, run->options.scene);
+    }
+    return true;
+}
+
+static bool read_camera(struct run *run)
+{
+    const struct options *options = &run->options;
+    int width = options->width > 0 ? options->width : CAMERA_SIZE;
+    int height = options->width > 0 ? options->height : CAMERA_SIZE;
+    if (!options->view)
+        run->camera = viewpoint_choose(run->scene, run->octree, NULL, width, height);
+    else if (!camera_read(options->view, &run->camera, &run->error))
+        return false;
+    if (options->width > 0) {
+        run->camera.width = width;
+        run->camera.height = height;
+    }
+    return true;
+}
+
+/* Collective. */
+static bool read_all(struct run *run)
+{
+    if (read_scene(run) && read_leaves(run)) {
+        run->octree = octree_create(run->scene->triangles, run->scene->planes,
+                                    run->scene->input_count);
+        read_camera(run);
+    }
+    for (int i = 0; i < run->options.output_count && run->comm.rank == 0; i++)
+        if (run->error.code == EXIT_DONE)
+            output_probe(run->options.outputs[i], &run->error);
+    return comm_agree(&run->comm, &run->error);
+}
+
+/* --- tracing --- */
+
+/* Collective. Top row first, on rank 0. */
+static float *trace_picture(const struct run *run)
+{
+    int width = run->camera.width, height = run->camera.height;
+    size_t row = (size_t)width * BANDS;
+    int rows = (height + run->comm.size - 1) / run->comm.size;
+    float *own = alloc_array((size_t)rows * row, sizeof *own), *at = own;
+    for (int y = run->comm.rank; y < height; y += run->comm.size)
+        for (int x = 0; x < width; x++) {
+            uint64_t seed = (uint64_t)y * IMAGE_SIZE_MAX + (uint64_t)x;
+            struct rgb b = pathtracer_pixel(&run->pathtracer, &run->camera, x, y,
+                                            run->samples, seed);
+            for (int c = 0; c < BANDS; c++)
+                *at++ = (float)b.band[c];
+        }
+    float *picture = picture_gather(&run->comm, own, row, height);
+    alloc_free(own);
+    return picture;
+}
+
+/* Barycentric coordinates of the corners of a patch in its root. */
+static struct triangle part_of(struct patch_id id)
+{
+    struct triangle part = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (int step = 0; step < id_level(id); step++)
+        part = triangle_child(&part, id_step(id, step));
+    return part;
+}
+
+/* Collective. rho H of the halves of each leaf, HALVES * BANDS floats, on rank 0. */
+static float *trace_leaves(const struct run *run)
+{
+    int64_t count = run->solution.count, size = run->comm.size;
+    size_t row = HALVES * BANDS;
+    float *own = alloc_array((size_t)(count / size + 1) * row, sizeof *own), *at = own;
+    for (int64_t i = run->comm.rank; i < count; i += size) {
+        struct patch_id id = run->solution.leaves[i].id;
+        struct triangle part = part_of(id);
+        uint64_t seed = ((uint64_t)id.root << 32 | id.hierarchy) << 1;
+        for (uint64_t half = 0; half < HALVES; half++) {
+            struct rgb h = pathtracer_reflected(&run->pathtracer, (int32_t)id.root, &part,
+                                                run->samples / HALVES, seed + half);
+            for (int c = 0; c < BANDS; c++)
+                *at++ = (float)h.band[c];
+        }
+    }
+    float *leaves = picture_gather(&run->comm, own, row, comm_count(&run->comm, count));
+    alloc_free(own);
+    return leaves;
+}
+
+/* --- norms --- */
+
+/* A leaf's |B - T|, summed over the bands, and its area. */
+struct off {
+    double error, area;
+};
+
+struct norms {
+    double area, squares, light_squares, light, errors, noise; /* sums by area */
+    struct off *offs; /* [count] */
+    int64_t count;
+};
+
+static int compare_offs(const void *a, const void *b)
+{
+    const struct off *p = a, *q = b;
+    return (p->error > q->error) - (p->error < q->error);
+}
+
+static void add_leaf(struct norms *norms, const struct solution_leaf *leaf,
+                     const struct material *material, const float *half)
+{
+    struct off off = {0.0, leaf->area};
+    for (int c = 0; c < BANDS; c++) {
+        double b = leaf->radiosity.band[c] - material->emission.band[c];
+        double r = (double)half[c], s = (double)half[c + BANDS];
+        norms->squares += leaf->area * (b - r) * (b - s);
+        norms->light_squares += leaf->area * r * s;
+        norms->light += leaf->area * 0.5 * (r + s);
+        norms->noise += leaf->area * 0.25 * (r - s) * (r - s);
+        off.error += fabs(b - 0.5 * (r + s));
+    }
+    norms->area += off.area;
+    norms->errors += off.area * off.error;
+    norms->offs[norms->count++] = off;
+}
+
+/* Median by area of the leaves' errors. */
+static double median_of(struct norms *norms)
+{
+    double below = 0.0;
+    int64_t i = 0;
+    qsort(norms->offs, (size_t)norms->count, sizeof *norms->offs, compare_offs);
+    while (i < norms->count - 1 && below + norms->offs[i].area < 0.5 * norms->area)
+        below += norms->offs[i++].area;
+    return norms->count > 0 ? norms->offs[i].error : 0.0;
+}
+
+static double over(double a, double b)
+{
+    return b > 0.0 ? a / b : 0.0;
+}
+
+/* Norms over all leaves that reflect. */
+static void print_norms(const struct run *run, const float *halves)
+{
+    const struct solution *solution = &run->solution;
+    struct norms norms = {.count = 0};
+    norms.offs = alloc_array((size_t)solution->count, sizeof *norms.offs);
+    for (int64_t i = 0; i < solution->count; i++) {
+        const struct solution_leaf *leaf = &solution->leaves[i];
+        const struct material *material =
+            scene_root_material(run->scene, (int32_t)leaf->id.root);
+        if (rgb_sum(material->reflectance) > 0.0)
+            add_leaf(&norms, leaf, material, halves + i * HALVES * BANDS);
+    }
+    printf("leaves  %lld, %lld of them reflect\n", (long long)solution->count,
+           (long long)norms.count);
+    printf("rms     %.6f\n", sqrt(over(fmax(norms.squares, 0.0), norms.light_squares)));
+    printf("l1      %.6f\n", over(norms.errors, norms.light));
+    printf("median  %.6f\n", over(median_of(&norms) * norms.area, norms.light));
+    printf("noise   %.6f\n", sqrt(over(norms.noise, norms.light_squares)));
+    alloc_free(norms.offs);
+}
+
+/* --- output --- */
+
+/* The leaves with E + rho H in place of their radiosities. */
+static void write_leaves(struct run *run, const float *halves, const char *path)
+{
+    size_t count = (size_t)run->solution.count;
+    struct rgb *map = alloc_array(count, sizeof *map);
+    float *colours = alloc_array(count, BANDS * sizeof *colours);
+    for (size_t i = 0; i < count; i++) {
+        int32_t root = (int32_t)run->solution.leaves[i].id.root;
+        const float *half = halves + i * HALVES * BANDS;
+        map[i] = scene_root_material(run->scene, root)->emission;
+        for (int c = 0; c < BANDS; c++) {
+            map[i].band[c] += 0.5 * ((double)half[c] + (double)half[c + BANDS]);
+            colours[i * BANDS + (size_t)c] = (float)map[i].band[c];
+        }
+    }
+    double exposure = run->options.exposure;
+    if (!(exposure > 0.0))
+        exposure = tone_automatic(colours, (int64_t)count);
+    solution_write(&run->solution, map, 1.0 / exposure, path, &run->error);
+    alloc_free(colours);
+    alloc_free(map);
+}
+
+static void write_picture(struct run *run, float *picture, const char *path)
+{
+    struct image image = {run->camera.width, run->camera.height, picture};
+    double exposure = run->options.exposure;
+    if (!(exposure > 0.0))
+        exposure = tone_automatic(picture, (int64_t)image.width * image.height);
+    struct tone tone = tone_make(exposure);
+    if (output_format_of(path) == FORMAT_PFM)
+        pfm_write(&image, path, &run->error);
+    else
+        ppm_write(&image, &tone, path, &run->error);
+}
+
+/* Collective. Rays of all ranks, and the seconds of the slowest. */
+static void report(const struct run *run, int64_t samples, double seconds)
+{
+    int64_t rays = run->pathtracer.counts->rays;
+    comm_add(&run->comm, &rays, 1);
+    seconds = comm_largest(&run->comm, seconds);
+    if (run->comm.rank == 0 && !run->options.quiet)
+        fprintf(stderr, "pathtracer: %lld paths, %lld rays, %.2f s, %.3f million rays/s\n",
+                (long long)samples, (long long)rays, seconds,
+                1e-6 * (double)rays / seconds);
+}
+
+/* Collective. Traces once for all pictures, once for all meshes, and writes on rank 0. */
+static void trace_and_write(struct run *run)
+{
+    double start = comm_seconds();
+    int64_t pixels = 0, leaves = run->solution.count;
+    float *picture = NULL, *halves = run->leaves ? trace_leaves(run) : NULL;
+    for (int i = 0; i < run->options.output_count; i++)
+        if (!is_mesh(run->options.outputs[i]))
+            pixels = (int64_t)run->camera.width * run->camera.height;
+    if (pixels > 0)
+        picture = trace_picture(run);
+    report(run, (pixels + leaves) * run->samples, comm_seconds() - start);
+    for (int i = 0; i < run->options.output_count && run->comm.rank == 0; i++) {
+        const char *path = run->options.outputs[i];
+        if (is_mesh(path))
+            write_leaves(run, halves, path);
+        else
+            write_picture(run, picture, path);
+    }
+    if (halves && run->comm.rank == 0 && !run->options.quiet)
+        print_norms(run, halves);
+    alloc_free(halves);
+    alloc_free(picture);
+}
+
+static void release(struct run *run)
+{
+    pathtracer_free(&run->pathtracer);
+    solution_free(&run->solution);
+    octree_destroy(run->octree);
+    scene_destroy(run->scene);
+    options_free(&run->options);
+}
+
+int main(int argc, char **argv)
+{
+    struct run run = {.leaves = NULL};
+    comm_start(&run.comm, &argc, &argv);
+    argc = take_own(&run, argc, argv);
+    bool parsed = run.error.code == EXIT_DONE &&
+                  options_parse(&run.options, argc, argv, &run.error) &&
+                  check_outputs(&run);
+    if (parsed && read_all(&run)) {
+        run.pathtracer = pathtracer_make(run.scene, run.octree);
+        trace_and_write(&run);
+    }
+    comm_agree(&run.comm, &run.error);
+    if (run.error.code != EXIT_DONE && run.comm.rank == 0)
+        fprintf(stderr, "pathtracer: %s\n", run.error.text);
+    release(&run);
+    comm_stop(&run.comm);
+    if (alloc_balance() != 0) {
+        fprintf(stderr, "pathtracer: BUG: %lld blocks of memory were not freed\n",
+                (long long)alloc_balance());
+        return EXIT_FAILED;
+    }
+    return run.error.code;
+}
