@@ -4,7 +4,8 @@
 #   make demo            the Cornell box, 2 ranks    make check      all tests
 #   make room            build/room, a scene generator
 #   make pathtracer      build/pathtracer, what phr's pictures and meshes are compared with
-#   make bench           $(BUILD)/rays, a bench of visibility, beside Embree where it is installed;
+#   make bench           $(BUILD)/rays and $(BUILD)/hits, benches of visibility and of first hits, beside
+#                        Embree where it is installed;
 #                        $(BUILD)/parsing, a bench of reading OBJ
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
@@ -135,11 +136,11 @@ build/room: scenes/room.c Makefile
 # Set EMBREE= to leave Embree out where its header is found.
 EMBREE ?= $(wildcard /usr/include/embree3/rtcore.h /usr/local/include/embree3/rtcore.h)
 
-bench: $(BUILD)/rays $(BUILD)/parsing build/room
+bench: $(BUILD)/rays $(BUILD)/hits $(BUILD)/parsing build/room
 
-$(BUILD)/rays: tests/bench/rays.c $(OBJECTS) Makefile
+$(BUILD)/rays $(BUILD)/hits: $(BUILD)/%: tests/bench/%.c tests/bench/embree.h $(OBJECTS) Makefile
 	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) $(CFLAGS) -o $@ \
-	    tests/bench/rays.c $(OBJECTS) $(if $(EMBREE),-lembree3) -lm
+	    $< $(OBJECTS) $(if $(EMBREE),-lembree3) -lm
 
 $(BUILD)/parsing: $(BUILD)/tests/bench/parsing.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm

@@ -17,12 +17,13 @@
  * the answers are those of geom/triangle.c to the bit.
  *
  * What a ray costs is waiting: for the operations of a node, each for the one before, and
- * for what the processor has guessed wrongly. Rejected therefore: a shaft made anew at
- * each hit, with all triangles in double (5,080 instructions a ray of random direction
- * from the surfaces of a room of 6,348 triangles; these are 3,270, and two thirds to
- * three quarters of the time); eight children pushed without branches (a chain of eight
- * additions); an entry of the stack for each child; sixteen rays in turn, a node of each
- * at a time (wrong guesses of one hold up all); fetching ahead of time. */
+ * for what the processor has guessed wrongly. Rejected therefore (tests/bench/hits.c, a
+ * room of 6,348 triangles): a shaft made anew at each hit, with all triangles in double
+ * (5,080 instructions a ray; these are 3,270, and two thirds to three quarters of the
+ * time); eight children pushed without branches (a chain of eight additions); an entry of
+ * the stack for each child; sixteen rays in turn, a node of each at a time (wrong guesses
+ * of one hold up all; it gains only on stray rays in scenes far beyond the caches);
+ * fetching ahead of time. */
 #include <string.h>
 
 #include "octree/tree.h"

@@ -16,7 +16,7 @@
 struct pathtracer {
     const struct scene *scene;    /* borrowed, prepared, something in it emits */
     const struct octree *octree;  /* borrowed, that of the scene */
-    double *power;                /* [roots] of roots 0 .. r, W in square scene units; owned */
+    double *power;                /* [roots] of roots 0 .. r, W in square scene units */
     struct octree_counts *counts; /* rays so far; owned */
 };
 

@@ -334,7 +334,7 @@ static void report(const struct run *run, int64_t samples, double seconds)
     comm_add(&run->comm, &rays, 1);
     seconds = comm_largest(&run->comm, seconds);
     if (run->comm.rank == 0 && !run->options.quiet)
-        fprintf(stderr, "pathtracer: %lld paths, %lld rays, %.2f s, %.3f million rays/s\n",
+        fprintf(stderr, "pathtracer: %lld paths, %lld rays, %.2f s, %.3f million/s\n",
                 (long long)samples, (long long)rays, seconds,
                 1e-6 * (double)rays / seconds);
 }

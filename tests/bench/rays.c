@@ -16,16 +16,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#ifdef WITH_EMBREE
-#include <embree3/rtcore.h>
-#endif
-
 #include "io/obj.h"
 #include "mpi/comm.h"
 #include "octree/octree.h"
 #include "rad/formfactor.h"
 
 #include "geom/alloc.h"
+#include "tests/bench/embree.h"
 #include "tests/random.h"
 
 enum { TURNS = 5, TRIES = 100000 };
@@ -147,30 +144,6 @@ static void run_octree(const struct octree *octree, struct load *load, struct fi
 
 /* Embree knows no "own" triangles. */
 static const float CUT = 1e-4f;
-
-static RTCScene embree_create(RTCDevice device, const struct scene *scene)
-{
-    RTCScene embree = rtcNewScene(device);
-    RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    size_t count = (size_t)scene->input_count;
-    float *vertices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                              3 * sizeof(float), 3 * count);
-    unsigned *indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                3 * sizeof(unsigned), count);
-    for (size_t i = 0; i < 3 * count; i++) {
-        struct vec3 x = scene->triangles[i / 3].corner[i % 3];
-        vertices[3 * i] = (float)x.x;
-        vertices[3 * i + 1] = (float)x.y;
-        vertices[3 * i + 2] = (float)x.z;
-        indices[i] = (unsigned)i;
-    }
-    rtcCommitGeometry(mesh);
-    rtcAttachGeometry(embree, mesh);
-    rtcReleaseGeometry(mesh);
-    rtcSetSceneBuildQuality(embree, RTC_BUILD_QUALITY_HIGH);
-    rtcCommitScene(embree);
-    return embree;
-}
 
 static void set_rays(const struct bundle *bundle, struct RTCRay16 *rays, int *valid)
 {

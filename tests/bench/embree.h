@@ -1,0 +1,40 @@
+/* Embree 3 beside the octree, where it is compiled in: -DWITH_EMBREE. */
+#ifndef TESTS_BENCH_EMBREE_H
+#define TESTS_BENCH_EMBREE_H
+
+#ifdef WITH_EMBREE
+
+#include <embree3/rtcore.h>
+
+#include "geom/scene.h"
+
+/* The triangles of a prepared scene, numbered as they are there. */
+static inline RTCScene embree_create(RTCDevice device, const struct scene *scene)
+{
+    RTCScene embree = rtcNewScene(device);
+    RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    size_t count = (size_t)scene->input_count;
+    float *vertices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0,
+                                              RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                              3 * count);
+    unsigned *indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0,
+                                                RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
+                                                count);
+    for (size_t i = 0; i < 3 * count; i++) {
+        struct vec3 x = scene->triangles[i / 3].corner[i % 3];
+        vertices[3 * i] = (float)x.x;
+        vertices[3 * i + 1] = (float)x.y;
+        vertices[3 * i + 2] = (float)x.z;
+        indices[i] = (unsigned)i;
+    }
+    rtcCommitGeometry(mesh);
+    rtcAttachGeometry(embree, mesh);
+    rtcReleaseGeometry(mesh);
+    rtcSetSceneBuildQuality(embree, RTC_BUILD_QUALITY_HIGH);
+    rtcCommitScene(embree);
+    return embree;
+}
+
+#endif
+
+#endif
