@@ -1,0 +1,117 @@
+/* Sobol's sequence with Owen's scrambling, and maps of the square.
+ *
+ * Sobol's points are built bit by bit. Owen's scrambling permutes the halves of the unit
+ * interval, the halves of each half and so on, each time by a coin that depends on all
+ * bits before; a multiplication carries upwards only, so on reversed bits it does that
+ * (Laine and Karras, "Stratified sampling for stochastic transparency", 2011). The same
+ * permutation of the indices makes sequences of different seeds independent.
+ *
+ * Squares go to triangles by (1 - sqrt u, v), and to the disk by concentric squares
+ * (Shirley and Chiu, 1997), which keep near points near; a point of the disk is the foot
+ * of a direction that is distributed as its cosine (Malley). */
+#include "rad/beyond/sequence.h"
+
+#include <math.h>
+
+#include "geom/hash.h"
+
+static uint32_t reverse_bits(uint32_t x)
+{
+    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    x = (x >> 8 & 0x00ff00ffu) | (x & 0x00ff00ffu) << 8;
+    return x >> 16 | x << 16;
+}
+
+static uint32_t scramble(uint32_t x, uint32_t seed)
+{
+    x = reverse_bits(x);
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= seed >> 16 | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return reverse_bits(x);
+}
+
+struct sequence sequence_start(uint64_t seed)
+{
+    struct sequence sequence;
+    for (int k = 0; k < 1 + SEQUENCE_DIMENSIONS; k++)
+        sequence.scramble[k] = (uint32_t)hash_mix(seed + (uint64_t)k);
+    return sequence;
+}
+
+/* Bit b of the index changes these bits of a coordinate: Sobol's direction numbers of the
+ * first four dimensions, the upper 16 bits. */
+static const uint16_t SOBOL[SEQUENCE_DIMENSIONS][16] = {
+    {0x8000, 0x4000, 0x2000, 0x1000, 0x0800, 0x0400, 0x0200, 0x0100, 0x0080, 0x0040,
+     0x0020, 0x0010, 0x0008, 0x0004, 0x0002, 0x0001},
+    {0x8000, 0xc000, 0xa000, 0xf000, 0x8800, 0xcc00, 0xaa00, 0xff00, 0x8080, 0xc0c0,
+     0xa0a0, 0xf0f0, 0x8888, 0xcccc, 0xaaaa, 0xffff},
+    {0x8000, 0xc000, 0x6000, 0x9000, 0xe800, 0x5c00, 0x8e00, 0xc500, 0x6880, 0x9cc0,
+     0xee60, 0x5590, 0x8068, 0xc09c, 0x60ee, 0x9055},
+    {0x8000, 0xc000, 0x2000, 0x5000, 0xf800, 0x7400, 0xa200, 0x9300, 0xd880, 0x2540,
+     0x59e0, 0xe6d0, 0x7808, 0xb40c, 0x8202, 0xc305}};
+
+void sequence_point(const struct sequence *sequence, uint32_t index,
+                    double u[SEQUENCE_DIMENSIONS])
+{
+    uint32_t place = scramble(index, sequence->scramble[0]);
+    for (int d = 0; d < SEQUENCE_DIMENSIONS; d++) {
+        uint32_t bits = 0;
+        for (int b = 0; b < 16; b++)
+            bits ^= SOBOL[d][b] & (0u - (place >> b & 1u));
+        u[d] = 0x1p-32 * (double)scramble(bits << 16, sequence->scramble[1 + d]);
+    }
+}
+
+/* --- from the square --- */
+
+struct vec3 triangle_of_square(const struct triangle *t, double u, double v)
+{
+    double root = sqrt(u), c = root * v, b = root - c;
+    return vec3_add(vec3_scale(t->corner[0], 1.0 - root),
+                    vec3_add(vec3_scale(t->corner[1], b), vec3_scale(t->corner[2], c)));
+}
+
+/* Sine and cosine of an angle of at most pi / 4, within 4e-9: 64 times finer than what
+ * 2^16 points in the square tell apart. */
+static void turn(double angle, double *sine, double *cosine)
+{
+    double a2 = angle * angle;
+    *sine = angle * (1.0 - a2 / 6.0 * (1.0 - a2 / 20.0 * (1.0 - a2 / 42.0 *
+                                                          (1.0 - a2 / 72.0))));
+    *cosine = sqrt(1.0 - *sine * *sine);
+}
+
+struct vec3 cosine_direction(struct vec3 normal, struct vec3 along, double u, double v)
+{
+    static const double QUARTER = 0.78539816339744830962; /* pi / 4 */
+    double a = 2.0 * u - 1.0, b = 2.0 * v - 1.0, x = 0.0, y = 0.0, sine, cosine;
+    if (a * a > b * b) {
+        turn(QUARTER * (b / a), &sine, &cosine);
+        x = a * cosine;
+        y = a * sine;
+    } else if (b != 0.0) {
+        turn(QUARTER * (a / b), &sine, &cosine);
+        x = b * sine;
+        y = b * cosine;
+    }
+    double up = sqrt(real_max(0.0, 1.0 - x * x - y * y));
+    struct vec3 across = vec3_cross(normal, along);
+    return vec3_add(vec3_scale(normal, up),
+                    vec3_add(vec3_scale(along, x), vec3_scale(across, y)));
+}
+
+struct vec3 direction_along(struct vec3 normal)
+{
+    struct vec3 axis = {0.0, 0.0, 0.0};
+    if (fabs(normal.x) < 0.6)
+        axis.x = 1.0;
+    else
+        axis.y = 1.0;
+    struct vec3 along = vec3_cross(normal, axis);
+    return vec3_scale(along, 1.0 / vec3_length(along));
+}

@@ -1,0 +1,35 @@
+/* Points of a low-discrepancy sequence, and what they stand for on triangles and
+ * hemispheres. */
+#ifndef RAD_BEYOND_SEQUENCE_H
+#define RAD_BEYOND_SEQUENCE_H
+
+#include <stdint.h>
+
+#include "geom/triangle.h"
+
+/* A sequence of points in the unit cube of four dimensions: the first 2^k of them are
+ * spread evenly over it (Sobol), and those of different seeds have nothing to do with
+ * each other (Owen's scrambling). */
+enum { SEQUENCE_DIMENSIONS = 4 };
+
+struct sequence {
+    uint32_t scramble[1 + SEQUENCE_DIMENSIONS];
+};
+
+struct sequence sequence_start(uint64_t seed);
+
+/* The point of this index, below 65,536, each coordinate in 0 <= u < 1. */
+void sequence_point(const struct sequence *sequence, uint32_t index,
+                    double u[SEQUENCE_DIMENSIONS]);
+
+/* The point of the triangle that u and v in [0, 1) stand for: equal areas for equal areas. */
+struct vec3 triangle_of_square(const struct triangle *t, double u, double v);
+
+/* The direction that u and v in [0, 1) stand for, distributed as the cosine to `normal`.
+ * `along` is at right angles to it; both are of length 1. */
+struct vec3 cosine_direction(struct vec3 normal, struct vec3 along, double u, double v);
+
+/* A direction of length 1 at right angles to one of length 1. */
+struct vec3 direction_along(struct vec3 normal);
+
+#endif
