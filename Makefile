@@ -52,7 +52,7 @@ endif
 
 GEOM = alloc contour elementary error gauss hull lambert polygon scene stop triangle wall
 OCTREE = build hit octree
-RAD = beyond/cluster beyond/cluster_light beyond/node beyond/node_exchange beyond/node_link \
+RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/node beyond/node_exchange beyond/node_link \
       beyond/sequence closure conjugate flux formfactor id link \
       linking method oracle patch pushpull sample snapshot treecode viewfactor
 MPI = accuracy assign balance broadcast closing comm funnel gather keep ledger linking memory migrate \
@@ -65,7 +65,7 @@ MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last four are run with several ranks.
-TESTS = alloc elementary sequence id triangle lambert hull scene polygon contour wall octree bundles flux patch \
+TESTS = alloc elementary bicgstab sequence id triangle lambert hull scene polygon contour wall octree bundles flux patch \
         compact formfactor link linking cluster node oracle pushpull closure treecode plan balance assign text obj ply output tone \
         image camera viewpoint shading stop options progress paths norms cie furnace stability store exchange conjugate exact converge leaks
 # Programs that compare phr with what is true.

@@ -1,0 +1,127 @@
+/* BiCGSTAB (van der Vorst, 1992). With r = b - A x and a fixed r0, each step is
+ *
+ *     v = A p     s = r - a v,  a = (r0, r) / (r0, v)
+ *     t = A s     r' = s - o t,  o = (t, s) / (t, t)     x += a p + o s
+ *     p' = r' + (r0, r') / (r0, r) (a / o) (p - o v).
+ *
+ * A band that is solved, or where a denominator is 0, stands still; if all do so with a
+ * residual left, the method begins afresh from where it is. */
+#include "rad/beyond/bicgstab.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+
+struct vectors {
+    struct rgb *r, *r0, *p, *v, *t;
+    const double *weights;
+    int64_t count;
+    double rho[BANDS]; /* (r0, r) */
+};
+
+static struct rgb product(const struct vectors *z, const struct rgb *x, const struct rgb *y)
+{
+    struct rgb sum = {{0.0, 0.0, 0.0}};
+    for (int64_t i = 0; i < z->count; i++)
+        for (int c = 0; c < BANDS; c++)
+            sum.band[c] += z->weights[i] * x[i].band[c] * y[i].band[c];
+    return sum;
+}
+
+static double size_of(const struct vectors *z, const struct rgb *x)
+{
+    double sum = 0.0;
+    for (int64_t i = 0; i < z->count; i++)
+        for (int c = 0; c < BANDS; c++)
+            sum += z->weights[i] * fabs(x[i].band[c]);
+    return sum;
+}
+
+/* y += factor x, band by band. */
+static void add(struct rgb *y, const struct rgb *x, struct rgb factor, int64_t count)
+{
+    for (int64_t i = 0; i < count; i++)
+        for (int c = 0; c < BANDS; c++)
+            y[i].band[c] += factor.band[c] * x[i].band[c];
+}
+
+/* a / b, 0 where that is not a number to go on with. */
+static double quotient(double a, double b)
+{
+    double q = a / b;
+    return b != 0.0 && fabs(q) < 1e30 ? q : 0.0;
+}
+
+static void begin(struct vectors *z, linear_map *map, void *context, const struct rgb *b,
+                  const struct rgb *x)
+{
+    map(context, x, z->r);
+    for (int64_t i = 0; i < z->count; i++)
+        for (int c = 0; c < BANDS; c++)
+            z->r[i].band[c] = b[i].band[c] - z->r[i].band[c];
+    memcpy(z->r0, z->r, (size_t)z->count * sizeof *z->r);
+    memcpy(z->p, z->r, (size_t)z->count * sizeof *z->r);
+    struct rgb rho = product(z, z->r0, z->r);
+    memcpy(z->rho, rho.band, sizeof z->rho);
+}
+
+/* False if nothing has moved. */
+static bool step(struct vectors *z, linear_map *map, void *context, struct rgb *x)
+{
+    struct rgb a, minus, o, turn, back;
+    map(context, z->p, z->v);
+    struct rgb under = product(z, z->r0, z->v);
+    for (int c = 0; c < BANDS; c++) {
+        a.band[c] = quotient(z->rho[c], under.band[c]);
+        minus.band[c] = -a.band[c];
+    }
+    add(z->r, z->v, minus, z->count); /* s */
+    map(context, z->r, z->t);
+    struct rgb along = product(z, z->t, z->r), length = product(z, z->t, z->t);
+    for (int c = 0; c < BANDS; c++) {
+        o.band[c] = quotient(along.band[c], length.band[c]);
+        minus.band[c] = -o.band[c];
+    }
+    add(x, z->p, a, z->count);
+    add(x, z->r, o, z->count);
+    add(z->r, z->t, minus, z->count);
+    struct rgb rho = product(z, z->r0, z->r);
+    bool moved = false;
+    for (int c = 0; c < BANDS; c++) {
+        turn.band[c] = quotient(rho.band[c], z->rho[c]) * quotient(a.band[c], o.band[c]);
+        back.band[c] = -o.band[c];
+        z->rho[c] = rho.band[c];
+        moved = moved || a.band[c] != 0.0 || o.band[c] != 0.0;
+    }
+    add(z->p, z->v, back, z->count);
+    for (int64_t i = 0; i < z->count; i++)
+        for (int c = 0; c < BANDS; c++)
+            z->p[i].band[c] = z->r[i].band[c] + turn.band[c] * z->p[i].band[c];
+    return moved;
+}
+
+struct bicgstab bicgstab_solve(linear_map *map, void *context, const struct rgb *b,
+                               const double *weights, int64_t count, double goal,
+                               int most, struct rgb *x)
+{
+    struct rgb *room = alloc_array(5 * (size_t)count, sizeof *room);
+    struct vectors z = {.r = room, .r0 = room + count, .p = room + 2 * count,
+                        .v = room + 3 * count, .t = room + 4 * count,
+                        .weights = weights, .count = count};
+    struct bicgstab done = {0, 0.0};
+    bool fresh = true, moved = true;
+    for (;; done.steps++) {
+        if (fresh)
+            begin(&z, map, context, b, x);
+        double size = size_of(&z, x);
+        done.residual = size > 0.0 ? size_of(&z, z.r) / size : 0.0;
+        if (done.residual <= goal || done.steps == most || (fresh && !moved))
+            break;
+        fresh = !step(&z, map, context, x);
+        moved = !fresh;
+    }
+    alloc_free(room);
+    return done;
+}

@@ -1,0 +1,23 @@
+/* Systems of linear equations that are not symmetric, for the three bands side by side. */
+#ifndef RAD_BEYOND_BICGSTAB_H
+#define RAD_BEYOND_BICGSTAB_H
+
+#include <stdint.h>
+
+#include "geom/vec.h"
+
+/* y = A x, vectors as below. */
+typedef void linear_map(void *context, const struct rgb *x, struct rgb *y);
+
+struct bicgstab {
+    int steps;       /* done; each takes two products with A */
+    double residual; /* sum of weight |b - A x| over that of weight |x|, bands together */
+};
+
+/* Improves x until the residual is at most `goal`, or after `most` steps. Vectors are
+ * [count]; `weights` [count], above 0, are those of their scalar product. */
+struct bicgstab bicgstab_solve(linear_map *map, void *context, const struct rgb *b,
+                               const double *weights, int64_t count, double goal,
+                               int most, struct rgb *x);
+
+#endif

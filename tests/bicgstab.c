@@ -1,0 +1,118 @@
+/* Tests of rad/beyond/bicgstab.h: systems whose solution is known. */
+#include "rad/beyond/bicgstab.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "tests/random.h"
+#include "tests/tap.h"
+
+enum { SIZE = 60 };
+
+/* x - scale[band] M x; rows of M sum to 1 at most. */
+struct system {
+    double m[SIZE][SIZE];
+    double scale[BANDS];
+    int products;
+};
+
+static void apply(void *context, const struct rgb *x, struct rgb *y)
+{
+    struct system *s = context;
+    s->products++;
+    for (int i = 0; i < SIZE; i++)
+        for (int c = 0; c < BANDS; c++) {
+            double sum = 0.0;
+            for (int j = 0; j < SIZE; j++)
+                sum += s->m[i][j] * x[j].band[c];
+            y[i].band[c] = x[i].band[c] - s->scale[c] * sum;
+        }
+}
+
+/* Rows of a closed scene: they sum to 1, and are not symmetric. */
+static void fill(struct system *s, struct random *random)
+{
+    for (int i = 0; i < SIZE; i++) {
+        double sum = 0.0;
+        for (int j = 0; j < SIZE; j++) {
+            s->m[i][j] = j == i ? 0.0 : pow(random_unit(random), 6.0);
+            sum += s->m[i][j];
+        }
+        for (int j = 0; j < SIZE; j++)
+            s->m[i][j] /= sum;
+    }
+}
+
+static double worst_of(const struct rgb *a, const struct rgb *b)
+{
+    double worst = 0.0;
+    for (int i = 0; i < SIZE; i++)
+        for (int c = 0; c < BANDS; c++)
+            worst = fmax(worst, fabs(a[i].band[c] / b[i].band[c] - 1.0));
+    return worst;
+}
+
+static void test_known(struct random *random, struct system *s, double bright)
+{
+    struct rgb truth[SIZE], b[SIZE], x[SIZE];
+    double weights[SIZE];
+    for (int i = 0; i < SIZE; i++) {
+        weights[i] = 0.01 + random_unit(random);
+        for (int c = 0; c < BANDS; c++) {
+            truth[i].band[c] = 1.0 + random_unit(random);
+            x[i].band[c] = 1.0;
+        }
+    }
+    s->scale[0] = bright;
+    s->scale[1] = 0.5;
+    s->scale[2] = 0.0; /* solved after half a step */
+    apply(s, truth, b);
+    s->products = 0;
+    struct bicgstab done = bicgstab_solve(apply, s, b, weights, SIZE, 1e-13, 200, x);
+    /* The residual is amplified by 1 / (1 - bright) at most. */
+    tap_ok(worst_of(x, truth) <= 1e-12 / (1.0 - bright) && done.residual <= 1e-13,
+           "bright %g: %d steps, off by %.1e", bright, done.steps, worst_of(x, truth));
+    tap_ok(s->products <= 2 * done.steps + 2, "two products a step: %d", s->products);
+    double before = worst_of(x, truth);
+    done = bicgstab_solve(apply, s, b, weights, SIZE, 1e-12, 200, x);
+    tap_ok(done.steps == 0 && worst_of(x, truth) == before, "what is solved stays as it is");
+    memset(b, 0, sizeof b);
+    memset(x, 0, sizeof x);
+    done = bicgstab_solve(apply, s, b, weights, SIZE, 0.0, 200, x);
+    tap_ok(done.steps == 0 && done.residual == 0.0, "no light, no step");
+}
+
+/* A product that is 0 has no solution: the method ends and makes no numbers that are none. */
+static void zero(void *context, const struct rgb *x, struct rgb *y)
+{
+    (void)context;
+    (void)x;
+    memset(y, 0, SIZE * sizeof *y);
+}
+
+static void test_hopeless(void)
+{
+    struct rgb b[SIZE], x[SIZE];
+    double weights[SIZE];
+    for (int i = 0; i < SIZE; i++) {
+        b[i] = x[i] = (struct rgb){{1.0, 1.0, 1.0}};
+        weights[i] = 1.0;
+    }
+    struct bicgstab done = bicgstab_solve(zero, NULL, b, weights, SIZE, 1e-9, 50, x);
+    bool finite = true;
+    for (int i = 0; i < SIZE; i++)
+        finite = finite && isfinite(x[i].band[0]);
+    tap_ok(done.residual > 0.5 && finite && done.steps <= 50,
+           "without a solution it ends, after %d steps, and says so", done.steps);
+}
+
+int main(void)
+{
+    static struct system system;
+    struct random random = {.state = 5};
+    fill(&system, &random);
+    test_known(&random, &system, 0.5);
+    test_known(&random, &system, 0.999);
+    test_hopeless();
+    return tap_done();
+}
