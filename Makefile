@@ -52,10 +52,10 @@ endif
 
 GEOM = alloc contour elementary error gauss hull lambert polygon scene stop triangle wall
 OCTREE = build hit octree
-RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/node beyond/node_exchange beyond/node_link \
-      beyond/sequence closure conjugate flux formfactor id link \
+RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/lamps beyond/node \
+      beyond/node_exchange beyond/node_link beyond/sequence closure conjugate flux formfactor id link \
       linking method oracle patch pushpull sample snapshot treecode viewfactor
-MPI = accuracy assign balance broadcast closing comm funnel gather keep ledger linking memory migrate \
+MPI = accuracy assign balance broadcast closing comm final_gather funnel gather keep ledger linking memory migrate \
       node pairs picture plan refinement routes scatter signals solve solver vote
 IO = binary camera cases compare image library machine mesh mtl obj options output palette ply plyfile \
      progress render shading stats store surface table text tone validate viewpoint
@@ -66,7 +66,7 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary bicgstab sequence id triangle lambert hull scene polygon contour wall octree bundles flux patch \
-        compact formfactor link linking cluster node oracle pushpull closure treecode plan balance assign text obj ply output tone \
+        compact formfactor link linking cluster node oracle pushpull closure final_gather treecode plan balance assign text obj ply output tone \
         image camera viewpoint shading stop options progress paths norms cie furnace stability store exchange conjugate exact converge leaks
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct tracing replay

@@ -353,7 +353,7 @@ static void say_forecast(struct run *run)
     if (run->options.verbose)
         say(run, "%lld roots and some %lld clusters: %.1f MB on each rank before there are links",
             (long long)roots, (long long)clusters,
-            1e-6 * (double)memory_needed(1, 0, roots, clusters));
+            1e-6 * (double)memory_needed(1, 0, 0, roots, clusters));
 }
 
 /* Collective. Steps 2 and 3 of the paper's Sec. 3.2, or what a file holds in their place. */
@@ -458,6 +458,9 @@ static bool compute_light(struct run *run)
     if (run->vote.diverged)
         return error_set(&run->error, EXIT_FAILED,
                          "the solution diverges: surfaces reflect more light than they receive");
+    if (!run->solver->stop && run->options.criterion.final_gather > 0 && run->solver->tree &&
+        !solver_final_gather(run->solver, &run->vote)) /* 9: what leaves really see */
+        return goes_on_from_phase(run);
     return !run->solver->stop || stopped(run, run->solver->stop);
 }
 

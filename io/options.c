@@ -44,6 +44,7 @@ static const struct option OPTIONS[] = {
     {"--solver", KIND_CHOICE, offsetof(struct options, criterion.solver), 0, 0, "jacobi|cg"},
     {"--balance", KIND_CHOICE, offsetof(struct options, criterion.balance), 0, 0,
      "greedy|even"},
+    {"--final-gather", KIND_INTEGER, offsetof(struct options, criterion.final_gather), 0, 16384, NULL},
     {"--paper", KIND_PAPER, 0, 0, 0, NULL},
     {"--alpha", KIND_REAL, offsetof(struct options, criterion.alpha), 0, 1, NULL},
     {"--tolerance", KIND_REAL, offsetof(struct options, criterion.tolerance), 0, 1, NULL},
@@ -301,8 +302,21 @@ static bool check_table(const struct options *options, struct error *error)
     return true;
 }
 
-/* Where --accuracy begins, and what --epsilon is without it. */
-static const double COARSE = 1e-3, EPSILON = 1e-5;
+/* Where --accuracy begins, and what --epsilon is without it; what --final-gather is. */
+static const double COARSE = 1e-3, EPSILON = 1e-4;
+enum { GATHER_RAYS = 256 };
+
+/* Rows of the final gather need the tree, to find lamps in. */
+static bool check_gather(struct options *options, struct error *error)
+{
+    struct criterion *criterion = &options->criterion;
+    bool tree = criterion->linking == LINKING_TREE;
+    if (criterion->final_gather > 0 && !tree)
+        return error_set(error, EXIT_USAGE, "--final-gather goes with --linking tree");
+    if (criterion->final_gather < 0) /* not given */
+        criterion->final_gather = tree ? GATHER_RAYS : 0;
+    return true;
+}
 
 bool options_parse(struct options *options, int argc, char **argv, struct error *error)
 {
@@ -311,7 +325,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         .criterion = {.oracle = ORACLE_ERROR, .linking = LINKING_TREE, .form_factor = FORM_FACTOR_POLYGON,
                       .closure = CLOSURE_CAP, .solver = SOLVER_CG, .balance = BALANCE_EVEN,
                       .epsilon = -1.0, .min_area = 1e-7, .max_level = 10, .alpha = 0.5, .tolerance = 1e-5,
-                      .max_iterations = 1000},
+                      .max_iterations = 1000, .final_gather = -1},
     };
     options->outputs = alloc_array((size_t)argc, sizeof *options->outputs);
     for (int i = 1; i < argc; i++) {
@@ -340,6 +354,8 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
     options->two_sided = options->two_sided || options->two_sided_lamps;
     if (options->criterion.epsilon < 0.0) /* not given */
         options->criterion.epsilon = options->criterion.accuracy > 0.0 ? COARSE : EPSILON;
+    if (!check_gather(options, error))
+        return false;
     if (!options->scene && !options->help && !options->version && !options->validate)
         return error_set(error, EXIT_USAGE, "no scene given; see --help");
     if (options->scene && !(check_table(options, error) && check_restart(options, error) &&
@@ -416,12 +432,12 @@ void options_print_help(FILE *file)
           "  --view FILE      eye x y z, at x y z, up x y z, fov deg, size w h (chosen)\n"
           "  --size WxH       pixels (512x512)       --samples N   N x N rays a pixel (3)\n"
           "  --exposure X     factor (automatic)     --flat        no interpolation\n"
-          "  --epsilon E      error of a link (1e-5) --accuracy A  lower it down to this\n"
+          "  --epsilon E      error of a link (1e-4) --accuracy A  lower it down to this\n"
           "  --max-level N    of subdivision (10)    --min-area A  of a patch (1e-7)\n"
           "  --tolerance T    of the solution (1e-5) --max-iterations N   at most (1000)\n"
           "  --oracle error|bf   what splits a link  --form-factor polygon|disk\n"
-          "  --linking tree|pairs  where links begin --solver cg|jacobi\n"
-          "  --closure none|cap|rows|symmetric       mend row sums of form factors (cap)\n"
+          "  --linking tree|pairs  where links begin --final-gather N  rays a leaf (256)\n"
+          "  --closure none|cap|rows|symmetric       of row sums (cap) --solver cg|jacobi\n"
           "  --paper          the paper's of these   --alpha A     inherited cost (0.5)\n"
           "  --two-sided      backs reflect, too     --two-sided-lamps  those of lamps\n"
           "  --save-links F   those of all pairs     --load-links F  in their place\n"

@@ -9,7 +9,7 @@
 #include "geom/error.h"
 #include "rad/method.h"
 
-#define PHR_VERSION "0.2"
+#define PHR_VERSION "0.3"
 
 enum output_format { FORMAT_PPM, FORMAT_PFM, FORMAT_PLY };
 

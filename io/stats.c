@@ -10,16 +10,19 @@
 static const char *const PHASE_NAMES[PHASE_COUNT] = {
     "total", "read", "linking", "refinement", "idle", "migration",
     "gather", "push_pull", "scatter", "solve", "render", "write", "octree", "spaces",
-    "tree", "prepare", "looks", "sums", "routes", "row_sums", "shading", "viewpoint"};
+    "tree", "prepare", "looks", "sums", "routes", "final_gather", "row_sums", "shading", "viewpoint"};
 
 static const char *const WORK_NAMES[WORK_COUNT] = {"linking", "looks", "splitting", "transfer",
-                                                   "own", "patches"};
+                                                   "own", "patches", "final_gather"};
 
 void stats_print(const struct stats *stats, FILE *file)
 {
     fprintf(file, "triangles   %" PRId64 " (%" PRId64 " roots)\n", stats->triangles, stats->roots);
     fprintf(file, "patches     %" PRId64 " (%" PRId64 " leaves)\n", stats->patches, stats->leaves);
     fprintf(file, "links       %" PRId64 " (%" PRId64 " rays)\n", stats->links, stats->rays);
+    if (stats->gathered.rays + stats->gathered.exact > 0)
+        fprintf(file, "gathered    %" PRId64 " rays, %" PRId64 " to lamps, %" PRId64 " exact rows\n",
+                stats->gathered.rays, stats->gathered.segments, stats->gathered.exact);
     fprintf(file, "iterations  %" PRId64 " (%s)\n", stats->iterations,
             stats->converged ? "converged" : "not converged");
     fprintf(file, "power       %.6g W emitted, %.6g W absorbed, %.6g W escaped\n",
@@ -71,6 +74,11 @@ static void write_counts(FILE *file, const struct stats *stats)
             "},\n",
             stats->links_open, stats->links_seen, stats->links_partly, stats->links_unseen,
             stats->walled_off, stats->rays_spared);
+    fprintf(file,
+            "  \"gathered\": {\"rays\": %" PRId64 ", \"segments\": %" PRId64 ", \"exact\": %" PRId64
+            ", \"terms\": %" PRId64 "},\n",
+            stats->gathered.rays, stats->gathered.segments, stats->gathered.exact,
+            stats->gathered.terms);
     fprintf(file, "  \"closure\": {\"min\": %.17g, \"mean\": %.17g, \"max\": %.17g, \"rms\": %.17g},\n",
             stats->closure_min, stats->closure_mean, stats->closure_max, stats->closure_rms);
 }

@@ -203,7 +203,8 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->passes = solver->pass;
     stats->iterations = solver->iteration;
     stats->clusters = solver->tree ? solver->tree->count : 0;
-    stats->counted_bytes = memory_needed(1, stats->links, solver->method.forest->count,
+    stats->counted_bytes = memory_needed(1, solver->method.criterion.final_gather,
+                                         stats->links, solver->method.forest->count,
                                          stats->clusters);
     stats->memory_limited = solver->memory.reached > 0;
     stats->converged = vote->converged && !stats->memory_limited;
@@ -213,6 +214,7 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->absorbed_power = unit * vote->absorbed;
     stats->escaped_power = unit * vote->escaped;
     stats->checksum = forest_checksum(solver->method.forest);
+    stats->gathered = solver->gathered;
     ledger_share(&solver->ledger, solver->comm);
     stats->levels = solver->ledger.levels;
     stats->level_count = solver->ledger.level_count;

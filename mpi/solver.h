@@ -30,6 +30,7 @@ struct memory {
     int64_t limit;   /* bytes, 0: none */
     int64_t reached; /* the limit that has ended linking or refinement, 0: none has */
     int copies;      /* of patches and clusters, that count */
+    int rays;        /* of the final gather */
 };
 
 /* What a rank says about an iteration; 136 bytes, no padding. */
@@ -82,6 +83,7 @@ struct solver {
     double bound_residual, bound_image; /* |z| and |K p| are nowhere larger */
     double least_bend;          /* least <K z, z> / <z, z> seen */
     struct accuracy accuracy;
+    struct gathered gathered;
     int64_t split_here;       /* links that this rank split in this iteration */
     double seconds[PHASE_COUNT];
     int64_t bytes_migration, bytes_gather, bytes_scatter; /* that this rank sent to others, or (scatter)
@@ -151,6 +153,11 @@ struct vote solver_vote(struct solver *solver);
 
 /* This rank's ballot, when its roots are pushed and pulled: the end of solver_push_pull(). */
 void solver_cast_ballot(struct solver *solver);
+
+/* Step 9, phr's own, after the last vote: the final gather. What all leaves see is traced, and light
+ * solved for by that; `vote` says of the light from then on. The same on all ranks. False
+ * if a signal has ended it. Pre: there are clusters. */
+bool solver_final_gather(struct solver *solver, struct vote *vote);
 
 /* Enters the work of the iteration into the ledger. */
 void solver_record_iteration(struct solver *solver);

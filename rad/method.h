@@ -34,6 +34,7 @@ struct criterion {
     double alpha;           /* share of its parent's cost in the cost of a link, 0..1 */
     double tolerance;       /* bound on the remaining iteration error, relative to all light */
     int max_iterations;     /* at least 1 */
+    int final_gather;       /* rays from a leaf of middling size; 0: none */
 };
 
 enum { TESTS_PER_FORM_FACTOR = 8 }; /* a form factor takes about as long as so many tests */

@@ -16,6 +16,7 @@ enum phase {
     PHASE_LOOKS,     /* part of REFINEMENT: which links are to be split? */
     PHASE_SUMS,      /* sums through clusters and over all patches, on all ranks */
     PHASE_ROUTES,    /* the routes and what belongs to each patch, on all ranks */
+    PHASE_FINAL_GATHER, /* rows of the final gather, and their solution */
     PHASE_ROW_SUMS,  /* the row sums that a run reports */
     PHASE_SHADING,   /* part of RENDER: the blend of all leaves, on all ranks */
     PHASE_VIEWPOINT, /* part of RENDER: a place for the camera, on all ranks */
@@ -46,6 +47,7 @@ enum work {
     WORK_TRANSFER,  /* links over which light was transferred */
     WORK_OWN,       /* own patches in push-pull */
     WORK_PATCHES,   /* patches copied: out to be sent, own ones too; in when they have come */
+    WORK_FINAL_GATHER, /* rows of the final gather: tests */
     WORK_COUNT
 };
 
@@ -55,6 +57,13 @@ struct work_sums {
     int64_t all;     /* sum over ranks */
     int64_t slowest; /* sum over phases of the rank that had most */
     int64_t bytes;   /* sum over phases of the bytes that the rank sent that sent most */
+};
+
+/* The final gather of all ranks. */
+struct gathered {
+    int64_t rays, segments; /* fired; asked whether they are blocked */
+    int64_t exact;          /* rows made without rays */
+    int64_t terms;          /* kept of all rows */
 };
 
 struct stats {
@@ -73,6 +82,7 @@ struct stats {
     int64_t links_partly;  /* some, */
     int64_t links_unseen;  /* or none; these four are all links */
     int64_t walled_off;    /* links that ended since they were proved to be blocked */
+    struct gathered gathered;
     int64_t rays_spared;   /* of 16 for each link ever made, those that were not fired */
     double closure_min, closure_mean, closure_max, closure_rms;    /* row sums, rms of R - 1 */
     struct spread seconds[PHASE_COUNT];

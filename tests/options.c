@@ -268,6 +268,7 @@ static const struct number NUMBERS[] = {
     {"--every", FIELD(every), true, true, "1", "1000000000", "0", "1e10"},
     {"--max-iterations", FIELD(criterion.max_iterations), true, true, "1", "1000000000", "0",
      "1e300"},
+    {"--final-gather", FIELD(criterion.final_gather), true, true, "0", "16384", "-1", "16385"},
 };
 enum { NUMBER_COUNT = sizeof NUMBERS / sizeof NUMBERS[0] };
 
@@ -406,6 +407,7 @@ static void test_restart(void)
            "--load-links");
     options_free(&options);
     check_refused("a.obj --save-links l", "--save-links goes with --linking pairs (--paper)");
+    check_refused("a.obj --paper --final-gather 64", "--final-gather goes with --linking tree");
     check_refused("a.obj --paper --linking tree --load-links l",
                   "--load-links goes with --linking pairs (--paper)");
     check_refused("a.obj --every 2", "--every needs --checkpoint");
@@ -428,12 +430,12 @@ static void test_settings(void)
     parse("a.obj", &options);
     tap_ok(is_same(options_link_settings(&options),
                    "--two-sided off\n--two-sided-lamps off\n--oracle error\n"
-                   "--form-factor polygon\n--epsilon 1.0000000000000001e-05\n"),
+                   "--form-factor polygon\n--epsilon 0.0001\n"),
            "what links are bound to");
     tap_ok(is_same(options_run_settings(&options),
                    "--two-sided off\n--two-sided-lamps off\n--oracle error\n"
                    "--linking tree\n--form-factor polygon\n--closure cap\n--solver cg\n"
-                   "--epsilon 1.0000000000000001e-05\n--accuracy 0\n--max-level 10\n"
+                   "--epsilon 0.0001\n--accuracy 0\n--max-level 10\n"
                    "--min-area 9.9999999999999995e-08\n"),
            "what a run is bound to");
     options_free(&options);

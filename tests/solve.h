@@ -63,6 +63,8 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
         s.vote = solve_links(s.solver);
     } while (!(s.vote.converged && solver_is_accurate(s.solver)) && !s.vote.diverged &&
              s.solver->iteration < criterion.max_iterations);
+    if (criterion.final_gather > 0 && s.solver->tree && !s.vote.diverged)
+        solver_final_gather(s.solver, &s.vote);
     s.seconds = comm_seconds() - start;
     solver_measure_closure(s.solver, &s.stats);
     solver_report(s.solver, &s.vote, &s.stats);

@@ -1,0 +1,78 @@
+/* The final gather: what each leaf really sees, from the finished solution.
+ *
+ * (The paper's gather, step 5, brings flux of proxies home; this one is phr's own.) The
+ * irradiance of a leaf is H = source + sum of weight B over its terms, band by band: the
+ * row of the leaf. Rows are made once, by rays; then they can be applied to any
+ * radiosities. A row depends on the scene, on the trees and on the radiosities of the
+ * solution, and on nothing else: it is the same on any rank. */
+#ifndef RAD_BEYOND_FINAL_GATHER_H
+#define RAD_BEYOND_FINAL_GATHER_H
+
+#include "rad/beyond/lamps.h"
+
+/* What a leaf gets of the radiosity of a patch, 1. Local numbers of patches differ from
+ * rank to rank; terms have the place of the patch in forest_order(), and so has all that
+ * has a value for each patch here. */
+struct gather_term {
+    int32_t place;
+    float weight[BANDS];
+};
+
+struct gather_row {
+    int32_t leaf;
+    int64_t end;       /* of its terms, which begin where those of the row before end */
+    struct rgb source; /* irradiance that comes from lamps, W/m^2 */
+    float bare;        /* share of the leaf that no other thing lies or stands on, 1 */
+};
+
+/* Work of this rank. */
+struct gather_counts {
+    int64_t rays, segments; /* fired for first hits; asked whether they are blocked */
+    int64_t escaped;        /* rays out of the scene or to backs, from leaves that see any
+                               front, and exact rows that do not sum to 1 */
+    int64_t exact;          /* rows made without rays */
+};
+
+/* A root and the roots that it faces, if it is proved that nothing stands between them. */
+struct gather_view {
+    int32_t root;      /* -1: none yet */
+    bool open;
+    int32_t *faced;    /* [count], roots */
+    int64_t count, capacity;
+    struct octree_counts counts; /* of all proofs: each rank that has a leaf of the root
+                                    makes them again */
+};
+
+struct final_gather {
+    struct method *method; /* borrowed; rays are counted there */
+    int rays;              /* from a leaf of middling size */
+    double leaf_area;      /* of such a leaf, square scene units */
+    double mean;           /* radiosity, over bands and all surface, W/m^2 */
+    struct lamps lamps;
+    struct lamp_groups groups; /* of the leaf at hand, */
+    struct gather_view view;   /* and of its root */
+    int32_t *order; /* [forest->count] patches as in forest_order(), */
+    int32_t *place; /* and the place of each */
+    struct gather_row *rows;   /* [count] */
+    struct gather_term *terms; /* [term_count] */
+    int64_t count, term_count, row_capacity, term_capacity;
+    struct gather_counts counts;
+};
+
+/* Borrows the method, which has clusters and a solution. `rays`: a power of two. */
+struct final_gather final_gather_create(struct method *method, int rays);
+void final_gather_free(struct final_gather *gather);
+
+/* Makes the row of a leaf, as the last one. */
+void final_gather_add(struct final_gather *gather, int32_t leaf);
+
+/* The radiosities of the leaves by place, made those of all patches: inner ones get the
+ * mean of their leaves. */
+void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity);
+
+/* H of a row, W/m^2, for the radiosities of all patches by place, with what lamps bring
+ * besides, or without. */
+struct rgb final_gather_irradiance(const struct final_gather *gather, int64_t row,
+                                   const struct rgb *radiosity, bool lamps);
+
+#endif

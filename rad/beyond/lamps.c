@@ -1,0 +1,212 @@
+/* Lamps as a leaf sees them.
+ *
+ * From the top of the tree downwards, a cluster is one group as soon as it is small for
+ * its distance; a lamp by itself is a group whose direct light is known from exact factors.
+ * So a hall with ten thousand lamps has some dozens of groups for each leaf.
+ *
+ * The mean factor is taken at three points with a rule that is exact for polynomials of
+ * the second degree. Where the other triangle is nearer than the size of this one, the
+ * four quarters of this one are taken, and theirs, three times at most: then the points
+ * are a sixteenth of its size apart. */
+#include "rad/beyond/lamps.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "geom/lambert.h"
+
+/* A cluster is a group if its radius is at most this part of its distance. */
+static const double SMALL = 0.25;
+
+/* Least cosine that a group of lamps is counted with: where a part of it may be above the
+ * horizon, it has to be chosen now and then. */
+static const double LEAST_COSINE = 0.1;
+
+enum { QUARTERINGS = 3 };
+
+static const double PI = 3.14159265358979323846;
+
+/* --- factors --- */
+
+static double factor_of_points(const struct triangle *from, struct vec3 normal,
+                               const struct triangle *to)
+{
+    const struct vec3 *c = from->corner;
+    struct vec3 sum = vec3_scale(vec3_add(vec3_add(c[0], c[1]), c[2]), 1.0 / 6.0);
+    double factor = 0.0;
+    for (int k = 0; k < 3; k++) {
+        struct vec3 x = vec3_add(sum, vec3_scale(c[k], 0.5));
+        factor += point_triangle_factor(x, normal, to) / 3.0;
+    }
+    return factor;
+}
+
+/* From a point to the box around a triangle, squared. */
+static double distance2_to_box(struct vec3 x, const struct triangle *t)
+{
+    const struct vec3 *c = t->corner;
+    struct vec3 below = vec3_sub(vec3_least(c[0], vec3_least(c[1], c[2])), x);
+    struct vec3 above = vec3_sub(x, vec3_most(c[0], vec3_most(c[1], c[2])));
+    struct vec3 none = {0.0, 0.0, 0.0};
+    struct vec3 apart = vec3_most(none, vec3_most(below, above));
+    return vec3_dot(apart, apart);
+}
+
+static double factor_of_quarters(const struct triangle *from, struct vec3 normal,
+                                 const struct triangle *to, int quarterings)
+{
+    double size = triangle_radius(from);
+    if (quarterings == 0 || distance2_to_box(triangle_centroid(from), to) > 4.0 * size * size)
+        return factor_of_points(from, normal, to);
+    double factor = 0.0;
+    for (int k = 0; k < 4; k++) {
+        struct triangle child = triangle_child(from, k);
+        factor += 0.25 * factor_of_quarters(&child, normal, to, quarterings - 1);
+    }
+    return factor;
+}
+
+double mean_factor(const struct triangle *from, struct vec3 normal,
+                   const struct triangle *to)
+{
+    return factor_of_quarters(from, normal, to, QUARTERINGS);
+}
+
+/* --- lamps --- */
+
+static double emission_of(const struct lamps *lamps, int32_t root)
+{
+    return rgb_sum(scene_root_material(lamps->method->scene, root)->emission);
+}
+
+bool root_is_lamp(const struct lamps *lamps, int32_t root)
+{
+    return emission_of(lamps, root) > lamps->least;
+}
+
+struct lamps lamps_create(const struct method *method, double least)
+{
+    const struct cluster_tree *tree = method->clusters->tree;
+    struct lamps lamps = {method, least, NULL};
+    lamps.before = alloc_array((size_t)tree->root_count + 1, sizeof *lamps.before);
+    for (int32_t place = 0; place < tree->root_count; place++) {
+        int32_t root = tree->roots[place];
+        double watts = scene_root_area(method->scene, root) * emission_of(&lamps, root);
+        lamps.before[place + 1] =
+            lamps.before[place] + (root_is_lamp(&lamps, root) ? watts : 0.0);
+    }
+    return lamps;
+}
+
+void lamps_free(struct lamps *lamps)
+{
+    alloc_free(lamps->before);
+}
+
+/* --- groups --- */
+
+/* The roots of a node: places in the tree's order. */
+static void places_of(const struct cluster_tree *tree, int32_t node, int32_t *first,
+                      int32_t *end)
+{
+    const struct cluster *cluster = node_is_cluster(node) ? &tree->clusters[~node] : NULL;
+    *first = cluster ? cluster->first : tree->place[node];
+    *end = cluster ? cluster->end : *first + 1;
+}
+
+static double watts_of(const struct lamps *lamps, int32_t node)
+{
+    int32_t first, end;
+    places_of(lamps->method->clusters->tree, node, &first, &end);
+    return lamps->before[end] - lamps->before[first];
+}
+
+static void add_group(struct lamp_groups *groups, struct lamp_group group)
+{
+    groups->items = alloc_reserve(groups->items, &groups->capacity, groups->count + 1,
+                                  sizeof *groups->items);
+    groups->items[groups->count++] = group;
+    groups->direct += group.direct;
+    groups->around += group.around;
+}
+
+static void add_cluster(const struct facet *leaf, const struct cluster *cluster,
+                        struct vec3 apart, double watts, struct lamp_groups *groups)
+{
+    struct lamp_group group = {.node = NODE_NONE};
+    double distance2 = vec3_dot(apart, apart);
+    double cosine = vec3_dot(apart, leaf->plane.normal) / sqrt(distance2);
+    double radius = 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low));
+    bool above = cosine * sqrt(distance2) + radius + triangle_radius(&leaf->triangle) > 0.0;
+    group.around = watts / (PI * distance2);
+    group.direct = above ? fmax(cosine, LEAST_COSINE) * group.around : 0.0;
+    add_group(groups, group);
+}
+
+static void add_root(const struct lamps *lamps, const struct facet *leaf, int32_t root,
+                     struct lamp_groups *groups)
+{
+    struct facet lamp = facet_make(lamps->method->forest, root);
+    struct vec3 apart = vec3_sub(triangle_centroid(&lamp.triangle),
+                                 triangle_centroid(&leaf->triangle));
+    double emission = emission_of(lamps, root);
+    double distance2 = fmax(vec3_dot(apart, apart), lamp.area);
+    struct lamp_group group = {.node = root};
+    group.around = emission * fmin(1.0, lamp.area / (PI * distance2));
+    if (facets_face(leaf, &lamp))
+        group.direct =
+            emission * mean_factor(&leaf->triangle, leaf->plane.normal, &lamp.triangle);
+    add_group(groups, group);
+}
+
+static void add_node(const struct lamps *lamps, const struct facet *leaf, int32_t node,
+                     struct lamp_groups *groups)
+{
+    double watts = watts_of(lamps, node);
+    if (!(watts > 0.0))
+        return;
+    if (!node_is_cluster(node)) {
+        add_root(lamps, leaf, node, groups);
+        return;
+    }
+    const struct cluster *cluster = &lamps->method->clusters->tree->clusters[~node];
+    struct vec3 apart = vec3_sub(vec3_middle(cluster->low, cluster->high),
+                                 triangle_centroid(&leaf->triangle));
+    double radius = 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low));
+    double distance = vec3_length(apart) - radius - triangle_radius(&leaf->triangle);
+    if (radius <= SMALL * distance) {
+        add_cluster(leaf, cluster, apart, watts, groups);
+        groups->items[groups->count - 1].node = node;
+        return;
+    }
+    for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++)
+        add_node(lamps, leaf, cluster->child[k], groups);
+}
+
+void lamps_group(const struct lamps *lamps, const struct facet *leaf,
+                 struct lamp_groups *groups)
+{
+    groups->count = 0;
+    groups->direct = groups->around = 0.0;
+    add_node(lamps, leaf, NODE_TOP, groups);
+}
+
+struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u)
+{
+    const struct cluster_tree *tree = lamps->method->clusters->tree;
+    int32_t first, end;
+    places_of(tree, node, &first, &end);
+    double all = lamps->before[end] - lamps->before[first];
+    double at = lamps->before[first] + u * all;
+    while (end - first > 1) { /* before[first] <= at, and at < before[end] or all but so */
+        int32_t middle = first + (end - first) / 2;
+        if (lamps->before[middle] <= at)
+            first = middle;
+        else
+            end = middle;
+    }
+    while (lamps->before[first + 1] == lamps->before[first]) /* no lamp: by rounding */
+        first--;
+    double own = lamps->before[first + 1] - lamps->before[first];
+    return (struct lamp){tree->roots[first], all / own};
+}

@@ -1,0 +1,54 @@
+/* Lamps: roots so much brighter than the rest that rays in all directions would find them
+ * too seldom. A final gather aims at them. */
+#ifndef RAD_BEYOND_LAMPS_H
+#define RAD_BEYOND_LAMPS_H
+
+#include "rad/beyond/node.h"
+
+struct lamps {
+    const struct method *method; /* borrowed */
+    double least;   /* emission of a lamp, summed over bands, W/m^2: above this */
+    double *before; /* [tree->root_count + 1] W that lamps emit before a place in the
+                       tree's order, over all bands and square scene units */
+};
+
+/* A node whose lamps count as one, as seen from a leaf. */
+struct lamp_group {
+    int32_t node;
+    double direct; /* irradiance of the leaf, about, over all bands and unoccluded, W/m^2 */
+    double around; /* the same for a surface beside the leaf that faces the group */
+};
+
+struct lamp_groups {
+    struct lamp_group *items; /* [count] */
+    int64_t count, capacity;
+    double direct, around;    /* sums */
+};
+
+/* A lamp that was chosen. */
+struct lamp {
+    int32_t root;
+    double share; /* W that all lamps of its group emit, for each that it does, 1 */
+};
+
+/* Borrows the method, which has clusters. A lamp emits more than `least`, over all bands. */
+struct lamps lamps_create(const struct method *method, double least);
+void lamps_free(struct lamps *lamps);
+
+bool root_is_lamp(const struct lamps *lamps, int32_t root);
+
+/* The groups of lamps that a leaf tells apart, in the tree's order: each is a root, or a
+ * cluster that is small for its distance. */
+void lamps_group(const struct lamps *lamps, const struct facet *leaf,
+                 struct lamp_groups *groups);
+
+/* A lamp of the group, by the power that it emits; `u` in [0, 1) chooses. */
+struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u);
+
+/* The factor (1) from a triangle with this unit normal to another, unoccluded: the mean
+ * over points of it, which are the more the nearer the other is. Source: Lambert, exact
+ * at each point. */
+double mean_factor(const struct triangle *from, struct vec3 normal,
+                   const struct triangle *to);
+
+#endif

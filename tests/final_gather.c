@@ -1,0 +1,232 @@
+/* Tests of rad/beyond/final_gather.h and rad/beyond/lamps.h: what a leaf receives, by exact factors
+ * and by rays, against closed forms. */
+#include "rad/beyond/final_gather.h"
+
+#include "geom/contour.h"
+#include "tests/defaults.h"
+#include "tests/tap.h"
+
+static const struct comm *world_comm;
+
+/* A scene that is solved over its links alone, and a gather over all its leaves. */
+struct trial {
+    struct solution s;
+    struct final_gather gather;
+    struct rgb *radiosity; /* by place */
+};
+
+static struct trial gather_scene(struct painted *painted, const char *words, int rays)
+{
+    char all[200];
+    snprintf(all, sizeof all, "%s --final-gather 0", words);
+    struct trial g = {.s = solve_scene(world_comm, scene_of_painted(painted), all)};
+    struct forest *forest = g.s.solver->method.forest;
+    g.gather = final_gather_create(&g.s.solver->method, rays);
+    g.radiosity = alloc_array((size_t)forest->count, sizeof *g.radiosity);
+    for (int64_t i = 0; i < forest->count; i++) {
+        int32_t p = g.gather.order[i];
+        g.radiosity[i] = forest->patches[p].radiosity;
+        if (patch_is_leaf(&forest->patches[p]) && forest_area(forest, p) > 0.0)
+            final_gather_add(&g.gather, p);
+    }
+    return g;
+}
+
+static void trial_free(struct trial *g)
+{
+    final_gather_free(&g->gather);
+    alloc_free(g->radiosity);
+    solution_free(&g->s);
+}
+
+static double irradiance(const struct trial *g, int64_t row)
+{
+    return final_gather_irradiance(&g->gather, row, g->radiosity, true).band[0];
+}
+
+/* The mean of H over the leaves of these roots, W/m^2. */
+static double mean_of_roots(const struct trial *g, uint32_t first, uint32_t count)
+{
+    const struct forest *forest = g->s.solver->method.forest;
+    double sum = 0.0, area = 0.0;
+    for (int64_t i = 0; i < g->gather.count; i++) {
+        int32_t leaf = g->gather.rows[i].leaf;
+        if (forest->patches[leaf].id.root - first >= count)
+            continue;
+        sum += forest_area(forest, leaf) * irradiance(g, i);
+        area += forest_area(forest, leaf);
+    }
+    return sum / area;
+}
+
+/* --- factors --- */
+
+/* Against the contour integral over both triangles: three points, or as many on quarters of
+ * quarters where that is near, have to be right within 0.2 %. */
+static void test_mean_factor(void)
+{
+    static const double heights[] = {0.0, 0.1, 1.0, 3.0};
+    const struct triangle floor = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    struct plane plane = triangle_plane(&floor);
+    for (int k = 0; k < 4; k++) {
+        double h = heights[k];
+        struct triangle wall = {{{0, 0, h}, {0, 1, h}, {0, 0, 1 + h}}};
+        double exact = triangle_exchange(&floor, &wall) / triangle_area(&floor);
+        double off = mean_factor(&floor, plane.normal, &wall) / exact - 1.0;
+        tap_ok(fabs(off) <= 2e-3, "a wall %g above the floor: factor %.5f, off by %.1e", h,
+               exact, off);
+    }
+}
+
+/* --- rows --- */
+
+/* Everything shines as it absorbs, so B = H = 1 wherever one looks, behind objects and in
+ * gaps; in single precision. */
+static void test_furnished(void)
+{
+    struct painted painted = {0};
+    soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 2, true);
+    paint(&painted, 0.7, 0.3);
+    soup_add_box(&painted.soup, point(0.2, 0.2, 0), point(0.5, 0.6, 0.4), 1, false);
+    paint(&painted, 0.2, 0.8);
+    soup_add_box(&painted.soup, point(0.6, 0.2, 0.001), point(0.9, 0.6, 0.2), 1, false);
+    paint(&painted, 0.0, 1.0);
+    struct trial g = gather_scene(&painted, "--epsilon 1e-3", 64);
+    double worst = 0.0;
+    for (int64_t k = 0; k < g.s.solver->method.forest->count; k++)
+        g.radiosity[k] = (struct rgb){{1.0, 1.0, 1.0}};
+    for (int64_t i = 0; i < g.gather.count; i++) {
+        uint32_t root = g.s.solver->method.forest->patches[g.gather.rows[i].leaf].id.root;
+        bool below = root == 56 || root == 57; /* outside of the room */
+        if (g.gather.rows[i].bare == 1.0f && !below)
+            worst = fmax(worst, fabs(irradiance(&g, i) - 1.0));
+    }
+    tap_ok(worst <= 2e-6 && g.gather.counts.escaped == 0,
+           "rows of %lld leaves sum to 1, within %.1e", (long long)g.gather.count, worst);
+    tap_ok(g.gather.counts.rays > 64 * 60, "by %lld rays", (long long)g.gather.counts.rays);
+    trial_free(&g);
+}
+
+/* Nothing stands between two plates: no rays, and the exact factor, .199825 for unit
+ * squares at distance 1 (Howell C-11). Three points on each of eight
+ * triangles: 0.05 %. */
+static void test_open(void)
+{
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 2);
+    paint(&painted, 0.5, 1.0);
+    soup_add_quad(&painted.soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 2);
+    paint(&painted, 0.0, 0.0);
+    struct trial g = gather_scene(&painted, "", 64);
+    double h = mean_of_roots(&g, 8, 8), exact = 0.199824895698;
+    tap_ok(g.gather.counts.rays == 0 && g.gather.counts.exact == g.gather.count,
+           "open plates have exact rows only");
+    tap_ok(fabs(h / exact - 1.0) <= 5e-4, "H %.6f, exact %.6f", h, exact);
+    trial_free(&g);
+}
+
+/* --- lamps --- */
+
+/* A floor below a small lamp, and a black box beside them so that rays are needed. `hidden`: a
+ * screen hides half of the lamp from all of the floor, more or less. The lamp's direct
+ * light is all there is: the floor is black. */
+static double lit_floor(int lamps, bool screened, double *exact, int64_t *groups)
+{
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 4);
+    paint(&painted, 0.0, 0.0);
+    soup_add_quad(&painted.soup, point(0.45, 0.45, 1), point(0, 0.1, 0), point(0.1, 0, 0),
+                  lamps);
+    paint(&painted, 0.0, 1.0);
+    soup_add_box(&painted.soup, point(0, 0, 0.1), point(0.05, 0.05, 0.2), 1, false);
+    if (screened) /* right below the lamp, upwards and downwards */
+        soup_add_box(&painted.soup, point(0.44, 0.44, 0.998), point(0.5, 0.56, 0.999), 1, false);
+    paint(&painted, 0.0, 0.0);
+    struct trial g = gather_scene(&painted, "", 64);
+    struct scene *scene = g.s.scene;
+    *exact = 0.0;
+    for (int32_t i = 0; i < 32; i++)
+        for (int32_t k = 32; k < 32 + 2 * lamps * lamps; k++)
+            *exact += triangle_exchange(&scene->triangles[i], &scene->triangles[k]);
+    double area = 0.0;
+    for (int32_t i = 0; i < 32; i++)
+        area += scene_root_area(scene, i);
+    *exact /= area;
+    *groups = g.gather.groups.count;
+    double mean = mean_of_roots(&g, 0, 32);
+    trial_free(&g);
+    return mean;
+}
+
+/* Where nothing hides the lamp its light is that of exact factors, but for what the
+ * corner of the box takes (its share of the hemisphere below the lamp, .2 % at most).
+ * Lamps of a group are chosen by chance: 1 %. */
+static void test_lamps(void)
+{
+    double exact;
+    int64_t few, many;
+    double h = lit_floor(1, false, &exact, &few);
+    tap_ok(h <= 1.001 * exact && h >= 0.997 * exact, "a lamp of 2 triangles: %.6f, exact %.6f", h,
+           exact);
+    h = lit_floor(12, false, &exact, &many);
+    tap_ok(fabs(h / exact - 1.0) <= 0.01, "of 288 triangles: %.6f, exact %.6f", h, exact);
+    tap_ok(many < 100, "which are %lld groups", (long long)many);
+    h = lit_floor(1, true, &exact, &few);
+    tap_ok(fabs(h / exact - 0.5) <= 0.02, "half hidden: %.3f of its light", h / exact);
+}
+
+/* --- what is near --- */
+
+/* A sheet 1 mm above a table, under a lamp; neither is divided. The table is bright, but what the
+ * sheet sees of it is dark: only the light that creeps in from the sides, less than a
+ * hundredth. */
+static void test_gap(void)
+{
+    struct painted painted = {0};
+    soup_add_box(&painted.soup, point(-2, -2, 0), point(2, 2, 2), 1, true);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(-0.2, -0.2, 2), point(0, 0.4, 0), point(0.4, 0, 0), 1);
+    paint(&painted, 0.0, 10.0);
+    soup_add_quad(&painted.soup, point(-0.3, -0.2, 0.001), point(0, 0.3, 0), point(0.3, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(-0.3, -0.2, 0.001), point(0.3, 0, 0), point(0, 0.3, 0), 1);
+    paint(&painted, 0.5, 0.0);
+    struct solution s = solve_scene(world_comm, scene_of_painted(&painted), "--max-level 0");
+    const struct patch *patches = s.solver->method.forest->patches;
+    double below = patches[14].radiosity.band[0] + patches[15].radiosity.band[0];
+    double above = patches[16].radiosity.band[0] + patches[17].radiosity.band[0];
+    tap_ok(below < 0.02 * above && above > 0.0,
+           "below a sheet on a table: %.5f of the light above it", below / above);
+    solution_free(&s);
+}
+
+/* A picture in the plane of a wall, of a quarter of its area. */
+static void test_covered(void)
+{
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 8);
+    soup_add_quad(&painted.soup, point(0.25, 0.25, 0), point(0.5, 0, 0), point(0, 0.5, 0), 1);
+    soup_add_quad(&painted.soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 1);
+    paint(&painted, 0.5, 1.0);
+    struct trial g = gather_scene(&painted, "--max-level 0", 16);
+    double bare = 0.0;
+    for (int64_t i = 0; i < 128; i++)
+        bare += (double)g.gather.rows[i].bare / 128.0;
+    tap_ok(fabs(bare - 0.75) < 1e-6, "of a wall with a picture in it %.3f is bare", bare);
+    tap_ok(g.gather.rows[128].bare == 1.0f, "as is all of the picture");
+    trial_free(&g);
+}
+
+int main(int argc, char **argv)
+{
+    struct comm comm;
+    comm_start(&comm, &argc, &argv);
+    world_comm = &comm;
+    test_mean_factor();
+    test_furnished();
+    test_open();
+    test_lamps();
+    test_gap();
+    test_covered();
+    comm_stop(&comm);
+    return tap_done();
+}
