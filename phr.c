@@ -490,7 +490,7 @@ static void write_outputs(struct run *run, const struct shading *shading, float 
         switch (output_format_of(path)) {
         case FORMAT_PPM: ppm_write(&image, &tone, path, &run->error); break;
         case FORMAT_PFM: pfm_write(&image, path, &run->error); break;
-        case FORMAT_PLY: mesh_write(shading, &tone, path, &run->error); break;
+        case FORMAT_PLY: mesh_write(shading, &tone, run->solver->error, path, &run->error); break;
         }
     }
 }

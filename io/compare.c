@@ -245,7 +245,7 @@ bool solution_write(const struct solution *solution, const struct rgb *map, doub
     struct output output;
     if (!output_open(&output, path, error))
         return false;
-    mesh_write_header(&output, 3 * solution->count, solution->count);
+    mesh_write_header(&output, 3 * solution->count, solution->count, false);
     for (int64_t i = 0; i < 3 * solution->count; i++) {
         struct vec3 x = solution->leaves[i / 3].triangle.corner[i % 3];
         for (int axis = 0; axis < 3; axis++)

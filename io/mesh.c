@@ -25,7 +25,7 @@ static int32_t next_leaf(const struct forest *forest, int32_t p)
     }
 }
 
-void mesh_write_header(struct output *output, int64_t vertices, int64_t faces)
+void mesh_write_header(struct output *output, int64_t vertices, int64_t faces, bool errors)
 {
     fprintf(output->file,
             "ply\nformat binary_little_endian 1.0\ncomment radiosity in W/m^2, made by phr\n"
@@ -35,8 +35,8 @@ void mesh_write_header(struct output *output, int64_t vertices, int64_t faces)
             "element face %lld\n"
             "property list uchar int vertex_indices\n"
             "property float radiosity_r\nproperty float radiosity_g\nproperty float radiosity_b\n"
-            "property uint root\nproperty uint hierarchy\nend_header\n",
-            (long long)vertices, (long long)faces);
+            "property uint root\nproperty uint hierarchy\n%send_header\n",
+            (long long)vertices, (long long)faces, errors ? "property float error\n" : "");
 }
 
 static void write_vertices(struct output *output, const struct shading *shading,
@@ -64,18 +64,22 @@ static void write_face(struct output *output, const struct shading *shading, int
     output_uint32(output, patch->id.hierarchy);
 }
 
-bool mesh_write(const struct shading *shading, const struct tone *tone, const char *path,
-                struct error *error)
+bool mesh_write(const struct shading *shading, const struct tone *tone,
+                const float *errors, const char *path, struct error *error)
 {
     const struct forest *forest = shading->forest;
     struct output output;
     if (!output_open(&output, path, error))
         return false;
-    mesh_write_header(&output, shading->vertex_count, forest_leaf_count(forest));
+    mesh_write_header(&output, shading->vertex_count, forest_leaf_count(forest),
+                      errors != NULL);
     write_vertices(&output, shading, tone);
     int32_t leaf = next_leaf(forest, -1);
-    for (; leaf >= 0 && stop_check(error); leaf = next_leaf(forest, leaf))
+    for (; leaf >= 0 && stop_check(error); leaf = next_leaf(forest, leaf)) {
         write_face(&output, shading, leaf);
+        if (errors)
+            output_float(&output, errors[leaf]);
+    }
     return output_close(&output, error);
 }
 

@@ -6,19 +6,21 @@
  *     B = E + rho (source + W B)
  *
  * is solved for the leaves' B, from the links' solution on. The answer satisfies the
- * gathered equation, whatever the errors of the links were. Rows are kept, so that all this
- * costs one tracing, and products with a sparse matrix.
+ * gathered equation, whatever the errors of the links were. Rows are kept, so that all
+ * this costs one tracing, and products with a sparse matrix.
  *
  * W is not symmetric: BiCGSTAB (van der Vorst, 1992), for the three bands side by side,
- * with areas for weights. Rows are dealt to the ranks in turn. All ranks know all vectors, so
- * only W B takes an exchange, and scalar products are the same on all of them.
+ * with areas for weights. Rows are dealt to the ranks in turn. All ranks know all
+ * vectors, so only W B takes an exchange, and scalar products are the same on all of
+ * them.
  *
- * In a closed scene all that is emitted is absorbed, by what no other face lies on. Noise, and leaves of which a dark part
- * cannot be seen from afar (the table under a sheet of paper), leave that untrue by a
- * percent; one factor for each band, for all irradiances, makes it true.
+ * In a closed scene all that is emitted is absorbed, by what no other face lies on.
+ * Noise, and leaves of which a dark part cannot be seen from afar (the table under a
+ * sheet of paper), leave that untrue by a percent; one factor for each band, for all
+ * irradiances, makes it true.
  *
- * Rejected: the defect solved for over the links, and added. Where links reflect less than
- * is right, as in bright closed rooms, each round leaves nine tenths of it. */
+ * Rejected: the defect solved for over the links, and added. Where links reflect less
+ * than is right, as in bright closed rooms, each round leaves nine tenths of it. */
 #include "mpi/solver.h"
 
 #include <math.h>
@@ -34,8 +36,11 @@ enum { STEPS_MOST = 500 };
 /* A scene is closed if no more than this part of all rays escapes. */
 static const double CRACKS = 1e-5;
 
-/* Leaves by number, as in forest_order(): the same on all ranks. Row k of a rank is that of leaf
- * k size + rank. */
+/* The light of a root that is not divided varies by about this part. */
+static const double UNDIVIDED = 0.2;
+
+/* Leaves by number, as in forest_order(): the same on all ranks. Row k of a rank is that
+ * of leaf k size + rank. */
 struct gathering {
     struct solver *solver;
     struct final_gather gather;
@@ -46,7 +51,7 @@ struct gathering {
     bool closed;            /* next to no ray of any rank escapes */
     struct rgb *radiosity;  /* by place: room for what is to be gathered */
     struct rgb *all;        /* room for what the rows of all ranks have of each leaf */
-    int *counts, *at;       /* [ranks] of rows, and where those of a rank begin in `all` */
+    int *counts, *at; /* [ranks] of rows, and where those of a rank begin in `all` */
 };
 
 /* --- rows --- */
@@ -72,7 +77,8 @@ static void gathering_start(struct gathering *g, struct solver *solver)
     const struct comm *comm = solver->comm;
     size_t patches = (size_t)solver->method.forest->count;
     g->solver = solver;
-    g->gather = final_gather_create(&solver->method, solver->method.criterion.final_gather);
+    g->gather =
+        final_gather_create(&solver->method, solver->method.criterion.final_gather);
     list_leaves(g);
     g->radiosity = alloc_array(patches, sizeof *g->radiosity);
     g->all = alloc_array((size_t)g->count, sizeof *g->all);
@@ -133,14 +139,21 @@ static void share_rows(struct gathering *g, struct rgb *values)
         values[i] = g->all[g->at[i % comm->size] + i / comm->size];
 }
 
-/* Collective. Irradiances of all leaves, W/m^2, for their radiosities, with what lamps
- * bring, or without. */
-static void irradiances(struct gathering *g, const struct rgb *b, bool lamps, struct rgb *h)
+/* Makes these radiosities of leaves those to be gathered. */
+static void place_radiosities(struct gathering *g, const struct rgb *b)
 {
-    const struct comm *comm = g->solver->comm;
     for (int64_t i = 0; i < g->count; i++)
         g->radiosity[g->gather.place[g->leaves[i]]] = b[i];
     final_gather_pull(&g->gather, g->radiosity);
+}
+
+/* Collective. Irradiances of all leaves, W/m^2, for their radiosities, with what lamps
+ * bring, or without. */
+static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
+                        struct rgb *h)
+{
+    const struct comm *comm = g->solver->comm;
+    place_radiosities(g, b);
     struct rgb *own = g->all + g->at[comm->rank];
     for (int64_t row = 0; row < g->gather.count; row++)
         own[row] = final_gather_irradiance(&g->gather, row, g->radiosity, lamps);
@@ -166,7 +179,8 @@ static void reflect(void *context, const struct rgb *x, struct rgb *y)
     struct gathering *g = context;
     irradiances(g, x, false, y);
     for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m = forest_material(g->solver->method.forest, g->leaves[i]);
+        const struct material *m =
+            forest_material(g->solver->method.forest, g->leaves[i]);
         for (int c = 0; c < BANDS; c++)
             y[i].band[c] = x[i].band[c] - m->reflectance.band[c] * y[i].band[c];
     }
@@ -176,7 +190,8 @@ static void reflect(void *context, const struct rgb *x, struct rgb *y)
 static void set_radiosities(const struct gathering *g, const struct rgb *h, struct rgb *b)
 {
     for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m = forest_material(g->solver->method.forest, g->leaves[i]);
+        const struct material *m =
+            forest_material(g->solver->method.forest, g->leaves[i]);
         for (int c = 0; c < BANDS; c++)
             b[i].band[c] = m->emission.band[c] + m->reflectance.band[c] * h[i].band[c];
     }
@@ -187,7 +202,8 @@ static void close_balance(const struct gathering *g, struct rgb *h)
 {
     struct rgb emitted = {{0.0, 0.0, 0.0}}, absorbed = {{0.0, 0.0, 0.0}};
     for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m = forest_material(g->solver->method.forest, g->leaves[i]);
+        const struct material *m =
+            forest_material(g->solver->method.forest, g->leaves[i]);
         for (int c = 0; c < BANDS; c++) {
             emitted.band[c] += g->bare[i] * m->emission.band[c];
             absorbed.band[c] +=
@@ -206,7 +222,8 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
 {
     double absorbed = 0.0, leaving = 0.0, arriving = 0.0, brightest = 0.0;
     for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m = forest_material(g->solver->method.forest, g->leaves[i]);
+        const struct material *m =
+            forest_material(g->solver->method.forest, g->leaves[i]);
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c];
             absorbed += g->bare[i] * (1.0 - rho) * h[i].band[c];
@@ -220,6 +237,99 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
     vote->remaining = residual / (1.0 - brightest);
     vote->converged =
         vote->converged && vote->remaining <= g->solver->method.criterion.tolerance;
+}
+
+/* --- errors --- */
+
+/* Half of what leaves differ by from the mean over their parents: as B varies within a leaf. Of
+ * undivided roots a part of their B. */
+static struct rgb variation_of(const struct gathering *g, int64_t place)
+{
+    const struct forest *forest = g->solver->method.forest;
+    int32_t patch = g->gather.order[place], parent = forest->patches[patch].parent;
+    struct rgb b = g->radiosity[place], deviation;
+    struct rgb e = forest_material(forest, patch)->emission;
+    for (int c = 0; c < BANDS; c++)
+        deviation.band[c] =
+            parent >= 0 ? 0.5 * (b.band[c] - g->radiosity[g->gather.place[parent]].band[c])
+                        : UNDIVIDED * (b.band[c] - e.band[c]);
+    return deviation;
+}
+
+/* Collective. Variance of H that comes from B varying within the leaves that rows see,
+ * (W/m^2)^2. Where it varies is another place in each, so the errors of different leaves
+ * have nothing to do with each other. Pre: g->radiosity is the solution. */
+static void variances_by_mesh(struct gathering *g, struct rgb *variance)
+{
+    const struct final_gather *gather = &g->gather;
+    struct rgb *own = g->all + g->at[g->solver->comm->rank];
+    for (int64_t row = 0, k = 0; row < gather->count; row++) {
+        own[row] = (struct rgb){{0.0, 0.0, 0.0}};
+        for (; k < gather->rows[row].end; k++) {
+            struct rgb deviation = variation_of(g, gather->terms[k].place);
+            for (int c = 0; c < BANDS; c++) {
+                double h = (double)gather->terms[k].weight[c] * deviation.band[c];
+                own[row].band[c] += h * h;
+            }
+        }
+    }
+    share_rows(g, variance);
+}
+
+/* Collective. Variance of H that comes from the choice of rays: as if by chance, times
+ * what the sequence is better than chance, which all leaves together tell. */
+static void variances_by_rays(struct gathering *g, struct rgb *variance)
+{
+    struct rgb *own = g->all + g->at[g->solver->comm->rank];
+    struct rgb *halves = alloc_array((size_t)g->count, sizeof *halves);
+    double as_chosen = 0.0, by_chance = 0.0;
+    for (int kind = 0; kind < 2; kind++) {
+        for (int64_t row = 0; row < g->gather.count; row++)
+            for (int c = 0; c < BANDS; c++)
+                own[row].band[c] = (double)(kind ? g->gather.rows[row].halves[c]
+                                                 : g->gather.rows[row].chance[c]);
+        share_rows(g, kind ? halves : variance);
+    }
+    for (int64_t i = 0; i < g->count; i++)
+        for (int c = 0; c < BANDS; c++) {
+            as_chosen += g->areas[i] * halves[i].band[c];
+            by_chance += g->areas[i] * variance[i].band[c];
+        }
+    double better = by_chance > 0.0 ? fmin(1.0, as_chosen / by_chance) : 1.0;
+    for (int64_t i = 0; i < g->count; i++)
+        for (int c = 0; c < BANDS; c++)
+            variance[i].band[c] *= better;
+    alloc_free(halves);
+}
+
+/* Collective. Two deviations of B, of the band that has most. */
+static void estimate_errors(struct gathering *g)
+{
+    struct solver *solver = g->solver;
+    size_t count = (size_t)g->count;
+    struct rgb *mesh = alloc_array(count, sizeof *mesh);
+    struct rgb *rays = alloc_array(count, sizeof *rays);
+    double squares = 0.0, light = 0.0;
+    variances_by_mesh(g, mesh);
+    variances_by_rays(g, rays);
+    solver->error = alloc_array((size_t)solver->method.forest->count, sizeof *solver->error);
+    for (int64_t i = 0; i < g->count; i++) {
+        const struct material *m = forest_material(solver->method.forest, g->leaves[i]);
+        double largest = 0.0;
+        for (int c = 0; c < BANDS; c++) {
+            double deviation = m->reflectance.band[c] *
+                               sqrt(mesh[i].band[c] + rays[i].band[c]);
+            struct rgb b = g->radiosity[g->gather.place[g->leaves[i]]];
+            double reflected = b.band[c] - m->emission.band[c];
+            largest = fmax(largest, deviation);
+            squares += g->areas[i] * deviation * deviation;
+            light += g->areas[i] * reflected * reflected;
+        }
+        solver->error[g->leaves[i]] = (float)(2.0 * largest);
+    }
+    solver->gathered.error = light > 0.0 ? sqrt(squares / light) : 0.0;
+    alloc_free(rays);
+    alloc_free(mesh);
 }
 
 /* From the links' solution on. */
@@ -247,6 +357,8 @@ static void solve_rows(struct gathering *g, struct vote *vote)
         close_balance(g, h);
     set_radiosities(g, h, b);
     judge(g, h, b, done.residual, vote);
+    place_radiosities(g, b);
+    estimate_errors(g);
     for (int64_t i = 0; i < g->count; i++)
         forest->patches[g->leaves[i]].radiosity = b[i];
     forest_average(forest);

@@ -58,6 +58,7 @@ void solver_destroy(struct solver *solver)
     closure_free(&solver->closure);
     conjugate_free(&solver->conjugate);
     accuracy_free(&solver->accuracy);
+    alloc_free(solver->error);
     alloc_free(solver);
 }
 
@@ -209,7 +210,8 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->memory_limited = solver->memory.reached > 0;
     stats->converged = vote->converged && !stats->memory_limited;
     stats->epsilon = solver->method.criterion.epsilon;
-    stats->error_estimate = solver->accuracy.estimate;
+    stats->error_estimate =
+        solver->error ? solver->gathered.error : solver->accuracy.estimate;
     stats->emitted_power = unit * scene_emitted_power(scene);
     stats->absorbed_power = unit * vote->absorbed;
     stats->escaped_power = unit * vote->escaped;

@@ -84,6 +84,8 @@ struct solver {
     double least_bend;          /* least <K z, z> / <z, z> seen */
     struct accuracy accuracy;
     struct gathered gathered;
+    float *error;             /* [patches] bound on the error of a leaf's B, for 95 % of leaves and all
+                                 bands, W/m^2; NULL: there was no final gather */
     int64_t split_here;       /* links that this rank split in this iteration */
     double seconds[PHASE_COUNT];
     int64_t bytes_migration, bytes_gather, bytes_scatter; /* that this rank sent to others, or (scatter)

@@ -64,6 +64,7 @@ struct gathered {
     int64_t rays, segments; /* fired; asked whether they are blocked */
     int64_t exact;          /* rows made without rays */
     int64_t terms;          /* kept of all rows */
+    double error;           /* of the leaves, estimated, relative RMS of reflected radiosity */
 };
 
 struct stats {
@@ -73,7 +74,7 @@ struct stats {
     int64_t counted_bytes; /* of links, patches and clusters, as --memory counts them: one copy */
     bool memory_limited;                                /* linking or refinement ended there */
     double epsilon;                                     /* relative to the emitted power */
-    double error_estimate;                              /* of the leaves, with --accuracy, or 0 */
+    double error_estimate;     /* of the leaves, relative RMS; 0: there is none */
     double emitted_power, absorbed_power, escaped_power; /* W, input units, sum over bands */
     uint64_t checksum;
     int64_t rays, node_tests, triangle_tests;                      /* of form factors */

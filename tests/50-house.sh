@@ -31,7 +31,7 @@ check "the README's file map has every file:$missing" [ -z "$missing" ]
 $MPIEXEC -n 2 ./phr scenes/cornell.obj --view scenes/cornell.view >"$work/summary" 2>/dev/null
 missing=$(while IFS= read -r line; do grep -qxF -- "$line" README.md || echo "$line"; done <"$work/summary")
 check "the README shows the summary of make demo: $missing" [ -z "$missing" ]
-check "which has eight lines" [ "$(wc -l <"$work/summary")" -eq 8 ]
+check "which has nine lines" [ "$(wc -l <"$work/summary")" -eq 9 ]
 
 $MAKE BUILD="$BUILD" install DESTDIR="$work/root" prefix=/opt/phr >"$work/install.log" 2>&1
 check "install: the program runs" [ "$("$work/root/opt/phr/bin/phr" --version)" = "$(./phr --version)" ]

@@ -75,14 +75,16 @@ static void test_known(struct random *random, struct system *s, double bright)
     tap_ok(s->products <= 2 * done.steps + 2, "two products a step: %d", s->products);
     double before = worst_of(x, truth);
     done = bicgstab_solve(apply, s, b, weights, SIZE, 1e-12, 200, x);
-    tap_ok(done.steps == 0 && worst_of(x, truth) == before, "what is solved stays as it is");
+    tap_ok(done.steps == 0 && worst_of(x, truth) == before,
+           "what is solved stays as it is");
     memset(b, 0, sizeof b);
     memset(x, 0, sizeof x);
     done = bicgstab_solve(apply, s, b, weights, SIZE, 0.0, 200, x);
     tap_ok(done.steps == 0 && done.residual == 0.0, "no light, no step");
 }
 
-/* A product that is 0 has no solution: the method ends and makes no numbers that are none. */
+/* A product that is 0 has no solution: the method ends and makes no numbers that are
+ * none. */
 static void zero(void *context, const struct rgb *x, struct rgb *y)
 {
     (void)context;

@@ -113,7 +113,36 @@ static void test_accuracy(const struct comm *comm, const struct truth *truth, do
     }
 }
 
-static void test_scene(const struct comm *comm, const char *path, double leaf, double shown)
+/* The final gather: less error with more rays, and what it says of its error is true within
+ * a factor of 2, where the mesh is what is wrong and where rays are. `most`: a tenth above
+ * what the last has. */
+static void test_gathered(const struct comm *comm, const char *path,
+                          const struct truth *truth, double most)
+{
+    static const struct {
+        double epsilon;
+        int rays;
+    } steps[] = {{1e-3, 32}, {1e-3, 256}, {1e-4, 256}};
+    double before = HUGE_VAL;
+    for (int k = 0; k < 3; k++) {
+        struct criterion criterion =
+            criterion_best(steps[k].epsilon, 10, 1e-4, CLOSURE_CAP);
+        criterion.final_gather = steps[k].rays;
+        struct result now = run(comm, path, criterion, truth);
+        if (comm->rank == 0)
+            tap_ok(now.converged && now.leaf < before && now.estimate < 2.0 * now.leaf &&
+                       now.estimate > 0.5 * now.leaf,
+                   "%s, epsilon %g, gathered with %d rays: leaf error %.2f %%, said to be "
+                   "%.2f %%", path, steps[k].epsilon, steps[k].rays, 100.0 * now.leaf,
+                   100.0 * now.estimate);
+        before = now.leaf;
+    }
+    if (comm->rank == 0)
+        tap_ok(before < most, "down to %.3g %%", 100.0 * most);
+}
+
+static void test_scene(const struct comm *comm, const char *path, double leaf,
+                       double shown, double gathered)
 {
     struct node_block block;
     struct scene *scene = read_scene(comm, path, &block);
@@ -121,6 +150,7 @@ static void test_scene(const struct comm *comm, const char *path, double leaf, d
         struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
         struct truth truth = truth_trace(comm, scene, octree, TRUTH, PATHS);
         test_falling(comm, path, &truth, leaf, shown);
+        test_gathered(comm, path, &truth, gathered);
         if (path == CORNELL) {
             test_paper(comm, &truth);
             test_accuracy(comm, &truth, 0.05);
@@ -139,8 +169,8 @@ int main(int argc, char **argv)
 {
     struct comm comm;
     comm_start(&comm, &argc, &argv);
-    test_scene(&comm, CORNELL, 0.0253, 0.0285);
-    test_scene(&comm, argv[1], 0.0523, 0.0634);
+    test_scene(&comm, CORNELL, 0.0253, 0.0285, 0.0115);
+    test_scene(&comm, argv[1], 0.0523, 0.0634, 0.0316);
     comm_stop(&comm);
     return comm.rank == 0 ? tap_done() : alloc_balance() != 0;
 }

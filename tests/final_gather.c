@@ -1,5 +1,5 @@
-/* Tests of rad/beyond/final_gather.h and rad/beyond/lamps.h: what a leaf receives, by exact factors
- * and by rays, against closed forms. */
+/* Tests of rad/beyond/final_gather.h and rad/beyond/lamps.h: what a leaf receives, by
+ * exact factors and by rays, against closed forms. */
 #include "rad/beyond/final_gather.h"
 
 #include "geom/contour.h"
@@ -61,20 +61,21 @@ static double mean_of_roots(const struct trial *g, uint32_t first, uint32_t coun
 
 /* --- factors --- */
 
-/* Against the contour integral over both triangles: three points, or as many on quarters of
- * quarters where that is near, have to be right within 0.2 %. */
+/* Against the contour integral over both triangles: three points, or as many on quarters
+ * of quarters where that is near, have to be right within 0.2 %. */
 static void test_mean_factor(void)
 {
     static const double heights[] = {0.0, 0.1, 1.0, 3.0};
     const struct triangle floor = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
     struct plane plane = triangle_plane(&floor);
+    int64_t work = 0;
     for (int k = 0; k < 4; k++) {
         double h = heights[k];
         struct triangle wall = {{{0, 0, h}, {0, 1, h}, {0, 0, 1 + h}}};
         double exact = triangle_exchange(&floor, &wall) / triangle_area(&floor);
-        double off = mean_factor(&floor, plane.normal, &wall) / exact - 1.0;
-        tap_ok(fabs(off) <= 2e-3, "a wall %g above the floor: factor %.5f, off by %.1e", h,
-               exact, off);
+        double off = mean_factor(&floor, plane.normal, &wall, &work) / exact - 1.0;
+        tap_ok(fabs(off) <= 2e-3, "a wall %g above the floor: factor %.5f, off by %.1e",
+               h, exact, off);
     }
 }
 
@@ -103,7 +104,8 @@ static void test_furnished(void)
     }
     tap_ok(worst <= 2e-6 && g.gather.counts.escaped == 0,
            "rows of %lld leaves sum to 1, within %.1e", (long long)g.gather.count, worst);
-    tap_ok(g.gather.counts.rays > 64 * 60, "by %lld rays", (long long)g.gather.counts.rays);
+    tap_ok(g.gather.counts.rays > 64 * 60, "by %lld rays",
+           (long long)g.gather.counts.rays);
     trial_free(&g);
 }
 
@@ -127,9 +129,9 @@ static void test_open(void)
 
 /* --- lamps --- */
 
-/* A floor below a small lamp, and a black box beside them so that rays are needed. `hidden`: a
- * screen hides half of the lamp from all of the floor, more or less. The lamp's direct
- * light is all there is: the floor is black. */
+/* A floor below a small lamp, and a black box beside them so that rays are needed.
+ * `hidden`: a screen hides half of the lamp from all of the floor, more or less. The
+ * lamp's direct light is all there is: the floor is black. */
 static double lit_floor(int lamps, bool screened, double *exact, int64_t *groups)
 {
     struct painted painted = {0};
@@ -140,7 +142,8 @@ static double lit_floor(int lamps, bool screened, double *exact, int64_t *groups
     paint(&painted, 0.0, 1.0);
     soup_add_box(&painted.soup, point(0, 0, 0.1), point(0.05, 0.05, 0.2), 1, false);
     if (screened) /* right below the lamp, upwards and downwards */
-        soup_add_box(&painted.soup, point(0.44, 0.44, 0.998), point(0.5, 0.56, 0.999), 1, false);
+        soup_add_box(&painted.soup, point(0.44, 0.44, 0.998), point(0.5, 0.56, 0.999), 1,
+                     false);
     paint(&painted, 0.0, 0.0);
     struct trial g = gather_scene(&painted, "", 64);
     struct scene *scene = g.s.scene;
@@ -166,8 +169,8 @@ static void test_lamps(void)
     double exact;
     int64_t few, many;
     double h = lit_floor(1, false, &exact, &few);
-    tap_ok(h <= 1.001 * exact && h >= 0.997 * exact, "a lamp of 2 triangles: %.6f, exact %.6f", h,
-           exact);
+    tap_ok(h <= 1.001 * exact && h >= 0.997 * exact,
+           "a lamp of 2 triangles: %.6f, exact %.6f", h, exact);
     h = lit_floor(12, false, &exact, &many);
     tap_ok(fabs(h / exact - 1.0) <= 0.01, "of 288 triangles: %.6f, exact %.6f", h, exact);
     tap_ok(many < 100, "which are %lld groups", (long long)many);
@@ -177,20 +180,24 @@ static void test_lamps(void)
 
 /* --- what is near --- */
 
-/* A sheet 1 mm above a table, under a lamp; neither is divided. The table is bright, but what the
- * sheet sees of it is dark: only the light that creeps in from the sides, less than a
- * hundredth. */
+/* A sheet 1 mm above a table, under a lamp; neither is divided. The table is bright, but
+ * what the sheet sees of it is dark: only the light that creeps in from the sides, less
+ * than a hundredth. */
 static void test_gap(void)
 {
     struct painted painted = {0};
     soup_add_box(&painted.soup, point(-2, -2, 0), point(2, 2, 2), 1, true);
     paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(-0.2, -0.2, 2), point(0, 0.4, 0), point(0.4, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(-0.2, -0.2, 2), point(0, 0.4, 0), point(0.4, 0, 0),
+                  1);
     paint(&painted, 0.0, 10.0);
-    soup_add_quad(&painted.soup, point(-0.3, -0.2, 0.001), point(0, 0.3, 0), point(0.3, 0, 0), 1);
-    soup_add_quad(&painted.soup, point(-0.3, -0.2, 0.001), point(0.3, 0, 0), point(0, 0.3, 0), 1);
+    soup_add_quad(&painted.soup, point(-0.3, -0.2, 0.001), point(0, 0.3, 0),
+                  point(0.3, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(-0.3, -0.2, 0.001), point(0.3, 0, 0),
+                  point(0, 0.3, 0), 1);
     paint(&painted, 0.5, 0.0);
-    struct solution s = solve_scene(world_comm, scene_of_painted(&painted), "--max-level 0");
+    struct solution s =
+        solve_scene(world_comm, scene_of_painted(&painted), "--max-level 0");
     const struct patch *patches = s.solver->method.forest->patches;
     double below = patches[14].radiosity.band[0] + patches[15].radiosity.band[0];
     double above = patches[16].radiosity.band[0] + patches[17].radiosity.band[0];
@@ -204,7 +211,8 @@ static void test_covered(void)
 {
     struct painted painted = {0};
     soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 8);
-    soup_add_quad(&painted.soup, point(0.25, 0.25, 0), point(0.5, 0, 0), point(0, 0.5, 0), 1);
+    soup_add_quad(&painted.soup, point(0.25, 0.25, 0), point(0.5, 0, 0), point(0, 0.5, 0),
+                  1);
     soup_add_quad(&painted.soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 1);
     paint(&painted, 0.5, 1.0);
     struct trial g = gather_scene(&painted, "--max-level 0", 16);

@@ -1,4 +1,5 @@
-/* Tests of rad/beyond/sequence.h: points are spread evenly, on triangles and hemispheres too. */
+/* Tests of rad/beyond/sequence.h: points are spread evenly, on triangles and hemispheres
+ * too. */
 #include "rad/beyond/sequence.h"
 
 #include <math.h>
@@ -9,8 +10,8 @@
 enum { POINTS = 256, SIDE = 16 };
 
 /* Of the first 2^k points one lies in each interval of 2^-k, in every dimension; of the
- * first two dimensions, one in each box of that area. That is what Sobol's points promise,
- * and scrambling must keep. */
+ * first two dimensions, one in each box of that area. That is what Sobol's points
+ * promise, and scrambling must keep. */
 static void test_strata(void)
 {
     bool one = true, two = true;
@@ -34,8 +35,8 @@ static void test_strata(void)
     tap_ok(two, "and one in each box of 1/16 by 1/16");
 }
 
-/* The mean of u0 u1 u2 u3 is 1/16. Points at random miss it by .08 / sqrt(256) = 5e-3 in the
- * RMS over seeds; a tenth of that is asked for. */
+/* The mean of u0 u1 u2 u3 is 1/16. Points at random miss it by .08 / sqrt(256) = 5e-3 in
+ * the RMS over seeds; a tenth of that is asked for. */
 static void test_integral(void)
 {
     double square = 0.0, all = 0.0;
@@ -51,7 +52,8 @@ static void test_integral(void)
         all += sum / 100.0;
     }
     tap_ok(sqrt(square) < 1e-3, "a product of four: off by %.1e, RMS", sqrt(square));
-    /* Independent seeds: the mean of 100 is ten times nearer, three deviations allowed. */
+    /* Independent seeds: the mean of 100 is ten times nearer, three deviations allowed.
+     */
     tap_ok(fabs(all - 0.0625) < 0.3 * sqrt(square), "the mean over seeds by %.1e",
            fabs(all - 0.0625));
 }
@@ -75,20 +77,22 @@ static void test_triangle(void)
     tap_ok(worst < 1e-14, "points lie in the plane of their triangle");
     tap_ok(vec3_length(vec3_sub(mean, middle)) < 0.01, "around its centroid, off by %.4f",
            vec3_length(vec3_sub(mean, middle)));
-    tap_ok(abs(quarter - POINTS / 4) <= 4, "a quarter of them in a quarter: %d of %d", quarter,
-           POINTS);
+    tap_ok(abs(quarter - POINTS / 4) <= 4, "a quarter of them in a quarter: %d of %d",
+           quarter, POINTS);
 }
 
 /* Directions distributed as the cosine: the square of the sine is even, and so is the
  * angle around the normal. */
 static void test_directions(void)
 {
-    struct vec3 normal = {2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0}, along = direction_along(normal);
+    struct vec3 normal = {2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0},
+                along = direction_along(normal);
     struct vec3 across = vec3_cross(normal, along);
     struct sequence sequence = sequence_start(3);
     int rings[SIDE] = {0}, sectors[8] = {0}, most = 0, least = POINTS;
     double length = 0.0;
-    tap_ok(fabs(vec3_dot(normal, along)) < 1e-15 && fabs(vec3_length(along) - 1.0) < 1e-15,
+    tap_ok(fabs(vec3_dot(normal, along)) < 1e-15 &&
+               fabs(vec3_length(along) - 1.0) < 1e-15,
            "a direction at right angles to another");
     for (uint32_t i = 0; i < POINTS; i++) {
         double u[SEQUENCE_DIMENSIONS];

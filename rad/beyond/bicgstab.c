@@ -21,7 +21,8 @@ struct vectors {
     double rho[BANDS]; /* (r0, r) */
 };
 
-static struct rgb product(const struct vectors *z, const struct rgb *x, const struct rgb *y)
+static struct rgb product(const struct vectors *z, const struct rgb *x,
+                          const struct rgb *y)
 {
     struct rgb sum = {{0.0, 0.0, 0.0}};
     for (int64_t i = 0; i < z->count; i++)

@@ -1,27 +1,28 @@
 /* Rows of the final gather.
  *
  * Rays leave a leaf from points spread over it, distributed as the cosine, and each that
- * ends on a front adds 1 / N to the weight of the leaf that it meets. So in a closed scene
- * each row sums to 1, by construction and not by luck. Noise is their only fault, and
- * lamps are where most of it would come from: lamps (rad/beyond/lamps.c) are aimed at by
- * segments, in proportion to the light that they would bring unoccluded, which is known
- * from exact factors; rays that meet a lamp count what it reflects and not what it emits.
+ * ends on a front adds 1 / N to the weight of the leaf that it meets. So in a closed
+ * scene each row sums to 1, by construction and not by luck. Noise is their only fault,
+ * and lamps are where most of it would come from: lamps (rad/beyond/lamps.c) are aimed at
+ * by segments, in proportion to the light that they would bring unoccluded, which is
+ * known from exact factors; rays that meet a lamp count what it reflects and not what it
+ * emits.
  *
  * A leaf is a constant, and a constant is wrong where a ray ends nearer than that leaf is
- * large: under a sheet of paper on a table the table is dark, but the leaf is not. There the
- * ray goes on: the point that it met receives light from a lamp, by one segment, and from
- * one more ray, until a ray ends far enough away. That is a path tracer for what is near
- * and radiosity for the rest.
+ * large: under a sheet of paper on a table the table is dark, but the leaf is not. There
+ * the ray goes on: the point that it met receives light from a lamp, by one segment, and
+ * from one more ray, until a ray ends far enough away. That is a path tracer for what is
+ * near and radiosity for the rest.
  *
  * Where it is proved for a root that nothing stands between it and any root that it
  * faces, its leaves need no rays: their rows are exact factors (noise 0). That is so in
  * grooves, between plates and in empty rooms, where the exact answers are.
  *
- * The number of rays grows with the square root of a leaf's area: noise that is counted by
- * area is then least for a given number of all rays.
+ * The number of rays grows with the square root of a leaf's area: noise that is counted
+ * by area is then least for a given number of all rays.
  *
- * Rejected: exact factors to whatever a leaf sees openly and rays for the rest. Proofs for
- * all pairs cost more than the rays that they save. */
+ * Rejected: exact factors to whatever a leaf sees openly and rays for the rest. Proofs
+ * for all pairs cost more than the rays that they save. */
 #include "rad/beyond/final_gather.h"
 
 #include <math.h>
@@ -43,16 +44,19 @@ static const double LAMP = 4.0;
 enum { FACED_PER_RAY = 4 };
 
 /* A sender is taken as a whole in an exact row if B over its leaves, times its factor and
- * the number of rays, varies by less than this part of the mean: where more rays are asked for, there
- * is more to win. */
+ * the number of rays, varies by less than this part of the mean: where more rays are
+ * asked for, there is more to win. */
 static const double VARIES = 0.05;
 
-/* A leaf is too near for a constant if the square of its distance is less than this part of
- * its area. */
+/* A leaf is too near for a constant if the square of its distance is less than this part
+ * of its area. */
 static const double NEAR = 0.5;
 
 /* An exact row whose sum is within this of 1 sees no way out. */
 static const double CLOSED = 1e-3;
+
+/* Fewest rays of a leaf. */
+enum { FEWEST = 4 };
 
 /* A path ends after so many points at the latest. */
 enum { PATH_MOST = 8, AIMS_MOST = 4, BARE_POINTS = 4 };
@@ -109,6 +113,8 @@ struct making {
     int rays;        /* to be fired */
     int escaped;     /* of them and what follows from them */
     int inside;      /* of them: from points inside of things */
+    struct rgb light; /* H that this ray has found, with the solution's radiosities */
+    struct rgb sum, squares, half[2]; /* of the light of all rays */
     struct vec3 along;
 };
 
@@ -116,8 +122,11 @@ static void add_term(struct making *m, int32_t patch, const struct rgb *weight)
 {
     struct final_gather *g = m->gather;
     struct gather_term term = {.place = g->place[patch]};
-    for (int c = 0; c < BANDS; c++)
+    struct rgb b = g->method->forest->patches[patch].radiosity;
+    for (int c = 0; c < BANDS; c++) {
         term.weight[c] = (float)weight->band[c];
+        m->light.band[c] += weight->band[c] * b.band[c];
+    }
     g->terms =
         alloc_reserve(g->terms, &g->term_capacity, m->row.end + 1, sizeof *g->terms);
     g->terms[m->row.end++] = term;
@@ -138,7 +147,8 @@ static void join_terms(struct making *m)
 {
     struct gather_term *terms = m->gather->terms;
     int64_t to = m->first;
-    qsort(terms + m->first, (size_t)(m->row.end - m->first), sizeof *terms, compare_terms);
+    qsort(terms + m->first, (size_t)(m->row.end - m->first), sizeof *terms,
+          compare_terms);
     for (int64_t i = m->first; i < m->row.end; i++) {
         if (to > m->first && terms[to - 1].place == terms[i].place)
             for (int c = 0; c < BANDS; c++)
@@ -158,7 +168,7 @@ static int rays_of(const struct final_gather *gather, double area)
         rays *= 2;
     for (int k = 0; k < 2 && share < 0.5; k++, share *= 4.0)
         rays /= 2;
-    return rays > 4 ? rays : 4;
+    return rays > FEWEST ? rays : FEWEST;
 }
 
 /* --- points that rays meet --- */
@@ -221,17 +231,22 @@ static enum met trace(struct making *m, struct vec3 origin, struct vec3 directio
 static void add_source(struct making *m, const struct rgb *weight, struct rgb emission,
                        double factor)
 {
-    for (int c = 0; c < BANDS; c++)
-        m->row.source.band[c] += weight->band[c] * factor * emission.band[c];
+    for (int c = 0; c < BANDS; c++) {
+        double h = weight->band[c] * factor * emission.band[c];
+        m->row.source.band[c] += h;
+        m->light.band[c] += h;
+    }
 }
 
-/* Light of E = 1 that goes from dA at x to dA' at y, for each dA and dA', less visibility;
- * 0 below a horizon. */
-static double kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y, struct vec3 normal_y)
+/* Light of E = 1 that goes from dA at x to dA' at y, for each dA and dA', less
+ * visibility; 0 below a horizon. */
+static double kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,
+                     struct vec3 normal_y)
 {
     static const double PI = 3.14159265358979323846;
     struct vec3 d = vec3_sub(y, x);
-    double d2 = vec3_dot(d, d), rise = vec3_dot(normal_x, d), fall = -vec3_dot(normal_y, d);
+    double d2 = vec3_dot(d, d), rise = vec3_dot(normal_x, d),
+           fall = -vec3_dot(normal_y, d);
     return rise > 0.0 && fall > 0.0 ? rise * fall / (PI * d2 * d2) : 0.0;
 }
 
@@ -242,6 +257,17 @@ static bool sees(struct making *m, struct vec3 from, int32_t input, struct vec3 
     m->gather->counts.segments++;
     return !octree_blocks_segment(m->gather->method->octree, from, to, own, &guess,
                                   &m->gather->method->counts);
+}
+
+/* Of `count` segments that might bring `direct` over all bands a share is seen: the
+ * variance of what they bring. */
+static void add_chance(struct making *m, struct rgb emission, double direct, double share,
+                       int count)
+{
+    for (int c = 0; c < BANDS; c++) {
+        double h = direct * emission.band[c] / rgb_sum(emission);
+        m->row.chance[c] += (float)(h * h * share * (1.0 - share) / count);
+    }
 }
 
 /* Segments to a single lamp: `count` of them bring the irradiance `direct` all together,
@@ -264,8 +290,10 @@ static void aim_at_lamp(struct making *m, const struct sequence *sequence, uint3
         if (light > 0.0 && sees(m, x, m->leaf.input, y, root))
             seen += light;
     }
-    if (all > 0.0)
-        add_source(m, &ALL, emission, direct * (seen / all) / rgb_sum(emission));
+    if (!(all > 0.0))
+        return;
+    add_source(m, &ALL, emission, direct * (seen / all) / rgb_sum(emission));
+    add_chance(m, emission, direct, seen / all, count);
 }
 
 /* One segment to a lamp of a cluster, which is far away: `direct` and `each` are what the
@@ -278,7 +306,8 @@ static void aim_at_cluster(struct making *m, const struct sequence *sequence,
     const struct scene *scene = g->method->scene;
     double u[SEQUENCE_DIMENSIONS];
     sequence_point(sequence, index, u);
-    struct lamp lamp = lamp_choose(&g->lamps, group->node, hash_unit(m->seed + 17 + index));
+    struct lamp lamp =
+        lamp_choose(&g->lamps, group->node, hash_unit(m->seed + 17 + index));
     struct triangle triangle = scene_root_triangle(scene, lamp.root);
     struct vec3 x = triangle_of_square(&m->leaf.triangle, u[0], u[1]);
     struct vec3 y = triangle_of_square(&triangle, u[2], u[3]);
@@ -295,7 +324,7 @@ static void aim_at_cluster(struct making *m, const struct sequence *sequence,
 static void aim_at_lamps(struct making *m)
 {
     struct final_gather *g = m->gather;
-    lamps_group(&g->lamps, &m->leaf, &g->groups);
+    lamps_group(&g->lamps, &m->leaf, &g->groups, &g->method->estimating);
     if (!(g->groups.direct > 0.0))
         return;
     struct sequence sequence = sequence_start(m->seed + 8);
@@ -307,8 +336,15 @@ static void aim_at_lamps(struct making *m)
         int now = (int)fmin(m->rays, floor(sum / each + start)), count = now - done;
         if (!node_is_cluster(group->node) && count > 0)
             aim_at_lamp(m, &sequence, (uint32_t)done, count, group->node, count * each);
+        double before = rgb_sum(m->light);
         for (int k = done; k < now && node_is_cluster(group->node); k++)
             aim_at_cluster(m, &sequence, (uint32_t)k, group, each);
+        if (node_is_cluster(group->node) && count > 0) {
+            int32_t lamp = lamp_choose(&g->lamps, group->node, 0.5).root;
+            double share = (rgb_sum(m->light) - before) / (count * each);
+            add_chance(m, scene_root_material(g->method->scene, lamp)->emission,
+                       count * each, fmin(share, 1.0), count);
+        }
         done = now;
     }
 }
@@ -368,8 +404,8 @@ static void look_inside(struct making *m, struct vec3 origin, struct vec3 direct
         m->escaped++;
 }
 
-/* A ray and what follows from it, the seed of which is `seed`. `weight`: of the light that
- * it finds. */
+/* A ray and what follows from it, the seed of which is `seed`. `weight`: of the light
+ * that it finds. */
 static void follow(struct making *m, struct vec3 origin, struct vec3 direction,
                    struct rgb weight, uint64_t seed)
 {
@@ -405,6 +441,19 @@ static void follow(struct making *m, struct vec3 origin, struct vec3 direction,
     }
 }
 
+/* Enters the light of a ray, of the first half of them or the second, and of what
+ * followed. */
+static void count_light(struct making *m, int half)
+{
+    for (int c = 0; c < BANDS; c++) {
+        double h = m->light.band[c];
+        m->sum.band[c] += h;
+        m->squares.band[c] += h * h;
+        m->half[half].band[c] += h;
+        m->light.band[c] = 0.0;
+    }
+}
+
 static void fire_rays(struct making *m)
 {
     struct sequence sequence = sequence_start(m->seed);
@@ -416,14 +465,21 @@ static void fire_rays(struct making *m)
                cosine_direction(m->leaf.plane.normal, m->along, u[0], u[1]),
                (struct rgb){{share, share, share}},
                hash_mix(m->seed ^ hash_mix((uint64_t)i)));
+        count_light(m, 2 * i / m->rays);
+    }
+    for (int c = 0; c < BANDS; c++) {
+        double mean2 = m->sum.band[c] * m->sum.band[c] / m->rays;
+        double apart = m->half[0].band[c] - m->half[1].band[c];
+        m->row.chance[c] += (float)fmax(0.0, m->squares.band[c] - mean2);
+        m->row.halves[c] = (float)(apart * apart);
     }
     if (m->escaped < m->rays)
         m->gather->counts.escaped += m->escaped;
 }
 
 /* The share of the leaf that is met from just above it, and not a face that lies on it: a
- * picture in the plane of a wall, a lamp in that of the ceiling; and that is not inside of
- * things. */
+ * picture in the plane of a wall, a lamp in that of the ceiling; and that is not inside
+ * of things. */
 static float bare_share(const struct making *m)
 {
     static const double ABOVE = 0x1p-20; /* scene units */
@@ -436,9 +492,10 @@ static float bare_share(const struct making *m)
         sequence_point(&sequence, i, u);
         struct vec3 x = triangle_of_square(&m->leaf.triangle, u[0], u[1]);
         struct octree_hit hit;
-        covered += octree_first_hit(method->octree, vec3_add(x, vec3_scale(normal, ABOVE)),
-                                    vec3_scale(normal, -1.0), false, &hit, &method->counts) &&
-                   hit.triangle != m->leaf.input;
+        covered +=
+            octree_first_hit(method->octree, vec3_add(x, vec3_scale(normal, ABOVE)),
+                             vec3_scale(normal, -1.0), false, &hit, &method->counts) &&
+            hit.triangle != m->leaf.input;
     }
     return (1.0f - (float)covered / BARE_POINTS) *
            (1.0f - (float)m->inside / (float)m->rays);
@@ -446,28 +503,38 @@ static float bare_share(const struct making *m)
 
 /* --- exact rows --- */
 
-/* Adds the roots below a node that the root faces; false once there are too many, or one
- * may be hidden. */
+/* Adds the roots below a node that the root faces; false once there are too many. */
 static bool view_node(struct final_gather *g, const struct end *root, int32_t node)
 {
-    struct method *method = g->method;
     struct gather_view *view = &g->view;
-    struct end end = end_of(method, node);
+    struct end end = end_of(g->method, node);
     if (!ends_may_face(root, &end))
         return true;
     if (end.cluster) {
-        bool open = true;
-        for (int k = 0; k < 4 && open && end.cluster->child[k] != NODE_NONE; k++)
-            open = view_node(g, root, end.cluster->child[k]);
-        return open;
+        bool few = true;
+        for (int k = 0; k < 4 && few && end.cluster->child[k] != NODE_NONE; k++)
+            few = view_node(g, root, end.cluster->child[k]);
+        return few;
     }
-    if (view->count == FACED_PER_RAY * g->rays ||
-        !facets_are_open(&root->facet, &end.facet, method->octree, &view->counts))
+    if (view->count == FACED_PER_RAY * g->rays)
         return false;
     view->faced =
         alloc_reserve(view->faced, &view->capacity, view->count + 1, sizeof *view->faced);
     view->faced[view->count++] = node;
     return true;
+}
+
+/* True if it is proved that nothing stands between the root and what it faces. */
+static bool is_open(struct final_gather *g, const struct facet *root)
+{
+    const struct octree *octree = g->method->octree;
+    struct gather_view *view = &g->view;
+    bool open = true;
+    for (int64_t i = 0; i < view->count && open; i++) {
+        struct facet other = facet_make(g->method->forest, view->faced[i]);
+        open = facets_are_open(root, &other, octree, &view->counts);
+    }
+    return open;
 }
 
 static const struct gather_view *view_of(struct final_gather *g, int32_t root)
@@ -476,7 +543,7 @@ static const struct gather_view *view_of(struct final_gather *g, int32_t root)
         struct end end = end_of(g->method, root);
         g->view.root = root;
         g->view.count = 0;
-        g->view.open = view_node(g, &end, NODE_TOP);
+        g->view.open = view_node(g, &end, NODE_TOP) && is_open(g, &end.facet);
     }
     return &g->view;
 }
@@ -501,7 +568,8 @@ static bool add_exact(struct making *m, int32_t patch)
     const struct forest *forest = g->method->forest;
     const struct extremes *extremes = &forest->extremes[patch];
     struct triangle sender = forest_triangle(forest, patch);
-    double factor = mean_factor(&m->leaf.triangle, m->leaf.plane.normal, &sender);
+    double factor = mean_factor(&m->leaf.triangle, m->leaf.plane.normal, &sender,
+                                &g->method->estimating);
     double range = (double)extremes->high - (double)extremes->low;
     if (!(factor > 0.0))
         return true;
@@ -547,7 +615,8 @@ static bool make_exact(struct making *m, int32_t root)
 
 void final_gather_add(struct final_gather *gather, int32_t leaf)
 {
-    struct making m = {.gather = gather, .leaf = facet_make(gather->method->forest, leaf)};
+    struct making m = {.gather = gather,
+                       .leaf = facet_make(gather->method->forest, leaf)};
     struct patch_id id = gather->method->forest->patches[leaf].id;
     m.first = gather->term_count;
     m.row = (struct gather_row){.leaf = leaf, .end = m.first};
@@ -557,6 +626,7 @@ void final_gather_add(struct final_gather *gather, int32_t leaf)
     if (!make_exact(&m, (int32_t)id.root)) {
         m.row.end = m.first;
         aim_at_lamps(&m);
+        m.light = (struct rgb){{0.0, 0.0, 0.0}};
         fire_rays(&m);
     }
     join_terms(&m);

@@ -22,6 +22,10 @@ struct gather_row {
     int32_t leaf;
     int64_t end;       /* of its terms, which begin where those of the row before end */
     struct rgb source; /* irradiance that comes from lamps, W/m^2 */
+    float chance[BANDS]; /* variance of H by the choice of rays and segments, if that is by
+                            chance, (W/m^2)^2, for the solution's radiosities */
+    float halves[BANDS]; /* square of what the first and second half of the rays differ by:
+                            the variance as the sequence has it, but of this leaf alone */
     float bare;        /* share of the leaf that no other thing lies or stands on, 1 */
 };
 
@@ -33,7 +37,8 @@ struct gather_counts {
     int64_t exact;          /* rows made without rays */
 };
 
-/* A root and the roots that it faces, if it is proved that nothing stands between them. */
+/* A root and the roots that it faces, if it is proved that nothing stands between them.
+ */
 struct gather_view {
     int32_t root;      /* -1: none yet */
     bool open;

@@ -1,8 +1,8 @@
 /* Lamps as a leaf sees them.
  *
  * From the top of the tree downwards, a cluster is one group as soon as it is small for
- * its distance; a lamp by itself is a group whose direct light is known from exact factors.
- * So a hall with ten thousand lamps has some dozens of groups for each leaf.
+ * its distance; a lamp by itself is a group whose direct light is known from exact
+ * factors. So a hall with ten thousand lamps has some dozens of groups for each leaf.
  *
  * The mean factor is taken at three points with a rule that is exact for polynomials of
  * the second degree. Where the other triangle is nearer than the size of this one, the
@@ -29,7 +29,7 @@ static const double PI = 3.14159265358979323846;
 /* --- factors --- */
 
 static double factor_of_points(const struct triangle *from, struct vec3 normal,
-                               const struct triangle *to)
+                               const struct triangle *to, int64_t *work)
 {
     const struct vec3 *c = from->corner;
     struct vec3 sum = vec3_scale(vec3_add(vec3_add(c[0], c[1]), c[2]), 1.0 / 6.0);
@@ -38,6 +38,7 @@ static double factor_of_points(const struct triangle *from, struct vec3 normal,
         struct vec3 x = vec3_add(sum, vec3_scale(c[k], 0.5));
         factor += point_triangle_factor(x, normal, to) / 3.0;
     }
+    *work += 3 * TESTS_PER_FORM_FACTOR;
     return factor;
 }
 
@@ -53,23 +54,25 @@ static double distance2_to_box(struct vec3 x, const struct triangle *t)
 }
 
 static double factor_of_quarters(const struct triangle *from, struct vec3 normal,
-                                 const struct triangle *to, int quarterings)
+                                 const struct triangle *to, int quarterings,
+                                 int64_t *work)
 {
     double size = triangle_radius(from);
-    if (quarterings == 0 || distance2_to_box(triangle_centroid(from), to) > 4.0 * size * size)
-        return factor_of_points(from, normal, to);
+    if (quarterings == 0 ||
+        distance2_to_box(triangle_centroid(from), to) > 4.0 * size * size)
+        return factor_of_points(from, normal, to, work);
     double factor = 0.0;
     for (int k = 0; k < 4; k++) {
         struct triangle child = triangle_child(from, k);
-        factor += 0.25 * factor_of_quarters(&child, normal, to, quarterings - 1);
+        factor += 0.25 * factor_of_quarters(&child, normal, to, quarterings - 1, work);
     }
     return factor;
 }
 
 double mean_factor(const struct triangle *from, struct vec3 normal,
-                   const struct triangle *to)
+                   const struct triangle *to, int64_t *work)
 {
-    return factor_of_quarters(from, normal, to, QUARTERINGS);
+    return factor_of_quarters(from, normal, to, QUARTERINGS, work);
 }
 
 /* --- lamps --- */
@@ -137,14 +140,15 @@ static void add_cluster(const struct facet *leaf, const struct cluster *cluster,
     double distance2 = vec3_dot(apart, apart);
     double cosine = vec3_dot(apart, leaf->plane.normal) / sqrt(distance2);
     double radius = 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low));
-    bool above = cosine * sqrt(distance2) + radius + triangle_radius(&leaf->triangle) > 0.0;
+    bool above =
+        cosine * sqrt(distance2) + radius + triangle_radius(&leaf->triangle) > 0.0;
     group.around = watts / (PI * distance2);
     group.direct = above ? fmax(cosine, LEAST_COSINE) * group.around : 0.0;
     add_group(groups, group);
 }
 
 static void add_root(const struct lamps *lamps, const struct facet *leaf, int32_t root,
-                     struct lamp_groups *groups)
+                     struct lamp_groups *groups, int64_t *work)
 {
     struct facet lamp = facet_make(lamps->method->forest, root);
     struct vec3 apart = vec3_sub(triangle_centroid(&lamp.triangle),
@@ -154,19 +158,19 @@ static void add_root(const struct lamps *lamps, const struct facet *leaf, int32_
     struct lamp_group group = {.node = root};
     group.around = emission * fmin(1.0, lamp.area / (PI * distance2));
     if (facets_face(leaf, &lamp))
-        group.direct =
-            emission * mean_factor(&leaf->triangle, leaf->plane.normal, &lamp.triangle);
+        group.direct = emission * mean_factor(&leaf->triangle, leaf->plane.normal,
+                                              &lamp.triangle, work);
     add_group(groups, group);
 }
 
 static void add_node(const struct lamps *lamps, const struct facet *leaf, int32_t node,
-                     struct lamp_groups *groups)
+                     struct lamp_groups *groups, int64_t *work)
 {
     double watts = watts_of(lamps, node);
     if (!(watts > 0.0))
         return;
     if (!node_is_cluster(node)) {
-        add_root(lamps, leaf, node, groups);
+        add_root(lamps, leaf, node, groups, work);
         return;
     }
     const struct cluster *cluster = &lamps->method->clusters->tree->clusters[~node];
@@ -180,15 +184,15 @@ static void add_node(const struct lamps *lamps, const struct facet *leaf, int32_
         return;
     }
     for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++)
-        add_node(lamps, leaf, cluster->child[k], groups);
+        add_node(lamps, leaf, cluster->child[k], groups, work);
 }
 
 void lamps_group(const struct lamps *lamps, const struct facet *leaf,
-                 struct lamp_groups *groups)
+                 struct lamp_groups *groups, int64_t *work)
 {
     groups->count = 0;
     groups->direct = groups->around = 0.0;
-    add_node(lamps, leaf, NODE_TOP, groups);
+    add_node(lamps, leaf, NODE_TOP, groups, work);
 }
 
 struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u)
@@ -198,7 +202,8 @@ struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u)
     places_of(tree, node, &first, &end);
     double all = lamps->before[end] - lamps->before[first];
     double at = lamps->before[first] + u * all;
-    while (end - first > 1) { /* before[first] <= at, and at < before[end] or all but so */
+    while (end - first >
+           1) { /* before[first] <= at, and at < before[end] or all but so */
         int32_t middle = first + (end - first) / 2;
         if (lamps->before[middle] <= at)
             first = middle;

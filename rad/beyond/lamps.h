@@ -15,7 +15,8 @@ struct lamps {
 /* A node whose lamps count as one, as seen from a leaf. */
 struct lamp_group {
     int32_t node;
-    double direct; /* irradiance of the leaf, about, over all bands and unoccluded, W/m^2 */
+    double
+        direct; /* irradiance of the leaf, about, over all bands and unoccluded, W/m^2 */
     double around; /* the same for a surface beside the leaf that faces the group */
 };
 
@@ -31,24 +32,25 @@ struct lamp {
     double share; /* W that all lamps of its group emit, for each that it does, 1 */
 };
 
-/* Borrows the method, which has clusters. A lamp emits more than `least`, over all bands. */
+/* Borrows the method, which has clusters. A lamp emits more than `least`, over all bands.
+ */
 struct lamps lamps_create(const struct method *method, double least);
 void lamps_free(struct lamps *lamps);
 
 bool root_is_lamp(const struct lamps *lamps, int32_t root);
 
 /* The groups of lamps that a leaf tells apart, in the tree's order: each is a root, or a
- * cluster that is small for its distance. */
+ * cluster that is small for its distance. Adds the tests that it took to `work`. */
 void lamps_group(const struct lamps *lamps, const struct facet *leaf,
-                 struct lamp_groups *groups);
+                 struct lamp_groups *groups, int64_t *work);
 
 /* A lamp of the group, by the power that it emits; `u` in [0, 1) chooses. */
 struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u);
 
 /* The factor (1) from a triangle with this unit normal to another, unoccluded: the mean
  * over points of it, which are the more the nearer the other is. Source: Lambert, exact
- * at each point. */
+ * at each point. Adds the tests that points are worth to `work`. */
 double mean_factor(const struct triangle *from, struct vec3 normal,
-                   const struct triangle *to);
+                   const struct triangle *to, int64_t *work);
 
 #endif

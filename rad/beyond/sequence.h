@@ -22,7 +22,8 @@ struct sequence sequence_start(uint64_t seed);
 void sequence_point(const struct sequence *sequence, uint32_t index,
                     double u[SEQUENCE_DIMENSIONS]);
 
-/* The point of the triangle that u and v in [0, 1) stand for: equal areas for equal areas. */
+/* The point of the triangle that u and v in [0, 1) stand for: equal areas for equal
+ * areas. */
 struct vec3 triangle_of_square(const struct triangle *t, double u, double v);
 
 /* The direction that u and v in [0, 1) stand for, distributed as the cosine to `normal`.
