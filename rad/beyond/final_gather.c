@@ -55,8 +55,8 @@ static const double NEAR = 0.5;
 /* An exact row whose sum is within this of 1 sees no way out. */
 static const double CLOSED = 1e-3;
 
-/* Fewest rays of a leaf. */
-enum { FEWEST = 4 };
+/* Leaves from which on each has fewer rays, and fewest rays of a leaf. */
+enum { MANY = 25000, FEWEST = 4 };
 
 /* A path ends after so many points at the latest. */
 enum { PATH_MOST = 8, AIMS_MOST = 4, BARE_POINTS = 4 };
@@ -72,14 +72,25 @@ static double mean_radiosity(const struct method *method)
     return sum / method->area;
 }
 
+/* Halves the rays for each fourfold of MANY leaves: what is shown of them together is as
+ * smooth as before, and the time grows with the root of their number only. */
+static int rays_for(int rays, int64_t leaves)
+{
+    for (; leaves >= 2 * MANY && rays >= 2 * FEWEST; leaves /= 4)
+        rays /= 2;
+    return rays;
+}
+
 struct final_gather final_gather_create(struct method *method, int rays)
 {
     struct forest *forest = method->forest;
-    struct final_gather gather = {.method = method, .rays = rays, .view = {.root = -1}};
+    struct final_gather gather = {.method = method, .view = {.root = -1}};
     forest->extremes = alloc_reserve(forest->extremes, &forest->extremes_capacity,
                                      forest->count, sizeof *forest->extremes);
     forest_bound(forest);
-    gather.leaf_area = method->area / (double)forest_leaf_count(forest);
+    int64_t leaves = forest_leaf_count(forest);
+    gather.rays = rays_for(rays, leaves);
+    gather.leaf_area = method->area / (double)leaves;
     gather.mean = mean_radiosity(method);
     gather.lamps = lamps_create(method, LAMP * gather.mean);
     gather.order = forest_order(forest);
@@ -524,12 +535,22 @@ static bool view_node(struct final_gather *g, const struct end *root, int32_t no
     return true;
 }
 
-/* True if it is proved that nothing stands between the root and what it faces. */
+/* True if it is proved that nothing stands between the root and what it faces. Segments
+ * come first: most that is hidden is found out by them. */
 static bool is_open(struct final_gather *g, const struct facet *root)
 {
     const struct octree *octree = g->method->octree;
     struct gather_view *view = &g->view;
+    struct vec3 middle = triangle_centroid(&root->triangle);
+    int32_t guess = -1;
     bool open = true;
+    for (int64_t i = 0; i < view->count && open; i++) {
+        struct facet other = facet_make(g->method->forest, view->faced[i]);
+        const int32_t own[2] = {root->input, other.input};
+        struct vec3 there = triangle_centroid(&other.triangle);
+        open = !(kernel(middle, root->plane.normal, there, other.plane.normal) > 0.0) ||
+               !octree_blocks_segment(octree, middle, there, own, &guess, &view->counts);
+    }
     for (int64_t i = 0; i < view->count && open; i++) {
         struct facet other = facet_make(g->method->forest, view->faced[i]);
         open = facets_are_open(root, &other, octree, &view->counts);
