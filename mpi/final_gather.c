@@ -51,6 +51,7 @@ struct gathering {
     bool closed;            /* next to no ray of any rank escapes */
     struct rgb *radiosity;  /* by place: room for what is to be gathered */
     struct rgb *all;        /* room for what the rows of all ranks have of each leaf */
+    int64_t shares;         /* of values of all rows, so far */
     int *counts, *at; /* [ranks] of rows, and where those of a rank begin in `all` */
 };
 
@@ -135,6 +136,7 @@ static void share_rows(struct gathering *g, struct rgb *values)
 {
     const struct comm *comm = g->solver->comm;
     comm_share(comm, g->all, g->counts, g->at, sizeof *g->all);
+    g->shares++;
     for (int64_t i = 0; i < g->count; i++)
         values[i] = g->all[g->at[i % comm->size] + i / comm->size];
 }
@@ -373,8 +375,13 @@ bool solver_final_gather(struct solver *solver, struct vote *vote)
     double start = comm_seconds();
     gathering_start(&g, solver);
     bool done = make_rows(&g);
+    solver->seconds[PHASE_ROWS] += comm_seconds() - start;
     if (done)
         solve_rows(&g, vote);
+    ledger_add(&solver->ledger,
+               (struct phase_work){.kind = WORK_FINAL_GATHER,
+                                   .iteration = solver->iteration,
+                                   .bytes = g.shares * g.count * (int64_t)sizeof *g.all});
     gathering_end(&g);
     solver->seconds[PHASE_FINAL_GATHER] += comm_seconds() - start;
     return done;

@@ -7,7 +7,7 @@ function value(key,    text) { # the number behind "key":
 }
 
 BEGIN { # phases that are parts of others
-    split("octree spaces tree prepare looks shading viewpoint", names, " ")
+    split("octree spaces tree prepare looks rows shading viewpoint", names, " ")
     for (i in names) is_part[names[i]] = 1
 }
 FNR == 1 { # a run on one rank, the run on many, the replay
@@ -99,6 +99,10 @@ END {
          "repeated")
     divided("push-pull at home", "push_pull", "own")
     same("routes", "repeated", "routes")
+    if (tree) divided("rows of the final gather", "rows", "final_gather")
+    if (tree) line("light solved for by rows", "repeated", seconds["final_gather"] - seconds["rows"],
+                   seconds["final_gather"] - seconds["rows"],
+                   seconds["final_gather"] - seconds["rows"], "repeated")
     same("row sums for the report", "repeated", "row_sums")
     same("blend of leaves for the picture", "repeated", "shading")
     if (seconds["viewpoint"] > 0) same("viewpoint", "repeated", "viewpoint")
@@ -111,6 +115,8 @@ END {
     sending("links that move", sent["splitting"], 0, 0, moved[1024])
     sending("gather", sent["transfer"], 0, 0, sent["transfer"])
     sending("scatter", sent["own"], 0, 0, sent["own"])
+    if (tree) sending("vectors of the final gather", sent["final_gather"], 0, 0,
+                      sent["final_gather"])
     sending("picture to rank 0", picture, log_ranks, 10, picture)
     sending("messages of all exchanges", 0, messages, exchanges * 10 + partners, 0)
     printf "| all | | %.3f | %.3f | %.3f |\n\n", total[1], total[2], total[3]
@@ -122,6 +128,8 @@ END {
            1e9 * price, ranks, slowest["many", "splitting"] / mean
     printf "stage by stage; the replay says %.3f, and of 1,024 %.1f. ", \
            most[ranks] / (dealt[ranks] / ranks), most[1024] / (dealt[1024] / 1024)
-    printf "Of %d: looks %.2f, transfer %.2f, push-pull %.2f.\n", ranks, uneven["looks"], \
+    printf "Of %d: looks %.2f, transfer %.2f, push-pull %.2f", ranks, uneven["looks"], \
            uneven["transfer"], uneven["own"]
+    if (tree) printf ", rows of the final gather %.3f", uneven["final_gather"]
+    printf ".\n"
 }
