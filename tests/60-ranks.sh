@@ -87,11 +87,11 @@ power() {
     stat_of "$work/$1/s.json" emitted_power
 }
 
-# roots NAME: the roots of the leaves in the mesh, as ranges "FIRST-LAST ". A face has 33
+# roots NAME: the roots of the leaves in the mesh, as ranges "FIRST-LAST ". A face has 37
 # bytes.
 roots() {
     faces=$(LC_ALL=C sed -n 's/^element face //p; /^end_header/q' "$work/$1/a.ply")
-    tail -c $((33 * faces)) "$work/$1/a.ply" | od -An -v -w33 -t u1 | awk '
+    tail -c $((37 * faces)) "$work/$1/a.ply" | od -An -v -w37 -t u1 | awk '
         { root = $26 + 256 * $27 }
         NR == 1 { first = root }
         NR > 1 && root > last + 1 { printf "%d-%d ", first, last; first = root }
