@@ -10,7 +10,7 @@
  * this costs one tracing, and products with a sparse matrix.
  *
  * W is not symmetric: BiCGSTAB (van der Vorst, 1992), for the three bands side by side,
- * with areas for weights. Rows are dealt to the ranks in turn. All ranks know all
+ * with areas for weights. Rows are dealt to the ranks. All ranks know all
  * vectors, so only W B takes an exchange, and scalar products are the same on all of
  * them.
  *
@@ -24,8 +24,10 @@
 #include "mpi/solver.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/hash.h"
 #include "geom/stop.h"
 #include "rad/beyond/bicgstab.h"
 #include "rad/beyond/final_gather.h"
@@ -39,8 +41,8 @@ static const double CRACKS = 1e-5;
 /* The light of a root that is not divided varies by about this part. */
 static const double UNDIVIDED = 0.2;
 
-/* Leaves by number, as in forest_order(): the same on all ranks. Row k of a rank is that
- * of leaf k size + rank. */
+/* Leaves by number, as in forest_order(): the same on all ranks. Rows of a rank are in the
+ * order of its leaves. */
 struct gathering {
     struct solver *solver;
     struct final_gather gather;
@@ -52,6 +54,7 @@ struct gathering {
     struct rgb *radiosity;  /* by place: room for what is to be gathered */
     struct rgb *all;        /* room for what the rows of all ranks have of each leaf */
     int64_t shares;         /* of values of all rows, so far */
+    int *rank_of;           /* [count] that makes the row of a leaf */
     int *counts, *at; /* [ranks] of rows, and where those of a rank begin in `all` */
 };
 
@@ -73,6 +76,20 @@ static void list_leaves(struct gathering *g)
     }
 }
 
+/* Of as many leaves as there are ranks, one after the other, each rank gets one, in an
+ * order that changes from turn to turn: dealt in the same order, things of as many
+ * triangles as ranks would all have the same side on the same rank. */
+static void deal_leaves(struct gathering *g)
+{
+    uint64_t ranks = (uint64_t)g->solver->comm->size;
+    g->rank_of = alloc_array((size_t)g->count, sizeof *g->rank_of);
+    for (int64_t i = 0; i < g->count; i++) {
+        uint64_t turn = (uint64_t)i / ranks, first = hash_mix(turn) % ranks;
+        g->rank_of[i] = (int)((first + (uint64_t)i % ranks) % ranks);
+        g->counts[g->rank_of[i]]++;
+    }
+}
+
 static void gathering_start(struct gathering *g, struct solver *solver)
 {
     const struct comm *comm = solver->comm;
@@ -85,8 +102,7 @@ static void gathering_start(struct gathering *g, struct solver *solver)
     g->all = alloc_array((size_t)g->count, sizeof *g->all);
     g->counts = alloc_array((size_t)comm->size, sizeof *g->counts);
     g->at = alloc_array((size_t)comm->size, sizeof *g->at);
-    for (int r = 0; r < comm->size; r++)
-        g->counts[r] = comm_count(comm, (g->count - r + comm->size - 1) / comm->size);
+    deal_leaves(g);
     comm_displacements(comm, g->counts, g->at);
 }
 
@@ -96,6 +112,7 @@ static void gathering_end(struct gathering *g)
     alloc_free(g->leaves);
     alloc_free(g->areas);
     alloc_free(g->bare);
+    alloc_free(g->rank_of);
     alloc_free(g->radiosity);
     alloc_free(g->all);
     alloc_free(g->counts);
@@ -108,8 +125,9 @@ static bool make_rows(struct gathering *g)
     struct solver *solver = g->solver;
     int64_t before = method_work(&solver->method);
     progress_begin(solver->progress, "gathering", -1, 0);
-    for (int64_t i = solver->comm->rank; i < g->count && !stop_is_asked();
-         i += solver->comm->size) {
+    for (int64_t i = 0; i < g->count && !stop_is_asked(); i++) {
+        if (g->rank_of[i] != solver->comm->rank)
+            continue;
         final_gather_add(&g->gather, g->leaves[i]);
         progress_tick(solver->progress, (double)i / (double)g->count);
     }
@@ -137,8 +155,11 @@ static void share_rows(struct gathering *g, struct rgb *values)
     const struct comm *comm = g->solver->comm;
     comm_share(comm, g->all, g->counts, g->at, sizeof *g->all);
     g->shares++;
+    int *next = alloc_array((size_t)comm->size, sizeof *next);
+    memcpy(next, g->at, (size_t)comm->size * sizeof *next);
     for (int64_t i = 0; i < g->count; i++)
-        values[i] = g->all[g->at[i % comm->size] + i / comm->size];
+        values[i] = g->all[next[g->rank_of[i]]++];
+    alloc_free(next);
 }
 
 /* Makes these radiosities of leaves those to be gathered. */
