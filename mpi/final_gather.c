@@ -220,6 +220,14 @@ static void set_radiosities(const struct gathering *g, const struct rgb *h, stru
     }
 }
 
+/* The area of a leaf whose emission arrives: of a lamp all, for segments look through a
+ * ceiling in whose plane it is. */
+static double shining_area(const struct gathering *g, int64_t i)
+{
+    uint32_t root = g->solver->method.forest->patches[g->leaves[i]].id.root;
+    return root_is_lamp(&g->gather.lamps, (int32_t)root) ? g->areas[i] : g->bare[i];
+}
+
 /* Makes irradiances of a closed scene such that all that is emitted is absorbed. */
 static void close_balance(const struct gathering *g, struct rgb *h)
 {
@@ -228,7 +236,7 @@ static void close_balance(const struct gathering *g, struct rgb *h)
         const struct material *m =
             forest_material(g->solver->method.forest, g->leaves[i]);
         for (int c = 0; c < BANDS; c++) {
-            emitted.band[c] += g->bare[i] * m->emission.band[c];
+            emitted.band[c] += shining_area(g, i) * m->emission.band[c];
             absorbed.band[c] +=
                 g->bare[i] * (1.0 - m->reflectance.band[c]) * h[i].band[c];
         }
@@ -251,7 +259,8 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
             double rho = m->reflectance.band[c];
             absorbed += g->bare[i] * (1.0 - rho) * h[i].band[c];
             arriving += g->bare[i] * h[i].band[c];
-            leaving += g->bare[i] * b[i].band[c];
+            leaving += g->bare[i] * (b[i].band[c] - m->emission.band[c]) +
+                       shining_area(g, i) * m->emission.band[c];
             brightest = fmax(brightest, rho);
         }
     }

@@ -25,8 +25,8 @@
 enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 380, BYTES_PER_CLUSTER = 290 };
 
 /* Of a row of the final gather: rays that end on the same leaf have one term of 16 bytes,
- * three quarters of the patches are leaves, and the list grows by half: measured, 7 to 11
- * bytes a ray and patch. */
+ * three quarters of the patches are leaves, and the list grows by half. Exact rows, whose
+ * terms are as many as what is seen openly, may take twice as much. */
 enum { BYTES_PER_RAY = 12 };
 
 /* Of what the machines have, for links, patches and clusters. */

@@ -224,6 +224,33 @@ static void test_covered(void)
     trial_free(&g);
 }
 
+/* A lamp in the plane of the ceiling that comes before it in the file: rays meet the
+ * ceiling, segments reach the lamp, and the room is as bright as with the lamp behind. */
+static void test_flush_lamp(void)
+{
+    double mean[2];
+    for (int first = 0; first < 2; first++) {
+        struct painted painted = {0};
+        for (int part = 0; part < 2; part++)
+            if (part == first) {
+                soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+                soup_add_box(&painted.soup, point(0.6, 0.6, 0), point(0.8, 0.8, 0.5), 1,
+                             false);
+                paint(&painted, 0.5, 0.0);
+            } else {
+                soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0),
+                              point(0.2, 0, 0), 1);
+                paint(&painted, 0.0, 10.0);
+            }
+        struct solution s = solve_scene(world_comm, scene_of_painted(&painted), "");
+        int32_t floor = (first == 0 ? 0 : 2) + 8; /* z = 0 */
+        mean[first] = s.solver->method.forest->patches[floor].radiosity.band[0];
+        solution_free(&s);
+    }
+    tap_ok(mean[0] > 0.0 && fabs(mean[1] / mean[0] - 1.0) < 0.05,
+           "a lamp before its ceiling in the file: %.4f, behind it: %.4f", mean[1], mean[0]);
+}
+
 int main(int argc, char **argv)
 {
     struct comm comm;
@@ -235,6 +262,7 @@ int main(int argc, char **argv)
     test_lamps();
     test_gap();
     test_covered();
+    test_flush_lamp();
     comm_stop(&comm);
     return tap_done();
 }

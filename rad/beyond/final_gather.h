@@ -64,7 +64,7 @@ struct final_gather {
     struct gather_counts counts;
 };
 
-/* Borrows the method, which has clusters and a solution. `rays`: a power of two. */
+/* Borrows the method, which has clusters and a solution. `rays`: at least 1. */
 struct final_gather final_gather_create(struct method *method, int rays);
 void final_gather_free(struct final_gather *gather);
 

@@ -76,8 +76,8 @@ struct vec3 triangle_of_square(const struct triangle *t, double u, double v)
                     vec3_add(vec3_scale(t->corner[1], b), vec3_scale(t->corner[2], c)));
 }
 
-/* Sine and cosine of an angle of at most pi / 4, within 4e-9: 64 times finer than what
- * 2^16 points in the square tell apart. */
+/* Sine and cosine of an angle of at most pi / 4, within 2e-9 (the next term of the
+ * series). */
 static void turn(double angle, double *sine, double *cosine)
 {
     double a2 = angle * angle;
