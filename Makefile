@@ -52,7 +52,7 @@ endif
 
 GEOM = alloc contour elementary error gauss hull lambert polygon scene stop triangle wall
 OCTREE = build hit octree
-RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/lamps beyond/node \
+RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/lamps beyond/node \
       beyond/node_exchange beyond/node_link beyond/sequence closure conjugate flux formfactor id link \
       linking method oracle patch pushpull sample snapshot treecode viewfactor
 MPI = accuracy assign balance broadcast closing comm final_gather funnel gather keep ledger linking memory migrate \

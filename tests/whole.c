@@ -26,14 +26,9 @@ struct errors {
 /* What is asked of all scenes: that an eye sees nothing, and next to edges little. */
 static const struct errors BARS = {1e-3, 2e-3, 1e-2};
 
-/* What is reached where that is missed at the default epsilon. A leaf spreads what falls
- * on its one end over all of it, so light comes half a leaf too far with each reflection,
- * and more of it gets out. It counts where leaves are as large as the gap, between plates
- * a tenth of their width apart and in narrow grooves; and beside a bright edge on a dark
- * wall, where B changes most. Measured -0.70, 0.73, 1.04 %; -0.16, 0.19, 0.29 %; -0.13,
- * 0.21, 0.30 %; -0.39, 0.63, 2.2 %. */
-static const struct errors NEAR_BRIGHT = {1e-2, 1e-2, 1.5e-2},
-                           NEAR_DARK = {2e-3, 3e-3, 1e-2}, HINGES = {5e-3, 8e-3, 3e-2};
+/* Beside a bright edge on a dark wall, where B changes most, leaves are off by a little
+ * more. Measured 0.052, 0.200, 0.63 %. */
+static const struct errors HINGES = {1e-3, 2.5e-3, 1e-2};
 
 /* In a crater the exact answer takes B to be the same all over each of 60 facets, beside
  * a bright edge: it is as far off as this, for a finer epsilon finds the same. */
@@ -533,8 +528,8 @@ static void test_convergence(const struct comm *comm)
     for (int k = 0; k < 4; k++) {
         char words[64];
         snprintf(words, sizeof words, "--epsilon %g", epsilon[k]);
-        struct solution s = solve_strips(comm, e, 12, false, words);
-        struct errors now = measure(&s, 0, &(struct truth){e, .low = 4.0, .high = 8.0});
+        struct solution s = solve_strips(comm, e, STRIP, false, words);
+        struct errors now = measure(&s, 0, &(struct truth){e, .low = 18.0, .high = 22.0});
         double work = work_of(&s), order = log(before.rms / now.rms) / log(work / done);
         tap_ok(k == 0 || (order >= 1.0 / 3.0 && now.worst < before.worst),
                "%s: work %.2g, RMS %.4f, worst leaf %.3f %%: order %.2f, at least 1/3 "
@@ -564,9 +559,9 @@ int main(int argc, char **argv)
                  (double[]){1.010218055060, .100947189239}, true, BARS);
     test_isothermal(&comm, &PLATES, 1.0, 0.1, STRIP, .159605984267, BARS);
     test_isothermal(&comm, &PLATES, 1.0, 0.5, STRIP, .630764377100, BARS);
-    test_isothermal(&comm, &PLATES, 0.1, 0.1, SHORT, .601952438427, NEAR_BRIGHT);
-    test_isothermal(&comm, &PLATES, 0.1, 0.5, SHORT, .920355233642, NEAR_DARK);
-    test_isothermal(&comm, &GROOVE, PI / 6.0, 0.5, STRIP, .8061670444, NEAR_DARK);
+    test_isothermal(&comm, &PLATES, 0.1, 0.1, SHORT, .601952438427, BARS);
+    test_isothermal(&comm, &PLATES, 0.1, 0.5, SHORT, .920355233642, BARS);
+    test_isothermal(&comm, &GROOVE, PI / 6.0, 0.5, STRIP, .8061670444, BARS);
     test_isothermal(&comm, &GROOVE, PI / 3.0, 0.5, STRIP, .6729508487, BARS);
     test_isothermal(&comm, &GROOVE, PI / 3.0, 0.9, STRIP, .9476083454, BARS);
     test_isothermal(&comm, &GROOVE, PI / 2.0, 0.5, STRIP, .5878526172, BARS);

@@ -64,12 +64,33 @@ struct final_gather {
     struct gather_counts counts;
 };
 
+/* A point of a surface. */
+struct gather_point {
+    struct vec3 at;
+    struct plane plane;
+    int32_t input; /* triangle that it is on */
+};
+
+/* How B varies over a patch: see final_gather.c. */
+struct gather_slope {
+    int32_t first; /* child 0 of the patch, or of its parent */
+    double rise;   /* s, times the part that is taken; 0: B is taken as constant */
+    double range;  /* most that B differs by from that of the centre, over all bands, W/m^2 */
+};
+
 /* Borrows the method, which has clusters and a solution. `rays`: at least 1. */
 struct final_gather final_gather_create(struct method *method, int rays);
 void final_gather_free(struct final_gather *gather);
 
 /* Makes the row of a leaf, as the last one. */
 void final_gather_add(struct final_gather *gather, int32_t leaf);
+
+/* H at a point, W/m^2, for the radiosities that the forest has: by `rays` rays and as many
+ * segments to lamps. */
+struct rgb final_gather_at(struct final_gather *gather, const struct gather_point *point,
+                           int rays, uint64_t seed);
+
+struct gather_slope gather_slope(const struct final_gather *gather, int32_t patch);
 
 /* The radiosities of the leaves by place, made those of all patches: inner ones get the
  * mean of their leaves. */

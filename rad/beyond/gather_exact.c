@@ -1,0 +1,253 @@
+/* Exact rows of the final gather.
+ *
+ * Where it is proved for a root that nothing stands between it and any root that it
+ * faces, its leaves need no rays: their rows are exact factors (noise 0). That is so in
+ * grooves, between plates and in empty rooms, where the exact answers are.
+ *
+ * A sender over which B varies is taken in parts: its leaves, and quarters of leaves over
+ * which B is linear.
+ *
+ * Rejected: exact factors to whatever a leaf sees openly and rays for the rest. Proofs
+ * for all pairs cost more than the rays that they save. */
+#include "rad/beyond/receiver.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+
+/* A root has exact rows if it faces at most so many times as many roots as rays would be
+ * fired. */
+enum { FACED_PER_RAY = 4 };
+
+/* A sender is taken as a whole in an exact row if B over it, times its factor and the
+ * number of rays, varies by less than this part of the mean: where more rays are asked
+ * for, there is more to win. */
+static const double VARIES = 0.1;
+
+/* A leaf is quartered so many times at most. */
+enum { QUARTERINGS = 3 };
+
+/* An exact row whose sum is within this of 1 sees no way out. */
+static const double CLOSED = 1e-3;
+
+/* --- what a root faces --- */
+
+/* Adds the roots below a node that the root faces; false once there are too many. */
+static bool view_node(struct final_gather *g, const struct end *root, int32_t node)
+{
+    struct gather_view *view = &g->view;
+    struct end end = end_of(g->method, node);
+    if (!ends_may_face(root, &end))
+        return true;
+    if (end.cluster) {
+        bool few = true;
+        for (int k = 0; k < 4 && few && end.cluster->child[k] != NODE_NONE; k++)
+            few = view_node(g, root, end.cluster->child[k]);
+        return few;
+    }
+    if (view->count == FACED_PER_RAY * g->rays)
+        return false;
+    view->faced =
+        alloc_reserve(view->faced, &view->capacity, view->count + 1, sizeof *view->faced);
+    view->faced[view->count++] = node;
+    return true;
+}
+
+/* True if it is proved that nothing stands between the root and what it faces. Segments
+ * come first: most that is hidden is found out by them. */
+static bool is_open(struct final_gather *g, const struct facet *root)
+{
+    const struct octree *octree = g->method->octree;
+    struct gather_view *view = &g->view;
+    struct vec3 middle = triangle_centroid(&root->triangle);
+    int32_t guess = -1;
+    bool open = true;
+    for (int64_t i = 0; i < view->count && open; i++) {
+        struct facet other = facet_make(g->method->forest, view->faced[i]);
+        const int32_t own[2] = {root->input, other.input};
+        struct vec3 there = triangle_centroid(&other.triangle);
+        open = !(receiver_kernel(middle, root->plane.normal, there, other.plane.normal) > 0.0) ||
+               !octree_blocks_segment(octree, middle, there, own, &guess, &view->counts);
+    }
+    for (int64_t i = 0; i < view->count && open; i++) {
+        struct facet other = facet_make(g->method->forest, view->faced[i]);
+        open = facets_are_open(root, &other, octree, &view->counts);
+    }
+    return open;
+}
+
+static const struct gather_view *view_of(struct final_gather *g, int32_t root)
+{
+    if (g->view.root != root) {
+        struct end end = end_of(g->method, root);
+        g->view.root = root;
+        g->view.count = 0;
+        g->view.open = view_node(g, &end, NODE_TOP) && is_open(g, &end.facet);
+    }
+    return &g->view;
+}
+
+/* True if the leaf lies so close on a much larger one that it hides from others what it
+ * sees of it: the light of the whole is not what it gets. */
+static bool lies_on(const struct receiver *r, int32_t sender, double factor)
+{
+    const struct forest *forest = r->gather->method->forest;
+    uint32_t root = forest->patches[sender].id.root;
+    struct plane plane = scene_root_plane(forest->scene, (int32_t)root);
+    double height = plane_distance(&plane, triangle_centroid(&r->facet.triangle));
+    return factor > 0.25 && forest_area(forest, sender) > 4.0 * r->facet.area &&
+           height < 0.25 * triangle_radius(&r->facet.triangle);
+}
+
+/* Three points of a triangle, by a rule that is exact for the second degree: the
+ * barycentric coordinates of point k are 2/3 for corner k, and 1/6. */
+static void three_points(const struct triangle *t, struct vec3 x[3])
+{
+    const struct vec3 *c = t->corner;
+    struct vec3 sum = vec3_scale(vec3_add(vec3_add(c[0], c[1]), c[2]), 1.0 / 6.0);
+    for (int k = 0; k < 3; k++)
+        x[k] = vec3_add(sum, vec3_scale(c[k], 0.5));
+}
+
+/* Where on a sender its light comes from in the mean, in barycentric coordinates. */
+static void place_of_light(const struct facet *to, const struct triangle *sender,
+                           struct vec3 normal, double w[3])
+{
+    struct vec3 x[3], y[3];
+    double light[3] = {0.0, 0.0, 0.0};
+    three_points(&to->triangle, x);
+    three_points(sender, y);
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 3; i++)
+            light[k] += receiver_kernel(x[i], to->plane.normal, y[k], normal);
+    double all = light[0] + light[1] + light[2];
+    for (int k = 0; k < 3; k++)
+        w[k] = all > 0.0 ? 1.0 / 6.0 + 0.5 * light[k] / all : 1.0 / 3.0;
+}
+
+/* True if a sender over which B varies by `range` is to be taken in parts: over it the
+ * kernel varies by about the part that its size is of its distance, and not linearly by
+ * the square of that. */
+static bool is_to_be_split(const struct receiver *r, const struct triangle *sender,
+                           double factor, double range)
+{
+    const struct final_gather *g = r->gather;
+    struct vec3 apart =
+        vec3_sub(triangle_centroid(&r->facet.triangle), triangle_centroid(sender));
+    double radius = triangle_radius(sender);
+    double near2 = fmin(1.0, radius * radius / vec3_dot(apart, apart));
+    return factor * range * near2 * g->rays > VARIES * g->mean;
+}
+
+/* A patch as a sender, or a part of a leaf. */
+struct part {
+    int32_t patch;
+    struct triangle triangle;
+    struct vec3 normal;
+    double centre[3]; /* barycentric coordinates in the patch */
+    double size;      /* of its edges, those of the patch being 1; below 0 upside down */
+};
+
+static struct part part_child(const struct part *part, int k)
+{
+    struct part child = *part;
+    child.triangle = triangle_child(&part->triangle, k);
+    child.size = k == 3 ? -0.5 * part->size : 0.5 * part->size;
+    for (int j = 0; j < 3 && k < 3; j++)
+        child.centre[j] += child.size * ((j == k ? 1.0 : 0.0) - 1.0 / 3.0);
+    return child;
+}
+
+static double factor_to(const struct receiver *r, const struct triangle *sender)
+{
+    return mean_factor(&r->facet.triangle, r->facet.plane.normal, sender,
+                       &r->gather->method->estimating);
+}
+
+/* Adds a part whose factor is known as a whole. */
+static void add_whole(struct receiver *r, const struct part *part, double factor)
+{
+    double w[3], at[3];
+    place_of_light(&r->facet, &part->triangle, part->normal, w);
+    for (int k = 0; k < 3; k++)
+        at[k] = part->centre[k] + part->size * (w[k] - 1.0 / 3.0);
+    receiver_add_point(r, part->patch, at, &(struct rgb){{factor, factor, factor}});
+}
+
+/* Adds the exact factors to a part of a leaf, or to its quarters. */
+static void add_part(struct receiver *r, const struct part *part, double range,
+                     double factor, int quarterings)
+{
+    if (quarterings == 0 || !is_to_be_split(r, &part->triangle, factor, range)) {
+        add_whole(r, part, factor);
+        return;
+    }
+    for (int k = 0; k < 4; k++) {
+        struct part child = part_child(part, k);
+        double of_child = factor_to(r, &child.triangle);
+        if (of_child > 0.0)
+            add_part(r, &child, 0.5 * range, of_child, quarterings - 1);
+    }
+}
+
+/* Adds the exact factor to a patch, or to its leaves where B varies over it. False if one
+ * of them is too near. */
+static bool add_sender(struct receiver *r, int32_t patch)
+{
+    const struct final_gather *g = r->gather;
+    const struct forest *forest = g->method->forest;
+    const struct extremes *extremes = &forest->extremes[patch];
+    struct part whole = {.patch = patch,
+                         .triangle = forest_triangle(forest, patch),
+                         .centre = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0},
+                         .size = 1.0};
+    double factor = factor_to(r, &whole.triangle);
+    if (!(factor > 0.0))
+        return true;
+    uint32_t root = forest->patches[patch].id.root;
+    whole.normal = scene_root_plane(forest->scene, (int32_t)root).normal;
+    if (patch_is_leaf(&forest->patches[patch])) {
+        add_part(r, &whole, gather_slope(g, patch).range, factor, QUARTERINGS);
+        return !lies_on(r, patch, factor);
+    }
+    if (!is_to_be_split(r, &whole.triangle, factor,
+                        (double)extremes->high - (double)extremes->low)) {
+        add_whole(r, &whole, factor);
+        return !lies_on(r, patch, factor);
+    }
+    bool good = true;
+    for (int k = 0; k < 4 && good; k++)
+        good = add_sender(r, forest->patches[patch].children + k);
+    return good;
+}
+
+/* False if an exact row has a sum that cannot be true, as where faces lie on each other.
+ * One that all but sums to 1 is made to. */
+static bool close_row(struct receiver *r)
+{
+    struct gather_term *terms = r->gather->terms;
+    double sum = 0.0;
+    for (int64_t i = r->first; i < r->row.end; i++)
+        sum += (double)terms[i].weight[0];
+    if (sum > 1.0 + CLOSED)
+        return false;
+    r->gather->counts.exact++;
+    r->gather->counts.escaped += sum > 0.0 && sum < 1.0 - CLOSED;
+    for (int64_t i = r->first; i < r->row.end && sum >= 1.0 - CLOSED; i++)
+        for (int c = 0; c < BANDS; c++)
+            terms[i].weight[c] = (float)((double)terms[i].weight[c] / sum);
+    return true;
+}
+
+/* --- public --- */
+
+bool receiver_add_exact(struct receiver *r)
+{
+    const struct forest *forest = r->gather->method->forest;
+    uint32_t root = forest->patches[r->row.leaf].id.root;
+    const struct gather_view *view = view_of(r->gather, (int32_t)root);
+    bool good = view->open;
+    for (int64_t i = 0; i < view->count && good; i++)
+        good = add_sender(r, view->faced[i]);
+    return good && close_row(r);
+}

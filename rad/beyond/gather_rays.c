@@ -1,0 +1,370 @@
+/* Rays of the final gather.
+ *
+ * Rays leave a receiver from points spread over it, distributed as the cosine, and each
+ * that ends on a front adds 1 / N to the weight of the leaf that it meets. So in a closed
+ * scene each row sums to 1, by construction and not by luck. Noise is their only fault,
+ * and lamps are where most of it would come from: lamps (rad/beyond/lamps.c) are aimed at
+ * by segments, in proportion to the light that they would bring unoccluded, which is
+ * known from exact factors; rays that meet a lamp count what it reflects and not what it
+ * emits.
+ *
+ * The mesh is wrong where a ray ends nearer than the leaf there is large: under a sheet
+ * of paper on a table the table is dark, but the leaf is not. There the ray goes on: the
+ * point that it met receives light from a lamp, by one segment, and from one more ray,
+ * until a ray ends far enough away. That is a path tracer for what is near and radiosity
+ * for the rest. */
+#include "rad/beyond/receiver.h"
+
+#include <math.h>
+
+#include "geom/hash.h"
+#include "geom/lambert.h"
+#include "rad/beyond/sequence.h"
+#include "rad/sample.h"
+
+/* A leaf is too near for its size if the square of its distance is less than this part of
+ * its area. */
+static const double NEAR = 0.5;
+
+/* A path ends after so many points at the latest. */
+enum { PATH_MOST = 8, AIMS_MOST = 4, BARE_POINTS = 4 };
+
+/* --- points that rays meet --- */
+
+struct point {
+    int32_t patch;     /* leaf of the forest */
+    int32_t input;     /* triangle */
+    double weight[3];  /* barycentric coordinates in the leaf, 1 */
+    struct vec3 at, normal;
+};
+
+/* The leaf of the root at a point of it, and the barycentric coordinates `w` there. */
+static int32_t leaf_at(const struct forest *forest, int32_t root, struct vec3 x,
+                       double w[3])
+{
+    struct triangle t = scene_root_triangle(forest->scene, root);
+    struct vec3 a = vec3_sub(t.corner[1], t.corner[0]);
+    struct vec3 b = vec3_sub(t.corner[2], t.corner[0]), to = vec3_sub(x, t.corner[0]);
+    struct vec3 normal = vec3_cross(a, b);
+    double unit = 1.0 / vec3_dot(normal, normal);
+    w[1] = vec3_dot(vec3_cross(to, b), normal) * unit;
+    w[2] = vec3_dot(vec3_cross(a, to), normal) * unit;
+    w[0] = 1.0 - w[1] - w[2];
+    int32_t p = root;
+    while (!patch_is_leaf(&forest->patches[p])) {
+        int child = w[0] >= 0.5 ? 0 : w[1] >= 0.5 ? 1 : w[2] >= 0.5 ? 2 : 3;
+        for (int k = 0; k < 3; k++)
+            w[k] = child == 3 ? 1.0 - 2.0 * w[k] : 2.0 * w[k] - (k == child ? 1.0 : 0.0);
+        p = forest->patches[p].children + child;
+    }
+    return p;
+}
+
+enum met { MET_NOTHING, MET_BACK, MET_FRONT };
+
+/* What the ray meets; a front's point is filled in. */
+static enum met trace(struct receiver *r, struct vec3 origin, struct vec3 direction,
+                  struct point *point)
+{
+    const struct method *method = r->gather->method;
+    const struct scene *scene = method->scene;
+    struct octree_hit hit;
+    r->gather->counts.rays++;
+    if (!octree_first_hit(method->octree, origin, direction, false, &hit,
+                          &r->gather->method->counts))
+        return MET_NOTHING;
+    int32_t root = scene_root_on(scene, hit.triangle, hit.front);
+    if (root < 0 || !(scene_root_area(scene, root) > 0.0))
+        return MET_BACK;
+    struct plane plane = scene_root_plane(scene, root);
+    double fall = -vec3_dot(plane.normal, direction); /* above 0: a front is met */
+    double along = fall > 0.0 ? plane_distance(&plane, origin) / fall : 0.0;
+    point->at = vec3_add(origin, vec3_scale(direction, along));
+    point->patch = leaf_at(method->forest, root, point->at, point->weight);
+    point->input = hit.triangle;
+    point->normal = plane.normal;
+    return MET_FRONT;
+}
+
+/* --- lamps --- */
+
+static void add_source(struct receiver *r, const struct rgb *weight, struct rgb emission,
+                       double factor)
+{
+    for (int c = 0; c < BANDS; c++) {
+        double h = weight->band[c] * factor * emission.band[c];
+        r->row.source.band[c] += h;
+        r->light.band[c] += h;
+    }
+}
+
+static bool sees(struct receiver *r, struct vec3 from, int32_t input, struct vec3 to,
+                 int32_t lamp)
+{
+    int32_t own[2] = {input, scene_input_of(r->gather->method->scene, lamp)}, guess = -1;
+    r->gather->counts.segments++;
+    return !octree_blocks_segment(r->gather->method->octree, from, to, own, &guess,
+                                  &r->gather->method->counts);
+}
+
+/* Of `count` segments that might bring `direct` over all bands a share is seen: the
+ * variance of what they bring. */
+static void add_chance(struct receiver *r, struct rgb emission, double direct, double share,
+                       int count)
+{
+    for (int c = 0; c < BANDS; c++) {
+        double h = direct * emission.band[c] / rgb_sum(emission);
+        r->row.chance[c] += (float)(h * h * share * (1.0 - share) / count);
+    }
+}
+
+/* Segments to a single lamp: `count` of them bring the irradiance `direct` all together,
+ * summed over bands, but for what is blocked: of that each has its kernel's share. */
+static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, uint32_t first,
+                        int count, int32_t root, double direct)
+{
+    static const struct rgb ALL = {{1.0, 1.0, 1.0}};
+    const struct scene *scene = r->gather->method->scene;
+    struct triangle lamp = scene_root_triangle(scene, root);
+    struct vec3 normal = scene_root_plane(scene, root).normal;
+    struct rgb emission = scene_root_material(scene, root)->emission;
+    double all = 0.0, seen = 0.0, u[SEQUENCE_DIMENSIONS];
+    for (int i = 0; i < count; i++) {
+        sequence_point(sequence, first + (uint32_t)i, u);
+        struct vec3 x = triangle_of_square(&r->facet.triangle, u[0], u[1]);
+        struct vec3 y = triangle_of_square(&lamp, u[2], u[3]);
+        double light = receiver_kernel(x, r->facet.plane.normal, y, normal);
+        all += light;
+        if (light > 0.0 && sees(r, x, r->facet.input, y, root))
+            seen += light;
+    }
+    if (!(all > 0.0))
+        return;
+    add_source(r, &ALL, emission, direct * (seen / all) / rgb_sum(emission));
+    add_chance(r, emission, direct, seen / all, count);
+}
+
+/* One segment to a lamp of a cluster, which is far away: `direct` and `each` are what the
+ * group brings, and what one segment stands for. */
+static void aim_at_cluster(struct receiver *r, const struct sequence *sequence,
+                           uint32_t index, const struct lamp_group *group, double each)
+{
+    static const struct rgb ALL = {{1.0, 1.0, 1.0}};
+    const struct final_gather *g = r->gather;
+    const struct scene *scene = g->method->scene;
+    double u[SEQUENCE_DIMENSIONS];
+    sequence_point(sequence, index, u);
+    struct lamp lamp =
+        lamp_choose(&g->lamps, group->node, hash_unit(r->seed + 17 + index));
+    struct triangle triangle = scene_root_triangle(scene, lamp.root);
+    struct vec3 x = triangle_of_square(&r->facet.triangle, u[0], u[1]);
+    struct vec3 y = triangle_of_square(&triangle, u[2], u[3]);
+    double light = receiver_kernel(x, r->facet.plane.normal, y,
+                          scene_root_plane(scene, lamp.root).normal);
+    if (light > 0.0 && sees(r, x, r->facet.input, y, lamp.root))
+        add_source(r, &ALL, scene_root_material(scene, lamp.root)->emission,
+                   light * scene_root_area(scene, lamp.root) * lamp.share *
+                       (each / group->direct));
+}
+
+/* What lamps bring to the leaf: as many segments as rays, dealt over the groups in
+ * proportion to their light. */
+static void aim_at_lamps(struct receiver *r)
+{
+    struct final_gather *g = r->gather;
+    lamps_group(&g->lamps, &r->facet, &g->groups, &g->method->estimating);
+    if (!(g->groups.direct > 0.0))
+        return;
+    struct sequence sequence = sequence_start(r->seed + 8);
+    double each = g->groups.direct / r->rays, sum = 0.0, start = hash_unit(r->seed + 16);
+    int done = 0;
+    for (int64_t i = 0; i < g->groups.count; i++) {
+        const struct lamp_group *group = &g->groups.items[i];
+        sum += group->direct;
+        int now = (int)fmin(r->rays, floor(sum / each + start)), count = now - done;
+        if (!node_is_cluster(group->node) && count > 0)
+            aim_at_lamp(r, &sequence, (uint32_t)done, count, group->node, count * each);
+        double before = rgb_sum(r->light);
+        for (int k = done; k < now && node_is_cluster(group->node); k++)
+            aim_at_cluster(r, &sequence, (uint32_t)k, group, each);
+        if (node_is_cluster(group->node) && count > 0) {
+            int32_t lamp = lamp_choose(&g->lamps, group->node, 0.5).root;
+            double share = (rgb_sum(r->light) - before) / (count * each);
+            add_chance(r, scene_root_material(g->method->scene, lamp)->emission,
+                       count * each, fmin(share, 1.0), count);
+        }
+        done = now;
+    }
+}
+
+/* --- paths --- */
+
+/* The light of one lamp at a point beside the leaf; the lamp and a point of it are chosen
+ * by hashes. Of a lamp that the horizon cuts, a point above it. */
+static void aim_beside(struct receiver *r, const struct point *x, const struct rgb *weight,
+                       uint64_t seed)
+{
+    const struct final_gather *g = r->gather;
+    const struct scene *scene = g->method->scene;
+    double at = hash_unit(seed) * g->groups.around;
+    int64_t i = 0;
+    for (; i < g->groups.count - 1 && at >= g->groups.items[i].around; i++)
+        at -= g->groups.items[i].around;
+    if (!(g->groups.around > 0.0) || !(g->groups.items[i].around > 0.0))
+        return;
+    const struct lamp_group *group = &g->groups.items[i];
+    struct lamp lamp = lamp_choose(&g->lamps, group->node, hash_unit(seed + 1));
+    struct triangle triangle = scene_root_triangle(scene, lamp.root);
+    struct vec3 normal = scene_root_plane(scene, lamp.root).normal;
+    double factor = point_triangle_factor(x->at, x->normal, &triangle);
+    for (uint64_t k = 0; k < AIMS_MOST && factor > 0.0; k++) {
+        struct vec3 y = triangle_of_square(&triangle, hash_unit(seed + 2 + 2 * k),
+                                       hash_unit(seed + 3 + 2 * k));
+        if (!(receiver_kernel(x->at, x->normal, y, normal) > 0.0))
+            continue;
+        if (sees(r, x->at, x->input, y, lamp.root))
+            add_source(r, weight, scene_root_material(scene, lamp.root)->emission,
+                       factor * lamp.share * (g->groups.around / group->around));
+        return;
+    }
+}
+
+/* True if a leaf is too near to a point, for its size, to be a constant. What counts is
+ * its centroid, so that the point sees either all of the leaf as a constant or nothing:
+ * where only its far part were one, that would be given the mean of the whole. */
+static bool is_too_near(const struct forest *forest, int32_t leaf, struct vec3 x)
+{
+    struct triangle t = forest_triangle(forest, leaf);
+    struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
+    return vec3_dot(apart, apart) < NEAR * forest_area(forest, leaf);
+}
+
+/* A ray has met a back. Where the floor is covered by a thing that stands on it, a point
+ * is inside of that thing, and another ray from there meets a back, too. */
+static void look_inside(struct receiver *r, struct vec3 origin, struct vec3 direction)
+{
+    struct vec3 normal = r->facet.plane.normal;
+    struct vec3 up = vec3_scale(normal, 2.0 * vec3_dot(normal, direction));
+    struct point point;
+    if (trace(r, origin, vec3_sub(up, direction), &point) == MET_BACK)
+        r->inside++;
+    else
+        r->escaped++;
+}
+
+/* A ray and what follows from it, the seed of which is `seed`. `weight`: of the light
+ * that it finds. */
+static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction,
+                   struct rgb weight, uint64_t seed)
+{
+    const struct forest *forest = r->gather->method->forest;
+    for (int count = 1;; count++, seed += 16) {
+        struct point point;
+        enum met met = trace(r, origin, direction, &point);
+        if (met == MET_BACK && count == 1)
+            look_inside(r, origin, direction);
+        else
+            r->escaped += met != MET_FRONT;
+        if (met != MET_FRONT)
+            return;
+        const struct material *material = forest_material(forest, point.patch);
+        int32_t root = (int32_t)forest->patches[point.patch].id.root;
+        bool lamp = root_is_lamp(&r->gather->lamps, root);
+        if (count == PATH_MOST || !is_too_near(forest, point.patch, origin)) {
+            receiver_add_point(r, point.patch, point.weight, &weight);
+            if (lamp)
+                add_source(r, &weight, material->emission, -1.0);
+            return;
+        }
+        if (!lamp)
+            add_source(r, &weight, material->emission, 1.0);
+        for (int c = 0; c < BANDS; c++)
+            weight.band[c] *= material->reflectance.band[c];
+        if (!(rgb_sum(weight) > 0.0))
+            return;
+        aim_beside(r, &point, &weight, seed);
+        origin = point_above(point.at, point.normal);
+        direction = cosine_direction(point.normal, direction_along(point.normal),
+                                     hash_unit(seed + 14), hash_unit(seed + 15));
+    }
+}
+
+/* Enters the light of a ray, of the first half of them or the second, and of what
+ * followed. */
+static void count_light(struct receiver *r, int half)
+{
+    for (int c = 0; c < BANDS; c++) {
+        double h = r->light.band[c];
+        r->sum.band[c] += h;
+        r->squares.band[c] += h * h;
+        r->half[half].band[c] += h;
+        r->light.band[c] = 0.0;
+    }
+}
+
+static void fire_rays(struct receiver *r)
+{
+    struct sequence sequence = sequence_start(r->seed);
+    double share = 1.0 / r->rays, u[SEQUENCE_DIMENSIONS];
+    for (int i = 0; i < r->rays; i++) {
+        sequence_point(&sequence, (uint32_t)i, u);
+        struct vec3 x = triangle_of_square(&r->facet.triangle, u[2], u[3]);
+        follow(r, point_above(x, r->facet.plane.normal),
+               cosine_direction(r->facet.plane.normal, r->along, u[0], u[1]),
+               (struct rgb){{share, share, share}},
+               hash_mix(r->seed ^ hash_mix((uint64_t)i)));
+        count_light(r, 2 * i / r->rays);
+    }
+    for (int c = 0; c < BANDS; c++) {
+        double mean2 = r->sum.band[c] * r->sum.band[c] / r->rays;
+        double apart = r->half[0].band[c] - r->half[1].band[c];
+        r->row.chance[c] += (float)fmax(0.0, r->squares.band[c] - mean2);
+        r->row.halves[c] = (float)(apart * apart);
+    }
+    if (r->escaped < r->rays)
+        r->gather->counts.escaped += r->escaped;
+}
+
+/* The share of the leaf that is met from just above it, and not a face that lies on it: a
+ * picture in the plane of a wall, a lamp in that of the ceiling; and that is not inside
+ * of things. */
+float receiver_bare_share(const struct receiver *r)
+{
+    static const double ABOVE = 0x1p-20; /* scene units */
+    struct method *method = r->gather->method;
+    struct sequence sequence = sequence_start(r->seed + 24);
+    struct vec3 normal = r->facet.plane.normal;
+    double u[SEQUENCE_DIMENSIONS];
+    int covered = 0;
+    for (uint32_t i = 0; i < BARE_POINTS; i++) {
+        sequence_point(&sequence, i, u);
+        struct vec3 x = triangle_of_square(&r->facet.triangle, u[0], u[1]);
+        struct octree_hit hit;
+        covered +=
+            octree_first_hit(method->octree, vec3_add(x, vec3_scale(normal, ABOVE)),
+                             vec3_scale(normal, -1.0), false, &hit, &method->counts) &&
+            hit.triangle != r->facet.input;
+    }
+    return (1.0f - (float)covered / BARE_POINTS) *
+           (1.0f - (float)r->inside / (float)r->rays);
+}
+
+/* --- public --- */
+
+double receiver_kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,
+                       struct vec3 normal_y)
+{
+    static const double PI = 3.14159265358979323846;
+    struct vec3 d = vec3_sub(y, x);
+    double d2 = vec3_dot(d, d), rise = vec3_dot(normal_x, d),
+           fall = -vec3_dot(normal_y, d);
+    return rise > 0.0 && fall > 0.0 ? rise * fall / (PI * d2 * d2) : 0.0;
+}
+
+void receiver_fire(struct receiver *r)
+{
+    aim_at_lamps(r);
+    r->lamps = r->light;
+    r->light = (struct rgb){{0.0, 0.0, 0.0}};
+    fire_rays(r);
+}
