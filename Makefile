@@ -55,7 +55,7 @@ OCTREE = build hit octree
 RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/lamps beyond/node \
       beyond/node_exchange beyond/node_link beyond/sequence closure conjugate flux formfactor id link \
       linking method oracle patch pushpull sample snapshot treecode viewfactor
-MPI = accuracy assign balance broadcast closing comm final_gather funnel gather keep ledger linking memory migrate \
+MPI = accuracy assign balance broadcast closing comm final_gather funnel gather gather_mesh keep ledger linking memory migrate \
       node pairs picture plan refinement routes scatter signals solve solver vote
 IO = binary camera cases compare image library machine mesh mtl obj options output palette ply plyfile \
      progress render shading stats store surface table text tone validate viewpoint

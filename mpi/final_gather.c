@@ -27,10 +27,9 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "geom/hash.h"
 #include "geom/stop.h"
+#include "mpi/gather_mesh.h"
 #include "rad/beyond/bicgstab.h"
-#include "rad/beyond/final_gather.h"
 #include "rad/pushpull.h"
 
 enum { STEPS_MOST = 500 };
@@ -46,7 +45,8 @@ static const double UNDIVIDED = 0.2;
 struct gathering {
     struct solver *solver;
     struct final_gather gather;
-    int32_t *leaves;        /* [count] local numbers */
+    struct gather_mesh mesh;
+    int32_t *leaves;        /* [count] local numbers, of the mesh */
     double *areas;          /* [count] square scene units */
     double *bare;           /* [count] the same, less what other faces lie on */
     int64_t count;
@@ -54,65 +54,40 @@ struct gathering {
     struct rgb *radiosity;  /* by place: room for what is to be gathered */
     struct rgb *all;        /* room for what the rows of all ranks have of each leaf */
     int64_t shares;         /* of values of all rows, so far */
-    int *rank_of;           /* [count] that makes the row of a leaf */
+    int *rank_of;           /* [count] that makes the row of a leaf, of the mesh */
     int *counts, *at; /* [ranks] of rows, and where those of a rank begin in `all` */
 };
 
 /* --- rows --- */
 
-static void list_leaves(struct gathering *g)
-{
-    const struct forest *forest = g->solver->method.forest;
-    g->leaves = alloc_array((size_t)forest->count, sizeof *g->leaves);
-    g->areas = alloc_array((size_t)forest->count, sizeof *g->areas);
-    g->bare = alloc_array((size_t)forest->count, sizeof *g->bare);
-    for (int64_t i = 0; i < forest->count; i++) {
-        int32_t p = g->gather.order[i];
-        double area = forest_area(forest, p);
-        if (patch_is_leaf(&forest->patches[p]) && area > 0.0) {
-            g->leaves[g->count] = p;
-            g->areas[g->count++] = area;
-        }
-    }
-}
-
-/* Of as many leaves as there are ranks, one after the other, each rank gets one, in an
- * order that changes from turn to turn: dealt in the same order, things of as many
- * triangles as ranks would all have the same side on the same rank. */
-static void deal_leaves(struct gathering *g)
-{
-    uint64_t ranks = (uint64_t)g->solver->comm->size;
-    g->rank_of = alloc_array((size_t)g->count, sizeof *g->rank_of);
-    for (int64_t i = 0; i < g->count; i++) {
-        uint64_t turn = (uint64_t)i / ranks, first = hash_mix(turn) % ranks;
-        g->rank_of[i] = (int)((first + (uint64_t)i % ranks) % ranks);
-        g->counts[g->rank_of[i]]++;
-    }
-}
-
 static void gathering_start(struct gathering *g, struct solver *solver)
 {
     const struct comm *comm = solver->comm;
     size_t patches = (size_t)solver->method.forest->count;
-    g->solver = solver;
     g->gather =
         final_gather_create(&solver->method, solver->method.criterion.final_gather);
-    list_leaves(g);
+    g->leaves = g->mesh.leaves;
+    g->rank_of = g->mesh.rank_of;
+    g->count = g->mesh.count;
+    g->areas = alloc_array((size_t)g->count, sizeof *g->areas);
+    g->bare = alloc_array((size_t)g->count, sizeof *g->bare);
+    for (int64_t i = 0; i < g->count; i++)
+        g->areas[i] = forest_area(solver->method.forest, g->leaves[i]);
     g->radiosity = alloc_array(patches, sizeof *g->radiosity);
     g->all = alloc_array((size_t)g->count, sizeof *g->all);
     g->counts = alloc_array((size_t)comm->size, sizeof *g->counts);
     g->at = alloc_array((size_t)comm->size, sizeof *g->at);
-    deal_leaves(g);
+    for (int64_t i = 0; i < g->count; i++)
+        g->counts[g->rank_of[i]]++;
     comm_displacements(comm, g->counts, g->at);
 }
 
 static void gathering_end(struct gathering *g)
 {
     final_gather_free(&g->gather);
-    alloc_free(g->leaves);
+    gather_mesh_free(&g->mesh);
     alloc_free(g->areas);
     alloc_free(g->bare);
-    alloc_free(g->rank_of);
     alloc_free(g->radiosity);
     alloc_free(g->all);
     alloc_free(g->counts);
@@ -128,7 +103,7 @@ static bool make_rows(struct gathering *g)
     for (int64_t i = 0; i < g->count && !stop_is_asked(); i++) {
         if (g->rank_of[i] != solver->comm->rank)
             continue;
-        final_gather_add(&g->gather, g->leaves[i]);
+        final_gather_add(&g->gather, g->leaves[i], g->mesh.rays[i]);
         progress_tick(solver->progress, (double)i / (double)g->count);
     }
     const struct octree_counts *proofs = &g->gather.view.counts;
@@ -139,11 +114,12 @@ static bool make_rows(struct gathering *g)
                                            proofs->node_tests + proofs->triangle_tests});
     const struct gather_counts *counts = &g->gather.counts;
     int64_t sums[] = {counts->escaped, stop_is_asked(), counts->rays, counts->segments,
-                      counts->exact, g->gather.term_count};
+                      counts->exact, g->gather.term_count, g->mesh.traced};
     comm_add(solver->comm, sums, sizeof sums / sizeof sums[0]);
     g->closed = (double)sums[0] <= CRACKS * (double)(sums[2] + g->count);
     solver->gathered = (struct gathered){.rays = sums[2], .segments = sums[3],
-                                         .exact = sums[4], .terms = sums[5]};
+                                         .exact = sums[4], .terms = sums[5],
+                                         .looks = sums[6], .split = g->mesh.split};
     return sums[1] == 0;
 }
 
@@ -401,10 +377,13 @@ static void solve_rows(struct gathering *g, struct vote *vote)
 
 bool solver_final_gather(struct solver *solver, struct vote *vote)
 {
-    struct gathering g = {0};
+    struct gathering g = {.solver = solver};
     double start = comm_seconds();
-    gathering_start(&g, solver);
-    bool done = make_rows(&g);
+    bool done = gather_mesh_make(solver, vote->links, &g.mesh);
+    if (done) {
+        gathering_start(&g, solver);
+        done = make_rows(&g);
+    }
     solver->seconds[PHASE_ROWS] += comm_seconds() - start;
     if (done)
         solve_rows(&g, vote);

@@ -65,6 +65,8 @@ struct gathered {
     int64_t rays, segments; /* fired; asked whether they are blocked */
     int64_t exact;          /* rows made without rays */
     int64_t terms;          /* kept of all rows */
+    int64_t looks;          /* rays and segments fired before there were rows */
+    int64_t split;          /* leaves that the gathered light was seen to vary over */
     double error;           /* of the leaves, estimated, relative RMS of reflected radiosity */
 };
 

@@ -15,9 +15,6 @@
  * Constants move light outwards at each reflection where leaves are as wide as the gap
  * between them. Where the linear function is below 0 somewhere, its slope is made less.
  *
- * The number of rays grows with the square root of a leaf's area: noise that is counted
- * by area is then least for a given number of all rays.
- *
  * Rejected: B interpolated between corners that neighbours share. It needs to know over
  * which edges light goes on smoothly, and at shadows, where interpolation matters, it
  * does not. */
@@ -68,9 +65,7 @@ struct final_gather final_gather_create(struct method *method, int rays)
     forest->extremes = alloc_reserve(forest->extremes, &forest->extremes_capacity,
                                      forest->count, sizeof *forest->extremes);
     forest_bound(forest);
-    int64_t leaves = forest_leaf_count(forest);
-    gather.rays = rays_for(rays, leaves);
-    gather.leaf_area = method->area / (double)leaves;
+    gather.rays = rays_for(rays, forest_leaf_count(forest));
     gather.mean = mean_radiosity(method);
     gather.lamps = lamps_create(method, LAMP * gather.mean);
     gather.order = forest_order(forest);
@@ -138,14 +133,14 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
 void receiver_add(struct receiver *r, int32_t patch, const struct rgb *weight)
 {
     struct final_gather *g = r->gather;
-    struct gather_term term = {.place = g->place[patch]};
     struct rgb b = g->method->forest->patches[patch].radiosity;
-    for (int c = 0; c < BANDS; c++) {
-        term.weight[c] = (float)weight->band[c];
+    for (int c = 0; c < BANDS; c++)
         r->light.band[c] += weight->band[c] * b.band[c];
-    }
     if (!r->keeps)
         return;
+    struct gather_term term = {.place = g->place[patch]};
+    for (int c = 0; c < BANDS; c++)
+        term.weight[c] = (float)weight->band[c];
     g->terms =
         alloc_reserve(g->terms, &g->term_capacity, r->row.end + 1, sizeof *g->terms);
     g->terms[r->row.end++] = term;
@@ -191,18 +186,6 @@ static void join_terms(struct receiver *r)
     r->row.end = to;
 }
 
-/* A power of two: as many rays as the leaf is worth. */
-static int rays_of(const struct final_gather *gather, double area)
-{
-    int rays = gather->rays;
-    double share = area / gather->leaf_area; /* rays^2 grow like the area */
-    for (int k = 0; k < 2 && share >= 2.0; k++, share *= 0.25)
-        rays *= 2;
-    for (int k = 0; k < 2 && share < 0.5; k++, share *= 4.0)
-        rays /= 2;
-    return rays > FEWEST ? rays : FEWEST;
-}
-
 /* --- public --- */
 
 static struct receiver receiver_make(struct final_gather *gather, struct facet facet,
@@ -212,13 +195,55 @@ static struct receiver receiver_make(struct final_gather *gather, struct facet f
                              .along = direction_along(facet.plane.normal), .rays = rays};
 }
 
-void final_gather_add(struct final_gather *gather, int32_t leaf)
+static uint64_t seed_of(const struct final_gather *gather, int32_t leaf)
 {
     struct patch_id id = gather->method->forest->patches[leaf].id;
-    struct facet facet = facet_make(gather->method->forest, leaf);
-    struct receiver r =
-        receiver_make(gather, facet, hash_mix((uint64_t)id.root << 32 | id.hierarchy),
-                      rays_of(gather, facet.area));
+    return hash_mix((uint64_t)id.root << 32 | id.hierarchy);
+}
+
+/* H that has been found. */
+static struct rgb light_of(const struct receiver *r)
+{
+    struct rgb h = r->lamps;
+    for (int c = 0; c < BANDS; c++)
+        h.band[c] += r->sum.band[c];
+    return h;
+}
+
+struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays)
+{
+    const struct forest *forest = gather->method->forest;
+    struct facet facet = facet_make(forest, leaf);
+    struct gather_look look = {.noise = 0.0f};
+    const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
+    double variance = 0.0;
+    if (receiver_root_is_open(gather, (int32_t)forest->patches[leaf].id.root)) {
+        look.open = 1;
+        return look;
+    }
+    for (int k = 0; k < 4; k++) {
+        struct facet quarter = facet;
+        quarter.triangle = triangle_child(&facet.triangle, k);
+        quarter.area = 0.25 * facet.area;
+        struct receiver r = receiver_make(gather, quarter,
+                                          hash_mix(seed_of(gather, leaf) + 1 + (uint64_t)k),
+                                          rays);
+        receiver_fire(&r);
+        struct rgb h = light_of(&r);
+        for (int c = 0; c < BANDS; c++) {
+            look.reflected[k][c] = (float)(rho->band[c] * h.band[c]);
+            variance += 0.25 * rho->band[c] * rho->band[c] * (double)r.row.chance[c];
+        }
+    }
+    look.noise = (float)variance;
+    look.variance = (float)(variance * rays);
+    return look;
+}
+
+void final_gather_add(struct final_gather *gather, int32_t leaf, int rays)
+{
+    struct receiver r = receiver_make(gather, facet_make(gather->method->forest, leaf),
+                                      seed_of(gather, leaf), rays);
     r.keeps = true;
     r.first = gather->term_count;
     r.row = (struct gather_row){.leaf = leaf, .end = r.first};
@@ -242,9 +267,7 @@ struct rgb final_gather_at(struct final_gather *gather, const struct gather_poin
                           .input = point->input};
     struct receiver r = receiver_make(gather, facet, hash_mix(seed), rays);
     receiver_fire(&r);
-    for (int c = 0; c < BANDS; c++)
-        r.sum.band[c] += r.lamps.band[c];
-    return r.sum;
+    return light_of(&r);
 }
 
 void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity)

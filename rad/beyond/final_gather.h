@@ -50,8 +50,7 @@ struct gather_view {
 
 struct final_gather {
     struct method *method; /* borrowed; rays are counted there */
-    int rays;              /* from a leaf of middling size */
-    double leaf_area;      /* of such a leaf, square scene units */
+    int rays;              /* from a leaf, in the mean */
     double mean;           /* radiosity, over bands and all surface, W/m^2 */
     struct lamps lamps;
     struct lamp_groups groups; /* of the leaf at hand, */
@@ -71,6 +70,14 @@ struct gather_point {
     int32_t input; /* triangle that it is on */
 };
 
+/* A look at a leaf: its quarters, and chance. */
+struct gather_look {
+    float reflected[4][BANDS]; /* rho H of each quarter, W/m^2 */
+    float noise;               /* variance of that of a quarter, by chance */
+    float variance;            /* of rho H of a ray, over bands, (W/m^2)^2 */
+    int32_t open;              /* 1: its row will be exact; it was not looked at */
+};
+
 /* How B varies over a patch: see final_gather.c. */
 struct gather_slope {
     int32_t first; /* child 0 of the patch, or of its parent */
@@ -82,8 +89,12 @@ struct gather_slope {
 struct final_gather final_gather_create(struct method *method, int rays);
 void final_gather_free(struct final_gather *gather);
 
-/* Makes the row of a leaf, as the last one. */
-void final_gather_add(struct final_gather *gather, int32_t leaf);
+/* Looks at the quarters of a leaf by so many rays each; a leaf whose root is open is not
+ * looked at. */
+struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays);
+
+/* Makes the row of a leaf, as the last one, by so many rays if it takes any. */
+void final_gather_add(struct final_gather *gather, int32_t leaf, int rays);
 
 /* H at a point, W/m^2, for the radiosities that the forest has: by `rays` rays and as many
  * segments to lamps. */

@@ -241,6 +241,11 @@ static bool close_row(struct receiver *r)
 
 /* --- public --- */
 
+bool receiver_root_is_open(struct final_gather *gather, int32_t root)
+{
+    return view_of(gather, root)->open;
+}
+
 bool receiver_add_exact(struct receiver *r)
 {
     const struct forest *forest = r->gather->method->forest;

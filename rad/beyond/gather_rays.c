@@ -24,7 +24,7 @@
 
 /* A leaf is too near for its size if the square of its distance is less than this part of
  * its area. */
-static const double NEAR = 0.5;
+static const double NEAR = 0.2;
 
 /* A path ends after so many points at the latest. */
 enum { PATH_MOST = 8, AIMS_MOST = 4, BARE_POINTS = 4 };

@@ -1,0 +1,292 @@
+/* The mesh of a final gather.
+ *
+ * The links have split patches where they exchange much, whether the light varies there
+ * or not. Before rows are made, a few rays look at the quarters of each leaf. Where their
+ * light differs by more than chance explains, the leaf is split and its children are
+ * looked at, and so on. What counts is the squared error that is left, by area: a leaf is
+ * split if
+ *
+ *     area * variance of rho H over it  >  MESH * epsilon * sum of area * (rho H)^2,
+ *
+ * so that all leaves have about the same share of it.
+ *
+ * Looks also tell how noisy the light of a leaf is: rows get rays in proportion to the
+ * square root of area times variance, which makes the noise, by area, least for a given
+ * number of all rays (Neyman, 1934). A leaf under a lamp housing gets many, a leaf of a
+ * plain wall few.
+ *
+ * Looks and rows are dealt in turns, those of as many rays for themselves: each rank has
+ * as many of each kind, give or take one. */
+#include "mpi/gather_mesh.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "geom/hash.h"
+#include "geom/stop.h"
+#include "mpi/memory.h"
+#include "rad/oracle.h"
+
+static const double MESH = 0.01;
+
+/* A look takes this part of the rays of a row for each quarter of the leaf. If these are
+ * fewer than FEWEST_LOOKED, there are no looks. */
+enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 2 };
+
+/* A leaf has 2^MOST_DOUBLED times the mean number of rays at most, and 2^-MOST_HALVED. */
+enum { MOST_DOUBLED = 4, MOST_HALVED = 3, CLASSES = MOST_DOUBLED + MOST_HALVED + 1 };
+enum { ROUNDS = 6, FEWEST_RAYS = 4 };
+
+/* In place of a variance: the row will be exact. */
+static const float IS_EXACT = -1.0f;
+
+struct looking {
+    struct solver *solver;
+    struct final_gather gather;
+    struct gather_mesh *mesh;
+    float *variance; /* [forest->count] of rho H by one ray, of leaves */
+    int64_t variance_capacity;
+    int rays;        /* of a look at a quarter */
+    int64_t links;   /* of all ranks */
+};
+
+/* --- dealing --- */
+
+/* Of as many things as there are ranks, one after the other, each rank gets one, in an
+ * order that changes from turn to turn: dealt in the same order, things of as many
+ * triangles as ranks would all have the same side on the same rank. */
+static int rank_of_next(int64_t *dealt, int ranks)
+{
+    uint64_t index = (uint64_t)(*dealt)++, size = (uint64_t)ranks;
+    return (int)((hash_mix(index / size) % size + index % size) % size);
+}
+
+/* --- looks --- */
+
+/* The leaves that have an area. */
+static void list_leaves(struct gather_mesh *mesh, const struct forest *forest)
+{
+    int32_t *order = forest_order(forest);
+    alloc_free(mesh->leaves);
+    mesh->leaves = alloc_array((size_t)forest->count, sizeof *mesh->leaves);
+    mesh->count = 0;
+    for (int64_t i = 0; i < forest->count; i++)
+        if (patch_is_leaf(&forest->patches[order[i]]) &&
+            forest_area(forest, order[i]) > 0.0)
+            mesh->leaves[mesh->count++] = order[i];
+    alloc_free(order);
+}
+
+/* Collective. Looks at `count` leaves; [count], on all ranks. */
+static struct gather_look *look(struct looking *l, const int32_t *leaves, int64_t count)
+{
+    const struct comm *comm = l->solver->comm;
+    struct gather_look *all = alloc_array((size_t)count, sizeof *all);
+    struct gather_look *looks = alloc_array((size_t)count, sizeof *looks);
+    int *counts = alloc_array((size_t)comm->size, sizeof *counts);
+    int *at = alloc_array((size_t)comm->size, sizeof *at);
+    int64_t dealt = 0;
+    for (int64_t i = 0; i < count; i++)
+        counts[rank_of_next(&dealt, comm->size)]++;
+    comm_displacements(comm, counts, at);
+    dealt = 0;
+    for (int64_t i = 0, k = at[comm->rank]; i < count && !stop_is_asked(); i++)
+        if (rank_of_next(&dealt, comm->size) == comm->rank)
+            all[k++] = final_gather_look(&l->gather, leaves[i], l->rays);
+    comm_share(comm, all, counts, at, sizeof *all);
+    dealt = 0;
+    for (int64_t i = 0; i < count; i++)
+        looks[i] = all[at[rank_of_next(&dealt, comm->size)]++];
+    alloc_free(at);
+    alloc_free(counts);
+    alloc_free(all);
+    return looks;
+}
+
+/* Variance of rho H over the leaf, less what chance explains; summed over bands. */
+static double spread_of(const struct gather_look *look)
+{
+    double spread = 0.0;
+    for (int c = 0; c < BANDS; c++) {
+        double sum = 0.0, squares = 0.0;
+        for (int k = 0; k < 4; k++) {
+            double b = (double)look->reflected[k][c];
+            sum += b;
+            squares += b * b;
+        }
+        spread += 0.25 * squares - 0.0625 * sum * sum;
+    }
+    return fmax(0.0, spread - (double)look->noise);
+}
+
+static double square_of(const struct gather_look *look)
+{
+    double square = 0.0;
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < BANDS; c++)
+            square += 0.25 * (double)look->reflected[k][c] * (double)look->reflected[k][c];
+    return square;
+}
+
+/* Splits a leaf; its children reflect what their looks say. */
+static void split_leaf(struct forest *forest, int32_t leaf, const struct gather_look *look)
+{
+    forest_split(forest, leaf);
+    int32_t first = forest->patches[leaf].children;
+    const struct rgb *emission = &forest_material(forest, leaf)->emission;
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < BANDS; c++)
+            forest->patches[first + k].radiosity.band[c] =
+                emission->band[c] + (double)look->reflected[k][c];
+}
+
+static void keep_variance(struct looking *l, int32_t leaf, const struct gather_look *look)
+{
+    l->variance = alloc_reserve(l->variance, &l->variance_capacity,
+                                l->solver->method.forest->count, sizeof *l->variance);
+    l->variance[leaf] = look->open ? IS_EXACT : look->variance + (float)spread_of(look);
+}
+
+/* Looks at leaves and splits them, those of `leaves` that are split are replaced by their
+ * children, the others go. Returns how many there are then. */
+static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
+                            double *threshold)
+{
+    struct solver *solver = l->solver;
+    struct forest *forest = solver->method.forest;
+    struct gather_look *looks = look(l, *leaves, count);
+    double sum = 0.0;
+    for (int64_t i = 0; i < count; i++)
+        sum += forest_area(forest, (*leaves)[i]) * square_of(&looks[i]);
+    if (*threshold < 0.0)
+        *threshold = MESH * solver->method.criterion.epsilon * sum;
+    int32_t *next = alloc_array(4 * (size_t)count, sizeof *next);
+    int64_t made = 0;
+    for (int64_t i = 0; i < count; i++) {
+        int32_t leaf = (*leaves)[i];
+        double error = forest_area(forest, leaf) * spread_of(&looks[i]);
+        keep_variance(l, leaf, &looks[i]);
+        if (!(error > *threshold) || !oracle_patch_may_split(&solver->method, leaf) ||
+            !memory_has_room(&solver->memory, l->links, 1, forest->count, 0))
+            continue;
+        split_leaf(forest, leaf, &looks[i]);
+        for (int k = 0; k < 4; k++) {
+            next[made++] = forest->patches[leaf].children + k;
+            keep_variance(l, forest->patches[leaf].children + k, &looks[i]);
+        }
+    }
+    alloc_free(looks);
+    alloc_free(*leaves);
+    *leaves = next;
+    return made;
+}
+
+/* All leaves are as noisy as each other. */
+static void keep_no_variance(struct looking *l)
+{
+    l->variance = alloc_array((size_t)l->solver->method.forest->count, sizeof *l->variance);
+    for (int64_t i = 0; i < l->mesh->count; i++)
+        l->variance[l->mesh->leaves[i]] = 1.0f;
+}
+
+/* Collective. Looks and splits, round by round. */
+static void refine(struct looking *l)
+{
+    struct gather_mesh *mesh = l->mesh;
+    double threshold = -1.0; /* not known yet */
+    int32_t *leaves = alloc_array((size_t)mesh->count, sizeof *leaves);
+    memcpy(leaves, mesh->leaves, (size_t)mesh->count * sizeof *leaves);
+    for (int64_t round = 0, count = mesh->count; round < ROUNDS && count > 0; round++) {
+        count = split_leaves(l, &leaves, count, &threshold);
+        mesh->split += count / 4;
+    }
+    alloc_free(leaves);
+    forest_average(l->solver->method.forest);
+    list_leaves(mesh, l->solver->method.forest);
+}
+
+/* --- rays --- */
+
+/* Which power of two times the mean number of rays a leaf of this worth gets. */
+static int class_of(double worth)
+{
+    int class = 0;
+    for (; worth >= 1.4142135623730951 && class < MOST_DOUBLED; worth *= 0.5)
+        class++;
+    for (; worth < 0.7071067811865476 && class > -MOST_HALVED; worth *= 2.0)
+        class--;
+    return class;
+}
+
+static int rays_of_class(int rays, int class)
+{
+    rays = class > 0 ? rays << class : rays >> -class;
+    return rays > FEWEST_RAYS ? rays : FEWEST_RAYS;
+}
+
+/* Rays in proportion to worth, as many as there would be if all leaves had as many. */
+static void share_rays(struct looking *l)
+{
+    struct gather_mesh *mesh = l->mesh;
+    const struct forest *forest = l->solver->method.forest;
+    double *worth = alloc_array((size_t)mesh->count, sizeof *worth), low = 0.0, high = 0.0;
+    for (int64_t i = 0; i < mesh->count; i++) {
+        double variance = (double)l->variance[mesh->leaves[i]];
+        worth[i] = sqrt(forest_area(forest, mesh->leaves[i]) * fmax(0.0, variance));
+        high = fmax(high, worth[i]);
+    }
+    for (int step = 0; step < 40 && high > 0.0; step++) { /* worth of the mean number */
+        double unit = 0.5 * (low + high);
+        int64_t sum = 0;
+        for (int64_t i = 0; i < mesh->count; i++)
+            sum += rays_of_class(l->gather.rays, class_of(worth[i] / unit));
+        *(sum > l->gather.rays * mesh->count ? &low : &high) = unit;
+    }
+    mesh->rays = alloc_array((size_t)mesh->count, sizeof *mesh->rays);
+    mesh->rank_of = alloc_array((size_t)mesh->count, sizeof *mesh->rank_of);
+    int64_t dealt[CLASSES] = {0}, exact = 0;
+    for (int64_t i = 0; i < mesh->count; i++) {
+        bool open = l->variance[mesh->leaves[i]] == IS_EXACT;
+        int class = high > 0.0 && !open ? class_of(worth[i] / high) : 0;
+        mesh->rays[i] = rays_of_class(l->gather.rays, class);
+        mesh->rank_of[i] = rank_of_next(open ? &exact : &dealt[class + MOST_HALVED],
+                                        l->solver->comm->size);
+    }
+    alloc_free(worth);
+}
+
+bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *mesh)
+{
+    struct method *method = &solver->method;
+    struct looking l = {.solver = solver, .mesh = mesh, .links = links};
+    int64_t before = method_work(method);
+    l.gather = final_gather_create(method, method->criterion.final_gather);
+    l.rays = l.gather.rays / ROWS_PER_LOOK;
+    list_leaves(mesh, method->forest);
+    if (l.rays >= FEWEST_LOOKED)
+        refine(&l);
+    else
+        keep_no_variance(&l);
+    share_rays(&l);
+    mesh->traced = l.gather.counts.rays + l.gather.counts.segments;
+    const struct octree_counts *proofs = &l.gather.view.counts;
+    ledger_add(&solver->ledger,
+               (struct phase_work){.kind = WORK_FINAL_GATHER,
+                                   .iteration = solver->iteration,
+                                   .work = method_work(method) - before +
+                                           proofs->node_tests + proofs->triangle_tests});
+    int64_t stopped = stop_is_asked();
+    comm_add(solver->comm, &stopped, 1);
+    final_gather_free(&l.gather);
+    alloc_free(l.variance);
+    return stopped == 0;
+}
+
+void gather_mesh_free(struct gather_mesh *mesh)
+{
+    alloc_free(mesh->leaves);
+    alloc_free(mesh->rays);
+    alloc_free(mesh->rank_of);
+    *mesh = (struct gather_mesh){0};
+}
