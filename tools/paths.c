@@ -18,12 +18,18 @@
  * twice. Rejected: the lights alone. G has no bound where a light touches a surface, nor
  * has the variance there; here both terms are at most the light's own E.
  *
+ * A light path goes the other way: from a point of the lights, chosen as above, in a
+ * direction whose density is the cosine over pi, from surface to surface with the same
+ * chances of going on. It brings light to all the surfaces of a scene at once, which is
+ * the cheaper way to the means of many elements; a point it never meets.
+ *
  * The first seven numbers of a path (its start, or its place in a pixel, its first light
  * point, its first direction) are those of a lattice that is moved by a random vector:
  * sample i has shift + i * step, modulo 1, in each dimension. Each sample alone is
  * uniform, so the mean is exact whatever the lattice; spread evenly, they take away most
  * of the noise. The step is that of Roberts: powers of 1 / g with g^8 = g + 1. The rest
- * of the path is plain random numbers. */
+ * of the path is plain random numbers, and so are light paths: a lattice would correlate
+ * the errors of all elements. */
 #include "tools/paths.h"
 
 #include <math.h>
@@ -103,6 +109,7 @@ static struct vec3 cosine_direction(struct vec3 normal, struct draw *draw)
 struct spot {
     struct vec3 x;
     int32_t root;
+    double weight[3]; /* barycentric coordinates in the root, where a ray arrives */
 };
 
 struct pathtracer pathtracer_make(const struct scene *scene, const struct octree *octree)
@@ -125,7 +132,7 @@ void pathtracer_free(struct pathtracer *pathtracer)
     *pathtracer = (struct pathtracer){.scene = NULL};
 }
 
-static double all_power(const struct pathtracer *pathtracer)
+double pathtracer_power(const struct pathtracer *pathtracer)
 {
     return pathtracer->power[scene_root_count(pathtracer->scene) - 1];
 }
@@ -178,7 +185,7 @@ static void add_chosen_light(const struct pathtracer *pathtracer, const struct s
                              struct rgb throughput, struct draw *draw, struct rgb *sum)
 {
     const struct scene *scene = pathtracer->scene;
-    double power = all_power(pathtracer);
+    double power = pathtracer_power(pathtracer);
     struct spot light = {.root = emitter_at(pathtracer, power * draw_next(draw))};
     struct triangle t = scene_root_triangle(scene, light.root);
     light.x = point_on(&t, draw);
@@ -195,7 +202,7 @@ static void add_met_light(const struct pathtracer *pathtracer, const struct spot
     struct rgb emission = scene_root_material(pathtracer->scene, q->root)->emission;
     if (!(rgb_sum(emission) > 0.0))
         return;
-    double density = rgb_sum(emission) / all_power(pathtracer);
+    double density = rgb_sum(emission) / pathtracer_power(pathtracer);
     double g = coupling(pathtracer, p, q);
     if (g > 0.0)
         add_light(sum, throughput, g / (density + g), emission);
@@ -218,6 +225,9 @@ static bool arrive(const struct pathtracer *pathtracer, struct vec3 origin,
     q->root = scene_root_on(pathtracer->scene, hit.triangle, hit.front);
     q->x = triangle_point(&pathtracer->scene->triangles[hit.triangle],
                           (struct vec3){hit.weight[0], hit.weight[1], hit.weight[2]});
+    q->weight[0] = hit.weight[0];
+    q->weight[1] = hit.weight[hit.front ? 1 : 2]; /* a twin has its corners turned */
+    q->weight[2] = hit.weight[hit.front ? 2 : 1];
     return q->root >= 0;
 }
 
@@ -228,6 +238,19 @@ static bool follow(const struct pathtracer *pathtracer, const struct spot *p,
     struct vec3 normal = scene_root_plane(pathtracer->scene, p->root).normal;
     struct vec3 start = vec3_add(p->x, vec3_scale(normal, LIFT));
     return arrive(pathtracer, start, direction, false, q);
+}
+
+/* Whether a path goes on from a surface, and with how much. */
+static bool goes_on(const struct pathtracer *pathtracer, int32_t root, struct draw *draw,
+                    struct rgb *throughput)
+{
+    const double *rho = scene_root_material(pathtracer->scene, root)->reflectance.band;
+    double survival = fmax(rho[0], fmax(rho[1], rho[2]));
+    if (hash_unit(draw->next++) >= survival)
+        return false;
+    for (int c = 0; c < BANDS; c++)
+        throughput->band[c] *= rho[c] / survival;
+    return true;
 }
 
 static struct rgb irradiance(const struct pathtracer *pathtracer, struct spot p,
@@ -241,13 +264,8 @@ static struct rgb irradiance(const struct pathtracer *pathtracer, struct spot p,
         if (!follow(pathtracer, &p, cosine_direction(normal, draw), &q))
             return sum;
         add_met_light(pathtracer, &p, &q, throughput, &sum);
-        const struct material *material = scene_root_material(pathtracer->scene, q.root);
-        const double *rho = material->reflectance.band;
-        double survival = fmax(rho[0], fmax(rho[1], rho[2]));
-        if (hash_unit(draw->next++) >= survival)
+        if (!goes_on(pathtracer, q.root, draw, &throughput))
             return sum;
-        for (int c = 0; c < BANDS; c++)
-            throughput.band[c] *= rho[c] / survival;
         p = q;
     }
 }
@@ -261,10 +279,36 @@ struct rgb pathtracer_reflected(const struct pathtracer *pathtracer, int32_t roo
     struct draw draw = draw_make(seed);
     for (draw.sample = 0; draw.sample < samples; draw.sample++) {
         draw.used = 0;
-        struct spot start = {triangle_point(&t, point_on(part, &draw)), root};
+        struct spot start = {.root = root};
+        start.x = triangle_point(&t, point_on(part, &draw));
         add_light(&sum, rho, 1.0 / samples, irradiance(pathtracer, start, &draw));
     }
     return sum;
+}
+
+void pathtracer_shine(const struct pathtracer *pathtracer, uint64_t seed,
+                      void (*land)(void *listener, const struct landing *landing),
+                      void *listener)
+{
+    const struct scene *scene = pathtracer->scene;
+    struct draw draw = draw_make(seed);
+    double chosen = pathtracer_power(pathtracer) * draw_next(&draw);
+    struct spot p = {.root = emitter_at(pathtracer, chosen)}, q;
+    struct triangle t = scene_root_triangle(scene, p.root);
+    p.x = point_on(&t, &draw);
+    struct rgb emission = scene_root_material(scene, p.root)->emission;
+    struct rgb light = {{0.0, 0.0, 0.0}}, one = {{1.0, 1.0, 1.0}};
+    add_light(&light, one, 1.0 / rgb_sum(emission), emission);
+    for (;;) {
+        struct vec3 normal = scene_root_plane(scene, p.root).normal;
+        if (!follow(pathtracer, &p, cosine_direction(normal, &draw), &q))
+            return;
+        struct landing landing = {q.root, {q.weight[0], q.weight[1], q.weight[2]}, light};
+        land(listener, &landing);
+        if (!goes_on(pathtracer, q.root, &draw, &light))
+            return;
+        p = q;
+    }
 }
 
 struct rgb pathtracer_pixel(const struct pathtracer *pathtracer,

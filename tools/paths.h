@@ -1,5 +1,5 @@
 /* A path tracer: the light that a surface reflects, without links, patches or form
- * factors.
+ * factors; and light paths, which go the other way.
  *
  * It shares the octree and the scene with the program and nothing of its method, so it is
  * what the program's answers are compared with. All seeds are hashed: the same seed gives
@@ -31,6 +31,23 @@ struct vec3 triangle_point(const struct triangle *t, struct vec3 weight);
  * for a point. Its expectation is exact. Pre: samples > 0. */
 struct rgb pathtracer_reflected(const struct pathtracer *pathtracer, int32_t root,
                                 const struct triangle *part, int samples, uint64_t seed);
+
+/* Where a light path arrives. */
+struct landing {
+    int32_t root;
+    double weight[3]; /* barycentric coordinates in the root */
+    struct rgb light; /* what arrives, as a share of the power of all lights and bands */
+};
+
+/* Follows one light path from a light on, and tells of each place where it arrives. The
+ * sum of `light` over the landings in an area, times all power, over the number of paths
+ * and the area, has the mean irradiance as its expectation; each is at most 1. */
+void pathtracer_shine(const struct pathtracer *pathtracer, uint64_t seed,
+                      void (*land)(void *listener, const struct landing *landing),
+                      void *listener);
+
+/* W in square scene units: what all lights emit, in all bands. */
+double pathtracer_power(const struct pathtracer *pathtracer);
 
 /* Estimate of the mean radiosity E + rho H, W/m^2, that is seen through pixel (x, y) of a
  * picture; black where nothing is met, or a back. Its expectation is exact.
