@@ -37,12 +37,14 @@ void truth_free(struct truth *truth);
 /* Square scene units. */
 double element_area(const struct element *element, const struct scene *scene);
 
-/* Estimates element number `number` with this many paths for each mean, and a quarter of them for
- * each point. The same whoever does it. */
-void truth_estimate(struct truth *truth, int64_t number, const struct pathtracer *pathtracer,
-                    int samples);
+/* Gives element `number` its point and estimates the light there, with this many paths
+ * for each half in an element of average size. The same whoever does it. */
+void truth_find_point(struct truth *truth, int64_t number,
+                      const struct pathtracer *pathtracer, int samples);
 
-/* Collective. Elements with estimates, complete on rank 0; dealt to the ranks in turn. */
+/* Collective. Elements with estimates, complete on rank 0: `samples` light paths for each
+ * element and half, and a quarter of `samples` paths from each point. The same on any
+ * number of ranks. */
 struct truth truth_trace(const struct comm *comm, const struct scene *scene,
                          const struct octree *octree, int64_t wanted, int samples);
 

@@ -15,7 +15,7 @@
  * The mean over an element is Radon's rule of seven points, on quarters of quarters, until the
  * four quarters agree with the whole; the limit is that of the worst element, CLOSE times
  * the light of a hemisphere filled by the lamp. Both halves of the truth are the same, and
- * its points are those that reference.c has: truth_estimate() chooses them, with one path. */
+ * its points are those that reference.c has, from truth_find_point() with one path. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -177,7 +177,7 @@ static void make_truth(const struct scene *scene, struct truth *truth)
     for (int32_t m = 0; m < scene->material_count; m++)
         brightest = fmax(brightest, rgb_sum(scene->materials[m].emission));
     for (int64_t i = 0; i < truth->count; i++) {
-        truth_estimate(truth, i, &pathtracer, 1);
+        truth_find_point(truth, i, &pathtracer, 1);
         find_element(scene, &truth->items[i], CLOSE * brightest);
     }
     pathtracer_free(&pathtracer);

@@ -5,11 +5,11 @@
  *   build/mpi/measure scenes/cornell.obj cornell.ref --epsilon 1e-4
  *
  * ELEMENTS (20000) sets their size: each has at most that share of the scene's area. SAMPLES (1000)
- * is the number of paths of each of the two estimates of an element's mean.
+ * is the number of light paths, for each element, of each of the two estimates of their means, and
+ * a quarter of that the number of paths from its point (tests/truth.c).
  *
- * Elements are dealt to the ranks in turn and are the same whoever estimates them, so the file is
- * the same bytes on any number of ranks. The noise falls as one over the square root of SAMPLES,
- * or faster, and the time grows with ELEMENTS times SAMPLES. */
+ * The file is the same bytes on any number of ranks. The noise falls as one over the square root of
+ * SAMPLES, and the time grows with the elements times SAMPLES. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -85,9 +85,9 @@ static void make_reference(const struct comm *comm, const struct arguments *argu
     struct truth truth = truth_trace(comm, scene, octree, arguments->numbers[0],
                                      (int)arguments->numbers[1]);
     if (comm->rank == 0 && truth_write(&truth, arguments->out, error))
-        printf("%s: %lld elements, %lld paths each twice, %.1f s on %d rank(s); noise of elements "
-               "%.2f %%, of points %.2f %%\n", arguments->out, (long long)truth.count,
-               arguments->numbers[1], comm_seconds() - start, comm->size,
+        printf("%s: %lld elements, %lld light paths each twice, %.1f s on %d rank(s); "
+               "noise of elements %.2f %%, of points %.2f %%\n", arguments->out,
+               (long long)truth.count, arguments->numbers[1], comm_seconds() - start, comm->size,
                100.0 * truth_noise(&truth, scene, false), 100.0 * truth_noise(&truth, scene, true));
     truth_free(&truth);
     octree_destroy(octree);
