@@ -166,7 +166,7 @@ struct deviation deviation_of_roots(const struct forest *forest, const struct tr
     return deviation_of_patches(forest, truth, true);
 }
 
-static bool is_black(const struct element *element)
+bool element_is_black(const struct element *element)
 {
     return rgb_sum(element->point[0]) + rgb_sum(element->point[1]) == 0.0;
 }
@@ -178,7 +178,7 @@ struct deviation deviation_of_points(const struct shading *shading, const struct
     for (int64_t i = 0; i < truth->count; i++) {
         const struct element *element = &truth->items[i];
         int32_t root = (int32_t)element->id.root;
-        if (is_black(element))
+        if (element_is_black(element))
             continue;
         list.items[list.count++] = (struct sample){
             .area = element_area(element, scene),

@@ -51,6 +51,9 @@ struct deviation deviation_of_leaves(const struct forest *forest, const struct t
  * root cancel, so solutions on any meshes can be compared, with truths in elements of any size. */
 struct deviation deviation_of_roots(const struct forest *forest, const struct truth *truth);
 
+/* No light at all reaches its point. */
+bool element_is_black(const struct element *element);
+
 /* `shown`: the radiosity that pictures show, with the truth at the points of the elements. Points
  * that no light reaches at all, such as those that a box covers, are left out. */
 struct deviation deviation_of_points(const struct shading *shading, const struct truth *truth);

@@ -1,7 +1,13 @@
 /* Solves a scene with any options of phr and compares it with the truth that
  * tests/bench/reference.c has made: one line of CSV.
  *
- *   build/mpi/measure [--header] SCENE.obj REF [options of phr]
+ *   build/mpi/measure [--header] [--trace] SCENE.obj REF [options of phr]
+ *
+ * With --trace a second line tells of a path tracer (tools/paths.c, with next event
+ * estimation) that finds the same leaves in about the same time: as many paths for each
+ * leaf as the seconds allow, and as many for each point where `shown` is measured. Its
+ * seconds are those of the leaves, with an octree of its own, on one rank. Its error
+ * falls as one over their square root, which tells what as small an error takes it.
  *
  * The scene and the reference come first; --two-sided or --two-sided-lamps has to be
  * given where the reference was made with it. Outputs that are asked for are not written.
@@ -31,14 +37,17 @@
 static const char *const HEADER =
     "scene,options,seconds,links,rays,node_tests,triangle_tests,iterations,patches,leaf_rms,"
     "leaf_l1,leaf_median,shown_rms,shown_l1,shown_median,noise,shown_noise,emitters,"
-    "leaf_bias,shown_bias,root_rms,root_l1,root_median,root_bias,root_noise";
+    "leaf_bias,shown_bias,root_rms,root_l1,root_median,root_bias,root_noise,leaves";
+
+/* Beyond all seeds of tests/truth.c. */
+static const uint64_t SEEDS = UINT64_C(1) << 40;
 
 struct measure {
     struct comm comm;
     struct node_block block; /* what the scene looks into */
     struct options options;
     const char *reference;
-    bool header;
+    bool header, trace;
     struct truth truth;
     struct error error;
 };
@@ -59,6 +68,14 @@ static struct shading *shade(const struct measure *measure, const struct solutio
 }
 
 /* --- the line --- */
+
+/* An answer, by phr or by the path tracer. */
+struct answer {
+    struct stats stats; /* what does not apply is 0 */
+    double seconds;
+    int64_t leaves; /* those that reflect */
+    struct deviation leaf, root, shown;
+};
 
 static void print_options(const struct measure *measure, int argc, char **argv)
 {
@@ -93,34 +110,137 @@ static double share_of_reflected(const struct truth *truth, const struct scene *
     return sqrt(reflected_square / (reflected_square + crossed + emitted));
 }
 
-static void print_line(const struct measure *measure, const struct solution *s,
-                       const struct deviation *leaf, const struct deviation *root,
-                       const struct deviation *shown)
+static void print_line(const struct truth *truth, const struct scene *scene,
+                       const struct answer *answer)
 {
-    const struct stats *stats = &s->stats;
-    printf(",%.3f,%lld,%lld,%lld,%lld,%lld,%lld", s->seconds, (long long)stats->links,
-           (long long)stats->rays, (long long)stats->node_tests, (long long)stats->triangle_tests,
+    const struct stats *stats = &answer->stats;
+    const struct deviation *leaf = &answer->leaf, *shown = &answer->shown;
+    const struct deviation *root = &answer->root;
+    printf(",%.3f,%lld,%lld,%lld,%lld,%lld,%lld", answer->seconds,
+           (long long)stats->links, (long long)stats->rays,
+           (long long)stats->node_tests, (long long)stats->triangle_tests,
            (long long)stats->iterations, (long long)stats->patches);
-    if (stats->error_estimate > 0.0)
-        fprintf(stderr, "estimate %.5f at epsilon %g\n", stats->error_estimate, stats->epsilon);
     printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f", leaf->rms, leaf->l1, leaf->median,
            shown->rms, shown->l1, shown->median, leaf->noise, shown->noise);
-    printf(",%.4f,%.5f,%.5f", share_of_reflected(&measure->truth, s->scene, leaf), leaf->bias,
+    printf(",%.4f,%.5f,%.5f", share_of_reflected(truth, scene, leaf), leaf->bias,
            shown->bias);
-    printf(",%.5f,%.5f,%.5f,%.5f,%.5f\n", root->rms, root->l1, root->median, root->bias,
-           root->noise);
+    printf(",%.5f,%.5f,%.5f,%.5f,%.5f,%lld\n", root->rms, root->l1, root->median,
+           root->bias, root->noise, (long long)answer->leaves);
+}
+
+/* --- the path tracer --- */
+
+/* The part of its root that a patch is, in barycentric coordinates. */
+static struct triangle part_of(struct patch_id id)
+{
+    struct triangle part = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (int step = 0; step < id_level(id); step++)
+        part = triangle_child(&part, id_step(id, step));
+    return part;
+}
+
+static bool reflects(const struct forest *forest, int64_t patch)
+{
+    int32_t root = (int32_t)forest->patches[patch].id.root;
+    return scene_root_area(forest->scene, root) > 0.0 &&
+           rgb_sum(scene_root_material(forest->scene, root)->reflectance) > 0.0;
+}
+
+/* Puts E + rho H by so many paths into each leaf that reflects, and the means of their
+ * children into the others. Returns the number of leaves. */
+static int64_t trace_leaves(struct forest *forest, const struct pathtracer *pathtracer,
+                            int paths)
+{
+    int64_t leaves = 0;
+    for (int64_t i = forest->count - 1; i >= 0; i--) {
+        struct patch *patch = &forest->patches[i];
+        int32_t root = (int32_t)patch->id.root;
+        if (!reflects(forest, i))
+            continue;
+        if (!patch_is_leaf(patch)) {
+            forest_average_patch(forest, (int32_t)i);
+            continue;
+        }
+        struct triangle part = part_of(patch->id);
+        patch->radiosity = pathtracer_reflected(pathtracer, root, &part, paths,
+                                                SEEDS + 2 * (uint64_t)i);
+        for (int c = 0; c < BANDS; c++)
+            patch->radiosity.band[c] +=
+                scene_root_material(forest->scene, root)->emission.band[c];
+        leaves++;
+    }
+    return leaves;
+}
+
+/* As deviation_of_points() has them, but at `most` points of the truth, evenly chosen. */
+static struct deviation trace_points(const struct truth *truth, int64_t most,
+                                     const struct pathtracer *pathtracer, int paths)
+{
+    struct sample *samples = alloc_array((size_t)truth->count, sizeof *samples);
+    int64_t count = 0, step = 1 + (truth->count - 1) / most;
+    for (int64_t i = 0; i < truth->count; i += step) {
+        const struct element *element = &truth->items[i];
+        if (element_is_black(element))
+            continue;
+        struct vec3 x = {element->weight[0], element->weight[1], element->weight[2]};
+        struct triangle point = {{x, x, x}};
+        samples[count++] = (struct sample){
+            .area = element_area(element, pathtracer->scene),
+            .value = pathtracer_reflected(pathtracer, (int32_t)element->id.root, &point,
+                                          paths, SEEDS + 2 * (uint64_t)i + 1),
+            .truth = {element->point[0], element->point[1]}};
+    }
+    struct deviation deviation = deviation_of(samples, count);
+    alloc_free(samples);
+    return deviation;
+}
+
+/* The solution's leaves by paths in about as many seconds; their radiosities are lost. */
+static void trace(const struct measure *measure, struct solution *s, double seconds)
+{
+    enum { GROWTH = 8 };
+    const struct scene *scene = s->scene;
+    struct forest *forest = s->solver->method.forest;
+    double start = comm_seconds(), spent, paths = 1.0, growth;
+    struct octree *octree =
+        octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct pathtracer pathtracer = pathtracer_make(scene, octree);
+    double building = comm_seconds() - start;
+    struct answer answer = {.stats.patches = s->stats.patches};
+    for (;; paths = ceil(paths * growth)) {
+        *pathtracer.counts = (struct octree_counts){.rays = 0};
+        start = comm_seconds();
+        answer.leaves = trace_leaves(forest, &pathtracer, (int)paths);
+        spent = building + comm_seconds() - start;
+        growth = fmin(seconds / spent, GROWTH);
+        if (growth < 1.5)
+            break;
+    }
+    answer.seconds = spent;
+    answer.stats.rays = pathtracer.counts->rays;
+    answer.stats.node_tests = pathtracer.counts->node_tests;
+    answer.stats.triangle_tests = pathtracer.counts->triangle_tests;
+    answer.leaf = deviation_of_leaves(forest, &measure->truth);
+    answer.root = deviation_of_roots(forest, &measure->truth);
+    answer.shown = trace_points(&measure->truth, answer.leaves, &pathtracer, (int)paths);
+    printf("%s,%.0f paths a leaf", measure->options.scene, paths);
+    print_line(&measure->truth, scene, &answer);
+    pathtracer_free(&pathtracer);
+    octree_destroy(octree);
 }
 
 /* --- running --- */
 
-/* Takes --header and the reference, which follows the scene, out of the arguments; the rest is for
- * phr. Returns the number of arguments left. */
+/* Takes --header, --trace and the reference, which follows the scene, out of the
+ * arguments; the rest is for phr. Returns the number of arguments left. */
 static int take_own(struct measure *measure, int argc, char **argv)
 {
     int kept = 1;
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--header") == 0)
             measure->header = true;
+        else if (strcmp(argv[i], "--trace") == 0)
+            measure->trace = true;
         else if (kept == 2 && !measure->reference)
             measure->reference = argv[i];
         else
@@ -150,6 +270,29 @@ static struct scene *read_all(struct measure *measure)
     return NULL;
 }
 
+static void report(const struct measure *measure, struct solution *s,
+                   const struct shading *shading, int argc, char **argv)
+{
+    const struct forest *forest = s->solver->method.forest;
+    struct answer answer = {
+        .stats = s->stats,
+        .seconds = s->seconds,
+        .leaf = deviation_of_leaves(forest, &measure->truth),
+        .root = deviation_of_roots(forest, &measure->truth),
+        .shown = deviation_of_points(shading, &measure->truth)};
+    for (int64_t i = 0; i < forest->count; i++)
+        answer.leaves += reflects(forest, i) && patch_is_leaf(&forest->patches[i]);
+    if (s->stats.error_estimate > 0.0)
+        fprintf(stderr, "estimate %.5f at epsilon %g\n", s->stats.error_estimate,
+                s->stats.epsilon);
+    if (measure->header)
+        printf("%s\n", HEADER);
+    print_options(measure, argc, argv);
+    print_line(&measure->truth, s->scene, &answer);
+    if (measure->trace)
+        trace(measure, s, s->seconds);
+}
+
 static void run(struct measure *measure, int argc, char **argv)
 {
     struct scene *scene = read_all(measure);
@@ -159,16 +302,8 @@ static void run(struct measure *measure, int argc, char **argv)
     struct shading *shading = shade(measure, &s);
     if (s.vote.diverged)
         error_set(&measure->error, EXIT_FAILED, "the solution diverges");
-    if (measure->comm.rank == 0 && !s.vote.diverged) {
-        const struct forest *forest = s.solver->method.forest;
-        struct deviation leaf = deviation_of_leaves(forest, &measure->truth);
-        struct deviation root = deviation_of_roots(forest, &measure->truth);
-        struct deviation shown = deviation_of_points(shading, &measure->truth);
-        if (measure->header)
-            printf("%s\n", HEADER);
-        print_options(measure, argc, argv);
-        print_line(measure, &s, &leaf, &root, &shown);
-    }
+    if (measure->comm.rank == 0 && !s.vote.diverged)
+        report(measure, &s, shading, argc, argv);
     shading_destroy(shading);
     solution_free(&s);
     node_block_destroy(&measure->block);
@@ -181,7 +316,7 @@ int main(int argc, char **argv)
     argc = take_own(&measure, argc, argv);
     if (!measure.reference)
         error_set(&measure.error, EXIT_USAGE,
-                  "usage: measure [--header] SCENE.obj REF [options of phr]");
+                  "usage: measure [--header] [--trace] SCENE.obj REF [options of phr]");
     else if (options_parse(&measure.options, argc, argv, &measure.error))
         run(&measure, argc, argv);
     comm_agree(&measure.comm, &measure.error);
