@@ -116,7 +116,7 @@ static void print_line(const struct truth *truth, const struct scene *scene,
     const struct stats *stats = &answer->stats;
     const struct deviation *leaf = &answer->leaf, *shown = &answer->shown;
     const struct deviation *root = &answer->root;
-    printf(",%.3f,%lld,%lld,%lld,%lld,%lld,%lld", answer->seconds,
+    printf(",%.5f,%lld,%lld,%lld,%lld,%lld,%lld", answer->seconds,
            (long long)stats->links, (long long)stats->rays,
            (long long)stats->node_tests, (long long)stats->triangle_tests,
            (long long)stats->iterations, (long long)stats->patches);
