@@ -1,6 +1,7 @@
-# `make prove`, the long sweeps: errors fall with every fourfold step of epsilon, over six steps, in the
+# `make prove`, the long sweeps: errors fall with every fourfold step of epsilon, over six steps,
+# over links alone, and with a final gather whose rays double with each step, in the
 # Cornell box and in rooms of 1,004 and 6,348 triangles; with OFFICE3=FILE.obj also in that
-# scene, two-sided. References are made first, where $BUILD/prove has none: about an hour.
+# scene, two-sided. References are made first, where $BUILD/prove has none. About an hour.
 #
 # A step counts as a fall where RMS and L1, of leaves and of roots, become smaller by more than the noise
 # of the reference, or both are below it. Each step is four times the epsilon before.
@@ -11,23 +12,32 @@ folder=$BUILD/prove
 mkdir -p "$folder"
 cp scenes/room.mtl "$folder"
 
-# prove NAME SCENE OPTIONS...: one line for each step.
+# sweep NAME WAY SCENE OPTIONS...: one line for each step; WAY: links or gather.
+sweep() {
+    name=$1 way=$2 scene=$3
+    shift 3
+    before="" rays=16
+    for epsilon in 4e-3 1e-3 2.5e-4 6.25e-5 1.5625e-5 3.90625e-6 9.765625e-7; do
+        [ "$way" = gather ] || rays=0
+        now=$("$BUILD/measure" "$scene" "$folder/$name.ref" "$@" --epsilon $epsilon \
+            --final-gather $rays | awk -F, '{ print $10, $11, $21, $22, $16 }')
+        if [ -z "$now" ]; then
+            tap 1 "$name, $way, $epsilon: no measurement"
+        elif [ -n "$before" ]; then
+            check "$name, $way, $epsilon, $rays rays: $now" falls $before $now
+        fi
+        before=$now rays=$((2 * rays))
+    done
+}
+
+# prove NAME SCENE OPTIONS...
 prove() {
     name=$1 scene=$2
     shift 2
-    truth=$folder/$name.ref
-    [ -e "$truth" ] || "$BUILD/reference" "$scene" "$truth" "$@" "$ELEMENTS" "$SAMPLES" >/dev/null
-    before=""
-    for epsilon in 4e-3 1e-3 2.5e-4 6.25e-5 1.5625e-5 3.90625e-6 9.765625e-7; do
-        now=$("$BUILD/measure" "$scene" "$truth" "$@" --epsilon $epsilon |
-            awk -F, '{ print $10, $11, $21, $22, $16 }')
-        if [ -z "$now" ]; then
-            tap 1 "$name, $epsilon: no measurement"
-        elif [ -n "$before" ]; then
-            check "$name, $epsilon: $now" falls $before $now
-        fi
-        before=$now
-    done
+    [ -e "$folder/$name.ref" ] ||
+        "$BUILD/reference" "$scene" "$folder/$name.ref" "$@" "$ELEMENTS" "$SAMPLES" >/dev/null
+    sweep "$name" links "$scene" "$@"
+    sweep "$name" gather "$scene" "$@"
 }
 
 # falls RMS L1 ROOT_RMS ROOT_L1 NOISE, twice: before and now.
