@@ -69,7 +69,7 @@ TESTS = alloc elementary bicgstab sequence id triangle lambert hull scene polygo
         compact formfactor link linking cluster node oracle pushpull closure final_gather treecode plan balance assign text obj ply output tone \
         image camera viewpoint shading stop options progress paths norms cie furnace whole stability store exchange conjugate exact converge leaks
 # Programs that compare phr with what is true.
-BENCHES = reference measure direct tracing replay
+BENCHES = reference measure direct replay
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
 FUZZERS = obj mtl ply image view links checkpoint clusters
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
@@ -151,8 +151,9 @@ errors: $(BUILD)/reference $(BUILD)/measure
 $(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
-# About ten minutes, half of them for references that are kept in $(BUILD)/chart.
-chart: $(BENCHES:%=$(BUILD)/%) build/room
+# About an hour and a half on two cores, half an hour of it for references that are kept in
+# $(BUILD)/chart.
+chart: $(BENCHES:%=$(BUILD)/%) $(BUILD)/hits build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/chart.sh
 
 # About eight minutes on two cores.

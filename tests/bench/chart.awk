@@ -1,7 +1,13 @@
-# The table of README.md out of docs/chart.csv: links and seconds that the paper's variant and the
-# defaults need for the same leaf error, interpolated on the curves in logarithms. A curve that
-# zigzags is read where it comes down for good. The errors are that of the finest run of the
-# paper's variant, in two digits rounded up, and twice that.
+# The tables of README.md out of docs/chart.csv.
+#
+# Seconds for a leaf error: interpolated on the curve in logarithms; one that zigzags is read
+# where it comes down for good. The path tracer's are for the leaves of phr's runs: its
+# error falls as one over the square root of its seconds, so a run of t seconds with an
+# error of x would take t (x / e)^2 for the error e that phr has at those leaves, and that curve
+# is read as the others are. Where phr does not get there, it is read at phr's finest run.
+#
+# Slopes: the line of least squares, in logarithms, through the runs of the last decade of
+# seconds.
 
 BEGIN { FS = "," }
 
@@ -12,56 +18,105 @@ NR > 1 {
     }
     key = $1 SUBSEP $2
     k = ++count[key]
-    seconds[key, k] = $4; links[key, k] = $5; error[key, k] = $7
+    seconds[key, k] = $4; error[key, k] = $9
+    samples[key] += $7; rays[key] += $8; time[key] += $4
+    place[$1, $2, $3] = k
+    if ($2 == "paths")
+        match_error($1, $3, $9, $4)
 }
 
-# Where the curve comes down to the error for good: the value of `of`; 0 if it never does.
-function needed(of, key, wanted,    k, share) {
+# The path tracer's seconds for the error of the gather with the same setting.
+function match_error(scene, setting, error_now, seconds_now,    g, key, k) {
+    g = place[scene, "gather", setting]
+    if (!g)
+        return
+    key = scene SUBSEP "matched"
+    k = ++count[key]
+    error[key, k] = error[scene SUBSEP "gather", g]
+    seconds[key, k] = seconds_now * (error_now / error[key, k]) ^ 2
+}
+
+# Where the curve comes down to the error for good: seconds; 0 if it never does.
+function needed(key, wanted,    k, share) {
     k = count[key]
     if (k == 0 || error[key, k] > wanted)
         return 0
     while (k > 1 && error[key, k - 1] <= wanted)
         k--
     if (k == 1)
-        return of[key, 1]
+        return seconds[key, 1]
     share = log(wanted / error[key, k - 1]) / log(error[key, k] / error[key, k - 1])
-    return of[key, k - 1] * (of[key, k] / of[key, k - 1]) ^ share
+    return seconds[key, k - 1] * (seconds[key, k] / seconds[key, k - 1]) ^ share
 }
 
-# In two digits, rounded up.
-function rounded(x,    unit) {
-    for (unit = 1; unit * 10 > x; unit /= 10)
-        ;
-    return unit * int(x / unit + 1)
+# For the path tracer.
+function traced(scene, wanted,    key, k) {
+    key = scene SUBSEP "matched"
+    k = count[key]
+    if (k == 0)
+        return 0
+    if (error[key, k] > wanted)
+        return seconds[key, k] * (error[key, k] / wanted) ^ 2
+    return needed(key, wanted)
 }
 
-function ratio(a, b) {
-    return a > 0 && b > 0 ? sprintf(a < 10 * b ? "%.1f" : "%.0f", a / b) : "-"
+# d log error / d log seconds, over the last decade of seconds.
+function slope(key,    k, n, x, y, sx, sy, sxx, sxy) {
+    n = sx = sy = sxx = sxy = 0
+    for (k = count[key]; k > 0; k--)
+        if (seconds[key, k] > 0 && error[key, k] > 0 &&
+            10 * seconds[key, k] >= seconds[key, count[key]]) {
+            x = log(seconds[key, k]); y = log(error[key, k])
+            n++; sx += x; sy += y; sxx += x * x; sxy += x * y
+        }
+    return n > 1 ? sprintf("%.2f", (n * sxy - sx * sy) / (n * sxx - sx * sx)) : "-"
 }
 
-# Three digits; a dash for what is not reached.
+# Two digits; a dash for what is not reached.
 function show(x,    unit) {
     if (!(x > 0))
         return "-"
-    for (unit = 1; x >= 1000 * unit; unit *= 10)
+    for (unit = 1; x >= 100 * unit; unit *= 10)
         ;
-    return x < 100 ? sprintf("%.2g", x) : sprintf("%.0f", unit * int(x / unit + 0.5))
+    return x < 10 ? sprintf("%.2g", x) : sprintf("%.0f", unit * int(x / unit + 0.5))
 }
 
-function row(scene, wanted,    paper, all, l, m, s, t) {
-    paper = scene SUBSEP "paper"; all = scene SUBSEP "all"
-    l = needed(links, paper, wanted); m = needed(links, all, wanted)
-    s = needed(seconds, paper, wanted); t = needed(seconds, all, wanted)
-    printf "| %s | %.2g %% | %s | %s | %s | %s | %s | %s |\n", scene, 100 * wanted,
-        show(l), show(m), ratio(l, m), show(s), show(t), ratio(s, t)
+function ratio(a, b) {
+    return a > 0 && b > 0 ? show(a / b) : "-"
+}
+
+function row(scene, wanted,    gather, paths) {
+    gather = needed(scene SUBSEP "gather", wanted); paths = traced(scene, wanted)
+    printf "| %s | %g %% | %s | %s | %s | %s | %s |\n", scene, 100 * wanted,
+        show(needed(scene SUBSEP "paper", wanted)), show(needed(scene SUBSEP "links", wanted)),
+        show(gather), show(paths), ratio(paths, gather)
+}
+
+# Million rays a second.
+function rate(key) {
+    return time[key] > 0 ? 1e-6 * rays[key] / time[key] : 0
+}
+
+function second_row(scene,    paths, octree, embree) {
+    paths = scene SUBSEP "paths"; octree = scene SUBSEP "octree"; embree = scene SUBSEP "embree"
+    printf "| %s | %s | %s | %s | %s | %s | %s | %s | %s |\n", scene,
+        slope(scene SUBSEP "links"), slope(scene SUBSEP "gather"),
+        show(samples[paths] * 1e-6), ratio(rays[paths], samples[paths]), show(rate(paths)),
+        show(rate(octree)), show(rate(embree)), ratio(rate(octree), rate(embree))
 }
 
 END {
-    print "| scene | leaf error | links, paper | links, defaults | ratio | s, paper | s, defaults | ratio |"
-    print "|---|---|---|---|---|---|---|---|"
+    print "| scene | leaf error | s, paper | s, links alone | s, phr | s, path tracer | ratio |"
+    print "|---|---|---|---|---|---|---|"
     for (i = 1; i <= scene_count; i++) {
-        finest = rounded(error[scenes[i], "paper", count[scenes[i], "paper"]])
-        row(scenes[i], 2 * finest)
-        row(scenes[i], finest)
+        row(scenes[i], 0.05)
+        row(scenes[i], 0.02)
+        row(scenes[i], 0.01)
     }
+    print ""
+    print "| scene | slope, links alone | slope, phr | million paths | rays a path " \
+        "| million rays/s | first hits, octree | Embree | ratio |"
+    print "|---|---|---|---|---|---|---|---|---|"
+    for (i = 1; i <= scene_count; i++)
+        second_row(scenes[i])
 }

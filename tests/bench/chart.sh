@@ -1,56 +1,107 @@
 #!/bin/sh
-# Speed against error: docs/chart.csv, the table of README.md on stdout and, where gnuplot is
-# installed, docs/chart-seconds.svg and docs/chart-links.svg.
+# Speed against error: docs/chart.csv, the tables of README.md on stdout and, where gnuplot
+# is installed, docs/chart-leaf.svg and docs/chart-shown.svg.
 #
-#   make chart           all, about ten minutes
-#   SCENES=shadow CSV=build/chart.csv sh tests/bench/chart.sh       one scene, nothing drawn
+#   make chart
+#       all scenes: an hour and a half on two cores, half an hour of it for references
+#   SCENES="cornell shadow" CSV=build/chart.csv make chart
+#       two scenes, drawn beside the CSV
+#   SCENES=/data/rpk_office3.obj OPTIONS=--two-sided CSV=build/office3.csv make chart
+#       a scene of one's own, which is a path with a slash in it; its OPTIONS are
+#       --two-sided, --two-sided-lamps, or none
 #
-# Each variant is run on one rank with ever smaller epsilon until a run takes more than SECONDS or
-# has more than LINKS. The variants take turns, so that a disturbance of the machine hits all of
-# them; of a run below two seconds three are made and the fastest counts. References are made
-# when they are missing and kept under $BUILD/chart.
+# A point is a run on one rank. The variants:
+#   paper   --paper: all pairs of triangles
+#   links   the defaults without the final gather
+#   gather  the defaults: --epsilon and --final-gather move together, as in PAIRS
+#   paths   the path tracer at the leaves of the gather with the same setting, for about as
+#           many seconds (tests/bench/measure.c, --trace); samples are its paths
+#   octree, embree   100,000 rays that wander (tests/bench/hits.c)
+# A line ends with the first run of more than SECONDS_MOST, or before one that is broken
+# off: after a minute, or after five where the path tracer follows. Lines take turns, so
+# that a disturbance of the machine hits all of them; runs below two seconds are made
+# three times, and the least time for the error counts. References are made when they are
+# missing and kept under $BUILD/chart. Their noise (columns leaf_noise and shown_noise) is
+# to be a third of the errors at most: L1 and median contain it, RMS does not.
 
 cd "$(dirname "$0")/../.." || exit 2
-: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${SCENES:=cornell shadow room}" "${CSV:=docs/chart.csv}"
-: "${SECONDS_MOST:=3}" "${LINKS_MOST:=5000000}"
+: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${CSV:=docs/chart.csv}" "${OPTIONS:=}"
+: "${SCENES:=cornell shadow room1004 room6348 room18512 room31936}"
+: "${SECONDS_MOST:=30}"
+: "${EPSILONS:=1e-2 1e-3 3e-4 1e-4 3e-5 1e-5 3e-6 1e-6 3e-7}"
+: "${PAIRS:=1e-2/16 1e-3/32 1e-3/64 3e-4/128 1e-4/256 3e-5/512 1e-5/1024}"
 export LC_ALL=C
 folder=$BUILD/chart
 mkdir -p "$folder"
 
-EPSILONS="1e-2 3e-3 1e-3 3e-4 1e-4 3e-5 1e-5 3e-6 1e-6 3e-7 1e-7"
-PATHS="1 4 16 64 256"
-VARIANTS="paper error polygon cg rows all all+rows"
+VARIANTS="paper links gather"
 
-options_of() {
+# settings_of VARIANT
+settings_of() {
     case $1 in
-    paper) echo --paper ;;
-    error) echo --paper --oracle error ;;
-    polygon) echo --paper --form-factor polygon ;;
-    cg) echo --paper --solver cg ;;
-    rows) echo --paper --closure rows ;;
-    all) ;;
-    all+*) echo --closure "${1#all+}" ;;
+    gather) echo "$PAIRS" ;;
+    *) echo "$EPSILONS" ;;
     esac
 }
 
-scene_of() {
+# options_of VARIANT SETTING
+options_of() {
     case $1 in
-    room) echo "$folder/room.obj" ;;
+    paper) echo "--paper --epsilon $2" ;;
+    links) echo "--final-gather 0 --epsilon $2" ;;
+    gather) echo "--trace --epsilon ${2%/*} --final-gather ${2#*/}" ;;
+    esac
+}
+
+name_of() {
+    basename "$1" .obj
+}
+
+file_of() {
+    case $1 in
+    */*) echo "$1" ;;
+    room*) echo "$folder/$1.obj" ;;
     *) echo "scenes/$1.obj" ;;
     esac
 }
 
-# make_reference SCENE: the file beside it, unless it is there.
-make_reference() {
-    if [ "$1" = room ] && ! [ -f "$folder/room.obj" ]; then
-        cp scenes/room.mtl "$folder" && build/room 1000 1 >"$folder/room.obj" || exit 1
-    fi
-    [ -f "$folder/$1.ref" ] && return
+# of SCENE: options that belong to the scene.
+of() {
     case $1 in
+    */*) echo "$OPTIONS" ;;
+    esac
+}
+
+# make_room SCENE: the number that build/room is asked for.
+make_room() {
+    case $1 in
+    room6348) size=6350 ;;
+    room18512) size=18510 ;;
+    room31936) size=31933 ;;
+    *) size=${1#room} ;;
+    esac
+    cp scenes/room.mtl "$folder" && build/room "$size" 1 >"$folder/$1.obj" || exit 1
+}
+
+# make_reference SCENE: with its file, unless they are there.
+make_reference() {
+    case $1 in
+    room*) [ -f "$folder/$1.obj" ] || make_room "$1" ;;
+    esac
+    name=$(name_of "$1")
+    [ -f "$folder/$name.ref" ] && return
+    case $name in
+    cornell) samples=8000 ;;
+    room1004 | room6348) samples=4000 ;;
+    room18512) samples=2500 ;;
+    *) samples=1500 ;;
+    esac
+    case $name in
     shadow) "$BUILD/direct" scenes/shadow.obj "$folder/new.ref" ;;
-    room) $MPIEXEC -n 2 "$BUILD/reference" "$folder/room.obj" "$folder/new.ref" 10000 1000 ;;
-    *) $MPIEXEC -n 2 "$BUILD/reference" "$(scene_of "$1")" "$folder/new.ref" 20000 3000 ;;
-    esac >&2 && mv "$folder/new.ref" "$folder/$1.ref" || exit 1
+    # Unquoted: no word, or one.
+    *) $MPIEXEC -n 2 "$BUILD/reference" "$(file_of "$1")" "$folder/new.ref" $(of "$1") \
+        10000 $samples ;;
+    esac >&2 && mv "$folder/new.ref" "$folder/$name.ref" || exit 1
 }
 
 # exceeds NUMBER LIMIT
@@ -58,62 +109,84 @@ exceeds() {
     awk "BEGIN { exit !($1 > $2) }"
 }
 
-# fastest COMMAND...: of its lines of three runs, or of one that takes long, the one with the
-# smallest second field.
-fastest() {
-    "$@" >"$folder/runs"
-    [ -s "$folder/runs" ] || return
-    exceeds "$(cut -d, -f 2 "$folder/runs")" 2 || { "$@" && "$@"; } >>"$folder/runs" || return
-    sort -t, -g -k 2,2 "$folder/runs" | head -n 1
-}
-
-# measured SCENE VARIANT EPSILON: epsilon and what docs/chart.csv has of the run.
+# measured SCENE VARIANT SETTING: a line of the CSV, or two with the path tracer's; none if the
+# light diverges, or the run is broken off.
 measured() {
-    # Unquoted: one word for each option.
-    "$BUILD/measure" "$(scene_of "$1")" "$folder/$1.ref" --epsilon "$3" $(options_of "$2") |
-        awk -F, -v OFS=, -v epsilon="$3" '{ print epsilon, $3, $4, $5, $10, $11, $12, $13, $14, $15 }'
+    limit=60
+    [ "$2" != gather ] || limit=300
+    {
+        # Unquoted: one word for each option.
+        timeout $limit "$BUILD/measure" "$(file_of "$1")" "$folder/$(name_of "$1").ref" \
+            $(of "$1") $(options_of "$2" "$3") 2>>"$folder/log"
+        [ $? -ne 124 ] || : >"$folder/ended.$2"
+    } | awk -F, -v OFS=, -v scene="$(name_of "$1")" -v variant="$2" -v setting="$3" '
+            $2 ~ / paths a leaf$/ { variant = "paths"; $4 = ""; samples = ($2 + 0) * $26 }
+            { print scene, variant, setting, $3, $4, $26, samples, $5,
+                    $10, $11, $12, $13, $14, $15, $16, $17 }'
 }
 
-# traced SCENE PATHS
-traced() {
-    "$BUILD/tracing" "$(scene_of "$1")" "$folder/$1.ref" "$2" | sed 's/^\([^,]*,[^,]*\),/\1,,,/'
+# The runs of a variant: of each kind of line that with the least seconds times the square of
+# the error.
+fastest() {
+    measured "$@" >"$folder/runs"
+    [ -s "$folder/runs" ] || return
+    exceeds "$(head -n 1 "$folder/runs" | cut -d, -f 4)" 2 ||
+        { measured "$@" && measured "$@"; } >>"$folder/runs"
+    awk -F, '{ price = $4 * $9 ^ 2 }
+        !($2 in least) || price < least[$2] { least[$2] = price; line[$2] = $0 }
+        END { for (variant in line) print line[variant] }' "$folder/runs" | sort
 }
 
-# turn SCENE VARIANT KNOB COMMAND: one point of a line, unless the line has ended.
+# turn SCENE VARIANT SETTING: one point of a line, unless the line has ended.
 turn() {
     [ -f "$folder/ended.$2" ] && return
-    # A run that diverges gives no line.
-    if ! line=$(fastest "$4" "$1" ${5:+"$5"} "$3") || [ -z "$line" ]; then
+    lines=$(fastest "$@")
+    if [ -z "$lines" ]; then
         echo "chart: $1, $2, $3: no result" >&2
         return
     fi
-    echo "$1,$2,$line" | tee -a "$folder/lines" >&2
-    exceeds "$(echo "$line" | cut -d, -f 2)" "$SECONDS_MOST" && : >"$folder/ended.$2"
-    exceeds "$(echo "$line" | awk -F, '{ print 0 + $3 }')" "$LINKS_MOST" && : >"$folder/ended.$2"
+    echo "$lines" | tee -a "$folder/lines" >&2
+    exceeds "$(echo "$lines" | head -n 1 | cut -d, -f 4)" "$SECONDS_MOST" &&
+        : >"$folder/ended.$2"
+}
+
+# hits SCENE: its first hits, as lines of the CSV.
+hits() {
+    "$BUILD/hits" "$(file_of "$1")" 100000 | awk -v OFS=, -v scene="$(name_of "$1")" '
+        function line(variant, rate) {
+            print scene, variant, "", 0.1 / rate ",,,", 100000 ",,,,,,,,"
+        }
+        $1 == "octree:" { line("octree", $2) }
+        $1 == "Embree:" { line("embree", $5) }
+        $1 == "rays" && $4 > 1 { exit }'
 }
 
 # The lines of a scene, one variant after the other.
 sweep() {
     rm -f "$folder/lines" "$folder"/ended.*
     : >"$folder/lines"
-    for epsilon in $EPSILONS; do
+    longest=$(for variant in $VARIANTS; do settings_of "$variant" | wc -w; done |
+        sort -n | tail -n 1)
+    place=1
+    while [ "$place" -le "$longest" ]; do
         for variant in $VARIANTS; do
-            turn "$1" "$variant" "$epsilon" measured "$variant"
+            setting=$(settings_of "$variant" | awk -v place="$place" '{ print $place }')
+            [ -z "$setting" ] || turn "$1" "$variant" "$setting"
         done
-    done
-    for paths in $PATHS; do
-        turn "$1" paths "$paths" traced
+        place=$((place + 1))
     done
     for variant in $VARIANTS paths; do
-        grep "^$1,$variant," "$folder/lines"
+        grep "^$(name_of "$1"),$variant," "$folder/lines"
     done
+    hits "$1"
 }
 
 for scene in $SCENES; do
     make_reference "$scene"
 done
 {
-    echo "scene,variant,epsilon_or_paths,seconds,links,rays,leaf_rms,leaf_l1,leaf_median,shown_rms,shown_l1,shown_median"
+    echo "scene,variant,setting,seconds,links,leaves,samples,rays,leaf_rms,leaf_l1,leaf_median," \
+        "shown_rms,shown_l1,shown_median,leaf_noise,shown_noise" | tr -d ' '
     for scene in $SCENES; do
         sweep "$scene"
     done
@@ -121,10 +194,9 @@ done
 mv "$folder/chart.csv" "$CSV"
 rm -f "$folder/lines" "$folder/runs" "$folder"/ended.*
 awk -f tests/bench/chart.awk "$CSV"
-if [ "$CSV" != docs/chart.csv ]; then
-    exit
-elif command -v gnuplot >/dev/null; then
-    gnuplot tests/bench/chart.gp && echo "docs/chart-seconds.svg and docs/chart-links.svg are drawn"
+if command -v gnuplot >/dev/null; then
+    gnuplot -e "csv='$CSV'; out='${CSV%.csv}'" tests/bench/chart.gp &&
+        echo "${CSV%.csv}-leaf.svg and ${CSV%.csv}-shown.svg are drawn"
 else
-    echo "docs/chart.csv is written; install gnuplot to draw it"
+    echo "$CSV is written; install gnuplot to draw it"
 fi
