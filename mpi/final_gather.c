@@ -103,7 +103,7 @@ static bool make_rows(struct gathering *g)
     for (int64_t i = 0; i < g->count && !stop_is_asked(); i++) {
         if (g->rank_of[i] != solver->comm->rank)
             continue;
-        final_gather_add(&g->gather, g->leaves[i], g->mesh.rays[i]);
+        final_gather_add(&g->gather, g->leaves[i], g->mesh.rays[i], g->mesh.exact[i]);
         progress_tick(solver->progress, (double)i / (double)g->count);
     }
     const struct octree_counts *proofs = &g->gather.view.counts;

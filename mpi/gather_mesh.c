@@ -245,11 +245,13 @@ static void share_rays(struct looking *l)
     }
     mesh->rays = alloc_array((size_t)mesh->count, sizeof *mesh->rays);
     mesh->rank_of = alloc_array((size_t)mesh->count, sizeof *mesh->rank_of);
+    mesh->exact = alloc_array((size_t)mesh->count, sizeof *mesh->exact);
     int64_t dealt[CLASSES] = {0}, exact = 0;
     for (int64_t i = 0; i < mesh->count; i++) {
         bool open = l->variance[mesh->leaves[i]] == IS_EXACT;
         int class = high > 0.0 && !open ? class_of(worth[i] / high) : 0;
         mesh->rays[i] = rays_of_class(l->gather.rays, class);
+        mesh->exact[i] = open || l->rays < FEWEST_LOOKED;
         mesh->rank_of[i] = rank_of_next(open ? &exact : &dealt[class + MOST_HALVED],
                                         l->solver->comm->size);
     }
@@ -287,6 +289,7 @@ void gather_mesh_free(struct gather_mesh *mesh)
 {
     alloc_free(mesh->leaves);
     alloc_free(mesh->rays);
+    alloc_free(mesh->exact);
     alloc_free(mesh->rank_of);
     *mesh = (struct gather_mesh){0};
 }

@@ -27,7 +27,7 @@ static struct trial gather_scene(struct painted *painted, const char *words, int
         int32_t p = g.gather.order[i];
         g.radiosity[i] = forest->patches[p].radiosity;
         if (patch_is_leaf(&forest->patches[p]) && forest_area(forest, p) > 0.0)
-            final_gather_add(&g.gather, p, rays);
+            final_gather_add(&g.gather, p, rays, true);
     }
     return g;
 }

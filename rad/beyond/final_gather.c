@@ -240,14 +240,14 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     return look;
 }
 
-void final_gather_add(struct final_gather *gather, int32_t leaf, int rays)
+void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool exact)
 {
     struct receiver r = receiver_make(gather, facet_make(gather->method->forest, leaf),
                                       seed_of(gather, leaf), rays);
     r.keeps = true;
     r.first = gather->term_count;
     r.row = (struct gather_row){.leaf = leaf, .end = r.first};
-    if (!receiver_add_exact(&r)) {
+    if (!exact || !receiver_add_exact(&r)) {
         r.row.end = r.first;
         receiver_fire(&r);
     }

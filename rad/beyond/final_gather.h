@@ -93,8 +93,9 @@ void final_gather_free(struct final_gather *gather);
  * looked at. */
 struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays);
 
-/* Makes the row of a leaf, as the last one, by so many rays if it takes any. */
-void final_gather_add(struct final_gather *gather, int32_t leaf, int rays);
+/* Makes the row of a leaf, as the last one, by so many rays; or, if it may be exact and
+ * its root is open, by exact factors. */
+void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool exact);
 
 /* H at a point, W/m^2, for the radiosities that the forest has: by `rays` rays and as many
  * segments to lamps. */

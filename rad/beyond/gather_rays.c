@@ -26,6 +26,9 @@
  * its area. */
 static const double NEAR = 0.2;
 
+/* A lamp is near if the square of its distance is less than so many times its area. */
+static const double NEAR_LAMP = 4.0;
+
 /* A path ends after so many points at the latest. */
 enum { PATH_MOST = 8, AIMS_MOST = 4, BARE_POINTS = 4 };
 
@@ -199,6 +202,15 @@ static void aim_at_lamps(struct receiver *r)
 
 /* --- paths --- */
 
+/* True if a lamp is so near, for its size, that rays from a point find it often enough:
+ * on the way of a path they count its emission, and segments do not. */
+static bool lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 x)
+{
+    struct triangle t = scene_root_triangle(scene, lamp);
+    struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
+    return vec3_dot(apart, apart) < NEAR_LAMP * scene_root_area(scene, lamp);
+}
+
 /* The light of one lamp at a point beside the leaf; the lamp and a point of it are chosen
  * by hashes. Of a lamp that the horizon cuts, a point above it. */
 static void aim_beside(struct receiver *r, const struct point *x, const struct rgb *weight,
@@ -214,6 +226,8 @@ static void aim_beside(struct receiver *r, const struct point *x, const struct r
         return;
     const struct lamp_group *group = &g->groups.items[i];
     struct lamp lamp = lamp_choose(&g->lamps, group->node, hash_unit(seed + 1));
+    if (lamp_is_near(scene, lamp.root, x->at))
+        return;
     struct triangle triangle = scene_root_triangle(scene, lamp.root);
     struct vec3 normal = scene_root_plane(scene, lamp.root).normal;
     double factor = point_triangle_factor(x->at, x->normal, &triangle);
@@ -269,14 +283,16 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
             return;
         const struct material *material = forest_material(forest, point.patch);
         int32_t root = (int32_t)forest->patches[point.patch].id.root;
-        bool lamp = root_is_lamp(&r->gather->lamps, root);
+        bool aimed = root_is_lamp(&r->gather->lamps, root) &&
+                     (count == 1 ||
+                      !lamp_is_near(r->gather->method->scene, root, origin));
         if (count == PATH_MOST || !is_too_near(forest, point.patch, origin)) {
             receiver_add_point(r, point.patch, point.weight, &weight);
-            if (lamp)
+            if (aimed)
                 add_source(r, &weight, material->emission, -1.0);
             return;
         }
-        if (!lamp)
+        if (!aimed)
             add_source(r, &weight, material->emission, 1.0);
         for (int c = 0; c < BANDS; c++)
             weight.band[c] *= material->reflectance.band[c];
