@@ -322,7 +322,7 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
     solver->least_bend = snapshot->value[SNAPSHOT_LEAST_BEND];
     if (solver->pass > 0) { /* before the first pass a link cache does not bind epsilon */
         method->criterion.epsilon = snapshot->value[SNAPSHOT_EPSILON];
-        method->link_threshold = method->criterion.epsilon * method->emitted_power;
+        method->link_threshold = method->criterion.epsilon * method->light_power;
     }
     *vote = (struct vote){
         .settled = number[SNAPSHOT_SETTLED] != 0 && (as_limited || number[SNAPSHOT_LIMITED] == 0),

@@ -4,6 +4,12 @@
  * every colour of light. */
 #include "rad/method.h"
 
+#include <math.h>
+
+/* Of the light that there would be if it were spread evenly in a closed scene, this part
+ * counts: in ordinary rooms less than what is emitted, in white ones many times as much. */
+static const double LASTING = 0.1;
+
 /* The mean radiosity if all light were spread evenly in a closed scene: E / (1 - rho) of means. */
 static struct rgb typical_radiosity(const struct scene *scene)
 {
@@ -21,6 +27,15 @@ static struct rgb typical_radiosity(const struct scene *scene)
     return emitted;
 }
 
+/* Power of all light, W: as emitted or, where it is reflected for long, a part of what
+ * there would be if it were spread evenly. */
+static double power_of_light(const struct scene *scene, const struct criterion *criterion)
+{
+    double emitted = scene_emitted_power(scene);
+    double spread = scene_area(scene) * rgb_sum(typical_radiosity(scene));
+    return criterion->linking == LINKING_TREE ? fmax(emitted, LASTING * spread) : emitted;
+}
+
 struct method method_make(const struct scene *scene, const struct octree *octree,
                           struct forest *forest, const struct criterion *criterion)
 {
@@ -32,7 +47,8 @@ struct method method_make(const struct scene *scene, const struct octree *octree
         .flux_unit = flux_unit_choose(scene),
         .area = scene_area(scene),
         .emitted_power = scene_emitted_power(scene),
-        .link_threshold = criterion->epsilon * scene_emitted_power(scene),
+        .light_power = power_of_light(scene, criterion),
+        .link_threshold = criterion->epsilon * power_of_light(scene, criterion),
         .typical = typical_radiosity(scene),
         .patch_threshold = criterion->min_area * scene_area(scene),
     };

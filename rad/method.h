@@ -25,8 +25,8 @@ struct criterion {
     enum closure_kind closure;
     enum solver_kind solver;
     enum balance balance;
-    double epsilon;         /* energy or error of a link that splits it, relative to the emitted
-                               power */
+    double epsilon;         /* energy or error of a link that splits it, relative to
+                               light_power below */
     double accuracy;        /* estimated error of the leaves down to which epsilon is lowered,
                                relative RMS; 0: epsilon stays */
     double min_area;        /* smallest patch, relative to the scene's area */
@@ -49,7 +49,8 @@ struct method {
     struct criterion criterion;
     struct flux_unit flux_unit;
     double area, emitted_power; /* of the scene: square scene units, W */
-    double link_threshold;  /* W, areas in square scene units: epsilon times the emitted power */
+    double light_power;     /* W, areas in square scene units: what epsilon is relative to */
+    double link_threshold;  /* W, areas in square scene units: epsilon times that */
     double patch_threshold; /* square scene units: no patch smaller than this is made */
     struct rgb typical;     /* a guess at the mean radiosity, W/m^2, before there is an answer */
     struct octree_counts counts; /* work of this rank so far */

@@ -586,15 +586,15 @@ int main(int argc, char **argv)
     test_concentric(&comm, 0.2, 2);
     test_furnace(&comm, CUBE, 0.5, false, "");
     test_furnace(&comm, CUBE, 0.9, false, "");
-    test_furnace(&comm, CUBE, 0.999, false, "--epsilon 1e-2");
-    test_furnace(&comm, CORRIDOR, 0.9, false, "--epsilon 1e-2");
+    test_furnace(&comm, CUBE, 0.999, false, "");
+    test_furnace(&comm, CORRIDOR, 0.9, false, "");
     test_furnace(&comm, FURNISHED, 0.9, false, "");
-    test_furnace(&comm, FURNISHED, 0.999, false, "--epsilon 1e-2");
+    test_furnace(&comm, FURNISHED, 0.999, false, "");
     test_furnace(&comm, FURNISHED, 0.9, true, "");
     test_light_is_kept(&comm, 0.5, "");
     test_light_is_kept(&comm, 0.9, "--epsilon 1e-3");
     test_light_is_kept(&comm, 0.99, "--epsilon 1e-3");
-    test_light_is_kept(&comm, 0.999, "--epsilon 1e-2");
+    test_light_is_kept(&comm, 0.999, "");
     if (argc < 2)
         test_convergence(&comm);
     comm_stop(&comm);

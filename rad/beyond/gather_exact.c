@@ -19,6 +19,9 @@
  * fired. */
 enum { FACED_PER_RAY = 4 };
 
+/* A root is slender if the square of its radius is more than so many times its area. */
+static const double SLENDER = 16.0;
+
 /* A sender is taken as a whole in an exact row if B over it, times its factor and the
  * number of rays, varies by less than this part of the mean: where more rays are asked
  * for, there is more to win. */
@@ -76,13 +79,22 @@ static bool is_open(struct final_gather *g, const struct facet *root)
     return open;
 }
 
+/* The points of a slender triangle are far apart for its width, so its mean factors would
+ * take too many of them. */
+static bool is_slender(const struct facet *root)
+{
+    double radius = triangle_radius(&root->triangle);
+    return radius * radius > SLENDER * root->area;
+}
+
 static const struct gather_view *view_of(struct final_gather *g, int32_t root)
 {
     if (g->view.root != root) {
         struct end end = end_of(g->method, root);
         g->view.root = root;
         g->view.count = 0;
-        g->view.open = view_node(g, &end, NODE_TOP) && is_open(g, &end.facet);
+        g->view.open = !is_slender(&end.facet) && view_node(g, &end, NODE_TOP) &&
+                       is_open(g, &end.facet);
     }
     return &g->view;
 }
