@@ -3,6 +3,7 @@
 #include "rad/beyond/final_gather.h"
 
 #include "geom/contour.h"
+#include "geom/lambert.h"
 #include "tests/defaults.h"
 #include "tests/tap.h"
 
@@ -251,6 +252,85 @@ static void test_flush_lamp(void)
            "a lamp before its ceiling in the file: %.4f, behind it: %.4f", mean[1], mean[0]);
 }
 
+/* --- the mesh --- */
+
+/* H of a lamp at points, per E: one of the first 2 roots after `floor` roots. */
+static double lit(const struct scene *scene, struct vec3 x, int32_t floor)
+{
+    struct vec3 up = {0.0, 0.0, 1.0};
+    return point_triangle_factor(x, up, &scene->triangles[floor]) +
+           point_triangle_factor(x, up, &scene->triangles[floor + 1]);
+}
+
+/* A floor below a small lamp, and a small black box because of which rays are needed; the
+ * links split nothing. Leaves are to be split until A times the variance of their light
+ * over quarters is at most 0.01 epsilon of the sum of A B^2 (MESH in mpi/gather_mesh.c),
+ * and no further. Chance moves the threshold by a factor of two at most. */
+static void test_mesh(double epsilon)
+{
+    char words[32];
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&painted, 1.0 - 1e-3, 0.0);
+    soup_add_quad(&painted.soup, point(0.45, 0.45, 0.3), point(0, 0.1, 0),
+                  point(0.1, 0, 0), 1);
+    paint(&painted, 0.0, 1.0);
+    soup_add_box(&painted.soup, point(0.3, 0.3, 0.15), point(0.31, 0.31, 0.16), 1, false);
+    paint(&painted, 0.0, 0.0);
+    snprintf(words, sizeof words, "--epsilon %g", epsilon);
+    struct solution s = solve_scene(world_comm, scene_of_painted(&painted), words);
+    const struct forest *forest = s.solver->method.forest;
+    const struct gathered *gathered = &s.solver->gathered;
+    double squares = 0.0, largest = 0.0, least = HUGE_VAL, goal = 0.01 * epsilon;
+    for (int pass = 0; pass < 2; pass++)
+        for (int32_t p = 0; p < forest->count; p++) {
+            const struct patch *patch = &forest->patches[p];
+            struct triangle t = forest_triangle(forest, p);
+            double area = forest_area(forest, p), h[4], mean = 0.0, spread = 0.0;
+            if (patch->id.root > 1)
+                continue;
+            for (int k = 0; k < 4; k++) {
+                struct triangle child = triangle_child(&t, k);
+                h[k] = 0.0;
+                for (int q = 0; q < 4; q++) {
+                    struct triangle quarter = triangle_child(&child, q);
+                    h[k] += 0.25 * lit(forest->scene, triangle_centroid(&quarter), 2);
+                }
+                mean += 0.25 * h[k];
+            }
+            for (int k = 0; k < 4; k++)
+                spread += 0.25 * (h[k] - mean) * (h[k] - mean);
+            if (pass == 0 && patch_is_leaf(patch))
+                squares += area * mean * mean;
+            if (pass == 1 && patch_is_leaf(patch))
+                largest = fmax(largest, area * spread / squares);
+            else if (pass == 1)
+                least = fmin(least, area * spread / squares);
+        }
+    tap_ok(largest <= 2.0 * goal, "varying over a leaf %.1e of all is left, %.1e allowed",
+           largest, goal);
+    tap_ok(least >= 0.5 * goal && least < 1.0,
+           "leaves were split over which %.1e varied at least", least);
+    double rays = (double)gathered->rays / (double)forest_leaf_count(forest);
+    tap_ok(rays > 180.0 && rays <= 256.0, "%.0f rays for each leaf in the mean", rays);
+    solution_free(&s);
+}
+
+/* Where all is as bright as all else, nothing is split. */
+static void test_even(void)
+{
+    struct painted painted = {0};
+    soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    soup_add_box(&painted.soup, point(0.6, 0.6, 0.1), point(0.8, 0.8, 0.5), 1, false);
+    paint(&painted, 0.5, 1.0);
+    struct solution s =
+        solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 1e-2");
+    tap_ok(s.solver->gathered.split == 0 && s.solver->gathered.looks > 0,
+           "in a furnace nothing is split, by %lld rays",
+           (long long)s.solver->gathered.looks);
+    solution_free(&s);
+}
+
 int main(int argc, char **argv)
 {
     struct comm comm;
@@ -263,6 +343,9 @@ int main(int argc, char **argv)
     test_gap();
     test_covered();
     test_flush_lamp();
+    test_mesh(0.1);
+    test_mesh(0.02);
+    test_even();
     comm_stop(&comm);
     return tap_done();
 }
