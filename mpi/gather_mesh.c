@@ -15,11 +15,12 @@
  * number of all rays (Neyman, 1934). A leaf under a lamp housing gets many, a leaf of a
  * plain wall few.
  *
- * Looks and rows are dealt in turns, those of as many rays for themselves: each rank has
- * as many of each kind, give or take one. */
+ * Looks are dealt in turns. They also tell the work that a ray takes, and by that rows are
+ * dealt: sorted by work, to the ranks up and down. */
 #include "mpi/gather_mesh.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
@@ -35,18 +36,26 @@ static const double MESH = 0.01;
 enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 2 };
 
 /* A leaf has 2^MOST_DOUBLED times the mean number of rays at most, and 2^-MOST_HALVED. */
-enum { MOST_DOUBLED = 4, MOST_HALVED = 3, CLASSES = MOST_DOUBLED + MOST_HALVED + 1 };
+enum { MOST_DOUBLED = 4, MOST_HALVED = 3 };
 enum { ROUNDS = 6, FEWEST_RAYS = 4 };
 
 /* In place of a variance: the row will be exact. */
 static const float IS_EXACT = -1.0f;
 
+/* Of a leaf, by its look or its parent's. */
+struct known {
+    float variance; /* of rho H by one ray, (W/m^2)^2; IS_EXACT */
+    float fixed;    /* tests that its row takes, */
+    float work;     /* and each ray of it */
+};
+
 struct looking {
     struct solver *solver;
     struct final_gather gather;
     struct gather_mesh *mesh;
-    float *variance; /* [forest->count] of rho H by one ray, of leaves */
-    int64_t variance_capacity;
+    uint8_t *open;   /* [roots] 1: leaves of the root have exact rows */
+    struct known *known; /* [forest->count] of leaves */
+    int64_t known_capacity;
     int rays;        /* of a look at a quarter */
     int64_t links;   /* of all ranks */
 };
@@ -60,6 +69,28 @@ static int rank_of_next(int64_t *dealt, int ranks)
 {
     uint64_t index = (uint64_t)(*dealt)++, size = (uint64_t)ranks;
     return (int)((hash_mix(index / size) % size + index % size) % size);
+}
+
+/* --- open roots --- */
+
+/* Collective. Which roots are open. Exact rows are dear, and their mesh is that of the
+ * links, which is good where nothing casts shadows: only if half of the scene's area is
+ * open are there any. */
+static void find_open_roots(struct looking *l)
+{
+    const struct solver *solver = l->solver;
+    const struct scene *scene = solver->method.scene;
+    int32_t roots = scene_root_count(scene);
+    double area = 0.0;
+    l->open = alloc_array((size_t)roots, sizeof *l->open);
+    for (int32_t root = solver->comm->rank; root < roots && !stop_is_asked();
+         root += solver->comm->size)
+        l->open[root] = final_gather_root_is_open(&l->gather, root);
+    comm_add_bytes(solver->comm, l->open, roots);
+    for (int32_t root = 0; root < roots; root++)
+        area += l->open[root] ? scene_root_area(scene, root) : 0.0;
+    if (!(2.0 * area >= solver->method.area))
+        memset(l->open, 0, (size_t)roots);
 }
 
 /* --- looks --- */
@@ -141,11 +172,12 @@ static void split_leaf(struct forest *forest, int32_t leaf, const struct gather_
                 emission->band[c] + (double)look->reflected[k][c];
 }
 
-static void keep_variance(struct looking *l, int32_t leaf, const struct gather_look *look)
+static void keep_known(struct looking *l, int32_t leaf, const struct gather_look *look)
 {
-    l->variance = alloc_reserve(l->variance, &l->variance_capacity,
-                                l->solver->method.forest->count, sizeof *l->variance);
-    l->variance[leaf] = look->open ? IS_EXACT : look->variance + (float)spread_of(look);
+    l->known = alloc_reserve(l->known, &l->known_capacity, l->solver->method.forest->count,
+                             sizeof *l->known);
+    l->known[leaf] = (struct known){look->variance + (float)spread_of(look), look->fixed,
+                                    look->work};
 }
 
 /* Looks at leaves and splits them, those of `leaves` that are split are replaced by their
@@ -166,14 +198,14 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     for (int64_t i = 0; i < count; i++) {
         int32_t leaf = (*leaves)[i];
         double error = forest_area(forest, leaf) * spread_of(&looks[i]);
-        keep_variance(l, leaf, &looks[i]);
+        keep_known(l, leaf, &looks[i]);
         if (!(error > *threshold) || !oracle_patch_may_split(&solver->method, leaf) ||
             !memory_has_room(&solver->memory, l->links, 1, forest->count, 0))
             continue;
         split_leaf(forest, leaf, &looks[i]);
         for (int k = 0; k < 4; k++) {
             next[made++] = forest->patches[leaf].children + k;
-            keep_variance(l, forest->patches[leaf].children + k, &looks[i]);
+            keep_known(l, forest->patches[leaf].children + k, &looks[i]);
         }
     }
     alloc_free(looks);
@@ -182,12 +214,16 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     return made;
 }
 
-/* All leaves are as noisy as each other. */
-static void keep_no_variance(struct looking *l)
+/* Before there are looks: all leaves that need rays are as noisy as each other. */
+static void know_nothing(struct looking *l)
 {
-    l->variance = alloc_array((size_t)l->solver->method.forest->count, sizeof *l->variance);
-    for (int64_t i = 0; i < l->mesh->count; i++)
-        l->variance[l->mesh->leaves[i]] = 1.0f;
+    const struct forest *forest = l->solver->method.forest;
+    l->known = alloc_reserve(l->known, &l->known_capacity, forest->count, sizeof *l->known);
+    for (int64_t i = 0; i < l->mesh->count; i++) {
+        int32_t leaf = l->mesh->leaves[i];
+        bool open = l->open[forest->patches[leaf].id.root];
+        l->known[leaf] = (struct known){open ? IS_EXACT : 1.0f, 0.0f, 1.0f};
+    }
 }
 
 /* Collective. Looks and splits, round by round. */
@@ -196,8 +232,11 @@ static void refine(struct looking *l)
     struct gather_mesh *mesh = l->mesh;
     double threshold = -1.0; /* not known yet */
     int32_t *leaves = alloc_array((size_t)mesh->count, sizeof *leaves);
-    memcpy(leaves, mesh->leaves, (size_t)mesh->count * sizeof *leaves);
-    for (int64_t round = 0, count = mesh->count; round < ROUNDS && count > 0; round++) {
+    int64_t count = 0;
+    for (int64_t i = 0; i < mesh->count; i++)
+        if (l->known[mesh->leaves[i]].variance != IS_EXACT)
+            leaves[count++] = mesh->leaves[i];
+    for (int round = 0; round < ROUNDS && count > 0; round++) {
         count = split_leaves(l, &leaves, count, &threshold);
         mesh->split += count / 4;
     }
@@ -232,7 +271,7 @@ static void share_rays(struct looking *l)
     const struct forest *forest = l->solver->method.forest;
     double *worth = alloc_array((size_t)mesh->count, sizeof *worth), low = 0.0, high = 0.0;
     for (int64_t i = 0; i < mesh->count; i++) {
-        double variance = (double)l->variance[mesh->leaves[i]];
+        double variance = (double)l->known[mesh->leaves[i]].variance;
         worth[i] = sqrt(forest_area(forest, mesh->leaves[i]) * fmax(0.0, variance));
         high = fmax(high, worth[i]);
     }
@@ -244,18 +283,50 @@ static void share_rays(struct looking *l)
         *(sum > l->gather.rays * mesh->count ? &low : &high) = unit;
     }
     mesh->rays = alloc_array((size_t)mesh->count, sizeof *mesh->rays);
-    mesh->rank_of = alloc_array((size_t)mesh->count, sizeof *mesh->rank_of);
     mesh->exact = alloc_array((size_t)mesh->count, sizeof *mesh->exact);
-    int64_t dealt[CLASSES] = {0}, exact = 0;
     for (int64_t i = 0; i < mesh->count; i++) {
-        bool open = l->variance[mesh->leaves[i]] == IS_EXACT;
+        bool open = l->known[mesh->leaves[i]].variance == IS_EXACT;
         int class = high > 0.0 && !open ? class_of(worth[i] / high) : 0;
         mesh->rays[i] = rays_of_class(l->gather.rays, class);
-        mesh->exact[i] = open || l->rays < FEWEST_LOOKED;
-        mesh->rank_of[i] = rank_of_next(open ? &exact : &dealt[class + MOST_HALVED],
-                                        l->solver->comm->size);
+        mesh->exact[i] = open;
     }
     alloc_free(worth);
+}
+
+/* --- dealing of rows --- */
+
+struct row_work {
+    double work; /* predicted, tests */
+    int64_t index;
+};
+
+/* Most work first. */
+static int compare_work(const void *left, const void *right)
+{
+    const struct row_work *a = left, *b = right;
+    int order = (a->work < b->work) - (a->work > b->work);
+    return order != 0 ? order : (a->index > b->index) - (a->index < b->index);
+}
+
+/* To the ranks up and down: 0, 1, 2, 2, 1, 0, 0, 1, ... */
+static void deal_rows(struct looking *l)
+{
+    struct gather_mesh *mesh = l->mesh;
+    int64_t ranks = l->solver->comm->size;
+    struct row_work *rows = alloc_array((size_t)mesh->count, sizeof *rows);
+    for (int64_t i = 0; i < mesh->count; i++) {
+        const struct known *known = &l->known[mesh->leaves[i]];
+        rows[i].work = (double)known->fixed + mesh->rays[i] * (double)known->work;
+        rows[i].index = i;
+    }
+    qsort(rows, (size_t)mesh->count, sizeof *rows, compare_work);
+    mesh->rank_of = alloc_array((size_t)mesh->count, sizeof *mesh->rank_of);
+    for (int64_t i = 0; i < mesh->count; i++) {
+        int64_t place = i % (2 * ranks);
+        mesh->rank_of[rows[i].index] =
+            (int)(place < ranks ? place : 2 * ranks - 1 - place);
+    }
+    alloc_free(rows);
 }
 
 bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *mesh)
@@ -266,11 +337,12 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     l.gather = final_gather_create(method, method->criterion.final_gather);
     l.rays = l.gather.rays / ROWS_PER_LOOK;
     list_leaves(mesh, method->forest);
+    find_open_roots(&l);
+    know_nothing(&l);
     if (l.rays >= FEWEST_LOOKED)
         refine(&l);
-    else
-        keep_no_variance(&l);
     share_rays(&l);
+    deal_rows(&l);
     mesh->traced = l.gather.counts.rays + l.gather.counts.segments;
     const struct octree_counts *proofs = &l.gather.view.counts;
     ledger_add(&solver->ledger,
@@ -281,7 +353,8 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     int64_t stopped = stop_is_asked();
     comm_add(solver->comm, &stopped, 1);
     final_gather_free(&l.gather);
-    alloc_free(l.variance);
+    alloc_free(l.known);
+    alloc_free(l.open);
     return stopped == 0;
 }
 

@@ -9,7 +9,7 @@
 struct gather_mesh {
     int32_t *leaves; /* [count] local numbers */
     int *rays;       /* [count] to be fired for its row */
-    bool *exact;     /* [count] may have exact rows: its root is open, or that is not known */
+    bool *exact;     /* [count] may have exact rows */
     int *rank_of;    /* [count] that is to make its row */
     int64_t count;
     int64_t split;   /* leaves that were */

@@ -217,10 +217,7 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     struct gather_look look = {.noise = 0.0f};
     const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
     double variance = 0.0;
-    if (receiver_root_is_open(gather, (int32_t)forest->patches[leaf].id.root)) {
-        look.open = 1;
-        return look;
-    }
+    int64_t before = method_work(gather->method), fixed = gather->method->estimating;
     for (int k = 0; k < 4; k++) {
         struct facet quarter = facet;
         quarter.triangle = triangle_child(&facet.triangle, k);
@@ -235,6 +232,9 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
             variance += 0.25 * rho->band[c] * rho->band[c] * (double)r.row.chance[c];
         }
     }
+    fixed = gather->method->estimating - fixed;
+    look.fixed = 0.25f * (float)fixed;
+    look.work = (float)(method_work(gather->method) - before - fixed) / (4.0f * (float)rays);
     look.noise = (float)variance;
     look.variance = (float)(variance * rays);
     return look;

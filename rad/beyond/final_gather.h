@@ -75,7 +75,7 @@ struct gather_look {
     float reflected[4][BANDS]; /* rho H of each quarter, W/m^2 */
     float noise;               /* variance of that of a quarter, by chance */
     float variance;            /* of rho H of a ray, over bands, (W/m^2)^2 */
-    int32_t open;              /* 1: its row will be exact; it was not looked at */
+    float fixed, work;         /* tests that a row will take, and each of its rays */
 };
 
 /* How B varies over a patch: see final_gather.c. */
@@ -89,8 +89,11 @@ struct gather_slope {
 struct final_gather final_gather_create(struct method *method, int rays);
 void final_gather_free(struct final_gather *gather);
 
-/* Looks at the quarters of a leaf by so many rays each; a leaf whose root is open is not
- * looked at. */
+/* True if it is proved that nothing stands between a root and all that it faces: then its
+ * leaves may have exact rows. */
+bool final_gather_root_is_open(struct final_gather *gather, int32_t root);
+
+/* Looks at the quarters of a leaf by so many rays each. */
 struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays);
 
 /* Makes the row of a leaf, as the last one, by so many rays; or, if it may be exact and

@@ -253,7 +253,7 @@ static bool close_row(struct receiver *r)
 
 /* --- public --- */
 
-bool receiver_root_is_open(struct final_gather *gather, int32_t root)
+bool final_gather_root_is_open(struct final_gather *gather, int32_t root)
 {
     return view_of(gather, root)->open;
 }

@@ -37,9 +37,6 @@ void receiver_fire(struct receiver *r);
  * of things, as its rays have told. */
 float receiver_bare_share(const struct receiver *r);
 
-/* True if it is proved that nothing stands between a root and all that it faces. */
-bool receiver_root_is_open(struct final_gather *gather, int32_t root);
-
 /* Makes the row of a leaf from exact factors, where its root is open to all that it
  * faces. False if that is not so; the row is to be made by rays then. */
 bool receiver_add_exact(struct receiver *r);
