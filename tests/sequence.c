@@ -60,7 +60,7 @@ static void test_integral(void)
 
 static void test_triangle(void)
 {
-    const struct triangle t = {{{0, 0, 0}, {2, 0, 0}, {0, 1, 3}}};
+    const struct triangle t = {{{1, 1, 1}, {3, 1, 1}, {1, 2, 4}}};
     struct sequence sequence = sequence_start(7);
     struct vec3 mean = {0, 0, 0}, middle = triangle_centroid(&t);
     struct plane plane = triangle_plane(&t);
@@ -72,7 +72,7 @@ static void test_triangle(void)
         struct vec3 x = triangle_of_square(&t, u[0], u[1]);
         worst = fmax(worst, fabs(plane_distance(&plane, x)));
         mean = vec3_add(mean, vec3_scale(x, 1.0 / POINTS));
-        quarter += 0.5 * x.x + x.y < 0.5; /* child 0 */
+        quarter += 0.5 * (x.x - 1.0) + (x.y - 1.0) < 0.5; /* child 0 */
     }
     tap_ok(worst < 1e-14, "points lie in the plane of their triangle");
     tap_ok(vec3_length(vec3_sub(mean, middle)) < 0.01, "around its centroid, off by %.4f",
@@ -85,16 +85,17 @@ static void test_triangle(void)
  * angle around the normal. */
 static void test_directions(void)
 {
+    enum { MANY = 4096, EACH = MANY / SIDE };
     struct vec3 normal = {2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0},
                 along = direction_along(normal);
     struct vec3 across = vec3_cross(normal, along);
     struct sequence sequence = sequence_start(3);
-    int rings[SIDE] = {0}, sectors[8] = {0}, most = 0, least = POINTS;
+    int rings[SIDE] = {0}, sectors[SIDE] = {0}, most = 0, least = MANY;
     double length = 0.0;
     tap_ok(fabs(vec3_dot(normal, along)) < 1e-15 &&
                fabs(vec3_length(along) - 1.0) < 1e-15,
            "a direction at right angles to another");
-    for (uint32_t i = 0; i < POINTS; i++) {
+    for (uint32_t i = 0; i < MANY; i++) {
         double u[SEQUENCE_DIMENSIONS];
         sequence_point(&sequence, i, u);
         struct vec3 d = cosine_direction(normal, along, u[0], u[1]);
@@ -102,18 +103,20 @@ static void test_directions(void)
         length = fmax(length, fabs(vec3_length(d) - 1.0));
         rings[(int)(SIDE * fmin(1.0 - up * up, 0.999999))]++;
         double angle = atan2(vec3_dot(d, across), vec3_dot(d, along));
-        sectors[(int)fmin(7.0, 8.0 * (angle / 6.283185307179586 + 0.5))]++;
+        sectors[(int)fmin(SIDE - 1, SIDE * (angle / 6.283185307179586 + 0.5))]++;
     }
-    for (int i = 0; i < 8; i++) {
+    for (int i = 0; i < SIDE; i++) {
         most = sectors[i] > most ? sectors[i] : most;
         least = sectors[i] < least ? sectors[i] : least;
     }
     tap_ok(length < 1e-8, "directions have length 1, within %.1e", length);
-    tap_ok(most <= 36 && least >= 28, "%d to %d of 256 in each eighth", least, most);
+    tap_ok(most <= 1.05 * EACH && least >= 0.95 * EACH,
+           "%d to %d of 4096 in each sixteenth of the turn", least, most);
     most = 0;
     for (int i = 0; i < SIDE; i++)
         most = rings[i] > most ? rings[i] : most;
-    tap_ok(most <= 20, "at most %d of 256 in each sixteenth of the hemisphere", most);
+    tap_ok(most <= 1.02 * EACH, "at most %d of 4096 in each sixteenth of the hemisphere",
+           most);
 }
 
 int main(void)
