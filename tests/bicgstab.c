@@ -52,6 +52,21 @@ static double worst_of(const struct rgb *a, const struct rgb *b)
     return worst;
 }
 
+/* The sum of weight |b - A x| over that of weight |x|. */
+static double residual_of(struct system *s, const struct rgb *b, const double *weights,
+                          const struct rgb *x)
+{
+    struct rgb y[SIZE];
+    double left = 0.0, size = 0.0;
+    apply(s, x, y);
+    for (int i = 0; i < SIZE; i++)
+        for (int c = 0; c < BANDS; c++) {
+            left += weights[i] * fabs(b[i].band[c] - y[i].band[c]);
+            size += weights[i] * fabs(x[i].band[c]);
+        }
+    return left / size;
+}
+
 static void test_known(struct random *random, struct system *s, double bright)
 {
     struct rgb truth[SIZE], b[SIZE], x[SIZE];
@@ -67,11 +82,15 @@ static void test_known(struct random *random, struct system *s, double bright)
     s->scale[1] = 0.5;
     s->scale[2] = 0.0; /* solved after half a step */
     apply(s, truth, b);
+    struct bicgstab done = bicgstab_solve(apply, s, b, weights, SIZE, 1e-13, 1, x);
+    double own = residual_of(s, b, weights, x);
+    tap_ok(done.steps == 1 && fabs(done.residual / own - 1.0) < 1e-9,
+           "bright %g: a residual of %.2e after one step", bright, done.residual);
     s->products = 0;
-    struct bicgstab done = bicgstab_solve(apply, s, b, weights, SIZE, 1e-13, 200, x);
+    done = bicgstab_solve(apply, s, b, weights, SIZE, 1e-13, 200, x);
     /* The residual is amplified by 1 / (1 - bright) at most. */
     tap_ok(worst_of(x, truth) <= 1e-12 / (1.0 - bright) && done.residual <= 1e-13,
-           "bright %g: %d steps, off by %.1e", bright, done.steps, worst_of(x, truth));
+           "solved after %d steps, off by %.1e", done.steps, worst_of(x, truth));
     tap_ok(s->products <= 2 * done.steps + 2, "two products a step: %d", s->products);
     double before = worst_of(x, truth);
     done = bicgstab_solve(apply, s, b, weights, SIZE, 1e-12, 200, x);
@@ -104,7 +123,7 @@ static void test_hopeless(void)
     bool finite = true;
     for (int i = 0; i < SIZE; i++)
         finite = finite && isfinite(x[i].band[0]);
-    tap_ok(done.residual > 0.5 && finite && done.steps <= 50,
+    tap_ok(done.residual > 0.5 && finite && done.steps <= 2,
            "without a solution it ends, after %d steps, and says so", done.steps);
 }
 
