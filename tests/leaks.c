@@ -194,6 +194,7 @@ struct dark_part {
     double (*share_of)(const struct solution *s);
     double most;  /* share at epsilon 1e-4 and below */
     double least; /* a share that need not fall any more */
+    double gathered; /* the same after the final gather, whose rays do not leak */
 };
 
 /* Solves the scene. The share of the dark part, or NaN if the run does not converge. */
@@ -206,10 +207,6 @@ static double dark_share(const struct dark_part *part, bool open, const char *wo
     solution_free(&s);
     return share;
 }
-
-/* What is dark after the final gather: its rays do not leak, whatever links do. In the gaps
- * of the books a trickle of light is true, 1e-5 as measured; all else is exactly dark. */
-static const double GATHERED = 3e-5;
 
 /* At epsilon 1e-3 groups are too coarse for a bound. */
 static void test_dark(const struct dark_part *part)
@@ -230,19 +227,21 @@ static void test_dark(const struct dark_part *part)
         before = share;
     }
     double gathered = dark_share(part, false, "--epsilon 1e-4", &links);
-    tap_ok(gathered <= GATHERED, "%s, gathered: %.1e of the light (at most %g)", part->name,
-           gathered, GATHERED);
+    tap_ok(gathered <= part->gathered, "%s, gathered: %.1e of the light (at most %g)",
+           part->name, gathered, part->gathered);
     double open = dark_share(part, true, "--epsilon 1e-4", &links);
     tap_ok(open > part->most, "opened, it has %.1e of the light, which breaks the bound",
            open);
 }
 
 /* From depth d between planes g apart the mouth has a form factor of g^2 / 4 d^2: from 10
- * to 20 cm that is 1.1e-4 in the mean at most; the gaps have a hundredth of all area. */
+ * to 20 cm that is 1.1e-4 in the mean at most; the gaps have a hundredth of all area. A
+ * path tracer finds 1.03e-6 there (within 5 %); the final gather 1.0e-5, for what a ray
+ * meets is a leaf, and leaves at the mouth are larger than the gap. */
 static const struct dark_part PARTS[] = {
-    {"an unlit room beside a lit one", rooms, share_of_irradiance, MOST, 1e-6},
-    {"the inside of a closed cupboard", cupboard, share_of_irradiance, MOST, 1e-6},
-    {"the depth of the gaps between books", books, share_of_power, 0.001, 1e-6},
+    {"an unlit room beside a lit one", rooms, share_of_irradiance, MOST, 1e-6, 1e-6},
+    {"the inside of a closed cupboard", cupboard, share_of_irradiance, MOST, 1e-6, 1e-6},
+    {"the depth of the gaps between books", books, share_of_power, 0.001, 1e-6, 3e-5},
 };
 
 int main(int argc, char **argv)
