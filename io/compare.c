@@ -1,6 +1,7 @@
 /* Comparing.
  *
- * Pictures are compared sample by sample. Solutions are compared on the leaves that both
+ * Pictures are compared pixel by pixel or block by block: of a path tracer's picture only
+ * means over many pixels are without much noise. Solutions are compared on the leaves that both
  * divisions have in common: a child has a quarter of its parent's area, so with a root as an
  * interval of 4^15 units, depth first, each leaf is an interval, and two divisions are walked
  * side by side. A leaf's value is a mean, so what is compared is exact, whatever the depths.
@@ -61,14 +62,64 @@ static double add_sample(struct difference *difference, double a, double b, doub
     return off;
 }
 
-struct difference compare_images(const struct image *a, const struct image *b, struct image *map)
+/* --- pictures --- */
+
+/* The pixels first_x .. end_x - 1 of the rows first_y .. end_y - 1. */
+struct block {
+    int first_x, end_x, first_y, end_y;
+};
+
+static const float *pixel_at(const struct image *image, int x, int y)
+{
+    return &image->rgb[3 * ((size_t)y * (size_t)image->width + (size_t)x)];
+}
+
+/* Of one band. */
+static double block_mean(const struct block *block, const struct image *image, int band)
+{
+    double sum = 0.0;
+    for (int y = block->first_y; y < block->end_y; y++)
+        for (int x = block->first_x; x < block->end_x; x++)
+            sum += (double)pixel_at(image, x, y)[band];
+    return sum / (block->end_x - block->first_x) / (block->end_y - block->first_y);
+}
+
+static bool block_is_brighter(const struct block *block, const struct image *image,
+                               double most)
+{
+    for (int y = block->first_y; y < block->end_y; y++)
+        for (int x = block->first_x; x < block->end_x; x++)
+            for (int c = 0; c < 3; c++)
+                if ((double)pixel_at(image, x, y)[c] > most)
+                    return true;
+    return false;
+}
+
+static void block_fill(const struct block *block, const struct image *map, int band,
+                        float value)
+{
+    for (int y = block->first_y; y < block->end_y; y++)
+        for (int x = block->first_x; x < block->end_x; x++)
+            map->rgb[pixel_at(map, x, y) - map->rgb + band] = value;
+}
+
+struct difference compare_images(const struct image *a, const struct image *b, int side,
+                                 double most, struct image *map)
 {
     struct difference difference = {0};
-    size_t count = (size_t)a->width * (size_t)a->height * 3;
-    for (size_t i = 0; i < count; i++) {
-        double off = add_sample(&difference, (double)a->rgb[i], (double)b->rgb[i], 1.0);
-        map->rgb[i] = off < (double)FLT_MAX ? (float)off : FLT_MAX;
-    }
+    for (int y = 0; y < b->height; y += side)
+        for (int x = 0; x < b->width; x += side) {
+            struct block at = {x, x + side < b->width ? x + side : b->width,
+                                y, y + side < b->height ? y + side : b->height};
+            double weight = (double)(at.end_x - x) * (at.end_y - y);
+            bool left_out = block_is_brighter(&at, b, most);
+            for (int c = 0; c < 3; c++) {
+                double off = left_out ? 0.0
+                                      : add_sample(&difference, block_mean(&at, a, c),
+                                                   block_mean(&at, b, c), weight);
+                block_fill(&at, map, c, off < (double)FLT_MAX ? (float)off : FLT_MAX);
+            }
+        }
     return difference;
 }
 

@@ -10,7 +10,7 @@
 #include "io/image.h"
 #include "rad/id.h"
 
-/* Of all bands of all pixels, each with the same weight, or of all leaves, weighted by area.
+/* Of all bands of all pixels, or blocks of them, or of all leaves, weighted by area.
  * Where a sample of either side is not a finite number it is counted and left out of the rest. */
 struct difference {
     int64_t samples, broken; /* broken: not finite on one side or both */
@@ -30,9 +30,12 @@ double difference_relative(const struct difference *difference, double x);
 /* 20 log10(peak / RMS), dB; infinite if there is no difference. */
 double difference_psnr(const struct difference *difference, double peak);
 
-/* Compares picture a with b, the expected one, of the same size. `map`, of the same size, receives
- * |a - b|; where a sample is not finite the largest float. */
-struct difference compare_images(const struct image *a, const struct image *b, struct image *map);
+/* Compares picture a with b, the expected one, of the same size: the means over blocks of `side`
+ * by `side` pixels, which end at the right and lower edges. Blocks in which a sample of b is above
+ * `most` are left out. `map`, of the same size, receives |a - b| of each block in all its pixels;
+ * the largest float where that is not finite, 0 where the block is left out. */
+struct difference compare_images(const struct image *a, const struct image *b, int side,
+                                 double most, struct image *map);
 
 struct solution_leaf {
     struct patch_id id;

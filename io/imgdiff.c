@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "io/camera.h"
 #include "io/compare.h"
 #include "io/image.h"
 #include "io/options.h"
@@ -25,6 +26,8 @@ static const char HELP[] =
     "\n"
     "  --tolerance T  pass if no sample is off by more than T (0)\n"
     "  --rms T        pass if the RMS error is at most T; --tolerance then only if given\n"
+    "  --blocks N     compare means over blocks of N by N pixels (1)\n"
+    "  --below X      leave out blocks where a sample of B is above X, such as lamps\n"
     "  -o FILE        write |A - B|: as it is (.pfm), or scaled so that the largest\n"
     "                 difference is white (.ppm); of meshes as a mesh (.ply)\n"
     "  --help  --version\n"
@@ -38,6 +41,8 @@ struct request {
     const char *paths[2]; /* A and B */
     const char *output;
     double tolerance, rms; /* negative: not given */
+    double blocks;         /* pixels along a side of a block, whole */
+    double below;          /* most of B in a block that is compared */
     bool help, version;
 };
 
@@ -47,12 +52,24 @@ static bool ends_with(const char *path, const char *suffix)
     return length > tail && strcmp(path + length - tail, suffix) == 0;
 }
 
+/* Where the option's number goes; NULL if it has none. */
+static double *number_of(struct request *request, const char *name)
+{
+    static const char *const names[] = {"--tolerance", "--rms", "--blocks", "--below"};
+    double *numbers[] = {&request->tolerance, &request->rms, &request->blocks,
+                         &request->below};
+    for (int k = 0; k < 4; k++)
+        if (strcmp(name, names[k]) == 0)
+            return numbers[k];
+    return NULL;
+}
+
 static bool set_option(struct request *request, const char *name, const char *value,
                        struct error *error)
 {
-    bool tolerance = strcmp(name, "--tolerance") == 0, output = strcmp(name, "-o") == 0;
-    double *bound = tolerance ? &request->tolerance : &request->rms;
-    if (!tolerance && !output && strcmp(name, "--rms") != 0)
+    bool output = strcmp(name, "-o") == 0;
+    double *number = number_of(request, name);
+    if (!number && !output)
         return error_set(error, EXIT_USAGE, "unknown option %s; see --help", name);
     if (!value)
         return error_set(error, EXIT_USAGE, "%s needs a value", name);
@@ -61,15 +78,19 @@ static bool set_option(struct request *request, const char *name, const char *va
         return error_set(error, EXIT_USAGE, "-o %s: the name must end in .pfm, .ppm or .ply", value);
     if (output)
         request->output = value;
-    else if (!text_is_number(value, bound) || *bound < 0.0)
+    else if (!text_is_number(value, number) || *number < 0.0)
         return error_set(error, EXIT_USAGE, "%s: '%s' is not a number of at least 0", name, value);
+    if (number == &request->blocks && !(*number >= 1.0 && *number <= IMAGE_SIZE_MAX &&
+                                        *number == floor(*number)))
+        return error_set(error, EXIT_USAGE, "--blocks: '%s' is not a number of pixels", value);
     return true;
 }
 
 static bool parse(struct request *request, int argc, char **argv, struct error *error)
 {
     int paths = 0;
-    *request = (struct request){.tolerance = -1.0, .rms = -1.0};
+    *request = (struct request){
+        .tolerance = -1.0, .rms = -1.0, .blocks = 1.0, .below = HUGE_VAL};
     for (int i = 1; i < argc; i++) {
         const char *argument = argv[i];
         if (strcmp(argument, "--help") == 0)
@@ -124,12 +145,15 @@ static bool write_map(const struct request *request, const struct image *map, do
     return ppm_write(map, &tone, request->output, error);
 }
 
-/* Refuses -o with the name of a mesh for pictures, and the other way round. */
+/* Refuses -o with the name of a mesh for pictures, and the other way round; and for meshes
+ * what concerns pixels. */
 static bool check_output(const struct request *request, bool meshes, struct error *error)
 {
     if (request->output && ends_with(request->output, ".ply") != meshes)
         return error_set(error, EXIT_USAGE, "-o %s: the difference of %s", request->output,
                          meshes ? "meshes is a mesh (.ply)" : "pictures is a picture");
+    if (meshes && (request->blocks > 1.0 || request->below < HUGE_VAL))
+        return error_set(error, EXIT_USAGE, "--blocks and --below are for pictures");
     return true;
 }
 
@@ -149,7 +173,12 @@ static bool diff_images(const struct request *request, struct difference *differ
     if (good) {
         map = (struct image){a.width, a.height, NULL};
         map.rgb = alloc_array((size_t)a.width * (size_t)a.height, 3 * sizeof *map.rgb);
-        *difference = compare_images(&a, &b, &map);
+        *difference = compare_images(&a, &b, (int)request->blocks, request->below, &map);
+        if (difference->samples == 0)
+            good = error_set(error, EXIT_USAGE, "%s: no block is below %g",
+                             request->paths[1], request->below);
+    }
+    if (good) {
         report(difference, kind_a == IMAGE_PPM ? 1.0 : difference->peak);
         if (request->output)
             good = write_map(request, &map, difference->largest, error);

@@ -64,6 +64,25 @@ ends 1 "NaN never passes" --tolerance 1e30 "$work/nan.pfm" "$work/one.pfm"
 ends 1 "not against itself" --tolerance 1e30 "$work/nan.pfm" "$work/nan.pfm"
 check "and is counted" says 'not finite  3 samples'
 
+# --- blocks: 3 x 2 grey pixels, of 64; the third column is a block of its own ---
+
+printf 'P3 3 2 64 16 16 16 32 32 32 32 32 32  48 48 48 32 32 32 16 16 16' >"$work/noisy.ppm"
+printf 'P3 3 2 64 32 32 32 32 32 32 32 32 32  32 32 32 32 32 32 64 64 64' >"$work/smooth.ppm"
+ends 0 "a block has the mean of its pixels" --blocks 2 --below 0.9 "$work/noisy.ppm" \
+    "$work/smooth.ppm"
+check "the one with a bright pixel is left out" says 'psnr        infinite'
+diff_of --blocks 2 "$work/noisy.ppm" "$work/smooth.ppm" -o "$work/map.pfm"
+check "its means: 0.75 - 0.375" says 'max         0.375'
+check "by area: 0.375 / 3" says 'mean        0.125'
+check "0.375 / sqrt(3), of sqrt((2 * 0.5^2 + 0.75^2) / 3)" says \
+    'relative    0.630126 max, 0.363803 rms'
+row='\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\300\076\0\0\300\076\0\0\300\076'
+printf "PF\n3 2\n-1.0\n$row$row" >"$work/map.expected"
+check "-o: the difference of a block in its pixels" cmp "$work/map.pfm" "$work/map.expected"
+ends 2 "nothing is left" --below 0.1 "$work/noisy.ppm" "$work/smooth.ppm"
+ends 2 "half a pixel" --blocks 2.5 "$work/noisy.ppm" "$work/smooth.ppm"
+ends 2 "no pixel" --blocks 0 "$work/noisy.ppm" "$work/smooth.ppm"
+
 # --- the difference as a picture ---
 
 diff_of "$work/off.ppm" "$work/b.ppm" -o "$work/map.pfm"
@@ -106,6 +125,7 @@ diff_of "$work/fine.ply" "$work/coarse.ply"
 check "the way back is alike" holds \
     "$(sed -n 's/.* max, \(.*\) rms/\1/p' "$out") / $coarse > 0.9 && 1.1 > $coarse / $(
         sed -n 's/.* max, \(.*\) rms/\1/p' "$out")"
+ends 2 "blocks of a mesh" --blocks 2 "$work/fine.ply" "$work/fine.ply"
 ends 2 "solutions of two scenes" "$work/fine.ply" "$work/furnace.ply"
 ends 2 "a mesh, its difference as a picture" "$work/fine.ply" "$work/fine.ply" -o "$work/map.ppm"
 ends 2 "pictures, their difference as a mesh" "$work/b.ppm" "$work/b.ppm" -o "$work/map.ply"
