@@ -11,7 +11,8 @@
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
 #   make growth          docs/growth.csv, docs/growth.svg: rooms of 6,348 to a million triangles
 #   make scaling         docs/scaling.md: seconds on 1, 32 and 1,024 ranks, line by line
-#   make prove           what takes longer: errors over six fourfold steps of epsilon; kills at forty moments
+#   make prove           what takes longer: errors over six fourfold steps of epsilon; pictures beside the
+#                        path tracer's; kills at forty moments
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
 #   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
@@ -179,9 +180,10 @@ portability:
 check-long: $(PHR)
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/kill.sh
 
-# About an hour, most of it for references that are kept in $(BUILD)/prove.
-prove: errors build/room check-long
+# About an hour and a half, most of it for references that are kept in $(BUILD)/prove.
+prove: errors $(PHR) $(IMGDIFF) pathtracer build/room check-long
 	BUILD="$(BUILD)" sh tests/prove.sh
+	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/pictures.sh
 
 # To be run as build/fuzz/fuzz-obj NEW tests/fuzz/corpus/obj, say: finds go to the folder NEW.
 fuzz:
