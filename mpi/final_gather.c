@@ -294,8 +294,8 @@ static void variances_by_rays(struct gathering *g, struct rgb *variance)
     for (int kind = 0; kind < 2; kind++) {
         for (int64_t row = 0; row < g->gather.count; row++)
             for (int c = 0; c < BANDS; c++)
-                own[row].band[c] = (double)(kind ? g->gather.rows[row].halves[c]
-                                                 : g->gather.rows[row].chance[c]);
+                own[row].band[c] = kind ? g->gather.rows[row].halves[c]
+                                        : g->gather.rows[row].chance[c];
         share_rows(g, kind ? halves : variance);
     }
     for (int64_t i = 0; i < g->count; i++)
@@ -360,6 +360,9 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     struct bicgstab done = bicgstab_solve(reflect, g, start, g->areas, g->count, goal,
                                           STEPS_MOST, b);
     irradiances(g, b, true, h);
+    for (size_t i = 0; i < count; i++) /* slopes may go below 0 where B has changed */
+        for (int c = 0; c < BANDS; c++)
+            h[i].band[c] = fmax(0.0, h[i].band[c]);
     share_bare_areas(g);
     if (g->closed)
         close_balance(g, h);

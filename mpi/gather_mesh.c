@@ -40,11 +40,11 @@ enum { MOST_DOUBLED = 4, MOST_HALVED = 3 };
 enum { ROUNDS = 6, FEWEST_RAYS = 4 };
 
 /* In place of a variance: the row will be exact. */
-static const float IS_EXACT = -1.0f;
+static const double IS_EXACT = -1.0;
 
 /* Of a leaf, by its look or its parent's. */
 struct known {
-    float variance; /* of rho H by one ray, (W/m^2)^2; IS_EXACT */
+    double variance; /* of rho H by one ray, (W/m^2)^2; IS_EXACT */
     float fixed;    /* tests that its row takes, */
     float work;     /* and each ray of it */
 };
@@ -148,7 +148,7 @@ static double spread_of(const struct gather_look *look)
         }
         spread += 0.25 * squares - 0.0625 * sum * sum;
     }
-    return fmax(0.0, spread - (double)look->noise);
+    return fmax(0.0, spread - look->noise);
 }
 
 static double square_of(const struct gather_look *look)
@@ -176,7 +176,7 @@ static void keep_known(struct looking *l, int32_t leaf, const struct gather_look
 {
     l->known = alloc_reserve(l->known, &l->known_capacity, l->solver->method.forest->count,
                              sizeof *l->known);
-    l->known[leaf] = (struct known){look->variance + (float)spread_of(look), look->fixed,
+    l->known[leaf] = (struct known){look->variance + spread_of(look), look->fixed,
                                     look->work};
 }
 
@@ -222,7 +222,7 @@ static void know_nothing(struct looking *l)
     for (int64_t i = 0; i < l->mesh->count; i++) {
         int32_t leaf = l->mesh->leaves[i];
         bool open = l->open[forest->patches[leaf].id.root];
-        l->known[leaf] = (struct known){open ? IS_EXACT : 1.0f, 0.0f, 1.0f};
+        l->known[leaf] = (struct known){open ? IS_EXACT : 1.0, 0.0f, 1.0f};
     }
 }
 
@@ -271,7 +271,7 @@ static void share_rays(struct looking *l)
     const struct forest *forest = l->solver->method.forest;
     double *worth = alloc_array((size_t)mesh->count, sizeof *worth), low = 0.0, high = 0.0;
     for (int64_t i = 0; i < mesh->count; i++) {
-        double variance = (double)l->known[mesh->leaves[i]].variance;
+        double variance = l->known[mesh->leaves[i]].variance;
         worth[i] = sqrt(forest_area(forest, mesh->leaves[i]) * fmax(0.0, variance));
         high = fmax(high, worth[i]);
     }

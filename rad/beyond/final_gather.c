@@ -229,14 +229,14 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
         struct rgb h = light_of(&r);
         for (int c = 0; c < BANDS; c++) {
             look.reflected[k][c] = (float)(rho->band[c] * h.band[c]);
-            variance += 0.25 * rho->band[c] * rho->band[c] * (double)r.row.chance[c];
+            variance += 0.25 * rho->band[c] * rho->band[c] * r.row.chance[c];
         }
     }
     fixed = gather->method->estimating - fixed;
     look.fixed = 0.25f * (float)fixed;
     look.work = (float)(method_work(gather->method) - before - fixed) / (4.0f * (float)rays);
-    look.noise = (float)variance;
-    look.variance = (float)(variance * rays);
+    look.noise = variance;
+    look.variance = variance * rays;
     return look;
 }
 

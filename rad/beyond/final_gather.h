@@ -22,9 +22,9 @@ struct gather_row {
     int32_t leaf;
     int64_t end;       /* of its terms, which begin where those of the row before end */
     struct rgb source; /* irradiance that comes from lamps, W/m^2 */
-    float chance[BANDS]; /* variance of H by the choice of rays and segments, if that is by
+    double chance[BANDS]; /* variance of H by the choice of rays and segments, if that is by
                             chance, (W/m^2)^2, for the solution's radiosities */
-    float halves[BANDS]; /* square of what the first and second half of the rays differ by:
+    double halves[BANDS]; /* square of what the first and second half of the rays differ by:
                             the variance as the sequence has it, but of this leaf alone */
     float bare;        /* share of the leaf that no other thing lies or stands on, 1 */
 };
@@ -73,8 +73,8 @@ struct gather_point {
 /* A look at a leaf: its quarters, and chance. */
 struct gather_look {
     float reflected[4][BANDS]; /* rho H of each quarter, W/m^2 */
-    float noise;               /* variance of that of a quarter, by chance */
-    float variance;            /* of rho H of a ray, over bands, (W/m^2)^2 */
+    double noise;              /* variance of that of a quarter, by chance */
+    double variance;           /* of rho H of a ray, over bands, (W/m^2)^2 */
     float fixed, work;         /* tests that a row will take, and each of its rays */
 };
 

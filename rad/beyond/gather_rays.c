@@ -117,7 +117,7 @@ static void add_chance(struct receiver *r, struct rgb emission, double direct, d
 {
     for (int c = 0; c < BANDS; c++) {
         double h = direct * emission.band[c] / rgb_sum(emission);
-        r->row.chance[c] += (float)(h * h * share * (1.0 - share) / count);
+        r->row.chance[c] += h * h * share * (1.0 - share) / count;
     }
 }
 
@@ -334,8 +334,8 @@ static void fire_rays(struct receiver *r)
     for (int c = 0; c < BANDS; c++) {
         double mean2 = r->sum.band[c] * r->sum.band[c] / r->rays;
         double apart = r->half[0].band[c] - r->half[1].band[c];
-        r->row.chance[c] += (float)fmax(0.0, r->squares.band[c] - mean2);
-        r->row.halves[c] = (float)(apart * apart);
+        r->row.chance[c] += fmax(0.0, r->squares.band[c] - mean2);
+        r->row.halves[c] = apart * apart;
     }
     if (r->escaped < r->rays)
         r->gather->counts.escaped += r->escaped;
