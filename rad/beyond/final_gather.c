@@ -169,19 +169,23 @@ static int compare_terms(const void *left, const void *right)
     return order;
 }
 
-/* Joins the terms of the same patch. */
+/* Joins the terms of the same patch, by sums of doubles: thousands of equal floats have a
+ * sum of floats that is wrong in the sixth digit. */
 static void join_terms(struct receiver *r)
 {
     struct gather_term *terms = r->gather->terms;
     int64_t to = r->first;
     qsort(terms + r->first, (size_t)(r->row.end - r->first), sizeof *terms,
           compare_terms);
-    for (int64_t i = r->first; i < r->row.end; i++) {
-        if (to > r->first && terms[to - 1].place == terms[i].place)
+    for (int64_t i = r->first, next; i < r->row.end; i = next) {
+        double sum[BANDS] = {0.0};
+        for (next = i; next < r->row.end && terms[next].place == terms[i].place; next++)
             for (int c = 0; c < BANDS; c++)
-                terms[to - 1].weight[c] += terms[i].weight[c];
-        else
-            terms[to++] = terms[i];
+                sum[c] += (double)terms[next].weight[c];
+        terms[to].place = terms[i].place;
+        for (int c = 0; c < BANDS; c++)
+            terms[to].weight[c] = (float)sum[c];
+        to++;
     }
     r->row.end = to;
 }
