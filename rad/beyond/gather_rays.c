@@ -9,9 +9,10 @@
  * emits.
  *
  * The mesh is wrong where a ray ends nearer than the leaf there is large: under a sheet
- * of paper on a table the table is dark, but the leaf is not. There the ray goes on: the
- * point that it met receives light from a lamp, by one segment, and from one more ray,
- * until a ray ends far enough away. That is a path tracer for what is near and radiosity
+ * of paper on a table the table is dark, but the leaf is not. And it is wrong in a gap
+ * that is narrow for the leaf, also far from where the ray began: the leaf may reach into
+ * the light. There the ray goes on: the point that it met receives light from a lamp, by
+ * one segment, and from one more ray, until a ray ends far enough away. That is a path tracer for what is near and radiosity
  * for the rest. */
 #include "rad/beyond/receiver.h"
 
@@ -25,6 +26,13 @@
 /* A leaf is too near for its size if the square of its distance is less than this part of
  * its area. */
 static const double NEAR = 0.2;
+
+/* A gap is narrow for a leaf if the square of its width is less than this part of the
+ * leaf's area. */
+static const double NARROW = 0.04;
+
+/* Two surfaces face each other across a gap if the cosine between their normals is less. */
+static const double OPPOSITE = -0.7;
 
 /* A lamp is near if the square of its distance is less than so many times its area. */
 static const double NEAR_LAMP = 4.0;
@@ -243,14 +251,19 @@ static void aim_beside(struct receiver *r, const struct point *x, const struct r
     }
 }
 
-/* True if a leaf is too near to a point, for its size, to be a constant. What counts is
- * its centroid, so that the point sees either all of the leaf as a constant or nothing:
- * where only its far part were one, that would be given the mean of the whole. */
-static bool is_too_near(const struct forest *forest, int32_t leaf, struct vec3 x)
+/* True if a leaf is too near to a point, for its size, for what the mesh says of the point
+ * of it that a ray has met. What counts is its centroid, so that the point sees either all
+ * of the leaf by the mesh or nothing: where only its far part were, that would be given
+ * the mean of the whole. In a gap that is narrow for the leaf all of it is too near, for
+ * it may reach from the gap into the light. */
+static bool is_too_near(const struct forest *forest, const struct point *met,
+                        struct vec3 x, struct vec3 normal)
 {
-    struct triangle t = forest_triangle(forest, leaf);
+    struct triangle t = forest_triangle(forest, met->patch);
     struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
-    return vec3_dot(apart, apart) < NEAR * forest_area(forest, leaf);
+    double area = forest_area(forest, met->patch), width = vec3_dot(apart, met->normal);
+    return vec3_dot(apart, apart) < NEAR * area ||
+           (width * width < NARROW * area && vec3_dot(normal, met->normal) < OPPOSITE);
 }
 
 /* A ray has met a back. Where the floor is covered by a thing that stands on it, a point
@@ -272,6 +285,7 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
                    struct rgb weight, uint64_t seed)
 {
     const struct forest *forest = r->gather->method->forest;
+    struct vec3 normal = r->facet.plane.normal; /* at the origin */
     for (int count = 1;; count++, seed += 16) {
         struct point point;
         enum met met = trace(r, origin, direction, &point);
@@ -286,7 +300,7 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
         bool aimed = root_is_lamp(&r->gather->lamps, root) &&
                      (count == 1 ||
                       !lamp_is_near(r->gather->method->scene, root, origin));
-        if (count == PATH_MOST || !is_too_near(forest, point.patch, origin)) {
+        if (count == PATH_MOST || !is_too_near(forest, &point, origin, normal)) {
             receiver_add_point(r, point.patch, point.weight, &weight);
             if (aimed)
                 add_source(r, &weight, material->emission, -1.0);
@@ -299,8 +313,9 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
         if (!(rgb_sum(weight) > 0.0))
             return;
         aim_beside(r, &point, &weight, seed);
-        origin = point_above(point.at, point.normal);
-        direction = cosine_direction(point.normal, direction_along(point.normal),
+        normal = point.normal;
+        origin = point_above(point.at, normal);
+        direction = cosine_direction(normal, direction_along(normal),
                                      hash_unit(seed + 14), hash_unit(seed + 15));
     }
 }
