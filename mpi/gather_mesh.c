@@ -36,7 +36,7 @@ static const double MESH = 0.01;
 enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 2 };
 
 /* A leaf has 2^MOST_DOUBLED times the mean number of rays at most, and 2^-MOST_HALVED. */
-enum { MOST_DOUBLED = 4, MOST_HALVED = 3 };
+enum { MOST_DOUBLED = 4, MOST_HALVED = 2 };
 enum { ROUNDS = 6, FEWEST_RAYS = 4 };
 
 /* In place of a variance: the row will be exact. */
