@@ -331,6 +331,53 @@ static void test_even(void)
     solution_free(&s);
 }
 
+/* Every second cell of the walls of a room, upwards or downwards. */
+static void add_cells(struct soup *soup, int odd)
+{
+    enum { CELLS = 10 };
+    const double size = 2.0 / CELLS;
+    for (int i = 0; i < CELLS; i++)
+        for (int k = 0; k < CELLS; k++) {
+            double a = i * size - 1.0, b = k * size - 1.0;
+            if ((i + k) % 2 != odd)
+                continue;
+            soup_add_quad(soup, point(-1, a, b), point(0, size, 0), point(0, 0, size), 1);
+            soup_add_quad(soup, point(1, a, b), point(0, 0, size), point(0, size, 0), 1);
+            soup_add_quad(soup, point(b, -1, a), point(0, 0, size), point(size, 0, 0), 1);
+            soup_add_quad(soup, point(b, 1, a), point(size, 0, 0), point(0, 0, size), 1);
+            soup_add_quad(soup, point(a, b, -1), point(size, 0, 0), point(0, size, 0), 1);
+            soup_add_quad(soup, point(a, b, 1), point(0, size, 0), point(size, 0, 0), 1);
+        }
+}
+
+/* A small grey cube in the middle of a black room of which every second cell shines: its
+ * light is as good as even, but whether a ray finds any is chance. Looks tell that: the
+ * variance of a leaf's quarters is above its expectation for one leaf in four, which may
+ * be split; otherwise all are, and again. Leaves of the cube get the most rays that there
+ * are, 16 times the mean, and black ones the least. */
+static void test_chance(void)
+{
+    enum { CUBE = 12, WALLS = 1200, MEAN = 256 };
+    struct painted painted = {0};
+    for (int odd = 0; odd < 2; odd++) {
+        add_cells(&painted.soup, odd);
+        paint(&painted, 0.0, odd ? 1.0 : 0.0);
+    }
+    soup_add_box(&painted.soup, point(-0.1, -0.1, -0.1), point(0.1, 0.1, 0.1), 1, false);
+    paint(&painted, 0.5, 0.0);
+    struct solution s =
+        solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 0.1");
+    const struct gathered *gathered = &s.solver->gathered;
+    int64_t cube = s.stats.leaves - WALLS;
+    tap_ok(4 * gathered->split <= CUBE && cube == CUBE + 3 * gathered->split,
+           "of 12 leaves whose light varies by chance alone %lld are split",
+           (long long)gathered->split);
+    tap_ok(gathered->rays == cube * 16 * MEAN + WALLS * MEAN / 4,
+           "%lld rays for %lld noisy leaves and 1200 black ones",
+           (long long)gathered->rays, (long long)cube);
+    solution_free(&s);
+}
+
 int main(int argc, char **argv)
 {
     struct comm comm;
@@ -346,6 +393,7 @@ int main(int argc, char **argv)
     test_mesh(0.1);
     test_mesh(0.02);
     test_even();
+    test_chance();
     comm_stop(&comm);
     return tap_done();
 }
