@@ -68,7 +68,7 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary bicgstab sequence id triangle lambert hull scene polygon contour wall octree bundles flux patch \
         compact formfactor link linking cluster node oracle pushpull closure final_gather treecode plan balance assign text obj ply output tone \
-        image camera viewpoint shading stop options progress paths norms cie furnace whole stability store exchange conjugate exact converge leaks
+        image camera viewpoint shading stop options progress paths norms cie furnace whole stability gaps store exchange conjugate exact converge leaks
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct replay
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
@@ -98,7 +98,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
 # What is true, for the tests and benches that compare phr with it.
 TRUTH = $(BUILD)/tools/paths.o $(BUILD)/tests/truth.o $(BUILD)/tests/deviation.o
 
-$(BUILD)/tests/paths $(BUILD)/tests/norms $(BUILD)/tests/converge: $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TRUTH) \
+$(BUILD)/tests/paths $(BUILD)/tests/norms $(BUILD)/tests/gaps $(BUILD)/tests/converge: $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TRUTH) \
         $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 

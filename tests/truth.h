@@ -29,6 +29,9 @@ struct truth {
     double area;           /* of the scene, square scene units: tells scenes apart */
 };
 
+/* Barycentric coordinates of the corners of a patch in its root. */
+struct triangle patch_part(struct patch_id id);
+
 /* Elements without estimates for a prepared scene: at level 10, or each at most 1 / `wanted` of the
  * scene's area. */
 struct truth truth_make(const struct scene *scene, int64_t wanted);
