@@ -67,7 +67,7 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary bicgstab sequence id triangle lambert hull scene polygon contour wall octree bundles flux patch \
-        compact formfactor link linking cluster node oracle pushpull closure final_gather treecode plan balance assign text obj ply output tone \
+        compact formfactor link linking cluster node oracle pushpull closure final_gather render treecode plan balance assign text obj ply output tone \
         image camera viewpoint shading stop options progress paths norms cie furnace whole stability gaps store exchange conjugate exact converge leaks
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct replay

@@ -503,39 +503,73 @@ static bool wants_picture(const struct options *options)
     return false;
 }
 
-/* Collective. Each rank looks at some leaves, all shade all. */
-static struct shading *shade_leaves(struct run *run)
+static bool wants_mesh(const struct options *options)
 {
-    const struct forest *forest = run->solver->method.forest;
+    for (int i = 0; i < options->output_count; i++)
+        if (output_format_of(options->outputs[i]) == FORMAT_PLY)
+            return true;
+    return false;
+}
+
+/* Collective. How far leaves are covered: each rank looks at some of them. NULL: all show their
+ * constants. */
+static uint8_t *survey_leaves(struct run *run)
+{
     if (run->options.flat)
-        return shading_create(forest, NULL);
+        return NULL;
     int64_t leaves;
-    uint8_t *open = shading_open_quarters(forest, run->octree, run->comm.rank, run->comm.size,
-                                          &leaves);
+    uint8_t *open = shading_open_quarters(run->solver->method.forest, run->octree, run->comm.rank,
+                                          run->comm.size, &leaves);
     comm_add_bytes(&run->comm, open, leaves);
+    return open;
+}
+
+/* All leaves, less some of their radiosity, or NULL. */
+static struct shading *shade_leaves(struct run *run, const struct rgb *less, const uint8_t *open)
+{
     double start = comm_seconds();
-    struct shading *shading = shading_create(forest, open);
-    run->solver->seconds[PHASE_SHADING] = comm_seconds() - start;
-    alloc_free(open);
+    struct shading *shading = shading_create(run->solver->method.forest, less, open);
+    run->solver->seconds[PHASE_SHADING] += comm_seconds() - start;
     return shading;
 }
 
-/* Collective. The picture of the camera, on rank 0; NULL on the others. */
-static float *make_picture(struct run *run, const struct shading *shading)
+static void place_camera(struct run *run)
 {
-    const struct options *options = &run->options;
-    const struct comm *comm = &run->comm;
     struct camera *camera = &run->camera;
     double start = comm_seconds();
-    if (!options->view) /* all ranks choose alike */
+    if (!run->options.view) /* all ranks choose alike */
         *camera = viewpoint_choose(run->scene, run->octree, run->solver->method.forest,
                                    camera->width, camera->height);
     run->solver->seconds[PHASE_VIEWPOINT] = comm_seconds() - start;
+}
+
+/* Collective. The picture of the camera, on rank 0; NULL on the others. Rays that it takes are no
+ * part of the solution's. */
+static float *make_picture(struct run *run, const uint8_t *open)
+{
+    const struct comm *comm = &run->comm;
+    struct method *method = &run->solver->method;
+    struct octree_counts counts = method->counts;
+    int64_t estimating = method->estimating;
+    place_camera(run);
+    bool gathers = run->solver->straight && !run->options.flat;
+    struct shading *shading = NULL;
+    if (!run->options.pixels)
+        shading = shade_leaves(run, gathers ? run->solver->straight : NULL, open);
+    struct renderer renderer =
+        renderer_make(run->octree, shading, gathers ? &run->solver->gather : NULL);
+    run->solver->gather.counts = (struct gather_counts){.rays = 0};
     progress_begin(&run->progress.progress, "rendering", -1, 0);
-    float *rows = render_rows(shading, run->octree, camera, options->samples, comm->rank,
+    float *rows = render_rows(&renderer, &run->camera, run->options.samples, comm->rank,
                               comm->size, &run->progress.progress);
-    size_t row = 3 * (size_t)camera->width;
-    float *picture = picture_gather(comm, rows, row, camera->height);
+    float *picture = picture_gather(comm, rows, 3 * (size_t)run->camera.width,
+                                    run->camera.height);
+    run->solver->gathered.pixels =
+        run->solver->gather.counts.rays + run->solver->gather.counts.segments;
+    comm_add(comm, &run->solver->gathered.pixels, 1);
+    method->counts = counts;
+    method->estimating = estimating;
+    shading_destroy(shading);
     alloc_free(rows);
     return picture;
 }
@@ -546,13 +580,15 @@ static bool show_results(struct run *run)
     double start = comm_seconds();
     if (run->options.output_count == 0)
         return true;
-    struct shading *shading = shade_leaves(run);
-    float *picture = wants_picture(&run->options) ? make_picture(run, shading) : NULL;
+    uint8_t *open = survey_leaves(run);
+    float *picture = wants_picture(&run->options) ? make_picture(run, open) : NULL;
+    struct shading *shading = wants_mesh(&run->options) ? shade_leaves(run, NULL, open) : NULL;
     run->solver->seconds[PHASE_RENDER] = comm_seconds() - start;
     start = comm_seconds();
     if (goes_on_from_phase(run) && run->comm.rank == 0)
         write_outputs(run, shading, picture);
     alloc_free(picture);
+    alloc_free(open);
     shading_destroy(shading);
     run->solver->seconds[PHASE_WRITE] += comm_seconds() - start;
     return agree(run);

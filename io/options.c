@@ -14,7 +14,7 @@
 #include "io/text.h"
 
 enum kind { KIND_FLAG, KIND_TEXT, KIND_REAL, KIND_INTEGER, KIND_OUTPUT, KIND_SIZE,
-            KIND_CHOICE, KIND_SHARE, KIND_BYTES, KIND_PAPER };
+            KIND_CHOICE, KIND_SHARE, KIND_BYTES, KIND_GATHER, KIND_PAPER };
 
 struct option {
     const char *name;
@@ -44,7 +44,7 @@ static const struct option OPTIONS[] = {
     {"--solver", KIND_CHOICE, offsetof(struct options, criterion.solver), 0, 0, "jacobi|cg"},
     {"--balance", KIND_CHOICE, offsetof(struct options, criterion.balance), 0, 0,
      "greedy|even"},
-    {"--final-gather", KIND_INTEGER, offsetof(struct options, criterion.final_gather), 0, 16384, NULL},
+    {"--final-gather", KIND_GATHER, offsetof(struct options, criterion.final_gather), 0, 16384, NULL},
     {"--paper", KIND_PAPER, 0, 0, 0, NULL},
     {"--alpha", KIND_REAL, offsetof(struct options, criterion.alpha), 0, 1, NULL},
     {"--tolerance", KIND_REAL, offsetof(struct options, criterion.tolerance), 0, 1, NULL},
@@ -195,6 +195,27 @@ static bool set_bytes(const struct option *option, const char *value, int64_t *f
                      option->name, value);
 }
 
+/* N, "pixels", or both: "N,pixels". */
+static bool set_gather(struct options *options, const struct option *option, const char *value,
+                       struct error *error)
+{
+    static const char PIXELS[] = "pixels";
+    char number[64];
+    size_t length = strlen(value), ending = sizeof PIXELS - 1;
+    options->pixels = length >= ending && strcmp(value + length - ending, PIXELS) == 0;
+    if (!options->pixels)
+        return set_integer(options, option, value, error);
+    if (length == ending)
+        return true;
+    size_t digits = length - ending - 1;
+    if (value[digits] != ',' || digits >= sizeof number)
+        return error_set(error, EXIT_USAGE, "%s: '%s' is not N, pixels or N,pixels",
+                         option->name, value);
+    memcpy(number, value, digits);
+    number[digits] = '\0';
+    return set_integer(options, option, number, error);
+}
+
 static void set_paper(struct criterion *criterion)
 {
     criterion->oracle = ORACLE_BF;
@@ -216,6 +237,8 @@ static bool set_value(struct options *options, const struct option *option, cons
         return set_size(options, value, error);
     case KIND_INTEGER:
         return set_integer(options, option, value, error);
+    case KIND_GATHER:
+        return set_gather(options, option, value, error);
     case KIND_REAL:
         return parse_number(option, value, (double *)(void *)field, error);
     case KIND_SHARE:
@@ -315,6 +338,11 @@ static bool check_gather(struct options *options, struct error *error)
         return error_set(error, EXIT_USAGE, "--final-gather goes with --linking tree");
     if (criterion->final_gather < 0) /* not given */
         criterion->final_gather = tree ? GATHER_RAYS : 0;
+    if (options->pixels && criterion->final_gather == 0)
+        return error_set(error, EXIT_USAGE, "--final-gather pixels needs rays, and a tree");
+    if (options->pixels && options->flat)
+        return error_set(error, EXIT_USAGE,
+                         "--flat and --final-gather pixels do not go together");
     return true;
 }
 
@@ -436,7 +464,7 @@ void options_print_help(FILE *file)
           "  --max-level N    of subdivision (10)    --min-area A  of a patch (1e-7)\n"
           "  --tolerance T    of the solution (1e-5) --max-iterations N   at most (1000)\n"
           "  --oracle error|bf   what splits a link  --form-factor polygon|disk\n"
-          "  --linking tree|pairs  where links begin --final-gather N  rays a leaf (256)\n"
+          "  --linking tree|pairs  where links begin --final-gather N[,pixels]  rays (256)\n"
           "  --closure none|cap|rows|symmetric       of row sums (cap) --solver cg|jacobi\n"
           "  --paper          the paper's of these   --alpha A     inherited cost (0.5)\n"
           "  --two-sided      backs reflect, too     --two-sided-lamps  those of lamps\n"

@@ -25,6 +25,7 @@ struct options {
     int64_t memory;           /* bytes for links and patches; 0: most of what the machine has */
     int width, height;        /* of --size; 0: what the view says */
     int samples;              /* samples x samples rays a pixel */
+    bool pixels;              /* the final gather is of each pixel, too */
     double exposure;          /* 0: chosen from the picture */
     bool two_sided, two_sided_lamps; /* the second is never without the first */
     bool flat, quiet, verbose, help, version, validate, form_factors;

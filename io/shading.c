@@ -245,10 +245,14 @@ static double open_share(uint8_t quarters)
     return quarters < 2 ? 0.0 : 0.25 * quarters;
 }
 
-/* Radiosity of the open share of a leaf: what it receives, it receives there. */
-static struct rgb open_radiosity(const struct forest *forest, int32_t leaf, double share)
+/* Radiosity of the open share of a leaf, less what is left out: what it receives, it receives
+ * there. */
+static struct rgb open_radiosity(const struct forest *forest, const struct rgb *less, int32_t leaf,
+                                 double share)
 {
     struct rgb b = forest->patches[leaf].radiosity, e = forest_material(forest, leaf)->emission;
+    for (int c = 0; c < BANDS && less; c++)
+        b.band[c] = fmax(e.band[c], b.band[c] - less[leaf].band[c]);
     for (int c = 0; c < BANDS && share > 0.0; c++)
         b.band[c] = e.band[c] + (b.band[c] - e.band[c]) / share;
     return b;
@@ -259,6 +263,7 @@ static struct rgb open_radiosity(const struct forest *forest, int32_t leaf, doub
 /* The values at the corners of roots, by flat surface and by curved one. */
 struct facets {
     const struct forest *forest;
+    const struct rgb *less;
     const uint8_t *open;          /* shading_open_quarters(), used up leaf by leaf */
     const int32_t *flat, *curved; /* [roots] surfaces */
     struct table by_flat, by_curved;
@@ -297,7 +302,7 @@ static void add_corner_leaf(void *context, int32_t leaf)
         if (leaf_at_corner(forest, root, k) != leaf)
             continue;
         struct vec3 x = scene_root_triangle(forest->scene, root).corner[k];
-        struct rgb value = open_radiosity(forest, leaf, share);
+        struct rgb value = open_radiosity(forest, facets->less, leaf, share);
         double weight = fmax(share, COVERED) * corner_weight(forest->scene, root, k);
         add_value(&facets->by_flat, reach_vertex(&facets->by_flat, x, facets->flat[root]), value,
                   weight);
@@ -308,13 +313,13 @@ static void add_corner_leaf(void *context, int32_t leaf)
 
 /* [3 * roots] how far corner k of root r is shifted, W/m^2: [3 r + k]. Exactly 0 where one flat
  * surface is all that is there, since both sums then have the same terms. */
-static struct rgb *find_shifts(const struct forest *forest, const uint8_t *open,
-                               const int32_t *curved)
+static struct rgb *find_shifts(const struct forest *forest, const struct rgb *less,
+                               const uint8_t *open, const int32_t *curved)
 {
     const struct scene *scene = forest->scene;
     int32_t roots = scene_root_count(scene), *flat = surface_of_roots(scene, false);
     struct rgb *shifts = alloc_array(3 * (size_t)roots, sizeof *shifts);
-    struct facets facets = {.forest = forest, .open = open, .flat = flat, .curved = curved};
+    struct facets facets = {.forest = forest, .less = less, .open = open, .flat = flat, .curved = curved};
     for_each_leaf(forest, -1, add_corner_leaf, &facets);
     find_means(&facets.by_flat);
     find_means(&facets.by_curved);
@@ -357,6 +362,7 @@ static struct rgb shifted(struct rgb value, const struct rgb *shifts, struct vec
 struct blend {
     struct shading *shading;
     struct table table;
+    const struct rgb *less;
     const uint8_t *open; /* shading_open_quarters(), */
     int64_t next;        /* and how many of it are used up, leaf by leaf */
     int32_t *surface;    /* [roots] */
@@ -385,7 +391,7 @@ static double leaf_values(struct blend *blend, int32_t leaf, struct rgb values[3
     const struct forest *forest = blend->shading->forest;
     struct patch_id id = forest->patches[leaf].id;
     double share = open_share(blend->open[blend->next++]);
-    values[0] = values[1] = values[2] = open_radiosity(forest, leaf, share);
+    values[0] = values[1] = values[2] = open_radiosity(forest, blend->less, leaf, share);
     if (blend->shifts) {
         struct triangle at = weights_in_root(id);
         for (int k = 0; k < 3; k++)
@@ -490,7 +496,7 @@ static void blend_leaves(struct blend *blend)
     const struct forest *forest = blend->shading->forest;
     blend->surface = surface_of_roots(forest->scene, true);
     if (forest->scene->normals && !stop_is_asked())
-        blend->shifts = find_shifts(forest, blend->open, blend->surface);
+        blend->shifts = find_shifts(forest, blend->less, blend->open, blend->surface);
     for_each_leaf(forest, -1, add_leaf, blend);
     find_means(&blend->table);
     settle_edges(blend);
@@ -500,13 +506,14 @@ static void blend_leaves(struct blend *blend)
     alloc_free(blend->shifts);
 }
 
-struct shading *shading_create(const struct forest *forest, const uint8_t *open)
+struct shading *shading_create(const struct forest *forest, const struct rgb *less,
+                               const uint8_t *open)
 {
     struct shading *shading = alloc_array(1, sizeof *shading);
     shading->forest = forest;
     shading->flat = !open;
     shading->corners = alloc_array(3 * (size_t)forest->count, sizeof *shading->corners);
-    struct blend blend = {.shading = shading, .open = open};
+    struct blend blend = {.shading = shading, .less = less, .open = open};
     if (shading->flat)
         for_each_leaf(forest, -1, add_flat_leaf, &blend);
     else

@@ -25,9 +25,11 @@ uint8_t *shading_open_quarters(const struct forest *forest, const struct octree 
                                int step, int64_t *count);
 
 /* Prepares the shading of a solution. `open`: the open quarters of all leaves. NULL gives flat
- * shading: each leaf has three vertices of its own with its constant. Vertices are numbered as
- * the leaves meet them in canonical order: the same on every rank. */
-struct shading *shading_create(const struct forest *forest, const uint8_t *open);
+ * shading: each leaf has three vertices of its own with its constant. `less`: [patches] radiosity
+ * that is left out, W/m^2, or NULL. Vertices are numbered as the leaves meet them in canonical
+ * order: the same on every rank. */
+struct shading *shading_create(const struct forest *forest, const struct rgb *less,
+                               const uint8_t *open);
 void shading_destroy(struct shading *shading);
 
 /* Radiosity at the point of a root with the given barycentric coordinates, W/m^2. */

@@ -82,9 +82,11 @@ static void gathering_start(struct gathering *g, struct solver *solver)
     comm_displacements(comm, g->counts, g->at);
 }
 
+/* The gather itself is the solver's then. */
 static void gathering_end(struct gathering *g)
 {
-    final_gather_free(&g->gather);
+    final_gather_drop_rows(&g->gather);
+    g->solver->gather = g->gather;
     gather_mesh_free(&g->mesh);
     alloc_free(g->areas);
     alloc_free(g->bare);
@@ -340,6 +342,25 @@ static void estimate_errors(struct gathering *g)
     alloc_free(mesh);
 }
 
+/* Collective. */
+static void share_straight_light(struct gathering *g)
+{
+    const struct forest *forest = g->solver->method.forest;
+    struct rgb *own = g->all + g->at[g->solver->comm->rank];
+    struct rgb *light = alloc_array((size_t)g->count, sizeof *light);
+    struct rgb *straight = alloc_array((size_t)forest->count, sizeof *straight);
+    for (int64_t row = 0; row < g->gather.count; row++)
+        own[row] = g->gather.rows[row].lamps;
+    share_rows(g, light);
+    for (int64_t i = 0; i < g->count; i++) {
+        struct rgb rho = forest_material(forest, g->leaves[i])->reflectance;
+        for (int c = 0; c < BANDS; c++)
+            straight[g->leaves[i]].band[c] = rho.band[c] * light[i].band[c];
+    }
+    g->solver->straight = straight;
+    alloc_free(light);
+}
+
 /* From the links' solution on. */
 static void solve_rows(struct gathering *g, struct vote *vote)
 {
@@ -370,6 +391,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     judge(g, h, b, done.residual, vote);
     place_radiosities(g, b);
     estimate_errors(g);
+    share_straight_light(g);
     for (int64_t i = 0; i < g->count; i++)
         forest->patches[g->leaves[i]].radiosity = b[i];
     forest_average(forest);

@@ -59,6 +59,8 @@ void solver_destroy(struct solver *solver)
     conjugate_free(&solver->conjugate);
     accuracy_free(&solver->accuracy);
     alloc_free(solver->error);
+    alloc_free(solver->straight);
+    final_gather_free(&solver->gather);
     alloc_free(solver);
 }
 

@@ -11,6 +11,7 @@
 #include "mpi/ledger.h"
 #include "mpi/node.h"
 #include "mpi/routes.h"
+#include "rad/beyond/final_gather.h"
 #include "rad/beyond/node_link.h"
 #include "rad/conjugate.h"
 #include "rad/link.h"
@@ -86,6 +87,9 @@ struct solver {
     struct gathered gathered;
     float *error;             /* [patches] bound on the error of a leaf's B, for 95 % of leaves and all
                                  bands, W/m^2; NULL: there was no final gather */
+    struct final_gather gather; /* without its rows, for light at any point; */
+    struct rgb *straight;     /* [patches] what leaves reflect of light straight from lamps, W/m^2;
+                                 NULL: there was no final gather */
     int64_t split_here;       /* links that this rank split in this iteration */
     double seconds[PHASE_COUNT];
     int64_t bytes_migration, bytes_gather, bytes_scatter; /* that this rank sent to others, or (scatter)

@@ -67,6 +67,7 @@ struct gathered {
     int64_t terms;          /* kept of all rows */
     int64_t looks;          /* rays and segments fired before there were rows */
     int64_t split;          /* leaves that the gathered light was seen to vary over */
+    int64_t pixels;         /* rays and segments fired for the picture */
     double error;           /* of the leaves, estimated, relative RMS of reflected radiosity */
 };
 

@@ -43,23 +43,32 @@ static struct scene *read_scene(const struct comm *comm, const char *path,
 struct result {
     bool converged;
     double leaf, shown; /* relative RMS; on rank 0 */
+    double pixels;      /* the same where all light is gathered at each point, if asked for */
     double estimate;
     int64_t links;
 };
 
 static struct result run(const struct comm *comm, const char *path, struct criterion criterion,
-                         const struct truth *truth)
+                         const struct truth *truth, bool pixels)
 {
     struct node_block block;
     struct solution s = solve(comm, read_scene(comm, path, &block), criterion);
-    struct result result = {s.vote.converged, 0.0, 0.0, s.stats.error_estimate, s.stats.links};
+    struct result result = {.converged = s.vote.converged,
+                            .estimate = s.stats.error_estimate,
+                            .links = s.stats.links};
     if (comm->rank == 0) {
         const struct forest *forest = s.solver->method.forest;
         int64_t leaves;
         uint8_t *open = shading_open_quarters(forest, s.octree, 0, 1, &leaves);
-        struct shading *shading = shading_create(forest, open);
+        struct shading *shading = shading_create(forest, s.solver->straight, open);
+        struct renderer renderer =
+            renderer_make(s.octree, shading, s.solver->straight ? &s.solver->gather : NULL);
         result.leaf = deviation_of_leaves(forest, truth).rms;
-        result.shown = deviation_of_points(shading, truth).rms;
+        result.shown = deviation_of_points(&renderer, s.scene, truth).rms;
+        if (pixels) {
+            renderer = renderer_make(s.octree, NULL, &s.solver->gather);
+            result.pixels = deviation_of_points(&renderer, s.scene, truth).rms;
+        }
         shading_destroy(shading);
         alloc_free(open);
     }
@@ -72,10 +81,10 @@ static struct result run(const struct comm *comm, const char *path, struct crite
 static void test_falling(const struct comm *comm, const char *path, const struct truth *truth,
                          double leaf, double shown)
 {
-    struct result before = {true, HUGE_VAL, HUGE_VAL, 0.0, 0};
+    struct result before = {.leaf = HUGE_VAL, .shown = HUGE_VAL};
     double epsilon = 1e-3;
     for (int step = 0; step < STEPS; step++, epsilon /= 2.0) {
-        struct result now = run(comm, path, criterion_best(epsilon, 10, 1e-3, CLOSURE_CAP), truth);
+        struct result now = run(comm, path, criterion_best(epsilon, 10, 1e-3, CLOSURE_CAP), truth, false);
         if (comm->rank == 0)
             tap_ok(now.converged && now.leaf < before.leaf && now.shown < before.shown,
                    "%s, epsilon %.2g, %lld links: leaf error %.2f %%, shown %.2f %%", path, epsilon,
@@ -89,8 +98,8 @@ static void test_falling(const struct comm *comm, const char *path, const struct
 
 static void test_paper(const struct comm *comm, const struct truth *truth)
 {
-    struct result paper = run(comm, CORNELL, criterion_of(1e-4, 10, 1e-3), truth);
-    struct result best = run(comm, CORNELL, criterion_best(1e-3, 10, 1e-3, CLOSURE_CAP), truth);
+    struct result paper = run(comm, CORNELL, criterion_of(1e-4, 10, 1e-3), truth, false);
+    struct result best = run(comm, CORNELL, criterion_best(1e-3, 10, 1e-3, CLOSURE_CAP), truth, false);
     if (comm->rank == 0)
         tap_ok(best.leaf < paper.leaf && 10 * best.links < paper.links,
                "the paper's variant: %.2f %% with %lld links; %.2f %% with a tenth of them and less "
@@ -104,7 +113,7 @@ static void test_accuracy(const struct comm *comm, const struct truth *truth, do
 {
     struct criterion criterion = criterion_best(1e-3, 10, 1e-3, CLOSURE_CAP);
     criterion.accuracy = accuracy;
-    struct result result = run(comm, CORNELL, criterion, truth);
+    struct result result = run(comm, CORNELL, criterion, truth, false);
     if (comm->rank == 0) {
         tap_ok(result.converged && result.estimate > 0.0 && result.estimate <= accuracy,
                "--accuracy %.3g: an estimate of %.2f %%", accuracy, 100.0 * result.estimate);
@@ -129,7 +138,7 @@ static void test_gathered(const struct comm *comm, const char *path,
         struct criterion criterion =
             criterion_best(steps[k].epsilon, 10, 1e-4, CLOSURE_CAP);
         criterion.final_gather = steps[k].rays;
-        struct result now = run(comm, path, criterion, truth);
+        struct result now = run(comm, path, criterion, truth, k == 1);
         bool less = steps[k].worse < 0 || now.leaf < error[steps[k].worse];
         error[k] = now.leaf;
         if (comm->rank == 0)
@@ -138,6 +147,10 @@ static void test_gathered(const struct comm *comm, const char *path,
                    "%s, epsilon %g, gathered with %d rays: leaf error %.2f %%, said to be "
                    "%.2f %%", path, steps[k].epsilon, steps[k].rays, 100.0 * now.leaf,
                    100.0 * now.estimate);
+        if (comm->rank == 0 && k == 1)
+            tap_ok(now.pixels < 2.0 * now.leaf, "gathered at points: %.2f %%", 100.0 * now.pixels);
+        if (comm->rank == 0 && k == 3)
+            tap_ok(now.shown < 2.2 * now.leaf, "shown: %.2f %%", 100.0 * now.shown);
     }
     if (comm->rank == 0)
         tap_ok(error[3] < most, "down to %.3g %%", 100.0 * most);

@@ -171,9 +171,9 @@ bool element_is_black(const struct element *element)
     return rgb_sum(element->point[0]) + rgb_sum(element->point[1]) == 0.0;
 }
 
-struct deviation deviation_of_points(const struct shading *shading, const struct truth *truth)
+struct deviation deviation_of_points(const struct renderer *renderer, const struct scene *scene,
+                                     const struct truth *truth)
 {
-    const struct scene *scene = shading->forest->scene;
     struct list list = {alloc_array((size_t)truth->count, sizeof *list.items), 0};
     for (int64_t i = 0; i < truth->count; i++) {
         const struct element *element = &truth->items[i];
@@ -182,7 +182,8 @@ struct deviation deviation_of_points(const struct shading *shading, const struct
             continue;
         list.items[list.count++] = (struct sample){
             .area = element_area(element, scene),
-            .value = reflected(scene, root, shading_at(shading, root, element->weight)),
+            .value = reflected(scene, root,
+                               render_point(renderer, root, element->weight, (uint64_t)i)),
             .truth = {element->point[0], element->point[1]}};
     }
     struct deviation deviation = deviation_of(list.items, list.count);

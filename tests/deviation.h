@@ -21,7 +21,7 @@
 #ifndef TESTS_DEVIATION_H
 #define TESTS_DEVIATION_H
 
-#include "io/shading.h"
+#include "io/render.h"
 #include "tests/truth.h"
 
 /* A piece of surface on which a solution is compared with the truth. */
@@ -56,6 +56,7 @@ bool element_is_black(const struct element *element);
 
 /* `shown`: the radiosity that pictures show, with the truth at the points of the elements. Points
  * that no light reaches at all, such as those that a box covers, are left out. */
-struct deviation deviation_of_points(const struct shading *shading, const struct truth *truth);
+struct deviation deviation_of_points(const struct renderer *renderer, const struct scene *scene,
+                                     const struct truth *truth);
 
 #endif

@@ -408,6 +408,23 @@ static void test_restart(void)
     options_free(&options);
     check_refused("a.obj --save-links l", "--save-links goes with --linking pairs (--paper)");
     check_refused("a.obj --paper --final-gather 64", "--final-gather goes with --linking tree");
+    check_refused("a.obj --paper --final-gather pixels",
+                  "--final-gather pixels needs rays, and a tree");
+    check_refused("a.obj --final-gather 0,pixels",
+                  "--final-gather pixels needs rays, and a tree");
+    check_refused("a.obj --flat --final-gather pixels",
+                  "--flat and --final-gather pixels do not go together");
+    check_refused("a.obj --final-gather 64pixels",
+                  "--final-gather: '64pixels' is not N, pixels or N,pixels");
+    check_refused("a.obj --final-gather 6x,pixels", "--final-gather: '6x' is not a number");
+    tap_ok(parse("a.obj --final-gather pixels", &options) && options.pixels &&
+               options.criterion.final_gather == 256,
+           "a final gather of pixels has as many rays as one of leaves");
+    options_free(&options);
+    tap_ok(parse("a.obj --final-gather 64,pixels", &options) && options.pixels &&
+               options.criterion.final_gather == 64,
+           "or as many as are given");
+    options_free(&options);
     check_refused("a.obj --paper --linking tree --load-links l",
                   "--load-links goes with --linking pairs (--paper)");
     check_refused("a.obj --every 2", "--every needs --checkpoint");

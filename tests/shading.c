@@ -107,7 +107,7 @@ static void shade(struct stage *stage, bool flat)
     shading_destroy(stage->shading);
     int64_t leaves;
     uint8_t *open = flat ? NULL : shading_open_quarters(stage->forest, stage->octree, 0, 1, &leaves);
-    stage->shading = shading_create(stage->forest, open);
+    stage->shading = shading_create(stage->forest, NULL, open);
     alloc_free(open);
 }
 

@@ -573,7 +573,8 @@ static void test_cracks(void)
     struct shading *shading = shade(&s);
     struct camera camera = {.eye = point(0.05, 0.07, 0.9), .at = point(0.6, 0.5, 0.3),
                             .up = point(0, 0, 1), .fov = 100.0, .width = 200, .height = 200};
-    float *pixels = render_rows(shading, s.octree, &camera, 2, 0, 1, NULL);
+    struct renderer renderer = renderer_make(s.octree, shading, NULL);
+    float *pixels = render_rows(&renderer, &camera, 2, 0, 1, NULL);
     int off = 0;
     for (int i = 0; i < 3 * 200 * 200; i++)
         off += !(pixels[i] == 2.0f);

@@ -142,7 +142,7 @@ static int64_t survey_leaves(void)
 
 static int64_t count_vertices(const uint8_t *open)
 {
-    struct shading *made = shading_create(world.method.forest, open);
+    struct shading *made = shading_create(world.method.forest, NULL, open);
     int64_t count = made->vertex_count;
     shading_destroy(made);
     return count;
@@ -164,7 +164,8 @@ static int64_t shade_smooth(void)
 
 static int64_t render(void)
 {
-    float *rows = render_rows(shading, world.octree, &CAMERA, 1, 0, 1, NULL);
+    struct renderer renderer = renderer_make(world.octree, shading, NULL);
+    float *rows = render_rows(&renderer, &CAMERA, 1, 0, 1, NULL);
     int64_t lit = 0;
     for (int i = 0; i < 3 * SIZE * SIZE; i++)
         lit += rows[i] > 0.0f;
@@ -334,7 +335,7 @@ int main(void)
     struct forest *forest = world.method.forest;
     for (int64_t p = 0; p < forest->count; p++)
         forest->patches[p].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
-    shading = shading_create(forest, NULL);
+    shading = shading_create(forest, NULL, NULL);
     write_scenes();
     test_questions();
     for (size_t i = 0; i < sizeof PHASES / sizeof PHASES[0]; i++)

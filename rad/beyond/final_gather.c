@@ -75,6 +75,16 @@ struct final_gather final_gather_create(struct method *method, int rays)
     return gather;
 }
 
+void final_gather_drop_rows(struct final_gather *gather)
+{
+    alloc_free(gather->rows);
+    alloc_free(gather->terms);
+    gather->rows = NULL;
+    gather->terms = NULL;
+    gather->count = gather->row_capacity = 0;
+    gather->term_count = gather->term_capacity = 0;
+}
+
 void final_gather_free(struct final_gather *gather)
 {
     lamps_free(&gather->lamps);
@@ -82,8 +92,7 @@ void final_gather_free(struct final_gather *gather)
     alloc_free(gather->view.faced);
     alloc_free(gather->order);
     alloc_free(gather->place);
-    alloc_free(gather->rows);
-    alloc_free(gather->terms);
+    final_gather_drop_rows(gather);
     *gather = (struct final_gather){0};
 }
 
@@ -174,10 +183,10 @@ static int compare_terms(const void *left, const void *right)
 static void join_terms(struct receiver *r)
 {
     struct gather_term *terms = r->gather->terms;
-    int64_t to = r->first;
-    qsort(terms + r->first, (size_t)(r->row.end - r->first), sizeof *terms,
+    int64_t to = r->first_term;
+    qsort(terms + r->first_term, (size_t)(r->row.end - r->first_term), sizeof *terms,
           compare_terms);
-    for (int64_t i = r->first, next; i < r->row.end; i = next) {
+    for (int64_t i = r->first_term, next; i < r->row.end; i = next) {
         double sum[BANDS] = {0.0};
         for (next = i; next < r->row.end && terms[next].place == terms[i].place; next++)
             for (int c = 0; c < BANDS; c++)
@@ -229,6 +238,7 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
         struct receiver r = receiver_make(gather, quarter,
                                           hash_mix(seed_of(gather, leaf) + 1 + (uint64_t)k),
                                           rays);
+        receiver_aim(&r);
         receiver_fire(&r);
         struct rgb h = light_of(&r);
         for (int c = 0; c < BANDS; c++) {
@@ -244,16 +254,37 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     return look;
 }
 
+/* What lamps bring by what they emit, of an exact row. */
+static struct rgb light_of_lamps(const struct receiver *r)
+{
+    const struct final_gather *g = r->gather;
+    const struct forest *forest = g->method->forest;
+    struct rgb light = {{0.0, 0.0, 0.0}};
+    for (int64_t i = r->first_term; i < r->row.end; i++) {
+        int32_t patch = g->order[g->terms[i].place];
+        const struct material *m = forest_material(forest, patch);
+        if (!root_is_lamp(&g->lamps, (int32_t)forest->patches[patch].id.root))
+            continue;
+        for (int c = 0; c < BANDS; c++)
+            light.band[c] += (double)g->terms[i].weight[c] * m->emission.band[c];
+    }
+    return light;
+}
+
 void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool exact)
 {
     struct receiver r = receiver_make(gather, facet_make(gather->method->forest, leaf),
                                       seed_of(gather, leaf), rays);
     r.keeps = true;
-    r.first = gather->term_count;
-    r.row = (struct gather_row){.leaf = leaf, .end = r.first};
-    if (!exact || !receiver_add_exact(&r)) {
-        r.row.end = r.first;
+    r.first_term = gather->term_count;
+    r.row = (struct gather_row){.leaf = leaf, .end = r.first_term};
+    if (exact && receiver_add_exact(&r)) {
+        r.row.lamps = light_of_lamps(&r);
+    } else {
+        r.row.end = r.first_term;
+        receiver_aim(&r);
         receiver_fire(&r);
+        r.row.lamps = r.lamps;
     }
     join_terms(&r);
     r.row.bare = receiver_bare_share(&r);
@@ -263,15 +294,25 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
     gather->term_count = r.row.end;
 }
 
-struct rgb final_gather_at(struct final_gather *gather, const struct gather_point *point,
-                           int rays, uint64_t seed)
+struct gather_light final_gather_at(struct final_gather *gather,
+                                    const struct gather_points *points, uint64_t seed,
+                                    int count, bool all)
 {
-    struct facet facet = {.triangle = {{point->at, point->at, point->at}},
-                          .plane = point->plane,
-                          .input = point->input};
-    struct receiver r = receiver_make(gather, facet, hash_mix(seed), rays);
-    receiver_fire(&r);
-    return light_of(&r);
+    struct vec3 x = points->middle;
+    struct facet facet = {.triangle = {{x, x, x}},
+                          .plane = points->plane,
+                          .input = points->input};
+    struct receiver r = receiver_make(gather, facet, hash_mix(seed), count);
+    struct gather_light light = {.variance = 0.0};
+    r.points = points;
+    receiver_aim(&r);
+    for (int c = 0; c < BANDS; c++)
+        light.variance += r.row.chance[c];
+    if (all)
+        receiver_fire(&r);
+    light.lamps = r.lamps;
+    light.rest = r.sum;
+    return light;
 }
 
 void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity)

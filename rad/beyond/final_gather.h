@@ -22,6 +22,7 @@ struct gather_row {
     int32_t leaf;
     int64_t end;       /* of its terms, which begin where those of the row before end */
     struct rgb source; /* irradiance that comes from lamps, W/m^2 */
+    struct rgb lamps;  /* what lamps bring straight by what they emit, W/m^2 */
     double chance[BANDS]; /* variance of H by the choice of rays and segments, if that is by
                             chance, (W/m^2)^2, for the solution's radiosities */
     double halves[BANDS]; /* square of what the first and second half of the rays differ by:
@@ -63,11 +64,20 @@ struct final_gather {
     struct gather_counts counts;
 };
 
-/* A point of a surface. */
-struct gather_point {
-    struct vec3 at;
-    struct plane plane;
-    int32_t input; /* triangle that it is on */
+/* Points of one surface, near each other, as in a pixel. */
+struct gather_points {
+    const struct vec3 *at; /* [count] */
+    int count;
+    struct vec3 middle;
+    struct plane plane; /* there */
+    int32_t input;      /* triangle that they are on */
+};
+
+/* What arrives at such points in the mean, W/m^2. */
+struct gather_light {
+    struct rgb lamps; /* straight from lamps, by what they emit, */
+    struct rgb rest;  /* and all else; 0 if it is not asked for */
+    double variance;  /* of the first, by the choice of segments, over bands, (W/m^2)^2 */
 };
 
 /* A look at a leaf: its quarters, and chance. */
@@ -100,10 +110,14 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
  * its root is open, by exact factors. */
 void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool exact);
 
-/* H at a point, W/m^2, for the radiosities that the forest has: by `rays` rays and as many
- * segments to lamps. */
-struct rgb final_gather_at(struct final_gather *gather, const struct gather_point *point,
-                           int rays, uint64_t seed);
+/* For the radiosities that the forest has: by so many segments to lamps, and as many rays
+ * if all light is asked for. */
+struct gather_light final_gather_at(struct final_gather *gather,
+                                    const struct gather_points *points, uint64_t seed,
+                                    int count, bool all);
+
+/* Forgets all rows. */
+void final_gather_drop_rows(struct final_gather *gather);
 
 struct gather_slope gather_slope(const struct final_gather *gather, int32_t patch);
 

@@ -239,13 +239,13 @@ static bool close_row(struct receiver *r)
 {
     struct gather_term *terms = r->gather->terms;
     double sum = 0.0;
-    for (int64_t i = r->first; i < r->row.end; i++)
+    for (int64_t i = r->first_term; i < r->row.end; i++)
         sum += (double)terms[i].weight[0];
     if (sum > 1.0 + CLOSED)
         return false;
     r->gather->counts.exact++;
     r->gather->counts.escaped += sum > 0.0 && sum < 1.0 - CLOSED;
-    for (int64_t i = r->first; i < r->row.end && sum >= 1.0 - CLOSED; i++)
+    for (int64_t i = r->first_term; i < r->row.end && sum >= 1.0 - CLOSED; i++)
         for (int c = 0; c < BANDS; c++)
             terms[i].weight[c] = (float)((double)terms[i].weight[c] / sum);
     return true;

@@ -97,6 +97,14 @@ static enum met trace(struct receiver *r, struct vec3 origin, struct vec3 direct
     return MET_FRONT;
 }
 
+/* A point of the receiver, of a square. */
+static struct vec3 start_at(const struct receiver *r, double u, double v)
+{
+    const struct gather_points *points = r->points;
+    return points ? points->at[(int)(u * points->count)]
+                  : triangle_of_square(&r->facet.triangle, u, v);
+}
+
 /* --- lamps --- */
 
 static void add_source(struct receiver *r, const struct rgb *weight, struct rgb emission,
@@ -131,8 +139,8 @@ static void add_chance(struct receiver *r, struct rgb emission, double direct, d
 
 /* Segments to a single lamp: `count` of them bring the irradiance `direct` all together,
  * summed over bands, but for what is blocked: of that each has its kernel's share. */
-static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, uint32_t first,
-                        int count, int32_t root, double direct)
+static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int count,
+                        int32_t root, double direct)
 {
     static const struct rgb ALL = {{1.0, 1.0, 1.0}};
     const struct scene *scene = r->gather->method->scene;
@@ -141,8 +149,8 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, uin
     struct rgb emission = scene_root_material(scene, root)->emission;
     double all = 0.0, seen = 0.0, u[SEQUENCE_DIMENSIONS];
     for (int i = 0; i < count; i++) {
-        sequence_point(sequence, first + (uint32_t)i, u);
-        struct vec3 x = triangle_of_square(&r->facet.triangle, u[0], u[1]);
+        sequence_point(sequence, (uint32_t)i, u);
+        struct vec3 x = start_at(r, u[0], u[1]);
         struct vec3 y = triangle_of_square(&lamp, u[2], u[3]);
         double light = receiver_kernel(x, r->facet.plane.normal, y, normal);
         all += light;
@@ -168,7 +176,7 @@ static void aim_at_cluster(struct receiver *r, const struct sequence *sequence,
     struct lamp lamp =
         lamp_choose(&g->lamps, group->node, hash_unit(r->seed + 17 + index));
     struct triangle triangle = scene_root_triangle(scene, lamp.root);
-    struct vec3 x = triangle_of_square(&r->facet.triangle, u[0], u[1]);
+    struct vec3 x = start_at(r, u[0], u[1]);
     struct vec3 y = triangle_of_square(&triangle, u[2], u[3]);
     double light = receiver_kernel(x, r->facet.plane.normal, y,
                           scene_root_plane(scene, lamp.root).normal);
@@ -186,19 +194,23 @@ static void aim_at_lamps(struct receiver *r)
     lamps_group(&g->lamps, &r->facet, &g->groups, &g->method->estimating);
     if (!(g->groups.direct > 0.0))
         return;
-    struct sequence sequence = sequence_start(r->seed + 8);
-    double each = g->groups.direct / r->rays, sum = 0.0, start = hash_unit(r->seed + 16);
+    double each = g->groups.direct / r->rays, sum = 0.0;
+    double start = hash_unit(r->seed + 16);
     int done = 0;
     for (int64_t i = 0; i < g->groups.count; i++) {
         const struct lamp_group *group = &g->groups.items[i];
         sum += group->direct;
         int now = (int)fmin(r->rays, floor(sum / each + start)), count = now - done;
-        if (!node_is_cluster(group->node) && count > 0)
-            aim_at_lamp(r, &sequence, (uint32_t)done, count, group->node, count * each);
+        if (count == 0)
+            continue;
+        struct sequence sequence =
+            sequence_start(hash_mix(r->seed + 8) ^ hash_mix((uint64_t)group->node));
+        if (!node_is_cluster(group->node))
+            aim_at_lamp(r, &sequence, count, group->node, count * each);
         double before = rgb_sum(r->light);
-        for (int k = done; k < now && node_is_cluster(group->node); k++)
+        for (int k = 0; k < count && node_is_cluster(group->node); k++)
             aim_at_cluster(r, &sequence, (uint32_t)k, group, each);
-        if (node_is_cluster(group->node) && count > 0) {
+        if (node_is_cluster(group->node)) {
             int32_t lamp = lamp_choose(&g->lamps, group->node, 0.5).root;
             double share = (rgb_sum(r->light) - before) / (count * each);
             add_chance(r, scene_root_material(g->method->scene, lamp)->emission,
@@ -333,13 +345,13 @@ static void count_light(struct receiver *r, int half)
     }
 }
 
-static void fire_rays(struct receiver *r)
+void receiver_fire(struct receiver *r)
 {
     struct sequence sequence = sequence_start(r->seed);
     double share = 1.0 / r->rays, u[SEQUENCE_DIMENSIONS];
     for (int i = 0; i < r->rays; i++) {
         sequence_point(&sequence, (uint32_t)i, u);
-        struct vec3 x = triangle_of_square(&r->facet.triangle, u[2], u[3]);
+        struct vec3 x = start_at(r, u[2], u[3]);
         follow(r, point_above(x, r->facet.plane.normal),
                cosine_direction(r->facet.plane.normal, r->along, u[0], u[1]),
                (struct rgb){{share, share, share}},
@@ -392,10 +404,9 @@ double receiver_kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,
     return rise > 0.0 && fall > 0.0 ? rise * fall / (PI * d2 * d2) : 0.0;
 }
 
-void receiver_fire(struct receiver *r)
+void receiver_aim(struct receiver *r)
 {
     aim_at_lamps(r);
     r->lamps = r->light;
     r->light = (struct rgb){{0.0, 0.0, 0.0}};
-    fire_rays(r);
 }

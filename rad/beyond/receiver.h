@@ -7,10 +7,11 @@
 
 struct receiver {
     struct final_gather *gather;
-    struct facet facet;   /* the leaf; of a point a triangle without extent */
+    struct facet facet;   /* the leaf; of points a triangle without extent, */
+    const struct gather_points *points; /* and these; NULL: of a leaf there are any */
     bool keeps;           /* its terms are kept, as a row */
     struct gather_row row;
-    int64_t first;        /* of its terms */
+    int64_t first_term;
     uint64_t seed;        /* made of an ID */
     struct vec3 along;    /* a direction in the plane */
     int rays;             /* to be fired */
@@ -29,7 +30,8 @@ void receiver_add(struct receiver *r, int32_t patch, const struct rgb *weight);
 void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
                         const struct rgb *weight);
 
-/* Adds the light that lamps bring, and that of all rays. */
+/* Adds the light that lamps bring, by segments; and after that what rays find. */
+void receiver_aim(struct receiver *r);
 void receiver_fire(struct receiver *r);
 
 /* The share of a leaf that is met from just above it, and not a face that lies on it: a

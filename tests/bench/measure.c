@@ -29,7 +29,7 @@
 #include "geom/alloc.h"
 #include "io/obj.h"
 #include "io/options.h"
-#include "io/shading.h"
+#include "io/render.h"
 #include "mpi/broadcast.h"
 #include "tests/deviation.h"
 #include "tests/solve.h"
@@ -56,13 +56,15 @@ struct measure {
 static struct shading *shade(const struct measure *measure, const struct solution *s)
 {
     const struct forest *forest = s->solver->method.forest;
+    if (measure->options.pixels)
+        return NULL;
     if (measure->options.flat)
-        return shading_create(forest, NULL);
+        return shading_create(forest, NULL, NULL);
     int64_t leaves;
     uint8_t *open = shading_open_quarters(forest, s->octree, measure->comm.rank,
                                           measure->comm.size, &leaves);
     comm_add_bytes(&measure->comm, open, leaves);
-    struct shading *shading = shading_create(forest, open);
+    struct shading *shading = shading_create(forest, s->solver->straight, open);
     alloc_free(open);
     return shading;
 }
@@ -274,12 +276,15 @@ static void report(const struct measure *measure, struct solution *s,
                    const struct shading *shading, int argc, char **argv)
 {
     const struct forest *forest = s->solver->method.forest;
+    bool gathers = s->solver->straight && !measure->options.flat;
+    struct renderer renderer =
+        renderer_make(s->octree, shading, gathers ? &s->solver->gather : NULL);
     struct answer answer = {
         .stats = s->stats,
         .seconds = s->seconds,
         .leaf = deviation_of_leaves(forest, &measure->truth),
         .root = deviation_of_roots(forest, &measure->truth),
-        .shown = deviation_of_points(shading, &measure->truth)};
+        .shown = deviation_of_points(&renderer, s->scene, &measure->truth)};
     for (int64_t i = 0; i < forest->count; i++)
         answer.leaves += reflects(forest, i) && patch_is_leaf(&forest->patches[i]);
     if (s->stats.error_estimate > 0.0)
