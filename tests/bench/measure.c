@@ -18,8 +18,9 @@
  * that one reference gives can be compared. `shown`: the radiosity that pictures show, with the
  * truth at one point of each element; points that no light reaches at all, such as those that a
  * box covers, are left out. `root`: the mean of a root triangle, with the mean of the truth over
- * it; it judges the light that roots exchange, not the mesh. The seconds are those of linking and
- * iterating, with the octree; on several ranks, until the last is done. `emitters` is what turns
+ * it; it judges the light that roots exchange, not the mesh. The seconds are those of linking,
+ * iterating and the final gather, with the octree: of the processor, on several ranks those until
+ * the last is done. `emitters` is what turns
  * the relative RMS, which is that of the reflected light, into one relative to all radiosity,
  * emission included: multiply by it. */
 #include <math.h>
@@ -203,17 +204,17 @@ static void trace(const struct measure *measure, struct solution *s, double seco
     enum { GROWTH = 8 };
     const struct scene *scene = s->scene;
     struct forest *forest = s->solver->method.forest;
-    double start = comm_seconds(), spent, paths = 1.0, growth;
+    double start = seconds_of_work(&measure->comm), spent, paths = 1.0, growth;
     struct octree *octree =
         octree_create(scene->triangles, scene->planes, scene->input_count);
     struct pathtracer pathtracer = pathtracer_make(scene, octree);
-    double building = comm_seconds() - start;
+    double building = seconds_of_work(&measure->comm) - start;
     struct answer answer = {.stats.patches = s->stats.patches};
     for (;; paths = ceil(paths * growth)) {
         *pathtracer.counts = (struct octree_counts){.rays = 0};
-        start = comm_seconds();
+        start = seconds_of_work(&measure->comm);
         answer.leaves = trace_leaves(forest, &pathtracer, (int)paths);
-        spent = building + comm_seconds() - start;
+        spent = building + seconds_of_work(&measure->comm) - start;
         growth = fmin(seconds / spent, GROWTH);
         if (growth < 1.5)
             break;
