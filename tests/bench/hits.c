@@ -1,45 +1,47 @@
-/* First hits per second of octree/, and beside it, where it is compiled in
+/* Rays per second of octree/, one by one, and beside it, where it is compiled in
  * (-DWITH_EMBREE), of Embree 3 on the same rays, one thread.
  *
  *   make bench && build/room 6350 1 > build/room.obj && build/mpi/hits build/room.obj
  *
- * Rays of random directions leave points of the surfaces, chosen by area: each ray a
- * point of its own, as paths do that wander, or 64 rays a point, as a gather does.
- * Programs take turns, five times, and the fastest turn counts. Embree's rays begin 1e-5
- * further on, where they would meet the triangle that they leave; what it sees otherwise
- * is counted. */
+ * First hits of rays of random directions that leave points of the surfaces, chosen by
+ * area: each ray a point of its own, as paths do that wander, or 64 rays a point, as a
+ * gather does; first hits of a camera in the scene; segments between points of surfaces
+ * that face each other. Programs take turns, nine times, and the fastest turn counts, in
+ * seconds of the processor. Rays are made for either beforehand. Embree's begin 1e-5
+ * further on, its segments are cut short by 1e-4 at both ends, where they would meet the
+ * triangles that they leave; both are asked about segments without the triangles that
+ * have the scene on one side. What Embree sees otherwise is counted. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include "geom/alloc.h"
 #include "io/obj.h"
 #include "mpi/comm.h"
-#include "octree/octree.h"
+#include "octree/tree.h"
 #include "tests/bench/embree.h"
 #include "tests/random.h"
 
-enum { TURNS = 5, GATHER = 64 };
+enum { TURNS = 9, GATHER = 64 };
 
-struct figures {
-    double seconds; /* of the fastest turn */
-    struct octree_counts counts;
+struct rays {
+    struct vec3 *origins, *ends; /* [count] `ends` are directions, or a segment's ends */
+    int32_t (*own)[2];           /* [count] triangles that a segment joins */
+    int32_t *answers;            /* [count] triangle that is hit, or -1; is it blocked? */
+    int count;
+    bool are_segments;
 };
 
 /* What rays are shot at. */
 struct subject {
     const struct scene *scene;
     struct octree *octree;
+    double *sums; /* [input_count] area of the triangles up to this one */
 #ifdef WITH_EMBREE
-    RTCScene embree;
+    RTCScene whole, inside; /* all triangles; without those of the hull */
 #endif
-};
-
-struct leaving {
-    struct vec3 *origins, *directions; /* [count] */
-    int32_t *hits;                     /* [count] triangle that the octree finds, or -1 */
-    int count;
 };
 
 /* A direction whose density is the cosine to the normal over pi: that of a point in the
@@ -70,129 +72,213 @@ static int32_t random_by_area(const double *sums, int32_t count, struct random *
     return low;
 }
 
-static void fill_leaving(const struct scene *scene, struct leaving *rays, int together,
-                         struct random *random)
+/* A point of the surfaces, by area. Returns its triangle. */
+static int32_t random_place(const struct subject *subject, struct random *random,
+                            struct vec3 *x)
 {
-    double *sums = alloc_array((size_t)scene->input_count, sizeof *sums), sum = 0.0;
-    for (int32_t i = 0; i < scene->input_count; i++)
-        sums[i] = sum += scene->areas[i];
+    const struct scene *scene = subject->scene;
+    int32_t t = random_by_area(subject->sums, scene->input_count, random);
+    const struct vec3 *corner = scene->triangles[t].corner;
+    double u = sqrt(random_unit(random)), v = u * random_unit(random);
+    *x = vec3_add(vec3_scale(corner[0], 1.0 - u),
+                  vec3_add(vec3_scale(corner[1], u - v), vec3_scale(corner[2], v)));
+    return t;
+}
+
+static void fill_leaving(const struct subject *subject, struct rays *rays,
+                         struct random *random, int together)
+{
+    const struct plane *planes = subject->scene->planes;
     int32_t t = 0;
     for (int i = 0; i < rays->count; i++) {
         if (i % together == 0) {
-            t = random_by_area(sums, scene->input_count, random);
-            const struct vec3 *corner = scene->triangles[t].corner;
-            double u = sqrt(random_unit(random)), v = u * random_unit(random);
-            struct vec3 x = vec3_add(vec3_scale(corner[0], 1.0 - u),
-                                     vec3_add(vec3_scale(corner[1], u - v),
-                                              vec3_scale(corner[2], v)));
-            double lift = 1024.0 * GEOM_ROUNDING;
-            rays->origins[i] = vec3_add(x, vec3_scale(scene->planes[t].normal, lift));
+            t = random_place(subject, random, &rays->origins[i]);
+            struct vec3 lift = vec3_scale(planes[t].normal, 1024.0 * GEOM_ROUNDING);
+            rays->origins[i] = vec3_add(rays->origins[i], lift);
         } else {
             rays->origins[i] = rays->origins[i - 1];
         }
-        rays->directions[i] = random_direction(scene->planes[t].normal, random);
+        rays->ends[i] = random_direction(planes[t].normal, random);
     }
-    alloc_free(sums);
 }
 
-static void run_first_hits(const struct octree *octree, struct leaving *rays,
-                           struct figures *figures)
+/* Row by row through a square that is seen at a right angle. */
+static void fill_camera(const struct subject *subject, struct rays *rays,
+                        struct random *random, int unused)
 {
-    struct octree_counts counts = {0};
-    double start = comm_seconds();
+    (void)subject, (void)random, (void)unused;
+    int side = (int)sqrt((double)rays->count);
     for (int i = 0; i < rays->count; i++) {
-        struct octree_hit hit;
-        bool found = octree_first_hit(octree, rays->origins[i], rays->directions[i],
-                                      false, &hit, &counts);
-        rays->hits[i] = found ? hit.triangle : -1;
+        double x = 2.0 * (i % side) / side - 1.0, y = 2.0 * i / side / side - 1.0;
+        rays->origins[i] = (struct vec3){-0.05, -0.03, 0.02};
+        rays->ends[i] = (struct vec3){1.0 - x, 1.0 + x, y - 0.3};
     }
-    double seconds = comm_seconds() - start;
-    if (!(figures->seconds > 0.0) || seconds < figures->seconds)
-        figures->seconds = seconds;
-    figures->counts = counts;
+}
+
+static void fill_segments(const struct subject *subject, struct rays *rays,
+                          struct random *random, int unused)
+{
+    (void)unused;
+    const struct plane *planes = subject->scene->planes;
+    rays->are_segments = true;
+    for (int i = 0; i < rays->count; i++) {
+        int32_t *own = rays->own[i];
+        struct vec3 *from = &rays->origins[i], *to = &rays->ends[i];
+        do {
+            own[0] = random_place(subject, random, from);
+            own[1] = random_place(subject, random, to);
+        } while (plane_distance(&planes[own[0]], *to) <= 1e-3 ||
+                 plane_distance(&planes[own[1]], *from) <= 1e-3);
+    }
+}
+
+static double cpu_seconds(void)
+{
+    return (double)clock() / CLOCKS_PER_SEC;
+}
+
+/* Returns the seconds that it takes. */
+static double run_octree(const struct octree *octree, struct rays *rays,
+                         struct octree_counts *counts)
+{
+    struct octree_hit hit;
+    double start = cpu_seconds();
+    *counts = (struct octree_counts){0};
+    for (int i = 0; i < rays->count; i++) {
+        int32_t guess = -1;
+        if (rays->are_segments)
+            rays->answers[i] = octree_blocks_segment(octree, rays->origins[i], rays->ends[i],
+                                                     rays->own[i], &guess, counts);
+        else
+            rays->answers[i] = octree_first_hit(octree, rays->origins[i], rays->ends[i],
+                                                false, &hit, counts)
+                                   ? hit.triangle
+                                   : -1;
+    }
+    return cpu_seconds() - start;
 }
 
 #ifdef WITH_EMBREE
 
-/* Returns the rays that meet another triangle. */
-static int64_t run_embree_first(RTCScene embree, const struct leaving *rays,
-                                double *fastest)
+static void set_embree(const struct rays *rays, struct RTCRayHit *out)
+{
+    for (int i = 0; i < rays->count; i++) {
+        struct vec3 o = rays->origins[i], d = rays->ends[i];
+        d = rays->are_segments ? vec3_sub(d, o) : d;
+        out[i] = (struct RTCRayHit){
+            .ray = {.org_x = (float)o.x, .org_y = (float)o.y, .org_z = (float)o.z,
+                    .dir_x = (float)d.x, .dir_y = (float)d.y, .dir_z = (float)d.z,
+                    .tnear = rays->are_segments ? 1e-4f : 1e-5f,
+                    .tfar = rays->are_segments ? 1.0f - 1e-4f : 1e30f,
+                    .mask = 0xffffffffu}};
+        out[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
+/* Returns the seconds that it takes; counts the answers that differ. */
+static double run_embree(const struct subject *subject, const struct rays *rays,
+                         struct RTCRayHit *embree, int64_t *differ)
 {
     struct RTCIntersectContext context;
-    int64_t differ = 0;
-    double start = comm_seconds();
+    set_embree(rays, embree);
+    double start = cpu_seconds();
     rtcInitIntersectContext(&context);
+    for (int i = 0; i < rays->count; i++)
+        if (rays->are_segments)
+            rtcOccluded1(subject->inside, &context, &embree[i].ray);
+        else
+            rtcIntersect1(subject->whole, &context, &embree[i]);
+    double seconds = cpu_seconds() - start;
+    *differ = 0;
     for (int i = 0; i < rays->count; i++) {
-        struct vec3 o = rays->origins[i], d = rays->directions[i];
-        struct RTCRayHit ray = {.ray = {.org_x = (float)o.x, .org_y = (float)o.y,
-                                        .org_z = (float)o.z, .dir_x = (float)d.x,
-                                        .dir_y = (float)d.y, .dir_z = (float)d.z,
-                                        .tnear = 1e-5f, .tfar = 1e30f,
-                                        .mask = 0xffffffffu}};
-        ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(embree, &context, &ray);
-        bool found = ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-        differ += rays->hits[i] != (found ? (int32_t)ray.hit.primID : -1);
+        bool found = embree[i].hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        int32_t hit = found ? (int32_t)embree[i].hit.primID : -1;
+        *differ += rays->answers[i] !=
+                   (rays->are_segments ? embree[i].ray.tfar < 0.0f : hit);
     }
-    double seconds = comm_seconds() - start;
-    *fastest = *fastest > 0.0 && *fastest < seconds ? *fastest : seconds;
-    return differ;
+    return seconds;
 }
 
 #endif
 
-static void print_first_hits(const struct leaving *rays, const struct figures *figures)
+static void bench_rays(const struct subject *subject, struct rays *rays)
 {
-    printf("  octree: %.3f million first hits/s, per ray %.1f nodes and %.1f triangles\n",
-           1e-6 * rays->count / figures->seconds,
-           (double)figures->counts.node_tests / rays->count,
-           (double)figures->counts.triangle_tests / rays->count);
-}
-
-static void bench_first_hits(const struct subject *subject, int count, uint64_t seed,
-                             int together)
-{
-    struct leaving rays = {.count = count};
-    struct random random = random_seed(seed);
-    struct figures figures = {0};
-    rays.origins = alloc_array((size_t)count, sizeof *rays.origins);
-    rays.directions = alloc_array((size_t)count, sizeof *rays.directions);
-    rays.hits = alloc_array((size_t)count, sizeof *rays.hits);
-    fill_leaving(subject->scene, &rays, together, &random);
-    printf(" rays from surfaces, %d from each point\n", together);
+    struct octree_counts counts;
+    double best = HUGE_VAL;
 #ifdef WITH_EMBREE
-    double single = 0.0;
+    struct RTCRayHit *embree = alloc_array((size_t)rays->count + 1, sizeof *embree);
+    struct RTCRayHit *aligned = (struct RTCRayHit *)(((uintptr_t)embree + 15) & ~(uintptr_t)15);
+    double embree_best = HUGE_VAL;
     int64_t differ = 0;
-    for (int turn = 0; turn < TURNS; turn++) {
-        run_first_hits(subject->octree, &rays, &figures);
-        differ = run_embree_first(subject->embree, &rays, &single);
-    }
-    print_first_hits(&rays, &figures);
-    printf("  Embree: one by one %.3f million first hits/s; octree is %.2f of that; "
-           "%" PRId64 " of %d hits differ\n",
-           1e-6 * count / single, single / figures.seconds, differ, count);
-#else
-    for (int turn = 0; turn < TURNS; turn++)
-        run_first_hits(subject->octree, &rays, &figures);
-    print_first_hits(&rays, &figures);
 #endif
-    alloc_free(rays.origins);
-    alloc_free(rays.directions);
-    alloc_free(rays.hits);
+    for (int turn = 0; turn < TURNS; turn++) {
+        best = fmin(best, run_octree(subject->octree, rays, &counts));
+#ifdef WITH_EMBREE
+        embree_best = fmin(embree_best, run_embree(subject, rays, aligned, &differ));
+#endif
+    }
+    printf("  octree: %.3f million/s, per ray %.1f nodes and %.1f triangles\n",
+           1e-6 * rays->count / best, (double)counts.node_tests / rays->count,
+           (double)counts.triangle_tests / rays->count);
+#ifdef WITH_EMBREE
+    printf("  Embree: %.3f million/s; octree is %.2f of that; %" PRId64
+           " of %d answers differ\n",
+           1e-6 * rays->count / embree_best, embree_best / best, differ, rays->count);
+    alloc_free(embree);
+#endif
 }
 
-static void bench_all(struct subject *subject, int count, uint64_t seed)
+static void bench_all(const struct subject *subject, int count, uint64_t seed)
 {
+    static const struct {
+        const char *name;
+        void (*fill)(const struct subject *, struct rays *, struct random *, int);
+        int together;
+    } kinds[] = {{"rays from surfaces, 1 from each point", fill_leaving, 1},
+                 {"rays from surfaces, 64 from each point", fill_leaving, GATHER},
+                 {"rays of a camera", fill_camera, 0},
+                 {"segments between points of surfaces", fill_segments, 0}};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        struct rays rays = {.count = count};
+        struct random random = random_seed(seed);
+        rays.origins = alloc_array((size_t)count, sizeof *rays.origins);
+        rays.ends = alloc_array((size_t)count, sizeof *rays.ends);
+        rays.own = alloc_array((size_t)count, sizeof *rays.own);
+        rays.answers = alloc_array((size_t)count, sizeof *rays.answers);
+        kinds[k].fill(subject, &rays, &random, kinds[k].together);
+        printf(" %s\n", kinds[k].name);
+        bench_rays(subject, &rays);
+        alloc_free(rays.origins);
+        alloc_free(rays.ends);
+        alloc_free(rays.own);
+        alloc_free(rays.answers);
+    }
+}
+
+/* The octree, Embree's scenes and what rays are chosen by. */
+static void bench_scene(const struct scene *scene, int count, uint64_t seed)
+{
+    struct subject subject = {.scene = scene};
+    double sum = 0.0, start = cpu_seconds();
+    subject.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    printf("%d triangles, octree built in %.3f s\n", (int)scene->input_count,
+           cpu_seconds() - start);
+    subject.sums = alloc_array((size_t)scene->input_count, sizeof *subject.sums);
+    for (int32_t i = 0; i < scene->input_count; i++)
+        subject.sums[i] = sum += scene->areas[i];
 #ifdef WITH_EMBREE
     RTCDevice device = rtcNewDevice("threads=1");
-    subject->embree = embree_create(device, subject->scene);
-#endif
-    bench_first_hits(subject, count, seed, 1);
-    bench_first_hits(subject, count, seed, GATHER);
-#ifdef WITH_EMBREE
-    rtcReleaseScene(subject->embree);
+    subject.whole = embree_create(device, scene, NULL);
+    subject.inside = embree_create(device, scene, subject.octree->place);
+    bench_all(&subject, count, seed);
+    rtcReleaseScene(subject.whole);
+    rtcReleaseScene(subject.inside);
     rtcReleaseDevice(device);
+#else
+    bench_all(&subject, count, seed);
 #endif
+    alloc_free(subject.sums);
+    octree_destroy(subject.octree);
 }
 
 int main(int argc, char **argv)
@@ -201,19 +287,13 @@ int main(int argc, char **argv)
     struct error error = {0};
     struct obj_repairs read = {0};
     struct scene_repairs prepared;
-    struct subject subject = {.scene = NULL};
     comm_start(&comm, &argc, &argv);
     struct scene *scene = argc > 1 ? obj_read(argv[1], &read, &error) : NULL;
     if (argc < 2)
         error_set(&error, EXIT_USAGE, "usage: hits SCENE.obj [RAYS [SEED]]");
-    if (scene && scene_prepare(scene, &prepared, &error)) {
-        subject.scene = scene;
-        subject.octree = octree_create(scene->triangles, scene->planes,
-                                       scene->input_count);
-        bench_all(&subject, argc > 2 ? atoi(argv[2]) : 100000,
-                  argc > 3 ? (uint64_t)atoi(argv[3]) : 1);
-        octree_destroy(subject.octree);
-    }
+    if (scene && scene_prepare(scene, &prepared, &error))
+        bench_scene(scene, argc > 2 ? atoi(argv[2]) : 100000,
+                    argc > 3 ? (uint64_t)atoi(argv[3]) : 1);
     if (error.code != EXIT_DONE)
         fprintf(stderr, "hits: %s\n", error.text);
     scene_destroy(scene);
