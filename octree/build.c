@@ -1,16 +1,23 @@
 /* Building a tree.
  *
- * A triangle belongs to the one cell that holds its centroid, however far it sticks out, and the
- * box of a cell is the box of its triangles. So each triangle is recorded once, nothing can fall
- * between two cells, and the memory is known beforehand.
+ * A triangle belongs to the one cell that holds the middle of its box, however far it sticks
+ * out, and the box of a cell is the box of its triangles. So each triangle is recorded once,
+ * nothing can fall between two cells, and the memory is known beforehand.
  *
- * The octants of a cell are not cubes: it is cut across z, the halves across y and the quarters
- * across x, each where that pays most. With the chance p_i that a line which meets a box meets
- * that of part i, the ratio of the boxes' areas, a cell that is cut costs sum p_i n_i triangle
- * tests, one that is not n. Cut through their middles, cells took a third more node and triangle
- * tests in furnished rooms; the longest axis first saved only 2 % more. Cells are split as long
- * as that saves more than the NODE_COST of looking at eight boxes. The queue of cells replaces
- * recursion. What lies in one point is cut by number below TREE_DEPTH.
+ * The eight parts of a cell are not cubes. With the chance p_i that a line which meets a box
+ * meets that of part i, the ratio of the boxes' areas, a cell that is cut costs sum p_i n_i
+ * triangle tests, one that is not n. As long as there are fewer than eight parts, the one with
+ * the largest box is cut in two, across the axis and at the place where that sum is least. Cells
+ * are split as long as that saves more than the NODE_COST of looking at eight boxes. The parts
+ * then take the octant in whose direction they lie, the farthest out first: a ray goes through
+ * octants from the nearest to the farthest. The queue of cells replaces recursion. Triangles
+ * whose boxes have one middle are cut by number.
+ *
+ * Rejected (tests/bench/hits.c, rooms of 6,348 and 31,936 triangles): across z, the halves
+ * across y and the quarters across x, each at its best place, cells have 5.9 parts and not 7,
+ * and first hits look at 10.9 and 15.0 nodes and 7.1 and 7.9 triangles; so they look at 7.7 and
+ * 9.3 nodes and at 5.2 and 6.5 triangles. Cutting the part with most triangles times area, or
+ * sorting children by distance for each ray, saves nothing more.
  *
  * A record holds the triangle's affine maps in float, with a bound on their error: for |x| <= 1
  * each product and sum is off by at most 2^-24 of r1 = |r0| + |r1| + |r2| + |r3|, there are seven
@@ -18,6 +25,7 @@
  * record says 16 x 2^-24 r1. Queries decide in float only what is beyond that. */
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
@@ -25,54 +33,101 @@
 
 enum { BINS = 16 }; /* a cut is looked for at their edges */
 
-static const double NODE_COST = 2.0;          /* of a node, in triangle tests */
+static const float NODE_COST = 2.0f;           /* of a node, in triangle tests */
 static const double ERROR = 16.0 / 16777216.0; /* 16 x 2^-24 */
-static const float NOWHERE = 1e9f;            /* middle of the box of an absent child */
+static const float NOWHERE = 1e9f;             /* middle of the box of an absent child */
 
 struct box {
-    struct vec3 low, high;
+    float low[3], high[3];
+};
+
+/* A triangle on its way into a cell. */
+struct item {
+    struct box box;
+    int32_t triangle;
+};
+
+/* A run of items. */
+struct part {
+    int32_t begin, end;
+    struct box box;
+    bool is_whole; /* it cannot be cut */
 };
 
 /* A cell that waits to be split or made a leaf. */
 struct cell {
-    int32_t begin, end, depth;
+    struct part part;
+    int32_t depth;
     int32_t node, octant; /* where it hangs */
 };
 
 struct builder {
     struct tree tree;
-    const struct triangle *triangles;
-    int32_t *order, *scratch;
+    struct item *items, *scratch;
     struct cell *queue;
     int64_t queue_count, queue_capacity;
 };
 
-static struct box box_of(const struct builder *builder, int32_t begin, int32_t end)
+/* --- boxes --- */
+
+static const struct box NO_BOX = {{HUGE_VALF, HUGE_VALF, HUGE_VALF},
+                                  {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF}};
+
+static void box_add(struct box *box, const struct box *more)
 {
-    struct vec3 low = builder->triangles[builder->order[begin]].corner[0], high = low;
-    for (int32_t i = begin; i < end; i++) {
-        for (int k = 0; k < 3; k++) {
-            struct vec3 x = builder->triangles[builder->order[i]].corner[k];
-            low = (struct vec3){real_min(low.x, x.x), real_min(low.y, x.y), real_min(low.z, x.z)};
-            high = (struct vec3){real_max(high.x, x.x), real_max(high.y, x.y),
-                                 real_max(high.z, x.z)};
-        }
+    for (int k = 0; k < 3; k++) {
+        box->low[k] = more->low[k] < box->low[k] ? more->low[k] : box->low[k];
+        box->high[k] = more->high[k] > box->high[k] ? more->high[k] : box->high[k];
     }
-    return (struct box){low, high};
 }
 
-static double box_area(struct box box)
+static float box_area(const struct box *box)
 {
-    struct vec3 size = vec3_sub(box.high, box.low);
-    return size.x * size.y + size.y * size.z + size.z * size.x;
+    float x = box->high[0] - box->low[0], y = box->high[1] - box->low[1];
+    float z = box->high[2] - box->low[2];
+    return x * y + y * z + z * x;
 }
 
-static double centroid_of(const struct builder *builder, int32_t i, int axis)
+/* Twice its middle. */
+static float box_middle(const struct box *box, int axis)
 {
-    return vec3_axis(triangle_centroid(&builder->triangles[builder->order[i]]), axis);
+    return box->low[axis] + box->high[axis];
 }
 
-/* Triangles with their centroids in one slice, and the box around them. */
+/* The greatest float that is not above x, or a few before it. */
+static float round_down(double x)
+{
+    return (float)(x - fabs(x) * 1.2e-7 - 1e-30);
+}
+
+static struct box triangle_box(const struct triangle *t)
+{
+    struct box box;
+    for (int k = 0; k < 3; k++) {
+        double a = vec3_axis(t->corner[0], k), b = vec3_axis(t->corner[1], k);
+        double c = vec3_axis(t->corner[2], k);
+        box.low[k] = round_down(real_min(a, real_min(b, c)));
+        box.high[k] = -round_down(-real_max(a, real_max(b, c)));
+    }
+    return box;
+}
+
+/* --- cutting --- */
+
+/* A way to cut a run in two: items below `bin` go to the first part. */
+struct cutting {
+    int axis, bin;
+    float low, scale; /* bins begin at `low`; bins per unit of length */
+    float cost;
+};
+
+static int bin_of(const struct cutting *cutting, const struct item *item)
+{
+    int bin = (int)((box_middle(&item->box, cutting->axis) - cutting->low) * cutting->scale);
+    return bin < BINS ? bin : BINS - 1;
+}
+
+/* Items with their middles in one slice, and the box around them. */
 struct bin {
     struct box box;
     int32_t count;
@@ -80,100 +135,146 @@ struct bin {
 
 static void bin_add(struct bin *bin, const struct bin *more)
 {
-    struct box a = bin->box, b = more->box;
-    if (more->count == 0)
-        return;
-    if (bin->count > 0)
-        b = (struct box){{real_min(a.low.x, b.low.x), real_min(a.low.y, b.low.y),
-                          real_min(a.low.z, b.low.z)},
-                         {real_max(a.high.x, b.high.x), real_max(a.high.y, b.high.y),
-                          real_max(a.high.z, b.high.z)}};
-    *bin = (struct bin){b, bin->count + more->count};
+    box_add(&bin->box, &more->box);
+    bin->count += more->count;
 }
 
-static double bin_cost(const struct bin *bin)
+static float bin_cost(const struct bin *bin)
 {
-    return bin->count > 0 ? bin->count * box_area(bin->box) : 0.0;
+    return bin->count > 0 ? (float)bin->count * box_area(&bin->box) : 0.0f;
 }
 
-/* Sorts what has its centroid between low and high, low < high, into bins. */
-static void fill_bins(const struct builder *builder, int32_t begin, int32_t end, int axis,
-                      double low, double high, struct bin bins[BINS])
+/* Looks for a cut along the axis of `trial` that is better than the best so far. */
+static void improve_cutting(struct cutting *best, struct cutting trial, const struct item *items,
+                            int32_t count)
 {
-    for (int32_t i = begin; i < end; i++) {
-        int k = (int)(BINS * ((centroid_of(builder, i, axis) - low) / (high - low)));
-        struct bin one = {box_of(builder, i, i + 1), 1};
-        bin_add(&bins[k < BINS ? k : BINS - 1], &one);
+    struct bin bins[BINS], sum = {NO_BOX, 0};
+    float left[BINS];
+    for (int k = 0; k < BINS; k++)
+        bins[k] = sum;
+    for (int32_t i = 0; i < count; i++) {
+        struct bin *bin = &bins[bin_of(&trial, &items[i])];
+        box_add(&bin->box, &items[i].box);
+        bin->count++;
     }
-}
-
-/* Where to cut a run across an axis: centroids below go to the first part. All do if they are in
- * one place. */
-static double find_cut(const struct builder *builder, int32_t begin, int32_t end, int axis)
-{
-    double low = HUGE_VAL, high = -HUGE_VAL, left[BINS], least = HUGE_VAL;
-    struct bin bins[BINS] = {{.count = 0}}, sum = {.count = 0};
-    int best = BINS;
-    for (int32_t i = begin; i < end; i++) {
-        low = real_min(low, centroid_of(builder, i, axis));
-        high = real_max(high, centroid_of(builder, i, axis));
-    }
-    if (!(high - low > GEOM_ROUNDING))
-        return HUGE_VAL;
-    fill_bins(builder, begin, end, axis, low, high, bins);
     for (int k = 0; k < BINS; k++) {
         left[k] = bin_cost(&sum);
         bin_add(&sum, &bins[k]);
     }
-    sum.count = 0;
-    for (int k = BINS - 1; k > 0; k--) {
-        bin_add(&sum, &bins[k]);
-        double cost = left[k] + bin_cost(&sum);
-        if (cost < least) {
-            least = cost;
-            best = k;
+    sum = (struct bin){NO_BOX, 0};
+    for (trial.bin = BINS - 1; trial.bin > 0; trial.bin--) {
+        bin_add(&sum, &bins[trial.bin]);
+        trial.cost = left[trial.bin] + bin_cost(&sum);
+        if (trial.cost < best->cost)
+            *best = trial;
+    }
+}
+
+/* The best cut; its cost is infinite if all middles are in one place. */
+static struct cutting find_cutting(const struct item *items, int32_t count)
+{
+    struct cutting best = {.cost = HUGE_VALF};
+    struct box middles = NO_BOX;
+    for (int32_t i = 0; i < count; i++) {
+        struct box point;
+        for (int k = 0; k < 3; k++)
+            point.low[k] = point.high[k] = box_middle(&items[i].box, k);
+        box_add(&middles, &point);
+    }
+    for (int k = 0; k < 3; k++) {
+        float size = middles.high[k] - middles.low[k];
+        struct cutting trial = {.axis = k, .low = middles.low[k], .scale = BINS / size};
+        if (size > 1e-12f)
+            improve_cutting(&best, trial, items, count);
+    }
+    return best;
+}
+
+static struct box box_around(const struct item *items, int32_t begin, int32_t end)
+{
+    struct box box = NO_BOX;
+    for (int32_t i = begin; i < end; i++)
+        box_add(&box, &items[i].box);
+    return box;
+}
+
+static struct part part_of(const struct builder *builder, int32_t begin, int32_t end)
+{
+    return (struct part){begin, end, box_around(builder->items, begin, end), false};
+}
+
+/* Cuts a part, keeping the order within both; the second becomes `rest`. Returns false, and marks
+ * the part, if it cannot be cut. */
+static bool cut_part(struct builder *builder, struct part *part, struct part *rest)
+{
+    struct item *items = builder->items;
+    int32_t middle = part->begin, above = 0;
+    struct cutting cutting = find_cutting(items + part->begin, part->end - part->begin);
+    part->is_whole = !(cutting.cost < HUGE_VALF);
+    if (part->is_whole)
+        return false;
+    for (int32_t i = part->begin; i < part->end; i++)
+        if (bin_of(&cutting, &items[i]) < cutting.bin)
+            items[middle++] = items[i];
+        else
+            builder->scratch[above++] = items[i];
+    memcpy(items + middle, builder->scratch, (size_t)above * sizeof *items);
+    *rest = part_of(builder, middle, part->end);
+    *part = part_of(builder, part->begin, middle);
+    return true;
+}
+
+/* The part with the largest box that may be cut, or -1. */
+static int largest_part(const struct part *parts, int count)
+{
+    int largest = -1;
+    float most = -1.0f;
+    for (int k = 0; k < count; k++) {
+        float area = box_area(&parts[k].box);
+        if (!parts[k].is_whole && parts[k].end - parts[k].begin > 1 && area > most) {
+            largest = k;
+            most = area;
         }
     }
-    return low + (high - low) * best / BINS;
+    return largest;
 }
 
-/* Cuts a run of `order`, keeping the order within each part. Returns where the second begins. */
-static int32_t cut(struct builder *builder, int32_t begin, int32_t end, int axis)
+/* Eight parts of about the same number of triangles. */
+static void cut_by_number(const struct builder *builder, const struct part *whole,
+                          struct part parts[LANES])
 {
-    double at = find_cut(builder, begin, end, axis);
-    int32_t middle = begin, above = 0;
-    for (int32_t i = begin; i < end; i++)
-        if (centroid_of(builder, i, axis) < at)
-            builder->order[middle++] = builder->order[i];
+    int64_t size = whole->end - whole->begin;
+    for (int k = 0; k < LANES; k++)
+        parts[k] = part_of(builder, whole->begin + (int32_t)(size * k / LANES),
+                           whole->begin + (int32_t)(size * (k + 1) / LANES));
+}
+
+/* Cuts a cell. Returns the number of parts: 1 if it is cut by number only when it has to be. */
+static int cut_cell(struct builder *builder, const struct cell *cell, struct part parts[LANES])
+{
+    int count = 1;
+    parts[0] = cell->part;
+    for (int k; cell->depth < TREE_DEPTH && count < LANES; )
+        if ((k = largest_part(parts, count)) < 0)
+            break;
         else
-            builder->scratch[above++] = builder->order[i];
-    for (int32_t i = 0; i < above; i++)
-        builder->order[middle + i] = builder->scratch[i];
-    return middle;
-}
-
-/* Sorts the cell's run of `order` by octant; octant k is then start[k] to start[k + 1]. */
-static void sort_by_octant(struct builder *builder, const struct cell *cell,
-                           int32_t start[LANES + 1])
-{
-    start[0] = cell->begin;
-    start[LANES] = cell->end;
-    for (int axis = 2, step = LANES; axis >= 0; axis--, step /= 2)
-        for (int k = 0; k < LANES; k += step)
-            start[k + step / 2] = cut(builder, start[k], start[k + step], axis);
+            count += cut_part(builder, &parts[k], &parts[count]);
+    if (count > 1 || cell->part.end - cell->part.begin <= LEAF_MAX)
+        return count;
+    cut_by_number(builder, &cell->part, parts);
+    return LANES;
 }
 
 /* True if splitting costs less than testing all triangles of the cell. */
-static bool split_pays(const struct builder *builder, const struct cell *cell,
-                       const int32_t start[LANES + 1])
+static bool split_pays(const struct part *whole, const struct part *parts, int count)
 {
-    double whole = box_area(box_of(builder, cell->begin, cell->end)), cost = NODE_COST;
-    for (int k = 0; k < LANES; k++)
-        if (start[k] < start[k + 1])
-            cost += box_area(box_of(builder, start[k], start[k + 1])) / whole *
-                    (start[k + 1] - start[k]);
-    return cost < cell->end - cell->begin;
+    float cost = (NODE_COST - (float)(whole->end - whole->begin)) * box_area(&whole->box);
+    for (int k = 0; k < count; k++)
+        cost += (float)(parts[k].end - parts[k].begin) * box_area(&parts[k].box);
+    return cost < 0.0f;
 }
+
+/* --- nodes --- */
 
 /* Writes one axis of a child's box, middle and half rounded so that the box only grows. */
 static void set_interval(float *middle, float *half, double low, double high)
@@ -202,42 +303,63 @@ static void append_cell(struct builder *builder, struct cell cell)
     builder->queue[builder->queue_count++] = cell;
 }
 
-/* Hangs a new node below the cell's place and its non-empty octants below that. */
-static int32_t split_cell(struct builder *builder, const struct cell *cell,
-                          const int32_t start[LANES + 1])
+/* Which octant each part takes: of all pairs that are left always the one in which the part
+ * lies farthest out. */
+static void assign_octants(const struct part *whole, const struct part *parts, int count,
+                           int octants[LANES])
 {
-    int32_t node = append_node(builder);
-    for (int k = 0; k < LANES; k++) {
-        if (start[k] == start[k + 1])
-            continue;
-        struct box box = box_of(builder, start[k], start[k + 1]);
-        struct node *at = &builder->tree.nodes[node];
-        set_interval(&at->middle[0][k], &at->half[0][k], box.low.x, box.high.x);
-        set_interval(&at->middle[1][k], &at->half[1][k], box.low.y, box.high.y);
-        set_interval(&at->middle[2][k], &at->half[2][k], box.low.z, box.high.z);
-        append_cell(builder, (struct cell){start[k], start[k + 1], cell->depth + 1, node, k});
+    float out[LANES][LANES];
+    unsigned taken = 0, placed = 0;
+    for (int k = 0; k < count; k++)
+        for (int octant = 0; octant < LANES; octant++) {
+            out[k][octant] = 0.0f;
+            for (int axis = 0; axis < 3; axis++) {
+                float d = box_middle(&parts[k].box, axis) - box_middle(&whole->box, axis);
+                out[k][octant] += octant >> axis & 1 ? d : -d;
+            }
+        }
+    for (int round = 0; round < count; round++) {
+        int part = -1, place = -1;
+        for (int k = 0; k < count; k++)
+            for (int octant = 0; octant < LANES && !(placed >> k & 1u); octant++)
+                if (!(taken >> octant & 1u) &&
+                    (part < 0 || out[k][octant] > out[part][place])) {
+                    part = k;
+                    place = octant;
+                }
+        octants[part] = place;
+        placed |= 1u << part;
+        taken |= 1u << place;
     }
-    return node;
 }
 
-/* Eight parts of about the same number of triangles. */
-static void cut_by_number(const struct cell *cell, int32_t start[LANES + 1])
+/* Hangs a new node below the cell's place and its parts below that. */
+static int32_t split_cell(struct builder *builder, const struct cell *cell,
+                          const struct part *parts, int count)
 {
-    for (int k = 0; k <= LANES; k++)
-        start[k] = cell->begin + (int32_t)((int64_t)(cell->end - cell->begin) * k / LANES);
+    int32_t number = append_node(builder);
+    struct node *node = &builder->tree.nodes[number];
+    int octants[LANES];
+    assign_octants(&cell->part, parts, count, octants);
+    for (int k = 0; k < count; k++) {
+        const struct box *box = &parts[k].box;
+        for (int axis = 0; axis < 3; axis++)
+            set_interval(&node->middle[axis][octants[k]], &node->half[axis][octants[k]],
+                         (double)box->low[axis], (double)box->high[axis]);
+        append_cell(builder, (struct cell){parts[k], cell->depth + 1, number, octants[k]});
+    }
+    return number;
 }
 
 static void process_cell(struct builder *builder, struct cell cell)
 {
-    int32_t count = cell.end - cell.begin, start[LANES + 1], child;
+    struct part parts[LANES];
+    int32_t count = cell.part.end - cell.part.begin;
     bool is_root = cell.node < 0, splits = is_root || count > LEAF_MAX;
-    if (cell.depth >= TREE_DEPTH) {
-        cut_by_number(&cell, start);
-    } else if (is_root || count > 1) {
-        sort_by_octant(builder, &cell, start);
-        splits = splits || split_pays(builder, &cell, start);
-    }
-    child = splits ? split_cell(builder, &cell, start) : ~(LEAF_MAX * cell.begin + count - 1);
+    int part_count = splits || (float)count > NODE_COST ? cut_cell(builder, &cell, parts) : 1;
+    splits = splits || (part_count > 1 && split_pays(&cell.part, parts, part_count));
+    int32_t child = splits ? split_cell(builder, &cell, parts, part_count)
+                           : ~(LEAF_MAX * cell.part.begin + count - 1);
     if (!is_root)
         builder->tree.nodes[cell.node].child[cell.octant] = child;
 }
@@ -270,26 +392,29 @@ static struct record make_record(const struct triangle *t, const struct plane *p
     return record;
 }
 
-struct tree tree_build(const struct triangle *triangles, const struct plane *planes, int32_t *order,
-                       int32_t count)
+struct tree tree_build(const struct triangle *triangles, const struct plane *planes,
+                       const int32_t *order, int32_t count)
 {
-    struct builder builder = {.triangles = triangles, .order = order};
+    struct builder builder = {.queue_count = 0};
+    struct tree *tree = &builder.tree;
     if (count == 0)
-        return builder.tree;
+        return *tree;
     if (count > INT32_MAX / LEAF_MAX)
         alloc_fail((size_t)count * sizeof(struct record)); /* no child could say where it is */
+    builder.items = alloc_array((size_t)count, sizeof *builder.items);
     builder.scratch = alloc_array((size_t)count, sizeof *builder.scratch);
-    struct box box = box_of(&builder, 0, count);
-    append_cell(&builder, (struct cell){.end = count, .node = -1});
+    for (int32_t i = 0; i < count; i++)
+        builder.items[i] = (struct item){triangle_box(&triangles[order[i]]), order[i]};
+    append_cell(&builder, (struct cell){.part = part_of(&builder, 0, count), .node = -1});
     for (int64_t at = 0; at < builder.queue_count && !stop_is_asked(); at++)
         process_cell(&builder, builder.queue[at]);
-    struct tree *tree = &builder.tree;
-    tree->low = box.low;
-    tree->high = box.high;
     tree->record_count = count;
     tree->records = alloc_array((size_t)count, sizeof *tree->records);
-    for (int32_t i = 0; i < count; i++)
-        tree->records[i] = make_record(&triangles[order[i]], &planes[order[i]], order[i]);
+    for (int32_t i = 0; i < count; i++) {
+        int32_t t = builder.items[i].triangle;
+        tree->records[i] = make_record(&triangles[t], &planes[t], t);
+    }
+    alloc_free(builder.items);
     alloc_free(builder.scratch);
     alloc_free(builder.queue);
     return builder.tree;

@@ -62,15 +62,28 @@ static bool is_on_hull(const struct tree *all, const struct triangle *triangles,
            !tree_reaches_above(all, triangles, &back, 0.5 * GEOM_ROUNDING);
 }
 
+/* The box around the triangles in `order`; inside out, so that rays miss it, around none. */
+static void set_box(struct octree *octree, const int32_t *order, int32_t count)
+{
+    struct vec3 low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = vec3_scale(low, -1.0);
+    for (int32_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) {
+            struct vec3 x = octree->triangles[order[i]].corner[k];
+            low = (struct vec3){real_min(low.x, x.x), real_min(low.y, x.y), real_min(low.z, x.z)};
+            high = (struct vec3){real_max(high.x, x.x), real_max(high.y, x.y),
+                                 real_max(high.z, x.z)};
+        }
+    octree->low = low;
+    octree->high = high;
+}
+
 /* Builds the trees over the `kept` triangles in `order`. */
-static void plant_trees(struct octree *octree, int32_t *order, int32_t kept)
+static void plant_trees(struct octree *octree, const int32_t *order, int32_t kept)
 {
     int32_t *inside = alloc_array((size_t)kept, sizeof *inside);
     int32_t *hull = alloc_array((size_t)kept, sizeof *hull);
     int32_t inside_count = 0, hull_count = 0;
     struct tree all = tree_build(octree->triangles, octree->planes, order, kept);
-    octree->low = all.low;
-    octree->high = all.high;
     for (int32_t i = 0; i < kept && !stop_is_asked(); i++) {
         int32_t t = order[i];
         if (is_on_hull(&all, octree->triangles, octree->planes[t]))
@@ -97,6 +110,7 @@ struct octree *octree_create(const struct triangle *triangles, const struct plan
     for (int32_t i = 0; i < count; i++)
         if (vec3_dot(planes[i].normal, planes[i].normal) > 0.0)
             order[kept++] = i;
+    set_box(octree, order, kept);
     plant_trees(octree, order, kept);
     alloc_free(order);
     octree->neighbours = walls_find_neighbours(triangles, planes, count);

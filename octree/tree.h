@@ -73,7 +73,6 @@ struct tree {
     struct node *nodes;     /* [node_count]; the first is the root */
     struct record *records; /* [record_count], leaf by leaf */
     int64_t node_count, node_capacity, record_count;
-    struct vec3 low, high;  /* bounding box */
 };
 
 struct octree {
@@ -88,9 +87,9 @@ struct octree {
     bool is_view;          /* the arrays lie in memory of others */
 };
 
-/* Builds a tree over `count` triangles, given by number; `order` is used up. */
-struct tree tree_build(const struct triangle *triangles, const struct plane *planes, int32_t *order,
-                       int32_t count);
+/* Builds a tree over `count` triangles, given by number. */
+struct tree tree_build(const struct triangle *triangles, const struct plane *planes,
+                       const int32_t *order, int32_t count);
 void tree_free(struct tree *tree);
 
 /* The next arrays of the pack become those of the tree. */
