@@ -52,7 +52,7 @@ MPIEXEC ?= mpiexec
 endif
 
 GEOM = alloc contour elementary error gauss hull lambert polygon scene stop triangle wall
-OCTREE = build hit octree
+OCTREE = build hit octree segment
 RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/lamps beyond/node \
       beyond/node_exchange beyond/node_link beyond/sequence closure conjugate flux formfactor id link \
       linking method oracle patch pushpull sample snapshot treecode viewfactor

@@ -92,10 +92,11 @@ bool segment_line_meets(const struct segment *s, const struct triangle *t, doubl
 {
     double x[3], y[3];
     for (int k = 0; k < 3; k++) {
-        struct vec3 v = vec3_sub(t->corner[k], s->from);
-        double z = vec3_axis(v, s->axis[2]);
-        x[k] = vec3_axis(v, s->axis[0]) - s->shear[0] * z;
-        y[k] = vec3_axis(v, s->axis[1]) - s->shear[1] * z;
+        struct vec3 c = vec3_sub(t->corner[k], s->from);
+        const double v[3] = {c.x, c.y, c.z};
+        double z = v[s->axis[2]];
+        x[k] = v[s->axis[0]] - s->shear[0] * z;
+        y[k] = v[s->axis[1]] - s->shear[1] * z;
     }
     double u = x[1] * y[2] - x[2] * y[1];
     double v = x[2] * y[0] - x[0] * y[2];

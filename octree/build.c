@@ -35,7 +35,7 @@ enum { BINS = 16 }; /* a cut is looked for at their edges */
 
 static const float NODE_COST = 2.0f;           /* of a node, in triangle tests */
 static const double ERROR = 16.0 / 16777216.0; /* 16 x 2^-24 */
-static const float NOWHERE = 1e9f;             /* middle of the box of an absent child */
+static const float NOWHERE = 1e9f;             /* low side of the box of an absent child */
 
 struct box {
     float low[3], high[3];
@@ -276,14 +276,6 @@ static bool split_pays(const struct part *whole, const struct part *parts, int c
 
 /* --- nodes --- */
 
-/* Writes one axis of a child's box, middle and half rounded so that the box only grows. */
-static void set_interval(float *middle, float *half, double low, double high)
-{
-    *middle = (float)(0.5 * (low + high));
-    double reach = real_max(high - (double)*middle, (double)*middle - low);
-    *half = (float)(reach * (1.0 + 1e-6) + 1e-30);
-}
-
 static int32_t append_node(struct builder *builder)
 {
     struct tree *tree = &builder->tree;
@@ -292,7 +284,10 @@ static int32_t append_node(struct builder *builder)
     struct node *node = &tree->nodes[tree->node_count];
     *node = (struct node){.child = {-1, -1, -1, -1, -1, -1, -1, -1}};
     for (int k = 0; k < LANES; k++)
-        node->middle[0][k] = NOWHERE;
+        for (int axis = 0; axis < 3; axis++) {
+            node->bound[axis][0][k] = NOWHERE;
+            node->bound[axis][1][k] = -NOWHERE;
+        }
     return (int32_t)tree->node_count++;
 }
 
@@ -342,10 +337,10 @@ static int32_t split_cell(struct builder *builder, const struct cell *cell,
     int octants[LANES];
     assign_octants(&cell->part, parts, count, octants);
     for (int k = 0; k < count; k++) {
-        const struct box *box = &parts[k].box;
-        for (int axis = 0; axis < 3; axis++)
-            set_interval(&node->middle[axis][octants[k]], &node->half[axis][octants[k]],
-                         (double)box->low[axis], (double)box->high[axis]);
+        for (int axis = 0; axis < 3; axis++) {
+            node->bound[axis][0][octants[k]] = parts[k].box.low[axis] - BOX_MARGIN;
+            node->bound[axis][1][octants[k]] = parts[k].box.high[axis] + BOX_MARGIN;
+        }
         append_cell(builder, (struct cell){parts[k], cell->depth + 1, number, octants[k]});
     }
     return number;
@@ -385,10 +380,11 @@ static struct record make_record(const struct triangle *t, const struct plane *p
     double scale = 1.0 / vec3_dot(n, n);
     struct vec3 u = vec3_scale(vec3_cross(e2, n), scale);
     struct vec3 v = vec3_scale(vec3_cross(n, e1), scale);
-    struct record record = {.triangle = number};
+    struct record record = {.plane = *plane, .triangle = number};
+    float w[4]; /* only its error is kept */
     set_map(record.u, &record.error_u, u, -vec3_dot(u, a));
     set_map(record.v, &record.error_v, v, -vec3_dot(v, a));
-    set_map(record.w, &record.error_w, plane->normal, -plane->offset);
+    set_map(w, &record.error_w, plane->normal, -plane->offset);
     return record;
 }
 
@@ -438,11 +434,12 @@ void tree_pack_arrays(struct tree *tree, struct pack *pack)
 /* Largest signed distance to the plane of a point of child k's box. */
 static double box_reach(const struct node *node, int k, const struct plane *plane)
 {
-    struct vec3 middle = {(double)node->middle[0][k], (double)node->middle[1][k],
-                          (double)node->middle[2][k]};
-    struct vec3 n = plane->normal;
-    return plane_distance(plane, middle) + fabs(n.x) * (double)node->half[0][k] +
-           fabs(n.y) * (double)node->half[1][k] + fabs(n.z) * (double)node->half[2][k];
+    double reach = -plane->offset;
+    for (int axis = 0; axis < 3; axis++) {
+        double n = vec3_axis(plane->normal, axis);
+        reach += n * (double)node->bound[axis][n > 0.0][k];
+    }
+    return reach;
 }
 
 bool tree_reaches_above(const struct tree *tree, const struct triangle *triangles,
@@ -457,7 +454,7 @@ bool tree_reaches_above(const struct tree *tree, const struct triangle *triangle
         if (at >= 0) {
             const struct node *node = &tree->nodes[at];
             for (int k = 0; k < LANES; k++)
-                if (node->middle[0][k] < NOWHERE && box_reach(node, k, plane) > margin)
+                if (node->bound[0][0][k] < NOWHERE && box_reach(node, k, plane) > margin)
                     stack[height++] = node->child[k];
             continue;
         }

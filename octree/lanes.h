@@ -40,6 +40,8 @@ typedef int32_t lanes_mask __attribute__((vector_size(32))); /* -1 where true, 0
  * lanes becomes the one instruction that there is for it at -O2, but 48 at -O3 (gcc 12). */
 #define lanes_max(a, b)                                                                   \
     ((lanes)((lanes_above(a, b) & (lanes_mask)(a)) | (~lanes_above(a, b) & (lanes_mask)(b))))
+#define lanes_min(a, b)                                                                   \
+    ((lanes)((lanes_above(b, a) & (lanes_mask)(a)) | (~lanes_above(b, a) & (lanes_mask)(b))))
 #define mask_and(a, b) ((a) & (b))
 #define mask_or(a, b) ((a) | (b))
 
@@ -125,15 +127,32 @@ FOUR_INLINE lanes_mask lanes_above(lanes a, lanes b)
     return (lanes_mask){(four_mask)(a.low > b.low), (four_mask)(a.high > b.high)};
 }
 
+/* The one instruction that there is for it, where it has a name; compilers find it for neither. */
+#ifdef __SSE__
+#define four_max(a, b) __builtin_ia32_maxps((a), (b))
+#define four_min(a, b) __builtin_ia32_minps((a), (b))
+#else
 FOUR_INLINE four four_max(four a, four b)
 {
     four_mask above = a > b;
     return (four)((above & (four_mask)a) | (~above & (four_mask)b));
 }
 
+FOUR_INLINE four four_min(four a, four b)
+{
+    four_mask below = a < b;
+    return (four)((below & (four_mask)a) | (~below & (four_mask)b));
+}
+#endif
+
 FOUR_INLINE lanes lanes_max(lanes a, lanes b)
 {
     return (lanes){four_max(a.low, b.low), four_max(a.high, b.high)};
+}
+
+FOUR_INLINE lanes lanes_min(lanes a, lanes b)
+{
+    return (lanes){four_min(a.low, b.low), four_min(a.high, b.high)};
 }
 
 FOUR_INLINE lanes_mask mask_and(lanes_mask a, lanes_mask b)
@@ -258,6 +277,13 @@ static inline lanes lanes_max(lanes a, lanes b)
     return a;
 }
 
+static inline lanes lanes_min(lanes a, lanes b)
+{
+    for (int k = 0; k < LANES; k++)
+        a.lane[k] = a.lane[k] < b.lane[k] ? a.lane[k] : b.lane[k];
+    return a;
+}
+
 static inline lanes_mask mask_and(lanes_mask a, lanes_mask b)
 {
     for (int k = 0; k < LANES; k++)
@@ -322,21 +348,22 @@ static inline int mask_is_full(const lanes_mask *mask)
 
 #endif
 
-/* Lane k becomes 1 << (k ^ flip), for mask_select(). */
+/* Lane k becomes 1 << (k ^ flip), for mask_select(); flip < LANES. */
 static inline void mask_set_weights(lanes_mask *weights, int flip)
 {
-    int32_t weight[LANES];
-    for (int k = 0; k < LANES; k++)
-        weight[k] = 1 << (k ^ flip);
-    memcpy(weights, weight, sizeof *weights);
+    static const int32_t weight[LANES][LANES] = {
+        {1, 2, 4, 8, 16, 32, 64, 128}, {2, 1, 8, 4, 32, 16, 128, 64},
+        {4, 8, 1, 2, 64, 128, 16, 32}, {8, 4, 2, 1, 128, 64, 32, 16},
+        {16, 32, 64, 128, 1, 2, 4, 8}, {32, 16, 128, 64, 2, 1, 8, 4},
+        {64, 128, 16, 32, 4, 8, 1, 2}, {128, 64, 32, 16, 8, 4, 2, 1}};
+    memcpy(weights, weight[flip], sizeof *weights);
 }
 
 /* Bit k of the result: lane k of the mask. */
 static inline unsigned mask_bits(const lanes_mask *mask)
 {
-    static const int32_t weight[LANES] = {1, 2, 4, 8, 16, 32, 64, 128};
     lanes_mask weights;
-    memcpy(&weights, weight, sizeof weights);
+    mask_set_weights(&weights, 0);
     return mask_select(mask, &weights);
 }
 

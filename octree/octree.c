@@ -3,8 +3,8 @@
  *     cell (space)          what is stored
  *     +-----+-----+         node: eight boxes side by side, each the box of all
  *     |  /\ |     |           triangles below that octant, not of the octant
- *     | /__\|_____|         leaf: a run of records of 64 bytes
- *     |   \ | /\  |         record: three affine maps of a triangle, in float
+ *     | /__\|_____|         leaf: a run of records of 80 bytes
+ *     |   \ | /\  |         record: a triangle's plane, two affine maps in float
  *     +-----+-----+
  *
  * A bundle goes down as a whole. A box is compared with the shaft of its eight end points by
@@ -17,11 +17,6 @@
  * eight points are on the far side of an edge no segment meets it. Only then are the 16 pairs
  * looked at, in two vectors: from w, u at one end and w', u' at the other, the crossing point has
  * u = (u w' - u' w) / (w' - w), and only signs matter.
- *
- * One segment alone goes down the same way, as a shaft without width, and sees a triangle
- * by the same comparisons in scalars. Segments that lead to places far apart are better
- * off so: links of clusters ask for few segments each, and linking all pairs of roots by
- * single ones takes half as long as by bundles.
  *
  * All of this is float, and every comparison keeps a margin for its rounding. A pair for which
  * the signs are not certain, near an edge or where an end point lies in the plane, is decided by
@@ -62,8 +57,8 @@ static bool is_on_hull(const struct tree *all, const struct triangle *triangles,
            !tree_reaches_above(all, triangles, &back, 0.5 * GEOM_ROUNDING);
 }
 
-/* The box around the triangles in `order`; inside out, so that rays miss it, around none. */
-static void set_box(struct octree *octree, const int32_t *order, int32_t count)
+/* The ball around the triangles in `order`; around none it is no ball, and rays miss it. */
+static void set_ball(struct octree *octree, const int32_t *order, int32_t count)
 {
     struct vec3 low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = vec3_scale(low, -1.0);
     for (int32_t i = 0; i < count; i++)
@@ -73,8 +68,8 @@ static void set_box(struct octree *octree, const int32_t *order, int32_t count)
             high = (struct vec3){real_max(high.x, x.x), real_max(high.y, x.y),
                                  real_max(high.z, x.z)};
         }
-    octree->low = low;
-    octree->high = high;
+    octree->middle = vec3_middle(low, high);
+    octree->radius = 0.5 * vec3_length(vec3_sub(high, low)) * 1.0001 + GEOM_ROUNDING;
 }
 
 /* Builds the trees over the `kept` triangles in `order`. */
@@ -110,7 +105,7 @@ struct octree *octree_create(const struct triangle *triangles, const struct plan
     for (int32_t i = 0; i < count; i++)
         if (vec3_dot(planes[i].normal, planes[i].normal) > 0.0)
             order[kept++] = i;
-    set_box(octree, order, kept);
+    set_ball(octree, order, kept);
     plant_trees(octree, order, kept);
     alloc_free(order);
     octree->neighbours = walls_find_neighbours(triangles, planes, count);
@@ -178,9 +173,9 @@ int64_t octree_bytes(const struct octree *octree)
 
 /* --- walking down with a shaft --- */
 
-/* A slab of the shaft: the points x with |n . x - middle| <= reach hold all end points. */
+/* A slab of the shaft: the points x with low <= n . x <= high hold all end points. */
 struct slab {
-    lanes middle, reach; /* the same in all lanes */
+    lanes low, high; /* the same in all lanes */
 };
 
 struct shaft {
@@ -188,7 +183,6 @@ struct shaft {
     struct slab own[3];       /* n = x, y, z */
     struct slab cross[3];     /* n = direction x (x, y, z axis) */
     lanes direction[3];       /* from the middle of the starts to that of the ends, largest |.| 1 */
-    lanes steepness[3];       /* its absolute value */
     int flip;                 /* bits of the axes along which it runs downwards */
 };
 
@@ -199,8 +193,7 @@ static struct slab slab_of(const float values[LANES])
         low = values[k] < low ? values[k] : low;
         high = values[k] > high ? values[k] : high;
     }
-    return (struct slab){lanes_all(0.5f * (low + high)),
-                         lanes_all(0.5f * (high - low) + BOX_MARGIN)};
+    return (struct slab){lanes_all(low - BOX_MARGIN), lanes_all(high + BOX_MARGIN)};
 }
 
 static void shaft_set_points(struct shaft *shaft, const struct vec3 from[BUNDLE_ENDS],
@@ -240,7 +233,6 @@ static void shaft_set_slabs(struct shaft *shaft)
         shaft->own[axis] = slab_of(points[axis]);
         shaft->cross[axis] = slab_of(across);
         shaft->direction[axis] = lanes_all(direction[axis]);
-        shaft->steepness[axis] = lanes_all(fabsf(direction[axis]));
     }
 }
 
@@ -251,51 +243,29 @@ static void shaft_set(struct shaft *shaft, const struct vec3 from[BUNDLE_ENDS],
     shaft_set_slabs(shaft);
 }
 
-static struct slab slab_between(float a, float b)
-{
-    return (struct slab){lanes_all(0.5f * (a + b)), lanes_all(0.5f * fabsf(b - a) + BOX_MARGIN)};
-}
+/* Boxes beyond the slab of an axis. */
+#define OUT_OF_OWN(axis)                                                                    \
+    mask_or(lanes_above(lanes_at(node->bound[axis][0]), shaft->own[axis].high),             \
+            lanes_above(shaft->own[axis].low, lanes_at(node->bound[axis][1])))
 
-/* The shaft of one segment: as above, but for the points, which no walk needs. */
-static void shaft_set_segment(struct shaft *shaft, const struct ends *ends)
-{
-    const float *a = ends->from, *b = ends->to;
-    float d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    float largest = 1e-30f;
-    for (int axis = 0; axis < 3; axis++)
-        largest = fabsf(d[axis]) > largest ? fabsf(d[axis]) : largest;
-    shaft->flip = (d[0] < 0.0f) | (d[1] < 0.0f) << 1 | (d[2] < 0.0f) << 2;
-    for (int axis = 0; axis < 3; axis++)
-        d[axis] /= largest;
-    for (int axis = 0; axis < 3; axis++) {
-        int i = (axis + 1) % 3, j = (axis + 2) % 3;
-        shaft->own[axis] = slab_between(a[axis], b[axis]);
-        shaft->cross[axis] = slab_between(d[j] * a[i] - d[i] * a[j], d[j] * b[i] - d[i] * b[j]);
-        shaft->direction[axis] = lanes_all(d[axis]);
-        shaft->steepness[axis] = lanes_all(fabsf(d[axis]));
-    }
-}
+/* direction[j] x_i is largest on one side of a box, and smallest on the other. */
+#define MOST(i, j) lanes_mul(shaft->direction[j], lanes_at(node->bound[i][up##j]))
+#define LEAST(i, j) lanes_mul(shaft->direction[j], lanes_at(node->bound[i][!up##j]))
 
-/* Boxes that the slab of an axis shuts out, and that of the axis's cross product with the
- * direction, which lies across the axes i and j. */
-#define SHUT_OUT(shaft, axis, i, j)                                                          \
-    mask_or(lanes_above(lanes_abs(lanes_sub(c##axis, (shaft)->own[axis].middle)),           \
-                        lanes_add(h##axis, (shaft)->own[axis].reach)),                      \
-            lanes_above(lanes_abs(lanes_sub(lanes_sub(lanes_mul((shaft)->direction[j], c##i), \
-                                                      lanes_mul((shaft)->direction[i], c##j)), \
-                                            (shaft)->cross[axis].middle)),                   \
-                        lanes_add(lanes_add(lanes_mul((shaft)->steepness[j], h##i),          \
-                                            lanes_mul((shaft)->steepness[i], h##j)),         \
-                                  (shaft)->cross[axis].reach)))
+/* Boxes beyond the slab of an axis's cross product with the direction, which lies across the axes
+ * i and j. */
+#define OUT_OF_CROSS(axis, i, j)                                                            \
+    mask_or(lanes_above(lanes_sub(LEAST(i, j), MOST(j, i)), shaft->cross[axis].high),       \
+            lanes_above(shaft->cross[axis].low, lanes_sub(MOST(i, j), LEAST(j, i))))
 
 /* Children of a node whose boxes the shaft may meet, a bit for each. */
 INLINE unsigned children_met(const struct node *node, const struct shaft *shaft)
 {
-    lanes c0 = lanes_at(node->middle[0]), c1 = lanes_at(node->middle[1]);
-    lanes c2 = lanes_at(node->middle[2]), h0 = lanes_at(node->half[0]);
-    lanes h1 = lanes_at(node->half[1]), h2 = lanes_at(node->half[2]);
-    lanes_mask out = mask_or(SHUT_OUT(shaft, 0, 1, 2),
-                             mask_or(SHUT_OUT(shaft, 1, 2, 0), SHUT_OUT(shaft, 2, 0, 1)));
+    int up0 = ~shaft->flip & 1, up1 = ~shaft->flip >> 1 & 1, up2 = ~shaft->flip >> 2 & 1;
+    lanes_mask own = mask_or(OUT_OF_OWN(0), mask_or(OUT_OF_OWN(1), OUT_OF_OWN(2)));
+    lanes_mask cross = mask_or(OUT_OF_CROSS(0, 1, 2),
+                               mask_or(OUT_OF_CROSS(1, 2, 0), OUT_OF_CROSS(2, 0, 1)));
+    lanes_mask out = mask_or(own, cross);
     return ~mask_bits(&out) & 0xffu;
 }
 
@@ -394,7 +364,9 @@ INLINE struct verdict judge(const struct record *r, const struct shaft *shaft, u
     const struct verdict none = {0, 0xffffu};
     const lanes *p = shaft->points;
     lanes zero = lanes_all(0.0f);
-    lanes w = MAP(r->w, p), ew = lanes_all(r->error_w), nw = lanes_sub(zero, ew);
+    struct vec3 n = r->plane.normal;
+    const float distance[4] = {(float)n.x, (float)n.y, (float)n.z, -(float)r->plane.offset};
+    lanes w = MAP(distance, p), ew = lanes_all(r->error_w), nw = lanes_sub(zero, ew);
     if (all_above(&w, &ew) | all_above(&nw, &w))
         return none;
     lanes u = MAP(r->u, p), v = MAP(r->v, p), sum = lanes_add(u, v);
@@ -426,8 +398,7 @@ INLINE unsigned pairs_blocked(const struct octree *octree, const struct bundle *
         if (!(open & 1u))
             continue;
         struct segment s = segment_make(bundle->from[k / BUNDLE_ENDS], bundle->to[k % BUNDLE_ENDS]);
-        if (segment_is_blocked_by(&s, &octree->triangles[r->triangle],
-                                  &octree->planes[r->triangle]))
+        if (segment_is_blocked_by(&s, &octree->triangles[r->triangle], &r->plane))
             blocked |= 1u << k;
     }
     return blocked;
@@ -476,131 +447,6 @@ unsigned octree_block(const struct octree *octree, const struct bundle *bundle, 
                                        blocked, guess, counts);
     }
     return blocked;
-}
-
-/* --- one segment --- */
-
-/* judge() for a single pair: the same comparisons, and the same margins. */
-INLINE struct verdict judge_segment(const struct record *r, const struct ends *ends)
-{
-    const struct verdict miss = {0, 1}, hit = {1, 0}, open = {0, 0};
-    float eu = r->error_u, ev = r->error_v, ew = r->error_w;
-    float w0 = map_at(r->w, ends->from), w1 = map_at(r->w, ends->to);
-    if ((w0 > ew && w1 > ew) || (w0 < -ew && w1 < -ew))
-        return miss;
-    float u0 = map_at(r->u, ends->from), u1 = map_at(r->u, ends->to);
-    if (u0 < -eu && u1 < -eu)
-        return miss;
-    float v0 = map_at(r->v, ends->from), v1 = map_at(r->v, ends->to);
-    if (v0 < -ev && v1 < -ev)
-        return miss;
-    float s = w1 - w0, size = fabsf(s), sign = s < 0.0f ? -1.0f : 1.0f;
-    float u = sign * (u0 * w1 - u1 * w0), v = sign * (v0 * w1 - v1 * w0), third = size - (u + v);
-    float far = fabsf(w0) + fabsf(w1);
-    float mu = eu * far + ew * (fabsf(u0) + fabsf(u1));
-    float mv = ev * far + ew * (fabsf(v0) + fabsf(v1));
-    float ms = mu + mv + 3.0f * ew;
-    if (size > 3.0f * ew && (u < -mu || v < -mv || third < -ms))
-        return miss;
-    bool crosses = (w0 > ew && w1 < -ew) || (w1 > ew && w0 < -ew);
-    return crosses && u > mu && v > mv && third > ms ? hit : open;
-}
-
-/* One segment on its way. */
-struct query {
-    struct vec3 from, to;
-    struct ends ends;
-};
-
-INLINE bool is_blocked_by(const struct octree *octree, const struct query *query,
-                          const struct record *r)
-{
-    struct verdict verdict = judge_segment(r, &query->ends);
-    if (verdict.hit | verdict.miss)
-        return verdict.hit;
-    struct segment s = segment_make(query->from, query->to);
-    return segment_is_blocked_by(&s, &octree->triangles[r->triangle],
-                                 &octree->planes[r->triangle]);
-}
-
-static bool is_blocked_in(const struct octree *octree, struct leaf run, const struct query *query,
-                          const int32_t own[2], int32_t *guess, struct octree_counts *counts)
-{
-    const struct record *records = octree->inside.records + run.first;
-    for (int32_t i = 0; i < run.count; i++) {
-        int32_t t = records[i].triangle;
-        if (t == own[0] || t == own[1])
-            continue;
-        counts->triangle_tests++;
-        if (is_blocked_by(octree, query, &records[i])) {
-            *guess = t;
-            return true;
-        }
-    }
-    return false;
-}
-
-bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct vec3 to,
-                           const int32_t own[2], int32_t *guess, struct octree_counts *counts)
-{
-    const struct tree *tree = &octree->inside;
-    const struct query query = {from, to, ends_of(from, to)};
-    struct shaft shaft;
-    int32_t stack[TREE_STACK];
-    int height = 0;
-    counts->rays++;
-    if (*guess >= 0 && octree->place[*guess] >= 0 &&
-        is_blocked_in(octree, (struct leaf){octree->place[*guess], 1}, &query, own, guess, counts))
-        return true;
-    shaft_set_segment(&shaft, &query.ends);
-    if (tree->node_count > 0)
-        stack[height++] = 0;
-    while (height > 0) {
-        if (stack[height - 1] >= 0)
-            height = descend(tree, &shaft, stack, height, counts);
-        else if (is_blocked_in(octree, leaf_of(stack[--height]), &query, own, guess, counts))
-            return true;
-    }
-    return false;
-}
-
-/* --- walls --- */
-
-static struct vec3 mean_of(const struct vec3 *corners, int count)
-{
-    struct vec3 sum = {0.0, 0.0, 0.0};
-    for (int k = 0; k < count; k++)
-        sum = vec3_add(sum, corners[k]);
-    return vec3_scale(sum, 1.0 / count);
-}
-
-bool octree_has_wall(const struct octree *octree, const struct vec3 *p, int count_p,
-                     const struct vec3 *q, int count_q, struct octree_counts *counts)
-{
-    const struct tree *tree = &octree->inside;
-    const struct walls walls = {octree->triangles, octree->planes, octree->neighbours};
-    struct query middle = {.from = mean_of(p, count_p), .to = mean_of(q, count_q)};
-    struct shaft thin;
-    middle.ends = ends_of(middle.from, middle.to);
-    shaft_set_segment(&thin, &middle.ends);
-    int32_t stack[TREE_STACK];
-    int height = 0;
-    if (tree->node_count > 0)
-        stack[height++] = 0;
-    while (height > 0) {
-        if (stack[height - 1] >= 0) {
-            height = descend(tree, &thin, stack, height, counts);
-            continue;
-        }
-        struct leaf run = leaf_of(stack[--height]);
-        counts->triangle_tests += run.count;
-        for (int32_t i = run.first; i < run.first + run.count; i++)
-            if (is_blocked_by(octree, &middle, &tree->records[i]) &&
-                walls_stand_between(&walls, tree->records[i].triangle, p, count_p, q,
-                                    count_q))
-                return true;
-    }
-    return false;
 }
 
 /* --- empty shafts --- */

@@ -20,15 +20,16 @@ enum {
 #define INLINE static inline
 #endif
 
-/* Margin for the rounding of box tests, in scene units: coordinates are below 1.3 and direction
- * components at most 1, so that each of some ten operations is off by at most 2^-24. */
+/* Boxes are so much wider than what is in them, in scene units, for the rounding of box tests:
+ * coordinates are below 1.3 and direction components at most 1, so that each of some ten
+ * operations is off by at most 2^-24. */
 static const float BOX_MARGIN = 2e-6f;
 
 /* An inner node: the boxes of its eight children side by side, so that one instruction looks at
- * all of them. A box is middle +- half, rounded outwards; that of an absent child is so far
- * away that nothing meets it. Children are in the order of the cell's octants. */
+ * all of them. That of an absent child is far away and inside out, so that nothing meets it.
+ * Children are in the order of the octants, bit k of which is the side along axis k. */
 struct node {
-    float middle[3][LANES], half[3][LANES];
+    float bound[3][2][LANES]; /* per axis, the low and the high side */
     int32_t child[LANES]; /* an inner node if >= 0; a leaf if < 0, see leaf_of() */
 };
 
@@ -43,11 +44,13 @@ static inline struct leaf leaf_of(int32_t child)
     return (struct leaf){~child / LEAF_MAX, ~child % LEAF_MAX + 1};
 }
 
-/* A triangle as three affine maps r(x) = r[0] x + r[1] y + r[2] z + r[3]: the barycentric
- * coordinates of corners b and c, and the signed distance to the plane. 64 bytes. */
+/* A triangle as its plane and two affine maps r(x) = r[0] x + r[1] y + r[2] z + r[3]: the
+ * barycentric coordinates of corners b and c. 80 bytes. */
 struct record {
-    float u[4], v[4], w[4];
-    float error_u, error_v, error_w; /* bounds on |r(x) - its exact value| for |x| <= 1 */
+    struct plane plane; /* as the triangle has it */
+    float u[4], v[4];
+    float error_u, error_v; /* bounds on |r(x) - its exact value| for |x| <= 1 */
+    float error_w;          /* such a bound for the distance to the plane as a map in float */
     int32_t triangle;
 };
 
@@ -55,17 +58,6 @@ struct record {
 INLINE float map_at(const float r[4], const float x[3])
 {
     return r[0] * x[0] + r[1] * x[1] + r[2] * x[2] + r[3];
-}
-
-/* The end points of one segment, as they are in a record's maps. */
-struct ends {
-    float from[3], to[3];
-};
-
-INLINE struct ends ends_of(struct vec3 from, struct vec3 to)
-{
-    return (struct ends){{(float)from.x, (float)from.y, (float)from.z},
-                         {(float)to.x, (float)to.y, (float)to.z}};
 }
 
 /* One tree over some of the triangles. */
@@ -83,7 +75,8 @@ struct octree {
     int32_t *place;      /* [count] where a triangle's record is in `inside`, or -1 */
     int32_t *neighbours; /* [3 count] of the triangles in their walls, or -1 */
     int64_t count;
-    struct vec3 low, high; /* bounding box */
+    struct vec3 middle;    /* of the bounding box */
+    double radius;         /* of a ball around the box */
     bool is_view;          /* the arrays lie in memory of others */
 };
 

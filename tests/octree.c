@@ -511,6 +511,8 @@ static void test_layers(void)
     triangles[1].corner[1] = triangles[1].corner[2];
     triangles[1].corner[2] = swap;
     planes[1] = triangle_plane(&triangles[1]);
+    octree_destroy(octree);
+    octree = octree_create(triangles, planes, 3);
     tap_ok(octree_first_hit(octree, above, down, false, &hit, &counts) && hit.triangle == 0 &&
                hit.front,
            "but a front before a back");
