@@ -88,11 +88,14 @@ bool octree_first_hit(const struct octree *octree, struct vec3 origin,
                       struct vec3 direction, bool fronts_only, struct octree_hit *hit,
                       struct octree_counts *counts)
 {
-    struct search search = {.octree = octree, .fronts_only = fronts_only, .nearest = 2.0,
-                            .hit = {.triangle = -1}};
-    float reach = 1.0f;
+    struct search search; /* set by parts, since the ray is large */
     struct vec3 end;
+    float reach = 1.0f;
     counts->rays++;
+    search.octree = octree;
+    search.fronts_only = fronts_only;
+    search.nearest = 2.0;
+    search.hit.triangle = -1;
     if (!clip_to_scene(octree, &origin, direction, &end))
         return false;
     search.segment = segment_make(origin, end);

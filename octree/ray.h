@@ -46,13 +46,12 @@ INLINE void ray_set(struct ray *ray, struct vec3 from, struct vec3 to)
     ray->near = 0;
     for (int axis = 0; axis < 3; axis++) {
         float a = (float)vec3_axis(from, axis), step = (float)vec3_axis(to, axis) - a;
-        bool down = step < 0.0f;
-        float size = down ? -step : step, least = size > STEP_LEAST ? size : STEP_LEAST;
-        ray->near |= down << axis;
+        float size = fabsf(step), inverse = 1.0f / (size > STEP_LEAST ? size : STEP_LEAST);
+        ray->near |= (signbit(step) != 0) << axis;
         ray->origin[axis] = a;
         ray->step[axis] = step;
         ray->start[axis] = lanes_all(a);
-        ray->inverse[axis] = lanes_all(1.0f / (down ? -least : least));
+        ray->inverse[axis] = lanes_all(copysignf(inverse, step));
     }
     mask_set_weights(&ray->weights, ray->near);
 }

@@ -55,10 +55,12 @@ bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct
                            const int32_t own[2], int32_t *guess, struct octree_counts *counts)
 {
     const struct tree *tree = &octree->inside;
-    struct query query = {.octree = octree, .own = own};
+    struct query query; /* set by parts, since the ray is large */
     float reach = 1.0f;
     int32_t place = *guess >= 0 ? octree->place[*guess] : -1;
     counts->rays++;
+    query.octree = octree;
+    query.own = own;
     ray_set(&query.ray, from, to);
     if (place >= 0) {
         counts->triangle_tests++;
