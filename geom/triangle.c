@@ -79,7 +79,7 @@ struct segment segment_make(struct vec3 from, struct vec3 to)
     struct segment s = {.from = from, .to = to};
     struct vec3 d = vec3_sub(to, from);
     double x = fabs(d.x), y = fabs(d.y), z = fabs(d.z);
-    int largest = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
+    int larger = x > y ? 0 : 1, largest = (x > y ? x : y) > z ? larger : 2;
     s.axis[0] = (largest + 1) % 3;
     s.axis[1] = (largest + 2) % 3;
     s.axis[2] = largest;

@@ -19,7 +19,6 @@
 /* A first hit that is looked for. */
 struct search {
     const struct octree *octree;
-    struct segment segment;
     struct ray ray;
     bool fronts_only;
     double nearest; /* t of the hit; 2 before there is one */
@@ -35,6 +34,12 @@ static bool wins_tie(const struct octree_hit *hit, int32_t t, bool front)
     return front != hit->front ? front : t > hit->triangle;
 }
 
+static bool line_meets(const struct search *search, int32_t t, double weight[3])
+{
+    struct segment line = segment_make(search->ray.from, search->ray.to);
+    return segment_line_meets(&line, &search->octree->triangles[t], weight);
+}
+
 /* Tests one triangle; it counts if it is met before the hit so far, or in the same place
  * and wins the tie. */
 INLINE void improve_hit(struct search *search, const struct record *r)
@@ -48,8 +53,7 @@ INLINE void improve_hit(struct search *search, const struct record *r)
     enum passage passage = ray_passes(&search->ray, r, ends, at);
     if (passage == MISSES ||
         (at > search->nearest - tie && !wins_tie(&search->hit, r->triangle, front)) ||
-        (passage == MAY_MEET &&
-         !segment_line_meets(&search->segment, &search->octree->triangles[r->triangle], NULL)))
+        (passage == MAY_MEET && !line_meets(search, r->triangle, NULL)))
         return;
     search->nearest = at < search->nearest ? at : search->nearest;
     search->hit.triangle = r->triangle;
@@ -98,13 +102,11 @@ bool octree_first_hit(const struct octree *octree, struct vec3 origin,
     search.hit.triangle = -1;
     if (!clip_to_scene(octree, &origin, direction, &end))
         return false;
-    search.segment = segment_make(origin, end);
     ray_set(&search.ray, origin, end);
     ray_walk(&octree->inside, &search.ray, &reach, search_leaf, &search, counts);
     ray_walk(&octree->hull, &search.ray, &reach, search_leaf, &search, counts);
     *hit = search.hit;
     if (hit->triangle < 0)
         return false;
-    segment_line_meets(&search.segment, &octree->triangles[hit->triangle], hit->weight);
-    return true;
+    return line_meets(&search, hit->triangle, hit->weight);
 }
