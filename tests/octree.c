@@ -1,6 +1,6 @@
 /* Tests of octree/octree.h against brute force over all triangles, in three scenes: a random
  * soup; a closed room with boxes on its floor; a sphere with coincident triangles, needles and
- * dropped triangles. Segments are random, run through vertices and edges, lie in axis planes,
+ * dropped triangles. Segments are random, run through vertices and edges, lie in axis planes, graze planes,
  * join two triangles of the scene or pass through one that is not to count. Then: closed meshes
  * let nothing out, ten thousand coincident triangles, the rules of the first hit, and the
  * counters. */
@@ -106,11 +106,19 @@ static struct vec3 beyond(struct vec3 from, struct vec3 through)
     return vec3_add(through, vec3_sub(through, from));
 }
 
+/* The point above x, by a height. */
+static struct vec3 lift_to(const struct plane *plane, struct vec3 x, double height)
+{
+    return vec3_add(x, vec3_scale(plane->normal, height - plane_distance(plane, x)));
+}
+
 static struct question random_question(struct random *random, const struct scene *scene)
 {
+    int32_t t;
+    struct vec3 along;
     struct question q = {random_point(random, 0.5), random_point(random, 0.5), {-1, -1}};
     int side = random_below(random, 2);
-    switch (random_below(random, 7)) {
+    switch (random_below(random, 8)) {
     case 0: q.to = beyond(q.from, random_corner(random, scene)); break;
     case 1: q.to = beyond(q.from, random_edge_point(random, scene)); break;
     case 2: /* in an axis plane through a corner, every other one along an axis */
@@ -131,6 +139,14 @@ static struct question random_question(struct random *random, const struct scene
     case 5: /* through a triangle that is one's own and would block */
         q.own[side] = random_below(random, scene->input_count);
         q.to = beyond(q.from, random_point_on(random, &scene->triangles[q.own[side]]));
+        break;
+    case 6: /* grazes a plane near an edge: where it is crossed is lost in rounding */
+        t = random_below(random, scene->input_count);
+        q.to = random_point_on(random, &scene->triangles[t]);
+        q.from = vec3_add(scene->triangles[t].corner[0], random_point(random, 1e-5));
+        along = vec3_scale(vec3_sub(q.to, q.from), 0.1);
+        q.to = lift_to(&scene->planes[t], vec3_sub(q.from, along), 3e-14);
+        q.from = lift_to(&scene->planes[t], vec3_add(q.from, along), -3e-14);
         break;
     default: break;
     }
