@@ -1,8 +1,8 @@
 /* Tests of octree/octree.h against brute force over all triangles, in three scenes: a random
  * soup; a closed room with boxes on its floor; a sphere with coincident triangles, needles and
- * dropped triangles. Segments are random, run through vertices and edges, lie in axis planes, graze planes,
- * join two triangles of the scene or pass through one that is not to count. Then: closed meshes
- * let nothing out, ten thousand coincident triangles, the rules of the first hit, and the
+ * dropped triangles. Segments are random, run through vertices and edges, lie in axis planes,
+ * graze planes, join two triangles of the scene or pass through one that is not to count. Then:
+ * closed meshes let nothing out, ten thousand coincident triangles, the rules of the first hit, and the
  * counters. */
 #include "octree/octree.h"
 
