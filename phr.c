@@ -594,6 +594,26 @@ static bool show_results(struct run *run)
     return agree(run);
 }
 
+/* Parts of the light by which more may be absorbed than is emitted, and by which a closed scene may
+ * be off its balance, before it is said. */
+static const double ABSORBED_TOO_MUCH = 0.01, OFF_BALANCE = 0.05;
+
+static void warn_balance(struct run *run)
+{
+    const struct stats *stats = &run->stats;
+    double much = stats->absorbed_power / stats->emitted_power - 1.0;
+    if (much > ABSORBED_TOO_MUCH)
+        say(run,
+            "warning: %.3g %% more light is absorbed than emitted: faces may lie on each other or be "
+            "there twice, or --epsilon is too large",
+            100.0 * much);
+    else if (stats->gathered.closing > OFF_BALANCE)
+        say(run,
+            "warning: light of this closed scene was off its balance by %.3g %%, which is made up "
+            "for: --epsilon is too large, rays are too few, or faces lie on each other",
+            100.0 * stats->gathered.closing);
+}
+
 /* Collective. The summary and --stats. */
 static bool report_run(struct run *run)
 {
@@ -611,6 +631,7 @@ static bool report_run(struct run *run)
         else if (!run->vote.converged)
             say(run, "warning: not converged after %lld iterations",
                 (long long)run->stats.iterations);
+        warn_balance(run);
         if (!run->options.quiet)
             stats_print(&run->stats, stdout);
         if (run->options.stats)

@@ -206,8 +206,9 @@ static double shining_area(const struct gathering *g, int64_t i)
     return root_is_lamp(&g->gather.lamps, (int32_t)root) ? g->areas[i] : g->bare[i];
 }
 
-/* Makes irradiances of a closed scene such that all that is emitted is absorbed. */
-static void close_balance(const struct gathering *g, struct rgb *h)
+/* Makes irradiances of a closed scene such that all that is emitted is absorbed. Returns the largest
+ * part that they are changed by. */
+static double close_balance(const struct gathering *g, struct rgb *h)
 {
     struct rgb emitted = {{0.0, 0.0, 0.0}}, absorbed = {{0.0, 0.0, 0.0}};
     for (int64_t i = 0; i < g->count; i++) {
@@ -219,10 +220,15 @@ static void close_balance(const struct gathering *g, struct rgb *h)
                 g->bare[i] * (1.0 - m->reflectance.band[c]) * h[i].band[c];
         }
     }
+    double factor[BANDS], largest = 0.0;
+    for (int c = 0; c < BANDS; c++) {
+        factor[c] = absorbed.band[c] > 0.0 ? emitted.band[c] / absorbed.band[c] : 1.0;
+        largest = fmax(largest, fabs(factor[c] - 1.0));
+    }
     for (int64_t i = 0; i < g->count; i++)
         for (int c = 0; c < BANDS; c++)
-            h[i].band[c] *=
-                absorbed.band[c] > 0.0 ? emitted.band[c] / absorbed.band[c] : 1.0;
+            h[i].band[c] *= factor[c];
+    return largest;
 }
 
 /* What the vote says of the light there is now. */
@@ -386,7 +392,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
             h[i].band[c] = fmax(0.0, h[i].band[c]);
     share_bare_areas(g);
     if (g->closed)
-        close_balance(g, h);
+        g->solver->gathered.closing = close_balance(g, h);
     set_radiosities(g, h, b);
     judge(g, h, b, done.residual, vote);
     place_radiosities(g, b);

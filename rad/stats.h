@@ -68,6 +68,8 @@ struct gathered {
     int64_t looks;          /* rays and segments fired before there were rows */
     int64_t split;          /* leaves that the gathered light was seen to vary over */
     int64_t pixels;         /* rays and segments fired for the picture */
+    double closing;         /* largest part that irradiances of a closed scene were changed by, so
+                               that all that is emitted is absorbed; 0: it is open */
     double error;           /* of the leaves, estimated, relative RMS of reflected radiosity */
 };
 
