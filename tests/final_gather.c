@@ -128,6 +128,34 @@ static void test_open(void)
     trial_free(&g);
 }
 
+/* A sheet lies on a bright floor, and nothing stands between them: exact factors are tried,
+ * and given up, as the sheet hides what they would tell. Rays make the rows, and lamps,
+ * which its underside does not face, bring nothing. */
+static void test_given_up(void)
+{
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0.4, 0.4, 1e-3), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    paint(&painted, 0.0, 100.0);
+    struct trial g = gather_scene(&painted, "--max-level 0", 64);
+    const struct forest *forest = g.s.solver->method.forest;
+    double lamps = 0.0, rays = 0.0;
+    for (int64_t i = 0; i < g.gather.count; i++) {
+        const struct gather_row *row = &g.gather.rows[i];
+        if (forest->patches[row->leaf].id.root >= 2)
+            continue;
+        lamps = fmax(lamps, rgb_sum(row->lamps));
+        rays = fmax(rays, row->halves[0] + row->chance[0]);
+    }
+    tap_ok(final_gather_root_is_open(&g.gather, 0) && rays > 0.0,
+           "exact rows are given up on where a sheet lies");
+    tap_ok(lamps == 0.0, "lamps bring nothing to its underside: %g W/m^2", lamps);
+    trial_free(&g);
+}
+
 /* --- lamps --- */
 
 /* A floor below a small lamp, and a black box beside them so that rays are needed.
@@ -386,6 +414,7 @@ int main(int argc, char **argv)
     test_mean_factor();
     test_furnished();
     test_open();
+    test_given_up();
     test_lamps();
     test_gap();
     test_covered();

@@ -281,7 +281,8 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
     if (exact && receiver_add_exact(&r)) {
         r.row.lamps = light_of_lamps(&r);
     } else {
-        r.row.end = r.first_term;
+        r.row.end = r.first_term; /* what exact factors have brought is given up */
+        r.light = (struct rgb){{0.0, 0.0, 0.0}};
         receiver_aim(&r);
         receiver_fire(&r);
         r.row.lamps = r.lamps;
