@@ -72,6 +72,10 @@ static double factor_of_quarters(const struct triangle *from, struct vec3 normal
 double mean_factor(const struct triangle *from, struct vec3 normal,
                    const struct triangle *to, int64_t *work)
 {
+    if (!(triangle_radius(from) > 0.0)) { /* a point */
+        *work += TESTS_PER_FORM_FACTOR;
+        return point_triangle_factor(from->corner[0], normal, to);
+    }
     return factor_of_quarters(from, normal, to, QUARTERINGS, work);
 }
 
