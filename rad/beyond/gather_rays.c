@@ -40,6 +40,9 @@ static const double NEAR_LAMP = 4.0;
 /* A path ends after so many points at the latest. */
 enum { PATH_MOST = 8, AIMS_MOST = 4, BARE_POINTS = 4 };
 
+/* Fewer segments than that say too little of what is seen by themselves. */
+enum { VOLLEY = 4 };
+
 /* --- points that rays meet --- */
 
 struct point {
@@ -126,15 +129,23 @@ static bool sees(struct receiver *r, struct vec3 from, int32_t input, struct vec
                                   &r->gather->method->counts);
 }
 
-/* Of `count` segments that might bring `direct` over all bands a share is seen: the
- * variance of what they bring. */
-static void add_chance(struct receiver *r, struct rgb emission, double direct, double share,
-                       int count)
+/* Segments to groups that are next to each other in the tree: `count` of them might bring
+ * `direct` and bring `seen`, over all bands, W/m^2. */
+struct volley {
+    double direct, seen;
+    int count;
+};
+
+/* Adds the variance of what they bring, as the share that is seen tells it, in the colour
+ * of one of the lamps. */
+static void end_volley(struct receiver *r, struct volley *volley, struct rgb emission)
 {
-    for (int c = 0; c < BANDS; c++) {
-        double h = direct * emission.band[c] / rgb_sum(emission);
-        r->row.chance[c] += h * h * share * (1.0 - share) / count;
+    double share = volley->count > 0 ? fmin(1.0, volley->seen / volley->direct) : 0.0;
+    for (int c = 0; c < BANDS && share > 0.0; c++) {
+        double h = volley->direct * emission.band[c] / rgb_sum(emission);
+        r->row.chance[c] += h * h * share * (1.0 - share) / volley->count;
     }
+    *volley = (struct volley){0.0, 0.0, 0};
 }
 
 /* Segments to a single lamp: `count` of them bring the irradiance `direct` all together,
@@ -157,14 +168,12 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
         if (light > 0.0 && sees(r, x, r->facet.input, y, root))
             seen += light;
     }
-    if (!(all > 0.0))
-        return;
-    add_source(r, &ALL, emission, direct * (seen / all) / rgb_sum(emission));
-    add_chance(r, emission, direct, seen / all, count);
+    if (all > 0.0)
+        add_source(r, &ALL, emission, direct * (seen / all) / rgb_sum(emission));
 }
 
-/* One segment to a lamp of a cluster, which is far away: `direct` and `each` are what the
- * group brings, and what one segment stands for. */
+/* One segment to a lamp of a cluster, which is far away: it stands for `each` of what the
+ * group brings. */
 static void aim_at_cluster(struct receiver *r, const struct sequence *sequence,
                            uint32_t index, const struct lamp_group *group, double each)
 {
@@ -186,8 +195,21 @@ static void aim_at_cluster(struct receiver *r, const struct sequence *sequence,
                        (each / group->direct));
 }
 
+/* `count` segments to a group, which bring `direct` all together. */
+static void aim_at_group(struct receiver *r, const struct lamp_group *group, int count,
+                         double direct)
+{
+    struct sequence sequence =
+        sequence_start(hash_mix(r->seed + 8) ^ hash_mix((uint64_t)group->node));
+    if (!node_is_cluster(group->node))
+        aim_at_lamp(r, &sequence, count, group->node, direct);
+    for (int k = 0; k < count && node_is_cluster(group->node); k++)
+        aim_at_cluster(r, &sequence, (uint32_t)k, group, direct / count);
+}
+
 /* What lamps bring to the leaf: as many segments as rays, dealt over the groups in
- * proportion to their light. */
+ * proportion to their light. A group that is sure to get one counts with its own light,
+ * shared among its segments: their number depends on where dealing starts. */
 static void aim_at_lamps(struct receiver *r)
 {
     struct final_gather *g = r->gather;
@@ -196,6 +218,8 @@ static void aim_at_lamps(struct receiver *r)
         return;
     double each = g->groups.direct / r->rays, sum = 0.0;
     double start = hash_unit(r->seed + 16);
+    struct volley volley = {0.0, 0.0, 0};
+    struct rgb emission = {{0.0, 0.0, 0.0}};
     int done = 0;
     for (int64_t i = 0; i < g->groups.count; i++) {
         const struct lamp_group *group = &g->groups.items[i];
@@ -203,21 +227,19 @@ static void aim_at_lamps(struct receiver *r)
         int now = (int)fmin(r->rays, floor(sum / each + start)), count = now - done;
         if (count == 0)
             continue;
-        struct sequence sequence =
-            sequence_start(hash_mix(r->seed + 8) ^ hash_mix((uint64_t)group->node));
-        if (!node_is_cluster(group->node))
-            aim_at_lamp(r, &sequence, count, group->node, count * each);
+        double direct = group->direct >= each ? group->direct : count * each;
         double before = rgb_sum(r->light);
-        for (int k = 0; k < count && node_is_cluster(group->node); k++)
-            aim_at_cluster(r, &sequence, (uint32_t)k, group, each);
-        if (node_is_cluster(group->node)) {
-            int32_t lamp = lamp_choose(&g->lamps, group->node, 0.5).root;
-            double share = (rgb_sum(r->light) - before) / (count * each);
-            add_chance(r, scene_root_material(g->method->scene, lamp)->emission,
-                       count * each, fmin(share, 1.0), count);
-        }
+        aim_at_group(r, group, count, direct);
+        volley.direct += direct;
+        volley.seen += rgb_sum(r->light) - before;
+        volley.count += count;
+        int32_t lamp = lamp_choose(&g->lamps, group->node, 0.5).root;
+        emission = scene_root_material(g->method->scene, lamp)->emission;
+        if (volley.count >= VOLLEY)
+            end_volley(r, &volley, emission);
         done = now;
     }
+    end_volley(r, &volley, emission);
 }
 
 /* --- paths --- */
