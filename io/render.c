@@ -10,7 +10,9 @@
  * On a surface with normals of its own the light is that of the smooth surface, which the
  * facets are inscribed in: a point is lifted to the planes through the corners, each across
  * its normal, by as much as the corner counts there (Hanika, 2021). So facets do not
- * shadow each other where the smooth surface is lit. */
+ * shadow each other where the smooth surface is lit. A facet may hide a lamp from its own
+ * points: that of a bowl, which is not lifted, has some above its tangent plane that are
+ * behind it. */
 #include "io/render.h"
 
 #include <math.h>
@@ -18,6 +20,7 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "geom/stop.h"
+#include "rad/sample.h"
 
 /* Segments to lamps for a pixel; and so many times as many where the first may be wrong by
  * more than this part of its light. */
@@ -35,10 +38,10 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
 
 /* --- points that are shown --- */
 
-/* What camera rays of a pixel have met; an entry for each of them. */
+/* What camera rays of a pixel have met; an entry for each that shows some root. */
 struct view {
-    int32_t *roots;             /* -1: nothing, or black */
-    struct vec3 *weights, *at;  /* barycentric coordinates in the root; points */
+    int32_t *roots;
+    struct vec3 *weights, *at; /* barycentric coordinates in the root; points */
     int count;
 };
 
@@ -59,14 +62,17 @@ struct facade {
     struct triangle triangle;
     struct vec3 normals[3];
     struct plane plane;
+    bool curved; /* one of the normals is not 0 */
 };
 
 static struct facade facade_make(const struct scene *scene, int32_t root)
 {
     struct facade facade = {.triangle = scene_root_triangle(scene, root),
                             .plane = scene_root_plane(scene, root)};
-    for (int k = 0; k < 3 && scene->normals; k++)
+    for (int k = 0; k < 3 && scene->normals; k++) {
         facade.normals[k] = scene_root_normal(scene, root, k);
+        facade.curved = facade.curved || vec3_length(facade.normals[k]) > 0.0;
+    }
     return facade;
 }
 
@@ -79,7 +85,8 @@ static struct vec3 facade_point(const struct facade *facade, struct vec3 weight)
         double below = vec3_dot(vec3_sub(facade->triangle.corner[k], x), normal);
         lifts[k] = vec3_scale(normal, below > 0.0 ? below : 0.0);
     }
-    return vec3_add(x, corners_mean(lifts, weight));
+    x = vec3_add(x, corners_mean(lifts, weight));
+    return facade->curved ? point_above(x, facade->plane.normal) : x;
 }
 
 /* Its tangent plane there. */
@@ -107,7 +114,8 @@ static void add_light(const struct renderer *renderer, const struct view *view, 
     }
     struct gather_points points = {.at = view->at, .count = count,
                                    .middle = facade_point(&facade, middle),
-                                   .input = scene_input_of(scene, view->roots[0])};
+                                   .input = scene_input_of(scene, view->roots[0]),
+                                   .above = facade.curved};
     points.plane = facade_plane(&facade, middle, points.middle);
     struct gather_light light =
         final_gather_at(gather, &points, seed, rays, !renderer->shading);

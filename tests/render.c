@@ -150,6 +150,33 @@ static void test_column(void)
     solution_free(&s);
 }
 
+/* A facet of a bowl, whose normals lean to its middle, and a lamp behind it: some of its
+ * tangent planes are open to the lamp, but it is in the way itself. */
+static void test_bowl(void)
+{
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(0, 1, 0), point(0, 0, 1), 1);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(-0.6, 3, 0.4), point(0.2, 0, 0), point(0, 0, 0.2), 1);
+    paint(&painted, 0.0, 1e3);
+    struct scene *scene = scene_of_painted(&painted);
+    scene_add_normals(scene);
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 3; k++) {
+            double middle = scene_from_input(scene, point(0, 0.5, 0)).y;
+            bool left = scene->triangles[i].corner[k].y < middle;
+            scene->normals[3 * i + k] = point(0.8, left ? 0.6 : -0.6, 0);
+        }
+    struct solution s = solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
+    struct shading *shading = shade_rest(&s);
+    double most = 0.0;
+    for (int i = 1; i < 20; i++)
+        most = fmax(most, fabs(shown(&s, shading, 0, point(0, 0.05 * i, 0.53))));
+    tap_ok(most == 0.0, "no light comes through the facet of a bowl: %g", most);
+    shading_destroy(shading);
+    solution_free(&s);
+}
+
 int main(int argc, char **argv)
 {
     struct comm comm;
@@ -159,6 +186,7 @@ int main(int argc, char **argv)
     test_shadow(true);
     test_furnace();
     test_column();
+    test_bowl();
     comm_stop(&comm);
     return tap_done();
 }

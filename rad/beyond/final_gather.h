@@ -70,7 +70,8 @@ struct gather_points {
     int count;
     struct vec3 middle;
     struct plane plane; /* there */
-    int32_t input;      /* triangle that they are on */
+    int32_t input;      /* triangle that they are on, */
+    bool above;         /* or a little above, so that it may hide lamps from them */
 };
 
 /* What arrives at such points in the mean, W/m^2. */

@@ -129,6 +129,19 @@ static bool sees(struct receiver *r, struct vec3 from, int32_t input, struct vec
                                   &r->gather->method->counts);
 }
 
+/* The same from a point of the receiver. */
+static bool sees_from_here(struct receiver *r, struct vec3 x, struct vec3 y, int32_t lamp)
+{
+    int32_t input = r->facet.input;
+    if (r->points && r->points->above) {
+        const struct scene *scene = r->gather->method->scene;
+        struct segment segment = segment_make(x, y);
+        if (segment_is_blocked_by(&segment, &scene->triangles[input], &scene->planes[input]))
+            return false;
+    }
+    return sees(r, x, input, y, lamp);
+}
+
 /* Segments to groups that are next to each other in the tree: `count` of them might bring
  * `direct` and bring `seen`, over all bands, W/m^2. */
 struct volley {
@@ -165,7 +178,7 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
         struct vec3 y = triangle_of_square(&lamp, u[2], u[3]);
         double light = receiver_kernel(x, r->facet.plane.normal, y, normal);
         all += light;
-        if (light > 0.0 && sees(r, x, r->facet.input, y, root))
+        if (light > 0.0 && sees_from_here(r, x, y, root))
             seen += light;
     }
     if (all > 0.0)
@@ -189,7 +202,7 @@ static void aim_at_cluster(struct receiver *r, const struct sequence *sequence,
     struct vec3 y = triangle_of_square(&triangle, u[2], u[3]);
     double light = receiver_kernel(x, r->facet.plane.normal, y,
                           scene_root_plane(scene, lamp.root).normal);
-    if (light > 0.0 && sees(r, x, r->facet.input, y, lamp.root))
+    if (light > 0.0 && sees_from_here(r, x, y, lamp.root))
         add_source(r, &ALL, scene_root_material(scene, lamp.root)->emission,
                    light * scene_root_area(scene, lamp.root) * lamp.share *
                        (each / group->direct));
