@@ -32,7 +32,7 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
 {
     struct renderer renderer = {.octree = octree, .shading = shading, .gather = gather};
     if (gather)
-        renderer.rays = shading ? SEGMENTS : gather->rays;
+        renderer.rays = shading ? SEGMENTS : gather->method->criterion.final_gather;
     return renderer;
 }
 
