@@ -247,8 +247,8 @@ static double open_share(uint8_t quarters)
 
 /* Radiosity of the open share of a leaf, less what is left out: what it receives, it receives
  * there. */
-static struct rgb open_radiosity(const struct forest *forest, const struct rgb *less, int32_t leaf,
-                                 double share)
+static struct rgb open_radiosity(const struct forest *forest, const struct rgb *less,
+                                 int32_t leaf, double share)
 {
     struct rgb b = forest->patches[leaf].radiosity, e = forest_material(forest, leaf)->emission;
     for (int c = 0; c < BANDS && less; c++)
@@ -319,7 +319,8 @@ static struct rgb *find_shifts(const struct forest *forest, const struct rgb *le
     const struct scene *scene = forest->scene;
     int32_t roots = scene_root_count(scene), *flat = surface_of_roots(scene, false);
     struct rgb *shifts = alloc_array(3 * (size_t)roots, sizeof *shifts);
-    struct facets facets = {.forest = forest, .less = less, .open = open, .flat = flat, .curved = curved};
+    struct facets facets = {.forest = forest, .less = less, .open = open, .flat = flat,
+                            .curved = curved};
     for_each_leaf(forest, -1, add_corner_leaf, &facets);
     find_means(&facets.by_flat);
     find_means(&facets.by_curved);
