@@ -57,22 +57,32 @@ static struct vec3 corners_mean(const struct vec3 corner[3], struct vec3 weight)
                     vec3_scale(corner[2], weight.z));
 }
 
-/* A root as it is shown: with normals at its corners, which are 0 if there are none. */
+/* Normals within 45 degrees of the plane's, by the cosine, say that facets stand for a smooth
+ * surface. Those of a box that is smoothed over its edges do not: lifted to a sphere, its
+ * sides would end up above what stands on them. */
+static const double LEAN = 0.7;
+
+/* A root as it is shown: with normals at its corners, or flat. */
 struct facade {
     struct triangle triangle;
     struct vec3 normals[3];
     struct plane plane;
-    bool curved; /* one of the normals is not 0 */
+    bool curved; /* else all normals are 0 */
 };
 
 static struct facade facade_make(const struct scene *scene, int32_t root)
 {
     struct facade facade = {.triangle = scene_root_triangle(scene, root),
                             .plane = scene_root_plane(scene, root)};
+    struct vec3 normals[3];
     for (int k = 0; k < 3 && scene->normals; k++) {
-        facade.normals[k] = scene_root_normal(scene, root, k);
-        facade.curved = facade.curved || vec3_length(facade.normals[k]) > 0.0;
+        normals[k] = scene_root_normal(scene, root, k);
+        if (!(vec3_dot(normals[k], facade.plane.normal) > LEAN))
+            return facade;
     }
+    facade.curved = scene->normals != NULL;
+    for (int k = 0; k < 3 && facade.curved; k++)
+        facade.normals[k] = normals[k];
     return facade;
 }
 

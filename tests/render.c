@@ -177,6 +177,36 @@ static void test_bowl(void)
     solution_free(&s);
 }
 
+/* A box whose normals are smoothed over its edges, as some programs write them: a plate above it
+ * keeps the light of a lamp off. */
+static void test_smoothed_box(void)
+{
+    struct painted painted = {0};
+    soup_add_box(&painted.soup, point(-0.5, -0.5, -0.5), point(0.5, 0.5, 0.5), 1, false);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(-1, -1, 0.7), point(2, 0, 0), point(0, 2, 0), 1);
+    paint(&painted, 0.0, 0.0);
+    soup_add_quad(&painted.soup, point(-0.2, -0.2, 2), point(0, 0.4, 0), point(0.4, 0, 0), 1);
+    paint(&painted, 0.0, 100.0);
+    struct scene *scene = scene_of_painted(&painted);
+    scene_add_normals(scene);
+    for (int i = 0; i < 12; i++)
+        for (int k = 0; k < 3; k++)
+            scene->normals[3 * i + k] = vec3_unit(scene->triangles[i].corner[k]);
+    struct solution s = solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
+    struct shading *shading = shade_rest(&s);
+    double most = 0.0;
+    for (int32_t root = 0; root < 12; root += 2)
+        for (int i = 0; i < 9; i++) {
+            struct vec3 x = point(0.1 * i - 0.4, 0.03 * i, 0.5);
+            if (scene_root_plane(s.scene, root).normal.z > 0.9)
+                most = fmax(most, shown(&s, shading, root, x));
+        }
+    tap_ok(most == 0.0, "a smoothed box under a plate is dark: %.2g", most);
+    shading_destroy(shading);
+    solution_free(&s);
+}
+
 int main(int argc, char **argv)
 {
     struct comm comm;
@@ -187,6 +217,7 @@ int main(int argc, char **argv)
     test_furnace();
     test_column();
     test_bowl();
+    test_smoothed_box();
     comm_stop(&comm);
     return tap_done();
 }
