@@ -142,47 +142,68 @@ static bool sees_from_here(struct receiver *r, struct vec3 x, struct vec3 y, int
     return sees(r, x, input, y, lamp);
 }
 
-/* Segments to groups that are next to each other in the tree: `count` of them might bring
- * `direct` and bring `seen`, over all bands, W/m^2. */
+/* Segments to groups that are next to each other in the tree, each in two halves: they
+ * might bring `direct` and bring `seen`, over all bands, W/m^2. */
 struct volley {
-    double direct, seen;
-    int count;
+    double direct[2], seen[2];
+    int count[2];
 };
 
-/* Adds the variance of what they bring, as the share that is seen tells it, in the colour
- * of one of the lamps. */
+/* The half that segment `i` of `count` to a group belongs to; a single one, the smaller. */
+static int half_of(const struct volley *volley, int i, int count)
+{
+    return count > 1 ? 2 * i >= count : volley->count[0] > volley->count[1];
+}
+
+/* Adds the variance of what they bring, as the share that is seen tells it, and as its
+ * halves do, in the colour of one of the lamps. */
 static void end_volley(struct receiver *r, struct volley *volley, struct rgb emission)
 {
-    double share = volley->count > 0 ? fmin(1.0, volley->seen / volley->direct) : 0.0;
+    double direct = volley->direct[0] + volley->direct[1];
+    int count = volley->count[0] + volley->count[1];
+    double seen = volley->seen[0] + volley->seen[1], apart = 0.0;
+    double share = count > 0 ? fmin(1.0, seen / direct) : 0.0;
+    if (volley->direct[0] > 0.0 && volley->direct[1] > 0.0)
+        apart = 0.5 * (volley->seen[0] / volley->direct[0] -
+                       volley->seen[1] / volley->direct[1]);
     for (int c = 0; c < BANDS && share > 0.0; c++) {
-        double h = volley->direct * emission.band[c] / rgb_sum(emission);
-        r->row.chance[c] += h * h * share * (1.0 - share) / volley->count;
+        double h = direct * emission.band[c] / rgb_sum(emission);
+        r->row.chance[c] += h * h * share * (1.0 - share) / count;
+        r->row.halves[c] += h * h * apart * apart;
     }
-    *volley = (struct volley){0.0, 0.0, 0};
+    *volley = (struct volley){.direct = {0.0, 0.0}};
 }
 
 /* Segments to a single lamp: `count` of them bring the irradiance `direct` all together,
  * summed over bands, but for what is blocked: of that each has its kernel's share. */
 static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int count,
-                        int32_t root, double direct)
+                        int32_t root, double direct, struct volley *volley)
 {
     static const struct rgb ALL = {{1.0, 1.0, 1.0}};
     const struct scene *scene = r->gather->method->scene;
     struct triangle lamp = scene_root_triangle(scene, root);
     struct vec3 normal = scene_root_plane(scene, root).normal;
     struct rgb emission = scene_root_material(scene, root)->emission;
-    double all = 0.0, seen = 0.0, u[SEQUENCE_DIMENSIONS];
+    double all[2] = {0.0, 0.0}, seen[2] = {0.0, 0.0}, u[SEQUENCE_DIMENSIONS];
     for (int i = 0; i < count; i++) {
+        int half = half_of(volley, i, count);
         sequence_point(sequence, (uint32_t)i, u);
         struct vec3 x = start_at(r, u[0], u[1]);
         struct vec3 y = triangle_of_square(&lamp, u[2], u[3]);
         double light = receiver_kernel(x, r->facet.plane.normal, y, normal);
-        all += light;
+        all[half] += light;
         if (light > 0.0 && sees_from_here(r, x, y, root))
-            seen += light;
+            seen[half] += light;
+        volley->count[half]++;
     }
-    if (all > 0.0)
-        add_source(r, &ALL, emission, direct * (seen / all) / rgb_sum(emission));
+    double sum = all[0] + all[1];
+    for (int half = 0; half < 2 && sum > 0.0; half++) {
+        volley->direct[half] += direct * (all[half] / sum);
+        volley->seen[half] += direct * (seen[half] / sum);
+    }
+    if (sum > 0.0)
+        add_source(r, &ALL, emission,
+                   direct * ((seen[0] + seen[1]) / sum) / rgb_sum(emission));
 }
 
 /* One segment to a lamp of a cluster, which is far away: it stands for `each` of what the
@@ -210,14 +231,20 @@ static void aim_at_cluster(struct receiver *r, const struct sequence *sequence,
 
 /* `count` segments to a group, which bring `direct` all together. */
 static void aim_at_group(struct receiver *r, const struct lamp_group *group, int count,
-                         double direct)
+                         double direct, struct volley *volley)
 {
     struct sequence sequence =
         sequence_start(hash_mix(r->seed + 8) ^ hash_mix((uint64_t)group->node));
     if (!node_is_cluster(group->node))
-        aim_at_lamp(r, &sequence, count, group->node, direct);
-    for (int k = 0; k < count && node_is_cluster(group->node); k++)
+        aim_at_lamp(r, &sequence, count, group->node, direct, volley);
+    for (int k = 0; k < count && node_is_cluster(group->node); k++) {
+        int half = half_of(volley, k, count);
+        double before = rgb_sum(r->light);
         aim_at_cluster(r, &sequence, (uint32_t)k, group, direct / count);
+        volley->direct[half] += direct / count;
+        volley->seen[half] += rgb_sum(r->light) - before;
+        volley->count[half]++;
+    }
 }
 
 /* What lamps bring to the leaf: as many segments as rays, dealt over the groups in
@@ -231,7 +258,7 @@ static void aim_at_lamps(struct receiver *r)
         return;
     double each = g->groups.direct / r->rays, sum = 0.0;
     double start = hash_unit(r->seed + 16);
-    struct volley volley = {0.0, 0.0, 0};
+    struct volley volley = {.direct = {0.0, 0.0}};
     struct rgb emission = {{0.0, 0.0, 0.0}};
     int done = 0;
     for (int64_t i = 0; i < g->groups.count; i++) {
@@ -241,14 +268,10 @@ static void aim_at_lamps(struct receiver *r)
         if (count == 0)
             continue;
         double direct = group->direct >= each ? group->direct : count * each;
-        double before = rgb_sum(r->light);
-        aim_at_group(r, group, count, direct);
-        volley.direct += direct;
-        volley.seen += rgb_sum(r->light) - before;
-        volley.count += count;
+        aim_at_group(r, group, count, direct, &volley);
         int32_t lamp = lamp_choose(&g->lamps, group->node, 0.5).root;
         emission = scene_root_material(g->method->scene, lamp)->emission;
-        if (volley.count >= VOLLEY)
+        if (volley.count[0] + volley.count[1] >= VOLLEY)
             end_volley(r, &volley, emission);
         done = now;
     }
@@ -397,7 +420,7 @@ void receiver_fire(struct receiver *r)
         double mean2 = r->sum.band[c] * r->sum.band[c] / r->rays;
         double apart = r->half[0].band[c] - r->half[1].band[c];
         r->row.chance[c] += fmax(0.0, r->squares.band[c] - mean2);
-        r->row.halves[c] = apart * apart;
+        r->row.halves[c] += apart * apart;
     }
     if (r->escaped < r->rays)
         r->gather->counts.escaped += r->escaped;
