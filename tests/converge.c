@@ -5,9 +5,10 @@
  * than the paper's variant, and --accuracy keeps its word. To be run with mpiexec on as many ranks
  * as there are cores; rank 0 reports.
  *
- * The truth has TRUTH elements with PATHS paths for each of its two halves: enough, since the RMS
- * is not biased by noise, and with some thousand elements the noise that is left in it is a tenth
- * of the smallest error here; it is the same for all epsilons. */
+ * The truth has TRUTH elements with PATHS paths for each of its two halves, or more where
+ * errors are small: the RMS is not biased by noise, but light paths give noise to many
+ * elements alike. What is left of it is a tenth of the smallest error here, and is the
+ * same for all epsilons. */
 #include <math.h>
 
 #include "io/obj.h"
@@ -157,15 +158,16 @@ static void test_gathered(const struct comm *comm, const char *path,
         tap_ok(error[3] < most, "down to %.3g %%", 100.0 * most);
 }
 
-/* Collective. Complete on rank 0. False if there is no such scene. */
-static bool trace_truth(const struct comm *comm, const char *path, struct truth *truth)
+/* Collective, by so many paths. Complete on rank 0. False if there is no such scene. */
+static bool trace_truth(const struct comm *comm, const char *path, int paths,
+                        struct truth *truth)
 {
     struct node_block block;
     struct scene *scene = read_scene(comm, path, &block);
     if (scene) {
         struct octree *octree =
             octree_create(scene->triangles, scene->planes, scene->input_count);
-        *truth = truth_trace(comm, scene, octree, TRUTH, PATHS);
+        *truth = truth_trace(comm, scene, octree, TRUTH, paths);
         octree_destroy(octree);
     } else if (comm->rank == 0) {
         tap_ok(false, "%s can be read", path);
@@ -178,7 +180,7 @@ static bool trace_truth(const struct comm *comm, const char *path, struct truth 
 static void test_cornell(const struct comm *comm)
 {
     struct truth truth;
-    if (!trace_truth(comm, CORNELL, &truth))
+    if (!trace_truth(comm, CORNELL, 5 * PATHS, &truth))
         return;
     test_falling(comm, CORNELL, &truth, 0.0253, 0.0285);
     test_gathered(comm, CORNELL, &truth, 0.0115, 2.2);
@@ -191,7 +193,7 @@ static void test_cornell(const struct comm *comm)
 static void test_room(const struct comm *comm, const char *path)
 {
     struct truth truth;
-    if (!trace_truth(comm, path, &truth))
+    if (!trace_truth(comm, path, PATHS, &truth))
         return;
     test_falling(comm, path, &truth, 0.0523, 0.0634);
     test_gathered(comm, path, &truth, 0.0316, 2.2);
@@ -204,7 +206,7 @@ static void test_shadow(const struct comm *comm)
 {
     static const char PATH[] = "scenes/shadow.obj";
     struct truth truth;
-    if (!trace_truth(comm, PATH, &truth))
+    if (!trace_truth(comm, PATH, 10 * PATHS, &truth))
         return;
     test_gathered(comm, PATH, &truth, 0.0099, 7.0);
     truth_free(&truth);

@@ -138,7 +138,7 @@ static struct scene *room(void)
  * mean. */
 static const double SEEN = 0.1;
 
-enum { PATHS = 16, ROUNDS_LEAST = 8, ROUNDS_MOST = 512 };
+enum { PATHS = 16, ROUNDS_LEAST = 8, ROUNDS_MOST = 8192 };
 
 /* NOISY: wrong by a factor of two, but by at most twice the error that is said. */
 enum verdict { RIGHT, DIM, NOISY, WRONG, VERDICTS };
