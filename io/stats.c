@@ -78,10 +78,12 @@ static void write_counts(FILE *file, const struct stats *stats)
     fprintf(file,
             "  \"gathered\": {\"rays\": %" PRId64 ", \"segments\": %" PRId64 ", \"exact\": %" PRId64
             ", \"terms\": %" PRId64 ", \"looks\": %" PRId64 ", \"split\": %" PRId64
-            ", \"pixels\": %" PRId64 ", \"closing\": %.17g, \"error\": %.17g},\n",
+            ", \"pixels\": %" PRId64 ", \"closing\": %.17g"
+            ", \"error\": %.17g, \"by_rays\": %.17g, \"by_mesh\": %.17g},\n",
             stats->gathered.rays, stats->gathered.segments, stats->gathered.exact,
             stats->gathered.terms, stats->gathered.looks, stats->gathered.split,
-            stats->gathered.pixels, stats->gathered.closing, stats->gathered.error);
+            stats->gathered.pixels, stats->gathered.closing, stats->gathered.error,
+            stats->gathered.by_rays, stats->gathered.by_mesh);
     fprintf(file, "  \"closure\": {\"min\": %.17g, \"mean\": %.17g, \"max\": %.17g, \"rms\": %.17g},\n",
             stats->closure_min, stats->closure_mean, stats->closure_max, stats->closure_rms);
 }

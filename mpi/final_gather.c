@@ -325,7 +325,7 @@ static void estimate_errors(struct gathering *g)
     size_t count = (size_t)g->count;
     struct rgb *mesh = alloc_array(count, sizeof *mesh);
     struct rgb *rays = alloc_array(count, sizeof *rays);
-    double squares = 0.0, light = 0.0;
+    double by_rays = 0.0, by_mesh = 0.0, light = 0.0;
     variances_by_mesh(g, mesh);
     variances_by_rays(g, rays);
     solver->error = alloc_array((size_t)solver->method.forest->count, sizeof *solver->error);
@@ -333,17 +333,22 @@ static void estimate_errors(struct gathering *g)
         const struct material *m = forest_material(solver->method.forest, g->leaves[i]);
         double largest = 0.0;
         for (int c = 0; c < BANDS; c++) {
-            double deviation = m->reflectance.band[c] *
-                               sqrt(mesh[i].band[c] + rays[i].band[c]);
+            double rho = m->reflectance.band[c];
+            double deviation = rho * sqrt(mesh[i].band[c] + rays[i].band[c]);
             struct rgb b = g->radiosity[g->gather.place[g->leaves[i]]];
             double reflected = b.band[c] - m->emission.band[c];
             largest = fmax(largest, deviation);
-            squares += g->areas[i] * deviation * deviation;
+            by_rays += g->areas[i] * rho * rho * rays[i].band[c];
+            by_mesh += g->areas[i] * rho * rho * mesh[i].band[c];
             light += g->areas[i] * reflected * reflected;
         }
         solver->error[g->leaves[i]] = (float)(2.0 * largest);
     }
-    solver->gathered.error = light > 0.0 ? sqrt(squares / light) : 0.0;
+    if (light > 0.0) {
+        solver->gathered.by_rays = sqrt(by_rays / light);
+        solver->gathered.by_mesh = sqrt(by_mesh / light);
+        solver->gathered.error = sqrt((by_rays + by_mesh) / light);
+    }
     alloc_free(rays);
     alloc_free(mesh);
 }

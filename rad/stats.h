@@ -70,7 +70,9 @@ struct gathered {
     int64_t pixels;         /* rays and segments fired for the picture */
     double closing;         /* largest part that irradiances of a closed scene were changed by, so
                                that all that is emitted is absorbed; 0: it is open */
-    double error;           /* of the leaves, estimated, relative RMS of reflected radiosity */
+    double error;           /* of the leaves, estimated, relative RMS of reflected radiosity: */
+    double by_rays;         /* the part that comes from the choice of rays, */
+    double by_mesh;         /* and that from B varying within leaves; their squares add up */
 };
 
 struct stats {

@@ -289,8 +289,9 @@ static void report(const struct measure *measure, struct solution *s,
     for (int64_t i = 0; i < forest->count; i++)
         answer.leaves += reflects(forest, i) && patch_is_leaf(&forest->patches[i]);
     if (s->stats.error_estimate > 0.0)
-        fprintf(stderr, "estimate %.5f at epsilon %g\n", s->stats.error_estimate,
-                s->stats.epsilon);
+        fprintf(stderr, "estimate %.5f (rays %.5f, mesh %.5f) at epsilon %g\n",
+                s->stats.error_estimate, s->stats.gathered.by_rays,
+                s->stats.gathered.by_mesh, s->stats.epsilon);
     if (measure->header)
         printf("%s\n", HEADER);
     print_options(measure, argc, argv);
