@@ -54,7 +54,7 @@ endif
 GEOM = alloc contour elementary error gauss hull lambert polygon scene stop triangle wall
 OCTREE = build hit octree segment
 RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/lamps beyond/node \
-      beyond/node_exchange beyond/node_link beyond/sequence closure conjugate flux formfactor id link \
+      beyond/node_exchange beyond/node_link beyond/paths beyond/sequence closure conjugate flux formfactor id link \
       linking method oracle patch pushpull sample snapshot treecode viewfactor
 MPI = accuracy assign balance broadcast closing comm final_gather funnel gather gather_mesh keep ledger linking memory migrate \
       node pairs picture plan refinement routes scatter signals solve solver vote
@@ -96,13 +96,16 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
 
 # What is true, for the tests and benches that compare phr with it.
-TRUTH = $(BUILD)/tools/paths.o $(BUILD)/tests/truth.o $(BUILD)/tests/deviation.o
+TRUTH = $(BUILD)/tests/truth.o $(BUILD)/tests/deviation.o
 
-$(BUILD)/tests/paths $(BUILD)/tests/norms $(BUILD)/tests/gaps $(BUILD)/tests/converge: $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TRUTH) \
+$(BUILD)/tests/norms $(BUILD)/tests/gaps $(BUILD)/tests/converge: $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TRUTH) \
         $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
-$(BUILD)/pathtracer: $(BUILD)/tools/pathtracer.o $(BUILD)/tools/paths.o $(BUILD)/libphr.a
+$(BUILD)/tests/paths: $(BUILD)/tests/paths.o $(BUILD)/tools/pixel.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
+$(BUILD)/pathtracer: $(BUILD)/tools/pathtracer.o $(BUILD)/tools/pixel.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 pathtracer: $(BUILD)/pathtracer
@@ -119,7 +122,7 @@ $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) -MMD -c -o $@ $<
 
--include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/io/imgdiff.d $(BUILD)/tools/pathtracer.d $(TESTS:%=$(BUILD)/tests/%.d) \
+-include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/io/imgdiff.d $(BUILD)/tools/pathtracer.d $(BUILD)/tools/pixel.d $(TESTS:%=$(BUILD)/tests/%.d) \
     $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d) \
     $(BUILD)/tests/bench/parsing.d
 

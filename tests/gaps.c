@@ -153,7 +153,7 @@ struct found {
 static enum verdict judge_leaf(const struct pathtracer *pathtracer, struct patch_id id,
                                struct found found, double least, double *truth)
 {
-    struct triangle part = patch_part(id);
+    struct triangle part = pathtracer_part(id);
     double sum = 0.0, squares = 0.0, light = found.light;
     for (int n = 1; n <= ROUNDS_MOST; n++) {
         uint64_t seed = id_number(id) * ROUNDS_MOST + (uint64_t)n;

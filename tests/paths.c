@@ -6,7 +6,7 @@
  * well, or a check could not fail; each says how small. */
 #include <math.h>
 
-#include "tools/paths.h"
+#include "tools/pixel.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
 

@@ -52,14 +52,6 @@ static struct patch_id id_of_element(int32_t root, int level, int64_t number)
     return id;
 }
 
-struct triangle patch_part(struct patch_id id)
-{
-    struct triangle part = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    for (int step = 0; step < id_level(id); step++)
-        part = triangle_child(&part, id_step(id, step));
-    return part;
-}
-
 void truth_free(struct truth *truth)
 {
     alloc_free(truth->items);
@@ -222,7 +214,7 @@ static void find_means(const struct comm *comm, const struct pathtracer *pathtra
 /* A point anywhere in an element. */
 static void place_point(struct element *element, int64_t number)
 {
-    struct triangle part = patch_part(element->id);
+    struct triangle part = pathtracer_part(element->id);
     struct random random = random_seed((uint64_t)number + 1);
     for (int k = 0; k < 4; k++)
         random_bits(&random); /* the first numbers of neighbouring seeds are alike */

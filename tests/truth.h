@@ -1,5 +1,5 @@
 /* The truth about a scene: the reflected radiosity of elements and of points, each estimated twice
- * by tools/paths.h.
+ * by rad/beyond/paths.h.
  *
  * Elements are patches of a forest in which each root that reflects is divided evenly. Each holds
  * one point. What is kept is rho H, the radiosity less the emission: that is what a program has to
@@ -10,7 +10,7 @@
 #include "geom/error.h"
 #include "mpi/comm.h"
 #include "rad/id.h"
-#include "tools/paths.h"
+#include "rad/beyond/paths.h"
 
 enum { TRUTH_HALVES = 2, TRUTH_MAX_LEVEL = 10 };
 
@@ -28,9 +28,6 @@ struct truth {
     int32_t root_count;    /* of the scene */
     double area;           /* of the scene, square scene units: tells scenes apart */
 };
-
-/* Barycentric coordinates of the corners of a patch in its root. */
-struct triangle patch_part(struct patch_id id);
 
 /* Elements without estimates for a prepared scene: at level 10, or each at most 1 / `wanted` of the
  * scene's area. */

@@ -35,7 +35,7 @@
 #include "io/text.h"
 #include "io/viewpoint.h"
 #include "mpi/picture.h"
-#include "tools/paths.h"
+#include "tools/pixel.h"
 
 enum { SAMPLES = 64, SAMPLES_MAX = 1 << 24, HALVES = 2 };
 
@@ -183,15 +183,6 @@ static float *trace_picture(const struct run *run)
     return picture;
 }
 
-/* Barycentric coordinates of the corners of a patch in its root. */
-static struct triangle part_of(struct patch_id id)
-{
-    struct triangle part = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    for (int step = 0; step < id_level(id); step++)
-        part = triangle_child(&part, id_step(id, step));
-    return part;
-}
-
 /* Collective. rho H of the halves of each leaf, HALVES * BANDS floats, on rank 0. */
 static float *trace_leaves(const struct run *run)
 {
@@ -200,7 +191,7 @@ static float *trace_leaves(const struct run *run)
     float *own = alloc_array((size_t)(count / size + 1) * row, sizeof *own), *at = own;
     for (int64_t i = run->comm.rank; i < count; i += size) {
         struct patch_id id = run->solution.leaves[i].id;
-        struct triangle part = part_of(id);
+        struct triangle part = pathtracer_part(id);
         uint64_t seed = ((uint64_t)id.root << 32 | id.hierarchy) << 1;
         for (uint64_t half = 0; half < HALVES; half++) {
             struct rgb h = pathtracer_reflected(&run->pathtracer, (int32_t)id.root, &part,

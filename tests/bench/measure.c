@@ -133,15 +133,6 @@ static void print_line(const struct truth *truth, const struct scene *scene,
 
 /* --- the path tracer --- */
 
-/* The part of its root that a patch is, in barycentric coordinates. */
-static struct triangle part_of(struct patch_id id)
-{
-    struct triangle part = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    for (int step = 0; step < id_level(id); step++)
-        part = triangle_child(&part, id_step(id, step));
-    return part;
-}
-
 static bool reflects(const struct forest *forest, int64_t patch)
 {
     int32_t root = (int32_t)forest->patches[patch].id.root;
@@ -164,7 +155,7 @@ static int64_t trace_leaves(struct forest *forest, const struct pathtracer *path
             forest_average_patch(forest, (int32_t)i);
             continue;
         }
-        struct triangle part = part_of(patch->id);
+        struct triangle part = pathtracer_part(patch->id);
         patch->radiosity = pathtracer_reflected(pathtracer, root, &part, paths,
                                                 SEEDS + 2 * (uint64_t)i);
         for (int c = 0; c < BANDS; c++)

@@ -30,12 +30,13 @@
  * of the noise. The step is that of Roberts: powers of 1 / g with g^8 = g + 1. The rest
  * of the path is plain random numbers, and so are light paths: a lattice would correlate
  * the errors of all elements. */
-#include "tools/paths.h"
+#include "rad/beyond/paths.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "rad/beyond/sequence.h"
 
 static const double PI = 3.141592653589793238;
 
@@ -91,17 +92,12 @@ static struct vec3 point_on(const struct triangle *t, struct draw *draw)
     return triangle_point(t, (struct vec3){1.0 - u - v, u, v});
 }
 
-/* A unit vector whose density is its cosine to the unit normal over pi. */
-static struct vec3 cosine_direction(struct vec3 normal, struct draw *draw)
+struct triangle pathtracer_part(struct patch_id id)
 {
-    double height = draw_next(draw), angle = 2.0 * PI * draw_next(draw);
-    double up = sqrt(1.0 - height), aside = sqrt(height);
-    struct vec3 x = {1, 0, 0}, y = {0, 1, 0}, axis = fabs(normal.x) < 0.5 ? x : y;
-    struct vec3 u = vec3_cross(normal, axis);
-    u = vec3_scale(u, 1.0 / vec3_length(u));
-    struct vec3 v = vec3_cross(normal, u);
-    return vec3_add(vec3_scale(normal, up), vec3_add(vec3_scale(u, aside * cos(angle)),
-                                                     vec3_scale(v, aside * sin(angle))));
+    struct triangle part = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (int step = 0; step < id_level(id); step++)
+        part = triangle_child(&part, id_step(id, step));
+    return part;
 }
 
 /* --- light --- */
@@ -210,10 +206,6 @@ static void add_met_light(const struct pathtracer *pathtracer, const struct spot
 
 /* --- paths --- */
 
-/* A ray begins this far above its surface, beyond rounding, so that it does not meet
- * it. */
-static const double LIFT = 1024.0 * GEOM_ROUNDING;
-
 /* Where the ray arrives. False for a miss or a black back. */
 static bool arrive(const struct pathtracer *pathtracer, struct vec3 origin,
                    struct vec3 direction, bool fronts_only, struct spot *q)
@@ -231,13 +223,15 @@ static bool arrive(const struct pathtracer *pathtracer, struct vec3 origin,
     return q->root >= 0;
 }
 
-/* The same for a ray that leaves a surface. */
+/* The same for a ray that leaves a surface, in a direction whose density is its cosine to
+ * the normal over pi. */
 static bool follow(const struct pathtracer *pathtracer, const struct spot *p,
-                   struct vec3 direction, struct spot *q)
+                   struct draw *draw, struct spot *q)
 {
     struct vec3 normal = scene_root_plane(pathtracer->scene, p->root).normal;
-    struct vec3 start = vec3_add(p->x, vec3_scale(normal, LIFT));
-    return arrive(pathtracer, start, direction, false, q);
+    double u = draw_next(draw), v = draw_next(draw);
+    struct vec3 direction = cosine_direction(normal, direction_along(normal), u, v);
+    return arrive(pathtracer, point_above(p->x, normal), direction, false, q);
 }
 
 /* Whether a path goes on from a surface, and with how much. */
@@ -260,8 +254,7 @@ static struct rgb irradiance(const struct pathtracer *pathtracer, struct spot p,
     for (;;) {
         struct spot q;
         add_chosen_light(pathtracer, &p, throughput, draw, &sum);
-        struct vec3 normal = scene_root_plane(pathtracer->scene, p.root).normal;
-        if (!follow(pathtracer, &p, cosine_direction(normal, draw), &q))
+        if (!follow(pathtracer, &p, draw, &q))
             return sum;
         add_met_light(pathtracer, &p, &q, throughput, &sum);
         if (!goes_on(pathtracer, q.root, draw, &throughput))
@@ -300,8 +293,7 @@ void pathtracer_shine(const struct pathtracer *pathtracer, uint64_t seed,
     struct rgb light = {{0.0, 0.0, 0.0}}, one = {{1.0, 1.0, 1.0}};
     add_light(&light, one, 1.0 / rgb_sum(emission), emission);
     for (;;) {
-        struct vec3 normal = scene_root_plane(scene, p.root).normal;
-        if (!follow(pathtracer, &p, cosine_direction(normal, &draw), &q))
+        if (!follow(pathtracer, &p, &draw, &q))
             return;
         struct landing landing = {q.root, {q.weight[0], q.weight[1], q.weight[2]}, light};
         land(listener, &landing);
@@ -311,19 +303,18 @@ void pathtracer_shine(const struct pathtracer *pathtracer, uint64_t seed,
     }
 }
 
-struct rgb pathtracer_pixel(const struct pathtracer *pathtracer,
-                            const struct camera *camera, int x, int y, int samples,
-                            uint64_t seed)
+struct rgb pathtracer_seen(const struct pathtracer *pathtracer, pixel_ray *ray,
+                           const void *pixel, bool fronts_only, int samples,
+                           uint64_t seed)
 {
     struct rgb sum = {{0.0, 0.0, 0.0}}, one = {{1.0, 1.0, 1.0}};
-    struct vec3 eye = scene_from_input(pathtracer->scene, camera->eye);
     struct draw draw = draw_make(seed);
     for (draw.sample = 0; draw.sample < samples; draw.sample++) {
         struct spot seen;
         draw.used = 0;
-        double at_x = x + draw_next(&draw), at_y = y + draw_next(&draw);
-        if (!arrive(pathtracer, eye, camera_ray(camera, at_x, at_y), camera->fronts_only,
-                    &seen))
+        double u = draw_next(&draw), v = draw_next(&draw);
+        struct ray eye = ray(pixel, u, v);
+        if (!arrive(pathtracer, eye.origin, eye.direction, fronts_only, &seen))
             continue;
         const struct material *material;
         material = scene_root_material(pathtracer->scene, seen.root);

@@ -2,16 +2,18 @@
  * factors; and light paths, which go the other way.
  *
  * It shares the octree and the scene with the program and nothing of its method, so it is
- * what the program's answers are compared with. All seeds are hashed: the same seed gives
- * the same bits, and estimates with different seeds are independent. */
-#ifndef TOOLS_PATHS_H
-#define TOOLS_PATHS_H
+ * what the program's answers are compared with, by tests and by --accuracy. All seeds are
+ * hashed: the same seed gives the same bits, on every machine, and estimates with
+ * different seeds are independent. */
+#ifndef RAD_BEYOND_PATHS_H
+#define RAD_BEYOND_PATHS_H
 
 #include <stdint.h>
 
 #include "geom/scene.h"
-#include "io/camera.h"
 #include "octree/octree.h"
+#include "rad/id.h"
+#include "rad/sample.h"
 
 struct pathtracer {
     const struct scene *scene;    /* borrowed, prepared, something in it emits */
@@ -49,11 +51,17 @@ void pathtracer_shine(const struct pathtracer *pathtracer, uint64_t seed,
 /* W in square scene units: what all lights emit, in all bands. */
 double pathtracer_power(const struct pathtracer *pathtracer);
 
-/* Estimate of the mean radiosity E + rho H, W/m^2, that is seen through pixel (x, y) of a
- * picture; black where nothing is met, or a back. Its expectation is exact.
- * Pre: samples > 0. */
-struct rgb pathtracer_pixel(const struct pathtracer *pathtracer,
-                            const struct camera *camera, int x, int y, int samples,
-                            uint64_t seed);
+/* Barycentric coordinates of the corners of a patch in its root: a part, as above. */
+struct triangle pathtracer_part(struct patch_id id);
+
+/* A ray of a picture, for a place u, v in [0, 1) within a pixel. */
+typedef struct ray pixel_ray(const void *pixel, double u, double v);
+
+/* Estimate of the mean radiosity E + rho H, W/m^2, that the rays of a pixel meet; black
+ * where they meet nothing, or a back. Its expectation is exact. `fronts_only`: they look
+ * through backs. Pre: samples > 0. */
+struct rgb pathtracer_seen(const struct pathtracer *pathtracer, pixel_ray *ray,
+                           const void *pixel, bool fronts_only, int samples,
+                           uint64_t seed);
 
 #endif

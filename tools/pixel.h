@@ -1,0 +1,15 @@
+/* A pixel of a camera's picture, by the path tracer of rad/beyond/paths.h. */
+#ifndef TOOLS_PIXEL_H
+#define TOOLS_PIXEL_H
+
+#include "io/camera.h"
+#include "rad/beyond/paths.h"
+
+/* Estimate of the mean radiosity E + rho H, W/m^2, that is seen through pixel (x, y) of a
+ * picture; black where nothing is met, or a back. Its expectation is exact.
+ * Pre: samples > 0. */
+struct rgb pathtracer_pixel(const struct pathtracer *pathtracer,
+                            const struct camera *camera, int x, int y, int samples,
+                            uint64_t seed);
+
+#endif
