@@ -204,6 +204,30 @@ static void test_direct(void)
     world_free(&screened);
 }
 
+/* A black ceiling in the plane of the light, behind it in the file: all points of the
+ * light are seen through it, and no ray meets the light. */
+static void test_flush(void)
+{
+    double seen;
+    struct soup soup = {0};
+    struct scene *plain = lamp_scene(false, &seen);
+    for (int32_t i = 0; i < plain->input_count; i++)
+        soup_add(&soup, plain->triangles[i]);
+    soup_add_quad(&soup, (struct vec3){-2, -2, 1}, (struct vec3){0, 4, 0},
+                  (struct vec3){4, 0, 0}, 1);
+    struct scene *scene = scene_of_soup(&soup, MATERIALS);
+    for (int32_t i = 0; i < scene->input_count; i++)
+        scene->material_of[i] = i / 2;
+    scene->materials[FLOOR] = plain->materials[FLOOR];
+    scene->materials[LIGHT] = plain->materials[LIGHT];
+    soup_free(&soup);
+    scene_destroy(plain);
+    struct world flush = world_make(scene);
+    expect(trace(&flush, 0, &CENTRE, 0), 0.5 * 4.0 * seen, 0.004,
+           "under a light that its ceiling hides: rho H");
+    world_free(&flush);
+}
+
 /* --- light paths, against exact answers and against the other way --- */
 
 enum { LIGHT_PATHS = 2 * SAMPLES };
@@ -297,6 +321,7 @@ int main(void)
     test_row();
     test_two_sided();
     test_direct();
+    test_flush();
     test_turned();
     test_light_paths();
     return tap_done();

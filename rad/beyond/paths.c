@@ -108,6 +108,43 @@ struct spot {
     double weight[3]; /* barycentric coordinates in the root, where a ray arrives */
 };
 
+/* Where the ray arrives. False for a miss or a black back. */
+static bool arrive(const struct pathtracer *pathtracer, struct vec3 origin,
+                   struct vec3 direction, bool fronts_only, struct spot *q)
+{
+    struct octree_hit hit;
+    if (!octree_first_hit(pathtracer->octree, origin, direction, fronts_only, &hit,
+                          pathtracer->counts))
+        return false;
+    q->root = scene_root_on(pathtracer->scene, hit.triangle, hit.front);
+    q->x = triangle_point(&pathtracer->scene->triangles[hit.triangle],
+                          (struct vec3){hit.weight[0], hit.weight[1], hit.weight[2]});
+    q->weight[0] = hit.weight[0];
+    q->weight[1] = hit.weight[hit.front ? 1 : 2]; /* a twin has its corners turned */
+    q->weight[2] = hit.weight[hit.front ? 2 : 1];
+    return q->root >= 0;
+}
+
+/* A lamp in the plane of its ceiling and before it in the file has another face over it,
+ * which is met in its place; segments look through that. */
+static void find_hidden(struct pathtracer *pathtracer)
+{
+    const struct scene *scene = pathtracer->scene;
+    int32_t roots = scene_root_count(scene);
+    pathtracer->hidden = alloc_array((size_t)roots, sizeof *pathtracer->hidden);
+    for (int32_t r = 0; r < roots; r++) {
+        if (!(scene_root_area(scene, r) > 0.0) ||
+            !(rgb_sum(scene_root_material(scene, r)->emission) > 0.0))
+            continue;
+        struct triangle lamp = scene_root_triangle(scene, r);
+        struct vec3 down = scene_root_plane(scene, r).normal;
+        struct vec3 above = point_above(triangle_centroid(&lamp), down);
+        struct spot met;
+        bool meets = arrive(pathtracer, above, vec3_scale(down, -1.0), false, &met);
+        pathtracer->hidden[r] = meets && met.root != r;
+    }
+}
+
 struct pathtracer pathtracer_make(const struct scene *scene, const struct octree *octree)
 {
     struct pathtracer pathtracer = {.scene = scene, .octree = octree};
@@ -118,12 +155,14 @@ struct pathtracer pathtracer_make(const struct scene *scene, const struct octree
     for (int32_t r = 0; r < roots; r++)
         pathtracer.power[r] = sum +=
             scene_root_area(scene, r) * rgb_sum(scene_root_material(scene, r)->emission);
+    find_hidden(&pathtracer);
     return pathtracer;
 }
 
 void pathtracer_free(struct pathtracer *pathtracer)
 {
     alloc_free(pathtracer->power);
+    alloc_free(pathtracer->hidden);
     alloc_free(pathtracer->counts);
     *pathtracer = (struct pathtracer){.scene = NULL};
 }
@@ -187,8 +226,9 @@ static void add_chosen_light(const struct pathtracer *pathtracer, const struct s
     light.x = point_on(&t, draw);
     struct rgb emission = scene_root_material(scene, light.root)->emission;
     double g = coupling(pathtracer, p, &light), density = rgb_sum(emission) / power;
+    double both = density + (pathtracer->hidden[light.root] ? 0.0 : g);
     if (g > 0.0 && !is_blocked(pathtracer, p, &light))
-        add_light(sum, throughput, g / (density + g), emission);
+        add_light(sum, throughput, g / both, emission);
 }
 
 /* Irradiance from the light that a path has met. */
@@ -196,7 +236,7 @@ static void add_met_light(const struct pathtracer *pathtracer, const struct spot
                           const struct spot *q, struct rgb throughput, struct rgb *sum)
 {
     struct rgb emission = scene_root_material(pathtracer->scene, q->root)->emission;
-    if (!(rgb_sum(emission) > 0.0))
+    if (!(rgb_sum(emission) > 0.0) || pathtracer->hidden[q->root])
         return;
     double density = rgb_sum(emission) / pathtracer_power(pathtracer);
     double g = coupling(pathtracer, p, q);
@@ -205,23 +245,6 @@ static void add_met_light(const struct pathtracer *pathtracer, const struct spot
 }
 
 /* --- paths --- */
-
-/* Where the ray arrives. False for a miss or a black back. */
-static bool arrive(const struct pathtracer *pathtracer, struct vec3 origin,
-                   struct vec3 direction, bool fronts_only, struct spot *q)
-{
-    struct octree_hit hit;
-    if (!octree_first_hit(pathtracer->octree, origin, direction, fronts_only, &hit,
-                          pathtracer->counts))
-        return false;
-    q->root = scene_root_on(pathtracer->scene, hit.triangle, hit.front);
-    q->x = triangle_point(&pathtracer->scene->triangles[hit.triangle],
-                          (struct vec3){hit.weight[0], hit.weight[1], hit.weight[2]});
-    q->weight[0] = hit.weight[0];
-    q->weight[1] = hit.weight[hit.front ? 1 : 2]; /* a twin has its corners turned */
-    q->weight[2] = hit.weight[hit.front ? 2 : 1];
-    return q->root >= 0;
-}
 
 /* The same for a ray that leaves a surface, in a direction whose density is its cosine to
  * the normal over pi. */

@@ -3,7 +3,7 @@
  *
  *   build/mpi/measure [--header] [--trace] SCENE.obj REF [options of phr]
  *
- * With --trace a second line tells of a path tracer (tools/paths.c, with next event
+ * With --trace a second line tells of a path tracer (rad/beyond/paths.c, with next event
  * estimation) that finds the same leaves in about the same time: as many paths for each
  * leaf as the seconds allow, and as many for each point where `shown` is measured. Its
  * seconds are those of the leaves, with an octree of its own, on one rank. Its error
