@@ -57,7 +57,7 @@ RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather be
       beyond/node_exchange beyond/node_link beyond/paths beyond/sequence closure conjugate flux formfactor id link \
       linking method oracle patch pushpull sample snapshot treecode viewfactor
 MPI = accuracy assign balance broadcast closing comm final_gather funnel gather gather_mesh keep ledger linking memory migrate \
-      node pairs picture plan refinement routes scatter signals solve solver vote
+      node pairs picture plan refinement routes scatter signals solve solver spotcheck vote
 IO = binary camera cases compare image library machine mesh mtl obj options output palette ply plyfile \
      progress render shading stats store surface table text tone validate viewpoint
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
@@ -68,7 +68,7 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # Unit tests, bottom up; the last four are run with several ranks.
 TESTS = alloc elementary bicgstab sequence id triangle lambert hull scene polygon contour wall octree bundles flux patch \
         compact formfactor link linking cluster node oracle pushpull closure final_gather render treecode plan balance assign text obj ply output tone \
-        image camera viewpoint shading stop options progress paths norms cie furnace whole stability gaps store exchange conjugate exact converge leaks
+        image camera viewpoint shading stop options progress paths norms cie furnace whole stability gaps store spotcheck exchange conjugate exact converge leaks
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct replay
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.

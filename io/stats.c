@@ -11,7 +11,7 @@ static const char *const PHASE_NAMES[PHASE_COUNT] = {
     "total", "read", "linking", "refinement", "idle", "migration",
     "gather", "push_pull", "scatter", "solve", "render", "write", "octree", "spaces",
     "tree", "prepare", "looks", "sums", "routes", "final_gather", "rows",
-    "row_sums", "shading", "viewpoint"};
+    "spot_checks", "row_sums", "shading", "viewpoint"};
 
 static const char *const WORK_NAMES[WORK_COUNT] = {"linking", "looks", "splitting", "transfer",
                                                    "own", "patches", "final_gather"};

@@ -1,0 +1,271 @@
+/* Spot checks.
+ *
+ * An estimate of an error rests on assumptions, and fails where these do: that errors of
+ * different leaves have nothing to do with each other, that light varies within a leaf as
+ * it does from leaf to leaf, that no leaf has a part that is dark and cannot be seen. So
+ * the claim of --accuracy is measured. For leaves that are drawn at random, paths
+ * (rad/beyond/paths.c) estimate the reflected radiosity twice, r and s, independently:
+ *
+ *     (B - r) (B - s)   has the expectation   (error of B)^2,
+ *
+ * whatever the noise of r and s. Leaf i is drawn with a probability q_i, and
+ *
+ *     E^2 = mean over draws of  A_i (B_i - r)(B_i - s) / q_i  /  sum of A B^2
+ *
+ * is the mean square error, without bias; how much it scatters from draw to draw tells
+ * the deviation of that mean. A third of q goes by area, one by area times the square of
+ * the reflected radiosity, one by area times the square of the error that the gather
+ * itself has estimated: leaves that are large, bright or held for bad are drawn often,
+ * and where the estimate errs it is found out. Draws are spread evenly over the leaves in the
+ * order of forest_order(), so over the scene; BATCH at a time, each batch between those
+ * before (multiples of the golden ratio).
+ *
+ * Many leaves by few paths or few leaves by many? With n^2 the variance of r, the product
+ * scatters by E^4 kappa + 2 n^2 E^2 + n^4; trials say that n^2 between E^2 and 2 E^2
+ * takes fewest rays. A few paths for each leaf of a batch that does not count tell what n is.
+ *
+ * Rejected: the difference of two solutions, of which the finer is taken for the truth.
+ * Much of what both lack is the same, all the more where --max-level is in the way. */
+#include "mpi/spotcheck.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "geom/hash.h"
+#include "geom/stop.h"
+#include "rad/beyond/paths.h"
+
+/* Draws in a batch, batches at least and at most; paths for each half. */
+enum { BATCH = 32, BATCHES_LEAST = 3, BATCHES_MOST = 128, PATHS_LEAST = 16,
+       PATHS_MOST = 32768 };
+
+/* Rays that a check may take, besides as many as the gather took. */
+static const int64_t RAYS_FREE = 2000000;
+
+/* The most variance of one half that is good, in squares of the error. */
+static const double NOISE = 2.0;
+
+/* A doubt that is small enough, in parts of the square. */
+static const double DOUBT = 0.35;
+
+/* Two estimates of a leaf's reflected radiosity, W/m^2; no padding. */
+struct finding {
+    struct rgb half[2];
+};
+
+struct checking {
+    struct solver *solver;
+    struct pathtracer pathtracer;
+    int32_t *leaves;  /* [count] those that reflect, in forest_order() */
+    double *upto;     /* [count] sum of the probabilities of these leaves */
+    int64_t count;
+    double light;     /* area times the square of the reflected radiosity of all leaves */
+    int64_t rays_most;
+    int paths;        /* for each half */
+    int32_t drawn[BATCH];          /* numbers of leaves, */
+    struct finding found[BATCH];   /* and what paths say of them; */
+    double value[BATCH];           /* of each draw: see above, */
+    double noise[BATCH];           /* and its part that is noise */
+    struct spotcheck result;
+};
+
+static struct rgb reflected(const struct forest *forest, int32_t leaf)
+{
+    struct rgb b = forest->patches[leaf].radiosity;
+    struct rgb e = forest_material(forest, leaf)->emission;
+    for (int c = 0; c < BANDS; c++)
+        b.band[c] -= e.band[c];
+    return b;
+}
+
+/* What a leaf has of the three sums that its probability goes by. */
+struct merit {
+    double area, light, error; /* area; times the square of its reflected radiosity; of
+                                  its estimated error */
+};
+
+static struct merit merit_of(const struct checking *c, int32_t leaf)
+{
+    double area = forest_area(c->solver->method.forest, leaf);
+    double error = (double)c->solver->error[leaf];
+    struct rgb b = reflected(c->solver->method.forest, leaf);
+    return (struct merit){area, area * rgb_dot(b, b), area * error * error};
+}
+
+static double over(double part, double sum)
+{
+    return sum > 0.0 ? part / sum : 0.0;
+}
+
+/* Leaves that can be drawn, and how likely each is. */
+static void list_leaves(struct checking *c)
+{
+    const struct forest *forest = c->solver->method.forest;
+    int32_t *order = forest_order(forest);
+    struct merit sum = {0.0, 0.0, 0.0};
+    double upto = 0.0;
+    c->leaves = alloc_array((size_t)forest->count, sizeof *c->leaves);
+    c->upto = alloc_array((size_t)forest->count, sizeof *c->upto);
+    for (int64_t i = 0; i < forest->count; i++) {
+        int32_t p = order[i];
+        if (!patch_is_leaf(&forest->patches[p]) || !(forest_area(forest, p) > 0.0) ||
+            !(rgb_sum(forest_material(forest, p)->reflectance) > 0.0))
+            continue;
+        struct merit merit = merit_of(c, p);
+        c->leaves[c->count++] = p;
+        sum.area += merit.area;
+        sum.light += merit.light;
+        sum.error += merit.error;
+    }
+    for (int64_t i = 0; i < c->count; i++) {
+        struct merit merit = merit_of(c, c->leaves[i]);
+        c->upto[i] = upto += over(merit.area, sum.area) + over(merit.light, sum.light) +
+                             over(merit.error, sum.error);
+    }
+    for (int64_t i = 0; i < c->count; i++)
+        c->upto[i] /= upto;
+    c->light = sum.light;
+    alloc_free(order);
+}
+
+/* The leaf up to and with which the probability exceeds this share of all. */
+static int32_t leaf_at(const struct checking *c, double share)
+{
+    int64_t low = 0, high = c->count - 1;
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+        if (c->upto[middle] > share)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return (int32_t)low;
+}
+
+static void draw_leaves(struct checking *c, int batch)
+{
+    double moved = (batch + 0.5) * 0.6180339887498949;
+    moved -= floor(moved);
+    for (int k = 0; k < BATCH; k++)
+        c->drawn[k] = leaf_at(c, (k + moved) / BATCH);
+}
+
+static struct finding trace_leaf(const struct checking *c, int32_t leaf, uint64_t draw)
+{
+    struct patch_id id = c->solver->method.forest->patches[leaf].id;
+    struct triangle part = pathtracer_part(id);
+    uint64_t seed = hash_mix(hash_mix((uint64_t)id.root << 32 | id.hierarchy) + draw);
+    struct finding found;
+    for (uint64_t half = 0; half < 2; half++)
+        found.half[half] = pathtracer_reflected(&c->pathtracer, (int32_t)id.root, &part,
+                                                c->paths, seed + half);
+    return found;
+}
+
+/* Collective. Each rank traces its share of the leaves drawn. */
+static void trace_batch(struct checking *c, int batch)
+{
+    const struct comm *comm = c->solver->comm;
+    int *counts = alloc_array((size_t)comm->size, sizeof *counts);
+    int *at = alloc_array((size_t)comm->size, sizeof *at);
+    int64_t before = c->pathtracer.counts->rays;
+    struct finding all[BATCH] = {{.half = {{{0.0, 0.0, 0.0}}}}};
+    for (int k = 0; k < BATCH; k++)
+        counts[k % comm->size]++;
+    comm_displacements(comm, counts, at);
+    for (int k = comm->rank; k < BATCH && !stop_is_asked(); k += comm->size)
+        all[at[comm->rank] + k / comm->size] =
+            trace_leaf(c, c->leaves[c->drawn[k]], (uint64_t)(BATCH * batch + k));
+    comm_share(comm, all, counts, at, sizeof *all);
+    for (int k = 0; k < BATCH; k++)
+        c->found[k] = all[at[k % comm->size] + k / comm->size];
+    int64_t sums[] = {c->pathtracer.counts->rays - before, stop_is_asked()};
+    comm_add(comm, sums, 2);
+    c->result.rays += sums[0];
+    c->result.done = c->result.done && sums[1] == 0;
+    alloc_free(counts);
+    alloc_free(at);
+}
+
+/* Collective. */
+static void check_batch(struct checking *c, int batch)
+{
+    const struct forest *forest = c->solver->method.forest;
+    draw_leaves(c, batch);
+    trace_batch(c, batch);
+    for (int k = 0; k < BATCH; k++) {
+        int32_t i = c->drawn[k], leaf = c->leaves[i];
+        double likely = c->upto[i] - (i > 0 ? c->upto[i - 1] : 0.0);
+        double scale = forest_area(forest, leaf) / (likely * c->light);
+        struct rgb b = reflected(forest, leaf), off[2], apart;
+        for (int band = 0; band < BANDS; band++) {
+            for (int half = 0; half < 2; half++)
+                off[half].band[band] = b.band[band] - c->found[k].half[half].band[band];
+            apart.band[band] = off[0].band[band] - off[1].band[band];
+        }
+        c->value[k] = scale * rgb_dot(off[0], off[1]);
+        c->noise[k] = scale * 0.5 * rgb_dot(apart, apart);
+    }
+}
+
+/* Collective. How many paths are best for an error of this square. */
+static void choose_paths(struct checking *c, double square)
+{
+    double noise = 0.0;
+    c->paths = PATHS_LEAST;
+    check_batch(c, BATCHES_MOST);
+    for (int k = 0; k < BATCH; k++)
+        noise += c->noise[k] / BATCH;
+    int64_t rays = 2 * BATCHES_LEAST * c->result.rays; /* fewest batches, doubled */
+    for (; c->paths < PATHS_MOST && noise > NOISE * square && rays <= c->rays_most;
+         c->paths *= 2, noise *= 0.5, rays *= 2) {
+    }
+}
+
+/* Collective. */
+static void check_leaves(struct checking *c, double goal)
+{
+    struct spotcheck *result = &c->result;
+    double sum = 0.0, squares = 0.0;
+    bool goes_on = true;
+    for (int batch = 0; goes_on && result->done; batch++) {
+        check_batch(c, batch);
+        for (int k = 0; k < BATCH; k++) {
+            sum += c->value[k];
+            squares += c->value[k] * c->value[k];
+        }
+        result->leaves += BATCH;
+        result->paths += 2 * BATCH * c->paths;
+        double count = (double)result->leaves, mean = sum / count;
+        result->square = mean;
+        result->doubt = sqrt(fmax(0.0, squares / count - mean * mean) / count);
+        double enough = DOUBT * fmax(mean, 0.25 * goal * goal);
+        bool most = batch + 1 == BATCHES_MOST || result->rays > c->rays_most;
+        goes_on = batch + 1 < BATCHES_LEAST || (result->doubt > enough && !most);
+    }
+}
+
+struct spotcheck spotcheck_run(struct solver *solver, double goal)
+{
+    const struct gathered *gathered = &solver->gathered;
+    double start = comm_seconds(), expected = fmax(0.5 * goal, gathered->error);
+    struct checking c = {.solver = solver, .result = {.done = true}};
+    c.rays_most = RAYS_FREE + gathered->rays + gathered->segments;
+    c.pathtracer = pathtracer_make(solver->method.scene, solver->method.octree);
+    list_leaves(&c);
+    progress_begin(solver->progress, "checking", -1, 0);
+    if (c.light > 0.0) {
+        choose_paths(&c, expected * expected);
+        check_leaves(&c, goal);
+    }
+    const struct octree_counts *counts = c.pathtracer.counts;
+    ledger_add(&solver->ledger,
+               (struct phase_work){.kind = WORK_FINAL_GATHER,
+                                   .iteration = solver->iteration,
+                                   .work = counts->node_tests + counts->triangle_tests});
+    alloc_free(c.leaves);
+    alloc_free(c.upto);
+    pathtracer_free(&c.pathtracer);
+    solver->seconds[PHASE_SPOT_CHECKS] += comm_seconds() - start;
+    return c.result;
+}

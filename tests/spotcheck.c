@@ -1,0 +1,62 @@
+/* Tests of mpi/spotcheck.h: errors that are planted in an exact answer are found, and no
+ * others. In a furnace, a closed cube whose faces emit E = 1 W/m^2 and reflect half of
+ * what arrives, B - E is 1 everywhere; the final gather finds that within rounding. */
+#include "mpi/spotcheck.h"
+
+#include <math.h>
+
+#include "tests/defaults.h"
+#include "tests/tap.h"
+
+static const double GOAL = 0.02;
+
+static struct solution furnace(const struct comm *comm)
+{
+    struct painted painted = {0};
+    soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    paint(&painted, 0.5, 1.0);
+    return solve_scene(comm, scene_of_painted(&painted), "--max-level 2 --epsilon 1e-3");
+}
+
+/* Scales the reflected light of the leaves of some roots. */
+static void spoil(struct solution *s, uint32_t roots, double factor)
+{
+    struct forest *forest = s->solver->method.forest;
+    for (int64_t p = 0; p < forest->count; p++)
+        if (forest->patches[p].id.root < roots)
+            for (int c = 0; c < BANDS; c++)
+                forest->patches[p].radiosity.band[c] =
+                    1.0 + factor * (forest->patches[p].radiosity.band[c] - 1.0);
+}
+
+/* The square of the error is found, within 3 of the deviations that are told, which are
+ * as small as promised. */
+static void expect(struct solution *s, double square, const char *name)
+{
+    struct spotcheck check = spotcheck_run(s->solver, GOAL);
+    double enough = 0.36 * fmax(check.square, 0.25 * GOAL * GOAL);
+    tap_ok(check.done && check.paths >= check.leaves && check.rays >= check.paths &&
+               fabs(check.square - square) <= 3.0 * check.doubt + 1e-9 &&
+               check.doubt <= enough,
+           "%s: %.3g, found %.3g +- %.2g by %lld paths", name, square, check.square,
+           check.doubt, (long long)check.paths);
+}
+
+int main(int argc, char **argv)
+{
+    struct comm comm;
+    comm_start(&comm, &argc, &argv);
+    struct solution s = furnace(&comm);
+    expect(&s, 0.0, "an exact answer");
+    spoil(&s, 12, 1.1);
+    expect(&s, 0.01 / 1.21, "all leaves too bright by a tenth");
+    spoil(&s, 12, 1.0 / 1.1);
+    spoil(&s, 1, 1.5);
+    expect(&s, 0.25 / (11.0 + 2.25), "one of twelve by a half");
+    for (int64_t p = 0; p < s.solver->method.forest->count; p++)
+        s.solver->error[p] = s.solver->method.forest->patches[p].id.root == 0;
+    expect(&s, 0.25 / (11.0 + 2.25), "which the estimate knows");
+    solution_free(&s);
+    comm_stop(&comm);
+    return tap_done();
+}
