@@ -336,6 +336,16 @@ static void report_iteration(struct run *run)
         (long long)vote->links, (long long)vote->split, bound);
 }
 
+/* With --accuracy, the error of a round. */
+static void report_round(struct run *run)
+{
+    const struct gathered *gathered = &run->solver->gathered;
+    if (gathered->checked > 0)
+        say(run, "round %lld: error %.2g %% (rays %.2g %%, mesh %.2g %%), by %lld paths",
+            (long long)run->solver->accuracy.rounds, 100.0 * gathered->error,
+            100.0 * gathered->by_rays, 100.0 * gathered->by_mesh, (long long)gathered->paths);
+}
+
 /* How far the iterations have brought the bound on the remaining error from `first` down to the
  * tolerance: each takes off about the same part of it. */
 static double share_solved(const struct run *run, double first)
@@ -424,9 +434,7 @@ static bool goes_on(struct run *run)
     const struct vote *vote = &run->vote;
     if (solver->stop || vote->diverged)
         return false;
-    if (vote->converged && (solver->memory.reached > 0 || solver_is_accurate(solver)))
-        return false;
-    return solver->iteration < run->options.criterion.max_iterations;
+    return !vote->converged && solver->iteration < run->options.criterion.max_iterations;
 }
 
 /* True if the state of a whole pass is worth a checkpoint. */
@@ -440,11 +448,9 @@ static bool is_due(const struct run *run)
            run->solver->iteration >= options->criterion.max_iterations;
 }
 
-/* Collective. Steps 2 to 8. */
-static bool compute_light(struct run *run)
+/* Collective. Steps 4 to 8, until the light over the links has converged, or has to do. */
+static bool converge_links(struct run *run)
 {
-    if (!start_light(run))
-        return false;
     while (goes_on(run)) {
         int64_t levels = run->solver->ledger.level_count;
         if (!solver_refine(run->solver)) /* 4: evaluate and refine, level by level */
@@ -455,13 +461,26 @@ static bool compute_light(struct run *run)
         if (is_due(run) && !save_snapshot(run, STORE_CHECKPOINT, run->options.checkpoint))
             return false;
     }
-    if (run->vote.diverged)
-        return error_set(&run->error, EXIT_FAILED,
-                         "the solution diverges: surfaces reflect more light than they receive");
-    if (!run->solver->stop && run->options.criterion.final_gather > 0 && run->solver->tree &&
-        !solver_final_gather(run->solver, &run->vote)) /* 9: what leaves really see */
-        return goes_on_from_phase(run);
-    return !run->solver->stop || stopped(run, run->solver->stop);
+    return !run->vote.diverged ||
+           error_set(&run->error, EXIT_FAILED,
+                     "the solution diverges: surfaces reflect more light than they receive");
+}
+
+/* Collective. Steps 2 to 9. */
+static bool compute_light(struct run *run)
+{
+    enum finish finish = FINISH_AGAIN;
+    if (!start_light(run))
+        return false;
+    while (finish == FINISH_AGAIN) {
+        if (!converge_links(run))
+            return false;
+        if (run->solver->stop)
+            return stopped(run, run->solver->stop);
+        finish = solver_finish(run->solver, &run->vote); /* 9: what leaves really see */
+        report_round(run);
+    }
+    return finish == FINISH_DONE || goes_on_from_phase(run);
 }
 
 /* --- results --- */
@@ -614,6 +633,13 @@ static void warn_balance(struct run *run)
             100.0 * stats->gathered.closing);
 }
 
+/* What keeps --accuracy from being reached, in the order of enum hold. */
+static const char *const HOLDS[] = {
+    "", "--max-level is in the way", "--min-area is in the way",
+    "the memory limit is in the way", "--max-iterations is in the way",
+    "leaves cannot have more rays", "a smaller epsilon no longer helps", "too many rounds",
+    "paths do not tell it well enough"};
+
 /* Collective. The summary and --stats. */
 static bool report_run(struct run *run)
 {
@@ -631,6 +657,10 @@ static bool report_run(struct run *run)
         else if (!run->vote.converged)
             say(run, "warning: not converged after %lld iterations",
                 (long long)run->stats.iterations);
+        if (run->stats.hold != HOLD_NONE)
+            say(run, "warning: the error is %.2g %%, not the %.3g %% of --accuracy: %s",
+                100.0 * run->stats.error_estimate, 100.0 * run->stats.accuracy,
+                HOLDS[run->stats.hold]);
         warn_balance(run);
         if (!run->options.quiet)
             stats_print(&run->stats, stdout);

@@ -44,7 +44,8 @@ static const struct option OPTIONS[] = {
     {"--solver", KIND_CHOICE, offsetof(struct options, criterion.solver), 0, 0, "jacobi|cg"},
     {"--balance", KIND_CHOICE, offsetof(struct options, criterion.balance), 0, 0,
      "greedy|even"},
-    {"--final-gather", KIND_GATHER, offsetof(struct options, criterion.final_gather), 0, 16384, NULL},
+    {"--final-gather", KIND_GATHER, offsetof(struct options, criterion.final_gather), 0,
+     GATHER_RAYS_MOST, NULL},
     {"--paper", KIND_PAPER, 0, 0, 0, NULL},
     {"--alpha", KIND_REAL, offsetof(struct options, criterion.alpha), 0, 1, NULL},
     {"--tolerance", KIND_REAL, offsetof(struct options, criterion.tolerance), 0, 1, NULL},
@@ -325,19 +326,28 @@ static bool check_table(const struct options *options, struct error *error)
     return true;
 }
 
-/* Where --accuracy begins, and what --epsilon is without it; what --final-gather is. */
-static const double COARSE = 1e-3, EPSILON = 1e-4;
-enum { GATHER_RAYS = 256 };
+/* --epsilon and --final-gather where they are not given; with --accuracy, which begins
+ * there. */
+static const double EPSILON = 1e-4, COARSE = 1e-3;
+enum { GATHER_RAYS = 256, FEW_RAYS = 64 };
 
-/* Rows of the final gather need the tree, to find lamps in. */
+/* Rows of the final gather need the tree, to find lamps in; --accuracy goes by their
+ * error. */
 static bool check_gather(struct options *options, struct error *error)
 {
     struct criterion *criterion = &options->criterion;
-    bool tree = criterion->linking == LINKING_TREE;
+    bool tree = criterion->linking == LINKING_TREE, accurate = criterion->accuracy > 0.0;
     if (criterion->final_gather > 0 && !tree)
         return error_set(error, EXIT_USAGE, "--final-gather goes with --linking tree");
+    if (accurate && !tree)
+        return error_set(error, EXIT_USAGE, "--accuracy goes with --linking tree");
+    if (accurate && criterion->final_gather == 0)
+        return error_set(error, EXIT_USAGE,
+                         "--accuracy and --final-gather 0 do not go together");
     if (criterion->final_gather < 0) /* not given */
-        criterion->final_gather = tree ? GATHER_RAYS : 0;
+        criterion->final_gather = !tree ? 0 : accurate ? FEW_RAYS : GATHER_RAYS;
+    if (criterion->epsilon < 0.0)
+        criterion->epsilon = accurate ? COARSE : EPSILON;
     if (options->pixels && criterion->final_gather == 0)
         return error_set(error, EXIT_USAGE, "--final-gather pixels needs rays, and a tree");
     if (options->pixels && options->flat)
@@ -380,8 +390,6 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
             return false;
     }
     options->two_sided = options->two_sided || options->two_sided_lamps;
-    if (options->criterion.epsilon < 0.0) /* not given */
-        options->criterion.epsilon = options->criterion.accuracy > 0.0 ? COARSE : EPSILON;
     if (!check_gather(options, error))
         return false;
     if (!options->scene && !options->help && !options->version && !options->validate)
@@ -460,7 +468,7 @@ void options_print_help(FILE *file)
           "  --view FILE      eye x y z, at x y z, up x y z, fov deg, size w h (chosen)\n"
           "  --size WxH       pixels (512x512)       --samples N   N x N rays a pixel (3)\n"
           "  --exposure X     factor (automatic)     --flat        no interpolation\n"
-          "  --epsilon E      error of a link (1e-4) --accuracy A  lower it down to this\n"
+          "  --epsilon E      error of a link (1e-4) --accuracy A  refine to this error\n"
           "  --max-level N    of subdivision (10)    --min-area A  of a patch (1e-7)\n"
           "  --tolerance T    of the solution (1e-5) --max-iterations N   at most (1000)\n"
           "  --oracle error|bf   what splits a link  --form-factor polygon|disk\n"

@@ -13,6 +13,10 @@ static const char *const PHASE_NAMES[PHASE_COUNT] = {
     "tree", "prepare", "looks", "sums", "routes", "final_gather", "rows",
     "spot_checks", "row_sums", "shading", "viewpoint"};
 
+/* In the order of enum hold. */
+static const char *const HOLD_NAMES[] = {"none", "level", "area", "memory", "iterations",
+                                         "rays", "epsilon", "rounds", "doubt"};
+
 static const char *const WORK_NAMES[WORK_COUNT] = {"linking", "looks", "splitting", "transfer",
                                                    "own", "patches", "final_gather"};
 
@@ -31,8 +35,9 @@ void stats_print(const struct stats *stats, FILE *file)
     fprintf(file, "row sums    %.4f .. %.4f, mean %.4f (1 in a closed scene)\n",
             stats->closure_min, stats->closure_max, stats->closure_mean);
     if (stats->error_estimate > 0.0)
-        fprintf(file, "error       %.2g %% RMS at the leaves, estimated, at epsilon %.3g\n",
-                100.0 * stats->error_estimate, stats->epsilon);
+        fprintf(file, "error       %.2g %% RMS at the leaves, %s, at epsilon %.3g\n",
+                100.0 * stats->error_estimate,
+                stats->gathered.checked > 0 ? "measured" : "estimated", stats->epsilon);
     fprintf(file, "checksum    %016" PRIx64 "\n", stats->checksum);
 }
 
@@ -62,6 +67,11 @@ static void write_counts(FILE *file, const struct stats *stats)
     fprintf(file, "  \"memory_limited\": %s,\n", stats->memory_limited ? "true" : "false");
     write_real(file, "epsilon", stats->epsilon);
     write_real(file, "error_estimate", stats->error_estimate);
+    fprintf(file,
+            "  \"accuracy\": {\"goal\": %.17g, \"rounds\": %" PRId64 ", \"leaves\": %" PRId64
+            ", \"paths\": %" PRId64 ", \"hold\": \"%s\"},\n",
+            stats->accuracy, stats->rounds, stats->gathered.checked, stats->gathered.paths,
+            HOLD_NAMES[stats->hold]);
     write_real(file, "emitted_power", stats->emitted_power);
     write_real(file, "absorbed_power", stats->absorbed_power);
     write_real(file, "escaped_power", stats->escaped_power);

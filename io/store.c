@@ -17,10 +17,10 @@
 #include "geom/little.h"
 #include "geom/stop.h"
 
-enum { MAGIC_BYTES = 8, HEADER_BYTES = 48, LEAF_BYTES = 56, RGB_BYTES = 24, LINK_BYTES = 24,
+enum { MAGIC_BYTES = 8, HEADER_BYTES = 40, LEAF_BYTES = 56, LINK_BYTES = 24,
        BLOCK = 4096, SETTINGS_MAX = 4096 };
 
-static const char *const MAGIC[] = {"PHRLINK2", "PHRCHKP2"};
+static const char *const MAGIC[] = {"PHRLINK3", "PHRCHKP3"};
 static const char *const NAMES[] = {"link cache", "checkpoint"};
 
 /* --- writing --- */
@@ -66,14 +66,12 @@ static void put_snapshot(struct store_writer *writer, const struct snapshot *sna
         put_double(writer, snapshot->value[i]);
     for (int64_t i = 0; i < snapshot->root_count; i++)
         put64(writer, snapshot->root_change[i]);
-    put(writer, snapshot->kind, (size_t)snapshot->patch_count);
+    put(writer, snapshot->split, (size_t)snapshot->patch_count);
     for (int64_t i = 0; i < snapshot_leaf_count(snapshot); i++) {
         put_rgb(writer, snapshot->leaves[i].radiosity);
         put_rgb(writer, snapshot->leaves[i].irradiance);
         put_double(writer, snapshot->leaves[i].factor);
     }
-    for (int64_t i = 0; i < snapshot->compared_count; i++)
-        put_rgb(writer, snapshot->compared[i]);
 }
 
 bool store_create(struct store_writer *writer, const char *path, const struct store_terms *terms,
@@ -87,7 +85,6 @@ bool store_create(struct store_writer *writer, const char *path, const struct st
     put32(writer, (uint32_t)strlen(terms->settings));
     put32(writer, (uint32_t)snapshot->root_count);
     put64(writer, snapshot->patch_count);
-    put64(writer, snapshot->compared_count);
     put64(writer, snapshot->link_count);
     put(writer, terms->settings, strlen(terms->settings));
     put_snapshot(writer, snapshot);
@@ -125,7 +122,7 @@ bool store_finish(struct store_writer *writer, struct error *error)
 /* A file as its header describes it. */
 struct header {
     uint64_t scene;
-    int64_t settings, roots, patches, compared, links;
+    int64_t settings, roots, patches, links;
 };
 
 static bool damaged(const struct store_reader *reader, const char *how, struct error *error)
@@ -169,12 +166,12 @@ static bool counts_fit(const struct header *h, int64_t size)
 {
     if (h->settings > SETTINGS_MAX || h->settings > size || h->roots > size || h->patches < h->roots ||
         h->patches > size || h->patches > INT32_MAX || (h->patches - h->roots) % 4 != 0 ||
-        h->compared < 0 || h->compared > h->patches || h->links < 0 || h->links > size / LINK_BYTES)
+        h->links < 0 || h->links > size / LINK_BYTES)
         return false;
     struct snapshot counts = {.root_count = h->roots, .patch_count = h->patches};
     return size == HEADER_BYTES + h->settings + 8 * (SNAPSHOT_NUMBERS + SNAPSHOT_VALUES) +
                        8 * h->roots + h->patches + LEAF_BYTES * snapshot_leaf_count(&counts) +
-                       RGB_BYTES * h->compared + LINK_BYTES * h->links + 8;
+                       LINK_BYTES * h->links + 8;
 }
 
 static bool read_header(struct store_reader *reader, enum store_kind kind, struct header *header,
@@ -189,8 +186,7 @@ static bool read_header(struct store_reader *reader, enum store_kind kind, struc
         .settings = little_get32(bytes + 16),
         .roots = little_get32(bytes + 20),
         .patches = (int64_t)little_get64(bytes + 24),
-        .compared = (int64_t)little_get64(bytes + 32),
-        .links = (int64_t)little_get64(bytes + 40),
+        .links = (int64_t)little_get64(bytes + 32),
     };
     errno = 0;
     *size = fseek(reader->file, 0, SEEK_END) == 0 ? ftell(reader->file) : -1;
@@ -269,15 +265,13 @@ static bool get_snapshot(struct store_reader *reader, struct error *error)
         good = get_doubles(reader, &snapshot->value[i], 1, error);
     for (int64_t i = 0; i < snapshot->root_count && good; i++)
         good = get64(reader, &snapshot->root_change[i], error);
-    good = good && get(reader, snapshot->kind, (size_t)snapshot->patch_count, error);
+    good = good && get(reader, snapshot->split, (size_t)snapshot->patch_count, error);
     for (int64_t i = 0; i < snapshot_leaf_count(snapshot) && good; i++) {
         struct leaf_state *leaf = &snapshot->leaves[i];
         good = get_doubles(reader, leaf->radiosity.band, BANDS, error) &&
                get_doubles(reader, leaf->irradiance.band, BANDS, error) &&
                get_doubles(reader, &leaf->factor, 1, error);
     }
-    for (int64_t i = 0; i < snapshot->compared_count && good; i++)
-        good = get_doubles(reader, snapshot->compared[i].band, BANDS, error);
     return good;
 }
 
@@ -311,7 +305,6 @@ bool store_open_file(struct store_reader *reader, FILE *file, const char *name,
         return error_set(error, EXIT_USAGE, "%s: made from another scene", name);
     reader->snapshot.root_count = header.roots;
     reader->snapshot.patch_count = header.patches;
-    reader->snapshot.compared_count = header.compared;
     reader->snapshot.link_count = reader->links_left = header.links;
     snapshot_allocate(&reader->snapshot);
     if (!get_snapshot(reader, error) || !check_snapshot(reader, terms->kind, error))

@@ -3,20 +3,19 @@
  * Both hold a snapshot (rad/snapshot.h) and its links; a link cache is one from before
  * the first pass, with the links of all pairs of roots, and is bound to fewer settings.
  * Numbers are little-endian, whole ones in two's complement, others IEEE 754. With R
- * roots, N patches, L leaves, K compared patches, M links and T bytes of settings:
+ * roots, N patches, L leaves, M links and T bytes of settings:
  *
  *     bytes    what
- *     8        "PHRLINK2" a link cache, "PHRCHKP2" a checkpoint; the digit is the version
+ *     8        "PHRLINK3" a link cache, "PHRCHKP3" a checkpoint; the digit is the version
  *     8        scene_hash()
  *     4  4     T  R
- *     8  8  8  N  K  M
+ *     8  8     N  M
  *     T        settings: lines "--option value", each with its newline
- *     8 x 10   snapshot.number
- *     8 x 6    snapshot.value
+ *     8 x 12   snapshot.number
+ *     8 x 7    snapshot.value
  *     8 R      snapshot.root_change
- *     N        snapshot.kind, a byte each
+ *     N        snapshot.split, a byte each
  *     56 L     leaves: radiosity (3 doubles), irradiance (3), factor
- *     24 K     snapshot.compared (3 doubles)
  *     24 M     links: p q (4 bytes each; below 0: clusters), area (float), blocker (4),
  *              parts_p parts_q (3 each), seen, cost (1 each); ascending by p, then q
  *     8        hash_bytes() of all that comes before

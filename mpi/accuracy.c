@@ -1,98 +1,265 @@
-/* --accuracy: how far the leaves are from the truth, as far as the program itself can tell.
+/* --accuracy: links and rays are tightened until the error of the answer is small enough.
  *
- * When everything is refined and solved for one epsilon, epsilon is divided by TIGHTER and the
- * passes go on over the same links. The answer before, leaf by leaf, is then compared with the
- * better one, averaged over the same patches: their relative RMS difference D is the error that was
- * mended. What is left is as large or a little larger, since the error falls slowly with epsilon and
- * much of it is new: in the Cornell box and in a furnished room the true error of the better answer
- * was 0.6 to 1.3 D for epsilons from 2.5e-4 to 1.5e-8 (tests/converge.c holds it to the promise: at
- * most twice the estimate). The estimate is LEFT times D.
+ * A round is: links converge for an epsilon, the final gather fires N rays from a leaf,
+ * spot checks (mpi/spotcheck.c) measure the error of its answer. The claim is that error
+ * with one deviation of its measurement,
  *
- * Rejected: the ratio of successive differences as the part of the error that each step leaves,
- * which is too noisy to be divided by (estimates three times too large); the sum of what the
- * oracle says of all links, which adds up errors of both signs; comparing the row sums with 1,
- * which says nothing about direct light. */
+ *     claim^2 = E^2 + deviation,        E^2 = rays^2 + mesh^2.
+ *
+ * The gather estimates the two parts (mpi/final_gather.c). Where E^2 is more than these
+ * by more than chance, the mesh has the surplus. If the claim is above the goal, the next
+ * round brings E to AIM of it, which leaves room for the deviation, with both parts alike
+ * unless one is small already: noise falls like N^-0.6 and costs N, the mesh's part falls
+ * like the third root of epsilon, and leaves grow like the square root of 1 / epsilon, so
+ * both cost about as much. The links go on from where they are, from their own solution:
+ * a run is the same whether it is resumed before the gather or never interrupted. Leaves
+ * that the gather has split stay split.
+ *
+ * A limit that holds it back is named. The mesh is at its end where memory, iterations,
+ * --max-level or --min-area are, or where epsilon was lowered much and nothing came of
+ * it; rays, where they are as many as can be, or do not fit into memory. Then the other
+ * part is brought down to half of the one that stays, and that is delivered.
+ *
+ * Rejected: aiming by slopes that are measured between rounds. With two or three rounds
+ * they are mostly noise. */
 #include "mpi/solver.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
+#include "mpi/memory.h"
+#include "mpi/spotcheck.h"
 
-static const double TIGHTER = 4.0, SMALLEST_EPSILON = 1e-10;
-static const double LEFT = 1.25;
+enum { ROUNDS_MOST = 12 };
 
-void accuracy_free(struct accuracy *accuracy)
+static const double AIM = 0.85, SMALLEST_EPSILON = 1e-10;
+
+/* Rays become at most so many times as many in a round: with few of them it is cheap to
+ * find out about the mesh. */
+enum { MORE = 8 };
+
+/* The noise of twice as many rays. */
+static const double TWICE = 0.66;
+
+/* Epsilon is lowered by no less and no more than this in a round. */
+static const double LITTLE = 0.5, MUCH = 0.125;
+
+/* So many deviations are no chance. */
+static const double SURE = 2.0;
+
+/* Where epsilon was lowered by EIGHTH and more and this part of the mesh's error is left,
+ * it does not help. */
+static const double EIGHTH = 0.125, STUCK = 0.9;
+
+/* Where limits keep so many of the leaves from being split, there is no finer mesh; where
+ * they keep some, they are why epsilon does not help. */
+static const double ALL = 0.97, SOME = 0.1;
+
+/* --- the claim --- */
+
+/* Puts measurements in the place of estimates. A surplus that is more than doubt is the
+ * mesh's, for the estimate of the rays is good; else both are off by the same factor. */
+static void settle_claim(struct solver *solver, const struct spotcheck *check)
 {
-    alloc_free(accuracy->before);
-    *accuracy = (struct accuracy){0};
-}
-
-/* Copies the radiosities; only those of leaves mean an answer. */
-static void remember(struct accuracy *accuracy, const struct forest *forest)
-{
-    alloc_free(accuracy->before);
-    accuracy->before = forest_keep(forest);
-    accuracy->count = forest->count;
-    for (int64_t p = 0; p < forest->count; p++)
-        if (!patch_is_leaf(&forest->patches[p]))
-            accuracy->before[p].band[0] = HUGE_VAL; /* no answer */
-}
-
-/* sum A |B - B before|^2 and sum A |B - E|^2 over own leaves of before. */
-static void compare(const struct solver *solver, struct flux_unit unit, int64_t sums[2])
-{
-    const struct forest *forest = solver->method.forest;
-    for (int64_t p = 0; p < solver->accuracy.count; p++) {
-        const struct patch *patch = &forest->patches[p];
-        struct rgb before = solver->accuracy.before[p];
-        double area = forest_area(forest, (int32_t)p), change = 0.0, light = 0.0;
-        if (!solver->own[patch->id.root] || before.band[0] == HUGE_VAL)
-            continue;
-        struct rgb emission = forest_material(forest, (int32_t)p)->emission;
-        for (int c = 0; c < BANDS; c++) {
-            double d = patch->radiosity.band[c] - before.band[c];
-            double b = patch->radiosity.band[c] - emission.band[c];
-            change += area * (d * d);
-            light += area * (b * b);
-        }
-        sums[0] = flux_add(sums[0], flux_from_watts(unit, change));
-        sums[1] = flux_add(sums[1], flux_from_watts(unit, light));
+    struct gathered *gathered = &solver->gathered;
+    double square = fmax(0.0, check->square), estimate = gathered->error;
+    double rays = gathered->by_rays * gathered->by_rays;
+    solver->accuracy.clear = square - estimate * estimate > SURE * check->doubt;
+    if (solver->accuracy.clear) {
+        gathered->by_mesh = sqrt(square - rays);
+    } else if (estimate > 0.0) {
+        gathered->by_rays *= sqrt(square) / estimate;
+        gathered->by_mesh *= sqrt(square) / estimate;
     }
+    gathered->error = sqrt(square + check->doubt);
+    gathered->checked = check->leaves;
+    gathered->paths = check->paths;
+    double larger = estimate > 0.0 ? fmax(1.0, gathered->error / estimate) : 1.0;
+    for (int64_t p = 0; p < solver->method.forest->count; p++)
+        solver->error[p] *= (float)larger;
 }
 
-/* The relative RMS difference to the answer before, the same on all ranks. */
-static double difference(const struct solver *solver)
+/* --- limits --- */
+
+/* The limit that keeps leaves from being split, and the share of leaves that it keeps. */
+static enum hold hold_of_leaves(const struct solver *solver, double *share)
 {
     const struct forest *forest = solver->method.forest;
-    double largest = 1e-140;
-    for (int64_t p = 0; p < forest->count; p++)
-        for (int c = 0; c < BANDS; c++)
-            largest = fmax(largest, fabs(forest->patches[p].radiosity.band[c]));
-    struct flux_unit unit = flux_unit_for(4.0 * BANDS * largest * largest *
-                                          solver->method.area);
-    int64_t own[2] = {0, 0}, all[2];
-    compare(solver, unit, own);
-    MPI_Request request;
-    MPI_Iallreduce(own, all, 2, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
-    comm_wait(&request);
-    return all[1] > 0 ? sqrt((double)all[0] / (double)all[1]) : 0.0;
+    int64_t leaves = 0, deep = 0, small = 0;
+    for (int64_t p = 0; p < forest->count; p++) {
+        double area = forest_area(forest, (int32_t)p);
+        if (!patch_is_leaf(&forest->patches[p]) || !(area > 0.0))
+            continue;
+        leaves++;
+        if (id_level(forest->patches[p].id) >= solver->method.criterion.max_level)
+            deep++;
+        else
+            small += 0.25 * area < solver->method.patch_threshold;
+    }
+    *share = (double)(deep + small) / (double)leaves;
+    return deep > small ? HOLD_LEVEL : HOLD_AREA;
 }
 
-bool solver_is_accurate(struct solver *solver)
+/* What keeps the mesh from becoming finer, or keeps that from helping. */
+static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
+{
+    const struct accuracy *accuracy = &solver->accuracy;
+    double epsilon = solver->method.criterion.epsilon, share;
+    enum hold hold = hold_of_leaves(solver, &share);
+    if (solver->memory.reached > 0 ||
+        !memory_has_room(&solver->memory, links, 1, solver->method.forest->count, 0))
+        return HOLD_MEMORY;
+    if (solver->iteration >= solver->method.criterion.max_iterations)
+        return HOLD_ITERATIONS;
+    bool stuck = (epsilon <= EIGHTH * accuracy->coarse_epsilon &&
+                  solver->gathered.by_mesh > STUCK * accuracy->coarse) ||
+                 epsilon * LITTLE < SMALLEST_EPSILON;
+    if (share > ALL || (stuck && share > SOME))
+        return hold;
+    return stuck ? HOLD_EPSILON : HOLD_NONE;
+}
+
+/* What keeps rays from becoming twice as many. */
+static enum hold hold_of_rays(const struct solver *solver, int rays, int64_t links)
+{
+    const struct memory *memory = &solver->memory;
+    int64_t clusters = solver->tree->count, patches = solver->method.forest->count;
+    if (2 * rays > GATHER_RAYS_MOST)
+        return HOLD_RAYS;
+    return memory->limit > 0 && memory_needed(memory->copies, 2 * rays, links, patches,
+                                              clusters) > memory->limit
+               ? HOLD_MEMORY
+               : HOLD_NONE;
+}
+
+/* --- the next round --- */
+
+/* How large one part may be beside the other, if that stays; if `free`, it is to be
+ * brought down, too. */
+static double allowed_beside(double other, bool free, double aim)
+{
+    double even = sqrt(0.5) * aim;
+    if (free && other > even)
+        return even;
+    return other < AIM * aim ? sqrt(aim * aim - other * other) : 0.5 * other;
+}
+
+/* True if rays have become more. */
+static bool raise_rays(struct solver *solver, double allowed, int64_t links)
+{
+    struct criterion *criterion = &solver->method.criterion;
+    int before = criterion->final_gather;
+    for (double left = solver->gathered.by_rays;
+         left > allowed && criterion->final_gather < MORE * before &&
+         hold_of_rays(solver, criterion->final_gather, links) == HOLD_NONE;
+         left *= TWICE)
+        criterion->final_gather *= 2;
+    solver->memory.rays = criterion->final_gather;
+    return criterion->final_gather > before;
+}
+
+static void lower_epsilon(struct solver *solver, double allowed)
+{
+    struct criterion *criterion = &solver->method.criterion;
+    struct accuracy *accuracy = &solver->accuracy;
+    double mesh = solver->gathered.by_mesh, part = allowed / mesh;
+    double lower = fmin(LITTLE, fmax(MUCH, part * part * part));
+    bool much = criterion->epsilon <= EIGHTH * accuracy->coarse_epsilon;
+    if (accuracy->clear && (much || accuracy->coarse == 0.0)) {
+        accuracy->coarse = mesh;
+        accuracy->coarse_epsilon = criterion->epsilon;
+    }
+    criterion->epsilon *= lower;
+    solver->method.link_threshold = criterion->epsilon * solver->method.light_power;
+}
+
+/* Returns false if nothing can be tightened, and says why. `lowered`: epsilon was. */
+static bool tighten(struct solver *solver, int64_t links, bool *lowered)
+{
+    double by_rays = solver->gathered.by_rays, by_mesh = solver->gathered.by_mesh;
+    double aim = AIM * solver->method.criterion.accuracy;
+    enum hold mesh = hold_of_mesh(solver, links);
+    enum hold rays = hold_of_rays(solver, solver->method.criterion.final_gather, links);
+    double rays_allowed = allowed_beside(by_mesh, mesh == HOLD_NONE, aim);
+    double mesh_allowed = allowed_beside(by_rays, rays == HOLD_NONE, aim);
+    if (by_rays <= rays_allowed && by_mesh <= mesh_allowed) { /* doubt is in the way */
+        if (rays != HOLD_NONE || (mesh == HOLD_NONE && by_mesh > by_rays))
+            mesh_allowed = AIM * by_mesh;
+        else
+            rays_allowed = AIM * by_rays;
+    }
+    *lowered = mesh == HOLD_NONE && by_mesh > mesh_allowed;
+    bool raised = raise_rays(solver, rays_allowed, links);
+    if (*lowered)
+        lower_epsilon(solver, mesh_allowed);
+    if (*lowered || raised)
+        return true;
+    enum hold hold = by_mesh > mesh_allowed ? mesh : rays;
+    solver->accuracy.hold = hold == HOLD_NONE ? HOLD_DOUBT : hold;
+    return false;
+}
+
+/* Collective. True if another round is to follow. */
+static bool wants_more(struct solver *solver, int64_t links, bool *lowered)
 {
     struct accuracy *accuracy = &solver->accuracy;
-    struct criterion *criterion = &solver->method.criterion;
-    if (!(criterion->accuracy > 0.0))
-        return true;
-    if (accuracy->before) {
-        accuracy->estimate = LEFT * difference(solver);
-        if (accuracy->estimate <= criterion->accuracy)
-            return true;
+    accuracy->rounds++;
+    if (solver->gathered.error <= solver->method.criterion.accuracy)
+        return false;
+    if (accuracy->rounds == ROUNDS_MOST) {
+        accuracy->hold = HOLD_ROUNDS;
+        return false;
     }
-    if (criterion->epsilon / TIGHTER < SMALLEST_EPSILON)
-        return true;
-    remember(accuracy, solver->method.forest);
-    criterion->epsilon /= TIGHTER;
-    solver->method.link_threshold /= TIGHTER;
-    return false;
+    return tighten(solver, links, lowered);
+}
+
+/* --- rounds --- */
+
+/* What the links have brought. */
+struct linked {
+    struct vote vote;
+    struct rgb *radiosity; /* [count] of the patches that there were then */
+    int64_t count;
+};
+
+/* Puts the light of the links back. Leaves that the gather has split stay split; their
+ * children have what they had. */
+static void restore_light(struct forest *forest, const struct linked *linked)
+{
+    for (int64_t p = 0; p < forest->count; p++)
+        forest->patches[p].radiosity =
+            p < linked->count ? linked->radiosity[p]
+                              : forest->patches[forest->patches[p].parent].radiosity;
+}
+
+/* Collective. The verdict on a gather. */
+static enum finish judge(struct solver *solver, struct vote *vote,
+                         const struct linked *linked)
+{
+    struct spotcheck check = spotcheck_run(solver, solver->method.criterion.accuracy);
+    bool lowered = false;
+    if (!check.done)
+        return FINISH_STOPPED;
+    settle_claim(solver, &check);
+    if (!wants_more(solver, vote->links, &lowered))
+        return FINISH_DONE;
+    restore_light(solver->method.forest, linked);
+    *vote = linked->vote;
+    vote->converged = vote->converged && !lowered;
+    return FINISH_AGAIN;
+}
+
+enum finish solver_finish(struct solver *solver, struct vote *vote)
+{
+    const struct criterion *criterion = &solver->method.criterion;
+    if (criterion->final_gather == 0 || !solver->tree)
+        return FINISH_DONE;
+    struct linked linked = {.vote = *vote, .count = solver->method.forest->count};
+    bool measures = criterion->accuracy > 0.0;
+    linked.radiosity = measures ? forest_keep(solver->method.forest) : NULL;
+    enum finish finish = solver_final_gather(solver, vote) ? FINISH_DONE : FINISH_STOPPED;
+    if (measures && finish == FINISH_DONE)
+        finish = judge(solver, vote, &linked);
+    alloc_free(linked.radiosity);
+    return finish;
 }

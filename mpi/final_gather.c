@@ -86,6 +86,7 @@ static void gathering_start(struct gathering *g, struct solver *solver)
 static void gathering_end(struct gathering *g)
 {
     final_gather_drop_rows(&g->gather);
+    final_gather_free(&g->solver->gather); /* of a round before */
     g->solver->gather = g->gather;
     gather_mesh_free(&g->mesh);
     alloc_free(g->areas);
@@ -328,6 +329,7 @@ static void estimate_errors(struct gathering *g)
     double by_rays = 0.0, by_mesh = 0.0, light = 0.0;
     variances_by_mesh(g, mesh);
     variances_by_rays(g, rays);
+    alloc_free(solver->error);
     solver->error = alloc_array((size_t)solver->method.forest->count, sizeof *solver->error);
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m = forest_material(solver->method.forest, g->leaves[i]);
@@ -368,6 +370,7 @@ static void share_straight_light(struct gathering *g)
         for (int c = 0; c < BANDS; c++)
             straight[g->leaves[i]].band[c] = rho.band[c] * light[i].band[c];
     }
+    alloc_free(g->solver->straight);
     g->solver->straight = straight;
     alloc_free(light);
 }

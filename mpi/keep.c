@@ -27,25 +27,15 @@ struct home_state {
     double factor;
 };
 
-static bool is_answer(const struct accuracy *accuracy, int32_t p)
-{
-    return accuracy->before && p < accuracy->count && accuracy->before[p].band[0] < HUGE_VAL;
-}
-
 static void collect_trees(const struct solver *solver, const int32_t *order,
                           struct snapshot *snapshot)
 {
-    const struct accuracy *accuracy = &solver->accuracy;
-    int64_t leaf = 0, compared = 0;
+    int64_t leaf = 0;
     for (int64_t i = 0; i < snapshot->patch_count; i++) {
         const struct patch *patch = &solver->method.forest->patches[order[i]];
-        snapshot->kind[i] = patch_is_leaf(patch) ? 0 : PATCH_SPLIT;
+        snapshot->split[i] = !patch_is_leaf(patch);
         if (patch_is_leaf(patch))
             snapshot->leaves[leaf++].radiosity = patch->radiosity;
-        if (is_answer(accuracy, order[i])) {
-            snapshot->kind[i] |= PATCH_COMPARED;
-            snapshot->compared[compared++] = accuracy->before[order[i]];
-        }
     }
 }
 
@@ -109,11 +99,14 @@ static void collect_numbers(const struct solver *solver, const struct vote *vote
     snapshot->number[SNAPSHOT_SETTLED] = vote->settled;
     snapshot->number[SNAPSHOT_LIMITED] = solver->memory.reached;
     snapshot->number[SNAPSHOT_CHANGE] = solver->last_change;
+    snapshot->number[SNAPSHOT_ROUNDS] = solver->accuracy.rounds;
+    snapshot->number[SNAPSHOT_GATHER] = method->criterion.final_gather;
     snapshot->value[SNAPSHOT_REMAINING] = vote->remaining;
     snapshot->value[SNAPSHOT_ABSORBED] = vote->absorbed;
     snapshot->value[SNAPSHOT_ESCAPED] = vote->escaped;
     snapshot->value[SNAPSHOT_EPSILON] = method->criterion.epsilon;
-    snapshot->value[SNAPSHOT_ESTIMATE] = solver->accuracy.estimate;
+    snapshot->value[SNAPSHOT_COARSE] = solver->accuracy.coarse;
+    snapshot->value[SNAPSHOT_COARSE_EPSILON] = solver->accuracy.coarse_epsilon;
     snapshot->value[SNAPSHOT_LEAST_BEND] = solver->least_bend;
 }
 
@@ -139,8 +132,6 @@ void snapshot_collect(struct solver *solver, const struct vote *vote, struct sna
     int32_t *order = forest_order(forest);
     *snapshot = (struct snapshot){.root_count = forest->root_count,
                                   .patch_count = collects ? forest->count : forest->root_count};
-    for (int64_t p = 0; p < forest->count && collects; p++)
-        snapshot->compared_count += is_answer(&solver->accuracy, (int32_t)p);
     snapshot_allocate(snapshot);
     collect_numbers(solver, vote, snapshot);
     if (collects)
@@ -258,11 +249,9 @@ static void broadcast_snapshot(const struct comm *comm, struct snapshot *snapsho
     }
     comm_broadcast(comm, snapshot->root_change,
                    (size_t)snapshot->root_count * sizeof *snapshot->root_change);
-    comm_broadcast(comm, snapshot->kind, (size_t)snapshot->patch_count);
+    comm_broadcast(comm, snapshot->split, (size_t)snapshot->patch_count);
     comm_broadcast(comm, snapshot->leaves,
                    (size_t)snapshot_leaf_count(snapshot) * sizeof *snapshot->leaves);
-    comm_broadcast(comm, snapshot->compared,
-                   (size_t)snapshot->compared_count * sizeof *snapshot->compared);
 }
 
 /* Splits as in the snapshot, depth first: patches come to be in the same order on all ranks. */
@@ -271,7 +260,7 @@ static void restore_trees(struct forest *forest, const struct snapshot *snapshot
     int64_t i = 0;
     for (int32_t root = 0; root < forest->root_count; root++)
         for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
-            if (snapshot->kind[i++] & PATCH_SPLIT)
+            if (snapshot->split[i++])
                 forest_split(forest, p);
 }
 
@@ -279,24 +268,15 @@ static void restore_leaves(struct solver *solver, const struct snapshot *snapsho
                            const int32_t *order)
 {
     struct forest *forest = solver->method.forest;
-    struct accuracy *accuracy = &solver->accuracy;
-    int64_t leaf = 0, compared = 0;
-    if (snapshot->compared_count > 0) {
-        accuracy->before = alloc_array((size_t)forest->count, sizeof *accuracy->before);
-        accuracy->count = forest->count;
-    }
+    int64_t leaf = 0;
     for (int64_t i = 0; i < forest->count; i++) {
         int32_t p = order[i];
-        if (patch_is_leaf(&forest->patches[p])) {
-            const struct leaf_state *state = &snapshot->leaves[leaf++];
-            forest->patches[p].radiosity = state->radiosity;
-            solver->conjugate.irradiance[p] = state->irradiance;
-            solver->closure.factor[p] = state->factor;
-        }
-        if (snapshot->kind[i] & PATCH_COMPARED)
-            accuracy->before[p] = snapshot->compared[compared++];
-        else if (accuracy->before)
-            accuracy->before[p].band[0] = HUGE_VAL;
+        if (!patch_is_leaf(&forest->patches[p]))
+            continue;
+        const struct leaf_state *state = &snapshot->leaves[leaf++];
+        forest->patches[p].radiosity = state->radiosity;
+        solver->conjugate.irradiance[p] = state->irradiance;
+        solver->closure.factor[p] = state->factor;
     }
     forest_average(forest);
 }
@@ -318,7 +298,12 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
     bool as_limited = number[SNAPSHOT_LIMITED] == solver->memory.limit;
     solver->memory.reached = as_limited ? number[SNAPSHOT_LIMITED] : 0;
     solver->last_change = number[SNAPSHOT_CHANGE];
-    solver->accuracy.estimate = snapshot->value[SNAPSHOT_ESTIMATE];
+    solver->accuracy = (struct accuracy){
+        .rounds = number[SNAPSHOT_ROUNDS],
+        .coarse = snapshot->value[SNAPSHOT_COARSE],
+        .coarse_epsilon = snapshot->value[SNAPSHOT_COARSE_EPSILON]};
+    if (method->criterion.accuracy > 0.0 && number[SNAPSHOT_GATHER] > 0)
+        method->criterion.final_gather = solver->memory.rays = (int)number[SNAPSHOT_GATHER];
     solver->least_bend = snapshot->value[SNAPSHOT_LEAST_BEND];
     if (solver->pass > 0) { /* before the first pass a link cache does not bind epsilon */
         method->criterion.epsilon = snapshot->value[SNAPSHOT_EPSILON];

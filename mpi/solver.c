@@ -57,7 +57,6 @@ void solver_destroy(struct solver *solver)
     ledger_free(&solver->ledger);
     closure_free(&solver->closure);
     conjugate_free(&solver->conjugate);
-    accuracy_free(&solver->accuracy);
     alloc_free(solver->error);
     alloc_free(solver->straight);
     final_gather_free(&solver->gather);
@@ -210,10 +209,13 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
                                          stats->links, solver->method.forest->count,
                                          stats->clusters);
     stats->memory_limited = solver->memory.reached > 0;
-    stats->converged = vote->converged && !stats->memory_limited;
+    stats->accuracy = solver->method.criterion.accuracy;
+    stats->hold = solver->accuracy.hold;
+    stats->rounds = solver->accuracy.rounds;
+    stats->converged =
+        vote->converged && !stats->memory_limited && stats->hold == HOLD_NONE;
     stats->epsilon = solver->method.criterion.epsilon;
-    stats->error_estimate =
-        solver->error ? solver->gathered.error : solver->accuracy.estimate;
+    stats->error_estimate = solver->gathered.error;
     stats->emitted_power = unit * scene_emitted_power(scene);
     stats->absorbed_power = unit * vote->absorbed;
     stats->escaped_power = unit * vote->escaped;

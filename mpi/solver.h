@@ -19,11 +19,12 @@
 #include "rad/pushpull.h"
 #include "rad/stats.h"
 
-/* What --accuracy compares with; see mpi/accuracy.c. */
+/* Where --accuracy is; see mpi/accuracy.c. */
 struct accuracy {
-    struct rgb *before; /* [count] radiosities for the epsilon before, NULL: there was none */
-    int64_t count;
-    double estimate;    /* of the error of the leaves, relative RMS; 0: none yet */
+    int64_t rounds;  /* so far */
+    bool clear;      /* the part of the mesh is more than doubt */
+    double coarse, coarse_epsilon; /* the mesh's part of the error for an epsilon before, 0: none */
+    enum hold hold;
 };
 
 /* The memory limit; see mpi/memory.h. */
@@ -165,13 +166,14 @@ void solver_cast_ballot(struct solver *solver);
  * if a signal has ended it. Pre: there are clusters. */
 bool solver_final_gather(struct solver *solver, struct vote *vote);
 
+/* Step 9, if there is one, and with --accuracy the verdict on it: DONE; STOPPED by a signal; or AGAIN,
+ * and then criterion and vote are those of the links, for more passes, or for this step with more
+ * rays alone. */
+enum finish { FINISH_DONE, FINISH_STOPPED, FINISH_AGAIN };
+enum finish solver_finish(struct solver *solver, struct vote *vote);
+
 /* Enters the work of the iteration into the ledger. */
 void solver_record_iteration(struct solver *solver);
-
-/* When the vote has converged: true if the accuracy asked for is reached, or none was asked for, or
- * epsilon cannot go down any more. Else epsilon is lowered, for another pass. */
-bool solver_is_accurate(struct solver *solver);
-void accuracy_free(struct accuracy *accuracy);
 
 /* After the last iteration: the row sums over the links there are, into `stats`. */
 void solver_measure_closure(struct solver *solver, struct stats *stats);

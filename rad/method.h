@@ -27,8 +27,8 @@ struct criterion {
     enum balance balance;
     double epsilon;         /* energy or error of a link that splits it, relative to
                                light_power below */
-    double accuracy;        /* estimated error of the leaves down to which epsilon is lowered,
-                               relative RMS; 0: epsilon stays */
+    double accuracy;        /* error of the leaves down to which epsilon is lowered and rays are
+                               added, relative RMS; 0: these stay */
     double min_area;        /* smallest patch, relative to the scene's area */
     int max_level;          /* deepest subdivision, 0..ID_MAX_LEVEL */
     double alpha;           /* share of its parent's cost in the cost of a link, 0..1 */
@@ -37,6 +37,7 @@ struct criterion {
     int final_gather;       /* rays from a leaf of middling size; 0: none */
 };
 
+enum { GATHER_RAYS_MOST = 16384 };   /* of criterion.final_gather */
 enum { TESTS_PER_FORM_FACTOR = 8 }; /* a form factor takes about as long as so many tests */
 
 struct cluster_light;

@@ -16,23 +16,21 @@ void snapshot_allocate(struct snapshot *snapshot)
     size_t leaves = (size_t)snapshot_leaf_count(snapshot);
     snapshot->root_change = alloc_array((size_t)snapshot->root_count,
                                         sizeof *snapshot->root_change);
-    snapshot->kind = alloc_array((size_t)snapshot->patch_count, sizeof *snapshot->kind);
+    snapshot->split = alloc_array((size_t)snapshot->patch_count, sizeof *snapshot->split);
     snapshot->leaves = alloc_array(leaves, sizeof *snapshot->leaves);
-    snapshot->compared = alloc_array((size_t)snapshot->compared_count, sizeof *snapshot->compared);
 }
 
 void snapshot_free(struct snapshot *snapshot)
 {
     alloc_free(snapshot->root_change);
-    alloc_free(snapshot->kind);
+    alloc_free(snapshot->split);
     alloc_free(snapshot->leaves);
-    alloc_free(snapshot->compared);
     *snapshot = (struct snapshot){0};
 }
 
 /* --- trees --- */
 
-/* A walk over the kinds, depth first. */
+/* A walk over the trees, depth first. */
 struct walk {
     int32_t root; /* of the patch that comes next */
     int level;    /* its level */
@@ -40,9 +38,9 @@ struct walk {
 };
 
 /* Goes past a patch. Pre: it is not split if its level is ID_MAX_LEVEL. */
-static void walk_on(struct walk *walk, uint8_t kind)
+static void walk_on(struct walk *walk, uint8_t split)
 {
-    if (kind & PATCH_SPLIT) {
+    if (split) {
         walk->child[++walk->level] = 0;
         return;
     }
@@ -54,18 +52,14 @@ static void walk_on(struct walk *walk, uint8_t kind)
 static bool trees_are_whole(const struct snapshot *snapshot)
 {
     struct walk walk = {0};
-    int64_t compared = 0;
     for (int64_t i = 0; i < snapshot->patch_count; i++) {
-        uint8_t kind = snapshot->kind[i];
-        if (kind > (PATCH_SPLIT | PATCH_COMPARED) || walk.root >= snapshot->root_count)
+        uint8_t split = snapshot->split[i];
+        if (split > 1 || walk.root >= snapshot->root_count ||
+            (walk.level == ID_MAX_LEVEL && split))
             return false;
-        if (walk.level == ID_MAX_LEVEL && kind & PATCH_SPLIT)
-            return false;
-        walk_on(&walk, kind);
-        compared += (kind & PATCH_COMPARED) != 0;
+        walk_on(&walk, split);
     }
-    return walk.level == 0 && walk.root == snapshot->root_count &&
-           compared == snapshot->compared_count;
+    return walk.level == 0 && walk.root == snapshot->root_count;
 }
 
 /* --- numbers --- */
@@ -92,11 +86,14 @@ static bool numbers_are_sane(const struct snapshot *snapshot)
     for (int64_t i = 0; i < snapshot->root_count; i++)
         if (snapshot->root_change[i] < 0 || snapshot->root_change[i] > FLUX_LIMIT)
             return false;
-    return snapshot->number[SNAPSHOT_SETTLED] <= 1 && value[SNAPSHOT_REMAINING] >= 0.0 &&
+    return snapshot->number[SNAPSHOT_SETTLED] <= 1 &&
+           snapshot->number[SNAPSHOT_GATHER] <= GATHER_RAYS_MOST &&
+           value[SNAPSHOT_REMAINING] >= 0.0 &&
            fabs(value[SNAPSHOT_ABSORBED]) <= MOST_POWER &&
            fabs(value[SNAPSHOT_ESCAPED]) <= MOST_POWER && value[SNAPSHOT_EPSILON] >= 0.0 &&
-           value[SNAPSHOT_EPSILON] <= MOST_LIGHT && value[SNAPSHOT_ESTIMATE] >= 0.0 &&
-           value[SNAPSHOT_ESTIMATE] <= MOST_LIGHT && fabs(value[SNAPSHOT_LEAST_BEND]) <= MOST_LIGHT;
+           value[SNAPSHOT_EPSILON] <= MOST_LIGHT && value[SNAPSHOT_COARSE] >= 0.0 &&
+           value[SNAPSHOT_COARSE] <= MOST_LIGHT && value[SNAPSHOT_COARSE_EPSILON] >= 0.0 &&
+           value[SNAPSHOT_COARSE_EPSILON] <= MOST_LIGHT && fabs(value[SNAPSHOT_LEAST_BEND]) <= MOST_LIGHT;
 }
 
 static bool leaves_are_sane(const struct snapshot *snapshot)
@@ -107,9 +104,6 @@ static bool leaves_are_sane(const struct snapshot *snapshot)
             !(leaf->factor >= 1.0 / MOST_FACTOR && leaf->factor <= MOST_FACTOR))
             return false;
     }
-    for (int64_t i = 0; i < snapshot->compared_count; i++)
-        if (!light_is_sane(snapshot->compared[i]))
-            return false;
     return true;
 }
 
@@ -141,7 +135,7 @@ struct link_check link_check_start(const struct snapshot *snapshot, const struct
         double share = 1.0 / (double)(UINT32_C(1) << (2 * walk.level));
         check.root[i] = walk.root;
         check.area[check.cluster_count + i] = scene_root_area(scene, walk.root) * share;
-        walk_on(&walk, snapshot->kind[i]);
+        walk_on(&walk, snapshot->split[i]);
     }
     return check;
 }

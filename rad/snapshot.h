@@ -23,6 +23,8 @@ enum snapshot_number {
     SNAPSHOT_CHANGE,         /* change in the last iteration, flux units (Jacobi) */
     SNAPSHOT_RAYS, SNAPSHOT_NODE_TESTS, SNAPSHOT_TRIANGLE_TESTS, /* work of all ranks so far */
     SNAPSHOT_WALLED_OFF, SNAPSHOT_RAYS_SPARED,
+    SNAPSHOT_ROUNDS,         /* of --accuracy, */
+    SNAPSHOT_GATHER,         /* and rays from a leaf, as it has raised them */
     SNAPSHOT_NUMBERS
 };
 
@@ -30,13 +32,10 @@ enum snapshot_value {
     SNAPSHOT_REMAINING,      /* bound on the remaining error, relative to all light; HUGE_VAL: none */
     SNAPSHOT_ABSORBED, SNAPSHOT_ESCAPED, /* W, areas in square scene units */
     SNAPSHOT_EPSILON,        /* as --accuracy has lowered it */
-    SNAPSHOT_ESTIMATE,       /* of the error, with --accuracy */
+    SNAPSHOT_COARSE, SNAPSHOT_COARSE_EPSILON, /* of a mesh before, with --accuracy */
     SNAPSHOT_LEAST_BEND,     /* of conjugate gradients */
     SNAPSHOT_VALUES
 };
-
-/* Bits of a patch's kind. */
-enum { PATCH_SPLIT = 1, PATCH_COMPARED = 2 };
 
 struct leaf_state {
     struct rgb radiosity;  /* B, W/m^2 */
@@ -48,15 +47,12 @@ struct snapshot {
     int64_t number[SNAPSHOT_NUMBERS];
     double value[SNAPSHOT_VALUES];
     int64_t root_count, patch_count, link_count;
-    int64_t compared_count;    /* patches with PATCH_COMPARED */
     int64_t *root_change;      /* [root_count] of Jacobi; see push_pull() */
-    uint8_t *kind;             /* [patch_count] PATCH_SPLIT: it has children; PATCH_COMPARED: it has
-                                  an answer that --accuracy compares with */
+    uint8_t *split;            /* [patch_count] 1: it has children, else 0 */
     struct leaf_state *leaves; /* [snapshot_leaf_count()] */
-    struct rgb *compared;      /* [compared_count] these answers, W/m^2 */
 };
 
-/* Gives a snapshot whose four counts are set its arrays, all zero. */
+/* Gives a snapshot whose three counts are set its arrays, all zero. */
 void snapshot_allocate(struct snapshot *snapshot);
 void snapshot_free(struct snapshot *snapshot);
 
@@ -66,7 +62,7 @@ static inline int64_t snapshot_leaf_count(const struct snapshot *snapshot)
     return snapshot->patch_count - (snapshot->patch_count - snapshot->root_count) / 4;
 }
 
-/* True if the kinds are those of `root_count` whole trees, no deeper than IDs reach, and every number
+/* True if the splits are those of `root_count` whole trees, no deeper than IDs reach, and every number
  * and value is one that a run could have. The counts fit each other already.
  * Errors: what is wrong, without a file's name, EXIT_USAGE. */
 bool snapshot_check(const struct snapshot *snapshot, struct error *error);

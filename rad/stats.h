@@ -61,7 +61,16 @@ struct work_sums {
     int64_t bytes;   /* sum over phases of the bytes that the rank sent that sent most */
 };
 
-/* The final gather of all ranks. */
+/* What keeps --accuracy from being reached. */
+enum hold {
+    HOLD_NONE, HOLD_LEVEL, HOLD_AREA, HOLD_MEMORY, HOLD_ITERATIONS,
+    HOLD_RAYS,    /* no leaf can have more */
+    HOLD_EPSILON, /* it is as small as can be, or helps no more */
+    HOLD_ROUNDS,  /* there were as many as there may be */
+    HOLD_DOUBT    /* paths do not tell the error well enough */
+};
+
+/* The last final gather of all ranks. */
 struct gathered {
     int64_t rays, segments; /* fired; asked whether they are blocked */
     int64_t exact;          /* rows made without rays */
@@ -71,9 +80,11 @@ struct gathered {
     int64_t pixels;         /* rays and segments fired for the picture */
     double closing;         /* largest part that irradiances of a closed scene were changed by, so
                                that all that is emitted is absorbed; 0: it is open */
-    double error;           /* of the leaves, estimated, relative RMS of reflected radiosity: */
+    double error;           /* of the leaves, relative RMS of reflected radiosity: estimated, or measured */
     double by_rays;         /* the part that comes from the choice of rays, */
-    double by_mesh;         /* and that from B varying within leaves; their squares add up */
+    double by_mesh;         /* and that from B varying within leaves: their squares sum to that of
+                               the error, less the doubt in a measurement */
+    int64_t checked, paths; /* leaves by which the error was measured, 0: it was not; paths for that */
 };
 
 struct stats {
@@ -84,6 +95,9 @@ struct stats {
     bool memory_limited;                                /* linking or refinement ended there */
     double epsilon;                                     /* relative to the emitted power */
     double error_estimate;     /* of the leaves, relative RMS; 0: there is none */
+    double accuracy;           /* asked for, 0: none was */
+    enum hold hold;            /* what keeps it from being reached */
+    int64_t rounds;            /* of --accuracy */
     double emitted_power, absorbed_power, escaped_power; /* W, input units, sum over bands */
     uint64_t checksum;
     int64_t rays, node_tests, triangle_tests;                      /* of form factors */

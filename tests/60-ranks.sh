@@ -132,7 +132,7 @@ method paper --paper
 method rows --closure rows --form-factor disk
 method symmetric --closure symmetric --solver jacobi --max-level 4
 method none --oracle bf --closure none
-method accuracy --accuracy 4%
+method accuracy --accuracy 1.5% --epsilon 1e-2
 method pixels --final-gather 8,pixels --samples 2
 
 "$work/serial/phr" --form-factors scenes/cornell.obj --epsilon 1e-3 --quiet >"$work/table-serial"

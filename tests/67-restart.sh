@@ -116,7 +116,11 @@ resumes() {
 
 resumes jacobi 4 --solver jacobi --max-level 4
 resumes paper 3 --paper --max-level 4
-resumes accuracy 30 --accuracy 5% --epsilon 1e-3
+for limit in 4 26 40; do # in the first round, in the second, and at its end
+    resumes accuracy-$limit $limit --accuracy 1.5% --epsilon 1e-2
+done
+check "which takes two rounds and more" \
+    holds "$(stat_of "$work/accuracy-40.json" passes) > $(stat_of "$work/plain.json" passes)"
 counts="checksum links patches passes iterations absorbed_power" # rays fired again are counted again
 resumes two-sided 8 --two-sided --max-level 4
 resumes symmetric 8 --closure symmetric --max-level 3
@@ -192,6 +196,24 @@ check "it goes on where there is more memory" [ "$(stat_of "$work/grown.json" me
 check "to the end" [ "$(stat_of "$work/grown.json" converged)" = true ]
 run still 3 $fine --memory 2M --resume "$work/small-4.check" >/dev/null
 check "and not where there is not" same still small-1
+
+# Limits that hold --accuracy back: said in words, with the error that was reached.
+# held NAME HOLD WORDS OPTIONS...
+held() {
+    name=$1 hold=$2 words=$3
+    shift 3
+    run "$name-1" 1 scenes/cornell.obj --size 40x40 --accuracy 1% "$@" >/dev/null
+    check "held back by $*: exit status 0" [ $? -eq 0 ]
+    run "$name-3" 3 scenes/cornell.obj --size 40x40 --accuracy 1% "$@" >/dev/null
+    check "on 3 ranks alike" same "$name-3" "$name-1"
+    check "and it says so" grep -q "^phr: warning: the error is [2-9].* %, not the 1 % of --accuracy: $words" \
+        "$work/$name-3.err"
+    check "has not converged" [ "$(stat_of "$work/$name-1.json" converged)" = false ]
+    check "and --stats has the limit" grep -q "\"hold\": \"$hold\"" "$work/$name-1.json"
+}
+held by-memory memory "the memory limit is in the way" --memory 2M
+held by-level level "--max-level is in the way" --max-level 1
+held by-area area "--min-area is in the way" --min-area 0.01
 
 # Linking ends there too: the roots of a room have six times as many links as fit.
 build/room 1000 1 >"$work/room.obj"

@@ -106,12 +106,13 @@ static void test_switches(void)
            "--validate needs no scene");
     options_free(&options);
     tap_ok(parse("--accuracy 2.5% a.obj", &options) && options.criterion.accuracy == 0.025 &&
-               options.criterion.epsilon == 1e-3,
-           "--accuracy in percent, from a coarse epsilon");
+               options.criterion.epsilon == 1e-3 && options.criterion.final_gather == 64,
+           "--accuracy in percent, from a coarse epsilon and few rays");
     options_free(&options);
-    tap_ok(parse("--accuracy 0.5 --epsilon 1e-4 a.obj", &options) &&
-               options.criterion.accuracy == 0.5 && options.criterion.epsilon == 1e-4,
-           "--accuracy from a given epsilon");
+    tap_ok(parse("--accuracy 0.5 --epsilon 1e-4 --final-gather 32 a.obj", &options) &&
+               options.criterion.accuracy == 0.5 && options.criterion.epsilon == 1e-4 &&
+               options.criterion.final_gather == 32,
+           "--accuracy from a given epsilon and number of rays");
     options_free(&options);
     static const char *const wrong[] = {"%", "0.001%", "101%", "1%%", "0%"};
     int refused = 0;
@@ -425,6 +426,10 @@ static void test_restart(void)
                options.criterion.final_gather == 64,
            "or as many as are given");
     options_free(&options);
+    check_refused("a.obj --paper --accuracy 1%", "--accuracy goes with --linking tree");
+    check_refused("a.obj --accuracy 1% --linking pairs", "--accuracy goes with --linking tree");
+    check_refused("a.obj --final-gather 0 --accuracy 1%",
+                  "--accuracy and --final-gather 0 do not go together");
     check_refused("a.obj --paper --linking tree --load-links l",
                   "--load-links goes with --linking pairs (--paper)");
     check_refused("a.obj --every 2", "--every needs --checkpoint");

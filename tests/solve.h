@@ -68,12 +68,12 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
     solver_link_roots(s.solver);
     solver_assign_roots(s.solver);
     do {
-        solver_refine(s.solver);
-        s.vote = solve_links(s.solver);
-    } while (!(s.vote.converged && solver_is_accurate(s.solver)) && !s.vote.diverged &&
-             s.solver->iteration < criterion.max_iterations);
-    if (criterion.final_gather > 0 && s.solver->tree && !s.vote.diverged)
-        solver_final_gather(s.solver, &s.vote);
+        while (!s.vote.converged && !s.vote.diverged &&
+               s.solver->iteration < criterion.max_iterations) {
+            solver_refine(s.solver);
+            s.vote = solve_links(s.solver);
+        }
+    } while (!s.vote.diverged && solver_finish(s.solver, &s.vote) == FINISH_AGAIN);
     s.seconds = seconds_of_work(comm) - start;
     solver_measure_closure(s.solver, &s.stats);
     solver_report(s.solver, &s.vote, &s.stats);
