@@ -33,7 +33,7 @@ static const double MESH = 0.01;
 
 /* A look takes this part of the rays of a row for each quarter of the leaf. If these are
  * fewer than FEWEST_LOOKED, there are no looks. */
-enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 2 };
+enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 4 };
 
 /* A leaf has 2^MOST_DOUBLED times the mean number of rays at most, and 2^-MOST_HALVED. */
 enum { MOST_DOUBLED = 4, MOST_HALVED = 2 };
