@@ -157,8 +157,8 @@ hits() {
             print scene, variant, "", 0.1 / rate ",,,", 100000 ",,,,,,,,"
         }
         $1 == "octree:" { line("octree", $2) }
-        $1 == "Embree:" { line("embree", $5) }
-        $1 == "rays" && $4 > 1 { exit }'
+        $1 == "Embree:" { line("embree", $2) }
+        / 64 from each/ { exit }'
 }
 
 # The lines of a scene, one variant after the other.
