@@ -155,8 +155,8 @@ static void add_strip(struct painted *painted, struct vec3 origin, struct vec3 a
 static void add_speck(struct painted *painted)
 {
     struct vec3 at = point(0.5, 0.5, 0.5);
-    soup_add(&painted->soup, (struct triangle){{at, vec3_add(at, point(0.005, 0, 0)),
-                                                vec3_add(at, point(0, 0.005, 0))}});
+    soup_add(&painted->soup, (struct triangle){{at, vec3_add(at, point(0.001, 0, 0)),
+                                                vec3_add(at, point(0, 0.001, 0))}});
     soup_add_quad(&painted->soup, point(-5, -5, -1), point(0, 10, 0), point(10, 0, 0), 1);
     paint(painted, 0.0, 0.0);
 }
