@@ -514,18 +514,11 @@ static void write_outputs(struct run *run, const struct shading *shading, float 
     }
 }
 
-static bool wants_picture(const struct options *options)
+/* True if a mesh, or else a picture, is among the outputs. */
+static bool wants(const struct options *options, bool mesh)
 {
     for (int i = 0; i < options->output_count; i++)
-        if (output_format_of(options->outputs[i]) != FORMAT_PLY)
-            return true;
-    return false;
-}
-
-static bool wants_mesh(const struct options *options)
-{
-    for (int i = 0; i < options->output_count; i++)
-        if (output_format_of(options->outputs[i]) == FORMAT_PLY)
+        if ((output_format_of(options->outputs[i]) == FORMAT_PLY) == mesh)
             return true;
     return false;
 }
@@ -600,8 +593,8 @@ static bool show_results(struct run *run)
     if (run->options.output_count == 0)
         return true;
     uint8_t *open = survey_leaves(run);
-    float *picture = wants_picture(&run->options) ? make_picture(run, open) : NULL;
-    struct shading *shading = wants_mesh(&run->options) ? shade_leaves(run, NULL, open) : NULL;
+    float *picture = wants(&run->options, false) ? make_picture(run, open) : NULL;
+    struct shading *shading = wants(&run->options, true) ? shade_leaves(run, NULL, open) : NULL;
     run->solver->seconds[PHASE_RENDER] = comm_seconds() - start;
     start = comm_seconds();
     if (goes_on_from_phase(run) && run->comm.rank == 0)

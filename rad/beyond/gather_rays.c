@@ -8,12 +8,12 @@
  * known from exact factors; rays that meet a lamp count what it reflects and not what it
  * emits.
  *
- * The mesh is wrong where a ray ends nearer than the leaf there is large: under a sheet
- * of paper on a table the table is dark, but the leaf is not. And it is wrong in a gap
- * that is narrow for the leaf, also far from where the ray began: the leaf may reach into
- * the light. There the ray goes on: the point that it met receives light from a lamp, by
- * one segment, and from one more ray, until a ray ends far enough away. That is a path tracer for what is near and radiosity
- * for the rest. */
+ * The mesh is wrong where a ray ends nearer than the leaf there is large: under a
+ * sheet of paper on a table the table is dark, but the leaf is not. And it is wrong in
+ * a gap that is narrow for the leaf, also far from where the ray began: the leaf may
+ * reach into the light. There the ray goes on: the point that it met receives light
+ * from a lamp, by one segment, and from one more ray, until a ray ends far enough
+ * away. That is a path tracer for what is near and radiosity for the rest. */
 #include "rad/beyond/receiver.h"
 
 #include <math.h>
