@@ -8,7 +8,10 @@
  *
  *     area * variance of rho H over it  >  MESH * epsilon * sum of area * (rho H)^2,
  *
- * so that all leaves have about the same share of it.
+ * so that all leaves have about the same share of it. At most, if all of it falls on one
+ * quarter, the light of a leaf has a variance of 3 times its square: a leaf that could not
+ * even then be split, by the light that the links bring, is not looked at. In a scene of
+ * many small triangles few are.
  *
  * Looks also tell how noisy the light of a leaf is: rows get rays in proportion to the
  * square root of area times variance, which makes the noise, by area, least for a given
@@ -31,6 +34,10 @@
 
 static const double MESH = 0.01;
 
+/* The variance of the light over a leaf is at most this times its square, which the links
+ * tell with an error of this part of the mean square. */
+static const double SPREAD_MOST = 3.0, UNSURE = 0.1;
+
 /* A look takes this part of the rays of a row for each quarter of the leaf. If these are
  * fewer than FEWEST_LOOKED, there are no looks. */
 enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 4 };
@@ -39,12 +46,12 @@ enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 4 };
 enum { MOST_DOUBLED = 4, MOST_HALVED = 2 };
 enum { ROUNDS = 6, FEWEST_RAYS = 4 };
 
-/* In place of a variance: the row will be exact. */
-static const double IS_EXACT = -1.0;
+/* In place of a variance: the row will be exact; the leaf is not looked at. */
+static const double IS_EXACT = -1.0, IS_UNSEEN = -2.0;
 
 /* Of a leaf, by its look or its parent's. */
 struct known {
-    double variance; /* of rho H by one ray, (W/m^2)^2; IS_EXACT */
+    double variance; /* of rho H by one ray, (W/m^2)^2; IS_EXACT, IS_UNSEEN */
     float fixed;    /* tests that its row takes, */
     float work;     /* and each ray of it */
 };
@@ -56,6 +63,7 @@ struct looking {
     uint8_t *open;   /* [roots] 1: leaves of the root have exact rows */
     struct known *known; /* [forest->count] of leaves */
     int64_t known_capacity;
+    double unseen;   /* sum of area * (rho H)^2 of leaves that are not looked at */
     int rays;        /* of a look at a quarter */
     int64_t links;   /* of all ranks */
 };
@@ -180,6 +188,18 @@ static void keep_known(struct looking *l, int32_t leaf, const struct gather_look
                                     look->work};
 }
 
+/* (rho H)^2 of a leaf, over all bands, as links or looks tell it. */
+static double square_of_light(const struct forest *forest, int32_t leaf)
+{
+    const struct rgb *emission = &forest_material(forest, leaf)->emission;
+    double square = 0.0;
+    for (int c = 0; c < BANDS; c++) {
+        double b = forest->patches[leaf].radiosity.band[c] - emission->band[c];
+        square += b * b;
+    }
+    return square;
+}
+
 /* Looks at leaves and splits them, those of `leaves` that are split are replaced by their
  * children, the others go. Returns how many there are then. */
 static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
@@ -188,7 +208,7 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     struct solver *solver = l->solver;
     struct forest *forest = solver->method.forest;
     struct gather_look *looks = look(l, *leaves, count);
-    double sum = 0.0;
+    double sum = l->unseen;
     for (int64_t i = 0; i < count; i++)
         sum += forest_area(forest, (*leaves)[i]) * square_of(&looks[i]);
     if (*threshold < 0.0)
@@ -226,16 +246,72 @@ static void know_nothing(struct looking *l)
     }
 }
 
+/* The leaves to be looked at, [*count]. */
+static int32_t *choose_leaves(struct looking *l, int64_t *count)
+{
+    const struct gather_mesh *mesh = l->mesh;
+    const struct method *method = &l->solver->method;
+    double *light = alloc_array((size_t)mesh->count, sizeof *light), sum = 0.0;
+    for (int64_t i = 0; i < mesh->count; i++) {
+        light[i] = forest_area(method->forest, mesh->leaves[i]) *
+                   square_of_light(method->forest, mesh->leaves[i]);
+        sum += light[i];
+    }
+    int32_t *leaves = alloc_array((size_t)mesh->count, sizeof *leaves);
+    *count = 0;
+    for (int64_t i = 0; i < mesh->count; i++) {
+        struct known *known = &l->known[mesh->leaves[i]];
+        if (known->variance == IS_EXACT)
+            continue;
+        double area = forest_area(method->forest, mesh->leaves[i]);
+        double most = SPREAD_MOST * (light[i] + UNSURE * area * (sum / method->area));
+        if (most >= MESH * method->criterion.epsilon * sum) {
+            leaves[(*count)++] = mesh->leaves[i];
+        } else {
+            known->variance = IS_UNSEEN;
+            l->unseen += light[i];
+        }
+    }
+    alloc_free(light);
+    return leaves;
+}
+
+/* Leaves that were not looked at are as noisy, for their light, as those that were, and
+ * their rays take as much work. */
+static void guess_unseen(struct looking *l)
+{
+    const struct gather_mesh *mesh = l->mesh;
+    const struct forest *forest = l->solver->method.forest;
+    double variance = 0.0, square = 0.0, fixed = 0.0, work = 0.0;
+    int64_t seen = 0;
+    for (int64_t i = 0; i < mesh->count; i++) {
+        const struct known *known = &l->known[mesh->leaves[i]];
+        double area = forest_area(forest, mesh->leaves[i]);
+        if (known->variance < 0.0)
+            continue;
+        variance += area * known->variance;
+        square += area * square_of_light(forest, mesh->leaves[i]);
+        fixed += (double)known->fixed;
+        work += (double)known->work;
+        seen++;
+    }
+    double relative = square > 0.0 ? variance / square : 0.0;
+    for (int64_t i = 0; i < mesh->count && seen > 0; i++) {
+        struct known *known = &l->known[mesh->leaves[i]];
+        if (known->variance == IS_UNSEEN)
+            *known = (struct known){relative * square_of_light(forest, mesh->leaves[i]),
+                                    (float)(fixed / (double)seen),
+                                    (float)(work / (double)seen)};
+    }
+}
+
 /* Collective. Looks and splits, round by round. */
 static void refine(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;
     double threshold = -1.0; /* not known yet */
-    int32_t *leaves = alloc_array((size_t)mesh->count, sizeof *leaves);
-    int64_t count = 0;
-    for (int64_t i = 0; i < mesh->count; i++)
-        if (l->known[mesh->leaves[i]].variance != IS_EXACT)
-            leaves[count++] = mesh->leaves[i];
+    int64_t count;
+    int32_t *leaves = choose_leaves(l, &count);
     for (int round = 0; round < ROUNDS && count > 0; round++) {
         count = split_leaves(l, &leaves, count, &threshold);
         mesh->split += count / 4;
@@ -243,6 +319,7 @@ static void refine(struct looking *l)
     alloc_free(leaves);
     forest_average(l->solver->method.forest);
     list_leaves(mesh, l->solver->method.forest);
+    guess_unseen(l);
 }
 
 /* --- rays --- */

@@ -349,6 +349,36 @@ static void look_inside(struct receiver *r, struct vec3 origin, struct vec3 dire
         r->escaped++;
 }
 
+/* Adds what the mesh says of a point; `aimed`: without what it emits. */
+static void add_mesh(struct receiver *r, const struct point *point, bool aimed,
+                     const struct rgb *weight)
+{
+    const struct forest *forest = r->gather->method->forest;
+    receiver_add_point(r, point->patch, point->weight, weight);
+    if (aimed)
+        add_source(r, weight, forest_material(forest, point->patch)->emission, -1.0);
+}
+
+/* Russian roulette: the path goes on, for all that would have, with the probability of
+ * the largest reflectance. What is expected of the path is the mesh's light and what it
+ * finds beyond that, so that rows still sum to 1. */
+static bool goes_on(struct receiver *r, const struct point *point, bool aimed, double u,
+                    struct rgb *weight)
+{
+    const struct rgb *rho =
+        &forest_material(r->gather->method->forest, point->patch)->reflectance;
+    double most = fmax(rho->band[0], fmax(rho->band[1], rho->band[2]));
+    struct rgb rest = *weight;
+    if (u < most) {
+        for (int c = 0; c < BANDS; c++) {
+            weight->band[c] /= most;
+            rest.band[c] -= weight->band[c];
+        }
+    }
+    add_mesh(r, point, aimed, &rest);
+    return u < most;
+}
+
 /* A ray and what follows from it, the seed of which is `seed`. `weight`: of the light
  * that it finds. */
 static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction,
@@ -371,11 +401,11 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
                      (count == 1 ||
                       !lamp_is_near(r->gather->method->scene, root, origin));
         if (count == PATH_MOST || !is_too_near(forest, &point, origin, normal)) {
-            receiver_add_point(r, point.patch, point.weight, &weight);
-            if (aimed)
-                add_source(r, &weight, material->emission, -1.0);
+            add_mesh(r, &point, aimed, &weight);
             return;
         }
+        if (count > 1 && !goes_on(r, &point, aimed, hash_unit(seed + 13), &weight))
+            return;
         if (!aimed)
             add_source(r, &weight, material->emission, 1.0);
         for (int c = 0; c < BANDS; c++)

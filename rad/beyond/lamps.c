@@ -137,37 +137,42 @@ static void add_group(struct lamp_groups *groups, struct lamp_group group)
     groups->around += group.around;
 }
 
-static void add_cluster(const struct facet *leaf, const struct cluster *cluster,
-                        struct vec3 apart, double watts, struct lamp_groups *groups)
+/* The leaf that lamps are grouped for. */
+struct lit {
+    const struct facet *facet;
+    struct vec3 centroid;
+    double radius;
+};
+
+static void add_cluster(const struct lit *leaf, int32_t node, struct vec3 apart,
+                        double radius, double watts, struct lamp_groups *groups)
 {
-    struct lamp_group group = {.node = NODE_NONE};
+    struct lamp_group group = {.node = node};
     double distance2 = vec3_dot(apart, apart);
-    double cosine = vec3_dot(apart, leaf->plane.normal) / sqrt(distance2);
-    double radius = 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low));
-    bool above =
-        cosine * sqrt(distance2) + radius + triangle_radius(&leaf->triangle) > 0.0;
+    double rise = vec3_dot(apart, leaf->facet->plane.normal);
     group.around = watts / (PI * distance2);
-    group.direct = above ? fmax(cosine, LEAST_COSINE) * group.around : 0.0;
+    if (rise + radius + leaf->radius > 0.0)
+        group.direct = fmax(rise / sqrt(distance2), LEAST_COSINE) * group.around;
     add_group(groups, group);
 }
 
-static void add_root(const struct lamps *lamps, const struct facet *leaf, int32_t root,
+static void add_root(const struct lamps *lamps, const struct lit *leaf, int32_t root,
                      struct lamp_groups *groups, int64_t *work)
 {
     struct facet lamp = facet_make(lamps->method->forest, root);
-    struct vec3 apart = vec3_sub(triangle_centroid(&lamp.triangle),
-                                 triangle_centroid(&leaf->triangle));
+    struct vec3 apart = vec3_sub(triangle_centroid(&lamp.triangle), leaf->centroid);
     double emission = emission_of(lamps, root);
     double distance2 = fmax(vec3_dot(apart, apart), lamp.area);
     struct lamp_group group = {.node = root};
     group.around = emission * fmin(1.0, lamp.area / (PI * distance2));
-    if (facets_face(leaf, &lamp))
-        group.direct = emission * mean_factor(&leaf->triangle, leaf->plane.normal,
+    if (facets_face(leaf->facet, &lamp))
+        group.direct = emission * mean_factor(&leaf->facet->triangle,
+                                              leaf->facet->plane.normal,
                                               &lamp.triangle, work);
     add_group(groups, group);
 }
 
-static void add_node(const struct lamps *lamps, const struct facet *leaf, int32_t node,
+static void add_node(const struct lamps *lamps, const struct lit *leaf, int32_t node,
                      struct lamp_groups *groups, int64_t *work)
 {
     double watts = watts_of(lamps, node);
@@ -178,13 +183,11 @@ static void add_node(const struct lamps *lamps, const struct facet *leaf, int32_
         return;
     }
     const struct cluster *cluster = &lamps->method->clusters->tree->clusters[~node];
-    struct vec3 apart = vec3_sub(vec3_middle(cluster->low, cluster->high),
-                                 triangle_centroid(&leaf->triangle));
+    struct vec3 apart =
+        vec3_sub(vec3_middle(cluster->low, cluster->high), leaf->centroid);
     double radius = 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low));
-    double distance = vec3_length(apart) - radius - triangle_radius(&leaf->triangle);
-    if (radius <= SMALL * distance) {
-        add_cluster(leaf, cluster, apart, watts, groups);
-        groups->items[groups->count - 1].node = node;
+    if (radius <= SMALL * (vec3_length(apart) - radius - leaf->radius)) {
+        add_cluster(leaf, node, apart, radius, watts, groups);
         return;
     }
     for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++)
@@ -194,9 +197,11 @@ static void add_node(const struct lamps *lamps, const struct facet *leaf, int32_
 void lamps_group(const struct lamps *lamps, const struct facet *leaf,
                  struct lamp_groups *groups, int64_t *work)
 {
+    struct lit lit = {leaf, triangle_centroid(&leaf->triangle),
+                      triangle_radius(&leaf->triangle)};
     groups->count = 0;
     groups->direct = groups->around = 0.0;
-    add_node(lamps, leaf, NODE_TOP, groups, work);
+    add_node(lamps, &lit, NODE_TOP, groups, work);
 }
 
 struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u)
