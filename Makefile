@@ -51,7 +51,7 @@ MPI_INCLUDE =
 MPIEXEC ?= mpiexec
 endif
 
-GEOM = alloc contour elementary error gauss hull lambert polygon scene stop triangle wall
+GEOM = alloc contour elementary error gauss hull lambert outlook polygon scene stop triangle wall
 OCTREE = build hit octree segment
 RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/lamps beyond/node \
       beyond/node_exchange beyond/node_link beyond/paths beyond/sequence closure conjugate flux formfactor id link \
@@ -66,7 +66,7 @@ MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last four are run with several ranks.
-TESTS = alloc elementary bicgstab sequence id triangle lambert hull scene polygon contour wall octree bundles flux patch \
+TESTS = alloc elementary bicgstab sequence id triangle lambert outlook hull scene polygon contour wall octree bundles flux patch \
         compact formfactor link linking cluster node oracle pushpull closure final_gather render treecode plan balance assign text obj ply output tone \
         image camera viewpoint shading stop options progress paths norms cie furnace whole stability gaps store spotcheck exchange conjugate exact converge leaks
 # Programs that compare phr with what is true.

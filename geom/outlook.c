@@ -1,0 +1,92 @@
+/* What is hidden is a cone with its top at the point. A piece is cut along the planes of the
+ * cone, one by one: the part outside of a plane is seen, the part inside goes on to the next
+ * plane; the part inside of all three is hidden. */
+#include "geom/outlook.h"
+
+void outlook_start(struct outlook *outlook, struct vec3 from, const struct triangle *t)
+{
+    outlook->from = from;
+    outlook->count = 1;
+    outlook->piece[0].count = 3;
+    for (int k = 0; k < 3; k++)
+        outlook->piece[0].corner[k] = t->corner[k];
+}
+
+/* Height over a plane through the point; 0 within rounding, which would leave slivers along
+ * each side that two triangles share. */
+static double rise_over(struct vec3 normal, struct vec3 from, struct vec3 corner)
+{
+    static const double ROUNDING = 1e-13; /* scene units */
+    double rise = vec3_dot(vec3_sub(corner, from), normal);
+    return rise > ROUNDING || rise < -ROUNDING ? rise : 0.0;
+}
+
+/* The part of a piece above a plane through the point; no corners if there is none. */
+static struct outlook_piece part_above(const struct outlook_piece *piece, struct vec3 from,
+                                       struct vec3 normal)
+{
+    struct outlook_piece part;
+    bool any = false;
+    part.count = 0;
+    for (int k = 0; k < piece->count; k++) {
+        struct vec3 a = piece->corner[k], b = piece->corner[(k + 1) % piece->count];
+        double rise_a = rise_over(normal, from, a), rise_b = rise_over(normal, from, b);
+        any = any || rise_a > 0.0;
+        if (rise_a >= 0.0)
+            part.corner[part.count++] = a;
+        if ((rise_a > 0.0 && rise_b < 0.0) || (rise_a < 0.0 && rise_b > 0.0))
+            part.corner[part.count++] =
+                vec3_add(a, vec3_scale(vec3_sub(b, a), rise_a / (rise_a - rise_b)));
+    }
+    part.count = any ? part.count : 0;
+    return part;
+}
+
+/* True if a piece lies outside of one of the planes: nothing of it is hidden. */
+static bool is_outside(const struct outlook_piece *piece, struct vec3 from,
+                       const struct vec3 normal[3])
+{
+    for (int k = 0; k < 3; k++) {
+        bool outside = true;
+        for (int i = 0; i < piece->count && outside; i++)
+            outside = rise_over(normal[k], from, piece->corner[i]) <= 0.0;
+        if (outside)
+            return true;
+    }
+    return false;
+}
+
+/* Cuts a piece; the last one takes its place, what is seen of it comes to the end. */
+static void cut_piece(struct outlook *outlook, int i, const struct vec3 normal[3])
+{
+    struct outlook_piece inside = outlook->piece[i];
+    outlook->piece[i] = outlook->piece[--outlook->count];
+    for (int k = 0; k < 3 && inside.count > 0; k++) {
+        struct vec3 outwards = vec3_scale(normal[k], -1.0);
+        struct outlook_piece *outside = &outlook->piece[outlook->count];
+        *outside = part_above(&inside, outlook->from, outwards);
+        outlook->count += outside->count > 0;
+        inside = part_above(&inside, outlook->from, normal[k]);
+    }
+}
+
+void outlook_hide(struct outlook *outlook, const struct triangle *behind)
+{
+    struct vec3 to[3], normal[3];
+    for (int k = 0; k < 3; k++)
+        to[k] = vec3_sub(behind->corner[k], outlook->from);
+    double volume = vec3_dot(to[0], vec3_cross(to[1], to[2]));
+    if (volume == 0.0)
+        return;
+    for (int k = 0; k < 3; k++) {
+        struct vec3 across = vec3_cross(to[k], to[(k + 1) % 3]);
+        double length = vec3_length(across);
+        normal[k] = vec3_scale(across, (volume > 0.0 ? 1.0 : -1.0) / length);
+    }
+    for (int i = outlook->count - 1; i >= 0; i--) {
+        const struct outlook_piece *piece = &outlook->piece[i];
+        if (outlook->count + 2 <= OUTLOOK_PIECES && piece->count + 3 <= OUTLOOK_CORNERS &&
+            !is_outside(piece, outlook->from, normal))
+            cut_piece(outlook, i, normal);
+    }
+}
