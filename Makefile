@@ -53,7 +53,7 @@ endif
 
 GEOM = alloc contour elementary error gauss hull lambert outlook polygon scene stop triangle wall
 OCTREE = build hit octree segment
-RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/lamps beyond/node \
+RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/gather_wide beyond/lamps beyond/node \
       beyond/node_exchange beyond/node_link beyond/paths beyond/sequence closure conjugate flux formfactor id link \
       linking method oracle patch pushpull sample snapshot treecode viewfactor
 MPI = accuracy assign balance broadcast closing comm final_gather funnel gather gather_mesh keep ledger linking memory migrate \

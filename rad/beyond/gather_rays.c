@@ -34,6 +34,9 @@ static const double NARROW = 0.04;
 /* Two surfaces face each other across a gap if the cosine between their normals is less. */
 static const double OPPOSITE = -0.7;
 
+/* A lamp is wide if its factor from the leaf, unoccluded, is more than this. */
+static const double WIDE = 0.05;
+
 /* A lamp is near if the square of its distance is less than so many times its area. */
 static const double NEAR_LAMP = 4.0;
 
@@ -100,8 +103,7 @@ static enum met trace(struct receiver *r, struct vec3 origin, struct vec3 direct
     return MET_FRONT;
 }
 
-/* A point of the receiver, of a square. */
-static struct vec3 start_at(const struct receiver *r, double u, double v)
+struct vec3 receiver_start(const struct receiver *r, double u, double v)
 {
     const struct gather_points *points = r->points;
     return points ? points->at[(int)(u * points->count)]
@@ -120,26 +122,28 @@ static void add_source(struct receiver *r, const struct rgb *weight, struct rgb 
     }
 }
 
-static bool sees(struct receiver *r, struct vec3 from, int32_t input, struct vec3 to,
-                 int32_t lamp)
+/* The triangle that blocks a segment to a lamp, or -1. */
+static int32_t blocker_of(struct receiver *r, struct vec3 from, int32_t input,
+                          struct vec3 to, int32_t lamp)
 {
     int32_t own[2] = {input, scene_input_of(r->gather->method->scene, lamp)}, guess = -1;
     r->gather->counts.segments++;
-    return !octree_blocks_segment(r->gather->method->octree, from, to, own, &guess,
-                                  &r->gather->method->counts);
+    return octree_blocks_segment(r->gather->method->octree, from, to, own, &guess,
+                                 &r->gather->method->counts)
+               ? guess
+               : -1;
 }
 
-/* The same from a point of the receiver. */
-static bool sees_from_here(struct receiver *r, struct vec3 x, struct vec3 y, int32_t lamp)
+int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32_t lamp)
 {
     int32_t input = r->facet.input;
     if (r->points && r->points->above) {
         const struct scene *scene = r->gather->method->scene;
         struct segment segment = segment_make(x, y);
         if (segment_is_blocked_by(&segment, &scene->triangles[input], &scene->planes[input]))
-            return false;
+            return input;
     }
-    return sees(r, x, input, y, lamp);
+    return blocker_of(r, x, input, y, lamp);
 }
 
 /* Segments to groups that are next to each other in the tree, each in two halves: they
@@ -174,6 +178,12 @@ static void end_volley(struct receiver *r, struct volley *volley, struct rgb emi
     *volley = (struct volley){.direct = {0.0, 0.0}};
 }
 
+/* Of the segments to a node. */
+static struct sequence sequence_to(const struct receiver *r, int32_t node)
+{
+    return sequence_start(hash_mix(r->seed + 8) ^ hash_mix((uint64_t)node));
+}
+
 /* Segments to a single lamp: `count` of them bring the irradiance `direct` all together,
  * summed over bands, but for what is blocked: of that each has its kernel's share. */
 static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int count,
@@ -188,11 +198,11 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
     for (int i = 0; i < count; i++) {
         int half = half_of(volley, i, count);
         sequence_point(sequence, (uint32_t)i, u);
-        struct vec3 x = start_at(r, u[0], u[1]);
+        struct vec3 x = receiver_start(r, u[0], u[1]);
         struct vec3 y = triangle_of_square(&lamp, u[2], u[3]);
         double light = receiver_kernel(x, r->facet.plane.normal, y, normal);
         all[half] += light;
-        if (light > 0.0 && sees_from_here(r, x, y, root))
+        if (light > 0.0 && receiver_blocker(r, x, y, root) < 0)
             seen[half] += light;
         volley->count[half]++;
     }
@@ -204,6 +214,21 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
     if (sum > 0.0)
         add_source(r, &ALL, emission,
                    direct * ((seen[0] + seen[1]) / sum) / rgb_sum(emission));
+}
+
+/* The same to a lamp that is wide; its variance is known. */
+static void aim_at_wide_lamp(struct receiver *r, int count, int32_t root, double direct)
+{
+    static const struct rgb ALL = {{1.0, 1.0, 1.0}};
+    struct sequence sequence = sequence_to(r, root);
+    struct rgb emission = scene_root_material(r->gather->method->scene, root)->emission;
+    struct receiver_share share = receiver_share_of_wide(r, &sequence, count, root);
+    add_source(r, &ALL, emission, direct * share.seen / rgb_sum(emission));
+    for (int c = 0; c < BANDS; c++) {
+        double h = direct * emission.band[c] / rgb_sum(emission);
+        r->row.chance[c] += h * h * share.variance;
+        r->row.halves[c] += h * h * share.halves;
+    }
 }
 
 /* One segment to a lamp of a cluster, which is far away: it stands for `each` of what the
@@ -219,11 +244,11 @@ static void aim_at_cluster(struct receiver *r, const struct sequence *sequence,
     struct lamp lamp =
         lamp_choose(&g->lamps, group->node, hash_unit(r->seed + 17 + index));
     struct triangle triangle = scene_root_triangle(scene, lamp.root);
-    struct vec3 x = start_at(r, u[0], u[1]);
+    struct vec3 x = receiver_start(r, u[0], u[1]);
     struct vec3 y = triangle_of_square(&triangle, u[2], u[3]);
     double light = receiver_kernel(x, r->facet.plane.normal, y,
                           scene_root_plane(scene, lamp.root).normal);
-    if (light > 0.0 && sees_from_here(r, x, y, lamp.root))
+    if (light > 0.0 && receiver_blocker(r, x, y, lamp.root) < 0)
         add_source(r, &ALL, scene_root_material(scene, lamp.root)->emission,
                    light * scene_root_area(scene, lamp.root) * lamp.share *
                        (each / group->direct));
@@ -233,8 +258,7 @@ static void aim_at_cluster(struct receiver *r, const struct sequence *sequence,
 static void aim_at_group(struct receiver *r, const struct lamp_group *group, int count,
                          double direct, struct volley *volley)
 {
-    struct sequence sequence =
-        sequence_start(hash_mix(r->seed + 8) ^ hash_mix((uint64_t)group->node));
+    struct sequence sequence = sequence_to(r, group->node);
     if (!node_is_cluster(group->node))
         aim_at_lamp(r, &sequence, count, group->node, direct, volley);
     for (int k = 0; k < count && node_is_cluster(group->node); k++) {
@@ -245,6 +269,14 @@ static void aim_at_group(struct receiver *r, const struct lamp_group *group, int
         volley->seen[half] += rgb_sum(r->light) - before;
         volley->count[half]++;
     }
+}
+
+static bool is_wide(const struct receiver *r, const struct lamp_group *group)
+{
+    const struct scene *scene = r->gather->method->scene;
+    return !node_is_cluster(group->node) &&
+           group->direct >
+               WIDE * rgb_sum(scene_root_material(scene, group->node)->emission);
 }
 
 /* What lamps bring to the leaf: as many segments as rays, dealt over the groups in
@@ -268,12 +300,16 @@ static void aim_at_lamps(struct receiver *r)
         if (count == 0)
             continue;
         double direct = group->direct >= each ? group->direct : count * each;
+        done = now;
+        if (is_wide(r, group)) {
+            aim_at_wide_lamp(r, count, group->node, direct);
+            continue;
+        }
         aim_at_group(r, group, count, direct, &volley);
         int32_t lamp = lamp_choose(&g->lamps, group->node, 0.5).root;
         emission = scene_root_material(g->method->scene, lamp)->emission;
         if (volley.count[0] + volley.count[1] >= VOLLEY)
             end_volley(r, &volley, emission);
-        done = now;
     }
     end_volley(r, &volley, emission);
 }
@@ -314,7 +350,7 @@ static void aim_beside(struct receiver *r, const struct point *x, const struct r
                                        hash_unit(seed + 3 + 2 * k));
         if (!(receiver_kernel(x->at, x->normal, y, normal) > 0.0))
             continue;
-        if (sees(r, x->at, x->input, y, lamp.root))
+        if (blocker_of(r, x->at, x->input, y, lamp.root) < 0)
             add_source(r, weight, scene_root_material(scene, lamp.root)->emission,
                        factor * lamp.share * (g->groups.around / group->around));
         return;
@@ -439,7 +475,7 @@ void receiver_fire(struct receiver *r)
     double share = 1.0 / r->rays, u[SEQUENCE_DIMENSIONS];
     for (int i = 0; i < r->rays; i++) {
         sequence_point(&sequence, (uint32_t)i, u);
-        struct vec3 x = start_at(r, u[2], u[3]);
+        struct vec3 x = receiver_start(r, u[2], u[3]);
         follow(r, point_above(x, r->facet.plane.normal),
                cosine_direction(r->facet.plane.normal, r->along, u[0], u[1]),
                (struct rgb){{share, share, share}},

@@ -4,6 +4,7 @@
 #define RAD_BEYOND_RECEIVER_H
 
 #include "rad/beyond/final_gather.h"
+#include "rad/beyond/sequence.h"
 
 struct receiver {
     struct final_gather *gather;
@@ -33,6 +34,26 @@ void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
 /* Adds the light that lamps bring, by segments; and after that what rays find. */
 void receiver_aim(struct receiver *r);
 void receiver_fire(struct receiver *r);
+
+/* The point of the receiver that u and v in [0, 1) stand for. */
+struct vec3 receiver_start(const struct receiver *r, double u, double v);
+
+/* The triangle that blocks the segment from a point of the receiver to one of a lamp, or
+ * -1. */
+int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32_t lamp);
+
+/* The part of the light of a lamp that is seen, 1. */
+struct receiver_share {
+    double seen;
+    double variance; /* by the choice of points, as if by chance, */
+    double halves;   /* and as the first and second half of them tell it */
+};
+
+/* For lamps that are wide as seen from the receiver: by so many points of it, of the
+ * sequence. */
+struct receiver_share receiver_share_of_wide(struct receiver *r,
+                                             const struct sequence *sequence, int count,
+                                             int32_t lamp);
 
 /* The share of a leaf that is met from just above it, and not a face that lies on it: a
  * picture in the plane of a wall, a lamp in that of the ceiling; and that is not inside
