@@ -28,8 +28,8 @@
 #include "rad/beyond/sequence.h"
 #include "rad/pushpull.h"
 
-/* A lamp emits so many times the mean radiosity: then it covers little of what any leaf
- * sees, and where all surfaces are alike, as in a furnace, there is none. */
+/* A lamp emits so many times what is reflected in the mean: where all surfaces are alike, as
+ * in a furnace, there is none. */
 static const double LAMP = 4.0;
 
 /* Radiosity that varies by less than this part of the mean over a leaf is constant. */
@@ -46,6 +46,16 @@ static double mean_radiosity(const struct method *method)
     for (int32_t root = 0; root < scene_root_count(method->scene); root++)
         sum += scene_root_area(method->scene, root) *
                rgb_sum(method->forest->patches[root].radiosity);
+    return sum / method->area;
+}
+
+static double mean_reflected(const struct method *method)
+{
+    double sum = 0.0;
+    for (int32_t root = 0; root < scene_root_count(method->scene); root++)
+        sum += scene_root_area(method->scene, root) *
+               (rgb_sum(method->forest->patches[root].radiosity) -
+                rgb_sum(scene_root_material(method->scene, root)->emission));
     return sum / method->area;
 }
 
@@ -67,7 +77,7 @@ struct final_gather final_gather_create(struct method *method, int rays)
     forest_bound(forest);
     gather.rays = rays_for(rays, forest_leaf_count(forest));
     gather.mean = mean_radiosity(method);
-    gather.lamps = lamps_create(method, LAMP * gather.mean);
+    gather.lamps = lamps_create(method, LAMP * mean_reflected(method));
     gather.order = forest_order(forest);
     gather.place = alloc_array((size_t)forest->count, sizeof *gather.place);
     for (int64_t i = 0; i < forest->count; i++)
