@@ -54,8 +54,8 @@ endif
 GEOM = alloc contour elementary error gauss hull lambert outlook polygon scene stop triangle wall
 OCTREE = build hit octree segment
 RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/gather_wide beyond/lamps beyond/node \
-      beyond/node_exchange beyond/node_link beyond/paths beyond/sequence closure conjugate flux formfactor id link \
-      linking method oracle patch pushpull sample snapshot treecode viewfactor
+      beyond/node_exchange beyond/node_link beyond/paths beyond/sequence beyond/closure beyond/conjugate beyond/snapshot flux formfactor id link \
+      linking model oracle patch pushpull sample treecode viewfactor
 MPI = accuracy assign balance broadcast closing comm final_gather funnel gather gather_mesh keep ledger linking memory migrate \
       node pairs picture plan refinement routes scatter signals solve solver spotcheck vote
 IO = binary camera cases compare image library machine mesh mtl obj options output palette ply plyfile \

@@ -493,7 +493,7 @@ static struct tone choose_tone(const struct run *run, const float *picture)
     if (picture)
         return tone_make(tone_automatic(picture, (int64_t)run->camera.width * run->camera.height));
     int64_t count;
-    float *colours = mesh_colours(run->solver->method.forest, &count);
+    float *colours = mesh_colours(run->solver->model.forest, &count);
     struct tone tone = tone_make(tone_automatic(colours, count));
     alloc_free(colours);
     return tone;
@@ -530,7 +530,7 @@ static uint8_t *survey_leaves(struct run *run)
     if (run->options.flat)
         return NULL;
     int64_t leaves;
-    uint8_t *open = shading_open_quarters(run->solver->method.forest, run->octree, run->comm.rank,
+    uint8_t *open = shading_open_quarters(run->solver->model.forest, run->octree, run->comm.rank,
                                           run->comm.size, &leaves);
     comm_add_bytes(&run->comm, open, leaves);
     return open;
@@ -540,7 +540,7 @@ static uint8_t *survey_leaves(struct run *run)
 static struct shading *shade_leaves(struct run *run, const struct rgb *less, const uint8_t *open)
 {
     double start = comm_seconds();
-    struct shading *shading = shading_create(run->solver->method.forest, less, open);
+    struct shading *shading = shading_create(run->solver->model.forest, less, open);
     run->solver->seconds[PHASE_SHADING] += comm_seconds() - start;
     return shading;
 }
@@ -550,7 +550,7 @@ static void place_camera(struct run *run)
     struct camera *camera = &run->camera;
     double start = comm_seconds();
     if (!run->options.view) /* all ranks choose alike */
-        *camera = viewpoint_choose(run->scene, run->octree, run->solver->method.forest,
+        *camera = viewpoint_choose(run->scene, run->octree, run->solver->model.forest,
                                    camera->width, camera->height);
     run->solver->seconds[PHASE_VIEWPOINT] = comm_seconds() - start;
 }
@@ -560,9 +560,9 @@ static void place_camera(struct run *run)
 static float *make_picture(struct run *run, const uint8_t *open)
 {
     const struct comm *comm = &run->comm;
-    struct method *method = &run->solver->method;
-    struct octree_counts counts = method->counts;
-    int64_t estimating = method->estimating;
+    struct model *model = &run->solver->model;
+    struct octree_counts counts = model->counts;
+    int64_t estimating = model->estimating;
     place_camera(run);
     bool gathers = run->solver->straight && !run->options.flat;
     struct shading *shading = NULL;
@@ -579,8 +579,8 @@ static float *make_picture(struct run *run, const uint8_t *open)
     run->solver->gathered.pixels =
         run->solver->gather.counts.rays + run->solver->gather.counts.segments;
     comm_add(comm, &run->solver->gathered.pixels, 1);
-    method->counts = counts;
-    method->estimating = estimating;
+    model->counts = counts;
+    model->estimating = estimating;
     shading_destroy(shading);
     alloc_free(rows);
     return picture;

@@ -136,7 +136,7 @@ static bool set_size(struct options *options, const char *value, struct error *e
                      (int)IMAGE_SIZE_MAX);
 }
 
-/* The enums of rad/method.h are ints: each has a constant for each choice, counted from 0. */
+/* The enums of rad/model.h are ints: each has a constant for each choice, counted from 0. */
 static bool set_choice(const struct option *option, const char *value, int *field,
                        struct error *error)
 {

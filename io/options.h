@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 #include "geom/error.h"
-#include "rad/method.h"
+#include "rad/model.h"
 
 #define PHR_VERSION "0.3"
 

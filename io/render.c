@@ -32,7 +32,7 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
 {
     struct renderer renderer = {.octree = octree, .shading = shading, .gather = gather};
     if (gather)
-        renderer.rays = shading ? SEGMENTS : gather->method->criterion.final_gather;
+        renderer.rays = shading ? SEGMENTS : gather->model->criterion.final_gather;
     return renderer;
 }
 
@@ -114,7 +114,7 @@ static void add_light(const struct renderer *renderer, const struct view *view, 
                       uint64_t seed, int rays, struct pixel *pixel)
 {
     struct final_gather *gather = renderer->gather;
-    const struct scene *scene = gather->method->scene;
+    const struct scene *scene = gather->model->scene;
     const struct material *m = scene_root_material(scene, view->roots[0]);
     struct facade facade = facade_make(scene, view->roots[0]);
     struct vec3 middle = {0.0, 0.0, 0.0};
@@ -230,7 +230,7 @@ static void render_pixel(const struct renderer *renderer, const struct scene *sc
 float *render_rows(const struct renderer *renderer, const struct camera *camera, int samples,
                    int first, int step, struct progress *progress)
 {
-    const struct scene *scene = renderer->gather ? renderer->gather->method->scene
+    const struct scene *scene = renderer->gather ? renderer->gather->model->scene
                                                  : renderer->shading->forest->scene;
     size_t row = 3 * (size_t)camera->width, parts = (size_t)samples * (size_t)samples;
     int rows = first < camera->height ? (camera->height - first - 1) / step + 1 : 0;

@@ -2,7 +2,7 @@
  *
  * Reading trusts nothing: the size of the file has to be what its counts say, so no more is
  * allocated than a small multiple of it; then the checksum, the settings and the scene; then every
- * number (rad/snapshot.c). The file is read twice for that, which keeps the links, by far the most
+ * number (rad/beyond/snapshot.c). The file is read twice for that, which keeps the links, by far the most
  * of it, out of rank 0's memory.
  *
  * The checksum is there for accidents. Rejected: a CRC for each section, which finds no more and

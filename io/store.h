@@ -1,6 +1,6 @@
 /* Stored snapshot: the files of --save-links and --load-links, --checkpoint and --resume.
  *
- * Both hold a snapshot (rad/snapshot.h) and its links; a link cache is one from before
+ * Both hold a snapshot (rad/beyond/snapshot.h) and its links; a link cache is one from before
  * the first pass, with the links of all pairs of roots, and is bound to fewer settings.
  * Numbers are little-endian, whole ones in two's complement, others IEEE 754. With R
  * roots, N patches, L leaves, M links and T bytes of settings:
@@ -30,7 +30,7 @@
 
 #include "geom/error.h"
 #include "io/output.h"
-#include "rad/snapshot.h"
+#include "rad/beyond/snapshot.h"
 
 enum store_kind { STORE_LINKS, STORE_CHECKPOINT };
 

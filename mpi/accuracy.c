@@ -75,7 +75,7 @@ static void settle_claim(struct solver *solver, const struct spotcheck *check)
     gathered->checked = check->leaves;
     gathered->paths = check->paths;
     double larger = estimate > 0.0 ? fmax(1.0, gathered->error / estimate) : 1.0;
-    for (int64_t p = 0; p < solver->method.forest->count; p++)
+    for (int64_t p = 0; p < solver->model.forest->count; p++)
         solver->error[p] *= (float)larger;
 }
 
@@ -84,17 +84,17 @@ static void settle_claim(struct solver *solver, const struct spotcheck *check)
 /* The limit that keeps leaves from being split, and the share of leaves that it keeps. */
 static enum hold hold_of_leaves(const struct solver *solver, double *share)
 {
-    const struct forest *forest = solver->method.forest;
+    const struct forest *forest = solver->model.forest;
     int64_t leaves = 0, deep = 0, small = 0;
     for (int64_t p = 0; p < forest->count; p++) {
         double area = forest_area(forest, (int32_t)p);
         if (!patch_is_leaf(&forest->patches[p]) || !(area > 0.0))
             continue;
         leaves++;
-        if (id_level(forest->patches[p].id) >= solver->method.criterion.max_level)
+        if (id_level(forest->patches[p].id) >= solver->model.criterion.max_level)
             deep++;
         else
-            small += 0.25 * area < solver->method.patch_threshold;
+            small += 0.25 * area < solver->model.patch_threshold;
     }
     *share = (double)(deep + small) / (double)leaves;
     return deep > small ? HOLD_LEVEL : HOLD_AREA;
@@ -104,12 +104,12 @@ static enum hold hold_of_leaves(const struct solver *solver, double *share)
 static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
 {
     const struct accuracy *accuracy = &solver->accuracy;
-    double epsilon = solver->method.criterion.epsilon, share;
+    double epsilon = solver->model.criterion.epsilon, share;
     enum hold hold = hold_of_leaves(solver, &share);
     if (solver->memory.reached > 0 ||
-        !memory_has_room(&solver->memory, links, 1, solver->method.forest->count, 0))
+        !memory_has_room(&solver->memory, links, 1, solver->model.forest->count, 0))
         return HOLD_MEMORY;
-    if (solver->iteration >= solver->method.criterion.max_iterations)
+    if (solver->iteration >= solver->model.criterion.max_iterations)
         return HOLD_ITERATIONS;
     bool stuck = (epsilon <= EIGHTH * accuracy->coarse_epsilon &&
                   solver->gathered.by_mesh > STUCK * accuracy->coarse) ||
@@ -123,7 +123,7 @@ static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
 static enum hold hold_of_rays(const struct solver *solver, int rays, int64_t links)
 {
     const struct memory *memory = &solver->memory;
-    int64_t clusters = solver->tree->count, patches = solver->method.forest->count;
+    int64_t clusters = solver->tree->count, patches = solver->model.forest->count;
     if (2 * rays > GATHER_RAYS_MOST)
         return HOLD_RAYS;
     return memory->limit > 0 && memory_needed(memory->copies, 2 * rays, links, patches,
@@ -147,7 +147,7 @@ static double allowed_beside(double other, bool free, double aim)
 /* True if rays have become more. */
 static bool raise_rays(struct solver *solver, double allowed, int64_t links)
 {
-    struct criterion *criterion = &solver->method.criterion;
+    struct criterion *criterion = &solver->model.criterion;
     int before = criterion->final_gather;
     for (double left = solver->gathered.by_rays;
          left > allowed && criterion->final_gather < MORE * before &&
@@ -160,7 +160,7 @@ static bool raise_rays(struct solver *solver, double allowed, int64_t links)
 
 static void lower_epsilon(struct solver *solver, double allowed)
 {
-    struct criterion *criterion = &solver->method.criterion;
+    struct criterion *criterion = &solver->model.criterion;
     struct accuracy *accuracy = &solver->accuracy;
     double mesh = solver->gathered.by_mesh, part = allowed / mesh;
     double lower = fmin(LITTLE, fmax(MUCH, part * part * part));
@@ -170,16 +170,16 @@ static void lower_epsilon(struct solver *solver, double allowed)
         accuracy->coarse_epsilon = criterion->epsilon;
     }
     criterion->epsilon *= lower;
-    solver->method.link_threshold = criterion->epsilon * solver->method.light_power;
+    solver->model.link_threshold = criterion->epsilon * solver->model.light_power;
 }
 
 /* Returns false if nothing can be tightened, and says why. `lowered`: epsilon was. */
 static bool tighten(struct solver *solver, int64_t links, bool *lowered)
 {
     double by_rays = solver->gathered.by_rays, by_mesh = solver->gathered.by_mesh;
-    double aim = AIM * solver->method.criterion.accuracy;
+    double aim = AIM * solver->model.criterion.accuracy;
     enum hold mesh = hold_of_mesh(solver, links);
-    enum hold rays = hold_of_rays(solver, solver->method.criterion.final_gather, links);
+    enum hold rays = hold_of_rays(solver, solver->model.criterion.final_gather, links);
     double rays_allowed = allowed_beside(by_mesh, mesh == HOLD_NONE, aim);
     double mesh_allowed = allowed_beside(by_rays, rays == HOLD_NONE, aim);
     if (by_rays <= rays_allowed && by_mesh <= mesh_allowed) { /* doubt is in the way */
@@ -204,7 +204,7 @@ static bool wants_more(struct solver *solver, int64_t links, bool *lowered)
 {
     struct accuracy *accuracy = &solver->accuracy;
     accuracy->rounds++;
-    if (solver->gathered.error <= solver->method.criterion.accuracy)
+    if (solver->gathered.error <= solver->model.criterion.accuracy)
         return false;
     if (accuracy->rounds == ROUNDS_MOST) {
         accuracy->hold = HOLD_ROUNDS;
@@ -236,14 +236,14 @@ static void restore_light(struct forest *forest, const struct linked *linked)
 static enum finish judge(struct solver *solver, struct vote *vote,
                          const struct linked *linked)
 {
-    struct spotcheck check = spotcheck_run(solver, solver->method.criterion.accuracy);
+    struct spotcheck check = spotcheck_run(solver, solver->model.criterion.accuracy);
     bool lowered = false;
     if (!check.done)
         return FINISH_STOPPED;
     settle_claim(solver, &check);
     if (!wants_more(solver, vote->links, &lowered))
         return FINISH_DONE;
-    restore_light(solver->method.forest, linked);
+    restore_light(solver->model.forest, linked);
     *vote = linked->vote;
     vote->converged = vote->converged && !lowered;
     return FINISH_AGAIN;
@@ -251,12 +251,12 @@ static enum finish judge(struct solver *solver, struct vote *vote,
 
 enum finish solver_finish(struct solver *solver, struct vote *vote)
 {
-    const struct criterion *criterion = &solver->method.criterion;
+    const struct criterion *criterion = &solver->model.criterion;
     if (criterion->final_gather == 0 || !solver->tree)
         return FINISH_DONE;
-    struct linked linked = {.vote = *vote, .count = solver->method.forest->count};
+    struct linked linked = {.vote = *vote, .count = solver->model.forest->count};
     bool measures = criterion->accuracy > 0.0;
-    linked.radiosity = measures ? forest_keep(solver->method.forest) : NULL;
+    linked.radiosity = measures ? forest_keep(solver->model.forest) : NULL;
     enum finish finish = solver_final_gather(solver, vote) ? FINISH_DONE : FINISH_STOPPED;
     if (measures && finish == FINISH_DONE)
         finish = judge(solver, vote, &linked);

@@ -12,10 +12,10 @@
 enum { LINKS_PER_OWN = 7 };
 
 /* Itself, and by its part of the area as many patches more as there are roots. */
-int64_t root_weight(const struct method *method, int32_t root)
+int64_t root_weight(const struct model *model, int32_t root)
 {
-    double share = scene_root_area(method->scene, root) / method->area;
-    return LINKS_PER_OWN + (int64_t)(LINKS_PER_OWN * share * scene_root_count(method->scene));
+    double share = scene_root_area(model->scene, root) / model->area;
+    return LINKS_PER_OWN + (int64_t)(LINKS_PER_OWN * share * scene_root_count(model->scene));
 }
 
 struct candidate {

@@ -22,7 +22,7 @@ static const double CLOSED = 1e-9; /* a row sum this close to 1 needs no further
 /* Transfers B = 1, times what senders are corrected by, and brings it home. */
 static void transfer_ones(struct solver *solver)
 {
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++)
         forest->patches[p].radiosity = (struct rgb){{1.0, 0.0, 0.0}};
     solver_transfer(solver);
@@ -36,7 +36,7 @@ static const double MOST_REFLECTED = 0.95;
 
 static double largest_row(const struct solver *solver, int32_t leaf)
 {
-    struct rgb rho = forest_material(solver->method.forest, leaf)->reflectance;
+    struct rgb rho = forest_material(solver->model.forest, leaf)->reflectance;
     double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2]));
     return largest > 0.0 ? fmax(MOST_REFLECTED, 0.5 * (1.0 + largest)) / largest : HUGE_VAL;
 }
@@ -49,9 +49,9 @@ static double renew_factors(struct solver *solver)
     double off = 0.0;
     for (int64_t i = 0; i < solver->conjugate.leaf_count; i++) {
         int32_t p = solver->conjugate.leaves[i];
-        double row = leaf_irradiance(solver->method.forest, p, solver->flux).band[0];
+        double row = leaf_irradiance(solver->model.forest, p, solver->flux).band[0];
         bool due = row > 0.0 && closure->kind != CLOSURE_CAP &&
-                   closure_is_due(closure, &solver->method, p);
+                   closure_is_due(closure, &solver->model, p);
         if (!due) {
             if (closure->kind != CLOSURE_SYMMETRIC)
                 closure->factor[p] = fmin(1.0, largest_row(solver, p) / row);
@@ -68,7 +68,7 @@ static double renew_factors(struct solver *solver)
 /* The factors of all leaves go to all ranks, as radiosities. */
 static void scatter_factors(struct solver *solver)
 {
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
             forest->patches[p].radiosity.band[c] = solver->closure.factor[p];
@@ -92,13 +92,13 @@ static void close_symmetrically(struct solver *solver)
  * weight; and reflectance over weight. */
 static void bound_rows(struct solver *solver)
 {
-    const struct method *method = &solver->method;
+    const struct model *model = &solver->model;
     double bound[4] = {1.0, 0.0, 1.0, 0.0}; /* gain, shrink, weight, share */
     for (int64_t i = 0; i < solver->conjugate.leaf_count; i++) {
         int32_t leaf = solver->conjugate.leaves[i];
         double row = closure_receives(&solver->closure, leaf) *
-                     leaf_irradiance(method->forest, leaf, solver->flux).band[0];
-        struct rgb rho = forest_material(method->forest, leaf)->reflectance;
+                     leaf_irradiance(model->forest, leaf, solver->flux).band[0];
+        struct rgb rho = forest_material(model->forest, leaf)->reflectance;
         double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2]));
         double weight = closure_weight(&solver->closure, leaf);
         bound[0] = fmax(bound[0], row);
@@ -117,8 +117,8 @@ static void bound_rows(struct solver *solver)
 
 void solver_close(struct solver *solver)
 {
-    const struct criterion *criterion = &solver->method.criterion;
-    struct forest *forest = solver->method.forest;
+    const struct criterion *criterion = &solver->model.criterion;
+    struct forest *forest = solver->model.forest;
     double start = comm_seconds();
     routes_renew(solver);
     closure_extend(&solver->closure, forest);

@@ -63,16 +63,16 @@ struct gathering {
 static void gathering_start(struct gathering *g, struct solver *solver)
 {
     const struct comm *comm = solver->comm;
-    size_t patches = (size_t)solver->method.forest->count;
+    size_t patches = (size_t)solver->model.forest->count;
     g->gather =
-        final_gather_create(&solver->method, solver->method.criterion.final_gather);
+        final_gather_create(&solver->model, solver->model.criterion.final_gather);
     g->leaves = g->mesh.leaves;
     g->rank_of = g->mesh.rank_of;
     g->count = g->mesh.count;
     g->areas = alloc_array((size_t)g->count, sizeof *g->areas);
     g->bare = alloc_array((size_t)g->count, sizeof *g->bare);
     for (int64_t i = 0; i < g->count; i++)
-        g->areas[i] = forest_area(solver->method.forest, g->leaves[i]);
+        g->areas[i] = forest_area(solver->model.forest, g->leaves[i]);
     g->radiosity = alloc_array(patches, sizeof *g->radiosity);
     g->all = alloc_array((size_t)g->count, sizeof *g->all);
     g->counts = alloc_array((size_t)comm->size, sizeof *g->counts);
@@ -101,7 +101,7 @@ static void gathering_end(struct gathering *g)
 static bool make_rows(struct gathering *g)
 {
     struct solver *solver = g->solver;
-    int64_t before = method_work(&solver->method);
+    int64_t before = model_work(&solver->model);
     progress_begin(solver->progress, "gathering", -1, 0);
     for (int64_t i = 0; i < g->count && !stop_is_asked(); i++) {
         if (g->rank_of[i] != solver->comm->rank)
@@ -113,7 +113,7 @@ static bool make_rows(struct gathering *g)
     ledger_add(&solver->ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
                                    .iteration = solver->iteration,
-                                   .work = method_work(&solver->method) - before +
+                                   .work = model_work(&solver->model) - before +
                                            proofs->node_tests + proofs->triangle_tests});
     const struct gather_counts *counts = &g->gather.counts;
     int64_t sums[] = {counts->escaped, stop_is_asked(), counts->rays, counts->segments,
@@ -182,7 +182,7 @@ static void reflect(void *context, const struct rgb *x, struct rgb *y)
     irradiances(g, x, false, y);
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m =
-            forest_material(g->solver->method.forest, g->leaves[i]);
+            forest_material(g->solver->model.forest, g->leaves[i]);
         for (int c = 0; c < BANDS; c++)
             y[i].band[c] = x[i].band[c] - m->reflectance.band[c] * y[i].band[c];
     }
@@ -193,7 +193,7 @@ static void set_radiosities(const struct gathering *g, const struct rgb *h, stru
 {
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m =
-            forest_material(g->solver->method.forest, g->leaves[i]);
+            forest_material(g->solver->model.forest, g->leaves[i]);
         for (int c = 0; c < BANDS; c++)
             b[i].band[c] = m->emission.band[c] + m->reflectance.band[c] * h[i].band[c];
     }
@@ -203,7 +203,7 @@ static void set_radiosities(const struct gathering *g, const struct rgb *h, stru
  * ceiling in whose plane it is. */
 static double shining_area(const struct gathering *g, int64_t i)
 {
-    uint32_t root = g->solver->method.forest->patches[g->leaves[i]].id.root;
+    uint32_t root = g->solver->model.forest->patches[g->leaves[i]].id.root;
     return root_is_lamp(&g->gather.lamps, (int32_t)root) ? g->areas[i] : g->bare[i];
 }
 
@@ -214,7 +214,7 @@ static double close_balance(const struct gathering *g, struct rgb *h)
     struct rgb emitted = {{0.0, 0.0, 0.0}}, absorbed = {{0.0, 0.0, 0.0}};
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m =
-            forest_material(g->solver->method.forest, g->leaves[i]);
+            forest_material(g->solver->model.forest, g->leaves[i]);
         for (int c = 0; c < BANDS; c++) {
             emitted.band[c] += shining_area(g, i) * m->emission.band[c];
             absorbed.band[c] +=
@@ -239,7 +239,7 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
     double absorbed = 0.0, leaving = 0.0, arriving = 0.0, brightest = 0.0;
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m =
-            forest_material(g->solver->method.forest, g->leaves[i]);
+            forest_material(g->solver->model.forest, g->leaves[i]);
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c];
             absorbed += g->bare[i] * (1.0 - rho) * h[i].band[c];
@@ -253,7 +253,7 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
     vote->escaped = leaving - arriving;
     vote->remaining = residual / (1.0 - brightest);
     vote->converged =
-        vote->converged && vote->remaining <= g->solver->method.criterion.tolerance;
+        vote->converged && vote->remaining <= g->solver->model.criterion.tolerance;
 }
 
 /* --- errors --- */
@@ -262,7 +262,7 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
  * undivided roots a part of their B. */
 static struct rgb variation_of(const struct gathering *g, int64_t place)
 {
-    const struct forest *forest = g->solver->method.forest;
+    const struct forest *forest = g->solver->model.forest;
     int32_t patch = g->gather.order[place], parent = forest->patches[patch].parent;
     struct rgb b = g->radiosity[place], deviation;
     struct rgb e = forest_material(forest, patch)->emission;
@@ -330,9 +330,9 @@ static void estimate_errors(struct gathering *g)
     variances_by_mesh(g, mesh);
     variances_by_rays(g, rays);
     alloc_free(solver->error);
-    solver->error = alloc_array((size_t)solver->method.forest->count, sizeof *solver->error);
+    solver->error = alloc_array((size_t)solver->model.forest->count, sizeof *solver->error);
     for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m = forest_material(solver->method.forest, g->leaves[i]);
+        const struct material *m = forest_material(solver->model.forest, g->leaves[i]);
         double largest = 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c];
@@ -358,7 +358,7 @@ static void estimate_errors(struct gathering *g)
 /* Collective. */
 static void share_straight_light(struct gathering *g)
 {
-    const struct forest *forest = g->solver->method.forest;
+    const struct forest *forest = g->solver->model.forest;
     struct rgb *own = g->all + g->at[g->solver->comm->rank];
     struct rgb *light = alloc_array((size_t)g->count, sizeof *light);
     struct rgb *straight = alloc_array((size_t)forest->count, sizeof *straight);
@@ -378,7 +378,7 @@ static void share_straight_light(struct gathering *g)
 /* From the links' solution on. */
 static void solve_rows(struct gathering *g, struct vote *vote)
 {
-    struct forest *forest = g->solver->method.forest;
+    struct forest *forest = g->solver->model.forest;
     size_t count = (size_t)g->count;
     struct rgb *b = alloc_array(count, sizeof *b), *h = alloc_array(count, sizeof *h);
     struct rgb *start = alloc_array(count, sizeof *start);
@@ -391,7 +391,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
         for (int c = 0; c < BANDS; c++)
             brightest = fmax(brightest, rho.band[c]);
     }
-    double goal = g->solver->method.criterion.tolerance * (1.0 - brightest);
+    double goal = g->solver->model.criterion.tolerance * (1.0 - brightest);
     struct bicgstab done = bicgstab_solve(reflect, g, start, g->areas, g->count, goal,
                                           STEPS_MOST, b);
     irradiances(g, b, true, h);

@@ -12,7 +12,7 @@
 static int64_t take_flux(struct solver *solver)
 {
     struct routes *routes = &solver->routes;
-    struct patch *patches = solver->method.forest->patches;
+    struct patch *patches = solver->model.forest->patches;
     int64_t count = 0;
     for (int r = 0; r < solver->comm->size; r++)
         count += routes->receiver_counts[r];
@@ -27,13 +27,13 @@ static int64_t take_flux(struct solver *solver)
 /* All ranks get the sums of the flux of all clusters: a reduction and its result sent back. */
 static void gather_clusters(struct solver *solver)
 {
-    struct cluster_light *clusters = solver->method.clusters;
+    struct cluster_light *clusters = solver->model.clusters;
     int64_t count = BANDS * (int64_t)solver->tree->count;
     comm_add(solver->comm, clusters->flux, count);
     if (solver->comm->size > 1)
         solver->bytes_gather += 2 * count * (int64_t)sizeof *clusters->flux;
     double start = comm_seconds();
-    cluster_light_push(clusters, solver->method.forest, solver->flux);
+    cluster_light_push(clusters, solver->model.forest, solver->flux);
     double pushing = comm_seconds() - start;
     solver->seconds[PHASE_SUMS] += pushing;
     solver->seconds[PHASE_GATHER] -= pushing;
@@ -43,7 +43,7 @@ void solver_gather(struct solver *solver)
 {
     double start = comm_seconds();
     const struct routes *routes = &solver->routes;
-    struct patch *patches = solver->method.forest->patches;
+    struct patch *patches = solver->model.forest->patches;
     int rank = solver->comm->rank, own_count = routes->receiver_counts[rank];
     const int32_t *own = routes->receivers + routes->receiver_at[rank];
     int64_t count = take_flux(solver);

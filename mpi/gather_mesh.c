@@ -87,7 +87,7 @@ static int rank_of_next(int64_t *dealt, int ranks)
 static void find_open_roots(struct looking *l)
 {
     const struct solver *solver = l->solver;
-    const struct scene *scene = solver->method.scene;
+    const struct scene *scene = solver->model.scene;
     int32_t roots = scene_root_count(scene);
     double area = 0.0;
     l->open = alloc_array((size_t)roots, sizeof *l->open);
@@ -97,7 +97,7 @@ static void find_open_roots(struct looking *l)
     comm_add_bytes(solver->comm, l->open, roots);
     for (int32_t root = 0; root < roots; root++)
         area += l->open[root] ? scene_root_area(scene, root) : 0.0;
-    if (!(2.0 * area >= solver->method.area))
+    if (!(2.0 * area >= solver->model.area))
         memset(l->open, 0, (size_t)roots);
 }
 
@@ -182,7 +182,7 @@ static void split_leaf(struct forest *forest, int32_t leaf, const struct gather_
 
 static void keep_known(struct looking *l, int32_t leaf, const struct gather_look *look)
 {
-    l->known = alloc_reserve(l->known, &l->known_capacity, l->solver->method.forest->count,
+    l->known = alloc_reserve(l->known, &l->known_capacity, l->solver->model.forest->count,
                              sizeof *l->known);
     l->known[leaf] = (struct known){look->variance + spread_of(look), look->fixed,
                                     look->work};
@@ -206,20 +206,20 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
                             double *threshold)
 {
     struct solver *solver = l->solver;
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     struct gather_look *looks = look(l, *leaves, count);
     double sum = l->unseen;
     for (int64_t i = 0; i < count; i++)
         sum += forest_area(forest, (*leaves)[i]) * square_of(&looks[i]);
     if (*threshold < 0.0)
-        *threshold = MESH * solver->method.criterion.epsilon * sum;
+        *threshold = MESH * solver->model.criterion.epsilon * sum;
     int32_t *next = alloc_array(4 * (size_t)count, sizeof *next);
     int64_t made = 0;
     for (int64_t i = 0; i < count; i++) {
         int32_t leaf = (*leaves)[i];
         double error = forest_area(forest, leaf) * spread_of(&looks[i]);
         keep_known(l, leaf, &looks[i]);
-        if (!(error > *threshold) || !oracle_patch_may_split(&solver->method, leaf) ||
+        if (!(error > *threshold) || !oracle_patch_may_split(&solver->model, leaf) ||
             !memory_has_room(&solver->memory, l->links, 1, forest->count, 0))
             continue;
         split_leaf(forest, leaf, &looks[i]);
@@ -237,7 +237,7 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
 /* Before there are looks: all leaves that need rays are as noisy as each other. */
 static void know_nothing(struct looking *l)
 {
-    const struct forest *forest = l->solver->method.forest;
+    const struct forest *forest = l->solver->model.forest;
     l->known = alloc_reserve(l->known, &l->known_capacity, forest->count, sizeof *l->known);
     for (int64_t i = 0; i < l->mesh->count; i++) {
         int32_t leaf = l->mesh->leaves[i];
@@ -250,11 +250,11 @@ static void know_nothing(struct looking *l)
 static int32_t *choose_leaves(struct looking *l, int64_t *count)
 {
     const struct gather_mesh *mesh = l->mesh;
-    const struct method *method = &l->solver->method;
+    const struct model *model = &l->solver->model;
     double *light = alloc_array((size_t)mesh->count, sizeof *light), sum = 0.0;
     for (int64_t i = 0; i < mesh->count; i++) {
-        light[i] = forest_area(method->forest, mesh->leaves[i]) *
-                   square_of_light(method->forest, mesh->leaves[i]);
+        light[i] = forest_area(model->forest, mesh->leaves[i]) *
+                   square_of_light(model->forest, mesh->leaves[i]);
         sum += light[i];
     }
     int32_t *leaves = alloc_array((size_t)mesh->count, sizeof *leaves);
@@ -263,9 +263,9 @@ static int32_t *choose_leaves(struct looking *l, int64_t *count)
         struct known *known = &l->known[mesh->leaves[i]];
         if (known->variance == IS_EXACT)
             continue;
-        double area = forest_area(method->forest, mesh->leaves[i]);
-        double most = SPREAD_MOST * (light[i] + UNSURE * area * (sum / method->area));
-        if (most >= MESH * method->criterion.epsilon * sum) {
+        double area = forest_area(model->forest, mesh->leaves[i]);
+        double most = SPREAD_MOST * (light[i] + UNSURE * area * (sum / model->area));
+        if (most >= MESH * model->criterion.epsilon * sum) {
             leaves[(*count)++] = mesh->leaves[i];
         } else {
             known->variance = IS_UNSEEN;
@@ -281,7 +281,7 @@ static int32_t *choose_leaves(struct looking *l, int64_t *count)
 static void guess_unseen(struct looking *l)
 {
     const struct gather_mesh *mesh = l->mesh;
-    const struct forest *forest = l->solver->method.forest;
+    const struct forest *forest = l->solver->model.forest;
     double variance = 0.0, square = 0.0, fixed = 0.0, work = 0.0;
     int64_t seen = 0;
     for (int64_t i = 0; i < mesh->count; i++) {
@@ -317,8 +317,8 @@ static void refine(struct looking *l)
         mesh->split += count / 4;
     }
     alloc_free(leaves);
-    forest_average(l->solver->method.forest);
-    list_leaves(mesh, l->solver->method.forest);
+    forest_average(l->solver->model.forest);
+    list_leaves(mesh, l->solver->model.forest);
     guess_unseen(l);
 }
 
@@ -345,7 +345,7 @@ static int rays_of_class(int rays, int class)
 static void share_rays(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;
-    const struct forest *forest = l->solver->method.forest;
+    const struct forest *forest = l->solver->model.forest;
     double *worth = alloc_array((size_t)mesh->count, sizeof *worth), low = 0.0, high = 0.0;
     for (int64_t i = 0; i < mesh->count; i++) {
         double variance = l->known[mesh->leaves[i]].variance;
@@ -408,12 +408,12 @@ static void deal_rows(struct looking *l)
 
 bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *mesh)
 {
-    struct method *method = &solver->method;
+    struct model *model = &solver->model;
     struct looking l = {.solver = solver, .mesh = mesh, .links = links};
-    int64_t before = method_work(method);
-    l.gather = final_gather_create(method, method->criterion.final_gather);
+    int64_t before = model_work(model);
+    l.gather = final_gather_create(model, model->criterion.final_gather);
     l.rays = l.gather.rays / ROWS_PER_LOOK;
-    list_leaves(mesh, method->forest);
+    list_leaves(mesh, model->forest);
     find_open_roots(&l);
     know_nothing(&l);
     if (l.rays >= FEWEST_LOOKED)
@@ -425,7 +425,7 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     ledger_add(&solver->ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
                                    .iteration = solver->iteration,
-                                   .work = method_work(method) - before +
+                                   .work = model_work(model) - before +
                                            proofs->node_tests + proofs->triangle_tests});
     int64_t stopped = stop_is_asked();
     comm_add(solver->comm, &stopped, 1);

@@ -32,7 +32,7 @@ static void collect_trees(const struct solver *solver, const int32_t *order,
 {
     int64_t leaf = 0;
     for (int64_t i = 0; i < snapshot->patch_count; i++) {
-        const struct patch *patch = &solver->method.forest->patches[order[i]];
+        const struct patch *patch = &solver->model.forest->patches[order[i]];
         snapshot->split[i] = !patch_is_leaf(patch);
         if (patch_is_leaf(patch))
             snapshot->leaves[leaf++].radiosity = patch->radiosity;
@@ -45,7 +45,7 @@ static void place_home_states(const struct solver *solver, const int32_t *order,
 {
     int64_t leaf = 0;
     for (int64_t i = 0; i < snapshot->patch_count; i++) {
-        const struct patch *patch = &solver->method.forest->patches[order[i]];
+        const struct patch *patch = &solver->model.forest->patches[order[i]];
         if (!patch_is_leaf(patch))
             continue;
         int home = solver->owner[patch->id.root];
@@ -59,7 +59,7 @@ static void place_home_states(const struct solver *solver, const int32_t *order,
 static void collect_home_states(struct solver *solver, const int32_t *order,
                                 struct snapshot *snapshot)
 {
-    const struct forest *forest = solver->method.forest;
+    const struct forest *forest = solver->model.forest;
     struct home_state *own = NULL;
     int64_t count = 0, capacity = 0;
     for (int64_t i = 0; i < forest->count; i++) {
@@ -82,10 +82,10 @@ static void collect_home_states(struct solver *solver, const int32_t *order,
 static void collect_numbers(const struct solver *solver, const struct vote *vote,
                             struct snapshot *snapshot)
 {
-    const struct method *method = &solver->method;
-    int64_t own[] = {solver->links.count, method->counts.rays, method->counts.node_tests,
-                     method->counts.triangle_tests, method->walled_off,
-                     method->rays_spared};
+    const struct model *model = &solver->model;
+    int64_t own[] = {solver->links.count, model->counts.rays, model->counts.node_tests,
+                     model->counts.triangle_tests, model->walled_off,
+                     model->rays_spared};
     int64_t sum[sizeof own / sizeof own[0]];
     MPI_Request request;
     MPI_Iallreduce(own, sum, (int)(sizeof own / sizeof own[0]), MPI_INT64_T, MPI_SUM,
@@ -100,11 +100,11 @@ static void collect_numbers(const struct solver *solver, const struct vote *vote
     snapshot->number[SNAPSHOT_LIMITED] = solver->memory.reached;
     snapshot->number[SNAPSHOT_CHANGE] = solver->last_change;
     snapshot->number[SNAPSHOT_ROUNDS] = solver->accuracy.rounds;
-    snapshot->number[SNAPSHOT_GATHER] = method->criterion.final_gather;
+    snapshot->number[SNAPSHOT_GATHER] = model->criterion.final_gather;
     snapshot->value[SNAPSHOT_REMAINING] = vote->remaining;
     snapshot->value[SNAPSHOT_ABSORBED] = vote->absorbed;
     snapshot->value[SNAPSHOT_ESCAPED] = vote->escaped;
-    snapshot->value[SNAPSHOT_EPSILON] = method->criterion.epsilon;
+    snapshot->value[SNAPSHOT_EPSILON] = model->criterion.epsilon;
     snapshot->value[SNAPSHOT_COARSE] = solver->accuracy.coarse;
     snapshot->value[SNAPSHOT_COARSE_EPSILON] = solver->accuracy.coarse_epsilon;
     snapshot->value[SNAPSHOT_LEAST_BEND] = solver->least_bend;
@@ -112,7 +112,7 @@ static void collect_numbers(const struct solver *solver, const struct vote *vote
 
 static void collect_root_changes(const struct solver *solver, struct snapshot *snapshot)
 {
-    int32_t roots = solver->method.forest->root_count;
+    int32_t roots = solver->model.forest->root_count;
     int64_t *own = alloc_array((size_t)roots, sizeof *own);
     for (int32_t root = 0; root < roots; root++)
         own[root] = solver->own[root] ? solver->root_change[root] : 0;
@@ -125,7 +125,7 @@ static void collect_root_changes(const struct solver *solver, struct snapshot *s
 
 void snapshot_collect(struct solver *solver, const struct vote *vote, struct snapshot *snapshot)
 {
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     bool collects = solver->comm->rank == 0;
     closure_extend(&solver->closure, forest); /* patches that refinement has made since */
     conjugate_extend(&solver->conjugate, forest, solver->own);
@@ -217,7 +217,7 @@ static void renumber(struct link_list *list, const int32_t *number)
 
 void links_collect(struct solver *solver, link_sink *sink, void *context)
 {
-    const struct forest *forest = solver->method.forest;
+    const struct forest *forest = solver->model.forest;
     int32_t *order = forest_order(forest);
     int32_t *number = alloc_array((size_t)forest->count, sizeof *number);
     for (int64_t i = 0; i < forest->count; i++)
@@ -267,7 +267,7 @@ static void restore_trees(struct forest *forest, const struct snapshot *snapshot
 static void restore_leaves(struct solver *solver, const struct snapshot *snapshot,
                            const int32_t *order)
 {
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     int64_t leaf = 0;
     for (int64_t i = 0; i < forest->count; i++) {
         int32_t p = order[i];
@@ -285,13 +285,13 @@ static void restore_leaves(struct solver *solver, const struct snapshot *snapsho
 static void restore_numbers(struct solver *solver, struct vote *vote,
                             const struct snapshot *snapshot)
 {
-    struct method *method = &solver->method;
+    struct model *model = &solver->model;
     const int64_t *number = snapshot->number;
     if (solver->comm->rank == 0) {
-        method->counts = (struct octree_counts){number[SNAPSHOT_RAYS], number[SNAPSHOT_NODE_TESTS],
+        model->counts = (struct octree_counts){number[SNAPSHOT_RAYS], number[SNAPSHOT_NODE_TESTS],
                                                 number[SNAPSHOT_TRIANGLE_TESTS]};
-        method->walled_off = number[SNAPSHOT_WALLED_OFF];
-        method->rays_spared = number[SNAPSHOT_RAYS_SPARED];
+        model->walled_off = number[SNAPSHOT_WALLED_OFF];
+        model->rays_spared = number[SNAPSHOT_RAYS_SPARED];
     }
     solver->pass = number[SNAPSHOT_PASSES];
     solver->iteration = number[SNAPSHOT_ITERATIONS];
@@ -302,12 +302,12 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
         .rounds = number[SNAPSHOT_ROUNDS],
         .coarse = snapshot->value[SNAPSHOT_COARSE],
         .coarse_epsilon = snapshot->value[SNAPSHOT_COARSE_EPSILON]};
-    if (method->criterion.accuracy > 0.0 && number[SNAPSHOT_GATHER] > 0)
-        method->criterion.final_gather = solver->memory.rays = (int)number[SNAPSHOT_GATHER];
+    if (model->criterion.accuracy > 0.0 && number[SNAPSHOT_GATHER] > 0)
+        model->criterion.final_gather = solver->memory.rays = (int)number[SNAPSHOT_GATHER];
     solver->least_bend = snapshot->value[SNAPSHOT_LEAST_BEND];
     if (solver->pass > 0) { /* before the first pass a link cache does not bind epsilon */
-        method->criterion.epsilon = snapshot->value[SNAPSHOT_EPSILON];
-        method->link_threshold = method->criterion.epsilon * method->light_power;
+        model->criterion.epsilon = snapshot->value[SNAPSHOT_EPSILON];
+        model->link_threshold = model->criterion.epsilon * model->light_power;
     }
     *vote = (struct vote){
         .settled = number[SNAPSHOT_SETTLED] != 0 && (as_limited || number[SNAPSHOT_LIMITED] == 0),
@@ -316,12 +316,12 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
         .absorbed = snapshot->value[SNAPSHOT_ABSORBED],
         .escaped = snapshot->value[SNAPSHOT_ESCAPED],
     };
-    vote->converged = vote->settled && vote->remaining <= method->criterion.tolerance;
+    vote->converged = vote->settled && vote->remaining <= model->criterion.tolerance;
 }
 
 int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snapshot *snapshot)
 {
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     broadcast_snapshot(solver->comm, snapshot);
     restore_trees(forest, snapshot);
     closure_extend(&solver->closure, forest);

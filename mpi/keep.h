@@ -3,7 +3,7 @@
 #define MPI_KEEP_H
 
 #include "mpi/solver.h"
-#include "rad/snapshot.h"
+#include "rad/beyond/snapshot.h"
 
 /* Collective, between two passes: fills `snapshot` on rank 0; on the others it stays without trees. To
  * be released with snapshot_free() on all. */

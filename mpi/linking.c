@@ -70,7 +70,7 @@ static void link_round(struct solver *solver, struct linking *linking, int64_t e
 /* Returns false if a signal or the memory limit has ended it. */
 static bool link_pairs(struct solver *solver, struct linking *linking)
 {
-    int64_t pairs = linking_pairs(linking), patches = solver->method.forest->count;
+    int64_t pairs = linking_pairs(linking), patches = solver->model.forest->count;
     for (int64_t end = 0; end < pairs;) {
         int64_t links = exchange_notices(solver);
         int64_t round = pairs - end < ROUND ? pairs - end : ROUND;
@@ -93,13 +93,13 @@ bool solver_link_roots(struct solver *solver)
         solver_link_top(solver);
         return true;
     }
-    int64_t before = method_work(&solver->method);
+    int64_t before = model_work(&solver->model);
     const struct comm *comm = solver->comm;
-    struct linking linking = linking_start(&solver->method, &solver->links, comm->rank,
+    struct linking linking = linking_start(&solver->model, &solver->links, comm->rank,
                                            comm->size);
     bool done = link_pairs(solver, &linking);
     struct phase_work phase = {.kind = WORK_LINKING, .links = solver->links.count,
-                               .work = method_work(&solver->method) - before};
+                               .work = model_work(&solver->model) - before};
     ledger_add(&solver->ledger, phase);
     linking_end(&linking);
     solver->seconds[PHASE_LINKING] += comm_seconds() - start;
@@ -108,7 +108,7 @@ bool solver_link_roots(struct solver *solver)
 
 static uint32_t root_of(const struct solver *solver, int32_t patch)
 {
-    return solver->method.forest->patches[patch].id.root;
+    return solver->model.forest->patches[patch].id.root;
 }
 
 static void send_home(struct solver *solver)
@@ -124,20 +124,20 @@ static void send_home(struct solver *solver)
 }
 
 /* The area of a root, in parts of 2^-40 of all. */
-static int64_t root_area(const struct method *method, int32_t root)
+static int64_t root_area(const struct model *model, int32_t root)
 {
-    return (int64_t)(scene_root_area(method->scene, root) / method->area * 0x1p40);
+    return (int64_t)(scene_root_area(model->scene, root) / model->area * 0x1p40);
 }
 
 void solver_assign_roots(struct solver *solver)
 {
     double start = comm_seconds();
-    int32_t roots = solver->method.forest->root_count;
-    bool greedy = solver->method.criterion.balance == BALANCE_GREEDY;
+    int32_t roots = solver->model.forest->root_count;
+    bool greedy = solver->model.criterion.balance == BALANCE_GREEDY;
     int64_t *weights = alloc_array((size_t)roots, sizeof *weights);
     for (int32_t root = 0; root < roots; root++)
-        weights[root] = greedy ? root_area(&solver->method, root)
-                               : root_weight(&solver->method, root);
+        weights[root] = greedy ? root_area(&solver->model, root)
+                               : root_weight(&solver->model, root);
     roots_assign(weights, roots, solver->comm->size, solver->owner);
     alloc_free(weights);
     for (int32_t root = 0; root < roots; root++)

@@ -64,7 +64,7 @@ void memory_watch(struct solver *solver, int64_t limit, int64_t machine)
     struct memory *memory = &solver->memory;
     memory->limit = limit;
     memory->copies = 1;
-    memory->rays = solver->method.criterion.final_gather;
+    memory->rays = solver->model.criterion.final_gather;
     if (limit > 0)
         return;
     memory->limit = (int64_t)(SHARE * (double)machines_together(solver->comm, machine));

@@ -19,24 +19,24 @@ struct wire_link {
     uint8_t parts_p[3], parts_q[3], seen, cost;
 };
 
-static struct patch_id id_of_node(const struct method *method, int32_t node)
+static struct patch_id id_of_node(const struct model *model, int32_t node)
 {
     if (node_is_cluster(node))
         return (struct patch_id){CLUSTER_ROOT,
-                                 method->clusters->tree->clusters[~node].hierarchy};
-    return method->forest->patches[node].id;
+                                 model->clusters->tree->clusters[~node].hierarchy};
+    return model->forest->patches[node].id;
 }
 
-static int32_t reach_node(const struct method *method, struct patch_id id)
+static int32_t reach_node(const struct model *model, struct patch_id id)
 {
-    return id.root == CLUSTER_ROOT ? cluster_reach(method->clusters->tree, id.hierarchy)
-                                   : forest_reach(method->forest, id);
+    return id.root == CLUSTER_ROOT ? cluster_reach(model->clusters->tree, id.hierarchy)
+                                   : forest_reach(model->forest, id);
 }
 
-static struct wire_link pack(const struct method *method, const struct link *link)
+static struct wire_link pack(const struct model *model, const struct link *link)
 {
-    struct wire_link wire = {.p = id_of_node(method, link->p),
-                             .q = id_of_node(method, link->q),
+    struct wire_link wire = {.p = id_of_node(model, link->p),
+                             .q = id_of_node(model, link->q),
                              .area = link->area,
                              .blocker = link->blocker,
                              .seen = link->seen,
@@ -46,10 +46,10 @@ static struct wire_link pack(const struct method *method, const struct link *lin
     return wire;
 }
 
-static struct link unpack(const struct method *method, const struct wire_link *wire)
+static struct link unpack(const struct model *model, const struct wire_link *wire)
 {
-    struct link link = {.p = reach_node(method, wire->p),
-                        .q = reach_node(method, wire->q),
+    struct link link = {.p = reach_node(model, wire->p),
+                        .q = reach_node(model, wire->q),
                         .area = wire->area,
                         .blocker = wire->blocker,
                         .seen = wire->seen,
@@ -70,7 +70,7 @@ static struct wire_link *pack_leaving(const struct solver *solver, struct link_l
         if (destination[i] == solver->comm->rank)
             list->items[kept++] = list->items[i];
         else
-            wire[at[destination[i]]++] = pack(&solver->method, &list->items[i]);
+            wire[at[destination[i]]++] = pack(&solver->model, &list->items[i]);
     }
     list->count = kept;
     return wire;
@@ -90,7 +90,7 @@ int64_t links_migrate(struct solver *solver, struct link_list *list,
     struct wire_link *out = pack_leaving(solver, list, destination, at, leaving);
     struct wire_link *in = comm_exchange(comm, out, counts, sizeof *out, &arriving);
     for (int64_t i = 0; i < arriving; i++)
-        link_list_append(list, unpack(&solver->method, &in[i]));
+        link_list_append(list, unpack(&solver->model, &in[i]));
     alloc_free(in);
     alloc_free(out);
     alloc_free(at);

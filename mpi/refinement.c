@@ -60,11 +60,11 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
                                .work = solver->links.count};
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
-        if (node_to_split(&solver->method, &link) != NODE_NONE) {
+        if (node_to_split(&solver->model, &link) != NODE_NONE) {
             link_list_append(prolific, link);
             continue;
         }
-        node_divide_patches(&solver->method, &link);
+        node_divide_patches(&solver->model, &link);
         solver->links.items[kept++] = link;
     }
     solver->links.count = kept;
@@ -82,7 +82,7 @@ static struct level exchange_loads(struct solver *solver,
                         .of_patches = count_of_patches(prolific),
                         .load = load_of(prolific),
                         .kept = solver->links.count,
-                        .made = solver->method.forest->count - solver->shared,
+                        .made = solver->model.forest->count - solver->shared,
                         .stop = signals_seen()};
     double start = comm_seconds();
     struct level *levels = comm_gather_each(comm, &own, sizeof own), all = {0};
@@ -119,18 +119,18 @@ static int64_t deal_links(struct solver *solver, struct link_list *links,
 static void split_link(struct solver *solver, const struct link *link,
                        struct link_list *next)
 {
-    struct method *method = &solver->method;
+    struct model *model = &solver->model;
     struct link children[NODE_CHILDREN_MAX];
-    int64_t before = method_work(method), waiting = next->count;
-    int count = node_link_split(method, link, node_to_split(method, link), children);
+    int64_t before = model_work(model), waiting = next->count;
+    int count = node_link_split(model, link, node_to_split(model, link), children);
     for (int k = 0; k < count; k++) {
-        bool goes_on = node_to_split(method, &children[k]) != NODE_NONE;
+        bool goes_on = node_to_split(model, &children[k]) != NODE_NONE;
         if (!goes_on)
-            node_link_settle(method, &children[k]);
+            node_link_settle(model, &children[k]);
         link_list_append(goes_on ? next : &solver->links, children[k]);
     }
     if (solver->watch)
-        solver->watch(solver->watcher, link_load(link), method_work(method) - before,
+        solver->watch(solver->watcher, link_load(link), model_work(model) - before,
                       next->count - waiting);
 }
 
@@ -140,9 +140,9 @@ static void split_stage(struct solver *solver, struct link_list *links, double p
                         int64_t limit, struct link_list *next, struct phase_work *phase)
 {
     double start = comm_seconds(), count = (double)links->count;
-    int64_t before = method_work(&solver->method), done = 0;
+    int64_t before = model_work(&solver->model), done = 0;
     phase->predicted = 0;
-    for (; done < links->count && method_work(&solver->method) - before < limit; done++) {
+    for (; done < links->count && model_work(&solver->model) - before < limit; done++) {
         if (done % 64 == 0) {
             double left = real_max(0.0, count - (double)done);
             progress_tick(solver->progress, 1.0 - part * left / count);
@@ -159,7 +159,7 @@ static void split_stage(struct solver *solver, struct link_list *links, double p
                 (size_t)links->count * sizeof *links->items);
     solver->split_here += done;
     phase->links = done;
-    phase->work = method_work(&solver->method) - before;
+    phase->work = model_work(&solver->model) - before;
     ledger_add(&solver->ledger, *phase);
     solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
 }
@@ -169,7 +169,7 @@ static void split_stage(struct solver *solver, struct link_list *links, double p
 static bool levels_end(const struct solver *solver)
 {
     const struct memory *memory = &solver->memory;
-    return solver->method.criterion.balance == BALANCE_GREEDY ||
+    return solver->model.criterion.balance == BALANCE_GREEDY ||
            (memory->limit > 0 && memory->copies == 1);
 }
 
@@ -182,7 +182,7 @@ static void split_level(struct solver *solver, struct link_list *links,
     struct link_list next = {0};
     double part = 1.0;
     while (again) {
-        int64_t limit = solver->method.criterion.balance == BALANCE_GREEDY
+        int64_t limit = solver->model.criterion.balance == BALANCE_GREEDY
                             ? INT64_MAX : links_limit(loads, solver->comm->size);
         phase.bytes = deal_links(solver, links, loads);
         double count = (double)links->count;
@@ -202,7 +202,7 @@ static void split_level(struct solver *solver, struct link_list *links,
  * any. */
 static void share_splits(struct solver *solver)
 {
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     const struct comm *comm = solver->comm;
     double start = comm_seconds();
     int64_t count = 0;
@@ -272,10 +272,10 @@ static bool split_levels(struct solver *solver, struct link_list *prolific,
 static void prepare(struct solver *solver)
 {
     double start = comm_seconds();
-    forest_bound(solver->method.forest);
+    forest_bound(solver->model.forest);
     if (solver->tree) {
-        cluster_light_pull(solver->method.clusters, solver->method.forest);
-        cluster_light_bound(solver->method.clusters, solver->method.forest);
+        cluster_light_pull(solver->model.clusters, solver->model.forest);
+        cluster_light_bound(solver->model.clusters, solver->model.forest);
     }
     solver->seconds[PHASE_PREPARE] += comm_seconds() - start;
 }
@@ -285,7 +285,7 @@ static void begin_pass(struct solver *solver)
     solver->pass++;
     prepare(solver);
     solver->split_here = 0;
-    solver->first_new = solver->shared = solver->method.forest->count;
+    solver->first_new = solver->shared = solver->model.forest->count;
 }
 
 /* --- the first levels --- */
@@ -309,18 +309,18 @@ static void keep_share(const struct comm *comm, struct link_list *list)
  * enough to deal. Then each keeps its share. What all did alike counts once. */
 static void split_alike(struct solver *solver, struct link_list *level)
 {
-    struct method *method = &solver->method;
-    struct octree_counts counts = method->counts;
-    int64_t before = method_work(method), estimating = method->estimating;
-    int64_t spared = method->rays_spared, walled_off = method->walled_off, split = 0;
+    struct model *model = &solver->model;
+    struct octree_counts counts = model->counts;
+    int64_t before = model_work(model), estimating = model->estimating;
+    int64_t spared = model->rays_spared, walled_off = model->walled_off, split = 0;
     for (int64_t i = 0; i < solver->links.count;
          i++) /* the top, if it is not to be split */
-        node_link_settle(method, &solver->links.items[i]);
+        node_link_settle(model, &solver->links.items[i]);
     while (level->count > 0 && !level_is_dealt(level->count)) {
         struct level links = {.prolific = level->count, .kept = solver->links.count,
                               .of_patches = count_of_patches(level)};
         struct link_list next = {0};
-        if (!has_room(solver, &links, method->forest->count))
+        if (!has_room(solver, &links, model->forest->count))
             break;
         for (int64_t i = 0; i < level->count; i++)
             split_link(solver, &level->items[i], &next);
@@ -329,7 +329,7 @@ static void split_alike(struct solver *solver, struct link_list *level)
         *level = next;
     }
     struct phase_work phase = {.kind = WORK_LINKING, .links = split,
-                               .work = method_work(method) - before};
+                               .work = model_work(model) - before};
     ledger_add(&solver->ledger, phase);
     keep_share(solver->comm, &solver->links);
     keep_share(solver->comm, level);
@@ -337,10 +337,10 @@ static void split_alike(struct solver *solver, struct link_list *level)
     if (solver->comm->rank == 0) {
         solver->split_here += split;
     } else {
-        method->counts = counts;
-        method->estimating = estimating;
-        method->rays_spared = spared;
-        method->walled_off = walled_off;
+        model->counts = counts;
+        model->estimating = estimating;
+        model->rays_spared = spared;
+        model->walled_off = walled_off;
     }
 }
 
@@ -351,7 +351,7 @@ static void keep_unsplit(struct solver *solver, const struct link_list *prolific
 {
     for (int64_t i = 0; i < prolific->count && !(i % 64 == 0 && signals_seen()); i++) {
         struct link link = prolific->items[i];
-        node_link_settle(&solver->method, &link);
+        node_link_settle(&solver->model, &link);
         link_list_append(&solver->links, link);
     }
     exchange_loads(solver, prolific, loads);
@@ -378,7 +378,7 @@ bool solver_refine(struct solver *solver)
         link_list_free(&prolific);
         share_splits(solver);
     }
-    if (solver->method.criterion.balance != BALANCE_GREEDY)
+    if (solver->model.criterion.balance != BALANCE_GREEDY)
         links_even_out(solver);
     bool stopped = !done && solver->stop != 0;
     solver->pass -= stopped;

@@ -21,18 +21,18 @@ void routes_free(struct routes *routes)
 
 static bool can_receive(const struct solver *solver, int32_t patch)
 {
-    uint32_t root = solver->method.forest->patches[patch].id.root;
-    return scene_root_area(solver->method.scene, (int32_t)root) > 0.0;
+    uint32_t root = solver->model.forest->patches[patch].id.root;
+    return scene_root_area(solver->model.scene, (int32_t)root) > 0.0;
 }
 
 /* What neither reflects nor emits stays 0. (A lamp that does not reflect is 0 too in the steps of conjugate
  * gradients, and E before and after.) Factors of --closure symmetric change everywhere. */
 static bool is_leaf_that_changes(const struct solver *solver, int32_t patch)
 {
-    const struct patch *at = &solver->method.forest->patches[patch];
+    const struct patch *at = &solver->model.forest->patches[patch];
     return patch_is_leaf(at) && can_receive(solver, patch) &&
            (solver->closure.kind == CLOSURE_SYMMETRIC ||
-            !material_is_dark(forest_material(solver->method.forest, patch)));
+            !material_is_dark(forest_material(solver->model.forest, patch)));
 }
 
 /* The patches for which `is_listed` is true, home by home; how many each has, and where they begin. Returns
@@ -41,7 +41,7 @@ static int32_t *list_patches(const struct solver *solver,
                              bool (*is_listed)(const struct solver *, int32_t), int *counts,
                              int *at, int64_t *count)
 {
-    const struct forest *forest = solver->method.forest;
+    const struct forest *forest = solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++)
         counts[solver->owner[forest->patches[p].id.root]] += is_listed(solver, (int32_t)p);
     *count = comm_displacements(solver->comm, counts, at);

@@ -22,7 +22,7 @@ static void pack(struct solver *solver)
     const int32_t *leaves = routes->leaves + routes->leaf_at[rank];
     struct rgb *records = routes->radiosities + routes->record_at[rank];
     for (int i = 0; i < routes->leaf_counts[rank]; i++)
-        records[i] = solver->method.forest->patches[leaves[i]].radiosity;
+        records[i] = solver->model.forest->patches[leaves[i]].radiosity;
     memcpy(ballot_of(solver, rank), &solver->ballot, sizeof solver->ballot);
     solver->copied += routes->leaf_counts[rank];
 }
@@ -31,7 +31,7 @@ static void pack(struct solver *solver)
 static void renew_home(struct solver *solver, int home)
 {
     const struct routes *routes = &solver->routes;
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     const int32_t *leaves = routes->leaves + routes->leaf_at[home];
     const struct rgb *records = routes->radiosities + routes->record_at[home];
     for (int i = 0; i < routes->leaf_counts[home]; i++)

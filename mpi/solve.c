@@ -1,6 +1,6 @@
 /* Steps 5 and 6 for both solvers: the transfer of light over the links there are, and what is made
  * of it at home. Jacobi, the paper's: B = E + rho H, and the next refinement. Conjugate gradients:
- * one step (rad/conjugate.c), until the bound on what is still missing is small enough. */
+ * one step (rad/beyond/conjugate.c), until the bound on what is still missing is small enough. */
 #include "mpi/solver.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@
 /* At most; the same on all ranks. When links have changed all ranks know all radiosities. */
 static double largest_radiosity(const struct solver *solver)
 {
-    const struct forest *forest = solver->method.forest;
+    const struct forest *forest = solver->model.forest;
     double largest = fmax(solver->fresh ? 0.0 : solver->ballot.brightest, 1e-250);
     for (int64_t p = 0; p < forest->count && solver->fresh; p++)
         for (int c = 0; c < BANDS; c++) {
@@ -30,7 +30,7 @@ static void clear_own_flux(struct solver *solver)
     const int32_t *own = routes->receivers + routes->receiver_at[solver->comm->rank];
     for (int i = 0; i < routes->receiver_counts[solver->comm->rank]; i++)
         for (int c = 0; c < BANDS; c++)
-            solver->method.forest->patches[own[i]].flux[c] = 0;
+            solver->model.forest->patches[own[i]].flux[c] = 0;
 }
 
 /* What leaves send with --closure symmetric. */
@@ -45,22 +45,22 @@ static void correct_senders(struct forest *forest, const struct closure *closure
 void solver_transfer(struct solver *solver)
 {
     double start = comm_seconds();
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     bool corrects = solver->closure.kind == CLOSURE_SYMMETRIC;
     struct rgb *kept = corrects ? forest_keep(forest) : NULL;
     if (corrects)
         correct_senders(forest, &solver->closure);
     clear_own_flux(solver);
     double room = solver->tree ? 2.0 : 1.0; /* a node receives over links of its cluster, too */
-    solver->flux = flux_unit_for(room * largest_radiosity(solver) * solver->method.area);
+    solver->flux = flux_unit_for(room * largest_radiosity(solver) * solver->model.area);
     if (solver->tree) {
-        cluster_light_pull(solver->method.clusters, forest);
-        memset(solver->method.clusters->flux, 0,
-               BANDS * (size_t)solver->tree->count * sizeof *solver->method.clusters->flux);
+        cluster_light_pull(solver->model.clusters, forest);
+        memset(solver->model.clusters->flux, 0,
+               BANDS * (size_t)solver->tree->count * sizeof *solver->model.clusters->flux);
     }
     double begun = comm_seconds();
     if (solver->tree)
-        node_links_transfer(&solver->links, &solver->method, solver->flux);
+        node_links_transfer(&solver->links, &solver->model, solver->flux);
     else
         links_transfer(&solver->links, forest, solver->flux);
     double done = comm_seconds();
@@ -75,9 +75,9 @@ void solver_transfer(struct solver *solver)
 static void start_conjugate(struct solver *solver)
 {
     struct conjugate *cg = &solver->conjugate;
-    conjugate_start(cg, &solver->method, &solver->closure, solver->flux);
+    conjugate_start(cg, &solver->model, &solver->closure, solver->flux);
     struct flux_unit any = flux_unit_for(1.0);
-    double own = conjugate_sum(cg, &solver->method, &solver->closure, any).largest;
+    double own = conjugate_sum(cg, &solver->model, &solver->closure, any).largest;
     solver->bound_residual = comm_largest(solver->comm, own);
     solver->bound_image = 0.0;
     for (int c = 0; c < BANDS; c++)
@@ -87,10 +87,10 @@ static void start_conjugate(struct solver *solver)
 /* <K z, z> over all ranks, W^2 m^-2. */
 static void multiply(struct solver *solver, double bound, double product[BANDS])
 {
-    struct flux_unit unit = conjugate_unit(&solver->method, bound, solver->bound_residual,
+    struct flux_unit unit = conjugate_unit(&solver->model, bound, solver->bound_residual,
                                            solver->weight);
     int64_t own[BANDS] = {0, 0, 0}, all[BANDS];
-    conjugate_apply(&solver->conjugate, &solver->method, &solver->closure,
+    conjugate_apply(&solver->conjugate, &solver->model, &solver->closure,
                     solver->flux, unit, own);
     MPI_Request request;
     MPI_Iallreduce(own, all, BANDS, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
@@ -123,7 +123,7 @@ static void step_conjugate(struct solver *solver)
         solver->gamma_before[c] = gamma;
         solver->step_before[c] = step[c];
     }
-    conjugate_advance(&solver->conjugate, &solver->method, turn, step);
+    conjugate_advance(&solver->conjugate, &solver->model, turn, step);
     solver->bound_image = image + longest_turn * solver->bound_image;
     solver->bound_residual += longest_step * solver->bound_image;
 }
@@ -135,17 +135,17 @@ static void push_pull_conjugate(struct solver *solver)
     else
         step_conjugate(solver);
     solver->fresh = false;
-    conjugate_publish(&solver->conjugate, &solver->method, false);
+    conjugate_publish(&solver->conjugate, &solver->model, false);
 }
 
 void solver_push_pull(struct solver *solver)
 {
     double start = comm_seconds();
     solver->iteration++;
-    if (solver->method.criterion.solver == SOLVER_CG)
+    if (solver->model.criterion.solver == SOLVER_CG)
         push_pull_conjugate(solver);
     else
-        solver->sums = push_pull(&solver->method, &solver->closure, solver->flux, solver->own,
+        solver->sums = push_pull(&solver->model, &solver->closure, solver->flux, solver->own,
                                  solver->root_change);
     solver_cast_ballot(solver);
     solver->seconds[PHASE_PUSH_PULL] += comm_seconds() - start;

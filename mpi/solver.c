@@ -21,7 +21,7 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     struct solver *solver = alloc_array(1, sizeof *solver);
     size_t roots = (size_t)scene_root_count(scene);
     solver->comm = comm;
-    solver->method = method_make(scene, octree, forest_create(scene), criterion);
+    solver->model = model_make(scene, octree, forest_create(scene), criterion);
     if (criterion->linking == LINKING_TREE) {
         double start = comm_seconds();
         int32_t *met = octree ? places_gather(comm, scene, octree) : NULL;
@@ -29,8 +29,8 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
         solver->tree_block = tree_broadcast(comm, node_policy(), scene, met, &solver->tree);
         alloc_free(met);
         solver->seconds[PHASE_TREE] = solver->tree_block.seconds;
-        solver->method.clusters = cluster_light_create(solver->tree);
-        solver->method.forest->above = alloc_array(roots, sizeof *solver->method.forest->above);
+        solver->model.clusters = cluster_light_create(solver->tree);
+        solver->model.forest->above = alloc_array(roots, sizeof *solver->model.forest->above);
     }
     solver->owner = alloc_array(roots, sizeof *solver->owner);
     solver->own = alloc_array(roots, sizeof *solver->own);
@@ -45,8 +45,8 @@ void solver_destroy(struct solver *solver)
 {
     if (!solver)
         return;
-    forest_destroy(solver->method.forest);
-    cluster_light_destroy(solver->method.clusters);
+    forest_destroy(solver->model.forest);
+    cluster_light_destroy(solver->model.clusters);
     cluster_tree_destroy(solver->tree);
     node_block_destroy(&solver->tree_block);
     link_list_free(&solver->links);
@@ -66,7 +66,7 @@ void solver_destroy(struct solver *solver)
 void solver_measure_closure(struct solver *solver, struct stats *stats)
 {
     const struct comm *comm = solver->comm;
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     struct rgb *kept = forest_keep(forest);
     for (int64_t p = 0; p < forest->count; p++)
         forest->patches[p].radiosity = (struct rgb){{1.0, 0.0, 0.0}};
@@ -160,11 +160,11 @@ static int kind_of(const struct link *link)
 
 static void report_counts(const struct solver *solver, struct stats *stats)
 {
-    const struct octree_counts *counts = &solver->method.counts;
+    const struct octree_counts *counts = &solver->model.counts;
     int64_t own[COUNT_SUMS] = {counts->rays, counts->node_tests, counts->triangle_tests,
                                solver->bytes_migration, solver->bytes_gather,
-                               solver->bytes_scatter, solver->method.walled_off,
-                               solver->method.rays_spared, peak_memory()};
+                               solver->bytes_scatter, solver->model.walled_off,
+                               solver->model.rays_spared, peak_memory()};
     int64_t sum[COUNT_SUMS], largest[2] = {own[8], comm_messages()};
     for (int64_t i = 0; i < solver->links.count; i++)
         own[9 + kind_of(&solver->links.items[i])]++;
@@ -192,34 +192,34 @@ static void report_counts(const struct solver *solver, struct stats *stats)
 
 void solver_report(struct solver *solver, const struct vote *vote, struct stats *stats)
 {
-    const struct scene *scene = solver->method.scene;
+    const struct scene *scene = solver->model.scene;
     double unit = scene_area_unit(scene);
     stats->ranks = solver->comm->size;
     stats->triangles = scene->input_count;
     stats->roots = 0;
     for (int32_t root = 0; root < scene_root_count(scene); root++)
         stats->roots += scene_root_area(scene, root) > 0.0;
-    stats->patches = forest_patch_count(solver->method.forest);
-    stats->leaves = forest_leaf_count(solver->method.forest);
+    stats->patches = forest_patch_count(solver->model.forest);
+    stats->leaves = forest_leaf_count(solver->model.forest);
     stats->links = vote->links;
     stats->passes = solver->pass;
     stats->iterations = solver->iteration;
     stats->clusters = solver->tree ? solver->tree->count : 0;
-    stats->counted_bytes = memory_needed(1, solver->method.criterion.final_gather,
-                                         stats->links, solver->method.forest->count,
+    stats->counted_bytes = memory_needed(1, solver->model.criterion.final_gather,
+                                         stats->links, solver->model.forest->count,
                                          stats->clusters);
     stats->memory_limited = solver->memory.reached > 0;
-    stats->accuracy = solver->method.criterion.accuracy;
+    stats->accuracy = solver->model.criterion.accuracy;
     stats->hold = solver->accuracy.hold;
     stats->rounds = solver->accuracy.rounds;
     stats->converged =
         vote->converged && !stats->memory_limited && stats->hold == HOLD_NONE;
-    stats->epsilon = solver->method.criterion.epsilon;
+    stats->epsilon = solver->model.criterion.epsilon;
     stats->error_estimate = solver->gathered.error;
     stats->emitted_power = unit * scene_emitted_power(scene);
     stats->absorbed_power = unit * vote->absorbed;
     stats->escaped_power = unit * vote->escaped;
-    stats->checksum = forest_checksum(solver->method.forest);
+    stats->checksum = forest_checksum(solver->model.forest);
     stats->gathered = solver->gathered;
     ledger_share(&solver->ledger, solver->comm);
     stats->levels = solver->ledger.levels;

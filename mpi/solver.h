@@ -13,9 +13,9 @@
 #include "mpi/routes.h"
 #include "rad/beyond/final_gather.h"
 #include "rad/beyond/node_link.h"
-#include "rad/conjugate.h"
+#include "rad/beyond/conjugate.h"
 #include "rad/link.h"
-#include "rad/method.h"
+#include "rad/model.h"
 #include "rad/pushpull.h"
 #include "rad/stats.h"
 
@@ -57,7 +57,7 @@ enum { BALLOT_RECORDS = (sizeof(struct ballot) + sizeof(struct rgb) - 1) / sizeo
 struct solver {
     const struct comm *comm;  /* borrowed */
     struct progress *progress; /* borrowed; NULL: nobody looks */
-    struct method method;     /* scene, octree, forest and criterion; the forest is owned */
+    struct model model;       /* scene, octree, forest and criterion; the forest is owned */
     struct cluster_tree *tree;    /* above the roots; NULL: none. Owned, like all up to `links` */
     struct node_block tree_block; /* what it looks into */
     bool alike;               /* all ranks have the same links: that of the top of the tree */

@@ -86,9 +86,9 @@ struct merit {
 
 static struct merit merit_of(const struct checking *c, int32_t leaf)
 {
-    double area = forest_area(c->solver->method.forest, leaf);
+    double area = forest_area(c->solver->model.forest, leaf);
     double error = (double)c->solver->error[leaf];
-    struct rgb b = reflected(c->solver->method.forest, leaf);
+    struct rgb b = reflected(c->solver->model.forest, leaf);
     return (struct merit){area, area * rgb_dot(b, b), area * error * error};
 }
 
@@ -100,7 +100,7 @@ static double over(double part, double sum)
 /* Leaves that can be drawn, and how likely each is. */
 static void list_leaves(struct checking *c)
 {
-    const struct forest *forest = c->solver->method.forest;
+    const struct forest *forest = c->solver->model.forest;
     int32_t *order = forest_order(forest);
     struct merit sum = {0.0, 0.0, 0.0};
     double upto = 0.0;
@@ -152,7 +152,7 @@ static void draw_leaves(struct checking *c, int batch)
 
 static struct finding trace_leaf(const struct checking *c, int32_t leaf, uint64_t draw)
 {
-    struct patch_id id = c->solver->method.forest->patches[leaf].id;
+    struct patch_id id = c->solver->model.forest->patches[leaf].id;
     struct triangle part = pathtracer_part(id);
     uint64_t seed = hash_mix(hash_mix((uint64_t)id.root << 32 | id.hierarchy) + draw);
     struct finding found;
@@ -190,7 +190,7 @@ static void trace_batch(struct checking *c, int batch)
 /* Collective. */
 static void check_batch(struct checking *c, int batch)
 {
-    const struct forest *forest = c->solver->method.forest;
+    const struct forest *forest = c->solver->model.forest;
     draw_leaves(c, batch);
     trace_batch(c, batch);
     for (int k = 0; k < BATCH; k++) {
@@ -251,7 +251,7 @@ struct spotcheck spotcheck_run(struct solver *solver, double goal)
     double start = comm_seconds(), expected = fmax(0.5 * goal, gathered->error);
     struct checking c = {.solver = solver, .result = {.done = true}};
     c.rays_most = RAYS_FREE + gathered->rays + gathered->segments;
-    c.pathtracer = pathtracer_make(solver->method.scene, solver->method.octree);
+    c.pathtracer = pathtracer_make(solver->model.scene, solver->model.octree);
     list_leaves(&c);
     progress_begin(solver->progress, "checking", -1, 0);
     if (c.light > 0.0) {

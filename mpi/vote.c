@@ -35,7 +35,7 @@ void ballot_add(struct ballot *sum, const struct ballot *ballot)
 
 static int64_t own_new_patches(const struct solver *solver)
 {
-    const struct forest *forest = solver->method.forest;
+    const struct forest *forest = solver->model.forest;
     int64_t count = 0;
     for (int64_t p = solver->first_new; p < forest->count; p++)
         count += solver->own[forest->patches[p].id.root];
@@ -45,7 +45,7 @@ static int64_t own_new_patches(const struct solver *solver)
 /* What both solvers say. */
 static struct vote vote_of(const struct solver *solver, const struct ballot *sum, double remaining)
 {
-    struct flux_unit unit = solver->method.flux_unit;
+    struct flux_unit unit = solver->model.flux_unit;
     struct vote vote = {
         .diverged = solver->diverged || sum->light >= FLUX_LIMIT || sum->bulk >= FLUX_LIMIT,
         .settled = sum->split == 0 && sum->divided == 0,
@@ -55,7 +55,7 @@ static struct vote vote_of(const struct solver *solver, const struct ballot *sum
         .absorbed = flux_to_watts(unit, sum->absorbed),
         .escaped = flux_to_watts(unit, flux_add(sum->light, -sum->arriving)),
     };
-    vote.converged = vote.settled && remaining <= solver->method.criterion.tolerance;
+    vote.converged = vote.settled && remaining <= solver->model.criterion.tolerance;
     return vote;
 }
 
@@ -119,18 +119,18 @@ static double remaining_by_residual(const struct solver *solver, const struct ba
 /* The remaining error, relative to all light, at which the iterations over these links may end. */
 static double wanted_of(const struct solver *solver, const struct ballot *sum)
 {
-    double tolerance = solver->method.criterion.tolerance;
+    double tolerance = solver->model.criterion.tolerance;
     if (sum->split == 0 && sum->divided == 0)
         return tolerance;
-    double light = flux_to_watts(solver->method.flux_unit, sum->light);
-    double reflected = light - solver->method.emitted_power;
+    double light = flux_to_watts(solver->model.flux_unit, sum->light);
+    double reflected = light - solver->model.emitted_power;
     return reflected > 0.0 ? fmax(tolerance, WHILE_SPLITTING * reflected / light) : tolerance;
 }
 
 /* B takes the place of rho z, on all ranks. */
 static void finish_conjugate(struct solver *solver)
 {
-    conjugate_publish(&solver->conjugate, &solver->method, true);
+    conjugate_publish(&solver->conjugate, &solver->model, true);
     solver_scatter_unvoted(solver);
     solver->fresh = true;
 }
@@ -138,13 +138,13 @@ static void finish_conjugate(struct solver *solver)
 /* The unit of <z, z>. */
 static struct flux_unit square_unit(const struct solver *solver)
 {
-    return conjugate_unit(&solver->method, solver->bound_residual, solver->bound_residual,
+    return conjugate_unit(&solver->model, solver->bound_residual, solver->bound_residual,
                           solver->weight);
 }
 
 static struct ballot ballot_conjugate(const struct solver *solver)
 {
-    struct conjugate_sums sums = conjugate_sum(&solver->conjugate, &solver->method, &solver->closure,
+    struct conjugate_sums sums = conjugate_sum(&solver->conjugate, &solver->model, &solver->closure,
                                                square_unit(solver));
     struct ballot own = {.light = sums.light, .absorbed = sums.absorbed, .arriving = sums.arriving,
                          .negative = sums.negative, .bulk = sums.bulk, .missing = sums.missing,
@@ -156,7 +156,7 @@ static struct ballot ballot_conjugate(const struct solver *solver)
 
 static struct vote vote_conjugate(struct solver *solver, const struct ballot *sum)
 {
-    const struct criterion *criterion = &solver->method.criterion;
+    const struct criterion *criterion = &solver->model.criterion;
     struct flux_unit unit = square_unit(solver);
     for (int c = 0; c < BANDS; c++)
         solver->gamma[c] = flux_to_watts(unit, sum->square[c]);
@@ -184,7 +184,7 @@ static double brightest_own(const struct solver *solver)
         int32_t leaf = solver->conjugate.leaves[i];
         for (int c = 0; c < BANDS; c++)
             brightest = fmax(brightest, fabs(closure_sends(&solver->closure, leaf) *
-                                             solver->method.forest->patches[leaf].radiosity.band[c]));
+                                             solver->model.forest->patches[leaf].radiosity.band[c]));
     }
     return brightest;
 }
@@ -192,7 +192,7 @@ static double brightest_own(const struct solver *solver)
 void solver_cast_ballot(struct solver *solver)
 {
     struct ballot *own = &solver->ballot;
-    *own = solver->method.criterion.solver == SOLVER_CG ? ballot_conjugate(solver)
+    *own = solver->model.criterion.solver == SOLVER_CG ? ballot_conjugate(solver)
                                                         : ballot_jacobi(solver);
     own->split = solver->split_here;
     own->links = solver->links.count;
@@ -205,7 +205,7 @@ struct vote solver_vote(struct solver *solver)
 {
     struct ballot sum = solver->ballot;
     solver->stop = (int)sum.stop;
-    struct vote vote = solver->method.criterion.solver == SOLVER_CG ? vote_conjugate(solver, &sum)
+    struct vote vote = solver->model.criterion.solver == SOLVER_CG ? vote_conjugate(solver, &sum)
                                                                     : vote_jacobi(solver, &sum);
     solver_record_iteration(solver);
     return vote;

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "rad/method.h"
+#include "rad/model.h"
 
 struct exchange {
     double area;       /* G with visibility */

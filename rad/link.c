@@ -92,56 +92,56 @@ static struct link link_of(int32_t p, int32_t q, const struct exchange *exchange
     };
 }
 
-bool link_make(struct method *method, int32_t p, const struct facet *facet_p, int32_t q,
+bool link_make(struct model *model, int32_t p, const struct facet *facet_p, int32_t q,
                const struct facet *facet_q, double inherited, struct sight *sight,
                struct link *link)
 {
     if (!facets_face(facet_p, facet_q))
         return false;
-    if (material_is_dark(forest_material(method->forest, p)) &&
-        material_is_dark(forest_material(method->forest, q)))
+    if (material_is_dark(forest_material(model->forest, p)) &&
+        material_is_dark(forest_material(model->forest, q)))
         return false;
     struct octree_counts work = {0};
-    enum look look = oracle_look(method, p, q, exchange_guess(facet_p, facet_q));
-    struct exchange exchange = exchange_estimate(facet_p, facet_q, method->criterion.form_factor,
-                                                 look, method->octree, sight, &work);
-    octree_counts_add(&method->counts, &work);
-    method->rays_spared += BUNDLE_RAYS - work.rays;
-    method->estimating += TESTS_PER_FORM_FACTOR;
+    enum look look = oracle_look(model, p, q, exchange_guess(facet_p, facet_q));
+    struct exchange exchange = exchange_estimate(facet_p, facet_q, model->criterion.form_factor,
+                                                 look, model->octree, sight, &work);
+    octree_counts_add(&model->counts, &work);
+    model->rays_spared += BUNDLE_RAYS - work.rays;
+    model->estimating += TESTS_PER_FORM_FACTOR;
     double cost = predict_cost((double)(work.node_tests + work.triangle_tests),
-                               method->criterion.alpha, inherited);
+                               model->criterion.alpha, inherited);
     *link = link_of(p, q, &exchange, sight, cost);
-    if (method->criterion.oracle != ORACLE_BF) {
+    if (model->criterion.oracle != ORACLE_BF) {
         link_set_parts(link->parts_p, exchange.parts_p);
         link_set_parts(link->parts_q, exchange.parts_q);
     }
     return true;
 }
 
-int link_split(struct method *method, const struct link *link, int32_t patch,
+int link_split(struct model *model, const struct link *link, int32_t patch,
                struct link children[4])
 {
     bool of_p = patch == link->p, open = link_is_open(link);
     int32_t other = of_p ? link->q : link->p, blocker = link->blocker;
-    struct facet facet_own = facet_make(method->forest, patch);
-    struct facet facet_other = facet_make(method->forest, other);
+    struct facet facet_own = facet_make(model->forest, patch);
+    struct facet facet_other = facet_make(model->forest, other);
     if (link->seen == 0 &&
-        facets_are_walled_off(&facet_own, &facet_other, method->octree, &method->counts)) {
-        method->walled_off++;
+        facets_are_walled_off(&facet_own, &facet_other, model->octree, &model->counts)) {
+        model->walled_off++;
         return 0;
     }
-    if (link->seen == LINK_ALL_SEEN && method->criterion.oracle == ORACLE_ERROR)
-        open = facets_are_open(&facet_own, &facet_other, method->octree, &method->counts);
-    forest_split(method->forest, patch);
+    if (link->seen == LINK_ALL_SEEN && model->criterion.oracle == ORACLE_ERROR)
+        open = facets_are_open(&facet_own, &facet_other, model->octree, &model->counts);
+    forest_split(model->forest, patch);
     double cost = link_cost(link);
     int count = 0;
     for (int k = 0; k < 4; k++) {
-        int32_t child = method->forest->patches[patch].children + k;
-        struct facet facet = facet_make(method->forest, child);
+        int32_t child = model->forest->patches[patch].children + k;
+        struct facet facet = facet_make(model->forest, child);
         struct sight sight = {.open = open, .blocker = blocker};
         struct link *made = &children[count];
-        count += of_p ? link_make(method, child, &facet, other, &facet_other, cost, &sight, made)
-                      : link_make(method, other, &facet_other, child, &facet, cost, &sight, made);
+        count += of_p ? link_make(model, child, &facet, other, &facet_other, cost, &sight, made)
+                      : link_make(model, other, &facet_other, child, &facet, cost, &sight, made);
         blocker = sight.blocker; /* what blocks one child is likely to block the next */
     }
     return count;

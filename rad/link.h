@@ -11,7 +11,7 @@
 
 #include "rad/compact.h"
 #include "rad/formfactor.h"
-#include "rad/method.h"
+#include "rad/model.h"
 
 /* 24 bytes. `parts` say which parts of G go to (and come from) the children 0, 1 and 2 of p and
  * those of q, in 256ths; child 3 has the rest. So a link tells the four children of a patch apart
@@ -108,14 +108,14 @@ void link_list_free(struct link_list *list);
  * `*sight` is what is known of its visibility, and receives the last blocker. False if no
  * light can ever pass: both patches black and dark, or not facing each other. That no ray
  * arrived is no reason: such a link lives on with area 0. */
-bool link_make(struct method *method, int32_t p, const struct facet *facet_p, int32_t q,
+bool link_make(struct model *model, int32_t p, const struct facet *facet_p, int32_t q,
                const struct facet *facet_q, double inherited, struct sight *sight,
                struct link *link);
 
 /* Splits `patch` (p or q of the link) unless it is split already and makes the links of its
  * children with the other side. Returns how many there are, 0..4; none, and nothing is split, if
  * no ray had arrived and the two patches are proved to be walled off. */
-int link_split(struct method *method, const struct link *link, int32_t patch,
+int link_split(struct model *model, const struct link *link, int32_t patch,
                struct link children[4]);
 
 /* What a link takes from a patch: its B, or that of its children weighted by the parts, which

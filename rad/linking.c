@@ -27,16 +27,16 @@ static void step(struct linking *linking, int pairs)
     }
 }
 
-struct linking linking_start(struct method *method, struct link_list *links, int rank,
+struct linking linking_start(struct model *model, struct link_list *links, int rank,
                              int ranks)
 {
-    const struct forest *forest = method->forest;
+    const struct forest *forest = model->forest;
     size_t roots = (size_t)forest->root_count;
-    struct linking linking = {.method = method, .links = links, .j = 1, .ranks = ranks};
+    struct linking linking = {.model = model, .links = links, .j = 1, .ranks = ranks};
     linking.roots = alloc_array(roots, sizeof *linking.roots);
     linking.facets = alloc_array(roots, sizeof *linking.facets);
     for (int32_t root = 0; root < forest->root_count; root++) {
-        if (!(scene_root_area(method->scene, root) > 0.0))
+        if (!(scene_root_area(model->scene, root) > 0.0))
             continue;
         linking.facets[linking.count] = facet_make(forest, root);
         linking.roots[linking.count++] = root;
@@ -62,7 +62,7 @@ void linking_add(struct linking *linking)
     int32_t i = linking->i, j = linking->j;
     struct sight sight = {.blocker = -1};
     struct link link;
-    if (link_make(linking->method, linking->roots[i], &linking->facets[i],
+    if (link_make(linking->model, linking->roots[i], &linking->facets[i],
                   linking->roots[j], &linking->facets[j], 0.0, &sight, &link))
         link_list_append(linking->links, link);
     step(linking, linking->ranks);

@@ -16,7 +16,7 @@
  *       3               9
  */
 struct linking {
-    struct method *method;   /* borrowed; its counters count */
+    struct model *model;   /* borrowed; its counters count */
     struct link_list *links; /* borrowed: where links go */
     int32_t *roots;          /* [count] roots that have an area, ascending; owned */
     struct facet *facets;    /* [count] of the same roots; owned */
@@ -26,8 +26,8 @@ struct linking {
     int ranks;
 };
 
-/* Borrows method and list. */
-struct linking linking_start(struct method *method, struct link_list *links, int rank,
+/* Borrows model and list. */
+struct linking linking_start(struct model *model, struct link_list *links, int rank,
                              int ranks);
 void linking_end(struct linking *linking);
 

@@ -33,11 +33,11 @@
 
 #include "rad/pushpull.h"
 
-bool oracle_patch_may_split(const struct method *method, int32_t patch)
+bool oracle_patch_may_split(const struct model *model, int32_t patch)
 {
-    const struct forest *forest = method->forest;
-    return id_level(forest->patches[patch].id) < method->criterion.max_level &&
-           0.25 * forest_area(forest, patch) >= method->patch_threshold;
+    const struct forest *forest = model->forest;
+    return id_level(forest->patches[patch].id) < model->criterion.max_level &&
+           0.25 * forest_area(forest, patch) >= model->patch_threshold;
 }
 
 /* The larger patch; of equal ones that with the lower ID. */
@@ -58,16 +58,16 @@ static double energy_sent(const struct forest *forest, int32_t from, int32_t to,
     return area * rgb_sum(forest->patches[from].radiosity);
 }
 
-static int32_t split_by_energy(const struct method *method, const struct link *link)
+static int32_t split_by_energy(const struct model *model, const struct link *link)
 {
-    const struct forest *forest = method->forest;
+    const struct forest *forest = model->forest;
     double area = link_unoccluded(link);
-    if (energy_sent(forest, link->p, link->q, area) <= method->link_threshold &&
-        energy_sent(forest, link->q, link->p, area) <= method->link_threshold)
+    if (energy_sent(forest, link->p, link->q, area) <= model->link_threshold &&
+        energy_sent(forest, link->q, link->p, area) <= model->link_threshold)
         return -1;
     bool p_first = p_goes_first(forest, link);
     int32_t first = p_first ? link->p : link->q, second = p_first ? link->q : link->p;
-    return oracle_patch_may_split(method, first) ? first : oracle_patch_may_split(method, second) ? second : -1;
+    return oracle_patch_may_split(model, first) ? first : oracle_patch_may_split(model, second) ? second : -1;
 }
 
 /* --- by error --- */
@@ -117,51 +117,51 @@ double oracle_range_within(const struct forest *forest, int32_t patch)
 }
 
 /* What one side causes: spread of what it receives within its children, range of what it sends. */
-static double error_of(const struct method *method, const struct link *link, int32_t own,
+static double error_of(const struct model *model, const struct link *link, int32_t own,
                        int32_t other, const uint8_t parts[3], double light)
 {
-    const struct forest *forest = method->forest;
+    const struct forest *forest = model->forest;
     return SPREAD_LEFT * spread_of(link, parts) * light +
            link_area(link) * rgb_mean(forest_material(forest, other)->reflectance) *
                oracle_range_within(forest, own);
 }
 
-static int32_t split_by_error(const struct method *method, const struct link *link)
+static int32_t split_by_error(const struct model *model, const struct link *link)
 {
-    const struct forest *forest = method->forest;
+    const struct forest *forest = model->forest;
     double to_p = light_reflected(forest, link->q, link->p);
     double to_q = light_reflected(forest, link->p, link->q);
-    double error_p = error_of(method, link, link->p, link->q, link->parts_p, to_p);
-    double error_q = error_of(method, link, link->q, link->p, link->parts_q, to_q);
+    double error_p = error_of(model, link, link->p, link->q, link->parts_p, to_p);
+    double error_q = error_of(model, link, link->q, link->p, link->parts_q, to_q);
     double doubt = doubt_of(link) * (to_p + to_q);
-    if (error_p + error_q + doubt <= method->link_threshold)
+    if (error_p + error_q + doubt <= model->link_threshold)
         return -1;
     bool p_larger = p_goes_first(forest, link);
     error_p += p_larger ? doubt : 0.0;
     error_q += p_larger ? 0.0 : doubt;
     bool p_first = error_p != error_q ? error_p > error_q : p_larger;
     int32_t first = p_first ? link->p : link->q, second = p_first ? link->q : link->p;
-    if (oracle_patch_may_split(method, first))
+    if (oracle_patch_may_split(model, first))
         return first;
-    bool helps = fmin(error_p, error_q) > 0.5 * method->link_threshold;
-    return helps && oracle_patch_may_split(method, second) ? second : -1;
+    bool helps = fmin(error_p, error_q) > 0.5 * model->link_threshold;
+    return helps && oracle_patch_may_split(model, second) ? second : -1;
 }
 
 /* Divides the patch `to`, which receives. */
-static void divide(struct method *method, const struct link *link, int32_t to, int32_t from,
+static void divide(struct model *model, const struct link *link, int32_t to, int32_t from,
                    const uint8_t parts[3])
 {
-    double error = spread_of(link, parts) * light_reflected(method->forest, from, to);
-    if (error > method->link_threshold && oracle_patch_may_split(method, to))
-        forest_split(method->forest, to);
+    double error = spread_of(link, parts) * light_reflected(model->forest, from, to);
+    if (error > model->link_threshold && oracle_patch_may_split(model, to))
+        forest_split(model->forest, to);
 }
 
-void oracle_divide_patches(struct method *method, const struct link *link)
+void oracle_divide_patches(struct model *model, const struct link *link)
 {
-    if (method->criterion.oracle == ORACLE_BF || link->seen == 0)
+    if (model->criterion.oracle == ORACLE_BF || link->seen == 0)
         return;
-    divide(method, link, link->p, link->q, link->parts_p);
-    divide(method, link, link->q, link->p, link->parts_q);
+    divide(model, link, link->p, link->q, link->parts_p);
+    divide(model, link, link->q, link->p, link->parts_q);
 }
 
 /* Powers at stake, relative to the threshold, up to which one segment, and four, tell enough of
@@ -171,34 +171,34 @@ static const double STAKE_ONE = 0.1, STAKE_FOUR = 1.0;
 /* The power that a pair makes of what it exchanges, W per square scene unit of G, both
  * ways together: with the radiosity of either and what the other reflects. In the first
  * pass little is lit yet, so radiosities count as at least what is typical. */
-static double light_at_stake(const struct method *method, int32_t p, int32_t q)
+static double light_at_stake(const struct model *model, int32_t p, int32_t q)
 {
-    const struct forest *forest = method->forest;
+    const struct forest *forest = model->forest;
     struct rgb radiosity_p = forest->patches[p].radiosity;
     struct rgb radiosity_q = forest->patches[q].radiosity;
     struct rgb reflectance_p = forest_material(forest, p)->reflectance;
     struct rgb reflectance_q = forest_material(forest, q)->reflectance;
     double light = 0.0;
     for (int c = 0; c < BANDS; c++) {
-        double typical = method->typical.band[c];
+        double typical = model->typical.band[c];
         light += reflectance_q.band[c] * real_max(typical, radiosity_p.band[c]) +
                  reflectance_p.band[c] * real_max(typical, radiosity_q.band[c]);
     }
     return light;
 }
 
-enum look oracle_look(const struct method *method, int32_t p, int32_t q, double guess)
+enum look oracle_look(const struct model *model, int32_t p, int32_t q, double guess)
 {
-    if (method->criterion.oracle == ORACLE_BF || !(guess > 0.0))
+    if (model->criterion.oracle == ORACLE_BF || !(guess > 0.0))
         return LOOK_ALL;
-    double stake = guess * light_at_stake(method, p, q);
-    return stake <= STAKE_ONE * method->link_threshold    ? LOOK_ONE
-           : stake <= STAKE_FOUR * method->link_threshold ? LOOK_FOUR_FIRST
+    double stake = guess * light_at_stake(model, p, q);
+    return stake <= STAKE_ONE * model->link_threshold    ? LOOK_ONE
+           : stake <= STAKE_FOUR * model->link_threshold ? LOOK_FOUR_FIRST
                                                           : LOOK_ALL;
 }
 
-int32_t oracle_patch_to_split(const struct method *method, const struct link *link)
+int32_t oracle_patch_to_split(const struct model *model, const struct link *link)
 {
-    return method->criterion.oracle == ORACLE_BF ? split_by_energy(method, link)
-                                                 : split_by_error(method, link);
+    return model->criterion.oracle == ORACLE_BF ? split_by_energy(model, link)
+                                                 : split_by_error(model, link);
 }

@@ -43,13 +43,13 @@ struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flu
 }
 
 /* Gives a leaf its new radiosity and adds what that means to the sums. Returns the change. */
-static int64_t update_leaf(const struct method *method, const struct closure *closure,
+static int64_t update_leaf(const struct model *model, const struct closure *closure,
                            struct flux_unit flux, int32_t leaf, struct push_pull_sums *sums)
 {
-    struct patch *patch = &method->forest->patches[leaf];
-    const struct material *material = forest_material(method->forest, leaf);
-    struct rgb irradiance = leaf_irradiance(method->forest, leaf, flux);
-    double area = forest_area(method->forest, leaf);
+    struct patch *patch = &model->forest->patches[leaf];
+    const struct material *material = forest_material(model->forest, leaf);
+    struct rgb irradiance = leaf_irradiance(model->forest, leaf, flux);
+    double area = forest_area(model->forest, leaf);
     double light = 0.0, absorbed = 0.0, arriving = 0.0, change = 0.0;
     for (int c = 0; c < BANDS; c++) {
         double rho = material->reflectance.band[c];
@@ -61,10 +61,10 @@ static int64_t update_leaf(const struct method *method, const struct closure *cl
         change += area * fabs(b - patch->radiosity.band[c]);
         patch->radiosity.band[c] = b;
     }
-    sums->light = flux_add(sums->light, flux_from_watts(method->flux_unit, light));
-    sums->arriving = flux_add(sums->arriving, flux_from_watts(method->flux_unit, arriving));
-    sums->absorbed = flux_add(sums->absorbed, flux_from_watts(method->flux_unit, absorbed));
-    return flux_from_watts(method->flux_unit, change);
+    sums->light = flux_add(sums->light, flux_from_watts(model->flux_unit, light));
+    sums->arriving = flux_add(sums->arriving, flux_from_watts(model->flux_unit, arriving));
+    sums->absorbed = flux_add(sums->absorbed, flux_from_watts(model->flux_unit, absorbed));
+    return flux_from_watts(model->flux_unit, change);
 }
 
 void forest_average_patch(struct forest *forest, int32_t p)
@@ -99,16 +99,16 @@ void forest_bound(struct forest *forest)
     }
 }
 
-static double largest_shrink(const struct method *method, const bool *own, const int64_t *before,
+static double largest_shrink(const struct model *model, const bool *own, const int64_t *before,
                              const int64_t *now)
 {
-    const struct scene *scene = method->scene;
-    double settled = SETTLED * method->criterion.tolerance * method->emitted_power /
-                     method->area; /* change per area at which a root is settled, W/m^2 */
+    const struct scene *scene = model->scene;
+    double settled = SETTLED * model->criterion.tolerance * model->emitted_power /
+                     model->area; /* change per area at which a root is settled, W/m^2 */
     double largest = 0.0;
-    for (int32_t root = 0; root < method->forest->root_count; root++) {
+    for (int32_t root = 0; root < model->forest->root_count; root++) {
         double watts = settled * scene_root_area(scene, root);
-        if (!own[root] || now[root] <= flux_from_watts(method->flux_unit, watts))
+        if (!own[root] || now[root] <= flux_from_watts(model->flux_unit, watts))
             continue;
         double shrink = before[root] > 0 ? (double)now[root] / (double)before[root] : HUGE_VAL;
         largest = fmax(largest, shrink);
@@ -116,24 +116,24 @@ static double largest_shrink(const struct method *method, const bool *own, const
     return largest;
 }
 
-struct push_pull_sums push_pull(const struct method *method, const struct closure *closure,
+struct push_pull_sums push_pull(const struct model *model, const struct closure *closure,
                                 struct flux_unit flux, const bool *own, int64_t *root_change)
 {
-    struct forest *forest = method->forest;
+    struct forest *forest = model->forest;
     struct push_pull_sums sums = {0};
     int64_t *now = alloc_array((size_t)forest->root_count, sizeof *now);
     for (int64_t p = 0; p < forest->count; p++) {
         const struct patch *patch = &forest->patches[p];
         uint32_t root = patch->id.root;
-        if (!own[root] || scene_root_area(method->scene, (int32_t)root) <= 0.0)
+        if (!own[root] || scene_root_area(model->scene, (int32_t)root) <= 0.0)
             continue;
         if (!patch_is_leaf(patch))
             continue;
-        int64_t change = update_leaf(method, closure, flux, (int32_t)p, &sums);
+        int64_t change = update_leaf(model, closure, flux, (int32_t)p, &sums);
         now[root] = flux_add(now[root], change);
         sums.change = flux_add(sums.change, change);
     }
-    sums.shrink = largest_shrink(method, own, root_change, now);
+    sums.shrink = largest_shrink(model, own, root_change, now);
     for (int32_t root = 0; root < forest->root_count; root++)
         root_change[root] = now[root];
     alloc_free(now);

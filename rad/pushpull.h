@@ -5,10 +5,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "rad/closure.h"
-#include "rad/method.h"
+#include "rad/beyond/closure.h"
+#include "rad/model.h"
 
-/* What one push-pull did to this rank's own roots. Powers in units of method.flux_unit, summed
+/* What one push-pull did to this rank's own roots. Powers in units of model.flux_unit, summed
  * over bands, so that ranks can add them. */
 struct push_pull_sums {
     int64_t light;    /* sum over leaves of A B */
@@ -24,7 +24,7 @@ struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flu
 /* Push and pull on the roots with own[root] set: leaves get B = E + rho H, H being corrected by
  * their closure, inner patches the mean of their children. `flux`: unit of the flux. root_change[root] holds
  * each own root's change of the iteration before, and is renewed. */
-struct push_pull_sums push_pull(const struct method *method, const struct closure *closure,
+struct push_pull_sums push_pull(const struct model *model, const struct closure *closure,
                                 struct flux_unit flux, const bool *own, int64_t *root_change);
 
 /* The pull alone, on one patch and on all: inner patches get the mean of their children. */

@@ -155,7 +155,7 @@ static void test_interreflection(const struct comm *comm, double rho, double exa
                                  const char *words, double limit)
 {
     struct solution s = solve_scene(comm, glowing_square(rho), words);
-    const struct forest *forest = s.solver->method.forest;
+    const struct forest *forest = s.solver->model.forest;
     double light = 0.0, unit = scene_area_unit(s.scene);
     for (int32_t root = 0; root < forest->root_count; root++)
         light += unit * forest_area(forest, root) * forest->patches[root].radiosity.band[0];

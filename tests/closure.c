@@ -1,6 +1,6 @@
-/* Tests of rad/closure.h: which leaves are enclosed, what new patches inherit, and the factors.
+/* Tests of rad/beyond/closure.h: which leaves are enclosed, what new patches inherit, and the factors.
  * (Row sums are measured in tests/pushpull.c, and closed in tests/conjugate.c and exact.c.) */
-#include "rad/closure.h"
+#include "rad/beyond/closure.h"
 
 #include "tests/scenes.h"
 #include "tests/tap.h"
@@ -26,8 +26,8 @@ static struct world world_of(struct soup *soup, int levels)
     struct world world = world_make(scene_of_soup(soup, 1));
     soup_free(soup);
     for (int level = 0; level < levels; level++)
-        for (int64_t p = 0, count = world.method.forest->count; p < count; p++)
-            forest_split(world.method.forest, (int32_t)p);
+        for (int64_t p = 0, count = world.model.forest->count; p < count; p++)
+            forest_split(world.model.forest, (int32_t)p);
     return world;
 }
 
@@ -36,7 +36,7 @@ static struct world world_of(struct soup *soup, int levels)
 static int due_leaves(struct world *world, int32_t first, int32_t end)
 {
     struct closure closure = {.kind = CLOSURE_ROWS};
-    const struct forest *forest = world->method.forest;
+    const struct forest *forest = world->model.forest;
     closure_extend(&closure, forest);
     int due[2] = {0, 0};
     int64_t rays[2];
@@ -44,9 +44,9 @@ static int due_leaves(struct world *world, int32_t first, int32_t end)
         for (int32_t p = 0; p < forest->count; p++) {
             int32_t root = (int32_t)forest->patches[p].id.root;
             if (root >= first && root < end && patch_is_leaf(&forest->patches[p]))
-                due[turn] += closure_is_due(&closure, &world->method, p);
+                due[turn] += closure_is_due(&closure, &world->model, p);
         }
-        rays[turn] = world->method.counts.rays + world->method.counts.node_tests;
+        rays[turn] = world->model.counts.rays + world->model.counts.node_tests;
     }
     closure_free(&closure);
     return due[0] == due[1] && rays[0] == rays[1] && rays[0] > 0 ? due[0] : -1;
@@ -76,7 +76,7 @@ static void test_standing_box(void)
     struct soup soup = room_of(false, 1);
     soup_add_box(&soup, point(0.25, 0.25, 0), point(0.75, 0.75, 0.5), 1, false);
     struct world world = world_of(&soup, 3);
-    const struct forest *forest = world.method.forest;
+    const struct forest *forest = world.model.forest;
     struct closure closure = {.kind = CLOSURE_ROWS};
     closure_extend(&closure, forest);
     int under = 0, beside = 0, wrong = 0;
@@ -91,7 +91,7 @@ static void test_standing_box(void)
         bool covered = x > 0.25 && x < 0.75 && y > 0.25 && y < 0.75;
         under += covered;
         beside += !covered;
-        wrong += closure_is_due(&closure, &world.method, p) == covered;
+        wrong += closure_is_due(&closure, &world.model, p) == covered;
     }
     tap_ok(under == 32 && beside == 96 && wrong == 0,
            "a box on the floor: %d leaves under it are not, %d beside it are", under, beside);
@@ -136,18 +136,18 @@ static void test_ancestors(void)
     struct soup soup = room_of(false, 1);
     struct world world = world_of(&soup, 2);
     struct closure closure = {.kind = CLOSURE_ROWS};
-    struct forest *forest = world.method.forest;
+    struct forest *forest = world.model.forest;
     closure_extend(&closure, forest);
     int32_t child = forest->patches[3].children + 2, leaf = forest->patches[child].children + 1;
     int32_t other = forest->patches[forest->patches[3].children].children;
     closure.enclosure[child] = OPEN;
-    tap_ok(!closure_is_due(&closure, &world.method, leaf) &&
-               closure_is_due(&closure, &world.method, other),
+    tap_ok(!closure_is_due(&closure, &world.model, leaf) &&
+               closure_is_due(&closure, &world.model, other),
            "an open ancestor opens all its leaves, and no others");
     closure.enclosure[child] = COVERED;
-    tap_ok(closure_is_due(&closure, &world.method, leaf), "one that is covered in part does not");
+    tap_ok(closure_is_due(&closure, &world.model, leaf), "one that is covered in part does not");
     closure.enclosure[leaf] = COVERED;
-    tap_ok(!closure_is_due(&closure, &world.method, leaf),
+    tap_ok(!closure_is_due(&closure, &world.model, leaf),
            "a leaf that is covered in part is open");
     closure_free(&closure);
     world_free(&world);
@@ -158,7 +158,7 @@ static void test_extending(void)
     struct soup soup = room_of(false, 1);
     struct world world = world_of(&soup, 0);
     struct closure closure = {.kind = CLOSURE_ROWS};
-    struct forest *forest = world.method.forest;
+    struct forest *forest = world.model.forest;
     closure_extend(&closure, forest);
     bool ones = closure.count == forest->count;
     for (int64_t p = 0; p < closure.count; p++)

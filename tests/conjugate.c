@@ -1,4 +1,4 @@
-/* Conjugate gradients (rad/conjugate.h, mpi/solve.c, mpi/vote.c) and the closure (mpi/closing.c)
+/* Conjugate gradients (rad/beyond/conjugate.h, mpi/solve.c, mpi/vote.c) and the closure (mpi/closing.c)
  * against Gaussian elimination: a made-up forest with random links, whose form factors are written
  * down here once more as a dense matrix. On any number of ranks; rank 0 reports. */
 #include "mpi/assign.h"
@@ -42,7 +42,7 @@ static struct scene *make_scene(double rho)
  * where there are children. Rows sum to less than 1. Every rank keeps its share. */
 static void add_links(struct solver *solver)
 {
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     struct random random = random_seed(99);
     int number = 0;
     for (int32_t p = 0; p < forest->count; p++)
@@ -67,7 +67,7 @@ static struct problem problem_make(const struct comm *comm, double rho, int spli
     struct problem problem = {.comm = comm, .scene = make_scene(rho)};
     problem.solver = solver_create(comm, problem.scene, NULL, criterion);
     struct solver *solver = problem.solver;
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     for (int32_t root = 0; root < splits; root++) {
         forest_split(forest, root);
         forest_split(forest, forest->patches[root].children + root % 4);
@@ -110,7 +110,7 @@ static double share_of(const struct forest *forest, int32_t leaf, int32_t patch,
 static void build(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX])
 {
     static double own[LEAVES_MAX][LEAVES_MAX];
-    const struct forest *forest = problem->solver->method.forest;
+    const struct forest *forest = problem->solver->model.forest;
     for (int i = 0; i < problem->count; i++)
         for (int j = 0; j < problem->count; j++) {
             int32_t a = problem->leaves[i], b = problem->leaves[j];
@@ -161,7 +161,7 @@ static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAV
 {
     static double a[LEAVES_MAX][LEAVES_MAX], h[LEAVES_MAX];
     const struct solver *solver = problem->solver;
-    const struct forest *forest = solver->method.forest;
+    const struct forest *forest = solver->model.forest;
     double worst = 0.0, largest = 0.0;
     for (int c = 0; c < BANDS; c++) {
         for (int i = 0; i < problem->count; i++) {
@@ -190,7 +190,7 @@ static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAV
 static double residual(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX])
 {
     const struct solver *solver = problem->solver;
-    const struct forest *forest = solver->method.forest;
+    const struct forest *forest = solver->model.forest;
     double worst = 0.0;
     for (int i = 0; i < problem->count; i++)
         for (int c = 0; c < BANDS; c++) {
@@ -214,7 +214,7 @@ static double rows_off(const struct problem *problem, double f[LEAVES_MAX][LEAVE
     for (int i = 0; i < problem->count; i++) {
         double row = 0.0;
         int32_t leaf = problem->leaves[i];
-        uint32_t root = solver->method.forest->patches[leaf].id.root;
+        uint32_t root = solver->model.forest->patches[leaf].id.root;
         for (int j = 0; j < problem->count; j++)
             row += closure_receives(&solver->closure, leaf) * f[i][j] *
                    closure_sends(&solver->closure, problem->leaves[j]);
@@ -234,9 +234,9 @@ static double above_cap(const struct problem *problem, double f[LEAVES_MAX][LEAV
     double off = 0.0;
     for (int i = 0; i < problem->count; i++) {
         int32_t leaf = problem->leaves[i];
-        if (!solver->own[solver->method.forest->patches[leaf].id.root])
+        if (!solver->own[solver->model.forest->patches[leaf].id.root])
             continue;
-        struct rgb rho = forest_material(solver->method.forest, leaf)->reflectance;
+        struct rgb rho = forest_material(solver->model.forest, leaf)->reflectance;
         double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2])), row = 0.0;
         for (int j = 0; j < problem->count; j++)
             row += f[i][j];
@@ -251,7 +251,7 @@ static double above_cap(const struct problem *problem, double f[LEAVES_MAX][LEAV
 static void share_factors(const struct problem *problem)
 {
     struct closure *closure = &problem->solver->closure;
-    const struct forest *forest = problem->solver->method.forest;
+    const struct forest *forest = problem->solver->model.forest;
     for (int32_t p = 0; p < forest->count; p++) {
         bool own = problem->solver->own[forest->patches[p].id.root];
         closure->factor[p] = comm_largest(problem->comm, own ? closure->factor[p] : 0.0);
@@ -274,7 +274,7 @@ static void test_dense(const struct comm *comm, enum closure_kind kind, double r
     int steps = (int)problem.solver->iteration - 1; /* the first transfer is of B itself */
     int most = 0; /* in exact arithmetic as many steps as there are unknowns */
     for (int i = 0; i < problem.count; i++)
-        most += rgb_sum(forest_material(problem.solver->method.forest,
+        most += rgb_sum(forest_material(problem.solver->model.forest,
                                         problem.leaves[i])->reflectance) > 0.0;
     if (comm->rank == 0) {
         /* The bound asks for 1e-12 of all light; fluxes are rounded to 2^-61 or so. */
@@ -311,7 +311,7 @@ static void test_restart(const struct comm *comm)
 /* Light that a and b differ by, relative to that of a. */
 static double difference(const struct problem *a, const struct problem *b)
 {
-    const struct forest *p = a->solver->method.forest, *q = b->solver->method.forest;
+    const struct forest *p = a->solver->model.forest, *q = b->solver->model.forest;
     double missing = 0.0, light = 0.0;
     for (int i = 0; i < a->count; i++)
         for (int c = 0; c < BANDS; c++) {
@@ -364,7 +364,7 @@ static void test_bound_is_sharp(const struct comm *comm)
         scene->materials[i] = (struct material){{{rho, rho, rho}}, {{1.0, 1.0, 1.0}}};
     }
     struct solver *solver = solver_create(comm, scene, NULL, &criterion);
-    solver->first_new = solver->method.forest->count;
+    solver->first_new = solver->model.forest->count;
     int number = 0;
     for (int32_t p = 0; p < ROOTS; p++)
         for (int32_t q = p + 1; q < ROOTS; q++) {
@@ -374,8 +374,8 @@ static void test_bound_is_sharp(const struct comm *comm)
                 link_list_append(&solver->links, link);
         }
     solver_assign_roots(solver);
-    closure_extend(&solver->closure, solver->method.forest);
-    memset(solver->closure.enclosure, ENCLOSED, (size_t)solver->method.forest->count);
+    closure_extend(&solver->closure, solver->model.forest);
+    memset(solver->closure.enclosure, ENCLOSED, (size_t)solver->model.forest->count);
     struct vote vote = solve_links(solver);
     double missing = 1.0 / (1.0 - rho) - 1.0; /* B is E as yet */
     if (comm->rank == 0)
@@ -396,11 +396,11 @@ static void test_ranks(const struct comm *comm, const struct comm *self, enum cl
     struct vote a = solve_links(parallel.solver), b = solve_links(alone.solver);
     bool same = a.absorbed == b.absorbed && a.escaped == b.escaped && a.remaining == b.remaining &&
                 parallel.solver->iteration == alone.solver->iteration &&
-                forest_checksum(parallel.solver->method.forest) ==
-                    forest_checksum(alone.solver->method.forest);
-    for (int64_t p = 0; p < alone.solver->method.forest->count; p++) /* all ranks know all radiosities */
-        same = same && memcmp(&parallel.solver->method.forest->patches[p].radiosity,
-                              &alone.solver->method.forest->patches[p].radiosity, sizeof(struct rgb)) == 0;
+                forest_checksum(parallel.solver->model.forest) ==
+                    forest_checksum(alone.solver->model.forest);
+    for (int64_t p = 0; p < alone.solver->model.forest->count; p++) /* all ranks know all radiosities */
+        same = same && memcmp(&parallel.solver->model.forest->patches[p].radiosity,
+                              &alone.solver->model.forest->patches[p].radiosity, sizeof(struct rgb)) == 0;
     struct error error = {0};
     if (!same)
         error_set(&error, EXIT_FAILED, "rank %d", comm->rank);

@@ -60,7 +60,7 @@ static struct result run(const struct comm *comm, const char *path, struct crite
                             .hold = s.stats.hold,
                             .links = s.stats.links};
     if (comm->rank == 0) {
-        const struct forest *forest = s.solver->method.forest;
+        const struct forest *forest = s.solver->model.forest;
         int64_t leaves;
         uint8_t *open = shading_open_quarters(forest, s.octree, 0, 1, &leaves);
         struct shading *shading = shading_create(forest, s.solver->straight, open);

@@ -78,7 +78,7 @@ static inline struct solution solve_scene(const struct comm *comm, struct scene 
 /* Smooth shading, as pictures have it. */
 static inline struct shading *shade(const struct solution *s)
 {
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     int64_t count;
     uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
     struct shading *shading = shading_create(forest, NULL, open);

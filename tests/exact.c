@@ -45,7 +45,7 @@ static struct scene *furnace_create(void)
 static void furnace_errors(const struct solution *s, double reflectance, double *largest,
                            double *mean)
 {
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     double exact = 1.0 / (1.0 - reflectance), sum = 0.0, area = 0.0;
     *largest = 0.0;
     for (int64_t p = 0; p < forest->count; p++) {
@@ -86,7 +86,7 @@ static void test_iteration_bound(const struct comm *comm, double rho, double tol
     struct solution rough = solve(comm, cube, criterion_of(1.0, 0, tolerance));
     double row = rough.stats.closure_mean; /* all rows are the same here */
     double exact = 1.0 / (1.0 - rho * row);
-    double b = rough.solver->method.forest->patches[0].radiosity.band[0];
+    double b = rough.solver->model.forest->patches[0].radiosity.band[0];
     if (comm->rank == 0) {
         tap_ok(rough.stats.closure_max - rough.stats.closure_min < 1e-12,
                "max-level 0: all rows sum to %.6f", row);
@@ -136,7 +136,7 @@ static void test_glowing_cube(const struct comm *comm, double rho, double allowe
     double exact[ROOTS], error = 0.0;
     glowing_cube_exact(s.scene, rho, exact);
     for (int i = 0; i < ROOTS; i++) {
-        double b = s.solver->method.forest->patches[i].radiosity.band[0];
+        double b = s.solver->model.forest->patches[i].radiosity.band[0];
         error = fmax(error, fabs(b / exact[i] - 1.0));
     }
     if (comm->rank == 0)
@@ -187,7 +187,7 @@ static void test_same_answer(const struct comm *comm, enum closure_kind kind)
         s[k] = solve(comm, cube, criterion);
     }
     double off = 0.0;
-    const struct forest *a = s[0].solver->method.forest, *b = s[1].solver->method.forest;
+    const struct forest *a = s[0].solver->model.forest, *b = s[1].solver->model.forest;
     for (int32_t p = 0; p < a->root_count; p++)
         for (int c = 0; c < BANDS; c++)
             off = fmax(off, fabs(a->patches[p].radiosity.band[c] -
@@ -212,22 +212,22 @@ static void test_same_answer(const struct comm *comm, enum closure_kind kind)
 }
 
 /* Radiosity of a node, sum over bands, W/m^2. */
-static double light_of(const struct method *method, int32_t node)
+static double light_of(const struct model *model, int32_t node)
 {
-    return rgb_sum(node_is_cluster(node) ? method->clusters->radiosity[~node]
-                                         : method->forest->patches[node].radiosity);
+    return rgb_sum(node_is_cluster(node) ? model->clusters->radiosity[~node]
+                                         : model->forest->patches[node].radiosity);
 }
 
 /* What a link takes of a node, sum over bands, W/m^2. */
-static double sent_by(const struct method *method, int32_t node, const uint8_t parts[3])
+static double sent_by(const struct model *model, int32_t node, const uint8_t parts[3])
 {
     double sum = 0.0;
-    if (!node_is_cluster(node) && patch_is_leaf(&method->forest->patches[node]))
-        return light_of(method, node);
+    if (!node_is_cluster(node) && patch_is_leaf(&model->forest->patches[node]))
+        return light_of(model, node);
     for (int k = 0; k < 4; k++) {
-        int32_t child = node_is_cluster(node) ? method->clusters->tree->clusters[~node].child[k]
-                                              : method->forest->patches[node].children + k;
-        sum += child == NODE_NONE ? 0.0 : link_part(parts, k) * light_of(method, child);
+        int32_t child = node_is_cluster(node) ? model->clusters->tree->clusters[~node].child[k]
+                                              : model->forest->patches[node].children + k;
+        sum += child == NODE_NONE ? 0.0 : link_part(parts, k) * light_of(model, child);
     }
     return sum;
 }
@@ -235,14 +235,14 @@ static double sent_by(const struct method *method, int32_t node, const uint8_t p
 /* Power delivered, link by link in double precision, on all ranks together. */
 static double power_of_links(const struct solution *s)
 {
-    const struct method *method = &s->solver->method;
+    const struct model *model = &s->solver->model;
     double own = 0.0, sum = 0.0;
-    if (method->clusters)
-        cluster_light_pull(method->clusters, method->forest);
+    if (model->clusters)
+        cluster_light_pull(model->clusters, model->forest);
     for (int64_t i = 0; i < s->solver->links.count; i++) {
         const struct link *link = &s->solver->links.items[i];
-        own += link_area(link) * (sent_by(method, link->p, link->parts_p) +
-                                  sent_by(method, link->q, link->parts_q));
+        own += link_area(link) * (sent_by(model, link->p, link->parts_p) +
+                                  sent_by(model, link->q, link->parts_q));
     }
     MPI_Request request;
     MPI_Iallreduce(&own, &sum, 1, MPI_DOUBLE, MPI_SUM, s->solver->comm->handle, &request);
@@ -264,7 +264,7 @@ static void test_power(const struct comm *comm, const struct criterion *criterio
     cube->areas[4] = cube->areas[5] = 0.0; /* the front is gone */
     cube->planes[4] = cube->planes[5] = (struct plane){{0.0, 0.0, 0.0}, 0.0};
     struct solution s = solve(comm, cube, *criterion);
-    const struct forest *forest = s.solver->method.forest;
+    const struct forest *forest = s.solver->model.forest;
     double leaving = 0.0, emitted = s.stats.emitted_power;
     for (int32_t root = 0; root < forest->root_count; root++)
         leaving += forest_area(forest, root) * rgb_sum(forest->patches[root].radiosity);

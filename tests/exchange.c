@@ -60,8 +60,8 @@ static void add_links(struct solver *solver, int round)
         if ((i % 5 == 0) != (round == 1) || dealt % (uint64_t)solver->comm->size !=
                                                 (uint64_t)solver->comm->rank)
             continue;
-        int32_t a = forest_reach(solver->method.forest, p);
-        int32_t b = forest_reach(solver->method.forest, q);
+        int32_t a = forest_reach(solver->model.forest, p);
+        int32_t b = forest_reach(solver->model.forest, q);
         link_list_append(&solver->links, (struct link){
             .p = a, .q = b, .area = float_below(area), .blocker = i,
             .parts_p = {(uint8_t)(i % 80), 64, 20}, .parts_q = {1, (uint8_t)(i % 100), 0},
@@ -83,7 +83,7 @@ static struct solver *make_solver(const struct comm *comm, const struct scene *s
 static void share_patches(struct solver *solver)
 {
     struct bytes own = {0};
-    struct forest *forest = solver->method.forest;
+    struct forest *forest = solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++) {
         const uint8_t *id = (const uint8_t *)&forest->patches[p].id;
         for (size_t k = 0; k < sizeof forest->patches[p].id; k++)
@@ -104,11 +104,11 @@ static void share_patches(struct solver *solver)
 /* One iteration without refinement; in rounds 0 and 1 new links come with new patches. */
 static struct vote iterate(struct solver *solver, int round)
 {
-    solver->first_new = solver->method.forest->count;
+    solver->first_new = solver->model.forest->count;
     if (round < 2)
         add_links(solver, round);
     share_patches(solver);
-    if (solver->method.criterion.balance == BALANCE_EVEN)
+    if (solver->model.criterion.balance == BALANCE_EVEN)
         links_even_out(solver);
     solver_close(solver);
     solver_transfer(solver);
@@ -140,9 +140,9 @@ static void test_rounds(struct solver *parallel, struct solver *alone)
     bool same_forest = true, same_vote = true, same_size = true;
     for (int round = 0; round < 4; round++) {
         struct vote a = iterate(parallel, round), b = iterate(alone, round);
-        same_forest = same_forest && forest_checksum(parallel->method.forest) ==
-                                         forest_checksum(alone->method.forest);
-        same_size = same_size && parallel->method.forest->count == alone->method.forest->count;
+        same_forest = same_forest && forest_checksum(parallel->model.forest) ==
+                                         forest_checksum(alone->model.forest);
+        same_size = same_size && parallel->model.forest->count == alone->model.forest->count;
         same_vote = same_vote && a.links == b.links && a.absorbed == b.absorbed &&
                     a.escaped == b.escaped && a.remaining == b.remaining;
     }
@@ -166,8 +166,8 @@ static int64_t fingerprint(const struct solver *solver)
     uint64_t sum = 0;
     for (int64_t i = 0; i < solver->links.count; i++) {
         const struct link *link = &solver->links.items[i];
-        struct patch_id p = solver->method.forest->patches[link->p].id;
-        struct patch_id q = solver->method.forest->patches[link->q].id;
+        struct patch_id p = solver->model.forest->patches[link->p].id;
+        struct patch_id q = solver->model.forest->patches[link->q].id;
         uint64_t word = p.root + 31u * (uint64_t)p.hierarchy + 1009u * (uint64_t)q.root +
                         99991u * (uint64_t)q.hierarchy + 7u * (uint64_t)link->cost;
         for (int k = 0; k < 3; k++)
@@ -216,14 +216,14 @@ static void test_migration(struct solver *parallel, struct solver *alone)
     report(comm, right_place, "each link is where it was sent");
     report(comm, count == total_of(comm, parallel->links.count) && before == after,
            "links that migrate arrive once and unchanged");
-    bool even = parallel->method.criterion.balance == BALANCE_EVEN;
+    bool even = parallel->model.criterion.balance == BALANCE_EVEN;
     if (even)
         pile_up(parallel);
     iterate(parallel, 2);
     iterate(alone, 2);
     if (even)
         report(comm, are_even(parallel), "links piled up on one rank are evened out");
-    report(comm, forest_checksum(parallel->method.forest) == forest_checksum(alone->method.forest),
+    report(comm, forest_checksum(parallel->model.forest) == forest_checksum(alone->model.forest),
            "and carry the same light from their new ranks");
 }
 
@@ -392,7 +392,7 @@ static void test_broadcasts(const struct comm *comm)
 /* Whether all ranks have the trees of rank 0. */
 static bool trees_agree(const struct solver *solver)
 {
-    uint64_t own = forest_checksum(solver->method.forest), first = own;
+    uint64_t own = forest_checksum(solver->model.forest), first = own;
     comm_broadcast(solver->comm, &first, sizeof first);
     return on_all(solver->comm, own == first);
 }
@@ -417,10 +417,10 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
     bool agree = true, alike = true, grows = true, apart = true, even = true;
     for (int pass = 0; pass < 3; pass++) {
         struct vote vote[2];
-        int64_t before = solvers[0]->method.forest->count;
+        int64_t before = solvers[0]->model.forest->count;
         for (int k = 0; k < 2; k++)
             solver_refine(solvers[k]);
-        const struct forest *here = solvers[0]->method.forest, *there = solvers[1]->method.forest;
+        const struct forest *here = solvers[0]->model.forest, *there = solvers[1]->model.forest;
         int64_t split = total_of(comm, solvers[0]->split_here);
         apart = apart && (comm->size == 1 || pass > 0 || solvers[0]->split_here < split);
         agree = agree && trees_agree(solvers[0]);

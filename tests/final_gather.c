@@ -21,8 +21,8 @@ static struct trial gather_scene(struct painted *painted, const char *words, int
     char all[200];
     snprintf(all, sizeof all, "%s --final-gather 0", words);
     struct trial g = {.s = solve_scene(world_comm, scene_of_painted(painted), all)};
-    struct forest *forest = g.s.solver->method.forest;
-    g.gather = final_gather_create(&g.s.solver->method, rays);
+    struct forest *forest = g.s.solver->model.forest;
+    g.gather = final_gather_create(&g.s.solver->model, rays);
     g.radiosity = alloc_array((size_t)forest->count, sizeof *g.radiosity);
     for (int64_t i = 0; i < forest->count; i++) {
         int32_t p = g.gather.order[i];
@@ -48,7 +48,7 @@ static double irradiance(const struct trial *g, int64_t row)
 /* The mean of H over the leaves of these roots, W/m^2. */
 static double mean_of_roots(const struct trial *g, uint32_t first, uint32_t count)
 {
-    const struct forest *forest = g->s.solver->method.forest;
+    const struct forest *forest = g->s.solver->model.forest;
     double sum = 0.0, area = 0.0;
     for (int64_t i = 0; i < g->gather.count; i++) {
         int32_t leaf = g->gather.rows[i].leaf;
@@ -95,10 +95,10 @@ static void test_furnished(void)
     paint(&painted, 0.0, 1.0);
     struct trial g = gather_scene(&painted, "--epsilon 1e-3", 64);
     double worst = 0.0;
-    for (int64_t k = 0; k < g.s.solver->method.forest->count; k++)
+    for (int64_t k = 0; k < g.s.solver->model.forest->count; k++)
         g.radiosity[k] = (struct rgb){{1.0, 1.0, 1.0}};
     for (int64_t i = 0; i < g.gather.count; i++) {
-        uint32_t root = g.s.solver->method.forest->patches[g.gather.rows[i].leaf].id.root;
+        uint32_t root = g.s.solver->model.forest->patches[g.gather.rows[i].leaf].id.root;
         bool below = root == 56 || root == 57; /* outside of the room */
         if (g.gather.rows[i].bare == 1.0f && !below)
             worst = fmax(worst, fabs(irradiance(&g, i) - 1.0));
@@ -141,7 +141,7 @@ static void test_given_up(void)
     soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
     paint(&painted, 0.0, 100.0);
     struct trial g = gather_scene(&painted, "--max-level 0", 64);
-    const struct forest *forest = g.s.solver->method.forest;
+    const struct forest *forest = g.s.solver->model.forest;
     double lamps = 0.0, rays = 0.0;
     for (int64_t i = 0; i < g.gather.count; i++) {
         const struct gather_row *row = &g.gather.rows[i];
@@ -227,7 +227,7 @@ static void test_gap(void)
     paint(&painted, 0.5, 0.0);
     struct solution s =
         solve_scene(world_comm, scene_of_painted(&painted), "--max-level 0");
-    const struct patch *patches = s.solver->method.forest->patches;
+    const struct patch *patches = s.solver->model.forest->patches;
     double below = patches[14].radiosity.band[0] + patches[15].radiosity.band[0];
     double above = patches[16].radiosity.band[0] + patches[17].radiosity.band[0];
     tap_ok(below < 0.02 * above && above > 0.0,
@@ -273,7 +273,7 @@ static void test_flush_lamp(void)
             }
         struct solution s = solve_scene(world_comm, scene_of_painted(&painted), "");
         int32_t floor = (first == 0 ? 0 : 2) + 8; /* z = 0 */
-        mean[first] = s.solver->method.forest->patches[floor].radiosity.band[0];
+        mean[first] = s.solver->model.forest->patches[floor].radiosity.band[0];
         solution_free(&s);
     }
     tap_ok(mean[0] > 0.0 && fabs(mean[1] / mean[0] - 1.0) < 0.05,
@@ -307,7 +307,7 @@ static void test_mesh(double epsilon)
     paint(&painted, 0.0, 0.0);
     snprintf(words, sizeof words, "--epsilon %g", epsilon);
     struct solution s = solve_scene(world_comm, scene_of_painted(&painted), words);
-    const struct forest *forest = s.solver->method.forest;
+    const struct forest *forest = s.solver->model.forest;
     const struct gathered *gathered = &s.solver->gathered;
     double squares = 0.0, largest = 0.0, least = HUGE_VAL, goal = 0.01 * epsilon;
     for (int pass = 0; pass < 2; pass++)

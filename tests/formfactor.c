@@ -95,7 +95,7 @@ static void split_all(struct forest *forest, int levels)
 static double form_factor(const struct soup *soup, int level_p, int level_q)
 {
     struct world world = world_make(scene_of_soup(soup, 1));
-    struct forest *forest = world.method.forest;
+    struct forest *forest = world.model.forest;
     split_all(forest, level_p > level_q ? level_p : level_q);
     struct facet *p = alloc_array((size_t)2 << (2 * level_p), sizeof *p);
     struct facet *q = alloc_array((size_t)2 << (2 * level_q), sizeof *q);
@@ -367,7 +367,7 @@ static void test_horizon(void)
     soup_add(&soup, (struct triangle){{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
     soup_add(&soup, (struct triangle){{{1, 0, -1}, {1, 0, 0.05}, {1, 1, -1}}});
     struct world world = world_make(scene_of_soup(&soup, 1));
-    struct facet p = facet_make(world.method.forest, 0), q = facet_make(world.method.forest, 1);
+    struct facet p = facet_make(world.model.forest, 0), q = facet_make(world.model.forest, 1);
     struct octree_counts counts = {0};
     struct exchange exchange = exchange_of(&p, &q, world.octree, &counts);
     tap_ok(facets_face(&p, &q) && counts.rays == 0 && exchange.area == 0.0 &&
@@ -402,8 +402,8 @@ static struct exchange between(double size, bool reverse, enum pieces in_two, st
     if (in_two)
         soup_add(&soup, (struct triangle){{lifted, t.corner[1], t.corner[2]}});
     struct world world = world_make(scene_of_soup(&soup, 1));
-    struct facet facet_p = facet_make(world.method.forest, 0);
-    struct facet facet_q = facet_make(world.method.forest, 1);
+    struct facet facet_p = facet_make(world.model.forest, 0);
+    struct facet facet_q = facet_make(world.model.forest, 1);
     struct exchange exchange = exchange_of(&facet_p, &facet_q, world.octree, counts);
     *walled_off = facets_are_walled_off(&facet_p, &facet_q, world.octree, counts);
     world_free(&world);

@@ -54,7 +54,7 @@ static void add_shape(struct painted *painted, enum shape shape)
 /* Largest |B / exact - 1| over the leaves. */
 static double worst_leaf(const struct solution *s, double exact)
 {
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     double worst = 0.0;
     for (int64_t p = 0; p < forest->count; p++)
         if (patch_is_leaf(&forest->patches[p]) && forest_area(forest, (int32_t)p) > 0.0)
@@ -68,9 +68,9 @@ static double worst_leaf(const struct solution *s, double exact)
 static int deepest_level(const struct solution *s)
 {
     int level = 0;
-    for (int64_t p = 0; p < s->solver->method.forest->count; p++)
-        level = id_level(s->solver->method.forest->patches[p].id) > level
-                    ? id_level(s->solver->method.forest->patches[p].id) : level;
+    for (int64_t p = 0; p < s->solver->model.forest->count; p++)
+        level = id_level(s->solver->model.forest->patches[p].id) > level
+                    ? id_level(s->solver->model.forest->patches[p].id) : level;
     return level;
 }
 

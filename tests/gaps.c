@@ -179,14 +179,14 @@ static enum verdict judge_leaf(const struct pathtracer *pathtracer, struct patch
 
 static double reflected(const struct solution *s, int32_t patch)
 {
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     return forest->patches[patch].radiosity.band[0] -
            forest_material(forest, patch)->emission.band[0];
 }
 
 static double mean_reflected(const struct solution *s)
 {
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     double sum = 0.0, area = 0.0;
     for (int32_t root = 0; root < forest->root_count; root++) {
         sum += forest_area(forest, root) * reflected(s, root);
@@ -199,7 +199,7 @@ static double mean_reflected(const struct solution *s)
 static void test_room(void)
 {
     struct solution s = solve_scene(world_comm, room(), "");
-    const struct forest *forest = s.solver->method.forest;
+    const struct forest *forest = s.solver->model.forest;
     struct pathtracer pathtracer = pathtracer_make(s.scene, s.octree);
     int counts[VERDICTS] = {0};
     double mean = mean_reflected(&s), worst = 1.0, truth;

@@ -161,7 +161,7 @@ struct arriving {
 
 static struct arriving arriving_at(const struct solution *s, int material)
 {
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     struct arriving sum = {0.0, 0.0};
     double area = 0.0;
     for (int32_t root = 0; root < forest->root_count; root++)

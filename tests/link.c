@@ -17,7 +17,7 @@ static void test_making(void)
     tap_ok(sizeof(struct link) <= 24, "a link takes %d bytes", (int)sizeof(struct link));
     struct soup more = bystander();
     struct world world = make_pair(1.0, material_grey(0.5, 0), material_grey(0, 1), &more);
-    struct facet p = facet_make(world.method.forest, 0), q = facet_make(world.method.forest, 1);
+    struct facet p = facet_make(world.model.forest, 0), q = facet_make(world.model.forest, 1);
     struct octree_counts counts = {0};
     struct sight sight = {.open = false, .blocker = -1};
     struct exchange exchange = exchange_estimate(&p, &q, FORM_FACTOR_DISK, LOOK_ALL, world.octree,
@@ -26,7 +26,7 @@ static void test_making(void)
     tap_ok(make(&world, 0, 1, &link) && link.p == 0 && link.q == 1 && exchange.area > 0.0 &&
                link.area == float_below(exchange.area) && link.seen == LINK_ALL_SEEN,
            "a link carries the exchange of its patches");
-    tap_ok(world.method.counts.rays == 16 && counts.rays == 16 &&
+    tap_ok(world.model.counts.rays == 16 && counts.rays == 16 &&
                tests_done(&world) == counts.node_tests + counts.triangle_tests,
            "its work is added to the counts");
     tap_ok(tests_done(&world) > 0 && link.cost == compact8((double)tests_done(&world)),
@@ -40,7 +40,7 @@ static void test_dropping(void)
     struct link link;
     struct material black = material_grey(0, 0), white = material_grey(0.5, 0);
     struct world dark = make_pair(1.0, black, black, NULL);
-    tap_ok(!make(&dark, 0, 1, &link) && dark.method.counts.rays == 0,
+    tap_ok(!make(&dark, 0, 1, &link) && dark.model.counts.rays == 0,
            "two dark patches are not linked, and get no rays");
     world_free(&dark);
     struct world half = make_pair(1.0, black, white, NULL);
@@ -55,7 +55,7 @@ static void test_dropping(void)
     bool dropped = !make(&world, 0, 2, &link) && !make(&world, 0, 3, &link) &&
                    !make(&world, 0, 4, &link) && !make(&world, 3, 4, &link) &&
                    !make(&world, 0, 0, &link);
-    tap_ok(dropped && world.method.counts.rays == 0, "patches that do not face are not linked");
+    tap_ok(dropped && world.model.counts.rays == 0, "patches that do not face are not linked");
     world_free(&world);
     more.count = 0;
     soup_add(&more, tile(-0.1, 0.5, 1.5, true));
@@ -64,9 +64,9 @@ static void test_dropping(void)
         cover->corner[k].y -= 0.1;
     struct world covered = make_pair(1.0, white, white, &more);
     struct link children[4];
-    tap_ok(make(&covered, 0, 1, &link) && link_area(&link) == 0.0 && covered.method.counts.rays == 16 &&
-               link_split(&covered.method, &link, 0, children) == 0 &&
-               patch_is_leaf(&covered.method.forest->patches[0]),
+    tap_ok(make(&covered, 0, 1, &link) && link_area(&link) == 0.0 && covered.model.counts.rays == 16 &&
+               link_split(&covered.model, &link, 0, children) == 0 &&
+               patch_is_leaf(&covered.model.forest->patches[0]),
            "a link that is proved blocked ends when it is to be split");
     world_free(&covered);
     soup_free(&more);
@@ -83,11 +83,11 @@ static void test_doubt(void)
                     link_unoccluded(&link) > 0.0,
                 "a link that no ray passes but that is not proved blocked is kept"))
         return;
-    world.method.link_threshold = 2.9 * link_unoccluded(&link); /* the ceiling's B: 3 x 1 */
-    tap_ok(oracle_patch_to_split(&world.method, &link) == 0,
+    world.model.link_threshold = 2.9 * link_unoccluded(&link); /* the ceiling's B: 3 x 1 */
+    tap_ok(oracle_patch_to_split(&world.model, &link) == 0,
            "and is split while it may carry energy");
-    world.method.link_threshold = 3.1 * link_unoccluded(&link);
-    tap_ok(oracle_patch_to_split(&world.method, &link) == -1, "and not beyond");
+    world.model.link_threshold = 3.1 * link_unoccluded(&link);
+    tap_ok(oracle_patch_to_split(&world.model, &link) == -1, "and not beyond");
     world_free(&world);
     soup_free(&more);
 }
@@ -98,18 +98,18 @@ static void test_cost(void)
 {
     struct soup more = bystander();
     struct world world = make_pair(1.0, material_grey(0.5, 0), material_grey(0, 1), &more);
-    world.method.criterion.alpha = 0.25;
-    struct facet p = facet_make(world.method.forest, 0), q = facet_make(world.method.forest, 1);
+    world.model.criterion.alpha = 0.25;
+    struct facet p = facet_make(world.model.forest, 0), q = facet_make(world.model.forest, 1);
     struct link link;
     struct sight sight = {.open = false, .blocker = -1};
-    bool made = link_make(&world.method, 0, &p, 1, &q, 1002.0, &sight, &link);
+    bool made = link_make(&world.model, 0, &p, 1, &q, 1002.0, &sight, &link);
     int64_t own = tests_done(&world);
     tap_ok(made && own > 0 && link.cost == compact8((double)own + 250.5),
            "a link inherits alpha of a cost");
     struct link children[4];
     double inherited = 0.25 * link_cost(&link), sum = 0.0;
     int64_t before = tests_done(&world);
-    int count = link_split(&world.method, &link, 0, children);
+    int count = link_split(&world.model, &link, 0, children);
     for (int k = 0; k < count; k++)
         sum += link_cost(&children[k]);
     double expected = 4.0 * inherited + (double)(tests_done(&world) - before);
@@ -117,8 +117,8 @@ static void test_cost(void)
     tap_ok(count == 4 && sum >= expected && sum <= 1.125 * expected,
            "children inherit from the link that is split");
     link.cost = 255;
-    world.method.criterion.alpha = 1.0;
-    link_split(&world.method, &link, 0, children);
+    world.model.criterion.alpha = 1.0;
+    link_split(&world.model, &link, 0, children);
     tap_ok(children[0].cost == 255, "costs end at four thousand million");
     world_free(&world);
     soup_free(&more);
@@ -140,10 +140,10 @@ static void test_split(void)
 {
     struct material grey = material_grey(0.5, 1);
     struct world world = make_pair(2.0, grey, grey, NULL);
-    struct forest *forest = world.method.forest;
+    struct forest *forest = world.model.forest;
     struct link link, children[4], again[4];
     make(&world, 0, 1, &link);
-    int count = link_split(&world.method, &link, 1, children);
+    int count = link_split(&world.model, &link, 1, children);
     bool right = count == 4 && forest->count == 6;
     double sum = 0.0;
     for (int k = 0; k < count; k++) {
@@ -151,7 +151,7 @@ static void test_split(void)
         sum += link_area(&children[k]);
     }
     tap_ok(right, "the children of q take its place");
-    count = link_split(&world.method, &link, 1, again);
+    count = link_split(&world.model, &link, 1, again);
     right = count == 4 && forest->count == 6;
     for (int k = 0; k < count; k++)
         right = right && memcmp(&again[k].parts_p, &children[k].parts_p, 3) == 0 &&
@@ -159,7 +159,7 @@ static void test_split(void)
     tap_ok(right, "a patch that is split already stays as it is, and the links are the same");
     /* 16 rays against 64 over the same pair: their difference is the error of either. */
     tap_ok(fabs(sum / link_area(&link) - 1.0) < 0.03, "together they exchange what the link did");
-    count = link_split(&world.method, &link, 0, children);
+    count = link_split(&world.model, &link, 0, children);
     right = count == 4 && forest->count == 10;
     for (int k = 0; k < count; k++)
         right = right && children[k].q == 1 && children[k].p == forest->patches[0].children + k;
@@ -178,8 +178,8 @@ static void test_dropped_children(void)
     struct world world = world_make(scene);
     struct link link, children[4];
     bool made = make(&world, 0, 1, &link);
-    int count = made ? link_split(&world.method, &link, 1, children) : 0;
-    int32_t upper = world.method.forest->patches[1].children + 1; /* child 1, at corner b */
+    int count = made ? link_split(&world.model, &link, 1, children) : 0;
+    int32_t upper = world.model.forest->patches[1].children + 1; /* child 1, at corner b */
     tap_ok(count == 1 && children[0].q == upper, "children below the horizon are dropped");
     world_free(&world);
     soup_free(&soup);
@@ -200,10 +200,10 @@ static struct world make_many(void)
     soup_free(&soup);
     struct world world = world_make(scene);
     for (int32_t r = 0; r < ROOTS; r += 2)
-        forest_split(world.method.forest, r);
-    for (int64_t p = 0; p < world.method.forest->count; p++)
+        forest_split(world.model.forest, r);
+    for (int64_t p = 0; p < world.model.forest->count; p++)
         for (int c = 0; c < BANDS; c++)
-            world.method.forest->patches[p].radiosity.band[c] = random_unit(&random);
+            world.model.forest->patches[p].radiosity.band[c] = random_unit(&random);
     return world;
 }
 
@@ -252,7 +252,7 @@ static const struct link PLAIN = {.p = 3, .q = 7, .area = 0.25f, .parts_p = {64,
 static void test_one_transfer(void)
 {
     struct world world = make_many();
-    struct forest *forest = world.method.forest;
+    struct forest *forest = world.model.forest;
     struct flux_unit unit = {1024.0, 1.0 / 1024.0};
     forest->patches[3].radiosity = (struct rgb){{1.0, 2.0, 0.0}};
     forest->patches[7].radiosity = (struct rgb){{0.0, 16.0, -4.0}};
@@ -307,7 +307,7 @@ static void test_areas(void)
 static void test_dealing(void)
 {
     struct world world = make_many();
-    struct forest *forest = world.method.forest;
+    struct forest *forest = world.model.forest;
     struct flux_unit unit = {1024.0, 1.0 / 1024.0};
     struct patch *p = &forest->patches[forest->patches[2].children];
     struct patch *q = &forest->patches[forest->patches[4].children];
@@ -383,8 +383,8 @@ static struct rgb sent_by(const struct forest *forest, int32_t patch, const uint
 static void test_transfer(void)
 {
     struct world world = make_many();
-    struct forest *forest = world.method.forest;
-    struct flux_unit unit = world.method.flux_unit;
+    struct forest *forest = world.model.forest;
+    struct flux_unit unit = world.model.flux_unit;
     struct link_list list = {0}, turned = {0};
     forest_average(forest);
     forest_bound(forest);
@@ -455,17 +455,17 @@ static void test_parts(void)
         scene->materials[0] = material_grey(0.5, 1);
         soup_free(&soup);
         struct world world = world_make(scene);
-        struct facet p = facet_make(world.method.forest, 0);
-        struct facet q = facet_make(world.method.forest, 1);
+        struct facet p = facet_make(world.model.forest, 0);
+        struct facet q = facet_make(world.model.forest, 1);
         struct link link, paper;
-        world.method.criterion.form_factor = i % 2 ? FORM_FACTOR_POLYGON : FORM_FACTOR_DISK;
-        world.method.link_threshold = 0.0; /* so that all is looked at */
+        world.model.criterion.form_factor = i % 2 ? FORM_FACTOR_POLYGON : FORM_FACTOR_DISK;
+        world.model.link_threshold = 0.0; /* so that all is looked at */
         bool there = make(&world, 0, 1, &paper);
-        world.method.criterion.oracle = ORACLE_ERROR;
+        world.model.criterion.oracle = ORACLE_ERROR;
         if (there && make(&world, 0, 1, &link)) {
             struct octree_counts counts = {0};
             struct sight sight = {.open = false, .blocker = -1};
-            struct exchange exchange = exchange_estimate(&p, &q, world.method.criterion.form_factor,
+            struct exchange exchange = exchange_estimate(&p, &q, world.model.criterion.form_factor,
                                                          LOOK_ALL, world.octree, &sight, &counts);
             made++;
             for (int k = 0; k < 4; k++) {
@@ -495,9 +495,9 @@ static void test_inheriting(void)
     struct link link, children[4];
     make(&world, 0, 1, &link);
     link.seen = LINK_OPEN;
-    int64_t rays = world.method.counts.rays;
-    int count = link_split(&world.method, &link, 0, children);
-    bool open = count == 4 && world.method.counts.rays == rays;
+    int64_t rays = world.model.counts.rays;
+    int count = link_split(&world.model, &link, 0, children);
+    bool open = count == 4 && world.model.counts.rays == rays;
     for (int k = 0; k < count; k++)
         open = open && link_is_open(&children[k]);
     tap_ok(open, "children of an open link are open and cost no ray");

@@ -18,8 +18,8 @@ static struct world world_of(struct soup *soup, enum oracle oracle)
     scene->two_sided = scene->two_sided_lamps = true;
     soup_free(soup);
     struct world world = world_make(scene);
-    world.method.criterion.oracle = oracle;
-    world.method.link_threshold = 1e-2 * scene_emitted_power(scene);
+    world.model.criterion.oracle = oracle;
+    world.model.link_threshold = 1e-2 * scene_emitted_power(scene);
     return world;
 }
 
@@ -41,7 +41,7 @@ static struct world furnished(enum oracle oracle)
 /* Appends the links that one of so many ranks makes. Returns its number of pairs. */
 static int64_t link_as(struct world *world, int rank, int ranks, struct link_list *links)
 {
-    struct linking linking = linking_start(&world->method, links, rank, ranks);
+    struct linking linking = linking_start(&world->model, links, rank, ranks);
     int64_t pairs = 0;
     for (; linking.number < linking_pairs(&linking); pairs++)
         linking_add(&linking);
@@ -63,7 +63,7 @@ static void test_pairs(enum oracle oracle, const char *name)
     struct link_list links = {0};
     int32_t roots = scene_root_count(scene), without_area = 0;
     int64_t next = 0, unseen = 0, different = 0;
-    int64_t pairs = link_as(&world, 0, 1, &links), rays = world.method.counts.rays;
+    int64_t pairs = link_as(&world, 0, 1, &links), rays = world.model.counts.rays;
     for (int32_t p = 0; p < roots; p++) {
         without_area += scene_root_area(scene, p) == 0.0;
         for (int32_t q = p + 1; q < roots; q++) {
@@ -81,7 +81,7 @@ static void test_pairs(enum oracle oracle, const char *name)
     int64_t with_area = roots - without_area;
     tap_ok(without_area == 2 && pairs == with_area * (with_area - 1) / 2,
            "a root without an area is in none of the %lld pairs", (long long)pairs);
-    tap_ok(2 * rays == world.method.counts.rays, "nothing but these is looked at");
+    tap_ok(2 * rays == world.model.counts.rays, "nothing but these is looked at");
     link_list_free(&links);
     world_free(&world);
 }
@@ -96,7 +96,7 @@ static void test_rays(void)
         struct world world = world_of(&soup, (enum oracle)oracle);
         struct link_list links = {0};
         link_as(&world, 0, 1, &links);
-        rays[oracle] = (double)world.method.counts.rays / (double)links.count;
+        rays[oracle] = (double)world.model.counts.rays / (double)links.count;
         link_list_free(&links);
         world_free(&world);
     }

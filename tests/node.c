@@ -58,19 +58,19 @@ struct wood {
 static struct wood wood_make(struct scene *scene)
 {
     struct wood wood = {.world = world_make(scene)};
-    struct method *method = &wood.world.method;
-    method->criterion = criterion_best(0.0, 0, 1e-3, CLOSURE_NONE);
-    method->link_threshold = 0.0;
+    struct model *model = &wood.world.model;
+    model->criterion = criterion_best(0.0, 0, 1e-3, CLOSURE_NONE);
+    model->link_threshold = 0.0;
     wood.tree = tree_create(scene, wood.world.octree);
-    method->clusters = cluster_light_create(wood.tree);
-    cluster_light_pull(method->clusters, method->forest);
-    cluster_light_bound(method->clusters, method->forest);
+    model->clusters = cluster_light_create(wood.tree);
+    cluster_light_pull(model->clusters, model->forest);
+    cluster_light_bound(model->clusters, model->forest);
     return wood;
 }
 
 static void wood_free(struct wood *wood)
 {
-    cluster_light_destroy(wood->world.method.clusters);
+    cluster_light_destroy(wood->world.model.clusters);
     cluster_tree_destroy(wood->tree);
     world_free(&wood->world);
 }
@@ -114,7 +114,7 @@ struct pairs {
 
 static struct pairs count_pairs(struct wood *wood, int32_t p, int32_t q)
 {
-    struct method *method = &wood->world.method;
+    struct model *model = &wood->world.model;
     struct pairs pairs = {0, 0};
     int32_t first_p, end_p, first_q, end_q;
     range_of(wood->tree, p, &first_p, &end_p);
@@ -122,12 +122,12 @@ static struct pairs count_pairs(struct wood *wood, int32_t p, int32_t q)
     for (int32_t i = first_p; i < end_p; i++)
         for (int32_t j = first_q; j < end_q; j++) {
             int32_t a = wood->tree->roots[i], b = wood->tree->roots[j];
-            struct facet facet_a = facet_make(method->forest, a);
-            struct facet facet_b = facet_make(method->forest, b);
+            struct facet facet_a = facet_make(model->forest, a);
+            struct facet facet_b = facet_make(model->forest, b);
             struct sight sight = {.blocker = -1};
             struct link link;
             bool made = a != b &&
-                        link_make(method, a, &facet_a, b, &facet_b, 0.0, &sight, &link);
+                        link_make(model, a, &facet_a, b, &facet_b, 0.0, &sight, &link);
             pairs.facing += made;
             pairs.seen += made && link.seen > 0;
         }
@@ -142,7 +142,7 @@ static void test_proofs(struct scene *scene, const char *name, int walls)
     int away = 0, hidden = 0, wrong = 0, seen = 0;
     for (int i = 0; i < 4000; i++) {
         int32_t p = random_node(&wood, &random, 40), q = random_node(&wood, &random, 40);
-        struct end a = end_of(&wood.world.method, p), b = end_of(&wood.world.method, q);
+        struct end a = end_of(&wood.world.model, p), b = end_of(&wood.world.model, q);
         struct pairs pairs = count_pairs(&wood, p, q);
         bool faces = ends_may_face(&a, &b);
         bool apart = p != q && ends_are_walled_off(&a, &b, wood.world.octree, &counts);
@@ -273,13 +273,13 @@ enum { SALTS = 400, EACH = 25 };
 static void test_estimates(bool planted)
 {
     struct wood wood = wood_make(room(3, 4, false));
-    struct method *method = &wood.world.method;
+    struct model *model = &wood.world.model;
     struct random random = random_seed(10);
     int tested[KINDS] = {0}, biased = 0;
     for (int i = 0; i < 20000; i++) {
         int32_t p = random_node(&wood, &random, 60);
         int32_t q = i % 20 == 0 ? p : random_node(&wood, &random, 60);
-        struct end a = end_of(method, p), b = end_of(method, q);
+        struct end a = end_of(model, p), b = end_of(model, q);
         struct meeting m = ends_meet(&a, &b);
         enum kind kind = kind_of(&wood, &m);
         if (kind == KINDS || tested[kind] >= EACH)
@@ -290,7 +290,7 @@ static void test_estimates(bool planted)
         struct mean found = {0};
         for (int salt = 1; salt <= SALTS; salt++) {
             struct node_exchange estimate =
-                node_exchange_estimate(method, &m, salt, salt % 2 == 0);
+                node_exchange_estimate(model, &m, salt, salt % 2 == 0);
             mean_add(&found, value_of(&estimate, kind, planted));
         }
         tested[kind]++;
@@ -325,7 +325,7 @@ static struct link_list links_below_top(struct wood *wood)
             int32_t node = node_is_cluster(link->p) ? link->p : link->q;
             if (!node_is_cluster(node))
                 continue;
-            int count = node_link_split(&wood->world.method, link, node, children);
+            int count = node_link_split(&wood->world.model, link, node, children);
             for (int k = 0; k < count; k++) {
                 link_list_append(&next, children[k]);
                 link_list_append(&all, children[k]);
@@ -340,22 +340,22 @@ static struct link_list links_below_top(struct wood *wood)
 
 /* The field `blocker` of a link of far clusters has what its first look found, as drawn in
  * rad/beyond/node_link.c, and keeps it when the link settles; that of near ones has nothing. */
-static bool has_judgement(struct method *method, struct link *link)
+static bool has_judgement(struct model *model, struct link *link)
 {
-    struct end p = end_of(method, link->p), q = end_of(method, link->q);
+    struct end p = end_of(model, link->p), q = end_of(model, link->q);
     struct meeting m = ends_meet(&p, &q);
-    bool closely = m.most * m.light > method->link_threshold;
+    bool closely = m.most * m.light > model->link_threshold;
     if (m.near) {
-        node_link_settle(method, link);
+        node_link_settle(model, link);
         return link->blocker == 0;
     }
-    struct node_exchange found = node_exchange_estimate(method, &m, 0, closely);
+    struct node_exchange found = node_exchange_estimate(model, &m, 0, closely);
     float area = (float)found.unoccluded;
     uint32_t expected, bits = (uint32_t)link->blocker, after;
     memcpy(&expected, &area, sizeof expected);
     double seen = found.unoccluded > 0.0 ? found.area / found.unoccluded : 0.0;
     double said = (bits >> 12 & 15u) / 15.0;
-    node_link_settle(method, link);
+    node_link_settle(model, link);
     after = (uint32_t)link->blocker;
     return bits >> 16 == expected >> 16 && (seen > 0.0) == (said > 0.0) &&
            fabs(seen - said) <= 1.0 / 15.0 && after == bits && link->blocker >= 0;
@@ -364,7 +364,7 @@ static bool has_judgement(struct method *method, struct link *link)
 static void test_judgement(void)
 {
     struct wood wood = wood_make(room(3, 4, false));
-    wood.world.method.link_threshold = HUGE_VAL; /* all are looked at, none closely */
+    wood.world.model.link_threshold = HUGE_VAL; /* all are looked at, none closely */
     struct link_list links = links_below_top(&wood);
     int count = 0, right = 0;
     for (int64_t i = 0; i < links.count; i++) {
@@ -372,7 +372,7 @@ static void test_judgement(void)
         if (!node_is_cluster(link->p) && !node_is_cluster(link->q))
             continue;
         count++;
-        right += has_judgement(&wood.world.method, link);
+        right += has_judgement(&wood.world.model, link);
     }
     tap_ok(count > 100 && right == count, "%d of %d links keep what their first look "
            "found", right, count);
@@ -381,21 +381,21 @@ static void test_judgement(void)
 }
 
 /* Radiosities at random; those of clusters are means. */
-static void set_light(struct method *method, uint64_t seed)
+static void set_light(struct model *model, uint64_t seed)
 {
-    struct forest *forest = method->forest;
+    struct forest *forest = model->forest;
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
             forest->patches[p].radiosity.band[c] =
                 hash_unit(hash_mix(seed) + BANDS * (uint64_t)p + (uint64_t)c);
-    cluster_light_pull(method->clusters, forest);
+    cluster_light_pull(model->clusters, forest);
 }
 
 /* Sum over all nodes of their radiosity times their flux, W^2/m^2 in flux units. */
-static double product(const struct method *method)
+static double product(const struct model *model)
 {
-    const struct cluster_light *clusters = method->clusters;
-    const struct forest *forest = method->forest;
+    const struct cluster_light *clusters = model->clusters;
+    const struct forest *forest = model->forest;
     double sum = 0.0;
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
@@ -408,17 +408,17 @@ static double product(const struct method *method)
 }
 
 /* x F y: light of `from` over the links, times that of `to`. */
-static double product_over(struct method *method, const struct link_list *links,
+static double product_over(struct model *model, const struct link_list *links,
                            uint64_t from, uint64_t to)
 {
-    struct cluster_light *clusters = method->clusters;
-    clear_flux(method->forest);
+    struct cluster_light *clusters = model->clusters;
+    clear_flux(model->forest);
     memset(clusters->flux, 0,
            BANDS * (size_t)clusters->tree->count * sizeof *clusters->flux);
-    set_light(method, from);
-    node_links_transfer(links, method, flux_unit_for(method->area));
-    set_light(method, to);
-    return product(method);
+    set_light(model, from);
+    node_links_transfer(links, model, flux_unit_for(model->area));
+    set_light(model, to);
+    return product(model);
 }
 
 /* One by one. The whole scene's flux is 2^62 units, so rounding is far below 1e-9, which
@@ -426,17 +426,17 @@ static double product_over(struct method *method, const struct link_list *links,
 static void test_symmetry(void)
 {
     struct wood wood = wood_make(room(3, 4, false));
-    struct method *method = &wood.world.method;
-    method->link_threshold = HUGE_VAL;
+    struct model *model = &wood.world.model;
+    model->link_threshold = HUGE_VAL;
     struct link_list links = links_below_top(&wood);
     int own = 0, even = 0, carrying = 0;
     for (int64_t i = 0; i < links.count; i++) {
         struct link_list one = {&links.items[i], 1, 1, 1};
-        node_link_settle(method, &links.items[i]);
+        node_link_settle(model, &links.items[i]);
         if (links.items[i].seen == 0)
             continue;
-        double there = product_over(method, &one, 1, 2);
-        double back = product_over(method, &one, 2, 1);
+        double there = product_over(model, &one, 1, 2);
+        double back = product_over(model, &one, 2, 1);
         carrying++;
         own += links.items[i].p == links.items[i].q;
         even += there > 0.0 && fabs(there / back - 1.0) < 1e-9;
@@ -469,8 +469,8 @@ static double difference(const struct solution *a, const struct solution *b)
         if (a->scene->material_of[root] == LAMP)
             continue;
         double area = scene_root_area(a->scene, root);
-        double x = a->solver->method.forest->patches[root].radiosity.band[0];
-        double y = b->solver->method.forest->patches[root].radiosity.band[0];
+        double x = a->solver->model.forest->patches[root].radiosity.band[0];
+        double y = b->solver->model.forest->patches[root].radiosity.band[0];
         square += area * (x - y) * (x - y);
         light += area * y * y;
     }
@@ -509,7 +509,7 @@ static void test_total(void)
     double leaving = 0.0, unit = scene_area_unit(s.scene);
     for (int32_t root = 0; root < s.scene->input_count; root++)
         leaving += unit * scene_root_area(s.scene, root) *
-                   rgb_sum(s.solver->method.forest->patches[root].radiosity);
+                   rgb_sum(s.solver->model.forest->patches[root].radiosity);
     double bias = -s.stats.escaped_power / leaving;
     tap_ok(fabs(bias) <= 0.01, "of all light %+.2f %% too much arrives (%lld links)",
            100.0 * bias, (long long)s.stats.links);

@@ -125,7 +125,7 @@ static void test_roots(void)
 {
     static const double reflected[4] = {1.0, 2.0, 3.0, 6.0};
     struct world world = two_roots();
-    struct forest *forest = world.method.forest;
+    struct forest *forest = world.model.forest;
     struct truth truth = two_truths(world.scene);
     forest_split(forest, 0);
     for (int k = 0; k < 4; k++)

@@ -21,20 +21,20 @@ static void test_energy(void)
 {
     struct material lamp = {{{0.5, 0.5, 0.5}}, {{1.0, 2.0, 4.0}}};
     struct world world = make_pair(1.0, material_grey(0.5, 0), lamp, NULL);
-    struct method *method = &world.method;
+    struct model *model = &world.model;
     struct link link = link_of(0, 1), swapped = link_of(1, 0);
-    method->link_threshold = 0.875; /* 0.125 x (1 + 2 + 4), exactly */
-    tap_ok(oracle_patch_to_split(method, &link) == -1 &&
-               oracle_patch_to_split(method, &swapped) == -1,
+    model->link_threshold = 0.875; /* 0.125 x (1 + 2 + 4), exactly */
+    tap_ok(oracle_patch_to_split(model, &link) == -1 &&
+               oracle_patch_to_split(model, &swapped) == -1,
            "a link at the threshold is fine");
-    method->link_threshold = nextafter(0.875, 0.0);
-    tap_ok(oracle_patch_to_split(method, &link) == 0, "above it, in the sum of the bands, it is not");
-    tap_ok(oracle_patch_to_split(method, &swapped) == 0, "also if it names the lamp first");
+    model->link_threshold = nextafter(0.875, 0.0);
+    tap_ok(oracle_patch_to_split(model, &link) == 0, "above it, in the sum of the bands, it is not");
+    tap_ok(oracle_patch_to_split(model, &swapped) == 0, "also if it names the lamp first");
     world.scene->materials[0].reflectance = (struct rgb){{0, 0, 0}};
-    tap_ok(oracle_patch_to_split(method, &link) == -1,
+    tap_ok(oracle_patch_to_split(model, &link) == -1,
            "a receiver that does not reflect needs nothing");
-    method->forest->patches[0].radiosity.band[1] = 8.0;
-    tap_ok(oracle_patch_to_split(method, &link) == 0, "unless it sends light itself");
+    model->forest->patches[0].radiosity.band[1] = 8.0;
+    tap_ok(oracle_patch_to_split(model, &link) == 0, "unless it sends light itself");
     world_free(&world);
 }
 
@@ -42,28 +42,28 @@ static void test_choice(void)
 {
     struct material grey = material_grey(0.5, 1);
     struct world world = make_pair(2.0, grey, grey, NULL);
-    struct method *method = &world.method;
-    method->link_threshold = 0.0;
+    struct model *model = &world.model;
+    model->link_threshold = 0.0;
     struct link link = link_of(0, 1), swapped = link_of(1, 0);
-    tap_ok(oracle_patch_to_split(method, &link) == 1 && oracle_patch_to_split(method, &swapped) == 1,
+    tap_ok(oracle_patch_to_split(model, &link) == 1 && oracle_patch_to_split(model, &swapped) == 1,
            "the larger patch is split");
-    forest_split(method->forest, 1);
-    int32_t child = method->forest->patches[1].children;
+    forest_split(model->forest, 1);
+    int32_t child = model->forest->patches[1].children;
     struct link tie = link_of(child, 0), tie_swapped = link_of(0, child);
-    tap_ok(forest_area(method->forest, child) == forest_area(method->forest, 0) &&
-               oracle_patch_to_split(method, &tie) == 0 &&
-               oracle_patch_to_split(method, &tie_swapped) == 0,
+    tap_ok(forest_area(model->forest, child) == forest_area(model->forest, 0) &&
+               oracle_patch_to_split(model, &tie) == 0 &&
+               oracle_patch_to_split(model, &tie_swapped) == 0,
            "of equal ones that with the lower ID");
     struct link siblings = link_of(child + 2, child + 1);
-    tap_ok(oracle_patch_to_split(method, &siblings) == child + 1, "also within a tree");
-    method->criterion.max_level = 1;
+    tap_ok(oracle_patch_to_split(model, &siblings) == child + 1, "also within a tree");
+    model->criterion.max_level = 1;
     struct link mixed = link_of(child, 0);
-    forest_split(method->forest, 0);
-    struct link deep = link_of(method->forest->patches[0].children, child);
-    tap_ok(oracle_patch_to_split(method, &mixed) == 0 && oracle_patch_to_split(method, &deep) == -1,
+    forest_split(model->forest, 0);
+    struct link deep = link_of(model->forest->patches[0].children, child);
+    tap_ok(oracle_patch_to_split(model, &mixed) == 0 && oracle_patch_to_split(model, &deep) == -1,
            "none is split beyond the deepest level");
-    method->criterion.max_level = 0;
-    tap_ok(oracle_patch_to_split(method, &link) == -1, "level 0 splits nothing");
+    model->criterion.max_level = 0;
+    tap_ok(oracle_patch_to_split(model, &link) == -1, "level 0 splits nothing");
     world_free(&world);
 }
 
@@ -72,22 +72,22 @@ static void test_other_side(void)
 {
     struct material grey = material_grey(0.5, 1);
     struct world world = make_pair(4.0, grey, grey, NULL);
-    struct method *method = &world.method;
-    method->link_threshold = 0.0;
-    forest_split(method->forest, 1);
-    struct link link = link_of(0, method->forest->patches[1].children);
-    tap_ok(oracle_patch_to_split(method, &link) == link.q, "the larger patch is a child here");
-    method->criterion.max_level = 1;
-    tap_ok(oracle_patch_to_split(method, &link) == 0,
+    struct model *model = &world.model;
+    model->link_threshold = 0.0;
+    forest_split(model->forest, 1);
+    struct link link = link_of(0, model->forest->patches[1].children);
+    tap_ok(oracle_patch_to_split(model, &link) == link.q, "the larger patch is a child here");
+    model->criterion.max_level = 1;
+    tap_ok(oracle_patch_to_split(model, &link) == 0,
            "at the deepest level it leaves it to the other");
-    method->criterion.max_level = ID_MAX_LEVEL;
-    double area = forest_area(method->forest, 0);
+    model->criterion.max_level = ID_MAX_LEVEL;
+    double area = forest_area(model->forest, 0);
     struct link large = link_of(0, 1);
-    method->patch_threshold = 4.0 * area; /* a quarter of the ceiling, 16 times the floor */
-    tap_ok(oracle_patch_to_split(method, &large) == 1,
+    model->patch_threshold = 4.0 * area; /* a quarter of the ceiling, 16 times the floor */
+    tap_ok(oracle_patch_to_split(model, &large) == 1,
            "parts as large as the smallest may be made");
-    method->patch_threshold = nextafter(4.0 * area, HUGE_VAL);
-    tap_ok(oracle_patch_to_split(method, &large) == -1, "smaller ones not");
+    model->patch_threshold = nextafter(4.0 * area, HUGE_VAL);
+    tap_ok(oracle_patch_to_split(model, &large) == -1, "smaller ones not");
     world_free(&world);
 }
 
@@ -96,17 +96,17 @@ static void test_blocked_energy(void)
 {
     struct world world = make_pair(1.0, material_grey(0.5, 0), material_grey(0, 1), NULL);
     struct link link = link_of(0, 1);
-    world.method.link_threshold = 0.25; /* 3 x 1/8 is above, seen or not */
+    world.model.link_threshold = 0.25; /* 3 x 1/8 is above, seen or not */
     bool right = true;
     for (int seen = 0; seen <= LINK_ALL_SEEN; seen += LINK_ALL_SEEN / 2) {
         link.seen = (uint8_t)seen;
-        right = right && oracle_patch_to_split(&world.method, &link) == 0;
+        right = right && oracle_patch_to_split(&world.model, &link) == 0;
     }
-    world.method.link_threshold = 0.5; /* 3/8 is below, but 3/4 is not: half seen */
+    world.model.link_threshold = 0.5; /* 3/8 is below, but 3/4 is not: half seen */
     link.seen = LINK_ALL_SEEN / 2;
-    right = right && oracle_patch_to_split(&world.method, &link) == 0;
+    right = right && oracle_patch_to_split(&world.model, &link) == 0;
     link.seen = 0;
-    right = right && oracle_patch_to_split(&world.method, &link) == -1;
+    right = right && oracle_patch_to_split(&world.model, &link) == -1;
     tap_ok(right, "what blockers keep away counts as energy too");
     world_free(&world);
 }
@@ -115,8 +115,8 @@ static void test_blocked_energy(void)
 
 static int32_t at_threshold(struct world *world, const struct link *link, double threshold)
 {
-    world->method.link_threshold = threshold;
-    return oracle_patch_to_split(&world->method, link);
+    world->model.link_threshold = threshold;
+    return oracle_patch_to_split(&world->model, link);
 }
 
 /* Whether the error of the link is this number, to the bit or to 1e-6, and split for is `side`. */
@@ -131,7 +131,7 @@ static struct world make_grey(double size)
 {
     struct material grey = material_grey(0.5, 1);
     struct world world = make_pair(size, grey, grey, NULL);
-    world.method.criterion.oracle = ORACLE_ERROR;
+    world.model.criterion.oracle = ORACLE_ERROR;
     return world;
 }
 
@@ -141,7 +141,7 @@ static void test_nothing_wrong(void)
     struct link link = link_of(0, 1);
     tap_ok(at_threshold(&world, &link, 0.0) == -1,
            "an open link with even parts and no range is never split");
-    world.method.forest->patches[1].radiosity = (struct rgb){{1e6, 1e6, 1e6}};
+    world.model.forest->patches[1].radiosity = (struct rgb){{1e6, 1e6, 1e6}};
     tap_ok(at_threshold(&world, &link, 0.0) == -1, "however bright it is");
     world_free(&world);
 }
@@ -196,7 +196,7 @@ static void test_range(void)
 {
     struct world world = make_grey(2.0);
     struct link link = link_of(0, 1);
-    make_range(world.method.forest, 0, 0.75);
+    make_range(world.model.forest, 0, 0.75);
     tap_ok(error_is(&world, &link, 0.125 * 0.5 * 0.75, 0),
            "a range of radiosity within a child splits its patch, though the other is larger; "
            "children that differ do not count");
@@ -204,11 +204,11 @@ static void test_range(void)
     tap_ok(at_threshold(&world, &link, 0.0) == -1, "unless the receiver is black");
     world_free(&world);
     world = make_grey(2.0);
-    make_range(world.method.forest, 1, 0.75);
+    make_range(world.model.forest, 1, 0.75);
     tap_ok(error_is(&world, &link, 0.125 * 0.5 * 0.75, 1), "the same on the other side");
     link.seen = 0;
     /* Doubt alone is left: 1/8 of G x rho B both ways. */
-    double to_p = 0.5 * rgb_sum(world.method.forest->patches[1].radiosity), to_q = 1.5;
+    double to_p = 0.5 * rgb_sum(world.model.forest->patches[1].radiosity), to_q = 1.5;
     tap_ok(error_is(&world, &link, 0.125 * 0.125 * (to_p + to_q), 1),
            "what a blocked link might carry is only in doubt");
     world_free(&world);
@@ -242,19 +242,19 @@ static void test_error_doubt(void)
 static void test_error_limits(void)
 {
     struct world world = make_grey(2.0);
-    struct method *method = &world.method;
+    struct model *model = &world.model;
     struct link link = link_of(0, 1);
     link.parts_p[0] = 128; /* error 3/16 on p, 3/32 on q: 9/32 */
     link.parts_q[0] = 96;
-    method->patch_threshold = nextafter(0.25 * forest_area(method->forest, 0), HUGE_VAL);
+    model->patch_threshold = nextafter(0.25 * forest_area(model->forest, 0), HUGE_VAL);
     tap_ok(at_threshold(&world, &link, 0.185) == 1,
            "a patch that is too small leaves it to the other, which causes half a threshold");
     tap_ok(at_threshold(&world, &link, 0.19) == -1, "if it causes less nothing is split");
-    method->patch_threshold = nextafter(0.25 * forest_area(method->forest, 1), HUGE_VAL);
+    model->patch_threshold = nextafter(0.25 * forest_area(model->forest, 1), HUGE_VAL);
     tap_ok(at_threshold(&world, &link, 0.1) == -1, "nor if both are too small");
-    method->patch_threshold = 0.25 * forest_area(method->forest, 0);
+    model->patch_threshold = 0.25 * forest_area(model->forest, 0);
     tap_ok(at_threshold(&world, &link, 0.1) == 0, "one that is just large enough is split");
-    method->criterion.max_level = 0;
+    model->criterion.max_level = 0;
     tap_ok(at_threshold(&world, &link, 0.0) == -1, "level 0 splits nothing");
     world_free(&world);
 }
@@ -263,10 +263,10 @@ static void test_error_limits(void)
 
 static bool divides(struct world *world, const struct link *link, double threshold, int32_t patch)
 {
-    struct forest *forest = world->method.forest;
+    struct forest *forest = world->model.forest;
     int64_t before = forest->count;
-    world->method.link_threshold = threshold;
-    oracle_divide_patches(&world->method, link);
+    world->model.link_threshold = threshold;
+    oracle_divide_patches(&world->model, link);
     bool only = patch < 0 ? forest->count == before
                           : forest->count == before + 4 && !patch_is_leaf(&forest->patches[patch]);
     for (int32_t root = 0; root < forest->root_count; root++) /* as it was */
@@ -278,7 +278,7 @@ static bool divides(struct world *world, const struct link *link, double thresho
 static void test_dividing(void)
 {
     struct world world = make_grey(2.0);
-    struct method *method = &world.method;
+    struct model *model = &world.model;
     struct link link = link_of(0, 1);
     const double spread = 4.0 * 0.25 * 0.125 * 1.5; /* all of it: half is left when divided */
     tap_ok(divides(&world, &link, 0.0, -1), "even parts divide nothing");
@@ -292,18 +292,18 @@ static void test_dividing(void)
     link.seen = 0;
     tap_ok(divides(&world, &link, 0.0, -1), "a blocked link divides nothing");
     link.seen = LINK_ALL_SEEN / 2;
-    method->patch_threshold = 0.25 * forest_area(method->forest, 1);
+    model->patch_threshold = 0.25 * forest_area(model->forest, 1);
     bool at = divides(&world, &link, 0.5 * spread, 1);
-    method->patch_threshold = nextafter(method->patch_threshold, HUGE_VAL);
+    model->patch_threshold = nextafter(model->patch_threshold, HUGE_VAL);
     tap_ok(at && divides(&world, &link, 0.5 * spread, -1), "no patch below the least area is made");
-    method->patch_threshold = 0.0;
-    method->criterion.max_level = 0;
+    model->patch_threshold = 0.0;
+    model->criterion.max_level = 0;
     tap_ok(divides(&world, &link, 0.5 * spread, -1), "nor one beyond the deepest level");
-    method->criterion.max_level = ID_MAX_LEVEL;
+    model->criterion.max_level = ID_MAX_LEVEL;
     world.scene->materials[1].reflectance = (struct rgb){{0.0, 0.0, 0.0}};
     tap_ok(divides(&world, &link, 0.0, -1), "light arriving at a black receiver does not matter");
     world.scene->materials[1].reflectance = (struct rgb){{0.5, 0.5, 0.5}};
-    method->criterion.oracle = ORACLE_BF;
+    model->criterion.oracle = ORACLE_BF;
     tap_ok(divides(&world, &link, 0.0, -1), "the paper divides nothing");
     world_free(&world);
 }
@@ -316,23 +316,23 @@ static void test_dividing(void)
 static void test_look(void)
 {
     struct world world = make_grey(1.0);
-    struct method *method = &world.method;
-    method->typical = (struct rgb){{0.0, 0.0, 0.0}};
-    method->link_threshold = 1.0;
+    struct model *model = &world.model;
+    model->typical = (struct rgb){{0.0, 0.0, 0.0}};
+    model->link_threshold = 1.0;
     /* 3/2 each way: a stake of 3 for a guess of 1. */
-    tap_ok(oracle_look(method, 0, 1, 0.0999 / 3.0) == LOOK_ONE &&
-               oracle_look(method, 0, 1, 0.1001 / 3.0) == LOOK_FOUR_FIRST &&
-               oracle_look(method, 0, 1, 0.999 / 3.0) == LOOK_FOUR_FIRST &&
-               oracle_look(method, 0, 1, 1.001 / 3.0) == LOOK_ALL,
+    tap_ok(oracle_look(model, 0, 1, 0.0999 / 3.0) == LOOK_ONE &&
+               oracle_look(model, 0, 1, 0.1001 / 3.0) == LOOK_FOUR_FIRST &&
+               oracle_look(model, 0, 1, 0.999 / 3.0) == LOOK_FOUR_FIRST &&
+               oracle_look(model, 0, 1, 1.001 / 3.0) == LOOK_ALL,
            "little at stake is looked at less");
-    method->typical = (struct rgb){{3.0, 1.0, 1.0}}; /* 5/2 each way */
-    tap_ok(oracle_look(method, 0, 1, 0.0999 / 5.0) == LOOK_ONE &&
-               oracle_look(method, 0, 1, 0.1001 / 5.0) == LOOK_FOUR_FIRST,
+    model->typical = (struct rgb){{3.0, 1.0, 1.0}}; /* 5/2 each way */
+    tap_ok(oracle_look(model, 0, 1, 0.0999 / 5.0) == LOOK_ONE &&
+               oracle_look(model, 0, 1, 0.1001 / 5.0) == LOOK_FOUR_FIRST,
            "what is typical counts where it is more");
-    tap_ok(oracle_look(method, 0, 1, 0.0) == LOOK_ALL && oracle_look(method, 0, 1, NAN) == LOOK_ALL,
+    tap_ok(oracle_look(model, 0, 1, 0.0) == LOOK_ALL && oracle_look(model, 0, 1, NAN) == LOOK_ALL,
            "without a guess all is looked at");
-    method->criterion.oracle = ORACLE_BF;
-    tap_ok(oracle_look(method, 0, 1, 1e-9) == LOOK_ALL, "the paper looks at all");
+    model->criterion.oracle = ORACLE_BF;
+    tap_ok(oracle_look(model, 0, 1, 1e-9) == LOOK_ALL, "the paper looks at all");
     world_free(&world);
 }
 
@@ -359,13 +359,13 @@ static int decide(double scale, uint64_t seed, int32_t decisions[DECISIONS])
     scene->materials[1] = material_grey(0.2, scale);
     soup_free(&soup);
     struct world world = world_make(scene);
-    struct method *method = &world.method;
-    struct criterion criterion = method->criterion;
+    struct model *model = &world.model;
+    struct criterion criterion = model->criterion;
     criterion.oracle = ORACLE_ERROR;
     criterion.form_factor = FORM_FACTOR_POLYGON;
     criterion.epsilon = 1e-4;
     criterion.max_level = 3;
-    *method = method_make(scene, world.octree, method->forest, &criterion);
+    *model = model_make(scene, world.octree, model->forest, &criterion);
     struct link_list list = {0};
     for (int32_t p = 0; p < 12; p++)
         for (int32_t q = p + 1; q < 12; q++) {
@@ -376,15 +376,15 @@ static int decide(double scale, uint64_t seed, int32_t decisions[DECISIONS])
     int count = 0;
     for (int64_t i = 0; i < list.count && count < DECISIONS; i++) {
         struct link link = list.items[i], children[4];
-        int32_t patch = oracle_patch_to_split(method, &link);
+        int32_t patch = oracle_patch_to_split(model, &link);
         decisions[count++] = patch;
         if (patch < 0) {
-            int64_t before = method->forest->count;
-            oracle_divide_patches(method, &link);
-            decisions[count - 1] = (int32_t)(before - method->forest->count) - 1;
+            int64_t before = model->forest->count;
+            oracle_divide_patches(model, &link);
+            decisions[count - 1] = (int32_t)(before - model->forest->count) - 1;
             continue;
         }
-        int made = link_split(method, &link, patch, children);
+        int made = link_split(model, &link, patch, children);
         for (int k = 0; k < made; k++)
             link_list_append(&list, children[k]);
     }

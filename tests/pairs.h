@@ -21,10 +21,10 @@ static inline struct triangle tile(double x, double z, double size, bool up)
 /* The link between two patches as an initial link. */
 static inline bool make(struct world *world, int32_t p, int32_t q, struct link *link)
 {
-    struct facet facet_p = facet_make(world->method.forest, p);
-    struct facet facet_q = facet_make(world->method.forest, q);
+    struct facet facet_p = facet_make(world->model.forest, p);
+    struct facet facet_q = facet_make(world->model.forest, q);
     struct sight sight = {.open = false, .blocker = -1};
-    return link_make(&world->method, p, &facet_p, q, &facet_q, 0.0, &sight, link);
+    return link_make(&world->model, p, &facet_p, q, &facet_q, 0.0, &sight, link);
 }
 
 /* Floor 0 (material 0) and ceiling `size` times as large (material 1), then `more`. */
@@ -48,7 +48,7 @@ static inline struct world make_pair(double size, struct material floor, struct 
 
 static inline int64_t tests_done(const struct world *world)
 {
-    return world->method.counts.node_tests + world->method.counts.triangle_tests;
+    return world->model.counts.node_tests + world->model.counts.triangle_tests;
 }
 
 /* A triangle beside the pair, so that there is something to test: floor and ceiling alone are the

@@ -41,13 +41,13 @@ static void grow(struct forest *forest, uint64_t seed)
 /* Flux at all levels, smaller on smaller patches. Returns its sum over roots with an area. */
 static int64_t pour(struct world *world, uint64_t seed)
 {
-    struct forest *forest = world->method.forest;
+    struct forest *forest = world->model.forest;
     struct random random = random_seed(seed);
     int64_t sum = 0;
     for (int32_t p = 0; p < forest->count; p++) {
         for (int c = 0; c < BANDS; c++) {
             double watts = 3.0 * random_unit(&random) * forest_area(forest, p);
-            forest->patches[p].flux[c] = flux_from_watts(world->method.flux_unit, watts);
+            forest->patches[p].flux[c] = flux_from_watts(world->model.flux_unit, watts);
             sum += forest->patches[p].flux[c];
         }
     }
@@ -60,12 +60,12 @@ static void own_all(bool own[ROOTS])
         own[r] = true;
 }
 
-/* push_pull() of flux in the unit of the method, nothing corrected. */
+/* push_pull() of flux in the unit of the model, nothing corrected. */
 static struct push_pull_sums pushed(struct world *world, const bool *own,
                                     int64_t *change)
 {
     const struct closure none = {.kind = CLOSURE_NONE};
-    return push_pull(&world->method, &none, world->method.flux_unit, own, change);
+    return push_pull(&world->model, &none, world->model.flux_unit, own, change);
 }
 
 /* --- push --- */
@@ -78,17 +78,17 @@ static void test_push(void)
     double worst = 0.0;
     for (uint64_t seed = 1; seed <= 20; seed++) {
         struct world world = make_world();
-        struct forest *forest = world.method.forest;
+        struct forest *forest = world.model.forest;
         grow(forest, seed);
         int64_t poured = pour(&world, seed);
         double arrived = 0.0;
         for (int32_t p = 0; p < forest->count; p++) {
             if (!patch_is_leaf(&forest->patches[p]) || forest_area(forest, p) <= 0.0)
                 continue;
-            struct rgb h = leaf_irradiance(forest, p, world.method.flux_unit);
+            struct rgb h = leaf_irradiance(forest, p, world.model.flux_unit);
             arrived += forest_area(forest, p) * rgb_sum(h);
         }
-        double sent = flux_to_watts(world.method.flux_unit, poured);
+        double sent = flux_to_watts(world.model.flux_unit, poured);
         worst = fmax(worst, fabs(arrived / sent - 1.0));
         world_free(&world);
     }
@@ -99,8 +99,8 @@ static void test_push(void)
 static void test_line(void)
 {
     struct world world = make_world();
-    struct forest *forest = world.method.forest;
-    struct flux_unit unit = world.method.flux_unit;
+    struct forest *forest = world.model.forest;
+    struct flux_unit unit = world.model.flux_unit;
     int32_t leaf = forest_reach(forest, id_child(id_child(id_of_root(2), 3), 0));
     int32_t middle = forest->patches[leaf].parent, other = forest->patches[middle].children + 1;
     double area = forest_area(forest, 2);
@@ -143,7 +143,7 @@ static bool inner_are_means(const struct forest *forest, const bool *own)
 static void test_pull(void)
 {
     struct world world = make_world();
-    struct forest *forest = world.method.forest;
+    struct forest *forest = world.model.forest;
     struct random random = random_seed(3);
     bool own[ROOTS];
     own_all(own);
@@ -163,7 +163,7 @@ static void test_pull(void)
 static void test_radiosity(void)
 {
     struct world world = make_world();
-    struct forest *forest = world.method.forest;
+    struct forest *forest = world.model.forest;
     bool own[ROOTS];
     int64_t change[ROOTS] = {0};
     own_all(own);
@@ -175,7 +175,7 @@ static void test_radiosity(void)
         const struct patch *patch = &forest->patches[p];
         if (!patch_is_leaf(patch) || patch->id.root == NO_AREA)
             continue;
-        struct rgb h = leaf_irradiance(forest, p, world.method.flux_unit);
+        struct rgb h = leaf_irradiance(forest, p, world.model.flux_unit);
         const struct material *material = forest_material(forest, p);
         for (int c = 0; c < BANDS; c++) {
             double reflected = material->reflectance.band[c] * h.band[c];
@@ -204,8 +204,8 @@ static bool own_of(int32_t root)
 static void test_sums(void)
 {
     struct world world = make_world();
-    struct forest *forest = world.method.forest;
-    struct flux_unit unit = world.method.flux_unit;
+    struct forest *forest = world.model.forest;
+    struct flux_unit unit = world.model.flux_unit;
     bool own[ROOTS];
     int64_t change[ROOTS] = {0};
     for (int32_t r = 0; r < ROOTS; r++)
@@ -260,7 +260,7 @@ static void test_two_ranks(void)
         int64_t change[ROOTS] = {0};
         for (int32_t r = 0; r < ROOTS; r++)
             own[r] = part == 2 || own_of(r) == (part == 1);
-        grow(world.method.forest, 6);
+        grow(world.model.forest, 6);
         pour(&world, 6);
         sums[part] = pushed(&world, own, change);
         world_free(&world);
@@ -278,10 +278,10 @@ static void test_divergence(void)
     struct world world = make_world();
     bool own[ROOTS] = {false};
     int64_t change[ROOTS] = {0};
-    forest_split(world.method.forest, 2); /* rho 0.5 in band 0: half the limit for itself */
-    world.method.forest->patches[2].flux[0] = FLUX_LIMIT; /* an inner patch counts too */
-    forest_split(world.method.forest, 4);
-    world.method.forest->patches[4].flux[0] = FLUX_LIMIT;
+    forest_split(world.model.forest, 2); /* rho 0.5 in band 0: half the limit for itself */
+    world.model.forest->patches[2].flux[0] = FLUX_LIMIT; /* an inner patch counts too */
+    forest_split(world.model.forest, 4);
+    world.model.forest->patches[4].flux[0] = FLUX_LIMIT;
     own[0] = true;
     struct push_pull_sums sums = pushed(&world, own, change);
     tap_ok(sums.light < FLUX_LIMIT && sums.arriving < FLUX_LIMIT, "others' fluxes do not count");
@@ -300,7 +300,7 @@ static void test_factors(void)
     bool right = true;
     for (int k = 0; k < 2; k++) {
         struct world world = make_world();
-        struct forest *forest = world.method.forest;
+        struct forest *forest = world.model.forest;
         bool own[ROOTS];
         int64_t change[ROOTS] = {0};
         own_all(own);
@@ -308,7 +308,7 @@ static void test_factors(void)
         pour(&world, 7);
         struct closure closure = {.kind = CLOSURE_ROWS};
         closure_extend(&closure, forest);
-        struct flux_unit unit = world.method.flux_unit;
+        struct flux_unit unit = world.model.flux_unit;
         for (int64_t p = 0; p < closure.count; p++) {
             right = right && closure.factor[p] == 1.0;
             closure.factor[p] = k ? 0.5 : 1.0;
@@ -317,12 +317,12 @@ static void test_factors(void)
             unit.watt *= 2.0;
             unit.per_watt *= 0.5;
         }
-        struct push_pull_sums sums = push_pull(&world.method, &closure, unit, own, change);
-        light[k] = flux_to_watts(world.method.flux_unit, sums.light);
-        arriving[k] = flux_to_watts(world.method.flux_unit, sums.arriving);
-        absorbed[k] = flux_to_watts(world.method.flux_unit, sums.absorbed);
+        struct push_pull_sums sums = push_pull(&world.model, &closure, unit, own, change);
+        light[k] = flux_to_watts(world.model.flux_unit, sums.light);
+        arriving[k] = flux_to_watts(world.model.flux_unit, sums.arriving);
+        absorbed[k] = flux_to_watts(world.model.flux_unit, sums.absorbed);
         closure.kind = CLOSURE_NONE;
-        struct push_pull_sums plain = push_pull(&world.method, &closure, unit, own,
+        struct push_pull_sums plain = push_pull(&world.model, &closure, unit, own,
                                                 change);
         right = right && (k == 0) == (plain.arriving == sums.arriving);
         closure_free(&closure);
@@ -339,8 +339,8 @@ static void test_factors(void)
 /* Sets the irradiance of a root that is a leaf, W/m^2 in band 0. */
 static void set_irradiance(struct world *world, int32_t root, double irradiance)
 {
-    double watts = irradiance * forest_area(world->method.forest, root);
-    world->method.forest->patches[root].flux[0] = flux_from_watts(world->method.flux_unit, watts);
+    double watts = irradiance * forest_area(world->model.forest, root);
+    world->model.forest->patches[root].flux[0] = flux_from_watts(world->model.flux_unit, watts);
 }
 
 /* Root 0: rho = 0.5; H = 1, 1.25, 1.375: changes 0.5, 0.125, 0.0625 times the area.
@@ -358,11 +358,11 @@ static void test_shrink(void)
         set_irradiance(&world, 1, second[step]);
         struct push_pull_sums sums = pushed(&world, own, change);
         shrink[step] = sums.shrink;
-        changed[step] = flux_to_watts(world.method.flux_unit, sums.change);
+        changed[step] = flux_to_watts(world.model.flux_unit, sums.change);
         if (step == 0)
             change[1] = 2 * change[1]; /* root 1 then shrinks by 1/8, and root 0 by 1/4 */
     }
-    double a = forest_area(world.method.forest, 0), b = forest_area(world.method.forest, 1);
+    double a = forest_area(world.model.forest, 0), b = forest_area(world.model.forest, 1);
     tap_ok(shrink[0] == HUGE_VAL, "a change out of nothing shrinks by no factor");
     tap_ok(fabs(shrink[1] - 0.25) < 1e-12, "the largest factor of a root counts");
     tap_ok(fabs(shrink[2] - 0.5) < 1e-12, "of those that still change");
@@ -378,7 +378,7 @@ static void test_settled(void)
 {
     struct world world = make_world();
     bool own[ROOTS] = {true};
-    double tolerance = world.method.criterion.tolerance * scene_emitted_power(world.scene) /
+    double tolerance = world.model.criterion.tolerance * scene_emitted_power(world.scene) /
                        scene_area(world.scene);
     double shrink[2];
     for (int k = 0; k < 2; k++) {
@@ -402,7 +402,7 @@ static void test_settled(void)
 static void test_closure(void)
 {
     struct world world = make_world();
-    struct forest *forest = world.method.forest;
+    struct forest *forest = world.model.forest;
     struct flux_unit unit = flux_unit_for(2.0 * scene_area(world.scene));
     bool own[ROOTS] = {true, true};
     own[7] = own[NO_AREA] = true;

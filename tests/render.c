@@ -28,7 +28,7 @@ static double shown(struct solution *s, const struct shading *shading, int32_t f
 static struct shading *shade_rest(const struct solution *s)
 {
     int64_t count;
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
     struct shading *shading = shading_create(forest, s->solver->straight, open);
     alloc_free(open);

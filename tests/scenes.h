@@ -1,5 +1,5 @@
 /* Small scenes for tests: a growing list of triangles, shapes that are added to it, and the whole
- * of scene, octree, forest and method that is made of it. */
+ * of scene, octree, forest and model that is made of it. */
 #ifndef TESTS_SCENES_H
 #define TESTS_SCENES_H
 
@@ -9,7 +9,7 @@
 #include "geom/alloc.h"
 #include "geom/scene.h"
 #include "octree/octree.h"
-#include "rad/method.h"
+#include "rad/model.h"
 #include "tests/random.h"
 
 /* --- random numbers and points --- */
@@ -177,7 +177,7 @@ static inline void scene_prepare_or_exit(struct scene *scene)
 struct world {
     struct scene *scene;
     struct octree *octree;
-    struct method method; /* method.forest is the forest */
+    struct model model; /* model.forest is the forest */
 };
 
 /* Prepares the scene, owns it, and makes the rest with a criterion that a test may change. */
@@ -188,13 +188,13 @@ static inline struct world world_make(struct scene *scene)
     scene_prepare_or_exit(scene);
     struct world world = {.scene = scene};
     world.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
-    world.method = method_make(scene, world.octree, forest_create(scene), &criterion);
+    world.model = model_make(scene, world.octree, forest_create(scene), &criterion);
     return world;
 }
 
 static inline void world_free(struct world *world)
 {
-    forest_destroy(world->method.forest);
+    forest_destroy(world->model.forest);
     octree_destroy(world->octree);
     scene_destroy(world->scene);
 }

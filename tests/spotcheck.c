@@ -21,7 +21,7 @@ static struct solution furnace(const struct comm *comm)
 /* Scales the reflected light of the leaves of some roots. */
 static void spoil(struct solution *s, uint32_t roots, double factor)
 {
-    struct forest *forest = s->solver->method.forest;
+    struct forest *forest = s->solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++)
         if (forest->patches[p].id.root < roots)
             for (int c = 0; c < BANDS; c++)
@@ -53,8 +53,8 @@ int main(int argc, char **argv)
     spoil(&s, 12, 1.0 / 1.1);
     spoil(&s, 1, 1.5);
     expect(&s, 0.25 / (11.0 + 2.25), "one of twelve by a half");
-    for (int64_t p = 0; p < s.solver->method.forest->count; p++)
-        s.solver->error[p] = s.solver->method.forest->patches[p].id.root == 0;
+    for (int64_t p = 0; p < s.solver->model.forest->count; p++)
+        s.solver->error[p] = s.solver->model.forest->patches[p].id.root == 0;
     expect(&s, 0.25 / (11.0 + 2.25), "which the estimate knows");
     solution_free(&s);
     comm_stop(&comm);

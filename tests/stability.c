@@ -43,7 +43,7 @@ static struct solution run(struct painted *painted, const char *words)
 
 static double radiosity(const struct solution *s, int64_t patch)
 {
-    return s->solver->method.forest->patches[patch].radiosity.band[0];
+    return s->solver->model.forest->patches[patch].radiosity.band[0];
 }
 
 /* Sum over the roots first .. first + count - 1 of area times radiosity over the area. */
@@ -51,8 +51,8 @@ static double mean_radiosity(const struct solution *s, int32_t first, int32_t co
 {
     double light = 0.0, area = 0.0;
     for (int32_t root = first; root < first + count; root++) {
-        light += forest_area(s->solver->method.forest, root) * radiosity(s, root);
-        area += forest_area(s->solver->method.forest, root);
+        light += forest_area(s->solver->model.forest, root) * radiosity(s, root);
+        area += forest_area(s->solver->model.forest, root);
     }
     return light / area;
 }
@@ -60,7 +60,7 @@ static double mean_radiosity(const struct solution *s, int32_t first, int32_t co
 /* True if all radiosities of the roots are numbers within 0 .. most. */
 static bool within(const struct solution *s, int32_t first, int32_t count, double most)
 {
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++) {
         int64_t root = forest->patches[p].id.root;
         if (root >= first && root < first + count &&
@@ -72,14 +72,14 @@ static bool within(const struct solution *s, int32_t first, int32_t count, doubl
 
 static bool everywhere_within(const struct solution *s, double most)
 {
-    return within(s, 0, s->solver->method.forest->root_count, most);
+    return within(s, 0, s->solver->model.forest->root_count, most);
 }
 
 /* Largest relative difference between two solutions, patch by patch by their IDs; infinite if
  * their patches differ. The first is multiplied by `factor` before. */
 static double difference(const struct solution *a, const struct solution *b, double factor)
 {
-    const struct forest *one = a->solver->method.forest, *two = b->solver->method.forest;
+    const struct forest *one = a->solver->model.forest, *two = b->solver->model.forest;
     double worst = one->count == two->count ? 0.0 : HUGE_VAL;
     for (int64_t p = 0; p < one->count && worst < HUGE_VAL; p++) {
         if (id_compare(one->patches[p].id, two->patches[p].id) != 0)
@@ -98,8 +98,8 @@ static bool exact_bits(const struct solution *a, const struct solution *b, doubl
 static int deepest_level(const struct solution *s)
 {
     int level = 0;
-    for (int64_t p = 0; p < s->solver->method.forest->count; p++) {
-        int own = id_level(s->solver->method.forest->patches[p].id);
+    for (int64_t p = 0; p < s->solver->model.forest->count; p++) {
+        int own = id_level(s->solver->model.forest->patches[p].id);
         level = own > level ? own : level;
     }
     return level;
@@ -133,7 +133,7 @@ static void test_bounds(const char *words)
     soup_add_quad(&painted.soup, point(-1, -1, 0.1), point(0, 3, 0), point(3, 0, 0), 1);
     paint(&painted, 0.5, 1.0);
     struct solution s = run(&painted, words);
-    const struct forest *forest = s.solver->method.forest;
+    const struct forest *forest = s.solver->model.forest;
     double largest = 0.0, f = 0.0, exact = 0.0;
     for (int64_t i = 0; i < s.solver->links.count; i++) {
         const struct link *link = &s.solver->links.items[i];
@@ -167,7 +167,7 @@ static void test_false_convergence(void)
         snprintf(words, sizeof words, "--epsilon 1e30 --tolerance 1e-6 --closure symmetric "
                  "--max-iterations 100000 --solver %s", solvers[k]);
         struct solution s = run(&painted, words);
-        double emitted = 2.0 * forest_area(s.solver->method.forest, 10) / scene_area(s.scene);
+        double emitted = 2.0 * forest_area(s.solver->model.forest, 10) / scene_area(s.scene);
         double exact = emitted / (1.0 - 0.999), mean = mean_radiosity(&s, 0, 12);
         tap_ok(s.vote.converged && fabs(mean / exact - 1.0) <= 1e-6,
                "rho 0.999, tolerance 1e-6, %s: the true error is %.1e (%lld iterations)", solvers[k],
@@ -189,7 +189,7 @@ static void test_termination(void)
         struct solver *solver = solver_create(world_comm, scene, octree, &criterion);
         solver_link_roots(solver);
         solver_assign_roots(solver);
-        const struct forest *forest = solver->method.forest;
+        const struct forest *forest = solver->model.forest;
         int passes = 0;
         bool grows = true;
         struct vote vote;
@@ -280,7 +280,7 @@ static void test_covered(const char *words)
     soup_add_box(&painted.soup, point(0.5, 0.5, -0.2), point(0.9, 0.8, 0.2), 1, false);
     paint(&painted, 0.9, 1.0);
     struct solution s = run(&painted, words);
-    const struct forest *forest = s.solver->method.forest;
+    const struct forest *forest = s.solver->model.forest;
     double most = 0.0;
     bool numbers = true;
     for (int64_t p = 0; p < forest->count; p++) {
@@ -420,7 +420,7 @@ static void test_reciprocity(const char *more, double limit)
         struct solution s = solve_scene(world_comm, lit, words);
         for (int j = 0; j < 4; j++) {
             b[i][j] = radiosity(&s, lamps[j]);
-            area[j] = forest_area(s.solver->method.forest, lamps[j]);
+            area[j] = forest_area(s.solver->model.forest, lamps[j]);
             rho[j] = lit->materials[lamps[j]].reflectance.band[0];
         }
         lit->input_count = 26;
@@ -480,7 +480,7 @@ static void test_fifteen_levels(void)
     paint(&painted, 0.0, 1.0);
     struct solution s = run(&painted, "--epsilon 1e-3 --max-level 15 --min-area 0 --tolerance 1e-6");
     int level = deepest_level(&s);
-    double area = 2.0 * forest_area(s.solver->method.forest, 0);
+    double area = 2.0 * forest_area(s.solver->model.forest, 0);
     double exact = 0.0, arrived = area * mean_radiosity(&s, 0, 2) / 0.5;
     for (int i = 0; i < 4; i++)
         exact += triangle_exchange(&s.scene->triangles[i / 2], &s.scene->triangles[2 + i % 2]);
@@ -495,7 +495,7 @@ static double mean_shown(struct solution *s)
 {
     enum { GRID = 32 };
     int64_t count;
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
     struct shading *shading = shading_create(forest, s->solver->straight, open);
     struct renderer renderer = renderer_make(s->octree, shading, &s->solver->gather);
@@ -587,7 +587,7 @@ static void test_open(void)
 static void test_cracks(void)
 {
     struct solution s = solve_scene(world_comm, furnished(1.0, 1.0), "--epsilon 1e-4");
-    struct forest *forest = s.solver->method.forest;
+    struct forest *forest = s.solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++)
         forest->patches[p].radiosity = (struct rgb){{2.0, 2.0, 2.0}};
     struct shading *shading = shade(&s);

@@ -132,7 +132,7 @@ static int64_t choose_camera(void)
 static int64_t survey_leaves(void)
 {
     int64_t count, sum = 0;
-    const struct forest *forest = world.method.forest;
+    const struct forest *forest = world.model.forest;
     uint8_t *open = shading_open_quarters(forest, world.octree, 0, 1, &count);
     for (int64_t i = 0; i < count; i++)
         sum += open[i];
@@ -142,7 +142,7 @@ static int64_t survey_leaves(void)
 
 static int64_t count_vertices(const uint8_t *open)
 {
-    struct shading *made = shading_create(world.method.forest, NULL, open);
+    struct shading *made = shading_create(world.model.forest, NULL, open);
     int64_t count = made->vertex_count;
     shading_destroy(made);
     return count;
@@ -155,8 +155,8 @@ static int64_t shade_flat(void)
 
 static int64_t shade_smooth(void)
 {
-    uint8_t *open = alloc_array((size_t)world.method.forest->count, 1);
-    memset(open, 4, (size_t)world.method.forest->count);
+    uint8_t *open = alloc_array((size_t)world.model.forest->count, 1);
+    memset(open, 4, (size_t)world.model.forest->count);
     int64_t count = count_vertices(open);
     alloc_free(open);
     return count;
@@ -332,7 +332,7 @@ static void write_scenes(void)
 int main(void)
 {
     world = world_make(make_room(2));
-    struct forest *forest = world.method.forest;
+    struct forest *forest = world.model.forest;
     for (int64_t p = 0; p < forest->count; p++)
         forest->patches[p].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
     shading = shading_create(forest, NULL, NULL);

@@ -1,4 +1,4 @@
-/* Tests of io/store.h, rad/snapshot.h and mpi/keep.h on one rank. Proved are: what is restored from a
+/* Tests of io/store.h, rad/beyond/snapshot.h and mpi/keep.h on one rank. Proved are: what is restored from a
  * file makes the same file again; a file of another kind, version, scene or setting is refused with
  * the reason; so is one that is cut off or changed at any byte; and numbers that no run could have
  * are refused though the checksum is right. Several ranks: tests/67-restart.sh. */
@@ -27,7 +27,7 @@ static bool save(struct solver *solver, const struct vote *vote, enum store_kind
                  const char *path)
 {
     struct error error = {0};
-    struct store_terms terms = {kind, STORE_SETTINGS, solver->method.scene, solver->tree};
+    struct store_terms terms = {kind, STORE_SETTINGS, solver->model.scene, solver->tree};
     struct snapshot snapshot;
     struct store_writer writer;
     snapshot_collect(solver, vote, &snapshot);
@@ -60,18 +60,18 @@ static struct solver *run_two_passes(struct vote *vote)
         solver_refine(solver);
         *vote = solve_links(solver);
         if (pass == 0) {
-            solver->method.criterion.epsilon /= 4.0;
-            solver->method.link_threshold /= 4.0;
+            solver->model.criterion.epsilon /= 4.0;
+            solver->model.link_threshold /= 4.0;
         }
     }
-    solver->method.criterion.accuracy = 0.01;
-    solver->method.criterion.final_gather = 128;
+    solver->model.criterion.accuracy = 0.01;
+    solver->model.criterion.final_gather = 128;
     solver->accuracy =
         (struct accuracy){.rounds = 3, .coarse = 0.5, .coarse_epsilon = 0.25};
     solver->least_bend = 0.25;
     solver->last_change = 12;
     solver->root_change[1] = 34;
-    solver->method.walled_off = 56;
+    solver->model.walled_off = 56;
     solver->memory.limit = solver->memory.reached = 78;
     return solver;
 }
@@ -85,7 +85,7 @@ static void test_round_trip(void)
     tap_ok(save(solver, &vote, STORE_CHECKPOINT, PATH), "a checkpoint is written");
     struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, scene, NULL};
     struct store_reader reader;
-    struct criterion criterion = solver->method.criterion;
+    struct criterion criterion = solver->model.criterion;
     criterion.final_gather = 64; /* as the run began */
     struct solver *other = solver_create(&comm, scene, octree, &criterion);
     struct link *links = alloc_array(ROOM, sizeof *links);
@@ -103,12 +103,12 @@ static void test_round_trip(void)
                other->least_bend == solver->least_bend &&
                other->last_change == solver->last_change &&
                other->root_change[1] == solver->root_change[1] &&
-               other->method.criterion.epsilon == criterion.epsilon &&
-               other->method.criterion.final_gather == 128 && other->memory.rays == 128 &&
+               other->model.criterion.epsilon == criterion.epsilon &&
+               other->model.criterion.final_gather == 128 && other->memory.rays == 128 &&
                other->accuracy.rounds == 3 && other->accuracy.coarse == 0.5 &&
                other->accuracy.coarse_epsilon == 0.25 &&
-               forest_patch_count(other->method.forest) ==
-                   forest_patch_count(solver->method.forest),
+               forest_patch_count(other->model.forest) ==
+                   forest_patch_count(solver->model.forest),
            "what was restored is the same");
     tap_ok(save(other, &vote, STORE_CHECKPOINT, AGAIN), "it is written again");
     size_t size = load(PATH, bytes);

@@ -63,7 +63,7 @@ static double light_of_facets(const struct scene *scene, const double *b, int32_
 static double truth_of_leaf(const struct truth *truth, const struct solution *s,
                             int32_t leaf)
 {
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     const struct equation *e = truth->equation;
     if (!e && !truth->root)
         return truth->value;
@@ -103,7 +103,7 @@ static bool is_looked_at(const struct truth *truth, const struct solution *s,
 static struct errors measure(const struct solution *s, int material,
                              const struct truth *truth)
 {
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     double area = 0.0, exact = 0.0, found = 0.0, square = 0.0, worst = 0.0;
     for (int32_t p = 0; p < forest->count; p++) {
         int32_t root = (int32_t)forest->patches[p].id.root;
@@ -467,7 +467,7 @@ static void test_light_is_kept(const struct comm *comm, double rho, const char *
     double sum = 0.0, area = 0.0, power = s.stats.emitted_power / BANDS;
     for (int32_t r = 0; r < scene_root_count(s.scene); r++) {
         double a = s.scene->areas[r] * scene_area_unit(s.scene);
-        sum += a * s.solver->method.forest->patches[r].radiosity.band[0];
+        sum += a * s.solver->model.forest->patches[r].radiosity.band[0];
         area += a;
     }
     double exact = power / (1.0 - rho) / area,
@@ -513,7 +513,7 @@ static void test_concentric(const struct comm *comm, double radius, int level)
 /* Tests, as phr counts them. */
 static double work_of(const struct solution *s)
 {
-    return (double)method_work(&s->solver->method);
+    return (double)model_work(&s->solver->model);
 }
 
 /* Eight times the work halves the error at least, and that of the worst leaf falls: RMS

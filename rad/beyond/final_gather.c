@@ -40,23 +40,23 @@ enum { MANY = 25000, FEWEST = 4 };
 
 /* --- the whole --- */
 
-static double mean_radiosity(const struct method *method)
+static double mean_radiosity(const struct model *model)
 {
     double sum = 0.0;
-    for (int32_t root = 0; root < scene_root_count(method->scene); root++)
-        sum += scene_root_area(method->scene, root) *
-               rgb_sum(method->forest->patches[root].radiosity);
-    return sum / method->area;
+    for (int32_t root = 0; root < scene_root_count(model->scene); root++)
+        sum += scene_root_area(model->scene, root) *
+               rgb_sum(model->forest->patches[root].radiosity);
+    return sum / model->area;
 }
 
-static double mean_reflected(const struct method *method)
+static double mean_reflected(const struct model *model)
 {
     double sum = 0.0;
-    for (int32_t root = 0; root < scene_root_count(method->scene); root++)
-        sum += scene_root_area(method->scene, root) *
-               (rgb_sum(method->forest->patches[root].radiosity) -
-                rgb_sum(scene_root_material(method->scene, root)->emission));
-    return sum / method->area;
+    for (int32_t root = 0; root < scene_root_count(model->scene); root++)
+        sum += scene_root_area(model->scene, root) *
+               (rgb_sum(model->forest->patches[root].radiosity) -
+                rgb_sum(scene_root_material(model->scene, root)->emission));
+    return sum / model->area;
 }
 
 /* Halves the rays for each fourfold of MANY leaves: what is shown of them together is as
@@ -68,16 +68,16 @@ static int rays_for(int rays, int64_t leaves)
     return rays;
 }
 
-struct final_gather final_gather_create(struct method *method, int rays)
+struct final_gather final_gather_create(struct model *model, int rays)
 {
-    struct forest *forest = method->forest;
-    struct final_gather gather = {.method = method, .view = {.root = -1}};
+    struct forest *forest = model->forest;
+    struct final_gather gather = {.model = model, .view = {.root = -1}};
     forest->extremes = alloc_reserve(forest->extremes, &forest->extremes_capacity,
                                      forest->count, sizeof *forest->extremes);
     forest_bound(forest);
     gather.rays = rays_for(rays, forest_leaf_count(forest));
-    gather.mean = mean_radiosity(method);
-    gather.lamps = lamps_create(method, LAMP * mean_reflected(method));
+    gather.mean = mean_radiosity(model);
+    gather.lamps = lamps_create(model, LAMP * mean_reflected(model));
     gather.order = forest_order(forest);
     gather.place = alloc_array((size_t)forest->count, sizeof *gather.place);
     for (int64_t i = 0; i < forest->count; i++)
@@ -130,7 +130,7 @@ static double slope_part(const struct rgb b[4], struct rgb middle)
 
 struct gather_slope gather_slope(const struct final_gather *gather, int32_t patch)
 {
-    const struct patch *patches = gather->method->forest->patches;
+    const struct patch *patches = gather->model->forest->patches;
     bool leaf = patch_is_leaf(&patches[patch]);
     int32_t parent = leaf ? patches[patch].parent : patch;
     if (parent < 0)
@@ -152,7 +152,7 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
 void receiver_add(struct receiver *r, int32_t patch, const struct rgb *weight)
 {
     struct final_gather *g = r->gather;
-    struct rgb b = g->method->forest->patches[patch].radiosity;
+    struct rgb b = g->model->forest->patches[patch].radiosity;
     for (int c = 0; c < BANDS; c++)
         r->light.band[c] += weight->band[c] * b.band[c];
     if (!r->keeps)
@@ -220,7 +220,7 @@ static struct receiver receiver_make(struct final_gather *gather, struct facet f
 
 static uint64_t seed_of(const struct final_gather *gather, int32_t leaf)
 {
-    struct patch_id id = gather->method->forest->patches[leaf].id;
+    struct patch_id id = gather->model->forest->patches[leaf].id;
     return hash_mix((uint64_t)id.root << 32 | id.hierarchy);
 }
 
@@ -235,12 +235,12 @@ static struct rgb light_of(const struct receiver *r)
 
 struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays)
 {
-    const struct forest *forest = gather->method->forest;
+    const struct forest *forest = gather->model->forest;
     struct facet facet = facet_make(forest, leaf);
     struct gather_look look = {.noise = 0.0f};
     const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
     double variance = 0.0;
-    int64_t before = method_work(gather->method), fixed = gather->method->estimating;
+    int64_t before = model_work(gather->model), fixed = gather->model->estimating;
     for (int k = 0; k < 4; k++) {
         struct facet quarter = facet;
         quarter.triangle = triangle_child(&facet.triangle, k);
@@ -256,9 +256,9 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
             variance += 0.25 * rho->band[c] * rho->band[c] * r.row.chance[c];
         }
     }
-    fixed = gather->method->estimating - fixed;
+    fixed = gather->model->estimating - fixed;
     look.fixed = 0.25f * (float)fixed;
-    look.work = (float)(method_work(gather->method) - before - fixed) / (4.0f * (float)rays);
+    look.work = (float)(model_work(gather->model) - before - fixed) / (4.0f * (float)rays);
     look.noise = variance;
     look.variance = variance * rays;
     return look;
@@ -268,7 +268,7 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
 static struct rgb light_of_lamps(const struct receiver *r)
 {
     const struct final_gather *g = r->gather;
-    const struct forest *forest = g->method->forest;
+    const struct forest *forest = g->model->forest;
     struct rgb light = {{0.0, 0.0, 0.0}};
     for (int64_t i = r->first_term; i < r->row.end; i++) {
         int32_t patch = g->order[g->terms[i].place];
@@ -283,7 +283,7 @@ static struct rgb light_of_lamps(const struct receiver *r)
 
 void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool exact)
 {
-    struct receiver r = receiver_make(gather, facet_make(gather->method->forest, leaf),
+    struct receiver r = receiver_make(gather, facet_make(gather->model->forest, leaf),
                                       seed_of(gather, leaf), rays);
     r.keeps = true;
     r.first_term = gather->term_count;
@@ -328,7 +328,7 @@ struct gather_light final_gather_at(struct final_gather *gather,
 
 void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity)
 {
-    const struct forest *forest = gather->method->forest;
+    const struct forest *forest = gather->model->forest;
     for (int64_t i = forest->count - 1; i >= 0; i--) {
         const struct patch *patch = &forest->patches[gather->order[i]];
         if (patch_is_leaf(patch))

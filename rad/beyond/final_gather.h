@@ -50,7 +50,7 @@ struct gather_view {
 };
 
 struct final_gather {
-    struct method *method; /* borrowed; rays are counted there */
+    struct model *model; /* borrowed; rays are counted there */
     int rays;              /* from a leaf, in the mean */
     double mean;           /* radiosity, over bands and all surface, W/m^2 */
     struct lamps lamps;
@@ -96,8 +96,8 @@ struct gather_slope {
     double range;  /* most that B differs by from that of the centre, over all bands, W/m^2 */
 };
 
-/* Borrows the method, which has clusters and a solution. `rays`: at least 1. */
-struct final_gather final_gather_create(struct method *method, int rays);
+/* Borrows the model, which has clusters and a solution. `rays`: at least 1. */
+struct final_gather final_gather_create(struct model *model, int rays);
 void final_gather_free(struct final_gather *gather);
 
 /* True if it is proved that nothing stands between a root and all that it faces: then its

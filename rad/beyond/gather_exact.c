@@ -39,7 +39,7 @@ static const double CLOSED = 1e-3;
 static bool view_node(struct final_gather *g, const struct end *root, int32_t node)
 {
     struct gather_view *view = &g->view;
-    struct end end = end_of(g->method, node);
+    struct end end = end_of(g->model, node);
     if (!ends_may_face(root, &end))
         return true;
     if (end.cluster) {
@@ -60,20 +60,20 @@ static bool view_node(struct final_gather *g, const struct end *root, int32_t no
  * come first: most that is hidden is found out by them. */
 static bool is_open(struct final_gather *g, const struct facet *root)
 {
-    const struct octree *octree = g->method->octree;
+    const struct octree *octree = g->model->octree;
     struct gather_view *view = &g->view;
     struct vec3 middle = triangle_centroid(&root->triangle);
     int32_t guess = -1;
     bool open = true;
     for (int64_t i = 0; i < view->count && open; i++) {
-        struct facet other = facet_make(g->method->forest, view->faced[i]);
+        struct facet other = facet_make(g->model->forest, view->faced[i]);
         const int32_t own[2] = {root->input, other.input};
         struct vec3 there = triangle_centroid(&other.triangle);
         open = !(receiver_kernel(middle, root->plane.normal, there, other.plane.normal) > 0.0) ||
                !octree_blocks_segment(octree, middle, there, own, &guess, &view->counts);
     }
     for (int64_t i = 0; i < view->count && open; i++) {
-        struct facet other = facet_make(g->method->forest, view->faced[i]);
+        struct facet other = facet_make(g->model->forest, view->faced[i]);
         open = facets_are_open(root, &other, octree, &view->counts);
     }
     return open;
@@ -90,7 +90,7 @@ static bool is_slender(const struct facet *root)
 static const struct gather_view *view_of(struct final_gather *g, int32_t root)
 {
     if (g->view.root != root) {
-        struct end end = end_of(g->method, root);
+        struct end end = end_of(g->model, root);
         g->view.root = root;
         g->view.count = 0;
         g->view.open = !is_slender(&end.facet) && view_node(g, &end, NODE_TOP) &&
@@ -103,7 +103,7 @@ static const struct gather_view *view_of(struct final_gather *g, int32_t root)
  * sees of it: the light of the whole is not what it gets. */
 static bool lies_on(const struct receiver *r, int32_t sender, double factor)
 {
-    const struct forest *forest = r->gather->method->forest;
+    const struct forest *forest = r->gather->model->forest;
     uint32_t root = forest->patches[sender].id.root;
     struct plane plane = scene_root_plane(forest->scene, (int32_t)root);
     double height = plane_distance(&plane, triangle_centroid(&r->facet.triangle));
@@ -173,7 +173,7 @@ static struct part part_child(const struct part *part, int k)
 static double factor_to(const struct receiver *r, const struct triangle *sender)
 {
     return mean_factor(&r->facet.triangle, r->facet.plane.normal, sender,
-                       &r->gather->method->estimating);
+                       &r->gather->model->estimating);
 }
 
 /* Adds a part whose factor is known as a whole. */
@@ -207,7 +207,7 @@ static void add_part(struct receiver *r, const struct part *part, double range,
 static bool add_sender(struct receiver *r, int32_t patch)
 {
     const struct final_gather *g = r->gather;
-    const struct forest *forest = g->method->forest;
+    const struct forest *forest = g->model->forest;
     const struct extremes *extremes = &forest->extremes[patch];
     struct part whole = {.patch = patch,
                          .triangle = forest_triangle(forest, patch),
@@ -260,7 +260,7 @@ bool final_gather_root_is_open(struct final_gather *gather, int32_t root)
 
 bool receiver_add_exact(struct receiver *r)
 {
-    const struct forest *forest = r->gather->method->forest;
+    const struct forest *forest = r->gather->model->forest;
     uint32_t root = forest->patches[r->row.leaf].id.root;
     const struct gather_view *view = view_of(r->gather, (int32_t)root);
     bool good = view->open;

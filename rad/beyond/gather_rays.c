@@ -83,12 +83,12 @@ enum met { MET_NOTHING, MET_BACK, MET_FRONT };
 static enum met trace(struct receiver *r, struct vec3 origin, struct vec3 direction,
                   struct point *point)
 {
-    const struct method *method = r->gather->method;
-    const struct scene *scene = method->scene;
+    const struct model *model = r->gather->model;
+    const struct scene *scene = model->scene;
     struct octree_hit hit;
     r->gather->counts.rays++;
-    if (!octree_first_hit(method->octree, origin, direction, false, &hit,
-                          &r->gather->method->counts))
+    if (!octree_first_hit(model->octree, origin, direction, false, &hit,
+                          &r->gather->model->counts))
         return MET_NOTHING;
     int32_t root = scene_root_on(scene, hit.triangle, hit.front);
     if (root < 0 || !(scene_root_area(scene, root) > 0.0))
@@ -97,7 +97,7 @@ static enum met trace(struct receiver *r, struct vec3 origin, struct vec3 direct
     double fall = -vec3_dot(plane.normal, direction); /* above 0: a front is met */
     double along = fall > 0.0 ? plane_distance(&plane, origin) / fall : 0.0;
     point->at = vec3_add(origin, vec3_scale(direction, along));
-    point->patch = leaf_at(method->forest, root, point->at, point->weight);
+    point->patch = leaf_at(model->forest, root, point->at, point->weight);
     point->input = hit.triangle;
     point->normal = plane.normal;
     return MET_FRONT;
@@ -126,10 +126,10 @@ static void add_source(struct receiver *r, const struct rgb *weight, struct rgb 
 static int32_t blocker_of(struct receiver *r, struct vec3 from, int32_t input,
                           struct vec3 to, int32_t lamp)
 {
-    int32_t own[2] = {input, scene_input_of(r->gather->method->scene, lamp)}, guess = -1;
+    int32_t own[2] = {input, scene_input_of(r->gather->model->scene, lamp)}, guess = -1;
     r->gather->counts.segments++;
-    return octree_blocks_segment(r->gather->method->octree, from, to, own, &guess,
-                                 &r->gather->method->counts)
+    return octree_blocks_segment(r->gather->model->octree, from, to, own, &guess,
+                                 &r->gather->model->counts)
                ? guess
                : -1;
 }
@@ -138,7 +138,7 @@ int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32
 {
     int32_t input = r->facet.input;
     if (r->points && r->points->above) {
-        const struct scene *scene = r->gather->method->scene;
+        const struct scene *scene = r->gather->model->scene;
         struct segment segment = segment_make(x, y);
         if (segment_is_blocked_by(&segment, &scene->triangles[input], &scene->planes[input]))
             return input;
@@ -190,7 +190,7 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
                         int32_t root, double direct, struct volley *volley)
 {
     static const struct rgb ALL = {{1.0, 1.0, 1.0}};
-    const struct scene *scene = r->gather->method->scene;
+    const struct scene *scene = r->gather->model->scene;
     struct triangle lamp = scene_root_triangle(scene, root);
     struct vec3 normal = scene_root_plane(scene, root).normal;
     struct rgb emission = scene_root_material(scene, root)->emission;
@@ -221,7 +221,7 @@ static void aim_at_wide_lamp(struct receiver *r, int count, int32_t root, double
 {
     static const struct rgb ALL = {{1.0, 1.0, 1.0}};
     struct sequence sequence = sequence_to(r, root);
-    struct rgb emission = scene_root_material(r->gather->method->scene, root)->emission;
+    struct rgb emission = scene_root_material(r->gather->model->scene, root)->emission;
     struct receiver_share share = receiver_share_of_wide(r, &sequence, count, root);
     add_source(r, &ALL, emission, direct * share.seen / rgb_sum(emission));
     for (int c = 0; c < BANDS; c++) {
@@ -238,7 +238,7 @@ static void aim_at_cluster(struct receiver *r, const struct sequence *sequence,
 {
     static const struct rgb ALL = {{1.0, 1.0, 1.0}};
     const struct final_gather *g = r->gather;
-    const struct scene *scene = g->method->scene;
+    const struct scene *scene = g->model->scene;
     double u[SEQUENCE_DIMENSIONS];
     sequence_point(sequence, index, u);
     struct lamp lamp =
@@ -273,7 +273,7 @@ static void aim_at_group(struct receiver *r, const struct lamp_group *group, int
 
 static bool is_wide(const struct receiver *r, const struct lamp_group *group)
 {
-    const struct scene *scene = r->gather->method->scene;
+    const struct scene *scene = r->gather->model->scene;
     return !node_is_cluster(group->node) &&
            group->direct >
                WIDE * rgb_sum(scene_root_material(scene, group->node)->emission);
@@ -285,7 +285,7 @@ static bool is_wide(const struct receiver *r, const struct lamp_group *group)
 static void aim_at_lamps(struct receiver *r)
 {
     struct final_gather *g = r->gather;
-    lamps_group(&g->lamps, &r->facet, &g->groups, &g->method->estimating);
+    lamps_group(&g->lamps, &r->facet, &g->groups, &g->model->estimating);
     if (!(g->groups.direct > 0.0))
         return;
     double each = g->groups.direct / r->rays, sum = 0.0;
@@ -307,7 +307,7 @@ static void aim_at_lamps(struct receiver *r)
         }
         aim_at_group(r, group, count, direct, &volley);
         int32_t lamp = lamp_choose(&g->lamps, group->node, 0.5).root;
-        emission = scene_root_material(g->method->scene, lamp)->emission;
+        emission = scene_root_material(g->model->scene, lamp)->emission;
         if (volley.count[0] + volley.count[1] >= VOLLEY)
             end_volley(r, &volley, emission);
     }
@@ -331,7 +331,7 @@ static void aim_beside(struct receiver *r, const struct point *x, const struct r
                        uint64_t seed)
 {
     const struct final_gather *g = r->gather;
-    const struct scene *scene = g->method->scene;
+    const struct scene *scene = g->model->scene;
     double at = hash_unit(seed) * g->groups.around;
     int64_t i = 0;
     for (; i < g->groups.count - 1 && at >= g->groups.items[i].around; i++)
@@ -389,7 +389,7 @@ static void look_inside(struct receiver *r, struct vec3 origin, struct vec3 dire
 static void add_mesh(struct receiver *r, const struct point *point, bool aimed,
                      const struct rgb *weight)
 {
-    const struct forest *forest = r->gather->method->forest;
+    const struct forest *forest = r->gather->model->forest;
     receiver_add_point(r, point->patch, point->weight, weight);
     if (aimed)
         add_source(r, weight, forest_material(forest, point->patch)->emission, -1.0);
@@ -402,7 +402,7 @@ static bool goes_on(struct receiver *r, const struct point *point, bool aimed, d
                     struct rgb *weight)
 {
     const struct rgb *rho =
-        &forest_material(r->gather->method->forest, point->patch)->reflectance;
+        &forest_material(r->gather->model->forest, point->patch)->reflectance;
     double most = fmax(rho->band[0], fmax(rho->band[1], rho->band[2]));
     struct rgb rest = *weight;
     if (u < most) {
@@ -420,7 +420,7 @@ static bool goes_on(struct receiver *r, const struct point *point, bool aimed, d
 static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction,
                    struct rgb weight, uint64_t seed)
 {
-    const struct forest *forest = r->gather->method->forest;
+    const struct forest *forest = r->gather->model->forest;
     struct vec3 normal = r->facet.plane.normal; /* at the origin */
     for (int count = 1;; count++, seed += 16) {
         struct point point;
@@ -435,7 +435,7 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
         int32_t root = (int32_t)forest->patches[point.patch].id.root;
         bool aimed = root_is_lamp(&r->gather->lamps, root) &&
                      (count == 1 ||
-                      !lamp_is_near(r->gather->method->scene, root, origin));
+                      !lamp_is_near(r->gather->model->scene, root, origin));
         if (count == PATH_MOST || !is_too_near(forest, &point, origin, normal)) {
             add_mesh(r, &point, aimed, &weight);
             return;
@@ -498,7 +498,7 @@ void receiver_fire(struct receiver *r)
 float receiver_bare_share(const struct receiver *r)
 {
     static const double ABOVE = 0x1p-20; /* scene units */
-    struct method *method = r->gather->method;
+    struct model *model = r->gather->model;
     struct sequence sequence = sequence_start(r->seed + 24);
     struct vec3 normal = r->facet.plane.normal;
     double u[SEQUENCE_DIMENSIONS];
@@ -508,8 +508,8 @@ float receiver_bare_share(const struct receiver *r)
         struct vec3 x = triangle_of_square(&r->facet.triangle, u[0], u[1]);
         struct octree_hit hit;
         covered +=
-            octree_first_hit(method->octree, vec3_add(x, vec3_scale(normal, ABOVE)),
-                             vec3_scale(normal, -1.0), false, &hit, &method->counts) &&
+            octree_first_hit(model->octree, vec3_add(x, vec3_scale(normal, ABOVE)),
+                             vec3_scale(normal, -1.0), false, &hit, &model->counts) &&
             hit.triangle != r->facet.input;
     }
     return (1.0f - (float)covered / BARE_POINTS) *

@@ -40,7 +40,7 @@ struct wide_lamp {
 /* True if the triangle is a blocker that was not known and is now. */
 static bool learn(const struct receiver *r, struct wide_lamp *lamp, int32_t blocker)
 {
-    const struct triangle *t = &r->gather->method->scene->triangles[blocker];
+    const struct triangle *t = &r->gather->model->scene->triangles[blocker];
     for (int k = 0; k < 3; k++)
         if (!(plane_distance(&lamp->plane, t->corner[k]) > 0.0))
             return false;
@@ -68,7 +68,7 @@ static void look_out(const struct receiver *r, struct wide_lamp *lamp, struct ve
     }
     while (lamp->hidden < lamp->count)
         outlook_hide(outlook,
-                     &r->gather->method->scene->triangles[lamp->blockers[lamp->hidden++]]);
+                     &r->gather->model->scene->triangles[lamp->blockers[lamp->hidden++]]);
     lamp->before[1] = lamp->whole;
     for (int i = 0; i < outlook->count && lamp->count > 0; i++)
         lamp->before[i + 1] = lamp->before[i] +
@@ -157,7 +157,7 @@ struct receiver_share receiver_share_of_wide(struct receiver *r,
                                              const struct sequence *sequence, int count,
                                              int32_t root)
 {
-    const struct scene *scene = r->gather->method->scene;
+    const struct scene *scene = r->gather->model->scene;
     struct wide_lamp lamp = {.root = root, .triangle = scene_root_triangle(scene, root),
                              .plane = scene_root_plane(scene, root), .hidden = -1};
     struct sums sums = {.wholes = 0.0};

@@ -83,7 +83,7 @@ double mean_factor(const struct triangle *from, struct vec3 normal,
 
 static double emission_of(const struct lamps *lamps, int32_t root)
 {
-    return rgb_sum(scene_root_material(lamps->method->scene, root)->emission);
+    return rgb_sum(scene_root_material(lamps->model->scene, root)->emission);
 }
 
 bool root_is_lamp(const struct lamps *lamps, int32_t root)
@@ -91,14 +91,14 @@ bool root_is_lamp(const struct lamps *lamps, int32_t root)
     return emission_of(lamps, root) > lamps->least;
 }
 
-struct lamps lamps_create(const struct method *method, double least)
+struct lamps lamps_create(const struct model *model, double least)
 {
-    const struct cluster_tree *tree = method->clusters->tree;
-    struct lamps lamps = {method, least, NULL};
+    const struct cluster_tree *tree = model->clusters->tree;
+    struct lamps lamps = {model, least, NULL};
     lamps.before = alloc_array((size_t)tree->root_count + 1, sizeof *lamps.before);
     for (int32_t place = 0; place < tree->root_count; place++) {
         int32_t root = tree->roots[place];
-        double watts = scene_root_area(method->scene, root) * emission_of(&lamps, root);
+        double watts = scene_root_area(model->scene, root) * emission_of(&lamps, root);
         lamps.before[place + 1] =
             lamps.before[place] + (root_is_lamp(&lamps, root) ? watts : 0.0);
     }
@@ -124,7 +124,7 @@ static void places_of(const struct cluster_tree *tree, int32_t node, int32_t *fi
 static double watts_of(const struct lamps *lamps, int32_t node)
 {
     int32_t first, end;
-    places_of(lamps->method->clusters->tree, node, &first, &end);
+    places_of(lamps->model->clusters->tree, node, &first, &end);
     return lamps->before[end] - lamps->before[first];
 }
 
@@ -159,7 +159,7 @@ static void add_cluster(const struct lit *leaf, int32_t node, struct vec3 apart,
 static void add_root(const struct lamps *lamps, const struct lit *leaf, int32_t root,
                      struct lamp_groups *groups, int64_t *work)
 {
-    struct facet lamp = facet_make(lamps->method->forest, root);
+    struct facet lamp = facet_make(lamps->model->forest, root);
     struct vec3 apart = vec3_sub(triangle_centroid(&lamp.triangle), leaf->centroid);
     double emission = emission_of(lamps, root);
     double distance2 = fmax(vec3_dot(apart, apart), lamp.area);
@@ -182,7 +182,7 @@ static void add_node(const struct lamps *lamps, const struct lit *leaf, int32_t 
         add_root(lamps, leaf, node, groups, work);
         return;
     }
-    const struct cluster *cluster = &lamps->method->clusters->tree->clusters[~node];
+    const struct cluster *cluster = &lamps->model->clusters->tree->clusters[~node];
     struct vec3 apart =
         vec3_sub(vec3_middle(cluster->low, cluster->high), leaf->centroid);
     double radius = 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low));
@@ -206,7 +206,7 @@ void lamps_group(const struct lamps *lamps, const struct facet *leaf,
 
 struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u)
 {
-    const struct cluster_tree *tree = lamps->method->clusters->tree;
+    const struct cluster_tree *tree = lamps->model->clusters->tree;
     int32_t first, end;
     places_of(tree, node, &first, &end);
     double all = lamps->before[end] - lamps->before[first];

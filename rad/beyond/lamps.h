@@ -6,7 +6,7 @@
 #include "rad/beyond/node.h"
 
 struct lamps {
-    const struct method *method; /* borrowed */
+    const struct model *model; /* borrowed */
     double least;   /* emission of a lamp, summed over bands, W/m^2: above this */
     double *before; /* [tree->root_count + 1] W that lamps emit before a place in the
                        tree's order, over all bands and square scene units */
@@ -32,9 +32,9 @@ struct lamp {
     double share; /* W that all lamps of its group emit, for each that it does, 1 */
 };
 
-/* Borrows the method, which has clusters. A lamp emits more than `least`, over all bands.
+/* Borrows the model, which has clusters. A lamp emits more than `least`, over all bands.
  */
-struct lamps lamps_create(const struct method *method, double least);
+struct lamps lamps_create(const struct model *model, double least);
 void lamps_free(struct lamps *lamps);
 
 bool root_is_lamp(const struct lamps *lamps, int32_t root);

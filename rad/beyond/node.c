@@ -11,9 +11,9 @@
 
 static const double PI = 3.14159265358979323846;
 
-static struct end end_of_cluster(const struct method *method, int32_t node)
+static struct end end_of_cluster(const struct model *model, int32_t node)
 {
-    const struct cluster_light *light = method->clusters;
+    const struct cluster_light *light = model->clusters;
     const struct cluster *cluster = &light->tree->clusters[~node];
     return (struct end){
         .node = node,
@@ -31,15 +31,15 @@ static struct end end_of_cluster(const struct method *method, int32_t node)
     };
 }
 
-struct end end_of(const struct method *method, int32_t node)
+struct end end_of(const struct model *model, int32_t node)
 {
     if (node_is_cluster(node))
-        return end_of_cluster(method, node);
-    const struct material *material = forest_material(method->forest, node);
-    struct end end = {.node = node, .facet = facet_make(method->forest, node),
-                      .id = method->forest->patches[node].id,
+        return end_of_cluster(model, node);
+    const struct material *material = forest_material(model->forest, node);
+    struct end end = {.node = node, .facet = facet_make(model->forest, node),
+                      .id = model->forest->patches[node].id,
                       .reflectance = material->reflectance,
-                      .radiosity = method->forest->patches[node].radiosity,
+                      .radiosity = model->forest->patches[node].radiosity,
                       .is_dark = material_is_dark(material)};
     const struct vec3 *corner = end.facet.triangle.corner;
     end.low = vec3_least(corner[0], vec3_least(corner[1], corner[2]));
@@ -50,20 +50,20 @@ struct end end_of(const struct method *method, int32_t node)
     return end;
 }
 
-int32_t end_child(const struct method *method, const struct end *end, int k)
+int32_t end_child(const struct model *model, const struct end *end, int k)
 {
     return end->cluster ? end->cluster->child[k]
-                        : method->forest->patches[end->node].children + k;
+                        : model->forest->patches[end->node].children + k;
 }
 
-double end_child_area(const struct method *method, const struct end *end, int k)
+double end_child_area(const struct model *model, const struct end *end, int k)
 {
     if (!end->cluster)
         return 0.25 * end->area;
     int32_t node = end->cluster->child[k];
     if (node == NODE_NONE)
         return 0.0;
-    return cluster_node_area(method->clusters->tree, method->scene, node);
+    return cluster_node_area(model->clusters->tree, model->scene, node);
 }
 
 /* The largest product of a number in [a, b] and one in [c, d]. */

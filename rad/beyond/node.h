@@ -18,11 +18,11 @@ struct end {
     bool is_dark;
 };
 
-struct end end_of(const struct method *method, int32_t node);
+struct end end_of(const struct model *model, int32_t node);
 
 /* The node of child k, or NODE_NONE; its area, 0 where there is none. */
-int32_t end_child(const struct method *method, const struct end *end, int k);
-double end_child_area(const struct method *method, const struct end *end, int k);
+int32_t end_child(const struct model *model, const struct end *end, int k);
+double end_child_area(const struct model *model, const struct end *end, int k);
 
 /* False if it is certain that nothing of one end faces anything of the other. */
 bool ends_may_face(const struct end *a, const struct end *b);

@@ -65,10 +65,10 @@ static int32_t root_by_area(const struct cluster_tree *tree,
 }
 
 /* In child k of an end: a quarter of a patch, or a root of a cluster, chosen by area. */
-static struct spot spot_in(const struct method *method, const struct end *end, int k,
+static struct spot spot_in(const struct model *model, const struct end *end, int k,
                            uint64_t seed)
 {
-    const struct cluster_tree *tree = method->clusters->tree;
+    const struct cluster_tree *tree = model->clusters->tree;
     int32_t root = (int32_t)end->id.root;
     if (end->cluster) {
         int32_t child = end->cluster->child[k];
@@ -77,9 +77,9 @@ static struct spot spot_in(const struct method *method, const struct end *end, i
                    : child;
     }
     return (struct spot){root,
-                         end->cluster ? scene_root_triangle(method->scene, root)
+                         end->cluster ? scene_root_triangle(model->scene, root)
                                       : triangle_child(&end->facet.triangle, k),
-                         scene_root_plane(method->scene, root).normal};
+                         scene_root_plane(model->scene, root).normal};
 }
 
 /* A point on a root of each child of a cluster. */
@@ -89,13 +89,13 @@ struct sample {
 };
 
 /* Samples of all children. Returns their number. */
-static int sample_children(const struct method *method, const struct end *end,
+static int sample_children(const struct model *model, const struct end *end,
                            uint64_t seed, struct sample samples[SAMPLES])
 {
     int count = 0;
     for (; count < SAMPLES && end->cluster->child[count] != NODE_NONE; count++) {
         uint64_t own = seed + 4 * (uint64_t)count;
-        struct spot spot = spot_in(method, end, count, own);
+        struct spot spot = spot_in(model, end, count, own);
         samples[count] = (struct sample){
             spot.root, triangle_sample(&spot.triangle, own + 1), spot.normal};
     }
@@ -122,12 +122,12 @@ static bool is_asked(bool all, int a, int b, uint64_t seed)
     return all || b == (int)((hash_mix(seed + 16) + (uint64_t)a) % SAMPLES);
 }
 
-static bool is_seen(struct method *method, struct vec3 from, int32_t on, struct vec3 to,
+static bool is_seen(struct model *model, struct vec3 from, int32_t on, struct vec3 to,
                     int32_t at, int32_t *blocker)
 {
     const int32_t own[2] = {on, at};
-    return !octree_blocks_segment(method->octree, from, to, own, blocker,
-                                  &method->counts);
+    return !octree_blocks_segment(model->octree, from, to, own, blocker,
+                                  &model->counts);
 }
 
 /* The middle of the part of a triangle in front of a sample: a segment to any other point
@@ -156,36 +156,36 @@ static struct vec3 middle_in_front(const struct sample *s, const struct triangle
 }
 
 /* `patch` is p or q of the meeting, the cluster the other. */
-static void look_at_patch(struct method *method, const struct meeting *m, uint64_t seed,
+static void look_at_patch(struct model *model, const struct meeting *m, uint64_t seed,
                           bool all, struct node_exchange *found)
 {
     bool of_p = !m->p.cluster;
     const struct end *patch = of_p ? &m->p : &m->q, *group = of_p ? &m->q : &m->p;
     struct sample samples[SAMPLES];
-    int count = sample_children(method, group, seed, samples);
+    int count = sample_children(model, group, seed, samples);
     int32_t blocker = -1;
     for (int b = 0; b < count; b++) {
         const struct sample *s = &samples[b];
-        double area = end_child_area(method, group, b);
-        int32_t input = scene_input_of(method->scene, s->root);
+        double area = end_child_area(model, group, b);
+        int32_t input = scene_input_of(model->scene, s->root);
         for (int a = 0; a < 4; a++) {
             struct triangle quarter = triangle_child(&patch->facet.triangle, a);
             double g = area * point_triangle_factor(s->point, s->normal, &quarter);
             if (!(g > 0.0) || !is_asked(all, a, b, seed))
                 continue;
-            bool seen = is_seen(method, s->point, input, middle_in_front(s, &quarter),
+            bool seen = is_seen(model, s->point, input, middle_in_front(s, &quarter),
                                 patch->facet.input, &blocker);
             add_exchange(found, of_p ? a : b, of_p ? b : a, all ? g : 4.0 * g, seen);
         }
     }
 }
 
-static void look_from_afar(struct method *method, const struct meeting *m, uint64_t seed,
+static void look_from_afar(struct model *model, const struct meeting *m, uint64_t seed,
                            bool all, struct node_exchange *found)
 {
     struct sample from[SAMPLES], to[SAMPLES];
-    int count_p = sample_children(method, &m->p, seed, from);
-    int count_q = sample_children(method, &m->q, seed + 32, to);
+    int count_p = sample_children(model, &m->p, seed, from);
+    int count_q = sample_children(model, &m->q, seed + 32, to);
     int32_t blocker = -1;
     for (int a = 0; a < count_p; a++)
         for (int b = 0; b < count_q; b++) {
@@ -194,12 +194,12 @@ static void look_from_afar(struct method *method, const struct meeting *m, uint6
                    rise_b = -vec3_dot(to[b].normal, d);
             if (!(rise_a > 0.0 && rise_b > 0.0) || !is_asked(all, a, b, seed))
                 continue;
-            double r2 = vec3_dot(d, d), area_a = end_child_area(method, &m->p, a);
-            double g = area_a * end_child_area(method, &m->q, b) *
+            double r2 = vec3_dot(d, d), area_a = end_child_area(model, &m->p, a);
+            double g = area_a * end_child_area(model, &m->q, b) *
                        (rise_a * rise_b / r2) / (PI * r2);
-            bool seen = is_seen(method, from[a].point,
-                                scene_input_of(method->scene, from[a].root), to[b].point,
-                                scene_input_of(method->scene, to[b].root), &blocker);
+            bool seen = is_seen(model, from[a].point,
+                                scene_input_of(model->scene, from[a].root), to[b].point,
+                                scene_input_of(model->scene, to[b].root), &blocker);
             add_exchange(found, a, b, all ? g : 4.0 * g, seen);
         }
 }
@@ -219,23 +219,23 @@ static int cluster_child_at(const struct cluster_tree *tree,
     return 3;
 }
 
-static void look_nearby(struct method *method, const struct meeting *m, uint64_t seed,
+static void look_nearby(struct model *model, const struct meeting *m, uint64_t seed,
                         struct node_exchange *found)
 {
     bool from_p = m->p.area <= m->q.area;
     const struct end *from = from_p ? &m->p : &m->q, *to = from_p ? &m->q : &m->p;
-    for (int a = 0; a < SAMPLES && end_child_area(method, from, a) > 0.0; a++)
+    for (int a = 0; a < SAMPLES && end_child_area(model, from, a) > 0.0; a++)
         for (int ring = 0; ring < RINGS; ring++) {
             uint64_t own = seed + 64 + 8 * (uint64_t)(RINGS * a + ring);
-            struct spot spot = spot_in(method, from, a, own);
+            struct spot spot = spot_in(model, from, a, own);
             struct ray ray =
                 ray_sample(&spot.triangle, spot.normal, own + 1, ring, RINGS);
-            int32_t root = root_met(method->scene, method->octree, &ray, -1,
-                                     &method->counts);
-            int b = cluster_child_at(method->clusters->tree, to->cluster, root);
+            int32_t root = root_met(model->scene, model->octree, &ray, -1,
+                                     &model->counts);
+            int b = cluster_child_at(model->clusters->tree, to->cluster, root);
             if (b >= 0)
                 add_exchange(found, from_p ? a : b, from_p ? b : a,
-                             end_child_area(method, from, a) / RINGS, true);
+                             end_child_area(model, from, a) / RINGS, true);
         }
 }
 
@@ -260,18 +260,18 @@ static void limit_exchange(struct node_exchange *found, double limit)
     found->unoccluded = limit;
 }
 
-struct node_exchange node_exchange_estimate(struct method *method,
+struct node_exchange node_exchange_estimate(struct model *model,
                                             const struct meeting *m, int salt,
                                             bool closely)
 {
     struct node_exchange found = {.area = 0.0};
     uint64_t seed = seed_of(m, salt);
     if (is_by_rays(m))
-        look_nearby(method, m, seed, &found);
+        look_nearby(model, m, seed, &found);
     else if (m->p.cluster && m->q.cluster)
-        look_from_afar(method, m, seed, closely, &found);
+        look_from_afar(model, m, seed, closely, &found);
     else
-        look_at_patch(method, m, seed, closely, &found);
+        look_at_patch(model, m, seed, closely, &found);
     if (m->p.node == m->q.node)
         make_even(&found);
     limit_exchange(&found, real_min(m->p.area, m->q.area));

@@ -16,7 +16,7 @@ struct node_exchange {
 bool is_by_rays(const struct meeting *m);
 
 /* Another `salt`, other points. `closely`: by all pairs of points, not four of them. */
-struct node_exchange node_exchange_estimate(struct method *method,
+struct node_exchange node_exchange_estimate(struct model *model,
                                             const struct meeting *m, int salt,
                                             bool closely);
 

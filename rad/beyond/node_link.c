@@ -57,12 +57,12 @@ static struct judgement judgement_of(const struct link *link)
 }
 
 /* Twice the sum of the parts' deviations from shares by area: 2 for all in one half. */
-static double spread_of(const struct method *method, const struct end *end,
+static double spread_of(const struct model *model, const struct end *end,
                         const uint8_t parts[3])
 {
     double off = 0.0;
     for (int k = 0; k < 4; k++)
-        off += fabs(link_part(parts, k) - end_child_area(method, end, k) / end->area);
+        off += fabs(link_part(parts, k) - end_child_area(model, end, k) / end->area);
     return 2.0 * off;
 }
 
@@ -72,17 +72,17 @@ static const double PRIOR = 4.0 / 16.0;
 
 /* Finds the parts of children that exchange `area` in the proportions of `g`, none more
  * than its own area. Returns the exchange area that this leaves. */
-static double find_parts(const struct method *method, const struct end *end,
+static double find_parts(const struct model *model, const struct end *end,
                          const double g[4], double area, uint8_t parts[3])
 {
     double prior = end->cluster ? PRIOR : 0.0, exact[4], sum = 0.0, kept = 0.0;
     for (int k = 0; k < 4; k++) {
-        double share = end_child_area(method, end, k) / end->area;
+        double share = end_child_area(model, end, k) / end->area;
         exact[k] = area > 0.0 ? g[k] + (g[k] > 0.0 ? prior * area * share : 0.0) : share;
         sum += exact[k];
     }
     for (int k = 0; k < 4; k++) {
-        double most = end_child_area(method, end, k);
+        double most = end_child_area(model, end, k);
         exact[k] = area > 0.0 ? real_min(exact[k] * (area / sum), most) : exact[k];
         kept += exact[k];
     }
@@ -93,27 +93,27 @@ static double find_parts(const struct method *method, const struct end *end,
 }
 
 /* Fills G, parts and visibility of a link. */
-static void look(struct method *method, const struct meeting *m, int salt,
+static void look(struct model *model, const struct meeting *m, int salt,
                  struct link *link)
 {
-    struct octree_counts before = method->counts;
-    bool closely = m->most * m->light > method->link_threshold;
-    struct node_exchange found = node_exchange_estimate(method, m, salt, closely);
+    struct octree_counts before = model->counts;
+    bool closely = m->most * m->light > model->link_threshold;
+    struct node_exchange found = node_exchange_estimate(model, m, salt, closely);
     double seen = found.unoccluded > 0.0 ? found.area / found.unoccluded : 0.0;
-    double area = find_parts(method, &m->p, found.g_p, found.area, link->parts_p);
-    area = find_parts(method, &m->q, found.g_q, area, link->parts_q);
+    double area = find_parts(model, &m->p, found.g_p, found.area, link->parts_p);
+    area = find_parts(model, &m->q, found.g_q, area, link->parts_q);
     if (salt == 0)
         judge(link, &(struct judgement){found.unoccluded, seen,
-                                        spread_of(method, &m->p, link->parts_p),
-                                        spread_of(method, &m->q, link->parts_q)});
+                                        spread_of(model, &m->p, link->parts_p),
+                                        spread_of(model, &m->q, link->parts_q)});
     area *= link->p == link->q ? 0.5 : 1.0;
     link->seen = area > 0.0 ? link_seen(seen) : 0;
     link->area = float_below(area > 0.0 ? area : found.unoccluded);
-    double tests = (double)(method->counts.node_tests + method->counts.triangle_tests -
+    double tests = (double)(model->counts.node_tests + model->counts.triangle_tests -
                             before.node_tests - before.triangle_tests);
     link->cost = compact8(real_max(1.0, tests));
-    method->estimating += TESTS_PER_FORM_FACTOR;
-    method->rays_spared += BUNDLE_RAYS - (method->counts.rays - before.rays);
+    model->estimating += TESTS_PER_FORM_FACTOR;
+    model->rays_spared += BUNDLE_RAYS - (model->counts.rays - before.rays);
 }
 
 /* --- making and splitting --- */
@@ -125,79 +125,79 @@ struct link node_link_top(void)
 
 /* The link of two patches, that of the lower ID first: which one's points are taken must
  * not depend on the way to it through the clusters. */
-static bool make_of_patches(struct method *method, const struct end *p,
+static bool make_of_patches(struct model *model, const struct end *p,
                             const struct end *q, struct link *link)
 {
     struct sight sight = {.blocker = -1};
     bool in_order = id_compare(p->id, q->id) < 0;
     const struct end *first = in_order ? p : q, *second = in_order ? q : p;
-    return link_make(method, first->node, &first->facet, second->node, &second->facet,
+    return link_make(model, first->node, &first->facet, second->node, &second->facet,
                      0.0, &sight, link);
 }
 
 /* Makes the link of two ends. False if no light can ever pass. */
-static bool make(struct method *method, const struct end *p, const struct end *q,
+static bool make(struct model *model, const struct end *p, const struct end *q,
                  struct link *link)
 {
     if ((p->is_dark && q->is_dark) || !ends_may_face(p, q))
         return false;
     if (!p->cluster && !q->cluster)
-        return make_of_patches(method, p, q, link);
+        return make_of_patches(model, p, q, link);
     *link = (struct link){.p = p->node, .q = q->node, .cost = compact8(1.0)};
     struct meeting m = ends_meet(p, q);
     if (m.near)
         return true;
-    look(method, &m, 0, link);
-    if (link->seen > 0 || !ends_are_walled_off(p, q, method->octree, &method->counts))
+    look(model, &m, 0, link);
+    if (link->seen > 0 || !ends_are_walled_off(p, q, model->octree, &model->counts))
         return true;
-    method->walled_off++;
+    model->walled_off++;
     return false;
 }
 
-static int split_itself(struct method *method, int32_t node,
+static int split_itself(struct model *model, int32_t node,
                         struct link children[NODE_CHILDREN_MAX])
 {
-    struct end whole = end_of(method, node), ends[4];
+    struct end whole = end_of(model, node), ends[4];
     int parts = 0, count = 0;
     for (; parts < 4 && whole.cluster->child[parts] != NODE_NONE; parts++)
-        ends[parts] = end_of(method, whole.cluster->child[parts]);
+        ends[parts] = end_of(model, whole.cluster->child[parts]);
     for (int a = 0; a < parts; a++)
         for (int b = a; b < parts; b++)
             count += (a != b || ends[a].cluster) &&
-                     make(method, &ends[a], &ends[b], &children[count]);
+                     make(model, &ends[a], &ends[b], &children[count]);
     return count;
 }
 
-int node_link_split(struct method *method, const struct link *link, int32_t node,
+int node_link_split(struct model *model, const struct link *link, int32_t node,
                     struct link children[NODE_CHILDREN_MAX])
 {
     if (!node_is_cluster(link->p) && !node_is_cluster(link->q))
-        return link_split(method, link, node, children);
+        return link_split(model, link, node, children);
     if (link->p == link->q)
-        return split_itself(method, node, children);
+        return split_itself(model, node, children);
     if (!node_is_cluster(node))
-        forest_split(method->forest, node);
+        forest_split(model->forest, node);
     bool of_p = node == link->p;
-    struct end own = end_of(method, node),
-               other = end_of(method, of_p ? link->q : link->p);
+    struct end own = end_of(model, node),
+               other = end_of(model, of_p ? link->q : link->p);
     int count = 0;
     for (int k = 0; k < 4; k++) {
-        int32_t child = end_child(method, &own, k);
+        int32_t child = end_child(model, &own, k);
         if (child == NODE_NONE)
             break;
-        struct end part = end_of(method, child);
-        count += of_p ? make(method, &part, &other, &children[count])
-                      : make(method, &other, &part, &children[count]);
+        struct end part = end_of(model, child);
+        count += of_p ? make(model, &part, &other, &children[count])
+                      : make(model, &other, &part, &children[count]);
     }
     return count;
 }
 
 /* --- the criterion --- */
 
-static double range_within(const struct method *method, const struct end *end)
+static double range_within(const struct model *model, const struct end *end)
 {
-    return end->cluster ? method->clusters->range[~end->node]
-                        : oracle_range_within(method->forest, end->node);
+    return end->cluster ? model->clusters->range[~end->node]
+                        : oracle_range_within(model->forest, end->node);
 }
 
 /* Of the spread over an end: the children of a cluster are no quarters of a plane, over
@@ -206,16 +206,16 @@ static const double SPREAD_LEFT = 2.0;
 
 /* The error that one side causes: spread of its received light within its children, and
  * range of its own. */
-static double error_of(const struct method *method, const struct end *own,
+static double error_of(const struct model *model, const struct end *own,
                        const struct end *other, double spread, double area)
 {
     return area * (SPREAD_LEFT * spread * light_to(own, other) +
-                   rgb_mean(other->reflectance) * range_within(method, own));
+                   rgb_mean(other->reflectance) * range_within(model, own));
 }
 
-static bool may_split(const struct method *method, const struct end *end)
+static bool may_split(const struct model *model, const struct end *end)
 {
-    return end->cluster || oracle_patch_may_split(method, end->node);
+    return end->cluster || oracle_patch_may_split(model, end->node);
 }
 
 /* The larger one; of equal ones that with the lower ID. */
@@ -227,11 +227,11 @@ static bool p_is_larger(const struct meeting *m)
 }
 
 /* The side that goes first if it may, else the other. */
-static int32_t choose(const struct method *method, const struct meeting *m, bool p_first)
+static int32_t choose(const struct model *model, const struct meeting *m, bool p_first)
 {
     const struct end *first = p_first ? &m->p : &m->q, *second = p_first ? &m->q : &m->p;
-    return may_split(method, first) ? first->node
-           : may_split(method, second) ? second->node : NODE_NONE;
+    return may_split(model, first) ? first->node
+           : may_split(model, second) ? second->node : NODE_NONE;
 }
 
 /* The part in doubt of the bound on G of near ends, whatever a look would find: it may be
@@ -243,65 +243,65 @@ static const double DOUBT_MISSED = 1.0 / 16.0;
 
 /* A far link, by its first look: all of its G is in doubt. (With a quarter and an eighth,
  * as for patches, a room of 18,512 triangles has 5 % fewer links and 15 % more error.) */
-static int32_t far_to_split(const struct method *method, const struct link *link,
+static int32_t far_to_split(const struct model *model, const struct link *link,
                             const struct meeting *m)
 {
     struct judgement found = judgement_of(link);
     double area = found.unoccluded * found.seen;
     double doubt = real_max(found.unoccluded, DOUBT_MISSED * m->most) * m->light;
-    double error_p = error_of(method, &m->p, &m->q, found.spread_p, area);
-    double error_q = error_of(method, &m->q, &m->p, found.spread_q, area);
-    if (error_p + error_q + doubt <= method->link_threshold)
+    double error_p = error_of(model, &m->p, &m->q, found.spread_p, area);
+    double error_q = error_of(model, &m->q, &m->p, found.spread_q, area);
+    if (error_p + error_q + doubt <= model->link_threshold)
         return NODE_NONE;
     bool larger = p_is_larger(m);
     error_p += larger ? doubt : 0.0;
     error_q += larger ? 0.0 : doubt;
-    return choose(method, m, error_p != error_q ? error_p > error_q : larger);
+    return choose(model, m, error_p != error_q ? error_p > error_q : larger);
 }
 
-int32_t node_to_split(const struct method *method, const struct link *link)
+int32_t node_to_split(const struct model *model, const struct link *link)
 {
     if (!node_is_cluster(link->p) && !node_is_cluster(link->q)) {
-        int32_t patch = oracle_patch_to_split(method, link);
+        int32_t patch = oracle_patch_to_split(model, link);
         return patch < 0 ? NODE_NONE : patch;
     }
-    struct end p = end_of(method, link->p), q = end_of(method, link->q);
+    struct end p = end_of(model, link->p), q = end_of(model, link->q);
     struct meeting m = ends_meet(&p, &q);
     if (!m.near)
-        return far_to_split(method, link, &m);
-    bool fine = DOUBT_NEAR * m.most * m.light <= method->link_threshold;
-    return fine ? NODE_NONE : choose(method, &m, p_is_larger(&m));
+        return far_to_split(model, link, &m);
+    bool fine = DOUBT_NEAR * m.most * m.light <= model->link_threshold;
+    return fine ? NODE_NONE : choose(model, &m, p_is_larger(&m));
 }
 
-static void divide(struct method *method, const struct end *to, const struct end *from,
+static void divide(struct model *model, const struct end *to, const struct end *from,
                    const uint8_t parts[3], const struct link *link)
 {
-    if (to->cluster || !oracle_patch_may_split(method, to->node))
+    if (to->cluster || !oracle_patch_may_split(model, to->node))
         return;
-    double area = link_area(link) * spread_of(method, to, parts);
-    if (area * light_to(to, from) > method->link_threshold)
-        forest_split(method->forest, to->node);
+    double area = link_area(link) * spread_of(model, to, parts);
+    if (area * light_to(to, from) > model->link_threshold)
+        forest_split(model->forest, to->node);
 }
 
-void node_divide_patches(struct method *method, const struct link *link)
+void node_divide_patches(struct model *model, const struct link *link)
 {
     if (!node_is_cluster(link->p) && !node_is_cluster(link->q)) {
-        oracle_divide_patches(method, link);
+        oracle_divide_patches(model, link);
     } else if (!node_is_cluster(link->p) || !node_is_cluster(link->q)) {
-        struct end p = end_of(method, link->p), q = end_of(method, link->q);
-        divide(method, &p, &q, link->parts_p, link);
-        divide(method, &q, &p, link->parts_q, link);
+        struct end p = end_of(model, link->p), q = end_of(model, link->q);
+        divide(model, &p, &q, link->parts_p, link);
+        divide(model, &q, &p, link->parts_q, link);
     }
 }
 
-void node_link_settle(struct method *method, struct link *link)
+void node_link_settle(struct model *model, struct link *link)
 {
     if (node_is_cluster(link->p) || node_is_cluster(link->q)) {
-        struct end p = end_of(method, link->p), q = end_of(method, link->q);
+        struct end p = end_of(model, link->p), q = end_of(model, link->q);
         struct meeting m = ends_meet(&p, &q);
-        look(method, &m, 1, link);
+        look(model, &m, 1, link);
     }
-    node_divide_patches(method, link);
+    node_divide_patches(model, link);
 }
 
 /* --- transfer --- */
@@ -318,18 +318,18 @@ static double part_of(const struct cluster *cluster, const uint8_t parts[3], int
 }
 
 /* As link_take(), of a node. */
-static const struct rgb *take(const struct method *method, int32_t node,
+static const struct rgb *take(const struct model *model, int32_t node,
                               const uint8_t parts[3], struct rgb *sum)
 {
-    const struct cluster_light *light = method->clusters;
+    const struct cluster_light *light = model->clusters;
     if (!node_is_cluster(node))
-        return link_take(method->forest, node, parts, sum);
+        return link_take(model->forest, node, parts, sum);
     const struct cluster *cluster = &light->tree->clusters[~node];
     *sum = (struct rgb){{0.0, 0.0, 0.0}};
     for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
         double part = part_of(cluster, parts, k);
         const struct rgb *b =
-            cluster_light_radiosity(light, method->forest, cluster->child[k]);
+            cluster_light_radiosity(light, model->forest, cluster->child[k]);
         for (int c = 0; c < BANDS; c++)
             sum->band[c] += part * b->band[c];
     }
@@ -337,12 +337,12 @@ static const struct rgb *take(const struct method *method, int32_t node,
 }
 
 /* As link_give(), to a node. */
-static void give(const struct method *method, int32_t node, const uint8_t parts[3],
+static void give(const struct model *model, int32_t node, const uint8_t parts[3],
                  double area, const struct rgb *radiosity, struct flux_unit unit)
 {
-    const struct cluster_light *light = method->clusters;
+    const struct cluster_light *light = model->clusters;
     if (!node_is_cluster(node)) {
-        link_give(method->forest, node, parts, area, radiosity, unit);
+        link_give(model->forest, node, parts, area, radiosity, unit);
         return;
     }
     const struct cluster *cluster = &light->tree->clusters[~node];
@@ -350,21 +350,21 @@ static void give(const struct method *method, int32_t node, const uint8_t parts[
         int32_t child = cluster->child[k];
         double part = part_of(cluster, parts, k);
         int64_t *flux = node_is_cluster(child) ? light->flux + BANDS * (int64_t)~child
-                                               : method->forest->patches[child].flux;
+                                               : model->forest->patches[child].flux;
         for (int c = 0; c < BANDS; c++)
             flux[c] += flux_from_watts(unit, part * (area * radiosity->band[c]));
     }
 }
 
-void node_links_transfer(const struct link_list *list, const struct method *method,
+void node_links_transfer(const struct link_list *list, const struct model *model,
                          struct flux_unit unit)
 {
     for (int64_t i = 0; i < list->seen; i++) {
         const struct link *link = &list->items[i];
         struct rgb sum_p, sum_q;
-        const struct rgb *from_p = take(method, link->p, link->parts_p, &sum_p);
-        const struct rgb *from_q = take(method, link->q, link->parts_q, &sum_q);
-        give(method, link->p, link->parts_p, (double)link->area, from_q, unit);
-        give(method, link->q, link->parts_q, (double)link->area, from_p, unit);
+        const struct rgb *from_p = take(model, link->p, link->parts_p, &sum_p);
+        const struct rgb *from_q = take(model, link->q, link->parts_q, &sum_q);
+        give(model, link->p, link->parts_p, (double)link->area, from_q, unit);
+        give(model, link->q, link->parts_q, (double)link->area, from_p, unit);
     }
 }

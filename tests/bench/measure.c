@@ -56,7 +56,7 @@ struct measure {
 /* Collective. As phr.c does. */
 static struct shading *shade(const struct measure *measure, const struct solution *s)
 {
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     if (measure->options.pixels)
         return NULL;
     if (measure->options.flat)
@@ -194,7 +194,7 @@ static void trace(const struct measure *measure, struct solution *s, double seco
 {
     enum { GROWTH = 8 };
     const struct scene *scene = s->scene;
-    struct forest *forest = s->solver->method.forest;
+    struct forest *forest = s->solver->model.forest;
     double start = seconds_of_work(&measure->comm), spent, paths = 1.0, growth;
     struct octree *octree =
         octree_create(scene->triangles, scene->planes, scene->input_count);
@@ -267,7 +267,7 @@ static struct scene *read_all(struct measure *measure)
 static void report(const struct measure *measure, struct solution *s,
                    const struct shading *shading, int argc, char **argv)
 {
-    const struct forest *forest = s->solver->method.forest;
+    const struct forest *forest = s->solver->model.forest;
     bool gathers = s->solver->straight && !measure->options.flat;
     struct renderer renderer =
         renderer_make(s->octree, shading, gathers ? &s->solver->gather : NULL);

@@ -5,13 +5,13 @@
  * whatever stands in between; where links of different levels meet it comes out otherwise. The
  * correction multiplies what a leaf receives, and for --closure symmetric also what it sends, by
  * a factor d of its own. */
-#ifndef RAD_CLOSURE_H
-#define RAD_CLOSURE_H
+#ifndef RAD_BEYOND_CLOSURE_H
+#define RAD_BEYOND_CLOSURE_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "rad/method.h"
+#include "rad/model.h"
 
 /* What is known of the surroundings of a patch. OPEN: some ray escapes or ends on a back. COVERED:
  * the same, but only where the patch lies inside a solid. */
@@ -51,7 +51,7 @@ static inline double closure_weight(const struct closure *closure, int32_t leaf)
 
 /* True if the row sum of the leaf has to be 1: it is enclosed, and none of its ancestors is open.
  * Fires rays, which are counted, for those of which nothing is known yet. */
-bool closure_is_due(struct closure *closure, struct method *method, int32_t leaf);
+bool closure_is_due(struct closure *closure, struct model *model, int32_t leaf);
 
 enum { CLOSURE_ROOM = 16 };
 

@@ -3,8 +3,8 @@
  * (forest_order()), so it is the same on any number of ranks.
  *
  * That all pairs of roots are linked, before the first pass, is such a state, too. */
-#ifndef RAD_SNAPSHOT_H
-#define RAD_SNAPSHOT_H
+#ifndef RAD_BEYOND_SNAPSHOT_H
+#define RAD_BEYOND_SNAPSHOT_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -5,7 +5,7 @@
  * overflows: the transfer of light relies on what links_transfer() states, that the links of a
  * patch lead to patches that do not overlap, so their exchange areas add up to no more than the
  * area of the scene. That sum is checked as it stands, for each patch. */
-#include "rad/snapshot.h"
+#include "rad/beyond/snapshot.h"
 
 #include <math.h>
 

@@ -19,7 +19,7 @@
  * Products are summed as integers in a unit that is chosen from bounds on their factors, so they
  * are the same on any number of ranks, and so is every bit of the result. Jacobi's method, the
  * paper's, gains a factor rho per iteration; this one needs some ten iterations for any rho. */
-#include "rad/conjugate.h"
+#include "rad/beyond/conjugate.h"
 
 #include <math.h>
 
@@ -61,18 +61,18 @@ void conjugate_extend(struct conjugate *cg, const struct forest *forest, const b
     }
 }
 
-struct flux_unit conjugate_unit(const struct method *method, double a, double b, double weight)
+struct flux_unit conjugate_unit(const struct model *model, double a, double b, double weight)
 {
-    return flux_unit_for(fmax(a * b * weight * method->area, 1e-250));
+    return flux_unit_for(fmax(a * b * weight * model->area, 1e-250));
 }
 
-void conjugate_start(struct conjugate *cg, const struct method *method,
+void conjugate_start(struct conjugate *cg, const struct model *model,
                      const struct closure *closure, struct flux_unit flux)
 {
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t leaf = cg->leaves[i];
-        const struct material *material = forest_material(method->forest, leaf);
-        struct rgb h = leaf_irradiance(method->forest, leaf, flux);
+        const struct material *material = forest_material(model->forest, leaf);
+        struct rgb h = leaf_irradiance(model->forest, leaf, flux);
         for (int c = 0; c < BANDS; c++) {
             double now = closure_receives(closure, leaf) * h.band[c];
             if (material->reflectance.band[c] == 0.0)
@@ -83,15 +83,15 @@ void conjugate_start(struct conjugate *cg, const struct method *method,
     }
 }
 
-void conjugate_apply(struct conjugate *cg, const struct method *method,
+void conjugate_apply(struct conjugate *cg, const struct model *model,
                      const struct closure *closure, struct flux_unit flux, struct flux_unit unit,
                      int64_t product[BANDS])
 {
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t leaf = cg->leaves[i];
-        const struct material *material = forest_material(method->forest, leaf);
-        struct rgb h = leaf_irradiance(method->forest, leaf, flux);
-        double weight = forest_area(method->forest, leaf) * closure_weight(closure, leaf);
+        const struct material *material = forest_material(model->forest, leaf);
+        struct rgb h = leaf_irradiance(model->forest, leaf, flux);
+        double weight = forest_area(model->forest, leaf) * closure_weight(closure, leaf);
         for (int c = 0; c < BANDS; c++) {
             double z = cg->residual[leaf].band[c];
             double w = z - closure_receives(closure, leaf) * h.band[c];
@@ -102,12 +102,12 @@ void conjugate_apply(struct conjugate *cg, const struct method *method,
     }
 }
 
-void conjugate_advance(struct conjugate *cg, const struct method *method, const double turn[BANDS],
+void conjugate_advance(struct conjugate *cg, const struct model *model, const double turn[BANDS],
                        const double step[BANDS])
 {
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t p = cg->leaves[i];
-        const struct material *material = forest_material(method->forest, p);
+        const struct material *material = forest_material(model->forest, p);
         for (int c = 0; c < BANDS; c++) {
             double *direction = &cg->direction[p].band[c], *image = &cg->image[p].band[c];
             *image = cg->work[p].band[c] + turn[c] * *image;
@@ -122,28 +122,28 @@ void conjugate_advance(struct conjugate *cg, const struct method *method, const 
     }
 }
 
-void conjugate_publish(const struct conjugate *cg, struct method *method, bool final)
+void conjugate_publish(const struct conjugate *cg, struct model *model, bool final)
 {
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t p = cg->leaves[i];
-        const struct material *material = forest_material(method->forest, p);
+        const struct material *material = forest_material(model->forest, p);
         for (int c = 0; c < BANDS; c++) {
             double rho = material->reflectance.band[c];
-            method->forest->patches[p].radiosity.band[c] =
+            model->forest->patches[p].radiosity.band[c] =
                 final ? material->emission.band[c] + rho * cg->irradiance[p].band[c]
                       : rho * cg->residual[p].band[c];
         }
     }
 }
 
-struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct method *method,
+struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct model *model,
                                     const struct closure *closure, struct flux_unit unit)
 {
     struct conjugate_sums sums = {0};
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t leaf = cg->leaves[i];
-        const struct material *material = forest_material(method->forest, leaf);
-        double area = forest_area(method->forest, leaf), weight = area * closure_weight(closure, leaf);
+        const struct material *material = forest_material(model->forest, leaf);
+        double area = forest_area(model->forest, leaf), weight = area * closure_weight(closure, leaf);
         double light = 0.0, absorbed = 0.0, arriving = 0.0, negative = 0.0, missing = 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = material->reflectance.band[c], h = cg->irradiance[leaf].band[c];
@@ -158,12 +158,12 @@ struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct met
             sums.largest = fmax(sums.largest, rho > 0.0 ? fabs(z) : 0.0);
         }
         double most = fmax(fabs(light), fmax(fabs(absorbed), fabs(arriving)));
-        sums.light = flux_add(sums.light, flux_from_watts(method->flux_unit, light));
-        sums.absorbed = flux_add(sums.absorbed, flux_from_watts(method->flux_unit, absorbed));
-        sums.arriving = flux_add(sums.arriving, flux_from_watts(method->flux_unit, arriving));
-        sums.bulk = flux_add(sums.bulk, flux_from_watts(method->flux_unit, most));
-        sums.negative = flux_add(sums.negative, flux_from_watts(method->flux_unit, negative));
-        sums.missing = flux_add(sums.missing, flux_from_watts(method->flux_unit, missing));
+        sums.light = flux_add(sums.light, flux_from_watts(model->flux_unit, light));
+        sums.absorbed = flux_add(sums.absorbed, flux_from_watts(model->flux_unit, absorbed));
+        sums.arriving = flux_add(sums.arriving, flux_from_watts(model->flux_unit, arriving));
+        sums.bulk = flux_add(sums.bulk, flux_from_watts(model->flux_unit, most));
+        sums.negative = flux_add(sums.negative, flux_from_watts(model->flux_unit, negative));
+        sums.missing = flux_add(sums.missing, flux_from_watts(model->flux_unit, missing));
     }
     return sums;
 }

@@ -11,7 +11,7 @@
  * too, each with rays of its own: where one of them sees a way out or a back, all its leaves are
  * left alone. Only quarters that are covered, from which all rays meet backs at once, tell nothing
  * about the leaves beside them. */
-#include "rad/closure.h"
+#include "rad/beyond/closure.h"
 
 #include <math.h>
 
@@ -54,9 +54,9 @@ struct view {
     int fronts, backs, escapes;
 };
 
-static struct view look_around(struct method *method, int32_t patch, int quarter)
+static struct view look_around(struct model *model, int32_t patch, int quarter)
 {
-    const struct forest *forest = method->forest;
+    const struct forest *forest = model->forest;
     struct patch_id id = forest->patches[patch].id;
     struct triangle t = forest_triangle(forest, patch), child = triangle_child(&t, quarter);
     struct vec3 normal = scene_root_plane(forest->scene, (int32_t)id.root).normal;
@@ -68,8 +68,8 @@ static struct view look_around(struct method *method, int32_t patch, int quarter
         ray.direction = direction_above(&t, normal, hash_unit(seed_of(id, number)),
                                         hash_unit(seed_of(id, number + 1)),
                                         (ring + 0.5) / RINGS);
-        int32_t root = root_met(forest->scene, method->octree, &ray, outside,
-                                &method->counts);
+        int32_t root = root_met(forest->scene, model->octree, &ray, outside,
+                                &model->counts);
         view.escapes += root == outside;
         view.backs += root < 0;
         view.fronts += root >= 0 && root != outside;
@@ -77,11 +77,11 @@ static struct view look_around(struct method *method, int32_t patch, int quarter
     return view;
 }
 
-static enum enclosure find_enclosure(struct method *method, int32_t patch)
+static enum enclosure find_enclosure(struct model *model, int32_t patch)
 {
     enum enclosure found = ENCLOSED;
     for (int quarter = 0; quarter < QUARTERS; quarter++) {
-        struct view view = look_around(method, patch, quarter);
+        struct view view = look_around(model, patch, quarter);
         if (view.backs == RINGS)
             found = COVERED;
         else if (view.fronts < RINGS)
@@ -90,11 +90,11 @@ static enum enclosure find_enclosure(struct method *method, int32_t patch)
     return found;
 }
 
-bool closure_is_due(struct closure *closure, struct method *method, int32_t leaf)
+bool closure_is_due(struct closure *closure, struct model *model, int32_t leaf)
 {
-    for (int32_t p = leaf; p >= 0; p = method->forest->patches[p].parent) {
+    for (int32_t p = leaf; p >= 0; p = model->forest->patches[p].parent) {
         if (closure->enclosure[p] == UNKNOWN)
-            closure->enclosure[p] = (uint8_t)find_enclosure(method, p);
+            closure->enclosure[p] = (uint8_t)find_enclosure(model, p);
         if (closure->enclosure[p] == OPEN || (p == leaf && closure->enclosure[p] == COVERED))
             return false;
     }

@@ -1,8 +1,8 @@
-/* Thresholds in the units of the run; see rad/method.h.
+/* Thresholds in the units of the run; see rad/model.h.
  *
  * Energy is compared as the sum over the three bands, on both sides, so one epsilon serves
  * every colour of light. */
-#include "rad/method.h"
+#include "rad/model.h"
 
 #include <math.h>
 
@@ -36,10 +36,10 @@ static double power_of_light(const struct scene *scene, const struct criterion *
     return criterion->linking == LINKING_TREE ? fmax(emitted, LASTING * spread) : emitted;
 }
 
-struct method method_make(const struct scene *scene, const struct octree *octree,
+struct model model_make(const struct scene *scene, const struct octree *octree,
                           struct forest *forest, const struct criterion *criterion)
 {
-    return (struct method){
+    return (struct model){
         .scene = scene,
         .octree = octree,
         .forest = forest,

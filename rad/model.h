@@ -1,7 +1,7 @@
-/* What the method works on and how: the one argument that links, refinement and push-pull
+/* What links work on and how: the one argument that links, refinement and push-pull
  * share. Identical on all ranks but for the counters. */
-#ifndef RAD_METHOD_H
-#define RAD_METHOD_H
+#ifndef RAD_MODEL_H
+#define RAD_MODEL_H
 
 #include <stdint.h>
 
@@ -12,8 +12,8 @@
 
 enum oracle { ORACLE_BF, ORACLE_ERROR };                      /* rad/oracle.h */
 enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON };         /* rad/formfactor.h */
-enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS, CLOSURE_SYMMETRIC }; /* rad/closure.h */
-enum solver_kind { SOLVER_JACOBI, SOLVER_CG };                    /* rad/conjugate.h */
+enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS, CLOSURE_SYMMETRIC }; /* rad/beyond/closure.h */
+enum solver_kind { SOLVER_JACOBI, SOLVER_CG };                    /* rad/beyond/conjugate.h */
 enum linking_kind { LINKING_PAIRS, LINKING_TREE };                    /* mpi/linking.c */
 enum balance { BALANCE_GREEDY, BALANCE_EVEN };                    /* mpi/migrate.h */
 
@@ -42,7 +42,7 @@ enum { TESTS_PER_FORM_FACTOR = 8 }; /* a form factor takes about as long as so m
 
 struct cluster_light;
 
-struct method {
+struct model {
     const struct scene *scene;
     const struct octree *octree;
     struct forest *forest;
@@ -61,13 +61,13 @@ struct method {
 };
 
 /* Work of this rank so far, in tests of the octree. */
-static inline int64_t method_work(const struct method *method)
+static inline int64_t model_work(const struct model *model)
 {
-    return method->counts.node_tests + method->counts.triangle_tests + method->estimating;
+    return model->counts.node_tests + model->counts.triangle_tests + model->estimating;
 }
 
-/* Fills a method; borrows scene, octree and forest. */
-struct method method_make(const struct scene *scene, const struct octree *octree,
+/* Fills a model; borrows scene, octree and forest. */
+struct model model_make(const struct scene *scene, const struct octree *octree,
                           struct forest *forest, const struct criterion *criterion);
 
 #endif

@@ -3,14 +3,14 @@
  * The equation is K H = F' E with K = 1 - F' rho: H is irradiance, W/m^2, and F' the form factors
  * with their closure. Vectors have three bands per patch; only those of own leaves mean anything.
  * Every function works on own leaves alone; what all ranks have to add is returned as integers. */
-#ifndef RAD_CONJUGATE_H
-#define RAD_CONJUGATE_H
+#ifndef RAD_BEYOND_CONJUGATE_H
+#define RAD_BEYOND_CONJUGATE_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "rad/closure.h"
-#include "rad/method.h"
+#include "rad/beyond/closure.h"
+#include "rad/model.h"
 
 struct conjugate {
     struct rgb *irradiance; /* H, W/m^2; [count], like the others by local patch number */
@@ -27,7 +27,7 @@ struct conjugate {
 struct conjugate_sums {
     int64_t square[BANDS];             /* <z, z> in the unit asked for */
     int64_t light, absorbed, arriving; /* A B, A (1 - rho) H, A (H + z) over leaves and bands, in
-                                          units of method.flux_unit */
+                                          units of model.flux_unit */
     int64_t bulk;                      /* the largest magnitude of these three, summed: while it is
                                           below FLUX_LIMIT, none of them has met that limit */
     int64_t negative;                  /* A rho |H| where H < 0, in the same units, */
@@ -43,25 +43,25 @@ void conjugate_extend(struct conjugate *cg, const struct forest *forest, const b
 
 /* The unit in which scalar products of vectors that are nowhere larger than a and b are summed.
  * `weight`: the largest closure_weight(). */
-struct flux_unit conjugate_unit(const struct method *method, double a, double b, double weight);
+struct flux_unit conjugate_unit(const struct model *model, double a, double b, double weight);
 
 /* After B has been transferred: z = F' B - H. Where nothing is reflected, H = F' B and z = 0. */
-void conjugate_start(struct conjugate *cg, const struct method *method,
+void conjugate_start(struct conjugate *cg, const struct model *model,
                      const struct closure *closure, struct flux_unit flux);
 
 /* After rho z has been transferred: work = K z. Adds <work, z> to `product`. */
-void conjugate_apply(struct conjugate *cg, const struct method *method,
+void conjugate_apply(struct conjugate *cg, const struct model *model,
                      const struct closure *closure, struct flux_unit flux, struct flux_unit unit,
                      int64_t product[BANDS]);
 
 /* p = z + turn p, K p = work + turn K p, H += step p, z -= step K p. */
-void conjugate_advance(struct conjugate *cg, const struct method *method, const double turn[BANDS],
+void conjugate_advance(struct conjugate *cg, const struct model *model, const double turn[BANDS],
                        const double step[BANDS]);
 
 /* Makes rho z the radiosity of the own leaves, or B if `final`. */
-void conjugate_publish(const struct conjugate *cg, struct method *method, bool final);
+void conjugate_publish(const struct conjugate *cg, struct model *model, bool final);
 
-struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct method *method,
+struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct model *model,
                                     const struct closure *closure, struct flux_unit unit);
 
 #endif
