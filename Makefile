@@ -51,24 +51,32 @@ MPI_INCLUDE =
 MPIEXEC ?= mpiexec
 endif
 
-GEOM = alloc contour elementary error gauss hull lambert outlook polygon scene stop triangle wall
+GEOM = alloc elementary error hull lambert outlook polygon scene stop triangle wall
 OCTREE = build hit octree segment
 RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/gather_wide beyond/lamps beyond/node \
       beyond/node_exchange beyond/node_link beyond/paths beyond/sequence beyond/closure beyond/conjugate beyond/snapshot flux formfactor id link \
-      linking model oracle patch pushpull sample treecode viewfactor
+      linking model oracle patch pushpull sample treecode
 MPI = accuracy assign balance broadcast closing comm final_gather funnel gather gather_mesh keep ledger linking memory migrate \
-      node pairs picture plan refinement routes scatter signals solve solver spotcheck vote
-IO = binary camera cases compare image library machine mesh mtl obj options output palette ply plyfile \
-     progress render shading stats store surface table text tone validate viewpoint
+      node picture plan refinement routes scatter signals solve solver spotcheck vote
+SCENE = binary camera library mtl obj palette ply plyfile text
+RUN = machine options output progress stats store
+PICTURE = image mesh render shading surface tone viewpoint
+TOOLS = cases compare contour gauss pairs table validate viewfactor
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
-MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) $(IO:%=io/%)
+MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) \
+          $(SCENE:%=io/scene/%) $(RUN:%=io/run/%) $(PICTURE:%=io/picture/%) $(TOOLS:%=tools/%)
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
-# Unit tests, bottom up; the last four are run with several ranks.
-TESTS = alloc elementary bicgstab sequence id triangle lambert outlook hull scene polygon contour wall octree bundles flux patch \
-        compact formfactor link linking cluster node oracle pushpull closure final_gather render treecode plan balance assign text obj ply output tone \
-        image camera viewpoint shading stop options progress paths norms cie furnace whole stability gaps store spotcheck exchange conjugate exact converge leaks
+# Unit tests, bottom up; the last four are run with several ranks. Their sources lie in folders, the
+# programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
+TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree bundles \
+        bicgstab sequence id flux patch compact formfactor link linking cluster node oracle pushpull closure \
+        final_gather treecode paths plan balance assign spotcheck \
+        text obj ply output store tone image camera viewpoint shading render options progress contour \
+        stop norms cie furnace whole stability gaps leaks exchange conjugate exact converge
+vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io tests/tools tests/whole
+
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct replay
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
@@ -89,8 +97,8 @@ $(IMGDIFF): $(BUILD)/imgdiff FORCE
 $(BUILD)/phr: $(BUILD)/phr.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/phr.o $(BUILD)/libphr.a -lm
 
-$(BUILD)/imgdiff: $(BUILD)/io/imgdiff.o $(BUILD)/libphr.a
-	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/io/imgdiff.o $(BUILD)/libphr.a -lm
+$(BUILD)/imgdiff: $(BUILD)/tools/imgdiff.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/tools/imgdiff.o $(BUILD)/libphr.a -lm
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
@@ -118,11 +126,17 @@ $(REPLAYS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/corpus
 $(BUILD)/libphr.a: $(OBJECTS)
 	rm -f $@ && ar rcs $@ $(OBJECTS)
 
+COMPILED = $(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) -MMD -MP -c -o $@ $<
+
 $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
-	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) -MMD -c -o $@ $<
+	$(COMPILED)
 
--include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/io/imgdiff.d $(BUILD)/tools/pathtracer.d $(BUILD)/tools/pixel.d $(TESTS:%=$(BUILD)/tests/%.d) \
+$(TESTS:%=$(BUILD)/tests/%.o): $(BUILD)/tests/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	$(COMPILED)
+
+-include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/tools/imgdiff.d $(BUILD)/tools/pathtracer.d $(BUILD)/tools/pixel.d $(TESTS:%=$(BUILD)/tests/%.d) \
     $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d) \
     $(BUILD)/tests/bench/parsing.d
 
@@ -200,7 +214,7 @@ install: $(PHR) $(IMGDIFF)
 	mkdir -p $(DESTDIR)$(bindir) $(DESTDIR)$(mandir)/man1
 	$(INSTALL) -m 755 $(PHR) $(DESTDIR)$(bindir)/phr
 	$(INSTALL) -m 755 $(IMGDIFF) $(DESTDIR)$(bindir)/imgdiff
-	$(INSTALL) -m 644 phr.1 io/imgdiff.1 $(DESTDIR)$(mandir)/man1
+	$(INSTALL) -m 644 phr.1 tools/imgdiff.1 $(DESTDIR)$(mandir)/man1
 
 uninstall:
 	rm -f $(DESTDIR)$(bindir)/phr $(DESTDIR)$(bindir)/imgdiff

@@ -1,5 +1,5 @@
 /* How far a phase of the work has come. The loops of the method tick, cheaply; whether somebody
- * looks, and what is drawn then, is not their business (io/progress.h). */
+ * looks, and what is drawn then, is not their business (io/run/progress.h). */
 #ifndef GEOM_PROGRESS_H
 #define GEOM_PROGRESS_H
 

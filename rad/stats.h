@@ -1,4 +1,4 @@
-/* What a run reports: filled by the layers that know, written by io/stats.c. */
+/* What a run reports: filled by the layers that know, written by io/run/stats.c. */
 #ifndef RAD_STATS_H
 #define RAD_STATS_H
 

@@ -8,20 +8,23 @@ forbidden() {
     ! grep -nE "#include \"($2)/" "$1"/*.[ch]
 }
 
-check "geom/ includes no other layer" forbidden geom 'octree|rad|mpi|io'
-check "octree/ includes geom/ only" forbidden octree 'rad|mpi|io'
-check "rad/ includes neither mpi/ nor io/" forbidden rad 'mpi|io'
-check "nor does rad/beyond/" forbidden rad/beyond 'mpi|io'
-check "io/ does not include mpi/" forbidden io 'mpi'
-check "mpi/ does not include io/" forbidden mpi 'io'
+check "geom/ includes no other layer" forbidden geom 'octree|rad|mpi|io|tools'
+check "octree/ includes geom/ only" forbidden octree 'rad|mpi|io|tools'
+check "rad/ includes neither mpi/, io/ nor tools/" forbidden rad 'mpi|io|tools'
+check "nor does rad/beyond/" forbidden rad/beyond 'mpi|io|tools'
+check "mpi/ includes neither io/ nor tools/" forbidden mpi 'io|tools'
+check "io/scene/ includes geom/ only" forbidden io/scene 'octree|rad|mpi|io/run|io/picture|tools'
+check "io/run/ includes neither mpi/, io/picture/ nor tools/" forbidden io/run 'mpi|io/picture|tools'
+check "io/picture/ includes neither mpi/ nor tools/" forbidden io/picture 'mpi|tools'
 check "tools/ does not include tests/" forbidden tools 'tests'
 
-mpi_outside=$(grep -lE '<mpi\.h>|\bMPI_[A-Z]' phr.c tools/*.[ch] geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] io/*.[ch])
+house="phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] io/*/*.[ch] tools/*.[ch]"
+mpi_outside=$(grep -lE '<mpi\.h>|\bMPI_[A-Z]' $house)
 check "MPI is used in mpi/ only" [ -z "$mpi_outside" ]
 
 missing=
-for file in phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] mpi/*.[ch] mpi/serial/*.h io/*.[ch] tests/*.[ch] \
-    tools/*.[ch] tests/*.sh tests/bench/* tests/fuzz/*.[ch] scenes/*; do
+for file in $house mpi/*.[ch] mpi/serial/*.h tests/*.[ch] tests/*.sh tests/*/*.[ch] tests/*/*/*.c \
+    tests/bench/* scenes/*; do
     stem=$(echo "$file" | sed 's/\.[ch]$//')
     grep -q "\`$stem" README.md || grep -q "\`$(basename "$stem")" README.md ||
         missing="$missing $file"

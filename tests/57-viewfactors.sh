@@ -75,7 +75,7 @@ while read -r id exact; do
     check "$id at epsilon 1e-6" near "$(value "$id" p1 p2)" "$exact" 0.001 1e-12
 done <"$work/cases"
 
-# What rad/viewfactor.c says of the error, c sqrt(epsilon F) with the F without blockers, at most 1:
+# What tools/viewfactor.c says of the error, c sqrt(epsilon F) with the F without blockers, at most 1:
 # c = 0.13 was the worst in 230 runs.
 while read -r id exact; do
     for epsilon in 1e-3 1e-4; do

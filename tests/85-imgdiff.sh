@@ -152,7 +152,7 @@ check "--help" [ "$status" -eq 0 ]
 check "fits a screen" [ "$(wc -l <"$out")" -le 24 ]
 missing=
 for option in $(grep -oE '(^|[^a-zA-Z-])--[a-z]+' "$out" | grep -oE '\-\-[a-z]+' | sort -u); do
-    sed 's/\\-/-/g' io/imgdiff.1 | grep -q -- "$option" || missing="$missing $option"
+    sed 's/\\-/-/g' tools/imgdiff.1 | grep -q -- "$option" || missing="$missing $option"
 done
 check "the man page has every option:$missing" [ -z "$missing" ]
 diff_of --version

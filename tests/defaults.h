@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/options.h"
-#include "io/shading.h"
+#include "io/picture/shading.h"
+#include "io/run/options.h"
 #include "tests/scenes.h"
 #include "tests/solve.h"
 

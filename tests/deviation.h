@@ -21,7 +21,7 @@
 #ifndef TESTS_DEVIATION_H
 #define TESTS_DEVIATION_H
 
-#include "io/render.h"
+#include "io/picture/render.h"
 #include "tests/truth.h"
 
 /* A piece of surface on which a solution is compared with the truth. */

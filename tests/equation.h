@@ -11,8 +11,8 @@
 #include <math.h>
 
 #include "geom/alloc.h"
-#include "geom/gauss.h"
 #include "geom/triangle.h"
+#include "tools/gauss.h"
 
 static const double PI = 3.14159265358979323846;
 

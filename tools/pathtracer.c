@@ -26,15 +26,15 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "io/compare.h"
-#include "io/image.h"
-#include "io/obj.h"
-#include "io/options.h"
-#include "io/output.h"
-#include "io/ply.h"
-#include "io/text.h"
-#include "io/viewpoint.h"
+#include "io/picture/image.h"
+#include "io/picture/viewpoint.h"
+#include "io/run/options.h"
+#include "io/run/output.h"
+#include "io/scene/obj.h"
+#include "io/scene/ply.h"
+#include "io/scene/text.h"
 #include "mpi/picture.h"
+#include "tools/compare.h"
 #include "tools/pixel.h"
 
 enum { SAMPLES = 64, SAMPLES_MAX = 1 << 24, HALVES = 2 };

@@ -2,7 +2,7 @@
 #ifndef TOOLS_PIXEL_H
 #define TOOLS_PIXEL_H
 
-#include "io/camera.h"
+#include "io/scene/camera.h"
 #include "rad/beyond/paths.h"
 
 /* Estimate of the mean radiosity E + rho H, W/m^2, that is seen through pixel (x, y) of a

@@ -21,7 +21,7 @@
 #include <stdlib.h>
 
 #include "geom/lambert.h"
-#include "io/obj.h"
+#include "io/scene/obj.h"
 #include "mpi/comm.h"
 #include "tests/truth.h"
 

@@ -18,7 +18,7 @@
 #include <time.h>
 
 #include "geom/alloc.h"
-#include "io/obj.h"
+#include "io/scene/obj.h"
 #include "mpi/comm.h"
 #include "octree/tree.h"
 #include "tests/bench/embree.h"

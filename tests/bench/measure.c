@@ -28,9 +28,9 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "io/obj.h"
-#include "io/options.h"
-#include "io/render.h"
+#include "io/picture/render.h"
+#include "io/run/options.h"
+#include "io/scene/obj.h"
 #include "mpi/broadcast.h"
 #include "tests/deviation.h"
 #include "tests/solve.h"

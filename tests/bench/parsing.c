@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "io/obj.h"
+#include "io/scene/obj.h"
 
 static double seconds(void)
 {

@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "io/obj.h"
+#include "io/scene/obj.h"
 #include "mpi/comm.h"
 #include "octree/tree.h"
 #include "rad/formfactor.h"

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "io/obj.h"
+#include "io/scene/obj.h"
 #include "mpi/broadcast.h"
 #include "mpi/comm.h"
 #include "tests/deviation.h"

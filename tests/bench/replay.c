@@ -14,8 +14,8 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "io/obj.h"
-#include "io/options.h"
+#include "io/run/options.h"
+#include "io/scene/obj.h"
 #include "mpi/balance.h"
 #include "tests/solve.h"
 

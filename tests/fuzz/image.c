@@ -1,5 +1,5 @@
 /* Fuzzing PFM and PPM. */
-#include "io/image.h"
+#include "io/picture/image.h"
 
 #include "tests/fuzz/fuzz.h"
 

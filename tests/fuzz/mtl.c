@@ -1,5 +1,5 @@
 /* Fuzzing MTL. */
-#include "io/mtl.h"
+#include "io/scene/mtl.h"
 
 #include "tests/fuzz/fuzz.h"
 

@@ -1,5 +1,5 @@
 /* Fuzzing OBJ: reading, and the preparation of what was read. */
-#include "io/obj.h"
+#include "io/scene/obj.h"
 
 #include "tests/fuzz/fuzz.h"
 

@@ -1,8 +1,8 @@
 /* Fuzzing PLY: reading a scene, and the preparation of what was read; reading a solution. */
-#include "io/ply.h"
+#include "io/scene/ply.h"
 
-#include "io/compare.h"
 #include "tests/fuzz/fuzz.h"
+#include "tools/compare.h"
 
 static bool load(struct binary *binary, const uint8_t *data, size_t size, struct error *error)
 {

@@ -9,7 +9,7 @@
 
 #include "geom/hash.h"
 #include "geom/little.h"
-#include "io/store.h"
+#include "io/run/store.h"
 #include "mpi/keep.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/scenes.h"

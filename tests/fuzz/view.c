@@ -1,5 +1,5 @@
 /* Fuzzing view files: a camera that is read has rays. */
-#include "io/camera.h"
+#include "io/scene/camera.h"
 
 #include <math.h>
 

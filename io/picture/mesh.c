@@ -1,0 +1,95 @@
+/* The solution mesh. Leaves share the vertices of the smooth shading, so a viewer that
+ * interpolates vertex colours shows what phr's own pictures show. */
+#include "io/picture/mesh.h"
+
+#include "geom/alloc.h"
+#include "geom/stop.h"
+
+/* The next leaf in canonical order after `p` (-1: the first one), or -1. */
+static int32_t next_leaf(const struct forest *forest, int32_t p)
+{
+    int32_t root = p < 0 ? -1 : (int32_t)forest->patches[p].id.root;
+    if (p >= 0)
+        p = forest_next(forest, p, true);
+    for (;;) {
+        while (p >= 0 && !patch_is_leaf(&forest->patches[p]))
+            p = forest_next(forest, p, true);
+        if (p >= 0)
+            return p;
+        do
+            root++;
+        while (root < forest->root_count && scene_root_area(forest->scene, root) <= 0.0);
+        if (root >= forest->root_count)
+            return -1;
+        p = root;
+    }
+}
+
+void mesh_write_header(struct output *output, int64_t vertices, int64_t faces, bool errors)
+{
+    fprintf(output->file,
+            "ply\nformat binary_little_endian 1.0\ncomment radiosity in W/m^2, made by phr\n"
+            "element vertex %lld\n"
+            "property float x\nproperty float y\nproperty float z\n"
+            "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+            "element face %lld\n"
+            "property list uchar int vertex_indices\n"
+            "property float radiosity_r\nproperty float radiosity_g\nproperty float radiosity_b\n"
+            "property uint root\nproperty uint hierarchy\n%send_header\n",
+            (long long)vertices, (long long)faces, errors ? "property float error\n" : "");
+}
+
+static void write_vertices(struct output *output, const struct shading *shading,
+                           const struct tone *tone)
+{
+    for (int64_t v = 0; v < shading->vertex_count && !stop_is_asked(); v++) {
+        struct vec3 x = scene_to_input(shading->forest->scene, shading->positions[v]);
+        output_float(output, (float)x.x);
+        output_float(output, (float)x.y);
+        output_float(output, (float)x.z);
+        for (int c = 0; c < BANDS; c++)
+            putc(tone_encode(tone, shading->values[v].band[c]), output->file);
+    }
+}
+
+static void write_face(struct output *output, const struct shading *shading, int32_t leaf)
+{
+    const struct patch *patch = &shading->forest->patches[leaf];
+    putc(3, output->file);
+    for (int k = 0; k < 3; k++)
+        output_uint32(output, (uint32_t)shading->corners[3 * (int64_t)leaf + k]);
+    for (int c = 0; c < BANDS; c++)
+        output_float(output, (float)patch->radiosity.band[c]);
+    output_uint32(output, patch->id.root);
+    output_uint32(output, patch->id.hierarchy);
+}
+
+bool mesh_write(const struct shading *shading, const struct tone *tone,
+                const float *errors, const char *path, struct error *error)
+{
+    const struct forest *forest = shading->forest;
+    struct output output;
+    if (!output_open(&output, path, error))
+        return false;
+    mesh_write_header(&output, shading->vertex_count, forest_leaf_count(forest),
+                      errors != NULL);
+    write_vertices(&output, shading, tone);
+    int32_t leaf = next_leaf(forest, -1);
+    for (; leaf >= 0 && stop_check(error); leaf = next_leaf(forest, leaf)) {
+        write_face(&output, shading, leaf);
+        if (errors)
+            output_float(&output, errors[leaf]);
+    }
+    return output_close(&output, error);
+}
+
+float *mesh_colours(const struct forest *forest, int64_t *count)
+{
+    float *rgb = alloc_array((size_t)forest_leaf_count(forest) * 3, sizeof *rgb);
+    int64_t at = 0;
+    for (int32_t leaf = next_leaf(forest, -1); leaf >= 0; leaf = next_leaf(forest, leaf))
+        for (int c = 0; c < BANDS; c++)
+            rgb[at++] = (float)forest->patches[leaf].radiosity.band[c];
+    *count = at / 3;
+    return rgb;
+}

@@ -1,0 +1,251 @@
+/* Rendering. A pixel depends on nothing but its place, so rows can be dealt to ranks in any
+ * way. A triangle shows its twin, if it has one, where its back is met.
+ *
+ * Light straight from lamps has edges that no mesh follows, so it is gathered at each point
+ * that is shown, by segments; what surfaces reflect to each other is smooth, and
+ * interpolated over the mesh. Or all light is gathered at the point: the picture has no
+ * trace of the mesh then. All points of a pixel on one triangle are gathered together;
+ * where lamps are seen in part, a second time by more segments.
+ *
+ * On a surface with normals of its own the light is that of the smooth surface, which the
+ * facets are inscribed in: a point is lifted to the planes through the corners, each across
+ * its normal, by as much as the corner counts there (Hanika, 2021). So facets do not
+ * shadow each other where the smooth surface is lit. A facet may hide a lamp from its own
+ * points: that of a bowl, which is not lifted, has some above its tangent plane that are
+ * behind it. */
+#include "io/picture/render.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "geom/hash.h"
+#include "geom/stop.h"
+#include "rad/sample.h"
+
+/* Segments to lamps for a pixel; and so many times as many where the first may be wrong by
+ * more than this part of its light. */
+static const double NOISE = 0.02;
+enum { SEGMENTS = 32, MORE = 4 };
+
+struct renderer renderer_make(const struct octree *octree, const struct shading *shading,
+                              struct final_gather *gather)
+{
+    struct renderer renderer = {.octree = octree, .shading = shading, .gather = gather};
+    if (gather)
+        renderer.rays = shading ? SEGMENTS : gather->model->criterion.final_gather;
+    return renderer;
+}
+
+/* --- points that are shown --- */
+
+/* What camera rays of a pixel have met; an entry for each that shows some root. */
+struct view {
+    int32_t *roots;
+    struct vec3 *weights, *at; /* barycentric coordinates in the root; points */
+    int count;
+};
+
+/* Light of a pixel. */
+struct pixel {
+    struct rgb sum;  /* radiosity, times rays of the camera, W/m^2 */
+    double variance; /* of that by the choice of segments, over bands, (W/m^2)^2 */
+};
+
+static struct vec3 corners_mean(const struct vec3 corner[3], struct vec3 weight)
+{
+    return vec3_add(vec3_add(vec3_scale(corner[0], weight.x), vec3_scale(corner[1], weight.y)),
+                    vec3_scale(corner[2], weight.z));
+}
+
+/* Normals within 45 degrees of the plane's, by the cosine, say that facets stand for a smooth
+ * surface. Those of a box that is smoothed over its edges do not: lifted to a sphere, its
+ * sides would end up above what stands on them. */
+static const double LEAN = 0.7;
+
+/* A root as it is shown: with normals at its corners, or flat. */
+struct facade {
+    struct triangle triangle;
+    struct vec3 normals[3];
+    struct plane plane;
+    bool curved; /* else all normals are 0 */
+};
+
+static struct facade facade_make(const struct scene *scene, int32_t root)
+{
+    struct facade facade = {.triangle = scene_root_triangle(scene, root),
+                            .plane = scene_root_plane(scene, root)};
+    struct vec3 normals[3];
+    for (int k = 0; k < 3 && scene->normals; k++) {
+        normals[k] = scene_root_normal(scene, root, k);
+        if (!(vec3_dot(normals[k], facade.plane.normal) > LEAN))
+            return facade;
+    }
+    facade.curved = scene->normals != NULL;
+    for (int k = 0; k < 3 && facade.curved; k++)
+        facade.normals[k] = normals[k];
+    return facade;
+}
+
+/* The point with these coordinates, above the planes through the corners. */
+static struct vec3 facade_point(const struct facade *facade, struct vec3 weight)
+{
+    struct vec3 x = corners_mean(facade->triangle.corner, weight), lifts[3];
+    for (int k = 0; k < 3; k++) {
+        struct vec3 normal = facade->normals[k];
+        double below = vec3_dot(vec3_sub(facade->triangle.corner[k], x), normal);
+        lifts[k] = vec3_scale(normal, below > 0.0 ? below : 0.0);
+    }
+    x = vec3_add(x, corners_mean(lifts, weight));
+    return facade->curved ? point_above(x, facade->plane.normal) : x;
+}
+
+/* Its tangent plane there. */
+static struct plane facade_plane(const struct facade *facade, struct vec3 weight, struct vec3 x)
+{
+    struct vec3 normal = corners_mean(facade->normals, weight);
+    if (!(vec3_dot(normal, facade->plane.normal) > 0.0))
+        return facade->plane;
+    normal = vec3_scale(normal, 1.0 / vec3_length(normal));
+    return (struct plane){normal, vec3_dot(normal, x)};
+}
+
+/* Adds light of the first `count` entries, which are of one root. */
+static void add_light(const struct renderer *renderer, const struct view *view, int count,
+                      uint64_t seed, int rays, struct pixel *pixel)
+{
+    struct final_gather *gather = renderer->gather;
+    const struct scene *scene = gather->model->scene;
+    const struct material *m = scene_root_material(scene, view->roots[0]);
+    struct facade facade = facade_make(scene, view->roots[0]);
+    struct vec3 middle = {0.0, 0.0, 0.0};
+    for (int i = 0; i < count; i++) {
+        view->at[i] = facade_point(&facade, view->weights[i]);
+        middle = vec3_add(middle, vec3_scale(view->weights[i], 1.0 / count));
+    }
+    struct gather_points points = {.at = view->at, .count = count,
+                                   .middle = facade_point(&facade, middle),
+                                   .input = scene_input_of(scene, view->roots[0]),
+                                   .above = facade.curved};
+    points.plane = facade_plane(&facade, middle, points.middle);
+    struct gather_light light =
+        final_gather_at(gather, &points, seed, rays, !renderer->shading);
+    double rho = 0.0;
+    for (int c = 0; c < BANDS; c++) {
+        double h = light.lamps.band[c] + light.rest.band[c];
+        double e = renderer->shading ? 0.0 : m->emission.band[c];
+        pixel->sum.band[c] += count * (e + m->reflectance.band[c] * h);
+        rho = fmax(rho, m->reflectance.band[c]);
+    }
+    pixel->variance += count * count * rho * rho * light.variance;
+}
+
+/* Moves the entries of the root of the first one to the front; returns their number. */
+static int collect_root(struct view *view)
+{
+    int count = 0;
+    for (int i = 0; i < view->count; i++) {
+        if (view->roots[i] != view->roots[0])
+            continue;
+        struct vec3 weight = view->weights[i];
+        view->weights[i] = view->weights[count];
+        view->weights[count] = weight;
+        view->roots[i] = view->roots[count];
+        view->roots[count++] = view->roots[0];
+    }
+    return count;
+}
+
+/* What the entries show together, by about so many rays if light is gathered. Their order
+ * is lost. */
+static struct pixel show(const struct renderer *renderer, const struct view *view,
+                         uint64_t seed, int rays)
+{
+    struct pixel pixel = {.variance = 0.0};
+    for (int i = 0; i < view->count && renderer->shading; i++) {
+        const struct vec3 *w = &view->weights[i];
+        struct rgb b = shading_at(renderer->shading, view->roots[i],
+                                  (double[]){w->x, w->y, w->z});
+        for (int c = 0; c < BANDS; c++)
+            pixel.sum.band[c] += b.band[c];
+    }
+    struct view rest = *view;
+    while (rest.count > 0 && renderer->gather) {
+        int count = collect_root(&rest);
+        int share = (rays * count + view->count - 1) / view->count;
+        add_light(renderer, &rest, count, hash_mix(seed) + (uint64_t)rest.roots[0], share,
+                  &pixel);
+        rest.roots += count;
+        rest.weights += count;
+        rest.count -= count;
+    }
+    return pixel;
+}
+
+struct rgb render_point(const struct renderer *renderer, int32_t root,
+                        const double weight[3], uint64_t seed)
+{
+    struct vec3 w = {weight[0], weight[1], weight[2]}, at;
+    struct view view = {&root, &w, &at, 1};
+    return show(renderer, &view, seed, renderer->rays).sum;
+}
+
+/* --- pixels --- */
+
+/* What the ray through a place of the picture meets joins the view. */
+static void look(const struct renderer *renderer, const struct scene *scene,
+                 const struct camera *camera, double x, double y, struct view *view)
+{
+    struct octree_counts counts = {0};
+    struct octree_hit hit;
+    if (!octree_first_hit(renderer->octree, scene_from_input(scene, camera->eye),
+                          camera_ray(camera, x, y), camera->fronts_only, &hit, &counts))
+        return;
+    int32_t root = scene_root_on(scene, hit.triangle, hit.front);
+    if (root < 0)
+        return;
+    const double *w = hit.weight;
+    view->roots[view->count] = root;
+    view->weights[view->count++] = hit.front ? (struct vec3){w[0], w[1], w[2]}
+                                             : (struct vec3){w[0], w[2], w[1]}; /* (a, c, b) */
+}
+
+static void render_pixel(const struct renderer *renderer, const struct scene *scene,
+                         const struct camera *camera, int samples, int px, int py,
+                         struct view *view, float *rgb)
+{
+    int parts = samples * samples;
+    uint64_t seed = (uint64_t)py * (uint64_t)camera->width + (uint64_t)px;
+    view->count = 0;
+    for (int i = 0; i < parts; i++)
+        look(renderer, scene, camera, px + (i % samples + 0.5) / samples,
+             py + (i / samples + 0.5) / samples, view);
+    struct pixel pixel = show(renderer, view, seed, renderer->rays);
+    double most = NOISE * rgb_sum(pixel.sum);
+    if (renderer->shading && pixel.variance > most * most)
+        pixel = show(renderer, view, seed, MORE * renderer->rays);
+    for (int c = 0; c < BANDS; c++)
+        rgb[c] = (float)(pixel.sum.band[c] / parts);
+}
+
+float *render_rows(const struct renderer *renderer, const struct camera *camera, int samples,
+                   int first, int step, struct progress *progress)
+{
+    const struct scene *scene = renderer->gather ? renderer->gather->model->scene
+                                                 : renderer->shading->forest->scene;
+    size_t row = 3 * (size_t)camera->width, parts = (size_t)samples * (size_t)samples;
+    int rows = first < camera->height ? (camera->height - first - 1) / step + 1 : 0;
+    float *rgb = alloc_array((size_t)rows * row, sizeof *rgb);
+    struct view view = {.roots = alloc_array(parts, sizeof *view.roots),
+                        .weights = alloc_array(parts, sizeof *view.weights),
+                        .at = alloc_array(parts, sizeof *view.at)};
+    for (int i = 0; i < rows; i++) {
+        progress_tick(progress, (double)i / rows);
+        for (int x = 0; x < camera->width && !stop_is_asked(); x++)
+            render_pixel(renderer, scene, camera, samples, x, first + i * step, &view,
+                         rgb + (size_t)i * row + 3 * (size_t)x);
+    }
+    alloc_free(view.roots);
+    alloc_free(view.weights);
+    alloc_free(view.at);
+    return rgb;
+}

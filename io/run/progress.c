@@ -1,0 +1,99 @@
+/* Progress on stderr.
+ *
+ * On a terminal a line is rewritten with a carriage return, ten times a second at most, and padded
+ * with blanks over what stood there: that needs no terminal database and no escape sequences. In a
+ * log, a line is written when nothing was for half a minute, so that a long phase does not look
+ * dead and a short one stays silent. Under mpiexec stderr is a pipe on every rank, so that phr
+ * writes a log there.
+ *
+ * The share is that of rank 0. Work is balanced, so the others are about as far. */
+#if defined(__unix__) || defined(__APPLE__)
+#define _POSIX_C_SOURCE 200112L
+#include <unistd.h>
+#define HAVE_POSIX 1
+#endif
+
+#include "io/run/progress.h"
+
+#include <stdio.h>
+
+static const double REWRITE = 0.1, LOG = 30.0; /* seconds between lines */
+
+/* From a share below the first, or in less than the second, nothing follows. */
+static const double SHARE_LEAST = 0.02, SECONDS_LEAST = 1.0;
+
+static bool stderr_is_terminal(void)
+{
+#ifdef HAVE_POSIX
+    return isatty(STDERR_FILENO) == 1;
+#else
+    return false;
+#endif
+}
+
+/* As "9 s", "12 min" or "3 h 05 min". */
+static void print_duration(char *text, size_t size, double seconds)
+{
+    int64_t s = seconds < 1e9 ? (int64_t)(seconds + 1.0) : (int64_t)1e9, minutes = (s + 30) / 60;
+    if (s < 100)
+        snprintf(text, size, "%lld s", (long long)s);
+    else if (minutes < 100)
+        snprintf(text, size, "%lld min", (long long)minutes);
+    else
+        snprintf(text, size, "%lld h %02lld min", (long long)(minutes / 60),
+                 (long long)(minutes % 60));
+}
+
+int progress_text(char text[PROGRESS_WIDTH + 1], const struct progress *progress, double seconds)
+{
+    char level[32] = "", links[32] = "", left[64] = "", duration[32];
+    double share = progress->share > 1.0 ? 1.0 : progress->share;
+    if (progress->level >= 0)
+        snprintf(level, sizeof level, ", level %lld", (long long)progress->level);
+    if (progress->links > 0)
+        snprintf(links, sizeof links, ", %lld links", (long long)progress->links);
+    if (share >= SHARE_LEAST && seconds >= SECONDS_LEAST) {
+        print_duration(duration, sizeof duration, seconds * (1.0 - share) / share);
+        snprintf(left, sizeof left, ", about %s left", duration);
+    }
+    int length = snprintf(text, PROGRESS_WIDTH + 1, "phr: %s%s%s, %d %%%s", progress->phase, level,
+                          links, (int)(100.0 * share), left);
+    return length < PROGRESS_WIDTH ? length : PROGRESS_WIDTH;
+}
+
+static void show(struct progress *progress)
+{
+    struct progress_view *view = (struct progress_view *)(void *)progress; /* its first field */
+    double now = view->clock();
+    if (view->stage != progress->stage) {
+        view->stage = progress->stage;
+        view->begun = now;
+    }
+    if (now - view->shown < (view->terminal ? REWRITE : LOG))
+        return;
+    char text[PROGRESS_WIDTH + 1];
+    int length = progress_text(text, progress, now - view->begun);
+    view->shown = now;
+    if (view->terminal) {
+        fprintf(stderr, "\r%-*s", view->width, text);
+        view->width = length;
+    } else {
+        fprintf(stderr, "%s\n", text);
+    }
+}
+
+void progress_view_open(struct progress_view *view, double (*clock)(void))
+{
+    *view = (struct progress_view){.progress = {.show = show}, .clock = clock, .shown = clock(),
+                                   .terminal = stderr_is_terminal()};
+}
+
+void progress_view_clear(struct progress_view *view)
+{
+    if (!view->progress.show)
+        return;
+    if (view->width > 0)
+        fprintf(stderr, "\r%*s\r", view->width, "");
+    view->width = 0;
+    view->shown = view->clock();
+}

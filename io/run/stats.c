@@ -1,0 +1,160 @@
+/* Reporting a run. Keys of the JSON stand in one order, one a line, so that two files can be
+ * compared with diff; times and bytes are the only values that depend on the machine or on the
+ * number of ranks. */
+#include "io/run/stats.h"
+
+#include <inttypes.h>
+
+#include "io/run/output.h"
+
+static const char *const PHASE_NAMES[PHASE_COUNT] = {
+    "total", "read", "linking", "refinement", "idle", "migration",
+    "gather", "push_pull", "scatter", "solve", "render", "write", "octree", "spaces",
+    "tree", "prepare", "looks", "sums", "routes", "final_gather", "rows",
+    "spot_checks", "row_sums", "shading", "viewpoint"};
+
+/* In the order of enum hold. */
+static const char *const HOLD_NAMES[] = {"none", "level", "area", "memory", "iterations",
+                                         "rays", "epsilon", "rounds", "doubt"};
+
+static const char *const WORK_NAMES[WORK_COUNT] = {"linking", "looks", "splitting", "transfer",
+                                                   "own", "patches", "final_gather"};
+
+void stats_print(const struct stats *stats, FILE *file)
+{
+    fprintf(file, "triangles   %" PRId64 " (%" PRId64 " roots)\n", stats->triangles, stats->roots);
+    fprintf(file, "patches     %" PRId64 " (%" PRId64 " leaves)\n", stats->patches, stats->leaves);
+    fprintf(file, "links       %" PRId64 " (%" PRId64 " rays)\n", stats->links, stats->rays);
+    if (stats->gathered.rays + stats->gathered.exact > 0)
+        fprintf(file, "gathered    %" PRId64 " rays, %" PRId64 " to lamps, %" PRId64 " exact rows\n",
+                stats->gathered.rays, stats->gathered.segments, stats->gathered.exact);
+    fprintf(file, "iterations  %" PRId64 " (%s)\n", stats->iterations,
+            stats->converged ? "converged" : "not converged");
+    fprintf(file, "power       %.6g W emitted, %.6g W absorbed, %.6g W escaped\n",
+            stats->emitted_power, stats->absorbed_power, stats->escaped_power);
+    fprintf(file, "row sums    %.4f .. %.4f, mean %.4f (1 in a closed scene)\n",
+            stats->closure_min, stats->closure_max, stats->closure_mean);
+    if (stats->error_estimate > 0.0)
+        fprintf(file, "error       %.2g %% RMS at the leaves, %s, at epsilon %.3g\n",
+                100.0 * stats->error_estimate,
+                stats->gathered.checked > 0 ? "measured" : "estimated", stats->epsilon);
+    fprintf(file, "checksum    %016" PRIx64 "\n", stats->checksum);
+}
+
+static void write_integer(FILE *file, const char *key, int64_t value)
+{
+    fprintf(file, "  \"%s\": %" PRId64 ",\n", key, value);
+}
+
+static void write_real(FILE *file, const char *key, double value)
+{
+    fprintf(file, "  \"%s\": %.17g,\n", key, value);
+}
+
+static void write_counts(FILE *file, const struct stats *stats)
+{
+    write_integer(file, "ranks", stats->ranks);
+    write_integer(file, "triangles", stats->triangles);
+    write_integer(file, "roots", stats->roots);
+    write_integer(file, "patches", stats->patches);
+    write_integer(file, "leaves", stats->leaves);
+    write_integer(file, "links", stats->links);
+    write_integer(file, "passes", stats->passes);
+    write_integer(file, "iterations", stats->iterations);
+    fprintf(file, "  \"converged\": %s,\n", stats->converged ? "true" : "false");
+    write_integer(file, "clusters", stats->clusters);
+    write_integer(file, "counted_bytes", stats->counted_bytes);
+    fprintf(file, "  \"memory_limited\": %s,\n", stats->memory_limited ? "true" : "false");
+    write_real(file, "epsilon", stats->epsilon);
+    write_real(file, "error_estimate", stats->error_estimate);
+    fprintf(file,
+            "  \"accuracy\": {\"goal\": %.17g, \"rounds\": %" PRId64 ", \"leaves\": %" PRId64
+            ", \"paths\": %" PRId64 ", \"hold\": \"%s\"},\n",
+            stats->accuracy, stats->rounds, stats->gathered.checked, stats->gathered.paths,
+            HOLD_NAMES[stats->hold]);
+    write_real(file, "emitted_power", stats->emitted_power);
+    write_real(file, "absorbed_power", stats->absorbed_power);
+    write_real(file, "escaped_power", stats->escaped_power);
+    fprintf(file, "  \"checksum\": \"%016" PRIx64 "\",\n", stats->checksum);
+    write_integer(file, "rays", stats->rays);
+    write_integer(file, "node_tests", stats->node_tests);
+    write_integer(file, "triangle_tests", stats->triangle_tests);
+    fprintf(file,
+            "  \"visibility\": {\"open\": %" PRId64 ", \"seen\": %" PRId64 ", \"partly\": %" PRId64
+            ", \"unseen\": %" PRId64 ", \"walled_off\": %" PRId64 ", \"rays_spared\": %" PRId64
+            "},\n",
+            stats->links_open, stats->links_seen, stats->links_partly, stats->links_unseen,
+            stats->walled_off, stats->rays_spared);
+    fprintf(file,
+            "  \"gathered\": {\"rays\": %" PRId64 ", \"segments\": %" PRId64 ", \"exact\": %" PRId64
+            ", \"terms\": %" PRId64 ", \"looks\": %" PRId64 ", \"split\": %" PRId64
+            ", \"pixels\": %" PRId64 ", \"closing\": %.17g"
+            ", \"error\": %.17g, \"by_rays\": %.17g, \"by_mesh\": %.17g},\n",
+            stats->gathered.rays, stats->gathered.segments, stats->gathered.exact,
+            stats->gathered.terms, stats->gathered.looks, stats->gathered.split,
+            stats->gathered.pixels, stats->gathered.closing, stats->gathered.error,
+            stats->gathered.by_rays, stats->gathered.by_mesh);
+    fprintf(file, "  \"closure\": {\"min\": %.17g, \"mean\": %.17g, \"max\": %.17g, \"rms\": %.17g},\n",
+            stats->closure_min, stats->closure_mean, stats->closure_max, stats->closure_rms);
+}
+
+static void write_seconds(FILE *file, const struct stats *stats)
+{
+    fprintf(file, "  \"seconds\": {\n");
+    for (int phase = 0; phase < PHASE_COUNT; phase++)
+        fprintf(file, "    \"%s\": {\"min\": %.6f, \"mean\": %.6f, \"max\": %.6f}%s\n",
+                PHASE_NAMES[phase], stats->seconds[phase].min, stats->seconds[phase].mean,
+                stats->seconds[phase].max, phase + 1 < PHASE_COUNT ? "," : "");
+    fprintf(file, "  },\n");
+}
+
+static void write_balance(FILE *file, const struct stats *stats)
+{
+    fprintf(file, "  \"balance\": [");
+    for (int64_t i = 0; i < stats->level_count; i++) {
+        const struct level_balance *level = &stats->levels[i];
+        fprintf(file,
+                "%s\n    {\"iteration\": %" PRId64 ", \"level\": %" PRId64 ", \"links\": %" PRId64
+                ", \"predicted_max\": %.17g, \"predicted_mean\": %.17g"
+                ", \"work_max\": %.17g, \"work_mean\": %.17g}",
+                i ? "," : "", level->iteration, level->level, level->links, level->predicted_max,
+                level->predicted_mean, level->work_max, level->work_mean);
+    }
+    fprintf(file, "%s],\n", stats->level_count ? "\n  " : "");
+}
+
+static void write_work(FILE *file, const struct stats *stats)
+{
+    fprintf(file, "  \"work\": {\n");
+    for (int kind = 0; kind < WORK_COUNT; kind++)
+        fprintf(file,
+                "    \"%s\": {\"phases\": %" PRId64 ", \"all\": %" PRId64 ", \"slowest\": %" PRId64
+                ", \"bytes\": %" PRId64 "}%s\n",
+                WORK_NAMES[kind], stats->work[kind].phases, stats->work[kind].all,
+                stats->work[kind].slowest, stats->work[kind].bytes,
+                kind + 1 < WORK_COUNT ? "," : "");
+    fprintf(file, "  },\n");
+    write_integer(file, "exchanges", stats->exchanges);
+    write_integer(file, "messages", stats->messages);
+}
+
+bool stats_write(const struct stats *stats, const char *path, struct error *error)
+{
+    struct output output;
+    if (!output_open(&output, path, error))
+        return false;
+    fprintf(output.file, "{\n");
+    write_counts(output.file, stats);
+    write_seconds(output.file, stats);
+    write_balance(output.file, stats);
+    write_work(output.file, stats);
+    fprintf(output.file,
+            "  \"bytes\": {\"migration\": %" PRId64 ", \"gather\": %" PRId64 ", \"scatter\": %" PRId64
+            ", \"broadcast\": %" PRId64 "},\n",
+            stats->bytes_migration, stats->bytes_gather, stats->bytes_scatter,
+            stats->bytes_broadcast);
+    write_integer(output.file, "peak_rss_bytes", stats->peak_rss_bytes);
+    fprintf(output.file, "  \"peak_rss_bytes_sum\": %" PRId64 "\n}\n",
+            stats->peak_rss_bytes_sum);
+    return output_close(&output, error);
+}

@@ -1,0 +1,127 @@
+/* Reading binary files.
+ *
+ * The file is read in blocks until it ends and held in memory, so what a header claims can be
+ * held against what is there before anything is allocated for it, and pipes work. The first
+ * block has to begin as the format says: /dev/zero ends there. Numbers are put together byte by
+ * byte, so the machine's own byte order does not matter. */
+#include "io/scene/binary.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "geom/stop.h"
+
+enum { BLOCK = 65536 };
+
+static bool fail_to_read(const char *path, struct error *error)
+{
+    return error_set(error, EXIT_USAGE, "%s: cannot read: %s", path,
+                     errno ? strerror(errno) : "unknown reason");
+}
+
+static bool has_magic(const struct binary *binary, const char *magic, const char *kind,
+                      struct error *error)
+{
+    if (strncmp(binary->data, magic, strlen(magic)) != 0)
+        return error_set(error, EXIT_USAGE, "%s: not %s", binary->path, kind);
+    return true;
+}
+
+static bool read_blocks(struct binary *binary, FILE *file, const char *magic, const char *kind,
+                        struct error *error)
+{
+    int64_t capacity = 0;
+    size_t got;
+    do {
+        binary->data = alloc_reserve(binary->data, &capacity, binary->size + BLOCK + 1, 1);
+        got = fread(binary->data + binary->size, 1, BLOCK, file);
+        if (!stop_check(error))
+            return false;
+        if (ferror(file))
+            return fail_to_read(binary->path, error);
+        binary->size += (int64_t)got;
+        binary->data[binary->size] = '\0';
+        if (!has_magic(binary, magic, kind, error))
+            return false;
+    } while (got == BLOCK);
+    return true;
+}
+
+bool binary_read(struct binary *binary, const char *path, const char *magic, const char *kind,
+                struct error *error)
+{
+    *binary = (struct binary){.path = path, .line = 1};
+    errno = 0;
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return fail_to_read(path, error);
+    bool good = read_blocks(binary, file, magic, kind, error);
+    fclose(file);
+    if (!good)
+        binary_free(binary);
+    return good;
+}
+
+bool binary_of_bytes(struct binary *binary, const char *path, const void *data, size_t size,
+                     const char *magic, const char *kind, struct error *error)
+{
+    *binary = (struct binary){.path = path, .line = 1, .size = (int64_t)size};
+    binary->data = alloc_array(size + 1, 1);
+    if (size > 0)
+        memcpy(binary->data, data, size);
+    if (has_magic(binary, magic, kind, error))
+        return true;
+    binary_free(binary);
+    return false;
+}
+
+void binary_free(struct binary *binary)
+{
+    alloc_free(binary->data);
+    binary->data = NULL;
+    binary->size = binary->position = 0;
+}
+
+int64_t binary_left(const struct binary *binary)
+{
+    return binary->size - binary->position;
+}
+
+bool binary_is_over(const struct binary *binary)
+{
+    const char *rest = binary->data + binary->position;
+    return (int64_t)strspn(rest, " \t\v\f\r\n") == binary_left(binary);
+}
+
+uint64_t binary_integer(const char *at, int count, bool big_endian)
+{
+    uint64_t value = 0;
+    for (int i = 0; i < count; i++)
+        value = value << 8 | (unsigned char)at[big_endian ? i : count - 1 - i];
+    return value;
+}
+
+int64_t binary_signed(const char *at, int count, bool big_endian)
+{
+    uint64_t value = binary_integer(at, count, big_endian);
+    uint64_t sign = UINT64_C(1) << (8 * count - 1);
+    return value < sign ? (int64_t)value : -(int64_t)(sign - 1 - (value - sign)) - 1;
+}
+
+float binary_float(const char *at, bool big_endian)
+{
+    uint32_t bits = (uint32_t)binary_integer(at, 4, big_endian);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+double binary_double(const char *at, bool big_endian)
+{
+    uint64_t bits = binary_integer(at, 8, big_endian);
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}

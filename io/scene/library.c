@@ -1,0 +1,113 @@
+/* Material libraries by name.
+ *
+ * `mtllib` lists names between blanks, but programs also write single names with blanks in
+ * them. So the whole rest of the line is tried first, then its words, where a backslash before a
+ * blank keeps a word together. A name is tried once, however often it occurs.
+ *
+ * Programs also write folders of the machine that they ran on, with either slash. Where such a
+ * file does not exist, one with the same last name beside the OBJ file is taken: no other can
+ * have been meant. If all blanks are in the folders, the line may as well be a list, and its words
+ * decide. */
+#include "io/scene/library.h"
+
+#include <string.h>
+
+#include "geom/alloc.h"
+
+enum { LIBRARY_MAX = 1000 }; /* names in mtllib lines */
+
+struct search {
+    struct mtl_table *table;
+    struct text_names *tried;
+    const struct text *obj;
+    struct error *error;
+};
+
+/* The path of a file that the OBJ file names: relative to its folder. The caller frees it. */
+static char *path_beside(const char *path, const char *name)
+{
+    const char *slash = strrchr(path, '/');
+    size_t folder = slash && name[0] != '/' ? (size_t)(slash - path) + 1 : 0;
+    char *joined = alloc_array(folder + strlen(name) + 1, 1);
+    memcpy(joined, path, folder);
+    strcpy(joined + folder, name);
+    return joined;
+}
+
+/* What stands behind the last slash or backslash; empty if that is all there is. */
+static const char *last_part(const char *name)
+{
+    const char *part = name;
+    for (const char *at = name; *at; at++)
+        if (*at == '/' || *at == '\\')
+            part = at + 1;
+    return part;
+}
+
+static bool read_file(const struct search *search, const char *name, bool *found)
+{
+    char *path = path_beside(search->obj->path, name);
+    bool good = mtl_read(search->table, path, found, search->error);
+    alloc_free(path);
+    return good;
+}
+
+/* Reads the library `name`, unless it has been tried before. `*missing` says whether this is
+ * the first time that it turns out not to exist. */
+static bool try_name(const struct search *search, const char *name, bool *missing)
+{
+    *missing = false;
+    int32_t known = search->tried->count;
+    if (text_names_add(search->tried, name) < known)
+        return true;
+    if (known == LIBRARY_MAX)
+        return error_set(search->error, EXIT_USAGE, "%s:%ld: more than %d material libraries",
+                         search->obj->path, search->obj->line, LIBRARY_MAX);
+    bool found;
+    const char *part = last_part(name);
+    bool good = read_file(search, name, &found);
+    bool is_one_name = !strpbrk(name, " \t") == !strpbrk(part, " \t");
+    if (good && !found && part != name && *part && is_one_name)
+        good = read_file(search, part, &found);
+    *missing = !found;
+    return good;
+}
+
+/* Cuts the next name off `*rest`; a backslash keeps the blank that follows it. */
+static char *next_name(char **rest)
+{
+    char *name = *rest + strspn(*rest, " \t");
+    char *to = name, *from = name;
+    while (*from && *from != ' ' && *from != '\t') {
+        if (*from == '\\' && from[1] == ' ')
+            from++;
+        *to++ = *from++;
+    }
+    *rest = *from ? from + 1 : from;
+    *to = '\0';
+    return *name ? name : NULL;
+}
+
+bool library_read(struct mtl_table *table, struct text_names *tried, const struct text *obj,
+                  char *rest, struct obj_repairs *repairs, struct error *error)
+{
+    struct search search = {table, tried, obj, error};
+    char *whole = text_trim(rest);
+    bool missing;
+    if (!*whole)
+        return true;
+    if (!try_name(&search, whole, &missing))
+        return false;
+    bool is_list = strpbrk(whole, " \t") != NULL;
+    if (missing && !is_list)
+        obj_note_missing(&repairs->missing_libraries, repairs->first_library, whole);
+    if (!missing || !is_list)
+        return true;
+    for (char *name; (name = next_name(&whole)) != NULL;) {
+        if (!try_name(&search, name, &missing))
+            return false;
+        if (missing)
+            obj_note_missing(&repairs->missing_libraries, repairs->first_library, name);
+    }
+    return true;
+}

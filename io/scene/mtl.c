@@ -1,0 +1,171 @@
+/* Material libraries.
+ *
+ * Names asked for and names defined share one table, and what a name means is settled when all
+ * is read: a library may come after the faces that use its materials. A name that nobody
+ * defines keeps the neutral grey with which it entered the table.
+ *
+ * Ke is not in the original description of the format, but it is what modelling programs write
+ * for lights. A material that has only Ke is taken as a black light: the grey would be a
+ * reflectance that nobody wrote down. A texture without Kd is the one exception: it says that
+ * something is reflected, but not what, so the neutral grey stands for it. Ka, Ks, Tf and illum
+ * say nothing about a diffuse surface and are passed over. Where d and Tr contradict each other,
+ * d counts: programs disagree on what Tr 1 means.
+ *
+ * A library is not a place to be lenient about Kd and Ke themselves: a negative or misspelt
+ * number would be a wrong picture without a message. */
+#include "io/scene/mtl.h"
+
+#include <ctype.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+
+static const struct material NEUTRAL = {{{0.5, 0.5, 0.5}}, {{0.0, 0.0, 0.0}}};
+
+int32_t mtl_find(struct mtl_table *table, const char *name)
+{
+    int32_t count = table->names.count;
+    int32_t number = text_names_add(&table->names, name);
+    if (number == count) {
+        table->entries = alloc_reserve(table->entries, &table->capacity, (int64_t)count + 1,
+                                       sizeof *table->entries);
+        table->entries[number] = (struct mtl_entry){.material = NEUTRAL};
+    }
+    return number;
+}
+
+static bool is_keyword(const char *word, const char *keyword)
+{
+    while (*keyword && tolower((unsigned char)*word) == *keyword) {
+        word++;
+        keyword++;
+    }
+    return *word == *keyword;
+}
+
+/* Reads up to three numbers; those behind them are passed over. */
+static bool read_numbers(const struct text *text, char *word, char *rest, struct rgb *colour,
+                         int *count, struct error *error)
+{
+    for (*count = 0; word && *count < BANDS; word = text_word(&rest)) {
+        double *value = &colour->band[*count];
+        if (!text_number(text, word, value, error))
+            return false;
+        if (*value < 0.0)
+            return error_set(error, EXIT_USAGE, "%s:%ld: negative number '%.40s'", text->path,
+                             text->line, word);
+        ++*count;
+    }
+    return true;
+}
+
+static bool read_colour(const struct text *text, const char *keyword, char *rest,
+                        struct rgb *colour, struct error *error)
+{
+    char *word = text_word(&rest);
+    if (word && (is_keyword(word, "spectral") || is_keyword(word, "xyz")))
+        return true;
+    struct rgb numbers;
+    int count;
+    if (!read_numbers(text, word, rest, &numbers, &count, error))
+        return false;
+    if (count != 1 && count != BANDS)
+        return error_set(error, EXIT_USAGE, "%s:%ld: %s has %d numbers instead of 1 or 3",
+                         text->path, text->line, keyword, count);
+    for (int c = count; c < BANDS; c++)
+        numbers.band[c] = numbers.band[0];
+    *colour = numbers;
+    return true;
+}
+
+static bool start_material(struct mtl_table *table, const struct text *text, char *rest,
+                           int32_t *current, struct error *error)
+{
+    const char *name = text_trim(rest);
+    if (!*name)
+        return error_set(error, EXIT_USAGE, "%s:%ld: newmtl without a name", text->path,
+                         text->line);
+    *current = mtl_find(table, name);
+    bool used = table->entries[*current].used;
+    table->entries[*current] = (struct mtl_entry){.defined = true, .used = used};
+    return true;
+}
+
+/* Transparency cannot be had, so what d and Tr say is kept for a warning, and nothing about them
+ * is an error. */
+static void note_opacity(struct mtl_entry *entry, char *rest, bool is_d)
+{
+    const char *word = text_word(&rest);
+    double value;
+    if (word && strcmp(word, "-halo") == 0)
+        word = text_word(&rest);
+    if (!word || !text_is_number(word, &value) || (entry->has_d && !is_d))
+        return;
+    entry->transparent = is_d ? value < 1.0 : value > 0.0;
+    entry->has_d = is_d;
+}
+
+static void note_texture(struct mtl_entry *entry)
+{
+    entry->textured = true;
+    if (!entry->has_kd)
+        entry->material.reflectance = NEUTRAL.reflectance;
+}
+
+/* `*current` is the number of the material that the line belongs to, or negative. */
+static bool read_line(struct mtl_table *table, const struct text *text, char *line,
+                      int32_t *current, struct error *error)
+{
+    const char *keyword = text_word(&line);
+    if (!keyword)
+        return true;
+    if (is_keyword(keyword, "newmtl"))
+        return start_material(table, text, line, current, error);
+    bool is_kd = is_keyword(keyword, "kd");
+    bool is_colour = is_kd || is_keyword(keyword, "ke");
+    if (*current < 0 && is_colour)
+        return error_set(error, EXIT_USAGE, "%s:%ld: %s before newmtl", text->path, text->line,
+                         keyword);
+    if (*current < 0)
+        return true;
+    struct mtl_entry *entry = &table->entries[*current];
+    if (is_keyword(keyword, "d") || is_keyword(keyword, "tr"))
+        note_opacity(entry, line, is_keyword(keyword, "d"));
+    else if (is_keyword(keyword, "map_kd"))
+        note_texture(entry);
+    if (!is_colour)
+        return true;
+    entry->has_kd = entry->has_kd || is_kd;
+    struct material *material = &entry->material;
+    return read_colour(text, keyword, line,
+                       is_kd ? &material->reflectance : &material->emission, error);
+}
+
+bool mtl_of_text(struct mtl_table *table, struct text *text, struct error *error)
+{
+    bool good = true;
+    int32_t current = -1;
+    for (char *line; good && (line = text_line(text)) != NULL;)
+        good = read_line(table, text, line, &current, error);
+    return good;
+}
+
+bool mtl_read(struct mtl_table *table, const char *path, bool *found, struct error *error)
+{
+    struct text text;
+    struct error reason = {EXIT_DONE, ""};
+    bool good = text_read(&text, path, &reason);
+    *found = !text.unreadable;
+    if (!good)
+        return text.unreadable ? true : error_set(error, reason.code, "%s", reason.text);
+    good = mtl_of_text(table, &text, error);
+    text_free(&text);
+    return good;
+}
+
+void mtl_free(struct mtl_table *table)
+{
+    text_names_free(&table->names);
+    alloc_free(table->entries);
+    *table = (struct mtl_table){0};
+}

@@ -1,0 +1,392 @@
+/* Scenes from Wavefront OBJ files.
+ *
+ * One pass over the lines. Faces are checked against the vertices before them, cut into
+ * triangles at once and kept as vertex numbers; the scene is made when all counts are known and
+ * the text is gone from memory. Vertices that come after their face are refused: negative
+ * indices count back from the line of the face, so a reader that allowed both would give
+ * another meaning to some wrong files instead of a message.
+ *
+ * Repairs are for what does not touch the geometry: a missing library or material gives grey.
+ * A wrong index, number or face ends the reading, since what was meant cannot be known. Normals
+ * touch pictures alone: one that is not a direction, or not there, is none.
+ *
+ * Cutting a concave face takes a time that is quadratic in its corners; the limit on them keeps
+ * one line of a file from taking minutes. */
+#include "io/scene/obj.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "geom/polygon.h"
+#include "geom/stop.h"
+#include "io/scene/library.h"
+#include "io/scene/mtl.h"
+#include "io/scene/text.h"
+
+enum {
+    COUNT_MAX = (1 << 30) - 1, /* vertices; triangles, which with their twins fit an int32_t */
+    CORNER_MAX = 1 << 14       /* corners of one face */
+};
+
+struct obj_corner {
+    int32_t vertex;
+    int32_t normal; /* negative: none */
+};
+
+struct obj_triangle {
+    struct obj_corner corner[3];
+    int32_t material; /* number in the material table */
+    int32_t group;    /* number of the group's name */
+};
+
+struct obj_reader {
+    struct text text;
+    struct vec3 *vertices;
+    int64_t vertex_count, vertex_capacity;
+    struct vec3 *normals;          /* of length 1, or 0 for one without a direction */
+    int64_t normal_count, normal_capacity;
+    bool has_normals;              /* a face has a normal with a direction */
+    struct obj_triangle *triangles;
+    int64_t triangle_count, triangle_capacity;
+    struct obj_corner *corners;    /* of the present face */
+    int64_t corner_count, corner_capacity;
+    struct mtl_table materials;    /* the first one is for faces without a material */
+    int32_t material;              /* of the next face */
+    struct text_names libraries;   /* for library_read() */
+    struct text_names groups;      /* names of groups, also of those without a face */
+    int32_t group;                 /* of the next face */
+    struct obj_repairs *repairs;
+    struct error *error;
+};
+
+/* A normal shorter than this has no direction: its square might have lost digits. */
+static const double DIRECTION_MIN = 1e-100;
+
+static const char DEFAULT_GROUP[] = "default";
+
+void obj_note_missing(int64_t *counter, char first[OBJ_NAME], const char *name)
+{
+    if (++*counter == 1)
+        snprintf(first, OBJ_NAME, "%s", name);
+}
+
+static bool read_vertex(struct obj_reader *reader, char *rest)
+{
+    double value[3];
+    for (int i = 0; i < 3; i++) {
+        const char *word = text_word(&rest);
+        if (!word)
+            return error_set(reader->error, EXIT_USAGE,
+                             "%s:%ld: vertex has %d coordinates instead of 3",
+                             reader->text.path, reader->text.line, i);
+        if (!text_number(&reader->text, word, &value[i], reader->error))
+            return false;
+    }
+    if (reader->vertex_count == COUNT_MAX)
+        return error_set(reader->error, EXIT_USAGE, "%s:%ld: more than %d vertices",
+                         reader->text.path, reader->text.line, COUNT_MAX);
+    reader->vertices = alloc_reserve(reader->vertices, &reader->vertex_capacity,
+                                     reader->vertex_count + 1, sizeof *reader->vertices);
+    reader->vertices[reader->vertex_count++] = (struct vec3){value[0], value[1], value[2]};
+    return true;
+}
+
+/* Three numbers that make a direction, of length 1; otherwise 0. */
+static struct vec3 parse_direction(char *rest)
+{
+    double value[3];
+    for (int i = 0; i < 3; i++) {
+        const char *word = text_word(&rest);
+        if (!word || !text_is_number(word, &value[i]) || fabs(value[i]) > TEXT_NUMBER_MAX)
+            return (struct vec3){0.0, 0.0, 0.0};
+    }
+    struct vec3 x = {value[0], value[1], value[2]};
+    double length = vec3_length(x);
+    return length > DIRECTION_MIN ? vec3_scale(x, 1.0 / length) : (struct vec3){0.0, 0.0, 0.0};
+}
+
+static bool read_normal(struct obj_reader *reader, char *rest)
+{
+    if (reader->normal_count == COUNT_MAX)
+        return error_set(reader->error, EXIT_USAGE, "%s:%ld: more than %d normals",
+                         reader->text.path, reader->text.line, COUNT_MAX);
+    reader->normals = alloc_reserve(reader->normals, &reader->normal_capacity,
+                                    reader->normal_count + 1, sizeof *reader->normals);
+    reader->normals[reader->normal_count++] = parse_direction(rest);
+    return true;
+}
+
+/* A corner is V, V/VT, V//VN or V/VT/VN; VT only has to be an integer. */
+static bool parse_corner(const char *word, int64_t *vertex, int64_t *normal, bool *has_normal)
+{
+    int64_t unused;
+    *has_normal = false;
+    if (!text_integer(&word, vertex))
+        return false;
+    if (*word == '/') {
+        word++;
+        text_integer(&word, &unused);
+    }
+    if (*word == '/') {
+        word++;
+        *has_normal = text_integer(&word, normal);
+    }
+    return *word == '\0';
+}
+
+/* The place in a list of `count` that an index means at this line; negative if none: index 0
+ * means the place behind the last. */
+static int32_t find_place(int64_t index, int64_t count)
+{
+    int64_t place = index > 0 ? index - 1 : count + index;
+    return place >= 0 && place < count ? (int32_t)place : -1;
+}
+
+static int32_t find_normal(struct obj_reader *reader, int64_t index)
+{
+    int32_t normal = find_place(index, reader->normal_count);
+    if (normal < 0 || vec3_dot(reader->normals[normal], reader->normals[normal]) == 0.0) {
+        reader->repairs->bad_normals++;
+        return -1;
+    }
+    reader->has_normals = true;
+    return normal;
+}
+
+static bool read_corner(struct obj_reader *reader, const char *word, struct obj_corner *corner)
+{
+    int64_t vertex, normal = 0;
+    bool has_normal;
+    if (!parse_corner(word, &vertex, &normal, &has_normal))
+        return error_set(reader->error, EXIT_USAGE, "%s:%ld: bad corner '%.40s' of a face",
+                         reader->text.path, reader->text.line, word);
+    corner->vertex = find_place(vertex, reader->vertex_count);
+    if (corner->vertex < 0) {
+        size_t digits = strcspn(word, "/");
+        return error_set(reader->error, EXIT_USAGE,
+                         "%s:%ld: face refers to vertex %.*s of %" PRId64, reader->text.path,
+                         reader->text.line, digits < 40 ? (int)digits : 40, word,
+                         reader->vertex_count);
+    }
+    corner->normal = has_normal ? find_normal(reader, normal) : -1;
+    return true;
+}
+
+static bool read_corners(struct obj_reader *reader, char *rest)
+{
+    reader->corner_count = 0;
+    for (const char *word; (word = text_word(&rest)) != NULL;) {
+        if (reader->corner_count == CORNER_MAX)
+            return error_set(reader->error, EXIT_USAGE, "%s:%ld: face of more than %d corners",
+                             reader->text.path, reader->text.line, CORNER_MAX);
+        reader->corners = alloc_reserve(reader->corners, &reader->corner_capacity,
+                                        reader->corner_count + 1, sizeof *reader->corners);
+        if (!read_corner(reader, word, &reader->corners[reader->corner_count]))
+            return false;
+        reader->corner_count++;
+    }
+    if (reader->corner_count < 3)
+        return error_set(reader->error, EXIT_USAGE,
+                         "%s:%ld: face has %" PRId64 " corners instead of 3 or more",
+                         reader->text.path, reader->text.line, reader->corner_count);
+    return true;
+}
+
+static void add_triangle(struct obj_reader *reader, int32_t a, int32_t b, int32_t c)
+{
+    const struct obj_corner *corners = reader->corners;
+    reader->triangles[reader->triangle_count++] =
+        (struct obj_triangle){{corners[a], corners[b], corners[c]}, reader->material,
+                              reader->group};
+}
+
+static void add_polygon(struct obj_reader *reader)
+{
+    int32_t count = (int32_t)reader->corner_count;
+    struct vec3 *positions = alloc_array((size_t)count, sizeof *positions);
+    int32_t *cut = alloc_array(3 * ((size_t)count - 2), sizeof *cut);
+    for (int32_t i = 0; i < count; i++)
+        positions[i] = reader->vertices[reader->corners[i].vertex];
+    polygon_triangulate(positions, count, cut);
+    for (int32_t i = 0; i < count - 2; i++)
+        add_triangle(reader, cut[3 * i], cut[3 * i + 1], cut[3 * i + 2]);
+    alloc_free(positions);
+    alloc_free(cut);
+}
+
+static bool read_face(struct obj_reader *reader, char *rest)
+{
+    if (!read_corners(reader, rest))
+        return false;
+    int64_t needed = reader->triangle_count + reader->corner_count - 2;
+    if (needed > COUNT_MAX)
+        return error_set(reader->error, EXIT_USAGE, "%s:%ld: more than %d triangles",
+                         reader->text.path, reader->text.line, COUNT_MAX);
+    reader->triangles = alloc_reserve(reader->triangles, &reader->triangle_capacity, needed,
+                                      sizeof *reader->triangles);
+    reader->materials.entries[reader->material].used = true;
+    if (reader->corner_count == 3)
+        add_triangle(reader, 0, 1, 2);
+    else
+        add_polygon(reader);
+    return true;
+}
+
+static bool read_group(struct obj_reader *reader, char *rest)
+{
+    const char *name = text_trim(rest);
+    reader->group = text_names_add(&reader->groups, *name ? name : DEFAULT_GROUP);
+    return true;
+}
+
+/* Whether lines with the keyword say nothing about triangles and their colours. */
+static bool is_harmless(const char *keyword)
+{
+    static const char *const words[] = {"vt", "s", "l", "p", "vp", "vw", "mg", "usemap", "maplib",
+                                        "lod", "c_interp", "d_interp", "bevel", "shadow_obj",
+                                        "trace_obj"};
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (strcmp(keyword, words[i]) == 0)
+            return true;
+    return false;
+}
+
+static bool read_line(struct obj_reader *reader, char *line)
+{
+    const char *keyword = text_word(&line);
+    if (!keyword)
+        return true;
+    if (strcmp(keyword, "v") == 0)
+        return read_vertex(reader, line);
+    if (strcmp(keyword, "vn") == 0)
+        return read_normal(reader, line);
+    if (strcmp(keyword, "f") == 0)
+        return read_face(reader, line);
+    if (strcmp(keyword, "mtllib") == 0)
+        return library_read(&reader->materials, &reader->libraries, &reader->text, line,
+                            reader->repairs, reader->error);
+    if (strcmp(keyword, "o") == 0 || strcmp(keyword, "g") == 0)
+        return read_group(reader, line);
+    if (strcmp(keyword, "usemtl") == 0)
+        reader->material = mtl_find(&reader->materials, text_trim(line));
+    else if (!is_harmless(keyword) && reader->repairs->unknown_lines++ == 0)
+        reader->repairs->first_unknown = reader->text.line;
+    return true;
+}
+
+static bool read_lines(struct obj_reader *reader)
+{
+    reader->material = mtl_find(&reader->materials, "");
+    reader->materials.entries[reader->material].defined = true;
+    reader->group = text_names_add(&reader->groups, DEFAULT_GROUP);
+    for (char *line; (line = text_line(&reader->text)) != NULL;)
+        if (!stop_check(reader->error) || !read_line(reader, line))
+            return false;
+    if (reader->triangle_count == 0)
+        return error_set(reader->error, EXIT_USAGE, "%s: no faces", reader->text.path);
+    return true;
+}
+
+/* Numbers the used materials of the table, in its order, for the scene. Returns how many. */
+static int32_t number_materials(const struct obj_reader *reader, int32_t *number)
+{
+    struct obj_repairs *repairs = reader->repairs;
+    int32_t count = 0;
+    for (int32_t i = 0; i < reader->materials.names.count; i++) {
+        const struct mtl_entry *entry = &reader->materials.entries[i];
+        number[i] = count;
+        count += entry->used;
+        if (entry->used && !entry->defined)
+            obj_note_missing(&repairs->missing_materials, repairs->first_material,
+                             reader->materials.names.name[i]);
+        repairs->transparent += entry->used && entry->transparent;
+        repairs->textured += entry->used && entry->textured;
+    }
+    return count;
+}
+
+/* Numbers the groups that have faces, in the order of these, and names them in the scene. */
+static void make_groups(const struct obj_reader *reader, struct scene *scene)
+{
+    int32_t known = reader->groups.count, count = 0;
+    int32_t *number = alloc_array((size_t)known, sizeof *number); /* from 1; 0: no face yet */
+    int32_t *order = alloc_array((size_t)known, sizeof *order);
+    size_t bytes = 0;
+    for (int32_t i = 0; i < scene->input_count; i++) {
+        int32_t group = reader->triangles[i].group;
+        if (number[group] == 0) {
+            order[count++] = group;
+            number[group] = count;
+            bytes += strlen(reader->groups.name[group]) + 1;
+        }
+        scene->group_of[i] = number[group] - 1;
+    }
+    scene_set_groups(scene, count, (int64_t)bytes);
+    char *to = scene->group_names;
+    for (int32_t i = 0; i < count; i++) {
+        size_t length = strlen(reader->groups.name[order[i]]) + 1;
+        memcpy(to, reader->groups.name[order[i]], length);
+        to += length;
+    }
+    alloc_free(number);
+    alloc_free(order);
+}
+
+static void make_normals(const struct obj_reader *reader, struct scene *scene)
+{
+    scene_add_normals(scene);
+    for (int32_t i = 0; i < scene->input_count; i++)
+        for (int k = 0; k < 3; k++) {
+            int32_t normal = reader->triangles[i].corner[k].normal;
+            if (normal >= 0)
+                scene->normals[3 * (int64_t)i + k] = reader->normals[normal];
+        }
+}
+
+static struct scene *make_scene(const struct obj_reader *reader)
+{
+    int32_t known = reader->materials.names.count;
+    int32_t *number = alloc_array((size_t)known, sizeof *number);
+    int32_t material_count = number_materials(reader, number);
+    struct scene *scene = scene_create((int32_t)reader->triangle_count, material_count);
+    for (int32_t i = 0; i < known; i++)
+        if (reader->materials.entries[i].used)
+            scene->materials[number[i]] = reader->materials.entries[i].material;
+    for (int32_t i = 0; i < scene->input_count; i++) {
+        const struct obj_triangle *triangle = &reader->triangles[i];
+        for (int k = 0; k < 3; k++)
+            scene->triangles[i].corner[k] = reader->vertices[triangle->corner[k].vertex];
+        scene->material_of[i] = number[triangle->material];
+    }
+    make_groups(reader, scene);
+    if (reader->has_normals)
+        make_normals(reader, scene);
+    alloc_free(number);
+    return scene;
+}
+
+struct scene *obj_of_text(struct text *text, struct obj_repairs *repairs, struct error *error)
+{
+    *repairs = (struct obj_repairs){0};
+    struct obj_reader reader = {.text = *text, .repairs = repairs, .error = error};
+    bool good = read_lines(&reader);
+    text_free(&reader.text);
+    struct scene *scene = good ? make_scene(&reader) : NULL;
+    alloc_free(reader.vertices);
+    alloc_free(reader.normals);
+    alloc_free(reader.triangles);
+    alloc_free(reader.corners);
+    mtl_free(&reader.materials);
+    text_names_free(&reader.libraries);
+    text_names_free(&reader.groups);
+    return scene;
+}
+
+struct scene *obj_read(const char *path, struct obj_repairs *repairs, struct error *error)
+{
+    struct text text;
+    return text_read(&text, path, error) ? obj_of_text(&text, repairs, error) : NULL;
+}

@@ -1,0 +1,68 @@
+/* A hash table of materials, like that of names in io/scene/text.c: a scanned mesh may have as many
+ * colours as faces, and looking through a list would take quadratic time. */
+#include "io/scene/palette.h"
+
+#include <string.h>
+
+#include "geom/alloc.h"
+
+static bool is_same(const struct material *a, const struct material *b)
+{
+    for (int c = 0; c < BANDS; c++)
+        if (a->reflectance.band[c] != b->reflectance.band[c] ||
+            a->emission.band[c] != b->emission.band[c])
+            return false;
+    return true;
+}
+
+static uint64_t mix(uint64_t sum, double value)
+{
+    uint64_t bits;
+    value += 0.0; /* -0 becomes 0 */
+    memcpy(&bits, &value, sizeof bits);
+    sum = (sum ^ bits) * UINT64_C(0x9E3779B97F4A7C15);
+    return sum ^ sum >> 32;
+}
+
+/* The slot of a material, or the empty one where it belongs. */
+static int32_t *find_slot(const struct palette *palette, const struct material *material)
+{
+    uint64_t mask = (uint64_t)palette->slot_count - 1, at = 0;
+    for (int c = 0; c < BANDS; c++)
+        at = mix(mix(at, material->reflectance.band[c]), material->emission.band[c]);
+    at &= mask;
+    while (palette->slots[at] && !is_same(&palette->materials[palette->slots[at] - 1], material))
+        at = (at + 1) & mask;
+    return &palette->slots[at];
+}
+
+static void make_slots(struct palette *palette, int64_t slot_count)
+{
+    alloc_free(palette->slots);
+    palette->slots = alloc_array((size_t)slot_count, sizeof *palette->slots);
+    palette->slot_count = slot_count;
+    for (int32_t i = 0; i < palette->count; i++)
+        *find_slot(palette, &palette->materials[i]) = i + 1;
+}
+
+int32_t palette_add(struct palette *palette, const struct material *material)
+{
+    if (palette->slot_count < 2 * ((int64_t)palette->count + 1))
+        make_slots(palette, palette->slot_count ? 2 * palette->slot_count : 16);
+    int32_t *slot = find_slot(palette, material);
+    if (*slot == 0) {
+        palette->materials = alloc_reserve(palette->materials, &palette->capacity,
+                                           (int64_t)palette->count + 1,
+                                           sizeof *palette->materials);
+        palette->materials[palette->count] = *material;
+        *slot = ++palette->count;
+    }
+    return *slot - 1;
+}
+
+void palette_free(struct palette *palette)
+{
+    alloc_free(palette->materials);
+    alloc_free(palette->slots);
+    *palette = (struct palette){0};
+}

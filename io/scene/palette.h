@@ -1,0 +1,22 @@
+/* Different materials, numbered as they come up. */
+#ifndef IO_SCENE_PALETTE_H
+#define IO_SCENE_PALETTE_H
+
+#include <stdint.h>
+
+#include "geom/scene.h"
+
+/* Starts as {0}. */
+struct palette {
+    struct material *materials; /* [count], no two alike */
+    int32_t count;
+    int64_t capacity;           /* of materials */
+    int32_t *slots;             /* hash table: 0, or the number of a material plus 1 */
+    int64_t slot_count;         /* a power of two, at least twice count */
+};
+
+/* The number of the material, which is added if it is new. Its numbers have to be finite. */
+int32_t palette_add(struct palette *palette, const struct material *material);
+void palette_free(struct palette *palette);
+
+#endif

@@ -1,0 +1,273 @@
+/* Scenes from PLY files.
+ *
+ * Rows come in the order of the file, and faces may come before their vertices. So faces are
+ * kept as numbers of corners until all is read, and become triangles and materials then; their
+ * corners are checked at once, against the number of vertices that the header has declared and
+ * the file must still prove.
+ *
+ * Colours are reflectances as they stand. Modellers write them for the eye, in sRGB or in no
+ * declared space at all, and the format cannot say which; decoding them would make every mesh
+ * that was made for computing wrong, and a 128 would no longer be what a reader of the file
+ * expects, half. Alpha is passed over: surfaces are opaque. */
+#include "io/scene/ply.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "geom/polygon.h"
+#include "geom/stop.h"
+#include "io/scene/palette.h"
+#include "io/scene/plyfile.h"
+
+enum {
+    COUNT_MAX = (1 << 30) - 1, /* vertices; triangles, which with their twins fit an int32_t */
+    CORNER_MAX = 1 << 14       /* corners of one face: cutting it takes quadratic time */
+};
+
+static const struct material NEUTRAL = {{{0.5, 0.5, 0.5}}, {{0.0, 0.0, 0.0}}};
+
+struct face {
+    int64_t first;    /* of its corners */
+    int32_t count;    /* of its corners */
+    int32_t material; /* in the palette */
+};
+
+struct reader {
+    struct ply_file file;
+    struct vec3 *vertices;
+    struct rgb *colours;   /* of the vertices, where faces have none; else NULL */
+    int64_t vertex_count;  /* as the header declares */
+    struct face *faces;
+    int64_t face_count;
+    int32_t *corners;      /* of all faces */
+    int64_t corner_count, corner_capacity;
+    int64_t triangle_count;
+    struct palette palette;
+    struct error *error;
+};
+
+/* True if the element has three properties from `first` on; false also if there is no element. */
+static bool has_three(const struct ply_element *element, enum ply_field first)
+{
+    return element && element->type_of[first] != PLY_NONE &&
+           element->type_of[first + 1] != PLY_NONE && element->type_of[first + 2] != PLY_NONE;
+}
+
+/* What one is in the numbers of a colour. */
+static double unit_of(enum ply_type type)
+{
+    return type >= PLY_FLOAT ? 1.0 : type == PLY_SHORT || type == PLY_USHORT ? 65535.0 : 255.0;
+}
+
+/* Three values of the present row from `first` on, over those that stand for 1. */
+static bool take_rgb(struct reader *reader, const struct ply_element *element,
+                     enum ply_field first, bool scaled, struct rgb *colour)
+{
+    for (int c = 0; c < BANDS; c++) {
+        double value = reader->file.value[(int)first + c];
+        if (value < 0.0)
+            return ply_fail(&reader->file, reader->error, "a negative colour or emission");
+        colour->band[c] = scaled ? value / unit_of(element->type_of[(int)first + c]) : value;
+    }
+    return true;
+}
+
+static bool read_vertices(struct reader *reader, const struct ply_element *element)
+{
+    const double *value = reader->file.value;
+    reader->vertices = alloc_array((size_t)element->count, sizeof *reader->vertices);
+    if (has_three(element, PLY_RED) && !has_three(ply_file_find(&reader->file, PLY_FACE), PLY_RED))
+        reader->colours = alloc_array((size_t)element->count, sizeof *reader->colours);
+    for (int64_t i = 0; i < element->count; i++) {
+        if (!ply_file_row(&reader->file, element, i, reader->error))
+            return false;
+        reader->vertices[i] = (struct vec3){value[PLY_X], value[PLY_Y], value[PLY_Z]};
+        if (reader->colours && !take_rgb(reader, element, PLY_RED, true, &reader->colours[i]))
+            return false;
+    }
+    return true;
+}
+
+static bool check_corners(const struct reader *reader)
+{
+    const struct ply_file *file = &reader->file;
+    char text[100] = "";
+    if (file->corner_count < 3 || file->corner_count > CORNER_MAX)
+        snprintf(text, sizeof text, "%lld corners instead of 3 to %d",
+                 (long long)file->corner_count, CORNER_MAX);
+    for (int64_t i = 0; i < file->corner_count && !text[0]; i++)
+        if (file->corners[i] >= reader->vertex_count)
+            snprintf(text, sizeof text, "corner %ld, but the last vertex is %lld",
+                     (long)file->corners[i], (long long)reader->vertex_count - 1);
+    return !text[0] || ply_fail(file, reader->error, text);
+}
+
+static bool add_face(struct reader *reader, const struct ply_element *element, struct face *face)
+{
+    const struct ply_file *file = &reader->file;
+    struct material material = NEUTRAL;
+    if (!check_corners(reader) ||
+        (has_three(element, PLY_RED) &&
+         !take_rgb(reader, element, PLY_RED, true, &material.reflectance)) ||
+        (has_three(element, PLY_EMISSION_R) &&
+         !take_rgb(reader, element, PLY_EMISSION_R, false, &material.emission)))
+        return false;
+    *face = (struct face){reader->corner_count, (int32_t)file->corner_count,
+                          palette_add(&reader->palette, &material)};
+    reader->corners = alloc_reserve(reader->corners, &reader->corner_capacity,
+                                    reader->corner_count + file->corner_count,
+                                    sizeof *reader->corners);
+    memcpy(reader->corners + reader->corner_count, file->corners,
+           (size_t)file->corner_count * sizeof *file->corners);
+    reader->corner_count += file->corner_count;
+    reader->triangle_count += file->corner_count - 2;
+    return reader->triangle_count <= COUNT_MAX ||
+           ply_fail(file, reader->error, "too many triangles");
+}
+
+static bool read_faces(struct reader *reader, const struct ply_element *element)
+{
+    reader->faces = alloc_array((size_t)element->count, sizeof *reader->faces);
+    reader->face_count = element->count;
+    for (int64_t i = 0; i < element->count; i++)
+        if (!ply_file_row(&reader->file, element, i, reader->error) ||
+            !add_face(reader, element, &reader->faces[i]))
+            return false;
+    return true;
+}
+
+static bool check_header(struct reader *reader)
+{
+    const struct ply_element *vertex = ply_file_find(&reader->file, PLY_VERTEX);
+    const struct ply_element *face = ply_file_find(&reader->file, PLY_FACE);
+    const char *path = reader->file.binary.path;
+    if (!has_three(vertex, PLY_X))
+        return error_set(reader->error, EXIT_USAGE, "%s: no vertices with x, y and z", path);
+    if (!face || face->type_of[PLY_CORNERS] == PLY_NONE || face->count == 0)
+        return error_set(reader->error, EXIT_USAGE, "%s: no faces with vertex_indices", path);
+    reader->vertex_count = vertex->count;
+    if (vertex->count > COUNT_MAX || face->count > COUNT_MAX)
+        return error_set(reader->error, EXIT_USAGE, "%s: more than %d vertices or faces", path,
+                         COUNT_MAX);
+    return true;
+}
+
+static bool read_file(struct reader *reader, const struct binary *binary)
+{
+    struct ply_file *file = &reader->file;
+    bool good = ply_file_open(file, binary, reader->error) && check_header(reader);
+    for (int64_t i = 0; good && i < file->element_count; i++) {
+        const struct ply_element *element = &file->elements[i];
+        switch (element->kind) {
+        case PLY_VERTEX: good = read_vertices(reader, element); break;
+        case PLY_FACE: good = read_faces(reader, element); break;
+        case PLY_OTHER: good = ply_file_skip(file, element, reader->error); break;
+        }
+    }
+    return good && ply_file_end(file, reader->error);
+}
+
+/* Gives the faces the mean colours of their corners; their emission stays. */
+static void mix_colours(struct reader *reader)
+{
+    struct palette mixed = {0};
+    for (int64_t i = 0; i < reader->face_count; i++) {
+        struct face *face = &reader->faces[i];
+        struct material material = reader->palette.materials[face->material];
+        struct rgb sum = {{0.0, 0.0, 0.0}};
+        for (int32_t k = 0; k < face->count; k++)
+            for (int c = 0; c < BANDS; c++)
+                sum.band[c] += reader->colours[reader->corners[face->first + k]].band[c];
+        for (int c = 0; c < BANDS; c++)
+            material.reflectance.band[c] = sum.band[c] / face->count;
+        face->material = palette_add(&mixed, &material);
+    }
+    palette_free(&reader->palette);
+    reader->palette = mixed;
+}
+
+/* Makes a face triangles of the scene, from number `at` on. */
+static void cut_face(const struct reader *reader, const struct face *face, struct scene *scene,
+                     int32_t at)
+{
+    int32_t triangle[3] = {0, 1, 2}, *cut = triangle;
+    struct vec3 *positions = alloc_array((size_t)face->count, sizeof *positions);
+    for (int32_t k = 0; k < face->count; k++)
+        positions[k] = reader->vertices[reader->corners[face->first + k]];
+    if (face->count > 3) {
+        cut = alloc_array(3 * ((size_t)face->count - 2), sizeof *cut);
+        polygon_triangulate(positions, face->count, cut);
+    }
+    for (int32_t k = 0; k < 3 * (face->count - 2); k++) {
+        scene->triangles[at + k / 3].corner[k % 3] = positions[cut[k]];
+        scene->material_of[at + k / 3] = face->material;
+    }
+    alloc_free(positions);
+    if (cut != triangle)
+        alloc_free(cut);
+}
+
+/* NULL if it is stopped. */
+static struct scene *make_scene(const struct reader *reader)
+{
+    struct scene *scene = scene_create((int32_t)reader->triangle_count, reader->palette.count);
+    memcpy(scene->materials, reader->palette.materials,
+           (size_t)reader->palette.count * sizeof *scene->materials);
+    int32_t at = 0;
+    for (int64_t i = 0; i < reader->face_count; i++) {
+        if (!stop_check(reader->error)) {
+            scene_destroy(scene);
+            return NULL;
+        }
+        cut_face(reader, &reader->faces[i], scene, at);
+        at += reader->faces[i].count - 2;
+    }
+    return scene;
+}
+
+struct scene *ply_of_binary(const struct binary *binary, struct error *error)
+{
+    struct reader reader = {.error = error};
+    bool good = read_file(&reader, binary);
+    if (good && reader.colours)
+        mix_colours(&reader);
+    ply_file_close(&reader.file);
+    struct scene *scene = good ? make_scene(&reader) : NULL;
+    alloc_free(reader.vertices);
+    alloc_free(reader.colours);
+    alloc_free(reader.faces);
+    alloc_free(reader.corners);
+    palette_free(&reader.palette);
+    return scene;
+}
+
+struct scene *ply_read(const char *path, struct error *error)
+{
+    struct binary binary;
+    return ply_file_load(&binary, path, error) ? ply_of_binary(&binary, error) : NULL;
+}
+
+static bool has_suffix(const char *path, const char *suffix)
+{
+    size_t length = strlen(path), tail = strlen(suffix);
+    const char *end = length > tail ? path + length - tail : "";
+    while (*end && tolower((unsigned char)*end) == *suffix) {
+        end++;
+        suffix++;
+    }
+    return length > tail && *end == '\0';
+}
+
+bool ply_is_meant(const char *path)
+{
+    if (has_suffix(path, ".ply") || has_suffix(path, ".obj"))
+        return has_suffix(path, ".ply");
+    char start[5] = "";
+    FILE *file = fopen(path, "rb");
+    bool seen = file && fseek(file, 0, SEEK_SET) == 0 && fread(start, 1, 4, file) == 4;
+    if (file)
+        fclose(file);
+    return seen && strncmp(start, "ply", 3) == 0 && (start[3] == '\n' || start[3] == '\r');
+}

@@ -1,0 +1,419 @@
+/* Reading PLY files row by row.
+ *
+ * The header is a list of claims, and each is held against the size of the file before anything
+ * is allocated or counted: a row has at least the bytes of its scalars and of its lists' counts,
+ * or, as text, two characters for each value. So a file of a hundred bytes cannot ask for a
+ * billion vertices. A list is believed when its items are there.
+ *
+ * A row of a text file is a line, as the format's description has it. Readers that take words
+ * wherever they stand forgive broken lines, but one value too many then shifts all that follow,
+ * which is a wrong scene without a message. For the same reason nothing may be left behind the
+ * last row but blanks.
+ *
+ * Values that nobody wants are passed over unseen, be they NaN. All others have to be finite.
+ * Types are those of the header for binary files only: a text file may write 300 for a uchar. */
+#include "io/scene/plyfile.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "geom/stop.h"
+#include "io/scene/text.h"
+
+static const struct {
+    const char *name, *other;
+    int size; /* bytes */
+} TYPES[] = {{"char", "int8", 1},     {"uchar", "uint8", 1},    {"short", "int16", 2},
+             {"ushort", "uint16", 2}, {"int", "int32", 4},      {"uint", "uint32", 4},
+             {"float", "float32", 4}, {"double", "float64", 8}};
+
+static const struct {
+    enum ply_kind kind;
+    const char *name;
+    enum ply_field field;
+} FIELDS[] = {{PLY_VERTEX, "x", PLY_X},
+              {PLY_VERTEX, "y", PLY_Y},
+              {PLY_VERTEX, "z", PLY_Z},
+              {PLY_VERTEX, "red", PLY_RED},
+              {PLY_VERTEX, "green", PLY_GREEN},
+              {PLY_VERTEX, "blue", PLY_BLUE},
+              {PLY_FACE, "vertex_indices", PLY_CORNERS},
+              {PLY_FACE, "vertex_index", PLY_CORNERS},
+              {PLY_FACE, "red", PLY_RED},
+              {PLY_FACE, "green", PLY_GREEN},
+              {PLY_FACE, "blue", PLY_BLUE},
+              {PLY_FACE, "emission_r", PLY_EMISSION_R},
+              {PLY_FACE, "emission_g", PLY_EMISSION_G},
+              {PLY_FACE, "emission_b", PLY_EMISSION_B},
+              {PLY_FACE, "radiosity_r", PLY_RADIOSITY_R},
+              {PLY_FACE, "radiosity_g", PLY_RADIOSITY_G},
+              {PLY_FACE, "radiosity_b", PLY_RADIOSITY_B},
+              {PLY_FACE, "root", PLY_ROOT},
+              {PLY_FACE, "hierarchy", PLY_HIERARCHY}};
+
+static const char *const ROW_NAMES[] = {"vertex", "face", "row"};
+
+/* --- the header --- */
+
+/* The next line without its end, or NULL behind the last one. */
+static char *next_line(struct ply_file *file)
+{
+    struct binary *binary = &file->binary;
+    if (binary_left(binary) == 0)
+        return NULL;
+    char *line = binary->data + binary->position;
+    char *end = memchr(line, file->line_end, (size_t)binary_left(binary));
+    binary->position = end ? end + 1 - binary->data : binary->size;
+    end = end ? end : binary->data + binary->size;
+    *end = '\0';
+    if (end > line && end[-1] == '\r')
+        end[-1] = '\0';
+    file->line = binary->line++;
+    return line;
+}
+
+static bool fail_word(const struct ply_file *file, struct error *error, const char *what,
+                        const char *word)
+{
+    return error_set(error, EXIT_USAGE, "%s:%ld: %s '%.40s'", file->binary.path, file->line, what,
+                     word ? word : "");
+}
+
+static bool read_format(struct ply_file *file, char *rest, bool *known, struct error *error)
+{
+    const char *name = text_word(&rest), *version = text_word(&rest);
+    if (*known)
+        return fail_word(file, error, "a second format", name);
+    *known = true;
+    file->ascii = name && strcmp(name, "ascii") == 0;
+    file->big_endian = name && strcmp(name, "binary_big_endian") == 0;
+    if (!file->ascii && !file->big_endian &&
+        (!name || strcmp(name, "binary_little_endian") != 0))
+        return fail_word(file, error, "unknown format", name);
+    if (!version || strcmp(version, "1.0") != 0)
+        return fail_word(file, error, "unknown version of the format", version);
+    return true;
+}
+
+static bool read_element(struct ply_file *file, char *rest, struct error *error)
+{
+    const char *name = text_word(&rest), *count = text_word(&rest);
+    struct ply_element element = {.kind = PLY_OTHER, .property = file->property_count,
+                                  .line = file->line};
+    for (int field = 0; field < PLY_FIELDS; field++)
+        element.type_of[field] = PLY_NONE;
+    if (name && strcmp(name, "vertex") == 0)
+        element.kind = PLY_VERTEX;
+    else if (name && strcmp(name, "face") == 0)
+        element.kind = PLY_FACE;
+    const char *digits = count;
+    if (!count || !text_integer(&digits, &element.count) || *digits || element.count < 0)
+        return fail_word(file, error, "bad number of elements", count);
+    if (element.kind != PLY_OTHER && ply_file_find(file, element.kind))
+        return fail_word(file, error, "a second element", name);
+    file->elements = alloc_reserve(file->elements, &file->element_capacity,
+                                   file->element_count + 1, sizeof *file->elements);
+    file->elements[file->element_count++] = element;
+    return true;
+}
+
+static enum ply_type find_type(const char *word)
+{
+    for (int i = 0; word && i < PLY_NONE; i++)
+        if (strcmp(word, TYPES[i].name) == 0 || strcmp(word, TYPES[i].other) == 0)
+            return (enum ply_type)i;
+    return PLY_NONE;
+}
+
+static enum ply_field find_field(enum ply_kind kind, const char *name)
+{
+    for (size_t i = 0; i < sizeof FIELDS / sizeof FIELDS[0]; i++)
+        if (FIELDS[i].kind == kind && strcmp(name, FIELDS[i].name) == 0)
+            return FIELDS[i].field;
+    return PLY_FIELDS;
+}
+
+/* Corners are lists of integers, all others are single numbers. */
+static bool check_field(struct ply_file *file, struct ply_element *element,
+                        const struct ply_property *property, const char *name,
+                        struct error *error)
+{
+    bool list = property->count_type != PLY_NONE;
+    if (property->field == PLY_FIELDS)
+        return true;
+    if (list != (property->field == PLY_CORNERS) || (list && property->type >= PLY_FLOAT))
+        return fail_word(file, error, "the wrong kind of property for", name);
+    if (element->type_of[property->field] != PLY_NONE)
+        return fail_word(file, error, "a second property", name);
+    element->type_of[property->field] = (enum ply_type)property->type;
+    return true;
+}
+
+static bool read_property(struct ply_file *file, char *rest, struct error *error)
+{
+    if (file->element_count == 0)
+        return fail_word(file, error, "a property before any element:", rest);
+    struct ply_element *element = &file->elements[file->element_count - 1];
+    const char *word = text_word(&rest);
+    bool list = word && strcmp(word, "list") == 0;
+    enum ply_type count_type = list ? find_type(text_word(&rest)) : PLY_NONE;
+    const char *type_name = list ? text_word(&rest) : word, *name = text_word(&rest);
+    enum ply_type type = find_type(type_name);
+    if (type == PLY_NONE || !name || (list && count_type >= PLY_FLOAT))
+        return fail_word(file, error, "bad property", name);
+    struct ply_property property = {.type = (uint8_t)type, .count_type = (uint8_t)count_type,
+                                    .field = (uint8_t)find_field(element->kind, name)};
+    file->properties = alloc_reserve(file->properties, &file->property_capacity,
+                                     file->property_count + 1, sizeof *file->properties);
+    file->properties[file->property_count++] = property;
+    element->property_count++;
+    element->has_list = element->has_list || list;
+    element->row_size += TYPES[list ? count_type : type].size;
+    return check_field(file, element, &property, name, error);
+}
+
+/* Holds what the elements claim against the size of the file. */
+static bool check_claims(struct ply_file *file, struct error *error)
+{
+    const struct binary *binary = &file->binary;
+    if (file->ascii && (int64_t)strlen(binary->data + binary->position) < binary_left(binary))
+        return error_set(error, EXIT_USAGE, "%s: not text, though its header says ascii",
+                         binary->path);
+    int64_t left = binary_left(binary) + (file->ascii ? 1 : 0); /* a last line without end */
+    for (int64_t i = 0; i < file->element_count; i++) {
+        struct ply_element *element = &file->elements[i];
+        if (file->ascii)
+            element->row_size = 2 * element->property_count;
+        if (element->row_size > 0 && element->count > left / element->row_size)
+            return error_set(error, EXIT_USAGE,
+                             "%s:%ld: the file is too short for %lld elements of this kind",
+                             binary->path, element->line, (long long)element->count);
+    }
+    return true;
+}
+
+static bool read_header(struct ply_file *file, struct error *error)
+{
+    bool known = false, good = true;
+    const char *keyword = NULL;
+    next_line(file);
+    for (char *rest; good && (rest = next_line(file)) != NULL;) {
+        keyword = text_word(&rest);
+        if (!keyword || strcmp(keyword, "comment") == 0 || strcmp(keyword, "obj_info") == 0)
+            continue;
+        if (strcmp(keyword, "format") == 0)
+            good = read_format(file, rest, &known, error);
+        else if (strcmp(keyword, "element") == 0)
+            good = read_element(file, rest, error);
+        else if (strcmp(keyword, "property") == 0)
+            good = read_property(file, rest, error);
+        else if (strcmp(keyword, "end_header") == 0)
+            return known ? check_claims(file, error)
+                         : fail_word(file, error, "no format before", keyword);
+        else
+            good = fail_word(file, error, "unknown line of the header:", keyword);
+    }
+    return good && error_set(error, EXIT_USAGE, "%s:%ld: the header has no end",
+                             file->binary.path, file->line);
+}
+
+bool ply_file_load(struct binary *binary, const char *path, struct error *error)
+{
+    return binary_read(binary, path, "ply", "a PLY file", error);
+}
+
+bool ply_file_open(struct ply_file *file, const struct binary *binary, struct error *error)
+{
+    *file = (struct ply_file){.binary = *binary, .row_name = ROW_NAMES[PLY_OTHER]};
+    char end = binary->data[3];
+    if (end != '\n' && end != '\r')
+        return error_set(error, EXIT_USAGE, "%s: not a PLY file", binary->path);
+    file->line_end = end == '\r' && binary->data[4] != '\n' ? '\r' : '\n';
+    return read_header(file, error);
+}
+
+void ply_file_close(struct ply_file *file)
+{
+    binary_free(&file->binary);
+    alloc_free(file->elements);
+    alloc_free(file->properties);
+    alloc_free(file->corners);
+    *file = (struct ply_file){0};
+}
+
+const struct ply_element *ply_file_find(const struct ply_file *file, enum ply_kind kind)
+{
+    for (int64_t i = 0; i < file->element_count; i++)
+        if (file->elements[i].kind == kind)
+            return &file->elements[i];
+    return NULL;
+}
+
+/* --- the rows --- */
+
+bool ply_fail(const struct ply_file *file, struct error *error, const char *text)
+{
+    if (file->ascii)
+        return error_set(error, EXIT_USAGE, "%s:%ld: %s", file->binary.path, file->line, text);
+    return error_set(error, EXIT_USAGE, "%s: %s %lld: %s", file->binary.path, file->row_name,
+                     (long long)file->row, text);
+}
+
+static bool fail_short(const struct ply_file *file, struct error *error)
+{
+    return error_set(error, EXIT_USAGE, "%s: the file ends in %s %lld", file->binary.path,
+                     file->row_name, (long long)file->row);
+}
+
+static double decode(const char *at, enum ply_type type, bool big_endian)
+{
+    int size = TYPES[type].size;
+    if (type == PLY_DOUBLE)
+        return binary_double(at, big_endian);
+    if (type == PLY_FLOAT)
+        return (double)binary_float(at, big_endian);
+    if (type == PLY_CHAR || type == PLY_SHORT || type == PLY_INT)
+        return (double)binary_signed(at, size, big_endian);
+    return (double)binary_integer(at, size, big_endian);
+}
+
+/* The next value of the row; passed over where `value` is NULL. */
+static bool take(struct ply_file *file, enum ply_type type, double *value, struct error *error)
+{
+    if (file->ascii) {
+        const char *word = text_word(&file->rest);
+        if (!word)
+            return ply_fail(file, error, "fewer values than the header says");
+        if (value && !text_is_number(word, value))
+            return fail_word(file, error, "bad number", word);
+    } else {
+        if (binary_left(&file->binary) < TYPES[type].size)
+            return fail_short(file, error);
+        const char *at = file->binary.data + file->binary.position;
+        file->binary.position += TYPES[type].size;
+        if (value)
+            *value = decode(at, type, file->big_endian);
+    }
+    if (value && !(fabs(*value) <= TEXT_NUMBER_MAX))
+        return ply_fail(file, error, "a number is not finite or out of range");
+    return true;
+}
+
+/* The number of items of a list, for which there are bytes left. */
+static bool take_count(struct ply_file *file, const struct ply_property *property, int64_t *count,
+                       struct error *error)
+{
+    double value;
+    if (!take(file, (enum ply_type)property->count_type, &value, error))
+        return false;
+    if (!(value >= 0.0) || value != floor(value))
+        return ply_fail(file, error, "the length of a list is not a natural number");
+    double size = file->ascii ? 1.0 : (double)TYPES[property->type].size;
+    if (value * size > (double)file->binary.size)
+        return file->ascii ? ply_fail(file, error, "fewer values than the header says")
+                           : fail_short(file, error);
+    *count = (int64_t)value;
+    return true;
+}
+
+static bool take_corners(struct ply_file *file, const struct ply_property *property,
+                         struct error *error)
+{
+    int64_t count;
+    if (!take_count(file, property, &count, error))
+        return false;
+    for (file->corner_count = 0; file->corner_count < count; file->corner_count++) {
+        double value;
+        if (!take(file, (enum ply_type)property->type, &value, error))
+            return false;
+        if (!(value >= 0.0 && value <= INT32_MAX) || value != floor(value))
+            return ply_fail(file, error, "a corner is not the number of a vertex");
+        file->corners = alloc_reserve(file->corners, &file->corner_capacity,
+                                      file->corner_count + 1, sizeof *file->corners);
+        file->corners[file->corner_count] = (int32_t)value;
+    }
+    return true;
+}
+
+static bool pass_list(struct ply_file *file, const struct ply_property *property,
+                      struct error *error)
+{
+    int64_t count;
+    if (!take_count(file, property, &count, error))
+        return false;
+    int64_t size = count * TYPES[property->type].size;
+    for (int64_t i = 0; i < count && file->ascii; i++)
+        if (!take(file, (enum ply_type)property->type, NULL, error))
+            return false;
+    if (!file->ascii && size > binary_left(&file->binary))
+        return fail_short(file, error);
+    file->binary.position += file->ascii ? 0 : size;
+    return true;
+}
+
+static bool take_property(struct ply_file *file, const struct ply_property *property,
+                          struct error *error)
+{
+    if (property->field == PLY_CORNERS)
+        return take_corners(file, property, error);
+    if (property->count_type != PLY_NONE)
+        return pass_list(file, property, error);
+    double *value = property->field < PLY_FIELDS ? &file->value[property->field] : NULL;
+    return take(file, (enum ply_type)property->type, value, error);
+}
+
+/* Moves to the next line that is not blank. */
+static bool find_row(struct ply_file *file, struct error *error)
+{
+    do {
+        file->rest = next_line(file);
+        if (!file->rest)
+            return fail_short(file, error);
+        file->rest = text_trim(file->rest);
+    } while (*file->rest == '\0');
+    return true;
+}
+
+bool ply_file_row(struct ply_file *file, const struct ply_element *element, int64_t row,
+                  struct error *error)
+{
+    file->row = row;
+    file->row_name = ROW_NAMES[element->kind];
+    if (!stop_check(error) || (file->ascii && !find_row(file, error)))
+        return false;
+    for (int64_t i = 0; i < element->property_count; i++)
+        if (!take_property(file, &file->properties[element->property + i], error))
+            return false;
+    if (file->ascii && *text_trim(file->rest))
+        return ply_fail(file, error, "more values than the header says");
+    return true;
+}
+
+bool ply_file_skip(struct ply_file *file, const struct ply_element *element,
+                   struct error *error)
+{
+    if (element->property_count == 0)
+        return true;
+    if (!file->ascii && !element->has_list) {
+        file->row_name = ROW_NAMES[element->kind];
+        file->row = binary_left(&file->binary) / element->row_size;
+        if (element->count > file->row)
+            return fail_short(file, error);
+        file->binary.position += element->count * element->row_size;
+        return true;
+    }
+    for (int64_t row = 0; row < element->count; row++)
+        if (!ply_file_row(file, element, row, error))
+            return false;
+    return true;
+}
+
+bool ply_file_end(const struct ply_file *file, struct error *error)
+{
+    if (!binary_is_over(&file->binary))
+        return error_set(error, EXIT_USAGE, "%s: %lld bytes are left behind the last element",
+                         file->binary.path, (long long)binary_left(&file->binary));
+    return true;
+}

@@ -1,0 +1,96 @@
+/* The container format PLY: a header of elements and properties, then rows of values, as text or
+ * binary in either byte order. What the rows mean is the caller's business.
+ *
+ * Understood: `format`, `element`, `property`, `property list`, `comment`, `obj_info`; the types
+ * char uchar short ushort int uint float double and their other names, int8 ... float64. Lines of
+ * the header end in LF, CRLF or CR, as its first one does. Properties without a field below, and
+ * elements that the caller does not read, are passed over by their size. */
+#ifndef IO_SCENE_PLYFILE_H
+#define IO_SCENE_PLYFILE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "geom/error.h"
+#include "io/scene/binary.h"
+
+enum ply_kind { PLY_VERTEX, PLY_FACE, PLY_OTHER };
+
+/* Properties that somebody wants: of vertices, of faces, or of both. */
+enum ply_field {
+    PLY_X, PLY_Y, PLY_Z,
+    PLY_RED, PLY_GREEN, PLY_BLUE,
+    PLY_EMISSION_R, PLY_EMISSION_G, PLY_EMISSION_B,
+    PLY_RADIOSITY_R, PLY_RADIOSITY_G, PLY_RADIOSITY_B,
+    PLY_ROOT, PLY_HIERARCHY,
+    PLY_CORNERS, /* the list vertex_indices or vertex_index */
+    PLY_FIELDS
+};
+
+enum ply_type { PLY_CHAR, PLY_UCHAR, PLY_SHORT, PLY_USHORT, PLY_INT, PLY_UINT, PLY_FLOAT,
+                PLY_DOUBLE, PLY_NONE };
+
+struct ply_property {
+    uint8_t type;       /* enum ply_type of the value, or of a list's items */
+    uint8_t count_type; /* of a list's count; PLY_NONE: no list */
+    uint8_t field;      /* enum ply_field; PLY_FIELDS: passed over */
+};
+
+struct ply_element {
+    enum ply_kind kind;
+    int64_t count;         /* rows, as the header claims */
+    int64_t property;      /* number of its first property */
+    int64_t property_count;
+    int64_t row_size;      /* bytes that a row has at least, with empty lists */
+    bool has_list;
+    long line;             /* of the header, where it is declared */
+    enum ply_type type_of[PLY_FIELDS]; /* PLY_NONE where it has no such property */
+};
+
+struct ply_file {
+    struct binary binary;
+    bool ascii, big_endian;
+    char line_end;                   /* the last character of a line */
+    struct ply_element *elements;    /* [element_count], in the order of the file */
+    int64_t element_count, element_capacity;
+    struct ply_property *properties; /* [property_count], element by element */
+    int64_t property_count, property_capacity;
+    double value[PLY_FIELDS];        /* of the row that was read last */
+    int32_t *corners;                /* [corner_count] of it, each >= 0 */
+    int64_t corner_count, corner_capacity;
+    int64_t row;                     /* its number, from 0 */
+    const char *row_name;            /* "vertex", "face" or "row", for messages */
+    long line;                       /* of the text line that was read last */
+    char *rest;                      /* what is left of it */
+};
+
+/* Reads the file. Errors: "PATH: not a PLY file" among those of binary_read(). */
+bool ply_file_load(struct binary *binary, const char *path, struct error *error);
+
+/* Reads the header of a file in memory, which it takes over. To be closed in any case.
+ * Errors: "PATH:LINE: what is wrong"; EXIT_USAGE. An element that claims more rows than the file
+ * has bytes for is one of them. */
+bool ply_file_open(struct ply_file *file, const struct binary *binary, struct error *error);
+void ply_file_close(struct ply_file *file);
+
+/* The first element of the kind, or NULL. */
+const struct ply_element *ply_file_find(const struct ply_file *file, enum ply_kind kind);
+
+/* Reads row `row` of the element into `file`; the rows are to be read in order, the elements too.
+ * Numbers are at most TEXT_NUMBER_MAX in magnitude, and corners fit an int32_t.
+ * Errors: as ply_fail(), for what is cut off, not a number, infinite, out of range. */
+bool ply_file_row(struct ply_file *file, const struct ply_element *element, int64_t row,
+                  struct error *error);
+
+/* Passes over all rows of an element. Errors: the same. */
+bool ply_file_skip(struct ply_file *file, const struct ply_element *element,
+                   struct error *error);
+
+/* To be called behind the last element. Errors: something other than blanks is left. */
+bool ply_file_end(const struct ply_file *file, struct error *error);
+
+/* Sets an error at the present row: "PATH:LINE: TEXT" in a text file, else "PATH: face 3: TEXT".
+ * Returns false. */
+bool ply_fail(const struct ply_file *file, struct error *error, const char *text);
+
+#endif

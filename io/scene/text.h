@@ -1,0 +1,77 @@
+/* Text files: whole in memory, handed out in logical lines, words and numbers; and sets of
+ * names that occur in them. */
+#ifndef IO_SCENE_TEXT_H
+#define IO_SCENE_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "geom/error.h"
+
+/* Numbers larger than this in magnitude are out of the program's range: squares and products
+ * of three of them must not overflow. */
+#define TEXT_NUMBER_MAX 1e100
+
+struct text {
+    const char *path;  /* borrowed from the caller of text_read() */
+    char *bytes;       /* [size], and a zero behind; lines and words are cut out in place */
+    int64_t size;      /* bytes */
+    int64_t position;  /* where the next line starts */
+    long line;         /* number of the physical line where the last logical line started */
+    long next_line;    /* number of the physical line at `position` */
+    bool unreadable;   /* text_read() failed since the system does not give the file */
+};
+
+/* Reads the file `path`; a UTF-8 byte order mark is skipped. Owned by the caller until
+ * text_free(), which is allowed (not needed) after a failure.
+ * Errors: "PATH: cannot read: REASON" (then `unreadable` is set); "PATH: not a text file" for
+ * control characters other than blanks and line ends; "PATH: is UTF-16; save it as UTF-8". All
+ * ask for EXIT_USAGE. */
+bool text_read(struct text *text, const char *path, struct error *error);
+void text_free(struct text *text);
+
+/* The same for a copy of `size` bytes in memory, which errors call `path`. */
+bool text_of_bytes(struct text *text, const char *path, const void *bytes, size_t size,
+                   struct error *error);
+
+/* The next logical line, without its end, or NULL behind the last one. Lines end in LF, CRLF,
+ * CR, or with the file. A line that ends in a backslash goes on in the next one, as if after a
+ * blank; a comment (its first word starts with '#') does not. Lives as long as the text. */
+char *text_line(struct text *text);
+
+/* Cuts the next word off `*rest`, which moves behind it, or returns NULL at the end of the line
+ * or at a word that starts with '#'. */
+char *text_word(char **rest);
+
+/* The text without the blanks around it; cut in place. */
+char *text_trim(char *rest);
+
+/* True if the whole word is a decimal number such as 1, +1, -.5, 1. or 1e-3 that a double can
+ * hold, which is then in `*value`. NaN, infinity, hexadecimal numbers and overflow are not;
+ * what is too small for a double is rounded to one. */
+bool text_is_number(const char *word, double *value);
+
+/* The same for numbers up to TEXT_NUMBER_MAX.
+ * Errors: "PATH:LINE: bad number 'WORD'", or that it is out of range. */
+bool text_number(const struct text *text, const char *word, double *value,
+                 struct error *error);
+
+/* Reads a decimal integer at `*cursor` and moves it behind. False if there is none. Beyond
+ * +-10^18 the value stays at a number of that size. */
+bool text_integer(const char **cursor, int64_t *value);
+
+/* Different names, numbered 0, 1, 2, ... in the order in which they were added. Starts as {0}. */
+struct text_names {
+    char **name;       /* [count] */
+    int32_t count;
+    int64_t capacity;  /* of name */
+    int32_t *slots;    /* hash table: 0, or the number of a name plus 1 */
+    int64_t slot_count; /* a power of two, at least twice count */
+};
+
+/* The number of `name`, which is added (copied) if it is new. */
+int32_t text_names_add(struct text_names *names, const char *name);
+void text_names_free(struct text_names *names);
+
+#endif

@@ -1,0 +1,343 @@
+/* Tests of io/scene/camera.h. Proved are: what a view file means and which line of it is wrong; that
+ * rays make the angles that trigonometry says; and that a camera that frames a scene has all of it
+ * in its picture, and little more. */
+#include "io/scene/camera.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/random.h"
+#include "tests/tap.h"
+
+#define VIEW "build/camera_test.view"
+#define PLACE "eye 0 0 5\nat 0 0 0\n" /* two lines that every view needs */
+
+static const double PI = 3.14159265358979323846;
+static struct error error;
+
+static bool read_view(const char *text, struct camera *camera)
+{
+    error = (struct error){EXIT_DONE, ""};
+    FILE *file = fopen(VIEW, "wb");
+    if (!file || fputs(text, file) < 0 || fclose(file) != 0) {
+        printf("Bail out! cannot write %s (is there a folder build?)\n", VIEW);
+        exit(1);
+    }
+    return camera_read(VIEW, camera, &error);
+}
+
+static bool is_point(struct vec3 x, double a, double b, double c)
+{
+    return x.x == a && x.y == b && x.z == c;
+}
+
+/* --- view files --- */
+
+static void test_keywords(void)
+{
+    struct camera camera;
+    tap_ok(read_view("# all\r\nsize 640 480 # pixels\n\nup 0 0 2\n  fov 30.5\nat 1 -2 3\n"
+                     "eye 4 \\\n5e-1 -6\n", &camera) &&
+               is_point(camera.eye, 4, 0.5, -6) && is_point(camera.at, 1, -2, 3) &&
+               is_point(camera.up, 0, 0, 2) && camera.fov == 30.5 && camera.width == 640 &&
+               camera.height == 480 && !camera.fronts_only,
+           "all keywords, in any order, with comments");
+    tap_ok(read_view(PLACE, &camera) && is_point(camera.eye, 0, 0, 5) &&
+               is_point(camera.at, 0, 0, 0) && is_point(camera.up, 0, 1, 0) && camera.fov == 45.0 &&
+               camera.width == 512 && camera.height == 512,
+           "defaults");
+    tap_ok(read_view("eye 0 9 0\nat 0 1 0\n", &camera) && is_point(camera.up, 0, 0, 1),
+           "looking along the default up, up is z");
+    tap_ok(read_view(PLACE "size 1 32768\nfov 179.9\n", &camera) && camera.width == 1 &&
+               camera.height == 32768,
+           "extreme sizes and angles");
+    tap_ok(read_view("eye 0 0 1e100\nat 0 0 0\nup 1e100 1e100 0\n", &camera) &&
+               fabs(vec3_length(camera_ray(&camera, 256.0, 256.0)) - 1.0) < 1e-15 &&
+               vec3_length(camera_ray(&camera, 0.0, 0.0)) < 2.0,
+           "extreme coordinates");
+}
+
+static void check_refused(const char *text, const char *message)
+{
+    struct camera camera;
+    bool read = read_view(text, &camera);
+    bool right = !read && error.code == EXIT_USAGE && strcmp(error.text, message) == 0;
+    tap_ok(right, "%s%s%s", message, right ? "" : " is not: ", right ? "" : error.text);
+}
+
+static void test_bad_lines(void)
+{
+    check_refused("eye 1 2\n", VIEW ":1: 3 numbers are needed");
+    check_refused(PLACE "up\n", VIEW ":3: 3 numbers are needed");
+    check_refused(PLACE "fov\n", VIEW ":3: 1 number is needed");
+    check_refused(PLACE "\nsize 5\n", VIEW ":4: 2 numbers are needed");
+    check_refused(PLACE "at 1 2 3 4\n", VIEW ":3: unexpected '4'");
+    check_refused(PLACE "fov 45 degrees\n", VIEW ":3: unexpected 'degrees'");
+    check_refused(PLACE "size 5 5 5\n", VIEW ":3: unexpected '5'");
+    check_refused("eye 0 nan 0\n", VIEW ":1: bad number 'nan'");
+    check_refused("eye 0 0 5\r\nat 0 0 0x1\r\n", VIEW ":2: bad number '0x1'");
+    check_refused("eye 0 0 \\\n1e101\n", VIEW ":1: number '1e101' is out of range");
+    check_refused("# c\n\nEye 0 0 0\n", VIEW ":3: unknown keyword 'Eye'");
+    check_refused(PLACE "zoom 3\nfov 0\n", VIEW ":3: unknown keyword 'zoom'");
+}
+
+static void test_bad_values(void)
+{
+    static const char *const fovs[] = {"0", "-1", "180", "1e9"};
+    static const char *const sizes[] = {"0 5", "5 0", "-5 5", "5.5 5", "5 32769", "1e9 1"};
+    char text[100];
+    for (size_t i = 0; i < sizeof fovs / sizeof fovs[0]; i++) {
+        snprintf(text, sizeof text, PLACE "fov %s\n", fovs[i]);
+        check_refused(text, VIEW ":3: fov must lie between 0 and 180 degrees");
+    }
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        snprintf(text, sizeof text, PLACE "\n\nsize %s\n", sizes[i]);
+        check_refused(text, VIEW ":5: a size is a whole number from 1 to 32768");
+    }
+}
+
+/* What is wrong with the file as a whole has no line. */
+static void test_bad_views(void)
+{
+    check_refused("", VIEW ": no 'eye' line");
+    check_refused("eye 1 2 3\n", VIEW ": no 'at' line");
+    check_refused("at 1 2 3\nfov 45\n", VIEW ": no 'eye' line");
+    check_refused("eye 1 2 3\nat 1 2 3\n", VIEW ": eye and at are the same point");
+    check_refused(PLACE "up 0 0 -3\n", VIEW ": up points along the viewing direction");
+    check_refused("up 0 1 0\neye 0 9 0\nat 0 1 0\n",
+                  VIEW ": up points along the viewing direction");
+    check_refused(PLACE "up 0 0 0\n", VIEW ": up points along the viewing direction");
+    check_refused(PLACE "\001\n", VIEW ": not a text file");
+}
+
+/* Reads `size` bytes as a view file. True if that ends well or in one line that names the file. */
+static bool ends_well(const char *bytes, size_t size)
+{
+    struct camera camera;
+    error = (struct error){EXIT_DONE, ""};
+    FILE *file = fopen(VIEW, "wb");
+    bool written = file && fwrite(bytes, 1, size, file) == size;
+    if ((file && fclose(file) != 0) || !written)
+        return false;
+    if (camera_read(VIEW, &camera, &error))
+        return error.code == EXIT_DONE && camera.fov > 0.0 && camera.fov < 180.0 &&
+               camera.width >= 1 && camera.height >= 1;
+    return error.code == EXIT_USAGE && strncmp(error.text, VIEW ":", strlen(VIEW) + 1) == 0 &&
+           !strchr(error.text, '\n');
+}
+
+static void test_damaged_views(void)
+{
+    static const char GOOD[] = "# a camera\r\neye 1 2.5e0 -3\nat 0 0 \\\n0\nup 0 1 0\n"
+                               "fov 39.3\nsize 64 48\n";
+    char bytes[sizeof GOOD];
+    size_t size = sizeof GOOD - 1, right = 0;
+    for (size_t cut = 0; cut <= size; cut++)
+        right += ends_well(GOOD, cut);
+    tap_ok(right == size + 1, "a view cut at every byte ends well or is refused");
+    right = 0;
+    for (size_t i = 0; i < size; i++) {
+        static const int FLIPS[] = {0x01, 0x02, 0x04, 0x08, 0x10, 0x20, 0x40, 0x80, 0xff};
+        for (size_t k = 0; k < sizeof FLIPS / sizeof FLIPS[0]; k++) {
+            memcpy(bytes, GOOD, size);
+            bytes[i] = (char)(bytes[i] ^ FLIPS[k]);
+            right += ends_well(bytes, size);
+        }
+    }
+    tap_ok(right == 9 * size, "with every bit and every byte flipped, too");
+}
+
+static void test_missing_view(void)
+{
+    struct camera camera;
+    error = (struct error){EXIT_DONE, ""};
+    tap_ok(!camera_read("build/camera_test_absent", &camera, &error) && error.code == EXIT_USAGE &&
+               strncmp(error.text, "build/camera_test_absent: cannot read: ", 39) == 0,
+           "%s", error.text);
+}
+
+/* --- rays --- */
+
+/* A ray as (right, up) per unit of forward, in the frame of a camera at (0, 0, 5) that looks
+ * along -z: right is x and up is y. */
+static struct vec3 slope(const struct camera *camera, double x, double y)
+{
+    struct vec3 ray = camera_ray(camera, x, y);
+    return (struct vec3){ray.x / -ray.z, ray.y / -ray.z, 0.0};
+}
+
+/* 1e-14 is about 60 roundings; the tangent is as wrong as its angle times 1 + tan^2. */
+static bool is_tangent(double found, double angle)
+{
+    double t = tan(angle);
+    return fabs(found - t) <= 1e-14 * (1.0 + t * t);
+}
+
+static void check_angles(struct camera *camera, double fov, int width, int height)
+{
+    double half = fov * PI / 360.0, aspect = (double)width / height;
+    camera->fov = fov;
+    camera->width = width;
+    camera->height = height;
+    struct vec3 middle = slope(camera, 0.5 * width, 0.5 * height);
+    struct vec3 top = slope(camera, 0.5 * width, 0.0), bottom = slope(camera, 0.5 * width, height);
+    struct vec3 left = slope(camera, 0.0, 0.5 * height), right = slope(camera, width, 0.5 * height);
+    tap_ok(is_point(middle, 0.0, 0.0, 0.0) && is_tangent(top.y, half) &&
+               is_tangent(-bottom.y, half) && top.x == 0.0 && bottom.x == 0.0,
+           "%g degrees, %d x %d: up and down", fov, width, height);
+    tap_ok(is_tangent(right.x / aspect, half) && is_tangent(-left.x / aspect, half) &&
+               left.y == 0.0 && right.y == 0.0,
+           "%g degrees, %d x %d: left and right", fov, width, height);
+}
+
+static void test_angles(void)
+{
+    static const double fovs[] = {0.001, 1.0, 20.0, 39.3076, 45.0, 60.0, 90.0, 120.0, 150.0, 179.0};
+    struct camera camera;
+    read_view(PLACE, &camera);
+    for (size_t i = 0; i < sizeof fovs / sizeof fovs[0]; i++)
+        check_angles(&camera, fovs[i], 512, 512);
+    check_angles(&camera, 40.0, 800, 400);
+    check_angles(&camera, 40.0, 400, 800);
+    check_angles(&camera, 40.0, 1, 1);
+    check_angles(&camera, 40.0, 32768, 3);
+}
+
+static struct vec3 random_point(struct random *random)
+{
+    double x = random_unit(random) - 0.5, y = random_unit(random) - 0.5;
+    return (struct vec3){x, y, random_unit(random) - 0.5};
+}
+
+/* Any camera: the centre ray goes to `at`, the one above it lies in the plane of `up`. */
+static void test_directions(void)
+{
+    struct random random = random_seed(5);
+    struct camera camera = {.fov = 50.0, .width = 300, .height = 200};
+    int right = 0;
+    for (int i = 0; i < 1000; i++) {
+        camera.eye = random_point(&random);
+        camera.at = random_point(&random);
+        camera.up = random_point(&random);
+        struct vec3 forward = vec3_sub(camera.at, camera.eye);
+        struct vec3 side = vec3_cross(forward, camera.up);
+        struct vec3 middle = camera_ray(&camera, 150.0, 100.0);
+        struct vec3 top = camera_ray(&camera, 150.0, 0.0);
+        double size = vec3_length(forward);
+        double sine = vec3_length(side) / (size * vec3_length(camera.up)); /* up is as good */
+        right += fabs(vec3_dot(middle, forward) / size - 1.0) < 1e-14 &&
+                 vec3_length(vec3_cross(middle, forward)) < 1e-14 * size &&
+                 fabs(vec3_dot(top, side)) < 1e-14 / sine * vec3_length(side) &&
+                 vec3_dot(top, camera.up) > vec3_dot(middle, camera.up);
+    }
+    tap_ok(right == 1000, "1000 cameras look at `at` with `up` above (%d)", right);
+}
+
+/* --- a camera that frames a scene --- */
+
+/* Whether the point is in front of the camera and in its picture. Solves
+ * point - eye = depth * middle + across * (one pixel right) + down * (one pixel down). */
+static bool camera_sees(const struct camera *camera, struct vec3 point)
+{
+    double x = 0.5 * camera->width, y = 0.5 * camera->height;
+    struct vec3 middle = camera_ray(camera, x, y), to = vec3_sub(point, camera->eye);
+    struct vec3 pixel = vec3_sub(camera_ray(camera, x + 1.0, y), middle);
+    struct vec3 line = vec3_sub(camera_ray(camera, x, y + 1.0), middle);
+    double depth = vec3_dot(to, middle) / vec3_dot(middle, middle);
+    double across = vec3_dot(to, pixel) / vec3_dot(pixel, pixel) / depth;
+    double down = vec3_dot(to, line) / vec3_dot(line, line) / depth;
+    return depth > 0.0 && fabs(across) <= x && fabs(down) <= y;
+}
+
+/* A scene that is one triangle with the bounding box `low`, `high`. */
+static struct scene *make_scene(struct vec3 low, struct vec3 high)
+{
+    struct scene *scene = scene_create(1, 1);
+    struct scene_repairs repairs = {0};
+    error = (struct error){EXIT_DONE, ""};
+    scene->triangles[0] =
+        (struct triangle){{low, {high.x, low.y, high.z}, {high.x, high.y, low.z}}};
+    scene_prepare(scene, &repairs, &error);
+    return scene;
+}
+
+/* Whether a camera in the direction `towards` has the whole box in its picture, and one a fifth
+ * nearer has not. */
+static bool box_is_framed(struct vec3 low, struct vec3 high, struct vec3 towards)
+{
+    struct scene *scene = make_scene(low, high);
+    struct camera camera = {.up = {0.0, 1.0, 0.0}, .fov = 40.0, .width = 150, .height = 400};
+    camera_frame(&camera, scene, towards);
+    struct camera nearer = camera;
+    nearer.eye = vec3_add(vec3_scale(camera.eye, 0.8), vec3_scale(camera.at, 0.2));
+    bool seen = error.code == EXIT_DONE, near_sees = true;
+    for (int k = 0; k < 8; k++) {
+        struct vec3 corner = {k & 1 ? low.x : high.x, k & 2 ? low.y : high.y,
+                              k & 4 ? low.z : high.z};
+        seen = seen && camera_sees(&camera, corner);
+        near_sees = near_sees && camera_sees(&nearer, corner);
+    }
+    struct vec3 eye = camera.eye;
+    bool inside = eye.x >= low.x && eye.x <= high.x && eye.y >= low.y && eye.y <= high.y &&
+                  eye.z >= low.z && eye.z <= high.z;
+    scene_destroy(scene);
+    return seen && !near_sees && !inside;
+}
+
+static void check_box(const char *name, struct vec3 low, struct vec3 high)
+{
+    tap_ok(box_is_framed(low, high, (struct vec3){0.4, 0.35, 1.0}) &&
+               box_is_framed(low, high, (struct vec3){0.0, 0.0, -1.0}),
+           "all corners are seen: %s", name);
+}
+
+static void test_boxes(void)
+{
+    struct vec3 zero = {0.0, 0.0, 0.0};
+    check_box("a cube", zero, (struct vec3){1.0, 1.0, 1.0});
+    check_box("the Cornell box", zero, (struct vec3){556.0, 548.8, 559.2});
+    check_box("a plate", zero, (struct vec3){8.0, 0.0, 5.0});
+    check_box("a wall", zero, (struct vec3){0.0, 3.0, 5.0});
+    check_box("a corridor along x", zero, (struct vec3){100.0, 3.0, 2.0});
+    check_box("a tower", zero, (struct vec3){2.0, 100.0, 3.0});
+    check_box("a corridor towards the eye", zero, (struct vec3){3.0, 2.0, 100.0});
+    check_box("far from the origin", (struct vec3){1e6, -3e6, 5e5},
+              (struct vec3){1e6 + 1.0, -3e6 + 2.0, 5e5 + 3.0});
+    check_box("small", zero, (struct vec3){1e-9, 2e-9, 1e-9});
+    check_box("large", (struct vec3){-1e9, -1e9, -1e9}, (struct vec3){1e9, 1e9, 1e9});
+    /* half its diagonal is the way from `at` straight up to the edge of the picture */
+    check_box("a leaning pole", zero, (struct vec3){0.0099, 0.9996, 0.028});
+}
+
+static void test_many_boxes(void)
+{
+    struct random random = random_seed(8);
+    int seen = 0;
+    for (int i = 0; i < 20000; i++) {
+        struct vec3 low = random_point(&random), size = random_point(&random);
+        struct vec3 high = {low.x + fabs(size.x) * pow(10.0, i % 4), low.y + fabs(size.y),
+                            low.z + fabs(size.z) * pow(10.0, -(i % 3))};
+        struct vec3 towards = random_point(&random);
+        towards.y *= 0.9 * (fabs(towards.x) + fabs(towards.z)); /* not along up */
+        seen += box_is_framed(low, high, towards);
+    }
+    tap_ok(seen == 20000, "all corners of %d of 20000 boxes are seen", seen);
+}
+
+int main(void)
+{
+    test_keywords();
+    test_bad_lines();
+    test_bad_values();
+    test_bad_views();
+    test_missing_view();
+    test_damaged_views();
+    test_angles();
+    test_directions();
+    test_boxes();
+    test_many_boxes();
+    remove(VIEW);
+    return tap_done();
+}

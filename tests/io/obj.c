@@ -1,0 +1,516 @@
+/* Tests of io/scene/obj.h, with io/scene/mtl.h and io/scene/text.h behind it. Files are written into build/. */
+#include "io/scene/obj.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "io/scene/text.h"
+#include "tests/tap.h"
+
+#define OBJ "build/obj_test.obj"
+#define MTL "build/obj_test.mtl"
+#define OTHER "build/obj test two.mtl"
+#define CORNERS "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+
+static struct obj_repairs repairs;
+static struct error error;
+
+static void write_bytes(const char *path, const char *bytes, size_t count)
+{
+    FILE *file = fopen(path, "wb");
+    if (!file || fwrite(bytes, 1, count, file) != count || fclose(file) != 0) {
+        printf("Bail out! cannot write %s (is there a folder build?)\n", path);
+        exit(1);
+    }
+}
+
+static void write_file(const char *path, const char *text)
+{
+    write_bytes(path, text, strlen(text));
+}
+
+static struct scene *read_scene(const char *text)
+{
+    error = (struct error){EXIT_DONE, ""};
+    write_file(OBJ, text);
+    return obj_read(OBJ, &repairs, &error);
+}
+
+/* Whether the last reading failed with exactly this line. */
+static bool failed_with(const struct scene *scene, const char *message)
+{
+    bool right = !scene && error.code == EXIT_USAGE && strcmp(error.text, message) == 0;
+    if (!right)
+        printf("# expected '%s', got '%s'\n", message, error.text);
+    return right;
+}
+
+static void check_refused(const char *text, const char *message)
+{
+    struct scene *scene = read_scene(text);
+    tap_ok(failed_with(scene, message), "%s", message);
+    scene_destroy(scene);
+}
+
+/* A library is refused with this line by an OBJ file that is right. */
+static void check_library_refused(const char *library, const char *message)
+{
+    write_file(MTL, library);
+    check_refused("mtllib obj_test.mtl\n" CORNERS "f 1 2 3\n", message);
+}
+
+static bool corner_is(const struct scene *scene, int32_t triangle, int k, double x, double y,
+                      double z)
+{
+    struct vec3 corner = scene->triangles[triangle].corner[k];
+    return corner.x == x && corner.y == y && corner.z == z;
+}
+
+/* Whether the text is one triangle (0,0,0), (1,0,0), (1,1,0), or several, all like that. */
+static void check_triangle(const char *name, const char *text)
+{
+    struct scene *scene = read_scene(text);
+    bool right = scene && scene->input_count > 0;
+    for (int32_t i = 0; right && i < scene->input_count; i++)
+        right = corner_is(scene, i, 0, 0, 0, 0) && corner_is(scene, i, 1, 1, 0, 0) &&
+                corner_is(scene, i, 2, 1, 1, 0);
+    tap_ok(right, "%s%s%s", name, error.code ? ": " : "", error.text);
+    scene_destroy(scene);
+}
+
+static bool colour_is(struct rgb colour, double red, double green, double blue)
+{
+    return colour.band[0] == red && colour.band[1] == green && colour.band[2] == blue;
+}
+
+static const struct material *material_at(const struct scene *scene, int32_t triangle)
+{
+    return &scene->materials[scene->material_of[triangle]];
+}
+
+static void test_numbers(void)
+{
+    static const struct {
+        const char *word;
+        double value;
+    } right[] = {{"1", 1}, {"+1", 1}, {"-1", -1}, {".5", 0.5}, {"1.", 1}, {"-.5", -0.5},
+                 {"1e-3", 1e-3}, {"1E+2", 100}, {"007", 7}, {"1e-999", 0}, {"1e308", 1e308}};
+    static const char *const wrong[] = {"", ".", "+", "-", "e5", "1e", "1e+", "1.2.3", "--1", "+-1",
+                                        "1-", "nan", "NaN", "-nan", "inf", "-Infinity", "0x10",
+                                        "1e999", "-1e999", "1,5", "1f", "1 ", " 1", "1.#IND"};
+    for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
+        double value = -77;
+        tap_ok(text_is_number(right[i].word, &value) && value == right[i].value,
+               "'%s' is a number", right[i].word);
+    }
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        double value;
+        tap_ok(!text_is_number(wrong[i], &value), "'%s' is no number", wrong[i]);
+    }
+}
+
+static void test_lines(void)
+{
+    check_triangle("LF", CORNERS "f 1 2 3\n");
+    check_triangle("no last newline", CORNERS "f 1 2 3");
+    check_triangle("CRLF", "v 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nf 1 2 3\r\n");
+    check_triangle("CR", "v 0 0 0\rv 1 0 0\rv 1 1 0\rf 1 2 3\r");
+    check_triangle("byte order mark", "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+    check_triangle("blank lines and blanks",
+                   "\n \t\n  v\t0 0  0 \nv 1 0 0\t\n\tv 1 1 0\n\n f 1 2 3 \n");
+    check_triangle("continuation", "v 0 \\\n0 0\nv\\\r\n1 0 0\nv 1 1\\\n\\\n 0\nf 1\\\r2 3\n");
+    check_triangle("backslash at the end of the file", CORNERS "f 1 2 3\\");
+    check_triangle("continuation at the end of the file", CORNERS "f 1 2 3\\\n");
+    check_triangle("comments", "# one\n" CORNERS "  # two\nf 1 2 3 # three\n#");
+    check_triangle("a comment does not go on", CORNERS "f 1 2 3\n# C:\\\nf 1 2 3\n");
+    check_refused("v 1 2 3\\\n\\\n\nv 1 2 z\n", OBJ ":4: bad number 'z'");
+    check_refused("v 1 2 3\nv 1 \\\n2 \\\nz\n", OBJ ":2: bad number 'z'");
+    check_refused("v 1 2 3\r\n\r\nv 1 2 z\r\n", OBJ ":3: bad number 'z'");
+    check_refused("v 1 2 3\r\rv 1 2 z\r", OBJ ":3: bad number 'z'");
+    check_refused("# \\\nv 1 2 z", OBJ ":2: bad number 'z'");
+}
+
+static void test_long_file(void)
+{
+    enum { LINES = 100000 };
+    static const char line[] = "# sixteen bytes\n", end[] = CORNERS "f 1 2 3\nf 1 2 9\n";
+    size_t length = LINES * (sizeof line - 1);
+    char *text = alloc_array(length + sizeof end, 1);
+    for (size_t i = 0; i < LINES; i++)
+        memcpy(text + i * (sizeof line - 1), line, sizeof line - 1);
+    memcpy(text + length, end, sizeof end);
+    check_refused(text, OBJ ":100006: face refers to vertex 9 of 4");
+    *strstr(text + length, "f 1 2 9") = '#';
+    check_triangle("a file of many blocks", text);
+    memset(text, ' ', length);
+    check_triangle("a line of 1.6 million blanks", text);
+    alloc_free(text);
+}
+
+static void test_vertices(void)
+{
+    struct scene *scene = read_scene("v 1e3 -.5 2.\nv +4 5 6 1.0\nv 7 8 9 0.1 .2 .3 x\nf 1 2 3\n");
+    tap_ok(scene && corner_is(scene, 0, 0, 1000, -0.5, 2) && corner_is(scene, 0, 1, 4, 5, 6) &&
+               corner_is(scene, 0, 2, 7, 8, 9),
+           "coordinates, with what stands behind them passed over");
+    scene_destroy(scene);
+    check_triangle("unknown keywords", "vt 0 0\nvn x y z\ns off\nl 1 2\np 1\no thing\ng a b\nfo\n"
+                                       "\xC3\xA9t\xC3\xA9\nvp 1\ncall x.obj\n" CORNERS "f 1 2 3\n");
+    tap_ok(repairs.unknown_lines == 3 && repairs.first_unknown == 8,
+           "of which those that may mean something are counted");
+    check_refused("v 1 2\n", OBJ ":1: vertex has 2 coordinates instead of 3");
+    check_refused("v\n", OBJ ":1: vertex has 0 coordinates instead of 3");
+    check_refused("v 1 2 #3\n", OBJ ":1: vertex has 2 coordinates instead of 3");
+    check_refused("v 1 2 3\nv nan 0 0\n", OBJ ":2: bad number 'nan'");
+    check_refused("v 1 2 3\nv 0 -inf 0\n", OBJ ":2: bad number '-inf'");
+    check_refused("v 0 0 0x1p3\n", OBJ ":1: bad number '0x1p3'");
+    check_refused("v 0 0 1e400\n", OBJ ":1: bad number '1e400'");
+    check_refused("v 0 0 -1.1e100\n", OBJ ":1: number '-1.1e100' is out of range");
+}
+
+static void test_corners(void)
+{
+    check_triangle("v/vt", CORNERS "f 1/1 2/2 3/3\n");
+    check_triangle("v//vn", CORNERS "f 1//1 2//-2 3//3\n");
+    check_triangle("v/vt/vn", CORNERS "f 1/1/9 2/-2/0 +3/3/3\n");
+    check_triangle("v/ and v//", CORNERS "f 1/ 2// 3/1/\n");
+    check_triangle("negative indices", CORNERS "f -4 -3 -2\n");
+    check_triangle("negative indices count from their line",
+                   "v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 5 5 5\nf -4 -3 -2\nf 1/1 -3//1 3\n");
+    check_refused(CORNERS "f 1 2 0\n", OBJ ":5: face refers to vertex 0 of 4");
+    check_refused(CORNERS "f 1 2 5\n", OBJ ":5: face refers to vertex 5 of 4");
+    check_refused(CORNERS "\nf 1 -5/1 2\n", OBJ ":6: face refers to vertex -5 of 4");
+    check_refused(CORNERS "f 1 2 4294967297\n", OBJ ":5: face refers to vertex 4294967297 of 4");
+    check_refused(CORNERS "f 1 2 18446744073709551617\n",
+                  OBJ ":5: face refers to vertex 18446744073709551617 of 4");
+    check_refused(CORNERS "f 1 2 -99999999999999999999999\n",
+                  OBJ ":5: face refers to vertex -99999999999999999999999 of 4");
+    check_refused("f 1 2 3\n" CORNERS, OBJ ":1: face refers to vertex 1 of 0");
+    check_refused(CORNERS "f 1 2 3.0\n", OBJ ":5: bad corner '3.0' of a face");
+    check_refused(CORNERS "f 1 2 x\n", OBJ ":5: bad corner 'x' of a face");
+    check_refused(CORNERS "f 1 2 -\n", OBJ ":5: bad corner '-' of a face");
+    check_refused(CORNERS "f 1 2 /3\n", OBJ ":5: bad corner '/3' of a face");
+    check_refused(CORNERS "f 1 2 3/1/1/1\n", OBJ ":5: bad corner '3/1/1/1' of a face");
+    check_refused(CORNERS "f 1 2 3/a\n", OBJ ":5: bad corner '3/a' of a face");
+    check_refused(CORNERS "f 1 2\n", OBJ ":5: face has 2 corners instead of 3 or more");
+    check_refused(CORNERS "f\n", OBJ ":5: face has 0 corners instead of 3 or more");
+}
+
+static bool normal_is(const struct scene *scene, int32_t triangle, int k, double x, double y,
+                      double z)
+{
+    struct vec3 n = scene->normals[3 * triangle + k];
+    return vec3_length(vec3_sub(n, (struct vec3){x, y, z})) < 1e-15;
+}
+
+static void test_normals(void)
+{
+    struct scene *scene = read_scene(CORNERS "vn 0 0 2\nvn 3 0 4 # not of length 1\n"
+                                     "f 1//1 2//2 3//-1\nvn 1e-90 0 0\nf 1 2/7/-1 3/7\n"
+                                     "f 1//2 2//2 3//2 4//1\n");
+    tap_ok(scene && scene->normals && normal_is(scene, 0, 0, 0, 0, 1) &&
+               normal_is(scene, 0, 1, 0.6, 0, 0.8) && normal_is(scene, 0, 2, 0.6, 0, 0.8) &&
+               normal_is(scene, 1, 0, 0, 0, 0) && normal_is(scene, 1, 1, 1, 0, 0) &&
+               normal_is(scene, 1, 2, 0, 0, 0) && normal_is(scene, 2, 2, 0.6, 0, 0.8) &&
+               normal_is(scene, 3, 2, 0, 0, 1) && repairs.bad_normals == 0,
+           "normals, where corners have some");
+    scene_destroy(scene);
+    scene = read_scene(CORNERS "vn 0 0 1\nf 1 2 3\nf 1//2 2//0 3//-2\n");
+    tap_ok(scene && !scene->normals && repairs.bad_normals == 3, "normals that are not there");
+    scene_destroy(scene);
+    scene = read_scene(CORNERS "vn 0 0 0\nvn nan nan nan\nvn -1.#IND 0 1\nvn 1 0\nvn\nvn 1e101 0 0\n"
+                               "vn 1e-101 0 0\nvn x y z\nf 1//1 2//2 3//3 4//4\nf 1//5 2//6 3//7\n");
+    tap_ok(scene && !scene->normals && repairs.bad_normals == 7 && repairs.unknown_lines == 0,
+           "normals without a direction");
+    scene_destroy(scene);
+    check_refused("vn 0 0 1\n" CORNERS "f 1//1a 2 3\n", OBJ ":6: bad corner '1//1a' of a face");
+}
+
+static void test_polygons(void)
+{
+    struct scene *scene = read_scene(CORNERS "f 3 3 3\nf 1 2 3 4\nf 4 3 2\n");
+    tap_ok(scene && scene->input_count == 4, "a polygon counts as its triangles");
+    tap_ok(scene && corner_is(scene, 0, 0, 1, 1, 0) && corner_is(scene, 0, 1, 1, 1, 0) &&
+               corner_is(scene, 0, 2, 1, 1, 0),
+           "a face with repeated corners keeps its number");
+    tap_ok(scene && corner_is(scene, 1, 1, 1, 0, 0) && corner_is(scene, 2, 1, 1, 1, 0) &&
+               corner_is(scene, 2, 2, 0, 1, 0) && corner_is(scene, 3, 0, 0, 1, 0),
+           "its triangles follow one another");
+    scene_destroy(scene);
+    scene = read_scene("v -1 -1 0\nv 0 0 0\nv 1 -1 0\nv 0 2 0\nf 1 2 3 4\n");
+    double area = 0.0;
+    for (int32_t i = 0; scene && i < scene->input_count; i++)
+        area += triangle_area(&scene->triangles[i]);
+    tap_ok(scene && scene->input_count == 2 && area == 2.0, "a concave face is cut inside");
+    scene_destroy(scene);
+}
+
+/* One face of 1000 corners: a strip 2.5 wide that winds about the origin four times. The area of
+ * all triangles is that of the polygon: none lies outside or over another. */
+static void test_spiral(void)
+{
+    enum { HALF = 500 };
+    char *text = alloc_array(2 * HALF * 60, 1), *to = text;
+    double expected = 0.0, area = 0.0;
+    for (int i = 0; i < 2 * HALF; i++) {
+        double turn = 0.05 * (i < HALF ? i : 2 * HALF - 1 - i), r = turn + (i < HALF ? 3.5 : 1.0);
+        to += sprintf(to, "v %.17g %.17g 5\n", r * cos(turn), r * sin(turn));
+    }
+    *to++ = 'f';
+    for (int i = 1; i <= 2 * HALF; i++)
+        to += sprintf(to, " %d", i);
+    struct scene *scene = read_scene(text);
+    bool right = scene && scene->input_count == 2 * HALF - 2;
+    for (int32_t i = 0; right && i < scene->input_count; i++) {
+        struct vec3 cross = triangle_cross(&scene->triangles[i]);
+        area += 0.5 * fabs(cross.z);
+        expected += 0.5 * cross.z;
+    }
+    tap_ok(right && expected > 2.5 * 25 * 10 && fabs(area / expected - 1.0) < 1e-12,
+           "a spiral of %d corners is cut inside", 2 * HALF);
+    scene_destroy(scene);
+    alloc_free(text);
+}
+
+static void test_many_corners(void)
+{
+    enum { CORNER_LIMIT = 16384 };
+    static const char start[] = CORNERS "f";
+    char *text = alloc_array(sizeof start + 2 * (CORNER_LIMIT + 1), 1);
+    strcpy(text, start);
+    for (int i = 0; i <= CORNER_LIMIT; i++)
+        memcpy(text + sizeof start - 1 + 2 * i, " 1", 2);
+    check_refused(text, OBJ ":5: face of more than 16384 corners");
+    text[sizeof start - 1 + 2 * CORNER_LIMIT] = '\0';
+    struct scene *scene = read_scene(text);
+    tap_ok(scene && scene->input_count == CORNER_LIMIT - 2, "a face of %d equal corners",
+           (int)CORNER_LIMIT);
+    scene_destroy(scene);
+    alloc_free(text);
+}
+
+static void test_materials(void)
+{
+    write_file(MTL, "# library\nnewmtl red brick \r\nKa 1 1 1\nKd .8 .1 0\nKs 1 1 1\n"
+                    "map_Kd a b.png\nnewmtl lamp\nkd 0.25\nKE 17 12 4 1\nillum 2\n"
+                    "newmtl bright\nKd 1.5 1 1\n"
+                    "newmtl spectral\nKd spectral file.rfl 1\nKe xyz 1 1 1\n\tnewmtl\ttwice\n"
+                    "Kd 1 0 0\nKe 1 # one\nnewmtl twice\nKe 3\nnewmtl unused\nKd 9\n");
+    struct scene *scene = read_scene(
+        CORNERS "f 1 2 3\nusemtl red brick\nmtllib obj_test.mtl\nf 1 2 3 4\nusemtl  lamp \n"
+                "f 1 2 3\nusemtl bright\nf 1 2 3\nusemtl red brick\nf 1 2 3\nusemtl spectral\n"
+                "f 1 2 3\nusemtl twice\nf 1 2 3\nusemtl\nf 1 2 3\n");
+    if (!tap_ok(scene && scene->input_count == 9, "a scene with materials %s", error.text))
+        return;
+    tap_ok(scene->material_count == 6, "the scene has the used materials");
+    const struct material *grey = material_at(scene, 0);
+    tap_ok(colour_is(grey->reflectance, 0.5, 0.5, 0.5) && colour_is(grey->emission, 0, 0, 0) &&
+               material_at(scene, 8) == grey,
+           "faces without a material are grey");
+    tap_ok(colour_is(material_at(scene, 1)->reflectance, 0.8, 0.1, 0.0) &&
+               colour_is(material_at(scene, 1)->emission, 0, 0, 0) &&
+               material_at(scene, 2) == material_at(scene, 1) &&
+               material_at(scene, 5) == material_at(scene, 1),
+           "a name with a blank, used before its library");
+    tap_ok(colour_is(material_at(scene, 3)->reflectance, 0.25, 0.25, 0.25) &&
+               colour_is(material_at(scene, 3)->emission, 17, 12, 4),
+           "kd with one number, KE with four");
+    tap_ok(colour_is(material_at(scene, 4)->reflectance, 1.5, 1, 1), "Kd of 1 and more is left");
+    tap_ok(colour_is(material_at(scene, 6)->reflectance, 0, 0, 0) &&
+               colour_is(material_at(scene, 6)->emission, 0, 0, 0),
+           "spectral and xyz are passed over");
+    tap_ok(colour_is(material_at(scene, 7)->reflectance, 0, 0, 0) &&
+               colour_is(material_at(scene, 7)->emission, 3, 3, 3),
+           "the later of two definitions counts");
+    tap_ok(repairs.missing_materials == 0 && repairs.missing_libraries == 0 &&
+               repairs.first_material[0] == '\0' && repairs.first_library[0] == '\0',
+           "nothing is missing");
+    scene_destroy(scene);
+}
+
+static void test_notes(void)
+{
+    write_file(MTL, "newmtl opaque\nKd 1 1 1\nd 1.0\nTr 1.0\nnewmtl also opaque\nTr 1\nd 1\n"
+                    "newmtl clear\nd 0.5\nnewmtl glass\nTr 0.25\nnewmtl halo\nd -halo 0.5\n"
+                    "newmtl words\nd\nTr none\nnewmtl painted\nmap_Kd a b.png\n"
+                    "newmtl dyed\nmap_Kd x.png\nKd 0.25 0 0\nnewmtl dyed too\nKd 0.25 0 0\n"
+                    "map_Kd x.png\nnewmtl unused\nd 0\nmap_Kd x.png\n");
+    struct scene *scene = read_scene(
+        "mtllib obj_test.mtl\n" CORNERS "usemtl opaque\nf 1 2 3\nusemtl also opaque\nf 1 2 3\n"
+        "usemtl clear\nf 1 2 3\nf 1 2 3\nusemtl glass\nf 1 2 3\nusemtl halo\nf 1 2 3\n"
+        "usemtl words\nf 1 2 3\nusemtl painted\nf 1 2 3\nusemtl dyed\nf 1 2 3\n"
+        "usemtl dyed too\nf 1 2 3\n");
+    tap_ok(scene && repairs.transparent == 3, "transparent materials that are used are counted");
+    tap_ok(scene && repairs.textured == 3 &&
+               colour_is(material_at(scene, 7)->reflectance, 0.5, 0.5, 0.5) &&
+               colour_is(material_at(scene, 8)->reflectance, 0.25, 0, 0) &&
+               colour_is(material_at(scene, 9)->reflectance, 0.25, 0, 0),
+           "textures too; without Kd they are grey");
+    scene_destroy(scene);
+}
+
+static void test_missing(void)
+{
+    struct scene *scene =
+        read_scene(CORNERS "usemtl none\nf 1 2 3\nusemtl nothing\nf 1 2 3\nusemtl none\nf 1 2 3\n"
+                           "usemtl no face\n");
+    tap_ok(scene && repairs.missing_materials == 2 && repairs.missing_libraries == 0 &&
+               strcmp(repairs.first_material, "none") == 0,
+           "a missing material counts once for its name");
+    tap_ok(scene && colour_is(material_at(scene, 1)->reflectance, 0.5, 0.5, 0.5) &&
+               colour_is(material_at(scene, 1)->emission, 0, 0, 0),
+           "a missing material is grey");
+    scene_destroy(scene);
+    scene = read_scene("mtllib nowhere.mtl\nmtllib nowhere.mtl\nmtllib\nmtllib .\n" CORNERS
+                       "usemtl none\nf 1 2 3\n");
+    tap_ok(scene && repairs.missing_libraries == 2 && repairs.missing_materials == 1 &&
+               strcmp(repairs.first_material, "none") == 0 &&
+               strcmp(repairs.first_library, "nowhere.mtl") == 0,
+           "a missing library counts once for its name");
+    scene_destroy(scene);
+}
+
+static void check_libraries(const char *name, const char *line, int64_t missing)
+{
+    char text[400];
+    snprintf(text, sizeof text, "%s\n" CORNERS "usemtl one\nf 1 2 3\nusemtl two\nf 1 2 3\n", line);
+    struct scene *scene = read_scene(text);
+    tap_ok(scene && repairs.missing_libraries == missing && repairs.missing_materials == 0 &&
+               colour_is(material_at(scene, 0)->reflectance, 0.125, 0.125, 0.125) &&
+               colour_is(material_at(scene, 1)->reflectance, 0.25, 0.25, 0.25),
+           "%s", name);
+    scene_destroy(scene);
+}
+
+static void test_libraries(void)
+{
+    write_file(MTL, "newmtl one\nKd 0.125\n");
+    write_file(OTHER, "\xEF\xBB\xBFnewmtl two\nKd 0.25");
+    check_libraries("two libraries", "mtllib  obj_test.mtl \nmtllib obj test two.mtl", 0);
+    check_libraries("two in one line", "mtllib obj_test.mtl obj\\ test\\ two.mtl", 0);
+    check_libraries("two of four", "mtllib x.mtl\tobj\\ test\\ two.mtl y.mtl  obj_test.mtl", 2);
+    check_libraries("names with folders",
+                    "mtllib ../build/obj_test.mtl\nmtllib ./obj test two.mtl", 0);
+    check_libraries("folders of other machines",
+                    "mtllib /home/a/obj_test.mtl\nmtllib C:\\a\\b c\\obj test two.mtl", 0);
+    check_libraries("a folder with a blank: perhaps a list",
+                    "mtllib /home/a b/obj_test.mtl\nmtllib obj test two.mtl", 1);
+    check_libraries("no file is a folder's name",
+                    "mtllib obj_test.mtl a/b/ obj\\ test\\ two.mtl a\\ /", 2);
+    check_libraries("a list, not a folder with a blank", "mtllib obj_test.mtl c/obj_test.mtl\n"
+                    "mtllib x obj_test.mtl\nmtllib c/d/obj test two.mtl", 1);
+    char *text = alloc_array(20000, 1);
+    for (int i = 0; i <= 1000; i++)
+        sprintf(text + strlen(text), "mtllib x%d\n", i);
+    check_refused(text, OBJ ":1001: more than 1000 material libraries");
+    alloc_free(text);
+}
+
+static void test_many_names(void)
+{
+    enum { NAMES = 20000 };
+    char *text = alloc_array(NAMES * 40, 1), *library = alloc_array(NAMES * 40, 1);
+    char *end = text + sprintf(text, "mtllib obj_test.mtl\n" CORNERS), *library_end = library;
+    for (int i = 0; i < NAMES; i++) {
+        end += sprintf(end, "usemtl m%d\nf 1 2 3\n", i);
+        library_end += sprintf(library_end, "newmtl m%d\nKd %d\n", NAMES - 1 - i, NAMES - 1 - i);
+    }
+    write_file(MTL, library);
+    struct scene *scene = read_scene(text);
+    bool right = scene && scene->input_count == NAMES && scene->material_count == NAMES;
+    for (int i = 0; i < NAMES && right; i++)
+        right = material_at(scene, i)->reflectance.band[2] == i;
+    tap_ok(right && repairs.missing_materials == 0, "%d materials", (int)NAMES);
+    scene_destroy(scene);
+    alloc_free(text);
+    alloc_free(library);
+}
+
+static void test_bad_libraries(void)
+{
+    check_library_refused("newmtl a\nKd -0.1 0 0\n", MTL ":2: negative number '-0.1'");
+    check_library_refused("newmtl a\n\nKe 0 0 -1\n", MTL ":3: negative number '-1'");
+    check_library_refused("newmtl a\nKd 0 nan 0\n", MTL ":2: bad number 'nan'");
+    check_library_refused("newmtl a\nKe 1e200\n", MTL ":2: number '1e200' is out of range");
+    check_library_refused("newmtl a\nKd 1 1\n", MTL ":2: Kd has 2 numbers instead of 1 or 3");
+    check_library_refused("newmtl a\nke #\n", MTL ":2: ke has 0 numbers instead of 1 or 3");
+    check_library_refused("newmtl a\nKd red\n", MTL ":2: bad number 'red'");
+    check_library_refused("newmtl  \n", MTL ":1: newmtl without a name");
+    check_library_refused("Ka 1\nKd 1 1 1\n", MTL ":2: Kd before newmtl");
+    check_library_refused("newmtl a\n\x01\n", MTL ": not a text file");
+}
+
+static void test_bad_files(void)
+{
+    check_refused("", OBJ ": no faces");
+    check_refused("\xEF\xBB\xBF", OBJ ": no faces");
+    check_refused(CORNERS, OBJ ": no faces");
+    check_refused("just some words\n\nand more", OBJ ": no faces");
+    check_refused(CORNERS "f 1 2 3\n\x1B\n", OBJ ": not a text file");
+    static const char zeros[] = CORNERS "f 1 2 3\n\0";
+    error = (struct error){EXIT_DONE, ""};
+    write_bytes(OBJ, zeros, sizeof zeros);
+    tap_ok(failed_with(obj_read(OBJ, &repairs, &error), OBJ ": not a text file"), "a zero byte");
+    error = (struct error){EXIT_DONE, ""};
+    struct scene *scene = obj_read("build/obj_test_absent.obj", &repairs, &error);
+    tap_ok(!scene && error.code == EXIT_USAGE &&
+               strncmp(error.text, "build/obj_test_absent.obj: cannot read: ", 40) == 0 &&
+               strlen(error.text) > 40,
+           "%s", error.text);
+    error = (struct error){EXIT_DONE, ""};
+    scene = obj_read("build", &repairs, &error);
+    tap_ok(!scene && error.code == EXIT_USAGE &&
+               strncmp(error.text, "build: cannot read: ", 20) == 0,
+           "%s", error.text);
+}
+
+/* Bytes without sense are refused, or make a scene if they happen to; nothing else. */
+static void test_random_bytes(void)
+{
+    static const char alphabet[] = "vf  \n\n\\/-+.0123456789e#\r\tusemtl o g";
+    uint32_t seed = 7;
+    int refused = 0, read = 0;
+    for (int round = 0; round < 2000; round++) {
+        char text[400] = CORNERS;
+        bool binary = round % 4 == 0;
+        for (size_t i = binary ? 0 : sizeof CORNERS - 1; i < sizeof text; i++) {
+            seed = seed * 1664525u + 1013904223u;
+            text[i] = binary ? (char)(seed >> 24) : alphabet[(seed >> 8) % (sizeof alphabet - 1)];
+        }
+        error = (struct error){EXIT_DONE, ""};
+        write_bytes(OBJ, text, sizeof text);
+        struct scene *scene = obj_read(OBJ, &repairs, &error);
+        refused += !scene && error.code == EXIT_USAGE && strncmp(error.text, OBJ ":", 19) == 0;
+        read += scene && error.code == EXIT_DONE && scene->input_count > 0;
+        scene_destroy(scene);
+    }
+    tap_ok(refused + read == 2000 && refused > 500, "2000 random files");
+}
+
+int main(void)
+{
+    test_numbers();
+    test_lines();
+    test_long_file();
+    test_vertices();
+    test_corners();
+    test_normals();
+    test_polygons();
+    test_spiral();
+    test_many_corners();
+    test_materials();
+    test_notes();
+    test_missing();
+    test_libraries();
+    test_many_names();
+    test_bad_libraries();
+    test_bad_files();
+    test_random_bytes();
+    remove(OBJ);
+    remove(MTL);
+    remove(OTHER);
+    return tap_done();
+}

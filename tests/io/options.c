@@ -1,0 +1,636 @@
+/* Tests of io/run/options.h. Proved are: each option goes to its field; each kind of wrong argument
+ * is refused with a line that names it; and the help, the table of options in io/run/options.c and
+ * the table below know the same options and the same default values. */
+#include "io/run/options.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/tap.h"
+
+enum { ARGUMENTS_MAX = 12, TEXT_MAX = 100000 };
+
+static struct error error;
+
+/* Parses a command line that is written with blanks between its words ("_" is an empty one). */
+static bool parse(const char *line, struct options *options)
+{
+    static char words[200]; /* the options keep pointers into it */
+    static char *arguments[ARGUMENTS_MAX + 1];
+    int count = 0;
+    error = (struct error){EXIT_DONE, ""};
+    snprintf(words, sizeof words, "phr %s", line);
+    for (char *word = strtok(words, " "); word && count < ARGUMENTS_MAX; word = strtok(NULL, " "))
+        arguments[count++] = strcmp(word, "_") == 0 ? word + 1 : word;
+    arguments[count] = NULL;
+    return options_parse(options, count, arguments, &error);
+}
+
+static bool is_same(const char *found, const char *expected)
+{
+    return found && strcmp(found, expected) == 0;
+}
+
+/* --- fields --- */
+
+static void test_defaults(void)
+{
+    struct options options;
+    tap_ok(parse("room.obj", &options) && error.code == EXIT_DONE &&
+               is_same(options.scene, "room.obj") && options.output_count == 0 && !options.view &&
+               !options.stats && options.width == 0 && options.height == 0 &&
+               options.exposure == 0.0,
+           "a scene alone");
+    tap_ok(!options.flat && !options.two_sided && !options.two_sided_lamps &&
+               !options.quiet && !options.verbose && !options.help && !options.version,
+           "all switches are off");
+    options_free(&options);
+}
+
+static void test_texts(void)
+{
+    struct options options;
+    tap_ok(parse("--view a.view room.obj --stats b.json", &options) &&
+               is_same(options.view, "a.view") && is_same(options.stats, "b.json") &&
+               is_same(options.scene, "room.obj"),
+           "--view and --stats, before and behind the scene");
+    options_free(&options);
+    tap_ok(parse("room.obj --view --flat", &options) && is_same(options.view, "--flat") &&
+               !options.flat,
+           "the word behind an option is its value");
+    options_free(&options);
+    tap_ok(parse("-", &options) && is_same(options.scene, "-"), "a lone - is a name");
+    options_free(&options);
+}
+
+static void test_outputs(void)
+{
+    struct options options;
+    tap_ok(parse("-o a.ppm room.obj -o b.ply -o d/c.pfm", &options) && options.output_count == 3 &&
+               is_same(options.outputs[0], "a.ppm") && is_same(options.outputs[1], "b.ply") &&
+               is_same(options.outputs[2], "d/c.pfm"),
+           "-o, three times");
+    options_free(&options);
+    tap_ok(!options.outputs, "options_free() forgets the outputs");
+    tap_ok(output_format_of("a.ppm") == FORMAT_PPM && output_format_of("a.ppm.pfm") == FORMAT_PFM &&
+               output_format_of("d.ppm/a.ply") == FORMAT_PLY,
+           "the suffix is the format");
+}
+
+static void test_switches(void)
+{
+    struct options options;
+    tap_ok(parse("--flat a.obj", &options) && options.flat && !options.two_sided, "--flat");
+    options_free(&options);
+    tap_ok(parse("--two-sided a.obj", &options) && options.two_sided && !options.flat &&
+               !options.two_sided_lamps,
+           "--two-sided");
+    options_free(&options);
+    tap_ok(parse("--two-sided-lamps a.obj", &options) && options.two_sided &&
+               options.two_sided_lamps,
+           "--two-sided-lamps includes --two-sided");
+    options_free(&options);
+    tap_ok(parse("--quiet a.obj", &options) && options.quiet && !options.verbose, "--quiet");
+    options_free(&options);
+    tap_ok(parse("--verbose a.obj", &options) && options.verbose && !options.quiet, "--verbose");
+    options_free(&options);
+    tap_ok(parse("--help", &options) && options.help && !options.version && !options.scene,
+           "--help needs no scene");
+    options_free(&options);
+    tap_ok(parse("--version", &options) && options.version && !options.help,
+           "--version needs no scene");
+    options_free(&options);
+    tap_ok(parse("--validate", &options) && options.validate && !options.scene,
+           "--validate needs no scene");
+    options_free(&options);
+    tap_ok(parse("--accuracy 2.5% a.obj", &options) && options.criterion.accuracy == 0.025 &&
+               options.criterion.epsilon == 1e-3 && options.criterion.final_gather == 64,
+           "--accuracy in percent, from a coarse epsilon and few rays");
+    options_free(&options);
+    tap_ok(parse("--accuracy 0.5 --epsilon 1e-4 --final-gather 32 a.obj", &options) &&
+               options.criterion.accuracy == 0.5 && options.criterion.epsilon == 1e-4 &&
+               options.criterion.final_gather == 32,
+           "--accuracy from a given epsilon and number of rays");
+    options_free(&options);
+    static const char *const wrong[] = {"%", "0.001%", "101%", "1%%", "0%"};
+    int refused = 0;
+    for (int i = 0; i < 5; i++) {
+        char line[40];
+        snprintf(line, sizeof line, "--accuracy %s a.obj", wrong[i]);
+        refused += !parse(line, &options);
+        options_free(&options);
+    }
+    tap_ok(refused == 5, "not %% alone, not too little or too much, not twice");
+    tap_ok(parse("--oracle bf a.obj", &options), "--oracle bf");
+    options_free(&options);
+}
+
+/* --- choices --- */
+
+/* Where a choice goes, and its names in the order of its enum. */
+struct choice {
+    const char *name;
+    size_t offset; /* in struct options */
+    int count;
+    const char *values[4];
+    const char *bars; /* as an error lists them */
+};
+
+static const struct choice CHOICES[] = {
+    {"--oracle", offsetof(struct options, criterion.oracle), 2, {"bf", "error", NULL}, "bf|error"},
+    {"--linking", offsetof(struct options, criterion.linking), 2, {"pairs", "tree", NULL},
+     "pairs|tree"},
+    {"--form-factor", offsetof(struct options, criterion.form_factor), 2,
+     {"disk", "polygon", NULL}, "disk|polygon"},
+    {"--closure", offsetof(struct options, criterion.closure), 4,
+     {"none", "cap", "rows", "symmetric"}, "none|cap|rows|symmetric"},
+    {"--solver", offsetof(struct options, criterion.solver), 2, {"jacobi", "cg", NULL},
+     "jacobi|cg"},
+    {"--balance", offsetof(struct options, criterion.balance), 2,
+     {"greedy", "even", NULL}, "greedy|even"},
+};
+enum { CHOICE_COUNT = sizeof CHOICES / sizeof CHOICES[0] };
+
+static int chosen(const struct choice *choice, const struct options *options)
+{
+    return *(const int *)(const void *)((const char *)options + choice->offset);
+}
+
+/* Whether the line is refused with the message about this value. */
+static bool refuses_choice(const struct choice *choice, const char *value)
+{
+    char line[100], message[200];
+    struct options options;
+    snprintf(line, sizeof line, "%s %s a.obj", choice->name, value);
+    snprintf(message, sizeof message, "%s: '%s' is not one of %s", choice->name,
+             strcmp(value, "_") == 0 ? "" : value, choice->bars);
+    bool refused = !parse(line, &options) && error.code == EXIT_USAGE &&
+                   is_same(error.text, message);
+    options_free(&options);
+    return refused;
+}
+
+static void test_choices(void)
+{
+    for (int i = 0; i < CHOICE_COUNT; i++) {
+        const struct choice *choice = &CHOICES[i];
+        struct options options;
+        char line[100];
+        for (int k = 0; k < choice->count; k++) {
+            bool others = true;
+            struct options plain;
+            parse("a.obj", &plain);
+            snprintf(line, sizeof line, "%s %s a.obj", choice->name, choice->values[k]);
+            bool parsed = parse(line, &options);
+            for (int j = 0; j < CHOICE_COUNT; j++)
+                others = others && (j == i || chosen(&CHOICES[j], &options) ==
+                                                  chosen(&CHOICES[j], &plain));
+            tap_ok(parsed && chosen(choice, &options) == k && others, "%s %s, and no other",
+                   choice->name, choice->values[k]);
+            options_free(&options);
+            options_free(&plain);
+        }
+        snprintf(line, sizeof line, "%.2s", choice->values[1]); /* the start of a name is none */
+        tap_ok(refuses_choice(choice, "of-delphi") && refuses_choice(choice, "_") &&
+                   refuses_choice(choice, "|") && refuses_choice(choice, choice->bars) &&
+                   (strlen(choice->values[1]) == 2 || refuses_choice(choice, line)),
+               "%s refuses all else", choice->name);
+    }
+}
+
+static void test_enums(void)
+{
+    tap_ok(ORACLE_BF == 0 && ORACLE_ERROR == 1 && FORM_FACTOR_DISK == 0 &&
+               FORM_FACTOR_POLYGON == 1 && CLOSURE_NONE == 0 && CLOSURE_CAP == 1 &&
+               CLOSURE_ROWS == 2 && CLOSURE_SYMMETRIC == 3 && SOLVER_JACOBI == 0 && SOLVER_CG == 1 &&
+               LINKING_PAIRS == 0 && LINKING_TREE == 1,
+           "the names are in the order of the enums");
+    tap_ok(sizeof(enum oracle) == sizeof(int) && sizeof(enum form_factor) == sizeof(int) &&
+               sizeof(enum closure_kind) == sizeof(int) && sizeof(enum solver_kind) == sizeof(int) &&
+               sizeof(enum balance) == sizeof(int) && sizeof(enum linking_kind) == sizeof(int),
+           "which are as large as an int");
+}
+
+static void test_paper(void)
+{
+    struct options options, plain;
+    parse("a.obj", &plain);
+    tap_ok(!parse("--solver cg --oracle error --closure rows --form-factor polygon --paper",
+                  &options) && is_same(error.text, "no scene given; see --help") &&
+               options.criterion.oracle == ORACLE_BF && options.criterion.solver == SOLVER_JACOBI &&
+               options.criterion.closure == CLOSURE_NONE &&
+               options.criterion.form_factor == FORM_FACTOR_DISK &&
+               options.criterion.balance == BALANCE_GREEDY &&
+               options.criterion.linking == LINKING_PAIRS &&
+               options.criterion.alpha == plain.criterion.alpha &&
+               options.criterion.tolerance == plain.criterion.tolerance,
+           "--paper is the paper's oracle, linking, form factor, solver and balance, without closure");
+    options_free(&options);
+    options_free(&plain);
+    tap_ok(parse("--paper --solver cg a.obj", &options) &&
+               options.criterion.solver == SOLVER_CG && options.criterion.oracle == ORACLE_BF,
+           "what follows it counts");
+    options_free(&options);
+}
+
+static void test_sizes(void)
+{
+    struct options options;
+    tap_ok(parse("--size 640x480 a.obj", &options) && options.width == 640 && options.height == 480,
+           "--size 640x480");
+    options_free(&options);
+    tap_ok(parse("--size 1X32768 a.obj", &options) && options.width == 1 && options.height == 32768,
+           "--size 1X32768");
+    options_free(&options);
+}
+
+/* Options with a number: where it goes, its range, and whether the help says its default. */
+struct number {
+    const char *name;
+    size_t offset;         /* in struct options */
+    bool is_int, in_help;
+    const char *low, *high; /* inside the range */
+    const char *below, *above; /* outside */
+};
+
+#define FIELD(field) offsetof(struct options, field)
+
+static const struct number NUMBERS[] = {
+    {"--samples", FIELD(samples), true, true, "1", "64", "0", "65"},
+    {"--exposure", FIELD(exposure), false, false, "1e-30", "1e30", "0", "2e30"},
+    {"--epsilon", FIELD(criterion.epsilon), false, true, "0", "1e30", "-1e-9", "1e31"},
+    {"--accuracy", FIELD(criterion.accuracy), false, false, "1e-4", "1", "0", "1.1"},
+    {"--max-level", FIELD(criterion.max_level), true, true, "0", "15", "-1", "16"},
+    {"--min-area", FIELD(criterion.min_area), false, true, "0", "1", "-1e-300", "1.0001"},
+    {"--alpha", FIELD(criterion.alpha), false, true, "0", "1", "-0.1", "1.1"},
+    {"--tolerance", FIELD(criterion.tolerance), false, true, "0", "1", "-1", "2"},
+    {"--every", FIELD(every), true, true, "1", "1000000000", "0", "1e10"},
+    {"--max-iterations", FIELD(criterion.max_iterations), true, true, "1", "1000000000", "0",
+     "1e300"},
+    {"--final-gather", FIELD(criterion.final_gather), true, true, "0", "16384", "-1", "16385"},
+};
+enum { NUMBER_COUNT = sizeof NUMBERS / sizeof NUMBERS[0] };
+
+/* The other options, with what stands behind each. */
+static const char *const OTHERS[][2] = {
+    {"-o", " a.ppm"},  {"--view", " a"},    {"--size", " 2x3"}, {"--stats", " a"},
+    {"--oracle", " bf"}, {"--flat", ""},    {"--two-sided", ""}, {"--quiet", ""},
+    {"--two-sided-lamps", ""}, {"--verbose", ""}, {"--validate", ""},
+    {"--help", ""},    {"--version", ""},
+    {"--linking", " pairs"}, {"--form-factor", " disk"}, {"--closure", " none"}, {"--solver", " cg"}, {"--balance", " greedy"}, {"--paper", ""},
+    {"--form-factors", ""}, {"--save-links", " a"}, {"--load-links", " a"}, {"--resume", " a"},
+    {"--checkpoint", " a"}, {"--memory", " 1G"}};
+enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
+
+static double number_of(const struct number *number, const struct options *options)
+{
+    const char *field = (const char *)options + number->offset;
+    return number->is_int ? *(const int *)(const void *)field
+                          : *(const double *)(const void *)field;
+}
+
+/* Whether the value is taken and arrives. */
+static bool takes(const struct number *number, const char *value)
+{
+    char line[100];
+    struct options options;
+    snprintf(line, sizeof line, "%s %s a.obj --checkpoint b", number->name, value);
+    bool taken = parse(line, &options) && number_of(number, &options) == strtod(value, NULL);
+    options_free(&options);
+    return taken;
+}
+
+/* Whether the value is refused with a line that starts with the option and quotes the value. */
+static bool refuses(const struct number *number, const char *value, const char *reason)
+{
+    char line[100], start[100];
+    struct options options;
+    snprintf(line, sizeof line, "%s %s a.obj", number->name, value);
+    snprintf(start, sizeof start, "%s: ", number->name);
+    bool refused = !parse(line, &options) && error.code == EXIT_USAGE &&
+                   strncmp(error.text, start, strlen(start)) == 0 &&
+                   strstr(error.text, value) && strstr(error.text, reason);
+    options_free(&options);
+    return refused;
+}
+
+static void test_numbers(void)
+{
+    for (int i = 0; i < NUMBER_COUNT; i++) {
+        const struct number *number = &NUMBERS[i];
+        tap_ok(takes(number, number->low) && takes(number, number->high), "%s takes %s and %s",
+               number->name, number->low, number->high);
+        tap_ok(refuses(number, number->below, "not between") &&
+                   refuses(number, number->above, "not between"),
+               "%s refuses %s and %s", number->name, number->below, number->above);
+        tap_ok(refuses(number, "x", "not a number") && refuses(number, "1x", "not a number") &&
+                   refuses(number, "nan", "not a number") &&
+                   refuses(number, "inf", "not a number") &&
+                   refuses(number, "0x1", "not a number"),
+               "%s refuses what is not a number", number->name);
+        tap_ok(number->is_int ? refuses(number, "1.5", "not a whole number")
+                              : takes(number, "0.375"),
+               "%s %s a fraction", number->name, number->is_int ? "refuses" : "takes");
+    }
+}
+
+/* --- errors --- */
+
+static void check_refused(const char *line, const char *message)
+{
+    struct options options;
+    bool right = !parse(line, &options) && error.code == EXIT_USAGE && is_same(error.text, message);
+    tap_ok(right, "%s%s%s", message, right ? "" : " is not: ", right ? "" : error.text);
+    options_free(&options);
+}
+
+static void test_errors(void)
+{
+    check_refused("", "no scene given; see --help");
+    check_refused("--quiet -o a.ppm", "no scene given; see --help");
+    check_refused("a.obj b.obj", "one scene at a time: a.obj and b.obj");
+    check_refused("a.obj --fast", "unknown option --fast; see --help");
+    check_refused("a.obj --flat=1", "unknown option --flat=1; see --help");
+    check_refused("a.obj --Flat", "unknown option --Flat; see --help");
+    check_refused("a.obj --", "unknown option --; see --help");
+    check_refused("a.obj -f", "unknown option -f; see --help");
+    check_refused("a.obj --oracle of-delphi", "--oracle: 'of-delphi' is not one of bf|error");
+    check_refused("a.obj --samples 2.5", "--samples: '2.5' is not a whole number");
+    check_refused("a.obj --epsilon ten", "--epsilon: 'ten' is not a number");
+    check_refused("a.obj --epsilon _", "--epsilon: '' is not a number");
+    check_refused("a.obj --max-level 16", "--max-level: 16 is not between 0 and 15");
+    check_refused("--flat --fast --help", "unknown option --fast; see --help");
+}
+
+/* --- going on, and memory --- */
+
+static void test_memory(void)
+{
+    static const struct {
+        const char *text;
+        int64_t bytes;
+    } CASES[] = {{"1", 1}, {"1000", 1000}, {"3K", 3072}, {"512M", INT64_C(1) << 29},
+                 {"2G", INT64_C(1) << 31}, {"3T", INT64_C(3) << 40}};
+    static const char *const BAD[] = {"0", "-1G", "G", "1.5G", "1g", "1GB", "1e9", "", "x",
+                                      "9999999999T"};
+    char line[100];
+    struct options options;
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        snprintf(line, sizeof line, "a.obj --memory %s", CASES[i].text);
+        tap_ok(parse(line, &options) && options.memory == CASES[i].bytes, "--memory %s",
+               CASES[i].text);
+        options_free(&options);
+    }
+    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
+        snprintf(line, sizeof line, "a.obj --memory %s", BAD[i][0] ? BAD[i] : "_");
+        tap_ok(!parse(line, &options) && error.code == EXIT_USAGE &&
+                   strstr(error.text, "--memory: '") == error.text,
+               "--memory '%s' is refused", BAD[i]);
+        options_free(&options);
+    }
+}
+
+static void test_restart(void)
+{
+    struct options options;
+    tap_ok(parse("a.obj --resume c --checkpoint c --every 3", &options) &&
+               is_same(options.resume, "c") && is_same(options.checkpoint, "c") &&
+               options.every == 3,
+           "a checkpoint may be renewed");
+    options_free(&options);
+    tap_ok(parse("a.obj --paper --save-links l", &options) && is_same(options.save_links, "l"),
+           "--save-links");
+    options_free(&options);
+    tap_ok(parse("a.obj --load-links l --linking pairs", &options) &&
+               is_same(options.load_links, "l"),
+           "--load-links");
+    options_free(&options);
+    check_refused("a.obj --save-links l", "--save-links goes with --linking pairs (--paper)");
+    check_refused("a.obj --paper --final-gather 64", "--final-gather goes with --linking tree");
+    check_refused("a.obj --paper --final-gather pixels",
+                  "--final-gather pixels needs rays, and a tree");
+    check_refused("a.obj --final-gather 0,pixels",
+                  "--final-gather pixels needs rays, and a tree");
+    check_refused("a.obj --flat --final-gather pixels",
+                  "--flat and --final-gather pixels do not go together");
+    check_refused("a.obj --final-gather 64pixels",
+                  "--final-gather: '64pixels' is not N, pixels or N,pixels");
+    check_refused("a.obj --final-gather 6x,pixels", "--final-gather: '6x' is not a number");
+    tap_ok(parse("a.obj --final-gather pixels", &options) && options.pixels &&
+               options.criterion.final_gather == 256,
+           "a final gather of pixels has as many rays as one of leaves");
+    options_free(&options);
+    tap_ok(parse("a.obj --final-gather 64,pixels", &options) && options.pixels &&
+               options.criterion.final_gather == 64,
+           "or as many as are given");
+    options_free(&options);
+    check_refused("a.obj --paper --accuracy 1%", "--accuracy goes with --linking tree");
+    check_refused("a.obj --accuracy 1% --linking pairs", "--accuracy goes with --linking tree");
+    check_refused("a.obj --final-gather 0 --accuracy 1%",
+                  "--accuracy and --final-gather 0 do not go together");
+    check_refused("a.obj --paper --linking tree --load-links l",
+                  "--load-links goes with --linking pairs (--paper)");
+    check_refused("a.obj --every 2", "--every needs --checkpoint");
+    check_refused("a.obj --save-links l --load-links m",
+                  "--save-links and --load-links do not go together");
+    check_refused("a.obj --resume c --load-links l",
+                  "--resume and --load-links do not go together: the initial links are long gone");
+    check_refused("a.obj --resume c --save-links c",
+                  "--resume and --save-links do not go together: the initial links are long gone");
+    check_refused("a.obj --checkpoint a.obj", "a.obj is named twice");
+    check_refused("a.obj --paper --load-links l --checkpoint l", "l is named twice");
+    check_refused("a.obj --paper --save-links l --checkpoint l", "l is named twice");
+    check_refused("a.obj --form-factors --checkpoint c",
+                  "--form-factors and --checkpoint do not go together");
+}
+
+static void test_settings(void)
+{
+    struct options options;
+    parse("a.obj", &options);
+    tap_ok(is_same(options_link_settings(&options),
+                   "--two-sided off\n--two-sided-lamps off\n--oracle error\n"
+                   "--form-factor polygon\n--epsilon 0.0001\n"),
+           "what links are bound to");
+    tap_ok(is_same(options_run_settings(&options),
+                   "--two-sided off\n--two-sided-lamps off\n--oracle error\n"
+                   "--linking tree\n--form-factor polygon\n--closure cap\n--solver cg\n"
+                   "--epsilon 0.0001\n--accuracy 0\n--max-level 10\n"
+                   "--min-area 9.9999999999999995e-08\n"),
+           "what a run is bound to");
+    options_free(&options);
+    parse("a.obj --paper --two-sided --epsilon 0.5", &options);
+    tap_ok(is_same(options_link_settings(&options),
+                   "--two-sided on\n--two-sided-lamps off\n--oracle bf\n"
+                   "--form-factor disk\n"),
+           "by energy, epsilon does not matter to links");
+    options_free(&options);
+    parse("a.obj --two-sided-lamps", &options);
+    static const char BOTH[] = "--two-sided on\n--two-sided-lamps on\n";
+    tap_ok(strncmp(options_link_settings(&options), BOTH, strlen(BOTH)) == 0 &&
+               strncmp(options_run_settings(&options), BOTH, strlen(BOTH)) == 0,
+           "twins of lamps do");
+    options_free(&options);
+}
+
+static void test_bad_suffixes(void)
+{
+    static const char *const names[] = {"a", "a.png", "a.PPM", "a.ppm.gz", ".ppm", "ppm", "a.ppm/"};
+    char line[50], message[100];
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        snprintf(line, sizeof line, "a.obj -o %s", names[i]);
+        snprintf(message, sizeof message, "-o %s: the name must end in .ppm, .pfm or .ply",
+                 names[i]);
+        check_refused(line, message);
+    }
+}
+
+static void test_bad_sizes(void)
+{
+    static const char *const sizes[] = {"5", "5x", "x5", "5x5x", "5x5x5", "0x5", "5x0", "-5x5",
+                                        "5.5x5", "32769x1", "1x32769", "axb", "5*5", "nanx5",
+                                        "99999999999999999999x5", "4294967297x5"};
+    char line[50], message[100];
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        snprintf(line, sizeof line, "a.obj --size %s", sizes[i]);
+        snprintf(message, sizeof message,
+                 "--size: '%s' is not WIDTHxHEIGHT, each from 1 to 32768", sizes[i]);
+        check_refused(line, message);
+    }
+}
+
+static void test_missing_values(void)
+{
+    char line[50], message[100];
+    for (int i = 0; i < NUMBER_COUNT + OTHER_COUNT; i++) {
+        const char *name = i < NUMBER_COUNT ? NUMBERS[i].name : OTHERS[i - NUMBER_COUNT][0];
+        if (i >= NUMBER_COUNT && !*OTHERS[i - NUMBER_COUNT][1])
+            continue;
+        snprintf(line, sizeof line, "a.obj %s", name);
+        snprintf(message, sizeof message, "%s needs a value", name);
+        check_refused(line, message);
+    }
+}
+
+/* --- the help and the tables --- */
+
+static size_t read_all(FILE *file, char *text)
+{
+    size_t size = fread(text, 1, TEXT_MAX - 1, file);
+    text[size] = '\0';
+    fclose(file);
+    return size;
+}
+
+static bool read_help(char *text)
+{
+    FILE *file = tmpfile();
+    if (!file)
+        return false;
+    options_print_help(file);
+    rewind(file);
+    return read_all(file, text) > 0;
+}
+
+/* The place where the whole word `name` stands in a text, or NULL. */
+static const char *find_word(const char *text, const char *name)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyz-";
+    size_t length = strlen(name);
+    for (const char *at = text; (at = strstr(at, name)) != NULL; at += length)
+        if ((at == text || !strchr(letters, at[-1])) &&
+            (!at[length] || !strchr(letters, at[length])))
+            return at;
+    return NULL;
+}
+
+static bool is_known(const char *name)
+{
+    bool known = false;
+    for (int i = 0; i < NUMBER_COUNT; i++)
+        known = known || strcmp(NUMBERS[i].name, name) == 0;
+    for (int i = 0; i < OTHER_COUNT; i++)
+        known = known || strcmp(OTHERS[i][0], name) == 0;
+    return known;
+}
+
+/* Options stand in the parser's table as {"--name", and nothing else there looks like that. */
+static void test_parser_table(const char *help)
+{
+    static char source[TEXT_MAX];
+    FILE *file = fopen("io/run/options.c", "rb");
+    int count = 0;
+    if (file)
+        read_all(file, source);
+    for (const char *at = source; (at = strstr(at, "{\"-")) != NULL;) {
+        char name[50];
+        at += 2;
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(at, "\""), at);
+        tap_ok(find_word(help, name), "the help knows %s", name);
+        tap_ok(is_known(name), "this test knows %s", name);
+        count++;
+    }
+    tap_ok(count == NUMBER_COUNT + OTHER_COUNT, "the parser knows %d options (%d here)", count,
+           NUMBER_COUNT + OTHER_COUNT);
+}
+
+static void test_help_is_true(const char *help)
+{
+    for (const char *at = strstr(help, "--"); at; at = strstr(at, "--")) {
+        char name[50];
+        size_t length = strspn(at, "-abcdefghijklmnopqrstuvwxyz");
+        snprintf(name, sizeof name, "%.*s", (int)length, at);
+        tap_ok(is_known(name), "the help's %s exists", name);
+        at += length;
+    }
+}
+
+/* The default value stands in the first brackets behind the option, on its line. */
+static void test_help_defaults(const char *help)
+{
+    struct options options;
+    parse("a.obj", &options);
+    for (int i = 0; i < NUMBER_COUNT; i++) {
+        const char *line = find_word(help, NUMBERS[i].name);
+        if (!NUMBERS[i].in_help)
+            continue;
+        size_t ahead = line ? strcspn(line, "(\n") : 0;
+        double said = line && line[ahead] == '(' ? strtod(line + ahead + 1, NULL) : NAN, is = number_of(&NUMBERS[i], &options);
+        tap_ok(said == is, "%s: the help says %g, the default is %g", NUMBERS[i].name, said, is);
+    }
+    options_free(&options);
+}
+
+static void test_help(void)
+{
+    static char help[TEXT_MAX];
+    if (!tap_ok(read_help(help) && strncmp(help, "usage: phr ", 11) == 0, "there is a help"))
+        return;
+    test_parser_table(help);
+    test_help_is_true(help);
+    test_help_defaults(help);
+}
+
+int main(void)
+{
+    test_defaults();
+    test_texts();
+    test_outputs();
+    test_switches();
+    test_choices();
+    test_enums();
+    test_paper();
+    test_sizes();
+    test_numbers();
+    test_errors();
+    test_bad_suffixes();
+    test_bad_sizes();
+    test_missing_values();
+    test_memory();
+    test_restart();
+    test_settings();
+    test_help();
+    return tap_done();
+}

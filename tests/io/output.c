@@ -1,0 +1,212 @@
+/* Tests of io/run/output.h. Proved are: a file appears whole or not at all; after an error the old
+ * file has its old bytes and nothing lies beside it; what cannot be written is known from a
+ * probe, with a line that says why; and numbers have one byte order. */
+#include "io/run/output.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/tap.h"
+
+#define PATH "build/output_test.bin"
+#define BESIDE PATH ".0.tmp"
+
+static struct error error;
+
+static void write_old(const char *bytes)
+{
+    FILE *file = fopen(PATH, "wb");
+    if (!file || fputs(bytes, file) < 0 || fclose(file) != 0) {
+        printf("Bail out! cannot write %s (is there a folder build?)\n", PATH);
+        exit(1);
+    }
+}
+
+/* True if the file holds exactly these bytes. */
+static bool file_is(const char *path, const char *bytes, size_t count)
+{
+    char found[200];
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return false;
+    size_t got = fread(found, 1, sizeof found, file);
+    fclose(file);
+    return got == count && memcmp(found, bytes, count) == 0;
+}
+
+static bool path_is_free(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    if (file)
+        fclose(file);
+    return !file;
+}
+
+static bool start(struct output *output, const char *path)
+{
+    error = (struct error){EXIT_DONE, ""};
+    return output_open(output, path, &error);
+}
+
+static void test_whole_file(void)
+{
+    struct output output;
+    remove(PATH);
+    tap_ok(start(&output, PATH) && path_is_free(PATH) && !path_is_free(BESIDE),
+           "a new file grows beside its place");
+    fputs("new", output.file);
+    tap_ok(output_close(&output, &error) && file_is(PATH, "new", 3) && path_is_free(BESIDE),
+           "and goes there when it is closed");
+    start(&output, PATH);
+    fputs("newer", output.file);
+    tap_ok(fflush(output.file) == 0 && file_is(PATH, "new", 3),
+           "the old file is there while the next one grows");
+    tap_ok(output_close(&output, &error) && file_is(PATH, "newer", 5) && path_is_free(BESIDE) &&
+               error.code == EXIT_DONE,
+           "which then takes its place");
+    start(&output, PATH);
+    tap_ok(output_close(&output, &error) && file_is(PATH, "", 0), "an empty file is a file");
+}
+
+/* After an error of another part of the program. */
+static void test_error_elsewhere(void)
+{
+    struct output output;
+    write_old("old");
+    start(&output, PATH);
+    fputs("new", output.file);
+    error_set(&error, EXIT_USAGE, "elsewhere");
+    tap_ok(!output_close(&output, &error) && file_is(PATH, "old", 3) && path_is_free(BESIDE),
+           "an error elsewhere leaves the old file");
+    tap_ok(error.code == EXIT_USAGE && strcmp(error.text, "elsewhere") == 0,
+           "and stays the error that is told");
+    remove(PATH);
+    start(&output, PATH);
+    error_set(&error, EXIT_USAGE, "elsewhere");
+    tap_ok(!output_close(&output, &error) && path_is_free(PATH) && path_is_free(BESIDE),
+           "and makes no file where there was none");
+}
+
+/* A stream that was reopened for reading refuses every byte: a full disk, anywhere. */
+static void test_write_error(void)
+{
+    static const char line[] = PATH ": cannot write: ";
+    struct output output;
+    write_old("old");
+    start(&output, PATH);
+    output.file = freopen(BESIDE, "rb", output.file);
+    bool refused = output.file && putc('x', output.file) == EOF;
+    tap_ok(refused && !output_close(&output, &error) && error.code == EXIT_FAILED &&
+               strncmp(error.text, line, strlen(line)) == 0 && error.text[strlen(line)],
+           "a write error: %s", error.text);
+    tap_ok(file_is(PATH, "old", 3) && path_is_free(BESIDE), "leaves the old file and no other");
+}
+
+static bool is_refused(bool good, const char *path)
+{
+    size_t length = strlen(path);
+    return !good && error.code == EXIT_FAILED && strncmp(error.text, path, length) == 0 &&
+           strncmp(error.text + length, ": cannot write: ", 16) == 0 && error.text[length + 16];
+}
+
+/* A path that both output_probe() and output_open() refuse, for the same reason. */
+static void check_unwritable(const char *path)
+{
+    struct output output = {0};
+    error = (struct error){EXIT_DONE, ""};
+    bool probed = is_refused(output_probe(path, &error), path);
+    struct error first = error;
+    bool opened = is_refused(start(&output, path), path);
+    tap_ok(probed && opened && strcmp(first.text, error.text) == 0, "'%s' is refused: %s", path,
+           error.text);
+    tap_ok(!output_close(&output, &error), "what did not open does not close well");
+}
+
+static void test_probe(void)
+{
+    error = (struct error){EXIT_DONE, ""};
+    remove(PATH);
+    tap_ok(output_probe(PATH, &error) && path_is_free(PATH) && path_is_free(BESIDE),
+           "probing a new file leaves nothing");
+    write_old("old");
+    tap_ok(output_probe(PATH, &error) && file_is(PATH, "old", 3) && path_is_free(BESIDE) &&
+               error.code == EXIT_DONE,
+           "probing an old file leaves it");
+    check_unwritable("build");
+    check_unwritable("build/");
+    check_unwritable("build/output_test_absent/file.ppm");
+    check_unwritable(PATH "/file.ppm");
+    check_unwritable("");
+}
+
+/* True if there is a file that can be opened and takes nothing. */
+static bool is_full(const char *path)
+{
+    FILE *device = fopen(path, "ab");
+    bool full = device && putc('x', device) == 'x' && fflush(device) != 0;
+    if (device)
+        fclose(device);
+    return full;
+}
+
+/* A device is written in place. Where the system has none, there is nothing to prove; where one
+ * was opened beside its place, closing would replace it, so an error keeps that from happening. */
+static void test_full_device(void)
+{
+    static const char path[] = "/dev/full";
+    struct output output;
+    if (!is_full(path)) {
+        tap_ok(true, "a full device # SKIP there is no %s", path);
+        return;
+    }
+    tap_ok(start(&output, path) && output_probe(path, &error), "a device is opened in place");
+    if (!tap_ok(!output.temporary, "and not beside it")) {
+        error_set(&error, EXIT_FAILED, "do not rename");
+        output_close(&output, &error);
+        return;
+    }
+    fputs("lost", output.file);
+    tap_ok(is_refused(output_close(&output, &error), path), "a few bytes: %s", error.text);
+    start(&output, path);
+    for (int i = 0; i < 100000; i++)
+        output_uint32(&output, 1);
+    tap_ok(is_refused(output_close(&output, &error), path), "many bytes: %s", error.text);
+    tap_ok(path_is_free("/dev/full.0.tmp") && is_full(path), "the device stays");
+}
+
+static void test_numbers(void)
+{
+    static const unsigned char expected[] = {
+        0x00, 0x00, 0x00, 0x00, 0x04, 0x03, 0x02, 0x01, 0xFF, 0xFE, 0xFD, 0xFC, /* integers */
+        0x00, 0x00, 0x80, 0x3F, /* 1 */
+        0x00, 0x00, 0x20, 0xC0, /* -2.5 = -1.25 * 2^1 */
+        0x00, 0x00, 0x00, 0x00, /* 0 */
+        0xFF, 0xFF, 0x7F, 0x7F, /* the largest: (2 - 2^-23) * 2^127 */
+        0xCD, 0xCC, 0xCC, 0x3D, /* 0.1, rounded */
+    };
+    struct output output;
+    start(&output, PATH);
+    output_uint32(&output, 0);
+    output_uint32(&output, 0x01020304u);
+    output_uint32(&output, 0xFCFDFEFFu);
+    output_float(&output, 1.0f);
+    output_float(&output, -2.5f);
+    output_float(&output, 0.0f);
+    output_float(&output, 3.40282346638528859812e38f);
+    output_float(&output, 0.1f);
+    tap_ok(output_close(&output, &error) && file_is(PATH, (const char *)expected, sizeof expected),
+           "integers and floats, least significant byte first");
+}
+
+int main(void)
+{
+    test_whole_file();
+    test_error_elsewhere();
+    test_write_error();
+    test_probe();
+    test_full_device();
+    test_numbers();
+    remove(PATH);
+    return tap_done();
+}

@@ -1,0 +1,399 @@
+/* Tests of io/scene/ply.h, with io/scene/plyfile.h, io/scene/binary.h and io/scene/palette.h behind it. Binary files are
+ * made byte by byte in both orders from one list of values. */
+#include "io/scene/ply.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/scene/palette.h"
+#include "tests/tap.h"
+
+#define PLY "build/ply_test.ply"
+#define XYZ "property float x\nproperty float y\nproperty float z\n"
+#define SQUARE "element vertex 4\n" XYZ
+#define FACE(count) "element face " #count "\nproperty list uchar int vertex_indices\n"
+#define CORNERS "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+#define ASCII "ply\nformat ascii 1.0\n"
+
+static struct error error;
+
+static struct scene *read_bytes(const void *bytes, size_t size)
+{
+    struct binary binary;
+    error = (struct error){EXIT_DONE, ""};
+    return binary_of_bytes(&binary, PLY, bytes, size, "ply", "a PLY file", &error)
+               ? ply_of_binary(&binary, &error)
+               : NULL;
+}
+
+static struct scene *read_text(const char *text)
+{
+    return read_bytes(text, strlen(text));
+}
+
+/* The text is refused with this line, whose %s is the path. */
+static void check_refused(const char *text, const char *message)
+{
+    struct scene *scene = read_text(text);
+    bool right = !scene && error.code == EXIT_USAGE && strncmp(error.text, PLY, strlen(PLY)) == 0 &&
+                 strcmp(error.text + strlen(PLY), message) == 0;
+    if (!right)
+        printf("# expected '%s', got '%s'\n", message, error.text);
+    tap_ok(right, "%s", message);
+    scene_destroy(scene);
+}
+
+static bool corner_is(const struct scene *scene, int32_t triangle, int k, double x, double y,
+                      double z)
+{
+    struct vec3 corner = scene->triangles[triangle].corner[k];
+    return corner.x == x && corner.y == y && corner.z == z;
+}
+
+/* True for the unit square, cut into (0, 1, 2) and (0, 2, 3). */
+static bool is_square(const struct scene *scene)
+{
+    return scene && scene->input_count == 2 && corner_is(scene, 0, 0, 0, 0, 0) &&
+           corner_is(scene, 0, 1, 1, 0, 0) && corner_is(scene, 0, 2, 1, 1, 0) &&
+           corner_is(scene, 1, 0, 0, 0, 0) && corner_is(scene, 1, 1, 1, 1, 0) &&
+           corner_is(scene, 1, 2, 0, 1, 0) && scene->group_count == 1;
+}
+
+static void check_square(const char *name, const char *text)
+{
+    struct scene *scene = read_text(text);
+    tap_ok(is_square(scene), "%s%s%s", name, error.code ? ": " : "", error.text);
+    scene_destroy(scene);
+}
+
+static void test_text(void)
+{
+    check_square("text", ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n");
+    check_square("two triangles", ASCII SQUARE FACE(2) "end_header\n" CORNERS "3 0 1 2\n3 0 2 3");
+    check_square("vertex_index, other names of types",
+                 ASCII SQUARE "element face 1\nproperty list uint8 int32 vertex_index\nend_header\n"
+                 CORNERS "4 0 1 2 3\n");
+    check_square("faces before vertices", ASCII FACE(1) SQUARE "end_header\n4 0 1 2 3\n" CORNERS);
+    check_square("comments, blank lines, CR LF",
+                 "ply\r\ncomment made by hand\r\nformat ascii 1.0\r\nobj_info none\r\n"
+                 "element vertex 4\r\nproperty double x\r\nproperty double y\r\nproperty double z\r\n"
+                 "element face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n"
+                 "0 0 0\r\n1 0 0\r\n\r\n1 1 0\r\n 0\t1 0 \r\n4 0 1 2 3\r\n\r\n");
+    check_square("CR alone",
+                 "ply\rformat ascii 1.0\relement vertex 4\rproperty int x\rproperty int y\r"
+                 "property int z\relement face 1\rproperty list char char vertex_indices\r"
+                 "end_header\r0 0 0\r1 0 0\r1 1 0\r0 1 0\r4 0 1 2 3\r");
+    check_square("other properties, lists and elements, NaN among them",
+                 ASCII "element camera 2\nproperty list int float view\nproperty char c\n"
+                 "element vertex 4\nproperty float nx\n" XYZ "property list uchar int more\n"
+                 "element nothing 1000000000\n"
+                 "element face 1\nproperty int flag\nproperty list uchar int vertex_indices\n"
+                 "property list uchar float texcoord\nend_header\n2 nan inf 3\n0 7\n"
+                 "nan 0 0 0 0\n1 1 0 0 1 9\n1 1 1 0 0\n1 0 1 0 0\n5 4 0 1 2 3 2 0.5 0.5\n");
+}
+
+/* --- binary files --- */
+
+struct bytes {
+    unsigned char data[1000];
+    size_t size;
+    bool big;
+};
+
+static void put(struct bytes *to, uint64_t value, int size)
+{
+    for (int i = 0; i < size; i++)
+        to->data[to->size++] = (unsigned char)(value >> 8 * (to->big ? size - 1 - i : i));
+}
+
+static void put_float(struct bytes *to, float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put(to, bits, 4);
+}
+
+static void put_double(struct bytes *to, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put(to, bits, 8);
+}
+
+static void put_text(struct bytes *to, const char *text)
+{
+    memcpy(to->data + to->size, text, strlen(text));
+    to->size += strlen(text);
+}
+
+/* All types, a list to pass over in the middle of a row, an element without lists before all. */
+static struct bytes make_binary(bool big)
+{
+    static const float square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    struct bytes file = {.big = big};
+    put_text(&file, "ply\nformat ");
+    put_text(&file, big ? "binary_big_endian" : "binary_little_endian");
+    put_text(&file, " 1.0\nelement first 3\nproperty ushort a\nproperty char b\n"
+                    "element vertex 4\nproperty float x\nproperty list ushort double w\n"
+                    "property double y\nproperty short z\n"
+                    "element face 1\nproperty uchar red\nproperty ushort green\n"
+                    "property float blue\nproperty list uint ushort vertex_indices\n"
+                    "property float emission_r\nproperty float emission_g\n"
+                    "property float emission_b\nend_header\n");
+    for (int i = 0; i < 3; i++) {
+        put(&file, 0xFFFF, 2);
+        put(&file, 0x80, 1);
+    }
+    for (uint64_t i = 0; i < 4; i++) {
+        put_float(&file, square[i][0]);
+        put(&file, i % 2, 2);
+        if (i % 2)
+            put_double(&file, 1e300);
+        put_double(&file, (double)square[i][1]);
+        put(&file, 0, 2);
+    }
+    put(&file, 51, 1);
+    put(&file, 13107, 2);
+    put_float(&file, 0.25f);
+    put(&file, 4, 4);
+    for (uint64_t i = 0; i < 4; i++)
+        put(&file, i, 2);
+    put_float(&file, 0.0f);
+    put_float(&file, 1000.0f);
+    put_float(&file, 0.5f);
+    return file;
+}
+
+/* Materials that the tests expect. */
+static const struct material
+    BY_TYPE = {{{0.2, 0.2, 0.25}}, {{0, 1000, 0.5}}}, GREY = {{{0.5, 0.5, 0.5}}, {{0, 0, 0}}},
+    MEAN = {{{1.0 / 3, 0.2, 0.2}}, {{0, 0, 0}}}, OWN = {{{0.1, 0.2, 0.3}}, {{0, 0, 0}}},
+    GREY_LAMP = {{{0.5, 0.5, 0.5}}, {{5, 6, 7}}};
+
+static void check_material(const struct scene *scene, int32_t triangle,
+                           const struct material *expected, const char *name)
+{
+    bool right = scene != NULL;
+    for (int c = 0; right && c < BANDS; c++) {
+        const struct material *found = &scene->materials[scene->material_of[triangle]];
+        right = fabs(found->reflectance.band[c] - expected->reflectance.band[c]) < 1e-15 &&
+                found->emission.band[c] == expected->emission.band[c];
+    }
+    tap_ok(right, "%s%s", name, error.text);
+}
+
+static void test_binary(void)
+{
+    for (int big = 0; big < 2; big++) {
+        struct bytes file = make_binary(big);
+        struct scene *scene = read_bytes(file.data, file.size);
+        tap_ok(is_square(scene), "binary, %s endian: %s", big ? "big" : "little", error.text);
+        check_material(scene, 1, &BY_TYPE,
+                       "colours by type, emission as it is");
+        scene_destroy(scene);
+    }
+}
+
+/* Cut off anywhere it is an error, and with a byte too many. */
+static void test_lengths(void)
+{
+    struct bytes file = make_binary(false);
+    int accepted = 0;
+    for (size_t size = 0; size < file.size; size++) {
+        struct scene *scene = read_bytes(file.data, size);
+        accepted += scene != NULL;
+        scene_destroy(scene);
+    }
+    tap_ok(accepted == 0, "cut off at every byte");
+    put(&file, 1, 1);
+    struct scene *scene = read_bytes(file.data, file.size);
+    tap_ok(!scene && strcmp(error.text, PLY ": 1 bytes are left behind the last element") == 0,
+           "a byte too many: %s", error.text);
+    scene_destroy(scene);
+}
+
+/* A number in the binary square is replaced; the message says which element is wrong. */
+static void check_patched(size_t from_end, unsigned char byte, const char *message)
+{
+    struct bytes file = make_binary(false);
+    file.data[file.size - from_end] = byte;
+    struct scene *scene = read_bytes(file.data, file.size);
+    bool right = !scene && strcmp(error.text + strlen(PLY), message) == 0;
+    tap_ok(right, "binary%s (%s)", message, error.text);
+    scene_destroy(scene);
+}
+
+static void test_binary_errors(void)
+{
+    check_patched(13, 1, ": face 0: corner 259, but the last vertex is 3");
+    check_patched(24, 2, ": face 0: 2 corners instead of 3 to 16384");
+    check_patched(21, 0x7F, ": the file ends in face 0");
+    check_patched(5, 0xC4, ": face 0: a negative colour or emission");
+    check_patched(92, 0x7F, ": vertex 1: a number is not finite or out of range");
+}
+
+static void test_colours(void)
+{
+    struct scene *scene = read_text(ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n");
+    check_material(scene, 0, &GREY, "no colours: grey");
+    scene_destroy(scene);
+    scene = read_text(ASCII SQUARE "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                      FACE(2) "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n"
+                      "0 1 0 0 0 0\n3 0 1 2\n3 2 3 0\n");
+    check_material(scene, 0, &MEAN,
+                   "colours of vertices: the mean of the corners");
+    scene_destroy(scene);
+    scene = read_text(ASCII SQUARE "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                      FACE(3) "property double red\nproperty double green\nproperty double blue\n"
+                      "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n0 1 0 0 0 0\n"
+                      "3 0 1 2 0.1 0.2 0.3\n3 2 3 0 0.5 0.5 0.5\n3 0 1 3 0.1 0.2 0.3\n");
+    check_material(scene, 0, &OWN,
+                   "colours of faces come first");
+    tap_ok(scene && scene->material_count == 2 && scene->material_of[2] == scene->material_of[0],
+           "faces of one colour share a material");
+    scene_destroy(scene);
+    scene = read_text(ASCII SQUARE FACE(2) "property float emission_r\nproperty float emission_g\n"
+                      "property float emission_b\nend_header\n" CORNERS
+                      "3 0 1 2 5 6 7\n3 0 2 3 0 0 0\n");
+    check_material(scene, 0, &GREY_LAMP, "a lamp without colours");
+    scene_destroy(scene);
+}
+
+/* An arrow head: corner 3 is concave, so the fan from corner 0 is right and one from 1 is not. */
+static void test_concave(void)
+{
+    struct scene *scene = read_text(ASCII "element vertex 4\n" XYZ FACE(1)
+                                    "end_header\n1 3 0\n0 0 0\n1 1 0\n2 0 0\n4 1 2 3 0\n");
+    double area = 0.0;
+    for (int32_t i = 0; scene && i < scene->input_count; i++)
+        area += triangle_area(&scene->triangles[i]);
+    tap_ok(fabs(area - 2.0) < 1e-12, "a concave face");
+    scene_destroy(scene);
+}
+
+static void test_palette(void)
+{
+    struct palette palette = {0};
+    bool right = true;
+    for (int round = 0; round < 2; round++)
+        for (int i = 0; i < 5000; i++) {
+            struct material material = {{{i % 17 / 17.0, i / 17, 0.5}}, {{0, 0, i % 3}}};
+            right = palette_add(&palette, &material) == i && right;
+        }
+    tap_ok(right && palette.count == 5000, "5000 materials keep their numbers");
+    struct material minus = {{{0.0, 0.0, 0.5}}, {{-0.0, 0, 0}}};
+    tap_ok(palette_add(&palette, &minus) == 0, "-0 is 0");
+    palette_free(&palette);
+}
+
+static void test_header_errors(void)
+{
+    check_refused("plyx\n", ": not a PLY file");
+    check_refused("ply\n", ":1: the header has no end");
+    check_refused("ply\nelement vertex 1\n", ":2: the header has no end");
+    check_refused("ply\nend_header\n", ":2: no format before 'end_header'");
+    check_refused("ply\nformat ebcdic 1.0\n", ":2: unknown format 'ebcdic'");
+    check_refused("ply\nformat ascii 2.0\n", ":2: unknown version of the format '2.0'");
+    check_refused(ASCII "format ascii 1.0\n", ":3: a second format 'ascii'");
+    check_refused(ASCII "hello\n", ":3: unknown line of the header: 'hello'");
+    check_refused(ASCII "element vertex -1\n", ":3: bad number of elements '-1'");
+    check_refused(ASCII "element vertex 3x\n", ":3: bad number of elements '3x'");
+    check_refused(ASCII "element vertex\n", ":3: bad number of elements ''");
+    check_refused(ASCII "property float x\n", ":3: a property before any element: 'float x'");
+    check_refused(ASCII SQUARE "property real w\n", ":7: bad property 'w'");
+    check_refused(ASCII SQUARE "property list float int w\n", ":7: bad property 'w'");
+    check_refused(ASCII SQUARE "property float x\n", ":7: a second property 'x'");
+    check_refused(ASCII SQUARE SQUARE, ":7: a second element 'vertex'");
+    check_refused(ASCII "element face 1\nproperty int vertex_index\n",
+                  ":4: the wrong kind of property for 'vertex_index'");
+    check_refused(ASCII "element face 1\nproperty list int float vertex_index\n",
+                  ":4: the wrong kind of property for 'vertex_index'");
+    check_refused(ASCII FACE(1) "end_header\n3 0 1 2\n", ": no vertices with x, y and z");
+    check_refused(ASCII SQUARE "end_header\n" CORNERS, ": no faces with vertex_indices");
+    check_refused(ASCII SQUARE FACE(0) "end_header\n" CORNERS, ": no faces with vertex_indices");
+    check_refused(ASCII "element vertex 1000000000000\n" XYZ FACE(1) "end_header\n",
+                  ":3: the file is too short for 1000000000000 elements of this kind");
+    check_refused("ply\nformat binary_little_endian 1.0\n" SQUARE FACE(1) "end_header\nshort",
+                  ":3: the file is too short for 4 elements of this kind");
+}
+
+static void test_row_errors(void)
+{
+    check_refused(ASCII SQUARE FACE(1) "end_header\n0 0 0\n1 0 nan\n1 1 0\n0 1 0\n3 0 1 2\n",
+                  ":11: bad number 'nan'");
+    check_refused(ASCII SQUARE FACE(1) "end_header\n0 0 0\n1 0 inf\n1 1 0\n0 1 0\n3 0 1 2\n",
+                  ":11: bad number 'inf'");
+    check_refused(ASCII SQUARE FACE(1) "end_header\n0 0 0\n1 0 1e200\n1 1 0\n0 1 0\n3 0 1 2\n",
+                  ":11: a number is not finite or out of range");
+    check_refused(ASCII SQUARE FACE(1) "end_header\n0 0 0\n1 0\n1 1 0\n0 1 0\n3 0 1 2\n",
+                  ":11: fewer values than the header says");
+    check_refused(ASCII SQUARE FACE(1) "end_header\n0 0 0\n1 0 0 0\n1 1 0\n0 1 0\n3 0 1 2\n",
+                  ":11: more values than the header says");
+    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "3 0 1 4\n",
+                  ":14: corner 4, but the last vertex is 3");
+    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "3 0 1 -1\n",
+                  ":14: a corner is not the number of a vertex");
+    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "3 0 1 1.5\n",
+                  ":14: a corner is not the number of a vertex");
+    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "-3 0 1 2\n",
+                  ":14: the length of a list is not a natural number");
+    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "2 0 1\n",
+                  ":14: 2 corners instead of 3 to 16384");
+    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "4000000000 0 1\n",
+                  ":14: fewer values than the header says");
+    check_refused(ASCII SQUARE FACE(2) "end_header\n" CORNERS "3 0 1 2\n \n",
+                  ": the file ends in face 1");
+    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "3 0 1 2\n3 0 2 3\n",
+                  ": 8 bytes are left behind the last element");
+    check_refused(ASCII SQUARE FACE(1)
+                  "property float red\nproperty float green\nproperty float blue\nend_header\n" CORNERS
+                  "3 0 1 2 0 -0.1 0\n", ":17: a negative colour or emission");
+}
+
+static void write_file(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "wb");
+    if (!file || fputs(text, file) < 0 || fclose(file) != 0) {
+        printf("Bail out! cannot write %s (is there a folder build?)\n", path);
+        exit(1);
+    }
+}
+
+static void test_choice(void)
+{
+    static const char text[] = ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n";
+    write_file(PLY, text);
+    error = (struct error){EXIT_DONE, ""};
+    struct scene *scene = ply_read(PLY, &error);
+    tap_ok(is_square(scene), "from a file%s", error.text);
+    scene_destroy(scene);
+    tap_ok(ply_is_meant(PLY) && ply_is_meant("absent.PLY"), "the name ends in .ply");
+    tap_ok(!ply_is_meant("absent.obj") && !ply_is_meant("absent") && !ply_is_meant("ply"),
+           "other names");
+    write_file("build/ply_test.mesh", text);
+    tap_ok(ply_is_meant("build/ply_test.mesh"), "another name, the content of PLY");
+    write_file("build/ply_test.mesh", "v 0 0 0\n");
+    tap_ok(!ply_is_meant("build/ply_test.mesh"), "another name, other content");
+    error = (struct error){EXIT_DONE, ""};
+    tap_ok(!ply_read("build/ply_test_absent.ply", &error) && error.code == EXIT_USAGE,
+           "a missing file: %s", error.text);
+    remove(PLY);
+    remove("build/ply_test.mesh");
+}
+
+int main(void)
+{
+    test_text();
+    test_binary();
+    test_lengths();
+    test_binary_errors();
+    test_colours();
+    test_concave();
+    test_palette();
+    test_header_errors();
+    test_row_errors();
+    test_choice();
+    return tap_done();
+}

@@ -1,0 +1,223 @@
+/* Tests of io/picture/render.h: light gathered at the points that pictures show, against closed
+ * forms, where no mesh could show them. */
+#include "io/picture/render.h"
+
+#include "geom/lambert.h"
+#include "tests/defaults.h"
+#include "tests/tap.h"
+
+static const struct comm *world_comm;
+
+/* Radiosity at a point of root `first` or the next, as a picture shows it; `shading` NULL:
+ * all light is gathered. */
+static double shown(struct solution *s, const struct shading *shading, int32_t first,
+                    struct vec3 at)
+{
+    struct renderer renderer = renderer_make(s->octree, shading, &s->solver->gather);
+    struct vec3 x = scene_from_input(s->scene, at);
+    for (int32_t root = first; root < first + 2; root++) {
+        double weight[3];
+        struct triangle t = scene_root_triangle(s->scene, root);
+        weights_at(&t, x, weight);
+        if (fmin(weight[0], fmin(weight[1], weight[2])) >= -1e-9)
+            return render_point(&renderer, root, weight, 1).band[0];
+    }
+    return -1.0;
+}
+
+static struct shading *shade_rest(const struct solution *s)
+{
+    int64_t count;
+    const struct forest *forest = s->solver->model.forest;
+    uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
+    struct shading *shading = shading_create(forest, s->solver->straight, open);
+    alloc_free(open);
+    return shading;
+}
+
+/* --- straight from a lamp --- */
+
+/* The factor from a point of the floor to a part of the lamp. */
+static double factor_to_lamp(struct vec3 x, double from, double to)
+{
+    const struct vec3 a = {from, -0.1, 1}, b = {to, -0.1, 1}, c = {to, 0.1, 1},
+                      d = {from, 0.1, 1};
+    const struct triangle parts[2] = {{{a, d, c}}, {{a, c, b}}};
+    return point_triangle_factor(x, point(0, 0, 1), &parts[0]) +
+           point_triangle_factor(x, point(0, 0, 1), &parts[1]);
+}
+
+/* A floor of two leaves, a square lamp above, of which a smaller plate halfway between hides
+ * some: the shadow has its edges where they are, although no leaf knows of them. */
+static void test_shadow(bool all)
+{
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(-1, -1, 0), point(2, 0, 0), point(0, 2, 0), 1);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(-0.1, -0.1, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    paint(&painted, 0.0, 100.0);
+    soup_add_quad(&painted.soup, point(-0.2, -0.2, 0.5), point(0.4, 0, 0), point(0, 0.4, 0), 1);
+    paint(&painted, 0.0, 0.0);
+    struct solution s =
+        solve_scene(world_comm, scene_of_painted(&painted), "--max-level 0 --final-gather 64");
+    struct shading *shading = all ? NULL : shade_rest(&s);
+    double lit = 0.0, dark = 0.0, half = 0.0;
+    for (int i = 0; i <= 10; i++) {
+        struct vec3 x = point(0.501 + 0.04 * i, 0.03 * i, 0.0);
+        double exact = 50.0 * factor_to_lamp(x, -0.1, 0.1);
+        lit = fmax(lit, fabs(shown(&s, shading, 0, x) / exact - 1.0));
+        dark = fmax(dark, shown(&s, shading, 0, point(0.0299 * i, -0.02 * i, 0.0)));
+        x = point(0.4, 0.015 * i, 0.0); /* sees the half of the lamp that is x > 0 */
+        exact = 50.0 * factor_to_lamp(x, 0.0, 0.1);
+        half = fmax(half, fabs(shown(&s, shading, 0, x) / exact - 1.0));
+    }
+    const char *light = all ? "all light gathered" : "light straight from lamps";
+    tap_ok(lit <= 1e-6, "%s: lit points are right within %.1e", light, lit);
+    tap_ok(dark == 0.0, "%s: shadow is dark", light);
+    /* 32 points in squares of their own: the edge may cut some 6 of them */
+    tap_ok(half <= 0.1, "%s: half-shadow is right within %.1e", light, half);
+    shading_destroy(shading);
+    solution_free(&s);
+}
+
+/* --- all light --- */
+
+/* Everything shines as it absorbs: B = 1 at every point, in corners and gaps too. */
+static void test_furnace(void)
+{
+    struct painted painted = {0};
+    soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    soup_add_box(&painted.soup, point(0.3, 0.3, 0.01), point(0.7, 0.6, 0.5), 1, false);
+    paint(&painted, 0.5, 0.5);
+    struct solution s = solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 1e-2");
+    struct renderer renderer = renderer_make(s.octree, NULL, &s.solver->gather);
+    double worst = 0.0;
+    int points = 0;
+    for (int32_t root = 0; root < scene_root_count(s.scene); root++)
+        for (int k = 0; k < 16; k++, points++) {
+            double u = (k % 4 + 0.01) / 4.0, v = (k / 4 + 0.01) / 4.0;
+            const double weight[3] = {1.0 - u, u * v, u * (1.0 - v)};
+            double b = render_point(&renderer, root, weight, (uint64_t)k).band[0];
+            worst = fmax(worst, fabs(b - 1.0));
+        }
+    /* the tolerance of the solution is 1e-5 of all light */
+    tap_ok(worst <= 2e-5, "a furnace is even at %d points, within %.1e", points, worst);
+    solution_free(&s);
+}
+
+/* --- smooth surfaces --- */
+
+/* A column of eight facets, a small lamp far away: light falls as the cosine of the smooth
+ * surface, beyond the horizon of the facets too. */
+static void test_column(void)
+{
+    static const double FAR = 40.0, TURN = 0.17453292519943295; /* 10 degrees */
+    struct painted painted = {0};
+    struct vec3 rim[8];
+    for (int i = 0; i < 8; i++) {
+        double angle = TURN * (3.0 + 4.5 * i);
+        rim[i] = point(cos(angle), sin(angle), 0);
+    }
+    for (int i = 0; i < 8; i++)
+        soup_add_quad(&painted.soup, rim[i], vec3_sub(rim[(i + 1) % 8], rim[i]),
+                      point(0, 0, 1), 1);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(FAR, -0.2, 0.3), point(0, 0, 0.4), point(0, 0.4, 0), 1);
+    paint(&painted, 0.0, 1e4);
+    struct scene *scene = scene_of_painted(&painted);
+    scene_add_normals(scene);
+    for (int i = 0; i < 16; i++)
+        for (int k = 0; k < 3; k++) {
+            struct vec3 corner = scene->triangles[i].corner[k];
+            scene->normals[3 * i + k] = point(corner.x, corner.y, 0);
+        }
+    struct solution s = solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
+    struct shading *shading = shade_rest(&s);
+    double brightest = 0.5 * 1e4 * 0.16 / (3.14159265358979323846 * (FAR - 1) * (FAR - 1));
+    double worst = 0.0;
+    for (int facet = 6; facet < 10; facet++) /* 300 to 480 degrees */
+        for (int k = 1; k < 8; k++) {
+            struct vec3 a = rim[facet % 8], b = rim[(facet + 1) % 8];
+            struct vec3 x = vec3_add(vec3_scale(a, 1.0 - k / 8.0), vec3_scale(b, k / 8.0));
+            double cosine = fmax(0.0, x.x / vec3_length(x));
+            double off = shown(&s, shading, 2 * (facet % 8), vec3_add(x, point(0, 0, 0.5))) /
+                             brightest - cosine;
+            worst = fmax(worst, fabs(off));
+        }
+    tap_ok(worst <= 0.05, "a column of facets is lit as a round one, within %.3f of the most",
+           worst);
+    shading_destroy(shading);
+    solution_free(&s);
+}
+
+/* A facet of a bowl, whose normals lean to its middle, and a lamp behind it: some of its
+ * tangent planes are open to the lamp, but it is in the way itself. */
+static void test_bowl(void)
+{
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(0, 1, 0), point(0, 0, 1), 1);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(-0.6, 3, 0.4), point(0.2, 0, 0), point(0, 0, 0.2), 1);
+    paint(&painted, 0.0, 1e3);
+    struct scene *scene = scene_of_painted(&painted);
+    scene_add_normals(scene);
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 3; k++) {
+            double middle = scene_from_input(scene, point(0, 0.5, 0)).y;
+            bool left = scene->triangles[i].corner[k].y < middle;
+            scene->normals[3 * i + k] = point(0.8, left ? 0.6 : -0.6, 0);
+        }
+    struct solution s = solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
+    struct shading *shading = shade_rest(&s);
+    double most = 0.0;
+    for (int i = 1; i < 20; i++)
+        most = fmax(most, fabs(shown(&s, shading, 0, point(0, 0.05 * i, 0.53))));
+    tap_ok(most == 0.0, "no light comes through the facet of a bowl: %g", most);
+    shading_destroy(shading);
+    solution_free(&s);
+}
+
+/* A box whose normals are smoothed over its edges, as some programs write them: a plate above it
+ * keeps the light of a lamp off. */
+static void test_smoothed_box(void)
+{
+    struct painted painted = {0};
+    soup_add_box(&painted.soup, point(-0.5, -0.5, -0.5), point(0.5, 0.5, 0.5), 1, false);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(-1, -1, 0.7), point(2, 0, 0), point(0, 2, 0), 1);
+    paint(&painted, 0.0, 0.0);
+    soup_add_quad(&painted.soup, point(-0.2, -0.2, 2), point(0, 0.4, 0), point(0.4, 0, 0), 1);
+    paint(&painted, 0.0, 100.0);
+    struct scene *scene = scene_of_painted(&painted);
+    scene_add_normals(scene);
+    for (int i = 0; i < 12; i++)
+        for (int k = 0; k < 3; k++)
+            scene->normals[3 * i + k] = vec3_unit(scene->triangles[i].corner[k]);
+    struct solution s = solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
+    struct shading *shading = shade_rest(&s);
+    double most = 0.0;
+    for (int32_t root = 0; root < 12; root += 2)
+        for (int i = 0; i < 9; i++) {
+            struct vec3 x = point(0.1 * i - 0.4, 0.03 * i, 0.5);
+            if (scene_root_plane(s.scene, root).normal.z > 0.9)
+                most = fmax(most, shown(&s, shading, root, x));
+        }
+    tap_ok(most == 0.0, "a smoothed box under a plate is dark: %.2g", most);
+    shading_destroy(shading);
+    solution_free(&s);
+}
+
+int main(int argc, char **argv)
+{
+    struct comm comm;
+    comm_start(&comm, &argc, &argv);
+    world_comm = &comm;
+    test_shadow(false);
+    test_shadow(true);
+    test_furnace();
+    test_column();
+    test_bowl();
+    test_smoothed_box();
+    comm_stop(&comm);
+    return tap_done();
+}

@@ -1,0 +1,909 @@
+/* Tests of io/picture/shading.h. Proved are: the interpolation is continuous over every smooth surface,
+ * also where large leaves meet small ones and where roots meet; it keeps constants and, on a
+ * regular subdivision, linear functions; it neither depends on the order in which patches were
+ * made nor blends what must stay apart (materials, creases, sides, the dark under a box); facets
+ * whose normals agree show one curved surface.
+ *
+ *      3-------2     the square: roots (0, 1, 2) and (0, 2, 3), whose common edge is the
+ *      | 1  /  |     diagonal. Barycentric coordinates of all leaves are dyadic numbers, so a
+ *      |  / 0  |     point on an edge, and one 2^-50 beside it, are exact, and so is the way
+ *      0-------1     down the quadtree to the leaf that holds it.
+ *
+ * 2^-50 off an edge of a leaf of level 6 the value is off by 2^6 2^-50 = 6e-14 at most; the
+ * tolerance of continuity, 1e-12, leaves room for rounding. */
+#include "io/picture/shading.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/alloc.h"
+#include "octree/octree.h"
+#include "tests/random.h"
+#include "tests/tap.h"
+
+static const double CONTINUOUS = 1e-12;
+enum { DEEPEST = 6 };
+
+/* A scene with all that stands on it. */
+struct stage {
+    struct scene *scene;
+    struct octree *octree;
+    struct forest *forest;
+    struct shading *shading;
+};
+
+/* --- scenes --- */
+
+static void put_triangle(struct scene *scene, int32_t number, struct vec3 a, struct vec3 b,
+                         struct vec3 c)
+{
+    scene->triangles[number] = (struct triangle){{a, b, c}};
+}
+
+/* The quadrilateral abcd as the roots `number` = (a, b, c) and `number` + 1 = (a, c, d). */
+static void put_square(struct scene *scene, int32_t number, struct vec3 a, struct vec3 b,
+                       struct vec3 c, struct vec3 d)
+{
+    put_triangle(scene, number, a, b, c);
+    put_triangle(scene, number + 1, a, c, d);
+}
+
+static struct stage stage_of(struct scene *scene)
+{
+    struct scene_repairs repairs = {0};
+    struct error error = {EXIT_DONE, ""};
+    if (!scene_prepare(scene, &repairs, &error)) {
+        printf("Bail out! %s\n", error.text);
+        exit(1);
+    }
+    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    return (struct stage){scene, octree, forest_create(scene), NULL};
+}
+
+/* The square with its corner 3 lifted by `lift`. */
+static struct scene *folded_square(double lift)
+{
+    struct scene *scene = scene_create(2, 2);
+    put_square(scene, 0, (struct vec3){0.0, 0.0, 0.0}, (struct vec3){1.0, 0.0, 0.0},
+               (struct vec3){1.0, 1.0, 0.0}, (struct vec3){0.0, 1.0, lift});
+    return scene;
+}
+
+static struct vec3 unit_or_zero(struct vec3 x)
+{
+    double length = vec3_length(x);
+    return length > 0.0 ? vec3_scale(x, 1.0 / length) : x;
+}
+
+/* The square folded by 45 degrees about its diagonal, with the same normal at all corners of both
+ * roots but for corner 2 of root 1 = (0, 2, 3), which is one end of the diagonal. */
+static struct scene *curved_square(struct vec3 normal, struct vec3 other)
+{
+    struct scene *scene = folded_square(0.0);
+    double half = sqrt(0.125); /* cos 45 / 2, sin 45 / 2 */
+    scene->triangles[1].corner[2] = (struct vec3){0.5 - half, 0.5 + half, 0.5};
+    scene_add_normals(scene);
+    for (int i = 0; i < 6; i++)
+        scene->normals[i] = unit_or_zero(normal);
+    scene->normals[3 + 1] = unit_or_zero(other);
+    return scene;
+}
+
+static const struct vec3 UP = {0.0, 0.0, 1.0};
+static const struct vec3 BETWEEN = {0.27059805007309849, -0.27059805007309849, 0.92387953251128674};
+
+static struct stage curved_stage(void)
+{
+    return stage_of(curved_square(BETWEEN, BETWEEN));
+}
+
+static struct stage square_stage(void)
+{
+    return stage_of(folded_square(0.0));
+}
+
+static void shade(struct stage *stage, bool flat)
+{
+    shading_destroy(stage->shading);
+    int64_t leaves;
+    uint8_t *open = flat ? NULL : shading_open_quarters(stage->forest, stage->octree, 0, 1, &leaves);
+    stage->shading = shading_create(stage->forest, NULL, open);
+    alloc_free(open);
+}
+
+static void dismantle(struct stage *stage)
+{
+    shading_destroy(stage->shading);
+    forest_destroy(stage->forest);
+    octree_destroy(stage->octree);
+    scene_destroy(stage->scene);
+}
+
+/* --- subdivisions and fields --- */
+
+static void split_regularly(struct forest *forest, int level)
+{
+    for (int32_t p = 0; p < forest->count; p++)
+        if (id_level(forest->patches[p].id) < level)
+            forest_split(forest, p);
+}
+
+/* Splits about `share` of the patches of each root: leaves of all levels side by side. */
+static void split_randomly(struct forest *forest, struct random *random, double share)
+{
+    for (int32_t p = 0; p < forest->count; p++) {
+        int level = id_level(forest->patches[p].id);
+        if (level < DEEPEST && random_unit(random) < (level < 2 ? 0.9 : share))
+            forest_split(forest, p);
+    }
+}
+
+static void set_constant(struct forest *forest, double value)
+{
+    for (int64_t p = 0; p < forest->count; p++)
+        forest->patches[p].radiosity = (struct rgb){{value, 2.0 * value, 0.0}};
+}
+
+static void set_randomly(struct forest *forest, struct random *random)
+{
+    for (int64_t p = 0; p < forest->count; p++)
+        for (int c = 0; c < BANDS; c++)
+            forest->patches[p].radiosity.band[c] = random_unit(random);
+}
+
+static struct rgb linear_field(struct vec3 x)
+{
+    return (struct rgb){{1.0 + x.x, 2.0 - x.x + 0.5 * x.y, x.y}};
+}
+
+static double difference(struct rgb a, struct rgb b)
+{
+    double largest = 0.0;
+    for (int c = 0; c < BANDS; c++)
+        largest = fmax(largest, fabs(a.band[c] - b.band[c]));
+    return largest;
+}
+
+/* The corners of a leaf as barycentric coordinates of its root. */
+static struct triangle weights_of(struct patch_id id)
+{
+    struct triangle t = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+    for (int step = 0; step < id_level(id); step++)
+        t = triangle_child(&t, id_step(id, step));
+    return t;
+}
+
+static struct rgb value_at(const struct stage *stage, int32_t root, struct vec3 w)
+{
+    const double weight[3] = {w.x, w.y, w.z};
+    return shading_at(stage->shading, root, weight);
+}
+
+/* --- continuity --- */
+
+/* The points on the two sides of an edge of a leaf, and the roots they lie on. */
+struct crossing {
+    int32_t root[2];
+    struct vec3 weight[2];
+};
+
+/* Over the diagonal (w0, 0, w2) of root 0 is (w0, w2, 0) of root 1, and the other way round. */
+static bool cross_diagonal(struct crossing *crossing, struct vec3 on_edge)
+{
+    const double tiny = ldexp(1.0, -50);
+    bool from_first = crossing->root[0] == 0;
+    if ((from_first ? on_edge.y : on_edge.z) != 0.0)
+        return false;
+    crossing->root[1] = 1 - crossing->root[0];
+    crossing->weight[1] = from_first ? (struct vec3){on_edge.x - tiny, on_edge.z, tiny}
+                                     : (struct vec3){on_edge.x - tiny, tiny, on_edge.y};
+    return true;
+}
+
+/* Steps off the edge k of a leaf at the share t of it. False where the surface ends there. */
+static bool make_crossing(const struct stage *stage, int32_t leaf, int k, double t,
+                          struct crossing *crossing)
+{
+    struct patch_id id = stage->forest->patches[leaf].id;
+    struct triangle w = weights_of(id);
+    struct vec3 a = w.corner[k], b = w.corner[(k + 1) % 3], c = w.corner[(k + 2) % 3];
+    struct vec3 on_edge = vec3_add(vec3_scale(a, 1.0 - t), vec3_scale(b, t));
+    struct vec3 step = vec3_scale(vec3_sub(c, a), ldexp(1.0, id_level(id) - 50));
+    struct vec3 beyond = vec3_sub(on_edge, step);
+    crossing->root[0] = crossing->root[1] = (int32_t)id.root;
+    crossing->weight[0] = vec3_add(on_edge, step);
+    crossing->weight[1] = beyond;
+    return fmin(beyond.x, fmin(beyond.y, beyond.z)) >= 0.0 || cross_diagonal(crossing, on_edge);
+}
+
+/* What was seen at the edges of a stage. */
+struct continuity {
+    int crossings, over_diagonal;
+    double largest; /* jump */
+};
+
+static void visit_edge(const struct stage *stage, int32_t leaf, int k, double t,
+                       struct continuity *seen)
+{
+    struct crossing crossing;
+    if (!make_crossing(stage, leaf, k, t, &crossing))
+        return;
+    seen->crossings++;
+    seen->over_diagonal += crossing.root[0] != crossing.root[1];
+    double jump = difference(value_at(stage, crossing.root[0], crossing.weight[0]),
+                             value_at(stage, crossing.root[1], crossing.weight[1]));
+    seen->largest = fmax(seen->largest, jump);
+}
+
+/* Each edge of each leaf at its middle, at a quarter (where T-vertices are) and at random. */
+static void visit_edges(const struct stage *stage, struct random *random, struct continuity *seen)
+{
+    for (int32_t p = 0; p < stage->forest->count; p++) {
+        for (int k = 0; k < 3 && patch_is_leaf(&stage->forest->patches[p]); k++) {
+            visit_edge(stage, p, k, 0.5, seen);
+            visit_edge(stage, p, k, 0.25, seen);
+            for (int i = 0; i < 3; i++)
+                visit_edge(stage, p, k, (double)(1 + random_bits(random) % 1023) / 1024.0, seen);
+        }
+    }
+}
+
+static void test_continuity(const char *name, struct stage (*make)(void))
+{
+    struct random random = random_seed(11);
+    struct continuity seen = {0, 0, 0.0};
+    for (int round = 0; round < 30; round++) {
+        struct stage stage = make();
+        split_randomly(stage.forest, &random, 0.2 + 0.01 * round);
+        set_randomly(stage.forest, &random);
+        shade(&stage, false);
+        visit_edges(&stage, &random, &seen);
+        dismantle(&stage);
+    }
+    tap_ok(seen.crossings > 20000 && seen.over_diagonal > 1000 && seen.largest < CONTINUOUS,
+           "%s: continuous at %d points, %d of them between roots (largest jump %.1e)", name,
+           seen.crossings, seen.over_diagonal, seen.largest);
+}
+
+/* One root stays whole, the other one is split down to the diagonal in one place. */
+static void test_large_beside_small(void)
+{
+    struct random random = random_seed(12);
+    for (uint32_t fine = 0; fine < 2; fine++) {
+        struct continuity seen = {0, 0, 0.0};
+        struct stage stage = square_stage();
+        struct patch_id id = id_of_root(fine);
+        while (id_level(id) < DEEPEST) /* to corner 0, then away from it */
+            id = id_child(id, id_level(id) < 3 ? 0 : fine ? 1 : 2);
+        forest_reach(stage.forest, id);
+        set_randomly(stage.forest, &random);
+        shade(&stage, false);
+        visit_edges(&stage, &random, &seen);
+        tap_ok(seen.over_diagonal > 20 && seen.largest < CONTINUOUS,
+               "level %d beside an undivided root %d (largest jump %.1e)", DEEPEST, 1 - (int)fine,
+               seen.largest);
+        dismantle(&stage);
+    }
+}
+
+/* The visits can see a jump: flat shading has one at nearly every edge. */
+static void test_jumps_are_seen(void)
+{
+    struct random random = random_seed(13);
+    struct continuity seen = {0, 0, 0.0};
+    struct stage stage = square_stage();
+    split_randomly(stage.forest, &random, 0.4);
+    set_randomly(stage.forest, &random);
+    shade(&stage, true);
+    visit_edges(&stage, &random, &seen);
+    tap_ok(seen.largest > 0.5, "flat shading jumps (by %.2f)", seen.largest);
+    dismantle(&stage);
+}
+
+/* --- fields that are known --- */
+
+static struct vec3 random_weights(struct random *random)
+{
+    double a = random_unit(random), b = random_unit(random);
+    if (a + b > 1.0) {
+        a = 1.0 - a;
+        b = 1.0 - b;
+    }
+    return (struct vec3){1.0 - a - b, a, b};
+}
+
+/* About ten roundings of 1.1e-16 each, in the mean and in the interpolation: 1e-15 relative. */
+static void test_constant(void)
+{
+    struct random random = random_seed(14);
+    struct stage stage = square_stage();
+    const struct rgb expected = {{0.7, 1.4, 0.0}};
+    double largest = 0.0;
+    split_randomly(stage.forest, &random, 0.4);
+    set_constant(stage.forest, 0.7);
+    shade(&stage, false);
+    for (int i = 0; i < 20000; i++) {
+        struct vec3 w = random_weights(&random);
+        struct rgb value = value_at(&stage, i % 2, w);
+        /* weights that add up to 1 only within rounding are not the shading's fault */
+        for (int c = 0; c < BANDS; c++)
+            value.band[c] /= w.x + w.y + w.z;
+        largest = fmax(largest, difference(value, expected) / 1.4);
+    }
+    tap_ok(largest <= 1e-15, "a constant stays constant (within %.1e)", largest);
+    dismantle(&stage);
+}
+
+/* Around a vertex inside a regular subdivision the leaves lie in opposite pairs; those at the border
+ * have too little on one side, and leaves there hand that on to the vertices next to it. 1e-14:
+ * about 30 roundings of numbers of size 2. */
+static void test_linear(void)
+{
+    struct stage stage = square_stage();
+    split_regularly(stage.forest, 4);
+    for (int32_t p = 0; p < stage.forest->count; p++) {
+        struct triangle t = forest_triangle(stage.forest, p);
+        stage.forest->patches[p].radiosity = linear_field(triangle_centroid(&t));
+    }
+    shade(&stage, false);
+    int inner = 0;
+    double largest = 0.0;
+    double border = fmax(stage.scene->high.x, stage.scene->high.y) * (1.0 - 2.5 / 16.0);
+    for (int64_t v = 0; v < stage.shading->vertex_count; v++) {
+        struct vec3 x = stage.shading->positions[v];
+        if (fmax(fabs(x.x), fabs(x.y)) >= border)
+            continue;
+        inner++;
+        largest = fmax(largest, difference(stage.shading->values[v], linear_field(x)));
+    }
+    tap_ok(stage.shading->vertex_count == 17 * 17 && inner == 13 * 13 && largest < 1e-14,
+           "a linear field at %d inner vertices (within %.1e)", inner, largest);
+    dismantle(&stage);
+}
+
+/* Bright along one side of the square, as beside a lamp. `height`: of all of the square. */
+static double edge_field(const struct stage *stage, struct vec3 x)
+{
+    double height = stage->scene->high.y - stage->scene->low.y;
+    return exp(-25.0 * (x.y - stage->scene->low.y) / height);
+}
+
+/* Gives the leaves below `patch` their means. Where the field varies much there are small ones. */
+static double set_edge_field(struct stage *stage, int32_t patch)
+{
+    struct forest *forest = stage->forest;
+    struct triangle t = forest_triangle(forest, patch);
+    double low = HUGE_VAL, high = 0.0, mean = 0.0;
+    for (int k = 0; k < 3; k++) {
+        low = fmin(low, edge_field(stage, t.corner[k]));
+        high = fmax(high, edge_field(stage, t.corner[k]));
+    }
+    bool divides = high - low > 0.5 && id_level(forest->patches[patch].id) < DEEPEST;
+    if (divides)
+        forest_split(forest, patch);
+    for (int k = 0; k < 4 && divides; k++)
+        mean += 0.25 * set_edge_field(stage, forest->patches[patch].children + k);
+    for (int i = 0; i < 1024 && !divides; i++) { /* centroids five levels down */
+        struct triangle at = t;
+        for (int level = 0; level < 5; level++)
+            at = triangle_child(&at, i >> 2 * level & 3);
+        mean += edge_field(stage, triangle_centroid(&at)) / 1024.0;
+    }
+    forest->patches[patch].radiosity = (struct rgb){{mean, mean, mean}};
+    return mean;
+}
+
+/* RMS of what is shown less the field, over many points; mean and least of what is shown. */
+static double edge_error(struct stage *stage, bool flat, double *mean, double *least)
+{
+    struct random random = random_seed(17);
+    double square = 0.0;
+    *mean = 0.0;
+    *least = HUGE_VAL;
+    shade(stage, flat);
+    for (int i = 0; i < 100000; i++) {
+        struct vec3 w = random_weights(&random);
+        struct triangle t = scene_root_triangle(stage->scene, i % 2);
+        struct vec3 x = vec3_add(vec3_add(vec3_scale(t.corner[0], w.x), vec3_scale(t.corner[1], w.y)),
+                                 vec3_scale(t.corner[2], w.z));
+        double shown = value_at(stage, i % 2, w).band[0], off = shown - edge_field(stage, x);
+        square += off * off / 100000.0;
+        *mean += shown / 100000.0;
+        *least = fmin(*least, shown);
+    }
+    return sqrt(square);
+}
+
+/* Large leaves that only touch the bright edge must not shine like it. */
+static void test_bright_edge(void)
+{
+    struct stage stage = square_stage();
+    double flat_mean, mean, darkest, least;
+    for (int32_t root = 0; root < 2; root++)
+        set_edge_field(&stage, root);
+    double flat = edge_error(&stage, true, &flat_mean, &darkest);
+    double smooth = edge_error(&stage, false, &mean, &least);
+    tap_ok(smooth < 0.6 * flat && fabs(mean / flat_mean - 1.0) < 0.05,
+           "light that falls off within a few leaves: RMS error %.4f, flat %.4f; %.2f of the light",
+           smooth, flat, mean / flat_mean);
+    tap_ok(least >= darkest * (1.0 - 1e-12), "nothing is shown darker than the darkest leaf (%.2g, %.2g)",
+           least, darkest);
+    dismantle(&stage);
+}
+
+/* Where small bright leaves meet a large dark one, each gives the vertex what it lacks as far as it is
+ * large: so what is shown there is hardly brighter than the large one. */
+static void test_large_leaf_counts(void)
+{
+    const double corner[3] = {1.0, 0.0, 0.0};
+    struct stage stage = square_stage();
+    struct patch_id id = id_of_root(1);
+    while (id_level(id) < 4)
+        id = id_child(id, 0);
+    forest_reach(stage.forest, id);
+    set_constant(stage.forest, 0.0);
+    for (int64_t p = 0; p < stage.forest->count; p++)
+        if (stage.forest->patches[p].id.root == 1)
+            stage.forest->patches[p].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
+    shade(&stage, false);
+    double shown = shading_at(stage.shading, 0, corner).band[0];
+    tap_ok(shown < 0.2, "a bright leaf of 1/256 of its area makes a dark one shine little: %.2f", shown);
+    dismantle(&stage);
+}
+
+/* Whether each leaf shows its constant at its centroid and at its three own vertices. The
+ * vertex values are w B / w: two roundings. */
+static bool is_flat(const struct stage *stage)
+{
+    const struct forest *forest = stage->forest;
+    bool flat = true;
+    for (int32_t p = 0; p < forest->count; p++) {
+        const struct patch *patch = &forest->patches[p];
+        if (!patch_is_leaf(patch))
+            continue;
+        struct triangle w = weights_of(patch->id), t = forest_triangle(forest, p);
+        struct rgb value = value_at(stage, (int32_t)patch->id.root, triangle_centroid(&w));
+        flat = flat && difference(value, patch->radiosity) == 0.0;
+        for (int k = 0; k < 3; k++) {
+            int32_t v = stage->shading->corners[3 * (int64_t)p + k];
+            flat = flat && difference(stage->shading->values[v], patch->radiosity) < 1e-15 &&
+                   vec3_length(vec3_sub(stage->shading->positions[v], t.corner[k])) == 0.0;
+        }
+    }
+    return flat;
+}
+
+static void test_flat(void)
+{
+    struct random random = random_seed(15);
+    struct stage stage = square_stage();
+    split_randomly(stage.forest, &random, 0.4);
+    set_randomly(stage.forest, &random);
+    shade(&stage, true);
+    tap_ok(is_flat(&stage), "flat: each leaf shows its constant");
+    tap_ok(stage.shading->vertex_count == 3 * forest_leaf_count(stage.forest),
+           "flat: no vertex is shared");
+    dismantle(&stage);
+}
+
+/* --- numbering --- */
+
+/* A radiosity made of the ID, the same in whatever order patches are made. */
+static void set_by_id(struct forest *forest)
+{
+    for (int64_t p = 0; p < forest->count; p++) {
+        struct patch_id id = forest->patches[p].id;
+        struct random random = random_seed((uint64_t)id.root << 32 | id.hierarchy);
+        for (int c = 0; c < BANDS; c++)
+            forest->patches[p].radiosity.band[c] = random_unit(&random);
+    }
+}
+
+/* Makes the patches of `from` in `to`, in an order that has nothing to do with theirs. */
+static void copy_shuffled(const struct forest *from, struct forest *to, struct random *random)
+{
+    int64_t count = from->count;
+    int32_t *order = alloc_array((size_t)count, sizeof *order);
+    for (int64_t i = 0; i < count; i++) {
+        int64_t j = (int64_t)(random_bits(random) % (uint64_t)(i + 1));
+        order[i] = order[j];
+        order[j] = (int32_t)i;
+    }
+    for (int64_t i = 0; i < count; i++)
+        forest_reach(to, from->patches[order[i]].id);
+    alloc_free(order);
+}
+
+static bool corners_agree(const struct stage *a, const struct stage *b)
+{
+    bool agree = a->forest->count == b->forest->count;
+    for (int32_t p = 0; agree && p < a->forest->count; p++) {
+        if (!patch_is_leaf(&a->forest->patches[p]))
+            continue;
+        int32_t q = forest_reach(b->forest, a->forest->patches[p].id);
+        for (int k = 0; k < 3; k++)
+            agree = agree && a->shading->corners[3 * (int64_t)p + k] ==
+                                 b->shading->corners[3 * (int64_t)q + k];
+    }
+    return agree;
+}
+
+static bool vertices_agree(const struct shading *a, const struct shading *b)
+{
+    bool agree = a->vertex_count == b->vertex_count;
+    for (int64_t v = 0; agree && v < a->vertex_count; v++)
+        agree = difference(a->values[v], b->values[v]) == 0.0 &&
+                vec3_length(vec3_sub(a->positions[v], b->positions[v])) == 0.0;
+    return agree;
+}
+
+static void test_numbering(void)
+{
+    struct random random = random_seed(16);
+    for (int flat = 0; flat < 2; flat++) {
+        struct stage one = square_stage(), other = square_stage();
+        split_randomly(one.forest, &random, 0.5);
+        copy_shuffled(one.forest, other.forest, &random);
+        set_by_id(one.forest);
+        set_by_id(other.forest);
+        shade(&one, flat);
+        shade(&other, flat);
+        tap_ok(corners_agree(&one, &other) && vertices_agree(one.shading, other.shading),
+               "%s: patches made in another order, the same vertices to the bit",
+               flat ? "flat" : "smooth");
+        dismantle(&one);
+        dismantle(&other);
+    }
+}
+
+/* As leaves, roots in order and depth first, meet them: each new number is the next one. */
+static void test_vertex_order(void)
+{
+    struct random random = random_seed(17);
+    struct stage stage = square_stage();
+    split_randomly(stage.forest, &random, 0.5);
+    shade(&stage, false);
+    int32_t next = 0;
+    bool right = true;
+    for (int32_t root = 0; root < 2; root++) {
+        for (int32_t p = root; p >= 0; p = forest_next(stage.forest, p, true)) {
+            const int32_t *corner = &stage.shading->corners[3 * (int64_t)p];
+            for (int k = 0; k < 3 && patch_is_leaf(&stage.forest->patches[p]); k++) {
+                right = right && corner[k] >= 0 && corner[k] <= next;
+                next += corner[k] == next;
+            }
+        }
+    }
+    tap_ok(right && next == stage.shading->vertex_count,
+           "vertices are numbered as leaves meet them");
+    dismantle(&stage);
+}
+
+/* --- what stays apart --- */
+
+/* The jump in the middle of the diagonal when root 0 has the radiosity 1 and root 1 has 0. */
+static double jump_of(struct stage *stage)
+{
+    stage->forest->patches[0].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
+    stage->forest->patches[1].radiosity = (struct rgb){{0.0, 0.0, 0.0}};
+    split_regularly(stage->forest, 2);
+    shade(stage, false);
+    return difference(value_at(stage, 0, (struct vec3){0.5, 0.0, 0.5}),
+                      value_at(stage, 1, (struct vec3){0.5, 0.5, 0.0}));
+}
+
+static void check_jump(const char *name, struct scene *scene, double expected)
+{
+    struct stage stage = stage_of(scene);
+    double jump = jump_of(&stage);
+    tap_ok(fabs(jump - expected) < CONTINUOUS, "%s: a jump of %g", name, jump);
+    dismantle(&stage);
+}
+
+/* A corner lifted by h folds the square by about atan(h sqrt 2). */
+static void test_creases(void)
+{
+    check_jump("one plane, one material", folded_square(0.0), 0.0);
+    check_jump("a fold of 2 degrees", folded_square(tan(0.0349) / sqrt(2.0)), 0.0);
+    check_jump("a fold of 3 degrees", folded_square(tan(0.0524) / sqrt(2.0)), 1.0);
+    check_jump("a fold of 45 degrees", folded_square(1.0 / sqrt(2.0)), 1.0);
+}
+
+static void test_materials_and_sides(void)
+{
+    struct scene *scene = folded_square(0.0);
+    scene->material_of[1] = 1;
+    check_jump("two materials", scene, 1.0);
+    scene = folded_square(0.0);
+    struct triangle *t = &scene->triangles[1]; /* corners 0, 3, 2: root 1 faces away, and the */
+    put_triangle(scene, 1, t->corner[0], t->corner[2], t->corner[1]); /* edge is (w0, 0, w2) */
+    struct stage stage = stage_of(scene);
+    jump_of(&stage);
+    struct vec3 middle = {0.5, 0.0, 0.5};
+    tap_ok(fabs(difference(value_at(&stage, 0, middle), value_at(&stage, 1, middle)) - 1.0) < 1e-15,
+           "front beside back: a jump");
+    dismantle(&stage);
+}
+
+/* --- curved surfaces --- */
+
+static void test_curved_edges(void)
+{
+    check_jump("a fold of 45 degrees, normals agree", curved_square(UP, UP), 0.0);
+    check_jump("normals agree within 2 degrees",
+               curved_square(UP, (struct vec3){tan(0.0349), 0.0, 1.0}), 0.0);
+    check_jump("normals are 3 degrees apart at one end",
+               curved_square(UP, (struct vec3){tan(0.0524), 0.0, 1.0}), 1.0);
+    check_jump("no normal at one end",
+               curved_square(UP, (struct vec3){0.0, 0.0, 0.0}), 1.0);
+    check_jump("normals on the back agree like those on the front",
+               curved_square(UP, (struct vec3){0.0, 0.0, -1.0}), 0.0);
+    struct scene *scene = curved_square(UP, UP);
+    scene->material_of[1] = 1;
+    check_jump("normals agree, materials do not", scene, 1.0);
+}
+
+/* Root 0 has the radiosity 1, root 1 has 0, and the normals lie between their planes: the two
+ * count alike, the diagonal has 1/2, and in between all is linear however fine the leaves are. */
+static void test_curved_values(void)
+{
+    struct random random = random_seed(11);
+    for (int level = 0; level <= 4; level++) {
+        struct stage stage = curved_stage();
+        stage.forest->patches[0].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
+        split_regularly(stage.forest, level);
+        shade(&stage, false);
+        double worst = 0.0;
+        for (int i = 0; i < 1000; i++) {
+            struct vec3 w = random_weights(&random);
+            double first = 1.0 - 0.5 * (w.x + w.z), second = 0.5 * (w.x + w.y);
+            worst = fmax(worst, difference(value_at(&stage, 0, w),
+                                           (struct rgb){{first, first, first}}));
+            worst = fmax(worst, difference(value_at(&stage, 1, w),
+                                           (struct rgb){{second, second, second}}));
+        }
+        tap_ok(worst < 1e-9, "curved: linear from facet to facet, level %d (%.1e)", level, worst);
+        dismantle(&stage);
+    }
+}
+
+/* The diagonal belongs to the root whose own normal it has. */
+static void test_flat_face_with_curved_edge(void)
+{
+    struct stage stage = stage_of(curved_square(UP, UP));
+    jump_of(&stage);
+    double value = value_at(&stage, 0, (struct vec3){0.5, 0.0, 0.5}).band[0];
+    tap_ok(value > 0.99 && value <= 1.0, "a flat face keeps its light (%.4f of it)", value);
+    dismantle(&stage);
+}
+
+/* Where light and dark leaves meet, shifts do not go below 0. */
+static void test_no_negative_light(void)
+{
+    struct random random = random_seed(6);
+    struct stage stage = curved_stage();
+    split_randomly(stage.forest, &random, 0.4);
+    for (int32_t p = 0; p < stage.forest->count; p++)
+        stage.forest->patches[p].radiosity.band[0] = (double)(random_bits(&random) % 2);
+    shade(&stage, false);
+    bool right = true;
+    for (int64_t v = 0; v < stage.shading->vertex_count; v++)
+        right = right && stage.shading->values[v].band[0] >= 0.0;
+    tap_ok(right, "curved: no negative light");
+    dismantle(&stage);
+}
+
+/* Normals change nothing on a plane, to the bit. */
+static void test_normals_on_a_plane(void)
+{
+    struct stage plain = square_stage(), with = square_stage();
+    scene_add_normals(with.scene);
+    for (int i = 0; i < 6; i++)
+        with.scene->normals[i] = i == 4 ? (struct vec3){0.6, 0.0, 0.8} : UP;
+    struct random random = random_seed(5), again = random;
+    split_randomly(plain.forest, &random, 0.5);
+    split_randomly(with.forest, &again, 0.5);
+    set_randomly(plain.forest, &random);
+    set_randomly(with.forest, &again);
+    shade(&plain, false);
+    shade(&with, false);
+    tap_ok(plain.forest->count > 20 && vertices_agree(plain.shading, with.shading),
+           "normals on a plane change nothing");
+    dismantle(&plain);
+    dismantle(&with);
+}
+
+/* Twins: fronts blend with fronts (roots 0, 1), backs with backs (2, 3), not with each other. */
+static void test_two_sided(void)
+{
+    struct scene *scene = folded_square(0.0);
+    scene->two_sided = true;
+    struct stage stage = stage_of(scene);
+    for (int32_t root = 0; root < 4; root++)
+        stage.forest->patches[root].radiosity = (struct rgb){{root, root / 2, root % 2}};
+    split_regularly(stage.forest, 3);
+    shade(&stage, false);
+    struct rgb front = value_at(&stage, 0, (struct vec3){0.5, 0.0, 0.5});
+    struct rgb back = value_at(&stage, 2, (struct vec3){0.5, 0.5, 0.0}); /* corners 0, 2, 1 */
+    tap_ok(difference(front, (struct rgb){{0.5, 0.0, 0.5}}) < 1e-14 &&
+               difference(back, (struct rgb){{2.5, 1.0, 0.5}}) < 1e-14,
+           "two-sided: sides do not blend, neighbours do");
+    dismantle(&stage);
+}
+
+/* --- covered leaves --- */
+
+/* A floor of 8 x 8 with a box without bottom on (2..4) x (2..6), or with a plate in the place of
+ * the box's top that shows the floor its front. */
+static struct scene *floor_scene(bool box)
+{
+    const double low[2] = {2.0, 2.0}, high[2] = {4.0, 6.0};
+    struct scene *scene = scene_create(box ? 12 : 4, 1);
+    struct vec3 base[4], top[4];
+    for (int i = 0; i < 4; i++) { /* counter-clockwise seen from above */
+        double x = i == 0 || i == 3 ? low[0] : high[0], y = i < 2 ? low[1] : high[1];
+        base[i] = (struct vec3){x, y, 0.0};
+        top[i] = (struct vec3){x, y, 1.5};
+    }
+    put_square(scene, 0, (struct vec3){0.0, 0.0, 0.0}, (struct vec3){8.0, 0.0, 0.0},
+               (struct vec3){8.0, 8.0, 0.0}, (struct vec3){0.0, 8.0, 0.0});
+    if (box)
+        put_square(scene, 2, top[0], top[1], top[2], top[3]);
+    else
+        put_square(scene, 2, top[3], top[2], top[1], top[0]);
+    for (int i = 0; i < 4 && box; i++)
+        put_square(scene, 4 + 2 * i, base[i], base[(i + 1) % 4], top[(i + 1) % 4], top[i]);
+    return scene;
+}
+
+static bool is_under(struct vec3 x)
+{
+    return x.x >= 2.0 && x.x <= 4.0 && x.y >= 2.0 && x.y <= 6.0;
+}
+
+/* Divides the floor along the box, makes what is under it 1/4 and all else 1, and returns the
+ * smallest and the largest value of the floor's vertices off the box and on its edge, and the
+ * largest one inside. */
+static void shade_floor(struct stage *stage, double *low, double *high, double *inside)
+{
+    split_regularly(stage->forest, 4);
+    for (int32_t p = 0; p < stage->forest->count; p++) {
+        struct triangle t = forest_triangle(stage->forest, p);
+        bool dark = is_under(scene_to_input(stage->scene, triangle_centroid(&t)));
+        dark = dark && stage->forest->patches[p].id.root < 2;
+        double value = dark ? 0.25 : 1.0;
+        stage->forest->patches[p].radiosity = (struct rgb){{value, value, value}};
+    }
+    shade(stage, false);
+    *low = *high = 1.0;
+    *inside = 0.0;
+    for (int i = 0; i <= 16; i++) {
+        for (int j = 0; j <= 16; j++) { /* (0, 0), (8, 0), (8, 8): x = 8 (b + c), y = 8 c */
+            double b = (i - j) / 16.0, c = j / 16.0;
+            struct rgb value = i >= j ? value_at(stage, 0, (struct vec3){1.0 - b - c, b, c})
+                                      : value_at(stage, 1, (struct vec3){1.0 - c, i / 16.0, -b});
+            if (i > 4 && i < 8 && j > 4 && j < 12) {
+                *inside = fmax(*inside, value.band[0]);
+                continue;
+            }
+            *low = fmin(*low, value.band[0]);
+            *high = fmax(*high, value.band[0]);
+        }
+    }
+}
+
+/* A covered leaf has 1e-12 of the weight of an open one, and up to five lie around a vertex. */
+static void test_covered(void)
+{
+    double low, high, inside;
+    struct stage stage = stage_of(floor_scene(true));
+    shade_floor(&stage, &low, &high, &inside);
+    tap_ok(low > 1.0 - 1e-10 && high <= 1.0 + 1e-15, "under a box: no darkness outside (1 - %.1e)",
+           1.0 - low);
+    tap_ok(inside == 0.25, "and none of the light inside");
+    dismantle(&stage);
+    stage = stage_of(floor_scene(false));
+    shade_floor(&stage, &low, &high, &inside);
+    tap_ok(low < 0.9, "under a lamp's front the floor is open: shadows blend (%.2f)", low);
+    dismantle(&stage);
+    struct scene *scene = floor_scene(true);
+    scene->two_sided = true;
+    stage = stage_of(scene);
+    shade_floor(&stage, &low, &high, &inside);
+    tap_ok(low < 0.9, "two-sided, nothing is covered (%.2f)", low);
+    dismantle(&stage);
+    scene = floor_scene(true);
+    scene->two_sided = true;
+    scene->materials[0].emission = (struct rgb){{1.0, 1.0, 1.0}};
+    stage = stage_of(scene);
+    shade_floor(&stage, &low, &high, &inside);
+    tap_ok(low > 1.0 - 1e-10, "but by a box of lamps, whose backs are black");
+    dismantle(&stage);
+}
+
+/* Share of a leaf of the floor that is not under the box, in quarters. */
+static double open_share(const struct stage *stage, int32_t leaf)
+{
+    struct triangle t = forest_triangle(stage->forest, leaf);
+    double share = 0.0;
+    for (int k = 0; k < 4; k++) {
+        struct triangle child = triangle_child(&t, k);
+        share += is_under(scene_to_input(stage->scene, triangle_centroid(&child))) ? 0.0 : 0.25;
+    }
+    return share;
+}
+
+/* The floor divided once has leaves that are open to 1/2, 3/4 and 1. With the share s open and
+ * the emission E, the radiosity E + s (1 - E) must show as 1 everywhere. */
+static void test_partly_covered(void)
+{
+    static const double emission[BANDS] = {0.0, 0.5, 0.25};
+    struct stage stage = stage_of(floor_scene(true));
+    double least = 1.0, largest = 0.0;
+    split_regularly(stage.forest, 1);
+    for (int c = 0; c < BANDS; c++) {
+        stage.scene->materials[0].emission.band[c] = emission[c];
+        for (int32_t p = 0; p < stage.forest->count; p++)
+            stage.forest->patches[p].radiosity.band[c] =
+                emission[c] + open_share(&stage, p) * (1.0 - emission[c]);
+    }
+    shade(&stage, false);
+    for (int32_t p = 0; p < stage.forest->count; p++) {
+        struct patch_id id = stage.forest->patches[p].id;
+        struct triangle w = weights_of(id);
+        if (id.root >= 2 || !patch_is_leaf(&stage.forest->patches[p]))
+            continue;
+        least = fmin(least, open_share(&stage, p));
+        for (int k = 0; k < 3; k++)
+            largest = fmax(largest, difference(value_at(&stage, (int32_t)id.root, w.corner[k]),
+                                               (struct rgb){{1.0, 1.0, 1.0}}));
+    }
+    tap_ok(least == 0.5 && largest < 1e-15, "the open part of a leaf is shown (within %.1e)",
+           largest);
+    dismantle(&stage);
+}
+
+/* A triangle without area keeps its number and has no vertices; its neighbours do without it. */
+static void test_dropped_triangle(void)
+{
+    struct scene *scene = scene_create(3, 1);
+    struct vec3 a = {0.0, 0.0, 0.0}, b = {1.0, 0.0, 0.0}, c = {1.0, 1.0, 0.0}, d = {0.0, 1.0, 0.0};
+    put_triangle(scene, 0, a, b, c);
+    put_triangle(scene, 1, a, c, c);
+    put_triangle(scene, 2, a, c, d);
+    struct stage stage = stage_of(scene);
+    set_constant(stage.forest, 1.0);
+    shade(&stage, false);
+    tap_ok(stage.shading->vertex_count == 4 &&
+               difference(value_at(&stage, 2, (struct vec3){0.25, 0.25, 0.5}),
+                          (struct rgb){{1.0, 2.0, 0.0}}) < 1e-15,
+           "a dropped triangle has no vertices");
+    dismantle(&stage);
+}
+
+int main(void)
+{
+    test_continuity("flat", square_stage);
+    test_continuity("curved", curved_stage);
+    test_large_beside_small();
+    test_jumps_are_seen();
+    test_constant();
+    test_linear();
+    test_bright_edge();
+    test_large_leaf_counts();
+    test_flat();
+    test_numbering();
+    test_vertex_order();
+    test_creases();
+    test_materials_and_sides();
+    test_curved_edges();
+    test_curved_values();
+    test_flat_face_with_curved_edge();
+    test_no_negative_light();
+    test_normals_on_a_plane();
+    test_two_sided();
+    test_covered();
+    test_partly_covered();
+    test_dropped_triangle();
+    return tap_done();
+}

@@ -1,0 +1,324 @@
+/* Tests of io/picture/viewpoint.h. Proved are, by many more rays than the choice is made with: in a room the
+ * eye is within and sees nothing but fronts, far away for the most part; what is no room is seen from
+ * outside, whole, by its fronts; and up is where it should be. */
+#include "io/picture/viewpoint.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "io/scene/obj.h"
+#include "tests/scenes.h"
+#include "tests/tap.h"
+
+#define ROOM "build/viewpoint_test.obj"
+
+enum { SIDE = 100 }; /* rays along a side of a picture */
+
+/* What the rays of a picture meet. */
+struct sight {
+    double fronts, backs; /* share of all rays */
+    double depth;         /* mean distance of fronts, relative to the scene's diagonal */
+};
+
+static struct sight look(const struct scene *scene, const struct octree *octree,
+                         const struct camera *camera)
+{
+    struct sight sight = {0.0, 0.0, 0.0};
+    struct vec3 eye = scene_from_input(scene, camera->eye);
+    double diagonal = vec3_length(vec3_sub(scene->high, scene->low));
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        struct octree_counts counts = {0};
+        struct octree_hit hit;
+        double x = (i % SIDE + 0.5) * camera->width / SIDE;
+        double y = (i / SIDE + 0.5) * camera->height / SIDE;
+        if (!octree_first_hit(octree, eye, camera_ray(camera, x, y), false, &hit, &counts))
+            continue;
+        struct vec3 point = {0.0, 0.0, 0.0};
+        for (int k = 0; k < 3; k++)
+            point = vec3_add(point, vec3_scale(scene->triangles[hit.triangle].corner[k],
+                                               hit.weight[k]));
+        bool front = scene_root_on(scene, hit.triangle, hit.front) >= 0;
+        sight.fronts += front;
+        sight.backs += !front;
+        sight.depth += front ? vec3_length(vec3_sub(point, eye)) / diagonal : 0.0;
+    }
+    sight.depth /= sight.fronts > 0.0 ? sight.fronts : 1.0;
+    sight.fronts /= SIDE * SIDE;
+    sight.backs /= SIDE * SIDE;
+    return sight;
+}
+
+static bool is_inside(const struct scene *scene, const struct camera *camera)
+{
+    struct vec3 eye = scene_from_input(scene, camera->eye), low = scene->low, high = scene->high;
+    return eye.x > low.x && eye.x < high.x && eye.y > low.y && eye.y < high.y && eye.z > low.z &&
+           eye.z < high.z;
+}
+
+/* A scene, the camera that is chosen for it, and what that sees. */
+struct shot {
+    struct scene *scene;
+    struct octree *octree;
+    struct camera camera;
+    struct sight sight;
+};
+
+static struct shot shoot(struct scene *scene, int width, int height)
+{
+    scene_prepare_or_exit(scene);
+    struct shot shot = {.scene = scene};
+    shot.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    shot.camera = viewpoint_choose(scene, shot.octree, NULL, width, height);
+    shot.sight = look(scene, shot.octree, &shot.camera);
+    return shot;
+}
+
+static void shot_free(struct shot *shot)
+{
+    octree_destroy(shot->octree);
+    scene_destroy(shot->scene);
+}
+
+/* `lamp`: the triangle from which on material 1 shines, or -1. */
+static struct shot shoot_soup(struct soup *soup, int64_t lamp, int width, int height)
+{
+    struct scene *scene = scene_of_soup(soup, 2);
+    scene->materials[0] = material_grey(0.5, 0.0);
+    scene->materials[1] = material_grey(0.5, 1.0);
+    for (int32_t i = 0; i < scene->input_count; i++)
+        scene->material_of[i] = lamp >= 0 && i >= lamp;
+    soup_free(soup);
+    return shoot(scene, width, height);
+}
+
+static void describe(const struct shot *shot)
+{
+    const struct camera *camera = &shot->camera;
+    printf("# eye %.3f %.3f %.3f at %.3f %.3f %.3f: %.3f fronts, %.3f backs, depth %.3f\n",
+           camera->eye.x, camera->eye.y, camera->eye.z, camera->at.x, camera->at.y, camera->at.z,
+           shot->sight.fronts, shot->sight.backs, shot->sight.depth);
+}
+
+/* --- rooms --- */
+
+/* In the room, with fronts alone and mean depth `depth` or more; consumes the shot. */
+static void check_room(const char *name, struct shot shot, double depth, bool z_up)
+{
+    const struct camera *camera = &shot.camera;
+    bool right = is_inside(shot.scene, camera) && !camera->fronts_only &&
+                 shot.sight.fronts == 1.0 && shot.sight.depth > depth &&
+                 camera->up.y == !z_up && camera->up.z == z_up;
+    if (!tap_ok(right, "from within: %s", name))
+        describe(&shot);
+    shot_free(&shot);
+}
+
+static const struct vec3 ZERO = {0.0, 0.0, 0.0};
+
+static void test_cube(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, ZERO, (struct vec3){1.0, 1.0, 1.0}, 2, true);
+    check_room("a cube that glows", shoot_soup(&soup, 0, 512, 512), 0.4, false);
+    soup_add_box(&soup, ZERO, (struct vec3){1.0, 1.0, 1.0}, 2, true);
+    check_room("the same, in a tall picture", shoot_soup(&soup, 0, 200, 700), 0.3, false);
+    soup_add_box(&soup, ZERO, (struct vec3){1.0, 1.0, 1.0}, 2, true);
+    check_room("in a wide one", shoot_soup(&soup, 0, 1600, 400), 0.3, false);
+    soup_add_box(&soup, (struct vec3){1e6, 1e6, 1e6}, (struct vec3){1e6 + 5, 1e6 + 4, 1e6 + 3}, 2,
+                 true);
+    check_room("a room far from the origin", shoot_soup(&soup, 0, 99, 99), 0.3, true);
+}
+
+/* Along a corridor the picture must show its length. */
+static void test_corridor(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, ZERO, (struct vec3){10.0, 1.0, 1.0}, 1, true);
+    struct shot shot = shoot_soup(&soup, 0, 512, 512);
+    struct vec3 to = vec3_sub(shot.camera.at, shot.camera.eye);
+    tap_ok(fabs(to.x) > 4.0 * fabs(to.z) &&
+               (to.x > 0.0) == (shot.camera.eye.x < 5.0), "down the corridor");
+    check_room("a corridor of 1 : 10", shot, 0.08, false);
+}
+
+/* A ceiling lamp along `up`, a table, a cupboard that reaches to the ceiling and fills a corner. */
+static struct soup furnished(bool z_up, int64_t *lamp)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, ZERO, (struct vec3){4.0, 5.0, 2.5}, 1, true);
+    soup_add_box(&soup, (struct vec3){0.01, 0.01, 0.01}, (struct vec3){1.2, 1.5, 2.49}, 1, false);
+    soup_add_box(&soup, (struct vec3){2.0, 2.0, 0.7}, (struct vec3){3.0, 3.5, 0.75}, 1, false);
+    *lamp = soup.count;
+    soup_add_quad(&soup, (struct vec3){1.5, 2.0, 2.45}, (struct vec3){0.0, 1.0, 0.0},
+                  (struct vec3){1.0, 0.0, 0.0}, 1);
+    for (int64_t i = 0; i < soup.count && !z_up; i++)
+        for (int k = 0; k < 3; k++) { /* (x, y, z) to (x, z, -y) */
+            struct vec3 *x = &soup.items[i].corner[k];
+            *x = (struct vec3){x->x, x->z, -x->y};
+        }
+    return soup;
+}
+
+static void test_furniture(void)
+{
+    int64_t lamp;
+    for (int z_up = 0; z_up < 2; z_up++) {
+        struct soup soup = furnished(z_up, &lamp);
+        check_room(z_up ? "furniture, z up" : "furniture, y up", shoot_soup(&soup, lamp, 400, 300),
+                   0.2, z_up);
+    }
+}
+
+/* The generator's rooms, z up. */
+static void test_generated(void)
+{
+    for (int seed = 1; seed <= 3; seed++) {
+        char command[100];
+        struct obj_repairs repairs = {0};
+        struct error error = {0};
+        snprintf(command, sizeof command, "build/room %d %d >" ROOM, 1000 * seed * seed, seed);
+        struct scene *scene = system(command) == 0 ? obj_read(ROOM, &repairs, &error) : NULL;
+        if (!tap_ok(scene != NULL, "%s: %s", command, error.text))
+            continue;
+        snprintf(command, sizeof command, "an office, seed %d", seed);
+        check_room(command, shoot(scene, 512, 384), 0.2, true);
+    }
+    remove(ROOM);
+}
+
+/* Where both sides shine, the side of a face does not tell what is inside; and lamps shine
+ * nowhere more than elsewhere. */
+static void test_two_sided(void)
+{
+    int64_t lamp;
+    struct soup soup = furnished(true, &lamp);
+    struct scene *scene = scene_of_soup(&soup, 1);
+    soup_free(&soup);
+    scene->materials[0] = material_grey(0.5, 1.0);
+    scene->two_sided = scene->two_sided_lamps = true;
+    check_room("two-sided faces", shoot(scene, 512, 512), 0.2, true);
+}
+
+/* A two-sided room, higher than wide: nothing but a lamp at the top tells which way is
+ * up. One with a black back does, one that shines both ways does not. */
+static void test_two_sided_lamps(void)
+{
+    for (int both = 0; both < 2; both++) {
+        struct soup soup = {0};
+        soup_add_box(&soup, ZERO, (struct vec3){2.0, 2.0, 3.0}, 1, true);
+        soup_add_quad(&soup, (struct vec3){0.5, 0.5, 2.95}, (struct vec3){0.0, 1.0, 0.0},
+                      (struct vec3){1.0, 0.0, 0.0}, 1);
+        struct scene *scene = scene_of_soup(&soup, 2);
+        soup_free(&soup);
+        scene->material_of[12] = scene->material_of[13] = 1;
+        scene->materials[0] = material_grey(0.5, 0.0);
+        scene->materials[1] = material_grey(0.5, 1.0);
+        scene->two_sided = true;
+        scene->two_sided_lamps = both;
+        check_room(both ? "a lamp that shines both ways" : "a lamp in a two-sided room",
+                   shoot(scene, 512, 512), 0.2, !both);
+    }
+}
+
+/* Two rooms, the larger one dark, no light between them. */
+static void test_dark_room(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, ZERO, (struct vec3){8.0, 3.0, 6.0}, 1, true);
+    int32_t lit = (int32_t)soup.count;
+    soup_add_box(&soup, (struct vec3){8.1, 0.0, 0.0}, (struct vec3){11.0, 3.0, 6.0}, 1, true);
+    struct world world = world_make(scene_of_soup(&soup, 1));
+    soup_free(&soup);
+    const struct octree *octree = world.octree;
+    struct camera any = viewpoint_choose(world.scene, octree, NULL, 512, 512);
+    for (int32_t i = lit; i < world.scene->input_count; i++)
+        world.model.forest->patches[i].radiosity = (struct rgb){{0.0, 0.1, 0.0}};
+    struct camera seen = viewpoint_choose(world.scene, octree, world.model.forest, 512, 512);
+    tap_ok(any.eye.x < 8.0 && seen.eye.x > 8.1, "of two rooms, the one with light");
+    world_free(&world);
+}
+
+/* --- open scenes --- */
+
+/* From outside, by fronts alone, with at least `share` of the picture; consumes the shot. */
+static void check_open(const char *name, struct shot shot, double share, bool z_up)
+{
+    const struct camera *camera = &shot.camera;
+    bool right = !is_inside(shot.scene, camera) && camera->fronts_only &&
+                 shot.sight.fronts > share && shot.sight.backs == 0.0 &&
+                 camera->up.y == !z_up && camera->up.z == z_up;
+    if (!tap_ok(right, "from outside: %s", name))
+        describe(&shot);
+    shot_free(&shot);
+}
+
+static void test_objects(void)
+{
+    struct soup soup = {0};
+    soup_add_sphere(&soup, 3.0, 3);
+    check_open("a sphere", shoot_soup(&soup, 0, 512, 512), 0.2, false);
+    soup_add_box(&soup, ZERO, (struct vec3){2.0, 3.0, 1.0}, 1, false);
+    check_open("a box", shoot_soup(&soup, 0, 300, 200), 0.1, false);
+    soup_add_quad(&soup, ZERO, (struct vec3){0.0, 0.0, 1.0}, (struct vec3){1.0, 0.0, 0.0}, 1);
+    check_open("a floor", shoot_soup(&soup, 0, 512, 512), 0.05, false);
+    soup_add_quad(&soup, ZERO, (struct vec3){1.0, 0.0, 0.0}, (struct vec3){0.0, 0.0, 1.0}, 1);
+    check_open("a ceiling", shoot_soup(&soup, -1, 512, 512), 0.05, false);
+    soup_add_quad(&soup, ZERO, (struct vec3){0.0, 1.0, 0.0}, (struct vec3){0.0, 0.0, 1.0}, 1);
+    check_open("a wall", shoot_soup(&soup, 0, 512, 512), 0.1, false);
+}
+
+/* A lamp at the ceiling is seen from below, also where other things are two-sided. */
+static void test_lamp_from_below(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, ZERO, (struct vec3){1.0, 0.0, 0.0}, (struct vec3){0.0, 0.0, 1.0}, 1);
+    struct scene *scene = scene_of_soup(&soup, 1);
+    soup_free(&soup);
+    scene->materials[0] = material_grey(0.5, 1.0);
+    scene->two_sided = true;
+    check_open("a lamp with a black back", shoot(scene, 512, 512), 0.05, false);
+}
+
+/* Floor and lamp along z. */
+static void test_lamp_above(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, ZERO, (struct vec3){9.0, 0.0, 0.0}, (struct vec3){0.0, 9.0, 0.0}, 1);
+    soup_add_quad(&soup, (struct vec3){4.0, 4.0, 9.0}, (struct vec3){0.0, 0.1, 0.0},
+                  (struct vec3){0.1, 0.0, 0.0}, 1);
+    struct shot shot = shoot_soup(&soup, 2, 512, 512);
+    tap_ok(shot.camera.up.z == 1.0 && shot.camera.fronts_only && shot.sight.fronts > 0.1 &&
+               shot.camera.eye.z > 0.0, "a floor with a lamp above it along z, seen from above");
+    shot_free(&shot);
+}
+
+/* The measured box is seen as in its own view file, through its open front. */
+static void test_cornell(void)
+{
+    struct obj_repairs repairs = {0};
+    struct error error = {0};
+    struct scene *scene = obj_read("scenes/cornell.obj", &repairs, &error);
+    if (!tap_ok(scene != NULL, "the Cornell box"))
+        return;
+    struct shot shot = shoot(scene, 512, 512);
+    struct vec3 eye = shot.camera.eye;
+    tap_ok(fabs(eye.x - 278.0) < 10.0 && fabs(eye.y - 273.0) < 10.0 && fabs(eye.z + 800.0) < 40.0,
+           "is seen as in scenes/cornell.view");
+    check_open("the Cornell box", shot, 0.9, false);
+}
+
+int main(void)
+{
+    test_cube();
+    test_corridor();
+    test_furniture();
+    test_generated();
+    test_two_sided();
+    test_two_sided_lamps();
+    test_dark_room();
+    test_objects();
+    test_lamp_from_below();
+    test_lamp_above();
+    test_cornell();
+    return tap_done();
+}

@@ -1,0 +1,428 @@
+/* Tests of rad/beyond/final_gather.h and rad/beyond/lamps.h: what a leaf receives, by
+ * exact factors and by rays, against closed forms. */
+#include "rad/beyond/final_gather.h"
+
+#include "geom/lambert.h"
+#include "tests/defaults.h"
+#include "tests/tap.h"
+#include "tools/contour.h"
+
+static const struct comm *world_comm;
+
+/* A scene that is solved over its links alone, and a gather over all its leaves. */
+struct trial {
+    struct solution s;
+    struct final_gather gather;
+    struct rgb *radiosity; /* by place */
+};
+
+static struct trial gather_scene(struct painted *painted, const char *words, int rays)
+{
+    char all[200];
+    snprintf(all, sizeof all, "%s --final-gather 0", words);
+    struct trial g = {.s = solve_scene(world_comm, scene_of_painted(painted), all)};
+    struct forest *forest = g.s.solver->model.forest;
+    g.gather = final_gather_create(&g.s.solver->model, rays);
+    g.radiosity = alloc_array((size_t)forest->count, sizeof *g.radiosity);
+    for (int64_t i = 0; i < forest->count; i++) {
+        int32_t p = g.gather.order[i];
+        g.radiosity[i] = forest->patches[p].radiosity;
+        if (patch_is_leaf(&forest->patches[p]) && forest_area(forest, p) > 0.0)
+            final_gather_add(&g.gather, p, rays, true);
+    }
+    return g;
+}
+
+static void trial_free(struct trial *g)
+{
+    final_gather_free(&g->gather);
+    alloc_free(g->radiosity);
+    solution_free(&g->s);
+}
+
+static double irradiance(const struct trial *g, int64_t row)
+{
+    return final_gather_irradiance(&g->gather, row, g->radiosity, true).band[0];
+}
+
+/* The mean of H over the leaves of these roots, W/m^2. */
+static double mean_of_roots(const struct trial *g, uint32_t first, uint32_t count)
+{
+    const struct forest *forest = g->s.solver->model.forest;
+    double sum = 0.0, area = 0.0;
+    for (int64_t i = 0; i < g->gather.count; i++) {
+        int32_t leaf = g->gather.rows[i].leaf;
+        if (forest->patches[leaf].id.root - first >= count)
+            continue;
+        sum += forest_area(forest, leaf) * irradiance(g, i);
+        area += forest_area(forest, leaf);
+    }
+    return sum / area;
+}
+
+/* --- factors --- */
+
+/* Against the contour integral over both triangles: three points, or as many on quarters
+ * of quarters where that is near, have to be right within 0.2 %. */
+static void test_mean_factor(void)
+{
+    static const double heights[] = {0.0, 0.1, 1.0, 3.0};
+    const struct triangle floor = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    struct plane plane = triangle_plane(&floor);
+    int64_t work = 0;
+    for (int k = 0; k < 4; k++) {
+        double h = heights[k];
+        struct triangle wall = {{{0, 0, h}, {0, 1, h}, {0, 0, 1 + h}}};
+        double exact = triangle_exchange(&floor, &wall) / triangle_area(&floor);
+        double off = mean_factor(&floor, plane.normal, &wall, &work) / exact - 1.0;
+        tap_ok(fabs(off) <= 2e-3, "a wall %g above the floor: factor %.5f, off by %.1e",
+               h, exact, off);
+    }
+}
+
+/* --- rows --- */
+
+/* Everything shines as it absorbs, so B = H = 1 wherever one looks, behind objects and in
+ * gaps; in single precision. */
+static void test_furnished(void)
+{
+    struct painted painted = {0};
+    soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 2, true);
+    paint(&painted, 0.7, 0.3);
+    soup_add_box(&painted.soup, point(0.2, 0.2, 0), point(0.5, 0.6, 0.4), 1, false);
+    paint(&painted, 0.2, 0.8);
+    soup_add_box(&painted.soup, point(0.6, 0.2, 0.001), point(0.9, 0.6, 0.2), 1, false);
+    paint(&painted, 0.0, 1.0);
+    struct trial g = gather_scene(&painted, "--epsilon 1e-3", 64);
+    double worst = 0.0;
+    for (int64_t k = 0; k < g.s.solver->model.forest->count; k++)
+        g.radiosity[k] = (struct rgb){{1.0, 1.0, 1.0}};
+    for (int64_t i = 0; i < g.gather.count; i++) {
+        uint32_t root = g.s.solver->model.forest->patches[g.gather.rows[i].leaf].id.root;
+        bool below = root == 56 || root == 57; /* outside of the room */
+        if (g.gather.rows[i].bare == 1.0f && !below)
+            worst = fmax(worst, fabs(irradiance(&g, i) - 1.0));
+    }
+    tap_ok(worst <= 2e-6 && g.gather.counts.escaped == 0,
+           "rows of %lld leaves sum to 1, within %.1e", (long long)g.gather.count, worst);
+    tap_ok(g.gather.counts.rays > 64 * 60, "by %lld rays",
+           (long long)g.gather.counts.rays);
+    trial_free(&g);
+}
+
+/* Nothing stands between two plates: no rays, and the exact factor, .199825 for unit
+ * squares at distance 1 (Howell C-11). Three points on each of eight
+ * triangles: 0.05 %. */
+static void test_open(void)
+{
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 2);
+    paint(&painted, 0.5, 1.0);
+    soup_add_quad(&painted.soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 2);
+    paint(&painted, 0.0, 0.0);
+    struct trial g = gather_scene(&painted, "", 64);
+    double h = mean_of_roots(&g, 8, 8), exact = 0.199824895698;
+    tap_ok(g.gather.counts.rays == 0 && g.gather.counts.exact == g.gather.count,
+           "open plates have exact rows only");
+    tap_ok(fabs(h / exact - 1.0) <= 5e-4, "H %.6f, exact %.6f", h, exact);
+    trial_free(&g);
+}
+
+/* A sheet lies on a bright floor, and nothing stands between them: exact factors are tried,
+ * and given up, as the sheet hides what they would tell. Rays make the rows, and lamps,
+ * which its underside does not face, bring nothing. */
+static void test_given_up(void)
+{
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0.4, 0.4, 1e-3), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    paint(&painted, 0.0, 100.0);
+    struct trial g = gather_scene(&painted, "--max-level 0", 64);
+    const struct forest *forest = g.s.solver->model.forest;
+    double lamps = 0.0, rays = 0.0;
+    for (int64_t i = 0; i < g.gather.count; i++) {
+        const struct gather_row *row = &g.gather.rows[i];
+        if (forest->patches[row->leaf].id.root >= 2)
+            continue;
+        lamps = fmax(lamps, rgb_sum(row->lamps));
+        rays = fmax(rays, row->halves[0] + row->chance[0]);
+    }
+    tap_ok(final_gather_root_is_open(&g.gather, 0) && rays > 0.0,
+           "exact rows are given up on where a sheet lies");
+    tap_ok(lamps == 0.0, "lamps bring nothing to its underside: %g W/m^2", lamps);
+    trial_free(&g);
+}
+
+/* --- lamps --- */
+
+/* A floor below a small lamp, and a black box beside them so that rays are needed.
+ * `hidden`: a screen hides half of the lamp from all of the floor, more or less. The
+ * lamp's direct light is all there is: the floor is black. */
+static double lit_floor(int lamps, bool screened, double *exact, int64_t *groups)
+{
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 4);
+    paint(&painted, 0.0, 0.0);
+    soup_add_quad(&painted.soup, point(0.45, 0.45, 1), point(0, 0.1, 0), point(0.1, 0, 0),
+                  lamps);
+    paint(&painted, 0.0, 1.0);
+    soup_add_box(&painted.soup, point(0, 0, 0.1), point(0.05, 0.05, 0.2), 1, false);
+    if (screened) /* right below the lamp, upwards and downwards */
+        soup_add_box(&painted.soup, point(0.44, 0.44, 0.998), point(0.5, 0.56, 0.999), 1,
+                     false);
+    paint(&painted, 0.0, 0.0);
+    struct trial g = gather_scene(&painted, "", 64);
+    struct scene *scene = g.s.scene;
+    *exact = 0.0;
+    for (int32_t i = 0; i < 32; i++)
+        for (int32_t k = 32; k < 32 + 2 * lamps * lamps; k++)
+            *exact += triangle_exchange(&scene->triangles[i], &scene->triangles[k]);
+    double area = 0.0;
+    for (int32_t i = 0; i < 32; i++)
+        area += scene_root_area(scene, i);
+    *exact /= area;
+    *groups = g.gather.groups.count;
+    double mean = mean_of_roots(&g, 0, 32);
+    trial_free(&g);
+    return mean;
+}
+
+/* Where nothing hides the lamp its light is that of exact factors, but for what the
+ * corner of the box takes (its share of the hemisphere below the lamp, .2 % at most).
+ * Lamps of a group are chosen by chance: 1 %. */
+static void test_lamps(void)
+{
+    double exact;
+    int64_t few, many;
+    double h = lit_floor(1, false, &exact, &few);
+    tap_ok(h <= 1.001 * exact && h >= 0.997 * exact,
+           "a lamp of 2 triangles: %.6f, exact %.6f", h, exact);
+    h = lit_floor(12, false, &exact, &many);
+    tap_ok(fabs(h / exact - 1.0) <= 0.01, "of 288 triangles: %.6f, exact %.6f", h, exact);
+    tap_ok(many < 100, "which are %lld groups", (long long)many);
+    h = lit_floor(1, true, &exact, &few);
+    tap_ok(fabs(h / exact - 0.5) <= 0.02, "half hidden: %.3f of its light", h / exact);
+}
+
+/* --- what is near --- */
+
+/* A sheet 1 mm above a table, under a lamp; neither is divided. The table is bright, but
+ * what the sheet sees of it is dark: only the light that creeps in from the sides, less
+ * than a hundredth. */
+static void test_gap(void)
+{
+    struct painted painted = {0};
+    soup_add_box(&painted.soup, point(-2, -2, 0), point(2, 2, 2), 1, true);
+    paint(&painted, 0.5, 0.0);
+    soup_add_quad(&painted.soup, point(-0.2, -0.2, 2), point(0, 0.4, 0), point(0.4, 0, 0),
+                  1);
+    paint(&painted, 0.0, 10.0);
+    soup_add_quad(&painted.soup, point(-0.3, -0.2, 0.001), point(0, 0.3, 0),
+                  point(0.3, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(-0.3, -0.2, 0.001), point(0.3, 0, 0),
+                  point(0, 0.3, 0), 1);
+    paint(&painted, 0.5, 0.0);
+    struct solution s =
+        solve_scene(world_comm, scene_of_painted(&painted), "--max-level 0");
+    const struct patch *patches = s.solver->model.forest->patches;
+    double below = patches[14].radiosity.band[0] + patches[15].radiosity.band[0];
+    double above = patches[16].radiosity.band[0] + patches[17].radiosity.band[0];
+    tap_ok(below < 0.02 * above && above > 0.0,
+           "below a sheet on a table: %.5f of the light above it", below / above);
+    solution_free(&s);
+}
+
+/* A picture in the plane of a wall, of a quarter of its area. */
+static void test_covered(void)
+{
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 8);
+    soup_add_quad(&painted.soup, point(0.25, 0.25, 0), point(0.5, 0, 0), point(0, 0.5, 0),
+                  1);
+    soup_add_quad(&painted.soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 1);
+    paint(&painted, 0.5, 1.0);
+    struct trial g = gather_scene(&painted, "--max-level 0", 16);
+    double bare = 0.0;
+    for (int64_t i = 0; i < 128; i++)
+        bare += (double)g.gather.rows[i].bare / 128.0;
+    tap_ok(fabs(bare - 0.75) < 1e-6, "of a wall with a picture in it %.3f is bare", bare);
+    tap_ok(g.gather.rows[128].bare == 1.0f, "as is all of the picture");
+    trial_free(&g);
+}
+
+/* A lamp in the plane of the ceiling that comes before it in the file: rays meet the
+ * ceiling, segments reach the lamp, and the room is as bright as with the lamp behind. */
+static void test_flush_lamp(void)
+{
+    double mean[2];
+    for (int first = 0; first < 2; first++) {
+        struct painted painted = {0};
+        for (int part = 0; part < 2; part++)
+            if (part == first) {
+                soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+                soup_add_box(&painted.soup, point(0.6, 0.6, 0), point(0.8, 0.8, 0.5), 1,
+                             false);
+                paint(&painted, 0.5, 0.0);
+            } else {
+                soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0),
+                              point(0.2, 0, 0), 1);
+                paint(&painted, 0.0, 10.0);
+            }
+        struct solution s = solve_scene(world_comm, scene_of_painted(&painted), "");
+        int32_t floor = (first == 0 ? 0 : 2) + 8; /* z = 0 */
+        mean[first] = s.solver->model.forest->patches[floor].radiosity.band[0];
+        solution_free(&s);
+    }
+    tap_ok(mean[0] > 0.0 && fabs(mean[1] / mean[0] - 1.0) < 0.05,
+           "a lamp before its ceiling in the file: %.4f, behind it: %.4f", mean[1], mean[0]);
+}
+
+/* --- the mesh --- */
+
+/* H of a lamp at points, per E: one of the first 2 roots after `floor` roots. */
+static double lit(const struct scene *scene, struct vec3 x, int32_t floor)
+{
+    struct vec3 up = {0.0, 0.0, 1.0};
+    return point_triangle_factor(x, up, &scene->triangles[floor]) +
+           point_triangle_factor(x, up, &scene->triangles[floor + 1]);
+}
+
+/* A floor below a small lamp, and a small black box because of which rays are needed; the
+ * links split nothing. Leaves are to be split until A times the variance of their light
+ * over quarters is at most 0.01 epsilon of the sum of A B^2 (MESH in mpi/gather_mesh.c),
+ * and no further. Chance moves the threshold by a factor of two at most. */
+static void test_mesh(double epsilon)
+{
+    char words[32];
+    struct painted painted = {0};
+    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&painted, 1.0 - 1e-3, 0.0);
+    soup_add_quad(&painted.soup, point(0.45, 0.45, 0.3), point(0, 0.1, 0),
+                  point(0.1, 0, 0), 1);
+    paint(&painted, 0.0, 1.0);
+    soup_add_box(&painted.soup, point(0.3, 0.3, 0.15), point(0.31, 0.31, 0.16), 1, false);
+    paint(&painted, 0.0, 0.0);
+    snprintf(words, sizeof words, "--epsilon %g", epsilon);
+    struct solution s = solve_scene(world_comm, scene_of_painted(&painted), words);
+    const struct forest *forest = s.solver->model.forest;
+    const struct gathered *gathered = &s.solver->gathered;
+    double squares = 0.0, largest = 0.0, least = HUGE_VAL, goal = 0.01 * epsilon;
+    for (int pass = 0; pass < 2; pass++)
+        for (int32_t p = 0; p < forest->count; p++) {
+            const struct patch *patch = &forest->patches[p];
+            struct triangle t = forest_triangle(forest, p);
+            double area = forest_area(forest, p), h[4], mean = 0.0, spread = 0.0;
+            if (patch->id.root > 1)
+                continue;
+            for (int k = 0; k < 4; k++) {
+                struct triangle child = triangle_child(&t, k);
+                h[k] = 0.0;
+                for (int q = 0; q < 4; q++) {
+                    struct triangle quarter = triangle_child(&child, q);
+                    h[k] += 0.25 * lit(forest->scene, triangle_centroid(&quarter), 2);
+                }
+                mean += 0.25 * h[k];
+            }
+            for (int k = 0; k < 4; k++)
+                spread += 0.25 * (h[k] - mean) * (h[k] - mean);
+            if (pass == 0 && patch_is_leaf(patch))
+                squares += area * mean * mean;
+            if (pass == 1 && patch_is_leaf(patch))
+                largest = fmax(largest, area * spread / squares);
+            else if (pass == 1)
+                least = fmin(least, area * spread / squares);
+        }
+    tap_ok(largest <= 2.0 * goal, "varying over a leaf %.1e of all is left, %.1e allowed",
+           largest, goal);
+    tap_ok(least >= 0.5 * goal && least < 1.0,
+           "leaves were split over which %.1e varied at least", least);
+    double rays = (double)gathered->rays / (double)forest_leaf_count(forest);
+    tap_ok(rays > 180.0 && rays <= 256.0, "%.0f rays for each leaf in the mean", rays);
+    solution_free(&s);
+}
+
+/* Where all is as bright as all else, nothing is split. */
+static void test_even(void)
+{
+    struct painted painted = {0};
+    soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    soup_add_box(&painted.soup, point(0.6, 0.6, 0.1), point(0.8, 0.8, 0.5), 1, false);
+    paint(&painted, 0.5, 1.0);
+    struct solution s =
+        solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 1e-2");
+    tap_ok(s.solver->gathered.split == 0 && s.solver->gathered.looks > 0,
+           "in a furnace nothing is split, by %lld rays",
+           (long long)s.solver->gathered.looks);
+    solution_free(&s);
+}
+
+/* Every second cell of the walls of a room, upwards or downwards. */
+static void add_cells(struct soup *soup, int odd)
+{
+    enum { CELLS = 10 };
+    const double size = 2.0 / CELLS;
+    for (int i = 0; i < CELLS; i++)
+        for (int k = 0; k < CELLS; k++) {
+            double a = i * size - 1.0, b = k * size - 1.0;
+            if ((i + k) % 2 != odd)
+                continue;
+            soup_add_quad(soup, point(-1, a, b), point(0, size, 0), point(0, 0, size), 1);
+            soup_add_quad(soup, point(1, a, b), point(0, 0, size), point(0, size, 0), 1);
+            soup_add_quad(soup, point(b, -1, a), point(0, 0, size), point(size, 0, 0), 1);
+            soup_add_quad(soup, point(b, 1, a), point(size, 0, 0), point(0, 0, size), 1);
+            soup_add_quad(soup, point(a, b, -1), point(size, 0, 0), point(0, size, 0), 1);
+            soup_add_quad(soup, point(a, b, 1), point(0, size, 0), point(size, 0, 0), 1);
+        }
+}
+
+/* A small grey cube in the middle of a black room of which every second cell shines: its
+ * light is as good as even, but whether a ray finds any is chance. Looks tell that: the
+ * variance of a leaf's quarters is above its expectation for one leaf in four, which may
+ * be split; otherwise all are, and again. Leaves of the cube get the most rays that there
+ * are, 16 times the mean, and black ones the least. */
+static void test_chance(void)
+{
+    enum { CUBE = 12, WALLS = 1200, MEAN = 256 };
+    struct painted painted = {0};
+    for (int odd = 0; odd < 2; odd++) {
+        add_cells(&painted.soup, odd);
+        paint(&painted, 0.0, odd ? 1.0 : 0.0);
+    }
+    soup_add_box(&painted.soup, point(-0.1, -0.1, -0.1), point(0.1, 0.1, 0.1), 1, false);
+    paint(&painted, 0.5, 0.0);
+    struct solution s =
+        solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 0.1");
+    const struct gathered *gathered = &s.solver->gathered;
+    int64_t cube = s.stats.leaves - WALLS;
+    tap_ok(4 * gathered->split <= CUBE && cube == CUBE + 3 * gathered->split,
+           "of 12 leaves whose light varies by chance alone %lld are split",
+           (long long)gathered->split);
+    tap_ok(gathered->rays == cube * 16 * MEAN + WALLS * MEAN / 4,
+           "%lld rays for %lld noisy leaves and 1200 black ones",
+           (long long)gathered->rays, (long long)cube);
+    solution_free(&s);
+}
+
+int main(int argc, char **argv)
+{
+    struct comm comm;
+    comm_start(&comm, &argc, &argv);
+    world_comm = &comm;
+    test_mean_factor();
+    test_furnished();
+    test_open();
+    test_given_up();
+    test_lamps();
+    test_gap();
+    test_covered();
+    test_flush_lamp();
+    test_mesh(0.1);
+    test_mesh(0.02);
+    test_even();
+    test_chance();
+    comm_stop(&comm);
+    return tap_done();
+}

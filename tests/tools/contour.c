@@ -1,0 +1,643 @@
+/* Tests of tools/contour.h: a table of exact values, closed forms of rectangles in any place, and
+ * identities: rows of closed solids add up to 1, parts add up to the whole, no order of arguments,
+ * no motion and no unit matters.
+ *
+ * The table, tests/formfactors.csv, was computed with 30 digits and more: id, description, then for
+ * each polygon its number of corners and their coordinates, then F from the first to the second. */
+#include "tools/contour.h"
+
+#include <string.h>
+
+#include "tests/scenes.h"
+#include "tests/tap.h"
+#include "tools/gauss.h"
+
+static const long double PI = 3.14159265358979323846264338327950288L;
+
+/* What is asked of any value: 1e-11 of the smaller area, and 1e-6 of the value. The sums behind it
+ * are right to some 1e-16 of the square of the size: the first is for areas that are thin, down to
+ * 1e-5 of that square, the second for exchanges down to 1e-10 of it. */
+static const double ABSOLUTE = 1e-11, RELATIVE = 1e-6;
+
+enum { CORNERS = 64 };
+
+struct polygon {
+    int32_t count;
+    struct vec3 corner[CORNERS];
+};
+
+static struct vec3 point(double x, double y, double z)
+{
+    return (struct vec3){x, y, z};
+}
+
+static double exchange_of(const struct polygon *a, const struct polygon *b)
+{
+    return polygon_exchange(a->corner, a->count, b->corner, b->count);
+}
+
+static double area_of(const struct polygon *a)
+{
+    return polygon_area(a->corner, a->count);
+}
+
+static struct polygon polygon_of(const struct triangle *t)
+{
+    return (struct polygon){3, {t->corner[0], t->corner[1], t->corner[2]}};
+}
+
+/* The rectangle o, o + u, o + u + v, o + v. */
+static struct polygon rectangle(struct vec3 o, struct vec3 u, struct vec3 v)
+{
+    struct vec3 end = vec3_add(o, u);
+    return (struct polygon){4, {o, end, vec3_add(end, v), vec3_add(o, v)}};
+}
+
+/* Largest error over its tolerance, and how many were looked at. */
+struct tally {
+    double worst;
+    int count;
+};
+
+static void tally_add(struct tally *tally, double value, double right, double area)
+{
+    double error = fabs(value - right);
+    double part = fmax(error / (ABSOLUTE * area), right > 0.0 ? error / (RELATIVE * right) : 0.0);
+    tally->worst = part > tally->worst || !(part == part) ? part : tally->worst;
+    tally->count++;
+}
+
+static void tally_ok(const struct tally *tally, const char *name)
+{
+    tap_ok(tally->worst <= 1.0, "%s, %d pairs: off by %.2g of the tolerance", name, tally->count,
+           tally->worst);
+}
+
+/* --- the table --- */
+
+static struct polygon read_polygon(char **at)
+{
+    struct polygon polygon = {.count = (int32_t)strtol(*at, at, 10)};
+    for (int32_t k = 0; k < polygon.count && k < CORNERS; k++) {
+        double x[3];
+        for (int c = 0; c < 3; c++)
+            x[c] = strtod(*at + 1, at);
+        polygon.corner[k] = point(x[0], x[1], x[2]);
+    }
+    ++*at;
+    return polygon;
+}
+
+static void test_table(void)
+{
+    FILE *file = fopen("tests/formfactors.csv", "r");
+    char line[2000];
+    int count = 0;
+    if (!tap_ok(file && fgets(line, sizeof line, file), "tests/formfactors.csv"))
+        return;
+    while (fgets(line, sizeof line, file)) {
+        char *description = strchr(line, ',');
+        char *at = description ? strchr(description + 1, ',') : NULL;
+        if (!at)
+            continue;
+        *at++ = '\0';
+        struct polygon a = read_polygon(&at), b = read_polygon(&at);
+        double area = area_of(&a), right = strtod(at, NULL), value = exchange_of(&a, &b) / area;
+        struct tally tally = {0.0, 0};
+        tally_add(&tally, value * area, right * area, fmin(area, area_of(&b)));
+        tap_ok(tally.worst <= 1.0, "%s: F = %.12g, off by %.1e", line, value, value - right);
+        count++;
+    }
+    fclose(file);
+    tap_ok(count == 48, "48 rows");
+}
+
+/* --- rectangles in closed form --- */
+
+/* Integrals four times over of cos cos' / (pi r^2): for parallel planes at distance z between
+ * points x and y apart, and for perpendicular planes at distances a and b from their line, y apart
+ * along it (Ehlert and Smith 1993; Howell C-13 and C-15). Long double, since the 16 of them
+ * cancel. */
+static long double parallel_term(long double x, long double y, long double z)
+{
+    long double p = sqrtl(x * x + z * z), q = sqrtl(y * y + z * z);
+    return (y * p * atanl(y / p) + x * q * atanl(x / q) -
+            z * z / 2 * logl(x * x + y * y + z * z)) / (2 * PI);
+}
+
+static long double perpendicular_term(long double a, long double b, long double y)
+{
+    long double k2 = a * a + b * b, k = sqrtl(k2), r2 = k2 + y * y;
+    if (r2 == 0)
+        return 0;
+    long double angle = k > 0 ? y * k * atanl(y / k) : 0;
+    return (angle - (k2 - y * y) / 4 * logl(r2)) / (2 * PI);
+}
+
+/* x0, x1, y0, y1 of the lower rectangle, u0, u1, v0, v1 of the upper one, at distance z. */
+static double parallel_exchange(const double lower[4], const double upper[4], double z)
+{
+    long double sum = 0;
+    for (int k = 0; k < 16; k++) {
+        long double x = (long double)lower[k & 1] - upper[k >> 1 & 1];
+        long double y = (long double)lower[2 + (k >> 2 & 1)] - upper[2 + (k >> 3)];
+        int sign = ((k ^ k >> 1 ^ k >> 2 ^ k >> 3) & 1) ? -1 : 1;
+        sum += sign * parallel_term(x, y, z);
+    }
+    return (double)sum;
+}
+
+/* a0, a1 from the common line and y0, y1 along it. */
+static double perpendicular_exchange(const double floor[4], const double wall[4])
+{
+    long double sum = 0;
+    for (int k = 0; k < 16; k++) {
+        long double y = (long double)floor[2 + (k >> 2 & 1)] - wall[2 + (k >> 3)];
+        int sign = ((k ^ k >> 1 ^ k >> 2 ^ k >> 3) & 1) ? -1 : 1;
+        sum += sign * perpendicular_term(floor[k & 1], wall[k >> 1 & 1], y);
+    }
+    return (double)sum;
+}
+
+static struct polygon floor_rectangle(const double x[4])
+{
+    return rectangle(point(x[0], x[2], 0), point(x[1] - x[0], 0, 0), point(0, x[3] - x[2], 0));
+}
+
+static struct polygon ceiling_rectangle(const double x[4], double z)
+{
+    return rectangle(point(x[0], x[2], z), point(0, x[3] - x[2], 0), point(x[1] - x[0], 0, 0));
+}
+
+/* In the plane x = 0, facing positive x. */
+static struct polygon wall_rectangle(const double x[4])
+{
+    return rectangle(point(0, x[2], x[0]), point(0, x[3] - x[2], 0), point(0, 0, x[1] - x[0]));
+}
+
+static double extent(const double x[4])
+{
+    return (x[1] - x[0]) * (x[3] - x[2]);
+}
+
+/* Howell C-11 and C-14: aligned and with a common edge, from squares to strips. */
+static void test_catalogue(void)
+{
+    static const double sizes[] = {0.03, 0.2, 0.5, 1.0, 2.0, 7.0, 30.0};
+    struct tally parallel = {0.0, 0}, corner = {0.0, 0}, gap = {0.0, 0};
+    for (int k = 0; k < 343; k++) {
+        double a = sizes[k % 7], b = sizes[k / 7 % 7], c = sizes[k / 49];
+        const double lower[4] = {0, a, 0, b}, wall[4] = {0, c, 0, b};
+        const double beyond[4] = {c / 100, c / 100 + a, 0, b};
+        struct polygon p = floor_rectangle(lower), q = ceiling_rectangle(lower, c);
+        struct polygon r = wall_rectangle(wall), s = floor_rectangle(beyond);
+        tally_add(&parallel, exchange_of(&p, &q), parallel_exchange(lower, lower, c), a * b);
+        tally_add(&corner, exchange_of(&p, &r), perpendicular_exchange(lower, wall),
+                  fmin(a, c) * b);
+        tally_add(&gap, exchange_of(&s, &r), perpendicular_exchange(beyond, wall), fmin(a, c) * b);
+    }
+    tally_ok(&parallel, "C-11, aligned parallel rectangles");
+    tally_ok(&corner, "C-14, perpendicular rectangles with a common edge");
+    tally_ok(&gap, "perpendicular rectangles with a gap");
+    const double unit[4] = {0, 1, 0, 1};
+    struct polygon floor = floor_rectangle(unit), wall = wall_rectangle(unit);
+    tap_ok(fabs(exchange_of(&floor, &wall) - 0.200043776075) < 1e-12 &&
+               fabs(parallel_exchange(unit, unit, 0.5) - 0.415253283577) < 1e-12,
+           "the closed forms agree with published digits");
+}
+
+/* Any place: overlapping, offset, touching, and edges in common, in half and in part. */
+static void test_rectangles(void)
+{
+    struct random random = random_seed(1);
+    struct tally parallel = {0.0, 0}, perpendicular = {0.0, 0};
+    for (int i = 0; i < 2000; i++) {
+        double x[8];
+        for (int k = 0; k < 8; k += 2) {
+            /* Of eight places, so that edges often meet; from 0 on for what is on a wall. */
+            x[k] = (double)random_below(&random, 8) / 4.0;
+            x[k + 1] = x[k] + (double)(1 + random_below(&random, 8)) / 4.0;
+        }
+        double z = pow(10.0, random_between(&random, -4.0, 2.0));
+        double least = fmin(extent(x), extent(x + 4));
+        struct polygon floor = floor_rectangle(x), ceiling = ceiling_rectangle(x + 4, z);
+        struct polygon wall = wall_rectangle(x + 4);
+        /* Far away the 16 terms of size z^2 cancel to z^-2: 1e-19 z^4 of the result. */
+        if (z < 30.0)
+            tally_add(&parallel, exchange_of(&floor, &ceiling), parallel_exchange(x, x + 4, z),
+                      least);
+        tally_add(&perpendicular, exchange_of(&wall, &floor), perpendicular_exchange(x, x + 4),
+                  least);
+    }
+    for (int i = 0; i < 200; i++) {
+        /* Small ones close to a large one. */
+        double side = 0.01 * (1 + i % 10), z = 0.005 * (1 + i / 10);
+        const double lower[4] = {-1, 1, -1, 1}, upper[4] = {0.3, 0.3 + side, 0.2, 0.2 + side};
+        struct polygon floor = floor_rectangle(lower), ceiling = ceiling_rectangle(upper, z);
+        tally_add(&parallel, exchange_of(&floor, &ceiling), parallel_exchange(lower, upper, z),
+                  extent(upper));
+    }
+    tally_ok(&parallel, "parallel rectangles anywhere");
+    tally_ok(&perpendicular, "perpendicular rectangles anywhere");
+}
+
+/* --- hinges --- */
+
+/* Two strips of width 1 and this length that meet at an angle. */
+static double hinge_exchange(double length, double angle)
+{
+    struct vec3 edge = {length, 0, 0}, o = {0, 0, 0};
+    struct polygon floor = rectangle(o, edge, point(0, 1, 0));
+    struct polygon lid = rectangle(o, point(0, cos(angle), sin(angle)), edge);
+    return exchange_of(&floor, &lid);
+}
+
+/* For endless strips Hottel's crossed strings give 1 - sin(angle / 2) per length. The ends of a
+ * strip of length L take away a constant and terms of 1/L, which is the error of a difference. */
+static void test_hinges(void)
+{
+    for (int degrees = 15; degrees < 180; degrees += 15) {
+        double angle = degrees * (double)PI / 180.0, length = 4000.0;
+        double once = hinge_exchange(length, angle), twice = hinge_exchange(2.0 * length, angle);
+        double each = (twice - once) / length;
+        tap_ok(fabs(each - (1.0 - sin(0.5 * angle))) < 1.0 / (length * length),
+               "hinged at %d degrees, endless: %.8f", degrees, each);
+    }
+}
+
+/* --- closed solids --- */
+
+enum { FACES = 20 };
+
+struct solid {
+    int count;
+    struct polygon face[FACES];
+};
+
+/* The rows of a convex solid: what leaves a face arrives at the others. */
+static void add_rows(struct tally *tally, const struct solid *solid)
+{
+    for (int i = 0; i < solid->count; i++) {
+        double sum = 0.0, area = area_of(&solid->face[i]);
+        for (int j = 0; j < solid->count; j++)
+            sum += exchange_of(&solid->face[i], &solid->face[j]);
+        tally_add(tally, sum, area, area);
+    }
+}
+
+/* The map x -> origin + x u + y v + z w, turned inside out where it mirrors. */
+static void map_solid(struct solid *solid, const struct vec3 axes[4])
+{
+    bool mirror = vec3_dot(vec3_cross(axes[1], axes[2]), axes[3]) < 0.0;
+    for (int i = 0; i < solid->count; i++) {
+        struct polygon *face = &solid->face[i], old = *face;
+        for (int32_t k = 0; k < face->count; k++) {
+            struct vec3 x = old.corner[mirror ? face->count - 1 - k : k];
+            struct vec3 y = vec3_add(vec3_scale(axes[1], x.x), vec3_scale(axes[2], x.y));
+            face->corner[k] = vec3_add(axes[0], vec3_add(y, vec3_scale(axes[3], x.z)));
+        }
+    }
+}
+
+static struct solid unit_box(void)
+{
+    struct vec3 o = {0, 0, 0}, e = {1, 1, 1}, x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1};
+    struct vec3 u = vec3_scale(x, -1), v = vec3_scale(y, -1), w = vec3_scale(z, -1);
+    return (struct solid){6, {rectangle(o, x, y), rectangle(o, y, z), rectangle(o, z, x),
+                              rectangle(e, v, u), rectangle(e, w, v), rectangle(e, u, w)}};
+}
+
+/* With its faces turned inwards. */
+static struct solid unit_tetrahedron(void)
+{
+    struct vec3 o = {0, 0, 0}, x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1};
+    return (struct solid){4, {{3, {o, x, y}}, {3, {o, y, z}}, {3, {o, z, x}}, {3, {x, z, y}}}};
+}
+
+/* 16 triangles, of which three and four lie in one plane and many share edges and corners. */
+static struct solid split_tetrahedron(void)
+{
+    struct solid whole = unit_tetrahedron(), solid = {.count = 16};
+    for (int i = 0; i < 16; i++) {
+        const struct vec3 *c = whole.face[i / 4].corner;
+        struct triangle t = {{c[0], c[1], c[2]}}, child = triangle_child(&t, i % 4);
+        solid.face[i] = polygon_of(&child);
+    }
+    return solid;
+}
+
+/* A prism over a pentagon: rectangles and pentagons. */
+static struct solid unit_prism(void)
+{
+    static const double at[5][2] = {{0, 0}, {1, 0}, {1.3, 0.9}, {0.6, 1.4}, {-0.2, 0.8}};
+    struct solid solid = {.count = 7};
+    for (int k = 0; k < 5; k++) {
+        struct vec3 from = point(at[k][0], at[k][1], 0), rise = {0, 0, 1};
+        struct vec3 to = point(at[(k + 1) % 5][0], at[(k + 1) % 5][1], 0);
+        solid.face[k] = rectangle(from, rise, vec3_sub(to, from));
+        solid.face[5].corner[k] = from;
+        solid.face[6].corner[4 - k] = vec3_add(from, rise);
+    }
+    solid.face[5].count = solid.face[6].count = 5;
+    return solid;
+}
+
+static void test_closure(struct solid (*make)(void), int times, const char *name)
+{
+    struct random random = random_seed(2);
+    struct tally tally = {0.0, 0};
+    for (int i = 0; i < times; i++) {
+        struct solid solid = make();
+        struct vec3 axes[4];
+        for (int k = 0; k < 4; k++)
+            axes[k] = random_point(&random, 1.0);
+        /* Flat ones have faces that are slivers, seen under angles near 0. */
+        if (fabs(vec3_dot(vec3_cross(axes[1], axes[2]), axes[3])) < 0.05)
+            continue;
+        map_solid(&solid, axes);
+        add_rows(&tally, &solid);
+    }
+    tally_ok(&tally, name);
+}
+
+/* --- parts --- */
+
+static double sum_of_parts(const struct triangle *t, const struct triangle *u, int level)
+{
+    if (level == 0)
+        return triangle_exchange(t, u);
+    double sum = 0.0;
+    for (int k = 0; k < 16; k++) {
+        struct triangle a = triangle_child(t, k / 4), b = triangle_child(u, k % 4);
+        sum += sum_of_parts(&a, &b, level - 1);
+    }
+    return sum;
+}
+
+/* Apart, with a corner in common, with an edge in common, and one edge in a part of another. */
+static void random_pair(struct random *random, int kind, struct triangle *t, struct triangle *u)
+{
+    *t = random_triangle(random, 0.5, 0.5);
+    *u = random_triangle(random, 0.5, 0.5);
+    if (kind >= 1)
+        u->corner[0] = t->corner[1];
+    if (kind >= 2)
+        u->corner[1] = kind == 2 ? t->corner[0] : vec3_middle(t->corner[0], t->corner[1]);
+}
+
+/* The whole goes by contours, half of the parts by points; planes cut many of them. */
+static void test_parts(void)
+{
+    static const char *const names[4] = {"apart", "at a corner", "at an edge", "at half an edge"};
+    for (int kind = 0; kind < 4; kind++) {
+        struct random random = random_seed(10 + (uint64_t)kind);
+        struct tally tally = {0.0, 0};
+        while (tally.count < 60) {
+            struct triangle t, u;
+            random_pair(&random, kind, &t, &u);
+            double least = fmin(triangle_area(&t), triangle_area(&u));
+            double whole = triangle_exchange(&t, &u);
+            if (least > 0.02 && whole > 1e-6 * least)
+                tally_add(&tally, sum_of_parts(&t, &u, 1 + kind % 2), whole, least);
+        }
+        char name[60];
+        snprintf(name, sizeof name, "parts make the whole, %s", names[kind]);
+        tally_ok(&tally, name);
+    }
+}
+
+/* --- far away and in one plane --- */
+
+static double point_exchange(const struct triangle *t, const struct triangle *u)
+{
+    struct vec3 r = vec3_sub(triangle_centroid(u), triangle_centroid(t));
+    double r2 = vec3_dot(r, r);
+    return 0.25 * vec3_dot(triangle_cross(t), r) * -vec3_dot(triangle_cross(u), r) /
+           ((double)PI * r2 * r2);
+}
+
+/* Of triangles of size 1 at distance d all but 1 / d^2 is the exchange of two points; coordinates
+ * are rounded by 1e-16 d. */
+static void test_far(void)
+{
+    struct random random = random_seed(5);
+    double worst = 0.0;
+    int count = 0;
+    for (int i = 0; i < 2000; i++) {
+        struct triangle t, u;
+        random_pair(&random, 0, &t, &u);
+        double distance = pow(10.0, random_between(&random, 5.0, 6.0));
+        struct vec3 step = vec3_scale(vec3_unit(random_point(&random, 1.0)), distance);
+        for (int k = 0; k < 3; k++)
+            u.corner[k] = vec3_add(u.corner[k], step);
+        double right = point_exchange(&t, &u);
+        /* Where neither cosine is small. */
+        if (right * distance * distance < 0.002 || vec3_dot(triangle_cross(&t), step) < 0.0)
+            continue;
+        worst = fmax(worst, fabs(triangle_exchange(&t, &u) / right - 1.0));
+        count++;
+    }
+    tap_ok(count > 20 && worst < 1e-9, "%d far pairs are like points (off by %.1e)", count, worst);
+}
+
+/* Where the plane is tilted, rounding leaves neighbours a little in front of each other. */
+static void test_plane(void)
+{
+    struct random random = random_seed(6);
+    int seen = 0;
+    for (int i = 0; i < 1000; i++) {
+        struct triangle whole = random_triangle(&random, 0.5, 0.5);
+        for (int k = 0; k < 16; k++) {
+            struct triangle t = triangle_child(&whole, k / 4), u = triangle_child(&whole, k % 4);
+            seen += triangle_area(&whole) > 0.02 && triangle_exchange(&t, &u) > 0.0;
+        }
+    }
+    tap_ok(seen == 0, "triangles of one tilted plane exchange nothing");
+}
+
+/* --- order, place, size --- */
+
+static struct vec3 turned(struct vec3 v, const double q[4])
+{
+    struct vec3 axis = {q[1], q[2], q[3]};
+    double norm = q[0] * q[0] + vec3_dot(axis, axis);
+    struct vec3 t = vec3_scale(vec3_cross(axis, v), 2.0 / norm);
+    return vec3_add(v, vec3_add(vec3_scale(t, q[0]), vec3_cross(axis, t)));
+}
+
+static struct triangle scaled(struct triangle t, double scale)
+{
+    for (int k = 0; k < 3; k++)
+        t.corner[k] = vec3_scale(t.corner[k], scale);
+    return t;
+}
+
+static struct triangle shifted(struct triangle t, const double q[4], struct vec3 step)
+{
+    struct triangle result;
+    for (int k = 0; k < 3; k++)
+        result.corner[(k + 1) % 3] = vec3_add(turned(t.corner[k], q), step);
+    return result;
+}
+
+static void test_symmetries(void)
+{
+    struct random random = random_seed(3);
+    struct tally motion = {0.0, 0}, scale = {0.0, 0};
+    int one_way = 0, unequal = 0;
+    for (int i = 0; i < 2000; i++) {
+        struct triangle t, u;
+        random_pair(&random, i % 4, &t, &u);
+        double least = fmin(triangle_area(&t), triangle_area(&u)), g = triangle_exchange(&t, &u);
+        if (least < 0.02 || g < 1e-5 * least)
+            continue;
+        double q[4];
+        for (int k = 0; k < 4; k++)
+            q[k] = random_between(&random, 0.1, 1.0);
+        struct triangle v = shifted(t, q, point(1, 2, 3)), w = shifted(u, q, point(1, 2, 3));
+        tally_add(&motion, triangle_exchange(&v, &w), g, least);
+        for (int k = -6; k <= 6; k += 12) {
+            double s = pow(10.0, k);
+            v = scaled(t, s);
+            w = scaled(u, s);
+            tally_add(&scale, triangle_exchange(&v, &w), g * s * s, least * s * s);
+        }
+        v = scaled(t, 0x1p-20);
+        w = scaled(u, 0x1p-20);
+        one_way += triangle_exchange(&u, &t) != g;
+        unequal += triangle_exchange(&v, &w) != g * 0x1p-40;
+    }
+    tally_ok(&motion, "turned, moved, with other first corners");
+    tally_ok(&scale, "a million times larger and smaller");
+    tap_ok(one_way == 0, "the same bits in both orders");
+    tap_ok(unequal == 0, "the same bits 2^20 times smaller");
+}
+
+/* --- bounds --- */
+
+/* Slivers, specks, copies, neighbours and crossing ones, at all distances. */
+static void test_bounds(void)
+{
+    struct random random = random_seed(4);
+    int wrong = 0, lit = 0;
+    for (int i = 0; i < 20000; i++) {
+        struct triangle t, u;
+        random_pair(&random, i % 4, &t, &u);
+        double step = pow(10.0, random_between(&random, -17.0, 0.0));
+        struct vec3 small = random_point(&random, step);
+        switch (random_below(&random, 4)) {
+        case 0: u.corner[2] = vec3_add(vec3_middle(u.corner[0], u.corner[1]), small); break;
+        case 1: u.corner[2] = vec3_add(t.corner[2], small); break;
+        case 2:
+            for (int k = 0; k < 3; k++)
+                u.corner[k] = vec3_add(t.corner[2 - k], random_point(&random, step));
+            break;
+        default: u = scaled(u, step);
+        }
+        double g = triangle_exchange(&t, &u), least = fmin(triangle_area(&t), triangle_area(&u));
+        wrong += !(g >= 0.0 && g <= least * (1.0 + 1e-15));
+        lit += g > 0.0;
+    }
+    tap_ok(wrong == 0 && lit > 5000, "20,000 pairs of all kinds, %d lit: 0 <= F <= 1", lit);
+}
+
+/* --- other polygons --- */
+
+static void test_polygons(void)
+{
+    const double lower[4] = {0, 1, 0, 2}, right[4] = {1, 2, 0, 1}, upper[4] = {0.5, 5, 0.25, 4};
+    struct polygon ell = {6, {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}};
+    struct tally tally = {0.0, 0};
+    for (int k = 0; k < 18; k++) {
+        double z = k < 6 ? 0.125 : k < 12 ? 1.5 : 15.0;
+        struct polygon lid = ceiling_rectangle(upper, z), turn = {.count = 6};
+        for (int i = 0; i < 6; i++)
+            turn.corner[i] = ell.corner[(i + k) % 6];
+        double sum = parallel_exchange(lower, upper, z) + parallel_exchange(right, upper, z);
+        tally_add(&tally, exchange_of(&turn, &lid), sum, 3.0);
+    }
+    for (int k = 0; k < 3; k++) {
+        /* Close to the middle of an arm, far from all edges. */
+        const double small[4] = {0.45, 0.55, 0.4, 0.6};
+        double z = 0.005 * (k + 1);
+        struct polygon lid = ceiling_rectangle(small, z);
+        double sum = parallel_exchange(lower, small, z) + parallel_exchange(right, small, z);
+        tally_add(&tally, exchange_of(&ell, &lid), sum, extent(small));
+    }
+    tally_ok(&tally, "an L below a rectangle");
+    /* A wall in the plane y = 1/2 + k/4 that leaves one or two arms of a U in front of it. */
+    struct polygon u = {8, {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {2, 2, 0}, {2, 1, 0}, {1, 1, 0},
+                            {1, 2, 0}, {0, 2, 0}}};
+    tally = (struct tally){0.0, 0};
+    for (int k = 0; k < 5; k++) {
+        double y = 0.5 + 0.25 * k, bar = fmax(0.0, 1.0 - y);
+        const double wall[4] = {0, 1, 0, 2}, middle[4] = {0, bar, 0, 3};
+        const double left[4] = {bar, 2.0 - y, 0, 1}, rest[4] = {bar, 2.0 - y, 2, 3};
+        double sum = perpendicular_exchange(left, wall) + perpendicular_exchange(rest, wall);
+        sum += bar > 0.0 ? perpendicular_exchange(middle, wall) : 0.0;
+        struct polygon plate = rectangle(point(0, y, 0), point(0, 0, 1), point(2, 0, 0));
+        tally_add(&tally, exchange_of(&u, &plate), sum, 2.0 * (2.0 - y));
+    }
+    tally_ok(&tally, "a U cut by a wall");
+    /* Regular polygons of 64 corners on coaxial circles of radius 1, 1 apart: disks exchange
+     * (3 - sqrt 5) / 2 of their area; with areas that are 1 - (2 pi / 64)^2 / 6 of a disk each, the
+     * exchange falls by about twice that, 3.2e-3. */
+    struct polygon floor = {.count = 64}, top = {.count = 64};
+    for (int k = 0; k < 64; k++) {
+        double angle = 2.0 * (double)PI * k / 64.0;
+        floor.corner[k] = point(cos(angle), sin(angle), 0);
+        top.corner[63 - k] = point(cos(angle), sin(angle), 1);
+    }
+    double g = exchange_of(&floor, &top), disks = (double)PI * (3.0 - sqrt(5.0)) / 2.0;
+    tap_ok(g < disks && g > disks * (1.0 - 3.3e-3), "64 corners for a disk: %.6f of %.6f", g,
+           disks);
+    tap_ok(polygon_area(ell.corner, 6) == 3.0, "the area of an L");
+}
+
+/* x^(2 n - 1) is the last power that n points integrate exactly. */
+static void test_gauss(void)
+{
+    static const int points[4] = {4, 6, 10, 16};
+    double worst = 0.0;
+    for (int i = 0; i < 4; i++) {
+        struct gauss rule = gauss_rule(points[i]);
+        for (int power = 0; power < 2 * points[i]; power++) {
+            double sum = 0.0;
+            for (int k = 0; k < points[i]; k++) {
+                double weight, x = gauss_point(&rule, k, &weight);
+                sum += weight * pow(x, power);
+            }
+            worst = fmax(worst, fabs(sum * (power + 1) - 1.0));
+        }
+    }
+    /* Nodes are right to 1e-16, which the 31st power makes 3e-15 of it. */
+    tap_ok(worst < 5e-15, "Gauss' rules integrate all powers that they should (off by %.1e)",
+           worst);
+    struct gauss rule = gauss_rule(4);
+    double sum = 0.0;
+    for (int k = 0; k < 4; k++) {
+        double weight, x = gauss_point(&rule, k, &weight);
+        sum += weight * pow(x, 8);
+    }
+    tap_ok(fabs(9.0 * sum - 1.0) > 1e-4, "and no more");
+}
+
+int main(void)
+{
+    test_gauss();
+    test_table();
+    test_catalogue();
+    test_rectangles();
+    test_hinges();
+    test_closure(unit_tetrahedron, 300, "rows of tetrahedra");
+    test_closure(unit_box, 200, "rows of boxes");
+    test_closure(unit_prism, 100, "rows of prisms");
+    test_closure(split_tetrahedron, 50, "rows of tetrahedra of 16 triangles");
+    test_parts();
+    test_far();
+    test_plane();
+    test_symmetries();
+    test_bounds();
+    test_polygons();
+    return tap_done();
+}

@@ -1,0 +1,347 @@
+/* Tests of geom/stop.h and of the loops that ask it. Proved of each are: it asks as
+ * often as there are steps; when it is asked to stop at once it makes less than all;
+ * wherever it is asked to stop it comes back, and all memory is freed; readers give an
+ * error and no scene, writers an error and the old file. */
+#include "geom/stop.h"
+#include "geom/wall.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/picture/image.h"
+#include "io/picture/mesh.h"
+#include "io/picture/render.h"
+#include "io/picture/viewpoint.h"
+#include "io/scene/obj.h"
+#include "io/scene/ply.h"
+#include "tests/scenes.h"
+#include "tests/tap.h"
+#include "tools/pairs.h"
+#include "tools/table.h"
+
+#define OBJ "build/stop_test.obj"
+#define TEXT_PLY "build/stop_test.text.ply"
+#define MESH_PLY "build/stop_test.mesh.ply"
+#define WRITTEN "build/stop_test.out"
+
+enum { SIZE = 16, STOPS = 20 };
+
+/* How often was asked, and from when on the answer is yes. */
+static int64_t asks, first_yes;
+
+static bool is_time(void)
+{
+    return asks++ >= first_yes;
+}
+
+static struct error error;
+static struct world world; /* what the phases look at */
+static struct shading *shading;
+static float picture[3 * SIZE * SIZE];
+
+static const struct camera CAMERA = {.eye = {0.1, 0.2, 0.3}, .at = {0.9, 0.8, 0.7},
+                                     .up = {0, 0, 1}, .fov = 70.0, .width = SIZE,
+                                     .height = SIZE};
+
+/* --- what may be stopped; each returns how much it has made --- */
+
+static int64_t count_triangles(struct scene *scene)
+{
+    int64_t count = scene ? scene->input_count : 0;
+    scene_destroy(scene);
+    return count;
+}
+
+static int64_t read_obj(void)
+{
+    struct obj_repairs repairs;
+    return count_triangles(obj_read(OBJ, &repairs, &error));
+}
+
+static int64_t read_text_ply(void)
+{
+    return count_triangles(ply_read(TEXT_PLY, &error));
+}
+
+static int64_t read_mesh_ply(void)
+{
+    return count_triangles(ply_read(MESH_PLY, &error));
+}
+
+static int64_t find_neighbours(void)
+{
+    const struct scene *s = world.scene;
+    int64_t found = 0;
+    int32_t *neighbours = walls_find_neighbours(s->triangles, s->planes, s->input_count);
+    for (int32_t side = 0; side < 3 * s->input_count; side++)
+        found += neighbours[side] >= 0;
+    alloc_free(neighbours);
+    return found;
+}
+
+static int64_t build_octree(void)
+{
+    const struct scene *s = world.scene;
+    struct octree *octree = octree_create(s->triangles, s->planes, s->input_count);
+    int64_t bytes = octree_bytes(octree);
+    octree_destroy(octree);
+    return bytes;
+}
+
+static struct viewfactors *make_factors(void)
+{
+    struct comm alone = {.size = 1};
+    struct viewfactors *factors = viewfactors_create(world.scene, world.octree, 1e-3, 4);
+    factors->pairs = 0; /* there is nothing to exchange */
+    pairs_add(&alone, factors, NULL);
+    return factors;
+}
+
+static int64_t add_pairs(void)
+{
+    struct viewfactors *factors = make_factors();
+    int64_t parts = factors->links;
+    viewfactors_destroy(factors);
+    return parts;
+}
+
+static int64_t print_table(void)
+{
+    int64_t bytes;
+    struct viewfactors *factors = viewfactors_create(world.scene, world.octree, 1e-3, 4);
+    FILE *file = tmpfile();
+    table_print(factors, file);
+    bytes = ftell(file);
+    fclose(file);
+    viewfactors_destroy(factors);
+    return bytes;
+}
+
+/* 1 for the right camera, as the first call chooses it. */
+static int64_t choose_camera(void)
+{
+    static struct vec3 right;
+    struct camera camera = viewpoint_choose(world.scene, world.octree, NULL, SIZE, SIZE);
+    if (first_yes == INT64_MAX)
+        right = camera.eye;
+    return vec3_length(vec3_sub(camera.eye, right)) == 0.0;
+}
+
+static int64_t survey_leaves(void)
+{
+    int64_t count, sum = 0;
+    const struct forest *forest = world.model.forest;
+    uint8_t *open = shading_open_quarters(forest, world.octree, 0, 1, &count);
+    for (int64_t i = 0; i < count; i++)
+        sum += open[i];
+    alloc_free(open);
+    return sum;
+}
+
+static int64_t count_vertices(const uint8_t *open)
+{
+    struct shading *made = shading_create(world.model.forest, NULL, open);
+    int64_t count = made->vertex_count;
+    shading_destroy(made);
+    return count;
+}
+
+static int64_t shade_flat(void)
+{
+    return count_vertices(NULL);
+}
+
+static int64_t shade_smooth(void)
+{
+    uint8_t *open = alloc_array((size_t)world.model.forest->count, 1);
+    memset(open, 4, (size_t)world.model.forest->count);
+    int64_t count = count_vertices(open);
+    alloc_free(open);
+    return count;
+}
+
+static int64_t render(void)
+{
+    struct renderer renderer = renderer_make(world.octree, shading, NULL);
+    float *rows = render_rows(&renderer, &CAMERA, 1, 0, 1, NULL);
+    int64_t lit = 0;
+    for (int i = 0; i < 3 * SIZE * SIZE; i++)
+        lit += rows[i] > 0.0f;
+    alloc_free(rows);
+    return lit;
+}
+
+/* 0 if the old file is there, as it was, and nothing beside it. */
+static int64_t look_at_output(bool good)
+{
+    FILE *file = fopen(WRITTEN, "rb"), *beside = fopen(WRITTEN ".0.tmp", "rb");
+    bool old = file && getc(file) == 'o' && getc(file) == EOF;
+    if (file)
+        fclose(file);
+    if (beside)
+        fclose(beside);
+    return !old || beside || good;
+}
+
+static void write_old(void)
+{
+    FILE *file = fopen(WRITTEN, "wb");
+    if (!file || fputs("o", file) < 0 || fclose(file) != 0) {
+        printf("Bail out! cannot write %s (is there a folder build?)\n", WRITTEN);
+        exit(1);
+    }
+}
+
+static int64_t write_ppm(void)
+{
+    struct tone tone = tone_make(1.0);
+    struct image image = {SIZE, SIZE, picture};
+    write_old();
+    return look_at_output(ppm_write(&image, &tone, WRITTEN, &error));
+}
+
+static int64_t write_pfm(void)
+{
+    struct image image = {SIZE, SIZE, picture};
+    write_old();
+    return look_at_output(pfm_write(&image, WRITTEN, &error));
+}
+
+static int64_t write_mesh(void)
+{
+    struct tone tone = tone_make(1.0);
+    write_old();
+    return look_at_output(mesh_write(shading, &tone, NULL, WRITTEN, &error));
+}
+
+static const struct phase {
+    const char *name;
+    int64_t (*run)(void);
+    bool fails; /* being stopped is an error, and nothing is made */
+    int each, more; /* asks at least: for each triangle, and besides */
+} PHASES[] = {
+    {"reading OBJ", read_obj, true, 4, 1},
+    {"reading PLY as text", read_text_ply, true, 5, 1},
+    {"reading binary PLY", read_mesh_ply, true, 5, 1},
+    {"neighbours in walls", find_neighbours, false, 3, 0},
+    {"the octree", build_octree, false, 1, 120},
+    {"form factors between groups", add_pairs, false, 9, 0},
+    {"their table", print_table, false, 0, 1},
+    {"choosing a camera", choose_camera, false, 0, 5000},
+    {"looking at leaves", survey_leaves, false, 2, 0},
+    {"flat shading", shade_flat, false, 1, 0},
+    {"smooth shading", shade_smooth, false, 10, 1},
+    {"rendering", render, false, 0, 256},
+    {"writing PPM", write_ppm, true, 0, 768},
+    {"writing PFM", write_pfm, true, 0, 16},
+    {"writing a mesh", write_mesh, true, 4, 0},
+};
+
+/* --- stopping them --- */
+
+/* How much a phase makes that is asked to stop from the ask `yes` on. */
+static int64_t run_until(const struct phase *phase, int64_t yes)
+{
+    error = (struct error){EXIT_DONE, ""};
+    asks = 0;
+    first_yes = yes;
+    return phase->run();
+}
+
+static void test_phase(const struct phase *phase)
+{
+    int64_t whole = run_until(phase, INT64_MAX), all = asks, wrong = 0;
+    int64_t step = all / STOPS + 1, balance = alloc_balance();
+    int64_t least = (int64_t)phase->each * world.scene->input_count + phase->more;
+    tap_ok(whole > 0 && error.code == EXIT_DONE && all >= least,
+           "%s: asks %lld times, at least %lld", phase->name, (long long)all,
+           (long long)least);
+    int64_t at_once = run_until(phase, 0);
+    tap_ok(at_once < (phase->fails ? 1 : whole), "stopped at once: makes less");
+    for (int64_t yes = 0; yes < all; yes += step) {
+        int64_t made = run_until(phase, yes);
+        wrong += made > (phase->fails ? 0 : whole) || alloc_balance() != balance;
+        wrong += (error.code != EXIT_DONE) != phase->fails;
+    }
+    tap_ok(wrong == 0, "stopped anywhere: comes back%s",
+           phase->fails ? ", with an error" : "");
+}
+
+static void test_questions(void)
+{
+    error = (struct error){EXIT_DONE, ""};
+    stop_when(NULL);
+    tap_ok(!stop_is_asked() && stop_check(&error) && error.code == EXIT_DONE,
+           "nobody asks");
+    stop_when(is_time);
+    first_yes = 1;
+    asks = 0;
+    tap_ok(!stop_is_asked() && stop_is_asked(), "somebody does");
+    tap_ok(!stop_check(&error) && error.code == EXIT_FAILED, "which is an error");
+}
+
+/* --- what they work on --- */
+
+/* A lit room with a box in it, each side of n x n cells. */
+static struct scene *make_room(int n)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, (struct vec3){0, 0, 0}, (struct vec3){1, 1, 1}, n, true);
+    struct vec3 low = {0.4, 0.4, 0}, high = {0.6, 0.6, 0.5};
+    soup_add_box(&soup, low, high, n, false);
+    struct scene *scene = scene_of_soup(&soup, 1);
+    scene->materials[0] = material_grey(0.5, 1.0);
+    soup_free(&soup);
+    return scene;
+}
+
+static FILE *open_or_exit(const char *path)
+{
+    FILE *file = fopen(path, "wb");
+    if (file)
+        return file;
+    printf("Bail out! cannot write %s (is there a folder build?)\n", path);
+    exit(1);
+}
+
+static void write_scenes(void)
+{
+    struct tone tone = tone_make(1.0);
+    FILE *obj = open_or_exit(OBJ), *ply = open_or_exit(TEXT_PLY);
+    int32_t count = world.scene->input_count;
+    fprintf(ply, "ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\n"
+                 "property float y\nproperty float z\nelement face %d\n"
+                 "property list uchar int vertex_indices\nend_header\n",
+            3 * (int)count, (int)count);
+    for (int32_t i = 0; i < 3 * count; i++) {
+        struct vec3 x = world.scene->triangles[i / 3].corner[i % 3];
+        fprintf(obj, "v %.9g %.9g %.9g\n", x.x, x.y, x.z);
+        fprintf(ply, "%.9g %.9g %.9g\n", x.x, x.y, x.z);
+    }
+    for (int32_t i = 0; i < count; i++) {
+        fprintf(obj, "f %d %d %d\n", 3 * (int)i + 1, 3 * (int)i + 2, 3 * (int)i + 3);
+        fprintf(ply, "3 %d %d %d\n", 3 * (int)i, 3 * (int)i + 1, 3 * (int)i + 2);
+    }
+    fclose(obj);
+    fclose(ply);
+    mesh_write(shading, &tone, NULL, MESH_PLY, &error);
+}
+
+int main(void)
+{
+    world = world_make(make_room(2));
+    struct forest *forest = world.model.forest;
+    for (int64_t p = 0; p < forest->count; p++)
+        forest->patches[p].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
+    shading = shading_create(forest, NULL, NULL);
+    write_scenes();
+    test_questions();
+    for (size_t i = 0; i < sizeof PHASES / sizeof PHASES[0]; i++)
+        test_phase(&PHASES[i]);
+    stop_when(NULL);
+    shading_destroy(shading);
+    world_free(&world);
+    return tap_done();
+}

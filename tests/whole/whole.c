@@ -1,0 +1,602 @@
+/* Whole solutions against exact answers, as phr finds them by default.
+ *
+ * Exact answers are solutions of integral equations (tests/equation.h) and closed forms:
+ * in a sphere all form factors are shares of the area, and in a furnace B is the same
+ * everywhere. With an argument all runs but those of the convergence have it as their
+ * options.
+ *
+ * The answer of a leaf is its mean. For each surface: the error of its mean, the error of
+ * leaves, root mean square over the area, and that of the worst leaf, all relative to the
+ * exact answer. */
+#include <math.h>
+
+#include "geom/lambert.h"
+#include "tests/defaults.h"
+#include "tests/equation.h"
+#include "tests/tap.h"
+#include "tools/contour.h"
+
+static const char *options = ""; /* of all runs but those of the convergence */
+
+/* Relative errors, or limits to them. */
+struct errors {
+    double mean, rms, worst;
+};
+
+/* What is asked of all scenes: that an eye sees nothing, and next to edges little. */
+static const struct errors BARS = {1e-3, 2e-3, 1e-2};
+
+/* Beside a bright edge on a dark wall, where B changes most, leaves are off by a little
+ * more. Measured 0.052, 0.200, 0.63 %. */
+static const struct errors HINGES = {1e-3, 2.5e-3, 1e-2};
+
+/* In a crater the exact answer takes B to be the same all over each of 60 facets, beside
+ * a bright edge: it is as far off as this, for a finer epsilon finds the same. */
+static const struct errors CRATER = {4e-3, 5e-3, 1.5e-2};
+
+/* --- what is measured --- */
+
+/* An answer for one surface: by an equation, by root, or the same everywhere. */
+struct truth {
+    const struct equation *equation;
+    const double
+        *root; /* [roots] B of facets that are lit by facets; see light_of_facets() */
+    double value;
+    int surface;      /* of the equation */
+    double low, high; /* roots are looked at whose centroids have y between these */
+};
+
+/* B at a point of a root, if all roots have these radiosities and none is hidden. */
+static double light_of_facets(const struct scene *scene, const double *b, int32_t root,
+                              struct vec3 x)
+{
+    const struct material *m = scene_root_material(scene, root);
+    double h = 0.0;
+    for (int32_t r = 0; r < scene_root_count(scene); r++)
+        if (r != root)
+            h += b[r] * point_triangle_factor(x, scene_root_plane(scene, root).normal,
+                                              &scene->triangles[r]);
+    return m->emission.band[0] + m->reflectance.band[0] * h;
+}
+
+/* Mean over a leaf: four quarters, three points each, exact to the second degree. */
+static double truth_of_leaf(const struct truth *truth, const struct solution *s,
+                            int32_t leaf)
+{
+    const struct forest *forest = s->solver->model.forest;
+    const struct equation *e = truth->equation;
+    if (!e && !truth->root)
+        return truth->value;
+    struct triangle t = forest_triangle(forest, leaf);
+    double sum = 0.0;
+    for (int q = 0; q < 4; q++)
+        for (int k = 0; k < 3; k++) {
+            double w[3], u, v;
+            for (int c = 0; c < 3; c++) {
+                double part = c == k ? 2.0 / 3.0 : 1.0 / 6.0;
+                w[c] = q == 3 ? 0.5 - 0.5 * part : 0.5 * part + (c == q ? 0.5 : 0.0);
+            }
+            struct vec3 x = vec3_add(
+                vec3_scale(t.corner[0], w[0]),
+                vec3_add(vec3_scale(t.corner[1], w[1]), vec3_scale(t.corner[2], w[2])));
+            if (truth->root) {
+                sum += light_of_facets(s->scene, truth->root,
+                                       (int32_t)forest->patches[leaf].id.root, x) /
+                       12.0;
+                continue;
+            }
+            e->shape->place(e->size, truth->surface, scene_to_input(s->scene, x), &u, &v);
+            sum += light_at(e, truth->surface, u, v) / 12.0;
+        }
+    return sum;
+}
+
+static bool is_looked_at(const struct truth *truth, const struct solution *s,
+                         int32_t root, int material)
+{
+    struct triangle t = scene_root_triangle(s->scene, root);
+    double y = scene_to_input(s->scene, triangle_centroid(&t)).y;
+    return s->scene->material_of[root] == material &&
+           (truth->low == truth->high || (y >= truth->low && y <= truth->high));
+}
+
+static struct errors measure(const struct solution *s, int material,
+                             const struct truth *truth)
+{
+    const struct forest *forest = s->solver->model.forest;
+    double area = 0.0, exact = 0.0, found = 0.0, square = 0.0, worst = 0.0;
+    for (int32_t p = 0; p < forest->count; p++) {
+        int32_t root = (int32_t)forest->patches[p].id.root;
+        if (!patch_is_leaf(&forest->patches[p]) ||
+            !is_looked_at(truth, s, root, material))
+            continue;
+        double a = forest_area(forest, p), b = forest->patches[p].radiosity.band[0];
+        double is = truth_of_leaf(truth, s, p), off = b / is - 1.0;
+        area += a;
+        exact += a * is;
+        found += a * b;
+        square += a * off * off;
+        worst = fabs(off) <= worst ? worst : fabs(off); /* NaN counts */
+    }
+    return (struct errors){found / exact - 1.0, sqrt(square / area), worst};
+}
+
+/* The limits are those without facets; what these cost goes on top. */
+static void judge(const struct solution *s, const char *name, int material,
+                  const struct truth *truth, struct errors limit, double cost)
+{
+    struct errors e = measure(s, material, truth);
+    tap_ok(s->vote.converged && fabs(e.mean) <= limit.mean + cost &&
+               e.rms <= limit.rms + cost && e.worst <= limit.worst + cost,
+           "%s: mean %+.3f, RMS %.3f, worst leaf %.2f %% (at most %.3g, %.3g, %.3g; "
+           "%lld leaves, %.1f s)",
+           name, 100.0 * e.mean, 100.0 * e.rms, 100.0 * e.worst,
+           100.0 * (limit.mean + cost), 100.0 * (limit.rms + cost),
+           100.0 * (limit.worst + cost), (long long)s->stats.leaves, s->seconds);
+}
+
+/* --- plates, grooves, squares --- */
+
+/* A strip in unit squares along y, from `across` on; the front is to the right of its
+ * walk. */
+static void add_strip(struct painted *painted, struct vec3 origin, struct vec3 across,
+                      int length, bool turned)
+{
+    for (int k = 0; k < length; k++) {
+        struct vec3 at = vec3_add(origin, point(0, k, 0)), along = point(0, 1, 0);
+        soup_add_quad(&painted->soup, at, turned ? along : across,
+                      turned ? across : along, 1);
+    }
+}
+
+/* A black triangle between unit squares, too small to matter, so that nothing is proved
+ * to be open and rays decide; and a wide black square behind all, so that whatever emits
+ * is a lamp. */
+static void add_speck(struct painted *painted)
+{
+    struct vec3 at = point(0.5, 0.5, 0.5);
+    soup_add(&painted->soup, (struct triangle){{at, vec3_add(at, point(0.001, 0, 0)),
+                                                vec3_add(at, point(0, 0.001, 0))}});
+    soup_add_quad(&painted->soup, point(-5, -5, -1), point(0, 10, 0), point(10, 0, 0), 1);
+    paint(painted, 0.0, 0.0);
+}
+
+/* Two strips as surfaces of an equation. */
+static struct solution solve_strips(const struct comm *comm, const struct equation *e,
+                                    int length, bool speck, const char *words)
+{
+    struct painted painted = {0};
+    bool groove = e->shape == &GROOVE;
+    add_strip(&painted, point(0, 0, 0), point(1, 0, 0), length, false);
+    paint(&painted, e->rho[0], e->emission[0]);
+    add_strip(&painted, point(0, 0, groove ? 0.0 : e->size),
+              groove ? point(cos(e->size), 0, sin(e->size)) : point(1, 0, 0), length,
+              true);
+    paint(&painted, e->rho[1], e->emission[1]);
+    if (speck)
+        add_speck(&painted);
+    return solve_scene(comm, scene_of_painted(&painted), words);
+}
+
+/* The ends are 18 widths and more from what is looked at, and take less than 1e-4 of its
+ * light: from a point between plates, 2 / (3 pi 18^3) = 4e-5 of its view. Where plates
+ * are a tenth as far apart, an eighth of the length is as good. */
+enum { STRIP = 40, SHORT = 8, MIDDLE = 4 };
+
+/* The numbers beside it are from a method of higher order, at two resolutions. 1e-5:
+ * in a tube the kernel has a bend where the points are the same. */
+static void check_equation(const struct equation *e, const char *name,
+                           const double mean[2])
+{
+    double off = 0.0;
+    for (int k = 0; k < 2 && mean[k] > 0.0; k++)
+        off = fmax(off, fabs(equation_mean(e, k) / mean[k] - 1.0));
+    tap_ok(off <= 1e-5, "%s: the equation's means are off by %.1g", name, off);
+}
+
+static void test_strips(const struct comm *comm, const struct shape *shape, double size,
+                        const double emission[2], const double rho[2], int length,
+                        double mean, struct errors limit)
+{
+    struct equation *e = equation_make(shape, size, emission, rho);
+    char name[80];
+    snprintf(name, sizeof name, "%s %.3g, E %g %g, rho %g",
+             shape == &GROOVE ? "groove" : "plates",
+             shape == &GROOVE ? size * 180.0 / PI : size, emission[0], emission[1],
+             rho[0]);
+    check_equation(e, name, (double[]){mean, mean});
+    struct solution s = solve_strips(comm, e, length, false, options);
+    for (int k = 0; k < 2; k++) {
+        struct truth truth = {
+            e, NULL, 0.0, k, 0.5 * (length - MIDDLE), 0.5 * (length + MIDDLE)};
+        if (k == 0 || emission[0] != emission[1])
+            judge(&s, name, k, &truth, limit, 0.0);
+    }
+    solution_free(&s);
+    alloc_free(e);
+}
+
+static void test_isothermal(const struct comm *comm, const struct shape *shape,
+                            double size, double eps, int length, double mean,
+                            struct errors limit)
+{
+    double emission[2] = {eps, eps}, rho[2] = {1.0 - eps, 1.0 - eps};
+    test_strips(comm, shape, size, emission, rho, length, mean, limit);
+}
+
+/* There the equation has gone to its limit but for (1e-5)^0.6. */
+static const double NEXT_TO = 1e-5;
+
+/* At an edge B1 = (E1 + rho1 c E2) / (1 - rho1 rho2 c^2), c = (1 + cos a) / 2: so the
+ * equation says, near it, of a groove of which one wall shines; and phr is held to that.
+ */
+static void test_edge(const struct comm *comm, double angle, double rho)
+{
+    const double emission[2] = {1.0, 0.0}, both[2] = {rho, rho},
+                 c = 0.5 * (1.0 + cos(angle));
+    struct equation *e = equation_make(&GROOVE, angle, emission, both);
+    double first = 1.0 / (1.0 - rho * rho * c * c), second = rho * c * first;
+    double off = fmax(fabs(light_at(e, 0, NEXT_TO, 0.0) / first - 1.0),
+                      fabs(light_at(e, 1, NEXT_TO, 0.0) / second - 1.0));
+    tap_ok(off <= 2e-3, "hinge of %g: at the edge the equation is off by %.1g",
+           angle * 180.0 / PI, off);
+    alloc_free(e);
+    test_strips(comm, &GROOVE, angle, emission, both, STRIP, 0.0, HINGES);
+}
+
+static void test_squares(const struct comm *comm, const double emission[2],
+                         const double rho[2], const double mean[2], bool speck,
+                         struct errors limit)
+{
+    struct equation *e = equation_make(&SQUARES, 1.0, emission, rho);
+    check_equation(e, "squares", mean);
+    struct solution s = solve_strips(comm, e, 1, speck, options);
+    for (int k = 0; k < 2; k++)
+        judge(&s, k == 0 ? "square, first" : "square, second", k,
+              &(struct truth){e, .surface = k}, limit, 0.0);
+    solution_free(&s);
+    alloc_free(e);
+}
+
+/* --- tubes and discs --- */
+
+enum { SIDES = 32 };
+
+/* Corner of a polygon with the area of a circle of radius 1. */
+static struct vec3 rim(int k, double z)
+{
+    double step = 2.0 * PI / SIDES, at = step * (k % SIDES),
+           radius = sqrt(step / sin(step));
+    return point(radius * cos(at), radius * sin(at), z);
+}
+
+static void add_disc(struct painted *painted, double z, bool down)
+{
+    for (int k = 0; k < SIDES; k++)
+        soup_add(&painted->soup, (struct triangle){{point(0, 0, z), rim(k + down, z),
+                                                    rim(k + !down, z)}});
+}
+
+/* The front is inside. */
+static void add_wall(struct painted *painted, double length)
+{
+    for (int k = 0; k < SIDES; k++)
+        soup_add_quad(&painted->soup, rim(k, 0.0), point(0, 0, length),
+                      vec3_sub(rim(k + 1, 0.0), rim(k, 0.0)), 1);
+}
+
+static void test_round(const struct comm *comm, const char *name,
+                       const struct shape *shape, double size, const double emission[2],
+                       const double rho[2], const double mean[2], struct errors limit)
+{
+    struct painted painted = {0};
+    struct equation *e = equation_make(shape, size, emission, rho);
+    check_equation(e, name, mean);
+    if (shape == &DISCS)
+        add_disc(&painted, 0.0, false);
+    else
+        add_wall(&painted, size);
+    paint(&painted, rho[0], emission[0]);
+    add_disc(&painted, shape == &DISCS ? size : 0.0, shape == &DISCS);
+    paint(&painted, shape == &PIPE ? 0.0 : rho[1], shape == &PIPE ? 1.0 : emission[1]);
+    struct solution s = solve_scene(comm, scene_of_painted(&painted), options);
+    double cost = cost_of_sides(e, SIDES);
+    for (int k = 0; k < (shape == &PIPE ? 1 : 2); k++)
+        judge(&s, name, k, &(struct truth){e, .surface = k}, limit, cost);
+    solution_free(&s);
+    alloc_free(e);
+}
+
+static void test_cavity(const struct comm *comm, double length, double eps, double wall,
+                        double base)
+{
+    char name[64];
+    snprintf(name, sizeof name, "cavity, L / R %g, eps %g", length, eps);
+    test_round(comm, name, &CAVITY, length, (double[]){eps, eps},
+               (double[]){1.0 - eps, 1.0 - eps}, (double[]){wall, base}, BARS);
+}
+
+/* --- spheres --- */
+
+/* The facets of a sphere are walls of a convex room: nothing is hidden, and light from
+ * facet to facet is solved for with exact factors and B that is the same all over a
+ * facet. */
+static double *facets_solve(const struct scene *scene)
+{
+    int32_t n = scene_root_count(scene);
+    double *factor = alloc_array((size_t)n * (size_t)n, sizeof *factor);
+    double *b = alloc_array((size_t)n, sizeof *b), change = 1.0;
+    for (int32_t i = 0; i < n; i++)
+        for (int32_t j = 0; j < i; j++) {
+            double g = triangle_exchange(&scene->triangles[i], &scene->triangles[j]);
+            factor[i * n + j] = g / scene->areas[i];
+            factor[j * n + i] = g / scene->areas[j];
+        }
+    while (change > 1e-10) {
+        change = 0.0;
+        for (int32_t i = 0; i < n; i++) {
+            const struct material *m = scene_root_material(scene, i);
+            double h = 0.0;
+            for (int32_t j = 0; j < n; j++)
+                h += factor[i * n + j] * b[j];
+            h = m->emission.band[0] + m->reflectance.band[0] * h;
+            change = fmax(change, fabs(h - b[i]));
+            b[i] = h;
+        }
+    }
+    alloc_free(factor);
+    return b;
+}
+
+/* Paints what is below these heights, from the south pole up, zone by zone. A zone that
+ * neither reflects nor emits is left out. */
+struct zone {
+    double height; /* of its upper end */
+    struct material material;
+};
+
+static struct scene *sphere_of_zones(const struct zone *zones, int count, int level)
+{
+    struct painted sphere = {0}, painted = {0};
+    soup_add_sphere(&sphere.soup, 1.0, level);
+    double low = -2.0;
+    for (int z = 0; z < count; low = zones[z++].height) {
+        for (int64_t i = 0; i < sphere.soup.count; i++) {
+            struct triangle t = sphere.soup.items[i];
+            double height = triangle_centroid(&t).z;
+            if (height >= low && height < zones[z].height &&
+                !material_is_dark(&zones[z].material))
+                soup_add(&painted.soup,
+                         (struct triangle){{t.corner[0], t.corner[2], t.corner[1]}});
+        }
+        paint(&painted, zones[z].material.reflectance.band[0],
+              zones[z].material.emission.band[0]);
+    }
+    soup_free(&sphere.soup);
+    return scene_of_painted(&painted);
+}
+
+/* H = sum f E / (1 - sum f rho), f being the shares of 4 pi that zones have: in a sphere;
+ * facets are another sum of shares, and cost what facets_solve() has more or less of
+ * each. */
+static void test_sphere(const struct comm *comm, const char *name,
+                        const struct zone *zones, int count, int level,
+                        struct errors limit)
+{
+    struct scene *scene = sphere_of_zones(zones, count, level);
+    struct solution s = solve_scene(comm, scene, options);
+    double *b = facets_solve(scene), up = 0.0, down = 1.0;
+    double area[8] = {0.0}, light[8] = {0.0}, whole = 0.0;
+    for (int32_t i = 0; i < scene_root_count(scene); i++) {
+        area[scene->material_of[i]] += scene->areas[i];
+        light[scene->material_of[i]] += scene->areas[i] * b[i];
+    }
+    struct soup sphere = {0};
+    soup_add_sphere(&sphere, 1.0, level);
+    for (int64_t i = 0; i < sphere.count; i++)
+        whole += triangle_area(&sphere.items[i]) / scene_area_unit(scene);
+    soup_free(&sphere);
+    for (int z = 0; z < count; z++) {
+        up += area[z] / whole * zones[z].material.emission.band[0];
+        down -= area[z] / whole * zones[z].material.reflectance.band[0];
+    }
+    for (int z = 0; z < count; z++)
+        if (area[z] > 0.0) {
+            double exact = zones[z].material.emission.band[0] +
+                           zones[z].material.reflectance.band[0] * up / down;
+            double cost = fabs(light[z] / area[z] / exact - 1.0);
+            struct errors mean = {limit.mean, HUGE_VAL, HUGE_VAL};
+            judge(&s, name, z, &(struct truth){.value = exact}, mean, cost);
+            judge(&s, "  and its facets", z, &(struct truth){.root = b}, limit, 0.0);
+        }
+    alloc_free(b);
+    solution_free(&s);
+}
+
+/* --- furnaces, and light that is kept --- */
+
+enum room { CUBE, CORRIDOR, FURNISHED };
+
+static void add_room(struct painted *painted, enum room room)
+{
+    soup_add_box(&painted->soup, point(0, 0, 0),
+                 room == CORRIDOR ? point(100, 1, 1) : point(1, 1, 1), 1, true);
+    for (int k = 0; k < 3 && room == FURNISHED; k++) {
+        struct vec3 low = point(0.1 + 0.28 * k, 0.15 + 0.25 * k, 0.6 - 0.2 * k);
+        soup_add_box(&painted->soup, low, vec3_add(low, point(0.2, 0.2, 0.25)), 1, false);
+    }
+}
+
+/* B = E / (1 - rho) of every leaf, whatever it sees; of a furnished room whose triangles
+ * have rho and half of it in turns, with E = 1 - rho, B = 1. 0.2 %: rows sum to 1, and
+ * there is no noise where all is alike. */
+static void test_furnace(const struct comm *comm, enum room room, double rho, bool mixed,
+                         const char *words)
+{
+    static const char *const names[] = {"cube", "corridor 1:100", "furnished room"};
+    static const struct errors limit = {1e-3, 2e-3, 2e-3};
+    char name[64];
+    struct painted painted = {0};
+    add_room(&painted, room);
+    paint(&painted, rho, 1.0 - rho);
+    if (mixed)
+        paint(&painted, 0.5 * rho, 1.0 - 0.5 * rho);
+    struct scene *scene = scene_of_painted(&painted);
+    for (int32_t i = 0; i < scene->input_count && mixed; i++)
+        scene->material_of[i] = i & 1;
+    struct solution s = solve_scene(comm, scene, *options ? options : words);
+    snprintf(name, sizeof name, "furnace, %s, rho %g%s", names[room], rho,
+             mixed ? ", mixed" : "");
+    for (int k = 0; k <= mixed; k++)
+        judge(&s, name, k, &(struct truth){.value = 1.0}, limit, 0.0);
+    solution_free(&s);
+}
+
+/* With a lamp of 1 part in 100 of a room whose rho is the same everywhere the mean of H
+ * is exactly the power over A (1 - rho), and nothing escapes: the balance is closed. */
+static void test_light_is_kept(const struct comm *comm, double rho, const char *words)
+{
+    struct painted painted = {0};
+    add_room(&painted, FURNISHED);
+    paint(&painted, rho, 0.0);
+    soup_add_box(&painted.soup, point(0.45, 0.85, 0.45), point(0.55, 0.86, 0.55), 1,
+                 false);
+    paint(&painted, rho, 100.0);
+    struct solution s =
+        solve_scene(comm, scene_of_painted(&painted), *options ? options : words);
+    double sum = 0.0, area = 0.0, power = s.stats.emitted_power / BANDS;
+    for (int32_t r = 0; r < scene_root_count(s.scene); r++) {
+        double a = s.scene->areas[r] * scene_area_unit(s.scene);
+        sum += a * s.solver->model.forest->patches[r].radiosity.band[0];
+        area += a;
+    }
+    double exact = power / (1.0 - rho) / area,
+           escaped = s.stats.escaped_power / BANDS / power;
+    tap_ok(s.vote.converged && fabs(sum / area / exact - 1.0) <= 1e-5 &&
+               fabs(escaped) <= 1e-5,
+           "room with a lamp, rho %g: mean B %+.4f %%, escaped %+.4f %% (at most 0.001 "
+           "%%; %.1f s)",
+           rho, 100.0 * (sum / area / exact - 1.0), 100.0 * escaped, s.seconds);
+    solution_free(&s);
+}
+
+/* The inner sphere, of this radius, emits. A share q of the rays from outside meet it and
+ * find Bi - Bo more light: were they random, 256 of them, B would deviate by rho (Bi -
+ * Bo) sqrt(q (1 - q) / 256). Spread evenly they have half of it at most; the worst leaf
+ * of a thousand has four times as much as a random one. A small sphere is a lamp at which
+ * segments are aimed; for them that is ample. */
+static void test_concentric(const struct comm *comm, double radius, int level)
+{
+    const double rho = 0.8, q = radius * radius,
+                 ratio = rho * q / (1.0 - rho * (1.0 - q));
+    const double inner = 1.0 / (1.0 - 0.5 * ratio), outer = ratio * inner;
+    const double noise = rho * (inner / outer - 1.0) * sqrt(q * (1.0 - q) / 256.0);
+    struct painted painted = {0};
+    soup_add_sphere(&painted.soup, radius, level);
+    paint(&painted, 0.5, 1.0);
+    int64_t first = painted.soup.count;
+    soup_add_sphere(&painted.soup, 1.0, level);
+    for (int64_t i = first; i < painted.soup.count; i++) {
+        struct triangle *t = &painted.soup.items[i];
+        *t = (struct triangle){{t->corner[0], t->corner[2], t->corner[1]}};
+    }
+    paint(&painted, rho, 0.0);
+    struct solution s = solve_scene(comm, scene_of_painted(&painted), options);
+    judge(&s, "concentric spheres, inner", 0, &(struct truth){.value = inner}, BARS, 0.0);
+    judge(&s, "concentric spheres, outer", 1, &(struct truth){.value = outer},
+          (struct errors){BARS.mean, 0.5 * noise, 4.0 * noise}, 0.0);
+    solution_free(&s);
+}
+
+/* --- convergence --- */
+
+/* Tests, as phr counts them. */
+static double work_of(const struct solution *s)
+{
+    return (double)model_work(&s->solver->model);
+}
+
+/* Eight times the work halves the error at least, and that of the worst leaf falls: RMS
+ * like work to the power of -1/3 or less, to both sides of the default and 25 times
+ * finer. */
+static void test_convergence(const struct comm *comm)
+{
+    static const double half[2] = {0.5, 0.5}, epsilon[] = {1e-3, 1e-4, 2e-5, 4e-6};
+    struct equation *e = equation_make(&GROOVE, PI / 3.0, half, half);
+    struct errors before = {0.0, 0.0, 0.0};
+    double done = 0.0;
+    for (int k = 0; k < 4; k++) {
+        char words[64];
+        snprintf(words, sizeof words, "--epsilon %g", epsilon[k]);
+        struct solution s = solve_strips(comm, e, STRIP, false, words);
+        struct errors now = measure(&s, 0, &(struct truth){e, .low = 18.0, .high = 22.0});
+        double work = work_of(&s), order = log(before.rms / now.rms) / log(work / done);
+        tap_ok(k == 0 || (order >= 1.0 / 3.0 && now.worst < before.worst),
+               "%s: work %.2g, RMS %.4f, worst leaf %.3f %%: order %.2f, at least 1/3 "
+               "(%.1f s)",
+               words, work, 100.0 * now.rms, 100.0 * now.worst, k == 0 ? 0.0 : order,
+               s.seconds);
+        before = now;
+        done = work;
+        solution_free(&s);
+    }
+    alloc_free(e);
+}
+
+int main(int argc, char **argv)
+{
+    struct comm comm;
+    comm_start(&comm, &argc, &argv);
+    if (argc > 1)
+        options = argv[1];
+    test_squares(&comm, (double[]){1, 0}, (double[]){.5, .5},
+                 (double[]){1.010218055060, .100947189239}, false, BARS);
+    test_squares(&comm, (double[]){1, 0}, (double[]){.8, .3},
+                 (double[]){1.009805269080, .060543232833}, false, BARS);
+    test_squares(&comm, (double[]){.1, .1}, (double[]){.9, .9},
+                 (double[]){.121991353392, .121991353392}, false, BARS);
+    test_squares(&comm, (double[]){1, 0}, (double[]){.5, .5},
+                 (double[]){1.010218055060, .100947189239}, true, BARS);
+    test_isothermal(&comm, &PLATES, 1.0, 0.1, STRIP, .159605984267, BARS);
+    test_isothermal(&comm, &PLATES, 1.0, 0.5, STRIP, .630764377100, BARS);
+    test_isothermal(&comm, &PLATES, 0.1, 0.1, SHORT, .601952438427, BARS);
+    test_isothermal(&comm, &PLATES, 0.1, 0.5, SHORT, .920355233642, BARS);
+    test_isothermal(&comm, &GROOVE, PI / 6.0, 0.5, STRIP, .8061670444, BARS);
+    test_isothermal(&comm, &GROOVE, PI / 3.0, 0.5, STRIP, .6729508487, BARS);
+    test_isothermal(&comm, &GROOVE, PI / 3.0, 0.9, STRIP, .9476083454, BARS);
+    test_isothermal(&comm, &GROOVE, PI / 2.0, 0.5, STRIP, .5878526172, BARS);
+    test_edge(&comm, PI / 2.0, 0.5);
+    test_edge(&comm, PI / 3.0, 0.8);
+    test_cavity(&comm, 1.0, 0.5, .7596668, .7382803);
+    test_cavity(&comm, 2.0, 0.5, .8334092, .8580643);
+    test_round(&comm, "light pipe", &PIPE, 1.0, (double[]){0, 1}, (double[]){.9, 0},
+               (double[]){0, 0}, BARS);
+    test_round(&comm, "discs, rho 0.5", &DISCS, 1.0, (double[]){1, 0}, (double[]){.5, .5},
+               (double[]){1.039054697589, .198684128339}, BARS);
+    test_round(&comm, "discs, rho 0.8", &DISCS, 1.0, (double[]){1, 0}, (double[]){.8, .8},
+               (double[]){1.106718183515, .339243408032}, BARS);
+    const struct zone zones[] = {{-0.9, material_grey(0, 0)},
+                                 {0.9, material_grey(.95, 0)},
+                                 {2.0, material_grey(.9, 50)}};
+    test_sphere(&comm, "sphere of zones", zones, 3, 2, BARS);
+    const struct zone crater[] = {{-0.7, material_grey(.8, 1)},
+                                  {0.0, material_grey(.8, 0)}};
+    test_sphere(&comm, "crater", crater, 2, 2, CRATER);
+    test_concentric(&comm, 0.5, 2);
+    test_concentric(&comm, 0.2, 2);
+    test_furnace(&comm, CUBE, 0.5, false, "");
+    test_furnace(&comm, CUBE, 0.9, false, "");
+    test_furnace(&comm, CUBE, 0.999, false, "");
+    test_furnace(&comm, CORRIDOR, 0.9, false, "");
+    test_furnace(&comm, FURNISHED, 0.9, false, "");
+    test_furnace(&comm, FURNISHED, 0.999, false, "");
+    test_furnace(&comm, FURNISHED, 0.9, true, "");
+    test_light_is_kept(&comm, 0.5, "");
+    test_light_is_kept(&comm, 0.9, "--epsilon 1e-3");
+    test_light_is_kept(&comm, 0.99, "--epsilon 1e-3");
+    test_light_is_kept(&comm, 0.999, "");
+    if (argc < 2)
+        test_convergence(&comm);
+    comm_stop(&comm);
+    return tap_done();
+}

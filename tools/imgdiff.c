@@ -1,0 +1,249 @@
+/* imgdiff: how far a picture, or a solution, is from the expected one. A program of its own,
+ * which make install installs: it is what a user of golden pictures runs.
+ *
+ * The bound is on the largest difference, so that one wrong pixel in a large picture is found,
+ * and relative to the root mean square of the expected side, so that it means the same in dim
+ * scenes and in bright ones. A bound on the RMS takes its place where single pixels may differ,
+ * at edges that move by a rounding. What is not a finite number is beyond any bound. */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "io/scene/camera.h"
+#include "io/picture/image.h"
+#include "io/run/options.h"
+#include "io/scene/ply.h"
+#include "io/scene/text.h"
+#include "tools/compare.h"
+
+static const char HELP[] =
+    "usage: imgdiff [options] A B\n"
+    "\n"
+    "Compares A with B, the expected one: two pictures (both .pfm or both .ppm) of the\n"
+    "same size, or two solution meshes of phr (.ply) of the same scene, by area.\n"
+    "\n"
+    "  --tolerance T  pass if no sample is off by more than T (0)\n"
+    "  --rms T        pass if the RMS error is at most T; --tolerance then only if given\n"
+    "  --blocks N     compare means over blocks of N by N pixels (1)\n"
+    "  --below X      leave out blocks where a sample of B is above X, such as lamps\n"
+    "  -o FILE        write |A - B|: as it is (.pfm), or scaled so that the largest\n"
+    "                 difference is white (.ppm); of meshes as a mesh (.ply)\n"
+    "  --help  --version\n"
+    "\n"
+    "T is relative to the root mean square of B's samples. Samples of a .ppm are its codes,\n"
+    "as shares of the greatest. A sample that is not a finite number never passes.\n"
+    "\n"
+    "Exit status: 0 passed; 1 not passed, or FILE cannot be written; 2 bad usage or input.\n";
+
+struct request {
+    const char *paths[2]; /* A and B */
+    const char *output;
+    double tolerance, rms; /* negative: not given */
+    double blocks;         /* pixels along a side of a block, whole */
+    double below;          /* most of B in a block that is compared */
+    bool help, version;
+};
+
+static bool ends_with(const char *path, const char *suffix)
+{
+    size_t length = strlen(path), tail = strlen(suffix);
+    return length > tail && strcmp(path + length - tail, suffix) == 0;
+}
+
+/* Where the option's number goes; NULL if it has none. */
+static double *number_of(struct request *request, const char *name)
+{
+    static const char *const names[] = {"--tolerance", "--rms", "--blocks", "--below"};
+    double *numbers[] = {&request->tolerance, &request->rms, &request->blocks,
+                         &request->below};
+    for (int k = 0; k < 4; k++)
+        if (strcmp(name, names[k]) == 0)
+            return numbers[k];
+    return NULL;
+}
+
+static bool set_option(struct request *request, const char *name, const char *value,
+                       struct error *error)
+{
+    bool output = strcmp(name, "-o") == 0;
+    double *number = number_of(request, name);
+    if (!number && !output)
+        return error_set(error, EXIT_USAGE, "unknown option %s; see --help", name);
+    if (!value)
+        return error_set(error, EXIT_USAGE, "%s needs a value", name);
+    if (output && !ends_with(value, ".pfm") && !ends_with(value, ".ppm") &&
+        !ends_with(value, ".ply"))
+        return error_set(error, EXIT_USAGE, "-o %s: the name must end in .pfm, .ppm or .ply", value);
+    if (output)
+        request->output = value;
+    else if (!text_is_number(value, number) || *number < 0.0)
+        return error_set(error, EXIT_USAGE, "%s: '%s' is not a number of at least 0", name, value);
+    if (number == &request->blocks && !(*number >= 1.0 && *number <= IMAGE_SIZE_MAX &&
+                                        *number == floor(*number)))
+        return error_set(error, EXIT_USAGE, "--blocks: '%s' is not a number of pixels", value);
+    return true;
+}
+
+static bool parse(struct request *request, int argc, char **argv, struct error *error)
+{
+    int paths = 0;
+    *request = (struct request){
+        .tolerance = -1.0, .rms = -1.0, .blocks = 1.0, .below = HUGE_VAL};
+    for (int i = 1; i < argc; i++) {
+        const char *argument = argv[i];
+        if (strcmp(argument, "--help") == 0)
+            request->help = true;
+        else if (strcmp(argument, "--version") == 0)
+            request->version = true;
+        else if (argument[0] != '-' && paths < 2)
+            request->paths[paths++] = argument;
+        else if (argument[0] != '-')
+            return error_set(error, EXIT_USAGE, "more than two files to compare: %s", argument);
+        else if (!set_option(request, argument, argv[++i], error))
+            return false;
+    }
+    if (paths < 2 && !request->help && !request->version)
+        return error_set(error, EXIT_USAGE, "two files are needed; see --help");
+    if (request->tolerance < 0.0 && request->rms < 0.0)
+        request->tolerance = 0.0;
+    return true;
+}
+
+static void report(const struct difference *difference, double peak)
+{
+    double rms = difference_rms(difference);
+    if (difference->broken > 0)
+        printf("not finite  %lld samples\n", (long long)difference->broken);
+    printf("max         %.6g\n", difference->largest);
+    printf("mean        %.6g\n", difference_mean(difference));
+    printf("rms         %.6g\n", rms);
+    printf("relative    %.6g max, %.6g rms\n",
+           difference_relative(difference, difference->largest),
+           difference_relative(difference, rms));
+    if (rms > 0.0)
+        printf("psnr        %.2f dB (peak %.6g)\n", difference_psnr(difference, peak), peak);
+    else
+        printf("psnr        infinite\n");
+}
+
+static bool passes(const struct request *request, const struct difference *difference)
+{
+    double most = difference_relative(difference, difference->largest);
+    double rms = difference_relative(difference, difference_rms(difference));
+    return difference->broken == 0 && (request->tolerance < 0.0 || most <= request->tolerance) &&
+           (request->rms < 0.0 || rms <= request->rms);
+}
+
+static bool write_map(const struct request *request, const struct image *map, double largest,
+                      struct error *error)
+{
+    if (ends_with(request->output, ".pfm"))
+        return pfm_write(map, request->output, error);
+    struct tone tone = tone_make(largest > 0.0 ? 1.0 / largest : 1.0);
+    return ppm_write(map, &tone, request->output, error);
+}
+
+/* Refuses -o with the name of a mesh for pictures, and the other way round; and for meshes
+ * what concerns pixels. */
+static bool check_output(const struct request *request, bool meshes, struct error *error)
+{
+    if (request->output && ends_with(request->output, ".ply") != meshes)
+        return error_set(error, EXIT_USAGE, "-o %s: the difference of %s", request->output,
+                         meshes ? "meshes is a mesh (.ply)" : "pictures is a picture");
+    if (meshes && (request->blocks > 1.0 || request->below < HUGE_VAL))
+        return error_set(error, EXIT_USAGE, "--blocks and --below are for pictures");
+    return true;
+}
+
+static bool diff_images(const struct request *request, struct difference *difference,
+                        struct error *error)
+{
+    struct image a = {0}, b = {0}, map = {0};
+    enum image_kind kind_a, kind_b;
+    bool good = image_read(&a, &kind_a, request->paths[0], error) &&
+                image_read(&b, &kind_b, request->paths[1], error);
+    if (good && kind_a != kind_b)
+        good = error_set(error, EXIT_USAGE, "%s and %s: one is linear (PFM), the other not (PPM)",
+                         request->paths[0], request->paths[1]);
+    if (good && (a.width != b.width || a.height != b.height))
+        good = error_set(error, EXIT_USAGE, "%s is %dx%d, %s is %dx%d", request->paths[0], a.width,
+                         a.height, request->paths[1], b.width, b.height);
+    if (good) {
+        map = (struct image){a.width, a.height, NULL};
+        map.rgb = alloc_array((size_t)a.width * (size_t)a.height, 3 * sizeof *map.rgb);
+        *difference = compare_images(&a, &b, (int)request->blocks, request->below, &map);
+        if (difference->samples == 0)
+            good = error_set(error, EXIT_USAGE, "%s: no block is below %g",
+                             request->paths[1], request->below);
+    }
+    if (good) {
+        report(difference, kind_a == IMAGE_PPM ? 1.0 : difference->peak);
+        if (request->output)
+            good = write_map(request, &map, difference->largest, error);
+    }
+    alloc_free(a.rgb);
+    alloc_free(b.rgb);
+    alloc_free(map.rgb);
+    return good;
+}
+
+static bool diff_solutions(const struct request *request, struct difference *difference,
+                           struct error *error)
+{
+    struct solution a = {0}, b = {0};
+    struct rgb *map = NULL;
+    bool good = solution_read(&a, request->paths[0], error) &&
+                solution_read(&b, request->paths[1], error);
+    if (good) {
+        map = alloc_array((size_t)a.count, sizeof *map);
+        good = compare_solutions(&a, &b, difference, map, error);
+    }
+    if (good) {
+        report(difference, difference->peak);
+        if (request->output)
+            good = solution_write(&a, map, difference->largest, request->output, error);
+    }
+    alloc_free(map);
+    solution_free(&a);
+    solution_free(&b);
+    return good;
+}
+
+/* Returns the exit status. */
+static int diff(const struct request *request, struct error *error)
+{
+    struct difference difference = {0};
+    bool meshes = ply_is_meant(request->paths[0]);
+    if (meshes != ply_is_meant(request->paths[1]))
+        error_set(error, EXIT_USAGE, "%s and %s: a picture and a mesh", request->paths[0],
+                  request->paths[1]);
+    else if (!check_output(request, meshes, error))
+        return error->code;
+    else if (meshes ? diff_solutions(request, &difference, error)
+                    : diff_images(request, &difference, error))
+        return passes(request, &difference) ? EXIT_DONE : EXIT_FAILED;
+    return error->code;
+}
+
+int main(int argc, char **argv)
+{
+    struct request request;
+    struct error error = {EXIT_DONE, ""};
+    int status = EXIT_DONE;
+    if (!parse(&request, argc, argv, &error))
+        status = error.code;
+    else if (request.help)
+        fputs(HELP, stdout);
+    else if (request.version)
+        printf("imgdiff %s\n", PHR_VERSION);
+    else
+        status = diff(&request, &error);
+    if ((fflush(stdout) != 0 || ferror(stdout)) &&
+        !error_set(&error, EXIT_FAILED, "cannot write to the standard output"))
+        status = error.code;
+    if (error.code != EXIT_DONE)
+        fprintf(stderr, "imgdiff: %s\n", error.text);
+    return status;
+}

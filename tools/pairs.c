@@ -1,0 +1,40 @@
+/* Pairs of roots in the order of the cards: the k-th that faces each other goes to rank k mod P.
+ *
+ * Neighbours in this order cost about the same, so that each rank gets its part of the dear ones,
+ * and a scene of a dozen triangles is divided as evenly as a large one. To know k every rank looks
+ * at all pairs, which is a thousandth of the work. Sums are integers: who adds what is not seen in
+ * them. They are sent in pieces that MPI can count. */
+#include "tools/pairs.h"
+
+#include "geom/alloc.h"
+#include "geom/stop.h"
+
+static void add_own_pairs(const struct comm *comm, struct viewfactors *factors,
+                          struct progress *progress)
+{
+    const struct scene *scene = factors->scene;
+    int32_t roots = scene_root_count(scene);
+    struct facet *facets = alloc_array((size_t)roots, sizeof *facets);
+    for (int32_t i = 0; i < roots; i++)
+        facets[i] = (struct facet){scene_root_triangle(scene, i), scene_root_plane(scene, i),
+                                   scene_root_area(scene, i), scene_input_of(scene, i)};
+    int64_t dealt = 0;
+    for (int32_t i = 0; i < roots && !stop_is_asked(); i++) {
+        progress_tick_pairs(progress, i, roots);
+        for (int32_t j = i + 1; j < roots; j++)
+            if (facets[i].area > 0.0 && facets[j].area > 0.0 &&
+                facets_face(&facets[i], &facets[j]) && dealt++ % comm->size == comm->rank)
+                viewfactors_add(factors, i, &facets[i], j, &facets[j]);
+    }
+    alloc_free(facets);
+}
+
+void pairs_add(const struct comm *comm, struct viewfactors *factors, struct progress *progress)
+{
+    const int64_t most = 1 << 20;
+    add_own_pairs(comm, factors, progress);
+    for (int64_t done = 0; done < factors->pairs; done += most) {
+        int64_t left = factors->pairs - done;
+        comm_add(comm, factors->sums + done, left < most ? left : most);
+    }
+}

@@ -1,0 +1,14 @@
+/* View factors on all ranks: pairs of roots are dealt, exchanges are summed. */
+#ifndef TOOLS_PAIRS_H
+#define TOOLS_PAIRS_H
+
+#include "geom/progress.h"
+#include "mpi/comm.h"
+#include "tools/viewfactor.h"
+
+/* Collective. Adds all pairs of roots that face each other to `factors`, which are all 0 and
+ * alike on all ranks. All ranks end with the same exchanges; counts and links stay those of the
+ * rank. Ticks `progress`, which may be NULL. */
+void pairs_add(const struct comm *comm, struct viewfactors *factors, struct progress *progress);
+
+#endif

@@ -1,0 +1,325 @@
+/* Form factors against exact answers.
+ *
+ * Each case is a pair of polygons with a known form factor. Four methods compute it:
+ *
+ *     disk 1     one ray: A A' cos cos' / (pi r^2 + max(A, A')) between the centroids
+ *     disk 16    the same between 4 x 4 sub-areas, as rad/formfactor.c has it
+ *     polygon    Lambert's formula from the centroids of the 4 children of the smaller patch to all
+ *                of the larger one; from 12 points where they are near
+ *     exact      the contour integral of tools/contour.c
+ *
+ * The first three work on triangles: a quadrilateral is two of them and pairs add. What decides how
+ * good they are is the distance of the centres in sums of the radii, so each states what it is
+ * good for from some such distance on. Outside of that its errors are shown in brackets: there the
+ * solver has to split, and they tell why.
+ *
+ * Everything is scaled into the unit cube, where the solver works too. */
+#include "tools/validate.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/alloc.h"
+#include "geom/lambert.h"
+#include "rad/formfactor.h"
+#include "tools/cases.h"
+#include "tools/contour.h"
+
+static const double PI = 3.14159265358979323846;
+
+/* --- a case, prepared --- */
+
+struct pair {
+    const struct pair_case *known;
+    struct vec3 corner[2][CASE_CORNERS]; /* in the unit cube */
+    int facets[2];
+    struct facet facet[2][CASE_CORNERS - 2];
+    double area;  /* of the first polygon */
+    double apart; /* distance of the centres in sums of the radii */
+};
+
+static double extent_of(const struct pair_case *known)
+{
+    double extent = 0.0;
+    for (int side = 0; side < 2; side++)
+        for (int32_t k = 0; k < known->count[side]; k++) {
+            struct vec3 r = vec3_sub(known->corner[side][k], known->corner[0][0]);
+            extent = fmax(extent, fmax(fabs(r.x), fmax(fabs(r.y), fabs(r.z))));
+        }
+    return extent;
+}
+
+static struct vec3 centre_of(const struct vec3 *corner, int32_t count, double *radius)
+{
+    struct vec3 sum = {0.0, 0.0, 0.0};
+    for (int32_t k = 0; k < count; k++)
+        sum = vec3_add(sum, corner[k]);
+    struct vec3 centre = vec3_scale(sum, 1.0 / count);
+    *radius = 0.0;
+    for (int32_t k = 0; k < count; k++)
+        *radius = fmax(*radius, vec3_length(vec3_sub(corner[k], centre)));
+    return centre;
+}
+
+static struct facet facet_of(const struct vec3 *corner, int k)
+{
+    struct triangle t = {{corner[0], corner[k + 1], corner[k + 2]}};
+    return (struct facet){t, triangle_plane(&t), triangle_area(&t), -1};
+}
+
+static struct pair pair_make(const struct pair_case *known)
+{
+    struct pair pair = {.known = known};
+    int exponent;
+    frexp(extent_of(known), &exponent);
+    for (int side = 0; side < 2; side++) {
+        for (int32_t k = 0; k < known->count[side]; k++) {
+            struct vec3 r = vec3_sub(known->corner[side][k], known->corner[0][0]);
+            pair.corner[side][k] = vec3_scale(r, ldexp(1.0, -exponent));
+        }
+        pair.facets[side] = known->count[side] - 2;
+        for (int k = 0; k < pair.facets[side]; k++)
+            pair.facet[side][k] = facet_of(pair.corner[side], k);
+    }
+    double radius[2];
+    struct vec3 a = centre_of(pair.corner[0], known->count[0], &radius[0]);
+    struct vec3 b = centre_of(pair.corner[1], known->count[1], &radius[1]);
+    pair.apart = vec3_length(vec3_sub(b, a)) / (radius[0] + radius[1]);
+    pair.area = polygon_area(pair.corner[0], known->count[0]);
+    return pair;
+}
+
+/* --- the methods --- */
+
+static double by_one_disk(const struct facet *p, const struct facet *q)
+{
+    struct vec3 d = vec3_sub(triangle_centroid(&q->triangle), triangle_centroid(&p->triangle));
+    double rise_p = vec3_dot(p->plane.normal, d), rise_q = -vec3_dot(q->plane.normal, d);
+    if (rise_p <= 0.0 || rise_q <= 0.0)
+        return 0.0;
+    double r2 = vec3_dot(d, d);
+    double g = p->area * q->area * (rise_p * rise_q / r2) / (PI * r2 + fmax(p->area, q->area));
+    return fmin(g, fmin(p->area, q->area));
+}
+
+static double by_solver(const struct facet *p, const struct facet *q, enum form_factor kind)
+{
+    struct octree *empty = octree_create(NULL, NULL, 0);
+    struct octree_counts counts = {0};
+    struct sight sight = {.blocker = -1};
+    double g = exchange_estimate(p, q, kind, LOOK_ALL, empty, &sight, &counts).area;
+    octree_destroy(empty);
+    return g;
+}
+
+static double by_disks(const struct facet *p, const struct facet *q)
+{
+    return by_solver(p, q, FORM_FACTOR_DISK);
+}
+
+static double by_polygon(const struct facet *p, const struct facet *q)
+{
+    return by_solver(p, q, FORM_FACTOR_POLYGON);
+}
+
+/* What is stated of a method from some distance on: both bounds hold. */
+struct promise {
+    double from;               /* in sums of the radii */
+    double relative, absolute; /* errors of F */
+};
+
+enum { METHODS = 4, PROMISES = 3 };
+
+struct estimate {
+    const char *name;
+    double (*exchange)(const struct facet *p, const struct facet *q); /* NULL: exact */
+    int promises;
+    struct promise promise[PROMISES]; /* nearest first */
+};
+
+/* Measured, and up to a quarter more; what is stated of `exact` is in tools/contour.h. */
+static const struct estimate ESTIMATES[METHODS] = {
+    {"disk 1", by_one_disk, 2, {{1.0, 0.3, 1.0}, {3.0, 0.02, 1.0}}},
+    {"disk 16", by_disks, 2, {{1.0, 0.08, 1.0}, {3.0, 0.005, 1.0}}},
+    {"polygon", by_polygon, 3, {{0.5, 0.032, 1.0}, {1.0, 0.025, 1.0}, {3.0, 0.0025, 1.0}}},
+    {"exact", NULL, 1, {{0.0, 1e-6, 1e-9}}},
+};
+
+/* The form factor from the first polygon to the second. */
+static double factor_by(const struct estimate *estimate, const struct pair *pair)
+{
+    const struct pair_case *known = pair->known;
+    if (!estimate->exchange)
+        return polygon_exchange(pair->corner[0], known->count[0], pair->corner[1],
+                                known->count[1]) / pair->area;
+    double sum = 0.0;
+    for (int i = 0; i < pair->facets[0]; i++)
+        for (int j = 0; j < pair->facets[1]; j++)
+            if (facets_face(&pair->facet[0][i], &pair->facet[1][j]))
+                sum += estimate->exchange(&pair->facet[0][i], &pair->facet[1][j]);
+    return sum / pair->area;
+}
+
+/* --- the table --- */
+
+/* One method on one case. */
+struct outcome {
+    double relative; /* error of F; of an F that is 0, the value */
+    double absolute;
+};
+
+static struct outcome outcome_of(const struct estimate *estimate, const struct pair *pair)
+{
+    double right = pair->known->factor, value = factor_by(estimate, pair);
+    return (struct outcome){right > 0.0 ? value / right - 1.0 : value, value - right};
+}
+
+static bool is_kept(const struct promise *promise, const struct pair *pair,
+                    const struct outcome *outcome)
+{
+    return pair->apart < promise->from || (fabs(outcome->relative) <= promise->relative &&
+                                           fabs(outcome->absolute) <= promise->absolute);
+}
+
+/* In per cent where that is readable, else as a power of ten; in brackets if nothing is stated. */
+static void print_error(FILE *file, double error, bool stated)
+{
+    char number[20], cell[24];
+    if (error == 0.0)
+        snprintf(number, sizeof number, "0");
+    else if (fabs(error) >= 0.0005)
+        snprintf(number, sizeof number, "%+.*f %%", fabs(error) < 1.0 ? 2 : 0, 100.0 * error);
+    else
+        snprintf(number, sizeof number, "%+.0e", error);
+    snprintf(cell, sizeof cell, stated ? "%s " : "(%s)", number);
+    fprintf(file, " %11s", cell);
+}
+
+static void print_pair(FILE *file, const struct pair *pair, const struct outcome *outcomes)
+{
+    fprintf(file, "%s %-48s %11.6g %8.3g", pair->known->id, pair->known->text, pair->known->factor,
+            pair->apart);
+    bool kept = true;
+    for (int m = 0; m < METHODS; m++) {
+        const struct estimate *estimate = &ESTIMATES[m];
+        print_error(file, outcomes[m].relative, pair->apart >= estimate->promise[0].from);
+        for (int k = 0; k < estimate->promises; k++)
+            kept = kept && is_kept(&estimate->promise[k], pair, &outcomes[m]);
+    }
+    fputs(kept ? "\n" : " FAIL\n", file);
+}
+
+/* --- the summary --- */
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Median, 90th percentile and worst of all cases that exchange anything. */
+static void print_spread(FILE *file, const struct estimate *estimate,
+                         const struct outcome *outcomes)
+{
+    double *errors = alloc_array((size_t)PAIR_CASE_COUNT, sizeof *errors);
+    int count = 0;
+    for (int i = 0; i < PAIR_CASE_COUNT; i++)
+        if (PAIR_CASES[i].factor > 0.0)
+            errors[count++] = fabs(outcomes[METHODS * i].relative);
+    qsort(errors, (size_t)count, sizeof *errors, compare_doubles);
+    fprintf(file, "%-10s", estimate->name);
+    print_error(file, errors[count / 2], true);
+    print_error(file, errors[9 * count / 10], true);
+    print_error(file, errors[count - 1], true);
+    fputs("\n", file);
+    alloc_free(errors);
+}
+
+/* One line for what is stated, and whether it holds. */
+static bool print_promise(FILE *file, const struct estimate *estimate,
+                          const struct promise *promise, const struct outcome *outcomes)
+{
+    int cases = 0, broken = 0, worst = 0;
+    double most = -1.0;
+    for (int i = 0; i < PAIR_CASE_COUNT; i++) {
+        const struct outcome *outcome = &outcomes[METHODS * i];
+        struct pair pair = pair_make(&PAIR_CASES[i]);
+        if (pair.apart < promise->from)
+            continue;
+        cases++;
+        broken += !is_kept(promise, &pair, outcome);
+        if (fabs(outcome->relative) > most) {
+            most = fabs(outcome->relative);
+            worst = i;
+        }
+    }
+    fprintf(file, "%-10s %11.1f  %10d ", estimate->name, promise->from, cases);
+    print_error(file, most, true);
+    fprintf(file, " %5s ", PAIR_CASES[worst].id);
+    print_error(file, promise->relative, true);
+    fputs(broken == 0 ? "    pass\n" : "    FAIL\n", file);
+    return broken == 0;
+}
+
+static bool print_summary(FILE *file, const struct outcome *outcomes)
+{
+    fprintf(file, "\n%-10s %10s  %10s  %10s\n", "all cases", "median", "90 %", "worst");
+    for (int m = 0; m < METHODS; m++)
+        print_spread(file, &ESTIMATES[m], &outcomes[m]);
+    fprintf(file, "\n%-10s %11s  %10s  %10s  %6s  %10s\n", "stated", "apart from", "cases",
+            "worst", "in", "at most");
+    bool kept = true;
+    for (int m = 0; m < METHODS; m++)
+        for (int k = 0; k < ESTIMATES[m].promises; k++)
+            kept &= print_promise(file, &ESTIMATES[m], &ESTIMATES[m].promise[k], &outcomes[m]);
+    return kept;
+}
+
+static bool print_pairs(FILE *file)
+{
+    struct outcome *outcomes = alloc_array((size_t)(METHODS * PAIR_CASE_COUNT), sizeof *outcomes);
+    fprintf(file, "%-52s %11s %8s", "form factor from one polygon to another", "exact", "apart");
+    for (int m = 0; m < METHODS; m++)
+        fprintf(file, "  %10s", ESTIMATES[m].name);
+    fputs("\n", file);
+    for (int i = 0; i < PAIR_CASE_COUNT; i++) {
+        struct pair pair = pair_make(&PAIR_CASES[i]);
+        for (int m = 0; m < METHODS; m++)
+            outcomes[METHODS * i + m] = outcome_of(&ESTIMATES[m], &pair);
+        print_pair(file, &pair, &outcomes[METHODS * i]);
+    }
+    bool kept = print_summary(file, outcomes);
+    alloc_free(outcomes);
+    return kept;
+}
+
+/* --- points --- */
+
+/* What geom/lambert.h promises. */
+static const double POINT_BOUND = 1e-9;
+
+static bool print_points(FILE *file)
+{
+    bool good = true;
+    fprintf(file, "\n%-52s %11s %8s  %10s\n", "CIE 171:2006, 5.3: illuminance in lx", "exact",
+            "printed", "polygon");
+    for (int i = 0; i < POINT_CASE_COUNT; i++) {
+        const struct point_case *known = &POINT_CASES[i];
+        double factor = point_polygon_factor(known->x, known->normal, CIE_LIGHT, 4);
+        double error = 1000.0 * PI * factor / known->exact - 1.0;
+        fprintf(file, "%-52s %11.6f %8.2f", known->text, known->exact, known->printed);
+        print_error(file, error, true);
+        fputs(fabs(error) <= POINT_BOUND ? "\n" : " FAIL\n", file);
+        good = good && fabs(error) <= POINT_BOUND;
+    }
+    return good;
+}
+
+bool validate_print(FILE *file)
+{
+    fputs("Relative errors; apart: distance of the centres in sums of the radii; in brackets:\n"
+          "nearer than anything is stated of the method.\n\n", file);
+    bool pairs = print_pairs(file), points = print_points(file);
+    fputs(pairs && points ? "\nall as stated\n" : "\nNOT as stated\n", file);
+    return pairs && points;
+}
