@@ -56,8 +56,9 @@ OCTREE = build hit octree segment
 RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/gather_wide beyond/lamps beyond/node \
       beyond/node_exchange beyond/node_link beyond/paths beyond/sequence beyond/closure beyond/conjugate beyond/snapshot flux formfactor id link \
       linking model oracle patch pushpull sample treecode
-MPI = accuracy assign balance broadcast closing comm final_gather funnel gather gather_mesh keep ledger linking memory migrate \
-      node picture plan refinement routes scatter signals solve solver spotcheck vote
+MPI = assign balance beyond/accuracy beyond/closing beyond/final_gather beyond/gather_mesh beyond/keep beyond/spotcheck \
+      broadcast comm funnel gather ledger linking memory migrate \
+      node picture plan refinement routes scatter signals solve solver vote
 SCENE = binary camera library mtl obj palette ply plyfile text
 RUN = machine options output progress stats store
 PICTURE = image mesh render shading surface tone viewpoint

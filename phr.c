@@ -26,11 +26,11 @@
 #include "io/scene/obj.h"
 #include "io/scene/ply.h"
 #include "mpi/broadcast.h"
-#include "mpi/keep.h"
+#include "mpi/beyond/keep.h"
 #include "mpi/memory.h"
 #include "mpi/picture.h"
 #include "mpi/signals.h"
-#include "mpi/solver.h"
+#include "mpi/beyond/beyond.h"
 #include "tools/pairs.h"
 #include "tools/table.h"
 #include "tools/validate.h"
@@ -235,7 +235,7 @@ static struct store_terms terms_of(const struct run *run, enum store_kind kind)
         .settings = kind == STORE_LINKS ? options_link_settings(options)
                                         : options_run_settings(options),
         .scene = run->scene,
-        .tree = run->solver->tree,
+        .tree = run->solver->beyond->tree,
     };
 }
 
@@ -260,7 +260,7 @@ static bool save_snapshot(struct run *run, enum store_kind kind, const char *pat
     links_collect(run->solver, put_links, &writer);
     if (run->comm.rank == 0)
         store_finish(&writer, &run->error);
-    run->solver->seconds[PHASE_WRITE] += comm_seconds() - start;
+    run->solver->account.seconds[PHASE_WRITE] += comm_seconds() - start;
     bool good = comm_agree(&run->comm, &run->error);
     if (good && kind == STORE_CHECKPOINT)
         run->kept = path;
@@ -304,10 +304,10 @@ static bool load_snapshot(struct run *run, enum store_kind kind, const char *pat
         run->kept = path;
     if (good)
         say(run, "%s: %lld links after %lld passes, %.1f s", path,
-            (long long)reader.snapshot.link_count, (long long)run->solver->pass,
+            (long long)reader.snapshot.link_count, (long long)run->solver->turn.pass,
             comm_seconds() - run->start);
     store_close(&reader);
-    run->solver->seconds[PHASE_LINKING] += comm_seconds() - start;
+    run->solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
     return good;
 }
 
@@ -317,9 +317,9 @@ static bool load_snapshot(struct run *run, enum store_kind kind, const char *pat
 static void report_levels(struct run *run, int64_t first)
 {
     if (run->options.verbose)
-        ledger_share(&run->solver->ledger, &run->comm);
-    for (int64_t i = first; i < run->solver->ledger.level_count && run->options.verbose; i++) {
-        const struct level_balance *level = &run->solver->ledger.levels[i];
+        ledger_share(&run->solver->account.ledger, &run->comm);
+    for (int64_t i = first; i < run->solver->account.ledger.level_count && run->options.verbose; i++) {
+        const struct level_balance *level = &run->solver->account.ledger.levels[i];
         say(run, "iteration %lld, level %lld: %lld links split, most work %.3f of the mean",
             (long long)level->iteration, (long long)level->level, (long long)level->links,
             level->work_mean > 0.0 ? level->work_max / level->work_mean : 1.0);
@@ -332,17 +332,17 @@ static void report_iteration(struct run *run)
     char bound[48] = "no bound yet on the remaining error";
     if (vote->remaining < HUGE_VAL)
         snprintf(bound, sizeof bound, "remaining error at most %.2g", vote->remaining);
-    say(run, "iteration %lld: %lld links (%lld split), %s", (long long)run->solver->iteration,
+    say(run, "iteration %lld: %lld links (%lld split), %s", (long long)run->solver->turn.iteration,
         (long long)vote->links, (long long)vote->split, bound);
 }
 
 /* With --accuracy, the error of a round. */
 static void report_round(struct run *run)
 {
-    const struct gathered *gathered = &run->solver->gathered;
+    const struct gathered *gathered = &run->solver->beyond->answer.counts;
     if (gathered->checked > 0)
         say(run, "round %lld: error %.2g %% (rays %.2g %%, mesh %.2g %%), by %lld paths",
-            (long long)run->solver->accuracy.rounds, 100.0 * gathered->error,
+            (long long)run->solver->beyond->accuracy.rounds, 100.0 * gathered->error,
             100.0 * gathered->by_rays, 100.0 * gathered->by_mesh, (long long)gathered->paths);
 }
 
@@ -375,8 +375,8 @@ static bool start_light(struct run *run)
                                           &options->criterion);
     run->solver = solver;
     memory_watch(solver, options->memory, machine_memory());
-    solver->seconds[PHASE_READ] = comm_seconds() - run->start;
-    solver->seconds[PHASE_OCTREE] = run->block.seconds;
+    solver->account.seconds[PHASE_READ] = comm_seconds() - run->start;
+    solver->account.seconds[PHASE_OCTREE] = run->block.seconds;
     solver->progress = &run->progress.progress;
     if (options->load_links || options->resume) {
         enum store_kind kind = options->resume ? STORE_CHECKPOINT : STORE_LINKS;
@@ -388,15 +388,15 @@ static bool start_light(struct run *run)
     progress_begin(solver->progress, "linking", -1, 0);
     say(run, "%s: %lld triangles; linking", options->scene, (long long)run->scene->input_count);
     run->half_linked = !solver_link_roots(solver); /* 2: initial linking */
-    if (solver->stop)
+    if (solver->turn.stop)
         return error_set(&run->error, EXIT_FAILED, "stopped by %s",
-                         signals_name(solver->stop));
+                         signals_name(solver->turn.stop));
     solver_assign_roots(solver);                   /* 3: re-assignment */
     if (run->half_linked && options->save_links)
         return error_set(&run->error, EXIT_FAILED,
                          "%s: not written: linking ended at the memory limit",
                          options->save_links);
-    if (!solver->tree)
+    if (!solver->beyond->tree)
         say(run, "roots are linked, %.1f s", comm_seconds() - run->start);
     return !options->save_links || save_snapshot(run, STORE_LINKS, options->save_links);
 }
@@ -406,7 +406,7 @@ static bool start_light(struct run *run)
  * would be lost. */
 static bool iterates(const struct run *run)
 {
-    return run->vote.again && (!run->solver->stop || run->options.checkpoint);
+    return run->vote.again && (!run->solver->turn.stop || run->options.checkpoint);
 }
 
 /* Collective. Steps 5 to 8, until there is no other iteration. */
@@ -432,9 +432,9 @@ static bool goes_on(struct run *run)
 {
     struct solver *solver = run->solver;
     const struct vote *vote = &run->vote;
-    if (solver->stop || vote->diverged)
+    if (solver->turn.stop || vote->diverged)
         return false;
-    return !vote->converged && solver->iteration < run->options.criterion.max_iterations;
+    return !vote->converged && solver->turn.iteration < run->options.criterion.max_iterations;
 }
 
 /* True if the state of a whole pass is worth a checkpoint. */
@@ -444,15 +444,15 @@ static bool is_due(const struct run *run)
     const struct vote *vote = &run->vote;
     if (!options->checkpoint || run->half_linked || vote->unfinished || vote->diverged)
         return false;
-    return run->solver->pass % options->every == 0 || run->solver->stop || vote->converged ||
-           run->solver->iteration >= options->criterion.max_iterations;
+    return run->solver->turn.pass % options->every == 0 || run->solver->turn.stop || vote->converged ||
+           run->solver->turn.iteration >= options->criterion.max_iterations;
 }
 
 /* Collective. Steps 4 to 8, until the light over the links has converged, or has to do. */
 static bool converge_links(struct run *run)
 {
     while (goes_on(run)) {
-        int64_t levels = run->solver->ledger.level_count;
+        int64_t levels = run->solver->account.ledger.level_count;
         if (!solver_refine(run->solver)) /* 4: evaluate and refine, level by level */
             break;                       /* a signal: this pass is lost */
         solve_pass(run);
@@ -475,8 +475,8 @@ static bool compute_light(struct run *run)
     while (finish == FINISH_AGAIN) {
         if (!converge_links(run))
             return false;
-        if (run->solver->stop)
-            return stopped(run, run->solver->stop);
+        if (run->solver->turn.stop)
+            return stopped(run, run->solver->turn.stop);
         finish = solver_finish(run->solver, &run->vote); /* 9: what leaves really see */
         report_round(run);
     }
@@ -509,7 +509,7 @@ static void write_outputs(struct run *run, const struct shading *shading, float 
         switch (output_format_of(path)) {
         case FORMAT_PPM: ppm_write(&image, &tone, path, &run->error); break;
         case FORMAT_PFM: pfm_write(&image, path, &run->error); break;
-        case FORMAT_PLY: mesh_write(shading, &tone, run->solver->error, path, &run->error); break;
+        case FORMAT_PLY: mesh_write(shading, &tone, run->solver->beyond->answer.error, path, &run->error); break;
         }
     }
 }
@@ -541,7 +541,7 @@ static struct shading *shade_leaves(struct run *run, const struct rgb *less, con
 {
     double start = comm_seconds();
     struct shading *shading = shading_create(run->solver->model.forest, less, open);
-    run->solver->seconds[PHASE_SHADING] += comm_seconds() - start;
+    run->solver->account.seconds[PHASE_SHADING] += comm_seconds() - start;
     return shading;
 }
 
@@ -552,7 +552,7 @@ static void place_camera(struct run *run)
     if (!run->options.view) /* all ranks choose alike */
         *camera = viewpoint_choose(run->scene, run->octree, run->solver->model.forest,
                                    camera->width, camera->height);
-    run->solver->seconds[PHASE_VIEWPOINT] = comm_seconds() - start;
+    run->solver->account.seconds[PHASE_VIEWPOINT] = comm_seconds() - start;
 }
 
 /* Collective. The picture of the camera, on rank 0; NULL on the others. Rays that it takes are no
@@ -564,21 +564,21 @@ static float *make_picture(struct run *run, const uint8_t *open)
     struct octree_counts counts = model->counts;
     int64_t estimating = model->estimating;
     place_camera(run);
-    bool gathers = run->solver->straight && !run->options.flat;
+    bool gathers = run->solver->beyond->answer.straight && !run->options.flat;
     struct shading *shading = NULL;
     if (!run->options.pixels)
-        shading = shade_leaves(run, gathers ? run->solver->straight : NULL, open);
+        shading = shade_leaves(run, gathers ? run->solver->beyond->answer.straight : NULL, open);
     struct renderer renderer =
-        renderer_make(run->octree, shading, gathers ? &run->solver->gather : NULL);
-    run->solver->gather.counts = (struct gather_counts){.rays = 0};
+        renderer_make(run->octree, shading, gathers ? &run->solver->beyond->answer.gather : NULL);
+    run->solver->beyond->answer.gather.counts = (struct gather_counts){.rays = 0};
     progress_begin(&run->progress.progress, "rendering", -1, 0);
     float *rows = render_rows(&renderer, &run->camera, run->options.samples, comm->rank,
                               comm->size, &run->progress.progress);
     float *picture = picture_gather(comm, rows, 3 * (size_t)run->camera.width,
                                     run->camera.height);
-    run->solver->gathered.pixels =
-        run->solver->gather.counts.rays + run->solver->gather.counts.segments;
-    comm_add(comm, &run->solver->gathered.pixels, 1);
+    run->solver->beyond->answer.counts.pixels =
+        run->solver->beyond->answer.gather.counts.rays + run->solver->beyond->answer.gather.counts.segments;
+    comm_add(comm, &run->solver->beyond->answer.counts.pixels, 1);
     model->counts = counts;
     model->estimating = estimating;
     shading_destroy(shading);
@@ -595,14 +595,14 @@ static bool show_results(struct run *run)
     uint8_t *open = survey_leaves(run);
     float *picture = wants(&run->options, false) ? make_picture(run, open) : NULL;
     struct shading *shading = wants(&run->options, true) ? shade_leaves(run, NULL, open) : NULL;
-    run->solver->seconds[PHASE_RENDER] = comm_seconds() - start;
+    run->solver->account.seconds[PHASE_RENDER] = comm_seconds() - start;
     start = comm_seconds();
     if (goes_on_from_phase(run) && run->comm.rank == 0)
         write_outputs(run, shading, picture);
     alloc_free(picture);
     alloc_free(open);
     shading_destroy(shading);
-    run->solver->seconds[PHASE_WRITE] += comm_seconds() - start;
+    run->solver->account.seconds[PHASE_WRITE] += comm_seconds() - start;
     return agree(run);
 }
 
@@ -636,9 +636,9 @@ static const char *const HOLDS[] = {
 /* Collective. The summary and --stats. */
 static bool report_run(struct run *run)
 {
-    run->solver->seconds[PHASE_TOTAL] = comm_seconds() - run->start;
+    run->solver->account.seconds[PHASE_TOTAL] = comm_seconds() - run->start;
     solver_report(run->solver, &run->vote, &run->stats);
-    run->stats.bytes_broadcast = (int64_t)(run->block.bytes + run->solver->tree_block.bytes);
+    run->stats.bytes_broadcast = (int64_t)(run->block.bytes + run->solver->beyond->tree_block.bytes);
     progress_view_clear(&run->progress);
     if (run->comm.rank == 0) {
         if (run->stats.memory_limited)

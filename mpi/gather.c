@@ -4,7 +4,7 @@
  * of all ranks, and each home gets the sums of its patches: integers, so in any order.
  * From P ranks to P homes that takes log P messages a rank, where one to each home would
  * take P - 1. */
-#include "mpi/solver.h"
+#include "mpi/beyond/beyond.h"
 
 #include <string.h>
 
@@ -28,15 +28,15 @@ static int64_t take_flux(struct solver *solver)
 static void gather_clusters(struct solver *solver)
 {
     struct cluster_light *clusters = solver->model.clusters;
-    int64_t count = BANDS * (int64_t)solver->tree->count;
+    int64_t count = BANDS * (int64_t)solver->beyond->tree->count;
     comm_add(solver->comm, clusters->flux, count);
     if (solver->comm->size > 1)
-        solver->bytes_gather += 2 * count * (int64_t)sizeof *clusters->flux;
+        solver->account.bytes_gather += 2 * count * (int64_t)sizeof *clusters->flux;
     double start = comm_seconds();
     cluster_light_push(clusters, solver->model.forest, solver->flux);
     double pushing = comm_seconds() - start;
-    solver->seconds[PHASE_SUMS] += pushing;
-    solver->seconds[PHASE_GATHER] -= pushing;
+    solver->account.seconds[PHASE_SUMS] += pushing;
+    solver->account.seconds[PHASE_GATHER] -= pushing;
 }
 
 void solver_gather(struct solver *solver)
@@ -51,9 +51,9 @@ void solver_gather(struct solver *solver)
                   routes->own_flux);
     for (int i = 0; i < own_count; i++)
         memcpy(patches[own[i]].flux, routes->own_flux + BANDS * i, sizeof patches->flux);
-    solver->bytes_gather += (count - own_count) * (int64_t)sizeof patches->flux;
-    solver->copied += count + own_count;
-    if (solver->tree)
+    solver->account.bytes_gather += (count - own_count) * (int64_t)sizeof patches->flux;
+    solver->account.copied += count + own_count;
+    if (solver->beyond->tree)
         gather_clusters(solver);
-    solver->seconds[PHASE_GATHER] += comm_seconds() - start;
+    solver->account.seconds[PHASE_GATHER] += comm_seconds() - start;
 }

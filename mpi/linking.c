@@ -13,6 +13,7 @@
  * areas, and sends each link to the home of one of its two roots, here the lower or the
  * higher one by the parity of i + j; but the areas of roots say little about the number
  * of their links. */
+#include "mpi/beyond/beyond.h"
 #include "mpi/assign.h"
 #include "mpi/memory.h"
 #include "mpi/migrate.h"
@@ -41,13 +42,13 @@ static int64_t exchange_notices(struct solver *solver)
     double start = comm_seconds();
     struct linking_notice *notices = comm_gather_each(comm, &own, sizeof own);
     double idle = comm_seconds() - start;
-    solver->seconds[PHASE_IDLE] += idle;
-    solver->seconds[PHASE_LINKING] -= idle;
+    solver->account.seconds[PHASE_IDLE] += idle;
+    solver->account.seconds[PHASE_LINKING] -= idle;
     int64_t links = 0;
     for (int r = 0; r < comm->size; r++) {
         links += notices[r].links;
         int stop = (int)notices[r].stop;
-        solver->stop = stop > solver->stop ? stop : solver->stop;
+        solver->turn.stop = stop > solver->turn.stop ? stop : solver->turn.stop;
     }
     alloc_free(notices);
     return links;
@@ -77,19 +78,19 @@ static bool link_pairs(struct solver *solver, struct linking *linking)
         bool fits = memory_has_room(&solver->memory, links + round, 0, patches, 0);
         if (!fits)
             solver->memory.reached = solver->memory.limit;
-        if (!fits || solver->stop)
+        if (!fits || solver->turn.stop)
             return false;
         end += round;
         link_round(solver, linking, end);
     }
     exchange_notices(solver);
-    return solver->stop == 0;
+    return solver->turn.stop == 0;
 }
 
 bool solver_link_roots(struct solver *solver)
 {
     double start = comm_seconds();
-    if (solver->tree) {
+    if (solver->beyond->tree) {
         solver_link_top(solver);
         return true;
     }
@@ -100,9 +101,9 @@ bool solver_link_roots(struct solver *solver)
     bool done = link_pairs(solver, &linking);
     struct phase_work phase = {.kind = WORK_LINKING, .links = solver->links.count,
                                .work = model_work(&solver->model) - before};
-    ledger_add(&solver->ledger, phase);
+    ledger_add(&solver->account.ledger, phase);
     linking_end(&linking);
-    solver->seconds[PHASE_LINKING] += comm_seconds() - start;
+    solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
     return done;
 }
 
@@ -117,9 +118,9 @@ static void send_home(struct solver *solver)
     for (int64_t i = 0; i < solver->links.count; i++) {
         const struct link *link = &solver->links.items[i];
         uint32_t a = root_of(solver, link->p), b = root_of(solver, link->q);
-        destination[i] = solver->owner[(a ^ b) % 2 == 0 ? a : b];
+        destination[i] = solver->homes.owner[(a ^ b) % 2 == 0 ? a : b];
     }
-    solver->bytes_migration += links_migrate(solver, &solver->links, destination);
+    solver->account.bytes_migration += links_migrate(solver, &solver->links, destination);
     alloc_free(destination);
 }
 
@@ -138,13 +139,13 @@ void solver_assign_roots(struct solver *solver)
     for (int32_t root = 0; root < roots; root++)
         weights[root] = greedy ? root_area(&solver->model, root)
                                : root_weight(&solver->model, root);
-    roots_assign(weights, roots, solver->comm->size, solver->owner);
+    roots_assign(weights, roots, solver->comm->size, solver->homes.owner);
     alloc_free(weights);
     for (int32_t root = 0; root < roots; root++)
-        solver->own[root] = solver->owner[root] == solver->comm->rank;
-    if (greedy && !solver->tree) /* clusters have no home */
+        solver->homes.own[root] = solver->homes.owner[root] == solver->comm->rank;
+    if (greedy && !solver->beyond->tree) /* clusters have no home */
         send_home(solver);
     else
         links_even_out(solver);
-    solver->seconds[PHASE_LINKING] += comm_seconds() - start;
+    solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
 }

@@ -145,9 +145,9 @@ void links_even_out(struct solver *solver)
     comm_add(solver->comm, here, ranks);
     double counted = comm_seconds();
     if (is_uneven(here, ranks)) /* the same on all ranks, so all enter */
-        solver->bytes_migration +=
+        solver->account.bytes_migration +=
             links_balance(solver, &solver->links, carries_light, here);
     alloc_free(here);
-    solver->seconds[PHASE_IDLE] += counted - start;
-    solver->seconds[PHASE_MIGRATION] += comm_seconds() - counted;
+    solver->account.seconds[PHASE_IDLE] += counted - start;
+    solver->account.seconds[PHASE_MIGRATION] += comm_seconds() - counted;
 }

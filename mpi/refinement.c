@@ -15,6 +15,7 @@
  * are. So at the end their numbers are evened out, but for --balance greedy.
  *
  * Predicted cost and work of each stage of a level go into the ledger (mpi/ledger.h). */
+#include "mpi/beyond/beyond.h"
 #include "mpi/balance.h"
 #include "mpi/memory.h"
 #include "mpi/migrate.h"
@@ -56,7 +57,7 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
 {
     int64_t kept = 0;
     double start = comm_seconds();
-    struct phase_work looks = {.kind = WORK_LOOKS, .iteration = solver->pass,
+    struct phase_work looks = {.kind = WORK_LOOKS, .iteration = solver->turn.pass,
                                .work = solver->links.count};
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
@@ -68,8 +69,8 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
         solver->links.items[kept++] = link;
     }
     solver->links.count = kept;
-    ledger_add(&solver->ledger, looks);
-    solver->seconds[PHASE_LOOKS] += comm_seconds() - start;
+    ledger_add(&solver->account.ledger, looks);
+    solver->account.seconds[PHASE_LOOKS] += comm_seconds() - start;
 }
 
 /* LoadBalance of Algorithm 1: first the total exchange of loads. loads[r] becomes the
@@ -82,11 +83,11 @@ static struct level exchange_loads(struct solver *solver,
                         .of_patches = count_of_patches(prolific),
                         .load = load_of(prolific),
                         .kept = solver->links.count,
-                        .made = solver->model.forest->count - solver->shared,
+                        .made = solver->model.forest->count - solver->turn.shared,
                         .stop = signals_seen()};
     double start = comm_seconds();
     struct level *levels = comm_gather_each(comm, &own, sizeof own), all = {0};
-    solver->seconds[PHASE_IDLE] += comm_seconds() - start;
+    solver->account.seconds[PHASE_IDLE] += comm_seconds() - start;
     for (int r = 0; r < comm->size; r++) {
         loads[r] = levels[r].load;
         all.prolific += levels[r].prolific;
@@ -96,7 +97,7 @@ static struct level exchange_loads(struct solver *solver,
         all.made += levels[r].made;
         all.stop = levels[r].stop > all.stop ? levels[r].stop : all.stop;
     }
-    solver->stop = (int)all.stop > solver->stop ? (int)all.stop : solver->stop;
+    solver->turn.stop = (int)all.stop > solver->turn.stop ? (int)all.stop : solver->turn.stop;
     alloc_free(levels);
     return all;
 }
@@ -110,8 +111,8 @@ static int64_t deal_links(struct solver *solver, struct link_list *links,
         return 0;
     double start = comm_seconds();
     int64_t bytes = links_balance(solver, links, link_load, loads);
-    solver->bytes_migration += bytes;
-    solver->seconds[PHASE_MIGRATION] += comm_seconds() - start;
+    solver->account.bytes_migration += bytes;
+    solver->account.seconds[PHASE_MIGRATION] += comm_seconds() - start;
     return bytes;
 }
 
@@ -129,8 +130,8 @@ static void split_link(struct solver *solver, const struct link *link,
             node_link_settle(model, &children[k]);
         link_list_append(goes_on ? next : &solver->links, children[k]);
     }
-    if (solver->watch)
-        solver->watch(solver->watcher, link_load(link), model_work(model) - before,
+    if (solver->account.watch)
+        solver->account.watch(solver->account.watcher, link_load(link), model_work(model) - before,
                       next->count - waiting);
 }
 
@@ -157,11 +158,11 @@ static void split_stage(struct solver *solver, struct link_list *links, double p
     if (links->count > 0)
         memmove(links->items, links->items + done,
                 (size_t)links->count * sizeof *links->items);
-    solver->split_here += done;
+    solver->turn.split_here += done;
     phase->links = done;
     phase->work = model_work(&solver->model) - before;
-    ledger_add(&solver->ledger, *phase);
-    solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
+    ledger_add(&solver->account.ledger, *phase);
+    solver->account.seconds[PHASE_REFINEMENT] += comm_seconds() - start;
 }
 
 /* True if a level ends before the next one begins: the paper's do, and under a memory
@@ -189,7 +190,7 @@ static void split_level(struct solver *solver, struct link_list *links,
         split_stage(solver, links, part, limit, ends ? &next : links, &phase);
         part *= count > 0.0 ? (double)links->count / count : 1.0;
         again = ends && limit < INT64_MAX &&
-                exchange_loads(solver, links, loads).prolific > 0 && !solver->stop;
+                exchange_loads(solver, links, loads).prolific > 0 && !solver->turn.stop;
     }
     if (ends) {
         link_list_free(links);
@@ -206,9 +207,9 @@ static void share_splits(struct solver *solver)
     const struct comm *comm = solver->comm;
     double start = comm_seconds();
     int64_t count = 0;
-    struct patch_id *split = alloc_array((size_t)(forest->count - solver->shared) / 4,
+    struct patch_id *split = alloc_array((size_t)(forest->count - solver->turn.shared) / 4,
                                          sizeof *split);
-    for (int64_t p = solver->shared; p < forest->count; p += 4)
+    for (int64_t p = solver->turn.shared; p < forest->count; p += 4)
         split[count++] = forest->patches[p].id;
     int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
     uint8_t *all = comm_gather_all(comm, split, count * (int64_t)sizeof *split, at);
@@ -217,12 +218,12 @@ static void share_splits(struct solver *solver)
         memcpy(&id, all + i, sizeof id);
         forest_reach(forest, id);
     }
-    solver->shared = forest->count;
-    solver->bytes_scatter += at[comm->size] - count * (int64_t)sizeof *split;
+    solver->turn.shared = forest->count;
+    solver->account.bytes_scatter += at[comm->size] - count * (int64_t)sizeof *split;
     alloc_free(all);
     alloc_free(at);
     alloc_free(split);
-    solver->seconds[PHASE_SCATTER] += comm_seconds() - start;
+    solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
 
 /* A link that is being split and its four children. */
@@ -234,17 +235,17 @@ static bool has_room(const struct solver *solver, const struct level *level,
 {
     int64_t links = level->kept + LINKS_PER_SPLIT * level->prolific;
     return memory_has_room(&solver->memory, links, level->of_patches, patches,
-                           solver->tree ? solver->tree->count : 0);
+                           solver->beyond->tree ? solver->beyond->tree->count : 0);
 }
 
 /* True if the memory limit lets the level be split. Ranks may have made the same patches:
  * only where there is no room for all of them are they shared and counted. */
 static bool level_fits(struct solver *solver, const struct level *level)
 {
-    if (has_room(solver, level, solver->shared + level->made))
+    if (has_room(solver, level, solver->turn.shared + level->made))
         return true;
     share_splits(solver);
-    return has_room(solver, level, solver->shared);
+    return has_room(solver, level, solver->turn.shared);
 }
 
 /* Splits level after level. Returns false if a signal ended that, and links are lost, or
@@ -254,15 +255,15 @@ static bool split_levels(struct solver *solver, struct link_list *prolific,
 {
     for (int64_t level = 0;; level++) {
         struct level links = exchange_loads(solver, prolific, loads);
-        if (links.prolific == 0 && !solver->stop)
+        if (links.prolific == 0 && !solver->turn.stop)
             return true;
-        bool fits = solver->stop || level_fits(solver, &links);
+        bool fits = solver->turn.stop || level_fits(solver, &links);
         if (!fits)
             solver->memory.reached = solver->memory.limit;
-        if (!fits || solver->stop)
+        if (!fits || solver->turn.stop)
             return false;
         progress_begin(solver->progress, "refining", level, links.prolific);
-        struct phase_work phase = {.kind = WORK_SPLITTING, .iteration = solver->pass,
+        struct phase_work phase = {.kind = WORK_SPLITTING, .iteration = solver->turn.pass,
                                    .level = level};
         split_level(solver, prolific, phase, loads);
     }
@@ -273,19 +274,19 @@ static void prepare(struct solver *solver)
 {
     double start = comm_seconds();
     forest_bound(solver->model.forest);
-    if (solver->tree) {
+    if (solver->beyond->tree) {
         cluster_light_pull(solver->model.clusters, solver->model.forest);
         cluster_light_bound(solver->model.clusters, solver->model.forest);
     }
-    solver->seconds[PHASE_PREPARE] += comm_seconds() - start;
+    solver->account.seconds[PHASE_PREPARE] += comm_seconds() - start;
 }
 
 static void begin_pass(struct solver *solver)
 {
-    solver->pass++;
+    solver->turn.pass++;
     prepare(solver);
-    solver->split_here = 0;
-    solver->first_new = solver->shared = solver->model.forest->count;
+    solver->turn.split_here = 0;
+    solver->turn.first_new = solver->turn.shared = solver->model.forest->count;
 }
 
 /* --- the first levels --- */
@@ -293,7 +294,7 @@ static void begin_pass(struct solver *solver)
 void solver_link_top(struct solver *solver)
 {
     link_list_append(&solver->links, node_link_top());
-    solver->alike = true;
+    solver->turn.alike = true;
 }
 
 /* Keeps every P-th link. */
@@ -330,12 +331,12 @@ static void split_alike(struct solver *solver, struct link_list *level)
     }
     struct phase_work phase = {.kind = WORK_LINKING, .links = split,
                                .work = model_work(model) - before};
-    ledger_add(&solver->ledger, phase);
+    ledger_add(&solver->account.ledger, phase);
     keep_share(solver->comm, &solver->links);
     keep_share(solver->comm, level);
-    solver->alike = false;
+    solver->turn.alike = false;
     if (solver->comm->rank == 0) {
-        solver->split_here += split;
+        solver->turn.split_here += split;
     } else {
         model->counts = counts;
         model->estimating = estimating;
@@ -367,12 +368,12 @@ bool solver_refine(struct solver *solver)
     if (memory->limit == 0 || memory->reached != memory->limit) {
         memory->reached = 0;
         select_prolific(solver, &prolific);
-        if (solver->alike)
+        if (solver->turn.alike)
             split_alike(solver, &prolific);
-        solver->seconds[PHASE_REFINEMENT] += comm_seconds() - start;
+        solver->account.seconds[PHASE_REFINEMENT] += comm_seconds() - start;
         int64_t *loads = alloc_array((size_t)solver->comm->size, sizeof *loads);
         done = split_levels(solver, &prolific, loads);
-        if (!done && !solver->stop) /* the same on all ranks */
+        if (!done && !solver->turn.stop) /* the same on all ranks */
             keep_unsplit(solver, &prolific, loads);
         alloc_free(loads);
         link_list_free(&prolific);
@@ -380,7 +381,7 @@ bool solver_refine(struct solver *solver)
     }
     if (solver->model.criterion.balance != BALANCE_GREEDY)
         links_even_out(solver);
-    bool stopped = !done && solver->stop != 0;
-    solver->pass -= stopped;
+    bool stopped = !done && solver->turn.stop != 0;
+    solver->turn.pass -= stopped;
     return !stopped;
 }

@@ -2,7 +2,7 @@
 #include "mpi/routes.h"
 
 #include "geom/alloc.h"
-#include "mpi/solver.h"
+#include "mpi/beyond/beyond.h"
 
 void routes_free(struct routes *routes)
 {
@@ -31,7 +31,7 @@ static bool is_leaf_that_changes(const struct solver *solver, int32_t patch)
 {
     const struct patch *at = &solver->model.forest->patches[patch];
     return patch_is_leaf(at) && can_receive(solver, patch) &&
-           (solver->closure.kind == CLOSURE_SYMMETRIC ||
+           (solver->beyond->closure.kind == CLOSURE_SYMMETRIC ||
             !material_is_dark(forest_material(solver->model.forest, patch)));
 }
 
@@ -43,13 +43,13 @@ static int32_t *list_patches(const struct solver *solver,
 {
     const struct forest *forest = solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++)
-        counts[solver->owner[forest->patches[p].id.root]] += is_listed(solver, (int32_t)p);
+        counts[solver->homes.owner[forest->patches[p].id.root]] += is_listed(solver, (int32_t)p);
     *count = comm_displacements(solver->comm, counts, at);
     int32_t *list = alloc_array((size_t)*count, sizeof *list);
     for (int32_t root = 0; root < forest->root_count; root++)
         for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
             if (is_listed(solver, p))
-                list[at[solver->owner[root]]++] = p;
+                list[at[solver->homes.owner[root]]++] = p;
     comm_displacements(solver->comm, counts, at);
     return list;
 }

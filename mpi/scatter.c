@@ -24,7 +24,7 @@ static void pack(struct solver *solver)
     for (int i = 0; i < routes->leaf_counts[rank]; i++)
         records[i] = solver->model.forest->patches[leaves[i]].radiosity;
     memcpy(ballot_of(solver, rank), &solver->ballot, sizeof solver->ballot);
-    solver->copied += routes->leaf_counts[rank];
+    solver->account.copied += routes->leaf_counts[rank];
 }
 
 /* Gives the leaves of a home what it has sent. */
@@ -39,7 +39,7 @@ static void renew_home(struct solver *solver, int home)
     const int32_t *patches = routes->receivers + routes->receiver_at[home]; /* children after parents */
     for (int i = routes->receiver_counts[home] - 1; i >= 0; i--)
         forest_average_patch(forest, patches[i]);
-    solver->copied += routes->receiver_counts[home];
+    solver->account.copied += routes->receiver_counts[home];
 }
 
 /* The sum of the ballots of all homes takes the place of this rank's. */
@@ -62,7 +62,7 @@ static void share(struct solver *solver)
     for (int home = 0; home < comm->size; home++) {
         counts[home] = routes->leaf_counts[home] + BALLOT_RECORDS;
         if (home != comm->rank)
-            solver->bytes_scatter += counts[home] * (int64_t)sizeof *routes->radiosities;
+            solver->account.bytes_scatter += counts[home] * (int64_t)sizeof *routes->radiosities;
     }
     comm_share(comm, routes->radiosities, counts, routes->record_at,
                sizeof *routes->radiosities);
@@ -77,7 +77,7 @@ void solver_scatter(struct solver *solver)
     add_ballots(solver);
     for (int home = 0; home < solver->comm->size; home++)
         renew_home(solver, home);
-    solver->seconds[PHASE_SCATTER] += comm_seconds() - start;
+    solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
 
 void solver_scatter_unvoted(struct solver *solver)

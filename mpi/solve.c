@@ -1,7 +1,7 @@
 /* Steps 5 and 6 for both solvers: the transfer of light over the links there are, and what is made
  * of it at home. Jacobi, the paper's: B = E + rho H, and the next refinement. Conjugate gradients:
  * one step (rad/beyond/conjugate.c), until the bound on what is still missing is small enough. */
-#include "mpi/solver.h"
+#include "mpi/beyond/beyond.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,8 +14,8 @@
 static double largest_radiosity(const struct solver *solver)
 {
     const struct forest *forest = solver->model.forest;
-    double largest = fmax(solver->fresh ? 0.0 : solver->ballot.brightest, 1e-250);
-    for (int64_t p = 0; p < forest->count && solver->fresh; p++)
+    double largest = fmax(solver->beyond->descent.fresh ? 0.0 : solver->ballot.brightest, 1e-250);
+    for (int64_t p = 0; p < forest->count && solver->beyond->descent.fresh; p++)
         for (int c = 0; c < BANDS; c++) {
             double size = fabs(forest->patches[p].radiosity.band[c]);
             largest = size > largest ? size : largest;
@@ -46,51 +46,51 @@ void solver_transfer(struct solver *solver)
 {
     double start = comm_seconds();
     struct forest *forest = solver->model.forest;
-    bool corrects = solver->closure.kind == CLOSURE_SYMMETRIC;
+    bool corrects = solver->beyond->closure.kind == CLOSURE_SYMMETRIC;
     struct rgb *kept = corrects ? forest_keep(forest) : NULL;
     if (corrects)
-        correct_senders(forest, &solver->closure);
+        correct_senders(forest, &solver->beyond->closure);
     clear_own_flux(solver);
-    double room = solver->tree ? 2.0 : 1.0; /* a node receives over links of its cluster, too */
+    double room = solver->beyond->tree ? 2.0 : 1.0; /* a node receives over links of its cluster, too */
     solver->flux = flux_unit_for(room * largest_radiosity(solver) * solver->model.area);
-    if (solver->tree) {
+    if (solver->beyond->tree) {
         cluster_light_pull(solver->model.clusters, forest);
         memset(solver->model.clusters->flux, 0,
-               BANDS * (size_t)solver->tree->count * sizeof *solver->model.clusters->flux);
+               BANDS * (size_t)solver->beyond->tree->count * sizeof *solver->model.clusters->flux);
     }
     double begun = comm_seconds();
-    if (solver->tree)
+    if (solver->beyond->tree)
         node_links_transfer(&solver->links, &solver->model, solver->flux);
     else
         links_transfer(&solver->links, forest, solver->flux);
     double done = comm_seconds();
     if (corrects)
         forest_restore(forest, kept);
-    solver->seconds[PHASE_SOLVE] += done - begun;
-    solver->seconds[PHASE_SUMS] += comm_seconds() - done + begun - start;
+    solver->account.seconds[PHASE_SOLVE] += done - begun;
+    solver->account.seconds[PHASE_SUMS] += comm_seconds() - done + begun - start;
 }
 
 /* --- conjugate gradients --- */
 
 static void start_conjugate(struct solver *solver)
 {
-    struct conjugate *cg = &solver->conjugate;
-    conjugate_start(cg, &solver->model, &solver->closure, solver->flux);
+    struct conjugate *cg = &solver->beyond->descent.vectors;
+    conjugate_start(cg, &solver->model, &solver->beyond->closure, solver->flux);
     struct flux_unit any = flux_unit_for(1.0);
-    double own = conjugate_sum(cg, &solver->model, &solver->closure, any).largest;
-    solver->bound_residual = comm_largest(solver->comm, own);
-    solver->bound_image = 0.0;
+    double own = conjugate_sum(cg, &solver->model, &solver->beyond->closure, any).largest;
+    solver->beyond->descent.bound_residual = comm_largest(solver->comm, own);
+    solver->beyond->descent.bound_image = 0.0;
     for (int c = 0; c < BANDS; c++)
-        solver->step_before[c] = 0.0;
+        solver->beyond->descent.step_before[c] = 0.0;
 }
 
 /* <K z, z> over all ranks, W^2 m^-2. */
 static void multiply(struct solver *solver, double bound, double product[BANDS])
 {
-    struct flux_unit unit = conjugate_unit(&solver->model, bound, solver->bound_residual,
-                                           solver->weight);
+    struct flux_unit unit = conjugate_unit(&solver->model, bound, solver->beyond->descent.bound_residual,
+                                           solver->beyond->descent.weight);
     int64_t own[BANDS] = {0, 0, 0}, all[BANDS];
-    conjugate_apply(&solver->conjugate, &solver->model, &solver->closure,
+    conjugate_apply(&solver->beyond->descent.vectors, &solver->model, &solver->beyond->closure,
                     solver->flux, unit, own);
     MPI_Request request;
     MPI_Iallreduce(own, all, BANDS, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
@@ -101,52 +101,52 @@ static void multiply(struct solver *solver, double bound, double product[BANDS])
 
 static void step_conjugate(struct solver *solver)
 {
-    double image = solver->bound_residual * (1.0 + solver->gain);
+    double image = solver->beyond->descent.bound_residual * (1.0 + solver->beyond->descent.gain);
     double delta[BANDS], turn[BANDS] = {0.0}, step[BANDS] = {0.0};
     double longest_turn = 0.0, longest_step = 0.0;
     multiply(solver, image, delta);
     for (int c = 0; c < BANDS; c++) {
-        double gamma = solver->gamma[c], before = solver->step_before[c];
+        double gamma = solver->beyond->descent.gamma[c], before = solver->beyond->descent.step_before[c];
         if (!(gamma > 0.0))
             continue;
-        turn[c] = before > 0.0 ? gamma / solver->gamma_before[c] : 0.0;
+        turn[c] = before > 0.0 ? gamma / solver->beyond->descent.gamma_before[c] : 0.0;
         double bend = delta[c] - (before > 0.0 ? turn[c] * gamma / before : 0.0);
-        if (!(bend > 0.0) && solver->shrink < 1.0) { /* rounding, since K is positive: start afresh */
+        if (!(bend > 0.0) && solver->beyond->descent.shrink < 1.0) { /* rounding, since K is positive: start afresh */
             turn[c] = 0.0;
             bend = delta[c];
         }
-        solver->diverged = solver->diverged || !(bend > 0.0);
+        solver->beyond->descent.diverged = solver->beyond->descent.diverged || !(bend > 0.0);
         step[c] = bend > 0.0 ? gamma / bend : 0.0;
-        solver->least_bend = fmin(solver->least_bend, delta[c] / gamma);
+        solver->beyond->descent.least_bend = fmin(solver->beyond->descent.least_bend, delta[c] / gamma);
         longest_turn = fmax(longest_turn, turn[c]);
         longest_step = fmax(longest_step, step[c]);
-        solver->gamma_before[c] = gamma;
-        solver->step_before[c] = step[c];
+        solver->beyond->descent.gamma_before[c] = gamma;
+        solver->beyond->descent.step_before[c] = step[c];
     }
-    conjugate_advance(&solver->conjugate, &solver->model, turn, step);
-    solver->bound_image = image + longest_turn * solver->bound_image;
-    solver->bound_residual += longest_step * solver->bound_image;
+    conjugate_advance(&solver->beyond->descent.vectors, &solver->model, turn, step);
+    solver->beyond->descent.bound_image = image + longest_turn * solver->beyond->descent.bound_image;
+    solver->beyond->descent.bound_residual += longest_step * solver->beyond->descent.bound_image;
 }
 
 static void push_pull_conjugate(struct solver *solver)
 {
-    if (solver->fresh)
+    if (solver->beyond->descent.fresh)
         start_conjugate(solver);
     else
         step_conjugate(solver);
-    solver->fresh = false;
-    conjugate_publish(&solver->conjugate, &solver->model, false);
+    solver->beyond->descent.fresh = false;
+    conjugate_publish(&solver->beyond->descent.vectors, &solver->model, false);
 }
 
 void solver_push_pull(struct solver *solver)
 {
     double start = comm_seconds();
-    solver->iteration++;
+    solver->turn.iteration++;
     if (solver->model.criterion.solver == SOLVER_CG)
         push_pull_conjugate(solver);
     else
-        solver->sums = push_pull(&solver->model, &solver->closure, solver->flux, solver->own,
-                                 solver->root_change);
+        solver->change.sums = push_pull(&solver->model, &solver->beyond->closure, solver->flux, solver->homes.own,
+                                 solver->change.of_root);
     solver_cast_ballot(solver);
-    solver->seconds[PHASE_PUSH_PULL] += comm_seconds() - start;
+    solver->account.seconds[PHASE_PUSH_PULL] += comm_seconds() - start;
 }

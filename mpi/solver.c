@@ -5,7 +5,7 @@
 #define HAVE_RUSAGE 1
 #endif
 
-#include "mpi/solver.h"
+#include "mpi/beyond/beyond.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,23 +21,24 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     struct solver *solver = alloc_array(1, sizeof *solver);
     size_t roots = (size_t)scene_root_count(scene);
     solver->comm = comm;
+    solver->beyond = alloc_array(1, sizeof *solver->beyond);
     solver->model = model_make(scene, octree, forest_create(scene), criterion);
     if (criterion->linking == LINKING_TREE) {
         double start = comm_seconds();
         int32_t *met = octree ? places_gather(comm, scene, octree) : NULL;
-        solver->seconds[PHASE_SPACES] = comm_seconds() - start;
-        solver->tree_block = tree_broadcast(comm, node_policy(), scene, met, &solver->tree);
+        solver->account.seconds[PHASE_SPACES] = comm_seconds() - start;
+        solver->beyond->tree_block = tree_broadcast(comm, node_policy(), scene, met, &solver->beyond->tree);
         alloc_free(met);
-        solver->seconds[PHASE_TREE] = solver->tree_block.seconds;
-        solver->model.clusters = cluster_light_create(solver->tree);
+        solver->account.seconds[PHASE_TREE] = solver->beyond->tree_block.seconds;
+        solver->model.clusters = cluster_light_create(solver->beyond->tree);
         solver->model.forest->above = alloc_array(roots, sizeof *solver->model.forest->above);
     }
-    solver->owner = alloc_array(roots, sizeof *solver->owner);
-    solver->own = alloc_array(roots, sizeof *solver->own);
-    solver->root_change = alloc_array(roots, sizeof *solver->root_change);
-    solver->closure.kind = criterion->closure;
-    solver->fresh = true;
-    solver->least_bend = 1.0;
+    solver->homes.owner = alloc_array(roots, sizeof *solver->homes.owner);
+    solver->homes.own = alloc_array(roots, sizeof *solver->homes.own);
+    solver->change.of_root = alloc_array(roots, sizeof *solver->change.of_root);
+    solver->beyond->closure.kind = criterion->closure;
+    solver->beyond->descent.fresh = true;
+    solver->beyond->descent.least_bend = 1.0;
     return solver;
 }
 
@@ -47,19 +48,20 @@ void solver_destroy(struct solver *solver)
         return;
     forest_destroy(solver->model.forest);
     cluster_light_destroy(solver->model.clusters);
-    cluster_tree_destroy(solver->tree);
-    node_block_destroy(&solver->tree_block);
+    cluster_tree_destroy(solver->beyond->tree);
+    node_block_destroy(&solver->beyond->tree_block);
     link_list_free(&solver->links);
-    alloc_free(solver->owner);
-    alloc_free(solver->own);
+    alloc_free(solver->homes.owner);
+    alloc_free(solver->homes.own);
     routes_free(&solver->routes);
-    alloc_free(solver->root_change);
-    ledger_free(&solver->ledger);
-    closure_free(&solver->closure);
-    conjugate_free(&solver->conjugate);
-    alloc_free(solver->error);
-    alloc_free(solver->straight);
-    final_gather_free(&solver->gather);
+    alloc_free(solver->change.of_root);
+    ledger_free(&solver->account.ledger);
+    closure_free(&solver->beyond->closure);
+    conjugate_free(&solver->beyond->descent.vectors);
+    alloc_free(solver->beyond->answer.error);
+    alloc_free(solver->beyond->answer.straight);
+    final_gather_free(&solver->beyond->answer.gather);
+    alloc_free(solver->beyond);
     alloc_free(solver);
 }
 
@@ -70,20 +72,20 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
     struct rgb *kept = forest_keep(forest);
     for (int64_t p = 0; p < forest->count; p++)
         forest->patches[p].radiosity = (struct rgb){{1.0, 0.0, 0.0}};
-    int64_t bytes = solver->bytes_gather, copied = solver->copied; /* not of the method */
+    int64_t bytes = solver->account.bytes_gather, copied = solver->account.copied; /* not of the method */
     double start = comm_seconds(), seconds[PHASE_COUNT];
-    memcpy(seconds, solver->seconds, sizeof seconds);
+    memcpy(seconds, solver->account.seconds, sizeof seconds);
     routes_renew(solver); /* a finished run that was resumed has none */
-    enum closure_kind kind = solver->closure.kind;
-    solver->closure.kind = CLOSURE_NONE;
+    enum closure_kind kind = solver->beyond->closure.kind;
+    solver->beyond->closure.kind = CLOSURE_NONE;
     solver_transfer(solver);
-    solver->closure.kind = kind;
+    solver->beyond->closure.kind = kind;
     forest_restore(forest, kept);
     solver_gather(solver);
-    solver->bytes_gather = bytes;
-    solver->copied = copied;
-    memcpy(solver->seconds, seconds, sizeof seconds);
-    struct closure_sums own = closure_measure(forest, solver->own, solver->flux);
+    solver->account.bytes_gather = bytes;
+    solver->account.copied = copied;
+    memcpy(solver->account.seconds, seconds, sizeof seconds);
+    struct closure_sums own = closure_measure(forest, solver->homes.own, solver->flux);
     struct closure_sums *all = comm_gather_each(comm, &own, sizeof own);
     struct closure_sums sum = {.min = HUGE_VAL, .max = -HUGE_VAL};
     for (int r = 0; r < comm->size; r++) {
@@ -99,23 +101,23 @@ void solver_measure_closure(struct solver *solver, struct stats *stats)
     stats->closure_max = sum.max;
     stats->closure_mean = (double)sum.rows / area;
     stats->closure_rms = sqrt((double)sum.squares / area);
-    solver->seconds[PHASE_ROW_SUMS] += comm_seconds() - start;
+    solver->account.seconds[PHASE_ROW_SUMS] += comm_seconds() - start;
 }
 
 void solver_record_iteration(struct solver *solver)
 {
-    int64_t now[] = {solver->bytes_gather, solver->bytes_scatter, solver->copied};
+    int64_t now[] = {solver->account.bytes_gather, solver->account.bytes_scatter, solver->account.copied};
     int own = solver->routes.receiver_counts[solver->comm->rank];
-    struct phase_work phase = {.kind = WORK_TRANSFER, .iteration = solver->iteration,
-                               .work = solver->links.seen, .bytes = now[0] - solver->recorded[0]};
-    ledger_add(&solver->ledger, phase);
-    phase = (struct phase_work){.kind = WORK_OWN, .iteration = solver->iteration, .work = own,
-                                .bytes = now[1] - solver->recorded[1]};
-    ledger_add(&solver->ledger, phase);
-    phase = (struct phase_work){.kind = WORK_PATCHES, .iteration = solver->iteration,
-                                .work = now[2] - solver->recorded[2]};
-    ledger_add(&solver->ledger, phase);
-    memcpy(solver->recorded, now, sizeof now);
+    struct phase_work phase = {.kind = WORK_TRANSFER, .iteration = solver->turn.iteration,
+                               .work = solver->links.seen, .bytes = now[0] - solver->account.recorded[0]};
+    ledger_add(&solver->account.ledger, phase);
+    phase = (struct phase_work){.kind = WORK_OWN, .iteration = solver->turn.iteration, .work = own,
+                                .bytes = now[1] - solver->account.recorded[1]};
+    ledger_add(&solver->account.ledger, phase);
+    phase = (struct phase_work){.kind = WORK_PATCHES, .iteration = solver->turn.iteration,
+                                .work = now[2] - solver->account.recorded[2]};
+    ledger_add(&solver->account.ledger, phase);
+    memcpy(solver->account.recorded, now, sizeof now);
 }
 
 /* Bytes that this process held at most, 0 where the system does not tell. */
@@ -136,7 +138,7 @@ static int64_t peak_memory(void)
 static void report_seconds(const struct solver *solver, struct stats *stats)
 {
     const struct comm *comm = solver->comm;
-    double *all = comm_gather_each(comm, solver->seconds, sizeof solver->seconds);
+    double *all = comm_gather_each(comm, solver->account.seconds, sizeof solver->account.seconds);
     for (int phase = 0; phase < PHASE_COUNT; phase++) {
         struct spread spread = {all[phase], 0.0, all[phase]};
         for (int r = 0; r < comm->size; r++) {
@@ -162,8 +164,8 @@ static void report_counts(const struct solver *solver, struct stats *stats)
 {
     const struct octree_counts *counts = &solver->model.counts;
     int64_t own[COUNT_SUMS] = {counts->rays, counts->node_tests, counts->triangle_tests,
-                               solver->bytes_migration, solver->bytes_gather,
-                               solver->bytes_scatter, solver->model.walled_off,
+                               solver->account.bytes_migration, solver->account.bytes_gather,
+                               solver->account.bytes_scatter, solver->model.walled_off,
                                solver->model.rays_spared, peak_memory()};
     int64_t sum[COUNT_SUMS], largest[2] = {own[8], comm_messages()};
     for (int64_t i = 0; i < solver->links.count; i++)
@@ -202,29 +204,29 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->patches = forest_patch_count(solver->model.forest);
     stats->leaves = forest_leaf_count(solver->model.forest);
     stats->links = vote->links;
-    stats->passes = solver->pass;
-    stats->iterations = solver->iteration;
-    stats->clusters = solver->tree ? solver->tree->count : 0;
+    stats->passes = solver->turn.pass;
+    stats->iterations = solver->turn.iteration;
+    stats->clusters = solver->beyond->tree ? solver->beyond->tree->count : 0;
     stats->counted_bytes = memory_needed(1, solver->model.criterion.final_gather,
                                          stats->links, solver->model.forest->count,
                                          stats->clusters);
     stats->memory_limited = solver->memory.reached > 0;
     stats->accuracy = solver->model.criterion.accuracy;
-    stats->hold = solver->accuracy.hold;
-    stats->rounds = solver->accuracy.rounds;
+    stats->hold = solver->beyond->accuracy.hold;
+    stats->rounds = solver->beyond->accuracy.rounds;
     stats->converged =
         vote->converged && !stats->memory_limited && stats->hold == HOLD_NONE;
     stats->epsilon = solver->model.criterion.epsilon;
-    stats->error_estimate = solver->gathered.error;
+    stats->error_estimate = solver->beyond->answer.counts.error;
     stats->emitted_power = unit * scene_emitted_power(scene);
     stats->absorbed_power = unit * vote->absorbed;
     stats->escaped_power = unit * vote->escaped;
     stats->checksum = forest_checksum(solver->model.forest);
-    stats->gathered = solver->gathered;
-    ledger_share(&solver->ledger, solver->comm);
-    stats->levels = solver->ledger.levels;
-    stats->level_count = solver->ledger.level_count;
-    memcpy(stats->work, solver->ledger.sums, sizeof stats->work);
+    stats->gathered = solver->beyond->answer.counts;
+    ledger_share(&solver->account.ledger, solver->comm);
+    stats->levels = solver->account.ledger.levels;
+    stats->level_count = solver->account.ledger.level_count;
+    memcpy(stats->work, solver->account.ledger.sums, sizeof stats->work);
     stats->exchanges = comm_exchanges();
     report_counts(solver, stats);
     report_seconds(solver, stats);

@@ -11,21 +11,11 @@
 #include "mpi/ledger.h"
 #include "mpi/node.h"
 #include "mpi/routes.h"
-#include "rad/beyond/final_gather.h"
 #include "rad/beyond/node_link.h"
-#include "rad/beyond/conjugate.h"
 #include "rad/link.h"
 #include "rad/model.h"
 #include "rad/pushpull.h"
 #include "rad/stats.h"
-
-/* Where --accuracy is; see mpi/accuracy.c. */
-struct accuracy {
-    int64_t rounds;  /* so far */
-    bool clear;      /* the part of the mesh is more than doubt */
-    double coarse, coarse_epsilon; /* the mesh's part of the error for an epsilon before, 0: none */
-    enum hold hold;
-};
 
 /* The memory limit; see mpi/memory.h. */
 struct memory {
@@ -54,54 +44,61 @@ void ballot_add(struct ballot *sum, const struct ballot *ballot);
 /* It travels with radiosities, in the place of so many. */
 enum { BALLOT_RECORDS = (sizeof(struct ballot) + sizeof(struct rgb) - 1) / sizeof(struct rgb) };
 
-struct solver {
-    const struct comm *comm;  /* borrowed */
-    struct progress *progress; /* borrowed; NULL: nobody looks */
-    struct model model;       /* scene, octree, forest and criterion; the forest is owned */
-    struct cluster_tree *tree;    /* above the roots; NULL: none. Owned, like all up to `links` */
-    struct node_block tree_block; /* what it looks into */
-    bool alike;               /* all ranks have the same links: that of the top of the tree */
-    struct link_list links;   /* the links that live here ("allInteractions") */
-    int *owner;               /* [roots] home rank of each root */
-    bool *own;                /* [roots] owner[root] == rank */
-    struct routes routes;     /* of light between the ranks */
-    int64_t *root_change;     /* [roots] see push_pull() */
-    int64_t first_new;        /* patches from here on were created in this iteration */
-    int64_t shared;           /* patches up to here are the same on all ranks */
-    int stop;                 /* signal that some rank has got, 0: none; the same on all ranks */
-    struct memory memory;
-    int64_t pass;             /* refinements so far */
-    int64_t iteration;        /* transfers of light so far */
-    struct closure closure;   /* factors of the leaves */
-    struct flux_unit flux;    /* unit of the flux of the last transfer */
-    struct push_pull_sums sums; /* of the last push-pull */
-    struct ballot ballot;     /* this rank's after push-pull, the sum over all ranks after scatter */
-    int64_t last_change;      /* change of all ranks in the iteration before */
-    struct conjugate conjugate; /* of --solver cg, like all up to `diverged` */
-    bool fresh;                 /* the links have changed: the next transfer is of B */
-    bool diverged;              /* K is not positive: more is reflected than arrives */
-    double gain, shrink, weight, share; /* at most: row sum, that times rho, closure_weight(), rho over that */
-    double gamma[BANDS], gamma_before[BANDS], step_before[BANDS];
-    double bound_residual, bound_image; /* |z| and |K p| are nowhere larger */
-    double least_bend;          /* least <K z, z> / <z, z> seen */
-    struct accuracy accuracy;
-    struct gathered gathered;
-    float *error;             /* [patches] bound on the error of a leaf's B, for 95 % of leaves and all
-                                 bands, W/m^2; NULL: there was no final gather */
-    struct final_gather gather; /* without its rows, for light at any point; */
-    struct rgb *straight;     /* [patches] what leaves reflect of light straight from lamps, W/m^2;
-                                 NULL: there was no final gather */
-    int64_t split_here;       /* links that this rank split in this iteration */
+/* The home of each root, the same on all ranks. */
+struct homes {
+    int *owner; /* [roots] its rank */
+    bool *own;  /* [roots] owner[root] == rank */
+};
+
+/* Where the run is. */
+struct turn {
+    int64_t pass;       /* refinements so far */
+    int64_t iteration;  /* transfers of light so far */
+    int64_t first_new;  /* patches from here on were created in this pass */
+    int64_t shared;     /* patches up to here are the same on all ranks */
+    int64_t split_here; /* links that this rank split in this pass */
+    bool alike;         /* all ranks have the same links: the top of the tree */
+    int stop;           /* signal that some rank has got, 0: none; the same on all ranks */
+};
+
+/* What the last push-pull has changed, flux units. */
+struct change {
+    struct push_pull_sums sums;
+    int64_t *of_root; /* [roots] see push_pull() */
+    int64_t last;     /* of all ranks, in the iteration before */
+};
+
+/* What this rank has done, for the report. */
+struct account {
     double seconds[PHASE_COUNT];
-    int64_t bytes_migration, bytes_gather, bytes_scatter; /* that this rank sent to others, or (scatter)
-                                                             got from them */
-    int64_t copied;           /* patches whose flux or radiosity was copied, to be sent or as it came */
-    int64_t recorded[3];                                  /* of the last three, in the ledger */
+    int64_t bytes_migration; /* sent to other ranks */
+    int64_t bytes_gather;    /* the same */
+    int64_t bytes_scatter;   /* got from other ranks */
+    int64_t copied;          /* patch records packed or unpacked */
+    int64_t recorded[3];     /* of the last three, in the ledger */
     struct ledger ledger;
-    /* For benches: is told of each link split here what that was predicted to take and took, in
+    /* For benches: is told of each link split here the predicted and the done work, in
      * tests, and how many of its children are to be split too. NULL: nobody listens. */
     void (*watch)(void *watcher, int64_t load, int64_t work, int64_t children);
     void *watcher;
+};
+
+struct beyond; /* mpi/beyond/beyond.h */
+
+struct solver {
+    const struct comm *comm;   /* borrowed */
+    struct progress *progress; /* borrowed; NULL: nobody looks */
+    struct model model;        /* scene, octree, forest, criterion; the forest is owned */
+    struct link_list links;    /* the links that live here ("allInteractions") */
+    struct homes homes;
+    struct routes routes;      /* of light between the ranks */
+    struct turn turn;
+    struct memory memory;
+    struct flux_unit flux;     /* unit of the flux of the last transfer */
+    struct change change;
+    struct ballot ballot;      /* of this rank after push-pull, of all after scatter */
+    struct account account;
+    struct beyond *beyond;     /* owned: what the paper's method does not have */
 };
 
 /* Sums over all ranks after an iteration; the same on all ranks. */
@@ -124,7 +121,7 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
 void solver_destroy(struct solver *solver);
 
 /* Step 2: initial linking, of all pairs of roots, or, with a tree above the roots, as
- * below. False if a signal (solver->stop) or the memory limit (memory.reached) has ended
+ * below. False if a signal (solver->turn.stop) or the memory limit (memory.reached) has ended
  * it: then only the first pairs have links. */
 bool solver_link_roots(struct solver *solver);
 
@@ -139,7 +136,7 @@ void solver_assign_roots(struct solver *solver);
 
 /* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches were
  * split. Refinement that meets the memory limit ends there, and does not begin again as long as the
- * limit is the same. False if a signal (solver->stop) has ended it: then it counts as not begun, and
+ * limit is the same. False if a signal (solver->turn.stop) has ended it: then it counts as not begun, and
  * there is no light over the links there are. */
 bool solver_refine(struct solver *solver);
 

@@ -7,7 +7,7 @@
  *
  * The power that escapes is what leaves the surfaces, emitted or reflected, less what the links
  * delivered: an open scene's real loss plus whatever the form factors lack or have too much. */
-#include "mpi/solver.h"
+#include "mpi/beyond/beyond.h"
 
 #include <math.h>
 
@@ -37,8 +37,8 @@ static int64_t own_new_patches(const struct solver *solver)
 {
     const struct forest *forest = solver->model.forest;
     int64_t count = 0;
-    for (int64_t p = solver->first_new; p < forest->count; p++)
-        count += solver->own[forest->patches[p].id.root];
+    for (int64_t p = solver->turn.first_new; p < forest->count; p++)
+        count += solver->homes.own[forest->patches[p].id.root];
     return count;
 }
 
@@ -47,7 +47,7 @@ static struct vote vote_of(const struct solver *solver, const struct ballot *sum
 {
     struct flux_unit unit = solver->model.flux_unit;
     struct vote vote = {
-        .diverged = solver->diverged || sum->light >= FLUX_LIMIT || sum->bulk >= FLUX_LIMIT,
+        .diverged = solver->beyond->descent.diverged || sum->light >= FLUX_LIMIT || sum->bulk >= FLUX_LIMIT,
         .settled = sum->split == 0 && sum->divided == 0,
         .split = sum->split,
         .links = sum->links,
@@ -76,15 +76,15 @@ static double remaining_by_change(const struct ballot *sum, int64_t before)
 
 static struct ballot ballot_jacobi(const struct solver *solver)
 {
-    const struct push_pull_sums *sums = &solver->sums;
+    const struct push_pull_sums *sums = &solver->change.sums;
     return (struct ballot){.light = sums->light, .absorbed = sums->absorbed, .change = sums->change,
                            .arriving = sums->arriving, .shrink = sums->shrink};
 }
 
 static struct vote vote_jacobi(struct solver *solver, const struct ballot *sum)
 {
-    double remaining = remaining_by_change(sum, solver->last_change);
-    solver->last_change = sum->change;
+    double remaining = remaining_by_change(sum, solver->change.last);
+    solver->change.last = sum->change;
     return vote_of(solver, sum, remaining);
 }
 
@@ -112,8 +112,8 @@ static const double WHILE_SPLITTING = 0.03;
  * more iterations in the rooms. */
 static double remaining_by_residual(const struct solver *solver, const struct ballot *sum)
 {
-    double least = solver->shrink < 1.0 ? 1.0 - solver->shrink : 0.5 * solver->least_bend;
-    return sum->light > 0 ? solver->share / least * ((double)sum->missing / (double)sum->light) : 0.0;
+    double least = solver->beyond->descent.shrink < 1.0 ? 1.0 - solver->beyond->descent.shrink : 0.5 * solver->beyond->descent.least_bend;
+    return sum->light > 0 ? solver->beyond->descent.share / least * ((double)sum->missing / (double)sum->light) : 0.0;
 }
 
 /* The remaining error, relative to all light, at which the iterations over these links may end. */
@@ -130,21 +130,21 @@ static double wanted_of(const struct solver *solver, const struct ballot *sum)
 /* B takes the place of rho z, on all ranks. */
 static void finish_conjugate(struct solver *solver)
 {
-    conjugate_publish(&solver->conjugate, &solver->model, true);
+    conjugate_publish(&solver->beyond->descent.vectors, &solver->model, true);
     solver_scatter_unvoted(solver);
-    solver->fresh = true;
+    solver->beyond->descent.fresh = true;
 }
 
 /* The unit of <z, z>. */
 static struct flux_unit square_unit(const struct solver *solver)
 {
-    return conjugate_unit(&solver->model, solver->bound_residual, solver->bound_residual,
-                          solver->weight);
+    return conjugate_unit(&solver->model, solver->beyond->descent.bound_residual, solver->beyond->descent.bound_residual,
+                          solver->beyond->descent.weight);
 }
 
 static struct ballot ballot_conjugate(const struct solver *solver)
 {
-    struct conjugate_sums sums = conjugate_sum(&solver->conjugate, &solver->model, &solver->closure,
+    struct conjugate_sums sums = conjugate_sum(&solver->beyond->descent.vectors, &solver->model, &solver->beyond->closure,
                                                square_unit(solver));
     struct ballot own = {.light = sums.light, .absorbed = sums.absorbed, .arriving = sums.arriving,
                          .negative = sums.negative, .bulk = sums.bulk, .missing = sums.missing,
@@ -159,12 +159,12 @@ static struct vote vote_conjugate(struct solver *solver, const struct ballot *su
     const struct criterion *criterion = &solver->model.criterion;
     struct flux_unit unit = square_unit(solver);
     for (int c = 0; c < BANDS; c++)
-        solver->gamma[c] = flux_to_watts(unit, sum->square[c]);
-    solver->bound_residual = sum->largest;
+        solver->beyond->descent.gamma[c] = flux_to_watts(unit, sum->square[c]);
+    solver->beyond->descent.bound_residual = sum->largest;
     double remaining = remaining_by_residual(solver, sum), wanted = wanted_of(solver, sum);
     struct vote vote = vote_of(solver, sum, remaining);
     bool more = !(remaining <= wanted) && !vote.diverged;
-    vote.unfinished = more && solver->iteration >= criterion->max_iterations;
+    vote.unfinished = more && solver->turn.iteration >= criterion->max_iterations;
     vote.again = more && !vote.unfinished;
     double negative = (remaining + 1.0 / NEGATIVE) * (double)sum->light;
     if (remaining <= wanted && (double)sum->negative > negative)
@@ -180,10 +180,10 @@ static struct vote vote_conjugate(struct solver *solver, const struct ballot *su
 static double brightest_own(const struct solver *solver)
 {
     double brightest = 0.0;
-    for (int64_t i = 0; i < solver->conjugate.leaf_count; i++) {
-        int32_t leaf = solver->conjugate.leaves[i];
+    for (int64_t i = 0; i < solver->beyond->descent.vectors.leaf_count; i++) {
+        int32_t leaf = solver->beyond->descent.vectors.leaves[i];
         for (int c = 0; c < BANDS; c++)
-            brightest = fmax(brightest, fabs(closure_sends(&solver->closure, leaf) *
+            brightest = fmax(brightest, fabs(closure_sends(&solver->beyond->closure, leaf) *
                                              solver->model.forest->patches[leaf].radiosity.band[c]));
     }
     return brightest;
@@ -194,7 +194,7 @@ void solver_cast_ballot(struct solver *solver)
     struct ballot *own = &solver->ballot;
     *own = solver->model.criterion.solver == SOLVER_CG ? ballot_conjugate(solver)
                                                         : ballot_jacobi(solver);
-    own->split = solver->split_here;
+    own->split = solver->turn.split_here;
     own->links = solver->links.count;
     own->divided = own_new_patches(solver);
     own->stop = signals_seen();
@@ -204,7 +204,7 @@ void solver_cast_ballot(struct solver *solver)
 struct vote solver_vote(struct solver *solver)
 {
     struct ballot sum = solver->ballot;
-    solver->stop = (int)sum.stop;
+    solver->turn.stop = (int)sum.stop;
     struct vote vote = solver->model.criterion.solver == SOLVER_CG ? vote_conjugate(solver, &sum)
                                                                     : vote_jacobi(solver, &sum);
     solver_record_iteration(solver);

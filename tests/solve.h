@@ -69,7 +69,7 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
     solver_assign_roots(s.solver);
     do {
         while (!s.vote.converged && !s.vote.diverged &&
-               s.solver->iteration < criterion.max_iterations) {
+               s.solver->turn.iteration < criterion.max_iterations) {
             solver_refine(s.solver);
             s.vote = solve_links(s.solver);
         }

@@ -27,6 +27,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "mpi/beyond/beyond.h"
 #include "geom/alloc.h"
 #include "io/picture/render.h"
 #include "io/run/options.h"
@@ -65,7 +66,7 @@ static struct shading *shade(const struct measure *measure, const struct solutio
     uint8_t *open = shading_open_quarters(forest, s->octree, measure->comm.rank,
                                           measure->comm.size, &leaves);
     comm_add_bytes(&measure->comm, open, leaves);
-    struct shading *shading = shading_create(forest, s->solver->straight, open);
+    struct shading *shading = shading_create(forest, s->solver->beyond->answer.straight, open);
     alloc_free(open);
     return shading;
 }
@@ -73,7 +74,7 @@ static struct shading *shade(const struct measure *measure, const struct solutio
 /* --- the line --- */
 
 /* An answer, by phr or by the path tracer. */
-struct answer {
+struct measured {
     struct stats stats; /* what does not apply is 0 */
     double seconds;
     int64_t leaves; /* those that reflect */
@@ -114,7 +115,7 @@ static double share_of_reflected(const struct truth *truth, const struct scene *
 }
 
 static void print_line(const struct truth *truth, const struct scene *scene,
-                       const struct answer *answer)
+                       const struct measured *answer)
 {
     const struct stats *stats = &answer->stats;
     const struct deviation *leaf = &answer->leaf, *shown = &answer->shown;
@@ -200,7 +201,7 @@ static void trace(const struct measure *measure, struct solution *s, double seco
         octree_create(scene->triangles, scene->planes, scene->input_count);
     struct pathtracer pathtracer = pathtracer_make(scene, octree);
     double building = seconds_of_work(&measure->comm) - start;
-    struct answer answer = {.stats.patches = s->stats.patches};
+    struct measured answer = {.stats.patches = s->stats.patches};
     for (;; paths = ceil(paths * growth)) {
         *pathtracer.counts = (struct octree_counts){.rays = 0};
         start = seconds_of_work(&measure->comm);
@@ -268,10 +269,10 @@ static void report(const struct measure *measure, struct solution *s,
                    const struct shading *shading, int argc, char **argv)
 {
     const struct forest *forest = s->solver->model.forest;
-    bool gathers = s->solver->straight && !measure->options.flat;
+    bool gathers = s->solver->beyond->answer.straight && !measure->options.flat;
     struct renderer renderer =
-        renderer_make(s->octree, shading, gathers ? &s->solver->gather : NULL);
-    struct answer answer = {
+        renderer_make(s->octree, shading, gathers ? &s->solver->beyond->answer.gather : NULL);
+    struct measured answer = {
         .stats = s->stats,
         .seconds = s->seconds,
         .leaf = deviation_of_leaves(forest, &measure->truth),

@@ -56,8 +56,8 @@ static void record_run(const struct comm *comm, const struct scene *scene,
     struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
     struct solver *solver = solver_create(comm, scene, octree, criterion);
     struct vote vote;
-    solver->watch = note;
-    solver->watcher = record;
+    solver->account.watch = note;
+    solver->account.watcher = record;
     solver_link_roots(solver);
     solver_assign_roots(solver);
     do {

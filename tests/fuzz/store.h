@@ -7,10 +7,11 @@
 #ifndef TESTS_FUZZ_STORE_H
 #define TESTS_FUZZ_STORE_H
 
+#include "mpi/beyond/beyond.h"
 #include "geom/hash.h"
 #include "geom/little.h"
 #include "io/run/store.h"
-#include "mpi/keep.h"
+#include "mpi/beyond/keep.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/scenes.h"
 #include "tests/solve.h"
@@ -103,7 +104,7 @@ static inline void store_try(enum store_kind kind, enum linking_kind linking,
     struct scene *scene = pairs ? store_scene() : store_box();
     struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
     struct solver *solver = solver_create(&store_comm, scene, octree, &criterion);
-    struct store_terms terms = {kind, STORE_SETTINGS, scene, solver->tree};
+    struct store_terms terms = {kind, STORE_SETTINGS, scene, solver->beyond->tree};
     struct store_reader reader;
     bool good = store_open_file(&reader, file, "fuzz", &terms, &error) &&
                 store_continue(&reader, solver, &error);

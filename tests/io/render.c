@@ -1,5 +1,6 @@
 /* Tests of io/picture/render.h: light gathered at the points that pictures show, against closed
  * forms, where no mesh could show them. */
+#include "mpi/beyond/beyond.h"
 #include "io/picture/render.h"
 
 #include "geom/lambert.h"
@@ -13,7 +14,7 @@ static const struct comm *world_comm;
 static double shown(struct solution *s, const struct shading *shading, int32_t first,
                     struct vec3 at)
 {
-    struct renderer renderer = renderer_make(s->octree, shading, &s->solver->gather);
+    struct renderer renderer = renderer_make(s->octree, shading, &s->solver->beyond->answer.gather);
     struct vec3 x = scene_from_input(s->scene, at);
     for (int32_t root = first; root < first + 2; root++) {
         double weight[3];
@@ -30,7 +31,7 @@ static struct shading *shade_rest(const struct solution *s)
     int64_t count;
     const struct forest *forest = s->solver->model.forest;
     uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
-    struct shading *shading = shading_create(forest, s->solver->straight, open);
+    struct shading *shading = shading_create(forest, s->solver->beyond->answer.straight, open);
     alloc_free(open);
     return shading;
 }
@@ -90,7 +91,7 @@ static void test_furnace(void)
     soup_add_box(&painted.soup, point(0.3, 0.3, 0.01), point(0.7, 0.6, 0.5), 1, false);
     paint(&painted, 0.5, 0.5);
     struct solution s = solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 1e-2");
-    struct renderer renderer = renderer_make(s.octree, NULL, &s.solver->gather);
+    struct renderer renderer = renderer_make(s.octree, NULL, &s.solver->beyond->answer.gather);
     double worst = 0.0;
     int points = 0;
     for (int32_t root = 0; root < scene_root_count(s.scene); root++)

@@ -3,6 +3,7 @@
  * the reason; so is one that is cut off or changed at any byte; and numbers that no run could have
  * are refused though the checksum is right. Several ranks: tests/67-restart.sh. */
 #define _POSIX_C_SOURCE 200809L /* fmemopen() */
+#include "mpi/beyond/beyond.h"
 #include "tests/fuzz/store.h"
 
 #include "tests/tap.h"
@@ -27,7 +28,7 @@ static bool save(struct solver *solver, const struct vote *vote, enum store_kind
                  const char *path)
 {
     struct error error = {0};
-    struct store_terms terms = {kind, STORE_SETTINGS, solver->model.scene, solver->tree};
+    struct store_terms terms = {kind, STORE_SETTINGS, solver->model.scene, solver->beyond->tree};
     struct snapshot snapshot;
     struct store_writer writer;
     snapshot_collect(solver, vote, &snapshot);
@@ -66,11 +67,11 @@ static struct solver *run_two_passes(struct vote *vote)
     }
     solver->model.criterion.accuracy = 0.01;
     solver->model.criterion.final_gather = 128;
-    solver->accuracy =
+    solver->beyond->accuracy =
         (struct accuracy){.rounds = 3, .coarse = 0.5, .coarse_epsilon = 0.25};
-    solver->least_bend = 0.25;
-    solver->last_change = 12;
-    solver->root_change[1] = 34;
+    solver->beyond->descent.least_bend = 0.25;
+    solver->change.last = 12;
+    solver->change.of_root[1] = 34;
     solver->model.walled_off = 56;
     solver->memory.limit = solver->memory.reached = 78;
     return solver;
@@ -99,14 +100,14 @@ static void test_round_trip(void)
     tap_ok(count == solver->links.count && store_get_links(&reader, links, ROOM, &error) == 0 &&
                error.code == EXIT_DONE,
            "with all links");
-    tap_ok(other->pass == 2 && other->iteration == solver->iteration &&
-               other->least_bend == solver->least_bend &&
-               other->last_change == solver->last_change &&
-               other->root_change[1] == solver->root_change[1] &&
+    tap_ok(other->turn.pass == 2 && other->turn.iteration == solver->turn.iteration &&
+               other->beyond->descent.least_bend == solver->beyond->descent.least_bend &&
+               other->change.last == solver->change.last &&
+               other->change.of_root[1] == solver->change.of_root[1] &&
                other->model.criterion.epsilon == criterion.epsilon &&
                other->model.criterion.final_gather == 128 && other->memory.rays == 128 &&
-               other->accuracy.rounds == 3 && other->accuracy.coarse == 0.5 &&
-               other->accuracy.coarse_epsilon == 0.25 &&
+               other->beyond->accuracy.rounds == 3 && other->beyond->accuracy.coarse == 0.5 &&
+               other->beyond->accuracy.coarse_epsilon == 0.25 &&
                forest_patch_count(other->model.forest) ==
                    forest_patch_count(solver->model.forest),
            "what was restored is the same");
@@ -316,14 +317,14 @@ static void test_clusters(void)
     struct octree *over = octree_create(box->triangles, box->planes, box->input_count);
     struct vote vote;
     struct solver *solver = run_with_clusters(box, over, &vote);
-    struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, box, solver->tree};
+    struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, box, solver->beyond->tree};
     struct error error;
     int64_t clusters = 0;
     for (int64_t i = 0; i < solver->links.count; i++)
         clusters += node_is_cluster(solver->links.items[i].p);
     bool saved = save(solver, &vote, STORE_CHECKPOINT, PATH);
     size_t size = load(PATH, bytes);
-    tap_ok(saved && solver->tree->count < 99 && clusters > 0 &&
+    tap_ok(saved && solver->beyond->tree->count < 99 && clusters > 0 &&
                takes(bytes, size, &terms, &error),
            "a checkpoint with links of clusters: %lld of %lld", (long long)clusters,
            (long long)solver->links.count);

@@ -2,7 +2,7 @@
  * against Gaussian elimination: a made-up forest with random links, whose form factors are written
  * down here once more as a dense matrix. On any number of ranks; rank 0 reports. */
 #include "mpi/assign.h"
-#include "mpi/solver.h"
+#include "mpi/beyond/beyond.h"
 
 #include "rad/treecode.h"
 
@@ -72,12 +72,12 @@ static struct problem problem_make(const struct comm *comm, double rho, int spli
         forest_split(forest, root);
         forest_split(forest, forest->patches[root].children + root % 4);
     }
-    solver->first_new = forest->count;
+    solver->turn.first_new = forest->count;
     add_links(solver);
     solver_assign_roots(solver);
-    closure_extend(&solver->closure, forest); /* without geometry no ray can look around */
+    closure_extend(&solver->beyond->closure, forest); /* without geometry no ray can look around */
     for (int32_t p = 0; p < forest->count; p++) {
-        solver->closure.enclosure[p] = forest->patches[p].id.root == OPEN_ROOT ? OPEN : ENCLOSED;
+        solver->beyond->closure.enclosure[p] = forest->patches[p].id.root == OPEN_ROOT ? OPEN : ENCLOSED;
         if (patch_is_leaf(&forest->patches[p]))
             problem.leaves[problem.count++] = p;
     }
@@ -168,8 +168,8 @@ static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAV
             h[i] = 0.0;
             for (int j = 0; j < problem->count; j++) {
                 const struct material *m = forest_material(forest, problem->leaves[j]);
-                double factor = f[i][j] * closure_receives(&solver->closure, problem->leaves[i]) *
-                                closure_sends(&solver->closure, problem->leaves[j]);
+                double factor = f[i][j] * closure_receives(&solver->beyond->closure, problem->leaves[i]) *
+                                closure_sends(&solver->beyond->closure, problem->leaves[j]);
                 a[i][j] = (i == j ? 1.0 : 0.0) - factor * m->reflectance.band[c];
                 h[i] += factor * m->emission.band[c];
             }
@@ -197,11 +197,11 @@ static double residual(const struct problem *problem, double f[LEAVES_MAX][LEAVE
             int32_t leaf = problem->leaves[i];
             double h = 0.0;
             for (int j = 0; j < problem->count; j++)
-                h += f[i][j] * closure_receives(&solver->closure, leaf) *
-                     closure_sends(&solver->closure, problem->leaves[j]) *
+                h += f[i][j] * closure_receives(&solver->beyond->closure, leaf) *
+                     closure_sends(&solver->beyond->closure, problem->leaves[j]) *
                      forest->patches[problem->leaves[j]].radiosity.band[c];
-            if (solver->own[forest->patches[leaf].id.root])
-                worst = fmax(worst, fabs(h - solver->conjugate.irradiance[leaf].band[c]));
+            if (solver->homes.own[forest->patches[leaf].id.root])
+                worst = fmax(worst, fabs(h - solver->beyond->descent.vectors.irradiance[leaf].band[c]));
         }
     return comm_largest(problem->comm, worst);
 }
@@ -216,12 +216,12 @@ static double rows_off(const struct problem *problem, double f[LEAVES_MAX][LEAVE
         int32_t leaf = problem->leaves[i];
         uint32_t root = solver->model.forest->patches[leaf].id.root;
         for (int j = 0; j < problem->count; j++)
-            row += closure_receives(&solver->closure, leaf) * f[i][j] *
-                   closure_sends(&solver->closure, problem->leaves[j]);
-        if (root != OPEN_ROOT && solver->own[root])
+            row += closure_receives(&solver->beyond->closure, leaf) * f[i][j] *
+                   closure_sends(&solver->beyond->closure, problem->leaves[j]);
+        if (root != OPEN_ROOT && solver->homes.own[root])
             off = fmax(off, fabs(row - 1.0));
         else if (root == OPEN_ROOT)
-            off = fmax(off, fabs(solver->closure.factor[leaf] - 1.0));
+            off = fmax(off, fabs(solver->beyond->closure.factor[leaf] - 1.0));
     }
     return comm_largest(problem->comm, off);
 }
@@ -234,13 +234,13 @@ static double above_cap(const struct problem *problem, double f[LEAVES_MAX][LEAV
     double off = 0.0;
     for (int i = 0; i < problem->count; i++) {
         int32_t leaf = problem->leaves[i];
-        if (!solver->own[solver->model.forest->patches[leaf].id.root])
+        if (!solver->homes.own[solver->model.forest->patches[leaf].id.root])
             continue;
         struct rgb rho = forest_material(solver->model.forest, leaf)->reflectance;
         double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2])), row = 0.0;
         for (int j = 0; j < problem->count; j++)
             row += f[i][j];
-        double factor = solver->closure.factor[leaf], most = fmax(0.95, 0.5 * (1.0 + largest));
+        double factor = solver->beyond->closure.factor[leaf], most = fmax(0.95, 0.5 * (1.0 + largest));
         double wanted = largest * row > most ? most / (largest * row) : 1.0;
         off = fmax(off, fmax(factor * row * largest - most, fabs(factor - wanted)));
     }
@@ -250,10 +250,10 @@ static double above_cap(const struct problem *problem, double f[LEAVES_MAX][LEAV
 /* The factors of --closure rows are known only to the homes; all ranks need them here. */
 static void share_factors(const struct problem *problem)
 {
-    struct closure *closure = &problem->solver->closure;
+    struct closure *closure = &problem->solver->beyond->closure;
     const struct forest *forest = problem->solver->model.forest;
     for (int32_t p = 0; p < forest->count; p++) {
-        bool own = problem->solver->own[forest->patches[p].id.root];
+        bool own = problem->solver->homes.own[forest->patches[p].id.root];
         closure->factor[p] = comm_largest(problem->comm, own ? closure->factor[p] : 0.0);
     }
 }
@@ -271,7 +271,7 @@ static void test_dense(const struct comm *comm, enum closure_kind kind, double r
     build(&problem, f);
     double off = deviation(&problem, f), rest = residual(&problem, f), rows = rows_off(&problem, f);
     double capped = above_cap(&problem, f);
-    int steps = (int)problem.solver->iteration - 1; /* the first transfer is of B itself */
+    int steps = (int)problem.solver->turn.iteration - 1; /* the first transfer is of B itself */
     int most = 0; /* in exact arithmetic as many steps as there are unknowns */
     for (int i = 0; i < problem.count; i++)
         most += rgb_sum(forest_material(problem.solver->model.forest,
@@ -300,10 +300,10 @@ static void test_restart(const struct comm *comm)
                                   .max_iterations = 1000};
     struct problem problem = problem_make(comm, 0.9, 4, &criterion);
     solve_links(problem.solver);
-    int64_t before = problem.solver->iteration;
+    int64_t before = problem.solver->turn.iteration;
     struct vote vote = solve_links(problem.solver);
     if (comm->rank == 0)
-        tap_ok(before > 3 && vote.converged && problem.solver->iteration == before + 1,
+        tap_ok(before > 3 && vote.converged && problem.solver->turn.iteration == before + 1,
                "from its own answer it needs no step");
     problem_free(&problem);
 }
@@ -337,7 +337,7 @@ static void test_bound(const struct comm *comm, enum closure_kind kind)
         struct problem problem = problem_make(comm, 0.8, 3, &criterion);
         struct vote vote = solve_links(problem.solver);
         double part = difference(&problem, &exact) / vote.remaining;
-        counted = counted && problem.solver->iteration == most;
+        counted = counted && problem.solver->turn.iteration == most;
         closest = fmax(closest, part);
         furthest = fmin(furthest, part);
         first = most == 1 ? vote.remaining : first;
@@ -364,7 +364,7 @@ static void test_bound_is_sharp(const struct comm *comm)
         scene->materials[i] = (struct material){{{rho, rho, rho}}, {{1.0, 1.0, 1.0}}};
     }
     struct solver *solver = solver_create(comm, scene, NULL, &criterion);
-    solver->first_new = solver->model.forest->count;
+    solver->turn.first_new = solver->model.forest->count;
     int number = 0;
     for (int32_t p = 0; p < ROOTS; p++)
         for (int32_t q = p + 1; q < ROOTS; q++) {
@@ -374,8 +374,8 @@ static void test_bound_is_sharp(const struct comm *comm)
                 link_list_append(&solver->links, link);
         }
     solver_assign_roots(solver);
-    closure_extend(&solver->closure, solver->model.forest);
-    memset(solver->closure.enclosure, ENCLOSED, (size_t)solver->model.forest->count);
+    closure_extend(&solver->beyond->closure, solver->model.forest);
+    memset(solver->beyond->closure.enclosure, ENCLOSED, (size_t)solver->model.forest->count);
     struct vote vote = solve_links(solver);
     double missing = 1.0 / (1.0 - rho) - 1.0; /* B is E as yet */
     if (comm->rank == 0)
@@ -395,7 +395,7 @@ static void test_ranks(const struct comm *comm, const struct comm *self, enum cl
     struct problem alone = problem_make(self, 0.97, 5, &criterion);
     struct vote a = solve_links(parallel.solver), b = solve_links(alone.solver);
     bool same = a.absorbed == b.absorbed && a.escaped == b.escaped && a.remaining == b.remaining &&
-                parallel.solver->iteration == alone.solver->iteration &&
+                parallel.solver->turn.iteration == alone.solver->turn.iteration &&
                 forest_checksum(parallel.solver->model.forest) ==
                     forest_checksum(alone.solver->model.forest);
     for (int64_t p = 0; p < alone.solver->model.forest->count; p++) /* all ranks know all radiosities */

@@ -104,7 +104,7 @@ static void share_patches(struct solver *solver)
 /* One iteration without refinement; in rounds 0 and 1 new links come with new patches. */
 static struct vote iterate(struct solver *solver, int round)
 {
-    solver->first_new = solver->model.forest->count;
+    solver->turn.first_new = solver->model.forest->count;
     if (round < 2)
         add_links(solver, round);
     share_patches(solver);
@@ -421,8 +421,8 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
         for (int k = 0; k < 2; k++)
             solver_refine(solvers[k]);
         const struct forest *here = solvers[0]->model.forest, *there = solvers[1]->model.forest;
-        int64_t split = total_of(comm, solvers[0]->split_here);
-        apart = apart && (comm->size == 1 || pass > 0 || solvers[0]->split_here < split);
+        int64_t split = total_of(comm, solvers[0]->turn.split_here);
+        apart = apart && (comm->size == 1 || pass > 0 || solvers[0]->turn.split_here < split);
         agree = agree && trees_agree(solvers[0]);
         alike = alike && here->count == there->count &&
                 forest_checksum(here) == forest_checksum(there);
@@ -433,7 +433,7 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
                vote[0].links == vote[1].links && vote[0].split == vote[1].split &&
                vote[0].remaining == vote[1].remaining && vote[0].absorbed == vote[1].absorbed &&
                vote[0].escaped == vote[1].escaped &&
-               solvers[0]->iteration == solvers[1]->iteration;
+               solvers[0]->turn.iteration == solvers[1]->turn.iteration;
     }
     report(comm, grows && apart, name);
     report(comm, agree, "after a refinement all ranks have the same trees");

@@ -1,7 +1,8 @@
 /* Tests of mpi/spotcheck.h: errors that are planted in an exact answer are found, and no
  * others. In a furnace, a closed cube whose faces emit E = 1 W/m^2 and reflect half of
  * what arrives, B - E is 1 everywhere; the final gather finds that within rounding. */
-#include "mpi/spotcheck.h"
+#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/spotcheck.h"
 
 #include <math.h>
 
@@ -54,7 +55,7 @@ int main(int argc, char **argv)
     spoil(&s, 1, 1.5);
     expect(&s, 0.25 / (11.0 + 2.25), "one of twelve by a half");
     for (int64_t p = 0; p < s.solver->model.forest->count; p++)
-        s.solver->error[p] = s.solver->model.forest->patches[p].id.root == 0;
+        s.solver->beyond->answer.error[p] = s.solver->model.forest->patches[p].id.root == 0;
     expect(&s, 0.25 / (11.0 + 2.25), "which the estimate knows");
     solution_free(&s);
     comm_stop(&comm);

@@ -11,6 +11,7 @@
  * same for all epsilons. */
 #include <math.h>
 
+#include "mpi/beyond/beyond.h"
 #include "io/scene/obj.h"
 #include "mpi/broadcast.h"
 
@@ -63,13 +64,13 @@ static struct result run(const struct comm *comm, const char *path, struct crite
         const struct forest *forest = s.solver->model.forest;
         int64_t leaves;
         uint8_t *open = shading_open_quarters(forest, s.octree, 0, 1, &leaves);
-        struct shading *shading = shading_create(forest, s.solver->straight, open);
+        struct shading *shading = shading_create(forest, s.solver->beyond->answer.straight, open);
         struct renderer renderer =
-            renderer_make(s.octree, shading, s.solver->straight ? &s.solver->gather : NULL);
+            renderer_make(s.octree, shading, s.solver->beyond->answer.straight ? &s.solver->beyond->answer.gather : NULL);
         result.leaf = deviation_of_leaves(forest, truth).rms;
         result.shown = deviation_of_points(&renderer, s.scene, truth).rms;
         if (pixels) {
-            renderer = renderer_make(s.octree, NULL, &s.solver->gather);
+            renderer = renderer_make(s.octree, NULL, &s.solver->beyond->answer.gather);
             result.pixels = deviation_of_points(&renderer, s.scene, truth).rms;
         }
         shading_destroy(shading);

@@ -338,7 +338,7 @@ static void test_stopped(const struct comm *comm, enum linking_kind linking)
     if (linking == LINKING_PAIRS && comm->rank == comm->size - 1)
         raise(SIGTERM); /* after linking, which would heed it, too */
     bool whole = solver_refine(solver);
-    int64_t wrong = whole || solver->pass != 0 || solver->stop != SIGTERM;
+    int64_t wrong = whole || solver->turn.pass != 0 || solver->turn.stop != SIGTERM;
     comm_add(comm, &wrong, 1);
     if (comm->rank == 0)
         tap_ok(wrong == 0, "a signal to the last rank ends refinement of %s on all ranks",

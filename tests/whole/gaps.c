@@ -1,5 +1,6 @@
 /* Light in gaps: a whole run with phr's defaults of a room in which things hang and stand
  * 2 mm from each other. The truth is that of the path tracer. */
+#include "mpi/beyond/beyond.h"
 #include "tests/defaults.h"
 #include "tests/tap.h"
 #include "tests/truth.h"
@@ -207,7 +208,7 @@ static void test_room(void)
     for (int32_t p = 0; p < forest->count; p++) {
         if (!patch_is_leaf(&forest->patches[p]))
             continue;
-        struct found found = {reflected(&s, p), (double)s.solver->error[p]};
+        struct found found = {reflected(&s, p), (double)s.solver->beyond->answer.error[p]};
         enum verdict verdict = judge_leaf(&pathtracer, forest->patches[p].id, found,
                                           SEEN * mean, &truth);
         double times = fmax(found.light / truth, truth / found.light);

@@ -26,6 +26,7 @@
  *     linearity, reciprocity             here
  *
  * All with phr's defaults but for what a test says. */
+#include "mpi/beyond/beyond.h"
 #include "io/scene/camera.h"
 #include "io/picture/render.h"
 #include "tests/defaults.h"
@@ -497,8 +498,8 @@ static double mean_shown(struct solution *s)
     int64_t count;
     const struct forest *forest = s->solver->model.forest;
     uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
-    struct shading *shading = shading_create(forest, s->solver->straight, open);
-    struct renderer renderer = renderer_make(s->octree, shading, &s->solver->gather);
+    struct shading *shading = shading_create(forest, s->solver->beyond->answer.straight, open);
+    struct renderer renderer = renderer_make(s->octree, shading, &s->solver->beyond->answer.gather);
     double sum = 0.0;
     for (int i = 0; i < 2 * GRID * GRID; i++) {
         double u = (i % GRID + 0.5) / GRID, v = (i / GRID % GRID + 0.5) / GRID;

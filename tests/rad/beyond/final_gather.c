@@ -1,5 +1,6 @@
 /* Tests of rad/beyond/final_gather.h and rad/beyond/lamps.h: what a leaf receives, by
  * exact factors and by rays, against closed forms. */
+#include "mpi/beyond/beyond.h"
 #include "rad/beyond/final_gather.h"
 
 #include "geom/lambert.h"
@@ -308,7 +309,7 @@ static void test_mesh(double epsilon)
     snprintf(words, sizeof words, "--epsilon %g", epsilon);
     struct solution s = solve_scene(world_comm, scene_of_painted(&painted), words);
     const struct forest *forest = s.solver->model.forest;
-    const struct gathered *gathered = &s.solver->gathered;
+    const struct gathered *gathered = &s.solver->beyond->answer.counts;
     double squares = 0.0, largest = 0.0, least = HUGE_VAL, goal = 0.01 * epsilon;
     for (int pass = 0; pass < 2; pass++)
         for (int32_t p = 0; p < forest->count; p++) {
@@ -353,9 +354,9 @@ static void test_even(void)
     paint(&painted, 0.5, 1.0);
     struct solution s =
         solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 1e-2");
-    tap_ok(s.solver->gathered.split == 0 && s.solver->gathered.looks > 0,
+    tap_ok(s.solver->beyond->answer.counts.split == 0 && s.solver->beyond->answer.counts.looks > 0,
            "in a furnace nothing is split, by %lld rays",
-           (long long)s.solver->gathered.looks);
+           (long long)s.solver->beyond->answer.counts.looks);
     solution_free(&s);
 }
 
@@ -395,7 +396,7 @@ static void test_chance(void)
     paint(&painted, 0.5, 0.0);
     struct solution s =
         solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 0.1");
-    const struct gathered *gathered = &s.solver->gathered;
+    const struct gathered *gathered = &s.solver->beyond->answer.counts;
     int64_t cube = s.stats.leaves - WALLS;
     tap_ok(4 * gathered->split <= CUBE && cube == CUBE + 3 * gathered->split,
            "of 12 leaves whose light varies by chance alone %lld are split",

@@ -9,7 +9,7 @@
  * --closure symmetric: factors d on both sides with d_i (F d)_i = 1 (Sinkhorn's scaling of a
  * symmetric matrix), by d <- sqrt(d / (F d)), which halves the error each time or better; the
  * corrected form factors still obey A_i F_ij = A_j F_ji. */
-#include "mpi/solver.h"
+#include "mpi/beyond/beyond.h"
 
 #include <math.h>
 
@@ -45,10 +45,10 @@ static double largest_row(const struct solver *solver, int32_t leaf)
  * deviation of a corrected row sum from 1 before it. */
 static double renew_factors(struct solver *solver)
 {
-    struct closure *closure = &solver->closure;
+    struct closure *closure = &solver->beyond->closure;
     double off = 0.0;
-    for (int64_t i = 0; i < solver->conjugate.leaf_count; i++) {
-        int32_t p = solver->conjugate.leaves[i];
+    for (int64_t i = 0; i < solver->beyond->descent.vectors.leaf_count; i++) {
+        int32_t p = solver->beyond->descent.vectors.leaves[i];
         double row = leaf_irradiance(solver->model.forest, p, solver->flux).band[0];
         bool due = row > 0.0 && closure->kind != CLOSURE_CAP &&
                    closure_is_due(closure, &solver->model, p);
@@ -71,10 +71,10 @@ static void scatter_factors(struct solver *solver)
     struct forest *forest = solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
-            forest->patches[p].radiosity.band[c] = solver->closure.factor[p];
+            forest->patches[p].radiosity.band[c] = solver->beyond->closure.factor[p];
     solver_scatter_unvoted(solver);
     for (int64_t p = 0; p < forest->count; p++)
-        solver->closure.factor[p] = forest->patches[p].radiosity.band[0];
+        solver->beyond->closure.factor[p] = forest->patches[p].radiosity.band[0];
 }
 
 static void close_symmetrically(struct solver *solver)
@@ -94,13 +94,13 @@ static void bound_rows(struct solver *solver)
 {
     const struct model *model = &solver->model;
     double bound[4] = {1.0, 0.0, 1.0, 0.0}; /* gain, shrink, weight, share */
-    for (int64_t i = 0; i < solver->conjugate.leaf_count; i++) {
-        int32_t leaf = solver->conjugate.leaves[i];
-        double row = closure_receives(&solver->closure, leaf) *
+    for (int64_t i = 0; i < solver->beyond->descent.vectors.leaf_count; i++) {
+        int32_t leaf = solver->beyond->descent.vectors.leaves[i];
+        double row = closure_receives(&solver->beyond->closure, leaf) *
                      leaf_irradiance(model->forest, leaf, solver->flux).band[0];
         struct rgb rho = forest_material(model->forest, leaf)->reflectance;
         double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2]));
-        double weight = closure_weight(&solver->closure, leaf);
+        double weight = closure_weight(&solver->beyond->closure, leaf);
         bound[0] = fmax(bound[0], row);
         bound[1] = fmax(bound[1], row * largest);
         bound[2] = fmax(bound[2], weight);
@@ -109,10 +109,10 @@ static void bound_rows(struct solver *solver)
     MPI_Request request;
     MPI_Iallreduce(MPI_IN_PLACE, bound, 4, MPI_DOUBLE, MPI_MAX, solver->comm->handle, &request);
     comm_wait(&request);
-    solver->gain = bound[0];
-    solver->shrink = bound[1];
-    solver->weight = bound[2];
-    solver->share = bound[3];
+    solver->beyond->descent.gain = bound[0];
+    solver->beyond->descent.shrink = bound[1];
+    solver->beyond->descent.weight = bound[2];
+    solver->beyond->descent.share = bound[3];
 }
 
 void solver_close(struct solver *solver)
@@ -121,9 +121,9 @@ void solver_close(struct solver *solver)
     struct forest *forest = solver->model.forest;
     double start = comm_seconds();
     routes_renew(solver);
-    closure_extend(&solver->closure, forest);
-    conjugate_extend(&solver->conjugate, forest, solver->own);
-    solver->seconds[PHASE_ROUTES] += comm_seconds() - start;
+    closure_extend(&solver->beyond->closure, forest);
+    conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
+    solver->account.seconds[PHASE_ROUTES] += comm_seconds() - start;
     if (criterion->closure == CLOSURE_NONE && criterion->solver == SOLVER_JACOBI)
         return;
     struct rgb *kept = forest_keep(forest);

@@ -20,7 +20,7 @@
  *
  * Looks are dealt in turns. They also tell the work that a ray takes, and by that rows are
  * dealt: sorted by work, to the ranks up and down. */
-#include "mpi/gather_mesh.h"
+#include "mpi/beyond/gather_mesh.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -422,9 +422,9 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     deal_rows(&l);
     mesh->traced = l.gather.counts.rays + l.gather.counts.segments;
     const struct octree_counts *proofs = &l.gather.view.counts;
-    ledger_add(&solver->ledger,
+    ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .iteration = solver->iteration,
+                                   .iteration = solver->turn.iteration,
                                    .work = model_work(model) - before +
                                            proofs->node_tests + proofs->triangle_tests});
     int64_t stopped = stop_is_asked();

@@ -10,7 +10,8 @@
  * 0, and given their local numbers back: no copy of them is made, since a checkpoint is wanted most
  * where memory is short. (So they are sorted here: many a qsort() makes a copy.) Reading, every block
  * of links is sent to all ranks, which take them in turn; homes are found when all are there. */
-#include "mpi/keep.h"
+#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/keep.h"
 
 #include <math.h>
 
@@ -48,7 +49,7 @@ static void place_home_states(const struct solver *solver, const int32_t *order,
         const struct patch *patch = &solver->model.forest->patches[order[i]];
         if (!patch_is_leaf(patch))
             continue;
-        int home = solver->owner[patch->id.root];
+        int home = solver->homes.owner[patch->id.root];
         const struct home_state *state = funnel_next(funnel, home);
         snapshot->leaves[leaf].irradiance = state->irradiance;
         snapshot->leaves[leaf++].factor = state->factor;
@@ -65,11 +66,11 @@ static void collect_home_states(struct solver *solver, const int32_t *order,
     for (int64_t i = 0; i < forest->count; i++) {
         int32_t p = order[i];
         if (!patch_is_leaf(&forest->patches[p]) ||
-            solver->owner[forest->patches[p].id.root] != solver->comm->rank)
+            solver->homes.owner[forest->patches[p].id.root] != solver->comm->rank)
             continue;
         own = alloc_reserve(own, &capacity, count + 1, sizeof *own);
-        own[count++] = (struct home_state){solver->conjugate.irradiance[p],
-                                           solver->closure.factor[p]};
+        own[count++] = (struct home_state){solver->beyond->descent.vectors.irradiance[p],
+                                           solver->beyond->closure.factor[p]};
     }
     struct funnel funnel;
     funnel_start(&funnel, solver->comm, own, count, sizeof *own);
@@ -94,20 +95,20 @@ static void collect_numbers(const struct solver *solver, const struct vote *vote
     snapshot->link_count = sum[0];
     for (int i = 0; i < 5; i++)
         snapshot->number[SNAPSHOT_RAYS + i] = sum[1 + i];
-    snapshot->number[SNAPSHOT_PASSES] = solver->pass;
-    snapshot->number[SNAPSHOT_ITERATIONS] = solver->iteration;
+    snapshot->number[SNAPSHOT_PASSES] = solver->turn.pass;
+    snapshot->number[SNAPSHOT_ITERATIONS] = solver->turn.iteration;
     snapshot->number[SNAPSHOT_SETTLED] = vote->settled;
     snapshot->number[SNAPSHOT_LIMITED] = solver->memory.reached;
-    snapshot->number[SNAPSHOT_CHANGE] = solver->last_change;
-    snapshot->number[SNAPSHOT_ROUNDS] = solver->accuracy.rounds;
+    snapshot->number[SNAPSHOT_CHANGE] = solver->change.last;
+    snapshot->number[SNAPSHOT_ROUNDS] = solver->beyond->accuracy.rounds;
     snapshot->number[SNAPSHOT_GATHER] = model->criterion.final_gather;
     snapshot->value[SNAPSHOT_REMAINING] = vote->remaining;
     snapshot->value[SNAPSHOT_ABSORBED] = vote->absorbed;
     snapshot->value[SNAPSHOT_ESCAPED] = vote->escaped;
     snapshot->value[SNAPSHOT_EPSILON] = model->criterion.epsilon;
-    snapshot->value[SNAPSHOT_COARSE] = solver->accuracy.coarse;
-    snapshot->value[SNAPSHOT_COARSE_EPSILON] = solver->accuracy.coarse_epsilon;
-    snapshot->value[SNAPSHOT_LEAST_BEND] = solver->least_bend;
+    snapshot->value[SNAPSHOT_COARSE] = solver->beyond->accuracy.coarse;
+    snapshot->value[SNAPSHOT_COARSE_EPSILON] = solver->beyond->accuracy.coarse_epsilon;
+    snapshot->value[SNAPSHOT_LEAST_BEND] = solver->beyond->descent.least_bend;
 }
 
 static void collect_root_changes(const struct solver *solver, struct snapshot *snapshot)
@@ -115,7 +116,7 @@ static void collect_root_changes(const struct solver *solver, struct snapshot *s
     int32_t roots = solver->model.forest->root_count;
     int64_t *own = alloc_array((size_t)roots, sizeof *own);
     for (int32_t root = 0; root < roots; root++)
-        own[root] = solver->own[root] ? solver->root_change[root] : 0;
+        own[root] = solver->homes.own[root] ? solver->change.of_root[root] : 0;
     MPI_Request request;
     MPI_Iallreduce(own, snapshot->root_change, roots, MPI_INT64_T, MPI_SUM, solver->comm->handle,
                    &request);
@@ -127,8 +128,8 @@ void snapshot_collect(struct solver *solver, const struct vote *vote, struct sna
 {
     struct forest *forest = solver->model.forest;
     bool collects = solver->comm->rank == 0;
-    closure_extend(&solver->closure, forest); /* patches that refinement has made since */
-    conjugate_extend(&solver->conjugate, forest, solver->own);
+    closure_extend(&solver->beyond->closure, forest); /* patches that refinement has made since */
+    conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
     int32_t *order = forest_order(forest);
     *snapshot = (struct snapshot){.root_count = forest->root_count,
                                   .patch_count = collects ? forest->count : forest->root_count};
@@ -275,8 +276,8 @@ static void restore_leaves(struct solver *solver, const struct snapshot *snapsho
             continue;
         const struct leaf_state *state = &snapshot->leaves[leaf++];
         forest->patches[p].radiosity = state->radiosity;
-        solver->conjugate.irradiance[p] = state->irradiance;
-        solver->closure.factor[p] = state->factor;
+        solver->beyond->descent.vectors.irradiance[p] = state->irradiance;
+        solver->beyond->closure.factor[p] = state->factor;
     }
     forest_average(forest);
 }
@@ -293,19 +294,19 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
         model->walled_off = number[SNAPSHOT_WALLED_OFF];
         model->rays_spared = number[SNAPSHOT_RAYS_SPARED];
     }
-    solver->pass = number[SNAPSHOT_PASSES];
-    solver->iteration = number[SNAPSHOT_ITERATIONS];
+    solver->turn.pass = number[SNAPSHOT_PASSES];
+    solver->turn.iteration = number[SNAPSHOT_ITERATIONS];
     bool as_limited = number[SNAPSHOT_LIMITED] == solver->memory.limit;
     solver->memory.reached = as_limited ? number[SNAPSHOT_LIMITED] : 0;
-    solver->last_change = number[SNAPSHOT_CHANGE];
-    solver->accuracy = (struct accuracy){
+    solver->change.last = number[SNAPSHOT_CHANGE];
+    solver->beyond->accuracy = (struct accuracy){
         .rounds = number[SNAPSHOT_ROUNDS],
         .coarse = snapshot->value[SNAPSHOT_COARSE],
         .coarse_epsilon = snapshot->value[SNAPSHOT_COARSE_EPSILON]};
     if (model->criterion.accuracy > 0.0 && number[SNAPSHOT_GATHER] > 0)
         model->criterion.final_gather = solver->memory.rays = (int)number[SNAPSHOT_GATHER];
-    solver->least_bend = snapshot->value[SNAPSHOT_LEAST_BEND];
-    if (solver->pass > 0) { /* before the first pass a link cache does not bind epsilon */
+    solver->beyond->descent.least_bend = snapshot->value[SNAPSHOT_LEAST_BEND];
+    if (solver->turn.pass > 0) { /* before the first pass a link cache does not bind epsilon */
         model->criterion.epsilon = snapshot->value[SNAPSHOT_EPSILON];
         model->link_threshold = model->criterion.epsilon * model->light_power;
     }
@@ -324,12 +325,12 @@ int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snaps
     struct forest *forest = solver->model.forest;
     broadcast_snapshot(solver->comm, snapshot);
     restore_trees(forest, snapshot);
-    closure_extend(&solver->closure, forest);
-    conjugate_extend(&solver->conjugate, forest, solver->own); /* own leaves: see solver_close() */
+    closure_extend(&solver->beyond->closure, forest);
+    conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own); /* own leaves: see solver_close() */
     int32_t *order = forest_order(forest);
     restore_leaves(solver, snapshot, order);
     for (int32_t root = 0; root < forest->root_count; root++)
-        solver->root_change[root] = snapshot->root_change[root];
+        solver->change.of_root[root] = snapshot->root_change[root];
     restore_numbers(solver, vote, snapshot);
     return order;
 }

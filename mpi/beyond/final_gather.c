@@ -21,14 +21,14 @@
  *
  * Rejected: the defect solved for over the links, and added. Where links reflect less
  * than is right, as in bright closed rooms, each round leaves nine tenths of it. */
-#include "mpi/solver.h"
+#include "mpi/beyond/beyond.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
-#include "mpi/gather_mesh.h"
+#include "mpi/beyond/gather_mesh.h"
 #include "rad/beyond/bicgstab.h"
 #include "rad/pushpull.h"
 
@@ -86,8 +86,8 @@ static void gathering_start(struct gathering *g, struct solver *solver)
 static void gathering_end(struct gathering *g)
 {
     final_gather_drop_rows(&g->gather);
-    final_gather_free(&g->solver->gather); /* of a round before */
-    g->solver->gather = g->gather;
+    final_gather_free(&g->solver->beyond->answer.gather); /* of a round before */
+    g->solver->beyond->answer.gather = g->gather;
     gather_mesh_free(&g->mesh);
     alloc_free(g->areas);
     alloc_free(g->bare);
@@ -110,9 +110,9 @@ static bool make_rows(struct gathering *g)
         progress_tick(solver->progress, (double)i / (double)g->count);
     }
     const struct octree_counts *proofs = &g->gather.view.counts;
-    ledger_add(&solver->ledger,
+    ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .iteration = solver->iteration,
+                                   .iteration = solver->turn.iteration,
                                    .work = model_work(&solver->model) - before +
                                            proofs->node_tests + proofs->triangle_tests});
     const struct gather_counts *counts = &g->gather.counts;
@@ -120,7 +120,7 @@ static bool make_rows(struct gathering *g)
                       counts->exact, g->gather.term_count, g->mesh.traced};
     comm_add(solver->comm, sums, sizeof sums / sizeof sums[0]);
     g->closed = (double)sums[0] <= CRACKS * (double)(sums[2] + g->count);
-    solver->gathered = (struct gathered){.rays = sums[2], .segments = sums[3],
+    solver->beyond->answer.counts = (struct gathered){.rays = sums[2], .segments = sums[3],
                                          .exact = sums[4], .terms = sums[5],
                                          .looks = sums[6], .split = g->mesh.split};
     return sums[1] == 0;
@@ -329,8 +329,8 @@ static void estimate_errors(struct gathering *g)
     double by_rays = 0.0, by_mesh = 0.0, light = 0.0;
     variances_by_mesh(g, mesh);
     variances_by_rays(g, rays);
-    alloc_free(solver->error);
-    solver->error = alloc_array((size_t)solver->model.forest->count, sizeof *solver->error);
+    alloc_free(solver->beyond->answer.error);
+    solver->beyond->answer.error = alloc_array((size_t)solver->model.forest->count, sizeof *solver->beyond->answer.error);
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m = forest_material(solver->model.forest, g->leaves[i]);
         double largest = 0.0;
@@ -344,12 +344,12 @@ static void estimate_errors(struct gathering *g)
             by_mesh += g->areas[i] * rho * rho * mesh[i].band[c];
             light += g->areas[i] * reflected * reflected;
         }
-        solver->error[g->leaves[i]] = (float)(2.0 * largest);
+        solver->beyond->answer.error[g->leaves[i]] = (float)(2.0 * largest);
     }
     if (light > 0.0) {
-        solver->gathered.by_rays = sqrt(by_rays / light);
-        solver->gathered.by_mesh = sqrt(by_mesh / light);
-        solver->gathered.error = sqrt((by_rays + by_mesh) / light);
+        solver->beyond->answer.counts.by_rays = sqrt(by_rays / light);
+        solver->beyond->answer.counts.by_mesh = sqrt(by_mesh / light);
+        solver->beyond->answer.counts.error = sqrt((by_rays + by_mesh) / light);
     }
     alloc_free(rays);
     alloc_free(mesh);
@@ -370,8 +370,8 @@ static void share_straight_light(struct gathering *g)
         for (int c = 0; c < BANDS; c++)
             straight[g->leaves[i]].band[c] = rho.band[c] * light[i].band[c];
     }
-    alloc_free(g->solver->straight);
-    g->solver->straight = straight;
+    alloc_free(g->solver->beyond->answer.straight);
+    g->solver->beyond->answer.straight = straight;
     alloc_free(light);
 }
 
@@ -400,7 +400,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
             h[i].band[c] = fmax(0.0, h[i].band[c]);
     share_bare_areas(g);
     if (g->closed)
-        g->solver->gathered.closing = close_balance(g, h);
+        g->solver->beyond->answer.counts.closing = close_balance(g, h);
     set_radiosities(g, h, b);
     judge(g, h, b, done.residual, vote);
     place_radiosities(g, b);
@@ -423,14 +423,14 @@ bool solver_final_gather(struct solver *solver, struct vote *vote)
         gathering_start(&g, solver);
         done = make_rows(&g);
     }
-    solver->seconds[PHASE_ROWS] += comm_seconds() - start;
+    solver->account.seconds[PHASE_ROWS] += comm_seconds() - start;
     if (done)
         solve_rows(&g, vote);
-    ledger_add(&solver->ledger,
+    ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .iteration = solver->iteration,
+                                   .iteration = solver->turn.iteration,
                                    .bytes = g.shares * g.count * (int64_t)sizeof *g.all});
     gathering_end(&g);
-    solver->seconds[PHASE_FINAL_GATHER] += comm_seconds() - start;
+    solver->account.seconds[PHASE_FINAL_GATHER] += comm_seconds() - start;
     return done;
 }

@@ -22,13 +22,13 @@
  *
  * Rejected: aiming by slopes that are measured between rounds. With two or three rounds
  * they are mostly noise. */
-#include "mpi/solver.h"
+#include "mpi/beyond/beyond.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 #include "mpi/memory.h"
-#include "mpi/spotcheck.h"
+#include "mpi/beyond/spotcheck.h"
 
 enum { ROUNDS_MOST = 12 };
 
@@ -61,11 +61,11 @@ static const double ALL = 0.97, SOME = 0.1;
  * mesh's, for the estimate of the rays is good; else both are off by the same factor. */
 static void settle_claim(struct solver *solver, const struct spotcheck *check)
 {
-    struct gathered *gathered = &solver->gathered;
+    struct gathered *gathered = &solver->beyond->answer.counts;
     double square = fmax(0.0, check->square), estimate = gathered->error;
     double rays = gathered->by_rays * gathered->by_rays;
-    solver->accuracy.clear = square - estimate * estimate > SURE * check->doubt;
-    if (solver->accuracy.clear) {
+    solver->beyond->accuracy.clear = square - estimate * estimate > SURE * check->doubt;
+    if (solver->beyond->accuracy.clear) {
         gathered->by_mesh = sqrt(square - rays);
     } else if (estimate > 0.0) {
         gathered->by_rays *= sqrt(square) / estimate;
@@ -76,7 +76,7 @@ static void settle_claim(struct solver *solver, const struct spotcheck *check)
     gathered->paths = check->paths;
     double larger = estimate > 0.0 ? fmax(1.0, gathered->error / estimate) : 1.0;
     for (int64_t p = 0; p < solver->model.forest->count; p++)
-        solver->error[p] *= (float)larger;
+        solver->beyond->answer.error[p] *= (float)larger;
 }
 
 /* --- limits --- */
@@ -103,16 +103,16 @@ static enum hold hold_of_leaves(const struct solver *solver, double *share)
 /* What keeps the mesh from becoming finer, or keeps that from helping. */
 static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
 {
-    const struct accuracy *accuracy = &solver->accuracy;
+    const struct accuracy *accuracy = &solver->beyond->accuracy;
     double epsilon = solver->model.criterion.epsilon, share;
     enum hold hold = hold_of_leaves(solver, &share);
     if (solver->memory.reached > 0 ||
         !memory_has_room(&solver->memory, links, 1, solver->model.forest->count, 0))
         return HOLD_MEMORY;
-    if (solver->iteration >= solver->model.criterion.max_iterations)
+    if (solver->turn.iteration >= solver->model.criterion.max_iterations)
         return HOLD_ITERATIONS;
     bool stuck = (epsilon <= EIGHTH * accuracy->coarse_epsilon &&
-                  solver->gathered.by_mesh > STUCK * accuracy->coarse) ||
+                  solver->beyond->answer.counts.by_mesh > STUCK * accuracy->coarse) ||
                  epsilon * LITTLE < SMALLEST_EPSILON;
     if (share > ALL || (stuck && share > SOME))
         return hold;
@@ -123,7 +123,7 @@ static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
 static enum hold hold_of_rays(const struct solver *solver, int rays, int64_t links)
 {
     const struct memory *memory = &solver->memory;
-    int64_t clusters = solver->tree->count, patches = solver->model.forest->count;
+    int64_t clusters = solver->beyond->tree->count, patches = solver->model.forest->count;
     if (2 * rays > GATHER_RAYS_MOST)
         return HOLD_RAYS;
     return memory->limit > 0 && memory_needed(memory->copies, 2 * rays, links, patches,
@@ -149,7 +149,7 @@ static bool raise_rays(struct solver *solver, double allowed, int64_t links)
 {
     struct criterion *criterion = &solver->model.criterion;
     int before = criterion->final_gather;
-    for (double left = solver->gathered.by_rays;
+    for (double left = solver->beyond->answer.counts.by_rays;
          left > allowed && criterion->final_gather < MORE * before &&
          hold_of_rays(solver, criterion->final_gather, links) == HOLD_NONE;
          left *= TWICE)
@@ -161,8 +161,8 @@ static bool raise_rays(struct solver *solver, double allowed, int64_t links)
 static void lower_epsilon(struct solver *solver, double allowed)
 {
     struct criterion *criterion = &solver->model.criterion;
-    struct accuracy *accuracy = &solver->accuracy;
-    double mesh = solver->gathered.by_mesh, part = allowed / mesh;
+    struct accuracy *accuracy = &solver->beyond->accuracy;
+    double mesh = solver->beyond->answer.counts.by_mesh, part = allowed / mesh;
     double lower = fmin(LITTLE, fmax(MUCH, part * part * part));
     bool much = criterion->epsilon <= EIGHTH * accuracy->coarse_epsilon;
     if (accuracy->clear && (much || accuracy->coarse == 0.0)) {
@@ -176,7 +176,7 @@ static void lower_epsilon(struct solver *solver, double allowed)
 /* Returns false if nothing can be tightened, and says why. `lowered`: epsilon was. */
 static bool tighten(struct solver *solver, int64_t links, bool *lowered)
 {
-    double by_rays = solver->gathered.by_rays, by_mesh = solver->gathered.by_mesh;
+    double by_rays = solver->beyond->answer.counts.by_rays, by_mesh = solver->beyond->answer.counts.by_mesh;
     double aim = AIM * solver->model.criterion.accuracy;
     enum hold mesh = hold_of_mesh(solver, links);
     enum hold rays = hold_of_rays(solver, solver->model.criterion.final_gather, links);
@@ -195,16 +195,16 @@ static bool tighten(struct solver *solver, int64_t links, bool *lowered)
     if (*lowered || raised)
         return true;
     enum hold hold = by_mesh > mesh_allowed ? mesh : rays;
-    solver->accuracy.hold = hold == HOLD_NONE ? HOLD_DOUBT : hold;
+    solver->beyond->accuracy.hold = hold == HOLD_NONE ? HOLD_DOUBT : hold;
     return false;
 }
 
 /* Collective. True if another round is to follow. */
 static bool wants_more(struct solver *solver, int64_t links, bool *lowered)
 {
-    struct accuracy *accuracy = &solver->accuracy;
+    struct accuracy *accuracy = &solver->beyond->accuracy;
     accuracy->rounds++;
-    if (solver->gathered.error <= solver->model.criterion.accuracy)
+    if (solver->beyond->answer.counts.error <= solver->model.criterion.accuracy)
         return false;
     if (accuracy->rounds == ROUNDS_MOST) {
         accuracy->hold = HOLD_ROUNDS;
@@ -252,7 +252,7 @@ static enum finish judge(struct solver *solver, struct vote *vote,
 enum finish solver_finish(struct solver *solver, struct vote *vote)
 {
     const struct criterion *criterion = &solver->model.criterion;
-    if (criterion->final_gather == 0 || !solver->tree)
+    if (criterion->final_gather == 0 || !solver->beyond->tree)
         return FINISH_DONE;
     struct linked linked = {.vote = *vote, .count = solver->model.forest->count};
     bool measures = criterion->accuracy > 0.0;

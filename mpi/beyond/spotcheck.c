@@ -26,7 +26,8 @@
  *
  * Rejected: the difference of two solutions, of which the finer is taken for the truth.
  * Much of what both lack is the same, all the more where --max-level is in the way. */
-#include "mpi/spotcheck.h"
+#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/spotcheck.h"
 
 #include <math.h>
 
@@ -87,7 +88,7 @@ struct merit {
 static struct merit merit_of(const struct checking *c, int32_t leaf)
 {
     double area = forest_area(c->solver->model.forest, leaf);
-    double error = (double)c->solver->error[leaf];
+    double error = (double)c->solver->beyond->answer.error[leaf];
     struct rgb b = reflected(c->solver->model.forest, leaf);
     return (struct merit){area, area * rgb_dot(b, b), area * error * error};
 }
@@ -247,7 +248,7 @@ static void check_leaves(struct checking *c, double goal)
 
 struct spotcheck spotcheck_run(struct solver *solver, double goal)
 {
-    const struct gathered *gathered = &solver->gathered;
+    const struct gathered *gathered = &solver->beyond->answer.counts;
     double start = comm_seconds(), expected = fmax(0.5 * goal, gathered->error);
     struct checking c = {.solver = solver, .result = {.done = true}};
     c.rays_most = RAYS_FREE + gathered->rays + gathered->segments;
@@ -259,13 +260,13 @@ struct spotcheck spotcheck_run(struct solver *solver, double goal)
         check_leaves(&c, goal);
     }
     const struct octree_counts *counts = c.pathtracer.counts;
-    ledger_add(&solver->ledger,
+    ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .iteration = solver->iteration,
+                                   .iteration = solver->turn.iteration,
                                    .work = counts->node_tests + counts->triangle_tests});
     alloc_free(c.leaves);
     alloc_free(c.upto);
     pathtracer_free(&c.pathtracer);
-    solver->seconds[PHASE_SPOT_CHECKS] += comm_seconds() - start;
+    solver->account.seconds[PHASE_SPOT_CHECKS] += comm_seconds() - start;
     return c.result;
 }
