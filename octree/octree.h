@@ -12,6 +12,7 @@
 
 #include "geom/pack.h"
 #include "geom/triangle.h"
+#include "octree/counts.h"
 
 struct octree;
 
@@ -27,20 +28,6 @@ struct bundle {
     unsigned asked; /* bit 4 a + b: this segment is wanted; from[a] != to[b] */
     int32_t own[2]; /* triangles on which the points lie: they never block; -1: none */
 };
-
-/* Work done, for predicting and reporting cost. */
-struct octree_counts {
-    int64_t rays;           /* segments asked about */
-    int64_t node_tests;     /* nodes, with all their children's boxes, against a bundle or segment */
-    int64_t triangle_tests; /* triangles against a bundle or segment */
-};
-
-static inline void octree_counts_add(struct octree_counts *counts, const struct octree_counts *more)
-{
-    counts->rays += more->rays;
-    counts->node_tests += more->node_tests;
-    counts->triangle_tests += more->triangle_tests;
-}
 
 struct octree_hit {
     int32_t triangle;
