@@ -52,7 +52,7 @@ MPIEXEC ?= mpiexec
 endif
 
 GEOM = alloc elementary error hull lambert outlook polygon scene stop triangle wall
-OCTREE = build hit octree segment
+OCTREE = build bundle hit octree segment shaft
 RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/gather_wide beyond/lamps beyond/node \
       beyond/node_exchange beyond/node_link beyond/paths beyond/sequence beyond/closure beyond/conjugate beyond/snapshot flux formfactor id link \
       linking model oracle patch pushpull sample treecode

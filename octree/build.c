@@ -430,39 +430,3 @@ void tree_pack_arrays(struct tree *tree, struct pack *pack)
     tree->records = pack_array(pack, tree->records,
                                (size_t)tree->record_count * sizeof *tree->records);
 }
-
-/* Largest signed distance to the plane of a point of child k's box. */
-static double box_reach(const struct node *node, int k, const struct plane *plane)
-{
-    double reach = -plane->offset;
-    for (int axis = 0; axis < 3; axis++) {
-        double n = vec3_axis(plane->normal, axis);
-        reach += n * (double)node->bound[axis][n > 0.0][k];
-    }
-    return reach;
-}
-
-bool tree_reaches_above(const struct tree *tree, const struct triangle *triangles,
-                        const struct plane *plane, double margin)
-{
-    int32_t stack[TREE_STACK];
-    int height = 0;
-    if (tree->node_count > 0)
-        stack[height++] = 0;
-    while (height > 0) {
-        int32_t at = stack[--height];
-        if (at >= 0) {
-            const struct node *node = &tree->nodes[at];
-            for (int k = 0; k < LANES; k++)
-                if (node->bound[0][0][k] < NOWHERE && box_reach(node, k, plane) > margin)
-                    stack[height++] = node->child[k];
-            continue;
-        }
-        struct leaf leaf = leaf_of(at);
-        for (int32_t i = leaf.first; i < leaf.first + leaf.count; i++)
-            for (int k = 0; k < 3; k++)
-                if (plane_distance(plane, triangles[tree->records[i].triangle].corner[k]) > margin)
-                    return true;
-    }
-    return false;
-}

@@ -14,6 +14,7 @@
  * of the stack for each child; sixteen rays in turn, a node of each at a time (wrong guesses of
  * one hold up all); fetching ahead of time; records and nodes at multiples of 64 bytes; one tree
  * for all, whose large walls get in the way of what stands in the room. */
+#include "octree/octree.h"
 #include "octree/ray.h"
 
 /* A first hit that is looked for. */
@@ -61,12 +62,14 @@ INLINE void improve_hit(struct search *search, const struct record *r)
 }
 
 /* Visits a leaf, for ray_walk(). */
-INLINE bool search_leaf(void *at, const struct record *records, int32_t count, float *reach)
+INLINE bool search_leaf(void *at, const struct record *records, int32_t count,
+                        struct octree_counts *counts)
 {
     struct search *search = at;
+    counts->triangle_tests += count;
     for (int32_t i = 0; i < count; i++)
         improve_hit(search, &records[i]);
-    *reach = (float)search->nearest + REACH_MARGIN;
+    search->ray.reach = (float)search->nearest + REACH_MARGIN;
     return false;
 }
 
@@ -94,7 +97,6 @@ bool octree_first_hit(const struct octree *octree, struct vec3 origin,
 {
     struct search search; /* set by parts, since the ray is large */
     struct vec3 end;
-    float reach = 1.0f;
     counts->rays++;
     search.octree = octree;
     search.fronts_only = fronts_only;
@@ -103,8 +105,8 @@ bool octree_first_hit(const struct octree *octree, struct vec3 origin,
     if (!clip_to_scene(octree, &origin, direction, &end))
         return false;
     ray_set(&search.ray, origin, end);
-    ray_walk(&octree->inside, &search.ray, &reach, search_leaf, &search, counts);
-    ray_walk(&octree->hull, &search.ray, &reach, search_leaf, &search, counts);
+    ray_walk(&octree->inside, &search.ray, search_leaf, &search, counts);
+    ray_walk(&octree->hull, &search.ray, search_leaf, &search, counts);
     *hit = search.hit;
     if (hit->triangle < 0)
         return false;

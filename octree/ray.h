@@ -16,7 +16,7 @@
 
 #include <string.h>
 
-#include "octree/tree.h"
+#include "octree/walk.h"
 
 /* For boxes the ray's numbers are in all lanes, too. A step of less than STEP_LEAST along an axis
  * counts as that, so that its inverse is a number. */
@@ -27,13 +27,7 @@ struct ray {
     lanes inverse[3];   /* 1 / step */
     lanes_mask weights; /* of the children: that of octant k ^ near is bit k */
     int near;           /* the nearest octant: a bit for each axis that the ray runs down */
-};
-
-/* A node some of whose children wait. */
-struct waiting {
-    const struct node *node;
-    unsigned met;       /* as bits of the ray's weights */
-    float enter[LANES]; /* t at which the ray enters each child's box */
+    float reach;        /* t up to which boxes are of use */
 };
 
 static const float STEP_LEAST = 1e-12f;
@@ -44,6 +38,7 @@ INLINE void ray_set(struct ray *ray, struct vec3 from, struct vec3 to)
     ray->from = from;
     ray->to = to;
     ray->near = 0;
+    ray->reach = 1.0f;
     for (int axis = 0; axis < 3; axis++) {
         float a = (float)vec3_axis(from, axis), step = (float)vec3_axis(to, axis) - a;
         float size = fabsf(step), inverse = 1.0f / (size > STEP_LEAST ? size : STEP_LEAST);
@@ -63,15 +58,15 @@ INLINE void ray_set(struct ray *ray, struct vec3 from, struct vec3 to)
     lanes_mul(lanes_sub(lanes_at((node)->bound[axis][side]), (ray)->start[axis]), \
               (ray)->inverse[axis])
 
-/* Children whose boxes the ray may meet within reach. */
-INLINE unsigned children_entered(const struct node *node, const struct ray *ray, float reach,
-                                 float enter[LANES])
+/* Children whose boxes the ray may meet within its reach. */
+INLINE unsigned ray_enters(const void *beam, const struct node *node, float enter[LANES])
 {
+    const struct ray *ray = beam;
     int x = ray->near & 1, y = ray->near >> 1 & 1, z = ray->near >> 2;
     lanes n0 = SLAB_AT(node, ray, 0, x), f0 = SLAB_AT(node, ray, 0, x ^ 1);
     lanes n1 = SLAB_AT(node, ray, 1, y), f1 = SLAB_AT(node, ray, 1, y ^ 1);
     lanes n2 = SLAB_AT(node, ray, 2, z), f2 = SLAB_AT(node, ray, 2, z ^ 1);
-    lanes zero = lanes_all(0.0f), most = lanes_all(reach);
+    lanes zero = lanes_all(0.0f), most = lanes_all(ray->reach);
     lanes near2 = lanes_max(n2, zero), far2 = lanes_min(f2, most);
     lanes near01 = lanes_max(n0, n1), far01 = lanes_min(f0, f1);
     lanes first = lanes_max(near01, near2), last = lanes_min(far01, far2);
@@ -80,58 +75,11 @@ INLINE unsigned children_entered(const struct node *node, const struct ray *ray,
     return ~mask_select(&out, &ray->weights) & 0xffu;
 }
 
-/* Takes the next child within reach off the stack. Returns false if there is none. */
-INLINE bool take_next(struct waiting *stack, int *height, int near, float reach, int32_t *child)
+/* Goes down along the ray, to the nearest box first. A visit may shorten the ray's reach. */
+INLINE bool ray_walk(const struct tree *tree, const struct ray *ray, leaf_visit *visit,
+                     void *query, struct octree_counts *counts)
 {
-    while (*height > 0) {
-        struct waiting *top = &stack[*height - 1];
-        int k = lowest_bit(top->met) ^ near;
-        top->met &= top->met - 1;
-        *height -= top->met == 0;
-        if (top->enter[k] <= reach) {
-            *child = top->node->child[k];
-            return true;
-        }
-    }
-    return false;
-}
-
-/* Looks at the triangles of a leaf. Returns true if the walk may end; `*reach` is how far along
- * the ray boxes are still of use. */
-typedef bool leaf_visit(void *query, const struct record *records, int32_t count, float *reach);
-
-/* Goes down to the nearest child as long as there is one, visits its triangles, and goes on with
- * what waits: an entry of the stack is a node with the children that wait, the nearest octant
- * being the lowest bit. Returns true if a visit did. */
-INLINE bool ray_walk(const struct tree *tree, const struct ray *ray, float *reach,
-                     leaf_visit *visit, void *query, struct octree_counts *counts)
-{
-    struct waiting stack[TREE_LEVELS]; /* at most one for each level */
-    int height = 0;
-    int32_t child = 0;
-    if (tree->node_count == 0)
-        return false;
-    do {
-        while (child >= 0) {
-            struct waiting *top = &stack[height];
-            const struct node *node = &tree->nodes[child];
-            unsigned met = children_entered(node, ray, *reach, top->enter);
-            counts->node_tests++;
-            if (met == 0)
-                break;
-            top->node = node;
-            top->met = met & (met - 1);
-            height += top->met != 0;
-            child = node->child[lowest_bit(met) ^ ray->near];
-        }
-        if (child < 0) {
-            struct leaf leaf = leaf_of(child);
-            counts->triangle_tests += leaf.count;
-            if (visit(query, &tree->records[leaf.first], leaf.count, reach))
-                return true;
-        }
-    } while (take_next(stack, &height, ray->near, *reach, &child));
-    return false;
+    return tree_walk(tree, ray_enters, ray, ray->near, &ray->reach, visit, query, counts);
 }
 
 /* --- triangles --- */

@@ -6,11 +6,12 @@
  * of clusters ask for few segments each, to places far apart, and are better off so than with
  * bundles.
  *
- * Rejected: a shaft without width (octree.c), whose separating axes take twice as many operations
+ * Rejected: a shaft without width (octree/shaft.h), whose separating axes take twice as many operations
  * a box. */
 #include <stddef.h>
 
 #include "geom/wall.h"
+#include "octree/octree.h"
 #include "octree/ray.h"
 
 /* One segment on its way. */
@@ -37,10 +38,11 @@ static bool is_blocked_by(const struct query *query, const struct record *r)
 }
 
 /* Visits a leaf, for ray_walk(). */
-INLINE bool find_blocker(void *at, const struct record *records, int32_t count, float *reach)
+INLINE bool find_blocker(void *at, const struct record *records, int32_t count,
+                         struct octree_counts *counts)
 {
     struct query *query = at;
-    (void)reach;
+    counts->triangle_tests += count;
     for (int32_t i = 0; i < count; i++) {
         int32_t t = records[i].triangle;
         if (t != query->own[0] && t != query->own[1] && is_blocked_by(query, &records[i])) {
@@ -56,18 +58,14 @@ bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct
 {
     const struct tree *tree = &octree->inside;
     struct query query; /* set by parts, since the ray is large */
-    float reach = 1.0f;
     int32_t place = *guess >= 0 ? octree->place[*guess] : -1;
     counts->rays++;
     query.octree = octree;
     query.own = own;
     ray_set(&query.ray, from, to);
-    if (place >= 0) {
-        counts->triangle_tests++;
-        if (find_blocker(&query, &tree->records[place], 1, &reach))
-            return true;
-    }
-    if (!ray_walk(tree, &query.ray, &reach, find_blocker, &query, counts))
+    if (place >= 0 && find_blocker(&query, &tree->records[place], 1, counts))
+        return true;
+    if (!ray_walk(tree, &query.ray, find_blocker, &query, counts))
         return false;
     *guess = query.blocker;
     return true;
@@ -83,12 +81,13 @@ struct wall_query {
 };
 
 /* Visits a leaf, for ray_walk(). */
-INLINE bool find_wall(void *at, const struct record *records, int32_t count, float *reach)
+INLINE bool find_wall(void *at, const struct record *records, int32_t count,
+                      struct octree_counts *counts)
 {
     const struct wall_query *query = at;
     const struct octree *octree = query->middle.octree;
     const struct walls walls = {octree->triangles, octree->planes, octree->neighbours};
-    (void)reach;
+    counts->triangle_tests += count;
     for (int32_t i = 0; i < count; i++)
         if (is_blocked_by(&query->middle, &records[i]) &&
             walls_stand_between(&walls, records[i].triangle, query->p, query->count_p, query->q,
@@ -110,7 +109,6 @@ bool octree_has_wall(const struct octree *octree, const struct vec3 *p, int coun
 {
     struct wall_query query = {.middle = {.octree = octree},
                                .p = p, .q = q, .count_p = count_p, .count_q = count_q};
-    float reach = 1.0f;
     ray_set(&query.middle.ray, mean_of(p, count_p), mean_of(q, count_q));
-    return ray_walk(&octree->inside, &query.middle.ray, &reach, find_wall, &query, counts);
+    return ray_walk(&octree->inside, &query.middle.ray, find_wall, &query, counts);
 }

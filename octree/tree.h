@@ -2,14 +2,17 @@
 #ifndef OCTREE_TREE_H
 #define OCTREE_TREE_H
 
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "geom/pack.h"
+#include "geom/triangle.h"
 #include "octree/lanes.h"
-#include "octree/octree.h"
 
 enum {
     LEAF_MAX = 16,    /* triangles of a leaf, at most */
     TREE_DEPTH = 24,  /* from this level on cells are cut by number, not by place */
-    TREE_LEVELS = 36, /* a number below 2^31 is at most LEAF_MAX after 9 such cuts in eight */
-    TREE_STACK = 2 * LANES * TREE_LEVELS /* room for a walk: what waits on all levels */
+    TREE_LEVELS = 36  /* a number below 2^31 is at most LEAF_MAX after 9 such cuts in eight */
 };
 
 /* For small functions that are called millions of times from a few places each, where a
@@ -87,9 +90,5 @@ void tree_free(struct tree *tree);
 
 /* The next arrays of the pack become those of the tree. */
 void tree_pack_arrays(struct tree *tree, struct pack *pack);
-
-/* True if some corner of the tree's triangles is in front of the plane by more than `margin`. */
-bool tree_reaches_above(const struct tree *tree, const struct triangle *triangles,
-                        const struct plane *plane, double margin);
 
 #endif

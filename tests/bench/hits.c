@@ -20,6 +20,7 @@
 #include "geom/alloc.h"
 #include "io/scene/obj.h"
 #include "mpi/comm.h"
+#include "octree/octree.h"
 #include "octree/tree.h"
 #include "tests/bench/embree.h"
 #include "tests/random.h"

@@ -21,6 +21,7 @@
 
 #include "io/scene/obj.h"
 #include "mpi/comm.h"
+#include "octree/octree.h"
 #include "octree/tree.h"
 #include "rad/formfactor.h"
 

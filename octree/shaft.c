@@ -1,0 +1,99 @@
+/* Is anything in the shaft between two triangles? */
+#include "octree/shaft.h"
+
+#include <string.h>
+
+#include "geom/hull.h"
+#include "octree/octree.h"
+
+static struct slab slab_of(const float values[LANES])
+{
+    float low = values[0], high = values[0];
+    for (int k = 1; k < LANES; k++) {
+        low = values[k] < low ? values[k] : low;
+        high = values[k] > high ? values[k] : high;
+    }
+    return (struct slab){lanes_all(low - BOX_MARGIN), lanes_all(high + BOX_MARGIN)};
+}
+
+void shaft_set_points(struct shaft *shaft, const struct vec3 from[SHAFT_ENDS],
+                             const struct vec3 to[SHAFT_ENDS])
+{
+    float points[3][LANES];
+    for (int k = 0; k < LANES; k++) {
+        struct vec3 x = k < SHAFT_ENDS ? from[k] : to[k - SHAFT_ENDS];
+        points[0][k] = (float)x.x;
+        points[1][k] = (float)x.y;
+        points[2][k] = (float)x.z;
+    }
+    for (int axis = 0; axis < 3; axis++)
+        shaft->points[axis] = lanes_at(points[axis]);
+}
+
+/* The rest, which only a walk needs: direction and slabs of the points. */
+void shaft_set_slabs(struct shaft *shaft)
+{
+    float points[3][LANES], direction[3], largest = 1e-30f;
+    memcpy(points, shaft->points, sizeof points);
+    shaft->near = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const float *p = points[axis];
+        float d = ((p[4] - p[0]) + (p[5] - p[1])) + ((p[6] - p[2]) + (p[7] - p[3]));
+        direction[axis] = d;
+        shaft->near |= (d < 0.0f) << axis;
+        largest = fabsf(d) > largest ? fabsf(d) : largest;
+    }
+    mask_set_weights(&shaft->weights, shaft->near);
+    for (int axis = 0; axis < 3; axis++)
+        direction[axis] /= largest;
+    for (int axis = 0; axis < 3; axis++) {
+        int i = (axis + 1) % 3, j = (axis + 2) % 3;
+        float across[LANES];
+        for (int k = 0; k < LANES; k++)
+            across[k] = direction[j] * points[i][k] - direction[i] * points[j][k];
+        shaft->own[axis] = slab_of(points[axis]);
+        shaft->cross[axis] = slab_of(across);
+        shaft->direction[axis] = lanes_all(direction[axis]);
+    }
+}
+
+/* --- empty shafts --- */
+
+struct shaft_query {
+    const struct triangle *triangles;
+    const int32_t *own; /* [2] */
+    struct hull hull;
+};
+
+/* Visits a leaf: does any of its triangles reach into the hull? */
+INLINE bool find_entrant(void *at, const struct record *records, int32_t count,
+                         struct octree_counts *counts)
+{
+    const struct shaft_query *query = at;
+    for (int32_t i = 0; i < count; i++) {
+        int32_t t = records[i].triangle;
+        if (t == query->own[0] || t == query->own[1])
+            continue;
+        counts->triangle_tests++;
+        if (hull_is_entered(&query->hull, &query->triangles[t]))
+            return true;
+    }
+    return false;
+}
+
+bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p,
+                           const struct plane *plane_p, const struct triangle *q,
+                           const struct plane *plane_q, const int32_t own[2],
+                           struct octree_counts *counts)
+{
+    struct shaft_query query = {octree->triangles, own, hull_of_pair(p, plane_p, q, plane_q)};
+    struct vec3 from[SHAFT_ENDS], to[SHAFT_ENDS];
+    struct shaft shaft;
+    for (int k = 0; k < SHAFT_ENDS; k++) {
+        from[k] = p->corner[k % 3];
+        to[k] = q->corner[k % 3];
+    }
+    shaft_set_points(&shaft, from, to);
+    shaft_set_slabs(&shaft);
+    return !shaft_walk(&octree->inside, &shaft, find_entrant, &query, counts);
+}

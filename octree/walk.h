@@ -1,0 +1,78 @@
+/* The walk down a tree that answers every question; for octree/ only.
+ *
+ * A question goes down to the nearest child of a node as long as there is one, looks at the
+ * triangles of the leaf, and goes on with the children that wait. Which children are met, and
+ * which triangles end the walk, the question says by two functions, inlined where it is asked. */
+#ifndef OCTREE_WALK_H
+#define OCTREE_WALK_H
+
+#include "octree/counts.h"
+#include "octree/tree.h"
+
+/* A node some of whose children wait. */
+struct waiting {
+    const struct node *node;
+    unsigned met;       /* bit k: the child in octant k ^ near waits */
+    float enter[LANES]; /* where a ray enters each child's box, by octant */
+};
+
+/* Returns the children of a node that are met, the one in octant k ^ near as bit k. Where the
+ * walk has a reach, it also says for each octant how far away its box is. */
+typedef unsigned node_enter(const void *beam, const struct node *node, float enter[LANES]);
+
+/* Looks at the triangles of a leaf, and counts them. Returns true if the walk may end. */
+typedef bool leaf_visit(void *query, const struct record *records, int32_t count,
+                        struct octree_counts *counts);
+
+/* Takes the next child within reach off the stack. Returns false if there is none. */
+INLINE bool take_next(struct waiting *stack, int *height, int near, const float *reach,
+                      int32_t *child)
+{
+    while (*height > 0) {
+        struct waiting *top = &stack[*height - 1];
+        int k = lowest_bit(top->met) ^ near;
+        top->met &= top->met - 1;
+        *height -= top->met == 0;
+        if (!reach || top->enter[k] <= *reach) {
+            *child = top->node->child[k];
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Asks `query` of the leaves that `beam` meets, the child in octant `near` first. `*reach` is how
+ * far away boxes are still of use, and visits may shorten it; NULL: all are. Returns true if a
+ * visit did. */
+INLINE bool tree_walk(const struct tree *tree, node_enter *enter, const void *beam, int near,
+                      const float *reach, leaf_visit *visit, void *query,
+                      struct octree_counts *counts)
+{
+    struct waiting stack[TREE_LEVELS]; /* at most one for each level */
+    int height = 0;
+    int32_t child = 0;
+    if (tree->node_count == 0)
+        return false;
+    do {
+        while (child >= 0) {
+            struct waiting *top = &stack[height];
+            const struct node *node = &tree->nodes[child];
+            unsigned met = enter(beam, node, top->enter);
+            counts->node_tests++;
+            if (met == 0)
+                break;
+            top->node = node;
+            top->met = met & (met - 1);
+            height += top->met != 0;
+            child = node->child[lowest_bit(met) ^ near];
+        }
+        if (child < 0) {
+            struct leaf leaf = leaf_of(child);
+            if (visit(query, &tree->records[leaf.first], leaf.count, counts))
+                return true;
+        }
+    } while (take_next(stack, &height, near, reach, &child));
+    return false;
+}
+
+#endif
