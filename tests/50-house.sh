@@ -13,6 +13,7 @@ check "octree/ includes geom/ only" forbidden octree 'rad|mpi|io|tools'
 check "rad/ includes neither mpi/, io/ nor tools/" forbidden rad 'mpi|io|tools'
 check "nor does rad/beyond/" forbidden rad/beyond 'mpi|io|tools'
 check "mpi/ includes neither io/ nor tools/" forbidden mpi 'io|tools'
+check "nor does mpi/beyond/" forbidden mpi/beyond 'io|tools'
 check "io/scene/ includes geom/ only" forbidden io/scene 'octree|rad|mpi|io/run|io/picture|tools'
 check "io/run/ includes neither mpi/, io/picture/ nor tools/" forbidden io/run 'mpi|io/picture|tools'
 check "io/picture/ includes neither mpi/ nor tools/" forbidden io/picture 'mpi|tools'
@@ -22,14 +23,33 @@ house="phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] io/*/*.[ch] 
 mpi_outside=$(grep -lE '<mpi\.h>|\bMPI_[A-Z]' $house)
 check "MPI is used in mpi/ only" [ -z "$mpi_outside" ]
 
+# named FILE README: it names the file, with or without its ending.
+named() {
+    name=$(basename "$1")
+    grep -qF -e "\`$name\`" -e "\`${name%.*}\`" "$2"
+}
+
 missing=
-for file in $house mpi/*.[ch] mpi/serial/*.h tests/*.[ch] tests/*.sh tests/*/*.[ch] tests/*/*/*.c \
-    tests/bench/* scenes/*; do
-    stem=$(echo "$file" | sed 's/\.[ch]$//')
-    grep -q "\`$stem" README.md || grep -q "\`$(basename "$stem")" README.md ||
+for file in $house mpi/*.[ch] mpi/beyond/*.[ch] scenes/* docs/*; do
+    [ "$file" = phr.c ] || [ "$(basename "$file")" = README.md ] || named "$file" "$(dirname "$file")/README.md" ||
         missing="$missing $file"
 done
-check "the README's file map has every file:$missing" [ -z "$missing" ]
+for file in tests/*.[ch] tests/*.sh tests/*.csv tests/*/*.[ch] tests/*/*/*.c tests/bench/*; do
+    named "$file" tests/README.md || missing="$missing $file"
+done
+check "each folder's README has every file:$missing" [ -z "$missing" ]
+
+gone=
+for folder in geom octree rad rad/beyond mpi mpi/beyond io/scene io/run io/picture tools; do
+    for name in $(sed -n 's/^| `\([^`]*\)`.*/\1/p' "$folder/README.md"); do
+        ls "$folder/$name".[ch] >/dev/null 2>&1 || gone="$gone $folder/$name"
+    done
+done
+check "and none that is not there:$gone" [ -z "$gone" ]
+
+missing=$(git ls-files 2>/dev/null | sed -n 's,/.*,,p' | sort -u | while read -r folder; do
+    grep -qF "\`$folder/" README.md || echo "$folder"; done)
+check "the README has every folder: $missing" [ -z "$missing" ]
 
 $MPIEXEC -n 2 ./phr scenes/cornell.obj --view scenes/cornell.view >"$work/summary" 2>/dev/null
 missing=$(while IFS= read -r line; do grep -qxF -- "$line" README.md || echo "$line"; done <"$work/summary")
