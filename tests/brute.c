@@ -63,12 +63,13 @@ static bool is_blocked_by(const struct octree *octree, int32_t t, struct vec3 fr
 bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct vec3 to,
                            const int32_t own[2], int32_t *guess, struct octree_counts *counts)
 {
-    bool blocked = false;
-    (void)guess;
     counts->rays++;
-    for (int32_t t = 0; t < octree->count && !blocked; t++)
-        blocked = t != own[0] && t != own[1] && is_blocked_by(octree, t, from, to);
-    return blocked;
+    for (int32_t t = 0; t < octree->count; t++)
+        if (t != own[0] && t != own[1] && is_blocked_by(octree, t, from, to)) {
+            *guess = t;
+            return true;
+        }
+    return false;
 }
 
 unsigned octree_block(const struct octree *octree, const struct bundle *bundle, int32_t *guess,
