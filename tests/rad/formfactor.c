@@ -469,7 +469,7 @@ static void test_claims(void)
 
 /* --- points to polygons --- */
 
-/* Two triangles, F from the first to the second (tests/formfactors.csv,
+/* Two triangles, F from the first to the second (tools/cases.c,
  * exact to 15 digits), and how far the form factor from the twelve points of the
  * smaller one is off: measured, and a quarter more. */
 struct known {

@@ -1,15 +1,13 @@
-/* Tests of tools/contour.h: a table of exact values, closed forms of rectangles in any place, and
- * identities: rows of closed solids add up to 1, parts add up to the whole, no order of arguments,
- * no motion and no unit matters.
- *
- * The table, tests/formfactors.csv, was computed with 30 digits and more: id, description, then for
- * each polygon its number of corners and their coordinates, then F from the first to the second. */
+/* Tests of tools/contour.h: the table of exact values (tools/cases.c), closed forms of rectangles
+ * in any place, and identities: rows of closed solids add up to 1, parts add up to the whole, no
+ * order of arguments, no motion and no unit matters. */
 #include "tools/contour.h"
 
 #include <string.h>
 
 #include "tests/scenes.h"
 #include "tests/tap.h"
+#include "tools/cases.h"
 #include "tools/gauss.h"
 
 static const long double PI = 3.14159265358979323846264338327950288L;
@@ -75,41 +73,19 @@ static void tally_ok(const struct tally *tally, const char *name)
 
 /* --- the table --- */
 
-static struct polygon read_polygon(char **at)
-{
-    struct polygon polygon = {.count = (int32_t)strtol(*at, at, 10)};
-    for (int32_t k = 0; k < polygon.count && k < CORNERS; k++) {
-        double x[3];
-        for (int c = 0; c < 3; c++)
-            x[c] = strtod(*at + 1, at);
-        polygon.corner[k] = point(x[0], x[1], x[2]);
-    }
-    ++*at;
-    return polygon;
-}
-
 static void test_table(void)
 {
-    FILE *file = fopen("tests/formfactors.csv", "r");
-    char line[2000];
-    int count = 0;
-    if (!tap_ok(file && fgets(line, sizeof line, file), "tests/formfactors.csv"))
-        return;
-    while (fgets(line, sizeof line, file)) {
-        char *description = strchr(line, ',');
-        char *at = description ? strchr(description + 1, ',') : NULL;
-        if (!at)
-            continue;
-        *at++ = '\0';
-        struct polygon a = read_polygon(&at), b = read_polygon(&at);
-        double area = area_of(&a), right = strtod(at, NULL), value = exchange_of(&a, &b) / area;
+    for (int i = 0; i < PAIR_CASE_COUNT; i++) {
+        const struct pair_case *pair = &PAIR_CASES[i];
+        const struct vec3 *a = pair->corner[0], *b = pair->corner[1];
+        double area = polygon_area(a, pair->count[0]);
+        double value = polygon_exchange(a, pair->count[0], b, pair->count[1]);
         struct tally tally = {0.0, 0};
-        tally_add(&tally, value * area, right * area, fmin(area, area_of(&b)));
-        tap_ok(tally.worst <= 1.0, "%s: F = %.12g, off by %.1e", line, value, value - right);
-        count++;
+        tally_add(&tally, value, pair->factor * area,
+                  fmin(area, polygon_area(b, pair->count[1])));
+        tap_ok(tally.worst <= 1.0, "%s: F = %.12g, off by %.1e", pair->id, value / area,
+               value / area - pair->factor);
     }
-    fclose(file);
-    tap_ok(count == 48, "48 rows");
 }
 
 /* --- rectangles in closed form --- */
