@@ -23,7 +23,7 @@
 
 #include <math.h>
 
-static const double PI = 3.14159265358979323846;
+#include "geom/vec.h"
 
 /* atan(k / 8). */
 static const double ANGLES[9] = {

@@ -38,8 +38,6 @@
 
 #include "geom/elementary.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* Size over distance up to which seven points do. */
 static const double FAR = 0.06;
 

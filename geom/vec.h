@@ -1,4 +1,4 @@
-/* Vectors of three doubles and colours of three bands.
+/* Vectors of three doubles, colours of three bands, and pi.
  *
  * Only + - * / and sqrt: all of them are exactly rounded by IEEE 754, so every machine
  * computes the same bits (the build forbids fused multiply-add with -ffp-contract=off). */
@@ -6,6 +6,8 @@
 #define GEOM_VEC_H
 
 #include <math.h>
+
+static const double PI = 3.14159265358979323846;
 
 struct vec3 {
     double x, y, z;

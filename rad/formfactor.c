@@ -31,8 +31,6 @@ enum { SUBAREAS = BUNDLE_ENDS, RAYS = BUNDLE_RAYS, ALL_RAYS = (1 << RAYS) - 1 };
 /* Segments from a sub-area to the one of the same number. */
 #define DIAGONAL 0x8421u
 
-static const double PI = 3.14159265358979323846;
-
 struct facet facet_make(const struct forest *forest, int32_t patch)
 {
     int32_t root = (int32_t)forest->patches[patch].id.root;

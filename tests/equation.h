@@ -14,8 +14,6 @@
 #include "geom/triangle.h"
 #include "tools/gauss.h"
 
-static const double PI = 3.14159265358979323846;
-
 enum { NODES_MAX = 1024, BOUNCES_MAX = 10000 };
 
 struct node {

@@ -46,8 +46,6 @@
 
 enum { CORNERS_MAX = 12 }; /* of a shape; polygons with more are cut into triangles */
 
-static const double PI = 3.14159265358979323846;
-
 /* A polygon, with room for the corners that a cut adds: one for each edge at most. */
 struct shape {
     int32_t count;

@@ -25,8 +25,6 @@
 #include "tools/cases.h"
 #include "tools/contour.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* --- a case, prepared --- */
 
 struct pair {

@@ -120,7 +120,6 @@ static void points_of(const struct piece *piece, uint64_t seed, struct vec3 poin
  * area, so that close ends do not outweigh all others. 0 below a horizon. */
 static double weight_of(const struct piece *p, const struct piece *q, struct vec3 x, struct vec3 y)
 {
-    static const double PI = 3.14159265358979323846;
     struct vec3 d = vec3_sub(y, x);
     double rise_p = vec3_dot(p->facet.plane.normal, d);
     double rise_q = -vec3_dot(q->facet.plane.normal, d); /* r cos theta */

@@ -34,7 +34,6 @@ enum {
     SAMPLES = 16   /* rays along a side of a picture from outside */
 };
 
-static const double PI = 3.14159265358979323846;
 static const double EYE_HEIGHT = 0.6;   /* between floor and ceiling */
 static const double DOWN = 0.2;         /* slope of a view into a room */
 static const double SLOPE[SLOPES] = {-0.8, -0.5, -0.2, 0.1, 0.4};

@@ -8,7 +8,6 @@
 #include <string.h>
 
 
-static const double PI = 3.14159265358979323846;
 static const double MARGIN = 1.04; /* around a framed scene */
 
 /* Pre: 0 < x < pi / 2. */

@@ -521,7 +521,6 @@ float receiver_bare_share(const struct receiver *r)
 double receiver_kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,
                        struct vec3 normal_y)
 {
-    static const double PI = 3.14159265358979323846;
     struct vec3 d = vec3_sub(y, x);
     double d2 = vec3_dot(d, d), rise = vec3_dot(normal_x, d),
            fall = -vec3_dot(normal_y, d);

@@ -24,8 +24,6 @@ static const double LEAST_COSINE = 0.1;
 
 enum { QUARTERINGS = 3 };
 
-static const double PI = 3.14159265358979323846;
-
 /* --- factors --- */
 
 static double factor_of_points(const struct triangle *from, struct vec3 normal,

@@ -9,8 +9,6 @@
 
 #include <math.h>
 
-static const double PI = 3.14159265358979323846;
-
 static struct end end_of_cluster(const struct model *model, int32_t node)
 {
     const struct cluster_light *light = model->clusters;

@@ -27,8 +27,6 @@
 
 enum { SAMPLES = 4, RINGS = 4 };
 
-static const double PI = 3.14159265358979323846;
-
 /* Near ends are sampled by rays from the smaller one, but for a cluster before a larger
  * patch: the exact factor of the patch does as well. */
 bool is_by_rays(const struct meeting *m)

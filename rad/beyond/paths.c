@@ -38,8 +38,6 @@
 #include "geom/hash.h"
 #include "rad/beyond/sequence.h"
 
-static const double PI = 3.141592653589793238;
-
 /* --- numbers in [0, 1) --- */
 
 enum { DIMENSIONS = 7 };

@@ -6,14 +6,13 @@
 #include <math.h>
 
 #include "tests/random.h"
+#include "geom/vec.h"
 #include "tests/tap.h"
 
 enum { ARGUMENTS = 1000000 };
 
 /* What elementary.h promises, and a unit in the last place (2.2e-16 at most) for libm. */
 static const double TOLERANCE = 4.5e-16 + 2.3e-16;
-
-static const double PI = 3.14159265358979323846;
 
 /* Relative, with the smallest normal number as the least unit: below it digits are lost. */
 static double error_of(double value, double right)

@@ -6,8 +6,6 @@
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* Terms of order 1, some ten of them, each with an error of two units in the last place. */
 static const double ROUNDING = 2e-15;
 

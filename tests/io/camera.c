@@ -14,7 +14,6 @@
 #define VIEW "build/camera_test.view"
 #define PLACE "eye 0 0 5\nat 0 0 0\n" /* two lines that every view needs */
 
-static const double PI = 3.14159265358979323846;
 static struct error error;
 
 static bool read_view(const char *text, struct camera *camera)

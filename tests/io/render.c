@@ -134,7 +134,7 @@ static void test_column(void)
         }
     struct solution s = solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
     struct shading *shading = shade_rest(&s);
-    double brightest = 0.5 * 1e4 * 0.16 / (3.14159265358979323846 * (FAR - 1) * (FAR - 1));
+    double brightest = 0.5 * 1e4 * 0.16 / (PI * (FAR - 1) * (FAR - 1));
     double worst = 0.0;
     for (int facet = 6; facet < 10; facet++) /* 300 to 480 degrees */
         for (int k = 1; k < 8; k++) {

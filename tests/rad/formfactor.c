@@ -28,8 +28,6 @@ static struct exchange exchange_of(const struct facet *p, const struct facet *q,
 
 enum { PAIRS = 20000 };
 
-static const double PI = 3.14159265358979323846;
-
 static struct vec3 point(double x, double y, double z)
 {
     return (struct vec3){x, y, z};

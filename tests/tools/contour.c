@@ -10,7 +10,7 @@
 #include "tools/cases.h"
 #include "tools/gauss.h"
 
-static const long double PI = 3.14159265358979323846264338327950288L;
+static const long double LONG_PI = 3.14159265358979323846264338327950288L;
 
 /* What is asked of any value: 1e-11 of the smaller area, and 1e-6 of the value. The sums behind it
  * are right to some 1e-16 of the square of the size: the first is for areas that are thin, down to
@@ -98,7 +98,7 @@ static long double parallel_term(long double x, long double y, long double z)
 {
     long double p = sqrtl(x * x + z * z), q = sqrtl(y * y + z * z);
     return (y * p * atanl(y / p) + x * q * atanl(x / q) -
-            z * z / 2 * logl(x * x + y * y + z * z)) / (2 * PI);
+            z * z / 2 * logl(x * x + y * y + z * z)) / (2 * LONG_PI);
 }
 
 static long double perpendicular_term(long double a, long double b, long double y)
@@ -107,7 +107,7 @@ static long double perpendicular_term(long double a, long double b, long double 
     if (r2 == 0)
         return 0;
     long double angle = k > 0 ? y * k * atanl(y / k) : 0;
-    return (angle - (k2 - y * y) / 4 * logl(r2)) / (2 * PI);
+    return (angle - (k2 - y * y) / 4 * logl(r2)) / (2 * LONG_PI);
 }
 
 /* x0, x1, y0, y1 of the lower rectangle, u0, u1, v0, v1 of the upper one, at distance z. */
@@ -233,7 +233,7 @@ static double hinge_exchange(double length, double angle)
 static void test_hinges(void)
 {
     for (int degrees = 15; degrees < 180; degrees += 15) {
-        double angle = degrees * (double)PI / 180.0, length = 4000.0;
+        double angle = degrees * PI / 180.0, length = 4000.0;
         double once = hinge_exchange(length, angle), twice = hinge_exchange(2.0 * length, angle);
         double each = (twice - once) / length;
         tap_ok(fabs(each - (1.0 - sin(0.5 * angle))) < 1.0 / (length * length),
@@ -389,7 +389,7 @@ static double point_exchange(const struct triangle *t, const struct triangle *u)
     struct vec3 r = vec3_sub(triangle_centroid(u), triangle_centroid(t));
     double r2 = vec3_dot(r, r);
     return 0.25 * vec3_dot(triangle_cross(t), r) * -vec3_dot(triangle_cross(u), r) /
-           ((double)PI * r2 * r2);
+           (PI * r2 * r2);
 }
 
 /* Of triangles of size 1 at distance d all but 1 / d^2 is the exchange of two points; coordinates
@@ -560,11 +560,11 @@ static void test_polygons(void)
      * exchange falls by about twice that, 3.2e-3. */
     struct polygon floor = {.count = 64}, top = {.count = 64};
     for (int k = 0; k < 64; k++) {
-        double angle = 2.0 * (double)PI * k / 64.0;
+        double angle = 2.0 * PI * k / 64.0;
         floor.corner[k] = point(cos(angle), sin(angle), 0);
         top.corner[63 - k] = point(cos(angle), sin(angle), 1);
     }
-    double g = exchange_of(&floor, &top), disks = (double)PI * (3.0 - sqrt(5.0)) / 2.0;
+    double g = exchange_of(&floor, &top), disks = PI * (3.0 - sqrt(5.0)) / 2.0;
     tap_ok(g < disks && g > disks * (1.0 - 3.3e-3), "64 corners for a disk: %.6f of %.6f", g,
            disks);
     tap_ok(polygon_area(ell.corner, 6) == 3.0, "the area of an L");

@@ -76,7 +76,7 @@ static void test_samples(const struct comm *comm, const char *name, struct paint
 /* 5.3: E = pi 1000 F lx there, F here. */
 static void test_area_source(const struct comm *comm)
 {
-    static const double PERCENT = 100.0 / (3.14159265358979323846 * 1000.0); /* of a lux */
+    static const double PERCENT = 100.0 / (PI * 1000.0); /* of a lux */
     static const struct sample lux_wall[] = {{2.75, 32.676898, 0}, {2.25, 75.193925, 0},
         {1.75, 81.323172, 0}, {1.25, 69.060627, 0}, {0.75, 53.403531, 0}, {0.25, 40.001852, 0}};
     static const struct sample lux_floor[] = {{0.25, 61.424099, 0}, {0.75, 79.255157, 0},

@@ -456,7 +456,7 @@ static void test_tiny_light(const char *words)
     for (int i = 0; i < GRID * GRID; i++) {
         double x = 0.9 * ((i % GRID) / (GRID - 1.0) - 0.5), y = 0.9 * ((i / GRID) / (GRID - 1.0) - 0.5);
         double d2 = 0.25 + x * x + y * y;
-        double e = b * size * size * 0.25 / (3.14159265358979323846 * d2 * d2);
+        double e = b * size * size * 0.25 / (PI * d2 * d2);
         double off = fabs(shown_at(&s, shading, 0, 2, point(x, y, 0)) / 0.5 / e - 1.0);
         worst = off <= worst ? worst : off;
         squares += off * off;

@@ -12,7 +12,6 @@
 
 enum { RUNS = 64, SAMPLES = 2048 };
 
-static const double PI = 3.141592653589793238;
 static const struct triangle WHOLE = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 static const struct triangle CENTRE = {{{0.25, 0.25, 0.5}, {0.25, 0.25, 0.5}, {0.25, 0.25, 0.5}}};
 
