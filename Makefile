@@ -10,7 +10,7 @@
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
 #   make growth          docs/growth.csv, docs/growth.svg: rooms of 6,348 to a million triangles
-#   make scaling         docs/scaling.md: seconds on 1, 32 and 1,024 ranks, line by line
+#   make scaling         docs/ranks.md: seconds on 1, 32 and 1,024 ranks, line by line
 #   make prove           what takes longer: errors over six fourfold steps of epsilon; pictures beside the
 #                        path tracer's; kills at forty moments
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
@@ -69,14 +69,15 @@ MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%
           $(SCENE:%=io/scene/%) $(RUN:%=io/run/%) $(PICTURE:%=io/picture/%) $(TOOLS:%=tools/%)
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
-# Unit tests, bottom up; the last four are run with several ranks. Their sources lie in folders, the
-# programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
+# Unit tests, bottom up; the last four are run with several ranks. Their sources lie in
+# folders, the programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
 TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree bundles \
         bicgstab sequence id flux patch compact formfactor link linking cluster node oracle pushpull closure \
         final_gather treecode paths plan balance assign spotcheck \
         text obj ply output store tone image camera viewpoint shading render options progress contour \
         stop norms cie furnace whole stability gaps leaks exchange conjugate exact converge
-vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io tests/tools tests/whole
+vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io tests/tools
+vpath %.c tests/whole
 
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct replay
@@ -127,7 +128,8 @@ $(REPLAYS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/corpus
 $(BUILD)/libphr.a: $(OBJECTS)
 	rm -f $@ && ar rcs $@ $(OBJECTS)
 
-COMPILED = $(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) -MMD -MP -c -o $@ $<
+COMPILED = $(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) $(CPPFLAGS) \
+           -MMD -MP -c -o $@ $<
 
 $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)

@@ -1,5 +1,5 @@
-# The house: layers point one way, MPI stays in mpi/, the README agrees with the program, and
-# install puts things where it should.
+# The house: layers point one way, MPI stays in mpi/, the READMEs agree with the program
+# and its files, and install puts things where it should.
 
 . tests/tap.sh
 
@@ -14,13 +14,15 @@ check "rad/ includes neither mpi/, io/ nor tools/" forbidden rad 'mpi|io|tools'
 check "nor does rad/beyond/" forbidden rad/beyond 'mpi|io|tools'
 check "mpi/ includes neither io/ nor tools/" forbidden mpi 'io|tools'
 check "nor does mpi/beyond/" forbidden mpi/beyond 'io|tools'
-check "io/scene/ includes geom/ only" forbidden io/scene 'octree|rad|mpi|io/run|io/picture|tools'
-check "io/run/ includes neither mpi/, io/picture/ nor tools/" forbidden io/run 'mpi|io/picture|tools'
+check "io/scene/ includes geom/ only" \
+    forbidden io/scene 'octree|rad|mpi|io/run|io/picture|tools'
+check "io/run/ includes neither mpi/, io/picture/ nor tools/" \
+    forbidden io/run 'mpi|io/picture|tools'
 check "io/picture/ includes neither mpi/ nor tools/" forbidden io/picture 'mpi|tools'
 check "tools/ does not include tests/" forbidden tools 'tests'
 
-house="phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] io/*/*.[ch] tools/*.[ch]"
-mpi_outside=$(grep -lE '<mpi\.h>|\bMPI_[A-Z]' $house)
+house="geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] io/*/*.[ch] tools/*.[ch]"
+mpi_outside=$(grep -lE '<mpi\.h>|\bMPI_[A-Z]' phr.c $house)
 check "MPI is used in mpi/ only" [ -z "$mpi_outside" ]
 
 # named FILE README: it names the file, with or without its ending.
@@ -31,25 +33,39 @@ named() {
 
 missing=
 for file in $house mpi/*.[ch] mpi/beyond/*.[ch] scenes/* docs/*; do
-    [ "$file" = phr.c ] || [ "$(basename "$file")" = README.md ] || named "$file" "$(dirname "$file")/README.md" ||
+    folder=$(dirname "$file")
+    [ "$file" = "$folder/README.md" ] || named "$file" "$folder/README.md" ||
         missing="$missing $file"
 done
-for file in tests/*.[ch] tests/*.sh tests/*.csv tests/*/*.[ch] tests/*/*/*.c tests/bench/*; do
+for file in tests/*.[ch] tests/*.sh tests/*.csv tests/*.awk tests/*/*.[ch] tests/*/*/*.c \
+    tests/bench/*; do
     named "$file" tests/README.md || missing="$missing $file"
 done
 check "each folder's README has every file:$missing" [ -z "$missing" ]
 
 gone=
-for folder in geom octree rad rad/beyond mpi mpi/beyond io/scene io/run io/picture tools; do
+for folder in geom octree rad rad/beyond mpi mpi/beyond io/* tools; do
     for name in $(sed -n 's/^| `\([^`]*\)`.*/\1/p' "$folder/README.md"); do
         ls "$folder/$name".[ch] >/dev/null 2>&1 || gone="$gone $folder/$name"
     done
 done
 check "and none that is not there:$gone" [ -z "$gone" ]
 
-missing=$(git ls-files 2>/dev/null | sed -n 's,/.*,,p' | sort -u | while read -r folder; do
-    grep -qF "\`$folder/" README.md || echo "$folder"; done)
+missing=$(git ls-files 2>/dev/null | sed -n 's,/.*,,p' | sort -u |
+    while read -r folder; do grep -qF "\`$folder/" README.md || echo "$folder"; done)
 check "the README has every folder: $missing" [ -z "$missing" ]
+
+# Names in backquotes that match PATTERN, of the README and of docs/.
+quoted() {
+    grep -ohE "\`$1\`" README.md docs/*.md | tr -d '\`' | sort -u
+}
+gone=$(quoted '[a-z0-9_]+[a-z0-9_./-]*/[a-z0-9_.-]+\.(c|h|sh|md|obj|view|csv)' |
+    grep -v '^build/' | while read -r file; do [ -e "$file" ] || echo "$file"; done)
+check "the files that README and docs/ name are there: $gone" [ -z "$gone" ]
+gone=$(quoted '[a-z0-9_]+\(\)' | while read -r name; do
+    grep -qE "^[a-z].*\b${name%()}\(" phr.c $house mpi/*.c mpi/beyond/*.c ||
+        echo "$name"; done)
+check "and the functions: $gone" [ -z "$gone" ]
 
 $MPIEXEC -n 2 ./phr scenes/cornell.obj --view scenes/cornell.view >"$work/summary" 2>/dev/null
 missing=$(while IFS= read -r line; do grep -qxF -- "$line" README.md || echo "$line"; done <"$work/summary")

@@ -1,6 +1,6 @@
-/* Linked to a phr that is compiled with -finstrument-functions: writes the chain of calls from
- * main() to the first call of one function, an address a line, main() first. The environment
- * names the address of that function, FACTOR_AT, and the file, CHAIN. */
+/* Linked to a phr that is compiled with -finstrument-functions: writes the chain of calls
+ * from main() to the first call of one function, an address a line, main() first. The
+ * environment names the address of that function, FACTOR_AT, and the file, CHAIN. */
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>

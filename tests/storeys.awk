@@ -1,5 +1,6 @@
-# Reads C files and prints figures of them: "what" per 1,000 words of comments, structs with more
-# than 16 fields, structs whose name is defined twice, circles of includes within a folder.
+# Reads C files and prints figures of them: "what" per 1,000 words of comments, structs
+# with more than 16 fields, structs whose name is defined twice, circles of includes in
+# a folder.
 #
 #   awk -f tests/storeys.awk FILE.[ch]...
 

@@ -1,4 +1,4 @@
-# The tables of README.md out of docs/chart.csv.
+# The tables of docs/accuracy.md out of docs/chart.csv.
 #
 # Seconds for a leaf error: interpolated on the curve in logarithms; one that zigzags is read
 # where it comes down for good. The path tracer's are for the leaves of phr's runs: its

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Speed against error: docs/chart.csv, the tables of README.md on stdout and, where gnuplot
+# Speed against error: docs/chart.csv, the tables of docs/accuracy.md on stdout and, where gnuplot
 # is installed, docs/chart-leaf.svg and docs/chart-shown.svg.
 #
 #   make chart

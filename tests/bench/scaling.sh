@@ -15,7 +15,7 @@
 set -eu
 : "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${ROOM:=100000}" "${EPSILON:=1e-3}"
 : "${PAPER_ROOM:=2000}" "${PAPER_EPSILON:=1e-3}" "${RANKS:=32}"
-: "${TURNS:=1 2 3}" "${OUT:=docs/scaling.md}"
+: "${TURNS:=1 2 3}" "${OUT:=docs/ranks.md}"
 work=$BUILD/scaling
 mkdir -p "$work"
 cp scenes/room.mtl "$work"
