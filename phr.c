@@ -104,12 +104,12 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
                          const struct scene_repairs *prepared)
 {
     const char *path = run->options.scene;
-    if (read->missing_libraries > 0)
+    if (read->libraries.count > 0)
         say(run, "%s: warning: %lld material file(s) missing (first: %s)", path,
-            (long long)read->missing_libraries, read->first_library);
-    if (read->missing_materials > 0)
+            (long long)read->libraries.count, read->libraries.first);
+    if (read->materials.count > 0)
         say(run, "%s: warning: %lld material(s) without a definition, taken as grey (first: %s)",
-            path, (long long)read->missing_materials, read->first_material);
+            path, (long long)read->materials.count, read->materials.first);
     if (read->transparent > 0)
         say(run, "%s: warning: %lld transparent material(s) (d or Tr), taken as opaque", path,
             (long long)read->transparent);

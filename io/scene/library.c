@@ -89,7 +89,7 @@ static char *next_name(char **rest)
 }
 
 bool library_read(struct mtl_table *table, struct text_names *tried, const struct text *obj,
-                  char *rest, struct obj_repairs *repairs, struct error *error)
+                  char *rest, struct text_missing *lost, struct error *error)
 {
     struct search search = {table, tried, obj, error};
     char *whole = text_trim(rest);
@@ -100,14 +100,14 @@ bool library_read(struct mtl_table *table, struct text_names *tried, const struc
         return false;
     bool is_list = strpbrk(whole, " \t") != NULL;
     if (missing && !is_list)
-        obj_note_missing(&repairs->missing_libraries, repairs->first_library, whole);
+        text_missing_add(lost, whole);
     if (!missing || !is_list)
         return true;
     for (char *name; (name = next_name(&whole)) != NULL;) {
         if (!try_name(&search, name, &missing))
             return false;
         if (missing)
-            obj_note_missing(&repairs->missing_libraries, repairs->first_library, name);
+            text_missing_add(lost, name);
     }
     return true;
 }

@@ -67,12 +67,6 @@ static const double DIRECTION_MIN = 1e-100;
 
 static const char DEFAULT_GROUP[] = "default";
 
-void obj_note_missing(int64_t *counter, char first[OBJ_NAME], const char *name)
-{
-    if (++*counter == 1)
-        snprintf(first, OBJ_NAME, "%s", name);
-}
-
 static bool read_vertex(struct obj_reader *reader, char *rest)
 {
     double value[3];
@@ -267,7 +261,7 @@ static bool read_line(struct obj_reader *reader, char *line)
         return read_face(reader, line);
     if (strcmp(keyword, "mtllib") == 0)
         return library_read(&reader->materials, &reader->libraries, &reader->text, line,
-                            reader->repairs, reader->error);
+                            &reader->repairs->libraries, reader->error);
     if (strcmp(keyword, "o") == 0 || strcmp(keyword, "g") == 0)
         return read_group(reader, line);
     if (strcmp(keyword, "usemtl") == 0)
@@ -300,8 +294,7 @@ static int32_t number_materials(const struct obj_reader *reader, int32_t *number
         number[i] = count;
         count += entry->used;
         if (entry->used && !entry->defined)
-            obj_note_missing(&repairs->missing_materials, repairs->first_material,
-                             reader->materials.names.name[i]);
+            text_missing_add(&repairs->materials, reader->materials.names.name[i]);
         repairs->transparent += entry->used && entry->transparent;
         repairs->textured += entry->used && entry->textured;
     }

@@ -18,23 +18,16 @@
 #include "geom/scene.h"
 #include "io/scene/text.h"
 
-enum { OBJ_NAME = 128 }; /* bytes of a name in a message */
-
 /* What was read with a repair, for one warning per kind. */
 struct obj_repairs {
-    int64_t missing_materials; /* names used but defined nowhere: neutral grey instead */
-    int64_t missing_libraries; /* mtllib files that could not be opened */
-    char first_material[OBJ_NAME]; /* the first such names, for the messages */
-    char first_library[OBJ_NAME];
+    struct text_missing materials; /* names used but defined nowhere: neutral grey instead */
+    struct text_missing libraries; /* mtllib files that could not be opened */
     int64_t bad_normals;       /* corners of faces whose vn is absent or has no direction: none */
     int64_t transparent;       /* used materials with d or Tr for transparency: opaque */
     int64_t textured;          /* used materials with map_Kd: of one colour */
     int64_t unknown_lines;     /* lines with keywords that are not known: passed over */
     long first_unknown;        /* the number of the first such line */
 };
-
-/* Counts what is missing; the first name is kept, cut if it is long. */
-void obj_note_missing(int64_t *counter, char first[OBJ_NAME], const char *name);
 
 /* Reads `path` and the material libraries that it names (relative to it).
  * Returns a scene that is not prepared yet (positions in input units), or NULL with `error`

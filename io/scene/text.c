@@ -280,6 +280,12 @@ bool text_integer(const char **cursor, int64_t *value)
     return true;
 }
 
+void text_missing_add(struct text_missing *missing, const char *name)
+{
+    if (missing->count++ == 0)
+        snprintf(missing->first, sizeof missing->first, "%s", name);
+}
+
 static uint64_t hash(const char *name)
 {
     uint64_t sum = UINT64_C(14695981039346656037);

@@ -61,6 +61,14 @@ bool text_number(const struct text *text, const char *word, double *value,
  * +-10^18 the value stays at a number of that size. */
 bool text_integer(const char **cursor, int64_t *value);
 
+/* Names that are looked for in vain. Starts as {0}. */
+struct text_missing {
+    int64_t count;
+    char first[128]; /* the first such name, cut if it is long, for a message */
+};
+
+void text_missing_add(struct text_missing *missing, const char *name);
+
 /* Different names, numbered 0, 1, 2, ... in the order in which they were added. Starts as {0}. */
 struct text_names {
     char **name;       /* [count] */

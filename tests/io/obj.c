@@ -325,8 +325,8 @@ static void test_materials(void)
     tap_ok(colour_is(material_at(scene, 7)->reflectance, 0, 0, 0) &&
                colour_is(material_at(scene, 7)->emission, 3, 3, 3),
            "the later of two definitions counts");
-    tap_ok(repairs.missing_materials == 0 && repairs.missing_libraries == 0 &&
-               repairs.first_material[0] == '\0' && repairs.first_library[0] == '\0',
+    tap_ok(repairs.materials.count == 0 && repairs.libraries.count == 0 &&
+               repairs.materials.first[0] == '\0' && repairs.libraries.first[0] == '\0',
            "nothing is missing");
     scene_destroy(scene);
 }
@@ -357,8 +357,8 @@ static void test_missing(void)
     struct scene *scene =
         read_scene(CORNERS "usemtl none\nf 1 2 3\nusemtl nothing\nf 1 2 3\nusemtl none\nf 1 2 3\n"
                            "usemtl no face\n");
-    tap_ok(scene && repairs.missing_materials == 2 && repairs.missing_libraries == 0 &&
-               strcmp(repairs.first_material, "none") == 0,
+    tap_ok(scene && repairs.materials.count == 2 && repairs.libraries.count == 0 &&
+               strcmp(repairs.materials.first, "none") == 0,
            "a missing material counts once for its name");
     tap_ok(scene && colour_is(material_at(scene, 1)->reflectance, 0.5, 0.5, 0.5) &&
                colour_is(material_at(scene, 1)->emission, 0, 0, 0),
@@ -366,9 +366,9 @@ static void test_missing(void)
     scene_destroy(scene);
     scene = read_scene("mtllib nowhere.mtl\nmtllib nowhere.mtl\nmtllib\nmtllib .\n" CORNERS
                        "usemtl none\nf 1 2 3\n");
-    tap_ok(scene && repairs.missing_libraries == 2 && repairs.missing_materials == 1 &&
-               strcmp(repairs.first_material, "none") == 0 &&
-               strcmp(repairs.first_library, "nowhere.mtl") == 0,
+    tap_ok(scene && repairs.libraries.count == 2 && repairs.materials.count == 1 &&
+               strcmp(repairs.materials.first, "none") == 0 &&
+               strcmp(repairs.libraries.first, "nowhere.mtl") == 0,
            "a missing library counts once for its name");
     scene_destroy(scene);
 }
@@ -378,7 +378,7 @@ static void check_libraries(const char *name, const char *line, int64_t missing)
     char text[400];
     snprintf(text, sizeof text, "%s\n" CORNERS "usemtl one\nf 1 2 3\nusemtl two\nf 1 2 3\n", line);
     struct scene *scene = read_scene(text);
-    tap_ok(scene && repairs.missing_libraries == missing && repairs.missing_materials == 0 &&
+    tap_ok(scene && repairs.libraries.count == missing && repairs.materials.count == 0 &&
                colour_is(material_at(scene, 0)->reflectance, 0.125, 0.125, 0.125) &&
                colour_is(material_at(scene, 1)->reflectance, 0.25, 0.25, 0.25),
            "%s", name);
@@ -423,7 +423,7 @@ static void test_many_names(void)
     bool right = scene && scene->input_count == NAMES && scene->material_count == NAMES;
     for (int i = 0; i < NAMES && right; i++)
         right = material_at(scene, i)->reflectance.band[2] == i;
-    tap_ok(right && repairs.missing_materials == 0, "%d materials", (int)NAMES);
+    tap_ok(right && repairs.materials.count == 0, "%d materials", (int)NAMES);
     scene_destroy(scene);
     alloc_free(text);
     alloc_free(library);
