@@ -46,12 +46,6 @@ struct request {
     bool help, version;
 };
 
-static bool ends_with(const char *path, const char *suffix)
-{
-    size_t length = strlen(path), tail = strlen(suffix);
-    return length > tail && strcmp(path + length - tail, suffix) == 0;
-}
-
 /* Where the option's number goes; NULL if it has none. */
 static double *number_of(struct request *request, const char *name)
 {
@@ -73,8 +67,8 @@ static bool set_option(struct request *request, const char *name, const char *va
         return error_set(error, EXIT_USAGE, "unknown option %s; see --help", name);
     if (!value)
         return error_set(error, EXIT_USAGE, "%s needs a value", name);
-    if (output && !ends_with(value, ".pfm") && !ends_with(value, ".ppm") &&
-        !ends_with(value, ".ply"))
+    if (output && !text_ends_with(value, ".pfm") && !text_ends_with(value, ".ppm") &&
+        !text_ends_with(value, ".ply"))
         return error_set(error, EXIT_USAGE, "-o %s: the name must end in .pfm, .ppm or .ply", value);
     if (output)
         request->output = value;
@@ -139,7 +133,7 @@ static bool passes(const struct request *request, const struct difference *diffe
 static bool write_map(const struct request *request, const struct image *map, double largest,
                       struct error *error)
 {
-    if (ends_with(request->output, ".pfm"))
+    if (text_ends_with(request->output, ".pfm"))
         return pfm_write(map, request->output, error);
     struct tone tone = tone_make(largest > 0.0 ? 1.0 / largest : 1.0);
     return ppm_write(map, &tone, request->output, error);
@@ -149,7 +143,7 @@ static bool write_map(const struct request *request, const struct image *map, do
  * what concerns pixels. */
 static bool check_output(const struct request *request, bool meshes, struct error *error)
 {
-    if (request->output && ends_with(request->output, ".ply") != meshes)
+    if (request->output && text_ends_with(request->output, ".ply") != meshes)
         return error_set(error, EXIT_USAGE, "-o %s: the difference of %s", request->output,
                          meshes ? "meshes is a mesh (.ply)" : "pictures is a picture");
     if (meshes && (request->blocks > 1.0 || request->below < HUGE_VAL))

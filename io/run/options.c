@@ -76,21 +76,17 @@ static const struct option *find_option(const char *name)
     return NULL;
 }
 
-static bool has_suffix(const char *path, const char *suffix)
-{
-    size_t length = strlen(path), tail = strlen(suffix);
-    return length > tail && strcmp(path + length - tail, suffix) == 0;
-}
-
 enum output_format output_format_of(const char *path)
 {
-    return has_suffix(path, ".pfm") ? FORMAT_PFM : has_suffix(path, ".ply") ? FORMAT_PLY
-                                                                             : FORMAT_PPM;
+    if (text_ends_with(path, ".pfm"))
+        return FORMAT_PFM;
+    return text_ends_with(path, ".ply") ? FORMAT_PLY : FORMAT_PPM;
 }
 
 static bool add_output(struct options *options, const char *path, struct error *error)
 {
-    if (!has_suffix(path, ".ppm") && !has_suffix(path, ".pfm") && !has_suffix(path, ".ply"))
+    if (!text_ends_with(path, ".ppm") && !text_ends_with(path, ".pfm") &&
+        !text_ends_with(path, ".ply"))
         return error_set(error, EXIT_USAGE, "-o %s: the name must end in .ppm, .pfm or .ply", path);
     options->outputs[options->output_count++] = path;
     return true;

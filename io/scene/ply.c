@@ -11,7 +11,6 @@
  * expects, half. Alpha is passed over: surfaces are opaque. */
 #include "io/scene/ply.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -20,6 +19,7 @@
 #include "geom/stop.h"
 #include "io/scene/palette.h"
 #include "io/scene/plyfile.h"
+#include "io/scene/text.h"
 
 enum {
     COUNT_MAX = (1 << 30) - 1, /* vertices; triangles, which with their twins fit an int32_t */
@@ -249,21 +249,10 @@ struct scene *ply_read(const char *path, struct error *error)
     return ply_file_load(&binary, path, error) ? ply_of_binary(&binary, error) : NULL;
 }
 
-static bool has_suffix(const char *path, const char *suffix)
-{
-    size_t length = strlen(path), tail = strlen(suffix);
-    const char *end = length > tail ? path + length - tail : "";
-    while (*end && tolower((unsigned char)*end) == *suffix) {
-        end++;
-        suffix++;
-    }
-    return length > tail && *end == '\0';
-}
-
 bool ply_is_meant(const char *path)
 {
-    if (has_suffix(path, ".ply") || has_suffix(path, ".obj"))
-        return has_suffix(path, ".ply");
+    if (text_ends_with(path, ".ply") || text_ends_with(path, ".obj"))
+        return text_ends_with(path, ".ply");
     char start[5] = "";
     FILE *file = fopen(path, "rb");
     bool seen = file && fseek(file, 0, SEEK_SET) == 0 && fread(start, 1, 4, file) == 4;

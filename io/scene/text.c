@@ -14,10 +14,11 @@
  * first; it follows the locale, which the program never sets. sscanf was rejected: its behaviour
  * on overflow is undefined.
  *
- * Names are found by hashing (FNV-1a, linear probing): a list searched from the start takes a
+ * Names are found by hashing (linear probing): a list searched from the start takes a
  * time that is quadratic in the number of materials, and a file can have a million. */
 #include "io/scene/text.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -26,6 +27,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/hash.h"
 #include "geom/stop.h"
 
 enum { BLOCK = 65536 };
@@ -286,19 +288,22 @@ void text_missing_add(struct text_missing *missing, const char *name)
         snprintf(missing->first, sizeof missing->first, "%s", name);
 }
 
-static uint64_t hash(const char *name)
+bool text_ends_with(const char *path, const char *suffix)
 {
-    uint64_t sum = UINT64_C(14695981039346656037);
-    for (; *name; name++)
-        sum = (sum ^ (unsigned char)*name) * UINT64_C(1099511628211);
-    return sum ^ sum >> 32;
+    size_t length = strlen(path), tail = strlen(suffix);
+    const char *end = length > tail ? path + length - tail : "";
+    while (*end && tolower((unsigned char)*end) == *suffix) {
+        end++;
+        suffix++;
+    }
+    return length > tail && *end == '\0';
 }
 
 /* The slot of a name, or the empty one where it belongs. */
 static int32_t *find_slot(const struct text_names *names, const char *name)
 {
     uint64_t mask = (uint64_t)names->slot_count - 1;
-    uint64_t at = hash(name) & mask;
+    uint64_t at = hash_bytes(HASH_START, name, strlen(name)) & mask;
     while (names->slots[at] && strcmp(names->name[names->slots[at] - 1], name) != 0)
         at = (at + 1) & mask;
     return &names->slots[at];

@@ -61,6 +61,10 @@ bool text_number(const struct text *text, const char *word, double *value,
  * +-10^18 the value stays at a number of that size. */
 bool text_integer(const char **cursor, int64_t *value);
 
+/* True if the name of a file ends in a suffix such as ".ply" (in small letters), in letters of
+ * either size, and has something before it. */
+bool text_ends_with(const char *path, const char *suffix);
+
 /* Names that are looked for in vain. Starts as {0}. */
 struct text_missing {
     int64_t count;

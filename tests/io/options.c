@@ -74,7 +74,7 @@ static void test_outputs(void)
            "-o, three times");
     options_free(&options);
     tap_ok(!options.outputs, "options_free() forgets the outputs");
-    tap_ok(output_format_of("a.ppm") == FORMAT_PPM && output_format_of("a.ppm.pfm") == FORMAT_PFM &&
+    tap_ok(output_format_of("a.PPM") == FORMAT_PPM && output_format_of("a.ppm.pfm") == FORMAT_PFM &&
                output_format_of("d.ppm/a.ply") == FORMAT_PLY,
            "the suffix is the format");
 }
@@ -477,7 +477,7 @@ static void test_settings(void)
 
 static void test_bad_suffixes(void)
 {
-    static const char *const names[] = {"a", "a.png", "a.PPM", "a.ppm.gz", ".ppm", "ppm", "a.ppm/"};
+    static const char *const names[] = {"a", "a.png", "a.ppm.gz", ".ppm", "ppm", "a.ppm/"};
     char line[50], message[100];
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         snprintf(line, sizeof line, "a.obj -o %s", names[i]);
