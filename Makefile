@@ -56,7 +56,7 @@ OCTREE = build bundle hit octree segment shaft
 RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/gather_wide beyond/lamps beyond/node \
       beyond/node_exchange beyond/node_link beyond/paths beyond/sequence beyond/closure beyond/conjugate beyond/snapshot flux formfactor id link \
       linking model oracle patch pushpull sample treecode
-MPI = assign balance beyond/accuracy beyond/closing beyond/final_gather beyond/gather_mesh beyond/keep beyond/spotcheck \
+MPI = assign balance beyond/accuracy beyond/balance beyond/closing beyond/final_gather beyond/gather_mesh beyond/keep beyond/spotcheck \
       broadcast comm funnel gather ledger linking memory migrate \
       node picture plan refinement routes scatter signals solve solver vote
 SCENE = binary camera library mtl obj palette ply plyfile text

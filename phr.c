@@ -313,6 +313,14 @@ static bool load_snapshot(struct run *run, enum store_kind kind, const char *pat
 
 /* --- the algorithm --- */
 
+/* What a rank has done of a level. */
+static void report_share(struct run *run, int rank, const struct level_share *share)
+{
+    say(run, "  rank %d: load %lld, sent %lld links, received %lld; work predicted %lld, done %lld",
+        rank, (long long)share->load, (long long)share->sent, (long long)share->received,
+        (long long)share->predicted, (long long)share->done);
+}
+
 /* Collective. With --verbose, the levels of refinement since `first`. */
 static void report_levels(struct run *run, int64_t first)
 {
@@ -320,9 +328,11 @@ static void report_levels(struct run *run, int64_t first)
         ledger_share(&run->solver->account.ledger, &run->comm);
     for (int64_t i = first; i < run->solver->account.ledger.level_count && run->options.verbose; i++) {
         const struct level_balance *level = &run->solver->account.ledger.levels[i];
-        say(run, "iteration %lld, level %lld: %lld links split, most work %.3f of the mean",
+        say(run, "pass %lld, level %lld: %lld links split, most work %.3f of the mean",
             (long long)level->iteration, (long long)level->level, (long long)level->links,
             level->work_mean > 0.0 ? level->work_max / level->work_mean : 1.0);
+        for (int r = 0; r < run->comm.size && run->comm.size > 1; r++)
+            report_share(run, r, &level->shares[r]);
     }
 }
 

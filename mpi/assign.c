@@ -3,20 +3,58 @@
  * decides and informs the others; here everyone has the weights and decides alike. */
 #include "mpi/assign.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 
 #include "geom/alloc.h"
-#include "mpi/balance.h"
 
-/* Push-pull and a step of the solver take as long for a patch as light over so many links. */
-enum { LINKS_PER_OWN = 7 };
+/* A heap of ranks, the smallest load on top. */
+struct heap {
+    int *ranks; /* [count] */
+    int count;
+    const int64_t *loads;
+};
 
-/* Itself, and by its part of the area as many patches more as there are roots. */
-int64_t root_weight(const struct model *model, int32_t root)
+static bool goes_before(const struct heap *heap, int a, int b)
 {
-    double share = scene_root_area(model->scene, root) / model->area;
-    return LINKS_PER_OWN + (int64_t)(LINKS_PER_OWN * share * scene_root_count(model->scene));
+    int64_t x = heap->loads[a], y = heap->loads[b];
+    return x != y ? x < y : a < b;
 }
+
+static void sink(struct heap *heap, int at)
+{
+    for (int child = 2 * at + 1; child < heap->count; child = 2 * at + 1) {
+        if (child + 1 < heap->count &&
+            goes_before(heap, heap->ranks[child + 1], heap->ranks[child]))
+            child++;
+        int rank = heap->ranks[at], below = heap->ranks[child];
+        if (!goes_before(heap, below, rank))
+            return;
+        heap->ranks[at] = below;
+        heap->ranks[child] = rank;
+        at = child;
+    }
+}
+
+static void deal_items(const int64_t *costs, int64_t count, int64_t *loads, int ranks,
+                int *owner)
+{
+    struct heap heap = {.ranks = alloc_array((size_t)ranks, sizeof *heap.ranks),
+                        .count = ranks,
+                        .loads = loads};
+    for (int r = 0; r < ranks; r++)
+        heap.ranks[r] = r;
+    for (int at = ranks / 2; at >= 0; at--)
+        sink(&heap, at);
+    for (int64_t i = 0; i < count; i++) {
+        owner[i] = heap.ranks[0];
+        loads[owner[i]] += costs[i];
+        sink(&heap, 0);
+    }
+    alloc_free(heap.ranks);
+}
+
+/* --- roots --- */
 
 struct candidate {
     int64_t weight;
@@ -42,7 +80,7 @@ void roots_assign(const int64_t *weights, int32_t roots, int ranks, int *owner)
     qsort(candidates, (size_t)roots, sizeof *candidates, compare_candidates);
     for (int32_t i = 0; i < roots; i++)
         sorted[i] = candidates[i].weight;
-    items_deal(sorted, roots, sums, ranks, homes);
+    deal_items(sorted, roots, sums, ranks, homes);
     for (int32_t i = 0; i < roots; i++)
         owner[candidates[i].root] = homes[i];
     alloc_free(homes);

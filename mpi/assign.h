@@ -2,10 +2,7 @@
 #ifndef MPI_ASSIGN_H
 #define MPI_ASSIGN_H
 
-#include "rad/model.h"
-
-/* What a root is going to take at its home, in links over which light takes as long. */
-int64_t root_weight(const struct model *model, int32_t root);
+#include <stdint.h>
 
 /* Deals the roots to `ranks` ranks so that the sums of their weights are even: owner[root] is the
  * home of a root. A pure function, so all ranks get the same answer. */

@@ -1,11 +1,10 @@
-/* The ledger: maxima and sums over ranks, of many phases with two exchanges. A phase lasts as long as
- * its slowest rank, so the maxima of all phases together are what a run takes, and the sums over
- * ranks are what there was to do. */
+/* The ledger: the work of all ranks in many phases, told with one exchange. A phase lasts as
+ * long as its slowest rank, so the maxima of all phases together are the time of a run, and
+ * the sums over ranks are the work that there was to do. */
 #include "mpi/ledger.h"
 
 #include "geom/alloc.h"
-
-enum { FIELDS = 4 };
+#include "geom/vec.h"
 
 void ledger_add(struct ledger *ledger, struct phase_work phase)
 {
@@ -14,60 +13,59 @@ void ledger_add(struct ledger *ledger, struct phase_work phase)
     ledger->items[ledger->count++] = phase;
 }
 
-/* Stages of a level follow each other; it lasts as long as all of them. */
-static void add_level(struct ledger *ledger, const struct phase_work *phase, const int64_t *sum,
-                      const int64_t *most, int ranks)
+/* phases[r * stride]: that of rank r. */
+static void add_level(struct ledger *ledger, const struct phase_work *phases,
+                      int64_t stride, int ranks)
 {
-    int64_t count = ledger->level_count;
-    if (count == 0 || ledger->levels[count - 1].iteration != phase->iteration ||
-        ledger->levels[count - 1].level != phase->level) {
-        ledger->levels = alloc_reserve(ledger->levels, &ledger->level_capacity, ++count, sizeof *ledger->levels);
-        ledger->levels[count - 1] = (struct level_balance){.iteration = phase->iteration, .level = phase->level};
-        ledger->level_count = count;
+    struct level_balance level = {.iteration = phases->iteration, .level = phases->level};
+    level.shares = alloc_array((size_t)ranks, sizeof *level.shares);
+    for (int r = 0; r < ranks; r++) {
+        const struct level_share *share = &phases[r * stride].share;
+        level.shares[r] = *share;
+        level.links += share->links;
+        level.predicted_max = real_max(level.predicted_max, (double)share->predicted);
+        level.predicted_mean += (double)share->predicted / ranks;
+        level.work_max = real_max(level.work_max, (double)share->done);
+        level.work_mean += (double)share->done / ranks;
     }
-    struct level_balance *level = &ledger->levels[count - 1];
-    level->links += sum[0];
-    level->predicted_max += (double)most[1];
-    level->predicted_mean += (double)sum[1] / ranks;
-    level->work_max += (double)most[2];
-    level->work_mean += (double)sum[2] / ranks;
+    ledger->levels = alloc_reserve(ledger->levels, &ledger->level_capacity,
+                                   ledger->level_count + 1, sizeof *ledger->levels);
+    ledger->levels[ledger->level_count++] = level;
+}
+
+static void add_sums(struct work_sums *sums, const struct phase_work *phases,
+                     int64_t stride, int ranks)
+{
+    int64_t slowest = 0, bytes = 0;
+    for (int r = 0; r < ranks; r++) {
+        const struct phase_work *phase = &phases[r * stride];
+        sums->all += phase->share.done;
+        slowest = phase->share.done > slowest ? phase->share.done : slowest;
+        bytes = phase->bytes > bytes ? phase->bytes : bytes;
+    }
+    sums->phases++;
+    sums->slowest += slowest;
+    sums->bytes += bytes;
 }
 
 void ledger_share(struct ledger *ledger, const struct comm *comm)
 {
-    size_t count = FIELDS * (size_t)ledger->count;
-    int64_t *own = alloc_array(3 * count, sizeof *own), *sum = own + count, *most = sum + count;
-    for (int64_t i = 0; i < ledger->count; i++) {
-        const struct phase_work *phase = &ledger->items[i];
-        int64_t *at = own + FIELDS * i;
-        at[0] = phase->links;
-        at[1] = phase->predicted;
-        at[2] = phase->work;
-        at[3] = phase->bytes;
-    }
-    MPI_Request request;
-    MPI_Iallreduce(own, sum, comm_count(comm, (int64_t)count), MPI_INT64_T, MPI_SUM, comm->handle,
-                   &request);
-    comm_wait(&request);
-    MPI_Iallreduce(own, most, comm_count(comm, (int64_t)count), MPI_INT64_T, MPI_MAX, comm->handle,
-                   &request);
-    comm_wait(&request);
-    for (int64_t i = 0; i < ledger->count; i++) {
-        const struct phase_work *phase = &ledger->items[i];
-        struct work_sums *sums = &ledger->sums[phase->kind];
-        sums->phases++;
-        sums->all += sum[FIELDS * i + 2];
-        sums->slowest += most[FIELDS * i + 2];
-        sums->bytes += most[FIELDS * i + 3];
-        if (phase->kind == WORK_LINKING || phase->kind == WORK_SPLITTING)
-            add_level(ledger, phase, sum + FIELDS * i, most + FIELDS * i, comm->size);
+    int64_t count = ledger->count;
+    size_t bytes = (size_t)count * sizeof *ledger->items;
+    struct phase_work *all = comm_gather_each(comm, ledger->items, bytes);
+    for (int64_t i = 0; i < count; i++) {
+        add_sums(&ledger->sums[all[i].kind], all + i, count, comm->size);
+        if (all[i].kind == WORK_LINKING || all[i].kind == WORK_SPLITTING)
+            add_level(ledger, all + i, count, comm->size);
     }
     ledger->count = 0;
-    alloc_free(own);
+    alloc_free(all);
 }
 
 void ledger_free(struct ledger *ledger)
 {
+    for (int64_t i = 0; i < ledger->level_count; i++)
+        alloc_free(ledger->levels[i].shares);
     alloc_free(ledger->items);
     alloc_free(ledger->levels);
     *ledger = (struct ledger){0};

@@ -5,19 +5,21 @@
 #include "mpi/comm.h"
 #include "rad/stats.h"
 
-/* One phase on one rank, or a stage of one. All ranks have the same in the same order. */
+/* A phase on one rank; 72 bytes, no padding. All ranks have the same phases in the same
+ * order. */
 struct phase_work {
-    enum work kind;
-    int64_t iteration, level; /* as in struct level_balance */
-    int64_t links, predicted, work;
-    int64_t bytes;            /* that it sent for it */
+    int32_t kind;             /* enum work */
+    int32_t level;            /* of refinement, or 0 */
+    int64_t iteration;        /* or pass, of refinement */
+    struct level_share share; /* its work is `done`; the rest is of refinement and linking */
+    int64_t bytes;            /* that the rank sent for it */
 };
 
 struct ledger {
-    struct phase_work *items; /* [count] not yet known to all ranks */
+    struct phase_work *items; /* [count] phases that not all ranks know yet */
     int64_t count, capacity;
-    struct work_sums sums[WORK_COUNT]; /* of what is known, the same on all ranks */
-    struct level_balance *levels;      /* [level_count] linking and levels of refinement: the same */
+    struct work_sums sums[WORK_COUNT]; /* of phases that all know, the same on all ranks */
+    struct level_balance *levels;      /* [level_count] linking and refinement: the same */
     int64_t level_count, level_capacity;
 };
 

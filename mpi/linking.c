@@ -1,6 +1,6 @@
 /* Steps 2 and 3: initial linking, and the homes of roots and links.
  *
- * With a tree above the roots there is one link to begin with (mpi/refinement.c).
+ * With a tree above the roots there is one link to begin with, on rank 0.
  * Without, pairs of roots are dealt in turn (rad/linking.h) and linked in rounds, by
  * number. Between two rounds all ranks agree whether there is a next one:
  * not if any of them has got a signal, nor if, with a link for each of its pairs, the
@@ -8,12 +8,9 @@
  * that does not depend on the ranks. A rank that has got a signal leaves the rest of its
  * round.
  *
- * Light is transferred over links where they live, so all ranks should have as many that
- * carry light (mpi/migrate.h). The paper (and --balance greedy) deals roots by their
- * areas, and sends each link to the home of one of its two roots, here the lower or the
- * higher one by the parity of i + j; but the areas of roots say little about the number
- * of their links. */
-#include "mpi/beyond/beyond.h"
+ * Roots are dealt by their areas. Each link goes to
+ * the home of one of its two roots, here the lower or the higher one by the parity of
+ * i + j. */
 #include "mpi/assign.h"
 #include "mpi/memory.h"
 #include "mpi/migrate.h"
@@ -90,8 +87,9 @@ static bool link_pairs(struct solver *solver, struct linking *linking)
 bool solver_link_roots(struct solver *solver)
 {
     double start = comm_seconds();
-    if (solver->beyond->tree) {
-        solver_link_top(solver);
+    if (solver->model.clusters) {
+        if (solver->comm->rank == 0) /* the first levels deal what it becomes */
+            link_list_append(&solver->links, node_link_top());
         return true;
     }
     int64_t before = model_work(&solver->model);
@@ -99,8 +97,9 @@ bool solver_link_roots(struct solver *solver)
     struct linking linking = linking_start(&solver->model, &solver->links, comm->rank,
                                            comm->size);
     bool done = link_pairs(solver, &linking);
-    struct phase_work phase = {.kind = WORK_LINKING, .links = solver->links.count,
-                               .work = model_work(&solver->model) - before};
+    struct phase_work phase = {.kind = WORK_LINKING,
+                               .share.links = solver->links.count,
+                               .share.done = model_work(&solver->model) - before};
     ledger_add(&solver->account.ledger, phase);
     linking_end(&linking);
     solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
@@ -120,7 +119,7 @@ static void send_home(struct solver *solver)
         uint32_t a = root_of(solver, link->p), b = root_of(solver, link->q);
         destination[i] = solver->homes.owner[(a ^ b) % 2 == 0 ? a : b];
     }
-    solver->account.bytes_migration += links_migrate(solver, &solver->links, destination);
+    links_migrate(solver, &solver->links, destination);
     alloc_free(destination);
 }
 
@@ -134,18 +133,14 @@ void solver_assign_roots(struct solver *solver)
 {
     double start = comm_seconds();
     int32_t roots = solver->model.forest->root_count;
-    bool greedy = solver->model.criterion.balance == BALANCE_GREEDY;
     int64_t *weights = alloc_array((size_t)roots, sizeof *weights);
     for (int32_t root = 0; root < roots; root++)
-        weights[root] = greedy ? root_area(&solver->model, root)
-                               : root_weight(&solver->model, root);
+        weights[root] = root_area(&solver->model, root);
     roots_assign(weights, roots, solver->comm->size, solver->homes.owner);
     alloc_free(weights);
     for (int32_t root = 0; root < roots; root++)
         solver->homes.own[root] = solver->homes.owner[root] == solver->comm->rank;
-    if (greedy && !solver->beyond->tree) /* clusters have no home */
+    if (!solver->model.clusters) /* clusters have no home */
         send_home(solver);
-    else
-        links_even_out(solver);
     solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
 }

@@ -1,7 +1,7 @@
 /* The memory limit.
  *
  * Links and patches grow; clusters are there from the beginning. Before a level is split,
- * or a stage (mpi/refinement.c), the number of links after it is known within a factor:
+ * the number of links after it is known within a factor:
  * each of the prolific ones becomes four at most (of a cluster with itself, ten), and is
  * there itself until the end; a patch can get four children only once. Whether that fits
  * into the limit is decided from counts over all ranks, so all decide alike, and a limit

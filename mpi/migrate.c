@@ -4,7 +4,6 @@
  * copy of the forest and creates what it lacks; a patch so created has its parent's
  * radiosity, as it has where it was first split, so a link means the same wherever it
  * lives. */
-#include "mpi/balance.h"
 #include "mpi/migrate.h"
 
 #include <string.h>
@@ -76,8 +75,8 @@ static struct wire_link *pack_leaving(const struct solver *solver, struct link_l
     return wire;
 }
 
-int64_t links_migrate(struct solver *solver, struct link_list *list,
-                      const int *destination)
+struct traffic links_migrate(struct solver *solver, struct link_list *list,
+                             const int *destination)
 {
     const struct comm *comm = solver->comm;
     size_t ranks = (size_t)comm->size;
@@ -86,68 +85,16 @@ int64_t links_migrate(struct solver *solver, struct link_list *list,
     comm_count(comm, list->count);
     for (int64_t i = 0; i < list->count; i++)
         counts[destination[i]] += destination[i] != comm->rank;
-    int64_t leaving = comm_displacements(comm, counts, at), arriving;
-    struct wire_link *out = pack_leaving(solver, list, destination, at, leaving);
-    struct wire_link *in = comm_exchange(comm, out, counts, sizeof *out, &arriving);
-    for (int64_t i = 0; i < arriving; i++)
+    struct traffic traffic = {.sent = comm_displacements(comm, counts, at)};
+    struct wire_link *out = pack_leaving(solver, list, destination, at, traffic.sent);
+    struct wire_link *in =
+        comm_exchange(comm, out, counts, sizeof *out, &traffic.received);
+    for (int64_t i = 0; i < traffic.received; i++)
         link_list_append(list, unpack(&solver->model, &in[i]));
+    solver->account.bytes_migration += traffic.sent * (int64_t)sizeof *out;
     alloc_free(in);
     alloc_free(out);
     alloc_free(at);
     alloc_free(counts);
-    return leaving * (int64_t)sizeof *out;
-}
-
-int64_t links_balance(struct solver *solver, struct link_list *list,
-                      int64_t (*load)(const struct link *), const int64_t *loads)
-{
-    int ranks = solver->comm->size;
-    size_t count = (size_t)list->count;
-    int64_t *costs = alloc_array(count, sizeof *costs);
-    int *destination = alloc_array(count, sizeof *destination);
-    struct transfer *plan = alloc_array(2 * (size_t)ranks, sizeof *plan);
-    int planned = plan_transfers(loads, ranks, plan);
-    for (size_t i = 0; i < count; i++)
-        costs[i] = load(&list->items[i]);
-    links_deal_out(costs, list->count, plan, planned, solver->comm->rank, destination);
-    int64_t bytes = links_migrate(solver, list, destination);
-    alloc_free(plan);
-    alloc_free(destination);
-    alloc_free(costs);
-    return bytes;
-}
-
-/* In the transfer of light each link takes as long as any other, if something is seen. */
-static int64_t carries_light(const struct link *link)
-{
-    return link->seen > 0;
-}
-
-/* True if the largest number is above the mean by more than a fiftieth. */
-static bool is_uneven(const int64_t *counts, int ranks)
-{
-    int64_t largest = 0, sum = 0;
-    for (int r = 0; r < ranks; r++) {
-        sum += counts[r];
-        largest = counts[r] > largest ? counts[r] : largest;
-    }
-    return (double)largest * ranks > 1.02 * (double)sum;
-}
-
-/* Waiting for the numbers of all ranks is idle time. */
-void links_even_out(struct solver *solver)
-{
-    int ranks = solver->comm->size;
-    int64_t *here = alloc_array((size_t)ranks, sizeof *here);
-    for (int64_t i = 0; i < solver->links.count; i++)
-        here[solver->comm->rank] += carries_light(&solver->links.items[i]);
-    double start = comm_seconds();
-    comm_add(solver->comm, here, ranks);
-    double counted = comm_seconds();
-    if (is_uneven(here, ranks)) /* the same on all ranks, so all enter */
-        solver->account.bytes_migration +=
-            links_balance(solver, &solver->links, carries_light, here);
-    alloc_free(here);
-    solver->account.seconds[PHASE_IDLE] += counted - start;
-    solver->account.seconds[PHASE_MIGRATION] += comm_seconds() - counted;
+    return traffic;
 }

@@ -4,19 +4,17 @@
 
 #include "mpi/solver.h"
 
-/* Collective. Link i of `list` goes to rank destination[i]; those for this rank stay, in order,
- * in front of those that arrive, in the order of the ranks. Patches that a link needs and this
- * rank lacks are created. Returns the bytes sent to other ranks. */
-int64_t links_migrate(struct solver *solver, struct link_list *list, const int *destination);
+/* Links that a rank sent to others, and got from them. */
+struct traffic {
+    int64_t sent, received;
+};
 
-/* Collective. Evens out what load() says of links by the greedy plan; loads[r] is the sum over the links of
- * rank r. Returns the bytes sent to other ranks. */
-int64_t links_balance(struct solver *solver, struct link_list *list,
-                      int64_t (*load)(const struct link *), const int64_t *loads);
+enum { BYTES_PER_WIRE_LINK = 32 };
 
-/* Collective. Evens out the numbers of links that carry light, if a rank has more of them
- * than the mean by more than a fiftieth: light is transferred over links where they are.
- * */
-void links_even_out(struct solver *solver);
+/* Collective. Link i of `list` goes to rank destination[i]; those for this rank stay, in
+ * order, in front of those that arrive, in the order of the ranks. Patches that a link
+ * needs and this rank lacks are created. */
+struct traffic links_migrate(struct solver *solver, struct link_list *list,
+                             const int *destination);
 
 #endif

@@ -56,6 +56,7 @@ void solver_destroy(struct solver *solver)
     routes_free(&solver->routes);
     alloc_free(solver->change.of_root);
     ledger_free(&solver->account.ledger);
+    alloc_free(solver->account.proxies);
     closure_free(&solver->beyond->closure);
     conjugate_free(&solver->beyond->descent.vectors);
     alloc_free(solver->beyond->answer.error);
@@ -109,13 +110,15 @@ void solver_record_iteration(struct solver *solver)
     int64_t now[] = {solver->account.bytes_gather, solver->account.bytes_scatter, solver->account.copied};
     int own = solver->routes.receiver_counts[solver->comm->rank];
     struct phase_work phase = {.kind = WORK_TRANSFER, .iteration = solver->turn.iteration,
-                               .work = solver->links.seen, .bytes = now[0] - solver->account.recorded[0]};
+                               .share.done = solver->links.seen,
+                               .bytes = now[0] - solver->account.recorded[0]};
     ledger_add(&solver->account.ledger, phase);
-    phase = (struct phase_work){.kind = WORK_OWN, .iteration = solver->turn.iteration, .work = own,
+    phase = (struct phase_work){.kind = WORK_OWN, .iteration = solver->turn.iteration,
+                                .share.done = own,
                                 .bytes = now[1] - solver->account.recorded[1]};
     ledger_add(&solver->account.ledger, phase);
     phase = (struct phase_work){.kind = WORK_PATCHES, .iteration = solver->turn.iteration,
-                                .work = now[2] - solver->account.recorded[2]};
+                                .share.done = now[2] - solver->account.recorded[2]};
     ledger_add(&solver->account.ledger, phase);
     memcpy(solver->account.recorded, now, sizeof now);
 }
@@ -192,6 +195,33 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     stats->messages = largest[1];
 }
 
+/* Patches of other homes that links of this rank lead to. */
+static int64_t count_proxies(const struct solver *solver)
+{
+    const struct forest *forest = solver->model.forest;
+    bool *met = alloc_array((size_t)forest->count, sizeof *met);
+    int64_t count = 0;
+    for (int64_t i = 0; i < solver->links.count; i++) {
+        const int32_t ends[2] = {solver->links.items[i].p, solver->links.items[i].q};
+        for (int k = 0; k < 2; k++) {
+            if (node_is_cluster(ends[k]) || met[ends[k]])
+                continue;
+            met[ends[k]] = true;
+            count += !solver->homes.own[forest->patches[ends[k]].id.root];
+        }
+    }
+    alloc_free(met);
+    return count;
+}
+
+static void report_proxies(struct solver *solver, struct stats *stats)
+{
+    int64_t own = count_proxies(solver);
+    alloc_free(solver->account.proxies);
+    solver->account.proxies = comm_gather_each(solver->comm, &own, sizeof own);
+    stats->proxies = solver->account.proxies;
+}
+
 void solver_report(struct solver *solver, const struct vote *vote, struct stats *stats)
 {
     const struct scene *scene = solver->model.scene;
@@ -228,6 +258,7 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->level_count = solver->account.ledger.level_count;
     memcpy(stats->work, solver->account.ledger.sums, sizeof stats->work);
     stats->exchanges = comm_exchanges();
+    report_proxies(solver, stats);
     report_counts(solver, stats);
     report_seconds(solver, stats);
 }

@@ -57,7 +57,6 @@ struct turn {
     int64_t first_new;  /* patches from here on were created in this pass */
     int64_t shared;     /* patches up to here are the same on all ranks */
     int64_t split_here; /* links that this rank split in this pass */
-    bool alike;         /* all ranks have the same links: the top of the tree */
     int stop;           /* signal that some rank has got, 0: none; the same on all ranks */
 };
 
@@ -77,6 +76,7 @@ struct account {
     int64_t copied;          /* patch records packed or unpacked */
     int64_t recorded[3];     /* of the last three, in the ledger */
     struct ledger ledger;
+    int64_t *proxies;        /* [ranks] see struct stats */
     /* For benches: is told of each link split here the predicted and the done work, in
      * tests, and how many of its children are to be split too. NULL: nobody listens. */
     void (*watch)(void *watcher, int64_t load, int64_t work, int64_t children);
@@ -120,18 +120,13 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree, const struct criterion *criterion);
 void solver_destroy(struct solver *solver);
 
-/* Step 2: initial linking, of all pairs of roots, or, with a tree above the roots, as
- * below. False if a signal (solver->turn.stop) or the memory limit (memory.reached) has ended
+/* Step 2: initial linking, of all pairs of roots, or, with a tree above the roots, of its
+ * top with itself. False if a signal (solver->turn.stop) or the memory limit (memory.reached) has ended
  * it: then only the first pairs have links. */
 bool solver_link_roots(struct solver *solver);
 
-/* The link of the top of the tree with itself, on all ranks; the first refinement splits
- * it on all of them alike, until there are enough links to deal. */
-void solver_link_top(struct solver *solver);
-
-/* Step 3: re-assignment. Roots get homes so that their work there is even, and the
- * numbers of links that carry light are evened out; the paper's: so that areas are even,
- * and links go home. */
+/* Step 3: re-assignment. Roots get homes so that the sums of their areas are even, and
+ * their links go home. */
 void solver_assign_roots(struct solver *solver);
 
 /* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches were

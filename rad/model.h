@@ -15,7 +15,7 @@ enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON };         /* rad/formf
 enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS, CLOSURE_SYMMETRIC }; /* rad/beyond/closure.h */
 enum solver_kind { SOLVER_JACOBI, SOLVER_CG };                    /* rad/beyond/conjugate.h */
 enum linking_kind { LINKING_PAIRS, LINKING_TREE };                    /* mpi/linking.c */
-enum balance { BALANCE_GREEDY, BALANCE_EVEN };                    /* mpi/migrate.h */
+enum balance { BALANCE_NONE, BALANCE_GREEDY, BALANCE_DEFAULT };       /* mpi/balance.h */
 
 /* How links are evaluated, when and how far they are refined, and when the iterations end. */
 struct criterion {

@@ -30,15 +30,25 @@ struct spread {
     double min, mean, max;
 };
 
-/* One level of refinement, or stage (mpi/refinement.c): how even the work was. Cost and work in box and triangle
- * tests; a form factor counts as eight. Linking, of which nothing is predicted, is level
- * 0 of iteration 0: all pairs of roots, or the levels below the top of the tree that all
- * ranks split alike. */
+/* A level of refinement on one rank. Work is counted in box and triangle tests; a form
+ * factor counts as eight. */
+struct level_share {
+    int64_t links;     /* that it split */
+    int64_t load;      /* predicted work before links moved */
+    int64_t predicted; /* predicted work of the links that it split */
+    int64_t done;      /* work of splitting them */
+    int64_t sent;      /* links that left before the level */
+    int64_t received;  /* links that came */
+};
+
+/* A level of refinement, on all ranks. Linking of all pairs, of which nothing is predicted,
+ * is level 0 of iteration 0. */
 struct level_balance {
     int64_t iteration, level;
     int64_t links; /* that were split; of all pairs, that were made */
-    double predicted_max, predicted_mean; /* cost over ranks, as it was dealt */
-    double work_max, work_mean;           /* tests that were then done */
+    double predicted_max, predicted_mean; /* over ranks */
+    double work_max, work_mean;           /* over ranks */
+    struct level_share *shares;           /* [ranks] */
 };
 
 /* What ranks do, and in what it is counted. */
@@ -112,6 +122,7 @@ struct stats {
     struct spread seconds[PHASE_COUNT];
     struct level_balance *levels; /* [level_count], borrowed from the solver */
     int64_t level_count;
+    int64_t *proxies;             /* [ranks] borrowed: patches of other homes in links of a rank */
     int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent from rank to rank, in the
                                                              refinement levels and steps 5, 7 */
     struct work_sums work[WORK_COUNT];

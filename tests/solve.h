@@ -26,7 +26,8 @@ static inline double seconds_of_work(const struct comm *comm)
 static inline struct criterion criterion_of(double epsilon, int max_level, double tolerance)
 {
     return (struct criterion){.epsilon = epsilon, .min_area = 0.0, .max_level = max_level,
-                              .alpha = 0.5, .tolerance = tolerance, .max_iterations = 100000};
+                              .alpha = 0.5, .tolerance = tolerance, .max_iterations = 100000,
+                              .balance = BALANCE_GREEDY};
 }
 
 /* The error oracle, form factors of polygons, and conjugate gradients. */

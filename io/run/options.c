@@ -43,7 +43,7 @@ static const struct option OPTIONS[] = {
      "none|cap|rows|symmetric"},
     {"--solver", KIND_CHOICE, offsetof(struct options, criterion.solver), 0, 0, "jacobi|cg"},
     {"--balance", KIND_CHOICE, offsetof(struct options, criterion.balance), 0, 0,
-     "greedy|even"},
+     "none|greedy|default"},
     {"--final-gather", KIND_GATHER, offsetof(struct options, criterion.final_gather), 0,
      GATHER_RAYS_MOST, NULL},
     {"--paper", KIND_PAPER, 0, 0, 0, NULL},
@@ -357,7 +357,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
     *options = (struct options){
         .samples = 3,
         .criterion = {.oracle = ORACLE_ERROR, .linking = LINKING_TREE, .form_factor = FORM_FACTOR_POLYGON,
-                      .closure = CLOSURE_CAP, .solver = SOLVER_CG, .balance = BALANCE_EVEN,
+                      .closure = CLOSURE_CAP, .solver = SOLVER_CG, .balance = BALANCE_DEFAULT,
                       .epsilon = -1.0, .min_area = 1e-7, .max_level = 10, .alpha = 0.5, .tolerance = 1e-5,
                       .max_iterations = 1000, .final_gather = -1},
     };
@@ -477,7 +477,7 @@ void options_print_help(FILE *file)
           "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
           "  --form-factors   print them, as CSV     --validate    check form factors\n"
           "  --stats FILE     report as JSON         --verbose     levels of refinement\n"
-          "  --balance even|greedy      of links     --quiet       print nothing\n"
+          "  --balance default|greedy|none           --quiet       print nothing\n"
           "  --help           print this             --version     and licence\n"
           "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
           "  phr room.obj -o room.ppm\n"

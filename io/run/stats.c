@@ -108,6 +108,27 @@ static void write_seconds(FILE *file, const struct stats *stats)
     fprintf(file, "  },\n");
 }
 
+/* The fields of struct level_share. */
+static const char *const SHARE_NAMES[] = {"split",  "load", "predicted",
+                                          "done", "sent", "received"};
+
+static int64_t share_field(const struct level_share *share, size_t field)
+{
+    const int64_t fields[] = {share->links, share->load, share->predicted,
+                              share->done,  share->sent, share->received};
+    return fields[field];
+}
+
+/* One field of all ranks. */
+static void write_shares(FILE *file, const struct stats *stats,
+                         const struct level_balance *level, size_t field)
+{
+    fprintf(file, ",\n     \"%s\": [", SHARE_NAMES[field]);
+    for (int64_t r = 0; r < stats->ranks; r++)
+        fprintf(file, "%s%" PRId64, r ? ", " : "", share_field(&level->shares[r], field));
+    fputc(']', file);
+}
+
 static void write_balance(FILE *file, const struct stats *stats)
 {
     fprintf(file, "  \"balance\": [");
@@ -116,11 +137,18 @@ static void write_balance(FILE *file, const struct stats *stats)
         fprintf(file,
                 "%s\n    {\"iteration\": %" PRId64 ", \"level\": %" PRId64 ", \"links\": %" PRId64
                 ", \"predicted_max\": %.17g, \"predicted_mean\": %.17g"
-                ", \"work_max\": %.17g, \"work_mean\": %.17g}",
+                ", \"work_max\": %.17g, \"work_mean\": %.17g",
                 i ? "," : "", level->iteration, level->level, level->links, level->predicted_max,
                 level->predicted_mean, level->work_max, level->work_mean);
+        for (size_t field = 0; field < sizeof SHARE_NAMES / sizeof *SHARE_NAMES; field++)
+            write_shares(file, stats, level, field);
+        fputc('}', file);
     }
     fprintf(file, "%s],\n", stats->level_count ? "\n  " : "");
+    fprintf(file, "  \"proxies\": [");
+    for (int64_t r = 0; r < stats->ranks; r++)
+        fprintf(file, "%s%" PRId64, r ? ", " : "", stats->proxies[r]);
+    fprintf(file, "],\n");
 }
 
 static void write_work(FILE *file, const struct stats *stats)

@@ -113,7 +113,7 @@ static bool make_rows(struct gathering *g)
     ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
                                    .iteration = solver->turn.iteration,
-                                   .work = model_work(&solver->model) - before +
+                                   .share.done = model_work(&solver->model) - before +
                                            proofs->node_tests + proofs->triangle_tests});
     const struct gather_counts *counts = &g->gather.counts;
     int64_t sums[] = {counts->escaped, stop_is_asked(), counts->rays, counts->segments,

@@ -425,7 +425,7 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
                                    .iteration = solver->turn.iteration,
-                                   .work = model_work(model) - before +
+                                   .share.done = model_work(model) - before +
                                            proofs->node_tests + proofs->triangle_tests});
     int64_t stopped = stop_is_asked();
     comm_add(solver->comm, &stopped, 1);

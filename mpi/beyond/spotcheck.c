@@ -263,7 +263,7 @@ struct spotcheck spotcheck_run(struct solver *solver, double goal)
     ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
                                    .iteration = solver->turn.iteration,
-                                   .work = counts->node_tests + counts->triangle_tests});
+                                   .share.done = counts->node_tests + counts->triangle_tests});
     alloc_free(c.leaves);
     alloc_free(c.upto);
     pathtracer_free(&c.pathtracer);

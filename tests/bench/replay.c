@@ -3,20 +3,19 @@
  * A run on one rank tells of each link that it splits the predicted load, the work that it took,
  * and the number of its children that are to be split too. Links come level by level, each behind
  * its parent's other children, so these three numbers are the whole tree of a pass. It is then dealt
- * to so many ranks by the functions that phr deals by (mpi/balance.h, mpi/plan.h), without a
- * memory limit.
+ * to so many ranks by the functions that phr deals by (mpi/balance.h), without a memory limit.
  *
  * What the replay does not know is where the links live that a later pass begins with: they are
- * spread evenly, in turn. One line for each number of ranks: ranks, work that all ranks repeat, work of
- * all that is dealt, sum over stages of the slowest rank's and of the most bytes that a rank sends. */
+ * spread evenly, in turn. One line for each number of ranks: ranks, work of all, sum over levels of
+ * the slowest rank's and of the most bytes that a rank sends. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
 #include "io/run/options.h"
-#include "io/scene/obj.h"
 #include "mpi/balance.h"
+#include "io/scene/obj.h"
 #include "tests/solve.h"
 
 enum { BYTES_PER_LINK = 32, PASSES_MAX = 1000 };
@@ -37,7 +36,7 @@ struct pile { /* links of one rank, by number */
 };
 
 struct totals {
-    int64_t repeated, dealt, slowest, bytes;
+    int64_t dealt, slowest, bytes;
 };
 
 /* --- recording --- */
@@ -90,13 +89,12 @@ static void put(struct pile *pile, int64_t item)
     pile->items[pile->count++] = item;
 }
 
-/* As links_balance(): each rank keeps the order of what stays; what comes, comes behind it. Returns
- * the most bytes that a rank sends. */
-static int64_t deal(const struct record *record, struct pile *piles, int ranks, const int64_t *loads)
+/* As load_balance() in mpi/refinement.c: each rank keeps the order of links that stay; those that
+ * come, come behind them. Returns the most bytes that a rank sends. */
+static int64_t deal(const struct record *record, dealing *rule, struct pile *piles, int ranks,
+                    const int64_t *all)
 {
-    struct transfer *plan = alloc_array(2 * (size_t)ranks, sizeof *plan);
     struct pile *arriving = alloc_array((size_t)ranks, sizeof *arriving);
-    int planned = plan_transfers(loads, ranks, plan);
     int64_t most = 0;
     for (int r = 0; r < ranks; r++) {
         int64_t count = piles[r].count, kept = 0;
@@ -104,7 +102,7 @@ static int64_t deal(const struct record *record, struct pile *piles, int ranks, 
         int *destination = alloc_array((size_t)count, sizeof *destination);
         for (int64_t i = 0; i < count; i++)
             costs[i] = record->splits[piles[r].items[i]].load;
-        links_deal_out(costs, count, plan, planned, r, destination);
+        rule((struct loads){all, ranks, r}, costs, count, destination);
         for (int64_t i = 0; i < count; i++) {
             if (destination[i] == r)
                 piles[r].items[kept++] = piles[r].items[i];
@@ -122,84 +120,59 @@ static int64_t deal(const struct record *record, struct pile *piles, int ranks, 
         alloc_free(arriving[r].items);
     }
     alloc_free(arriving);
-    alloc_free(plan);
     return most;
 }
 
-/* Splits what a rank has up to the limit; the rest moves to the front. `next` may be `pile`.
- * Returns the work. */
-static int64_t split(const struct record *record, struct pile *pile, int64_t limit,
-                     struct pile *next)
+/* Splits the links of a rank; their children take their place. Returns the work. */
+static int64_t split(const struct record *record, struct pile *pile)
 {
-    int64_t work = 0, done = 0;
-    for (; done < pile->count && work < limit; done++) {
-        const struct split *split = &record->splits[pile->items[done]];
+    struct pile next = {0};
+    int64_t work = 0;
+    for (int64_t i = 0; i < pile->count; i++) {
+        const struct split *split = &record->splits[pile->items[i]];
         work += split->work;
         for (int64_t child = 0; child < split->children; child++)
-            put(next, split->first_child + child);
+            put(&next, split->first_child + child);
     }
-    pile->count -= done;
-    if (pile->count > 0)
-        memmove(pile->items, pile->items + done, (size_t)pile->count * sizeof *pile->items);
+    alloc_free(pile->items);
+    *pile = next;
     return work;
 }
 
-/* Returns the sum of the loads. */
+/* Returns the number of links of a level. */
 static int64_t find_loads(const struct record *record, const struct pile *piles, int ranks,
                           int64_t *loads)
 {
-    int64_t sum = 0;
+    int64_t links = 0;
     for (int r = 0; r < ranks; r++) {
         loads[r] = 0;
         for (int64_t i = 0; i < piles[r].count; i++)
             loads[r] += record->splits[piles[r].items[i]].load;
-        sum += loads[r];
+        links += piles[r].count;
     }
-    return sum;
-}
-
-/* As split_level() in mpi/refinement.c: one stage, or, if levels end, all of a level. loads[r]: of
- * the piles. */
-static void replay_level(const struct record *record, enum balance balance, struct pile *piles,
-                         int ranks, const int64_t *loads, struct totals *totals)
-{
-    bool ends = balance == BALANCE_GREEDY;
-    int64_t slowest = 0, limit = ends ? INT64_MAX : links_limit(loads, ranks);
-    totals->bytes += moving_pays(loads, ranks) ? deal(record, piles, ranks, loads) : 0;
-    for (int r = 0; r < ranks; r++) {
-        struct pile next = {0};
-        int64_t work = split(record, &piles[r], limit, ends ? &next : &piles[r]);
-        totals->dealt += work;
-        slowest = work > slowest ? work : slowest;
-        if (ends) {
-            alloc_free(piles[r].items);
-            piles[r] = next;
-        }
-    }
-    totals->slowest += slowest;
+    return links;
 }
 
 static void replay_pass(struct record *record, const struct criterion *criterion, int pass,
                         int ranks, struct totals *totals)
 {
-    int64_t at = record->pass_at[pass], end = record->pass_at[pass + 1];
-    int64_t links = number_children(record, at, end);
-    bool alike = pass == 0 && criterion->linking == LINKING_TREE;
-    while (alike && links > 0 && !level_is_dealt(links)) {
-        int64_t next = 0;
-        for (int64_t i = at; i < at + links; i++) {
-            totals->repeated += record->splits[i].work;
-            next += record->splits[i].children;
-        }
-        at += links;
-        links = next;
-    }
+    int64_t at = record->pass_at[pass];
+    int64_t links = number_children(record, at, record->pass_at[pass + 1]);
     struct pile *piles = alloc_array((size_t)ranks, sizeof *piles);
+    int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
     for (int64_t i = 0; i < links; i++)
         put(&piles[i % ranks], at + i);
-    int64_t *loads = alloc_array((size_t)ranks, sizeof *loads);
-    while (find_loads(record, piles, ranks, loads) > 0)
-        replay_level(record, criterion->balance, piles, ranks, loads, totals);
+    while (find_loads(record, piles, ranks, loads) > 0) {
+        int64_t slowest = 0;
+        if (DEALINGS[criterion->balance])
+            totals->bytes += deal(record, DEALINGS[criterion->balance], piles, ranks, loads);
+        for (int r = 0; r < ranks; r++) {
+            int64_t work = split(record, &piles[r]);
+            totals->dealt += work;
+            slowest = work > slowest ? work : slowest;
+        }
+        totals->slowest += slowest;
+    }
     alloc_free(loads);
     for (int r = 0; r < ranks; r++)
         alloc_free(piles[r].items);
@@ -227,8 +200,8 @@ int main(int argc, char **argv)
         struct totals totals = {0};
         for (int pass = 0; pass < record.passes; pass++)
             replay_pass(&record, &options.criterion, pass, atoi(ranks), &totals);
-        printf("%s %lld %lld %lld %lld\n", ranks, (long long)totals.repeated,
-               (long long)totals.dealt, (long long)totals.slowest, (long long)totals.bytes);
+        printf("%s %lld %lld %lld\n", ranks, (long long)totals.dealt, (long long)totals.slowest,
+               (long long)totals.bytes);
     }
     alloc_free(record.splits);
     scene_destroy(scene);

@@ -35,10 +35,9 @@ what == "many" && /"exchanges"/ { exchanges = value("exchanges") }
 what == "many" && /"messages"/ { messages = value("messages") }
 what == "many" && /"broadcast"/ { broadcast = value("broadcast") }
 what == "replay" {
-    repeated[$1] = $2
-    dealt[$1] = $3
-    most[$1] = $4
-    moved[$1] = $5
+    dealt[$1] = $2
+    most[$1] = $3
+    moved[$1] = $4
 }
 
 function line(name, how, one, many, most_ranks, kind) {
@@ -85,10 +84,7 @@ END {
     same("solution made ready for refinement", "repeated", "prepare")
     divided("looks: what is to be split?", "looks", "looks")
     splitting = seconds["refinement"] - seconds["looks"] - seconds["prepare"]
-    work = all["one", "splitting"] + (tree ? all["one", "linking"] : 0)
-    price = splitting / work
-    line("first levels", "repeated", price * all["one", "linking"] * tree,
-         price * repeated[ranks], price * repeated[1024], "repeated")
+    price = splitting / all["one", "splitting"]
     line("splitting", "replayed", price * all["one", "splitting"],
          price * slowest["many", "splitting"], price * most[1024])
     divided("transfer of light", "solve", "transfer")
@@ -126,7 +122,7 @@ END {
     mean = all["many", "splitting"] / ranks
     printf "A test takes %.1f ns. The slowest of %d ranks splits %.3f times the mean, ", \
            1e9 * price, ranks, slowest["many", "splitting"] / mean
-    printf "stage by stage; the replay says %.3f, and of 1,024 %.1f. ", \
+    printf "level by level; the replay says %.3f, and of 1,024 %.1f. ", \
            most[ranks] / (dealt[ranks] / ranks), most[1024] / (dealt[1024] / 1024)
     printf "Of %d: looks %.2f, transfer %.2f, push-pull %.2f", ranks, uneven["looks"], \
            uneven["transfer"], uneven["own"]

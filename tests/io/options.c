@@ -148,8 +148,8 @@ static const struct choice CHOICES[] = {
      {"none", "cap", "rows", "symmetric"}, "none|cap|rows|symmetric"},
     {"--solver", offsetof(struct options, criterion.solver), 2, {"jacobi", "cg", NULL},
      "jacobi|cg"},
-    {"--balance", offsetof(struct options, criterion.balance), 2,
-     {"greedy", "even", NULL}, "greedy|even"},
+    {"--balance", offsetof(struct options, criterion.balance), 3,
+     {"none", "greedy", "default", NULL}, "none|greedy|default"},
 };
 enum { CHOICE_COUNT = sizeof CHOICES / sizeof CHOICES[0] };
 
@@ -205,7 +205,8 @@ static void test_enums(void)
     tap_ok(ORACLE_BF == 0 && ORACLE_ERROR == 1 && FORM_FACTOR_DISK == 0 &&
                FORM_FACTOR_POLYGON == 1 && CLOSURE_NONE == 0 && CLOSURE_CAP == 1 &&
                CLOSURE_ROWS == 2 && CLOSURE_SYMMETRIC == 3 && SOLVER_JACOBI == 0 && SOLVER_CG == 1 &&
-               LINKING_PAIRS == 0 && LINKING_TREE == 1,
+               LINKING_PAIRS == 0 && LINKING_TREE == 1 && BALANCE_NONE == 0 &&
+               BALANCE_GREEDY == 1 && BALANCE_DEFAULT == 2,
            "the names are in the order of the enums");
     tap_ok(sizeof(enum oracle) == sizeof(int) && sizeof(enum form_factor) == sizeof(int) &&
                sizeof(enum closure_kind) == sizeof(int) && sizeof(enum solver_kind) == sizeof(int) &&

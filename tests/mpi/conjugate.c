@@ -390,7 +390,7 @@ static void test_ranks(const struct comm *comm, const struct comm *self, enum cl
 {
     struct criterion criterion = {.oracle = ORACLE_ERROR, .closure = kind, .solver = SOLVER_CG,
                                   .tolerance = 1e-9, .max_level = 15, .max_iterations = 1000,
-                                  .balance = BALANCE_EVEN};
+                                  .balance = BALANCE_DEFAULT};
     struct problem parallel = problem_make(comm, 0.97, 5, &criterion);
     struct problem alone = problem_make(self, 0.97, 5, &criterion);
     struct vote a = solve_links(parallel.solver), b = solve_links(alone.solver);

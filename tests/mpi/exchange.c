@@ -69,11 +69,9 @@ static void add_links(struct solver *solver, int round)
     }
 }
 
-static struct solver *make_solver(const struct comm *comm, const struct scene *scene,
-                                  enum balance balance)
+static struct solver *make_solver(const struct comm *comm, const struct scene *scene)
 {
-    const struct criterion criterion = {.epsilon = 1.0, .tolerance = 1e-3, .max_level = 15,
-                                        .balance = balance};
+    const struct criterion criterion = {.epsilon = 1.0, .tolerance = 1e-3, .max_level = 15};
     struct solver *solver = solver_create(comm, scene, NULL, &criterion);
     solver_assign_roots(solver);
     return solver;
@@ -108,8 +106,6 @@ static struct vote iterate(struct solver *solver, int round)
     if (round < 2)
         add_links(solver, round);
     share_patches(solver);
-    if (solver->model.criterion.balance == BALANCE_EVEN)
-        links_even_out(solver);
     solver_close(solver);
     solver_transfer(solver);
     solver_gather(solver);
@@ -178,24 +174,6 @@ static int64_t fingerprint(const struct solver *solver)
     return (int64_t)(sum & UINT64_C(0xffffffffffff));
 }
 
-/* Sends the links of all ranks to rank 0. */
-static void pile_up(struct solver *solver)
-{
-    int *destination = alloc_array((size_t)solver->links.count, sizeof *destination);
-    links_migrate(solver, &solver->links, destination);
-    alloc_free(destination);
-}
-
-/* No rank has more links that carry light than the mean, but for a fiftieth and one. */
-static bool are_even(const struct solver *solver)
-{
-    int64_t lit = 0;
-    for (int64_t i = 0; i < solver->links.count; i++)
-        lit += solver->links.items[i].seen > 0;
-    double mean = (double)total_of(solver->comm, lit) / solver->comm->size;
-    return (double)lit <= 1.02 * mean + 1.0;
-}
-
 static void test_migration(struct solver *parallel, struct solver *alone)
 {
     const struct comm *comm = parallel->comm;
@@ -216,13 +194,8 @@ static void test_migration(struct solver *parallel, struct solver *alone)
     report(comm, right_place, "each link is where it was sent");
     report(comm, count == total_of(comm, parallel->links.count) && before == after,
            "links that migrate arrive once and unchanged");
-    bool even = parallel->model.criterion.balance == BALANCE_EVEN;
-    if (even)
-        pile_up(parallel);
     iterate(parallel, 2);
     iterate(alone, 2);
-    if (even)
-        report(comm, are_even(parallel), "links piled up on one rank are evened out");
     report(comm, forest_checksum(parallel->model.forest) == forest_checksum(alone->model.forest),
            "and carry the same light from their new ranks");
 }
@@ -499,25 +472,26 @@ int main(int argc, char **argv)
     struct comm comm, self = {.handle = MPI_COMM_SELF, .size = 1};
     comm_start(&comm, &argc, &argv);
     struct scene *scene = make_scene();
-    for (enum balance balance = BALANCE_GREEDY; balance <= BALANCE_EVEN; balance++) {
-        struct solver *parallel = make_solver(&comm, scene, balance);
-        struct solver *alone = make_solver(&self, scene, balance);
-        test_rounds(parallel, alone);
-        test_migration(parallel, alone);
-        solver_destroy(parallel);
-        solver_destroy(alone);
-    }
+    struct solver *parallel = make_solver(&comm, scene);
+    struct solver *alone = make_solver(&self, scene);
+    test_rounds(parallel, alone);
+    test_migration(parallel, alone);
+    solver_destroy(parallel);
+    solver_destroy(alone);
     test_picture(&comm);
     test_gather_all(&comm);
     test_pieces(&comm);
     test_sums(&comm);
     test_broadcasts(&comm);
     struct criterion criterion = criterion_of(3e-4, 10, 1e-3);
-    test_refinement(&comm, &self, &criterion, "the paper's method: several ranks split links");
+    for (enum balance balance = BALANCE_NONE; balance <= BALANCE_DEFAULT; balance++) {
+        criterion.balance = balance;
+        test_refinement(&comm, &self, &criterion,
+                        "the paper's method: several ranks split links");
+    }
     for (enum closure_kind kind = CLOSURE_NONE; kind <= CLOSURE_SYMMETRIC; kind++) {
-        /* All ranks split the first levels alike: 8 of them deal only levels of 512 links. */
         criterion = criterion_best(4e-5, 10, 1e-4, kind);
-        criterion.balance = BALANCE_EVEN;
+        criterion.balance = BALANCE_DEFAULT;
         test_refinement(&comm, &self, &criterion, "error oracle and cg: several ranks split links");
     }
     scene_destroy(scene);

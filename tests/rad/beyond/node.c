@@ -457,7 +457,7 @@ static struct solution solve_room(double epsilon, int max_level,
     scene_prepare_or_exit(scene);
     struct criterion criterion = criterion_best(epsilon, max_level, 1e-7, CLOSURE_NONE);
     criterion.linking = linking;
-    criterion.balance = BALANCE_EVEN;
+    criterion.balance = BALANCE_DEFAULT;
     return solve(world_comm, scene, criterion);
 }
 
