@@ -222,8 +222,8 @@ static bool read_solution(struct solution_reader *reader, struct solution *solut
         return error_set(reader->error, EXIT_USAGE, "%s: a mesh, but not a solution of phr",
                          file->binary.path);
     bool good = true;
-    for (int64_t i = 0; good && i < file->element_count; i++) {
-        const struct ply_element *element = &file->elements[i];
+    for (int64_t i = 0; good && i < file->header.element_count; i++) {
+        const struct ply_element *element = &file->header.elements[i];
         switch (element->kind) {
         case PLY_VERTEX: good = read_vertices(reader, element); break;
         case PLY_FACE: good = read_leaves(reader, element, solution); break;

@@ -42,7 +42,7 @@ enum { SAMPLES = 64, SAMPLES_MAX = 1 << 24, HALVES = 2 };
 static const char USAGE[] = "usage: pathtracer SCENE [--leaves SOLUTION.ply] "
                             "[--samples N] [options of phr] -o FILE...";
 
-struct run {
+struct tracing {
     struct comm comm;
     struct options options;
     const char *leaves; /* path of a solution, or NULL */
@@ -58,7 +58,7 @@ struct run {
 /* --- input --- */
 
 /* Takes --leaves and --samples out of the arguments. Returns the number of those left. */
-static int take_own(struct run *run, int argc, char **argv)
+static int take_own(struct tracing *run, int argc, char **argv)
 {
     double samples = SAMPLES;
     int kept = 1;
@@ -85,7 +85,7 @@ static bool is_mesh(const char *path)
 }
 
 /* Every output has to be possible: a mesh with --leaves, which nothing else needs. */
-static bool check_outputs(struct run *run)
+static bool check_outputs(struct tracing *run)
 {
     bool meshes = false;
     for (int i = 0; i < run->options.output_count; i++)
@@ -97,7 +97,7 @@ static bool check_outputs(struct run *run)
     return true;
 }
 
-static bool read_scene(struct run *run)
+static bool read_scene(struct tracing *run)
 {
     struct obj_repairs read = {0};
     struct scene_repairs prepared = {0};
@@ -115,7 +115,7 @@ static bool read_scene(struct run *run)
 }
 
 /* The solution of --leaves. */
-static bool read_leaves(struct run *run)
+static bool read_leaves(struct tracing *run)
 {
     if (!run->leaves)
         return true;
@@ -131,7 +131,7 @@ static bool read_leaves(struct run *run)
     return true;
 }
 
-static bool read_camera(struct run *run)
+static bool read_camera(struct tracing *run)
 {
     const struct options *options = &run->options;
     int width = options->width > 0 ? options->width : CAMERA_SIZE;
@@ -148,7 +148,7 @@ static bool read_camera(struct run *run)
 }
 
 /* Collective. */
-static bool read_all(struct run *run)
+static bool read_all(struct tracing *run)
 {
     if (read_scene(run) && read_leaves(run)) {
         run->octree = octree_create(run->scene->triangles, run->scene->planes,
@@ -164,7 +164,7 @@ static bool read_all(struct run *run)
 /* --- tracing --- */
 
 /* Collective. Top row first, on rank 0. */
-static float *trace_picture(const struct run *run)
+static float *trace_picture(const struct tracing *run)
 {
     int width = run->camera.width, height = run->camera.height;
     size_t row = (size_t)width * BANDS;
@@ -184,7 +184,7 @@ static float *trace_picture(const struct run *run)
 }
 
 /* Collective. rho H of the halves of each leaf, HALVES * BANDS floats, on rank 0. */
-static float *trace_leaves(const struct run *run)
+static float *trace_leaves(const struct tracing *run)
 {
     int64_t count = run->solution.count, size = run->comm.size;
     size_t row = HALVES * BANDS;
@@ -259,7 +259,7 @@ static double over(double a, double b)
 }
 
 /* Norms over all leaves that reflect. */
-static void print_norms(const struct run *run, const float *halves)
+static void print_norms(const struct tracing *run, const float *halves)
 {
     const struct solution *solution = &run->solution;
     struct norms norms = {.count = 0};
@@ -283,7 +283,7 @@ static void print_norms(const struct run *run, const float *halves)
 /* --- output --- */
 
 /* The leaves with E + rho H in place of their radiosities. */
-static void write_leaves(struct run *run, const float *halves, const char *path)
+static void write_leaves(struct tracing *run, const float *halves, const char *path)
 {
     size_t count = (size_t)run->solution.count;
     struct rgb *map = alloc_array(count, sizeof *map);
@@ -305,7 +305,7 @@ static void write_leaves(struct run *run, const float *halves, const char *path)
     alloc_free(map);
 }
 
-static void write_picture(struct run *run, float *picture, const char *path)
+static void write_picture(struct tracing *run, float *picture, const char *path)
 {
     struct image image = {run->camera.width, run->camera.height, picture};
     double exposure = run->options.exposure;
@@ -319,7 +319,7 @@ static void write_picture(struct run *run, float *picture, const char *path)
 }
 
 /* Collective. Rays of all ranks, and the seconds of the slowest. */
-static void report(const struct run *run, int64_t samples, double seconds)
+static void report(const struct tracing *run, int64_t samples, double seconds)
 {
     int64_t rays = run->pathtracer.counts->rays;
     comm_add(&run->comm, &rays, 1);
@@ -331,7 +331,7 @@ static void report(const struct run *run, int64_t samples, double seconds)
 }
 
 /* Collective. Traces once for all pictures, once for all meshes, and writes on rank 0. */
-static void trace_and_write(struct run *run)
+static void trace_and_write(struct tracing *run)
 {
     double start = comm_seconds();
     int64_t pixels = 0, leaves = run->solution.count;
@@ -355,7 +355,7 @@ static void trace_and_write(struct run *run)
     alloc_free(picture);
 }
 
-static void release(struct run *run)
+static void release(struct tracing *run)
 {
     pathtracer_free(&run->pathtracer);
     solution_free(&run->solution);
@@ -366,7 +366,7 @@ static void release(struct run *run)
 
 int main(int argc, char **argv)
 {
-    struct run run = {.leaves = NULL};
+    struct tracing run = {.leaves = NULL};
     comm_start(&run.comm, &argc, &argv);
     argc = take_own(&run, argc, argv);
     bool parsed = run.error.code == EXIT_DONE &&

@@ -27,7 +27,7 @@
 
 /* --- a case, prepared --- */
 
-struct pair {
+struct prepared {
     const struct pair_case *known;
     struct vec3 corner[2][CASE_CORNERS]; /* in the unit cube */
     int facets[2];
@@ -65,9 +65,9 @@ static struct facet facet_of(const struct vec3 *corner, int k)
     return (struct facet){t, triangle_plane(&t), triangle_area(&t), -1};
 }
 
-static struct pair pair_make(const struct pair_case *known)
+static struct prepared pair_make(const struct pair_case *known)
 {
-    struct pair pair = {.known = known};
+    struct prepared pair = {.known = known};
     int exponent;
     frexp(extent_of(known), &exponent);
     for (int side = 0; side < 2; side++) {
@@ -144,7 +144,7 @@ static const struct estimate ESTIMATES[METHODS] = {
 };
 
 /* The form factor from the first polygon to the second. */
-static double factor_by(const struct estimate *estimate, const struct pair *pair)
+static double factor_by(const struct estimate *estimate, const struct prepared *pair)
 {
     const struct pair_case *known = pair->known;
     if (!estimate->exchange)
@@ -166,13 +166,14 @@ struct outcome {
     double absolute;
 };
 
-static struct outcome outcome_of(const struct estimate *estimate, const struct pair *pair)
+static struct outcome outcome_of(const struct estimate *estimate,
+                                 const struct prepared *pair)
 {
     double right = pair->known->factor, value = factor_by(estimate, pair);
     return (struct outcome){right > 0.0 ? value / right - 1.0 : value, value - right};
 }
 
-static bool is_kept(const struct promise *promise, const struct pair *pair,
+static bool is_kept(const struct promise *promise, const struct prepared *pair,
                     const struct outcome *outcome)
 {
     return pair->apart < promise->from || (fabs(outcome->relative) <= promise->relative &&
@@ -193,7 +194,8 @@ static void print_error(FILE *file, double error, bool stated)
     fprintf(file, " %11s", cell);
 }
 
-static void print_pair(FILE *file, const struct pair *pair, const struct outcome *outcomes)
+static void print_pair(FILE *file, const struct prepared *pair,
+                       const struct outcome *outcomes)
 {
     fprintf(file, "%s %-48s %11.6g %8.3g", pair->known->id, pair->known->text, pair->known->factor,
             pair->apart);
@@ -241,7 +243,7 @@ static bool print_promise(FILE *file, const struct estimate *estimate,
     double most = -1.0;
     for (int i = 0; i < PAIR_CASE_COUNT; i++) {
         const struct outcome *outcome = &outcomes[METHODS * i];
-        struct pair pair = pair_make(&PAIR_CASES[i]);
+        struct prepared pair = pair_make(&PAIR_CASES[i]);
         if (pair.apart < promise->from)
             continue;
         cases++;
@@ -281,7 +283,7 @@ static bool print_pairs(FILE *file)
         fprintf(file, "  %10s", ESTIMATES[m].name);
     fputs("\n", file);
     for (int i = 0; i < PAIR_CASE_COUNT; i++) {
-        struct pair pair = pair_make(&PAIR_CASES[i]);
+        struct prepared pair = pair_make(&PAIR_CASES[i]);
         for (int m = 0; m < METHODS; m++)
             outcomes[METHODS * i + m] = outcome_of(&ESTIMATES[m], &pair);
         print_pair(file, &pair, &outcomes[METHODS * i]);

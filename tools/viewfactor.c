@@ -51,7 +51,7 @@ struct piece {
 };
 
 /* What the parts of a pair of roots have in common. */
-struct search {
+struct root_pair {
     struct viewfactors *factors;
     double threshold;       /* square scene units */
     struct flux_unit unit;  /* of the sum */
@@ -131,8 +131,8 @@ static double weight_of(const struct piece *p, const struct piece *q, struct vec
 
 /* The share of 16 segments that arrives, 0 to 1 and exactly that where all agree; `otherwise` if
  * none of them faces both patches. */
-static double share_seen(struct search *search, const struct piece *p, const struct piece *q,
-                         double otherwise)
+static double share_seen(struct root_pair *pair, const struct piece *p,
+                         const struct piece *q, double otherwise)
 {
     struct bundle bundle = {.own = {p->facet.input, q->facet.input}};
     uint64_t seed = hash_finish(hash_mix(id_number(p->id)) + 3 * hash_mix(id_number(q->id)));
@@ -146,8 +146,8 @@ static double share_seen(struct search *search, const struct piece *p, const str
     }
     if (bundle.asked == 0)
         return otherwise;
-    unsigned blocked = octree_block(search->factors->octree, &bundle, &search->blocker,
-                                    &search->factors->counts);
+    unsigned blocked = octree_block(pair->factors->octree, &bundle, &pair->blocker,
+                                    &pair->factors->counts);
     for (int ray = 0; ray < BUNDLE_RAYS; ray++) {
         all += weights[ray];
         seen += blocked >> ray & 1u ? 0.0 : weights[ray];
@@ -166,19 +166,20 @@ static struct piece piece_child(const struct piece *piece, int child)
 
 /* The larger one; areas that differ by rounding are the same, lest a scene that is turned around
  * gets other patches. -1 if neither may be split. */
-static int side_to_split(const struct search *search, const struct piece *p, const struct piece *q)
+static int side_to_split(const struct root_pair *pair, const struct piece *p,
+                         const struct piece *q)
 {
-    bool may_p = id_level(p->id) < search->factors->max_level;
-    bool may_q = id_level(q->id) < search->factors->max_level;
+    bool may_p = id_level(p->id) < pair->factors->max_level;
+    bool may_q = id_level(q->id) < pair->factors->max_level;
     bool p_first = p->facet.area > (1.0 - 1e-6) * q->facet.area;
     return may_p && (p_first || !may_q) ? 0 : may_q ? 1 : -1;
 }
 
-static bool is_settled(struct search *search, const struct piece *p, const struct piece *q,
-                       double share)
+static bool is_settled(struct root_pair *pair, const struct piece *p,
+                       const struct piece *q, double share)
 {
-    const struct octree *octree = search->factors->octree;
-    struct octree_counts *counts = &search->factors->counts;
+    const struct octree *octree = pair->factors->octree;
+    struct octree_counts *counts = &pair->factors->counts;
     return share == 0.0   ? facets_are_walled_off(&p->facet, &q->facet, octree, counts)
            : share == 1.0 ? facets_are_open(&p->facet, &q->facet, octree, counts)
                           : false;
@@ -186,7 +187,7 @@ static bool is_settled(struct search *search, const struct piece *p, const struc
 
 /* Adds the exchange of p and q. `otherwise`: the share that is seen of the pair that this one is a
  * part of. */
-static void add_pair(struct search *search, const struct piece *p, const struct piece *q,
+static void add_pair(struct root_pair *pair, const struct piece *p, const struct piece *q,
                      double otherwise)
 {
     if (stop_is_asked() || !facets_face(&p->facet, &q->facet))
@@ -194,16 +195,16 @@ static void add_pair(struct search *search, const struct piece *p, const struct 
     double exchange = triangle_exchange(&p->facet.triangle, &q->facet.triangle);
     if (!(exchange > 0.0))
         return;
-    double share = share_seen(search, p, q, otherwise);
-    int side = exchange <= search->threshold ? -1 : side_to_split(search, p, q);
-    if (side < 0 || is_settled(search, p, q, share)) {
-        search->sum += flux_from_watts(search->unit, share * exchange);
-        search->factors->links++;
+    double share = share_seen(pair, p, q, otherwise);
+    int side = exchange <= pair->threshold ? -1 : side_to_split(pair, p, q);
+    if (side < 0 || is_settled(pair, p, q, share)) {
+        pair->sum += flux_from_watts(pair->unit, share * exchange);
+        pair->factors->links++;
         return;
     }
     for (int k = 0; k < 4; k++) {
         struct piece part = piece_child(side == 0 ? p : q, k);
-        add_pair(search, side == 0 ? &part : p, side == 0 ? q : &part, share);
+        add_pair(pair, side == 0 ? &part : p, side == 0 ? q : &part, share);
     }
 }
 
@@ -228,15 +229,15 @@ void viewfactors_add(struct viewfactors *factors, int32_t p, const struct facet 
                      const struct facet *fq)
 {
     int32_t i = factors->scene->group_of[fp->input], j = factors->scene->group_of[fq->input];
-    struct search search = {
+    struct root_pair pair = {
         .factors = factors,
         .threshold = factors->epsilon * fmin(factors->areas[i], factors->areas[j]),
         .unit = unit_of(factors, i, j),
         .blocker = -1,
     };
     struct piece piece_p = {*fp, id_of_root((uint32_t)p)}, piece_q = {*fq, id_of_root((uint32_t)q)};
-    add_pair(&search, &piece_p, &piece_q, 1.0);
-    factors->sums[place_of(factors, i, j)] += search.sum;
+    add_pair(&pair, &piece_p, &piece_q, 1.0);
+    factors->sums[place_of(factors, i, j)] += pair.sum;
 }
 
 double viewfactors_exchange(const struct viewfactors *factors, int32_t i, int32_t j)

@@ -38,15 +38,15 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
 
 /* --- points that are shown --- */
 
-/* What camera rays of a pixel have met; an entry for each that shows some root. */
-struct view {
+/* The roots that camera rays of a pixel meet: an entry for each ray that meets one. */
+struct pixel_roots {
     int32_t *roots;
     struct vec3 *weights, *at; /* barycentric coordinates in the root; points */
     int count;
 };
 
 /* Light of a pixel. */
-struct pixel {
+struct pixel_light {
     struct rgb sum;  /* radiosity, times rays of the camera, W/m^2 */
     double variance; /* of that by the choice of segments, over bands, (W/m^2)^2 */
 };
@@ -110,8 +110,8 @@ static struct plane facade_plane(const struct facade *facade, struct vec3 weight
 }
 
 /* Adds light of the first `count` entries, which are of one root. */
-static void add_light(const struct renderer *renderer, const struct view *view, int count,
-                      uint64_t seed, int rays, struct pixel *pixel)
+static void add_light(const struct renderer *renderer, const struct pixel_roots *view,
+                      int count, uint64_t seed, int rays, struct pixel_light *pixel)
 {
     struct final_gather *gather = renderer->gather;
     const struct scene *scene = gather->model->scene;
@@ -140,7 +140,7 @@ static void add_light(const struct renderer *renderer, const struct view *view, 
 }
 
 /* Moves the entries of the root of the first one to the front; returns their number. */
-static int collect_root(struct view *view)
+static int collect_root(struct pixel_roots *view)
 {
     int count = 0;
     for (int i = 0; i < view->count; i++) {
@@ -157,10 +157,10 @@ static int collect_root(struct view *view)
 
 /* What the entries show together, by about so many rays if light is gathered. Their order
  * is lost. */
-static struct pixel show(const struct renderer *renderer, const struct view *view,
-                         uint64_t seed, int rays)
+static struct pixel_light show(const struct renderer *renderer,
+                               const struct pixel_roots *view, uint64_t seed, int rays)
 {
-    struct pixel pixel = {.variance = 0.0};
+    struct pixel_light pixel = {.variance = 0.0};
     for (int i = 0; i < view->count && renderer->shading; i++) {
         const struct vec3 *w = &view->weights[i];
         struct rgb b = shading_at(renderer->shading, view->roots[i],
@@ -168,7 +168,7 @@ static struct pixel show(const struct renderer *renderer, const struct view *vie
         for (int c = 0; c < BANDS; c++)
             pixel.sum.band[c] += b.band[c];
     }
-    struct view rest = *view;
+    struct pixel_roots rest = *view;
     while (rest.count > 0 && renderer->gather) {
         int count = collect_root(&rest);
         int share = (rays * count + view->count - 1) / view->count;
@@ -185,7 +185,7 @@ struct rgb render_point(const struct renderer *renderer, int32_t root,
                         const double weight[3], uint64_t seed)
 {
     struct vec3 w = {weight[0], weight[1], weight[2]}, at;
-    struct view view = {&root, &w, &at, 1};
+    struct pixel_roots view = {&root, &w, &at, 1};
     return show(renderer, &view, seed, renderer->rays).sum;
 }
 
@@ -193,7 +193,8 @@ struct rgb render_point(const struct renderer *renderer, int32_t root,
 
 /* What the ray through a place of the picture meets joins the view. */
 static void look(const struct renderer *renderer, const struct scene *scene,
-                 const struct camera *camera, double x, double y, struct view *view)
+                 const struct camera *camera, double x, double y,
+                 struct pixel_roots *view)
 {
     struct octree_counts counts = {0};
     struct octree_hit hit;
@@ -211,7 +212,7 @@ static void look(const struct renderer *renderer, const struct scene *scene,
 
 static void render_pixel(const struct renderer *renderer, const struct scene *scene,
                          const struct camera *camera, int samples, int px, int py,
-                         struct view *view, float *rgb)
+                         struct pixel_roots *view, float *rgb)
 {
     int parts = samples * samples;
     uint64_t seed = (uint64_t)py * (uint64_t)camera->width + (uint64_t)px;
@@ -219,7 +220,7 @@ static void render_pixel(const struct renderer *renderer, const struct scene *sc
     for (int i = 0; i < parts; i++)
         look(renderer, scene, camera, px + (i % samples + 0.5) / samples,
              py + (i / samples + 0.5) / samples, view);
-    struct pixel pixel = show(renderer, view, seed, renderer->rays);
+    struct pixel_light pixel = show(renderer, view, seed, renderer->rays);
     double most = NOISE * rgb_sum(pixel.sum);
     if (renderer->shading && pixel.variance > most * most)
         pixel = show(renderer, view, seed, MORE * renderer->rays);
@@ -235,7 +236,7 @@ float *render_rows(const struct renderer *renderer, const struct camera *camera,
     size_t row = 3 * (size_t)camera->width, parts = (size_t)samples * (size_t)samples;
     int rows = first < camera->height ? (camera->height - first - 1) / step + 1 : 0;
     float *rgb = alloc_array((size_t)rows * row, sizeof *rgb);
-    struct view view = {.roots = alloc_array(parts, sizeof *view.roots),
+    struct pixel_roots view = {.roots = alloc_array(parts, sizeof *view.roots),
                         .weights = alloc_array(parts, sizeof *view.weights),
                         .at = alloc_array(parts, sizeof *view.at)};
     for (int i = 0; i < rows; i++) {

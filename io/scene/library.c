@@ -16,7 +16,7 @@
 
 enum { LIBRARY_MAX = 1000 }; /* names in mtllib lines */
 
-struct search {
+struct lookup {
     struct mtl_table *table;
     struct text_names *tried;
     const struct text *obj;
@@ -44,31 +44,32 @@ static const char *last_part(const char *name)
     return part;
 }
 
-static bool read_file(const struct search *search, const char *name, bool *found)
+static bool read_file(const struct lookup *lookup, const char *name, bool *found)
 {
-    char *path = path_beside(search->obj->path, name);
-    bool good = mtl_read(search->table, path, found, search->error);
+    char *path = path_beside(lookup->obj->path, name);
+    bool good = mtl_read(lookup->table, path, found, lookup->error);
     alloc_free(path);
     return good;
 }
 
 /* Reads the library `name`, unless it has been tried before. `*missing` says whether this is
  * the first time that it turns out not to exist. */
-static bool try_name(const struct search *search, const char *name, bool *missing)
+static bool try_name(const struct lookup *lookup, const char *name, bool *missing)
 {
     *missing = false;
-    int32_t known = search->tried->count;
-    if (text_names_add(search->tried, name) < known)
+    int32_t known = lookup->tried->count;
+    if (text_names_add(lookup->tried, name) < known)
         return true;
     if (known == LIBRARY_MAX)
-        return error_set(search->error, EXIT_USAGE, "%s:%ld: more than %d material libraries",
-                         search->obj->path, search->obj->line, LIBRARY_MAX);
+        return error_set(lookup->error, EXIT_USAGE,
+                         "%s:%ld: more than %d material libraries", lookup->obj->path,
+                         lookup->obj->line, LIBRARY_MAX);
     bool found;
     const char *part = last_part(name);
-    bool good = read_file(search, name, &found);
+    bool good = read_file(lookup, name, &found);
     bool is_one_name = !strpbrk(name, " \t") == !strpbrk(part, " \t");
     if (good && !found && part != name && *part && is_one_name)
-        good = read_file(search, part, &found);
+        good = read_file(lookup, part, &found);
     *missing = !found;
     return good;
 }
@@ -91,12 +92,12 @@ static char *next_name(char **rest)
 bool library_read(struct mtl_table *table, struct text_names *tried, const struct text *obj,
                   char *rest, struct text_missing *lost, struct error *error)
 {
-    struct search search = {table, tried, obj, error};
+    struct lookup lookup = {table, tried, obj, error};
     char *whole = text_trim(rest);
     bool missing;
     if (!*whole)
         return true;
-    if (!try_name(&search, whole, &missing))
+    if (!try_name(&lookup, whole, &missing))
         return false;
     bool is_list = strpbrk(whole, " \t") != NULL;
     if (missing && !is_list)
@@ -104,7 +105,7 @@ bool library_read(struct mtl_table *table, struct text_names *tried, const struc
     if (!missing || !is_list)
         return true;
     for (char *name; (name = next_name(&whole)) != NULL;) {
-        if (!try_name(&search, name, &missing))
+        if (!try_name(&lookup, name, &missing))
             return false;
         if (missing)
             text_missing_add(lost, name);

@@ -42,12 +42,16 @@ struct obj_triangle {
     int32_t group;    /* number of the group's name */
 };
 
+/* The vectors of all v lines, or of all vn lines. */
+struct obj_vectors {
+    struct vec3 *at; /* [count] */
+    int64_t count, capacity;
+};
+
 struct obj_reader {
     struct text text;
-    struct vec3 *vertices;
-    int64_t vertex_count, vertex_capacity;
-    struct vec3 *normals;          /* of length 1, or 0 for one without a direction */
-    int64_t normal_count, normal_capacity;
+    struct obj_vectors vertices;
+    struct obj_vectors normals;    /* of length 1, or 0 for one without a direction */
     bool has_normals;              /* a face has a normal with a direction */
     struct obj_triangle *triangles;
     int64_t triangle_count, triangle_capacity;
@@ -67,6 +71,13 @@ static const double DIRECTION_MIN = 1e-100;
 
 static const char DEFAULT_GROUP[] = "default";
 
+static void vectors_add(struct obj_vectors *vectors, struct vec3 vector)
+{
+    vectors->at = alloc_reserve(vectors->at, &vectors->capacity, vectors->count + 1,
+                                sizeof *vectors->at);
+    vectors->at[vectors->count++] = vector;
+}
+
 static bool read_vertex(struct obj_reader *reader, char *rest)
 {
     double value[3];
@@ -79,12 +90,10 @@ static bool read_vertex(struct obj_reader *reader, char *rest)
         if (!text_number(&reader->text, word, &value[i], reader->error))
             return false;
     }
-    if (reader->vertex_count == COUNT_MAX)
+    if (reader->vertices.count == COUNT_MAX)
         return error_set(reader->error, EXIT_USAGE, "%s:%ld: more than %d vertices",
                          reader->text.path, reader->text.line, COUNT_MAX);
-    reader->vertices = alloc_reserve(reader->vertices, &reader->vertex_capacity,
-                                     reader->vertex_count + 1, sizeof *reader->vertices);
-    reader->vertices[reader->vertex_count++] = (struct vec3){value[0], value[1], value[2]};
+    vectors_add(&reader->vertices, (struct vec3){value[0], value[1], value[2]});
     return true;
 }
 
@@ -104,12 +113,10 @@ static struct vec3 parse_direction(char *rest)
 
 static bool read_normal(struct obj_reader *reader, char *rest)
 {
-    if (reader->normal_count == COUNT_MAX)
+    if (reader->normals.count == COUNT_MAX)
         return error_set(reader->error, EXIT_USAGE, "%s:%ld: more than %d normals",
                          reader->text.path, reader->text.line, COUNT_MAX);
-    reader->normals = alloc_reserve(reader->normals, &reader->normal_capacity,
-                                    reader->normal_count + 1, sizeof *reader->normals);
-    reader->normals[reader->normal_count++] = parse_direction(rest);
+    vectors_add(&reader->normals, parse_direction(rest));
     return true;
 }
 
@@ -141,8 +148,9 @@ static int32_t find_place(int64_t index, int64_t count)
 
 static int32_t find_normal(struct obj_reader *reader, int64_t index)
 {
-    int32_t normal = find_place(index, reader->normal_count);
-    if (normal < 0 || vec3_dot(reader->normals[normal], reader->normals[normal]) == 0.0) {
+    int32_t normal = find_place(index, reader->normals.count);
+    const struct vec3 *n = reader->normals.at;
+    if (normal < 0 || vec3_dot(n[normal], n[normal]) == 0.0) {
         reader->repairs->bad_normals++;
         return -1;
     }
@@ -157,13 +165,13 @@ static bool read_corner(struct obj_reader *reader, const char *word, struct obj_
     if (!parse_corner(word, &vertex, &normal, &has_normal))
         return error_set(reader->error, EXIT_USAGE, "%s:%ld: bad corner '%.40s' of a face",
                          reader->text.path, reader->text.line, word);
-    corner->vertex = find_place(vertex, reader->vertex_count);
+    corner->vertex = find_place(vertex, reader->vertices.count);
     if (corner->vertex < 0) {
         size_t digits = strcspn(word, "/");
         return error_set(reader->error, EXIT_USAGE,
                          "%s:%ld: face refers to vertex %.*s of %" PRId64, reader->text.path,
                          reader->text.line, digits < 40 ? (int)digits : 40, word,
-                         reader->vertex_count);
+                         reader->vertices.count);
     }
     corner->normal = has_normal ? find_normal(reader, normal) : -1;
     return true;
@@ -203,7 +211,7 @@ static void add_polygon(struct obj_reader *reader)
     struct vec3 *positions = alloc_array((size_t)count, sizeof *positions);
     int32_t *cut = alloc_array(3 * ((size_t)count - 2), sizeof *cut);
     for (int32_t i = 0; i < count; i++)
-        positions[i] = reader->vertices[reader->corners[i].vertex];
+        positions[i] = reader->vertices.at[reader->corners[i].vertex];
     polygon_triangulate(positions, count, cut);
     for (int32_t i = 0; i < count - 2; i++)
         add_triangle(reader, cut[3 * i], cut[3 * i + 1], cut[3 * i + 2]);
@@ -335,7 +343,7 @@ static void make_normals(const struct obj_reader *reader, struct scene *scene)
         for (int k = 0; k < 3; k++) {
             int32_t normal = reader->triangles[i].corner[k].normal;
             if (normal >= 0)
-                scene->normals[3 * (int64_t)i + k] = reader->normals[normal];
+                scene->normals[3 * (int64_t)i + k] = reader->normals.at[normal];
         }
 }
 
@@ -351,7 +359,8 @@ static struct scene *make_scene(const struct obj_reader *reader)
     for (int32_t i = 0; i < scene->input_count; i++) {
         const struct obj_triangle *triangle = &reader->triangles[i];
         for (int k = 0; k < 3; k++)
-            scene->triangles[i].corner[k] = reader->vertices[triangle->corner[k].vertex];
+            scene->triangles[i].corner[k] =
+                reader->vertices.at[triangle->corner[k].vertex];
         scene->material_of[i] = number[triangle->material];
     }
     make_groups(reader, scene);
@@ -368,8 +377,8 @@ struct scene *obj_of_text(struct text *text, struct obj_repairs *repairs, struct
     bool good = read_lines(&reader);
     text_free(&reader.text);
     struct scene *scene = good ? make_scene(&reader) : NULL;
-    alloc_free(reader.vertices);
-    alloc_free(reader.normals);
+    alloc_free(reader.vertices.at);
+    alloc_free(reader.normals.at);
     alloc_free(reader.triangles);
     alloc_free(reader.corners);
     mtl_free(&reader.materials);

@@ -158,8 +158,8 @@ static bool read_file(struct reader *reader, const struct binary *binary)
 {
     struct ply_file *file = &reader->file;
     bool good = ply_file_open(file, binary, reader->error) && check_header(reader);
-    for (int64_t i = 0; good && i < file->element_count; i++) {
-        const struct ply_element *element = &file->elements[i];
+    for (int64_t i = 0; good && i < file->header.element_count; i++) {
+        const struct ply_element *element = &file->header.elements[i];
         switch (element->kind) {
         case PLY_VERTEX: good = read_vertices(reader, element); break;
         case PLY_FACE: good = read_faces(reader, element); break;

@@ -100,7 +100,8 @@ static bool read_format(struct ply_file *file, char *rest, bool *known, struct e
 static bool read_element(struct ply_file *file, char *rest, struct error *error)
 {
     const char *name = text_word(&rest), *count = text_word(&rest);
-    struct ply_element element = {.kind = PLY_OTHER, .property = file->property_count,
+    struct ply_header *header = &file->header;
+    struct ply_element element = {.kind = PLY_OTHER, .property = header->property_count,
                                   .line = file->line};
     for (int field = 0; field < PLY_FIELDS; field++)
         element.type_of[field] = PLY_NONE;
@@ -113,9 +114,9 @@ static bool read_element(struct ply_file *file, char *rest, struct error *error)
         return fail_word(file, error, "bad number of elements", count);
     if (element.kind != PLY_OTHER && ply_file_find(file, element.kind))
         return fail_word(file, error, "a second element", name);
-    file->elements = alloc_reserve(file->elements, &file->element_capacity,
-                                   file->element_count + 1, sizeof *file->elements);
-    file->elements[file->element_count++] = element;
+    header->elements = alloc_reserve(header->elements, &header->element_capacity,
+                                     header->element_count + 1, sizeof *header->elements);
+    header->elements[header->element_count++] = element;
     return true;
 }
 
@@ -153,9 +154,10 @@ static bool check_field(struct ply_file *file, struct ply_element *element,
 
 static bool read_property(struct ply_file *file, char *rest, struct error *error)
 {
-    if (file->element_count == 0)
+    struct ply_header *header = &file->header;
+    if (header->element_count == 0)
         return fail_word(file, error, "a property before any element:", rest);
-    struct ply_element *element = &file->elements[file->element_count - 1];
+    struct ply_element *element = &header->elements[header->element_count - 1];
     const char *word = text_word(&rest);
     bool list = word && strcmp(word, "list") == 0;
     enum ply_type count_type = list ? find_type(text_word(&rest)) : PLY_NONE;
@@ -165,9 +167,10 @@ static bool read_property(struct ply_file *file, char *rest, struct error *error
         return fail_word(file, error, "bad property", name);
     struct ply_property property = {.type = (uint8_t)type, .count_type = (uint8_t)count_type,
                                     .field = (uint8_t)find_field(element->kind, name)};
-    file->properties = alloc_reserve(file->properties, &file->property_capacity,
-                                     file->property_count + 1, sizeof *file->properties);
-    file->properties[file->property_count++] = property;
+    header->properties = alloc_reserve(header->properties, &header->property_capacity,
+                                       header->property_count + 1,
+                                       sizeof *header->properties);
+    header->properties[header->property_count++] = property;
     element->property_count++;
     element->has_list = element->has_list || list;
     element->row_size += TYPES[list ? count_type : type].size;
@@ -182,8 +185,8 @@ static bool check_claims(struct ply_file *file, struct error *error)
         return error_set(error, EXIT_USAGE, "%s: not text, though its header says ascii",
                          binary->path);
     int64_t left = binary_left(binary) + (file->ascii ? 1 : 0); /* a last line without end */
-    for (int64_t i = 0; i < file->element_count; i++) {
-        struct ply_element *element = &file->elements[i];
+    for (int64_t i = 0; i < file->header.element_count; i++) {
+        struct ply_element *element = &file->header.elements[i];
         if (file->ascii)
             element->row_size = 2 * element->property_count;
         if (element->row_size > 0 && element->count > left / element->row_size)
@@ -237,17 +240,17 @@ bool ply_file_open(struct ply_file *file, const struct binary *binary, struct er
 void ply_file_close(struct ply_file *file)
 {
     binary_free(&file->binary);
-    alloc_free(file->elements);
-    alloc_free(file->properties);
+    alloc_free(file->header.elements);
+    alloc_free(file->header.properties);
     alloc_free(file->corners);
     *file = (struct ply_file){0};
 }
 
 const struct ply_element *ply_file_find(const struct ply_file *file, enum ply_kind kind)
 {
-    for (int64_t i = 0; i < file->element_count; i++)
-        if (file->elements[i].kind == kind)
-            return &file->elements[i];
+    for (int64_t i = 0; i < file->header.element_count; i++)
+        if (file->header.elements[i].kind == kind)
+            return &file->header.elements[i];
     return NULL;
 }
 
@@ -384,7 +387,7 @@ bool ply_file_row(struct ply_file *file, const struct ply_element *element, int6
     if (!stop_check(error) || (file->ascii && !find_row(file, error)))
         return false;
     for (int64_t i = 0; i < element->property_count; i++)
-        if (!take_property(file, &file->properties[element->property + i], error))
+        if (!take_property(file, &file->header.properties[element->property + i], error))
             return false;
     if (file->ascii && *text_trim(file->rest))
         return ply_fail(file, error, "more values than the header says");

@@ -47,14 +47,18 @@ struct ply_element {
     enum ply_type type_of[PLY_FIELDS]; /* PLY_NONE where it has no such property */
 };
 
-struct ply_file {
-    struct binary binary;
-    bool ascii, big_endian;
-    char line_end;                   /* the last character of a line */
+struct ply_header {
     struct ply_element *elements;    /* [element_count], in the order of the file */
     int64_t element_count, element_capacity;
     struct ply_property *properties; /* [property_count], element by element */
     int64_t property_count, property_capacity;
+};
+
+struct ply_file {
+    struct binary binary;
+    bool ascii, big_endian;
+    char line_end;                   /* the last character of a line */
+    struct ply_header header;
     double value[PLY_FIELDS];        /* of the row that was read last */
     int32_t *corners;                /* [corner_count] of it, each >= 0 */
     int64_t corner_count, corner_capacity;
