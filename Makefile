@@ -54,8 +54,9 @@ endif
 GEOM = alloc elementary error hull lambert outlook polygon scene stop triangle wall
 OCTREE = build bundle hit octree segment shaft
 RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/gather_wide beyond/lamps beyond/node \
-      beyond/node_exchange beyond/node_link beyond/paths beyond/sequence beyond/closure beyond/conjugate beyond/snapshot flux formfactor id link \
-      linking model oracle patch pushpull sample treecode
+      beyond/node_exchange beyond/node_link beyond/paths beyond/sequence beyond/closure beyond/conjugate \
+      beyond/default beyond/error_oracle beyond/patch_exchange beyond/patch_link beyond/range beyond/snapshot \
+      flux formfactor id link linking method model oracle patch pushpull sample treecode
 MPI = assign balance beyond/accuracy beyond/balance beyond/closing beyond/final_gather beyond/gather_mesh beyond/keep beyond/spotcheck \
       broadcast comm funnel gather ledger linking memory migrate \
       node picture plan refinement routes scatter signals solve solver vote
@@ -72,7 +73,8 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # Unit tests, bottom up; the last four are run with several ranks. Their sources lie in
 # folders, the programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
 TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree bundles \
-        bicgstab sequence id flux patch compact formfactor link linking cluster node oracle pushpull closure \
+        bicgstab sequence id flux patch compact formfactor patch_exchange link patch_link linking \
+        cluster node oracle error_oracle pushpull closure \
         final_gather treecode paths plan balance assign spotcheck \
         text obj ply output store tone image camera viewpoint shading render options progress contour \
         stop norms cie furnace whole stability gaps leaks exchange conjugate exact converge

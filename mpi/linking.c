@@ -87,9 +87,9 @@ static bool link_pairs(struct solver *solver, struct linking *linking)
 bool solver_link_roots(struct solver *solver)
 {
     double start = comm_seconds();
-    if (solver->model.clusters) {
+    if (solver->model.method.first_link) {
         if (solver->comm->rank == 0) /* the first levels deal what it becomes */
-            link_list_append(&solver->links, node_link_top());
+            link_list_append(&solver->links, solver->model.method.first_link());
         return true;
     }
     int64_t before = model_work(&solver->model);

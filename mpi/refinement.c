@@ -17,7 +17,6 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "rad/oracle.h"
 
 /* --- before a level --- */
 
@@ -206,11 +205,8 @@ static void load_balance(struct solver *solver, struct link_list *prolific,
 static void begin_pass(struct solver *solver)
 {
     double start = comm_seconds();
-    forest_bound(solver->model.forest);
-    if (solver->model.clusters) {
-        cluster_light_pull(solver->model.clusters, solver->model.forest);
-        cluster_light_bound(solver->model.clusters, solver->model.forest);
-    }
+    if (solver->model.method.prepare)
+        solver->model.method.prepare(&solver->model);
     solver->account.seconds[PHASE_PREPARE] += comm_seconds() - start;
     solver->account.seconds[PHASE_REFINEMENT] += comm_seconds() - start;
     solver->turn.pass++;
@@ -231,16 +227,18 @@ static bool goes_on(struct solver *solver, const struct link_list *prolific, int
 
 /* Splits a link. Returns the number of children. */
 static int split_link(struct solver *solver, const struct link *link,
-                      struct link children[NODE_CHILDREN_MAX])
+                      struct link children[METHOD_CHILDREN_MAX])
 {
     struct model *model = &solver->model;
-    return node_link_split(model, link, node_to_split(model, link), children);
+    int32_t side = model->method.side_to_split(model, link);
+    return model->method.split_link(model, link, side, children);
 }
 
 /* Lets a new link that is not to be split join those that carry light. */
 static void keep_link(struct solver *solver, struct link *link)
 {
-    node_link_settle(&solver->model, link);
+    if (solver->model.method.keep_link)
+        solver->model.method.keep_link(&solver->model, link, true);
     link_list_append(&solver->links, *link);
 }
 
@@ -267,24 +265,29 @@ static void end_level(struct solver *solver, struct link_list *prolific,
     solver->account.seconds[PHASE_REFINEMENT] += comm_seconds() - level->start;
 }
 
+/* Evaluates a link: true if it should be subdivided. */
+static bool is_prolific(const struct solver *solver, const struct link *link)
+{
+    return solver->model.method.side_to_split(&solver->model, link) != NODE_NONE;
+}
+
 /* Moves the links that are to be split from the rank's links to `prolific`. In the first
  * pass the others are new, too. */
 static void select_prolific(struct solver *solver, struct link_list *prolific)
 {
+    struct model *model = &solver->model;
     int64_t kept = 0;
     double start = comm_seconds();
     struct phase_work looks = {.kind = WORK_LOOKS, .iteration = solver->turn.pass,
                                .share.done = solver->links.count};
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
-        if (node_to_split(&solver->model, &link) != NODE_NONE) {
+        if (is_prolific(solver, &link)) {
             link_list_append(prolific, link);
             continue;
         }
-        if (solver->turn.pass == 1)
-            node_link_settle(&solver->model, &link);
-        else
-            node_divide_patches(&solver->model, &link);
+        if (model->method.keep_link)
+            model->method.keep_link(model, &link, solver->turn.pass == 1);
         solver->links.items[kept++] = link;
     }
     solver->links.count = kept;
@@ -297,7 +300,7 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
  * `prolific` prolificInteractions, `next` newInteractions. */
 static void refine(struct solver *solver, struct link_list *prolific, struct level *level)
 {
-    struct link children[NODE_CHILDREN_MAX];
+    struct link children[METHOD_CHILDREN_MAX];
     struct link_list next = {0};
     /* for all interaction in allInteractions do
      *   Evaluate interaction
@@ -319,7 +322,7 @@ static void refine(struct solver *solver, struct link_list *prolific, struct lev
             for (int k = 0; k < count; k++) {
                 /* Evaluate newInteraction
                  * if newInteraction should be subdivided then */
-                if (node_to_split(&solver->model, &children[k]) != NODE_NONE)
+                if (is_prolific(solver, &children[k]))
                     /* Add newInteraction to newInteractions */
                     link_list_append(&next, children[k]);
                 else

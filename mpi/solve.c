@@ -59,10 +59,7 @@ void solver_transfer(struct solver *solver)
                BANDS * (size_t)solver->beyond->tree->count * sizeof *solver->model.clusters->flux);
     }
     double begun = comm_seconds();
-    if (solver->beyond->tree)
-        node_links_transfer(&solver->links, &solver->model, solver->flux);
-    else
-        links_transfer(&solver->links, forest, solver->flux);
+    solver->model.method.transfer(&solver->links, &solver->model, solver->flux);
     double done = comm_seconds();
     if (corrects)
         forest_restore(forest, kept);

@@ -1,11 +1,11 @@
-/* The 16-ray disk form factor.
+/* The form factor of the paper: disks and 16 rays.
  *
  * Each patch is cut into its four children a = 0..3 and b = 0..3. With r the distance of their
  * centroids and theta the angles to the normals, the exchange area is
  *
  *     G = sum over a, b of  v_ab  A_a A_b cos theta_a cos theta_b / (pi r^2 + max(A_a, A_b)),
  *
- * v_ab = 1 if the segment between the centroids is free.
+ * v_ab = 1 if the segment between the centroids is free: Eq. 2 for each of the 16 rays of Fig. 2.
  *
  * On the denominator: the paper prints F_ij = v cos cos A_j / (pi r^2 + A_i), which has no
  * bound when a small i lies close to a large j (F = 24 where 0.968 is right). Wallace's disk
@@ -14,22 +14,11 @@
  * disks of one side overlap as seen from the other; where that makes G larger than the smaller
  * patch, it is cut down to it, so F <= 1 in both directions.
  *
- * Pairs of sub-areas below each other's horizon exchange nothing: they get no ray and do not
- * count as blocked.
- *
- * No free ray does not mean that nothing passes. That is only taken so with a proof: a wall that
- * stops every segment (geom/wall.c).
- */
+ * Sub-areas below each other's horizon exchange nothing, whatever is between them: they get no
+ * ray. */
 #include "rad/formfactor.h"
 
 #include <math.h>
-
-#include "geom/lambert.h"
-
-enum { SUBAREAS = BUNDLE_ENDS, RAYS = BUNDLE_RAYS, ALL_RAYS = (1 << RAYS) - 1 };
-
-/* Segments from a sub-area to the one of the same number. */
-#define DIAGONAL 0x8421u
 
 struct facet facet_make(const struct forest *forest, int32_t patch)
 {
@@ -42,25 +31,8 @@ struct facet facet_make(const struct forest *forest, int32_t patch)
     };
 }
 
-/* Largest distance of a corner of `t` in front of `plane`. */
-static double reach_above(const struct plane *plane, const struct triangle *t)
-{
-    double a = plane_distance(plane, t->corner[0]);
-    double b = plane_distance(plane, t->corner[1]);
-    double c = plane_distance(plane, t->corner[2]);
-    return real_max(a, real_max(b, c));
-}
-
-bool facets_face(const struct facet *p, const struct facet *q)
-{
-    return reach_above(&p->plane, &q->triangle) > GEOM_ROUNDING &&
-           reach_above(&q->plane, &p->triangle) > GEOM_ROUNDING;
-}
-
-/* A A' cos cos' / (pi r^2 + max(A, A')) of two small areas at x and y; 0 below a
- * horizon. */
-static double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x,
-                            struct vec3 y, struct vec3 normal_y, double area_y)
+double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x, struct vec3 y,
+                     struct vec3 normal_y, double area_y)
 {
     struct vec3 d = vec3_sub(y, x);
     double rise_x = vec3_dot(normal_x, d), rise_y = -vec3_dot(normal_y, d); /* r cos theta */
@@ -70,252 +42,40 @@ static double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x,
     return area_x * area_y * (rise_x * rise_y / r2) / (PI * r2 + fmax(area_x, area_y));
 }
 
-/* A guess for patches that the other's plane cuts, by a disk with the heights of the
- * highest corners in place of those of the centroids: rather too much. The centroids may
- * all lie below the horizon while the corners do not: such a pair stays in play. */
-static double exchange_across_horizon(const struct facet *p, const struct facet *q)
+struct facet_pair facet_pair_make(const struct facet *p, const struct facet *q)
 {
-    struct vec3 d = vec3_sub(triangle_centroid(&q->triangle), triangle_centroid(&p->triangle));
-    double r2 = vec3_dot(d, d);
-    double rise_p = reach_above(&p->plane, &q->triangle);
-    double rise_q = reach_above(&q->plane, &p->triangle);
-    double cosines = fmin(1.0, rise_p * rise_q / r2);
-    return p->area * q->area * cosines / (PI * r2 + fmax(p->area, q->area));
-}
-
-/* The points that stand for a patch: the centroids of its four children. */
-static void subarea_centroids(const struct triangle *t, struct vec3 centroids[SUBAREAS])
-{
-    for (int k = 0; k < SUBAREAS; k++) {
-        struct triangle child = triangle_child(t, k);
-        centroids[k] = triangle_centroid(&child);
+    struct facet_pair pair = {.p = p, .q = q, .bundle = {.own = {p->input, q->input}}};
+    struct bundle *bundle = &pair.bundle;
+    for (int k = 0; k < BUNDLE_ENDS; k++) {
+        struct triangle of_p = triangle_child(&p->triangle, k);
+        struct triangle of_q = triangle_child(&q->triangle, k);
+        bundle->from[k] = triangle_centroid(&of_p);
+        bundle->to[k] = triangle_centroid(&of_q);
     }
-}
-
-/* A pair while it is estimated. */
-struct pair {
-    const struct facet *p, *q;
-    double kernels[RAYS]; /* exchange areas of the sub-areas, by disks, not occluded */
-    struct bundle bundle; /* the segments between them; asked: those that face each other */
-    unsigned visible;
-};
-
-static void pair_aim(struct pair *pair, const struct facet *p, const struct facet *q)
-{
-    struct bundle *bundle = &pair->bundle;
-    *bundle = (struct bundle){.own = {p->input, q->input}};
-    pair->p = p;
-    pair->q = q;
-    subarea_centroids(&p->triangle, bundle->from);
-    subarea_centroids(&q->triangle, bundle->to);
-    for (int ray = 0; ray < RAYS; ray++) {
-        pair->kernels[ray] = disk_exchange(bundle->from[ray / SUBAREAS], p->plane.normal,
-                                           0.25 * p->area, bundle->to[ray % SUBAREAS],
-                                           q->plane.normal, 0.25 * q->area);
-        bundle->asked |= (unsigned)(pair->kernels[ray] > 0.0) << ray;
+    for (int ray = 0; ray < BUNDLE_RAYS; ray++) {
+        pair.kernels[ray] = disk_exchange(bundle->from[ray / BUNDLE_ENDS], p->plane.normal,
+                                          0.25 * p->area, bundle->to[ray % BUNDLE_ENDS],
+                                          q->plane.normal, 0.25 * q->area);
+        bundle->asked |= (unsigned)(pair.kernels[ray] > 0.0) << ray;
     }
+    return pair;
 }
 
-/* The four segments from each sub-area of p to one of q, as far as they are in `asked`: what of them is
- * blocked. */
-static unsigned block_diagonal(const struct bundle *bundle, unsigned asked,
-                               const struct octree *octree, int32_t *blocker,
-                               struct octree_counts *counts)
+double exchange_area(const struct facet *p, const struct facet *q, const struct octree *octree,
+                     int32_t *blocker, double *seen, struct octree_counts *counts)
 {
-    unsigned blocked = 0;
-    for (int k = 0; k < SUBAREAS; k++) {
-        unsigned bit = 1u << (SUBAREAS + 1) * k;
-        if ((asked & bit) && octree_blocks_segment(octree, bundle->from[k], bundle->to[k],
-                                                   bundle->own, blocker, counts))
-            blocked |= bit;
+    struct facet_pair pair = facet_pair_make(p, q);
+    unsigned asked = pair.bundle.asked, blocked = 0;
+    if (asked != 0)
+        blocked = octree_block(octree, &pair.bundle, blocker, counts);
+    double area = 0.0;
+    int rays = 0, arrived = 0;
+    for (int ray = 0; ray < BUNDLE_RAYS; ray++) {
+        bool arrives = (asked & ~blocked) >> ray & 1u;
+        rays += (int)(asked >> ray & 1u);
+        arrived += arrives;
+        area += arrives ? pair.kernels[ray] : 0.0;
     }
-    return blocked;
-}
-
-/* With four segments that agree, one for each sub-area of p and of q, all others are taken to be
- * like them. */
-static void pair_look(struct pair *pair, enum look look, const struct octree *octree,
-                      struct sight *sight, struct octree_counts *counts)
-{
-    unsigned facing = pair->bundle.asked, diagonal = facing & DIAGONAL, blocked = 0;
-    pair->visible = facing;
-    if (sight->open || facing == 0)
-        return;
-    if (look == LOOK_FOUR_FIRST && diagonal != 0) {
-        blocked = block_diagonal(&pair->bundle, diagonal, octree, &sight->blocker, counts);
-        if (blocked == 0)
-            return;
-        if (blocked == diagonal) {
-            pair->visible = 0;
-            return;
-        }
-        pair->bundle.asked = facing & ~DIAGONAL;
-    }
-    if (pair->bundle.asked)
-        blocked |= octree_block(octree, &pair->bundle, &sight->blocker, counts);
-    pair->bundle.asked = facing;
-    pair->visible = facing & ~blocked;
-}
-
-/* Sums of the kernels of one sub-area of p (`of_p`) or q: all that face, and those that are
- * seen. */
-static void sum_kernels(const struct pair *pair, bool of_p, int sub, double *all, double *seen)
-{
-    *all = *seen = 0.0;
-    for (int other = 0; other < SUBAREAS; other++) {
-        int ray = of_p ? SUBAREAS * sub + other : SUBAREAS * other + sub;
-        *all += pair->kernels[ray];
-        *seen += pair->visible >> ray & 1u ? pair->kernels[ray] : 0.0;
-    }
-}
-
-/* Exchange areas of the four sub-areas of a side with the whole of the other: not occluded, and
- * as far as it is seen. */
-struct side {
-    double unoccluded[SUBAREAS], area[SUBAREAS];
-};
-
-static struct side side_by_disks(const struct pair *pair, bool of_p)
-{
-    struct side side;
-    for (int sub = 0; sub < SUBAREAS; sub++)
-        sum_kernels(pair, of_p, sub, &side.unoccluded[sub], &side.area[sub]);
-    return side;
-}
-
-/* Mean over a sub-area of what it sees of the other patch, from three points: right where that
- * varies with the square of the place (Stroud's formula of degree 2). */
-static double factor_close_by(const struct facet *own, int sub, const struct facet *other)
-{
-    struct triangle area = triangle_child(&own->triangle, sub);
-    struct vec3 centroid = triangle_centroid(&area);
-    double sum = 0.0;
-    for (int k = 0; k < 3; k++) {
-        struct vec3 point = vec3_middle(centroid, area.corner[k]);
-        sum += point_triangle_factor(point, own->plane.normal, &other->triangle);
-    }
-    return sum / 3.0;
-}
-
-/* A sub-area none of whose segments faces has no kernels to tell what is seen: then what the whole
- * pair sees counts. */
-static struct side side_by_points(const struct pair *pair, bool of_p, bool apart)
-{
-    const struct facet *own = of_p ? pair->p : pair->q, *other = of_p ? pair->q : pair->p;
-    const struct vec3 *points = of_p ? pair->bundle.from : pair->bundle.to;
-    struct side side;
-    double all[SUBAREAS], seen[SUBAREAS], all_sum = 0.0, seen_sum = 0.0;
-    for (int sub = 0; sub < SUBAREAS; sub++) {
-        sum_kernels(pair, of_p, sub, &all[sub], &seen[sub]);
-        all_sum += all[sub];
-        seen_sum += seen[sub];
-    }
-    double share = all_sum > 0.0 ? seen_sum / all_sum : 0.0;
-    for (int sub = 0; sub < SUBAREAS; sub++) {
-        double factor = apart ? point_triangle_factor(points[sub], own->plane.normal, &other->triangle)
-                              : factor_close_by(own, sub, other);
-        side.unoccluded[sub] = 0.25 * own->area * factor;
-        side.area[sub] = side.unoccluded[sub] * (all[sub] > 0.0 ? seen[sub] / all[sub] : share);
-    }
-    return side;
-}
-
-static double sum_of(const double values[SUBAREAS])
-{
-    return (values[0] + values[1]) + (values[2] + values[3]);
-}
-
-/* The parts that the four sub-areas have in the whole: a quarter each if there is nothing. */
-static void set_parts(const struct side *side, double parts[SUBAREAS])
-{
-    double sum = sum_of(side->area);
-    for (int sub = 0; sub < SUBAREAS; sub++)
-        parts[sub] = sum > 0.0 ? side->area[sub] / sum : 0.25;
-}
-
-double exchange_guess(const struct facet *p, const struct facet *q)
-{
-    return disk_exchange(triangle_centroid(&p->triangle), p->plane.normal, p->area,
-                         triangle_centroid(&q->triangle), q->plane.normal, q->area);
-}
-
-/* Over the sum of the radii. Nearer, one disk might say that a patch receives more than all
- * there is. */
-static const double FAR = 1.5;
-
-/* True if patches are far enough apart for their size for one disk to be good enough for
- * what is little (within 15 % or so). */
-static bool is_apart(const struct facet *p, const struct facet *q)
-{
-    struct vec3 x = triangle_centroid(&p->triangle), y = triangle_centroid(&q->triangle);
-    double radii = triangle_radius(&p->triangle) + triangle_radius(&q->triangle);
-    return vec3_length(vec3_sub(y, x)) > FAR * radii;
-}
-
-static struct exchange exchange_by_one(const struct facet *p, const struct facet *q,
-                                       const struct octree *octree, struct sight *sight,
-                                       struct octree_counts *counts)
-{
-    double unoccluded = exchange_guess(p, q);
-    const int32_t own[2] = {p->input, q->input};
-    bool seen = sight->open ||
-                !octree_blocks_segment(octree, triangle_centroid(&p->triangle),
-                                       triangle_centroid(&q->triangle), own, &sight->blocker, counts);
-    return (struct exchange){.area = seen ? unoccluded : 0.0, .unoccluded = unoccluded,
-                             .seen = seen ? 1.0 : 0.0, .apart = true,
-                             .parts_p = {0.25, 0.25, 0.25, 0.25},
-                             .parts_q = {0.25, 0.25, 0.25, 0.25}};
-}
-
-static struct exchange exchange_by_all(const struct facet *p, const struct facet *q,
-                                       enum form_factor kind, enum look look,
-                                       const struct octree *octree, struct sight *sight,
-                                       struct octree_counts *counts)
-{
-    struct pair pair;
-    pair_aim(&pair, p, q);
-    pair_look(&pair, look, octree, sight, counts);
-    bool points = kind == FORM_FACTOR_POLYGON, apart = is_apart(p, q);
-    struct side side_p = points ? side_by_points(&pair, true, apart) : side_by_disks(&pair, true);
-    struct side side_q = points ? side_by_points(&pair, false, apart) : side_by_disks(&pair, false);
-    const struct side *smaller = p->area <= q->area ? &side_p : &side_q;
-    double sum = sum_of(smaller->unoccluded);
-    struct exchange exchange = {.unoccluded = sum, .apart = apart};
-    exchange.seen = sum > 0.0 ? sum_of(smaller->area) / sum : 0.0;
-    exchange.area = exchange.seen * exchange.unoccluded;
-    set_parts(&side_p, exchange.parts_p);
-    set_parts(&side_q, exchange.parts_q);
-    if (pair.bundle.asked != ALL_RAYS)
-        exchange.unoccluded = fmax(exchange.unoccluded, exchange_across_horizon(p, q));
-    return exchange;
-}
-
-struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
-                                  enum form_factor kind, enum look look,
-                                  const struct octree *octree, struct sight *sight,
-                                  struct octree_counts *counts)
-{
-    struct exchange exchange = look == LOOK_ONE && is_apart(p, q)
-                                   ? exchange_by_one(p, q, octree, sight, counts)
-                                   : exchange_by_all(p, q, kind, look, octree, sight, counts);
-    double limit = fmin(p->area, q->area);
-    if (exchange.unoccluded > limit) {
-        exchange.area = fmin(limit, exchange.area * (limit / exchange.unoccluded));
-        exchange.unoccluded = limit;
-    }
-    return exchange;
-}
-
-bool facets_are_walled_off(const struct facet *p, const struct facet *q,
-                           const struct octree *octree, struct octree_counts *counts)
-{
-    return octree_has_wall(octree, p->triangle.corner, 3, q->triangle.corner, 3, counts);
-}
-
-bool facets_are_open(const struct facet *p, const struct facet *q, const struct octree *octree,
-                     struct octree_counts *counts)
-{
-    const int32_t own[2] = {p->input, q->input};
-    return octree_shaft_is_empty(octree, &p->triangle, &p->plane, &q->triangle, &q->plane, own,
-                                 counts);
+    *seen = rays > 0 ? (double)arrived / rays : 0.0;
+    return fmin(area, fmin(p->area, q->area));
 }

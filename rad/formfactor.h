@@ -5,27 +5,12 @@
 #ifndef RAD_FORMFACTOR_H
 #define RAD_FORMFACTOR_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
-#include "rad/model.h"
+#include "octree/octree.h"
+#include "rad/patch.h"
 
-struct exchange {
-    double area;       /* G with visibility */
-    double unoccluded; /* an estimate of what G would be without blockers, >= area */
-    double seen;       /* share of the segments that arrive, weighted, 1 */
-    bool apart;        /* far enough apart for their size to trust G from points */
-    double parts_p[4]; /* the parts of G that go to the four children of p: sum 1 */
-    double parts_q[4]; /* and to those of q */
-};
-
-/* What is known of the visibility of a pair before it is looked at. */
-struct sight {
-    bool open;       /* proved: nothing can stand between the patches */
-    int32_t blocker; /* in and out: as *guess of octree_block() */
-};
-
-/* One patch of a pair, as the kernel needs it. */
+/* One patch of a pair. */
 struct facet {
     struct triangle triangle;
     struct plane plane;
@@ -35,36 +20,24 @@ struct facet {
 
 struct facet facet_make(const struct forest *forest, int32_t patch);
 
-/* True where each facet has a corner in front of the other: exact, so a pair that is not
- * facing exchanges no light at all. */
-bool facets_face(const struct facet *p, const struct facet *q);
+/* A pair, cut into four sub-areas on either side. Segment 4 a + b joins sub-area a of p with
+ * sub-area b of q. */
+struct facet_pair {
+    const struct facet *p, *q;   /* borrowed */
+    double kernels[BUNDLE_RAYS]; /* exchange areas of the sub-areas, if nothing is in the way */
+    struct bundle bundle;        /* the segments; asked: those whose ends face each other */
+};
 
-/* How closely a pair is looked at. ONE: if the patches are far apart for their size, one disk
- * and a segment from centroid to centroid decide for all.
- * FOUR_FIRST: four segments, one from each sub-area to another, decide if they agree, else all 16
- * do. ALL: 16. */
-enum look { LOOK_ONE, LOOK_FOUR_FIRST, LOOK_ALL };
+struct facet_pair facet_pair_make(const struct facet *p, const struct facet *q);
 
-/* The exchange of a pair: visibility from segments between sub-areas that face each other, unless
- * it is known; form factors by the disk or from points to the whole other patch: one for each
- * sub-area, or three where the patches are not apart.
- * Pre: facets_face(p, q). */
-struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
-                                  enum form_factor kind, enum look look,
-                                  const struct octree *octree, struct sight *sight,
-                                  struct octree_counts *counts);
+/* The exchange area of two small areas at x and y, by the disk, if nothing is in the way; 0
+ * below a horizon. */
+double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x, struct vec3 y,
+                     struct vec3 normal_y, double area_y);
 
-/* What the pair would exchange without blockers, by one disk from centroid to centroid: quick and
- * rough, for deciding how closely to look. 0 if the centroids do not face each other. */
-double exchange_guess(const struct facet *p, const struct facet *q);
-
-/* True if it is proved that nothing of one facet sees anything of the other: one wall stops all
- * nine segments between their corners. */
-bool facets_are_walled_off(const struct facet *p, const struct facet *q,
-                           const struct octree *octree, struct octree_counts *counts);
-
-/* True if it is proved that all of one facet sees all of the other, as far as they face. */
-bool facets_are_open(const struct facet *p, const struct facet *q, const struct octree *octree,
-                     struct octree_counts *counts);
+/* G of a pair by Eq. 2 and 16 rays. `*blocker` as *guess of octree_block(); `*seen` receives the
+ * share of the rays that arrives, 1. */
+double exchange_area(const struct facet *p, const struct facet *q, const struct octree *octree,
+                     int32_t *blocker, double *seen, struct octree_counts *counts);
 
 #endif

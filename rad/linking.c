@@ -1,8 +1,7 @@
 /* Initial linking.
  *
  * "Interactions between all initial patches in the scene are computed" (Sec. 2.2): k
- * roots have k (k - 1) / 2 pairs, and each that faces each other has its form factor and
- * its rays, looked at as closely as the oracle wants (with the paper's, by 16 rays).
+ * roots have k (k - 1) / 2 pairs, and each has its form factor and its rays.
  * Nothing is known of a pair before, so a link depends on its two roots alone, neither on
  * other links nor on the ranks.
  *
@@ -60,10 +59,9 @@ int64_t linking_pairs(const struct linking *linking)
 void linking_add(struct linking *linking)
 {
     int32_t i = linking->i, j = linking->j;
-    struct sight sight = {.blocker = -1};
     struct link link;
-    if (link_make(linking->model, linking->roots[i], &linking->facets[i],
-                  linking->roots[j], &linking->facets[j], 0.0, &sight, &link))
+    if (linking->model->method.make_link(linking->model, linking->roots[i], &linking->facets[i],
+                                         linking->roots[j], &linking->facets[j], NULL, &link))
         link_list_append(linking->links, link);
     step(linking, linking->ranks);
 }

@@ -1,4 +1,4 @@
-/* Initial linking, the paper's (Sec. 3.2, step 2): every pair of roots that faces each
+/* Initial linking, the paper's (Sec. 3.2, step 2): every pair of roots that see each
  * other is linked. */
 #ifndef RAD_LINKING_H
 #define RAD_LINKING_H

@@ -8,14 +8,16 @@
 #include "geom/scene.h"
 #include "octree/octree.h"
 #include "rad/flux.h"
+#include "rad/method.h"
 #include "rad/patch.h"
 
-enum oracle { ORACLE_BF, ORACLE_ERROR };                      /* rad/oracle.h */
-enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON };         /* rad/formfactor.h */
-enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS, CLOSURE_SYMMETRIC }; /* rad/beyond/closure.h */
-enum solver_kind { SOLVER_JACOBI, SOLVER_CG };                    /* rad/beyond/conjugate.h */
-enum linking_kind { LINKING_PAIRS, LINKING_TREE };                    /* mpi/linking.c */
-enum balance { BALANCE_NONE, BALANCE_GREEDY, BALANCE_DEFAULT };       /* mpi/balance.h */
+/* What is named by options; read by method_of() alone, but for the last three. */
+enum oracle { ORACLE_BF, ORACLE_ERROR };                    /* rad/oracle.h, rad/beyond/error_oracle.h */
+enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON }; /* rad/beyond/patch_exchange.h */
+enum linking_kind { LINKING_PAIRS, LINKING_TREE };
+enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS, CLOSURE_SYMMETRIC };
+enum solver_kind { SOLVER_JACOBI, SOLVER_CG };
+enum balance { BALANCE_NONE, BALANCE_GREEDY, BALANCE_DEFAULT }; /* mpi/balance.h */
 
 /* How links are evaluated, when and how far they are refined, and when the iterations end. */
 struct criterion {
@@ -31,7 +33,7 @@ struct criterion {
                                added, relative RMS; 0: these stay */
     double min_area;        /* smallest patch, relative to the scene's area */
     int max_level;          /* deepest subdivision, 0..ID_MAX_LEVEL */
-    double alpha;           /* share of its parent's cost in the cost of a link, 0..1 */
+    double alpha;           /* alpha_c, share of its parent's cost in the cost of a link, 0..1 */
     double tolerance;       /* bound on the remaining iteration error, relative to all light */
     int max_iterations;     /* at least 1 */
     int final_gather;       /* rays from a leaf of middling size; 0: none */
@@ -48,6 +50,7 @@ struct model {
     struct forest *forest;
     struct cluster_light *clusters; /* above the roots; NULL: none */
     struct criterion criterion;
+    struct method method;
     struct flux_unit flux_unit;
     double area, emitted_power; /* of the scene: square scene units, W */
     double light_power;     /* W, areas in square scene units: what epsilon is relative to */
@@ -66,7 +69,7 @@ static inline int64_t model_work(const struct model *model)
     return model->counts.node_tests + model->counts.triangle_tests + model->estimating;
 }
 
-/* Fills a model; borrows scene, octree and forest. */
+/* Fills a model with the method that the criterion names; borrows scene, octree and forest. */
 struct model model_make(const struct scene *scene, const struct octree *octree,
                           struct forest *forest, const struct criterion *criterion);
 

@@ -14,8 +14,6 @@ struct forest *forest_create(const struct scene *scene)
     forest->root_count = scene_root_count(scene);
     forest->patches = alloc_reserve(NULL, &forest->capacity, forest->root_count,
                                     sizeof *forest->patches);
-    forest->extremes = alloc_reserve(NULL, &forest->extremes_capacity, forest->root_count,
-                                     sizeof *forest->extremes);
     forest->count = forest->root_count;
     for (int32_t root = 0; root < forest->root_count; root++)
         forest->patches[root] = (struct patch){
@@ -44,13 +42,8 @@ void forest_split(struct forest *forest, int32_t patch)
         alloc_fail(SIZE_MAX); /* local numbers end at 2^31 patches, 128 GiB */
     forest->patches = alloc_reserve(forest->patches, &forest->capacity, forest->count + 4,
                                     sizeof *forest->patches);
-    forest->extremes = alloc_reserve(forest->extremes, &forest->extremes_capacity,
-                                     forest->count + 4, sizeof *forest->extremes);
     struct patch *parent = &forest->patches[patch];
-    float brightness = (float)rgb_sum(parent->radiosity);
     parent->children = (int32_t)forest->count;
-    for (int k = 0; k < 4; k++)
-        forest->extremes[forest->count + k] = (struct extremes){brightness, brightness};
     for (int k = 0; k < 4; k++)
         forest->patches[forest->count++] = (struct patch){
             .radiosity = parent->radiosity,

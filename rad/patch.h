@@ -25,13 +25,16 @@ struct extremes {
     float low, high;
 };
 
+/* In place of a local number: no patch, and no cluster either. */
+enum { NODE_NONE = INT32_MIN };
+
 struct forest {
     const struct scene *scene; /* borrowed */
     struct patch *patches;     /* [count] */
-    struct extremes *extremes; /* [count] as of the last forest_bound(); a new patch's are equal */
+    struct extremes *extremes; /* [bounded] see rad/beyond/range.h; NULL: there are none */
     struct rgb *above;         /* [root_count] irradiance that clusters hand down to each root, W/m^2;
                                   NULL: there are none */
-    int64_t count, capacity, extremes_capacity;
+    int64_t count, capacity, bounded, extremes_capacity;
     int32_t root_count;
 };
 

@@ -85,20 +85,6 @@ void forest_average(struct forest *forest)
         forest_average_patch(forest, (int32_t)p);
 }
 
-void forest_bound(struct forest *forest)
-{
-    for (int64_t p = forest->count - 1; p >= 0; p--) {
-        const struct patch *patch = &forest->patches[p];
-        float brightness = (float)rgb_sum(patch->radiosity);
-        struct extremes *own = &forest->extremes[p], *child = &forest->extremes[patch->children];
-        *own = (struct extremes){brightness, brightness};
-        for (int k = 0; k < 4 && !patch_is_leaf(patch); k++) {
-            own->low = fminf(own->low, child[k].low);
-            own->high = fmaxf(own->high, child[k].high);
-        }
-    }
-}
-
 static double largest_shrink(const struct model *model, const bool *own, const int64_t *before,
                              const int64_t *now)
 {

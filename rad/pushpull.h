@@ -31,7 +31,4 @@ struct push_pull_sums push_pull(const struct model *model, const struct closure 
 void forest_average_patch(struct forest *forest, int32_t patch);
 void forest_average(struct forest *forest);
 
-/* The extremes of all patches. */
-void forest_bound(struct forest *forest);
-
 #endif

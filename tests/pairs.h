@@ -23,8 +23,7 @@ static inline bool make(struct world *world, int32_t p, int32_t q, struct link *
 {
     struct facet facet_p = facet_make(world->model.forest, p);
     struct facet facet_q = facet_make(world->model.forest, q);
-    struct sight sight = {.open = false, .blocker = -1};
-    return link_make(&world->model, p, &facet_p, q, &facet_q, 0.0, &sight, link);
+    return world->model.method.make_link(&world->model, p, &facet_p, q, &facet_q, NULL, link);
 }
 
 /* Floor 0 (material 0) and ceiling `size` times as large (material 1), then `more`. */

@@ -21,7 +21,7 @@
 
 #include "geom/alloc.h"
 #include "geom/lambert.h"
-#include "rad/formfactor.h"
+#include "rad/beyond/patch_exchange.h"
 #include "tools/cases.h"
 #include "tools/contour.h"
 

@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 #include "octree/octree.h"
-#include "rad/formfactor.h"
+#include "rad/beyond/patch_exchange.h"
 
 enum { VIEWFACTOR_GROUPS_MAX = 8192 }; /* above: half a matrix is more than a quarter of a GiB */
 

@@ -219,7 +219,7 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
         int32_t leaf = (*leaves)[i];
         double error = forest_area(forest, leaf) * spread_of(&looks[i]);
         keep_known(l, leaf, &looks[i]);
-        if (!(error > *threshold) || !oracle_patch_may_split(&solver->model, leaf) ||
+        if (!(error > *threshold) || !patch_may_split(&solver->model, leaf) ||
             !memory_has_room(&solver->memory, l->links, 1, forest->count, 0))
             continue;
         split_leaf(forest, leaf, &looks[i]);

@@ -21,7 +21,7 @@
 #include "rad/sample.h"
 
 /* The top is cluster 0. Ask for NODE_NONE first: it is below 0, too. */
-enum { NODE_TOP = -1, NODE_NONE = INT32_MIN };
+enum { NODE_TOP = -1 };
 
 /* No root has this number. */
 #define CLUSTER_ROOT UINT32_MAX

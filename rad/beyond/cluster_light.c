@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "geom/alloc.h"
+#include "rad/beyond/range.h"
 
 struct cluster_light *cluster_light_create(const struct cluster_tree *tree)
 {
@@ -70,8 +71,7 @@ void cluster_light_bound(struct cluster_light *light, const struct forest *fores
             if (node_is_cluster(node)) {
                 within += share * variance[~node];
             } else {
-                double half = 0.5 * (double)(forest->extremes[node].high -
-                                             forest->extremes[node].low);
+                double half = 0.5 * forest_range(forest, node);
                 within += share * half * half;
             }
             between += share * off * off;

@@ -25,6 +25,7 @@
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "rad/beyond/range.h"
 #include "rad/beyond/sequence.h"
 #include "rad/pushpull.h"
 
@@ -72,8 +73,6 @@ struct final_gather final_gather_create(struct model *model, int rays)
 {
     struct forest *forest = model->forest;
     struct final_gather gather = {.model = model, .view = {.root = -1}};
-    forest->extremes = alloc_reserve(forest->extremes, &forest->extremes_capacity,
-                                     forest->count, sizeof *forest->extremes);
     forest_bound(forest);
     gather.rays = rays_for(rays, forest_leaf_count(forest));
     gather.mean = mean_radiosity(model);

@@ -4,7 +4,7 @@
 #define RAD_BEYOND_NODE_H
 
 #include "rad/beyond/cluster_light.h"
-#include "rad/formfactor.h"
+#include "rad/beyond/patch_exchange.h"
 
 struct end {
     int32_t node;

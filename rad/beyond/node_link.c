@@ -13,6 +13,9 @@
 #include <string.h>
 
 #include "rad/beyond/node_exchange.h"
+#include "rad/beyond/error_oracle.h"
+#include "rad/beyond/patch_link.h"
+#include "rad/beyond/range.h"
 #include "rad/oracle.h"
 
 /* --- looks --- */
@@ -128,11 +131,10 @@ struct link node_link_top(void)
 static bool make_of_patches(struct model *model, const struct end *p,
                             const struct end *q, struct link *link)
 {
-    struct sight sight = {.blocker = -1};
     bool in_order = id_compare(p->id, q->id) < 0;
     const struct end *first = in_order ? p : q, *second = in_order ? q : p;
-    return link_make(model, first->node, &first->facet, second->node, &second->facet,
-                     0.0, &sight, link);
+    return model->method.make_link(model, first->node, &first->facet, second->node,
+                                   &second->facet, NULL, link);
 }
 
 /* Makes the link of two ends. False if no light can ever pass. */
@@ -155,7 +157,7 @@ static bool make(struct model *model, const struct end *p, const struct end *q,
 }
 
 static int split_itself(struct model *model, int32_t node,
-                        struct link children[NODE_CHILDREN_MAX])
+                        struct link *children)
 {
     struct end whole = end_of(model, node), ends[4];
     int parts = 0, count = 0;
@@ -169,10 +171,10 @@ static int split_itself(struct model *model, int32_t node,
 }
 
 int node_link_split(struct model *model, const struct link *link, int32_t node,
-                    struct link children[NODE_CHILDREN_MAX])
+                    struct link *children)
 {
     if (!node_is_cluster(link->p) && !node_is_cluster(link->q))
-        return link_split(model, link, node, children);
+        return patch_link_split(model, link, node, children);
     if (link->p == link->q)
         return split_itself(model, node, children);
     if (!node_is_cluster(node))
@@ -197,7 +199,7 @@ int node_link_split(struct model *model, const struct link *link, int32_t node,
 static double range_within(const struct model *model, const struct end *end)
 {
     return end->cluster ? model->clusters->range[~end->node]
-                        : oracle_range_within(model->forest, end->node);
+                        : forest_range_within(model->forest, end->node);
 }
 
 /* Of the spread over an end: the children of a cluster are no quarters of a plane, over
@@ -215,11 +217,11 @@ static double error_of(const struct model *model, const struct end *own,
 
 static bool may_split(const struct model *model, const struct end *end)
 {
-    return end->cluster || oracle_patch_may_split(model, end->node);
+    return end->cluster || patch_may_split(model, end->node);
 }
 
 /* The larger one; of equal ones that with the lower ID. */
-static bool p_is_larger(const struct meeting *m)
+static bool p_is_wider(const struct meeting *m)
 {
     if (m->p.radius != m->q.radius)
         return m->p.radius > m->q.radius;
@@ -253,55 +255,62 @@ static int32_t far_to_split(const struct model *model, const struct link *link,
     double error_q = error_of(model, &m->q, &m->p, found.spread_q, area);
     if (error_p + error_q + doubt <= model->link_threshold)
         return NODE_NONE;
-    bool larger = p_is_larger(m);
+    bool larger = p_is_wider(m);
     error_p += larger ? doubt : 0.0;
     error_q += larger ? 0.0 : doubt;
     return choose(model, m, error_p != error_q ? error_p > error_q : larger);
 }
 
-int32_t node_to_split(const struct model *model, const struct link *link)
+static bool is_of_patches(const struct link *link)
 {
-    if (!node_is_cluster(link->p) && !node_is_cluster(link->q)) {
-        int32_t patch = oracle_patch_to_split(model, link);
-        return patch < 0 ? NODE_NONE : patch;
-    }
+    return !node_is_cluster(link->p) && !node_is_cluster(link->q);
+}
+
+/* With a cluster in it. */
+static int32_t side_with_cluster(const struct model *model, const struct link *link)
+{
     struct end p = end_of(model, link->p), q = end_of(model, link->q);
     struct meeting m = ends_meet(&p, &q);
     if (!m.near)
         return far_to_split(model, link, &m);
     bool fine = DOUBT_NEAR * m.most * m.light <= model->link_threshold;
-    return fine ? NODE_NONE : choose(model, &m, p_is_larger(&m));
+    return fine ? NODE_NONE : choose(model, &m, p_is_wider(&m));
+}
+
+int32_t node_side_to_split(const struct model *model, const struct link *link)
+{
+    return is_of_patches(link) ? error_oracle_side_to_split(model, link)
+                               : side_with_cluster(model, link);
+}
+
+int32_t node_side_to_split_by_energy(const struct model *model, const struct link *link)
+{
+    return is_of_patches(link) ? oracle_side_to_split(model, link)
+                               : side_with_cluster(model, link);
 }
 
 static void divide(struct model *model, const struct end *to, const struct end *from,
                    const uint8_t parts[3], const struct link *link)
 {
-    if (to->cluster || !oracle_patch_may_split(model, to->node))
+    if (to->cluster || !patch_may_split(model, to->node))
         return;
     double area = link_area(link) * spread_of(model, to, parts);
     if (area * light_to(to, from) > model->link_threshold)
         forest_split(model->forest, to->node);
 }
 
-void node_divide_patches(struct model *model, const struct link *link)
+void node_link_keep(struct model *model, struct link *link, bool is_new)
 {
-    if (!node_is_cluster(link->p) && !node_is_cluster(link->q)) {
-        oracle_divide_patches(model, link);
-    } else if (!node_is_cluster(link->p) || !node_is_cluster(link->q)) {
-        struct end p = end_of(model, link->p), q = end_of(model, link->q);
-        divide(model, &p, &q, link->parts_p, link);
-        divide(model, &q, &p, link->parts_q, link);
+    if (is_of_patches(link)) {
+        error_oracle_divide(model, link);
+        return;
     }
-}
-
-void node_link_settle(struct model *model, struct link *link)
-{
-    if (node_is_cluster(link->p) || node_is_cluster(link->q)) {
-        struct end p = end_of(model, link->p), q = end_of(model, link->q);
-        struct meeting m = ends_meet(&p, &q);
+    struct end p = end_of(model, link->p), q = end_of(model, link->q);
+    struct meeting m = ends_meet(&p, &q);
+    if (is_new)
         look(model, &m, 1, link);
-    }
-    node_divide_patches(model, link);
+    divide(model, &p, &q, link->parts_p, link);
+    divide(model, &q, &p, link->parts_q, link);
 }
 
 /* --- transfer --- */

@@ -10,30 +10,24 @@
 #include "rad/beyond/cluster_light.h"
 #include "rad/link.h"
 
-/* A cluster with itself: four children with themselves, and six pairs. */
-enum { NODE_CHILDREN_MAX = 10 };
+/* Entries of struct method. A cluster is split into up to four children with themselves and six
+ * pairs: ten links. */
 
 /* The link of the whole scene with itself, not looked at. */
 struct link node_link_top(void);
 
-/* The side of the link that the criterion wants to split, or NODE_NONE if the link is
- * fine or splitting is not allowed. Reads the radiosities of the last iteration. */
-int32_t node_to_split(const struct model *model, const struct link *link);
+/* Of two patches by their error, or by their energy. */
+int32_t node_side_to_split(const struct model *model, const struct link *link);
+int32_t node_side_to_split_by_energy(const struct model *model, const struct link *link);
 
-/* Splits this side of the link (a patch gets children unless it has them) and makes the
- * links of its children with the other side. Returns their number. */
 int node_link_split(struct model *model, const struct link *link, int32_t node,
-                    struct link children[NODE_CHILDREN_MAX]);
+                    struct link *children);
 
-/* Gives the patches of a link that is not split children, where the link varies over them
- * more than the criterion allows. */
-void node_divide_patches(struct model *model, const struct link *link);
+/* Gives the patches of the link children, where it varies over them more than the criterion
+ * allows. G of clusters, of a new link, is estimated again, at other points, so that it is not
+ * biased by the decision that has accepted it. */
+void node_link_keep(struct model *model, struct link *link, bool is_new);
 
-/* A new link that stays: its patches are divided, and G of clusters is estimated again,
- * at other points, so that it is not biased by the decision that has accepted it. */
-void node_link_settle(struct model *model, struct link *link);
-
-/* As links_transfer(), between all nodes. */
 void node_links_transfer(const struct link_list *list, const struct model *model,
                          struct flux_unit unit);
 

@@ -23,7 +23,7 @@
 #include "mpi/comm.h"
 #include "octree/octree.h"
 #include "octree/tree.h"
-#include "rad/formfactor.h"
+#include "rad/beyond/patch_exchange.h"
 
 #include "geom/alloc.h"
 #include "tests/bench/embree.h"

@@ -6,6 +6,7 @@
 
 #include "rad/treecode.h"
 
+#include "rad/beyond/patch_link.h"
 #include "tests/scenes.h"
 #include "tests/solve.h"
 #include "tests/tap.h"

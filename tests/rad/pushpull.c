@@ -1,5 +1,6 @@
 /* Tests of rad/pushpull.h: no light is lost on its way from any level to the leaves, pulls are
  * means, the sums of a push-pull, the factor by which changes shrink, and row sums. */
+#include "rad/beyond/range.h"
 #include "rad/pushpull.h"
 
 #include <string.h>

@@ -17,7 +17,7 @@
 
 #include "mpi/signals.h"
 #include "rad/beyond/node_link.h"
-#include "rad/oracle.h"
+#include "rad/beyond/patch_link.h"
 #include "tests/scenes.h"
 #include "tests/solve.h"
 #include "tests/tap.h"

@@ -7,6 +7,7 @@
 #include "geom/hash.h"
 #include "rad/beyond/node_exchange.h"
 #include "rad/beyond/node_link.h"
+#include "rad/beyond/patch_link.h"
 #include "tests/scenes.h"
 #include "tests/solve.h"
 #include "tests/tap.h"
@@ -124,10 +125,9 @@ static struct pairs count_pairs(struct wood *wood, int32_t p, int32_t q)
             int32_t a = wood->tree->roots[i], b = wood->tree->roots[j];
             struct facet facet_a = facet_make(model->forest, a);
             struct facet facet_b = facet_make(model->forest, b);
-            struct sight sight = {.blocker = -1};
             struct link link;
             bool made = a != b &&
-                        link_make(model, a, &facet_a, b, &facet_b, 0.0, &sight, &link);
+                        patch_link_make(model, a, &facet_a, b, &facet_b, NULL, &link);
             pairs.facing += made;
             pairs.seen += made && link.seen > 0;
         }
@@ -321,7 +321,7 @@ static struct link_list links_below_top(struct wood *wood)
         struct link_list next = {0};
         for (int64_t i = 0; i < level.count; i++) {
             const struct link *link = &level.items[i];
-            struct link children[NODE_CHILDREN_MAX];
+            struct link children[METHOD_CHILDREN_MAX];
             int32_t node = node_is_cluster(link->p) ? link->p : link->q;
             if (!node_is_cluster(node))
                 continue;
@@ -346,7 +346,7 @@ static bool has_judgement(struct model *model, struct link *link)
     struct meeting m = ends_meet(&p, &q);
     bool closely = m.most * m.light > model->link_threshold;
     if (m.near) {
-        node_link_settle(model, link);
+        node_link_keep(model, link, true);
         return link->blocker == 0;
     }
     struct node_exchange found = node_exchange_estimate(model, &m, 0, closely);
@@ -355,7 +355,7 @@ static bool has_judgement(struct model *model, struct link *link)
     memcpy(&expected, &area, sizeof expected);
     double seen = found.unoccluded > 0.0 ? found.area / found.unoccluded : 0.0;
     double said = (bits >> 12 & 15u) / 15.0;
-    node_link_settle(model, link);
+    node_link_keep(model, link, true);
     after = (uint32_t)link->blocker;
     return bits >> 16 == expected >> 16 && (seen > 0.0) == (said > 0.0) &&
            fabs(seen - said) <= 1.0 / 15.0 && after == bits && link->blocker >= 0;
@@ -432,7 +432,7 @@ static void test_symmetry(void)
     int own = 0, even = 0, carrying = 0;
     for (int64_t i = 0; i < links.count; i++) {
         struct link_list one = {&links.items[i], 1, 1, 1};
-        node_link_settle(model, &links.items[i]);
+        node_link_keep(model, &links.items[i], true);
         if (links.items[i].seen == 0)
             continue;
         double there = product_over(model, &one, 1, 2);

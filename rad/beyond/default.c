@@ -1,0 +1,84 @@
+/* phr's method, and the ablations: DEFAULT with an entry exchanged. Links of two patches tell their
+ * children apart and are split for their errors; a tree above the roots takes the place of initial
+ * linking. */
+#include "rad/beyond/error_oracle.h"
+#include "rad/beyond/node_link.h"
+#include "rad/beyond/patch_link.h"
+#include "rad/beyond/range.h"
+
+#include <math.h>
+
+/* Of the light that there would be if it were spread evenly in a closed scene, this part
+ * counts: in ordinary rooms less than what is emitted, in white ones many times as much. */
+static const double LASTING = 0.1;
+
+/* The mean radiosity if all light were spread evenly in a closed scene: E / (1 - rho) of means. */
+static struct rgb typical_radiosity(const struct scene *scene)
+{
+    struct rgb emitted = {{0.0, 0.0, 0.0}}, absorbing = {{0.0, 0.0, 0.0}};
+    for (int32_t root = 0; root < scene_root_count(scene); root++) {
+        const struct material *material = scene_root_material(scene, root);
+        double area = scene_root_area(scene, root);
+        for (int c = 0; c < BANDS; c++) {
+            emitted.band[c] += area * material->emission.band[c];
+            absorbing.band[c] += area * (1.0 - material->reflectance.band[c]);
+        }
+    }
+    for (int c = 0; c < BANDS; c++)
+        emitted.band[c] /= absorbing.band[c];
+    return emitted;
+}
+
+/* As emitted. Fills model->typical, too. */
+static double emitted_power(struct model *model)
+{
+    model->typical = typical_radiosity(model->scene);
+    return model->emitted_power;
+}
+
+/* As emitted or, where it is reflected for long, a part of what there would be if it were spread
+ * evenly. */
+static double light_power(struct model *model)
+{
+    double emitted = emitted_power(model);
+    return fmax(emitted, LASTING * (model->area * rgb_sum(model->typical)));
+}
+
+static void prepare(struct model *model)
+{
+    forest_bound(model->forest);
+    if (model->clusters) {
+        cluster_light_pull(model->clusters, model->forest);
+        cluster_light_bound(model->clusters, model->forest);
+    }
+}
+
+const struct method DEFAULT = {
+    .light_power = light_power,
+    .first_link = node_link_top,
+    .prepare = prepare,
+    .make_link = patch_link_make,
+    .side_to_split = node_side_to_split,
+    .split_link = node_link_split,
+    .keep_link = node_link_keep,
+    .transfer = node_links_transfer,
+};
+
+struct method method_of(const struct criterion *criterion)
+{
+    bool by_energy = criterion->oracle == ORACLE_BF;
+    bool by_disks = criterion->form_factor == FORM_FACTOR_DISK;
+    bool all_pairs = criterion->linking == LINKING_PAIRS;
+    if (by_energy && by_disks && all_pairs)
+        return PAPER;
+    struct method method = DEFAULT;
+    if (by_energy)
+        method.side_to_split = node_side_to_split_by_energy;
+    if (by_disks)
+        method.make_link = patch_link_make_by_disks;
+    if (all_pairs) {
+        method.light_power = emitted_power;
+        method.first_link = NULL;
+    }
+    return method;
+}

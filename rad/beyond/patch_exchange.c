@@ -1,0 +1,249 @@
+/* What two patches exchange.
+ *
+ * The 16 segments of rad/formfactor.c, weighted by the disks, say what is seen. How much there
+ * would be to see without blockers is exact, from points of one patch to the whole of the other:
+ * disks overlap where patches are close.
+ *
+ * No free segment does not mean that nothing passes. That is only taken so with a proof: a wall
+ * that stops every segment (geom/wall.c). */
+#include "rad/beyond/patch_exchange.h"
+
+#include <math.h>
+
+#include "geom/lambert.h"
+
+enum { SUBAREAS = BUNDLE_ENDS, RAYS = BUNDLE_RAYS, ALL_RAYS = (1 << RAYS) - 1 };
+
+/* Segments from a sub-area to the one of the same number. */
+#define DIAGONAL 0x8421u
+
+/* Largest distance of a corner of `t` in front of `plane`. */
+static double reach_above(const struct plane *plane, const struct triangle *t)
+{
+    double a = plane_distance(plane, t->corner[0]);
+    double b = plane_distance(plane, t->corner[1]);
+    double c = plane_distance(plane, t->corner[2]);
+    return real_max(a, real_max(b, c));
+}
+
+bool facets_face(const struct facet *p, const struct facet *q)
+{
+    return reach_above(&p->plane, &q->triangle) > GEOM_ROUNDING &&
+           reach_above(&q->plane, &p->triangle) > GEOM_ROUNDING;
+}
+
+/* A guess for patches that the other's plane cuts, by a disk with the heights of the
+ * highest corners in place of those of the centroids: rather too much. The centroids may
+ * all lie below the horizon while the corners do not: such a pair stays in play. */
+static double exchange_across_horizon(const struct facet *p, const struct facet *q)
+{
+    struct vec3 d = vec3_sub(triangle_centroid(&q->triangle), triangle_centroid(&p->triangle));
+    double r2 = vec3_dot(d, d);
+    double rise_p = reach_above(&p->plane, &q->triangle);
+    double rise_q = reach_above(&q->plane, &p->triangle);
+    double cosines = fmin(1.0, rise_p * rise_q / r2);
+    return p->area * q->area * cosines / (PI * r2 + fmax(p->area, q->area));
+}
+
+/* The four segments from each sub-area of p to one of q, as far as they are in `asked`: what of them is
+ * blocked. */
+static unsigned block_diagonal(const struct bundle *bundle, unsigned asked,
+                               const struct octree *octree, int32_t *blocker,
+                               struct octree_counts *counts)
+{
+    unsigned blocked = 0;
+    for (int k = 0; k < SUBAREAS; k++) {
+        unsigned bit = 1u << (SUBAREAS + 1) * k;
+        if ((asked & bit) && octree_blocks_segment(octree, bundle->from[k], bundle->to[k],
+                                                   bundle->own, blocker, counts))
+            blocked |= bit;
+    }
+    return blocked;
+}
+
+/* The segments that arrive, as bits. With four segments that agree, one for each sub-area of p and of q, all others are taken to be
+ * like them. */
+static unsigned pair_look(struct facet_pair *pair, enum look look, const struct octree *octree,
+                      struct sight *sight, struct octree_counts *counts)
+{
+    unsigned facing = pair->bundle.asked, diagonal = facing & DIAGONAL, blocked = 0;
+    if (sight->open || facing == 0)
+        return facing;
+    if (look == LOOK_FOUR_FIRST && diagonal != 0) {
+        blocked = block_diagonal(&pair->bundle, diagonal, octree, &sight->blocker, counts);
+        if (blocked == 0)
+            return facing;
+        if (blocked == diagonal)
+            return 0;
+        pair->bundle.asked = facing & ~DIAGONAL;
+    }
+    if (pair->bundle.asked)
+        blocked |= octree_block(octree, &pair->bundle, &sight->blocker, counts);
+    pair->bundle.asked = facing;
+    return facing & ~blocked;
+}
+
+/* Sums of the kernels of one sub-area of p (`of_p`) or q: all that face, and those that are
+ * seen. */
+static void sum_kernels(const struct facet_pair *pair, unsigned visible, bool of_p, int sub, double *all, double *seen)
+{
+    *all = *seen = 0.0;
+    for (int other = 0; other < SUBAREAS; other++) {
+        int ray = of_p ? SUBAREAS * sub + other : SUBAREAS * other + sub;
+        *all += pair->kernels[ray];
+        *seen += visible >> ray & 1u ? pair->kernels[ray] : 0.0;
+    }
+}
+
+/* Exchange areas of the four sub-areas of a side with the whole of the other: not occluded, and
+ * as far as it is seen. */
+struct side {
+    double unoccluded[SUBAREAS], area[SUBAREAS];
+};
+
+static struct side side_by_disks(const struct facet_pair *pair, unsigned visible, bool of_p)
+{
+    struct side side;
+    for (int sub = 0; sub < SUBAREAS; sub++)
+        sum_kernels(pair, visible, of_p, sub, &side.unoccluded[sub], &side.area[sub]);
+    return side;
+}
+
+/* Mean over a sub-area of what it sees of the other patch, from three points: right where that
+ * varies with the square of the place (Stroud's formula of degree 2). */
+static double factor_close_by(const struct facet *own, int sub, const struct facet *other)
+{
+    struct triangle area = triangle_child(&own->triangle, sub);
+    struct vec3 centroid = triangle_centroid(&area);
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++) {
+        struct vec3 point = vec3_middle(centroid, area.corner[k]);
+        sum += point_triangle_factor(point, own->plane.normal, &other->triangle);
+    }
+    return sum / 3.0;
+}
+
+/* A sub-area none of whose segments faces has no kernels to tell what is seen: then what the whole
+ * pair sees counts. */
+static struct side side_by_points(const struct facet_pair *pair, unsigned visible, bool of_p,
+                                  bool apart)
+{
+    const struct facet *own = of_p ? pair->p : pair->q, *other = of_p ? pair->q : pair->p;
+    const struct vec3 *points = of_p ? pair->bundle.from : pair->bundle.to;
+    struct side side;
+    double all[SUBAREAS], seen[SUBAREAS], all_sum = 0.0, seen_sum = 0.0;
+    for (int sub = 0; sub < SUBAREAS; sub++) {
+        sum_kernels(pair, visible, of_p, sub, &all[sub], &seen[sub]);
+        all_sum += all[sub];
+        seen_sum += seen[sub];
+    }
+    double share = all_sum > 0.0 ? seen_sum / all_sum : 0.0;
+    for (int sub = 0; sub < SUBAREAS; sub++) {
+        double factor = apart ? point_triangle_factor(points[sub], own->plane.normal, &other->triangle)
+                              : factor_close_by(own, sub, other);
+        side.unoccluded[sub] = 0.25 * own->area * factor;
+        side.area[sub] = side.unoccluded[sub] * (all[sub] > 0.0 ? seen[sub] / all[sub] : share);
+    }
+    return side;
+}
+
+static double sum_of(const double values[SUBAREAS])
+{
+    return (values[0] + values[1]) + (values[2] + values[3]);
+}
+
+/* The parts that the four sub-areas have in the whole: a quarter each if there is nothing. */
+static void set_parts(const struct side *side, double parts[SUBAREAS])
+{
+    double sum = sum_of(side->area);
+    for (int sub = 0; sub < SUBAREAS; sub++)
+        parts[sub] = sum > 0.0 ? side->area[sub] / sum : 0.25;
+}
+
+double exchange_guess(const struct facet *p, const struct facet *q)
+{
+    return disk_exchange(triangle_centroid(&p->triangle), p->plane.normal, p->area,
+                         triangle_centroid(&q->triangle), q->plane.normal, q->area);
+}
+
+/* Over the sum of the radii. Nearer, one disk might say that a patch receives more than all
+ * there is. */
+static const double FAR = 1.5;
+
+/* True if patches are far enough apart for their size for one disk to be good enough for
+ * what is little (within 15 % or so). */
+static bool is_apart(const struct facet *p, const struct facet *q)
+{
+    struct vec3 x = triangle_centroid(&p->triangle), y = triangle_centroid(&q->triangle);
+    double radii = triangle_radius(&p->triangle) + triangle_radius(&q->triangle);
+    return vec3_length(vec3_sub(y, x)) > FAR * radii;
+}
+
+static struct exchange exchange_by_one(const struct facet *p, const struct facet *q,
+                                       const struct octree *octree, struct sight *sight,
+                                       struct octree_counts *counts)
+{
+    double unoccluded = exchange_guess(p, q);
+    const int32_t own[2] = {p->input, q->input};
+    bool seen = sight->open ||
+                !octree_blocks_segment(octree, triangle_centroid(&p->triangle),
+                                       triangle_centroid(&q->triangle), own, &sight->blocker, counts);
+    return (struct exchange){.area = seen ? unoccluded : 0.0, .unoccluded = unoccluded,
+                             .seen = seen ? 1.0 : 0.0, .apart = true,
+                             .parts_p = {0.25, 0.25, 0.25, 0.25},
+                             .parts_q = {0.25, 0.25, 0.25, 0.25}};
+}
+
+static struct exchange exchange_by_all(const struct facet *p, const struct facet *q,
+                                       enum form_factor kind, enum look look,
+                                       const struct octree *octree, struct sight *sight,
+                                       struct octree_counts *counts)
+{
+    struct facet_pair pair = facet_pair_make(p, q);
+    unsigned visible = pair_look(&pair, look, octree, sight, counts);
+    bool points = kind == FORM_FACTOR_POLYGON, apart = is_apart(p, q);
+    struct side side_p = points ? side_by_points(&pair, visible, true, apart)
+                                : side_by_disks(&pair, visible, true);
+    struct side side_q = points ? side_by_points(&pair, visible, false, apart)
+                                : side_by_disks(&pair, visible, false);
+    const struct side *smaller = p->area <= q->area ? &side_p : &side_q;
+    double sum = sum_of(smaller->unoccluded);
+    struct exchange exchange = {.unoccluded = sum, .apart = apart};
+    exchange.seen = sum > 0.0 ? sum_of(smaller->area) / sum : 0.0;
+    exchange.area = exchange.seen * exchange.unoccluded;
+    set_parts(&side_p, exchange.parts_p);
+    set_parts(&side_q, exchange.parts_q);
+    if (pair.bundle.asked != ALL_RAYS)
+        exchange.unoccluded = fmax(exchange.unoccluded, exchange_across_horizon(p, q));
+    return exchange;
+}
+
+struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
+                                  enum form_factor kind, enum look look,
+                                  const struct octree *octree, struct sight *sight,
+                                  struct octree_counts *counts)
+{
+    struct exchange exchange = look == LOOK_ONE && is_apart(p, q)
+                                   ? exchange_by_one(p, q, octree, sight, counts)
+                                   : exchange_by_all(p, q, kind, look, octree, sight, counts);
+    double limit = fmin(p->area, q->area);
+    if (exchange.unoccluded > limit) {
+        exchange.area = fmin(limit, exchange.area * (limit / exchange.unoccluded));
+        exchange.unoccluded = limit;
+    }
+    return exchange;
+}
+
+bool facets_are_walled_off(const struct facet *p, const struct facet *q,
+                           const struct octree *octree, struct octree_counts *counts)
+{
+    return octree_has_wall(octree, p->triangle.corner, 3, q->triangle.corner, 3, counts);
+}
+
+bool facets_are_open(const struct facet *p, const struct facet *q, const struct octree *octree,
+                     struct octree_counts *counts)
+{
+    const int32_t own[2] = {p->input, q->input};
+    return octree_shaft_is_empty(octree, &p->triangle, &p->plane, &q->triangle, &q->plane, own,
+                                 counts);
+}
