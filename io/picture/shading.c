@@ -3,15 +3,6 @@
  * A vertex is a corner of leaves. Leaves share a vertex where they have the same point and lie
  * on one smooth surface (io/picture/surface.h). The value of a vertex is the mean of the leaves around it.
  *
- * On a curved surface that facets stand for, the light jumps from facet to facet as their planes
- * do, and blending the leaves along an edge would only blur the facet's outline. So all values of
- * a facet are shifted first: at each of its corners from its own value there (that of the leaf
- * in this corner) to the mean of the facets of the surface around that point, and linearly
- * between. Facets count by their angle and by how nearly their plane is what the corner's normal
- * says: a flat face with rounded edges, whose normals are its own, keeps its light and the strip
- * beside it bends. Roots in one plane count as one facet: nothing flat is shifted. Rejected:
- * values at the facets' corners alone, which would lose the shadows on the facets.
- *
  * Means blur: where the light changes fast, as at a lamp, the leaves around are bright and dim, and
  * a leaf shows more or less light than it has. So what each leaf lacks, its own radiosity less the
  * mean of its corners, is given to its corners, where leaves count by their areas; within the
@@ -37,7 +28,6 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "geom/elementary.h"
 #include "geom/stop.h"
 #include "io/picture/surface.h"
 
@@ -227,13 +217,6 @@ static void drop_index(struct table *table)
     alloc_free(table->slots);
 }
 
-static void table_free(struct table *table)
-{
-    drop_index(table);
-    alloc_free(table->positions);
-    alloc_free(table->values);
-}
-
 /* --- values --- */
 
 /* Weight of a leaf that is covered as a whole: it counts only where no other leaf does. */
@@ -258,106 +241,6 @@ static struct rgb open_radiosity(const struct forest *forest, const struct rgb *
     return b;
 }
 
-/* --- curved surfaces: shifting the values of facets --- */
-
-/* The values at the corners of roots, by flat surface and by curved one. */
-struct facets {
-    const struct forest *forest;
-    const struct rgb *less;
-    const uint8_t *open;          /* shading_open_quarters(), used up leaf by leaf */
-    const int32_t *flat, *curved; /* [roots] surfaces */
-    struct table by_flat, by_curved;
-};
-
-/* 1 - cos of the angle between plane and normal, 2.5 degrees, at which a facet counts half as much
- * as one whose plane is what the normal says. */
-static const double DEVIATION = 1e-3;
-
-static double corner_weight(const struct scene *scene, int32_t root, int k)
-{
-    struct triangle t = scene_root_triangle(scene, root);
-    struct vec3 a = vec3_sub(t.corner[(k + 1) % 3], t.corner[k]);
-    struct vec3 b = vec3_sub(t.corner[(k + 2) % 3], t.corner[k]);
-    double angle = arctangent(vec3_length(vec3_cross(a, b)), vec3_dot(a, b));
-    struct vec3 plane = scene_root_plane(scene, root).normal;
-    double cosine = vec3_dot(plane, scene_root_normal(scene, root, k));
-    return fmax(angle, GEOM_ROUNDING) / (fmax(1.0 - cosine, 0.0) + DEVIATION);
-}
-
-static int32_t leaf_at_corner(const struct forest *forest, int32_t root, int k)
-{
-    int32_t leaf = root;
-    while (!patch_is_leaf(&forest->patches[leaf]))
-        leaf = forest->patches[leaf].children + k; /* child k has corner k */
-    return leaf;
-}
-
-static void add_corner_leaf(void *context, int32_t leaf)
-{
-    struct facets *facets = context;
-    const struct forest *forest = facets->forest;
-    int32_t root = (int32_t)forest->patches[leaf].id.root;
-    double share = open_share(*facets->open++);
-    for (int k = 0; k < 3; k++) {
-        if (leaf_at_corner(forest, root, k) != leaf)
-            continue;
-        struct vec3 x = scene_root_triangle(forest->scene, root).corner[k];
-        struct rgb value = open_radiosity(forest, facets->less, leaf, share);
-        double weight = fmax(share, COVERED) * corner_weight(forest->scene, root, k);
-        add_value(&facets->by_flat, reach_vertex(&facets->by_flat, x, facets->flat[root]), value,
-                  weight);
-        add_value(&facets->by_curved, reach_vertex(&facets->by_curved, x, facets->curved[root]),
-                  value, weight);
-    }
-}
-
-/* [3 * roots] how far corner k of root r is shifted, W/m^2: [3 r + k]. Exactly 0 where one flat
- * surface is all that is there, since both sums then have the same terms. */
-static struct rgb *find_shifts(const struct forest *forest, const struct rgb *less,
-                               const uint8_t *open, const int32_t *curved)
-{
-    const struct scene *scene = forest->scene;
-    int32_t roots = scene_root_count(scene), *flat = surface_of_roots(scene, false);
-    struct rgb *shifts = alloc_array(3 * (size_t)roots, sizeof *shifts);
-    struct facets facets = {.forest = forest, .less = less, .open = open, .flat = flat,
-                            .curved = curved};
-    for_each_leaf(forest, -1, add_corner_leaf, &facets);
-    find_means(&facets.by_flat);
-    find_means(&facets.by_curved);
-    for (int32_t root = 0; root < roots; root++) {
-        struct triangle t = scene_root_triangle(scene, root);
-        for (int k = 0; k < 3 && scene_root_area(scene, root) > 0.0; k++) {
-            int32_t own = reach_vertex(&facets.by_flat, t.corner[k], flat[root]);
-            int32_t common = reach_vertex(&facets.by_curved, t.corner[k], curved[root]);
-            for (int c = 0; c < BANDS; c++)
-                shifts[3 * (int64_t)root + k].band[c] = facets.by_curved.values[common].band[c] -
-                                                        facets.by_flat.values[own].band[c];
-        }
-    }
-    table_free(&facets.by_flat);
-    table_free(&facets.by_curved);
-    alloc_free(flat);
-    return shifts;
-}
-
-/* The corners of a leaf as barycentric coordinates of its root. */
-static struct triangle weights_in_root(struct patch_id id)
-{
-    struct triangle t = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
-    for (int step = 0; step < id_level(id); step++)
-        t = triangle_child(&t, id_step(id, step));
-    return t;
-}
-
-/* Light is not negative: a shift ends there. */
-static struct rgb shifted(struct rgb value, const struct rgb *shifts, struct vec3 weight)
-{
-    for (int c = 0; c < BANDS; c++)
-        value.band[c] = fmax(0.0, value.band[c] + weight.x * shifts[0].band[c] +
-                                      weight.y * shifts[1].band[c] + weight.z * shifts[2].band[c]);
-    return value;
-}
-
 /* --- all leaves --- */
 
 struct blend {
@@ -367,7 +250,6 @@ struct blend {
     const uint8_t *open; /* shading_open_quarters(), */
     int64_t next;        /* and how many of it are used up, leaf by leaf */
     int32_t *surface;    /* [roots] */
-    struct rgb *shifts;  /* find_shifts(), or NULL */
     struct rgb *lacking; /* [vertex_count] what leaves lack, weighted; */
     double *areas;       /* [vertex_count] the weights; */
     struct rgb *least, *most; /* [vertex_count] and the range of the leaves around */
@@ -386,19 +268,11 @@ static void add_flat_leaf(void *context, int32_t leaf)
     }
 }
 
-/* What the next leaf has at its corners. Returns its open share. */
-static double leaf_values(struct blend *blend, int32_t leaf, struct rgb values[3])
+/* The value of the next leaf. Its open share goes to `*share`. */
+static struct rgb leaf_value(struct blend *blend, int32_t leaf, double *share)
 {
-    const struct forest *forest = blend->shading->forest;
-    struct patch_id id = forest->patches[leaf].id;
-    double share = open_share(blend->open[blend->next++]);
-    values[0] = values[1] = values[2] = open_radiosity(forest, blend->less, leaf, share);
-    if (blend->shifts) {
-        struct triangle at = weights_in_root(id);
-        for (int k = 0; k < 3; k++)
-            values[k] = shifted(values[k], &blend->shifts[3 * (int64_t)id.root], at.corner[k]);
-    }
-    return share;
+    *share = open_share(blend->open[blend->next++]);
+    return open_radiosity(blend->shading->forest, blend->less, leaf, *share);
 }
 
 static void add_leaf(void *context, int32_t leaf)
@@ -406,13 +280,13 @@ static void add_leaf(void *context, int32_t leaf)
     struct blend *blend = context;
     const struct forest *forest = blend->shading->forest;
     struct triangle t = forest_triangle(forest, leaf);
-    struct rgb values[3];
-    double share = leaf_values(blend, leaf, values);
+    double share;
+    struct rgb value = leaf_value(blend, leaf, &share);
     for (int k = 0; k < 3; k++) {
         int32_t v = reach_vertex(&blend->table, t.corner[k],
                                  blend->surface[forest->patches[leaf].id.root]);
         blend->shading->corners[3 * (int64_t)leaf + k] = v;
-        add_value(&blend->table, v, values[k], fmax(share, COVERED));
+        add_value(&blend->table, v, value, fmax(share, COVERED));
     }
 }
 
@@ -448,18 +322,19 @@ static void add_lacking(void *context, int32_t leaf)
 {
     struct blend *blend = context;
     const int32_t *corner = &blend->shading->corners[3 * (int64_t)leaf];
-    struct rgb values[3];
-    double share = leaf_values(blend, leaf, values);
+    double share;
+    struct rgb value = leaf_value(blend, leaf, &share);
     double area = fmax(share, COVERED) * forest_area(blend->shading->forest, leaf);
     for (int c = 0; c < BANDS; c++) {
         double lacking = 0.0;
         for (int k = 0; k < 3; k++)
-            lacking += (values[k].band[c] - blend->table.values[corner[k]].band[c]) / 3.0;
+            lacking += (value.band[c] - blend->table.values[corner[k]].band[c]) / 3.0;
         for (int k = 0; k < 3; k++) {
-            double *least = &blend->least[corner[k]].band[c], *most = &blend->most[corner[k]].band[c];
+            double *least = &blend->least[corner[k]].band[c];
+            double *most = &blend->most[corner[k]].band[c];
             blend->lacking[corner[k]].band[c] += area * lacking;
-            *least = share > 0.0 ? fmin(*least, values[k].band[c]) : *least;
-            *most = share > 0.0 ? fmax(*most, values[k].band[c]) : *most;
+            *least = share > 0.0 ? fmin(*least, value.band[c]) : *least;
+            *most = share > 0.0 ? fmax(*most, value.band[c]) : *most;
         }
     }
     for (int k = 0; k < 3; k++)
@@ -495,16 +370,13 @@ static void give_what_lacks(struct blend *blend)
 static void blend_leaves(struct blend *blend)
 {
     const struct forest *forest = blend->shading->forest;
-    blend->surface = surface_of_roots(forest->scene, true);
-    if (forest->scene->normals && !stop_is_asked())
-        blend->shifts = find_shifts(forest, blend->less, blend->open, blend->surface);
+    blend->surface = surface_of_roots(forest->scene);
     for_each_leaf(forest, -1, add_leaf, blend);
     find_means(&blend->table);
     settle_edges(blend);
     give_what_lacks(blend);
     settle_edges(blend);
     alloc_free(blend->surface);
-    alloc_free(blend->shifts);
 }
 
 struct shading *shading_create(const struct forest *forest, const struct rgb *less,

@@ -57,19 +57,18 @@ static bool normals_agree(const struct scene *scene, int32_t a, int corner_a, in
 
 /* Whether the surface goes on smoothly over the edge that both have. */
 static bool is_smooth(const struct scene *scene, const struct root_edge *a,
-                      const struct root_edge *b, bool curved)
+                      const struct root_edge *b)
 {
     if (scene_root_material(scene, a->root) != scene_root_material(scene, b->root))
         return false;
     struct plane plane_a = scene_root_plane(scene, a->root);
     struct plane plane_b = scene_root_plane(scene, b->root);
     return vec3_dot(plane_a.normal, plane_b.normal) >= SMOOTH_COSINE ||
-           (curved &&
-            normals_agree(scene, a->root, a->low_corner, b->root, b->low_corner) &&
+           (normals_agree(scene, a->root, a->low_corner, b->root, b->low_corner) &&
             normals_agree(scene, a->root, a->high_corner, b->root, b->high_corner));
 }
 
-int32_t *surface_of_roots(const struct scene *scene, bool curved)
+int32_t *surface_of_roots(const struct scene *scene)
 {
     int32_t roots = scene_root_count(scene);
     int32_t *surface = alloc_array((size_t)roots, sizeof *surface);
@@ -90,7 +89,7 @@ int32_t *surface_of_roots(const struct scene *scene, bool curved)
     for (size_t i = 0; i < count; i++) {
         for (size_t j = i + 1; j < count && compare_points(edges[i].low, edges[j].low) == 0 &&
                                compare_points(edges[i].high, edges[j].high) == 0; j++)
-            if (is_smooth(scene, &edges[i], &edges[j], curved))
+            if (is_smooth(scene, &edges[i], &edges[j]))
                 surface[first_of(surface, edges[i].root)] = first_of(surface, edges[j].root);
     }
     for (int32_t root = 0; root < roots; root++)

@@ -643,56 +643,6 @@ static void test_curved_edges(void)
     check_jump("normals agree, materials do not", scene, 1.0);
 }
 
-/* Root 0 has the radiosity 1, root 1 has 0, and the normals lie between their planes: the two
- * count alike, the diagonal has 1/2, and in between all is linear however fine the leaves are. */
-static void test_curved_values(void)
-{
-    struct random random = random_seed(11);
-    for (int level = 0; level <= 4; level++) {
-        struct stage stage = curved_stage();
-        stage.forest->patches[0].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
-        split_regularly(stage.forest, level);
-        shade(&stage, false);
-        double worst = 0.0;
-        for (int i = 0; i < 1000; i++) {
-            struct vec3 w = random_weights(&random);
-            double first = 1.0 - 0.5 * (w.x + w.z), second = 0.5 * (w.x + w.y);
-            worst = fmax(worst, difference(value_at(&stage, 0, w),
-                                           (struct rgb){{first, first, first}}));
-            worst = fmax(worst, difference(value_at(&stage, 1, w),
-                                           (struct rgb){{second, second, second}}));
-        }
-        tap_ok(worst < 1e-9, "curved: linear from facet to facet, level %d (%.1e)", level, worst);
-        dismantle(&stage);
-    }
-}
-
-/* The diagonal belongs to the root whose own normal it has. */
-static void test_flat_face_with_curved_edge(void)
-{
-    struct stage stage = stage_of(curved_square(UP, UP));
-    jump_of(&stage);
-    double value = value_at(&stage, 0, (struct vec3){0.5, 0.0, 0.5}).band[0];
-    tap_ok(value > 0.99 && value <= 1.0, "a flat face keeps its light (%.4f of it)", value);
-    dismantle(&stage);
-}
-
-/* Where light and dark leaves meet, shifts do not go below 0. */
-static void test_no_negative_light(void)
-{
-    struct random random = random_seed(6);
-    struct stage stage = curved_stage();
-    split_randomly(stage.forest, &random, 0.4);
-    for (int32_t p = 0; p < stage.forest->count; p++)
-        stage.forest->patches[p].radiosity.band[0] = (double)(random_bits(&random) % 2);
-    shade(&stage, false);
-    bool right = true;
-    for (int64_t v = 0; v < stage.shading->vertex_count; v++)
-        right = right && stage.shading->values[v].band[0] >= 0.0;
-    tap_ok(right, "curved: no negative light");
-    dismantle(&stage);
-}
-
 /* Normals change nothing on a plane, to the bit. */
 static void test_normals_on_a_plane(void)
 {
@@ -897,9 +847,6 @@ int main(void)
     test_creases();
     test_materials_and_sides();
     test_curved_edges();
-    test_curved_values();
-    test_flat_face_with_curved_edge();
-    test_no_negative_light();
     test_normals_on_a_plane();
     test_two_sided();
     test_covered();
