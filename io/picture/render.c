@@ -237,8 +237,8 @@ float *render_rows(const struct renderer *renderer, const struct camera *camera,
     int rows = first < camera->height ? (camera->height - first - 1) / step + 1 : 0;
     float *rgb = alloc_array((size_t)rows * row, sizeof *rgb);
     struct pixel_roots view = {.roots = alloc_array(parts, sizeof *view.roots),
-                        .weights = alloc_array(parts, sizeof *view.weights),
-                        .at = alloc_array(parts, sizeof *view.at)};
+                               .weights = alloc_array(parts, sizeof *view.weights),
+                               .at = alloc_array(parts, sizeof *view.at)};
     for (int i = 0; i < rows; i++) {
         progress_tick(progress, (double)i / rows);
         for (int x = 0; x < camera->width && !stop_is_asked(); x++)

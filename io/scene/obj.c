@@ -48,13 +48,17 @@ struct obj_vectors {
     int64_t count, capacity;
 };
 
+struct obj_triangles {
+    struct obj_triangle *at; /* [count] */
+    int64_t count, capacity;
+};
+
 struct obj_reader {
     struct text text;
     struct obj_vectors vertices;
     struct obj_vectors normals;    /* of length 1, or 0 for one without a direction */
     bool has_normals;              /* a face has a normal with a direction */
-    struct obj_triangle *triangles;
-    int64_t triangle_count, triangle_capacity;
+    struct obj_triangles triangles;
     struct obj_corner *corners;    /* of the present face */
     int64_t corner_count, corner_capacity;
     struct mtl_table materials;    /* the first one is for faces without a material */
@@ -200,7 +204,7 @@ static bool read_corners(struct obj_reader *reader, char *rest)
 static void add_triangle(struct obj_reader *reader, int32_t a, int32_t b, int32_t c)
 {
     const struct obj_corner *corners = reader->corners;
-    reader->triangles[reader->triangle_count++] =
+    reader->triangles.at[reader->triangles.count++] =
         (struct obj_triangle){{corners[a], corners[b], corners[c]}, reader->material,
                               reader->group};
 }
@@ -223,12 +227,13 @@ static bool read_face(struct obj_reader *reader, char *rest)
 {
     if (!read_corners(reader, rest))
         return false;
-    int64_t needed = reader->triangle_count + reader->corner_count - 2;
+    int64_t needed = reader->triangles.count + reader->corner_count - 2;
     if (needed > COUNT_MAX)
         return error_set(reader->error, EXIT_USAGE, "%s:%ld: more than %d triangles",
                          reader->text.path, reader->text.line, COUNT_MAX);
-    reader->triangles = alloc_reserve(reader->triangles, &reader->triangle_capacity, needed,
-                                      sizeof *reader->triangles);
+    struct obj_triangles *triangles = &reader->triangles;
+    triangles->at = alloc_reserve(triangles->at, &triangles->capacity, needed,
+                                  sizeof *triangles->at);
     reader->materials.entries[reader->material].used = true;
     if (reader->corner_count == 3)
         add_triangle(reader, 0, 1, 2);
@@ -287,7 +292,7 @@ static bool read_lines(struct obj_reader *reader)
     for (char *line; (line = text_line(&reader->text)) != NULL;)
         if (!stop_check(reader->error) || !read_line(reader, line))
             return false;
-    if (reader->triangle_count == 0)
+    if (reader->triangles.count == 0)
         return error_set(reader->error, EXIT_USAGE, "%s: no faces", reader->text.path);
     return true;
 }
@@ -317,7 +322,7 @@ static void make_groups(const struct obj_reader *reader, struct scene *scene)
     int32_t *order = alloc_array((size_t)known, sizeof *order);
     size_t bytes = 0;
     for (int32_t i = 0; i < scene->input_count; i++) {
-        int32_t group = reader->triangles[i].group;
+        int32_t group = reader->triangles.at[i].group;
         if (number[group] == 0) {
             order[count++] = group;
             number[group] = count;
@@ -341,7 +346,7 @@ static void make_normals(const struct obj_reader *reader, struct scene *scene)
     scene_add_normals(scene);
     for (int32_t i = 0; i < scene->input_count; i++)
         for (int k = 0; k < 3; k++) {
-            int32_t normal = reader->triangles[i].corner[k].normal;
+            int32_t normal = reader->triangles.at[i].corner[k].normal;
             if (normal >= 0)
                 scene->normals[3 * (int64_t)i + k] = reader->normals.at[normal];
         }
@@ -352,12 +357,12 @@ static struct scene *make_scene(const struct obj_reader *reader)
     int32_t known = reader->materials.names.count;
     int32_t *number = alloc_array((size_t)known, sizeof *number);
     int32_t material_count = number_materials(reader, number);
-    struct scene *scene = scene_create((int32_t)reader->triangle_count, material_count);
+    struct scene *scene = scene_create((int32_t)reader->triangles.count, material_count);
     for (int32_t i = 0; i < known; i++)
         if (reader->materials.entries[i].used)
             scene->materials[number[i]] = reader->materials.entries[i].material;
     for (int32_t i = 0; i < scene->input_count; i++) {
-        const struct obj_triangle *triangle = &reader->triangles[i];
+        const struct obj_triangle *triangle = &reader->triangles.at[i];
         for (int k = 0; k < 3; k++)
             scene->triangles[i].corner[k] =
                 reader->vertices.at[triangle->corner[k].vertex];
@@ -379,7 +384,7 @@ struct scene *obj_of_text(struct text *text, struct obj_repairs *repairs, struct
     struct scene *scene = good ? make_scene(&reader) : NULL;
     alloc_free(reader.vertices.at);
     alloc_free(reader.normals.at);
-    alloc_free(reader.triangles);
+    alloc_free(reader.triangles.at);
     alloc_free(reader.corners);
     mtl_free(&reader.materials);
     text_names_free(&reader.libraries);
