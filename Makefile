@@ -51,23 +51,14 @@ MPI_INCLUDE =
 MPIEXEC ?= mpiexec
 endif
 
-GEOM = alloc elementary error hull lambert outlook polygon scene stop triangle wall
-OCTREE = build bundle hit octree segment shaft
-RAD = beyond/bicgstab beyond/cluster beyond/cluster_light beyond/final_gather beyond/gather_exact beyond/gather_rays beyond/gather_wide beyond/lamps beyond/node \
-      beyond/node_exchange beyond/node_link beyond/paths beyond/sequence beyond/closure beyond/conjugate \
-      beyond/default beyond/error_oracle beyond/patch_exchange beyond/patch_link beyond/range beyond/snapshot \
-      flux formfactor id link linking method model oracle patch pushpull sample treecode
-MPI = assign balance beyond/accuracy beyond/balance beyond/closing beyond/final_gather beyond/gather_mesh beyond/keep beyond/spotcheck \
-      broadcast comm funnel gather ledger linking memory migrate \
-      node picture plan refinement routes scatter signals solve solver vote
-SCENE = binary camera library mtl obj palette ply plyfile text
-RUN = machine options output progress stats store
-PICTURE = image mesh render shading surface tone viewpoint
-TOOLS = cases compare contour gauss pairs table validate viewfactor
+# All sources of these folders but the programs.
+OCTREE = $(wildcard octree/*.c)
+PROGRAMS = tools/imgdiff tools/pathtracer
+FOLDERS = geom rad rad/beyond mpi mpi/beyond io/scene io/run io/picture tools
+SOURCES = $(wildcard $(FOLDERS:%=%/*.c)) $(OCTREE)
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
-MODULES = $(GEOM:%=geom/%) $(OCTREE:%=octree/%) $(BRUTE:%=tests/%) $(RAD:%=rad/%) $(MPI:%=mpi/%) \
-          $(SCENE:%=io/scene/%) $(RUN:%=io/run/%) $(PICTURE:%=io/picture/%) $(TOOLS:%=tools/%)
+MODULES = $(filter-out $(PROGRAMS),$(sort $(SOURCES:%.c=%))) $(BRUTE:%=tests/%)
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last four are run with several ranks. Their sources lie in
@@ -78,8 +69,8 @@ TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree
         final_gather treecode paths plan balance assign spotcheck \
         text obj ply output store tone image camera viewpoint shading render options progress contour \
         stop norms cie furnace whole stability gaps leaks exchange conjugate exact converge
-vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io tests/tools
-vpath %.c tests/whole
+vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
+vpath %.c tests/tools tests/whole
 
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct replay
@@ -114,10 +105,7 @@ $(BUILD)/tests/norms $(BUILD)/tests/gaps $(BUILD)/tests/converge: $(BUILD)/tests
         $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
-$(BUILD)/tests/paths: $(BUILD)/tests/paths.o $(BUILD)/tools/pixel.o $(BUILD)/libphr.a
-	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
-
-$(BUILD)/pathtracer: $(BUILD)/tools/pathtracer.o $(BUILD)/tools/pixel.o $(BUILD)/libphr.a
+$(BUILD)/pathtracer: $(BUILD)/tools/pathtracer.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 pathtracer: $(BUILD)/pathtracer
@@ -141,7 +129,7 @@ $(TESTS:%=$(BUILD)/tests/%.o): $(BUILD)/tests/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	$(COMPILED)
 
--include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/tools/imgdiff.d $(BUILD)/tools/pathtracer.d $(BUILD)/tools/pixel.d $(TESTS:%=$(BUILD)/tests/%.d) \
+-include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(PROGRAMS:%=$(BUILD)/%.d) $(TESTS:%=$(BUILD)/tests/%.d) \
     $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d) \
     $(BUILD)/tests/bench/parsing.d
 
