@@ -66,7 +66,7 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree bundles \
         bicgstab sequence id flux patch compact formfactor patch_exchange link patch_link linking \
         cluster node oracle error_oracle pushpull closure \
-        final_gather treecode paths plan balance assign spotcheck \
+        final_gather checksum paths plan balance assign spotcheck \
         text obj ply output store tone image camera viewpoint shading render options progress contour \
         stop norms cie furnace whole stability gaps leaks exchange conjugate exact converge
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io

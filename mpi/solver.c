@@ -13,7 +13,6 @@
 #include "geom/alloc.h"
 #include "mpi/broadcast.h"
 #include "mpi/memory.h"
-#include "rad/treecode.h"
 
 struct solver *solver_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree, const struct criterion *criterion)

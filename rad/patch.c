@@ -5,7 +5,10 @@
  * by side, hence one number finds them all and 0 (always a root, never a child) means none. */
 #include "rad/patch.h"
 
+#include <string.h>
+
 #include "geom/alloc.h"
+#include "geom/hash.h"
 
 struct forest *forest_create(const struct scene *scene)
 {
@@ -138,4 +141,44 @@ int32_t *forest_order(const struct forest *forest)
         for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
             order[count++] = p;
     return order;
+}
+
+/* --- the checksum --- */
+
+/* Least significant byte first, whatever the machine. */
+static uint64_t hash_number(uint64_t hash, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    for (int k = 0; k < 8; k++)
+        hash = hash_bytes(hash, &(uint8_t){(uint8_t)(bits >> (8 * k))}, 1);
+    return hash;
+}
+
+/* One bit for each patch, depth first, 1 = split; eight to a byte, the first in the lowest
+ * place. */
+static uint64_t hash_splits(uint64_t hash, const struct forest *forest, int32_t root)
+{
+    uint8_t byte = 0;
+    int bits = 0;
+    for (int32_t p = root; p >= 0; p = forest_next(forest, p, true)) {
+        byte = (uint8_t)(byte | !patch_is_leaf(&forest->patches[p]) << bits % 8);
+        if (++bits % 8 == 0) {
+            hash = hash_bytes(hash, &byte, 1);
+            byte = 0;
+        }
+    }
+    return bits % 8 == 0 ? hash : hash_bytes(hash, &byte, 1);
+}
+
+uint64_t forest_checksum(const struct forest *forest)
+{
+    uint64_t hash = HASH_START;
+    for (int32_t root = 0; root < forest->root_count; root++) {
+        hash = hash_splits(hash, forest, root);
+        for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
+            for (int c = 0; c < BANDS && patch_is_leaf(&forest->patches[p]); c++)
+                hash = hash_number(hash, forest->patches[p].radiosity.band[c]);
+    }
+    return hash;
 }

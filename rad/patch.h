@@ -85,4 +85,8 @@ int32_t *forest_order(const struct forest *forest);
  * with -1. `descend` false skips what is below `patch`. */
 int32_t forest_next(const struct forest *forest, int32_t patch, bool descend);
 
+/* A hash of all trees and of the radiosities of their leaves, roots in order: the same on any number
+ * of ranks and on any machine. */
+uint64_t forest_checksum(const struct forest *forest);
+
 #endif

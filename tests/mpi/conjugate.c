@@ -4,7 +4,6 @@
 #include "mpi/assign.h"
 #include "mpi/beyond/beyond.h"
 
-#include "rad/treecode.h"
 
 #include "rad/beyond/patch_link.h"
 #include "tests/scenes.h"

@@ -15,7 +15,6 @@
 #include "mpi/broadcast.h"
 #include "mpi/migrate.h"
 #include "mpi/picture.h"
-#include "rad/treecode.h"
 
 #include <string.h>
 
@@ -80,15 +79,13 @@ static struct solver *make_solver(const struct comm *comm, const struct scene *s
 /* Makes the trees of all ranks equal, as a refinement does at its end. */
 static void share_patches(struct solver *solver)
 {
-    struct bytes own = {0};
     struct forest *forest = solver->model.forest;
-    for (int64_t p = 0; p < forest->count; p++) {
-        const uint8_t *id = (const uint8_t *)&forest->patches[p].id;
-        for (size_t k = 0; k < sizeof forest->patches[p].id; k++)
-            bytes_append(&own, id[k]);
-    }
+    size_t count = (size_t)forest->count;
+    struct patch_id *own = alloc_array(count, sizeof *own);
+    for (size_t p = 0; p < count; p++)
+        own[p] = forest->patches[p].id;
     int *at = alloc_array((size_t)solver->comm->size + 1, sizeof *at);
-    uint8_t *all = comm_gather_all(solver->comm, own.data, own.count, at);
+    uint8_t *all = comm_gather_all(solver->comm, own, (int64_t)(count * sizeof *own), at);
     for (int i = 0; i < at[solver->comm->size]; i += (int)sizeof(struct patch_id)) {
         struct patch_id id;
         memcpy(&id, all + i, sizeof id);
@@ -96,7 +93,7 @@ static void share_patches(struct solver *solver)
     }
     alloc_free(all);
     alloc_free(at);
-    bytes_free(&own);
+    alloc_free(own);
 }
 
 /* One iteration without refinement; in rounds 0 and 1 new links come with new patches. */

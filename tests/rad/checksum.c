@@ -1,9 +1,8 @@
-/* Tests of rad/treecode.h: the bytes of a small tree by literal values, random trees there and
- * back bit by bit, and a checksum that is blind to the order of creation and to nothing else. */
-#include "rad/treecode.h"
-
+/* Tests of forest_checksum() of rad/patch.h: small trees by their literal bytes; it is blind to the
+ * order of creation and to nothing else. */
 #include <string.h>
 
+#include "geom/hash.h"
 #include "rad/pushpull.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
@@ -66,30 +65,23 @@ static struct forest *make_forest(const struct scene *scene, const struct patch_
     return forest;
 }
 
-/* --- the format --- */
+/* --- the bytes --- */
 
-/* Root split, child 2 split: depth first 1 00 1 0000 0, so the bytes 09 and 00; then 7 leaves. */
+/* Root 1 split, its child 2 split: depth first 1 00 1 0000 0, so the bytes 09 and 00; then 7 leaves.
+ * Of the other roots, which are leaves without light, a byte and three numbers each. */
 static void test_format(const struct scene *scene)
 {
+    uint8_t bytes[ROOTS * 25 + 1 + 6 * 24] = {0};
+    static const uint8_t leaf_bytes[24] = {0, 0, 0, 0, 0, 0, 0xF0, 0x3F, 0, 0, 0, 0,
+                                           0, 0, 0, 0xC0, 1, 0, 0, 0,    0, 0, 0, 0};
     struct forest *forest = forest_create(scene);
-    struct bytes bytes = {0};
-    bytes_append(&bytes, 0xEE); /* what is there stays */
-    tree_encode(forest, 1, &bytes);
-    bool right = bytes.count == 1 + 1 + 24 && bytes.data[0] == 0xEE && bytes.data[1] == 0;
-    tap_ok(right, "a leaf takes a byte and 24");
     int32_t leaf = forest_reach(forest, id_child(id_child(id_of_root(1), 2), 1));
     forest->patches[leaf].radiosity = (struct rgb){{1.0, -2.0, 0x1p-1074}};
-    bytes.count = 0;
-    tree_encode(forest, 1, &bytes);
-    tap_ok(bytes.count == 2 + 7 * 24 && bytes.data[0] == 0x09 && bytes.data[1] == 0x00,
-           "structure bits, the first in the lowest place");
-    static const uint8_t expected[24] = {0, 0, 0, 0, 0, 0, 0xF0, 0x3F, 0, 0, 0, 0,
-                                         0, 0, 0, 0xC0, 1, 0, 0, 0,    0, 0, 0, 0};
-    /* Leaves in order: children 0, 1, then 20, 21. */
-    tap_ok(memcmp(bytes.data + 2 + 3 * 24, expected, 24) == 0,
-           "then the leaves' doubles, least significant byte first");
-    bytes_free(&bytes);
-    tap_ok(!bytes.data && bytes.count == 0, "bytes are freed");
+    bytes[25] = 0x09;
+    memcpy(bytes + 25 + 2 + 3 * 24, leaf_bytes, sizeof leaf_bytes); /* after leaves 0, 1, 20 */
+    tap_ok(forest_checksum(forest) == hash_bytes(HASH_START, bytes, sizeof bytes),
+           "structure bits, the first in the lowest place, then the leaves' numbers, least "
+           "significant byte first");
     forest_destroy(forest);
 }
 
