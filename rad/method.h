@@ -19,8 +19,7 @@ struct model;
 enum { METHOD_CHILDREN_MAX = 10 };
 
 struct method {
-    /* Power, W, areas in square scene units, that epsilon is relative to. The rest of the model
-     * is made. */
+    /* Power that epsilon is relative to, W, areas in square scene units. */
     double (*light_power)(struct model *model);
 
     /* The link that there is at first. NULL: all pairs of roots are linked. */
@@ -52,7 +51,7 @@ struct method {
                      struct flux_unit unit);
 };
 
-extern const struct method PAPER;   /* rad/method.c */
+extern const struct method PAPER;   /* rad/paper.c */
 extern const struct method DEFAULT; /* rad/beyond/default.c */
 
 /* PAPER, DEFAULT or an ablation, as the criterion names them (rad/beyond/default.c). */

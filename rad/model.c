@@ -18,7 +18,12 @@ struct model model_make(const struct scene *scene, const struct octree *octree,
         .emitted_power = scene_emitted_power(scene),
         .patch_threshold = criterion->min_area * scene_area(scene),
     };
-    model.light_power = model.method.light_power(&model);
-    model.link_threshold = criterion->epsilon * model.light_power;
+    model_set_epsilon(&model, criterion->epsilon);
     return model;
+}
+
+void model_set_epsilon(struct model *model, double epsilon)
+{
+    model->criterion.epsilon = epsilon;
+    model->link_threshold = epsilon * model->method.light_power(model);
 }

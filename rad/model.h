@@ -28,7 +28,7 @@ struct criterion {
     enum solver_kind solver;
     enum balance balance;
     double epsilon;         /* energy or error of a link that splits it, relative to
-                               light_power below */
+                               light_power() of the method */
     double accuracy;        /* error of the leaves down to which epsilon is lowered and rays are
                                added, relative RMS; 0: these stay */
     double min_area;        /* smallest patch, relative to the scene's area */
@@ -53,8 +53,7 @@ struct model {
     struct method method;
     struct flux_unit flux_unit;
     double area, emitted_power; /* of the scene: square scene units, W */
-    double light_power;     /* W, areas in square scene units: what epsilon is relative to */
-    double link_threshold;  /* W, areas in square scene units: epsilon times that */
+    double link_threshold;  /* W, areas in square scene units: epsilon times the light */
     double patch_threshold; /* square scene units: no patch smaller than this is made */
     struct rgb typical;     /* a guess at the mean radiosity, W/m^2, before there is an answer */
     struct octree_counts counts; /* work of this rank so far */
@@ -72,5 +71,8 @@ static inline int64_t model_work(const struct model *model)
 /* Fills a model with the method that the criterion names; borrows scene, octree and forest. */
 struct model model_make(const struct scene *scene, const struct octree *octree,
                           struct forest *forest, const struct criterion *criterion);
+
+/* Changes epsilon of the criterion, and the threshold with it. */
+void model_set_epsilon(struct model *model, double epsilon);
 
 #endif

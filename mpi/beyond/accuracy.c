@@ -169,8 +169,7 @@ static void lower_epsilon(struct solver *solver, double allowed)
         accuracy->coarse = mesh;
         accuracy->coarse_epsilon = criterion->epsilon;
     }
-    criterion->epsilon *= lower;
-    solver->model.link_threshold = criterion->epsilon * solver->model.light_power;
+    model_set_epsilon(&solver->model, criterion->epsilon * lower);
 }
 
 /* Returns false if nothing can be tightened, and says why. `lowered`: epsilon was. */

@@ -306,10 +306,8 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
     if (model->criterion.accuracy > 0.0 && number[SNAPSHOT_GATHER] > 0)
         model->criterion.final_gather = solver->memory.rays = (int)number[SNAPSHOT_GATHER];
     solver->beyond->descent.least_bend = snapshot->value[SNAPSHOT_LEAST_BEND];
-    if (solver->turn.pass > 0) { /* before the first pass a link cache does not bind epsilon */
-        model->criterion.epsilon = snapshot->value[SNAPSHOT_EPSILON];
-        model->link_threshold = model->criterion.epsilon * model->light_power;
-    }
+    if (solver->turn.pass > 0) /* before the first pass a link cache does not bind epsilon */
+        model_set_epsilon(model, snapshot->value[SNAPSHOT_EPSILON]);
     *vote = (struct vote){
         .settled = number[SNAPSHOT_SETTLED] != 0 && (as_limited || number[SNAPSHOT_LIMITED] == 0),
         .links = snapshot->link_count,

@@ -104,36 +104,3 @@ void error_oracle_divide(struct model *model, const struct link *link)
     divide(model, link, link->p, link->q, link->parts_p);
     divide(model, link, link->q, link->p, link->parts_q);
 }
-
-/* Powers at stake, relative to the threshold, up to which one segment, and four, tell enough of
- * a pair. */
-static const double STAKE_ONE = 0.1, STAKE_FOUR = 1.0;
-
-/* The power that a pair makes of what it exchanges, W per square scene unit of G, both
- * ways together: with the radiosity of either and what the other reflects. In the first
- * pass little is lit yet, so radiosities count as at least what is typical. */
-static double light_at_stake(const struct model *model, int32_t p, int32_t q)
-{
-    const struct forest *forest = model->forest;
-    struct rgb radiosity_p = forest->patches[p].radiosity;
-    struct rgb radiosity_q = forest->patches[q].radiosity;
-    struct rgb reflectance_p = forest_material(forest, p)->reflectance;
-    struct rgb reflectance_q = forest_material(forest, q)->reflectance;
-    double light = 0.0;
-    for (int c = 0; c < BANDS; c++) {
-        double typical = model->typical.band[c];
-        light += reflectance_q.band[c] * real_max(typical, radiosity_p.band[c]) +
-                 reflectance_p.band[c] * real_max(typical, radiosity_q.band[c]);
-    }
-    return light;
-}
-
-enum look error_oracle_look(const struct model *model, int32_t p, int32_t q, double guess)
-{
-    if (!(guess > 0.0))
-        return LOOK_ALL;
-    double stake = guess * light_at_stake(model, p, q);
-    return stake <= STAKE_ONE * model->link_threshold    ? LOOK_ONE
-           : stake <= STAKE_FOUR * model->link_threshold ? LOOK_FOUR_FIRST
-                                                          : LOOK_ALL;
-}

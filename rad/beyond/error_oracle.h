@@ -2,7 +2,6 @@
 #ifndef RAD_BEYOND_ERROR_ORACLE_H
 #define RAD_BEYOND_ERROR_ORACLE_H
 
-#include "rad/beyond/patch_exchange.h"
 #include "rad/link.h"
 
 /* As side_to_split of struct method: the patch that causes more of the error. */
@@ -11,8 +10,5 @@ int32_t error_oracle_side_to_split(const struct model *model, const struct link 
 /* Gives p and q of a link that is not split children, where the link varies over them more than
  * the criterion allows: it deals its light to them. */
 void error_oracle_divide(struct model *model, const struct link *link);
-
-/* How closely a pair has to be looked at of which `guess` would be exchanged without blockers. */
-enum look error_oracle_look(const struct model *model, int32_t p, int32_t q, double guess);
 
 #endif

@@ -12,9 +12,6 @@
 
 #include <math.h>
 
-#include "rad/beyond/error_oracle.h"
-#include "rad/beyond/patch_exchange.h"
-
 uint8_t link_seen(double share)
 {
     if (!(share > 0.0))
@@ -42,6 +39,39 @@ void link_set_parts(uint8_t parts[3], const double exact[4])
     }
 }
 
+/* Powers at stake, relative to the threshold, up to which one segment, and four, tell enough of
+ * a pair. */
+static const double STAKE_ONE = 0.1, STAKE_FOUR = 1.0;
+
+/* The power that a pair makes of what it exchanges, W per square scene unit of G, both
+ * ways together: with the radiosity of either and what the other reflects. In the first
+ * pass little is lit yet, so radiosities count as at least what is typical. */
+static double light_at_stake(const struct model *model, int32_t p, int32_t q)
+{
+    const struct forest *forest = model->forest;
+    struct rgb radiosity_p = forest->patches[p].radiosity;
+    struct rgb radiosity_q = forest->patches[q].radiosity;
+    struct rgb reflectance_p = forest_material(forest, p)->reflectance;
+    struct rgb reflectance_q = forest_material(forest, q)->reflectance;
+    double light = 0.0;
+    for (int c = 0; c < BANDS; c++) {
+        double typical = model->typical.band[c];
+        light += reflectance_q.band[c] * real_max(typical, radiosity_p.band[c]) +
+                 reflectance_p.band[c] * real_max(typical, radiosity_q.band[c]);
+    }
+    return light;
+}
+
+enum look patch_link_look(const struct model *model, int32_t p, int32_t q, double guess)
+{
+    if (!(guess > 0.0))
+        return LOOK_ALL;
+    double stake = guess * light_at_stake(model, p, q);
+    return stake <= STAKE_ONE * model->link_threshold    ? LOOK_ONE
+           : stake <= STAKE_FOUR * model->link_threshold ? LOOK_FOUR_FIRST
+                                                          : LOOK_ALL;
+}
+
 static bool make(struct model *model, int32_t p, const struct facet *facet_p, int32_t q,
                  const struct facet *facet_q, const struct link *parent,
                  enum form_factor form_factor, struct link *link)
@@ -54,7 +84,7 @@ static bool make(struct model *model, int32_t p, const struct facet *facet_p, in
     struct octree_counts work = {0};
     struct sight sight = {.open = parent && link_is_open(parent),
                           .blocker = parent ? parent->blocker : -1};
-    enum look look = error_oracle_look(model, p, q, exchange_guess(facet_p, facet_q));
+    enum look look = patch_link_look(model, p, q, exchange_guess(facet_p, facet_q));
     struct exchange exchange = exchange_estimate(facet_p, facet_q, form_factor, look,
                                                  model->octree, &sight, &work);
     octree_counts_add(&model->counts, &work);

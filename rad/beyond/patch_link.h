@@ -11,6 +11,7 @@
 #ifndef RAD_BEYOND_PATCH_LINK_H
 #define RAD_BEYOND_PATCH_LINK_H
 
+#include "rad/beyond/patch_exchange.h"
 #include "rad/link.h"
 
 /* What G would be without blockers, within 1/500 of G or so. */
@@ -53,6 +54,9 @@ const struct rgb *link_take(const struct forest *forest, int32_t patch,
 /* Adds light, G B, to the flux of a patch, or of its children by the parts. */
 void link_give(struct forest *forest, int32_t patch, const uint8_t parts[3], double area,
                const struct rgb *radiosity, struct flux_unit unit);
+
+/* How closely a pair has to be looked at of which `guess` would be exchanged without blockers. */
+enum look patch_link_look(const struct model *model, int32_t p, int32_t q, double guess);
 
 /* Entries of struct method: make_link, with form factors from points or by disks, and split_link,
  * which ends links of two patches that are proved to be walled off. */

@@ -1,5 +1,5 @@
-/* Tests of rad/beyond/error_oracle.h: which patch of a link is split by error; which patches get
- * children without it; and how closely a pair is looked at. */
+/* Tests of rad/beyond/error_oracle.h: which patch of a link is split by error; and which patches
+ * get children without it. */
 #include "rad/beyond/error_oracle.h"
 
 #include "rad/beyond/patch_link.h"
@@ -210,30 +210,6 @@ static void test_dividing(void)
     world_free(&world);
 }
 
-/* --- looking --- */
-
-/* The floor sends 1 and 3, the ceiling nothing: what is typical counts as long as there is less. */
-static void test_look(void)
-{
-    struct world world = make_grey(1.0);
-    struct model *model = &world.model;
-    model->typical = (struct rgb){{0.0, 0.0, 0.0}};
-    model->link_threshold = 1.0;
-    /* 3/2 each way: a stake of 3 for a guess of 1. */
-    tap_ok(error_oracle_look(model, 0, 1, 0.0999 / 3.0) == LOOK_ONE &&
-               error_oracle_look(model, 0, 1, 0.1001 / 3.0) == LOOK_FOUR_FIRST &&
-               error_oracle_look(model, 0, 1, 0.999 / 3.0) == LOOK_FOUR_FIRST &&
-               error_oracle_look(model, 0, 1, 1.001 / 3.0) == LOOK_ALL,
-           "little at stake is looked at less");
-    model->typical = (struct rgb){{3.0, 1.0, 1.0}}; /* 5/2 each way */
-    tap_ok(error_oracle_look(model, 0, 1, 0.0999 / 5.0) == LOOK_ONE &&
-               error_oracle_look(model, 0, 1, 0.1001 / 5.0) == LOOK_FOUR_FIRST,
-           "what is typical counts where it is more");
-    tap_ok(error_oracle_look(model, 0, 1, 0.0) == LOOK_ALL && error_oracle_look(model, 0, 1, NAN) == LOOK_ALL,
-           "without a guess all is looked at");
-    world_free(&world);
-}
-
 /* --- scale --- */
 
 enum { DECISIONS = 4000 };
@@ -322,7 +298,6 @@ int main(void)
     test_error_doubt();
     test_error_limits();
     test_dividing();
-    test_look();
     test_scale();
     return tap_done();
 }

@@ -372,6 +372,31 @@ static void test_inheriting(void)
     soup_free(&more);
 }
 
+/* --- looking --- */
+
+/* The floor sends 1 and 3, the ceiling nothing: what is typical counts as long as there is less. */
+static void test_look(void)
+{
+    struct material grey = material_grey(0.5, 1);
+    struct world world = make_default_pair(1.0, grey, grey, NULL);
+    struct model *model = &world.model;
+    model->typical = (struct rgb){{0.0, 0.0, 0.0}};
+    model->link_threshold = 1.0;
+    /* 3/2 each way: a stake of 3 for a guess of 1. */
+    tap_ok(patch_link_look(model, 0, 1, 0.0999 / 3.0) == LOOK_ONE &&
+               patch_link_look(model, 0, 1, 0.1001 / 3.0) == LOOK_FOUR_FIRST &&
+               patch_link_look(model, 0, 1, 0.999 / 3.0) == LOOK_FOUR_FIRST &&
+               patch_link_look(model, 0, 1, 1.001 / 3.0) == LOOK_ALL,
+           "little at stake is looked at less");
+    model->typical = (struct rgb){{3.0, 1.0, 1.0}}; /* 5/2 each way */
+    tap_ok(patch_link_look(model, 0, 1, 0.0999 / 5.0) == LOOK_ONE &&
+               patch_link_look(model, 0, 1, 0.1001 / 5.0) == LOOK_FOUR_FIRST,
+           "what is typical counts where it is more");
+    tap_ok(patch_link_look(model, 0, 1, 0.0) == LOOK_ALL && patch_link_look(model, 0, 1, NAN) == LOOK_ALL,
+           "without a guess all is looked at");
+    world_free(&world);
+}
+
 int main(void)
 {
     test_dropping();
@@ -382,5 +407,6 @@ int main(void)
     test_transfer();
     test_parts();
     test_inheriting();
+    test_look();
     return tap_done();
 }
