@@ -1,10 +1,11 @@
 /* Light as integers: flux in fixed point.
  *
- * Flux [W, areas in square scene units] is summed as integers, llrint(x * 2^k). Integer sums do not
- * depend on their order, so no result depends on which rank held which link. Each transfer has its
- * own k, chosen so that no flux can overflow (rad/link.h); k of a run, for powers that ranks add, is
- * chosen once. flux_add() stops at FLUX_LIMIT; the sum of non-negative numbers that stops at a
- * limit is the same in any order too, so "it diverged" is seen by all ranks alike. */
+ * Flux [W, areas in square scene units] is summed as integers, llrint(x * 2^k). Integer
+ * sums do not depend on their order, so no result depends on which rank held which link.
+ * Each transfer has its own k, chosen so that no flux can overflow (rad/link.h); k of a
+ * run, for powers that ranks add, is chosen once. flux_add() stops at FLUX_LIMIT; the
+ * sum of non-negative numbers that stops at a limit is the same in any order too, so "it
+ * diverged" is seen by all ranks alike. */
 #ifndef RAD_FLUX_H
 #define RAD_FLUX_H
 
@@ -25,9 +26,9 @@ struct flux_unit {
  * Below 2^-960 it is that of 2^-960. Pre: 0 <= largest. */
 struct flux_unit flux_unit_for(double largest);
 
-/* Chooses k from the emitted power and the largest reflectance rho: the light in a closed scene
- * adds up to at most power / (1 - rho), and 2^-62 of 16 times that is the unit. 16 leaves room
- * for form factors whose rows sum to more than 1. */
+/* Chooses k from the emitted power and the largest reflectance rho: the light in a
+ * closed scene adds up to at most power / (1 - rho), and 2^-62 of 16 times that is the
+ * unit. 16 leaves room for form factors whose rows sum to more than 1. */
 struct flux_unit flux_unit_choose(const struct scene *scene);
 
 /* Watts in integer units, between -FLUX_LIMIT and FLUX_LIMIT, which NaN counts as. */

@@ -1,21 +1,23 @@
 /* The form factor of the paper: disks and 16 rays.
  *
- * Each patch is cut into its four children a = 0..3 and b = 0..3. With r the distance of their
- * centroids and theta the angles to the normals, the exchange area is
+ * Each patch is cut into its four children a = 0..3 and b = 0..3. With r the distance of
+ * their centroids and theta the angles to the normals, the exchange area is
  *
  *     G = sum over a, b of  v_ab  A_a A_b cos theta_a cos theta_b / (pi r^2 + max(A_a, A_b)),
  *
- * v_ab = 1 if the segment between the centroids is free: Eq. 2 for each of the 16 rays of Fig. 2.
+ * v_ab = 1 if the segment between the centroids is free: Eq. 2 for each of the 16 rays
+ * of Fig. 2.
  *
- * On the denominator: the paper prints F_ij = v cos cos A_j / (pi r^2 + A_i), which has no
- * bound when a small i lies close to a large j (F = 24 where 0.968 is right). Wallace's disk
- * has the area of the source j in both places; computed from the smaller patch, its source is
- * the larger one, hence the maximum, and G is symmetric. Of patches that all but touch, the four
- * disks of one side overlap as seen from the other; where that makes G larger than the smaller
- * patch, it is cut down to it, so F <= 1 in both directions.
+ * On the denominator: the paper prints F_ij = v cos cos A_j / (pi r^2 + A_i), which has
+ * no bound when a small i lies close to a large j (F = 24 where 0.968 is right).
+ * Wallace's disk has the area of the source j in both places; computed from the smaller
+ * patch, its source is the larger one, hence the maximum, and G is symmetric. Of patches
+ * that all but touch, the four disks of one side overlap as seen from the other; where
+ * that makes G larger than the smaller patch, it is cut down to it, so F <= 1 in both
+ * directions.
  *
- * Sub-areas below each other's horizon exchange nothing, whatever is between them: they get no
- * ray. */
+ * Sub-areas below each other's horizon exchange nothing, whatever is between them: they
+ * get no ray. */
 #include "rad/formfactor.h"
 
 #include <math.h>
@@ -35,7 +37,8 @@ double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x, struct 
                      struct vec3 normal_y, double area_y)
 {
     struct vec3 d = vec3_sub(y, x);
-    double rise_x = vec3_dot(normal_x, d), rise_y = -vec3_dot(normal_y, d); /* r cos theta */
+    /* r cos theta */
+    double rise_x = vec3_dot(normal_x, d), rise_y = -vec3_dot(normal_y, d);
     if (rise_x <= 0.0 || rise_y <= 0.0)
         return 0.0;
     double r2 = vec3_dot(d, d);
@@ -53,7 +56,8 @@ struct facet_pair facet_pair_make(const struct facet *p, const struct facet *q)
         bundle->to[k] = triangle_centroid(&of_q);
     }
     for (int ray = 0; ray < BUNDLE_RAYS; ray++) {
-        pair.kernels[ray] = disk_exchange(bundle->from[ray / BUNDLE_ENDS], p->plane.normal,
+        pair.kernels[ray] = disk_exchange(bundle->from[ray / BUNDLE_ENDS],
+                                          p->plane.normal,
                                           0.25 * p->area, bundle->to[ray % BUNDLE_ENDS],
                                           q->plane.normal, 0.25 * q->area);
         bundle->asked |= (unsigned)(pair.kernels[ray] > 0.0) << ray;
@@ -61,7 +65,8 @@ struct facet_pair facet_pair_make(const struct facet *p, const struct facet *q)
     return pair;
 }
 
-double exchange_area(const struct facet *p, const struct facet *q, const struct octree *octree,
+double exchange_area(const struct facet *p, const struct facet *q,
+                     const struct octree *octree,
                      int32_t *blocker, double *seen, struct octree_counts *counts)
 {
     struct facet_pair pair = facet_pair_make(p, q);

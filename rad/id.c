@@ -1,8 +1,8 @@
 /* Patch IDs; the layout is in rad/id.h.
  *
- * Going down appends two bits on the right, going up drops them, and the level follows from
- * where the sentinel is. The numeric order of the hierarchy part is breadth first: a deeper
- * patch has more bits, patches of a level differ by their path. */
+ * Going down appends two bits on the right, going up drops them, and the level follows
+ * from where the sentinel is. The numeric order of the hierarchy part is breadth first:
+ * a deeper patch has more bits, patches of a level differ by their path. */
 #include "rad/id.h"
 
 struct patch_id id_of_root(uint32_t root)

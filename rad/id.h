@@ -1,6 +1,7 @@
 /* Global names of patches (paper Sec. 3.1, Fig. 1).
  *
- * A patch ID is the number of a root patch and a hierarchy part of 32 bits, read left to right:
+ * A patch ID is the number of a root patch and a hierarchy part of 32 bits, read left to
+ * right:
  *
  *     0 0 ... 0 0 1 c c c c ... c c
  *     leading     |  |   |       |
@@ -43,10 +44,12 @@ int id_level(struct patch_id id);
  * Pre: 0 <= step < id_level(id). */
 int id_step(struct patch_id id, int step);
 
-/* Negative, 0 or positive. Order: by root, then level by level, each from left to right. */
+/* Negative, 0 or positive. Order: by root, then level by level, each from left to right.
+ */
 int id_compare(struct patch_id a, struct patch_id b);
 
-/* True for what can be the ID of a patch: a sentinel in one of the 16 places that it may have. */
+/* True for what can be the ID of a patch: a sentinel in one of the 16 places that it may
+ * have. */
 bool id_is_valid(struct patch_id id);
 
 #endif

@@ -2,8 +2,8 @@
  *
  * A child inherits the last blocker, which is tested first; its siblings hand theirs on.
  *
- * Where no ray arrives there is no link: without energy it would never be split, nor would it
- * carry light. */
+ * Where no ray arrives there is no link: without energy it would never be split, nor
+ * would it carry light. */
 #include "rad/link.h"
 
 #include "geom/alloc.h"
@@ -49,7 +49,8 @@ bool link_make(struct model *model, int32_t p, const struct facet *facet_p, int3
 {
     struct octree_counts work = {0};
     int32_t blocker = parent ? parent->blocker : -1;
-    double seen, area = exchange_area(facet_p, facet_q, model->octree, &blocker, &seen, &work);
+    double seen, area = exchange_area(facet_p, facet_q, model->octree, &blocker, &seen,
+                                      &work);
     octree_counts_add(&model->counts, &work);
     *link = (struct link){
         .p = p,
@@ -77,8 +78,10 @@ int link_split(struct model *model, const struct link *link, int32_t patch,
         int32_t child = model->forest->patches[patch].children + k;
         struct facet facet = facet_make(model->forest, child);
         struct link *made = &children[count];
-        if (of_p ? !model->method.make_link(model, child, &facet, other, &facet_other, &parent, made)
-                 : !model->method.make_link(model, other, &facet_other, child, &facet, &parent, made))
+        if (of_p ? !model->method.make_link(model, child, &facet, other, &facet_other,
+                                            &parent, made)
+                 : !model->method.make_link(model, other, &facet_other, child, &facet,
+                                            &parent, made))
             continue;
         parent.blocker = made->blocker; /* it is likely to block the next child, too */
         count++;

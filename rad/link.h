@@ -1,8 +1,8 @@
-/* Links, the paper's interactions: pairs of patches that exchange light. (Of links with a
- * cluster in them, which have the same fields, see rad/beyond/node_link.h.)
+/* Links, the paper's interactions: pairs of patches that exchange light. (Of links with
+ * a cluster in them, which have the same fields, see rad/beyond/node_link.h.)
  *
- * Where a link lives can change no result: it reads the radiosities of the last iteration,
- * which are the same on all ranks, and adds integers. */
+ * Where a link lives can change no result: it reads the radiosities of the last
+ * iteration, which are the same on all ranks, and adds integers. */
 #ifndef RAD_LINK_H
 #define RAD_LINK_H
 
@@ -16,19 +16,20 @@
 /* 24 bytes. The paper's method has no use for parts, which are even, nor for `seen`. */
 struct link {
     int32_t p, q;        /* local numbers of the two patches; below 0: a cluster */
-    float area;          /* exchange area, square scene units: G, visibility included, or, if
-                            nothing is seen (seen = 0), what it would be without blockers */
+    float area;          /* exchange area, square scene units: G, visibility included,
+                            or, if nothing is seen (seen = 0), what it would be without
+                            blockers */
     int32_t blocker;     /* triangle that blocked last on the way here, -1: none; with a
                             cluster: see rad/beyond/node_link.c */
     uint8_t parts_p[3], parts_q[3]; /* see rad/beyond/patch_link.h */
-    uint8_t seen;        /* share of the segments' weight that arrives, in 252nds; 0 only if none
-                            does; or one of the two below */
-    uint8_t cost;        /* predicted cost of splitting it, in box and triangle tests, >= 1; short
-                            form of rad/compact.h */
+    uint8_t seen;        /* share of the segments' weight that arrives, in 252nds; 0
+                            only if none does; or one of the two below */
+    uint8_t cost;        /* predicted cost of splitting it, in box and triangle tests,
+                            >= 1; short form of rad/compact.h */
 };
 
-/* It is proved that nothing can stand between p and q: and they are far enough apart for their
- * size to trust the form factor from points, or not. */
+/* It is proved that nothing can stand between p and q: and they are far enough apart for
+ * their size to trust the form factor from points, or not. */
 enum { LINK_ALL_SEEN = 252, LINK_OPEN_NEAR = 253, LINK_OPEN = 254 };
 
 static inline bool link_is_open(const struct link *link)
@@ -69,19 +70,20 @@ void link_list_free(struct link_list *list);
 bool link_make(struct model *model, int32_t p, const struct facet *facet_p, int32_t q,
                const struct facet *facet_q, const struct link *parent, struct link *link);
 
-/* The cost of a link: the tests that its form factor took, plus a share of its parent's cost
- * (Sec. 3.3.1). `parent` as above. */
+/* The cost of a link: the tests that its form factor took, plus a share of its parent's
+ * cost (Sec. 3.3.1). `parent` as above. */
 double link_predict_cost(const struct model *model, const struct octree_counts *work,
                          const struct link *parent);
 
-/* Splits `patch` (p or q of the link) unless it is split already and makes the links of its
- * children with the other side, by the kernel of the method. Returns how many there are, 0..4. */
+/* Splits `patch` (p or q of the link) unless it is split already and makes the links of
+ * its children with the other side, by the kernel of the method. Returns how many there
+ * are, 0..4. */
 int link_split(struct model *model, const struct link *link, int32_t patch,
                struct link *children);
 
-/* B may have any sign. Pre: the largest |B| times the area of the scene is below FLUX_LIMIT units;
- * then no flux can overflow, since the links of a patch lead to patches that do not overlap, and G
- * is at most the area of each. */
+/* B may have any sign. Pre: the largest |B| times the area of the scene is below
+ * FLUX_LIMIT units; then no flux can overflow, since the links of a patch lead to
+ * patches that do not overlap, and G is at most the area of each. */
 void links_transfer(const struct link_list *list, const struct model *model,
                     struct flux_unit unit);
 

@@ -1,7 +1,7 @@
 /* Thresholds in the units of the run; see rad/model.h.
  *
- * Energy is compared as the sum over the three bands, on both sides, so one epsilon serves
- * every colour of light. */
+ * Energy is compared as the sum over the three bands, on both sides, so one epsilon
+ * serves every colour of light. */
 #include "rad/model.h"
 
 struct model model_make(const struct scene *scene, const struct octree *octree,

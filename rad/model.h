@@ -12,14 +12,15 @@
 #include "rad/patch.h"
 
 /* What is named by options; read by method_of() alone, but for the last three. */
-enum oracle { ORACLE_BF, ORACLE_ERROR };                    /* rad/oracle.h, rad/beyond/error_oracle.h */
+enum oracle { ORACLE_BF, ORACLE_ERROR }; /* rad/oracle.h, rad/beyond/error_oracle.h */
 enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON }; /* rad/beyond/patch_exchange.h */
 enum linking_kind { LINKING_PAIRS, LINKING_TREE };
 enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS, CLOSURE_SYMMETRIC };
 enum solver_kind { SOLVER_JACOBI, SOLVER_CG };
 enum balance { BALANCE_NONE, BALANCE_GREEDY, BALANCE_DEFAULT }; /* mpi/balance.h */
 
-/* How links are evaluated, when and how far they are refined, and when the iterations end. */
+/* How links are evaluated, when and how far they are refined, and when the iterations
+ * end. */
 struct criterion {
     enum oracle oracle;
     enum linking_kind linking;
@@ -29,18 +30,21 @@ struct criterion {
     enum balance balance;
     double epsilon;         /* energy or error of a link that splits it, relative to
                                light_power() of the method */
-    double accuracy;        /* error of the leaves down to which epsilon is lowered and rays are
-                               added, relative RMS; 0: these stay */
+    double accuracy;        /* error of the leaves down to which epsilon is lowered and
+                               rays are added, relative RMS; 0: these stay */
     double min_area;        /* smallest patch, relative to the scene's area */
     int max_level;          /* deepest subdivision, 0..ID_MAX_LEVEL */
-    double alpha;           /* alpha_c, share of its parent's cost in the cost of a link, 0..1 */
-    double tolerance;       /* bound on the remaining iteration error, relative to all light */
+    double alpha;           /* alpha_c, share of its parent's cost in the cost of a
+                               link, 0..1 */
+    double tolerance;       /* bound on the remaining iteration error, relative to all
+                               light */
     int max_iterations;     /* at least 1 */
     int final_gather;       /* rays from a leaf of middling size; 0: none */
 };
 
 enum { GATHER_RAYS_MOST = 16384 };   /* of criterion.final_gather */
-enum { TESTS_PER_FORM_FACTOR = 8 }; /* a form factor takes about as long as so many tests */
+enum { TESTS_PER_FORM_FACTOR = 8 }; /* a form factor takes about as long as so many
+                                       tests */
 
 struct cluster_light;
 
@@ -55,11 +59,14 @@ struct model {
     double area, emitted_power; /* of the scene: square scene units, W */
     double link_threshold;  /* W, areas in square scene units: epsilon times the light */
     double patch_threshold; /* square scene units: no patch smaller than this is made */
-    struct rgb typical;     /* a guess at the mean radiosity, W/m^2, before there is an answer */
+    struct rgb typical;     /* a guess at the mean radiosity, W/m^2, before there is an
+                               answer */
     struct octree_counts counts; /* work of this rank so far */
     int64_t estimating;     /* work of this rank so far on form factors, in tests */
-    int64_t rays_spared;    /* of 16 for each pair that this rank has looked at, those not fired */
-    int64_t walled_off;     /* links that ended here since they are proved to be blocked */
+    int64_t rays_spared;    /* of 16 for each pair that this rank has looked at, those
+                               not fired */
+    int64_t walled_off;     /* links that ended here since they are proved to be
+                               blocked */
 };
 
 /* Work of this rank so far, in tests of the octree. */
@@ -68,7 +75,8 @@ static inline int64_t model_work(const struct model *model)
     return model->counts.node_tests + model->counts.triangle_tests + model->estimating;
 }
 
-/* Fills a model with the method that the criterion names; borrows scene, octree and forest. */
+/* Fills a model with the method that the criterion names; borrows scene, octree and
+ * forest. */
 struct model model_make(const struct scene *scene, const struct octree *octree,
                           struct forest *forest, const struct criterion *criterion);
 

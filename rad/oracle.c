@@ -1,6 +1,7 @@
-/* BF refinement (Sec. 2.2 and 3.3): "if the total exchanged energy exceeds a certain threshold, the
- * patch with the bigger area is subdivided". The energy is that of Eq. 2, v_pq F_pq A_p B_q, both
- * ways together, summed over the bands. Nothing is split that may not be. */
+/* BF refinement (Sec. 2.2 and 3.3): "if the total exchanged energy exceeds a certain
+ * threshold, the patch with the bigger area is subdivided". The energy is that of Eq. 2,
+ * v_pq F_pq A_p B_q, both ways together, summed over the bands. Nothing is split that
+ * may not be. */
 #include "rad/oracle.h"
 
 bool patch_may_split(const struct model *model, int32_t patch)
@@ -24,5 +25,6 @@ int32_t oracle_side_to_split(const struct model *model, const struct link *link)
     double energy = link_area(link) * (rgb_sum(patches[link->p].radiosity) +
                                        rgb_sum(patches[link->q].radiosity));
     int32_t larger = p_is_larger(model->forest, link) ? link->p : link->q;
-    return energy > model->link_threshold && patch_may_split(model, larger) ? larger : NODE_NONE;
+    return energy > model->link_threshold && patch_may_split(model,
+                                                             larger) ? larger : NODE_NONE;
 }

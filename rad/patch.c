@@ -1,8 +1,9 @@
 /* The patch forest.
  *
- * A patch is 64 bytes: one cache line, and less than three links. Its corners, normal and area
- * follow from its root and its ID, so they are not stored. The four children of a patch lie side
- * by side, hence one number finds them all and 0 (always a root, never a child) means none. */
+ * A patch is 64 bytes: one cache line, and less than three links. Its corners, normal
+ * and area follow from its root and its ID, so they are not stored. The four children of
+ * a patch lie side by side, hence one number finds them all and 0 (always a root, never
+ * a child) means none. */
 #include "rad/patch.h"
 
 #include <string.h>
@@ -155,8 +156,8 @@ static uint64_t hash_number(uint64_t hash, double value)
     return hash;
 }
 
-/* One bit for each patch, depth first, 1 = split; eight to a byte, the first in the lowest
- * place. */
+/* One bit for each patch, depth first, 1 = split; eight to a byte, the first in the
+ * lowest place. */
 static uint64_t hash_splits(uint64_t hash, const struct forest *forest, int32_t root)
 {
     uint8_t byte = 0;

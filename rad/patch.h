@@ -1,8 +1,8 @@
 /* Patches: one quadtree over each root triangle.
  *
- * Every rank holds the whole forest (paper Sec. 3.1). Patch number r < root_count is root r;
- * other numbers are given in the order of creation, which differs from rank to rank: they are
- * local and never leave a rank. What travels is the ID. */
+ * Every rank holds the whole forest (paper Sec. 3.1). Patch number r < root_count is
+ * root r; other numbers are given in the order of creation, which differs from rank to
+ * rank: they are local and never leave a rank. What travels is the ID. */
 #ifndef RAD_PATCH_H
 #define RAD_PATCH_H
 
@@ -14,7 +14,8 @@
 
 struct patch {
     struct rgb radiosity;   /* B, W/m^2; of an inner patch: the mean over its leaves */
-    int64_t flux[BANDS];    /* Phi received in this iteration over links of this very patch */
+    int64_t flux[BANDS];    /* Phi received in this iteration over links of this very
+                               patch */
     struct patch_id id;     /* global name */
     int32_t parent;         /* local number, -1 for a root */
     int32_t children;       /* local number of child 0 (1..3 follow it), 0 for a leaf */
@@ -31,9 +32,10 @@ enum { NODE_NONE = INT32_MIN };
 struct forest {
     const struct scene *scene; /* borrowed */
     struct patch *patches;     /* [count] */
-    struct extremes *extremes; /* [bounded] see rad/beyond/range.h; NULL: there are none */
-    struct rgb *above;         /* [root_count] irradiance that clusters hand down to each root, W/m^2;
-                                  NULL: there are none */
+    struct extremes *extremes; /* [bounded] see rad/beyond/range.h; NULL: there are
+                                  none */
+    struct rgb *above;         /* [root_count] irradiance that clusters hand down to
+                                  each root, W/m^2; NULL: there are none */
     int64_t count, capacity, bounded, extremes_capacity;
     int32_t root_count;
 };
@@ -47,8 +49,8 @@ static inline bool patch_is_leaf(const struct patch *patch)
     return patch->children == 0;
 }
 
-/* Gives a leaf four children with its radiosity and no flux; does nothing to an inner patch.
- * May move `patches`. Pre: its level is below ID_MAX_LEVEL. */
+/* Gives a leaf four children with its radiosity and no flux; does nothing to an inner
+ * patch. May move `patches`. Pre: its level is below ID_MAX_LEVEL. */
 void forest_split(struct forest *forest, int32_t patch);
 
 /* Local number of the patch with this ID; what lacks on the way is created.
@@ -58,16 +60,18 @@ int32_t forest_reach(struct forest *forest, struct patch_id id);
 /* Corners, recomputed from the root. Scene units. */
 struct triangle forest_triangle(const struct forest *forest, int32_t patch);
 
-/* Area, square scene units: the root's times 4^-level, so that children add up exactly. */
+/* Area, square scene units: the root's times 4^-level, so that children add up exactly.
+ */
 double forest_area(const struct forest *forest, int32_t patch);
 
-static inline const struct material *forest_material(const struct forest *forest, int32_t patch)
+static inline const struct material *forest_material(const struct forest *forest,
+                                                     int32_t patch)
 {
     return scene_root_material(forest->scene, (int32_t)forest->patches[patch].id.root);
 }
 
-/* A copy of all radiosities, and putting it back (which frees it): B makes room for what else is
- * to be transferred. No patch may be split in between. */
+/* A copy of all radiosities, and putting it back (which frees it): B makes room for what
+ * else is to be transferred. No patch may be split in between. */
 struct rgb *forest_keep(const struct forest *forest);
 void forest_restore(struct forest *forest, struct rgb *kept);
 
@@ -77,16 +81,17 @@ int64_t forest_leaf_count(const struct forest *forest);
 /* Number of patches under all roots that have an area. */
 int64_t forest_patch_count(const struct forest *forest);
 
-/* The local numbers of all patches, roots in order and each tree depth first: as a sequence of IDs the
- * same on all ranks that have the same trees. [count], to be freed with alloc_free(). */
+/* The local numbers of all patches, roots in order and each tree depth first: as a
+ * sequence of IDs the same on all ranks that have the same trees. [count], to be freed
+ * with alloc_free(). */
 int32_t *forest_order(const struct forest *forest);
 
-/* The next patch of root `root` depth first, children in order: start with patch = root, ends
- * with -1. `descend` false skips what is below `patch`. */
+/* The next patch of root `root` depth first, children in order: start with patch = root,
+ * ends with -1. `descend` false skips what is below `patch`. */
 int32_t forest_next(const struct forest *forest, int32_t patch, bool descend);
 
-/* A hash of all trees and of the radiosities of their leaves, roots in order: the same on any number
- * of ranks and on any machine. */
+/* A hash of all trees and of the radiosities of their leaves, roots in order: the same
+ * on any number of ranks and on any machine. */
 uint64_t forest_checksum(const struct forest *forest);
 
 #endif

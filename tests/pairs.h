@@ -1,4 +1,5 @@
-/* Pairs of triangles that face each other, for tests of what stands between two patches. */
+/* Pairs of triangles that face each other, for tests of what stands between two patches.
+ */
 #ifndef TESTS_PAIRS_H
 #define TESTS_PAIRS_H
 
@@ -23,11 +24,13 @@ static inline bool make(struct world *world, int32_t p, int32_t q, struct link *
 {
     struct facet facet_p = facet_make(world->model.forest, p);
     struct facet facet_q = facet_make(world->model.forest, q);
-    return world->model.method.make_link(&world->model, p, &facet_p, q, &facet_q, NULL, link);
+    return world->model.method.make_link(&world->model, p, &facet_p, q, &facet_q, NULL,
+                                         link);
 }
 
 /* Floor 0 (material 0) and ceiling `size` times as large (material 1), then `more`. */
-static inline struct world make_pair(double size, struct material floor, struct material ceiling,
+static inline struct world make_pair(double size, struct material floor,
+                                     struct material ceiling,
                                      const struct soup *more)
 {
     struct soup soup = {0};
@@ -50,12 +53,13 @@ static inline int64_t tests_done(const struct world *world)
     return world->model.counts.node_tests + world->model.counts.triangle_tests;
 }
 
-/* A triangle beside the pair, so that there is something to test: floor and ceiling alone are the
- * hull of their scene and block nothing. */
+/* A triangle beside the pair, so that there is something to test: floor and ceiling
+ * alone are the hull of their scene and block nothing. */
 static inline struct soup bystander(void)
 {
     struct soup more = {0};
-    soup_add(&more, (struct triangle){{{0.5, 0.3, 0.5}, {0.5, 0.4, 0.5}, {0.5, 0.4, 0.6}}});
+    soup_add(&more,
+             (struct triangle){{{0.5, 0.3, 0.5}, {0.5, 0.4, 0.5}, {0.5, 0.4, 0.6}}});
     return more;
 }
 

@@ -1,6 +1,6 @@
-/* phr's method, and the ablations: DEFAULT with an entry exchanged. Links of two patches tell their
- * children apart and are split for their errors; a tree above the roots takes the place of initial
- * linking. */
+/* phr's method, and the ablations: DEFAULT with an entry exchanged. Links of two patches
+ * tell their children apart and are split for their errors; a tree above the roots takes
+ * the place of initial linking. */
 #include "rad/beyond/error_oracle.h"
 #include "rad/beyond/node_link.h"
 #include "rad/beyond/patch_link.h"
@@ -9,10 +9,12 @@
 #include <math.h>
 
 /* Of the light that there would be if it were spread evenly in a closed scene, this part
- * counts: in ordinary rooms less than what is emitted, in white ones many times as much. */
+ * counts: in ordinary rooms less than what is emitted, in white ones many times as much.
+ */
 static const double LASTING = 0.1;
 
-/* The mean radiosity if all light were spread evenly in a closed scene: E / (1 - rho) of means. */
+/* The mean radiosity if all light were spread evenly in a closed scene: E / (1 - rho) of
+ * means. */
 static struct rgb typical_radiosity(const struct scene *scene)
 {
     struct rgb emitted = {{0.0, 0.0, 0.0}}, absorbing = {{0.0, 0.0, 0.0}};
@@ -36,8 +38,8 @@ static double emitted_power(struct model *model)
     return model->emitted_power;
 }
 
-/* As emitted or, where it is reflected for long, a part of what there would be if it were spread
- * evenly. */
+/* As emitted or, where it is reflected for long, a part of what there would be if it
+ * were spread evenly. */
 static double light_power(struct model *model)
 {
     double emitted = emitted_power(model);

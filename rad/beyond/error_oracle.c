@@ -6,16 +6,16 @@
  *     rho_p B_q dG_p       the form factor varies over p: splitting p mends it,
  *     rho_p G dB_q         the radiosity varies over q: splitting q mends it,
  *
- * with dG_p the spread of G over the sub-areas of p (shadows that begin or end on p are in it)
- * and dB_q the range of radiosity over the leaves of q; likewise from p to q. The link itself
- * tells the four children of p apart (rad/link.h). So the spread over p is first of all a reason
- * to give p children, which costs no ray; what is left then is the spread within each child,
- * about half as large, and the range within each child of q. A sampled link may be wrong about
- * what it did not see: a part of what G would be is in doubt, less if all segments agree,
- * nothing if the way is proved to be open. (Then it is still in doubt if the patches are near:
- * points on a lamp do not tell what the ceiling close above it receives.) All these are
- * powers; their sum is compared with the threshold, and the side that causes more of it is
- * split. */
+ * with dG_p the spread of G over the sub-areas of p (shadows that begin or end on p are
+ * in it) and dB_q the range of radiosity over the leaves of q; likewise from p to q. The
+ * link itself tells the four children of p apart (rad/link.h). So the spread over p is
+ * first of all a reason to give p children, which costs no ray; what is left then is the
+ * spread within each child, about half as large, and the range within each child of q. A
+ * sampled link may be wrong about what it did not see: a part of what G would be is in
+ * doubt, less if all segments agree, nothing if the way is proved to be open. (Then it
+ * is still in doubt if the patches are near: points on a lamp do not tell what the
+ * ceiling close above it receives.) All these are powers; their sum is compared with the
+ * threshold, and the side that causes more of it is split. */
 #include "rad/beyond/error_oracle.h"
 
 #include <math.h>
@@ -27,12 +27,14 @@
 /* Sum over bands of rho B: what the receiver makes of the sender's light, W/m^2. */
 static double light_reflected(const struct forest *forest, int32_t from, int32_t to)
 {
-    return rgb_dot(forest_material(forest, to)->reflectance, forest->patches[from].radiosity);
+    return rgb_dot(forest_material(forest, to)->reflectance,
+                   forest->patches[from].radiosity);
 }
 
-/* Part of the exchange that is in doubt when segments disagree, when all agree, and when it is open
- * but near; part of the spread over a patch that is left within its children. The errors that come
- * of half or twice these at the same number of links differ by less than a tenth (Cornell box). */
+/* Part of the exchange that is in doubt when segments disagree, when all agree, and when
+ * it is open but near; part of the spread over a patch that is left within its children.
+ * The errors that come of half or twice these at the same number of links differ by less
+ * than a tenth (Cornell box). */
 static const double DOUBT_MIXED = 0.25, DOUBT_AGREED = 0.125, DOUBT_NEAR = 0.0625;
 static const double SPREAD_LEFT = 0.5;
 
@@ -57,7 +59,8 @@ static double spread_of(const struct link *link, const uint8_t parts[3])
     return 4.0 / 256.0 * (most - least) * link_area(link);
 }
 
-/* What one side causes: spread of what it receives within its children, range of what it sends. */
+/* What one side causes: spread of what it receives within its children, range of what it
+ * sends. */
 static double error_of(const struct model *model, const struct link *link, int32_t own,
                        int32_t other, const uint8_t parts[3], double light)
 {

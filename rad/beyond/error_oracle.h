@@ -7,8 +7,8 @@
 /* As side_to_split of struct method: the patch that causes more of the error. */
 int32_t error_oracle_side_to_split(const struct model *model, const struct link *link);
 
-/* Gives p and q of a link that is not split children, where the link varies over them more than
- * the criterion allows: it deals its light to them. */
+/* Gives p and q of a link that is not split children, where the link varies over them
+ * more than the criterion allows: it deals its light to them. */
 void error_oracle_divide(struct model *model, const struct link *link);
 
 #endif

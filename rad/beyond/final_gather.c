@@ -29,8 +29,8 @@
 #include "rad/beyond/sequence.h"
 #include "rad/pushpull.h"
 
-/* A lamp emits so many times what is reflected in the mean: where all surfaces are alike, as
- * in a furnace, there is none. */
+/* A lamp emits so many times what is reflected in the mean: where all surfaces are
+ * alike, as in a furnace, there is none. */
 static const double LAMP = 4.0;
 
 /* Radiosity that varies by less than this part of the mean over a leaf is constant. */
@@ -107,7 +107,8 @@ void final_gather_free(struct final_gather *gather)
 
 /* --- rows --- */
 
-/* The part, at most 1, that a parent's slope is taken with: over no child B is below 0. */
+/* The part, at most 1, that a parent's slope is taken with: over no child B is below 0.
+ */
 static double slope_part(const struct rgb b[4], struct rgb middle)
 {
     double part = 1.0;
@@ -245,7 +246,8 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
         quarter.triangle = triangle_child(&facet.triangle, k);
         quarter.area = 0.25 * facet.area;
         struct receiver r = receiver_make(gather, quarter,
-                                          hash_mix(seed_of(gather, leaf) + 1 + (uint64_t)k),
+                                          hash_mix(seed_of(gather,
+                                                           leaf) + 1 + (uint64_t)k),
                                           rays);
         receiver_aim(&r);
         receiver_fire(&r);

@@ -23,10 +23,11 @@ struct gather_row {
     int64_t end;       /* of its terms, which begin where those of the row before end */
     struct rgb source; /* irradiance that comes from lamps, W/m^2 */
     struct rgb lamps;  /* what lamps bring straight by what they emit, W/m^2 */
-    double chance[BANDS]; /* variance of H by the choice of rays and segments, if that is by
-                            chance, (W/m^2)^2, for the solution's radiosities */
-    double halves[BANDS]; /* square of what the first and second half of the rays differ by:
-                            the variance as the sequence has it, but of this leaf alone */
+    double chance[BANDS]; /* variance of H by the choice of rays and segments, if that
+                             is by chance, (W/m^2)^2, for the solution's radiosities */
+    double halves[BANDS]; /* square of what the first and second half of the rays
+                             differ by: the variance as the sequence has it, but of
+                             this leaf alone */
     float bare;        /* share of the leaf that no other thing lies or stands on, 1 */
 };
 
@@ -93,7 +94,8 @@ struct gather_look {
 struct gather_slope {
     int32_t first; /* child 0 of the patch, or of its parent */
     double rise;   /* s, times the part that is taken; 0: B is taken as constant */
-    double range;  /* most that B differs by from that of the centre, over all bands, W/m^2 */
+    double range;  /* most that B differs by from that of the centre, over all bands,
+                      W/m^2 */
 };
 
 /* Borrows the model, which has clusters and a solution. `rays`: at least 1. */

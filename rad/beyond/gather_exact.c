@@ -69,7 +69,8 @@ static bool is_open(struct final_gather *g, const struct facet *root)
         struct facet other = facet_make(g->model->forest, view->faced[i]);
         const int32_t own[2] = {root->input, other.input};
         struct vec3 there = triangle_centroid(&other.triangle);
-        open = !(receiver_kernel(middle, root->plane.normal, there, other.plane.normal) > 0.0) ||
+        open = !(receiver_kernel(middle, root->plane.normal, there,
+                                 other.plane.normal) > 0.0) ||
                !octree_blocks_segment(octree, middle, there, own, &guess, &view->counts);
     }
     for (int64_t i = 0; i < view->count && open; i++) {

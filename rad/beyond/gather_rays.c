@@ -31,7 +31,8 @@ static const double NEAR = 0.2;
  * leaf's area. */
 static const double NARROW = 0.04;
 
-/* Two surfaces face each other across a gap if the cosine between their normals is less. */
+/* Two surfaces face each other across a gap if the cosine between their normals is less.
+ */
 static const double OPPOSITE = -0.7;
 
 /* A lamp is wide if its factor from the leaf, unoccluded, is more than this. */
@@ -140,7 +141,8 @@ int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32
     if (r->points && r->points->above) {
         const struct scene *scene = r->gather->model->scene;
         struct segment segment = segment_make(x, y);
-        if (segment_is_blocked_by(&segment, &scene->triangles[input], &scene->planes[input]))
+        if (segment_is_blocked_by(&segment, &scene->triangles[input],
+                                  &scene->planes[input]))
             return input;
     }
     return blocker_of(r, x, input, y, lamp);
@@ -153,7 +155,8 @@ struct volley {
     int count[2];
 };
 
-/* The half that segment `i` of `count` to a group belongs to; a single one, the smaller. */
+/* The half that segment `i` of `count` to a group belongs to; a single one, the smaller.
+ */
 static int half_of(const struct volley *volley, int i, int count)
 {
     return count > 1 ? 2 * i >= count : volley->count[0] > volley->count[1];
@@ -327,7 +330,8 @@ static bool lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 x)
 
 /* The light of one lamp at a point beside the leaf; the lamp and a point of it are chosen
  * by hashes. Of a lamp that the horizon cuts, a point above it. */
-static void aim_beside(struct receiver *r, const struct point *x, const struct rgb *weight,
+static void aim_beside(struct receiver *r, const struct point *x,
+                       const struct rgb *weight,
                        uint64_t seed)
 {
     const struct final_gather *g = r->gather;
@@ -357,11 +361,11 @@ static void aim_beside(struct receiver *r, const struct point *x, const struct r
     }
 }
 
-/* True if a leaf is too near to a point, for its size, for what the mesh says of the point
- * of it that a ray has met. What counts is its centroid, so that the point sees either all
- * of the leaf by the mesh or nothing: where only its far part were, that would be given
- * the mean of the whole. In a gap that is narrow for the leaf all of it is too near, for
- * it may reach from the gap into the light. */
+/* True if a leaf is too near to a point, for its size, for what the mesh says of the
+ * point of it that a ray has met. What counts is its centroid, so that the point sees
+ * either all of the leaf by the mesh or nothing: where only its far part were, that
+ * would be given the mean of the whole. In a gap that is narrow for the leaf all of it
+ * is too near, for it may reach from the gap into the light. */
 static bool is_too_near(const struct forest *forest, const struct point *met,
                         struct vec3 x, struct vec3 normal)
 {

@@ -1,19 +1,20 @@
 /* Lamps that are wide as seen from a receiver, and may be seen through a narrow opening.
  *
- * Segments to points all over such a lamp hardly ever find the opening. But those that are
- * blocked tell by which triangles, and what these hide from a point can be cut out of the
- * lamp exactly (geom/outlook.h). So each further segment is aimed at what the blockers that
- * are known leave over: with V = 1 where it passes, and 0 where it does not,
+ * Segments to points all over such a lamp hardly ever find the opening. But those that
+ * are blocked tell by which triangles, and what these hide from a point can be cut out
+ * of the lamp exactly (geom/outlook.h). So each further segment is aimed at what the
+ * blockers that are known leave over: with V = 1 where it passes, and 0 where it does
+ * not,
  *
  *     H at x  =  E F(what is left over, x) V.
  *
- * Where one does not pass, a blocker more is known, and all begins anew. A wall with a hole
- * is known after some ten segments, and what is left over is the hole. Then the light at
- * each point is exact, half-shadows included.
+ * Where one does not pass, a blocker more is known, and all begins anew. A wall with a
+ * hole is known after some ten segments, and what is left over is the hole. Then the
+ * light at each point is exact, half-shadows included.
  *
- * Of more than BLOCKERS_MOST blockers the last ones count by V alone, as all do where the
- * lamp is small: there it is the place on the leaf that decides on light and shadow, and
- * cutting would take more time than it is worth. */
+ * Of more than BLOCKERS_MOST blockers the last ones count by V alone, as all do where
+ * the lamp is small: there it is the place on the leaf that decides on light and shadow,
+ * and cutting would take more time than it is worth. */
 #include "rad/beyond/receiver.h"
 
 #include <math.h>
@@ -34,7 +35,8 @@ struct wide_lamp {
     struct outlook outlook;
     int hidden;    /* blockers that have been cut out of the outlook; -1: there is none */
     double whole;  /* factor of the lamp without blockers, 1 */
-    double before[OUTLOOK_PIECES + 1]; /* factors of the pieces before each, added up, 1 */
+    double before[OUTLOOK_PIECES + 1]; /* factors of the pieces before each, added up,
+                                          1 */
 };
 
 /* True if the triangle is a blocker that was not known and is now. */
@@ -90,7 +92,8 @@ static struct vec3 point_of_piece(const struct outlook_piece *piece, double u, d
         k++;
     struct triangle t = {{piece->corner[0], piece->corner[k], piece->corner[k + 1]}};
     double own = before[k] - before[k - 1];
-    return triangle_of_square(&t, own > 0.0 ? fmin(1.0, (at - before[k - 1]) / own) : 0.0, v);
+    return triangle_of_square(&t, own > 0.0 ? fmin(1.0, (at - before[k - 1]) / own) : 0.0,
+                              v);
 }
 
 /* A point of what is left over, as u and v in [0, 1) choose it. */

@@ -10,8 +10,8 @@
 #include "rad/beyond/cluster_light.h"
 #include "rad/link.h"
 
-/* Entries of struct method. A cluster is split into up to four children with themselves and six
- * pairs: ten links. */
+/* Entries of struct method. A cluster is split into up to four children with themselves
+ * and six pairs: ten links. */
 
 /* The link of the whole scene with itself, not looked at. */
 struct link node_link_top(void);
@@ -23,9 +23,9 @@ int32_t node_side_to_split_by_energy(const struct model *model, const struct lin
 int node_link_split(struct model *model, const struct link *link, int32_t node,
                     struct link *children);
 
-/* Gives the patches of the link children, where it varies over them more than the criterion
- * allows. G of clusters, of a new link, is estimated again, at other points, so that it is not
- * biased by the decision that has accepted it. */
+/* Gives the patches of the link children, where it varies over them more than the
+ * criterion allows. G of clusters, of a new link, is estimated again, at other points,
+ * so that it is not biased by the decision that has accepted it. */
 void node_link_keep(struct model *model, struct link *link, bool is_new);
 
 void node_links_transfer(const struct link_list *list, const struct model *model,

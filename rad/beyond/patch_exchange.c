@@ -1,11 +1,11 @@
 /* What two patches exchange.
  *
- * The 16 segments of rad/formfactor.c, weighted by the disks, say what is seen. How much there
- * would be to see without blockers is exact, from points of one patch to the whole of the other:
- * disks overlap where patches are close.
+ * The 16 segments of rad/formfactor.c, weighted by the disks, say what is seen. How much
+ * there would be to see without blockers is exact, from points of one patch to the whole
+ * of the other: disks overlap where patches are close.
  *
- * No free segment does not mean that nothing passes. That is only taken so with a proof: a wall
- * that stops every segment (geom/wall.c). */
+ * No free segment does not mean that nothing passes. That is only taken so with a proof:
+ * a wall that stops every segment (geom/wall.c). */
 #include "rad/beyond/patch_exchange.h"
 
 #include <math.h>
@@ -37,7 +37,8 @@ bool facets_face(const struct facet *p, const struct facet *q)
  * all lie below the horizon while the corners do not: such a pair stays in play. */
 static double exchange_across_horizon(const struct facet *p, const struct facet *q)
 {
-    struct vec3 d = vec3_sub(triangle_centroid(&q->triangle), triangle_centroid(&p->triangle));
+    struct vec3 d = vec3_sub(triangle_centroid(&q->triangle),
+                             triangle_centroid(&p->triangle));
     double r2 = vec3_dot(d, d);
     double rise_p = reach_above(&p->plane, &q->triangle);
     double rise_q = reach_above(&q->plane, &p->triangle);
@@ -45,8 +46,8 @@ static double exchange_across_horizon(const struct facet *p, const struct facet 
     return p->area * q->area * cosines / (PI * r2 + fmax(p->area, q->area));
 }
 
-/* The four segments from each sub-area of p to one of q, as far as they are in `asked`: what of them is
- * blocked. */
+/* The four segments from each sub-area of p to one of q, as far as they are in `asked`:
+ * what of them is blocked. */
 static unsigned block_diagonal(const struct bundle *bundle, unsigned asked,
                                const struct octree *octree, int32_t *blocker,
                                struct octree_counts *counts)
@@ -61,16 +62,18 @@ static unsigned block_diagonal(const struct bundle *bundle, unsigned asked,
     return blocked;
 }
 
-/* The segments that arrive, as bits. With four segments that agree, one for each sub-area of p and of q, all others are taken to be
- * like them. */
-static unsigned pair_look(struct facet_pair *pair, enum look look, const struct octree *octree,
+/* The segments that arrive, as bits. With four segments that agree, one for each
+ * sub-area of p and of q, all others are taken to be like them. */
+static unsigned pair_look(struct facet_pair *pair, enum look look,
+                          const struct octree *octree,
                       struct sight *sight, struct octree_counts *counts)
 {
     unsigned facing = pair->bundle.asked, diagonal = facing & DIAGONAL, blocked = 0;
     if (sight->open || facing == 0)
         return facing;
     if (look == LOOK_FOUR_FIRST && diagonal != 0) {
-        blocked = block_diagonal(&pair->bundle, diagonal, octree, &sight->blocker, counts);
+        blocked = block_diagonal(&pair->bundle, diagonal, octree, &sight->blocker,
+                                 counts);
         if (blocked == 0)
             return facing;
         if (blocked == diagonal)
@@ -83,9 +86,10 @@ static unsigned pair_look(struct facet_pair *pair, enum look look, const struct 
     return facing & ~blocked;
 }
 
-/* Sums of the kernels of one sub-area of p (`of_p`) or q: all that face, and those that are
- * seen. */
-static void sum_kernels(const struct facet_pair *pair, unsigned visible, bool of_p, int sub, double *all, double *seen)
+/* Sums of the kernels of one sub-area of p (`of_p`) or q: all that face, and those that
+ * are seen. */
+static void sum_kernels(const struct facet_pair *pair, unsigned visible, bool of_p,
+                        int sub, double *all, double *seen)
 {
     *all = *seen = 0.0;
     for (int other = 0; other < SUBAREAS; other++) {
@@ -95,13 +99,14 @@ static void sum_kernels(const struct facet_pair *pair, unsigned visible, bool of
     }
 }
 
-/* Exchange areas of the four sub-areas of a side with the whole of the other: not occluded, and
- * as far as it is seen. */
+/* Exchange areas of the four sub-areas of a side with the whole of the other: not
+ * occluded, and as far as it is seen. */
 struct side {
     double unoccluded[SUBAREAS], area[SUBAREAS];
 };
 
-static struct side side_by_disks(const struct facet_pair *pair, unsigned visible, bool of_p)
+static struct side side_by_disks(const struct facet_pair *pair, unsigned visible,
+                                 bool of_p)
 {
     struct side side;
     for (int sub = 0; sub < SUBAREAS; sub++)
@@ -109,8 +114,8 @@ static struct side side_by_disks(const struct facet_pair *pair, unsigned visible
     return side;
 }
 
-/* Mean over a sub-area of what it sees of the other patch, from three points: right where that
- * varies with the square of the place (Stroud's formula of degree 2). */
+/* Mean over a sub-area of what it sees of the other patch, from three points: right
+ * where that varies with the square of the place (Stroud's formula of degree 2). */
 static double factor_close_by(const struct facet *own, int sub, const struct facet *other)
 {
     struct triangle area = triangle_child(&own->triangle, sub);
@@ -123,9 +128,10 @@ static double factor_close_by(const struct facet *own, int sub, const struct fac
     return sum / 3.0;
 }
 
-/* A sub-area none of whose segments faces has no kernels to tell what is seen: then what the whole
- * pair sees counts. */
-static struct side side_by_points(const struct facet_pair *pair, unsigned visible, bool of_p,
+/* A sub-area none of whose segments faces has no kernels to tell what is seen: then what
+ * the whole pair sees counts. */
+static struct side side_by_points(const struct facet_pair *pair, unsigned visible,
+                                  bool of_p,
                                   bool apart)
 {
     const struct facet *own = of_p ? pair->p : pair->q, *other = of_p ? pair->q : pair->p;
@@ -139,7 +145,8 @@ static struct side side_by_points(const struct facet_pair *pair, unsigned visibl
     }
     double share = all_sum > 0.0 ? seen_sum / all_sum : 0.0;
     for (int sub = 0; sub < SUBAREAS; sub++) {
-        double factor = apart ? point_triangle_factor(points[sub], own->plane.normal, &other->triangle)
+        double factor = apart ? point_triangle_factor(points[sub], own->plane.normal,
+                                                      &other->triangle)
                               : factor_close_by(own, sub, other);
         side.unoccluded[sub] = 0.25 * own->area * factor;
         side.area[sub] = side.unoccluded[sub] * (all[sub] > 0.0 ? seen[sub] / all[sub] : share);
@@ -152,7 +159,8 @@ static double sum_of(const double values[SUBAREAS])
     return (values[0] + values[1]) + (values[2] + values[3]);
 }
 
-/* The parts that the four sub-areas have in the whole: a quarter each if there is nothing. */
+/* The parts that the four sub-areas have in the whole: a quarter each if there is
+ * nothing. */
 static void set_parts(const struct side *side, double parts[SUBAREAS])
 {
     double sum = sum_of(side->area);
@@ -166,8 +174,8 @@ double exchange_guess(const struct facet *p, const struct facet *q)
                          triangle_centroid(&q->triangle), q->plane.normal, q->area);
 }
 
-/* Over the sum of the radii. Nearer, one disk might say that a patch receives more than all
- * there is. */
+/* Over the sum of the radii. Nearer, one disk might say that a patch receives more than
+ * all there is. */
 static const double FAR = 1.5;
 
 /* True if patches are far enough apart for their size for one disk to be good enough for
@@ -225,7 +233,8 @@ struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
 {
     struct exchange exchange = look == LOOK_ONE && is_apart(p, q)
                                    ? exchange_by_one(p, q, octree, sight, counts)
-                                   : exchange_by_all(p, q, kind, look, octree, sight, counts);
+                                   : exchange_by_all(p, q, kind, look, octree, sight,
+                                                     counts);
     double limit = fmin(p->area, q->area);
     if (exchange.unoccluded > limit) {
         exchange.area = fmin(limit, exchange.area * (limit / exchange.unoccluded));
@@ -240,10 +249,12 @@ bool facets_are_walled_off(const struct facet *p, const struct facet *q,
     return octree_has_wall(octree, p->triangle.corner, 3, q->triangle.corner, 3, counts);
 }
 
-bool facets_are_open(const struct facet *p, const struct facet *q, const struct octree *octree,
+bool facets_are_open(const struct facet *p, const struct facet *q,
+                     const struct octree *octree,
                      struct octree_counts *counts)
 {
     const int32_t own[2] = {p->input, q->input};
-    return octree_shaft_is_empty(octree, &p->triangle, &p->plane, &q->triangle, &q->plane, own,
+    return octree_shaft_is_empty(octree, &p->triangle, &p->plane, &q->triangle, &q->plane,
+                                 own,
                                  counts);
 }

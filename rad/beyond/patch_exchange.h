@@ -1,8 +1,9 @@
-/* Form factors of pairs of patches, phr's: from points to the whole other patch, or by disks, with
- * the parts that the children of either side have in it; and what is proved of visibility.
+/* Form factors of pairs of patches, phr's: from points to the whole other patch, or by
+ * disks, with the parts that the children of either side have in it; and what is proved
+ * of visibility.
  *
- * As in rad/formfactor.h it is the exchange area G = A_p F_pq = A_q F_qp. 0 <= G <= min(A_p, A_q),
- * always. */
+ * As in rad/formfactor.h it is the exchange area G = A_p F_pq = A_q F_qp. 0 <= G <=
+ * min(A_p, A_q), always. */
 #ifndef RAD_BEYOND_PATCH_EXCHANGE_H
 #define RAD_BEYOND_PATCH_EXCHANGE_H
 
@@ -31,32 +32,35 @@ struct sight {
  * facing exchanges no light at all. */
 bool facets_face(const struct facet *p, const struct facet *q);
 
-/* How closely a pair is looked at. ONE: if the patches are far apart for their size, one disk
- * and a segment from centroid to centroid decide for all.
- * FOUR_FIRST: four segments, one from each sub-area to another, decide if they agree, else all 16
- * do. ALL: 16. */
+/* How closely a pair is looked at. ONE: if the patches are far apart for their size, one
+ * disk and a segment from centroid to centroid decide for all. FOUR_FIRST: four
+ * segments, one from each sub-area to another, decide if they agree, else all 16 do.
+ * ALL: 16. */
 enum look { LOOK_ONE, LOOK_FOUR_FIRST, LOOK_ALL };
 
-/* The exchange of a pair: visibility from segments between sub-areas that face each other, unless
- * it is known; form factors by the disk or from points to the whole other patch: one for each
- * sub-area, or three where the patches are not apart.
- * Pre: facets_face(p, q). */
+/* The exchange of a pair: visibility from segments between sub-areas that face each
+ * other, unless it is known; form factors by the disk or from points to the whole other
+ * patch: one for each sub-area, or three where the patches are not apart. Pre:
+ * facets_face(p, q). */
 struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
                                   enum form_factor kind, enum look look,
                                   const struct octree *octree, struct sight *sight,
                                   struct octree_counts *counts);
 
-/* What the pair would exchange without blockers, by one disk from centroid to centroid: quick and
- * rough, for deciding how closely to look. 0 if the centroids do not face each other. */
+/* What the pair would exchange without blockers, by one disk from centroid to centroid:
+ * quick and rough, for deciding how closely to look. 0 if the centroids do not face each
+ * other. */
 double exchange_guess(const struct facet *p, const struct facet *q);
 
-/* True if it is proved that nothing of one facet sees anything of the other: one wall stops all
- * nine segments between their corners. */
+/* True if it is proved that nothing of one facet sees anything of the other: one wall
+ * stops all nine segments between their corners. */
 bool facets_are_walled_off(const struct facet *p, const struct facet *q,
                            const struct octree *octree, struct octree_counts *counts);
 
-/* True if it is proved that all of one facet sees all of the other, as far as they face. */
-bool facets_are_open(const struct facet *p, const struct facet *q, const struct octree *octree,
+/* True if it is proved that all of one facet sees all of the other, as far as they face.
+ */
+bool facets_are_open(const struct facet *p, const struct facet *q,
+                     const struct octree *octree,
                      struct octree_counts *counts);
 
 #endif

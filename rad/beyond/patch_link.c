@@ -1,13 +1,15 @@
 /* Links of two patches, phr's.
  *
- * A child inherits what is known of its parent's visibility: that it is open, if that is proved,
- * and the last blocker, which is tested first. (A quarter of its segments, those that begin or end
- * at its centroid, were already fired for its parent; their answers would take two bytes a link,
- * and a bundle of 12 goes down the octree as one of 16 does.)
+ * A child inherits what is known of its parent's visibility: that it is open, if that is
+ * proved, and the last blocker, which is tested first. (A quarter of its segments, those
+ * that begin or end at its centroid, were already fired for its parent; their answers
+ * would take two bytes a link, and a bundle of 12 goes down the octree as one of 16
+ * does.)
  *
- * Light that a link brings to a patch with children is dealt to them by the link's parts, and what
- * they send is weighted by them: that costs no ray, since the parts come from the very segments
- * that gave G. Where the parts are even it is the same as light to the patch itself. */
+ * Light that a link brings to a patch with children is dealt to them by the link's
+ * parts, and what they send is weighted by them: that costs no ray, since the parts come
+ * from the very segments that gave G. Where the parts are even it is the same as light
+ * to the patch itself. */
 #include "rad/beyond/patch_link.h"
 
 #include <math.h>
@@ -39,8 +41,8 @@ void link_set_parts(uint8_t parts[3], const double exact[4])
     }
 }
 
-/* Powers at stake, relative to the threshold, up to which one segment, and four, tell enough of
- * a pair. */
+/* Powers at stake, relative to the threshold, up to which one segment, and four, tell
+ * enough of a pair. */
 static const double STAKE_ONE = 0.1, STAKE_FOUR = 1.0;
 
 /* The power that a pair makes of what it exchanges, W per square scene unit of G, both
@@ -103,7 +105,8 @@ static bool make(struct model *model, int32_t p, const struct facet *facet_p, in
     return true;
 }
 
-bool patch_link_make(struct model *model, int32_t p, const struct facet *facet_p, int32_t q,
+bool patch_link_make(struct model *model, int32_t p, const struct facet *facet_p,
+                     int32_t q,
                      const struct facet *facet_q, const struct link *parent,
                      struct link *link)
 {

@@ -1,13 +1,12 @@
-/* Links of two patches that tell children apart, look as closely as the criterion asks for, and
- * know what is proved of their visibility.
+/* Links of two patches that tell children apart, look as closely as the criterion asks
+ * for, and know what is proved of their visibility.
  *
  * `parts` say which parts of G go to (and come from) the children 0, 1 and 2 of p and
- * those of q, in 256ths; child 3 has the rest. So a link tells the four children of a patch apart
- * without being split itself.
+ * those of q, in 256ths; child 3 has the rest. So a link tells the four children of a
+ * patch apart without being split itself.
  *
  *     area      p's children        q's children
- *     G  x  (k0 k1 k2 k3)/256  x  (k0 k1 k2 k3)/256      both sum to 1
- */
+ *     G  x  (k0 k1 k2 k3)/256  x  (k0 k1 k2 k3)/256      both sum to 1 */
 #ifndef RAD_BEYOND_PATCH_LINK_H
 #define RAD_BEYOND_PATCH_LINK_H
 
@@ -33,21 +32,24 @@ static inline bool parts_are_even(const uint8_t parts[3])
     return parts[0] == 64 && parts[1] == 64 && parts[2] == 64;
 }
 
-/* True if light to and from a patch is that of its children, by the parts, and not of the patch
- * itself. */
-static inline bool link_is_divided(const struct forest *forest, int32_t patch, const uint8_t parts[3])
+/* True if light to and from a patch is that of its children, by the parts, and not of
+ * the patch itself. */
+static inline bool link_is_divided(const struct forest *forest, int32_t patch,
+                                   const uint8_t parts[3])
 {
     return !patch_is_leaf(&forest->patches[patch]) && !parts_are_even(parts);
 }
 
-/* Parts in 256ths, rounded from the first to the last so that none is off by more than one. */
+/* Parts in 256ths, rounded from the first to the last so that none is off by more than
+ * one. */
 void link_set_parts(uint8_t parts[3], const double exact[4]);
 
 /* A share of what arrives, 0..1, as the field `seen` has it. */
 uint8_t link_seen(double share);
 
-/* What a link takes from a patch: its B, or that of its children weighted by the parts, which
- * is summed in `*sum`. (A transfer with copies of colours took half as long again.) */
+/* What a link takes from a patch: its B, or that of its children weighted by the parts,
+ * which is summed in `*sum`. (A transfer with copies of colours took half as long
+ * again.) */
 const struct rgb *link_take(const struct forest *forest, int32_t patch,
                             const uint8_t parts[3], struct rgb *sum);
 
@@ -55,12 +57,14 @@ const struct rgb *link_take(const struct forest *forest, int32_t patch,
 void link_give(struct forest *forest, int32_t patch, const uint8_t parts[3], double area,
                const struct rgb *radiosity, struct flux_unit unit);
 
-/* How closely a pair has to be looked at of which `guess` would be exchanged without blockers. */
+/* How closely a pair has to be looked at of which `guess` would be exchanged without
+ * blockers. */
 enum look patch_link_look(const struct model *model, int32_t p, int32_t q, double guess);
 
-/* Entries of struct method: make_link, with form factors from points or by disks, and split_link,
- * which ends links of two patches that are proved to be walled off. */
-bool patch_link_make(struct model *model, int32_t p, const struct facet *facet_p, int32_t q,
+/* Entries of struct method: make_link, with form factors from points or by disks, and
+ * split_link, which ends links of two patches that are proved to be walled off. */
+bool patch_link_make(struct model *model, int32_t p, const struct facet *facet_p,
+                     int32_t q,
                      const struct facet *facet_q, const struct link *parent,
                      struct link *link);
 bool patch_link_make_by_disks(struct model *model, int32_t p, const struct facet *facet_p,

@@ -19,7 +19,8 @@ struct pathtracer {
     const struct scene *scene;    /* borrowed, prepared, something in it emits */
     const struct octree *octree;  /* borrowed, that of the scene */
     double *power;                /* [roots] of roots 0 .. r, W in square scene units */
-    bool *hidden;                 /* [roots] lamps that no ray meets: below another face */
+    bool *hidden;                 /* [roots] lamps that no ray meets: below another
+                                     face */
     struct octree_counts *counts; /* rays so far; owned */
 };
 

@@ -1,5 +1,5 @@
-/* Ranges of radiosity. A child is always created after its parent, so one loop over the local
- * numbers downwards meets children before parents. */
+/* Ranges of radiosity. A child is always created after its parent, so one loop over the
+ * local numbers downwards meets children before parents. */
 #include "rad/beyond/range.h"
 
 #include <math.h>

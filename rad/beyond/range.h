@@ -1,4 +1,5 @@
-/* How far the radiosities of the leaves below a patch lie apart, summed over bands, W/m^2. */
+/* How far the radiosities of the leaves below a patch lie apart, summed over bands,
+ * W/m^2. */
 #ifndef RAD_BEYOND_RANGE_H
 #define RAD_BEYOND_RANGE_H
 

@@ -1,10 +1,11 @@
 /* Checking a snapshot and its links.
  *
- * What comes from a file may say anything. Every number is held against what a run could have
- * written, so that nothing later on meets a patch that does not exist, a NaN, or a flux that
- * overflows: the transfer of light relies on what links_transfer() states, that the links of a
- * patch lead to patches that do not overlap, so their exchange areas add up to no more than the
- * area of the scene. That sum is checked as it stands, for each patch. */
+ * What comes from a file may say anything. Every number is held against what a run could
+ * have written, so that nothing later on meets a patch that does not exist, a NaN, or a
+ * flux that overflows: the transfer of light relies on what links_transfer() states,
+ * that the links of a patch lead to patches that do not overlap, so their exchange areas
+ * add up to no more than the area of the scene. That sum is checked as it stands, for
+ * each patch. */
 #include "rad/beyond/snapshot.h"
 
 #include <math.h>
@@ -34,7 +35,8 @@ void snapshot_free(struct snapshot *snapshot)
 struct walk {
     int32_t root; /* of the patch that comes next */
     int level;    /* its level */
-    int child[ID_MAX_LEVEL + 1]; /* which child of its parent the patch of each level is */
+    int child[ID_MAX_LEVEL + 1]; /* which child of its parent the patch of each level
+                                    is */
 };
 
 /* Goes past a patch. Pre: it is not split if its level is ID_MAX_LEVEL. */
@@ -118,7 +120,8 @@ bool snapshot_check(const struct snapshot *snapshot, struct error *error)
 
 /* --- links --- */
 
-struct link_check link_check_start(const struct snapshot *snapshot, const struct scene *scene,
+struct link_check link_check_start(const struct snapshot *snapshot,
+                                   const struct scene *scene,
                                    const struct cluster_tree *tree)
 {
     struct link_check check = {.scene = scene, .patch_count = snapshot->patch_count,
@@ -160,8 +163,8 @@ static bool is_behind(const struct link_check *check, const struct link *link)
            (link->p == check->last.p && link->q > check->last.q);
 }
 
-/* Both are nodes there are, and neither is part of the other, as far as that is easily told; a cluster may be
- * linked with itself. */
+/* Both are nodes there are, and neither is part of the other, as far as that is easily
+ * told; a cluster may be linked with itself. */
 static bool are_nodes(const struct link_check *check, int32_t p, int32_t q)
 {
     int64_t first = -check->cluster_count, end = check->patch_count;
@@ -170,8 +173,8 @@ static bool are_nodes(const struct link_check *check, int32_t p, int32_t q)
     return node_is_cluster(p) || node_is_cluster(q) || check->root[p] != check->root[q];
 }
 
-/* In the place of the blocker: a triangle, or the judgement of a link of a cluster, whose upper half
- * is a number, finite and not negative. */
+/* In the place of the blocker: a triangle, or the judgement of a link of a cluster,
+ * whose upper half is a number, finite and not negative. */
 static bool blocker_is_sane(const struct link_check *check, const struct link *link)
 {
     const int32_t infinite = 0x7f800000;

@@ -1,6 +1,6 @@
-/* Where a run stands between two passes, but for its links: all that the passes to come depend on.
- * Patches have no local numbers here; they are counted roots in order, each tree depth first
- * (forest_order()), so it is the same on any number of ranks.
+/* Where a run stands between two passes, but for its links: all that the passes to come
+ * depend on. Patches have no local numbers here; they are counted roots in order, each
+ * tree depth first (forest_order()), so it is the same on any number of ranks.
  *
  * That all pairs of roots are linked, before the first pass, is such a state, too. */
 #ifndef RAD_BEYOND_SNAPSHOT_H
@@ -19,9 +19,11 @@ enum snapshot_number {
     SNAPSHOT_PASSES,         /* refinements */
     SNAPSHOT_ITERATIONS,     /* transfers of light */
     SNAPSHOT_SETTLED,        /* 1: the last pass split nothing */
-    SNAPSHOT_LIMITED,        /* bytes at which refinement ended for want of memory, 0: it did not */
+    SNAPSHOT_LIMITED,        /* bytes at which refinement ended for want of memory, 0:
+                                it did not */
     SNAPSHOT_CHANGE,         /* change in the last iteration, flux units (Jacobi) */
-    SNAPSHOT_RAYS, SNAPSHOT_NODE_TESTS, SNAPSHOT_TRIANGLE_TESTS, /* work of all ranks so far */
+    /* work of all ranks so far */
+    SNAPSHOT_RAYS, SNAPSHOT_NODE_TESTS, SNAPSHOT_TRIANGLE_TESTS,
     SNAPSHOT_WALLED_OFF, SNAPSHOT_RAYS_SPARED,
     SNAPSHOT_ROUNDS,         /* of --accuracy, */
     SNAPSHOT_GATHER,         /* and rays from a leaf, as it has raised them */
@@ -29,7 +31,8 @@ enum snapshot_number {
 };
 
 enum snapshot_value {
-    SNAPSHOT_REMAINING,      /* bound on the remaining error, relative to all light; HUGE_VAL: none */
+    SNAPSHOT_REMAINING,      /* bound on the remaining error, relative to all light;
+                                HUGE_VAL: none */
     SNAPSHOT_ABSORBED, SNAPSHOT_ESCAPED, /* W, areas in square scene units */
     SNAPSHOT_EPSILON,        /* as --accuracy has lowered it */
     SNAPSHOT_COARSE, SNAPSHOT_COARSE_EPSILON, /* of a mesh before, with --accuracy */
@@ -62,9 +65,9 @@ static inline int64_t snapshot_leaf_count(const struct snapshot *snapshot)
     return snapshot->patch_count - (snapshot->patch_count - snapshot->root_count) / 4;
 }
 
-/* True if the splits are those of `root_count` whole trees, no deeper than IDs reach, and every number
- * and value is one that a run could have. The counts fit each other already.
- * Errors: what is wrong, without a file's name, EXIT_USAGE. */
+/* True if the splits are those of `root_count` whole trees, no deeper than IDs reach,
+ * and every number and value is one that a run could have. The counts fit each other
+ * already. Errors: what is wrong, without a file's name, EXIT_USAGE. */
 bool snapshot_check(const struct snapshot *snapshot, struct error *error);
 
 /* Links of a snapshot, looked at one after the other; p and q are its patch numbers, or
@@ -73,17 +76,18 @@ struct link_check {
     const struct scene *scene; /* borrowed, */
     int64_t patch_count, cluster_count;
     int32_t *root;             /* [patch_count] */
-    double *area;              /* [cluster_count + patch_count] square scene units; that of a node at
-                                  its number + cluster_count */
+    double *area;              /* [cluster_count + patch_count] square scene units;
+                                  that of a node at its number + cluster_count */
     double *load;              /* the same: sum of the exchange areas so far */
     double most;               /* that no load may exceed */
     struct link last;
     bool begun;
 };
 
-/* Pre: snapshot_check() has said yes, and root_count is that of the scene. Borrows the scene.
- * `tree`: NULL if there are no clusters. */
-struct link_check link_check_start(const struct snapshot *snapshot, const struct scene *scene,
+/* Pre: snapshot_check() has said yes, and root_count is that of the scene. Borrows the
+ * scene. `tree`: NULL if there are no clusters. */
+struct link_check link_check_start(const struct snapshot *snapshot,
+                                   const struct scene *scene,
                                    const struct cluster_tree *tree);
 void link_check_free(struct link_check *check);
 

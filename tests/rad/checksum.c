@@ -1,5 +1,5 @@
-/* Tests of forest_checksum() of rad/patch.h: small trees by their literal bytes; it is blind to the
- * order of creation and to nothing else. */
+/* Tests of forest_checksum() of rad/patch.h: small trees by their literal bytes; it is
+ * blind to the order of creation and to nothing else. */
 #include <string.h>
 
 #include "geom/hash.h"
@@ -15,7 +15,8 @@ static struct scene *make_scene(void)
     struct random random = random_seed(1);
     for (int i = 0; i < ROOTS; i++)
         soup_add(&soup, random_triangle(&random, 0.5, 0.3));
-    soup.items[3].corner[0] = soup.items[3].corner[1]; /* dropped; it has a tree all the same */
+    soup.items[3].corner[0] = soup.items[3].corner[1]; /* dropped; it has a tree all
+                                                          the same */
     struct scene *scene = scene_of_soup(&soup, 1);
     scene_prepare_or_exit(scene);
     soup_free(&soup);
@@ -32,7 +33,8 @@ static void random_ids(uint64_t seed, struct patch_id ids[PATHS])
     }
 }
 
-/* Any bits but those of NaN, which a machine may change in a copy; every other one is plain. */
+/* Any bits but those of NaN, which a machine may change in a copy; every other one is
+ * plain. */
 static double random_double(struct random *random)
 {
     uint64_t bits = random_bits(random) << 8 ^ random_bits(random);
@@ -67,8 +69,9 @@ static struct forest *make_forest(const struct scene *scene, const struct patch_
 
 /* --- the bytes --- */
 
-/* Root 1 split, its child 2 split: depth first 1 00 1 0000 0, so the bytes 09 and 00; then 7 leaves.
- * Of the other roots, which are leaves without light, a byte and three numbers each. */
+/* Root 1 split, its child 2 split: depth first 1 00 1 0000 0, so the bytes 09 and 00;
+ * then 7 leaves. Of the other roots, which are leaves without light, a byte and three
+ * numbers each. */
 static void test_format(const struct scene *scene)
 {
     uint8_t bytes[ROOTS * 25 + 1 + 6 * 24] = {0};
@@ -78,7 +81,8 @@ static void test_format(const struct scene *scene)
     int32_t leaf = forest_reach(forest, id_child(id_child(id_of_root(1), 2), 1));
     forest->patches[leaf].radiosity = (struct rgb){{1.0, -2.0, 0x1p-1074}};
     bytes[25] = 0x09;
-    memcpy(bytes + 25 + 2 + 3 * 24, leaf_bytes, sizeof leaf_bytes); /* after leaves 0, 1, 20 */
+    /* after leaves 0, 1, 20 */
+    memcpy(bytes + 25 + 2 + 3 * 24, leaf_bytes, sizeof leaf_bytes);
     tap_ok(forest_checksum(forest) == hash_bytes(HASH_START, bytes, sizeof bytes),
            "structure bits, the first in the lowest place, then the leaves' numbers, least "
            "significant byte first");
@@ -141,7 +145,8 @@ static void test_bits(const struct scene *scene)
     while (!patch_is_leaf(&forest->patches[p]))
         p++;
     forest_split(forest, p);
-    tap_ok(forest_checksum(forest) != plain, "a split changes it, with the same radiosities too");
+    tap_ok(forest_checksum(forest) != plain,
+           "a split changes it, with the same radiosities too");
     forest_destroy(forest);
 }
 

@@ -44,7 +44,8 @@ static void test_codes(void)
     tap_ok(kept, "all 256 costs come back");
     tap_ok(ordered, "in order, no step larger than an eighth");
     tap_ok(powers, "five bits of exponent, three of mantissa");
-    tap_ok(expand8(0) == 1.0 && expand8(255) == 1.875 * 2147483648.0, "from 1 to 1.875 x 2^31");
+    tap_ok(expand8(0) == 1.0 && expand8(255) == 1.875 * 2147483648.0,
+           "from 1 to 1.875 x 2^31");
 }
 
 static void test_rounding(void)

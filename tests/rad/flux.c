@@ -1,5 +1,6 @@
-/* Tests of rad/flux.h: the unit is a power of two that fits its purpose, watts go to integers and
- * back, sums saturate the same way in any order, and the limit shows divergence. */
+/* Tests of rad/flux.h: the unit is a power of two that fits its purpose, watts go to
+ * integers and back, sums saturate the same way in any order, and the limit shows
+ * divergence. */
 #include "rad/flux.h"
 
 #include <math.h>
@@ -41,7 +42,8 @@ static void test_round_trips(void)
     struct random random = random_seed(2);
     bool exact = true, near = true;
     for (int i = 0; i < TRIES; i++) {
-        struct flux_unit unit = flux_unit_for(ldexp(1.0, random_below(&random, 200) - 100));
+        struct flux_unit unit = flux_unit_for(ldexp(1.0,
+                                                    random_below(&random, 200) - 100));
         int64_t flux = (int64_t)(random_bits(&random) >> random_below(&random, 53));
         flux &= (INT64_C(1) << 53) - 1; /* what a double holds */
         exact = exact && flux_from_watts(unit, flux_to_watts(unit, flux)) == flux;
@@ -111,12 +113,13 @@ static void test_sums(void)
            "the limit stays");
 }
 
-/* The room of a scene's unit: all light of a closed scene of the largest reflectance fits 16
- * times over, and that 64 times over has diverged. */
+/* The room of a scene's unit: all light of a closed scene of the largest reflectance
+ * fits 16 times over, and that 64 times over has diverged. */
 static void test_choice(void)
 {
     struct soup soup = {0};
-    soup_add_quad(&soup, (struct vec3){0, 0, 0}, (struct vec3){1, 0, 0}, (struct vec3){0, 1, 0}, 1);
+    soup_add_quad(&soup, (struct vec3){0, 0, 0}, (struct vec3){1, 0, 0},
+                  (struct vec3){0, 1, 0}, 1);
     static const double rho[4] = {0.0, 0.5, 0.97, 0.999};
     bool fits = true, power_of_two = true;
     for (int k = 0; k < 4; k++) {
@@ -131,7 +134,8 @@ static void test_choice(void)
                flux_from_watts(unit, 64.0 * light) == FLUX_LIMIT;
         power_of_two = power_of_two && is_power_of_two(unit.per_watt);
         scene->two_sided = scene->two_sided_lamps = true;
-        fits = fits && flux_from_watts(flux_unit_choose(scene), 32.0 * light) < FLUX_LIMIT;
+        fits = fits && flux_from_watts(flux_unit_choose(scene),
+                                       32.0 * light) < FLUX_LIMIT;
         scene_destroy(scene);
     }
     tap_ok(fits, "the unit of a scene has room for its light, 16 times over");

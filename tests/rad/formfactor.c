@@ -1,5 +1,6 @@
-/* Tests of rad/formfactor.h: Eq. 2 by hand, and what 16 rays make of it. (With all else about the
- * disks in tests/rad/beyond/patch_exchange.c, which goes another way to the same numbers.) */
+/* Tests of rad/formfactor.h: Eq. 2 by hand, and what 16 rays make of it. (With all else
+ * about the disks in tests/rad/beyond/patch_exchange.c, which goes another way to the
+ * same numbers.) */
 #include "rad/formfactor.h"
 
 #include "rad/beyond/patch_exchange.h"
@@ -11,15 +12,19 @@ static void test_disk(void)
 {
     struct vec3 up = {0, 0, 1}, down = {0, 0, -1}, x = {0, 0, 0};
     double g = disk_exchange(x, up, 0.01, point(0, 0, 1), down, 0.04);
-    tap_ok(fabs(g / (0.01 * 0.04 / (PI + 0.04)) - 1.0) < 1e-15, "A A' / (pi r^2 + the larger A)");
-    g = disk_exchange(x, up, 0.01, point(0, 1, 1), down, 0.01); /* both cosines 1 / sqrt(2), r^2 = 2 */
-    tap_ok(fabs(g / (0.5 * 0.0001 / (2.0 * PI + 0.01)) - 1.0) < 1e-15, "with both cosines");
+    tap_ok(fabs(g / (0.01 * 0.04 / (PI + 0.04)) - 1.0) < 1e-15,
+           "A A' / (pi r^2 + the larger A)");
+    /* both cosines 1 / sqrt(2), r^2 = 2 */
+    g = disk_exchange(x, up, 0.01, point(0, 1, 1), down, 0.01);
+    tap_ok(fabs(g / (0.5 * 0.0001 / (2.0 * PI + 0.01)) - 1.0) < 1e-15,
+           "with both cosines");
     tap_ok(disk_exchange(x, up, 1, point(0, 0, -1), down, 1) == 0.0 &&
                disk_exchange(x, up, 1, point(0, 0, 1), up, 1) == 0.0,
            "nothing behind either plane");
 }
 
-/* Random pairs among random blockers: the same by the other kernel, as phr looks at all. */
+/* Random pairs among random blockers: the same by the other kernel, as phr looks at all.
+ */
 static void test_pairs(void)
 {
     struct random random = random_seed(3);

@@ -1,5 +1,6 @@
-/* Tests of rad/id.h: the layout of the paper's Fig. 1 by literal values, going down and up again
- * on random paths, the order as compared with its definition, and which numbers are IDs. */
+/* Tests of rad/id.h: the layout of the paper's Fig. 1 by literal values, going down and
+ * up again on random paths, the order as compared with its definition, and which numbers
+ * are IDs. */
 #include "rad/id.h"
 
 #include <stdlib.h>
@@ -148,7 +149,8 @@ static void test_order(void)
                       id_compare(id_of_root(a.root), ida) < 0;
         equal += order == 0;
     }
-    tap_ok(right && equal > 100, "the order is by root, then by level, then from left to right");
+    tap_ok(right && equal > 100,
+           "the order is by root, then by level, then from left to right");
     tap_ok(antisymmetric, "it is antisymmetric, and only equal IDs compare equal");
     tap_ok(parents, "roots come first, and parents before children");
 }

@@ -1,5 +1,5 @@
-/* Tests of rad/link.h: which links are made and with what cost, what the children of a link are,
- * and that light goes both ways to the last integer. */
+/* Tests of rad/link.h: which links are made and with what cost, what the children of a
+ * link are, and that light goes both ways to the last integer. */
 #include "rad/link.h"
 
 #include <string.h>
@@ -15,8 +15,10 @@ static void test_making(void)
 {
     tap_ok(sizeof(struct link) <= 24, "a link takes %d bytes", (int)sizeof(struct link));
     struct soup more = bystander();
-    struct world world = make_pair(1.0, material_grey(0.5, 0), material_grey(0, 1), &more);
-    struct facet p = facet_make(world.model.forest, 0), q = facet_make(world.model.forest, 1);
+    struct world world = make_pair(1.0, material_grey(0.5, 0), material_grey(0, 1),
+                                   &more);
+    struct facet p = facet_make(world.model.forest, 0), q = facet_make(world.model.forest,
+                                                                       1);
     struct octree_counts counts = {0};
     int32_t blocker = -1;
     double seen, area = exchange_area(&p, &q, world.octree, &blocker, &seen, &counts);
@@ -45,12 +47,14 @@ static void test_dropping(void)
     bool dropped = !make(&world, 0, 2, &link) && !make(&world, 0, 3, &link) &&
                    !make(&world, 0, 4, &link) && !make(&world, 3, 4, &link) &&
                    !make(&world, 0, 0, &link);
-    tap_ok(dropped && world.model.counts.rays == 0, "patches that do not face are not linked");
+    tap_ok(dropped && world.model.counts.rays == 0,
+           "patches that do not face are not linked");
     world_free(&world);
     more.count = 0;
     soup_add_quad(&more, point(-1, -1, 0.5), point(3, 0, 0), point(0, 3, 0), 1);
     struct world covered = make_pair(1.0, white, white, &more);
-    tap_ok(!make(&covered, 0, 1, &link) && covered.model.counts.rays == 16 && link.blocker >= 2 &&
+    tap_ok(!make(&covered, 0, 1,
+                 &link) && covered.model.counts.rays == 16 && link.blocker >= 2 &&
                link.blocker <= 3,
            "nor are two between which no ray passes; what blocked them is known");
     world_free(&covered);
@@ -62,9 +66,11 @@ static void test_dropping(void)
 static void test_cost(void)
 {
     struct soup more = bystander();
-    struct world world = make_pair(1.0, material_grey(0.5, 0), material_grey(0, 1), &more);
+    struct world world = make_pair(1.0, material_grey(0.5, 0), material_grey(0, 1),
+                                   &more);
     world.model.criterion.alpha = 0.25;
-    struct facet p = facet_make(world.model.forest, 0), q = facet_make(world.model.forest, 1);
+    struct facet p = facet_make(world.model.forest, 0), q = facet_make(world.model.forest,
+                                                                       1);
     struct link link;
     struct link parent = {.blocker = -1, .cost = compact8(1024.0)};
     bool made = link_make(&world.model, 0, &p, 1, &q, &parent, &link);
@@ -111,9 +117,11 @@ static void test_split(void)
     for (int k = 0; k < count; k++)
         right = right && memcmp(&again[k].parts_p, &children[k].parts_p, 3) == 0 &&
                 again[k].area == children[k].area && again[k].q == children[k].q;
-    tap_ok(right, "a patch that is split already stays as it is, and the links are the same");
+    tap_ok(right,
+           "a patch that is split already stays as it is, and the links are the same");
     /* 16 rays against 64 over the same pair: their difference is the error of either. */
-    tap_ok(fabs(sum / link_area(&link) - 1.0) < 0.03, "together they exchange what the link did");
+    tap_ok(fabs(sum / link_area(&link) - 1.0) < 0.03,
+           "together they exchange what the link did");
     count = link_split(&world.model, &link, 0, children);
     right = count == 4 && forest->count == 10;
     for (int k = 0; k < count; k++)
@@ -134,8 +142,10 @@ static void test_dropped_children(void)
     struct link link, children[4];
     bool made = make(&world, 0, 1, &link);
     int count = made ? link_split(&world.model, &link, 1, children) : 0;
-    int32_t upper = world.model.forest->patches[1].children + 1; /* child 1, at corner b */
-    tap_ok(count == 1 && children[0].q == upper, "children below the horizon are dropped");
+    /* child 1, at corner b */
+    int32_t upper = world.model.forest->patches[1].children + 1;
+    tap_ok(count == 1 && children[0].q == upper,
+           "children below the horizon are dropped");
     world_free(&world);
     soup_free(&soup);
 }
@@ -173,7 +183,8 @@ static uint64_t flux_hash(const struct forest *forest)
 }
 
 static const struct link PLAIN = {.p = 3, .q = 7, .area = 0.25f, .parts_p = {64, 64, 64},
-                                  .parts_q = {64, 64, 64}, .seen = LINK_ALL_SEEN, .cost = 1};
+                                  .parts_q = {64, 64,
+                                              64}, .seen = LINK_ALL_SEEN, .cost = 1};
 
 static void test_one_transfer(void)
 {
@@ -194,7 +205,8 @@ static void test_one_transfer(void)
     world_free(&world);
 }
 
-/* Each link takes from its two patches and gives to them, to the last integer, in any order. */
+/* Each link takes from its two patches and gives to them, to the last integer, in any
+ * order. */
 static void test_transfer(void)
 {
     struct world world = make_many();
@@ -207,7 +219,8 @@ static void test_transfer(void)
         int32_t p = random_below(&random, (int32_t)forest->count), q = p;
         while (q == p)
             q = random_below(&random, (int32_t)forest->count);
-        struct link link = {.p = p, .q = q, .area = float_below(1e-6 * random_unit(&random)),
+        struct link link = {.p = p, .q = q,
+                            .area = float_below(1e-6 * random_unit(&random)),
                             .seen = LINK_ALL_SEEN};
         link_list_append(&list, link);
         sent += link_area(&link) * (rgb_sum(forest->patches[p].radiosity) +

@@ -7,7 +7,8 @@
 /* G = 1/8, even parts, and nothing can stand in between. */
 static struct link link_of(int32_t p, int32_t q)
 {
-    return (struct link){.p = p, .q = q, .area = 0.125f, .blocker = -1, .parts_p = {64, 64, 64},
+    return (struct link){.p = p, .q = q, .area = 0.125f, .blocker = -1,
+                         .parts_p = {64, 64, 64},
                          .parts_q = {64, 64, 64}, .seen = LINK_OPEN, .cost = 0};
 }
 
@@ -24,7 +25,8 @@ static void test_energy(void)
                oracle_side_to_split(model, &swapped) == NODE_NONE,
            "a link at the threshold is fine");
     model->link_threshold = nextafter(0.875, 0.0);
-    tap_ok(oracle_side_to_split(model, &link) == 0, "above it, in the sum of the bands, it is not");
+    tap_ok(oracle_side_to_split(model, &link) == 0,
+           "above it, in the sum of the bands, it is not");
     tap_ok(oracle_side_to_split(model, &swapped) == 0, "also if it names the lamp first");
     model->link_threshold = 1.75;
     model->forest->patches[0].radiosity.band[1] = 7.0;
@@ -45,7 +47,8 @@ static void test_choice(void)
     struct model *model = &world.model;
     model->link_threshold = 0.0;
     struct link link = link_of(0, 1), swapped = link_of(1, 0);
-    tap_ok(oracle_side_to_split(model, &link) == 1 && oracle_side_to_split(model, &swapped) == 1,
+    tap_ok(oracle_side_to_split(model, &link) == 1 && oracle_side_to_split(model,
+                                                                           &swapped) == 1,
            "the larger patch is split");
     forest_split(model->forest, 1);
     int32_t child = model->forest->patches[1].children;
@@ -76,7 +79,8 @@ static void test_limits(void)
     model->link_threshold = 0.0;
     forest_split(model->forest, 1);
     struct link link = link_of(0, model->forest->patches[1].children);
-    tap_ok(oracle_side_to_split(model, &link) == link.q, "the larger patch is a child here");
+    tap_ok(oracle_side_to_split(model, &link) == link.q,
+           "the larger patch is a child here");
     model->criterion.max_level = 1;
     tap_ok(oracle_side_to_split(model, &link) == NODE_NONE,
            "at the deepest level nothing is split");

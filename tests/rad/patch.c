@@ -1,5 +1,6 @@
-/* Tests of rad/patch.h: the size of a patch, splitting, areas that add up exactly, the same tree
- * in any order of creation, the walk depth first, equal bits along shared edges. */
+/* Tests of rad/patch.h: the size of a patch, splitting, areas that add up exactly, the
+ * same tree in any order of creation, the walk depth first, equal bits along shared
+ * edges. */
 #include "rad/patch.h"
 
 #include <string.h>
@@ -42,7 +43,8 @@ static bool same_id(struct patch_id a, struct patch_id b)
 static void test_creation(struct scene *scene)
 {
     struct forest *forest = forest_create(scene);
-    tap_ok(sizeof(struct patch) <= 64, "a patch takes %d bytes", (int)sizeof(struct patch));
+    tap_ok(sizeof(struct patch) <= 64, "a patch takes %d bytes",
+           (int)sizeof(struct patch));
     bool right = forest->count == ROOTS && forest->root_count == ROOTS;
     for (int32_t r = 0; r < ROOTS; r++) {
         const struct patch *patch = &forest->patches[r];
@@ -69,9 +71,11 @@ static void test_split(struct scene *scene)
     bool right = first == ROOTS && forest->count == ROOTS + 4;
     for (int k = 0; k < 4; k++) {
         const struct patch *child = &forest->patches[first + k];
-        right = right && same_id(child->id, id_child(id_of_root(2), k)) && child->parent == 2 &&
+        right = right && same_id(child->id,
+                                 id_child(id_of_root(2), k)) && child->parent == 2 &&
                 patch_is_leaf(child) && child->flux[0] == 0 && child->flux[1] == 0 &&
-                memcmp(&child->radiosity, &forest->patches[2].radiosity, sizeof(struct rgb)) == 0;
+                memcmp(&child->radiosity, &forest->patches[2].radiosity,
+                       sizeof(struct rgb)) == 0;
     }
     tap_ok(right && forest->patches[2].flux[1] == 99,
            "children take over the radiosity; the flux stays with the parent");
@@ -86,8 +90,9 @@ static void test_split(struct scene *scene)
     forest_destroy(forest);
 }
 
-/* Areas are exact fractions of the root's. Those of the triangles are computed from corners that
- * are rounded at each of up to 15 levels: the relative error of a difference of corners is then
+/* Areas are exact fractions of the root's. Those of the triangles are computed from
+ * corners that are rounded at each of up to 15 levels: the relative error of a
+ * difference of corners is then
  * 1e-16 / 2^-15 = 4e-12, and slivers have more. */
 static void test_areas(struct scene *scene)
 {
@@ -143,7 +148,8 @@ static bool same_trees(const struct forest *a, const struct forest *b)
     return true;
 }
 
-/* Whether the patch that is reached has the ID. Reaching may move `patches`: it comes first. */
+/* Whether the patch that is reached has the ID. Reaching may move `patches`: it comes
+ * first. */
 static bool reaches(struct forest *forest, struct patch_id id)
 {
     int32_t patch = forest_reach(forest, id);
@@ -181,8 +187,8 @@ static void test_reach(struct scene *scene)
 
 /* --- the walk --- */
 
-/* Depth first order: at the first step in which two paths differ the smaller child comes first,
- * and a path comes before those that it begins. */
+/* Depth first order: at the first step in which two paths differ the smaller child comes
+ * first, and a path comes before those that it begins. */
 static bool comes_before(struct patch_id a, struct patch_id b)
 {
     int level_a = id_level(a), level_b = id_level(b);
@@ -220,7 +226,8 @@ static void test_walk(struct scene *scene)
             p = next;
         }
     }
-    tap_ok(ordered && seen == forest->count, "the walk visits each patch once, depth first");
+    tap_ok(ordered && seen == forest->count,
+           "the walk visits each patch once, depth first");
     tap_ok(skipped, "and skips what is below a patch on request");
     forest_destroy(forest);
 }
@@ -268,8 +275,8 @@ static void split_all(struct forest *forest)
         forest_split(forest, (int32_t)p);
 }
 
-/* The faces of a tetrahedron, and their twins: any two have an edge in common, with 2^L + 1
- * points on it after L splits. A twin has all points in common with its triangle. */
+/* The faces of a tetrahedron, and their twins: any two have an edge in common, with 2^L
+ * + 1 points on it after L splits. A twin has all points in common with its triangle. */
 static void test_neighbours(void)
 {
     enum { LEVEL = 4, FACES = 4, ON_EDGE = (1 << LEVEL) + 1 };

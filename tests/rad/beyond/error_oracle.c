@@ -1,5 +1,5 @@
-/* Tests of rad/beyond/error_oracle.h: which patch of a link is split by error; and which patches
- * get children without it. */
+/* Tests of rad/beyond/error_oracle.h: which patch of a link is split by error; and which
+ * patches get children without it. */
 #include "rad/beyond/error_oracle.h"
 
 #include "rad/beyond/patch_link.h"
@@ -12,26 +12,31 @@
 /* G = 1/8, even parts, and nothing can stand in between. */
 static struct link link_of(int32_t p, int32_t q)
 {
-    return (struct link){.p = p, .q = q, .area = 0.125f, .blocker = -1, .parts_p = {64, 64, 64},
+    return (struct link){.p = p, .q = q, .area = 0.125f, .blocker = -1,
+                         .parts_p = {64, 64, 64},
                          .parts_q = {64, 64, 64}, .seen = LINK_OPEN, .cost = 0};
 }
 
 /* --- by error --- */
 
-static int32_t at_threshold(struct world *world, const struct link *link, double threshold)
+static int32_t at_threshold(struct world *world, const struct link *link,
+                            double threshold)
 {
     world->model.link_threshold = threshold;
     return error_oracle_side_to_split(&world->model, link);
 }
 
-/* Whether the error of the link is this number, to the bit or to 1e-6, and split for is `side`. */
-static bool error_is(struct world *world, const struct link *link, double error, int32_t side)
+/* Whether the error of the link is this number, to the bit or to 1e-6, and split for is
+ * `side`. */
+static bool error_is(struct world *world, const struct link *link, double error,
+                     int32_t side)
 {
     return at_threshold(world, link, error * (1.0 + 1e-6)) == NODE_NONE &&
            at_threshold(world, link, error * (1.0 - 1e-6)) == side;
 }
 
-/* Floor 0 and ceiling 1, `size` times as large, both rho = 1/2 and B = 1 in each of three bands. */
+/* Floor 0 and ceiling 1, `size` times as large, both rho = 1/2 and B = 1 in each of
+ * three bands. */
 static struct world make_grey(double size)
 {
     struct material grey = material_grey(0.5, 1);
@@ -64,7 +69,8 @@ static void test_spread(void)
            "twice as much, twice the error");
     link = link_of(0, 1);
     link.parts_q[2] = 128;
-    tap_ok(error_is(&world, &link, 0.5 * 4.0 * 0.5 * 0.125 * 1.5, 1), "spread over q splits q");
+    tap_ok(error_is(&world, &link, 0.5 * 4.0 * 0.5 * 0.125 * 1.5, 1),
+           "spread over q splits q");
     link.parts_p[1] = 0; /* 64 0 64 128 */
     link.parts_q[2] = 96;
     tap_ok(error_is(&world, &link, 0.5 * 4.0 * (0.5 + 0.25) * 0.125 * 1.5, 0),
@@ -74,15 +80,16 @@ static void test_spread(void)
     world.scene->materials[1].reflectance = (struct rgb){{0.0, 0.0, 0.0}};
     link.seen = LINK_OPEN;
     link.parts_q[0] = 128;
-    tap_ok(at_threshold(&world, &link, 0.0) == NODE_NONE, "spread over a black receiver does not matter");
+    tap_ok(at_threshold(&world, &link, 0.0) == NODE_NONE,
+           "spread over a black receiver does not matter");
     world.scene->materials[1].reflectance = (struct rgb){{0.0, 0.25, 0.0}};
     tap_ok(error_is(&world, &link, 0.5 * 4.0 * 0.5 * 0.125 * 0.25, 1),
            "light counts as far as its colour is reflected");
     world_free(&world);
 }
 
-/* Child 2 of patch `patch` gets four children of its own with radiosities from 1 to 1 + range in
- * band 1; child 0 is brighter all over. */
+/* Child 2 of patch `patch` gets four children of its own with radiosities from 1 to 1 +
+ * range in band 1; child 0 is brighter all over. */
 static void make_range(struct forest *forest, int32_t patch, double range)
 {
     forest_split(forest, patch);
@@ -142,7 +149,8 @@ static void test_error_doubt(void)
     world_free(&world);
 }
 
-/* What may not be split leaves it to the other side, if that causes enough of the error. */
+/* What may not be split leaves it to the other side, if that causes enough of the error.
+ */
 static void test_error_limits(void)
 {
     struct world world = make_grey(2.0);
@@ -153,11 +161,13 @@ static void test_error_limits(void)
     model->patch_threshold = nextafter(0.25 * forest_area(model->forest, 0), HUGE_VAL);
     tap_ok(at_threshold(&world, &link, 0.185) == 1,
            "a patch that is too small leaves it to the other, which causes half a threshold");
-    tap_ok(at_threshold(&world, &link, 0.19) == NODE_NONE, "if it causes less nothing is split");
+    tap_ok(at_threshold(&world, &link, 0.19) == NODE_NONE,
+           "if it causes less nothing is split");
     model->patch_threshold = nextafter(0.25 * forest_area(model->forest, 1), HUGE_VAL);
     tap_ok(at_threshold(&world, &link, 0.1) == NODE_NONE, "nor if both are too small");
     model->patch_threshold = 0.25 * forest_area(model->forest, 0);
-    tap_ok(at_threshold(&world, &link, 0.1) == 0, "one that is just large enough is split");
+    tap_ok(at_threshold(&world, &link, 0.1) == 0,
+           "one that is just large enough is split");
     model->criterion.max_level = 0;
     tap_ok(at_threshold(&world, &link, 0.0) == NODE_NONE, "level 0 splits nothing");
     world_free(&world);
@@ -165,7 +175,8 @@ static void test_error_limits(void)
 
 /* --- dividing --- */
 
-static bool divides(struct world *world, const struct link *link, double threshold, int32_t patch)
+static bool divides(struct world *world, const struct link *link, double threshold,
+                    int32_t patch)
 {
     struct forest *forest = world->model.forest;
     int64_t before = forest->count;
@@ -184,14 +195,17 @@ static void test_dividing(void)
     struct world world = make_grey(2.0);
     struct model *model = &world.model;
     struct link link = link_of(0, 1);
-    const double spread = 4.0 * 0.25 * 0.125 * 1.5; /* all of it: half is left when divided */
+    const double spread = 4.0 * 0.25 * 0.125 * 1.5; /* all of it: half is left when
+                                                       divided */
     tap_ok(divides(&world, &link, 0.0, -1), "even parts divide nothing");
     link.parts_p[0] = 96;
-    tap_ok(divides(&world, &link, spread, -1) && divides(&world, &link, 0.999 * spread, 0),
+    tap_ok(divides(&world, &link, spread, -1) && divides(&world, &link, 0.999 * spread,
+                                                         0),
            "a spread above the threshold divides the receiver");
     link = link_of(0, 1);
     link.parts_q[2] = 96;
-    tap_ok(divides(&world, &link, spread, -1) && divides(&world, &link, 0.999 * spread, 1),
+    tap_ok(divides(&world, &link, spread, -1) && divides(&world, &link, 0.999 * spread,
+                                                         1),
            "on either side");
     link.seen = 0;
     tap_ok(divides(&world, &link, 0.0, -1), "a blocked link divides nothing");
@@ -199,13 +213,15 @@ static void test_dividing(void)
     model->patch_threshold = 0.25 * forest_area(model->forest, 1);
     bool at = divides(&world, &link, 0.5 * spread, 1);
     model->patch_threshold = nextafter(model->patch_threshold, HUGE_VAL);
-    tap_ok(at && divides(&world, &link, 0.5 * spread, -1), "no patch below the least area is made");
+    tap_ok(at && divides(&world, &link, 0.5 * spread, -1),
+           "no patch below the least area is made");
     model->patch_threshold = 0.0;
     model->criterion.max_level = 0;
     tap_ok(divides(&world, &link, 0.5 * spread, -1), "nor one beyond the deepest level");
     model->criterion.max_level = ID_MAX_LEVEL;
     world.scene->materials[1].reflectance = (struct rgb){{0.0, 0.0, 0.0}};
-    tap_ok(divides(&world, &link, 0.0, -1), "light arriving at a black receiver does not matter");
+    tap_ok(divides(&world, &link, 0.0, -1),
+           "light arriving at a black receiver does not matter");
     world.scene->materials[1].reflectance = (struct rgb){{0.5, 0.5, 0.5}};
     world_free(&world);
 }
@@ -214,8 +230,9 @@ static void test_dividing(void)
 
 enum { DECISIONS = 4000 };
 
-/* What becomes of a scene of random triangles, `scale` times as large and bright: one number for
- * each link, and for each of its children, split or not, as long as there is room. */
+/* What becomes of a scene of random triangles, `scale` times as large and bright: one
+ * number for each link, and for each of its children, split or not, as long as there is
+ * room. */
 static int decide(double scale, uint64_t seed, int32_t decisions[DECISIONS])
 {
     struct soup soup = {0};

@@ -338,8 +338,9 @@ static struct link_list links_below_top(struct wood *wood)
     return all;
 }
 
-/* The field `blocker` of a link of far clusters has what its first look found, as drawn in
- * rad/beyond/node_link.c, and keeps it when the link settles; that of near ones has nothing. */
+/* The field `blocker` of a link of far clusters has what its first look found, as drawn
+ * in rad/beyond/node_link.c, and keeps it when the link settles; that of near ones has
+ * nothing. */
 static bool has_judgement(struct model *model, struct link *link)
 {
     struct end p = end_of(model, link->p), q = end_of(model, link->q);

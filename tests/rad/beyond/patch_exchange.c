@@ -1,8 +1,10 @@
-/* Tests of rad/beyond/patch_exchange.h: sums over subdivided squares converge to closed forms, bounds and
- * symmetry hold for any pair, and what is claimed to be blocked for sure is blocked.
+/* Tests of rad/beyond/patch_exchange.h: sums over subdivided squares converge to closed
+ * forms, bounds and symmetry hold for any pair, and what is claimed to be blocked for
+ * sure is blocked.
  *
- * Closed forms are those of Howell's catalogue: C-11, aligned parallel rectangles, and C-14,
- * perpendicular rectangles with a common edge, from which follows the case with a gap. */
+ * Closed forms are those of Howell's catalogue: C-11, aligned parallel rectangles, and
+ * C-14, perpendicular rectangles with a common edge, from which follows the case with a
+ * gap. */
 #include "rad/beyond/patch_exchange.h"
 
 #include "geom/lambert.h"
@@ -88,8 +90,8 @@ static void split_all(struct forest *forest, int levels)
             forest_split(forest, (int32_t)p);
 }
 
-/* Form factor from the first square (two triangles) of the soup to the second, with patches of
- * these levels. */
+/* Form factor from the first square (two triangles) of the soup to the second, with
+ * patches of these levels. */
 static double form_factor(const struct soup *soup, int level_p, int level_q)
 {
     struct world world = world_make(scene_of_soup(soup, 1));
@@ -113,18 +115,22 @@ static double form_factor(const struct soup *soup, int level_p, int level_q)
     return sum / area;
 }
 
-/* A small area is a point, and the disk has a wrong shape and its area in the denominator: both
- * errors fall with the square of the size, so 4 times with each level. */
-static void check_convergence(const struct soup *soup, double exact, const double bound[4],
+/* A small area is a point, and the disk has a wrong shape and its area in the
+ * denominator: both errors fall with the square of the size, so 4 times with each level.
+ */
+static void check_convergence(const struct soup *soup, double exact,
+                              const double bound[4],
                               double ratio, const char *name)
 {
     double error[4];
     for (int level = 0; level < 4; level++) {
         error[level] = fabs(form_factor(soup, level, level) / exact - 1.0);
-        tap_ok(error[level] < bound[level], "%s, level %d: off by %.1e, allowed %.1e", name, level,
+        tap_ok(error[level] < bound[level], "%s, level %d: off by %.1e, allowed %.1e",
+               name, level,
                error[level], bound[level]);
     }
-    tap_ok(error[3] < error[2] / ratio, "%s: the error falls %g times in the last level", name,
+    tap_ok(error[3] < error[2] / ratio, "%s: the error falls %g times in the last level",
+           name,
            ratio);
 }
 
@@ -142,7 +148,8 @@ static void test_squares(void)
         struct soup soup = {0};
         soup_add_quad(&soup, o, x, y, 1);
         soup_add_quad(&soup, point(0, 0, distance[k]), y, x, 1);
-        check_convergence(&soup, parallel_squares(distance[k]), bound_parallel[k], 3.8, name);
+        check_convergence(&soup, parallel_squares(distance[k]), bound_parallel[k], 3.8,
+                          name);
         soup_free(&soup);
     }
     static const double bound_gap[4] = {5.6e-3, 1.1e-3, 2.4e-4, 5.9e-5};
@@ -152,8 +159,8 @@ static void test_squares(void)
     double exact = 2.0 * perpendicular(2.0, 1.0) - perpendicular(1.0, 1.0);
     check_convergence(&gap, exact, bound_gap, 3.8, "perpendicular squares with a gap");
     soup_free(&gap);
-    /* At the common edge distance and size shrink alike: there the error of each pair stays, and
-     * what falls is the share of such pairs, half with each level. */
+    /* At the common edge distance and size shrink alike: there the error of each pair
+     * stays, and what falls is the share of such pairs, half with each level. */
     static const double bound_edge[4] = {1.4e-3, 8.3e-3, 7.3e-3, 4.7e-3};
     soup_add_quad(&edge, o, x, y, 1);
     soup_add_quad(&edge, o, y, z, 1);
@@ -173,8 +180,8 @@ static void test_small_below_large(void)
     for (int level = 0; level < 5; level++)
         bounded = bounded && form_factor(&soup, 0, level) <= 1.0;
     tap_ok(bounded, "a small square below a large one: never above 1");
-    /* Eight triangles for the small square, and above it patches of half its size or less, leave
-     * an error of 5.1e-3. */
+    /* Eight triangles for the small square, and above it patches of half its size or
+     * less, leave an error of 5.1e-3. */
     double error = fabs(form_factor(&soup, 1, 5) / exact - 1.0);
     tap_ok(error < 6.5e-3, "and 0.968 in the end (off by %.1e)", error);
     soup_free(&soup);
@@ -208,14 +215,16 @@ static struct triangle flat_triangle(struct random *random)
 {
     struct triangle t = random_triangle(random, 0.1, 0.4);
     double flatness = pow(10.0, random_between(random, -5.0, -0.5));
-    struct vec3 foot = vec3_add(vec3_scale(t.corner[0], 0.4), vec3_scale(t.corner[1], 0.6));
+    struct vec3 foot = vec3_add(vec3_scale(t.corner[0], 0.4),
+                                vec3_scale(t.corner[1], 0.6));
     t.corner[2] = vec3_add(foot, vec3_scale(vec3_sub(t.corner[2], foot), flatness));
     return t;
 }
 
 enum kind { APART, NEAR, TOUCHING, SMALL_OVER_LARGE, FLAT, KINDS };
 
-static const char *const kind_names[KINDS] = {"apart", "near", "touching", "small over large",
+static const char *const kind_names[KINDS] = {"apart", "near", "touching",
+                                              "small over large",
                                               "flat"};
 
 static struct triangle reversed(struct triangle t)
@@ -226,7 +235,8 @@ static struct triangle reversed(struct triangle t)
 /* Two triangles with an area, in a relation of this kind. */
 static void random_pair(struct random *random, enum kind kind, struct triangle pair[2])
 {
-    struct triangle t = kind == FLAT ? flat_triangle(random) : random_triangle(random, 0.1, 0.4);
+    struct triangle t = kind == FLAT ? flat_triangle(random) : random_triangle(random,
+                                                                               0.1, 0.4);
     struct triangle u = random_triangle(random, 0.1, 0.4);
     struct vec3 normal = vec3_unit(triangle_cross(&t));
     double distance = pow(10.0, random_between(random, -8.0, 0.0)) * 0.2;
@@ -266,7 +276,8 @@ struct findings {
     double worst; /* largest unoccluded G over the smaller area */
 };
 
-static void judge_pair(const struct facet *p, const struct facet *q, const struct octree *octree,
+static void judge_pair(const struct facet *p, const struct facet *q,
+                       const struct octree *octree,
                        struct findings *findings)
 {
     struct octree_counts counts = {0};
@@ -311,17 +322,19 @@ static void test_bounds(enum kind kind)
     const char *name = kind_names[kind];
     tap_ok(findings.facing > PAIRS / 10 && findings.lit > PAIRS / 20 && findings.negative == 0,
            "%s: %d pairs exchange nothing negative", name, findings.facing);
-    tap_ok(findings.too_large == 0, "%s: nor more than the smaller area (at most %.4f of it)", name,
+    tap_ok(findings.too_large == 0,
+           "%s: nor more than the smaller area (at most %.4f of it)", name,
            findings.worst);
     tap_ok(findings.too_little == 0, "%s: nor more than without blockers", name);
     tap_ok(findings.lop_sided == 0, "%s: the same in both directions", name);
-    tap_ok(findings.blocked == 0, "%s: what is proved to be blocked exchanges nothing", name);
+    tap_ok(findings.blocked == 0, "%s: what is proved to be blocked exchanges nothing",
+           name);
     tap_ok(findings.one_way == 0, "%s: and is so in both directions", name);
     octree_destroy(octree);
 }
 
-/* Two of the four sub-areas of a flat triangle lie side by side, closer than a disk of their area
- * is wide, and each of them alone fills the view of a speck. */
+/* Two of the four sub-areas of a flat triangle lie side by side, closer than a disk of
+ * their area is wide, and each of them alone fills the view of a speck. */
 static void test_flat(void)
 {
     struct triangle large = {{{-0.5, 0, 0}, {0.5, 0, 0}, {0, 0.005, 0}}};
@@ -346,9 +359,11 @@ static void test_facing(void)
     struct facet below = facet_of(moved(reversed(floor), point(0, 0, -1)), 1);
     struct facet beside = facet_of(moved(floor, point(2, 0, 0)), 1);
     struct facet inside = facet_of(floor, 1);
-    struct facet cut = facet_of((struct triangle){{{2, 0, -1}, {2, 1, -1}, {2, 0, 0.1}}}, 1);
+    struct facet cut = facet_of((struct triangle){{{2, 0, -1}, {2, 1, -1}, {2, 0, 0.1}}},
+                                1);
     struct facet turned = facet_of(reversed(cut.triangle), 1);
-    tap_ok(facets_face(&p, &above) && facets_face(&above, &p), "a ceiling faces the floor");
+    tap_ok(facets_face(&p, &above) && facets_face(&above, &p),
+           "a ceiling faces the floor");
     tap_ok(!facets_face(&p, &up) && !facets_face(&up, &p) && !facets_face(&p, &below),
            "a floor above does not, nor one below");
     tap_ok(!facets_face(&p, &beside) && !facets_face(&p, &inside) && !facets_face(&p, &p),
@@ -357,15 +372,16 @@ static void test_facing(void)
            "a wall that rises above the floor faces it with its front");
 }
 
-/* Only the tip of the wall rises above the floor, and all its centroids lie below: no ray can be
- * fired, but the pair stays in play. */
+/* Only the tip of the wall rises above the floor, and all its centroids lie below: no
+ * ray can be fired, but the pair stays in play. */
 static void test_horizon(void)
 {
     struct soup soup = {0};
     soup_add(&soup, (struct triangle){{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
     soup_add(&soup, (struct triangle){{{1, 0, -1}, {1, 0, 0.05}, {1, 1, -1}}});
     struct world world = world_make(scene_of_soup(&soup, 1));
-    struct facet p = facet_make(world.model.forest, 0), q = facet_make(world.model.forest, 1);
+    struct facet p = facet_make(world.model.forest, 0), q = facet_make(world.model.forest,
+                                                                       1);
     struct octree_counts counts = {0};
     struct exchange exchange = exchange_of(&p, &q, world.octree, &counts);
     tap_ok(facets_face(&p, &q) && counts.rays == 0 && exchange.area == 0.0 &&
@@ -378,15 +394,18 @@ static void test_horizon(void)
 
 /* --- blocked for sure --- */
 
-enum pieces { WHOLE, HALVES, BENT }; /* in one piece, in two, in two that are not in one plane */
+enum pieces { WHOLE, HALVES, BENT }; /* in one piece, in two, in two that are not in
+                                        one plane */
 
-/* Exchange of two triangles face to face with one between them: scaled by `size` from what
- * covers all straight lines exactly. */
-static struct exchange between(double size, bool reverse, enum pieces in_two, struct octree_counts *counts,
+/* Exchange of two triangles face to face with one between them: scaled by `size` from
+ * what covers all straight lines exactly. */
+static struct exchange between(double size, bool reverse, enum pieces in_two,
+                               struct octree_counts *counts,
                                bool *walled_off)
 {
     struct triangle p = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
-    struct triangle t = moved(p, point(0, 0, 0.5)), q = moved(reversed(p), point(0, 0, 1));
+    struct triangle t = moved(p, point(0, 0, 0.5)), q = moved(reversed(p),
+                                                              point(0, 0, 1));
     struct vec3 centre = triangle_centroid(&t);
     for (int k = 0; k < 3; k++)
         t.corner[k] = vec3_add(centre, vec3_scale(vec3_sub(t.corner[k], centre), size));
@@ -430,8 +449,8 @@ static void test_proof(void)
     tap_ok(!walled_off && bent.area == 0.0, "unless they do not lie in one plane");
 }
 
-/* Two patches and a few large triangles between, beside or through them. Whenever a proof is
- * claimed no random segment from one to the other gets through. */
+/* Two patches and a few large triangles between, beside or through them. Whenever a
+ * proof is claimed no random segment from one to the other gets through. */
 static void test_claims(void)
 {
     struct random random = random_seed(9);
@@ -460,7 +479,8 @@ static void test_claims(void)
             wrong += brute_blocker(t, planes, 6, random_point_on(&random, &t[0]),
                                    random_point_on(&random, &t[1]), own) < 0;
     }
-    tap_ok(claims > 100 && dark > claims, "%d of %d pairs that no ray joins are proved blocked",
+    tap_ok(claims > 100 && dark > claims,
+           "%d of %d pairs that no ray joins are proved blocked",
            claims, dark);
     tap_ok(wrong == 0, "and of a thousand segments each none gets through");
 }
@@ -482,17 +502,20 @@ static const struct known KNOWN[] = {
     {"under the other half of the square", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
      {{{1, 0, 0.5}, {0, 1, 0.5}, {1, 1, 0.5}}}, 0.13661586248337540, 0.0003},
     {"general triangles 2", {{{-1.1, 0.2, 0.4}, {0.7, -0.6, 0}, {0.9, 1.3, 0.5}}},
-     {{{0.4, 0.1, 0.9}, {1.9, 1.2, 2.4}, {2.6, -0.7, 0.3}}}, 0.099235399192365528, 0.0112},
+     {{{0.4, 0.1, 0.9}, {1.9, 1.2, 2.4},
+       {2.6, -0.7, 0.3}}}, 0.099235399192365528, 0.0112},
     {"parallel slivers", {{{0, 0, 0}, {1, 0, 0}, {0.5, 0.0001, 0}}},
      {{{0, 0, 0.1}, {0.5, 0.0001, 0.1}, {1, 0, 0.1}}}, 0.00032025124676048735, 0.006},
     {"corner tetrahedron, legs", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
      {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}}, 0.21132486540518712, 0.0082},
     {"corner tetrahedron, leg to hypotenuse", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
      {{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}}}, 0.57735026918962576, 0.006},
-    {"equilateral, hinged at 90 deg", {{{0, 0, 0}, {1, 0, 0}, {0.5, 0.8660254037844386, 0}}},
+    {"equilateral, hinged at 90 deg",
+     {{{0, 0, 0}, {1, 0, 0}, {0.5, 0.8660254037844386, 0}}},
      {{{0, 0, 0}, {0.5, 0, 0.8660254037844386}, {1, 0, 0}}}, 0.22382159142570599, 0.0053},
     {"scalene, hinged at 30 deg", {{{0, 0, 0}, {2, 0, 0}, {0.3, 0.7, 0}}},
-     {{{0, 0, 0}, {1.6, 0.8660254037844386, 0.5}, {2, 0, 0}}}, 0.61328462043135936, 0.003},
+     {{{0, 0, 0}, {1.6, 0.8660254037844386, 0.5},
+       {2, 0, 0}}}, 0.61328462043135936, 0.003},
 };
 enum { KNOWN_COUNT = sizeof KNOWN / sizeof KNOWN[0] };
 
@@ -505,32 +528,39 @@ static void test_known(void)
         struct facet p = facet_of(known->p, -1), q = facet_of(known->q, -1);
         double exact = known->factor * p.area;
         struct octree_counts counts = {0};
-        struct exchange there = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ALL, octree, &counts);
-        struct exchange disk = estimate(&p, &q, FORM_FACTOR_DISK, LOOK_ALL, octree, &counts);
+        struct exchange there = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ALL, octree,
+                                         &counts);
+        struct exchange disk = estimate(&p, &q, FORM_FACTOR_DISK, LOOK_ALL, octree,
+                                        &counts);
         double error = fabs(there.area / exact - 1.0);
         worst = fmax(worst, error);
         worst_disk = fmax(worst_disk, fabs(disk.area / exact - 1.0));
-        tap_ok(error <= known->allowed, "%s: off by %.2f %%, at most %.2f %%", known->name,
+        tap_ok(error <= known->allowed, "%s: off by %.2f %%, at most %.2f %%",
+               known->name,
                100.0 * error, 100.0 * known->allowed);
     }
-    tap_ok(worst < 0.5 * worst_disk, "at worst %.1f %%, and by disks %.1f %%", 100.0 * worst,
+    tap_ok(worst < 0.5 * worst_disk, "at worst %.1f %%, and by disks %.1f %%",
+           100.0 * worst,
            100.0 * worst_disk);
     octree_destroy(octree);
 }
 
-/* A speck close to a large triangle is a point to it, and the triangle is all but that to the
- * speck: the points have to be on the speck, whichever comes first. */
+/* A speck close to a large triangle is a point to it, and the triangle is all but that
+ * to the speck: the points have to be on the speck, whichever comes first. */
 static void test_speck(void)
 {
     struct triangle floor = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
-    struct triangle speck = {{{0.3, 0.3, 0.05}, {0.3, 0.3001, 0.05}, {0.3001, 0.3, 0.0501}}};
+    struct triangle speck = {{{0.3, 0.3, 0.05}, {0.3, 0.3001, 0.05},
+                              {0.3001, 0.3, 0.0501}}};
     struct facet p = facet_of(floor, -1), q = facet_of(speck, -1);
     struct octree *octree = octree_create(NULL, NULL, 0);
     struct octree_counts counts = {0};
     struct vec3 centre = triangle_centroid(&speck);
     double exact = q.area * point_triangle_factor(centre, q.plane.normal, &floor);
-    struct exchange there = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ALL, octree, &counts);
-    struct exchange back = estimate(&q, &p, FORM_FACTOR_POLYGON, LOOK_ALL, octree, &counts);
+    struct exchange there = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ALL, octree,
+                                     &counts);
+    struct exchange back = estimate(&q, &p, FORM_FACTOR_POLYGON, LOOK_ALL, octree,
+                                    &counts);
     /* Its size over its distance is 2e-3, and the error of a point is of second order. */
     tap_ok(exact > 0.5 * q.area && fabs(there.area / exact - 1.0) < 4e-6 &&
                fabs(back.area / exact - 1.0) < 4e-6,
@@ -586,9 +616,11 @@ static bool parts_match(const struct exchange *there, const struct exchange *bac
     return same;
 }
 
-static bool is_within_bounds(const struct exchange *e, const struct facet *p, const struct facet *q)
+static bool is_within_bounds(const struct exchange *e, const struct facet *p,
+                             const struct facet *q)
 {
-    return e->area >= 0.0 && e->area <= e->unoccluded && e->unoccluded <= fmin(p->area, q->area) &&
+    return e->area >= 0.0 && e->area <= e->unoccluded && e->unoccluded <= fmin(p->area,
+                                                                               q->area) &&
            e->seen >= 0.0 && e->seen <= 1.0 && (e->seen > 0.0 || e->area == 0.0);
 }
 
@@ -609,13 +641,16 @@ static void test_any(enum form_factor kind, enum look look, const char *name)
         struct exchange free = estimate(&p, &q, kind, look, none, &counts);
         struct sight open = {.open = true, .blocker = -1};
         int64_t rays = counts.rays;
-        struct exchange told = exchange_estimate(&p, &q, kind, look, octree, &open, &counts);
+        struct exchange told = exchange_estimate(&p, &q, kind, look, octree, &open,
+                                                 &counts);
         facing++;
         partly += blocked.seen > 0.0 && blocked.seen < 1.0;
-        outside += !is_within_bounds(&blocked, &p, &q) || !is_within_bounds(&free, &p, &q);
+        outside += !is_within_bounds(&blocked, &p, &q) || !is_within_bounds(&free, &p,
+                                                                            &q);
         more += !(blocked.area <= free.area) || blocked.unoccluded != free.unoccluded;
         broken += !parts_are_whole(blocked.parts_p) || !parts_are_whole(blocked.parts_q);
-        /* Sums of 16 terms in another order; of unequal areas the points are on the same side. */
+        /* Sums of 16 terms in another order; of unequal areas the points are on the same
+         * side. */
         one_way += fabs(back.area - blocked.area) > 1e-14 * blocked.area && p.area != q.area;
         one_way += blocked.area > 0.0 && !parts_match(&blocked, &back);
         dim += told.area != free.area || told.seen != free.seen || counts.rays != rays;
@@ -667,14 +702,16 @@ static void test_four(void)
            "four first: as with all 16 where nothing (%d) or everything (%d) is blocked", free,
            dark);
     tap_ok(dear == 0, "with four segments");
-    tap_ok(missed == 0, "and where they disagree (some of %d) all are asked, with the same answer",
+    tap_ok(missed == 0,
+           "and where they disagree (some of %d) all are asked, with the same answer",
            mixed);
     octree_destroy(octree);
 }
 
-/* One disk for all, from 1.5 times the sum of the radii. The disk and the points both have the
- * angles of centroids for those of whole patches: at grazing ones their relative errors have no
- * bound, so the pairs here see each other at 60 degrees from the normals at most. */
+/* One disk for all, from 1.5 times the sum of the radii. The disk and the points both
+ * have the angles of centroids for those of whole patches: at grazing ones their
+ * relative errors have no bound, so the pairs here see each other at 60 degrees from the
+ * normals at most. */
 static void test_one(void)
 {
     enum { TRIES = 20000 };
@@ -695,10 +732,13 @@ static void test_one(void)
             reach[1] = fmax(reach[1], vec3_length(vec3_sub(q.triangle.corner[k], y)));
         }
         double radii = reach[0] + reach[1];
-        double slope = fmin(vec3_dot(p.plane.normal, d), -vec3_dot(q.plane.normal, d)) / distance;
+        double slope = fmin(vec3_dot(p.plane.normal, d),
+                            -vec3_dot(q.plane.normal, d)) / distance;
         struct octree_counts all = {0}, one = {0};
-        struct exchange whole = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ALL, octree, &all);
-        struct exchange single = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ONE, octree, &one);
+        struct exchange whole = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ALL, octree,
+                                         &all);
+        struct exchange single = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ONE, octree,
+                                          &one);
         if (distance > 1.500001 * radii) {
             dear += one.rays > 1;
             if (slope < 0.5)
@@ -727,13 +767,16 @@ static void test_one_blocked(void)
     struct triangle p = {{{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}}};
     struct triangle q = moved(reversed(p), point(0, 0, 1));
     struct triangle wall = {{{-1, -1, 0.5}, {1, -1, 0.5}, {0, 1, 0.5}}};
-    struct triangle t[3] = {p, q, wall}; /* alone the wall would be a hull, which blocks nothing */
-    struct plane planes[3] = {triangle_plane(&p), triangle_plane(&q), triangle_plane(&wall)};
+    struct triangle t[3] = {p, q, wall}; /* alone the wall would be a hull, which
+                                            blocks nothing */
+    struct plane planes[3] = {triangle_plane(&p), triangle_plane(&q),
+                              triangle_plane(&wall)};
     struct octree *octree = octree_create(t, planes, 3);
     struct facet a = facet_of(p, 0), b = facet_of(q, 1);
     struct octree_counts counts = {0};
     struct sight sight = {.open = false, .blocker = -1};
-    struct exchange e = exchange_estimate(&a, &b, FORM_FACTOR_POLYGON, LOOK_ONE, octree, &sight,
+    struct exchange e = exchange_estimate(&a, &b, FORM_FACTOR_POLYGON, LOOK_ONE, octree,
+                                          &sight,
                                           &counts);
     tap_ok(e.area == 0.0 && e.seen == 0.0 && e.unoccluded == exchange_guess(&a, &b) &&
                sight.blocker == 2 && counts.rays == 1,

@@ -1,5 +1,5 @@
-/* Tests of rad/beyond/patch_link.h: links of two patches that are in doubt, proved to be blocked or
- * open, and the parts by which they deal light to children. */
+/* Tests of rad/beyond/patch_link.h: links of two patches that are in doubt, proved to be
+ * blocked or open, and the parts by which they deal light to children. */
 #include "rad/beyond/patch_link.h"
 
 #include <string.h>
@@ -31,7 +31,8 @@ static void test_dropping(void)
            "two dark patches are not linked, and get no rays");
     world_free(&dark);
     struct world half = make_default_pair(1.0, black, white, NULL);
-    tap_ok(make(&half, 0, 1, &link) && make(&half, 1, 0, &link), "one dark patch is linked");
+    tap_ok(make(&half, 0, 1, &link) && make(&half, 1, 0, &link),
+           "one dark patch is linked");
     world_free(&half);
     struct soup more = {0};
     soup_add(&more, tile(-0.1, 0.5, 1.5, true));
@@ -40,7 +41,8 @@ static void test_dropping(void)
         cover->corner[k].y -= 0.1;
     struct world covered = make_default_pair(1.0, white, white, &more);
     struct link children[4];
-    tap_ok(make(&covered, 0, 1, &link) && link_area(&link) == 0.0 && covered.model.counts.rays == 16 &&
+    tap_ok(make(&covered, 0, 1,
+                &link) && link_area(&link) == 0.0 && covered.model.counts.rays == 16 &&
                patch_link_split(&covered.model, &link, 0, children) == 0 &&
                patch_is_leaf(&covered.model.forest->patches[0]),
            "a link that is proved blocked ends when it is to be split");
@@ -53,7 +55,8 @@ static void test_doubt(void)
 {
     struct soup more = {0};
     soup_add_quad(&more, point(-1, -1, 0.5), point(3, 0, 0), point(0, 3, 0), 1);
-    struct world world = make_default_pair(1.0, material_grey(0.5, 0), material_grey(0, 1), &more);
+    struct world world = make_default_pair(1.0, material_grey(0.5, 0),
+                                           material_grey(0, 1), &more);
     struct link link;
     tap_ok(make(&world, 0, 1, &link) && link_area(&link) == 0.0 &&
                link_unoccluded(&link) > 0.0,
@@ -72,7 +75,8 @@ static void test_cost(void)
     scene->materials[0] = material_grey(0.5, 1);
     struct world horizon = world_make(scene);
     horizon.model.method = DEFAULT;
-    tap_ok(make(&horizon, 0, 1, &link) && tests_done(&horizon) == 0 && link_cost(&link) == 1.0,
+    tap_ok(make(&horizon, 0, 1,
+                &link) && tests_done(&horizon) == 0 && link_cost(&link) == 1.0,
            "a link without any test costs 1");
     world_free(&horizon);
     soup_free(&soup);
@@ -121,8 +125,10 @@ static void make_links(const struct forest *forest, struct link_list *list)
         int32_t p = random_below(&random, (int32_t)forest->count), q = p;
         while (q == p)
             q = random_below(&random, (int32_t)forest->count);
-        struct link link = {.p = p, .q = q, .area = float_below(1e-6 * random_unit(&random)),
-                            .seen = (uint8_t)(i % 10 == 0 ? 0 : 1 + random_below(&random, 255))};
+        struct link link = {.p = p, .q = q,
+                            .area = float_below(1e-6 * random_unit(&random)),
+                            .seen = (uint8_t)(i % 10 == 0 ? 0 : 1 + random_below(&random,
+                                                                                 255))};
         random_parts(&random, link.parts_p);
         random_parts(&random, link.parts_q);
         link_list_append(list, link);
@@ -140,7 +146,8 @@ static uint64_t flux_hash(const struct forest *forest)
 }
 
 static const struct link PLAIN = {.p = 3, .q = 7, .area = 0.25f, .parts_p = {64, 64, 64},
-                                  .parts_q = {64, 64, 64}, .seen = LINK_ALL_SEEN, .cost = 1};
+                                  .parts_q = {64, 64,
+                                              64}, .seen = LINK_ALL_SEEN, .cost = 1};
 
 static void test_areas(void)
 {
@@ -166,8 +173,8 @@ static void test_areas(void)
 
 /* --- parts --- */
 
-/* Children of patches 2 and 4 of the made-up forest (which has them). Numbers are such that all
- * products are exact. */
+/* Children of patches 2 and 4 of the made-up forest (which has them). Numbers are such
+ * that all products are exact. */
 static void test_dealing(void)
 {
     struct world world = make_many();
@@ -187,8 +194,8 @@ static void test_dealing(void)
     link_list_append(&list, link);
     link_list_sort(&list);
     node_links_transfer(&list, &world.model, unit);
-    /* From q: 8 (3/4 + 4 x 3/4) = 30 and 4, times G = 1/2: 15 and 2 W to the children of p. From
-     * p: 1/2 + 9/8 + 4/8 = 17/8, times 1/2: 17/16 W. */
+    /* From q: 8 (3/4 + 4 x 3/4) = 30 and 4, times G = 1/2: 15 and 2 W to the children of
+     * p. From p: 1/2 + 9/8 + 4/8 = 17/8, times 1/2: 17/16 W. */
     tap_ok(p[0].flux[0] == 7680 && p[1].flux[0] == 0 && p[2].flux[0] == 5760 &&
                p[3].flux[0] == 1920 && p[0].flux[2] == 1024 && p[1].flux[2] == 0 &&
                p[2].flux[2] == 768 && p[3].flux[2] == 256 && p[0].flux[1] == 0,
@@ -223,7 +230,8 @@ static void test_dealing(void)
     for (int k = 0; k < 4; k++) {
         int32_t child = forest->patches[2].children + k;
         double found = leaf_irradiance(forest, child, unit).band[0];
-        dealt = dealt && fabs(found / due - 1.0) < 0.03; /* 1/64 of the part, and of what is sent */
+        dealt = dealt && fabs(found / due - 1.0) < 0.03; /* 1/64 of the part, and of
+                                                            what is sent */
     }
     tap_ok(dealt, "parts that are nearly even come to nearly the same at the leaves");
     link_list_free(&list);
@@ -231,7 +239,8 @@ static void test_dealing(void)
 }
 
 /* What a patch sends: B of a leaf, the children weighted by the parts of another. */
-static struct rgb sent_by(const struct forest *forest, int32_t patch, const uint8_t parts[3])
+static struct rgb sent_by(const struct forest *forest, int32_t patch,
+                          const uint8_t parts[3])
 {
     const struct patch *at = &forest->patches[patch];
     if (patch_is_leaf(at))
@@ -272,7 +281,8 @@ static void test_transfer(void)
            "what is received is what is sent");
     uint64_t hash = flux_hash(forest);
     clear_flux(forest);
-    for (int64_t i = 0; i < turned.count; i += 2) { /* and the sides of half of them swapped */
+    for (int64_t i = 0; i < turned.count; i += 2) { /* and the sides of half of them
+                                                       swapped */
         struct link old = turned.items[i], *link = &turned.items[i];
         link->p = old.q;
         link->q = old.p;
@@ -328,14 +338,18 @@ static void test_parts(void)
         if (make(&world, 0, 1, &link)) {
             struct octree_counts counts = {0};
             struct sight sight = {.open = false, .blocker = -1};
-            struct exchange exchange = exchange_estimate(&p, &q, kind, LOOK_ALL, world.octree,
+            struct exchange exchange = exchange_estimate(&p, &q, kind, LOOK_ALL,
+                                                         world.octree,
                                                          &sight, &counts);
             made++;
             for (int k = 0; k < 4; k++) {
                 /* Within one in 256, and what rounds the exact parts. */
-                off += fabs(link_part(link.parts_p, k) - exchange.parts_p[k]) > 1.0001 / 256.0 ||
-                       fabs(link_part(link.parts_q, k) - exchange.parts_q[k]) > 1.0001 / 256.0;
-                off += link_part(link.parts_p, k) < 0.0 || link_part(link.parts_q, k) < 0.0;
+                off += fabs(link_part(link.parts_p,
+                                      k) - exchange.parts_p[k]) > 1.0001 / 256.0 ||
+                       fabs(link_part(link.parts_q,
+                                      k) - exchange.parts_q[k]) > 1.0001 / 256.0;
+                off += link_part(link.parts_p, k) < 0.0 || link_part(link.parts_q,
+                                                                     k) < 0.0;
             }
             uneven += link.parts_p[0] != 64 || link.parts_q[1] != 64;
             blocked += link.seen == 0;
@@ -351,7 +365,8 @@ static void test_parts(void)
 static void test_inheriting(void)
 {
     struct soup more = bystander();
-    struct world world = make_default_pair(1.0, material_grey(0.5, 0), material_grey(0, 1), &more);
+    struct world world = make_default_pair(1.0, material_grey(0.5, 0),
+                                           material_grey(0, 1), &more);
     struct link link, children[4];
     make(&world, 0, 1, &link);
     link.seen = LINK_OPEN;
@@ -374,7 +389,8 @@ static void test_inheriting(void)
 
 /* --- looking --- */
 
-/* The floor sends 1 and 3, the ceiling nothing: what is typical counts as long as there is less. */
+/* The floor sends 1 and 3, the ceiling nothing: what is typical counts as long as there
+ * is less. */
 static void test_look(void)
 {
     struct material grey = material_grey(0.5, 1);
