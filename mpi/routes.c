@@ -26,13 +26,12 @@ static bool can_receive(const struct solver *solver, int32_t patch)
 }
 
 /* What neither reflects nor emits stays 0. (A lamp that does not reflect is 0 too in the steps of conjugate
- * gradients, and E before and after.) Factors of --closure symmetric change everywhere. */
+ * gradients, and E before and after.) */
 static bool is_leaf_that_changes(const struct solver *solver, int32_t patch)
 {
     const struct patch *at = &solver->model.forest->patches[patch];
     return patch_is_leaf(at) && can_receive(solver, patch) &&
-           (solver->beyond->closure.kind == CLOSURE_SYMMETRIC ||
-            !material_is_dark(forest_material(solver->model.forest, patch)));
+           !material_is_dark(forest_material(solver->model.forest, patch));
 }
 
 /* The patches for which `is_listed` is true, home by home; how many each has, and where they begin. Returns

@@ -33,23 +33,10 @@ static void clear_own_flux(struct solver *solver)
             solver->model.forest->patches[own[i]].flux[c] = 0;
 }
 
-/* What leaves send with --closure symmetric. */
-static void correct_senders(struct forest *forest, const struct closure *closure)
-{
-    for (int64_t p = 0; p < forest->count; p++)
-        for (int c = 0; c < BANDS && patch_is_leaf(&forest->patches[p]); c++)
-            forest->patches[p].radiosity.band[c] *= closure_sends(closure, (int32_t)p);
-    forest_average(forest);
-}
-
 void solver_transfer(struct solver *solver)
 {
     double start = comm_seconds();
     struct forest *forest = solver->model.forest;
-    bool corrects = solver->beyond->closure.kind == CLOSURE_SYMMETRIC;
-    struct rgb *kept = corrects ? forest_keep(forest) : NULL;
-    if (corrects)
-        correct_senders(forest, &solver->beyond->closure);
     clear_own_flux(solver);
     double room = solver->beyond->tree ? 2.0 : 1.0; /* a node receives over links of its cluster, too */
     solver->flux = flux_unit_for(room * largest_radiosity(solver) * solver->model.area);
@@ -61,8 +48,6 @@ void solver_transfer(struct solver *solver)
     double begun = comm_seconds();
     solver->model.method.transfer(&solver->links, &solver->model, solver->flux);
     double done = comm_seconds();
-    if (corrects)
-        forest_restore(forest, kept);
     solver->account.seconds[PHASE_SOLVE] += done - begun;
     solver->account.seconds[PHASE_SUMS] += comm_seconds() - done + begun - start;
 }

@@ -183,8 +183,8 @@ static double brightest_own(const struct solver *solver)
     for (int64_t i = 0; i < solver->beyond->descent.vectors.leaf_count; i++) {
         int32_t leaf = solver->beyond->descent.vectors.leaves[i];
         for (int c = 0; c < BANDS; c++)
-            brightest = fmax(brightest, fabs(closure_sends(&solver->beyond->closure, leaf) *
-                                             solver->model.forest->patches[leaf].radiosity.band[c]));
+            brightest = fmax(brightest,
+                             fabs(solver->model.forest->patches[leaf].radiosity.band[c]));
     }
     return brightest;
 }

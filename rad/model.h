@@ -15,7 +15,7 @@
 enum oracle { ORACLE_BF, ORACLE_ERROR }; /* rad/oracle.h, rad/beyond/error_oracle.h */
 enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON }; /* rad/beyond/patch_exchange.h */
 enum linking_kind { LINKING_PAIRS, LINKING_TREE };
-enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS, CLOSURE_SYMMETRIC };
+enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS };
 enum solver_kind { SOLVER_JACOBI, SOLVER_CG };
 enum balance { BALANCE_NONE, BALANCE_GREEDY, BALANCE_DEFAULT }; /* mpi/balance.h */
 

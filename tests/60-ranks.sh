@@ -130,7 +130,7 @@ method() {
 
 method paper --paper
 method rows --closure rows --form-factor disk
-method symmetric --closure symmetric --solver jacobi --max-level 4
+method jacobi --closure rows --solver jacobi --max-level 4
 method none --oracle bf --closure none
 method accuracy --accuracy 1.5% --epsilon 1e-2
 method pixels --final-gather 8,pixels --samples 2

@@ -123,7 +123,7 @@ check "which takes two rounds and more" \
     holds "$(stat_of "$work/accuracy-40.json" passes) > $(stat_of "$work/plain.json" passes)"
 counts="checksum links patches passes iterations absorbed_power" # rays fired again are counted again
 resumes two-sided 8 --two-sided --max-level 4
-resumes symmetric 8 --closure symmetric --max-level 3
+resumes rows 8 --closure rows --max-level 3
 
 check "--closure is bound" refused "$work/check-1: made with --closure cap, this run has --closure none" \
     $cornell --resume "$work/check-1" --closure none

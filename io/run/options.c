@@ -40,7 +40,7 @@ static const struct option OPTIONS[] = {
     {"--form-factor", KIND_CHOICE, offsetof(struct options, criterion.form_factor), 0, 0,
      "disk|polygon"},
     {"--closure", KIND_CHOICE, offsetof(struct options, criterion.closure), 0, 0,
-     "none|cap|rows|symmetric"},
+     "none|cap|rows"},
     {"--solver", KIND_CHOICE, offsetof(struct options, criterion.solver), 0, 0, "jacobi|cg"},
     {"--balance", KIND_CHOICE, offsetof(struct options, criterion.balance), 0, 0,
      "none|greedy|default"},
@@ -469,7 +469,7 @@ void options_print_help(FILE *file)
           "  --tolerance T    of the solution (1e-5) --max-iterations N   at most (1000)\n"
           "  --oracle error|bf   what splits a link  --form-factor polygon|disk\n"
           "  --linking tree|pairs  where links begin --final-gather N[,pixels]  rays (256)\n"
-          "  --closure none|cap|rows|symmetric       of row sums (cap) --solver cg|jacobi\n"
+          "  --closure none|cap|rows  of row sums (cap)  --solver cg|jacobi\n"
           "  --paper          the paper's of these   --alpha A     inherited cost (0.5)\n"
           "  --two-sided      backs reflect, too     --two-sided-lamps  those of lamps\n"
           "  --save-links F   those of all pairs     --load-links F  in their place\n"

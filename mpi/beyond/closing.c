@@ -5,21 +5,14 @@
  * bounce, the leaf receives less; then there is always a solution, and the bound on the iteration
  * error always holds.
  * --closure rows: the same, and an enclosed leaf receives 1 / R of what its links bring, so
- * that its row sums to 1.
- * --closure symmetric: factors d on both sides with d_i (F d)_i = 1 (Sinkhorn's scaling of a
- * symmetric matrix), by d <- sqrt(d / (F d)), which halves the error each time or better; the
- * corrected form factors still obey A_i F_ij = A_j F_ji. */
+ * that its row sums to 1. */
 #include "mpi/beyond/beyond.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 
-enum { ROUNDS = 60 };
-
-static const double CLOSED = 1e-9; /* a row sum this close to 1 needs no further round */
-
-/* Transfers B = 1, times what senders are corrected by, and brings it home. */
+/* Transfers B = 1 and brings it home. */
 static void transfer_ones(struct solver *solver)
 {
     struct forest *forest = solver->model.forest;
@@ -41,50 +34,16 @@ static double largest_row(const struct solver *solver, int32_t leaf)
     return largest > 0.0 ? fmax(MOST_REFLECTED, 0.5 * (1.0 + largest)) / largest : HUGE_VAL;
 }
 
-/* One round: renews the factors of own leaves that are to be closed. Returns their largest
- * deviation of a corrected row sum from 1 before it. */
-static double renew_factors(struct solver *solver)
+/* Finds the factors of own leaves anew. */
+static void renew_factors(struct solver *solver)
 {
     struct closure *closure = &solver->beyond->closure;
-    double off = 0.0;
     for (int64_t i = 0; i < solver->beyond->descent.vectors.leaf_count; i++) {
         int32_t p = solver->beyond->descent.vectors.leaves[i];
         double row = leaf_irradiance(solver->model.forest, p, solver->flux).band[0];
-        bool due = row > 0.0 && closure->kind != CLOSURE_CAP &&
+        bool due = row > 0.0 && closure->kind == CLOSURE_ROWS &&
                    closure_is_due(closure, &solver->model, p);
-        if (!due) {
-            if (closure->kind != CLOSURE_SYMMETRIC)
-                closure->factor[p] = fmin(1.0, largest_row(solver, p) / row);
-            continue;
-        }
-        double d = closure->factor[p];
-        bool symmetric = closure->kind == CLOSURE_SYMMETRIC;
-        off = fmax(off, fabs(d * row - 1.0));
-        closure->factor[p] = symmetric ? sqrt(d / row) : 1.0 / row;
-    }
-    return off;
-}
-
-/* The factors of all leaves go to all ranks, as radiosities. */
-static void scatter_factors(struct solver *solver)
-{
-    struct forest *forest = solver->model.forest;
-    for (int64_t p = 0; p < forest->count; p++)
-        for (int c = 0; c < BANDS; c++)
-            forest->patches[p].radiosity.band[c] = solver->beyond->closure.factor[p];
-    solver_scatter_unvoted(solver);
-    for (int64_t p = 0; p < forest->count; p++)
-        solver->beyond->closure.factor[p] = forest->patches[p].radiosity.band[0];
-}
-
-static void close_symmetrically(struct solver *solver)
-{
-    for (int round = 0; round < ROUNDS; round++) {
-        transfer_ones(solver);
-        double off = comm_largest(solver->comm, renew_factors(solver));
-        scatter_factors(solver);
-        if (off <= CLOSED)
-            return;
+        closure->factor[p] = due ? 1.0 / row : fmin(1.0, largest_row(solver, p) / row);
     }
 }
 
@@ -127,10 +86,8 @@ void solver_close(struct solver *solver)
     if (criterion->closure == CLOSURE_NONE && criterion->solver == SOLVER_JACOBI)
         return;
     struct rgb *kept = forest_keep(forest);
-    if (criterion->closure == CLOSURE_SYMMETRIC)
-        close_symmetrically(solver);
     transfer_ones(solver);
-    if (criterion->closure == CLOSURE_ROWS || criterion->closure == CLOSURE_CAP)
+    if (criterion->closure != CLOSURE_NONE)
         renew_factors(solver);
     bound_rows(solver);
     forest_restore(forest, kept);

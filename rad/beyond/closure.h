@@ -3,8 +3,7 @@
  * The row sum R of a leaf is what it receives over its links, and those of its ancestors, when
  * B = 1 everywhere. It is 1 for a leaf all of whose directions end on the front of some patch,
  * whatever stands in between; where links of different levels meet it comes out otherwise. The
- * correction multiplies what a leaf receives, and for --closure symmetric also what it sends, by
- * a factor d of its own. */
+ * correction multiplies the irradiance of a leaf by a factor d of its own. */
 #ifndef RAD_BEYOND_CLOSURE_H
 #define RAD_BEYOND_CLOSURE_H
 
@@ -29,24 +28,17 @@ void closure_free(struct closure *closure);
 /* Makes room for all patches; new ones inherit from their parents. */
 void closure_extend(struct closure *closure, const struct forest *forest);
 
-/* What a leaf multiplies its irradiance by. */
+/* The factor by which a leaf multiplies its irradiance. */
 static inline double closure_receives(const struct closure *closure, int32_t leaf)
 {
     return closure->kind == CLOSURE_NONE ? 1.0 : closure->factor[leaf];
 }
 
-/* What a leaf multiplies its radiosity by on the way out. */
-static inline double closure_sends(const struct closure *closure, int32_t leaf)
-{
-    return closure->kind == CLOSURE_SYMMETRIC ? closure->factor[leaf] : 1.0;
-}
-
-/* The second over the first: by this and its area a leaf counts in the scalar product that makes
- * the corrected form factors symmetric. */
+/* Its inverse: by this and its area a leaf counts in the scalar product that makes the corrected
+ * form factors symmetric. */
 static inline double closure_weight(const struct closure *closure, int32_t leaf)
 {
-    bool receivers = closure->kind == CLOSURE_ROWS || closure->kind == CLOSURE_CAP;
-    return receivers ? 1.0 / closure->factor[leaf] : 1.0;
+    return closure->kind == CLOSURE_NONE ? 1.0 : 1.0 / closure->factor[leaf];
 }
 
 /* True if the row sum of the leaf has to be 1: it is enclosed, and none of its ancestors is open.

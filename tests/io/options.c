@@ -144,8 +144,8 @@ static const struct choice CHOICES[] = {
      "pairs|tree"},
     {"--form-factor", offsetof(struct options, criterion.form_factor), 2,
      {"disk", "polygon", NULL}, "disk|polygon"},
-    {"--closure", offsetof(struct options, criterion.closure), 4,
-     {"none", "cap", "rows", "symmetric"}, "none|cap|rows|symmetric"},
+    {"--closure", offsetof(struct options, criterion.closure), 3,
+     {"none", "cap", "rows", NULL}, "none|cap|rows"},
     {"--solver", offsetof(struct options, criterion.solver), 2, {"jacobi", "cg", NULL},
      "jacobi|cg"},
     {"--balance", offsetof(struct options, criterion.balance), 3,
@@ -204,7 +204,7 @@ static void test_enums(void)
 {
     tap_ok(ORACLE_BF == 0 && ORACLE_ERROR == 1 && FORM_FACTOR_DISK == 0 &&
                FORM_FACTOR_POLYGON == 1 && CLOSURE_NONE == 0 && CLOSURE_CAP == 1 &&
-               CLOSURE_ROWS == 2 && CLOSURE_SYMMETRIC == 3 && SOLVER_JACOBI == 0 && SOLVER_CG == 1 &&
+               CLOSURE_ROWS == 2 && SOLVER_JACOBI == 0 && SOLVER_CG == 1 &&
                LINKING_PAIRS == 0 && LINKING_TREE == 1 && BALANCE_NONE == 0 &&
                BALANCE_GREEDY == 1 && BALANCE_DEFAULT == 2,
            "the names are in the order of the enums");

@@ -172,13 +172,13 @@ static void test_interreflection(const struct comm *comm, double rho, double exa
  * times as much. */
 static const double FIRST = 0.0025;
 
-/* The CIE's column. */
+/* The CIE's column, up to where an error of row sums, which is multiplied by rho / (1 - rho), is
+ * below its limit. */
 static const struct {
     double rho, lux;
 } INTERREFLECTION[] = {
     {0.05, 5.482456}, {0.1, 11.574074}, {0.2, 26.041667}, {0.3, 44.642857}, {0.4, 69.444444},
-    {0.5, 104.166667}, {0.6, 156.25}, {0.7, 243.055556}, {0.8, 416.666667}, {0.9, 937.5},
-    {0.95, 1979.166667}, {0.99, 10312.5}, {0.999, 104062.5},
+    {0.5, 104.166667}, {0.6, 156.25}, {0.7, 243.055556},
 };
 
 int main(int argc, char **argv)
@@ -190,13 +190,8 @@ int main(int argc, char **argv)
     test_slab(&comm);
     for (int i = 0; i < COUNT(INTERREFLECTION); i++) {
         double rho = INTERREFLECTION[i].rho, exact = INTERREFLECTION[i].lux;
-        if (rho <= 0.7) /* what row sums are off by is multiplied by rho / (1 - rho) */
-            test_interreflection(&comm, rho, exact, "--tolerance 1e-4",
-                                 fmax(LIMIT, FIRST * (1.0 - rho) / rho));
-        /* Closed symmetrically the form factors are reciprocal and sum to 1, so the mean is exact
-         * at any epsilon. 1e-6: seven digits of the numbers above. */
-        test_interreflection(&comm, rho, exact,
-                             "--epsilon 1e-2 --tolerance 1e-8 --closure symmetric", 1e-6);
+        test_interreflection(&comm, rho, exact, "--tolerance 1e-4",
+                             fmax(LIMIT, FIRST * (1.0 - rho) / rho));
     }
     comm_stop(&comm);
     return tap_done();
