@@ -1,0 +1,41 @@
+/* Links over which light is transferred, for tests of both kinds of links. */
+#ifndef TESTS_TRANSFERS_H
+#define TESTS_TRANSFERS_H
+
+#include "tests/pairs.h"
+
+enum { LINKS = 5000, ROOTS = 20 };
+
+static inline struct world make_many(void)
+{
+    struct soup soup = {0};
+    struct random random = random_seed(1);
+    for (int i = 0; i < ROOTS; i++)
+        soup_add(&soup, random_triangle(&random, 0.5, 0.2));
+    struct scene *scene = scene_of_soup(&soup, 1);
+    scene->materials[0] = material_grey(0.5, 1);
+    soup_free(&soup);
+    struct world world = world_make(scene);
+    for (int32_t r = 0; r < ROOTS; r += 2)
+        forest_split(world.model.forest, r);
+    for (int64_t p = 0; p < world.model.forest->count; p++)
+        for (int c = 0; c < BANDS; c++)
+            world.model.forest->patches[p].radiosity.band[c] = random_unit(&random);
+    return world;
+}
+
+/* FNV-like mix of all fluxes: equal sums, bit by bit. */
+static inline uint64_t flux_hash(const struct forest *forest)
+{
+    uint64_t hash = 1;
+    for (int64_t p = 0; p < forest->count; p++)
+        for (int c = 0; c < BANDS; c++)
+            hash = (hash ^ (uint64_t)forest->patches[p].flux[c]) * UINT64_C(1099511628211);
+    return hash;
+}
+
+static const struct link PLAIN = {.p = 3, .q = 7, .area = 0.25f, .parts_p = {64, 64, 64},
+                                  .parts_q = {64, 64,
+                                              64}, .seen = LINK_ALL_SEEN, .cost = 1};
+
+#endif
