@@ -68,7 +68,7 @@ TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree
         cluster node oracle error_oracle pushpull closure \
         final_gather checksum paths plan balance assign spotcheck \
         text obj ply output store tone image camera viewpoint shading render options progress contour \
-        stop norms cie furnace whole stability gaps leaks exchange conjugate exact converge
+        stop norms cie whole stability gaps leaks exchange conjugate exact converge
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
 vpath %.c tests/tools tests/whole
 

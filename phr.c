@@ -369,11 +369,12 @@ static double share_solved(const struct run *run, double first)
 static void say_forecast(struct run *run)
 {
     int64_t roots = scene_root_count(run->scene);
-    int64_t clusters = run->options.criterion.linking == LINKING_TREE ? roots / 2 : 0;
+    struct memory memory = {.copies = 1};
+    memory.clusters = run->options.criterion.linking == LINKING_TREE ? roots / 2 : 0;
     if (run->options.verbose)
         say(run, "%lld roots and some %lld clusters: %.1f MB on each rank before there are links",
-            (long long)roots, (long long)clusters,
-            1e-6 * (double)memory_needed(1, 0, 0, roots, clusters));
+            (long long)roots, (long long)memory.clusters,
+            1e-6 * (double)memory_needed(&memory, 1, 0, roots));
 }
 
 /* Collective. Steps 2 and 3 of the paper's Sec. 3.2, or what a file holds in their place. */
@@ -381,7 +382,7 @@ static bool start_light(struct run *run)
 {
     const struct options *options = &run->options;
     say_forecast(run);
-    struct solver *solver = solver_create(&run->comm, run->scene, run->octree,
+    struct solver *solver = beyond_create(&run->comm, run->scene, run->octree,
                                           &options->criterion);
     run->solver = solver;
     memory_watch(solver, options->memory, machine_memory());
@@ -424,11 +425,9 @@ static void solve_pass(struct run *run)
 {
     struct solver *solver = run->solver;
     double first = HUGE_VAL; /* bound on the remaining error */
-    solver_close(solver);    /* what each row of form factors should sum to */
     progress_begin(solver->progress, "solving", -1, 0);
     do {
-        solver_transfer(solver);         /* 5: light over the links, */
-        solver_gather(solver);           /*    and proxies go home */
+        solver_gather(solver);           /* 5: light goes over links, and home */
         solver_push_pull(solver);        /* 6: push-pull on own roots */
         solver_scatter(solver);          /* 7: proxies are renewed */
         run->vote = solver_vote(solver); /* 8: is there another iteration? */

@@ -4,8 +4,7 @@
  * builds over it: no rank repeats the work, none could end with other bits, and sending
  * an octree takes less time than building it. Both are packed into one block, of which
  * there is one per node where that pays (mpi/node.c). Ranks of a run share one machine
- * architecture: plain bytes. The tree above the roots goes the same way, in a block of
- * its own.
+ * architecture: plain bytes.
  *
  * The memory of rank 0 holds both twice for a moment. A rank that is alone keeps what it has. */
 #include "mpi/broadcast.h"
@@ -50,48 +49,5 @@ struct node_block scene_broadcast(const struct comm *comm, struct node_policy po
     *scene = scene_view(&view);
     if (octree)
         *octree = octree_view(&view, (*scene)->triangles, (*scene)->planes);
-    return block;
-}
-
-int32_t *places_gather(const struct comm *comm, const struct scene *scene,
-                       const struct octree *octree)
-{
-    int64_t all = scene_root_count(scene);
-    int32_t first = (int32_t)(all * comm->rank / comm->size);
-    int32_t end = (int32_t)(all * (comm->rank + 1) / comm->size);
-    int32_t *own = places_met(scene, octree, first, end);
-    if (comm->size == 1)
-        return own;
-    int *at = alloc_array((size_t)comm->size + 1, sizeof *at);
-    int64_t bytes = SPACE_RAYS * (int64_t)(end - first) * (int64_t)sizeof *own;
-    void *met = comm_gather_all(comm, own, bytes, at);
-    alloc_free(at);
-    alloc_free(own);
-    return met;
-}
-
-struct node_block tree_broadcast(const struct comm *comm, struct node_policy policy,
-                                 const struct scene *scene, const int32_t *met,
-                                 struct cluster_tree **tree)
-{
-    struct node_block block = {.data = NULL};
-    struct pack count = {0};
-    double start = comm_seconds();
-    *tree = comm->rank == 0 ? cluster_tree_build(scene, met) : NULL;
-    double seconds = comm_seconds() - start;
-    block.seconds = seconds;
-    if (comm->size == 1)
-        return block;
-    if (comm->rank == 0)
-        cluster_tree_pack(*tree, &count);
-    comm_broadcast(comm, &count.bytes, sizeof count.bytes);
-    node_block_create(&block, comm, count.bytes, policy);
-    if (comm->rank == 0) {
-        cluster_tree_pack(*tree, &(struct pack){.block = block.data, .writes = true});
-        cluster_tree_destroy(*tree);
-    }
-    node_block_spread(&block, comm);
-    block.seconds = seconds;
-    *tree = cluster_tree_view(&(struct pack){.block = block.data});
     return block;
 }

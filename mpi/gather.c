@@ -1,12 +1,42 @@
-/* Step 5: what proxies received goes home.
+/* Step 5: light is transferred over the links, and what proxies received goes home.
  *
  * A rank's links add flux to patches of nearly all homes. One reduction adds up the flux
  * of all ranks, and each home gets the sums of its patches: integers, so in any order.
  * From P ranks to P homes that takes log P messages a rank, where one to each home would
  * take P - 1. */
-#include "mpi/beyond/beyond.h"
+#include "mpi/solver.h"
 
+#include <math.h>
 #include <string.h>
+
+double solver_largest_radiosity(const struct solver *solver)
+{
+    const struct forest *forest = solver->model.forest;
+    double largest = 1e-250;
+    for (int64_t p = 0; p < forest->count; p++)
+        for (int c = 0; c < BANDS; c++)
+            largest = fmax(largest, fabs(forest->patches[p].radiosity.band[c]));
+    return largest;
+}
+
+/* No patch receives more than all surfaces send where B is largest. */
+void solver_transfer(struct solver *solver)
+{
+    double start = comm_seconds();
+    solver->flux = flux_unit_for(solver_largest_radiosity(solver) * solver->model.area);
+    solver->model.method.transfer(&solver->links, &solver->model, solver->flux);
+    solver->account.seconds[PHASE_SOLVE] += comm_seconds() - start;
+}
+
+/* Own patches keep their flux from the gather on; all others have given theirs away. */
+static void clear_own_flux(struct solver *solver)
+{
+    const struct routes *routes = &solver->routes;
+    const int32_t *own = routes->receivers + routes->receiver_at[solver->comm->rank];
+    for (int i = 0; i < routes->receiver_counts[solver->comm->rank]; i++)
+        for (int c = 0; c < BANDS; c++)
+            solver->model.forest->patches[own[i]].flux[c] = 0;
+}
 
 /* Takes the flux of all patches that can receive light; returns their number. */
 static int64_t take_flux(struct solver *solver)
@@ -24,22 +54,7 @@ static int64_t take_flux(struct solver *solver)
     return count;
 }
 
-/* All ranks get the sums of the flux of all clusters: a reduction and its result sent back. */
-static void gather_clusters(struct solver *solver)
-{
-    struct cluster_light *clusters = solver->model.clusters;
-    int64_t count = BANDS * (int64_t)solver->beyond->tree->count;
-    comm_add(solver->comm, clusters->flux, count);
-    if (solver->comm->size > 1)
-        solver->account.bytes_gather += 2 * count * (int64_t)sizeof *clusters->flux;
-    double start = comm_seconds();
-    cluster_light_push(clusters, solver->model.forest, solver->flux);
-    double pushing = comm_seconds() - start;
-    solver->account.seconds[PHASE_SUMS] += pushing;
-    solver->account.seconds[PHASE_GATHER] -= pushing;
-}
-
-void solver_gather(struct solver *solver)
+static void bring_home(struct solver *solver)
 {
     double start = comm_seconds();
     const struct routes *routes = &solver->routes;
@@ -53,7 +68,27 @@ void solver_gather(struct solver *solver)
         memcpy(patches[own[i]].flux, routes->own_flux + BANDS * i, sizeof patches->flux);
     solver->account.bytes_gather += (count - own_count) * (int64_t)sizeof patches->flux;
     solver->account.copied += count + own_count;
-    if (solver->beyond->tree)
-        gather_clusters(solver);
     solver->account.seconds[PHASE_GATHER] += comm_seconds() - start;
+}
+
+void solver_carry(struct solver *solver)
+{
+    clear_own_flux(solver);
+    solver->steps.transfer(solver);
+    bring_home(solver);
+    if (solver->steps.collect)
+        solver->steps.collect(solver);
+}
+
+void solver_gather(struct solver *solver)
+{
+    if (solver->turn.fresh) {
+        double start = comm_seconds();
+        routes_renew(solver);
+        solver->account.seconds[PHASE_ROUTES] += comm_seconds() - start;
+        if (solver->steps.begin)
+            solver->steps.begin(solver);
+    }
+    solver->turn.fresh = false;
+    solver_carry(solver);
 }

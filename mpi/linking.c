@@ -72,7 +72,7 @@ static bool link_pairs(struct solver *solver, struct linking *linking)
     for (int64_t end = 0; end < pairs;) {
         int64_t links = exchange_notices(solver);
         int64_t round = pairs - end < ROUND ? pairs - end : ROUND;
-        bool fits = memory_has_room(&solver->memory, links + round, 0, patches, 0);
+        bool fits = memory_has_room(&solver->memory, links + round, 0, patches);
         if (!fits)
             solver->memory.reached = solver->memory.limit;
         if (!fits || solver->turn.stop)
@@ -140,7 +140,7 @@ void solver_assign_roots(struct solver *solver)
     alloc_free(weights);
     for (int32_t root = 0; root < roots; root++)
         solver->homes.own[root] = solver->homes.owner[root] == solver->comm->rank;
-    if (!solver->model.clusters) /* clusters have no home */
+    if (!solver->memory.clusters) /* clusters have no home */
         send_home(solver);
     solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
 }

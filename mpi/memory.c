@@ -71,17 +71,17 @@ void memory_watch(struct solver *solver, int64_t limit, int64_t machine)
     memory->copies = solver->comm->size;
 }
 
-int64_t memory_needed(int copies, int rays, int64_t links, int64_t patches,
-                      int64_t clusters)
+int64_t memory_needed(const struct memory *memory, int copies, int64_t links,
+                      int64_t patches)
 {
-    return BYTES_PER_LINK * links + BYTES_PER_RAY * rays * patches +
-           copies * (BYTES_PER_PATCH * patches + BYTES_PER_CLUSTER * clusters);
+    return BYTES_PER_LINK * links + BYTES_PER_RAY * memory->rays * patches +
+           copies * (BYTES_PER_PATCH * patches + BYTES_PER_CLUSTER * memory->clusters);
 }
 
 bool memory_has_room(const struct memory *memory, int64_t links, int64_t prolific,
-                     int64_t patches, int64_t clusters)
+                     int64_t patches)
 {
     int64_t made = 4 * (prolific < patches ? prolific : patches);
-    return memory->limit == 0 || memory_needed(memory->copies, memory->rays, links,
-                                               patches + made, clusters) <= memory->limit;
+    return memory->limit == 0 ||
+           memory_needed(memory, memory->copies, links, patches + made) <= memory->limit;
 }

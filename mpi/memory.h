@@ -10,14 +10,14 @@
  * there is no limit). */
 void memory_watch(struct solver *solver, int64_t limit, int64_t machine);
 
-/* Bytes that so many links take, one copy of the rows of a final gather with `rays` rays
- * (0: none), and so many copies of patches and clusters. */
-int64_t memory_needed(int copies, int rays, int64_t links, int64_t patches,
-                      int64_t clusters);
+/* Bytes that links take, the rows of the final gather, and `copies` copies of the patches
+ * and clusters. */
+int64_t memory_needed(const struct memory *memory, int copies, int64_t links,
+                      int64_t patches);
 
-/* True if there is room for so many links, a final gather, and for what splitting `prolific` of them adds
- * to `patches` patches. The same on all ranks. */
+/* True if there is room for these links, a final gather, and the children of `prolific` of
+ * the patches. The same on all ranks. */
 bool memory_has_room(const struct memory *memory, int64_t links, int64_t prolific,
-                     int64_t patches, int64_t clusters);
+                     int64_t patches);
 
 #endif

@@ -128,8 +128,7 @@ static bool has_room(const struct solver *solver, const struct level_counts *lev
                      int64_t patches)
 {
     int64_t links = level->kept + LINKS_PER_SPLIT * level->prolific;
-    return memory_has_room(&solver->memory, links, level->of_patches, patches,
-                           solver->model.clusters ? solver->model.clusters->tree->count : 0);
+    return memory_has_room(&solver->memory, links, level->of_patches, patches);
 }
 
 /* Collective. True if the memory limit lets the level be split. Ranks may have made the
@@ -210,6 +209,7 @@ static void begin_pass(struct solver *solver)
     solver->account.seconds[PHASE_PREPARE] += comm_seconds() - start;
     solver->account.seconds[PHASE_REFINEMENT] += comm_seconds() - start;
     solver->turn.pass++;
+    solver->turn.fresh = true;
     solver->turn.split_here = 0;
     solver->turn.first_new = solver->turn.shared = solver->model.forest->count;
 }

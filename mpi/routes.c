@@ -2,7 +2,7 @@
 #include "mpi/routes.h"
 
 #include "geom/alloc.h"
-#include "mpi/beyond/beyond.h"
+#include "mpi/solver.h"
 
 void routes_free(struct routes *routes)
 {

@@ -79,9 +79,3 @@ void solver_scatter(struct solver *solver)
         renew_home(solver, home);
     solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
 }
-
-void solver_scatter_unvoted(struct solver *solver)
-{
-    solver->ballot = (struct ballot){0};
-    solver_scatter(solver);
-}

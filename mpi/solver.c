@@ -5,14 +5,19 @@
 #define HAVE_RUSAGE 1
 #endif
 
-#include "mpi/beyond/beyond.h"
+#include "mpi/solver.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "mpi/broadcast.h"
 #include "mpi/memory.h"
+
+const struct steps STEPS_PAPER = {
+    .transfer = solver_transfer,
+    .push_pull = solver_push_pull_jacobi,
+    .vote = solver_vote_jacobi,
+};
 
 struct solver *solver_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree, const struct criterion *criterion)
@@ -20,24 +25,12 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     struct solver *solver = alloc_array(1, sizeof *solver);
     size_t roots = (size_t)scene_root_count(scene);
     solver->comm = comm;
-    solver->beyond = alloc_array(1, sizeof *solver->beyond);
     solver->model = model_make(scene, octree, forest_create(scene), criterion);
-    if (criterion->linking == LINKING_TREE) {
-        double start = comm_seconds();
-        int32_t *met = octree ? places_gather(comm, scene, octree) : NULL;
-        solver->account.seconds[PHASE_SPACES] = comm_seconds() - start;
-        solver->beyond->tree_block = tree_broadcast(comm, node_policy(), scene, met, &solver->beyond->tree);
-        alloc_free(met);
-        solver->account.seconds[PHASE_TREE] = solver->beyond->tree_block.seconds;
-        solver->model.clusters = cluster_light_create(solver->beyond->tree);
-        solver->model.forest->above = alloc_array(roots, sizeof *solver->model.forest->above);
-    }
+    solver->steps = STEPS_PAPER;
+    solver->turn.fresh = true;
     solver->homes.owner = alloc_array(roots, sizeof *solver->homes.owner);
     solver->homes.own = alloc_array(roots, sizeof *solver->homes.own);
     solver->change.of_root = alloc_array(roots, sizeof *solver->change.of_root);
-    solver->beyond->closure.kind = criterion->closure;
-    solver->beyond->descent.fresh = true;
-    solver->beyond->descent.least_bend = 1.0;
     return solver;
 }
 
@@ -45,10 +38,9 @@ void solver_destroy(struct solver *solver)
 {
     if (!solver)
         return;
+    if (solver->steps.end)
+        solver->steps.end(solver);
     forest_destroy(solver->model.forest);
-    cluster_light_destroy(solver->model.clusters);
-    cluster_tree_destroy(solver->beyond->tree);
-    node_block_destroy(&solver->beyond->tree_block);
     link_list_free(&solver->links);
     alloc_free(solver->homes.owner);
     alloc_free(solver->homes.own);
@@ -56,52 +48,7 @@ void solver_destroy(struct solver *solver)
     alloc_free(solver->change.of_root);
     ledger_free(&solver->account.ledger);
     alloc_free(solver->account.proxies);
-    closure_free(&solver->beyond->closure);
-    conjugate_free(&solver->beyond->descent.vectors);
-    alloc_free(solver->beyond->answer.error);
-    alloc_free(solver->beyond->answer.straight);
-    final_gather_free(&solver->beyond->answer.gather);
-    alloc_free(solver->beyond);
     alloc_free(solver);
-}
-
-void solver_measure_closure(struct solver *solver, struct stats *stats)
-{
-    const struct comm *comm = solver->comm;
-    struct forest *forest = solver->model.forest;
-    struct rgb *kept = forest_keep(forest);
-    for (int64_t p = 0; p < forest->count; p++)
-        forest->patches[p].radiosity = (struct rgb){{1.0, 0.0, 0.0}};
-    int64_t bytes = solver->account.bytes_gather, copied = solver->account.copied; /* not of the method */
-    double start = comm_seconds(), seconds[PHASE_COUNT];
-    memcpy(seconds, solver->account.seconds, sizeof seconds);
-    routes_renew(solver); /* a finished run that was resumed has none */
-    enum closure_kind kind = solver->beyond->closure.kind;
-    solver->beyond->closure.kind = CLOSURE_NONE;
-    solver_transfer(solver);
-    solver->beyond->closure.kind = kind;
-    forest_restore(forest, kept);
-    solver_gather(solver);
-    solver->account.bytes_gather = bytes;
-    solver->account.copied = copied;
-    memcpy(solver->account.seconds, seconds, sizeof seconds);
-    struct closure_sums own = closure_measure(forest, solver->homes.own, solver->flux);
-    struct closure_sums *all = comm_gather_each(comm, &own, sizeof own);
-    struct closure_sums sum = {.min = HUGE_VAL, .max = -HUGE_VAL};
-    for (int r = 0; r < comm->size; r++) {
-        sum.min = fmin(sum.min, all[r].min);
-        sum.max = fmax(sum.max, all[r].max);
-        sum.area = flux_add(sum.area, all[r].area);
-        sum.rows = flux_add(sum.rows, all[r].rows);
-        sum.squares = flux_add(sum.squares, all[r].squares);
-    }
-    alloc_free(all);
-    double area = sum.area > 0 ? (double)sum.area : 1.0; /* 0: too small to count, all is 0 */
-    stats->closure_min = sum.min;
-    stats->closure_max = sum.max;
-    stats->closure_mean = (double)sum.rows / area;
-    stats->closure_rms = sqrt((double)sum.squares / area);
-    solver->account.seconds[PHASE_ROW_SUMS] += comm_seconds() - start;
 }
 
 void solver_record_iteration(struct solver *solver)
@@ -235,23 +182,16 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->links = vote->links;
     stats->passes = solver->turn.pass;
     stats->iterations = solver->turn.iteration;
-    stats->clusters = solver->beyond->tree ? solver->beyond->tree->count : 0;
-    stats->counted_bytes = memory_needed(1, solver->model.criterion.final_gather,
-                                         stats->links, solver->model.forest->count,
-                                         stats->clusters);
+    stats->clusters = solver->memory.clusters;
+    stats->counted_bytes = memory_needed(&solver->memory, 1, stats->links,
+                                         solver->model.forest->count);
     stats->memory_limited = solver->memory.reached > 0;
-    stats->accuracy = solver->model.criterion.accuracy;
-    stats->hold = solver->beyond->accuracy.hold;
-    stats->rounds = solver->beyond->accuracy.rounds;
-    stats->converged =
-        vote->converged && !stats->memory_limited && stats->hold == HOLD_NONE;
+    stats->converged = vote->converged && !stats->memory_limited;
     stats->epsilon = solver->model.criterion.epsilon;
-    stats->error_estimate = solver->beyond->answer.counts.error;
     stats->emitted_power = unit * scene_emitted_power(scene);
     stats->absorbed_power = unit * vote->absorbed;
     stats->escaped_power = unit * vote->escaped;
     stats->checksum = forest_checksum(solver->model.forest);
-    stats->gathered = solver->beyond->answer.counts;
     ledger_share(&solver->account.ledger, solver->comm);
     stats->levels = solver->account.ledger.levels;
     stats->level_count = solver->account.ledger.level_count;
@@ -260,4 +200,6 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     report_proxies(solver, stats);
     report_counts(solver, stats);
     report_seconds(solver, stats);
+    if (solver->steps.report)
+        solver->steps.report(solver, stats);
 }

@@ -23,6 +23,7 @@ struct memory {
     int64_t reached; /* the limit that has ended linking or refinement, 0: none has */
     int copies;      /* of patches and clusters, that count */
     int rays;        /* of the final gather */
+    int64_t clusters; /* above the roots */
 };
 
 /* What a rank says about an iteration; 136 bytes, no padding. */
@@ -57,12 +58,12 @@ struct turn {
     int64_t first_new;  /* patches from here on were created in this pass */
     int64_t shared;     /* patches up to here are the same on all ranks */
     int64_t split_here; /* links that this rank split in this pass */
+    bool fresh;         /* links have changed since light went over them */
     int stop;           /* signal that some rank has got, 0: none; the same on all ranks */
 };
 
 /* What the last push-pull has changed, flux units. */
 struct change {
-    struct push_pull_sums sums;
     int64_t *of_root; /* [roots] see push_pull() */
     int64_t last;     /* of all ranks, in the iteration before */
 };
@@ -84,6 +85,23 @@ struct account {
 };
 
 struct beyond; /* mpi/beyond/beyond.h */
+struct solver;
+struct vote;
+
+/* The parts of steps that there are two ways to do: the paper's, and phr's own. NULL: there
+ * is nothing to do. */
+struct steps {
+    void (*begin)(struct solver *solver);       /* 5: before new links carry light */
+    void (*transfer)(struct solver *solver);    /* 5: flux over the links that live here */
+    void (*collect)(struct solver *solver);     /* 5: flux of all ranks above the roots */
+    void (*push_pull)(struct solver *solver);   /* 6: own leaves, and the ballot */
+    struct vote (*vote)(struct solver *solver, const struct ballot *sum); /* 8 */
+    void (*report)(const struct solver *solver, struct stats *stats);
+    void (*end)(struct solver *solver);         /* releases solver->beyond */
+};
+
+/* The paper's. */
+extern const struct steps STEPS_PAPER;
 
 struct solver {
     const struct comm *comm;   /* borrowed */
@@ -98,7 +116,8 @@ struct solver {
     struct change change;
     struct ballot ballot;      /* of this rank after push-pull, of all after scatter */
     struct account account;
-    struct beyond *beyond;     /* owned: what the paper's method does not have */
+    struct steps steps;
+    struct beyond *beyond;     /* owned; NULL: the paper's method alone */
 };
 
 /* Sums over all ranks after an iteration; the same on all ranks. */
@@ -115,7 +134,7 @@ struct vote {
     double escaped;    /* the same: what leaves the surfaces less what the links deliver */
 };
 
-/* Collective. Borrows comm, scene and octree. */
+/* Collective. The paper's method. Borrows comm, scene and octree. */
 struct solver *solver_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree, const struct criterion *criterion);
 void solver_destroy(struct solver *solver);
@@ -135,40 +154,35 @@ void solver_assign_roots(struct solver *solver);
  * there is no light over the links there are. */
 bool solver_refine(struct solver *solver);
 
-/* Row sums of the links there are, and the closure. */
-void solver_close(struct solver *solver);
-
-/* Step 5: the transfer of light over the links there are, and flux of proxies goes home. */
-void solver_transfer(struct solver *solver);
+/* Step 5: light is transferred over the links there are, and flux of proxies goes home. */
 void solver_gather(struct solver *solver);
 
-/* Steps 6 to 8: push-pull on the own roots; scatter of the own radiosities and of the
- * ballots, or of radiosities that nobody votes on; the vote. With --solver cg B takes the
- * place of rho z when there is no other iteration. */
+/* The transfer alone, whether links have changed or not. */
+void solver_carry(struct solver *solver);
+
+/* Over all patches and bands, W/m^2; the same on all ranks. */
+double solver_largest_radiosity(const struct solver *solver);
+
+/* Step 6: push-pull on the own roots, and this rank's ballot. */
 void solver_push_pull(struct solver *solver);
+
+/* Step 7: own radiosities and the ballots go to all ranks. */
 void solver_scatter(struct solver *solver);
-void solver_scatter_unvoted(struct solver *solver);
+
+/* Step 8: the verdict on the sum of all ballots. */
 struct vote solver_vote(struct solver *solver);
 
-/* This rank's ballot, when its roots are pushed and pulled: the end of solver_push_pull(). */
-void solver_cast_ballot(struct solver *solver);
+/* The parts of STEPS_PAPER. */
+void solver_transfer(struct solver *solver);
+void solver_push_pull_jacobi(struct solver *solver);
+struct vote solver_vote_jacobi(struct solver *solver, const struct ballot *sum);
 
-/* Step 9, phr's own, after the last vote: the final gather. What all leaves see is traced, and light
- * solved for by that; `vote` says of the light from then on. The same on all ranks. False
- * if a signal has ended it. Pre: there are clusters. */
-bool solver_final_gather(struct solver *solver, struct vote *vote);
-
-/* Step 9, if there is one, and with --accuracy the verdict on it: DONE; STOPPED by a signal; or AGAIN,
- * and then criterion and vote are those of the links, for more passes, or for this step with more
- * rays alone. */
-enum finish { FINISH_DONE, FINISH_STOPPED, FINISH_AGAIN };
-enum finish solver_finish(struct solver *solver, struct vote *vote);
+/* The vote on these sums, for a bound on the remaining error relative to all light. */
+struct vote vote_make(const struct solver *solver, const struct ballot *sum,
+                      double remaining);
 
 /* Enters the work of the iteration into the ledger. */
 void solver_record_iteration(struct solver *solver);
-
-/* After the last iteration: the row sums over the links there are, into `stats`. */
-void solver_measure_closure(struct solver *solver, struct stats *stats);
 
 /* Fills `stats` but for the closure: counts and sums over all ranks, and the clocks of all ranks
  * as they stand. Borrows the levels of the solver. */

@@ -11,11 +11,10 @@
 #include "rad/method.h"
 #include "rad/patch.h"
 
-/* What is named by options; read by method_of() alone, but for the last three. */
-enum oracle { ORACLE_BF, ORACLE_ERROR }; /* rad/oracle.h, rad/beyond/error_oracle.h */
+/* What is named by options; read by method_of() alone, but for the last two. */
+enum oracle { ORACLE_BF, ORACLE_ERROR };   /* rad/oracle.h, rad/beyond/error_oracle.h */
 enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON }; /* rad/beyond/patch_exchange.h */
 enum linking_kind { LINKING_PAIRS, LINKING_TREE };
-enum closure_kind { CLOSURE_NONE, CLOSURE_CAP, CLOSURE_ROWS };
 enum solver_kind { SOLVER_JACOBI, SOLVER_CG };
 enum balance { BALANCE_NONE, BALANCE_GREEDY, BALANCE_DEFAULT }; /* mpi/balance.h */
 
@@ -25,7 +24,6 @@ struct criterion {
     enum oracle oracle;
     enum linking_kind linking;
     enum form_factor form_factor;
-    enum closure_kind closure;
     enum solver_kind solver;
     enum balance balance;
     double epsilon;         /* energy or error of a link that splits it, relative to

@@ -43,8 +43,8 @@ struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flu
 }
 
 /* Gives a leaf its new radiosity and adds what that means to the sums. Returns the change. */
-static int64_t update_leaf(const struct model *model, const struct closure *closure,
-                           struct flux_unit flux, int32_t leaf, struct push_pull_sums *sums)
+static int64_t update_leaf(const struct model *model, struct flux_unit flux, int32_t leaf,
+                           struct push_pull_sums *sums)
 {
     struct patch *patch = &model->forest->patches[leaf];
     const struct material *material = forest_material(model->forest, leaf);
@@ -53,7 +53,7 @@ static int64_t update_leaf(const struct model *model, const struct closure *clos
     double light = 0.0, absorbed = 0.0, arriving = 0.0, change = 0.0;
     for (int c = 0; c < BANDS; c++) {
         double rho = material->reflectance.band[c];
-        double h = closure_receives(closure, leaf) * irradiance.band[c];
+        double h = irradiance.band[c];
         double b = material->emission.band[c] + rho * h;
         light += area * b;
         absorbed += area * ((1.0 - rho) * h);
@@ -102,8 +102,8 @@ static double largest_shrink(const struct model *model, const bool *own, const i
     return largest;
 }
 
-struct push_pull_sums push_pull(const struct model *model, const struct closure *closure,
-                                struct flux_unit flux, const bool *own, int64_t *root_change)
+struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux,
+                                const bool *own, int64_t *root_change)
 {
     struct forest *forest = model->forest;
     struct push_pull_sums sums = {0};
@@ -115,7 +115,7 @@ struct push_pull_sums push_pull(const struct model *model, const struct closure 
             continue;
         if (!patch_is_leaf(patch))
             continue;
-        int64_t change = update_leaf(model, closure, flux, (int32_t)p, &sums);
+        int64_t change = update_leaf(model, flux, (int32_t)p, &sums);
         now[root] = flux_add(now[root], change);
         sums.change = flux_add(sums.change, change);
     }

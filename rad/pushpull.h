@@ -5,7 +5,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "rad/beyond/closure.h"
 #include "rad/model.h"
 
 /* What one push-pull did to this rank's own roots. Powers in units of model.flux_unit, summed
@@ -21,11 +20,11 @@ struct push_pull_sums {
 /* Irradiance H of a leaf, W/m^2: the flux of the leaf and of all above it, each over its area. */
 struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flux_unit unit);
 
-/* Push and pull on the roots with own[root] set: leaves get B = E + rho H, H being corrected by
- * their closure, inner patches the mean of their children. `flux`: unit of the flux. root_change[root] holds
- * each own root's change of the iteration before, and is renewed. */
-struct push_pull_sums push_pull(const struct model *model, const struct closure *closure,
-                                struct flux_unit flux, const bool *own, int64_t *root_change);
+/* Push and pull on the roots with own[root] set: leaves get B = E + rho H, inner patches the
+ * mean of their children. `flux`: unit of the flux. root_change[root] holds each own root's
+ * change of the iteration before, and is renewed. */
+struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux,
+                                const bool *own, int64_t *root_change);
 
 /* The pull alone, on one patch and on all: inner patches get the mean of their children. */
 void forest_average_patch(struct forest *forest, int32_t patch);

@@ -129,9 +129,9 @@ method() {
 }
 
 method paper --paper
-method rows --closure rows --form-factor disk
-method jacobi --closure rows --solver jacobi --max-level 4
-method none --oracle bf --closure none
+method disk --form-factor disk
+method jacobi --solver jacobi --max-level 4
+method bf --oracle bf
 method accuracy --accuracy 1.5% --epsilon 1e-2
 method pixels --final-gather 8,pixels --samples 2
 

@@ -59,8 +59,8 @@ check "and that by 4" cmp "$work/links-4" "$work/links-1"
 check "saving changes nothing" same save-3 plain
 run load 2 $pairs --load-links "$work/links-4"
 check "2 ranks go on from it" same load plain
-run load-closed 3 $pairs --load-links "$work/links-1" --closure rows --tolerance 1e-3
-run closed 1 $pairs --closure rows --tolerance 1e-3
+run load-closed 3 $pairs --load-links "$work/links-1" --solver jacobi --tolerance 1e-3
+run closed 1 $pairs --solver jacobi --tolerance 1e-3
 check "other settings than those of links are free" same load-closed closed
 
 cp scenes/cornell.obj "$work/moved.obj"
@@ -123,10 +123,10 @@ check "which takes two rounds and more" \
     holds "$(stat_of "$work/accuracy-40.json" passes) > $(stat_of "$work/plain.json" passes)"
 counts="checksum links patches passes iterations absorbed_power" # rays fired again are counted again
 resumes two-sided 8 --two-sided --max-level 4
-resumes rows 8 --closure rows --max-level 3
+resumes jacobi 8 --solver jacobi --max-level 3
 
-check "--closure is bound" refused "$work/check-1: made with --closure cap, this run has --closure none" \
-    $cornell --resume "$work/check-1" --closure none
+check "--solver is bound" refused "$work/check-1: made with --solver cg, this run has --solver jacobi" \
+    $cornell --resume "$work/check-1" --solver jacobi
 check "so is --linking" \
     refused "$work/check-1: made with --linking tree, this run has --linking pairs" \
     $pairs --resume "$work/check-1"

@@ -35,7 +35,7 @@ END
 box 0.5 >"$work/box-0.5.obj"
 box 0.52 >"$work/box-0.52.obj"
 printf 'eye 20 15 12\nat 0 0 0\nsize 16 12\n' >"$work/box.view"
-"$PHR" "$work/box-0.5.obj" --closure rows --max-level 3 --epsilon 1e-3 --quiet --view "$work/box.view" -o "$work/phr.ply" \
+"$PHR" "$work/box-0.5.obj" --max-level 3 --epsilon 1e-3 --quiet --view "$work/box.view" -o "$work/phr.ply" \
     -o "$work/phr.pfm"
 
 # trace RHO: the mesh and the picture of the box, the norms in $work/norms-RHO.

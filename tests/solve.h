@@ -4,14 +4,14 @@
 
 #include <time.h>
 
-#include "mpi/solver.h"
+#include "mpi/beyond/beyond.h"
 
 struct solution {
     struct scene *scene; /* owned */
     struct octree *octree;
     struct solver *solver;
     struct vote vote;
-    struct stats stats; /* closure and the fields of solver_report() */
+    struct stats stats; /* row sums and the fields of solver_report() */
     double seconds;     /* for the octree and the loop; see seconds_of_work() */
 };
 
@@ -31,25 +31,21 @@ static inline struct criterion criterion_of(double epsilon, int max_level, doubl
 }
 
 /* The error oracle, form factors of polygons, and conjugate gradients. */
-static inline struct criterion criterion_best(double epsilon, int max_level, double tolerance,
-                                              enum closure_kind closure)
+static inline struct criterion criterion_best(double epsilon, int max_level, double tolerance)
 {
     struct criterion criterion = criterion_of(epsilon, max_level, tolerance);
     criterion.oracle = ORACLE_ERROR;
     criterion.linking = LINKING_TREE;
     criterion.form_factor = FORM_FACTOR_POLYGON;
-    criterion.closure = closure;
     criterion.solver = SOLVER_CG;
     return criterion;
 }
 
-/* Collective. Closes the links there are and solves over them, without refinement. */
+/* Collective. Solves over the links there are, without refinement. */
 static inline struct vote solve_links(struct solver *solver)
 {
     struct vote vote;
-    solver_close(solver);
     do {
-        solver_transfer(solver);
         solver_gather(solver);
         solver_push_pull(solver);
         solver_scatter(solver);
@@ -65,7 +61,7 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
     struct solution s = {.scene = scene};
     double start = seconds_of_work(comm);
     s.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
-    s.solver = solver_create(comm, scene, s.octree, &criterion);
+    s.solver = beyond_create(comm, scene, s.octree, &criterion);
     solver_link_roots(s.solver);
     solver_assign_roots(s.solver);
     do {

@@ -39,8 +39,6 @@ static const struct option OPTIONS[] = {
     {"--linking", KIND_CHOICE, offsetof(struct options, criterion.linking), 0, 0, "pairs|tree"},
     {"--form-factor", KIND_CHOICE, offsetof(struct options, criterion.form_factor), 0, 0,
      "disk|polygon"},
-    {"--closure", KIND_CHOICE, offsetof(struct options, criterion.closure), 0, 0,
-     "none|cap|rows"},
     {"--solver", KIND_CHOICE, offsetof(struct options, criterion.solver), 0, 0, "jacobi|cg"},
     {"--balance", KIND_CHOICE, offsetof(struct options, criterion.balance), 0, 0,
      "none|greedy|default"},
@@ -218,7 +216,6 @@ static void set_paper(struct criterion *criterion)
     criterion->oracle = ORACLE_BF;
     criterion->linking = LINKING_PAIRS;
     criterion->form_factor = FORM_FACTOR_DISK;
-    criterion->closure = CLOSURE_NONE;
     criterion->solver = SOLVER_JACOBI;
     criterion->balance = BALANCE_GREEDY;
 }
@@ -357,7 +354,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
     *options = (struct options){
         .samples = 3,
         .criterion = {.oracle = ORACLE_ERROR, .linking = LINKING_TREE, .form_factor = FORM_FACTOR_POLYGON,
-                      .closure = CLOSURE_CAP, .solver = SOLVER_CG, .balance = BALANCE_DEFAULT,
+                      .solver = SOLVER_CG, .balance = BALANCE_DEFAULT,
                       .epsilon = -1.0, .min_area = 1e-7, .max_level = 10, .alpha = 0.5, .tolerance = 1e-5,
                       .max_iterations = 1000, .final_gather = -1},
     };
@@ -445,7 +442,7 @@ const char *options_link_settings(const struct options *options)
 const char *options_run_settings(const struct options *options)
 {
     static const char *const NAMES[] = {
-        "--two-sided", "--two-sided-lamps", "--oracle", "--linking", "--form-factor", "--closure",
+        "--two-sided", "--two-sided-lamps", "--oracle", "--linking", "--form-factor",
         "--solver", "--epsilon", "--accuracy", "--max-level", "--min-area", NULL};
     return describe_all(options, NAMES);
 }
@@ -469,7 +466,7 @@ void options_print_help(FILE *file)
           "  --tolerance T    of the solution (1e-5) --max-iterations N   at most (1000)\n"
           "  --oracle error|bf   what splits a link  --form-factor polygon|disk\n"
           "  --linking tree|pairs  where links begin --final-gather N[,pixels]  rays (256)\n"
-          "  --closure none|cap|rows  of row sums (cap)  --solver cg|jacobi\n"
+          "  --solver cg|jacobi                      of the light over the links (cg)\n"
           "  --paper          the paper's of these   --alpha A     inherited cost (0.5)\n"
           "  --two-sided      backs reflect, too     --two-sided-lamps  those of lamps\n"
           "  --save-links F   those of all pairs     --load-links F  in their place\n"

@@ -107,7 +107,7 @@ static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
     double epsilon = solver->model.criterion.epsilon, share;
     enum hold hold = hold_of_leaves(solver, &share);
     if (solver->memory.reached > 0 ||
-        !memory_has_room(&solver->memory, links, 1, solver->model.forest->count, 0))
+        !memory_has_room(&solver->memory, links, 1, solver->model.forest->count))
         return HOLD_MEMORY;
     if (solver->turn.iteration >= solver->model.criterion.max_iterations)
         return HOLD_ITERATIONS;
@@ -122,14 +122,12 @@ static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
 /* What keeps rays from becoming twice as many. */
 static enum hold hold_of_rays(const struct solver *solver, int rays, int64_t links)
 {
-    const struct memory *memory = &solver->memory;
-    int64_t clusters = solver->beyond->tree->count, patches = solver->model.forest->count;
-    if (2 * rays > GATHER_RAYS_MOST)
+    struct memory memory = solver->memory;
+    memory.rays = 2 * rays;
+    if (memory.rays > GATHER_RAYS_MOST)
         return HOLD_RAYS;
-    return memory->limit > 0 && memory_needed(memory->copies, 2 * rays, links, patches,
-                                              clusters) > memory->limit
-               ? HOLD_MEMORY
-               : HOLD_NONE;
+    return memory_has_room(&memory, links, 0, solver->model.forest->count) ? HOLD_NONE
+                                                                           : HOLD_MEMORY;
 }
 
 /* --- the next round --- */

@@ -13,7 +13,7 @@ struct descent {
     bool diverged;         /* K is not positive: more is reflected than arrives */
     double gain;           /* largest row sum, at least 1 */
     double shrink;         /* largest row sum times reflectance */
-    double weight;         /* largest closure_weight(), at least 1 */
+    double weight;         /* 1 over the least factor of a closure */
     double share;          /* largest reflectance over that */
     double gamma[BANDS];   /* <z, z>, W^2 m^-2, */
     double gamma_before[BANDS]; /* and of the step before */
@@ -49,5 +49,33 @@ struct beyond {
     struct accuracy accuracy;
     struct answer answer;
 };
+
+/* Collective. A solver for the criterion, whatever it asks for. Borrows comm, scene and
+ * octree. */
+struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
+                             const struct octree *octree, const struct criterion *criterion);
+
+/* Step 5, when links have changed: row sums of the links there are, and the closure. */
+void closing_begin(struct solver *solver);
+
+/* Collective. After the last iteration: the row sums over the links there are, into
+ * `stats`. */
+void solver_measure_closure(struct solver *solver, struct stats *stats);
+
+/* Steps 6 and 8 by conjugate gradients. When there is no other iteration B takes the place
+ * of rho z. */
+void descent_push_pull(struct solver *solver);
+struct vote descent_vote(struct solver *solver, const struct ballot *sum);
+
+/* Step 9, phr's own, after the last vote: the final gather. What all leaves see is traced, and light
+ * solved for by that; `vote` says of the light from then on. The same on all ranks. False
+ * if a signal has ended it. Pre: there are clusters. */
+bool solver_final_gather(struct solver *solver, struct vote *vote);
+
+/* Step 9, if there is one, and with --accuracy the verdict on it: DONE; STOPPED by a signal; or AGAIN,
+ * and then criterion and vote are those of the links, for more passes, or for this step with more
+ * rays alone. */
+enum finish { FINISH_DONE, FINISH_STOPPED, FINISH_AGAIN };
+enum finish solver_finish(struct solver *solver, struct vote *vote);
 
 #endif

@@ -1,49 +1,27 @@
-/* Between refinement and transfer: the row sums of the links there are, and the closure.
- *
- * B = 1 is transferred like light; what arrives per area is a leaf's row sum R, at most 1 in truth.
- * --closure cap: where links make it so large that light would grow, or all but grow, from bounce to
- * bounce, the leaf receives less; then there is always a solution, and the bound on the iteration
- * error always holds.
- * --closure rows: the same, and an enclosed leaf receives 1 / R of what its links bring, so
- * that its row sums to 1. */
+/* Before light is transferred over new links: their row sums, and the caps on them
+ * (rad/beyond/closure.h). B = 1 is transferred like light. */
 #include "mpi/beyond/beyond.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 
-/* Transfers B = 1 and brings it home. */
+/* Transfers B = 1, and brings it home. */
 static void transfer_ones(struct solver *solver)
 {
     struct forest *forest = solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++)
         forest->patches[p].radiosity = (struct rgb){{1.0, 0.0, 0.0}};
-    solver_transfer(solver);
-    solver_gather(solver);
+    solver_carry(solver);
 }
 
-/* Row sum times reflectance is what light grows by from bounce to bounce; it is kept below this, or
- * half way from rho to 1 where that is more. Less took light from leaves close to lamps, whose rows
- * are made of links of many levels; at 0.95 the errors are those of no cap. */
-static const double MOST_REFLECTED = 0.95;
-
-static double largest_row(const struct solver *solver, int32_t leaf)
+static void cap_rows(struct solver *solver)
 {
-    struct rgb rho = forest_material(solver->model.forest, leaf)->reflectance;
-    double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2]));
-    return largest > 0.0 ? fmax(MOST_REFLECTED, 0.5 * (1.0 + largest)) / largest : HUGE_VAL;
-}
-
-/* Finds the factors of own leaves anew. */
-static void renew_factors(struct solver *solver)
-{
-    struct closure *closure = &solver->beyond->closure;
-    for (int64_t i = 0; i < solver->beyond->descent.vectors.leaf_count; i++) {
-        int32_t p = solver->beyond->descent.vectors.leaves[i];
-        double row = leaf_irradiance(solver->model.forest, p, solver->flux).band[0];
-        bool due = row > 0.0 && closure->kind == CLOSURE_ROWS &&
-                   closure_is_due(closure, &solver->model, p);
-        closure->factor[p] = due ? 1.0 / row : fmin(1.0, largest_row(solver, p) / row);
+    const struct conjugate *vectors = &solver->beyond->descent.vectors;
+    for (int64_t i = 0; i < vectors->leaf_count; i++) {
+        int32_t leaf = vectors->leaves[i];
+        double row = leaf_irradiance(solver->model.forest, leaf, solver->flux).band[0];
+        closure_cap(&solver->beyond->closure, solver->model.forest, leaf, row);
     }
 }
 
@@ -55,11 +33,11 @@ static void bound_rows(struct solver *solver)
     double bound[4] = {1.0, 0.0, 1.0, 0.0}; /* gain, shrink, weight, share */
     for (int64_t i = 0; i < solver->beyond->descent.vectors.leaf_count; i++) {
         int32_t leaf = solver->beyond->descent.vectors.leaves[i];
-        double row = closure_receives(&solver->beyond->closure, leaf) *
+        double row = solver->beyond->closure.factor[leaf] *
                      leaf_irradiance(model->forest, leaf, solver->flux).band[0];
         struct rgb rho = forest_material(model->forest, leaf)->reflectance;
         double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2]));
-        double weight = closure_weight(&solver->beyond->closure, leaf);
+        double weight = 1.0 / solver->beyond->closure.factor[leaf];
         bound[0] = fmax(bound[0], row);
         bound[1] = fmax(bound[1], row * largest);
         bound[2] = fmax(bound[2], weight);
@@ -74,21 +52,51 @@ static void bound_rows(struct solver *solver)
     solver->beyond->descent.share = bound[3];
 }
 
-void solver_close(struct solver *solver)
+void closing_begin(struct solver *solver)
 {
-    const struct criterion *criterion = &solver->model.criterion;
     struct forest *forest = solver->model.forest;
-    double start = comm_seconds();
-    routes_renew(solver);
     closure_extend(&solver->beyond->closure, forest);
     conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
-    solver->account.seconds[PHASE_ROUTES] += comm_seconds() - start;
-    if (criterion->closure == CLOSURE_NONE && criterion->solver == SOLVER_JACOBI)
-        return;
+    solver->beyond->descent.fresh = true;
     struct rgb *kept = forest_keep(forest);
     transfer_ones(solver);
-    if (criterion->closure != CLOSURE_NONE)
-        renew_factors(solver);
+    cap_rows(solver);
     bound_rows(solver);
     forest_restore(forest, kept);
 }
+
+void solver_measure_closure(struct solver *solver, struct stats *stats)
+{
+    const struct comm *comm = solver->comm;
+    struct forest *forest = solver->model.forest;
+    struct rgb *kept = forest_keep(forest);
+    for (int64_t p = 0; p < forest->count; p++)
+        forest->patches[p].radiosity = (struct rgb){{1.0, 0.0, 0.0}};
+    int64_t bytes = solver->account.bytes_gather, copied = solver->account.copied; /* not of the method */
+    double start = comm_seconds(), seconds[PHASE_COUNT];
+    memcpy(seconds, solver->account.seconds, sizeof seconds);
+    routes_renew(solver); /* a finished run that was resumed has none */
+    solver_carry(solver);
+    forest_restore(forest, kept);
+    solver->account.bytes_gather = bytes;
+    solver->account.copied = copied;
+    memcpy(solver->account.seconds, seconds, sizeof seconds);
+    struct closure_sums own = closure_measure(forest, solver->homes.own, solver->flux);
+    struct closure_sums *all = comm_gather_each(comm, &own, sizeof own);
+    struct closure_sums sum = {.min = HUGE_VAL, .max = -HUGE_VAL};
+    for (int r = 0; r < comm->size; r++) {
+        sum.min = fmin(sum.min, all[r].min);
+        sum.max = fmax(sum.max, all[r].max);
+        sum.area = flux_add(sum.area, all[r].area);
+        sum.rows = flux_add(sum.rows, all[r].rows);
+        sum.squares = flux_add(sum.squares, all[r].squares);
+    }
+    alloc_free(all);
+    double area = sum.area > 0 ? (double)sum.area : 1.0; /* 0: too small to count, all is 0 */
+    stats->closure_min = sum.min;
+    stats->closure_max = sum.max;
+    stats->closure_mean = (double)sum.rows / area;
+    stats->closure_rms = sqrt((double)sum.squares / area);
+    solver->account.seconds[PHASE_ROW_SUMS] += comm_seconds() - start;
+}
+

@@ -220,7 +220,7 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
         double error = forest_area(forest, leaf) * spread_of(&looks[i]);
         keep_known(l, leaf, &looks[i]);
         if (!(error > *threshold) || !patch_may_split(&solver->model, leaf) ||
-            !memory_has_room(&solver->memory, l->links, 1, forest->count, 0))
+            !memory_has_room(&solver->memory, l->links, 1, forest->count))
             continue;
         split_leaf(forest, leaf, &looks[i]);
         for (int k = 0; k < 4; k++) {

@@ -324,7 +324,7 @@ int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snaps
     broadcast_snapshot(solver->comm, snapshot);
     restore_trees(forest, snapshot);
     closure_extend(&solver->beyond->closure, forest);
-    conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own); /* own leaves: see solver_close() */
+    conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own); /* own leaves: see closing_begin() */
     int32_t *order = forest_order(forest);
     restore_leaves(solver, snapshot, order);
     for (int32_t root = 0; root < forest->root_count; root++)

@@ -1,9 +1,10 @@
-/* Closure: in a closed scene the form factors of every leaf sum to 1.
+/* Row sums of form factors, and the caps on them.
  *
- * The row sum R of a leaf is what it receives over its links, and those of its ancestors, when
- * B = 1 everywhere. It is 1 for a leaf all of whose directions end on the front of some patch,
- * whatever stands in between; where links of different levels meet it comes out otherwise. The
- * correction multiplies the irradiance of a leaf by a factor d of its own. */
+ * The row sum of a leaf is its irradiance, over its links and those of its ancestors, when
+ * B = 1 everywhere: at most 1 in truth. Where links of different levels meet it comes out
+ * otherwise. A leaf whose row sum is so large that light would grow, or all but grow, from
+ * bounce to bounce receives a factor less. So there is always a solution, and the bound on
+ * the iteration error always holds. */
 #ifndef RAD_BEYOND_CLOSURE_H
 #define RAD_BEYOND_CLOSURE_H
 
@@ -12,38 +13,19 @@
 
 #include "rad/model.h"
 
-/* What is known of the surroundings of a patch. OPEN: some ray escapes or ends on a back. COVERED:
- * the same, but only where the patch lies inside a solid. */
-enum enclosure { UNKNOWN, ENCLOSED, OPEN, COVERED };
-
 struct closure {
-    enum closure_kind kind;
-    double *factor;    /* [count] d of each leaf of the own roots, 1 where nothing is corrected */
-    uint8_t *enclosure; /* [count] enum enclosure */
-    int64_t count, factor_capacity, enclosure_capacity;
+    double *factor; /* [count] of the irradiance of each own leaf, at most 1 */
+    int64_t count, capacity;
 };
 
 void closure_free(struct closure *closure);
 
-/* Makes room for all patches; new ones inherit from their parents. */
+/* Makes room for all patches; new ones have the factor 1. */
 void closure_extend(struct closure *closure, const struct forest *forest);
 
-/* The factor by which a leaf multiplies its irradiance. */
-static inline double closure_receives(const struct closure *closure, int32_t leaf)
-{
-    return closure->kind == CLOSURE_NONE ? 1.0 : closure->factor[leaf];
-}
-
-/* Its inverse: by this and its area a leaf counts in the scalar product that makes the corrected
- * form factors symmetric. */
-static inline double closure_weight(const struct closure *closure, int32_t leaf)
-{
-    return closure->kind == CLOSURE_NONE ? 1.0 : 1.0 / closure->factor[leaf];
-}
-
-/* True if the row sum of the leaf has to be 1: it is enclosed, and none of its ancestors is open.
- * Fires rays, which are counted, for those of which nothing is known yet. */
-bool closure_is_due(struct closure *closure, struct model *model, int32_t leaf);
+/* Chooses the factor of a leaf by its row sum. */
+void closure_cap(struct closure *closure, const struct forest *forest, int32_t leaf,
+                 double row);
 
 enum { CLOSURE_ROOM = 16 };
 

@@ -1,12 +1,12 @@
 /* Conjugate gradients.
  *
- * F maps radiosities of leaves to irradiances; A F is symmetric, since links are. With closure
- * F' = d F d', d for what a leaf receives and d' for what it sends, and with the scalar product
+ * F maps radiosities of leaves to irradiances; A F is symmetric, since links are. With the
+ * caps F' = d F, d the factor of a leaf's irradiance, and with the scalar product
  *
- *     <x, y> = sum over leaves of w x y,   w = A rho d' / d,
+ *     <x, y> = sum over leaves of w x y,   w = A rho / d,
  *
  * K = 1 - F' rho is self-adjoint, and positive where row sums times rho are below 1: w F' rho =
- * rho d' (A F) d' rho. So conjugate gradients apply to K as it stands, without square roots of
+ * rho (A F) rho. So conjugate gradients apply to K as it stands, without square roots of
  * rho, and surfaces that reflect nothing take no part: their w is 0. The three bands are three
  * systems, solved side by side.
  *
@@ -74,7 +74,7 @@ void conjugate_start(struct conjugate *cg, const struct model *model,
         const struct material *material = forest_material(model->forest, leaf);
         struct rgb h = leaf_irradiance(model->forest, leaf, flux);
         for (int c = 0; c < BANDS; c++) {
-            double now = closure_receives(closure, leaf) * h.band[c];
+            double now = closure->factor[leaf] * h.band[c];
             if (material->reflectance.band[c] == 0.0)
                 cg->irradiance[leaf].band[c] = now;
             cg->residual[leaf].band[c] = now - cg->irradiance[leaf].band[c];
@@ -91,10 +91,10 @@ void conjugate_apply(struct conjugate *cg, const struct model *model,
         int32_t leaf = cg->leaves[i];
         const struct material *material = forest_material(model->forest, leaf);
         struct rgb h = leaf_irradiance(model->forest, leaf, flux);
-        double weight = forest_area(model->forest, leaf) * closure_weight(closure, leaf);
+        double weight = forest_area(model->forest, leaf) / closure->factor[leaf];
         for (int c = 0; c < BANDS; c++) {
             double z = cg->residual[leaf].band[c];
-            double w = z - closure_receives(closure, leaf) * h.band[c];
+            double w = z - closure->factor[leaf] * h.band[c];
             cg->work[leaf].band[c] = w;
             double term = weight * material->reflectance.band[c] * (w * z);
             product[c] = flux_add(product[c], flux_from_watts(unit, term));
@@ -143,7 +143,7 @@ struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct mod
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t leaf = cg->leaves[i];
         const struct material *material = forest_material(model->forest, leaf);
-        double area = forest_area(model->forest, leaf), weight = area * closure_weight(closure, leaf);
+        double area = forest_area(model->forest, leaf), weight = area / closure->factor[leaf];
         double light = 0.0, absorbed = 0.0, arriving = 0.0, negative = 0.0, missing = 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = material->reflectance.band[c], h = cg->irradiance[leaf].band[c];

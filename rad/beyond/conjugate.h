@@ -1,7 +1,7 @@
 /* Conjugate gradients for the irradiances of the leaves of a rank's own roots.
  *
  * The equation is K H = F' E with K = 1 - F' rho: H is irradiance, W/m^2, and F' the form factors
- * with their closure. Vectors have three bands per patch; only those of own leaves mean anything.
+ * with their caps. Vectors have three bands per patch; only those of own leaves mean anything.
  * Every function works on own leaves alone; what all ranks have to add is returned as integers. */
 #ifndef RAD_BEYOND_CONJUGATE_H
 #define RAD_BEYOND_CONJUGATE_H
@@ -31,7 +31,7 @@ struct conjugate_sums {
     int64_t bulk;                      /* the largest magnitude of these three, summed: while it is
                                           below FLUX_LIMIT, none of them has met that limit */
     int64_t negative;                  /* A rho |H| where H < 0, in the same units, */
-    int64_t missing;                   /* and A closure_weight() |z| */
+    int64_t missing;                   /* and A / d |z| */
     double largest;                    /* largest |z| */
 };
 
@@ -42,7 +42,7 @@ void conjugate_free(struct conjugate *cg);
 void conjugate_extend(struct conjugate *cg, const struct forest *forest, const bool *own);
 
 /* The unit in which scalar products of vectors that are nowhere larger than a and b are summed.
- * `weight`: the largest closure_weight(). */
+ * `weight`: the largest 1 / d. */
 struct flux_unit conjugate_unit(const struct model *model, double a, double b, double weight);
 
 /* After B has been transferred: z = F' B - H. Where nothing is reflected, H = F' B and z = 0. */

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mpi/beyond/beyond.h"
 #include "geom/alloc.h"
 #include "io/run/options.h"
 #include "mpi/balance.h"
@@ -53,7 +54,7 @@ static void record_run(const struct comm *comm, const struct scene *scene,
                        const struct criterion *criterion, struct record *record)
 {
     struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
-    struct solver *solver = solver_create(comm, scene, octree, criterion);
+    struct solver *solver = beyond_create(comm, scene, octree, criterion);
     struct vote vote;
     solver->account.watch = note;
     solver->account.watcher = record;

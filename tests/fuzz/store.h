@@ -19,7 +19,7 @@
 #define STORE_SETTINGS "--oracle error\n--epsilon 0.01\n"
 
 static const struct criterion STORE_CRITERION = {
-    .oracle = ORACLE_ERROR, .form_factor = FORM_FACTOR_POLYGON, .closure = CLOSURE_CAP,
+    .oracle = ORACLE_ERROR, .form_factor = FORM_FACTOR_POLYGON,
     .solver = SOLVER_CG, .epsilon = 0.01, .max_level = 2, .tolerance = 1e-3, .max_iterations = 3};
 
 static inline struct scene *store_scene(void)
@@ -103,7 +103,7 @@ static inline void store_try(enum store_kind kind, enum linking_kind linking,
     struct criterion criterion = pairs ? STORE_CRITERION : store_criterion_tree();
     struct scene *scene = pairs ? store_scene() : store_box();
     struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
-    struct solver *solver = solver_create(&store_comm, scene, octree, &criterion);
+    struct solver *solver = beyond_create(&store_comm, scene, octree, &criterion);
     struct store_terms terms = {kind, STORE_SETTINGS, scene, solver->beyond->tree};
     struct store_reader reader;
     bool good = store_open_file(&reader, file, "fuzz", &terms, &error) &&

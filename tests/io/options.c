@@ -144,8 +144,6 @@ static const struct choice CHOICES[] = {
      "pairs|tree"},
     {"--form-factor", offsetof(struct options, criterion.form_factor), 2,
      {"disk", "polygon", NULL}, "disk|polygon"},
-    {"--closure", offsetof(struct options, criterion.closure), 3,
-     {"none", "cap", "rows", NULL}, "none|cap|rows"},
     {"--solver", offsetof(struct options, criterion.solver), 2, {"jacobi", "cg", NULL},
      "jacobi|cg"},
     {"--balance", offsetof(struct options, criterion.balance), 3,
@@ -203,13 +201,12 @@ static void test_choices(void)
 static void test_enums(void)
 {
     tap_ok(ORACLE_BF == 0 && ORACLE_ERROR == 1 && FORM_FACTOR_DISK == 0 &&
-               FORM_FACTOR_POLYGON == 1 && CLOSURE_NONE == 0 && CLOSURE_CAP == 1 &&
-               CLOSURE_ROWS == 2 && SOLVER_JACOBI == 0 && SOLVER_CG == 1 &&
+               FORM_FACTOR_POLYGON == 1 && SOLVER_JACOBI == 0 && SOLVER_CG == 1 &&
                LINKING_PAIRS == 0 && LINKING_TREE == 1 && BALANCE_NONE == 0 &&
                BALANCE_GREEDY == 1 && BALANCE_DEFAULT == 2,
            "the names are in the order of the enums");
     tap_ok(sizeof(enum oracle) == sizeof(int) && sizeof(enum form_factor) == sizeof(int) &&
-               sizeof(enum closure_kind) == sizeof(int) && sizeof(enum solver_kind) == sizeof(int) &&
+               sizeof(enum solver_kind) == sizeof(int) &&
                sizeof(enum balance) == sizeof(int) && sizeof(enum linking_kind) == sizeof(int),
            "which are as large as an int");
 }
@@ -218,16 +215,15 @@ static void test_paper(void)
 {
     struct options options, plain;
     parse("a.obj", &plain);
-    tap_ok(!parse("--solver cg --oracle error --closure rows --form-factor polygon --paper",
+    tap_ok(!parse("--solver cg --oracle error --form-factor polygon --paper",
                   &options) && is_same(error.text, "no scene given; see --help") &&
                options.criterion.oracle == ORACLE_BF && options.criterion.solver == SOLVER_JACOBI &&
-               options.criterion.closure == CLOSURE_NONE &&
                options.criterion.form_factor == FORM_FACTOR_DISK &&
                options.criterion.balance == BALANCE_GREEDY &&
                options.criterion.linking == LINKING_PAIRS &&
                options.criterion.alpha == plain.criterion.alpha &&
                options.criterion.tolerance == plain.criterion.tolerance,
-           "--paper is the paper's oracle, linking, form factor, solver and balance, without closure");
+           "--paper is the paper's oracle, linking, form factor, solver and balance");
     options_free(&options);
     options_free(&plain);
     tap_ok(parse("--paper --solver cg a.obj", &options) &&
@@ -280,7 +276,7 @@ static const char *const OTHERS[][2] = {
     {"--oracle", " bf"}, {"--flat", ""},    {"--two-sided", ""}, {"--quiet", ""},
     {"--two-sided-lamps", ""}, {"--verbose", ""}, {"--validate", ""},
     {"--help", ""},    {"--version", ""},
-    {"--linking", " pairs"}, {"--form-factor", " disk"}, {"--closure", " none"}, {"--solver", " cg"}, {"--balance", " greedy"}, {"--paper", ""},
+    {"--linking", " pairs"}, {"--form-factor", " disk"}, {"--solver", " cg"}, {"--balance", " greedy"}, {"--paper", ""},
     {"--form-factors", ""}, {"--save-links", " a"}, {"--load-links", " a"}, {"--resume", " a"},
     {"--checkpoint", " a"}, {"--memory", " 1G"}};
 enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
@@ -457,7 +453,7 @@ static void test_settings(void)
            "what links are bound to");
     tap_ok(is_same(options_run_settings(&options),
                    "--two-sided off\n--two-sided-lamps off\n--oracle error\n"
-                   "--linking tree\n--form-factor polygon\n--closure cap\n--solver cg\n"
+                   "--linking tree\n--form-factor polygon\n--solver cg\n"
                    "--epsilon 0.0001\n--accuracy 0\n--max-level 10\n"
                    "--min-area 9.9999999999999995e-08\n"),
            "what a run is bound to");

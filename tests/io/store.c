@@ -54,7 +54,7 @@ static struct solver *run_two_passes(struct vote *vote)
     struct criterion criterion = STORE_CRITERION;
     criterion.epsilon = 0.04;
     criterion.max_iterations = 100;
-    struct solver *solver = solver_create(&comm, scene, octree, &criterion);
+    struct solver *solver = beyond_create(&comm, scene, octree, &criterion);
     solver_link_roots(solver);
     solver_assign_roots(solver);
     for (int pass = 0; pass < 2; pass++) {
@@ -88,7 +88,7 @@ static void test_round_trip(void)
     struct store_reader reader;
     struct criterion criterion = solver->model.criterion;
     criterion.final_gather = 64; /* as the run began */
-    struct solver *other = solver_create(&comm, scene, octree, &criterion);
+    struct solver *other = beyond_create(&comm, scene, octree, &criterion);
     struct link *links = alloc_array(ROOM, sizeof *links);
     other->memory.limit = solver->memory.limit;
     tap_ok(store_open(&reader, PATH, &terms, &error), "and read");
@@ -276,7 +276,7 @@ static struct solver *run_with_clusters(struct scene *box, struct octree *over,
                                         struct vote *vote)
 {
     struct criterion criterion = store_criterion_tree();
-    struct solver *solver = solver_create(&comm, box, over, &criterion);
+    struct solver *solver = beyond_create(&comm, box, over, &criterion);
     solver_link_roots(solver);
     solver_assign_roots(solver);
     solver_refine(solver);

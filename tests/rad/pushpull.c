@@ -1,5 +1,5 @@
 /* Tests of rad/pushpull.h: no light is lost on its way from any level to the leaves, pulls are
- * means, the sums of a push-pull, the factor by which changes shrink, and row sums. */
+ * means, the sums of a push-pull, and the factor by which changes shrink. */
 #include "rad/beyond/range.h"
 #include "rad/pushpull.h"
 
@@ -61,12 +61,11 @@ static void own_all(bool own[ROOTS])
         own[r] = true;
 }
 
-/* push_pull() of flux in the unit of the model, nothing corrected. */
+/* push_pull() of flux in the unit of the model. */
 static struct push_pull_sums pushed(struct world *world, const bool *own,
                                     int64_t *change)
 {
-    const struct closure none = {.kind = CLOSURE_NONE};
-    return push_pull(&world->model, &none, world->model.flux_unit, own, change);
+    return push_pull(&world->model, world->model.flux_unit, own, change);
 }
 
 /* --- push --- */
@@ -293,46 +292,30 @@ static void test_divergence(void)
     world_free(&world);
 }
 
-/* With a factor of their own, leaves receive that times what arrives, and all sums follow; with
- * another unit of the flux all is the same. */
-static void test_factors(void)
+/* With another unit of the flux all is the same. */
+static void test_units(void)
 {
-    double light[2], arriving[2], absorbed[2];
-    bool right = true;
+    struct push_pull_sums sums[2];
     for (int k = 0; k < 2; k++) {
         struct world world = make_world();
-        struct forest *forest = world.model.forest;
         bool own[ROOTS];
         int64_t change[ROOTS] = {0};
         own_all(own);
-        grow(forest, 7);
+        grow(world.model.forest, 7);
         pour(&world, 7);
-        struct closure closure = {.kind = CLOSURE_ROWS};
-        closure_extend(&closure, forest);
         struct flux_unit unit = world.model.flux_unit;
-        for (int64_t p = 0; p < closure.count; p++) {
-            right = right && closure.factor[p] == 1.0;
-            closure.factor[p] = k ? 0.5 : 1.0;
+        for (int64_t p = 0; k && p < world.model.forest->count; p++)
+            for (int c = 0; c < BANDS; c++)
+                world.model.forest->patches[p].flux[c] *= 2;
+        if (k) { /* twice the numbers in a unit half as large */
+            unit.watt *= 0.5;
+            unit.per_watt *= 2.0;
         }
-        if (k) { /* twice the light in a unit twice as large, and half of it received */
-            unit.watt *= 2.0;
-            unit.per_watt *= 0.5;
-        }
-        struct push_pull_sums sums = push_pull(&world.model, &closure, unit, own, change);
-        light[k] = flux_to_watts(world.model.flux_unit, sums.light);
-        arriving[k] = flux_to_watts(world.model.flux_unit, sums.arriving);
-        absorbed[k] = flux_to_watts(world.model.flux_unit, sums.absorbed);
-        closure.kind = CLOSURE_NONE;
-        struct push_pull_sums plain = push_pull(&world.model, &closure, unit, own,
-                                                change);
-        right = right && (k == 0) == (plain.arriving == sums.arriving);
-        closure_free(&closure);
+        sums[k] = push_pull(&world.model, unit, own, change);
         world_free(&world);
     }
-    tap_ok(right, "factors begin as 1, and count only where there is a closure");
-    tap_ok(arriving[0] > 0.0 && light[0] == light[1] && arriving[0] == arriving[1] &&
-               absorbed[0] == absorbed[1],
-           "half of twice the flux is the same light, to the bit");
+    tap_ok(sums[0].arriving > 0 && memcmp(&sums[0], &sums[1], sizeof sums[0]) == 0,
+           "the same flux in another unit is the same light, to the bit");
 }
 
 /* --- shrink --- */
@@ -396,66 +379,6 @@ static void test_settled(void)
     world_free(&world);
 }
 
-/* --- row sums --- */
-
-/* Root 0 gets 1.25 of its area, root 1 half of it, in two of its children 0.4 more; root 7 is
- * dark and root 3 another's. */
-static void test_closure(void)
-{
-    struct world world = make_world();
-    struct forest *forest = world.model.forest;
-    struct flux_unit unit = flux_unit_for(2.0 * scene_area(world.scene));
-    bool own[ROOTS] = {true, true};
-    own[7] = own[NO_AREA] = true;
-    forest_split(forest, 1);
-    double a = forest_area(forest, 0), b = forest_area(forest, 1);
-    int32_t child = forest->patches[1].children;
-    forest->patches[0].flux[0] = flux_from_watts(unit, 1.25 * a);
-    forest->patches[0].flux[1] = flux_from_watts(unit, 7.0 * a); /* another band: no matter */
-    forest->patches[1].flux[0] = flux_from_watts(unit, 0.5 * b);
-    forest->patches[child].flux[0] = flux_from_watts(unit, 0.4 * b / 4.0);
-    forest->patches[child + 3].flux[0] = flux_from_watts(unit, 0.4 * b / 4.0);
-    forest->patches[3].flux[0] = flux_from_watts(unit, 9.0);
-    forest->patches[7].flux[0] = flux_from_watts(unit, 9.0);
-    struct closure_sums sums = closure_measure(forest, own, unit);
-    /* All numbers are of size 1 and rounded a few times. */
-    tap_ok(fabs(sums.min - 0.5) < 1e-13 && fabs(sums.max - 1.25) < 1e-13,
-           "least and greatest row sum");
-    struct flux_unit coarse = {unit.per_watt / CLOSURE_ROOM, unit.watt * CLOSURE_ROOM};
-    tap_ok(fabs(flux_to_watts(coarse, sums.area) - (a + b)) < 1e-13,
-           "the area counted is that of own leaves that are not dark");
-    tap_ok(fabs(flux_to_watts(coarse, sums.rows) - (1.25 * a + 0.7 * b)) < 1e-13, "rows");
-    double squares = 0.0625 * a + 0.5 * b * 0.25 + 0.5 * b * 0.01;
-    tap_ok(fabs(flux_to_watts(coarse, sums.squares) - squares) < 1e-13, "squares");
-    bool none[ROOTS] = {false};
-    sums = closure_measure(forest, none, unit);
-    tap_ok(sums.min == HUGE_VAL && sums.max == -HUGE_VAL && sums.area == 0 && sums.rows == 0 &&
-               sums.squares == 0,
-           "no leaf at all");
-    /* The unit of a transfer of B = 1 is chosen for a flux as large as the area. */
-    int tried = 0, right = 0;
-    for (int32_t root = 0; root < ROOTS; root++) {
-        double area = forest_area(forest, root);
-        if (root == NO_AREA || root == 7)
-            continue;
-        unit = flux_unit_for(area);
-        memset(none, 0, sizeof none);
-        none[root] = true;
-        clear_flux(forest);
-        forest_split(forest, root);
-        for (int k = 0; k < 4; k++)
-            forest->patches[forest->patches[root].children + k].flux[0] =
-                flux_from_watts(unit, 0.25 * 1.5 * area);
-        forest->patches[root].flux[0] = flux_from_watts(unit, 0.9375 * area);
-        sums = closure_measure(forest, none, unit);
-        tried++;
-        right += fabs((double)sums.rows / (double)sums.area - 2.4375) < 1e-12 &&
-                 fabs((double)sums.squares / (double)sums.area - 1.4375 * 1.4375) < 1e-12;
-    }
-    tap_ok(tried == 10 && right == tried, "rows may sum to more than 2 all over a scene");
-    world_free(&world);
-}
-
 int main(void)
 {
     test_push();
@@ -465,9 +388,8 @@ int main(void)
     test_sums();
     test_two_ranks();
     test_divergence();
-    test_factors();
+    test_units();
     test_shrink();
     test_settled();
-    test_closure();
     return tap_done();
 }

@@ -190,8 +190,12 @@ int main(int argc, char **argv)
     test_slab(&comm);
     for (int i = 0; i < COUNT(INTERREFLECTION); i++) {
         double rho = INTERREFLECTION[i].rho, exact = INTERREFLECTION[i].lux;
-        test_interreflection(&comm, rho, exact, "--tolerance 1e-4",
-                             fmax(LIMIT, FIRST * (1.0 - rho) / rho));
+        if (rho <= 0.7) /* what row sums are off by is multiplied by rho / (1 - rho) */
+            test_interreflection(&comm, rho, exact, "--tolerance 1e-4",
+                                 fmax(LIMIT, FIRST * (1.0 - rho) / rho));
+        /* All that is sent arrives where the final gather is, so the mean is exact at any
+         * epsilon. 1e-6: seven digits of the numbers above. */
+        test_interreflection(&comm, rho, exact, "--epsilon 1e-2 --tolerance 1e-8", 1e-6);
     }
     comm_stop(&comm);
     return tap_done();

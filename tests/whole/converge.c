@@ -88,7 +88,7 @@ static void test_falling(const struct comm *comm, const char *path, const struct
     struct result before = {.leaf = HUGE_VAL, .shown = HUGE_VAL};
     double epsilon = 1e-3;
     for (int step = 0; step < STEPS; step++, epsilon /= 2.0) {
-        struct result now = run(comm, path, criterion_best(epsilon, 10, 1e-3, CLOSURE_CAP), truth, false);
+        struct result now = run(comm, path, criterion_best(epsilon, 10, 1e-3), truth, false);
         if (comm->rank == 0)
             tap_ok(now.converged && now.leaf < before.leaf && now.shown < before.shown,
                    "%s, epsilon %.2g, %lld links: leaf error %.2f %%, shown %.2f %%", path, epsilon,
@@ -103,7 +103,7 @@ static void test_falling(const struct comm *comm, const char *path, const struct
 static void test_paper(const struct comm *comm, const struct truth *truth)
 {
     struct result paper = run(comm, CORNELL, criterion_of(1e-4, 10, 1e-3), truth, false);
-    struct result best = run(comm, CORNELL, criterion_best(1e-3, 10, 1e-3, CLOSURE_CAP), truth, false);
+    struct result best = run(comm, CORNELL, criterion_best(1e-3, 10, 1e-3), truth, false);
     if (comm->rank == 0)
         tap_ok(best.leaf < paper.leaf && 10 * best.links < paper.links,
                "the paper's variant: %.2f %% with %lld links; %.2f %% with a tenth of them and less "
@@ -118,7 +118,7 @@ static void test_accuracy(const struct comm *comm, const char *path,
                           const struct truth *truth, double accuracy, int max_level,
                           double min_area, enum hold hold)
 {
-    struct criterion criterion = criterion_best(1e-3, max_level, 1e-4, CLOSURE_CAP);
+    struct criterion criterion = criterion_best(1e-3, max_level, 1e-4);
     criterion.min_area = min_area;
     criterion.accuracy = accuracy;
     criterion.final_gather = 64;
@@ -149,7 +149,7 @@ static void test_gathered(const struct comm *comm, const char *path,
     double error[4];
     for (int k = 0; k < 4; k++) {
         struct criterion criterion =
-            criterion_best(steps[k].epsilon, 10, 1e-4, CLOSURE_CAP);
+            criterion_best(steps[k].epsilon, 10, 1e-4);
         criterion.final_gather = steps[k].rays;
         struct result now = run(comm, path, criterion, truth, k == 1);
         bool less = steps[k].worse < 0 || now.leaf < 1.1 * error[steps[k].worse];

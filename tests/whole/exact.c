@@ -8,13 +8,13 @@
  * mean converges with epsilon; single leaves do not, since a leaf with near links of its own and
  * averaged far links counts some directions twice.
  *
- * With --closure rows all rows of a closed cube sum to 1 and the furnace is exact: what is left is
- * the tolerance of the iteration and rounding. With form factors from points to polygons one level
- * of the cube is right within the errors of the points. */
+ * With form factors from points to polygons one level of the cube is right within the errors
+ * of the points. */
 #include <math.h>
 #include <signal.h>
 #include <string.h>
 
+#include "mpi/beyond/beyond.h"
 #include "mpi/signals.h"
 #include "rad/beyond/node_link.h"
 #include "rad/beyond/patch_link.h"
@@ -145,29 +145,9 @@ static void test_glowing_cube(const struct comm *comm, double rho, double allowe
     solution_free(&s);
 }
 
-/* A furnace that is closed: B = E / (1 - rho) everywhere, for any rho and any epsilon. The
- * tolerance is relative to all light, so it is a bound on the mean error; that of a single leaf may
- * be larger, but conjugate gradients leave far less. */
-static void test_closed_furnace(const struct comm *comm, double rho, double epsilon)
-{
-    struct solution s = solve(comm, furnace_of(rho),
-                              criterion_best(epsilon, 10, 1e-7, CLOSURE_ROWS));
-    double largest, mean;
-    furnace_errors(&s, rho, &largest, &mean);
-    double absorbed = fabs(s.stats.absorbed_power / s.stats.emitted_power - 1.0);
-    if (comm->rank == 0) {
-        tap_ok(s.vote.converged && largest <= 1e-6 && s.stats.iterations <= 60,
-               "closed by rows, rho %g, epsilon %g: B within %.1e, at most 1e-6; %lld links, "
-               "%lld iterations", rho, epsilon, largest, (long long)s.stats.links, (long long)s.stats.iterations);
-        /* (1 - rho) A H against A E, H = E / (1 - rho): what is missing of H counts as it is. */
-        tap_ok(absorbed <= 1e-6, "all that is emitted is absorbed: off by %.1e", absorbed);
-    }
-    solution_free(&s);
-}
-
 /* A closed cube with walls that differ, lit from one that is black: what the paper's solver ends
  * with, conjugate gradients end with too, over the same links. */
-static void test_same_answer(const struct comm *comm, enum closure_kind kind)
+static void test_same_answer(const struct comm *comm)
 {
     struct solution s[2];
     for (int k = 0; k < 2; k++) {
@@ -178,7 +158,7 @@ static void test_same_answer(const struct comm *comm, enum closure_kind kind)
                                                                       : 0.3 + 0.1 * face + 0.05 * c;
         for (int c = 0; c < BANDS; c++)
             cube->materials[1].emission.band[c] = 5.0 + c;
-        struct criterion criterion = criterion_best(1e-2, 10, 1e-9, kind);
+        struct criterion criterion = criterion_best(1e-2, 10, 1e-9);
         criterion.solver = k ? SOLVER_CG : SOLVER_JACOBI;
         criterion.max_level = 0;
         criterion.linking = LINKING_PAIRS; /* one pass: all iterations are over the same links */
@@ -196,8 +176,7 @@ static void test_same_answer(const struct comm *comm, enum closure_kind kind)
     if (comm->rank == 0) {
         /* Tolerances of 1e-9 of all light, which is below 20 W/m^2 a leaf. */
         tap_ok(s[0].vote.converged && s[1].vote.converged && off <= 1e-7,
-               "Jacobi and conjugate gradients, closure %d: B differs by %.1e W/m^2 at most", kind,
-               off);
+               "Jacobi and conjugate gradients: B differs by %.1e W/m^2 at most", off);
         tap_ok(absorbed <= 1e-8 && escaped <= 1e-8,
                "and the power absorbed, also by the black face, by %.1e of all, escaped %.1e",
                absorbed, escaped);
@@ -367,9 +346,9 @@ static void test_stopped(const struct comm *comm, enum linking_kind linking)
 {
     struct scene *scene = room_with_box();
     struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
-    struct criterion criterion = criterion_best(1e-3, 10, 1e-3, CLOSURE_NONE);
+    struct criterion criterion = criterion_best(1e-3, 10, 1e-3);
     criterion.linking = linking;
-    struct solver *solver = solver_create(comm, scene, octree, &criterion);
+    struct solver *solver = beyond_create(comm, scene, octree, &criterion);
     solver_link_roots(solver);
     solver_assign_roots(solver);
     if (linking == LINKING_PAIRS && comm->rank == comm->size - 1)
@@ -395,30 +374,20 @@ int main(int argc, char **argv)
     test_glowing_cube(&comm, 0.2, 0.17, &paper, "disks"); /* measured 12.6 %: single factors, */
     test_glowing_cube(&comm, 0.5, 0.15, &paper, "disks"); /* 11.3 %: rows of 0.973, and */
     test_glowing_cube(&comm, 0.8, 0.19, &paper, "disks"); /* 14.3 %: 1 / (1 - 0.8 R) is 10 % low */
-    struct criterion best = criterion_best(1.0, 0, 1e-9, CLOSURE_NONE);
+    struct criterion best = criterion_best(1.0, 0, 1e-9);
     best.linking = LINKING_PAIRS; /* each pair of triangles by its own factor, at any epsilon */
     /* The twelve points of a triangle miss the factor of one that it touches by 1 % or so. */
     test_glowing_cube(&comm, 0.2, 0.015, &best, "polygons"); /* measured 1.21 % */
     test_glowing_cube(&comm, 0.5, 0.007, &best, "polygons"); /* 0.55 % */
     test_glowing_cube(&comm, 0.8, 0.003, &best, "polygons"); /* 0.22 % */
-    best.closure = CLOSURE_ROWS;
-    test_glowing_cube(&comm, 0.8, 0.003, &best, "polygons, closed"); /* 0.22 % */
     test_furnace(&comm, 1e-2, 0.18, 0.13); /* measured 12.7 and 9.3 % */
     test_furnace(&comm, 1e-3, 0.17, 0.045); /* 11.6 and 3.1 % */
     test_furnace(&comm, 1e-4, 0.24, 0.016); /* 16.8 and 1.1 %: rows of mixed levels, */
     test_furnace(&comm, 1e-5, 0.33, 0.007); /* 23.2 and 0.5 %: worse at single leaves */
-    for (int k = 0; k < 4; k++) {
-        static const double rho[4] = {0.5, 0.9, 0.99, 0.999};
-        test_closed_furnace(&comm, rho[k], 1.0);
-        test_closed_furnace(&comm, rho[k], 1e-3);
-    }
-    test_closed_furnace(&comm, 0.9, 1e-4);
-    test_closed_furnace(&comm, 0.5, 1e-6);
-    for (enum closure_kind kind = CLOSURE_NONE; kind <= CLOSURE_ROWS; kind++)
-        test_same_answer(&comm, kind);
+    test_same_answer(&comm);
     struct criterion power = criterion_of(1e-4, 10, 1e-12);
     test_power(&comm, &power, "paper");
-    power = criterion_best(1e-4, 10, 1e-12, CLOSURE_NONE);
+    power = criterion_best(1e-4, 10, 1e-12);
     test_power(&comm, &power, "error oracle, polygons, cg, tree");
     power.linking = LINKING_PAIRS;
     test_power(&comm, &power, "error oracle, polygons, cg, pairs");

@@ -60,7 +60,7 @@ static struct wood wood_make(struct scene *scene)
 {
     struct wood wood = {.world = world_make(scene)};
     struct model *model = &wood.world.model;
-    model->criterion = criterion_best(0.0, 0, 1e-3, CLOSURE_NONE);
+    model->criterion = criterion_best(0.0, 0, 1e-3);
     model->link_threshold = 0.0;
     wood.tree = tree_create(scene, wood.world.octree);
     model->clusters = cluster_light_create(wood.tree);
@@ -456,7 +456,7 @@ static struct solution solve_room(double epsilon, int max_level,
 {
     struct scene *scene = room(4, 4, false);
     scene_prepare_or_exit(scene);
-    struct criterion criterion = criterion_best(epsilon, max_level, 1e-7, CLOSURE_NONE);
+    struct criterion criterion = criterion_best(epsilon, max_level, 1e-7);
     criterion.linking = linking;
     criterion.balance = BALANCE_DEFAULT;
     return solve(world_comm, scene, criterion);

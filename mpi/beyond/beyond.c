@@ -1,0 +1,71 @@
+/* Plugs the methods that the criterion names into the steps of the paper's solver. */
+#include "mpi/beyond/beyond.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "mpi/beyond/above.h"
+
+/* What patches send is largest where all know: at all of them, if that is B; else the ballots
+ * have told. */
+static void transfer(struct solver *solver)
+{
+    const struct beyond *beyond = solver->beyond;
+    double largest = beyond->descent.fresh ? solver_largest_radiosity(solver)
+                                           : fmax(solver->ballot.brightest, 1e-250);
+    double room = beyond->tree ? 2.0 : 1.0; /* nodes receive over links of their cluster */
+    if (beyond->tree)
+        above_begin(solver);
+    double start = comm_seconds();
+    solver->flux = flux_unit_for(room * largest * solver->model.area);
+    solver->model.method.transfer(&solver->links, &solver->model, solver->flux);
+    solver->account.seconds[PHASE_SOLVE] += comm_seconds() - start;
+}
+
+static void report(const struct solver *solver, struct stats *stats)
+{
+    const struct beyond *beyond = solver->beyond;
+    stats->accuracy = solver->model.criterion.accuracy;
+    stats->hold = beyond->accuracy.hold;
+    stats->rounds = beyond->accuracy.rounds;
+    stats->converged = stats->converged && stats->hold == HOLD_NONE;
+    stats->error_estimate = beyond->answer.counts.error;
+    stats->gathered = beyond->answer.counts;
+}
+
+static void end(struct solver *solver)
+{
+    struct beyond *beyond = solver->beyond;
+    above_free(solver);
+    closure_free(&beyond->closure);
+    conjugate_free(&beyond->descent.vectors);
+    alloc_free(beyond->answer.error);
+    alloc_free(beyond->answer.straight);
+    final_gather_free(&beyond->answer.gather);
+    alloc_free(beyond);
+}
+
+struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
+                             const struct octree *octree, const struct criterion *criterion)
+{
+    struct solver *solver = solver_create(comm, scene, octree, criterion);
+    bool conjugate = criterion->solver == SOLVER_CG, tree = criterion->linking == LINKING_TREE;
+    struct steps *steps = &solver->steps;
+    struct beyond *beyond = solver->beyond = alloc_array(1, sizeof *beyond);
+    beyond->descent.fresh = true;
+    beyond->descent.least_bend = 1.0;
+    steps->report = report;
+    steps->end = end;
+    if (conjugate || tree)
+        steps->transfer = transfer;
+    if (conjugate) {
+        steps->begin = closing_begin;
+        steps->push_pull = descent_push_pull;
+        steps->vote = descent_vote;
+    }
+    if (tree) {
+        above_create(solver);
+        steps->collect = above_collect;
+    }
+    return solver;
+}

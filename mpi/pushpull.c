@@ -1,0 +1,36 @@
+/* Step 6: push-pull on the own roots, and the ballot of this rank. */
+#include "mpi/solver.h"
+
+#include "mpi/signals.h"
+
+static int64_t own_new_patches(const struct solver *solver)
+{
+    const struct forest *forest = solver->model.forest;
+    int64_t count = 0;
+    for (int64_t p = solver->turn.first_new; p < forest->count; p++)
+        count += solver->homes.own[forest->patches[p].id.root];
+    return count;
+}
+
+void solver_push_pull_jacobi(struct solver *solver)
+{
+    struct push_pull_sums sums = push_pull(&solver->model, solver->flux, solver->homes.own,
+                                           solver->change.of_root);
+    solver->ballot = (struct ballot){.light = sums.light,
+                                     .absorbed = sums.absorbed,
+                                     .change = sums.change,
+                                     .arriving = sums.arriving,
+                                     .shrink = sums.shrink};
+}
+
+void solver_push_pull(struct solver *solver)
+{
+    double start = comm_seconds();
+    solver->turn.iteration++;
+    solver->steps.push_pull(solver);
+    solver->ballot.split = solver->turn.split_here;
+    solver->ballot.links = solver->links.count;
+    solver->ballot.divided = own_new_patches(solver);
+    solver->ballot.stop = signals_seen();
+    solver->account.seconds[PHASE_PUSH_PULL] += comm_seconds() - start;
+}
