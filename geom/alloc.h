@@ -1,8 +1,9 @@
 /* The one counted allocator of the program.
  *
  * Every block is counted, so that alloc_balance() == 0 at exit turns each run into a leak
- * test. Running out of memory is not returned to the caller: the failure handler is called
- * and must not return (the MPI layer installs one that ends all ranks with exit code 1). */
+ * test. Running out of memory is not returned to the caller: the failure handler is
+ * called and must not return (the MPI layer installs one that ends all ranks with exit
+ * code 1). */
 #ifndef GEOM_ALLOC_H
 #define GEOM_ALLOC_H
 
@@ -13,18 +14,20 @@
  * Errors: overflow of count * size and exhausted memory call the failure handler. */
 void *alloc_array(size_t count, size_t size);
 
-/* Resizes a block to `count` elements; what lies past the old end is not initialised.
+/* Resizes a block to `count` elements; those past the old end are not initialised.
  * `block` may be NULL. */
 void *alloc_resize(void *block, size_t count, size_t size);
 
-/* Makes room for `needed` elements, growing by half so that appending costs O(1) amortised.
- * `*capacity` is the number of elements that there is room for, updated on growth. */
+/* Makes room for `needed` elements, growing by half so that appending costs O(1)
+ * amortised. `*capacity` is the number of elements that there is room for, updated on
+ * growth. */
 void *alloc_reserve(void *block, int64_t *capacity, int64_t needed, size_t size);
 
 /* Copy of a string. */
 char *alloc_string(const char *text);
 
-/* Gives up as if `bytes` could not be had: for what outgrows the numbers that count it. */
+/* Gives up as if `bytes` could not be had: for arrays that outgrow the numbers that count
+ * them. */
 void alloc_fail(size_t bytes);
 
 /* Releases a block; NULL is allowed. */

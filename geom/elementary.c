@@ -1,24 +1,27 @@
 /* Arctangent by a table of nine angles, logarithm by the area tangent.
  *
- * Arctangent. The point is turned into the first octant, where t = min / max is in [0, 1]. With
- * c = k / 8 the number nearest to t,
+ * Arctangent. The point is turned into the first octant, where t = min / max is in [0,
+ * 1]. With c = k / 8 the number nearest to t,
  *
  *     atan t = atan c + atan z,    z = (t - c) / (1 + c t),    |z| <= 1/16,
  *
- * t - c is exact, and the odd Taylor series to z^13 leaves out less than 2e-19. What is added last
- * is the angle of the table, so the error is that of one rounding and of the table: one unit or
- * two in the last place, and none for c = 0, where the result may be small.
+ * t - c is exact, and the odd Taylor series to z^13 leaves out less than 2e-19. The last
+ * term added is the angle of the table, so the error is that of one rounding and of the
+ * table: one unit or two in the last place, and none for c = 0, where the result may be
+ * small.
  *
  * Logarithm. With x = 2^e m, m in [sqrt(1/2), sqrt(2)), and f = m - 1, which is exact,
  *
- *     ln m = 2 artanh s = 2 s + 2 s^3/3 + 2 s^5/5 + ...,    s = f / (2 + f),    |s| < 0.172;
+ *     ln m = 2 artanh s = 2 s + 2 s^3/3 + 2 s^5/5 + ...,   s = f / (2 + f),  |s| < 0.172;
  *
- * s^23 is the first power left out, 1e-18 of s. So that the rounding of s does not count, 2 s is
- * written as f - (f^2/2 - s f^2/2): the series then only corrects f. e ln 2 is added in two parts,
- * of which the first has zeros at its end, so that it is exact for every e.
+ * s^23 is the first power left out, 1e-18 of s. So that the rounding of s does not count,
+ * 2 s is written as f - (f^2/2 - s f^2/2): the series then only corrects f. e ln 2 is
+ * added in two parts, of which the first has zeros at its end, so that it is exact for
+ * every e.
  *
- * Rejected: libm, whose last bits differ between systems; rational or minimax coefficients, which
- * save two products and have to be believed, while these series can be checked by reading. */
+ * Rejected: libm, whose last bits differ between systems; rational or minimax
+ * coefficients, which save two products and have to be believed, while these series can
+ * be checked by reading. */
 #include "geom/elementary.h"
 
 #include <math.h>

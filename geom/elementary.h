@@ -1,12 +1,14 @@
 /* Arctangent and logarithm that are the same bits on every machine.
  *
- * C leaves the last bit of atan2() and log() to the library, and libraries differ. These two use
- * + - * / and exact scaling only, so what is computed with them is as reproducible as geom/vec.h.
+ * C leaves the last bit of atan2() and log() to the library, and libraries differ. These
+ * two use
+ * + - * / and exact scaling only, so their results are as reproducible as those of
+ * geom/vec.h.
  * Both are right within 4.5e-16 of the result, relative: two units in the last place. */
 #ifndef GEOM_ELEMENTARY_H
 #define GEOM_ELEMENTARY_H
 
-/* Angle from the first axis to the point (x, y), in radians, -pi to pi: what atan2(y, x) is.
+/* Angle from the first axis to the point (x, y), in radians, -pi to pi, as atan2(y, x).
  * 0 for the origin. Pre: both are finite. */
 double arctangent(double y, double x);
 

@@ -1,7 +1,8 @@
 /* Errors of the user or the system as values: a text and the exit code that it asks for.
  *
- * A function that can fail so takes a `struct error *`, fills it and returns false. Nothing
- * is printed where the error is found: the ranks first agree on it, then rank 0 prints it. */
+ * A function that can fail so takes a `struct error *`, fills it and returns false.
+ * Nothing is printed where the error is found: the ranks first agree on it, then rank 0
+ * prints it. */
 #ifndef GEOM_ERROR_H
 #define GEOM_ERROR_H
 
@@ -19,9 +20,9 @@ struct error {
     char text[508]; /* one line, without "phr: " and without the newline */
 };
 
-/* Fills `error` from a printf format unless it holds an error already (the first one counts);
- * control characters of the text (which may quote a file) become '?'. Returns false, so that
- * a caller can write `return error_set(...)`. */
+/* Fills `error` from a printf format unless it holds an error already (the first one
+ * counts); control characters of the text (which may quote a file) become '?'. Returns
+ * false, so that a caller can write `return error_set(...)`. */
 #ifdef __GNUC__
 __attribute__((format(printf, 3, 4)))
 #endif

@@ -1,5 +1,6 @@
-/* FNV-1a, 64 bits: tells files and scenes apart that differ by accident. A changed byte always
- * changes it; it is no protection against those who want two files to look alike. */
+/* FNV-1a, 64 bits: tells files and scenes apart that differ by accident. A changed byte
+ * always changes it; it is no protection against those who want two files to look
+ * alike. */
 #ifndef GEOM_HASH_H
 #define GEOM_HASH_H
 
@@ -8,7 +9,7 @@
 
 #define HASH_START UINT64_C(14695981039346656037)
 
-/* The hash of what came before and `count` bytes more. */
+/* Goes on with a hash: that of the bytes before, and of `count` more. */
 static inline uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
 {
     const uint8_t *at = bytes;

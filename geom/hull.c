@@ -1,15 +1,18 @@
-/* The convex hull of two triangles, cut off at their planes, as the half spaces that hold it.
+/* The convex hull of two triangles, cut off at their planes, as the half spaces that hold
+ * it.
  *
- * Its sides are among the planes through an edge of one and a corner of the other, 18 in all: those
- * that have all six corners on one side. Whether a triangle enters is decided by cutting it with
- * all planes in turn (Sutherland and Hodgman): exact up to rounding, whatever its place. */
+ * Its sides are among the planes through an edge of one and a corner of the other, 18 in
+ * all: those that have all six corners on one side. Whether a triangle enters is decided
+ * by cutting it with all planes in turn (Sutherland and Hodgman): exact up to rounding,
+ * whatever its place. */
 #include "geom/hull.h"
 
 #include <math.h>
 
 static double most_above(const struct plane *plane, const struct triangle *t)
 {
-    double a = plane_distance(plane, t->corner[0]), b = plane_distance(plane, t->corner[1]);
+    double a = plane_distance(plane, t->corner[0]),
+           b = plane_distance(plane, t->corner[1]);
     return fmax(a, fmax(b, plane_distance(plane, t->corner[2])));
 }
 
@@ -18,9 +21,10 @@ static void add_plane(struct hull *hull, struct vec3 normal, double offset)
     hull->planes[hull->count++] = (struct plane){normal, offset};
 }
 
-/* The planes through an edge of p and a corner of q that have all of both on one side. Those of q
- * and p are found with the arguments the other way round. */
-static void add_sides(struct hull *hull, const struct triangle *p, const struct triangle *q)
+/* The planes through an edge of p and a corner of q that have all of both on one side.
+ * Those of q and p are found with the arguments the other way round. */
+static void add_sides(struct hull *hull, const struct triangle *p,
+                      const struct triangle *q)
 {
     for (int edge = 0; edge < 3; edge++)
         for (int corner = 0; corner < 3; corner++) {
@@ -32,17 +36,21 @@ static void add_sides(struct hull *hull, const struct triangle *p, const struct 
             struct plane out = {vec3_scale(n, 1.0 / length), 0.0};
             out.offset = vec3_dot(out.normal, a);
             struct plane in = {vec3_scale(out.normal, -1.0), -out.offset};
-            if (most_above(&out, p) <= GEOM_ROUNDING && most_above(&out, q) <= GEOM_ROUNDING)
+            if (most_above(&out, p) <= GEOM_ROUNDING &&
+                most_above(&out, q) <= GEOM_ROUNDING)
                 add_plane(hull, out.normal, out.offset);
-            else if (most_above(&in, p) <= GEOM_ROUNDING && most_above(&in, q) <= GEOM_ROUNDING)
+            else if (most_above(&in, p) <= GEOM_ROUNDING &&
+                     most_above(&in, q) <= GEOM_ROUNDING)
                 add_plane(hull, in.normal, in.offset);
         }
 }
 
 enum { CLIPPED = 3 + 2 + 18 }; /* corners of a triangle after cutting by all planes */
 
-/* Cuts off what is not behind the plane by more than rounding. Returns the corners that are left. */
-static int cut(const struct vec3 *corners, int count, const struct plane *plane, struct vec3 *left)
+/* Keeps the part behind the plane by more than rounding. Returns the corners that are
+ * left. */
+static int cut(const struct vec3 *corners, int count, const struct plane *plane,
+               struct vec3 *left)
 {
     int kept = 0;
     for (int k = 0; k < count; k++) {

@@ -1,11 +1,11 @@
-/* The space between two triangles: what can stand between them. */
+/* The space between two triangles: it holds all that can stand between them. */
 #ifndef GEOM_HULL_H
 #define GEOM_HULL_H
 
 #include "geom/triangle.h"
 
-/* Half spaces whose intersection is the convex hull of two triangles, as far as it lies in front of
- * both: the points behind all planes. */
+/* Half spaces whose intersection is the convex hull of two triangles, as far as it lies
+ * in front of both: the points behind all planes. */
 struct hull {
     struct plane planes[2 + 18];
     int count;
@@ -15,8 +15,9 @@ struct hull {
 struct hull hull_of_pair(const struct triangle *p, const struct plane *plane_p,
                          const struct triangle *q, const struct plane *plane_q);
 
-/* True if the triangle reaches into the hull by more than rounding. If none of a scene does, no
- * segment from the front of p to the front of q is blocked: such segments lie in the hull. */
+/* True if the triangle reaches into the hull by more than rounding. If none of a scene
+ * does, no segment from the front of p to the front of q is blocked: such segments lie in
+ * the hull. */
 bool hull_is_entered(const struct hull *hull, const struct triangle *t);
 
 #endif

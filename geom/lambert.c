@@ -1,34 +1,35 @@
 /* Lambert's formula, and a quadrature where it cancels.
  *
- * With r_k the corners as seen from the point x, theta_k the angle between r_k and r_k+1 and n the
- * normal at x, Lambert (Photometria, 1760) found
+ * With r_k the corners as seen from the point x, theta_k the angle between r_k and r_k+1
+ * and n the normal at x, Lambert (Photometria, 1760) found
  *
  *     F = 1 / (2 pi)  sum over k of  theta_k  n . (r_k+1 x r_k) / |r_k+1 x r_k|,
  *
- * exact for any polygon above the horizon. The angle is arctangent(|r_k x r_k+1|, r_k . r_k+1),
- * right for small, straight and obtuse angles alike; acos of the normalised product loses half of
- * the digits at small angles and leaves its domain by rounding. A triangle that the horizon cuts
- * keeps what is above, three or four corners.
+ * exact for any polygon above the horizon. The angle is arctangent(|r_k x r_k+1|, r_k .
+ * r_k+1), right for small, straight and obtuse angles alike; acos of the normalised
+ * product loses half of the digits at small angles and leaves its domain by rounding. A
+ * triangle that the horizon cuts keeps the part above, three or four corners.
  *
- * The terms are of order 1, so each sum is right to some 1e-16, whatever it is. It is much smaller
- * than that, and most of its digits are lost, for a triangle of size s at a large distance d: F is
- * (s/d)^2. The integral
+ * The terms are of order 1, so each sum is right to some 1e-16, whatever it is. It is
+ * much smaller than that, and most of its digits are lost, for a triangle of size s at a
+ * large distance d: F is (s/d)^2. The integral
  *
- *     F = h / pi  integral of  (n . r) / |r|^4  dA,    h the distance of x from the plane,
+ *     F = h / pi  integral of  (n . r) / |r|^4  dA,   h the distance of x to the plane,
  *
- * has no terms that cancel. Where s is at most FAR of d it is taken by Radon's rule of seven
- * points, exact to degree 5: its error falls with (s/d)^6 and is 3e-10 of F at most, and it costs
- * two thirds of what three arctangents do. F is then small only where h or n . r are, and so is its
- * error.
+ * has no terms that cancel. Where s is at most FAR of d it is taken by Radon's rule of
+ * seven points, exact to degree 5: its error falls with (s/d)^6 and is 3e-10 of F at
+ * most, and it costs two thirds of the time of three arctangents. F is then small only
+ * where h or n . r are, and so is its error.
  *
- * The sum is small for three more reasons: x close to the plane of the triangle and not over it,
- * a triangle that reaches just above the horizon, a sliver. There the error stays some 1e-16 of
- * the hemisphere and is not a small part of F. Cutting such triangles into pieces that are far
- * gives all digits, at a hundred to ten thousand times the price; faces that are in one plane but
- * for the rounding of their file would pay it everywhere, for light that is not there.
+ * The sum is small for three more reasons: x close to the plane of the triangle and not
+ * over it, a triangle that reaches just above the horizon, a sliver. There the error
+ * stays some 1e-16 of the hemisphere and is not a small part of F. Cutting such triangles
+ * into pieces that are far gives all digits, at a hundred to ten thousand times the
+ * price; faces that are in one plane but for the rounding of their file would pay it
+ * everywhere, for light that is not there.
  *
- * A point on the plane but for rounding must see nothing: just in front of a triangle that faces it
- * it would see nothing else.
+ * A point on the plane but for rounding must see nothing: just in front of a triangle
+ * that faces it it would see nothing else.
  *
  * Rejected: a single point for far triangles, whose error falls with (s/d)^2 only. */
 #include "geom/lambert.h"
@@ -60,7 +61,8 @@ static double density(struct vec3 r, double rise)
 }
 
 /* The point of barycentric coordinates a, a and 1 - 2 a, the last one at corner k. */
-static double density_beside(const struct sight *s, struct vec3 sum, double rises, int k, double a)
+static double density_beside(const struct sight *s, struct vec3 sum, double rises, int k,
+                             double a)
 {
     double rest = 1.0 - 3.0 * a;
     struct vec3 r = vec3_add(vec3_scale(sum, a), vec3_scale(s[k].r, rest));
@@ -86,8 +88,9 @@ static double mean_density(const struct sight *s)
 static bool is_far(const struct sight *s)
 {
     double near = fmin(square(s[0].r), fmin(square(s[1].r), square(s[2].r)));
-    double size = fmax(square(vec3_sub(s[1].r, s[0].r)),
-                       fmax(square(vec3_sub(s[2].r, s[1].r)), square(vec3_sub(s[0].r, s[2].r))));
+    double size =
+        fmax(square(vec3_sub(s[1].r, s[0].r)),
+             fmax(square(vec3_sub(s[2].r, s[1].r)), square(vec3_sub(s[0].r, s[2].r))));
     return !(size > FAR * FAR * near);
 }
 
@@ -112,12 +115,14 @@ static double factor_by_edges(const struct sight *s, struct vec3 normal, int cou
         struct vec3 cross = vec3_cross(to, vec3_sub(from, to));
         double length = vec3_length(cross);
         if (length > 0.0)
-            sum += arctangent(length, vec3_dot(from, to)) * (vec3_dot(normal, cross) / length);
+            sum += arctangent(length, vec3_dot(from, to)) *
+                   (vec3_dot(normal, cross) / length);
     }
     return sum / (2.0 * PI);
 }
 
-/* Keeps what is above the horizon of the triangle in s[0..2]; returns the number of corners. */
+/* Keeps the part of the triangle above the horizon in s[0..2]; returns the number of
+ * corners. */
 static int cut_at_horizon(struct sight s[4])
 {
     struct sight old[3] = {s[0], s[1], s[2]};
@@ -153,13 +158,15 @@ static struct vec3 sizes(struct vec3 a)
     return (struct vec3){fabs(a.x), fabs(a.y), fabs(a.z)};
 }
 
-/* True if x lies in front of the triangle by more than the rounding of its coordinates: the sum of
- * the products is larger than 64 units in the last place of their sizes. */
-static bool is_in_front(struct vec3 x, const struct triangle *t, struct vec3 r0, struct vec3 back)
+/* True if x lies in front of the triangle by more than the rounding of its coordinates:
+ * the sum of the products is larger than 64 units in the last place of their sizes. */
+static bool is_in_front(struct vec3 x, const struct triangle *t, struct vec3 r0,
+                        struct vec3 back)
 {
     struct vec3 u = sizes(vec3_sub(t->corner[2], t->corner[0]));
     struct vec3 v = sizes(vec3_sub(t->corner[1], t->corner[0]));
-    struct vec3 products = {u.y * v.z + u.z * v.y, u.z * v.x + u.x * v.z, u.x * v.y + u.y * v.x};
+    struct vec3 products = {u.y * v.z + u.z * v.y, u.z * v.x + u.x * v.z,
+                            u.x * v.y + u.y * v.x};
     struct vec3 place = vec3_add(sizes(x), sizes(t->corner[0]));
     return vec3_dot(r0, back) > GEOM_ROUNDING * vec3_dot(products, place);
 }
@@ -189,7 +196,8 @@ double point_polygon_factor(struct vec3 x, struct vec3 normal, const struct vec3
     for (int32_t k = 1; k + 1 < count; k++) {
         struct triangle t = {{corners[0], corners[k], corners[k + 1]}};
         struct triangle back = {{corners[0], corners[k + 1], corners[k]}};
-        sum += point_triangle_factor(x, normal, &t) - point_triangle_factor(x, normal, &back);
+        sum += point_triangle_factor(x, normal, &t) -
+               point_triangle_factor(x, normal, &back);
     }
     return fmax(0.0, fmin(1.0, sum));
 }

@@ -1,5 +1,5 @@
-/* Numbers as bytes, least significant first, the same on every machine. Floating point is IEEE
- * 754's. */
+/* Numbers as bytes, least significant first, the same on every machine. Floating point is
+ * IEEE 754's. */
 #ifndef GEOM_LITTLE_H
 #define GEOM_LITTLE_H
 

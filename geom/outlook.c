@@ -1,6 +1,6 @@
-/* What is hidden is a cone with its top at the point. A piece is cut along the planes of the
- * cone, one by one: the part outside of a plane is seen, the part inside goes on to the next
- * plane; the part inside of all three is hidden. */
+/* The hidden part is a cone with its top at the point. A piece is cut along the planes of
+ * the cone, one by one: the part outside of a plane is seen, the part inside goes on to
+ * the next plane; the part inside of all three is hidden. */
 #include "geom/outlook.h"
 
 void outlook_start(struct outlook *outlook, struct vec3 from, const struct triangle *t)
@@ -12,8 +12,8 @@ void outlook_start(struct outlook *outlook, struct vec3 from, const struct trian
         outlook->piece[0].corner[k] = t->corner[k];
 }
 
-/* Height over a plane through the point; 0 within rounding, which would leave slivers along
- * each side that two triangles share. */
+/* Height over a plane through the point; 0 within rounding, which would leave slivers
+ * along each side that two triangles share. */
 static double rise_over(struct vec3 normal, struct vec3 from, struct vec3 corner)
 {
     static const double ROUNDING = 1e-13; /* scene units */
@@ -22,8 +22,8 @@ static double rise_over(struct vec3 normal, struct vec3 from, struct vec3 corner
 }
 
 /* The part of a piece above a plane through the point; no corners if there is none. */
-static struct outlook_piece part_above(const struct outlook_piece *piece, struct vec3 from,
-                                       struct vec3 normal)
+static struct outlook_piece part_above(const struct outlook_piece *piece,
+                                       struct vec3 from, struct vec3 normal)
 {
     struct outlook_piece part;
     bool any = false;
@@ -56,7 +56,8 @@ static bool is_outside(const struct outlook_piece *piece, struct vec3 from,
     return false;
 }
 
-/* Cuts a piece; the last one takes its place, what is seen of it comes to the end. */
+/* Cuts a piece; the last one takes its place, the pieces of it that are seen come to the
+ * end. */
 static void cut_piece(struct outlook *outlook, int i, const struct vec3 normal[3])
 {
     struct outlook_piece inside = outlook->piece[i];

@@ -24,9 +24,9 @@ struct outlook {
 /* All of the triangle is seen. */
 void outlook_start(struct outlook *outlook, struct vec3 from, const struct triangle *t);
 
-/* Takes away the part that is hidden behind another triangle, which has to lie in front of
- * the first one's plane, as the point does. Does nothing where pieces or corners would be
- * too many. */
+/* Takes away the part that is hidden behind another triangle, which has to lie in front
+ * of the first one's plane, as the point does. Does nothing where pieces or corners would
+ * be too many. */
 void outlook_hide(struct outlook *outlook, const struct triangle *behind);
 
 #endif

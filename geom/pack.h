@@ -1,12 +1,13 @@
-/* Laying out an object's arrays one after the other in a block of memory, for others to look at:
- * processes that see the block at another address, or that are sent its bytes.
+/* Laying out an object's arrays one after the other in a block of memory, for others to
+ * look at: processes that see the block at another address, or that are sent its bytes.
  *
  *     struct pack count = {0};              struct pack write = {block, 0, true};
  *     thing_pack(thing, &count);            thing_pack(thing, &write);
  *     block = ... count.bytes ...           struct pack read = {block, 0, false};
  *                                           view = thing_view(&read);
  *
- * An object's head, its struct, goes before its arrays; pointers in it mean nothing in the block. */
+ * An object's head, its struct, goes before its arrays; pointers in it mean nothing in
+ * the block. */
 #ifndef GEOM_PACK_H
 #define GEOM_PACK_H
 
@@ -14,7 +15,7 @@
 #include <stddef.h>
 #include <string.h>
 
-enum { PACK_ALIGNMENT = 64 }; /* bytes, a cache line: of the block, and so of each array */
+enum { PACK_ALIGNMENT = 64 }; /* bytes, a cache line: of the block and each array */
 
 struct pack {
     char *block;  /* NULL: bytes are only counted */
@@ -22,8 +23,8 @@ struct pack {
     bool writes;
 };
 
-/* Where the next array of `bytes` bytes is in the block, NULL when counting. A pack that writes
- * copies `array` there. */
+/* Where the next array of `bytes` bytes is in the block, NULL when counting. A pack that
+ * writes copies `array` there. */
 static inline void *pack_array(struct pack *pack, const void *array, size_t bytes)
 {
     char *at = pack->block ? pack->block + pack->bytes : NULL;

@@ -1,23 +1,24 @@
 /* Triangulation by ear clipping.
  *
- * The polygon is projected along the axis in which its Newell normal (the sum of the cross
- * products of successive corners) is largest; that keeps the orientation and forgives corners
- * that lie a little off a plane. If all triangles (0, i, i+1) then turn left, the angle about
- * corner 0 grows all the way, and the fan is a triangulation. That is the case for almost all
- * input, and it takes linear time.
+ * The polygon is projected along the axis in which its Newell normal (the sum of the
+ * cross products of successive corners) is largest; that keeps the orientation and
+ * forgives corners that lie a little off a plane. If all triangles (0, i, i+1) then turn
+ * left, the angle about corner 0 grows all the way, and the fan is a triangulation. That
+ * is the case for almost all input, and it takes linear time.
  *
- * Otherwise ears are cut: corners b with neighbours a and c where a, b, c turn left and no other
- * corner lies in the closed triangle. Cutting one changes the state of its two neighbours
- * only, so n corners take n^2 tests of a point against a triangle. After a cut the search goes
- * on two corners further, which gives fewer slivers than cutting round one corner. Straight
- * corners are no ears, so they end as corners of triangles with an area.
+ * Otherwise ears are cut: corners b with neighbours a and c where a, b, c turn left and
+ * no other corner lies in the closed triangle. Cutting one changes the state of its two
+ * neighbours only, so n corners take n^2 tests of a point against a triangle. After a cut
+ * the search goes on two corners further, which gives fewer slivers than cutting round
+ * one corner. Straight corners are no ears, so they end as corners of triangles with an
+ * area.
  *
- * Corners where the edges fold back over themselves (repeated corners, spikes) enclose nothing
- * and are cut before all others. Corners in the same place as one of an ear's do not count as
- * inside it: the seam of a polygon with a hole runs through the same points twice. Corners that
- * are outside by no more than rounding do count, since a cut would leave a polygon that touches
- * itself. In a polygon that crosses itself the ears may run out; then the next corner is cut,
- * whatever it is, and the count comes out right.
+ * Corners where the edges fold back over themselves (repeated corners, spikes) enclose
+ * nothing and are cut before all others. Corners in the same place as one of an ear's do
+ * not count as inside it: the seam of a polygon with a hole runs through the same points
+ * twice. Corners that are outside by no more than rounding do count, since a cut would
+ * leave a polygon that touches itself. In a polygon that crosses itself the ears may run
+ * out; then the next corner is cut, whatever it is, and the count comes out right.
  *
  * Rejected: monotone partition in n log n, which does not survive repeated corners and
  * crossings without special cases; dropping straight corners first, which would leave
@@ -30,7 +31,8 @@
 #include "geom/alloc.h"
 #include "geom/triangle.h"
 
-/* A corner of the projected polygon, which is scaled to size 1, and its place in the ring. */
+/* A corner of the projected polygon, which is scaled to size 1, and its place in the
+ * ring. */
 struct corner {
     double u, v;
     int32_t previous, next;
@@ -48,7 +50,8 @@ static double largest(struct vec3 x)
     return fmax(fabs(x.x), fmax(fabs(x.y), fabs(x.z)));
 }
 
-/* Distance from corner 0 to the farthest one in the largest coordinate; 1 if all are equal. */
+/* Distance from corner 0 to the farthest one in the largest coordinate; 1 if all are
+ * equal. */
 static double size_of(const struct vec3 *corners, int32_t count)
 {
     double size = 0.0;
@@ -73,7 +76,8 @@ static struct vec3 newell_normal(const struct vec3 *corners, int32_t count, doub
     return normal;
 }
 
-/* Fills the plane coordinates of all corners such that the polygon is counter-clockwise. */
+/* Fills the plane coordinates of all corners such that the polygon is
+ * counter-clockwise. */
 static void project(const struct vec3 *corners, int32_t count, struct corner *ring)
 {
     double size = size_of(corners, count);
@@ -104,12 +108,12 @@ static bool is_same_place(const struct corner *a, const struct corner *b)
 
 /* True where q lies in the closed triangle (a, b, c), but not in the place of one of its
  * corners. Rounding counts as inside. */
-static bool is_inside(const struct corner *a, const struct corner *b, const struct corner *c,
-                      const struct corner *q)
+static bool is_inside(const struct corner *a, const struct corner *b,
+                      const struct corner *c, const struct corner *q)
 {
     return turn(a, b, q) >= -GEOM_ROUNDING && turn(b, c, q) >= -GEOM_ROUNDING &&
-           turn(c, a, q) >= -GEOM_ROUNDING && !is_same_place(q, a) && !is_same_place(q, b) &&
-           !is_same_place(q, c);
+           turn(c, a, q) >= -GEOM_ROUNDING && !is_same_place(q, a) &&
+           !is_same_place(q, b) && !is_same_place(q, c);
 }
 
 static bool is_ear(const struct corner *ring, int32_t i)
@@ -123,8 +127,8 @@ static bool is_ear(const struct corner *ring, int32_t i)
     return true;
 }
 
-/* True where the way to corner i and the way on run back over each other, or one of them has
- * no length. */
+/* True where the way to corner i and the way on run back over each other, or one of them
+ * has no length. */
 static bool is_fold(const struct corner *ring, int32_t i)
 {
     const struct corner *b = &ring[i], *a = &ring[b->previous], *c = &ring[b->next];

@@ -1,5 +1,5 @@
-/* How far a phase of the work has come. The loops of the method tick, cheaply; whether somebody
- * looks, and what is drawn then, is not their business (io/run/progress.h). */
+/* How far a phase of the work has come. The loops of the method tick, cheaply; whether
+ * somebody looks, and how it is drawn, is not their business (io/run/progress.h). */
 #ifndef GEOM_PROGRESS_H
 #define GEOM_PROGRESS_H
 
@@ -8,20 +8,23 @@
 
 struct progress {
     void (*show)(struct progress *progress); /* NULL: nobody looks */
-    int64_t stage;     /* counts what has begun */
+    int64_t stage;     /* counts phases and levels begun */
     const char *phase; /* such as "linking" */
     int64_t level;     /* of refinement; -1: there are none */
     int64_t links;     /* that the phase goes over, on all ranks; 0: it does not */
-    double share;      /* of the phase (of the level, if there is one) that is done, 0..1 */
+    double share;      /* of the phase, or of its level, that is done, 0..1 */
 };
 
 /* A phase, or a level of it, begins. `progress` may be NULL, here and below. */
-static inline void progress_begin(struct progress *progress, const char *phase, int64_t level,
-                                  int64_t links)
+static inline void progress_begin(struct progress *progress, const char *phase,
+                                  int64_t level, int64_t links)
 {
     if (progress)
-        *progress = (struct progress){.show = progress->show, .stage = progress->stage + 1,
-                                      .phase = phase, .level = level, .links = links};
+        *progress = (struct progress){.show = progress->show,
+                                      .stage = progress->stage + 1,
+                                      .phase = phase,
+                                      .level = level,
+                                      .links = links};
 }
 
 static inline void progress_tick(struct progress *progress, double share)
@@ -32,8 +35,10 @@ static inline void progress_tick(struct progress *progress, double share)
     progress->show(progress);
 }
 
-/* The tick of a loop over all pairs of `count` things, before those of thing i with later ones. */
-static inline void progress_tick_pairs(struct progress *progress, int64_t i, int64_t count)
+/* The tick of a loop over all pairs of `count` things, before those of thing i with later
+ * ones. */
+static inline void progress_tick_pairs(struct progress *progress, int64_t i,
+                                       int64_t count)
 {
     double left = (double)(count - i) / (double)count;
     progress_tick(progress, 1.0 - left * left);

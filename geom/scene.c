@@ -1,9 +1,10 @@
 /* Preparation of the scene.
  *
- * Scaling by a power of two is exact, so a scene scaled by 2^k gives the same bits in scene
- * units, and no threshold of the program has to know how large the scene is. Moving the centre
- * to the origin costs one rounding per coordinate and takes away the digits that a large offset
- * would eat. Shared vertices stay shared: equal inputs give equal outputs. */
+ * Scaling by a power of two is exact, so a scene scaled by 2^k gives the same bits in
+ * scene units, and no threshold of the program has to know how large the scene is. Moving
+ * the centre to the origin costs one rounding per coordinate and takes away the digits
+ * that a large offset would eat. Shared vertices stay shared: equal inputs give equal
+ * outputs. */
 #include "geom/scene.h"
 
 #include <string.h>
@@ -64,15 +65,19 @@ void scene_destroy(struct scene *scene)
 static void pack_arrays(struct scene *scene, struct pack *pack)
 {
     size_t count = (size_t)scene->input_count, materials = (size_t)scene->material_count;
-    scene->triangles = pack_array(pack, scene->triangles, count * sizeof *scene->triangles);
+    scene->triangles =
+        pack_array(pack, scene->triangles, count * sizeof *scene->triangles);
     scene->planes = pack_array(pack, scene->planes, count * sizeof *scene->planes);
     scene->areas = pack_array(pack, scene->areas, count * sizeof *scene->areas);
-    scene->material_of = pack_array(pack, scene->material_of, count * sizeof *scene->material_of);
-    scene->materials = pack_array(pack, scene->materials, materials * sizeof *scene->materials);
+    scene->material_of =
+        pack_array(pack, scene->material_of, count * sizeof *scene->material_of);
+    scene->materials =
+        pack_array(pack, scene->materials, materials * sizeof *scene->materials);
     scene->group_of = pack_array(pack, scene->group_of, count * sizeof *scene->group_of);
     scene->group_names = pack_array(pack, scene->group_names, (size_t)scene->group_bytes);
     if (scene->normals)
-        scene->normals = pack_array(pack, scene->normals, 3 * count * sizeof *scene->normals);
+        scene->normals =
+            pack_array(pack, scene->normals, 3 * count * sizeof *scene->normals);
 }
 
 void scene_pack(const struct scene *scene, struct pack *pack)
@@ -97,10 +102,12 @@ static void find_bounds(struct scene *scene)
     for (int32_t i = 0; i < scene->input_count; i++) {
         for (int k = 0; k < 3; k++) {
             struct vec3 x = scene->triangles[i].corner[k];
-            scene->low = (struct vec3){real_min(scene->low.x, x.x), real_min(scene->low.y, x.y),
-                                       real_min(scene->low.z, x.z)};
-            scene->high = (struct vec3){real_max(scene->high.x, x.x), real_max(scene->high.y, x.y),
-                                        real_max(scene->high.z, x.z)};
+            scene->low =
+                (struct vec3){real_min(scene->low.x, x.x), real_min(scene->low.y, x.y),
+                              real_min(scene->low.z, x.z)};
+            scene->high =
+                (struct vec3){real_max(scene->high.x, x.x), real_max(scene->high.y, x.y),
+                              real_max(scene->high.z, x.z)};
         }
     }
 }
@@ -113,7 +120,8 @@ static bool coordinates_are_sane(const struct scene *scene)
     for (int32_t i = 0; i < scene->input_count; i++)
         for (int k = 0; k < 3; k++)
             for (int axis = 0; axis < 3; axis++)
-                if (!(fabs(vec3_axis(scene->triangles[i].corner[k], axis)) <= COORDINATE_MAX))
+                if (!(fabs(vec3_axis(scene->triangles[i].corner[k], axis)) <=
+                      COORDINATE_MAX))
                     return false;
     return true;
 }
@@ -130,12 +138,14 @@ static bool normalise(struct scene *scene, struct error *error)
     if (!(extent > 0.0))
         return error_set(error, EXIT_USAGE, "the scene is a single point");
     if (exponent < -500)
-        return error_set(error, EXIT_USAGE, "the scene's extent %g is out of range", extent);
+        return error_set(error, EXIT_USAGE, "the scene's extent %g is out of range",
+                         extent);
     scene->exponent = exponent;
     scene->centre = vec3_add(scene->low, vec3_scale(size, 0.5));
     for (int32_t i = 0; i < scene->input_count; i++)
         for (int k = 0; k < 3; k++)
-            scene->triangles[i].corner[k] = scene_from_input(scene, scene->triangles[i].corner[k]);
+            scene->triangles[i].corner[k] =
+                scene_from_input(scene, scene->triangles[i].corner[k]);
     find_bounds(scene);
     return true;
 }
@@ -155,7 +165,8 @@ static int64_t clamp_reflectances(struct scene *scene)
     return clamped;
 }
 
-bool scene_prepare(struct scene *scene, struct scene_repairs *repairs, struct error *error)
+bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
+                   struct error *error)
 {
     if (scene->input_count == 0)
         return error_set(error, EXIT_USAGE, "the scene has no faces");
@@ -222,7 +233,8 @@ struct vec3 scene_root_normal(const struct scene *scene, int32_t root, int corne
         return (struct vec3){0.0, 0.0, 0.0};
     bool is_twin = root >= scene->input_count;
     int input_corner = is_twin && corner > 0 ? 3 - corner : corner;
-    struct vec3 normal = scene->normals[3 * (int64_t)scene_input_of(scene, root) + input_corner];
+    struct vec3 normal =
+        scene->normals[3 * (int64_t)scene_input_of(scene, root) + input_corner];
     bool is_front = vec3_dot(normal, scene_root_plane(scene, root).normal) >= 0.0;
     return is_front ? normal : vec3_scale(normal, -1.0);
 }
@@ -239,7 +251,8 @@ double scene_emitted_power(const struct scene *scene)
 {
     double sum = 0.0;
     for (int32_t root = 0; root < scene_root_count(scene); root++)
-        sum += scene_root_area(scene, root) * rgb_sum(scene_root_material(scene, root)->emission);
+        sum += scene_root_area(scene, root) *
+               rgb_sum(scene_root_material(scene, root)->emission);
     return sum;
 }
 

@@ -1,8 +1,9 @@
 /* The scene: triangles with materials, in the program's own units.
  *
- * Positions are moved and scaled on preparation: the centre of the bounding box goes to the
- * origin, and a power of two brings the longest side into [1/2, 1). Lengths in the program are
- * such "scene units"; one scene unit is 2^scene.exponent input units (called metres). */
+ * Positions are moved and scaled on preparation: the centre of the bounding box goes to
+ * the origin, and a power of two brings the longest side into [1/2, 1). Lengths in the
+ * program are such "scene units"; one scene unit is 2^scene.exponent input units (called
+ * metres). */
 #ifndef GEOM_SCENE_H
 #define GEOM_SCENE_H
 
@@ -30,7 +31,7 @@ static inline bool material_emits(const struct material *material)
     return rgb_sum(material->emission) > 0.0;
 }
 
-/* What the repair of an input changed, for one warning per kind. */
+/* Repairs of an input, for one warning per kind. */
 struct scene_repairs {
     int64_t degenerate; /* triangles without area, dropped (their numbers stay) */
     int64_t clamped;    /* materials with a reflectance of 1 or more, set to 0.999 */
@@ -39,13 +40,13 @@ struct scene_repairs {
 struct scene {
     struct triangle *triangles; /* [input_count], scene units after scene_prepare() */
     struct plane *planes;       /* [input_count]; zero for a dropped triangle */
-    double *areas;              /* [input_count], square scene units; 0 for a dropped one */
+    double *areas;              /* [input_count], square scene units; 0: dropped */
     int32_t *material_of;       /* [input_count], index into materials */
     struct material *materials; /* [material_count] */
-    struct vec3 *normals;       /* [3 * input_count], of corner k of triangle i at [3 i + k], for
-                                 * smooth shading: of length 1, or 0 where there is none; or NULL */
-    int32_t *group_of;          /* [input_count], index of the group: the name that a face goes by */
-    char *group_names;          /* [group_bytes], one after the other, each with its zero */
+    struct vec3 *normals;       /* [3 * input_count] or NULL, of corner k of triangle i at
+                                 * [3 i + k], for smooth shading: of length 1, or 0 */
+    int32_t *group_of;          /* [input_count], index of the group of each face */
+    char *group_names;          /* [group_bytes], each with its zero */
     int32_t input_count;        /* triangles read from the file, dropped ones included */
     int32_t material_count;
     int32_t group_count;        /* at least 1 */
@@ -58,8 +59,8 @@ struct scene {
     bool is_view;               /* the arrays lie in memory of others */
 };
 
-/* An empty scene with room for the given numbers, all of it in one group, "default". Owns its
- * arrays. */
+/* An empty scene with room for the given numbers, all of it in one group, "default". Owns
+ * its arrays. */
 struct scene *scene_create(int32_t input_count, int32_t material_count);
 void scene_destroy(struct scene *scene);
 
@@ -73,10 +74,11 @@ void scene_add_normals(struct scene *scene);
 /* Makes room for the names of `count` groups, of `bytes` bytes with their zeros. */
 void scene_set_groups(struct scene *scene, int32_t count, int64_t bytes);
 
-/* Moves and scales the positions, clamps reflectances, finds degenerate triangles, computes
- * planes and areas. To be called once, on positions in input units.
- * Errors: no triangle with an area; a coordinate or extent out of the range of the numbers. */
-bool scene_prepare(struct scene *scene, struct scene_repairs *repairs, struct error *error);
+/* Moves and scales the positions, clamps reflectances, finds degenerate triangles,
+ * computes planes and areas. To be called once, on positions in input units. Errors: no
+ * triangle with an area; a coordinate or extent out of the range of the numbers. */
+bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
+                   struct error *error);
 
 /* Number of roots, twins and dropped ones included: IDs run from 0 to this. Where a
  * triangle has no twin, the twin's root is absent: its area is 0, and so is its plane. */
@@ -95,11 +97,13 @@ bool scene_has_twin(const struct scene *scene, int32_t input);
  * side is black. */
 int32_t scene_root_on(const struct scene *scene, int32_t input, bool front);
 
-/* Geometry of a root. A twin has its corners in the order (a, c, b) and faces the other way. */
+/* Geometry of a root. A twin has its corners in the order (a, c, b) and faces the other
+ * way. */
 struct triangle scene_root_triangle(const struct scene *scene, int32_t root);
 struct plane scene_root_plane(const struct scene *scene, int32_t root);
 
-/* The normal for shading at a corner of a root, turned to the root's front; 0 if there is none. */
+/* The normal for shading at a corner of a root, turned to the root's front; 0 if there is
+ * none. */
 struct vec3 scene_root_normal(const struct scene *scene, int32_t root, int corner);
 
 /* Square scene units; 0 for a dropped root and an absent one. */
@@ -109,7 +113,8 @@ static inline double scene_root_area(const struct scene *scene, int32_t root)
     return root == input || scene_has_twin(scene, input) ? scene->areas[input] : 0.0;
 }
 
-static inline const struct material *scene_root_material(const struct scene *scene, int32_t root)
+static inline const struct material *scene_root_material(const struct scene *scene,
+                                                         int32_t root)
 {
     return &scene->materials[scene->material_of[scene_input_of(scene, root)]];
 }
@@ -120,11 +125,13 @@ double scene_area(const struct scene *scene);
 /* Sum over roots and bands of area times emission, W for areas in square scene units. */
 double scene_emitted_power(const struct scene *scene);
 
-/* Square input units in a square scene unit: turns power and areas into those of the input. */
+/* Square input units in a square scene unit: turns power and areas into those of the
+ * input. */
 double scene_area_unit(const struct scene *scene);
 
-/* A number that tells prepared scenes apart by their triangles and what these are made of, in scene
- * units; the same on every machine. Where a file lies and what names are in it do not count. */
+/* A number that tells prepared scenes apart by their triangles and materials, in scene
+ * units; the same on every machine. Neither the path of a file nor the names in it
+ * count. */
 uint64_t scene_hash(const struct scene *scene);
 
 /* A point of the scene in input units. */

@@ -11,8 +11,8 @@
  * it is not. */
 void stop_when(bool (*asked)(void));
 
-/* True if the loop that asks is to break off. What it leaves can be packed and freed, and is of
- * no other use. */
+/* True if the loop that asks is to break off. Its result can be packed and freed, and is
+ * of no other use. */
 bool stop_is_asked(void);
 
 /* True if nobody asks the program to stop. Else fills `error`, as error_set() does. */

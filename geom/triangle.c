@@ -1,27 +1,29 @@
 /* Triangles and the watertight segment test.
  *
- * The test follows Woop, Benthin and Wald (Journal of Computer Graphics Techniques 2(1), 2013):
- * coordinates are taken relative to the segment's start, permuted and sheared so that the
- * segment runs along the third axis; the three edge functions of the projected triangle then
- * say whether the origin is inside. What makes it watertight:
+ * The test follows Woop, Benthin and Wald (Journal of Computer Graphics Techniques 2(1),
+ * 2013): coordinates are taken relative to the segment's start, permuted and sheared so
+ * that the segment runs along the third axis; the three edge functions of the projected
+ * triangle then say whether the origin is inside. It is watertight because:
  *
  *  - a vertex is projected to the same bits whichever triangle it belongs to;
- *  - an edge function is x1 y2 - x2 y1, so the two triangles at an edge get exact negatives;
- *  - rounding is monotone, so the sign of that difference is right or zero, never inverted,
+ *  - an edge function is x1 y2 - x2 y1, so triangles at an edge get exact negatives;
+ *  - rounding is monotone, so the sign of that difference is right or zero, not inverted,
  *    and zero counts as inside.
  *
- * So no line slips between two triangles that share an edge. A fused multiply-add would break
- * the second point, which is one more reason for -ffp-contract=off.
+ * So no line slips between two triangles that share an edge. A fused multiply-add would
+ * break the second point, which is one more reason for -ffp-contract=off.
  *
- * Rejected: Moeller-Trumbore (each triangle rounds a shared edge for itself, so rays leak) and
- * an absolute epsilon along the ray (wrong for small scenes and at contacts). */
+ * Rejected: Moeller-Trumbore (each triangle rounds a shared edge for itself, so rays
+ * leak) and an absolute epsilon along the ray (wrong for small scenes and at
+ * contacts). */
 #include "geom/triangle.h"
 
 #include <stddef.h>
 
 struct vec3 triangle_cross(const struct triangle *t)
 {
-    return vec3_cross(vec3_sub(t->corner[1], t->corner[0]), vec3_sub(t->corner[2], t->corner[0]));
+    return vec3_cross(vec3_sub(t->corner[1], t->corner[0]),
+                      vec3_sub(t->corner[2], t->corner[0]));
 }
 
 double triangle_area(const struct triangle *t)
@@ -88,7 +90,8 @@ struct segment segment_make(struct vec3 from, struct vec3 to)
     return s;
 }
 
-bool segment_line_meets(const struct segment *s, const struct triangle *t, double weight[3])
+bool segment_line_meets(const struct segment *s, const struct triangle *t,
+                        double weight[3])
 {
     double x[3], y[3];
     for (int k = 0; k < 3; k++) {

@@ -6,8 +6,9 @@
 
 #include "geom/vec.h"
 
-/* A distance (scene units, where the scene fits in the unit cube) below which rounding, and
- * not the input, decides on which side of a plane a point lies: 64 units in the last place. */
+/* A distance (scene units, where the scene fits in the unit cube) below which rounding,
+ * and not the input, decides on which side of a plane a point lies: 64 units in the last
+ * place. */
 #define GEOM_ROUNDING 1.4210854715202004e-14
 
 struct triangle {
@@ -23,14 +24,14 @@ struct plane {
  * direction becomes the third axis. */
 struct segment {
     struct vec3 from, to;
-    int axis[3];     /* permutation of the coordinates; axis[2] is where |to - from| is largest */
-    double shear[2]; /* what is subtracted from the first two coordinates per unit of the third */
+    int axis[3];     /* order of the coordinates; |to - from| is largest on axis[2] */
+    double shear[2]; /* taken off the first two coordinates per unit of the third */
 };
 
 struct vec3 triangle_cross(const struct triangle *t);   /* normal times twice the area */
 double triangle_area(const struct triangle *t);         /* m^2 in scene units */
 struct vec3 triangle_centroid(const struct triangle *t);
-double triangle_radius(const struct triangle *t);       /* of a corner from the centroid, at most */
+double triangle_radius(const struct triangle *t); /* largest, corner to centroid */
 
 /* Pre: the area is not zero. */
 struct plane triangle_plane(const struct triangle *t);
@@ -52,15 +53,16 @@ static inline double plane_distance(const struct plane *plane, struct vec3 x)
 struct segment segment_make(struct vec3 from, struct vec3 to);
 
 /* True where the segment's line passes through the closed triangle. Watertight: of the
- * triangles of a closed mesh at least one says yes on each crossing, also through edges and
- * vertices. A line in the triangle's plane misses. If `weight` is not NULL it receives the
- * barycentric coordinates of the point. */
-bool segment_line_meets(const struct segment *s, const struct triangle *t, double weight[3]);
+ * triangles of a closed mesh at least one says yes on each crossing, also through edges
+ * and vertices. A line in the triangle's plane misses. If `weight` is not NULL it
+ * receives the barycentric coordinates of the point. */
+bool segment_line_meets(const struct segment *s, const struct triangle *t,
+                        double weight[3]);
 
 /* True where the triangle blocks the segment: its end points lie on opposite sides of the
- * triangle's plane, both off the plane by more than rounding, and the line passes through the
- * triangle. Both sides block. A triangle in whose plane an end point lies does not block:
- * that is what lets a decal in a wall, or a light flush with the ceiling, be seen. */
+ * triangle's plane, both off the plane by more than rounding, and the line passes through
+ * the triangle. Both sides block. A triangle in whose plane an end point lies does not
+ * block: that lets a decal in a wall, or a light flush with the ceiling, be seen. */
 bool segment_is_blocked_by(const struct segment *s, const struct triangle *t,
                            const struct plane *plane);
 

@@ -1,7 +1,8 @@
 /* Vectors of three doubles, colours of three bands, and pi.
  *
  * Only + - * / and sqrt: all of them are exactly rounded by IEEE 754, so every machine
- * computes the same bits (the build forbids fused multiply-add with -ffp-contract=off). */
+ * computes the same bits (the build forbids fused multiply-add with
+ * -ffp-contract=off). */
 #ifndef GEOM_VEC_H
 #define GEOM_VEC_H
 
@@ -47,7 +48,8 @@ static inline double vec3_dot(struct vec3 a, struct vec3 b)
 
 static inline struct vec3 vec3_cross(struct vec3 a, struct vec3 b)
 {
-    return (struct vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    return (struct vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
+                         a.x * b.y - a.y * b.x};
 }
 
 static inline double vec3_length(struct vec3 a)
@@ -61,7 +63,8 @@ static inline double vec3_axis(struct vec3 a, int axis)
     return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
 }
 
-/* As fmin() and fmax() for what is not NaN; compilers make one instruction of them. */
+/* As fmin() and fmax() for numbers that are not NaN; compilers make one instruction of
+ * them. */
 static inline double real_min(double a, double b)
 {
     return a < b ? a : b;

@@ -1,5 +1,5 @@
 /* Walls: triangles in one plane that face the same way and hang together by whole sides.
- * What a wall blocks is proved for whole convex sets, be they triangles or boxes around
+ * Blocking by a wall is proved for whole convex sets, be they triangles or boxes around
  * many. */
 #ifndef GEOM_WALL_H
 #define GEOM_WALL_H

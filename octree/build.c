@@ -1,28 +1,30 @@
 /* Building a tree.
  *
- * A triangle belongs to the one cell that holds the middle of its box, however far it sticks
- * out, and the box of a cell is the box of its triangles. So each triangle is recorded once,
- * nothing can fall between two cells, and the memory is known beforehand.
+ * A triangle belongs to the one cell that holds the middle of its box, however far it
+ * sticks out, and the box of a cell is the box of its triangles. So each triangle is
+ * recorded once, nothing can fall between two cells, and the memory is known beforehand.
  *
- * The eight parts of a cell are not cubes. With the chance p_i that a line which meets a box
- * meets that of part i, the ratio of the boxes' areas, a cell that is cut costs sum p_i n_i
- * triangle tests, one that is not n. As long as there are fewer than eight parts, the one with
- * the largest box is cut in two, across the axis and at the place where that sum is least. Cells
- * are split as long as that saves more than the NODE_COST of looking at eight boxes. The parts
- * then take the octant in whose direction they lie, the farthest out first: a ray goes through
- * octants from the nearest to the farthest. The queue of cells replaces recursion. Triangles
- * whose boxes have one middle are cut by number.
+ * The eight parts of a cell are not cubes. With the chance p_i that a line which meets a
+ * box meets that of part i, the ratio of the boxes' areas, a cell that is cut costs sum
+ * p_i n_i triangle tests, one that is not n. As long as there are fewer than eight parts,
+ * the one with the largest box is cut in two, across the axis and at the place where that
+ * sum is least. Cells are split as long as that saves more than the NODE_COST of looking
+ * at eight boxes. The parts then take the octant in whose direction they lie, the
+ * farthest out first: a ray goes through octants from the nearest to the farthest. The
+ * queue of cells replaces recursion. Triangles whose boxes have one middle are cut by
+ * number.
  *
- * Rejected (tests/bench/hits.c, rooms of 6,348 and 31,936 triangles): across z, the halves
- * across y and the quarters across x, each at its best place, cells have 5.9 parts and not 7,
- * and first hits look at 10.9 and 15.0 nodes and 7.1 and 7.9 triangles; so they look at 7.7 and
- * 9.3 nodes and at 5.2 and 6.5 triangles. Cutting the part with most triangles times area, or
- * sorting children by distance for each ray, saves nothing more.
+ * Rejected (tests/bench/hits.c, rooms of 6,348 and 31,936 triangles): across z, the
+ * halves across y and the quarters across x, each at its best place, cells have 5.9 parts
+ * and not 7, and first hits look at 10.9 and 15.0 nodes and 7.1 and 7.9 triangles; so
+ * they look at 7.7 and 9.3 nodes and at 5.2 and 6.5 triangles. Cutting the part with most
+ * triangles times area, or sorting children by distance for each ray, saves nothing more.
  *
- * A record holds the triangle's affine maps in float, with a bound on their error: for |x| <= 1
- * each product and sum is off by at most 2^-24 of r1 = |r0| + |r1| + |r2| + |r3|, there are seven
- * of them, and coefficients and coordinates themselves are rounded: 10 x 2^-24 r1 in all. The
- * record says 16 x 2^-24 r1. Queries decide in float only what is beyond that. */
+ * A record holds the triangle's affine maps in float, with a bound on their error: for
+ * |x| <= 1 each product and sum is off by at most 2^-24 of r1 = |r0| + |r1| + |r2| +
+ * |r3|, there are seven of them, and coefficients and coordinates themselves are rounded:
+ * 10 x 2^-24 r1 in all. The record says 16 x 2^-24 r1. Queries decide in float only where
+ * a value is beyond that. */
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -35,7 +37,7 @@ enum { BINS = 16 }; /* a cut is looked for at their edges */
 
 static const float NODE_COST = 2.0f;           /* of a node, in triangle tests */
 static const double ERROR = 16.0 / 16777216.0; /* 16 x 2^-24 */
-static const float NOWHERE = 1e9f;             /* low side of the box of an absent child */
+static const float NOWHERE = 1e9f; /* low side of the box of an absent child */
 
 struct box {
     float low[3], high[3];
@@ -123,7 +125,8 @@ struct cutting {
 
 static int bin_of(const struct cutting *cutting, const struct item *item)
 {
-    int bin = (int)((box_middle(&item->box, cutting->axis) - cutting->low) * cutting->scale);
+    int bin =
+        (int)((box_middle(&item->box, cutting->axis) - cutting->low) * cutting->scale);
     return bin < BINS ? bin : BINS - 1;
 }
 
@@ -145,8 +148,8 @@ static float bin_cost(const struct bin *bin)
 }
 
 /* Looks for a cut along the axis of `trial` that is better than the best so far. */
-static void improve_cutting(struct cutting *best, struct cutting trial, const struct item *items,
-                            int32_t count)
+static void improve_cutting(struct cutting *best, struct cutting trial,
+                            const struct item *items, int32_t count)
 {
     struct bin bins[BINS], sum = {NO_BOX, 0};
     float left[BINS];
@@ -203,8 +206,8 @@ static struct part part_of(const struct builder *builder, int32_t begin, int32_t
     return (struct part){begin, end, box_around(builder->items, begin, end), false};
 }
 
-/* Cuts a part, keeping the order within both; the second becomes `rest`. Returns false, and marks
- * the part, if it cannot be cut. */
+/* Cuts a part, keeping the order within both; the second becomes `rest`. Returns false,
+ * and marks the part, if it cannot be cut. */
 static bool cut_part(struct builder *builder, struct part *part, struct part *rest)
 {
     struct item *items = builder->items;
@@ -249,8 +252,10 @@ static void cut_by_number(const struct builder *builder, const struct part *whol
                            whole->begin + (int32_t)(size * (k + 1) / LANES));
 }
 
-/* Cuts a cell. Returns the number of parts: 1 if it is cut by number only when it has to be. */
-static int cut_cell(struct builder *builder, const struct cell *cell, struct part parts[LANES])
+/* Cuts a cell. Returns the number of parts: 1 if it is cut by number only when it has to
+ * be. */
+static int cut_cell(struct builder *builder, const struct cell *cell,
+                    struct part parts[LANES])
 {
     int count = 1;
     parts[0] = cell->part;
@@ -298,8 +303,8 @@ static void append_cell(struct builder *builder, struct cell cell)
     builder->queue[builder->queue_count++] = cell;
 }
 
-/* Which octant each part takes: of all pairs that are left always the one in which the part
- * lies farthest out. */
+/* Which octant each part takes: of all pairs that are left always the one in which the
+ * part lies farthest out. */
 static void assign_octants(const struct part *whole, const struct part *parts, int count,
                            int octants[LANES])
 {
@@ -341,7 +346,8 @@ static int32_t split_cell(struct builder *builder, const struct cell *cell,
             node->bound[axis][0][octants[k]] = parts[k].box.low[axis] - BOX_MARGIN;
             node->bound[axis][1][octants[k]] = parts[k].box.high[axis] + BOX_MARGIN;
         }
-        append_cell(builder, (struct cell){parts[k], cell->depth + 1, number, octants[k]});
+        append_cell(builder,
+                    (struct cell){parts[k], cell->depth + 1, number, octants[k]});
     }
     return number;
 }
@@ -351,7 +357,8 @@ static void process_cell(struct builder *builder, struct cell cell)
     struct part parts[LANES];
     int32_t count = cell.part.end - cell.part.begin;
     bool is_root = cell.node < 0, splits = is_root || count > LEAF_MAX;
-    int part_count = splits || (float)count > NODE_COST ? cut_cell(builder, &cell, parts) : 1;
+    int part_count =
+        splits || (float)count > NODE_COST ? cut_cell(builder, &cell, parts) : 1;
     splits = splits || (part_count > 1 && split_pays(&cell.part, parts, part_count));
     int32_t child = splits ? split_cell(builder, &cell, parts, part_count)
                            : ~(LEAF_MAX * cell.part.begin + count - 1);
@@ -369,8 +376,8 @@ static void set_map(float map[4], float *error, struct vec3 gradient, double off
     *error = (float)(ERROR * size);
 }
 
-/* The maps of the barycentric coordinates: u = (x - a) . (e2 x n) / n^2, v = (x - a) . (n x e1) /
- * n^2 with n = e1 x e2, e1 = b - a, e2 = c - a. */
+/* The maps of the barycentric coordinates: u = (x - a) . (e2 x n) / n^2, v = (x - a) . (n
+ * x e1) / n^2 with n = e1 x e2, e1 = b - a, e2 = c - a. */
 static struct record make_record(const struct triangle *t, const struct plane *plane,
                                  int32_t number)
 {
@@ -396,7 +403,8 @@ struct tree tree_build(const struct triangle *triangles, const struct plane *pla
     if (count == 0)
         return *tree;
     if (count > INT32_MAX / LEAF_MAX)
-        alloc_fail((size_t)count * sizeof(struct record)); /* no child could say where it is */
+        alloc_fail((size_t)count *
+                   sizeof(struct record)); /* no child could say where it is */
     builder.items = alloc_array((size_t)count, sizeof *builder.items);
     builder.scratch = alloc_array((size_t)count, sizeof *builder.scratch);
     for (int32_t i = 0; i < count; i++)
@@ -426,7 +434,8 @@ void tree_free(struct tree *tree)
 void tree_pack_arrays(struct tree *tree, struct pack *pack)
 {
     tree->node_capacity = tree->node_count;
-    tree->nodes = pack_array(pack, tree->nodes, (size_t)tree->node_count * sizeof *tree->nodes);
+    tree->nodes =
+        pack_array(pack, tree->nodes, (size_t)tree->node_count * sizeof *tree->nodes);
     tree->records = pack_array(pack, tree->records,
                                (size_t)tree->record_count * sizeof *tree->records);
 }

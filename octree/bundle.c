@@ -1,45 +1,49 @@
 /* Bundles: which of 16 segments are blocked?
  *
  * A bundle goes down as a whole, as the shaft of its eight end points (octree/shaft.h). A
- * triangle sees it as 4 + 4 points, which are eight lanes: the signed distances w to its plane,
- * and if they are not all on one side, its barycentric coordinates u and v. If all eight points
- * are on the far side of an edge no segment meets it. Only then are the 16 pairs looked at, in
- * two vectors: from w, u at one end and w', u' at the other, the crossing point has
- * u = (u w' - u' w) / (w' - w), and only signs matter.
+ * triangle sees it as 4 + 4 points, which are eight lanes: the signed distances w to its
+ * plane, and if they are not all on one side, its barycentric coordinates u and v. If all
+ * eight points are on the far side of an edge no segment meets it. Only then are the 16
+ * pairs looked at, in two vectors: from w, u at one end and w', u' at the other, the
+ * crossing point has u = (u w' - u' w) / (w' - w), and only signs matter.
  *
- * All of this is float, and every comparison keeps a margin for its rounding. A pair for which
- * the signs are not certain, near an edge or where an end point lies in the plane, is decided by
- * segment_is_blocked_by() in double. So float decides nothing that double would decide
- * otherwise, and the answers are the watertight ones of geom/triangle.c to the bit.
+ * All of this is float, and every comparison keeps a margin for its rounding. A pair for
+ * which the signs are not certain, near an edge or where an end point lies in the plane,
+ * is decided by segment_is_blocked_by() in double. So float decides nothing that double
+ * would decide otherwise, and the answers are the watertight ones of geom/triangle.c to
+ * the bit.
  *
- * Made faster, most of all first (tests/bench/rays.c, beside Embree's packets of 16): a link
- * starts with the last blocker of the one that it comes from; tests inlined, masks folded in
- * whole words; the six slabs of a node written out instead of looped over; numbers of the shaft
- * spread over the lanes once, not for each node. Eight-lane vectors where registers have four
- * lanes had 0.4 of the speed of twice four. Remembering two to six blockers instead of one and
- * fetching the next node ahead gained nothing. */
+ * Made faster, most of all first (tests/bench/rays.c, beside Embree's packets of 16): a
+ * link starts with the last blocker of the one that it comes from; tests inlined, masks
+ * folded in whole words; the six slabs of a node written out instead of looped over;
+ * numbers of the shaft spread over the lanes once, not for each node. Eight-lane vectors
+ * where registers have four lanes had 0.4 of the speed of twice four. Remembering two to
+ * six blockers instead of one and fetching the next node ahead gained nothing. */
 #include "octree/octree.h"
 #include "octree/shaft.h"
 
 /* --- a triangle against a bundle --- */
 
 /* An affine map at eight points. */
-#define MAP(r, p)                                                                          \
-    lanes_add(lanes_add(lanes_mul(lanes_all((r)[0]), (p)[0]),                              \
-                        lanes_mul(lanes_all((r)[1]), (p)[1])),                             \
+#define MAP(r, p) \
+    lanes_add(lanes_add(lanes_mul(lanes_all((r)[0]), (p)[0]), \
+                        lanes_mul(lanes_all((r)[1]), (p)[1])), \
               lanes_add(lanes_mul(lanes_all((r)[2]), (p)[2]), lanes_all((r)[3])))
 
-/* What float knows of the pairs and a triangle. */
+/* The pairs of a triangle that float is sure of. */
 struct verdict {
     unsigned hit, miss; /* bits of the pairs for which it is certain */
 };
 
-/* Eight pairs. With s = w' - w, the crossing point has u = U / s, v = V / s; it is inside if U, V
- * and s - U - V have the sign of s. The margins follow from the errors of the maps. */
+/* Eight pairs. With s = w' - w, the crossing point has u = U / s, v = V / s; it is inside
+ * if U, V and s - U - V have the sign of s. The margins follow from the errors of the
+ * maps. */
 INLINE struct verdict judge_half(const struct record *r, const lanes *u0, const lanes *u1,
-                                 const lanes *v0, const lanes *v1, const lanes *w0, const lanes *w1)
+                                 const lanes *v0, const lanes *v1, const lanes *w0,
+                                 const lanes *w1)
 {
-    lanes eu = lanes_all(r->error_u), ev = lanes_all(r->error_v), ew = lanes_all(r->error_w);
+    lanes eu = lanes_all(r->error_u), ev = lanes_all(r->error_v),
+          ew = lanes_all(r->error_w);
     lanes zero = lanes_all(0.0f);
     lanes s = lanes_sub(*w1, *w0), size = lanes_abs(s);
     lanes u = lanes_flip(lanes_sub(lanes_mul(*u0, *w1), lanes_mul(*u1, *w0)), s);
@@ -67,23 +71,25 @@ INLINE struct verdict judge_half(const struct record *r, const lanes *u0, const 
     return (struct verdict){mask_bits(&hit), mask_bits(&miss)};
 }
 
-/* 1 if a > b in all lanes. Results are joined by | and not ||: one branch that is hard to guess
- * costs more than a few operations. */
+/* 1 if a > b in all lanes. Results are joined by | and not ||: one branch that is hard to
+ * guess costs more than a few operations. */
 INLINE int all_above(const lanes *a, const lanes *b)
 {
     lanes_mask mask = lanes_above(*a, *b);
     return mask_is_full(&mask);
 }
 
-/* Looks at the eight points, then at the 16 pairs. What is in neither set has to be decided in
- * double. */
-INLINE struct verdict judge(const struct record *r, const struct shaft *shaft, unsigned wanted)
+/* Looks at the eight points, then at the 16 pairs. Pairs in neither set have to be
+ * decided in double. */
+INLINE struct verdict judge(const struct record *r, const struct shaft *shaft,
+                            unsigned wanted)
 {
     const struct verdict none = {0, 0xffffu};
     const lanes *p = shaft->points;
     lanes zero = lanes_all(0.0f);
     struct vec3 n = r->plane.normal;
-    const float distance[4] = {(float)n.x, (float)n.y, (float)n.z, -(float)r->plane.offset};
+    const float distance[4] = {(float)n.x, (float)n.y, (float)n.z,
+                               -(float)r->plane.offset};
     lanes w = MAP(distance, p), ew = lanes_all(r->error_w), nw = lanes_sub(zero, ew);
     if (all_above(&w, &ew) | all_above(&nw, &w))
         return none;
@@ -108,14 +114,16 @@ INLINE struct verdict judge(const struct record *r, const struct shaft *shaft, u
 
 /* The pairs among `wanted` that the triangle blocks. */
 INLINE unsigned pairs_blocked(const struct octree *octree, const struct bundle *bundle,
-                              const struct shaft *shaft, const struct record *r, unsigned wanted)
+                              const struct shaft *shaft, const struct record *r,
+                              unsigned wanted)
 {
     struct verdict verdict = judge(r, shaft, wanted);
     unsigned blocked = verdict.hit & wanted, open = wanted & ~verdict.hit & ~verdict.miss;
     for (int k = 0; open != 0; k++, open >>= 1) {
         if (!(open & 1u))
             continue;
-        struct segment s = segment_make(bundle->from[k / BUNDLE_ENDS], bundle->to[k % BUNDLE_ENDS]);
+        struct segment s =
+            segment_make(bundle->from[k / BUNDLE_ENDS], bundle->to[k % BUNDLE_ENDS]);
         if (segment_is_blocked_by(&s, &octree->triangles[r->triangle], &r->plane))
             blocked |= 1u << k;
     }
@@ -150,8 +158,8 @@ static bool find_blockers(void *at, const struct record *records, int32_t count,
     return search->blocked == bundle->asked;
 }
 
-unsigned octree_block(const struct octree *octree, const struct bundle *bundle, int32_t *guess,
-                      struct octree_counts *counts)
+unsigned octree_block(const struct octree *octree, const struct bundle *bundle,
+                      int32_t *guess, struct octree_counts *counts)
 {
     const struct tree *tree = &octree->inside;
     int32_t place = *guess >= 0 ? octree->place[*guess] : -1;

@@ -6,7 +6,7 @@
 
 struct octree_counts {
     int64_t rays;           /* segments asked about */
-    int64_t node_tests;     /* nodes, with all their children's boxes, against a bundle or segment */
+    int64_t node_tests;     /* nodes, with all eight boxes, against a bundle or segment */
     int64_t triangle_tests; /* triangles against a bundle or segment */
 };
 

@@ -1,19 +1,20 @@
 /* First hits: one ray goes down the tree, to the nearest box first (octree/ray.h).
  *
- * The ray is cut to a segment that leaves the scene. The t at which it enters a box lets boxes be
- * passed over that are behind the hit, also those that were met before there was one. Where it
- * crosses a triangle's plane is known in double, so that the triangle which the ray leaves, and
- * what ties, cost no more than others; of what is inside of a triangle float is sure, but for
- * edges, where segment_line_meets() decides. So the answers are those of geom/triangle.c to the
- * bit.
+ * The ray is cut to a segment that leaves the scene. The t at which it enters a box lets
+ * boxes be passed over that are behind the hit, also those that were met before there was
+ * one. Where it crosses a triangle's plane is known in double, so that the triangle which
+ * the ray leaves, and those that tie, cost no more than others; float is sure of the
+ * inside of a triangle, but for edges, where segment_line_meets() decides. So the answers
+ * are those of geom/triangle.c to the bit.
  *
- * A ray costs what the processor guesses wrongly and waits for. Rejected therefore
- * (tests/bench/hits.c, a room of 6,348 triangles): planes in float, and what is in doubt in double
- * (a tenth to a quarter slower: each ray is in doubt about the triangle that it leaves); a shaft
- * made anew at each hit; eight children pushed without branches (a chain of eight additions); an entry
- * of the stack for each child; sixteen rays in turn, a node of each at a time (wrong guesses of
- * one hold up all); fetching ahead of time; records and nodes at multiples of 64 bytes; one tree
- * for all, whose large walls get in the way of what stands in the room. */
+ * The cost of a ray is in wrong guesses and waits of the processor. Rejected therefore
+ * (tests/bench/hits.c, a room of 6,348 triangles): planes in float, and doubtful ones in
+ * double (a tenth to a quarter slower: each ray is in doubt about the triangle that it
+ * leaves); a shaft made anew at each hit; eight children pushed without branches (a chain
+ * of eight additions); an entry of the stack for each child; sixteen rays in turn, a node
+ * of each at a time (wrong guesses of one hold up all); fetching ahead of time; records
+ * and nodes at multiples of 64 bytes; one tree for all, whose large walls get in the way
+ * of the furniture. */
 #include "octree/octree.h"
 #include "octree/ray.h"
 
@@ -74,7 +75,7 @@ INLINE bool search_leaf(void *at, const struct record *records, int32_t count,
 }
 
 /* Cuts the ray to a segment that ends behind the scene and begins no further from it than
- * its own size: what a camera far away needs to keep its digits. False if it misses. */
+ * its own size, so that a camera far away keeps its digits. False if it misses. */
 static bool clip_to_scene(const struct octree *octree, struct vec3 *origin,
                           struct vec3 direction, struct vec3 *end)
 {

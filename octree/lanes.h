@@ -1,10 +1,11 @@
 /* Eight floats at once.
  *
- * The operations are defined by the plain C99 loops at the end. Where the compiler has vector
- * types (gcc, clang and their kin) the same is said with them, for processors with eight floats in
- * a register (AVX2) and for all others with twice four. Every lane is rounded as in the loops, so
- * all three give the same bits. The first uses macros where a function would take or return a
- * vector, since that has another calling convention with every set of processor flags.
+ * The operations are defined by the plain C99 loops at the end. Where the compiler has
+ * vector types (gcc, clang and their kin) the same is said with them, for processors with
+ * eight floats in a register (AVX2) and for all others with twice four. Every lane is
+ * rounded as in the loops, so all three give the same bits. The first uses macros where a
+ * function would take or return a vector, since that has another calling convention with
+ * every set of processor flags.
  *
  * PHR_PLAIN_LANES chooses the loops, for compilers without vectors and for the tests. */
 #ifndef OCTREE_LANES_H
@@ -22,10 +23,11 @@ enum { LANES = 8 };
 #endif
 #endif
 
-#if defined(__GNUC__) && !defined(PHR_PLAIN_LANES) && defined(__AVX2__) && defined(HAVE_SHUFFLE)
+#if defined(__GNUC__) && !defined(PHR_PLAIN_LANES) && defined(__AVX2__) && \
+    defined(HAVE_SHUFFLE)
 
 typedef float lanes __attribute__((vector_size(32)));
-typedef int32_t lanes_mask __attribute__((vector_size(32))); /* -1 where true, 0 where false */
+typedef int32_t lanes_mask __attribute__((vector_size(32))); /* -1: true, 0: false */
 
 #define lanes_all(x) ((lanes){(x), (x), (x), (x), (x), (x), (x), (x)})
 #define lanes_add(a, b) ((a) + (b))
@@ -36,16 +38,20 @@ typedef int32_t lanes_mask __attribute__((vector_size(32))); /* -1 where true, 0
 #define lanes_flip(a, b) \
     ((lanes)((lanes_mask)(a) ^ ((lanes_mask)(b) & (INT32_C(-0x7fffffff) - 1))))
 #define lanes_above(a, b) ((lanes_mask)((a) > (b)))
-/* The greater of a and b, which are evaluated twice; b where one is not a number. A loop over the
- * lanes becomes the one instruction that there is for it at -O2, but 48 at -O3 (gcc 12). */
-#define lanes_max(a, b)                                                                   \
-    ((lanes)((lanes_above(a, b) & (lanes_mask)(a)) | (~lanes_above(a, b) & (lanes_mask)(b))))
-#define lanes_min(a, b)                                                                   \
-    ((lanes)((lanes_above(b, a) & (lanes_mask)(a)) | (~lanes_above(b, a) & (lanes_mask)(b))))
+/* The greater of a and b, which are evaluated twice; b where one is not a number. A loop
+ * over the lanes becomes the one instruction that there is for it at -O2, but 48 at -O3
+ * (gcc 12). */
+#define lanes_max(a, b)                              \
+    ((lanes)((lanes_above(a, b) & (lanes_mask)(a)) | \
+             (~lanes_above(a, b) & (lanes_mask)(b))))
+#define lanes_min(a, b)                              \
+    ((lanes)((lanes_above(b, a) & (lanes_mask)(a)) | \
+             (~lanes_above(b, a) & (lanes_mask)(b))))
 #define mask_and(a, b) ((a) & (b))
 #define mask_or(a, b) ((a) | (b))
 
-/* Eight floats at any address, read as one vector (by parts, it would wait for the store). */
+/* Eight floats at any address, read as one vector (by parts, it would wait for the
+ * store). */
 typedef float lanes_in_memory __attribute__((vector_size(32), aligned(4), may_alias));
 #define lanes_at(p) ((lanes)*(const lanes_in_memory *)(p))
 
@@ -127,7 +133,8 @@ FOUR_INLINE lanes_mask lanes_above(lanes a, lanes b)
     return (lanes_mask){(four_mask)(a.low > b.low), (four_mask)(a.high > b.high)};
 }
 
-/* The one instruction that there is for it, where it has a name; compilers find it for neither. */
+/* The one instruction that there is for it, where it has a name; compilers find it for
+ * neither. */
 #ifdef __SSE__
 #define four_max(a, b) __builtin_ia32_maxps((a), (b))
 #define four_min(a, b) __builtin_ia32_minps((a), (b))

@@ -7,17 +7,20 @@
  *     |   \ | /\  |         record: a triangle's plane, two affine maps in float
  *     +-----+-----+
  *
- * It is an octree by its fan-out and by the place of its children: each takes the octant in whose
- * direction it lies, so that the order in which a ray meets them depends on its signs alone. The
- * boxes are no cubes: a cell is cut where that makes a query cheapest (octree/build.c). Eight
- * boxes fill one vector of lanes (octree/lanes.h), so that a node costs about as much as one box.
+ * It is an octree by its fan-out and by the place of its children: each takes the octant
+ * in whose direction it lies, so that the order in which a ray meets them depends on its
+ * signs alone. The boxes are no cubes: a cell is cut where that makes a query cheapest
+ * (octree/build.c). Eight boxes fill one vector of lanes (octree/lanes.h), so that a node
+ * costs about as much as one box.
  *
- * One walk (octree/walk.h) answers all questions. Rays go down for first hits (octree/hit.c),
- * single segments and walls (octree/segment.c); shafts for bundles of 16 segments
- * (octree/bundle.c) and for empty shafts (octree/shaft.c); a half space for the hull, below.
+ * One walk (octree/walk.h) answers all questions. Rays go down for first hits
+ * (octree/hit.c), single segments and walls (octree/segment.c); shafts for bundles of 16
+ * segments (octree/bundle.c) and for empty shafts (octree/shaft.c); a half space for the
+ * hull, below.
  *
- * Triangles that have the whole scene on one side, the walls of a room, can block nothing between
- * two of its points. They are the hull: a tree of their own that only first hits look at. */
+ * Triangles that have the whole scene on one side, the walls of a room, can block nothing
+ * between two of its points. They are the hull: a tree of their own that only first hits
+ * look at. */
 #include "octree/octree.h"
 
 #include <math.h>
@@ -30,7 +33,7 @@
 
 /* --- the hull of the scene --- */
 
-/* A question: what is above a plane? */
+/* A question: which triangles are above a plane? */
 struct above {
     struct plane plane;
     const struct triangle *triangles;
@@ -39,7 +42,8 @@ struct above {
 static const double HULL_MARGIN = 0.5 * GEOM_ROUNDING;
 
 /* Children whose boxes reach above the plane. */
-INLINE unsigned above_enters(const void *beam, const struct node *node, float enter[LANES])
+INLINE unsigned above_enters(const void *beam, const struct node *node,
+                             float enter[LANES])
 {
     const struct above *above = beam;
     unsigned met = 0;
@@ -89,14 +93,16 @@ static bool is_on_hull(const struct tree *all, const struct triangle *triangles,
 
 /* --- building --- */
 
-/* The ball around the triangles in `order`; around none it is no ball, and rays miss it. */
+/* The ball around the triangles in `order`; around none it is no ball, and rays miss
+ * it. */
 static void set_ball(struct octree *octree, const int32_t *order, int32_t count)
 {
     struct vec3 low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = vec3_scale(low, -1.0);
     for (int32_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) {
             struct vec3 x = octree->triangles[order[i]].corner[k];
-            low = (struct vec3){real_min(low.x, x.x), real_min(low.y, x.y), real_min(low.z, x.z)};
+            low = (struct vec3){real_min(low.x, x.x), real_min(low.y, x.y),
+                                real_min(low.z, x.z)};
             high = (struct vec3){real_max(high.x, x.x), real_max(high.y, x.y),
                                  real_max(high.z, x.z)};
         }
@@ -166,7 +172,8 @@ static void pack_arrays(struct octree *octree, struct pack *pack)
 {
     tree_pack_arrays(&octree->inside, pack);
     tree_pack_arrays(&octree->hull, pack);
-    octree->place = pack_array(pack, octree->place, (size_t)octree->count * sizeof *octree->place);
+    octree->place =
+        pack_array(pack, octree->place, (size_t)octree->count * sizeof *octree->place);
     size_t bytes = 3 * (size_t)octree->count * sizeof *octree->neighbours;
     octree->neighbours = pack_array(pack, octree->neighbours, bytes);
 }

@@ -1,9 +1,10 @@
 /* The ray caster: which triangle is met first, and which segments are blocked?
  *
- * Triangles are known by their number in the array that the octree is built over. Nothing here
- * depends on a rank, a thread or on earlier queries: the same question always takes the same
- * path, so that the counters are as reproducible as the answers. What blocks a segment is defined
- * by segment_is_blocked_by() in double precision, and the answers are exactly those. */
+ * Triangles are known by their number in the array that the octree is built over. Nothing
+ * here depends on a rank, a thread or on earlier queries: the same question always takes
+ * the same path, so that the counters are as reproducible as the answers. Blocking is
+ * defined by segment_is_blocked_by() in double precision, and the answers are exactly
+ * those. */
 #ifndef OCTREE_OCTREE_H
 #define OCTREE_OCTREE_H
 
@@ -21,8 +22,8 @@ enum {
     BUNDLE_RAYS = BUNDLE_ENDS * BUNDLE_ENDS /* segments of a bundle */
 };
 
-/* The 16 segments between four points and four others. Segment 4 a + b runs from from[a] to
- * to[b]. The points lie in the convex hull of the scene, such as on its triangles. */
+/* The 16 segments between four points and four others. Segment 4 a + b runs from from[a]
+ * to to[b]. The points lie in the convex hull of the scene, such as on its triangles. */
 struct bundle {
     struct vec3 from[BUNDLE_ENDS], to[BUNDLE_ENDS];
     unsigned asked; /* bit 4 a + b: this segment is wanted; from[a] != to[b] */
@@ -35,9 +36,9 @@ struct octree_hit {
     double weight[3]; /* barycentric coordinates of the point */
 };
 
-/* Builds the octree over `count` triangles and their planes, in scene units (the box around them
- * fits in [-1/2, 1/2]^3). Triangles whose plane has a zero normal (dropped ones) are left out.
- * Borrows both arrays, which must outlive it. */
+/* Builds the octree over `count` triangles and their planes, in scene units (the box
+ * around them fits in [-1/2, 1/2]^3). Triangles whose plane has a zero normal (dropped
+ * ones) are left out. Borrows both arrays, which must outlive it. */
 struct octree *octree_create(const struct triangle *triangles, const struct plane *planes,
                              int32_t count);
 void octree_destroy(struct octree *octree);
@@ -45,23 +46,25 @@ void octree_destroy(struct octree *octree);
 /* Bytes that the octree itself takes. */
 int64_t octree_bytes(const struct octree *octree);
 
-/* Into a block, and as it is there: read-only, valid as long as the block. The triangles and planes
- * are not packed: the view is given the same ones. */
+/* Into a block, and as it is there: read-only, valid as long as the block. The triangles
+ * and planes are not packed: the view is given the same ones. */
 void octree_pack(const struct octree *octree, struct pack *pack);
 struct octree *octree_view(struct pack *pack, const struct triangle *triangles,
                            const struct plane *planes);
 
-/* Which of the segments asked for are blocked: bits as in `asked`. `*guess` is a triangle that is
- * tested first, such as the last blocker of a similar bundle, or -1; it becomes the last one that
- * blocked some segment. It saves time and never changes the answer. */
-unsigned octree_block(const struct octree *octree, const struct bundle *bundle, int32_t *guess,
-                      struct octree_counts *counts);
+/* Which of the segments asked for are blocked: bits as in `asked`. `*guess` is a triangle
+ * that is tested first, such as the last blocker of a similar bundle, or -1; it becomes
+ * the last one that blocked some segment. It saves time and never changes the answer. */
+unsigned octree_block(const struct octree *octree, const struct bundle *bundle,
+                      int32_t *guess, struct octree_counts *counts);
 
-/* True if the segment between two points of the hull of the scene is blocked; own and guess as above.
- * A few segments that go different ways are cheaper one by one than as part of a bundle, which goes
- * down wherever anything between its outermost points might be. */
+/* True if the segment between two points of the hull of the scene is blocked; own and
+ * guess as above. A few segments that go different ways are cheaper one by one than as
+ * part of a bundle, which goes down wherever anything between its outermost points might
+ * be. */
 bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct vec3 to,
-                           const int32_t own[2], int32_t *guess, struct octree_counts *counts);
+                           const int32_t own[2], int32_t *guess,
+                           struct octree_counts *counts);
 
 /* True if it is proved that a wall blocks all segments between two convex sets, given by
  * their corners (geom/wall.h). Walls that block the one between the means of the corners
@@ -69,19 +72,20 @@ bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct
 bool octree_has_wall(const struct octree *octree, const struct vec3 *p, int count_p,
                      const struct vec3 *q, int count_q, struct octree_counts *counts);
 
-/* True if it is proved that nothing can block a segment from the front of one triangle to the front
- * of another: no triangle reaches into the shaft between them, their convex hull, in front of both
- * planes. False says nothing. `own`: their numbers, as above. */
+/* True if it is proved that nothing can block a segment from the front of one triangle to
+ * the front of another: no triangle reaches into the shaft between them, their convex
+ * hull, in front of both planes. False says nothing. `own`: their numbers, as above. */
 bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p,
                            const struct plane *plane_p, const struct triangle *q,
                            const struct plane *plane_q, const int32_t own[2],
                            struct octree_counts *counts);
 
-/* The triangle that the ray from `origin` along `direction` (of any length but 0) meets first.
- * Of triangles met in the same place a front counts before a back, then the largest number: what
- * a file lays over a surface comes after it. `fronts_only` looks through backs. False if nothing
- * is met. */
-bool octree_first_hit(const struct octree *octree, struct vec3 origin, struct vec3 direction,
-                      bool fronts_only, struct octree_hit *hit, struct octree_counts *counts);
+/* The triangle that the ray from `origin` along `direction` (of any length but 0) meets
+ * first. Of triangles met in the same place a front counts before a back, then the
+ * largest number: decals come after the surface that they lie on. `fronts_only` looks
+ * through backs. False if nothing is met. */
+bool octree_first_hit(const struct octree *octree, struct vec3 origin,
+                      struct vec3 direction, bool fronts_only, struct octree_hit *hit,
+                      struct octree_counts *counts);
 
 #endif

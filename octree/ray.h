@@ -1,16 +1,18 @@
 /* One ray on its way down a tree; for octree/ only.
  *
- * A ray is the segment x = origin + t step, 0 <= t <= 1. It enters a box at the largest of the
- * three t at which it enters the box's slabs, and leaves it at the smallest at which it leaves
- * them. Which side of a slab comes first depends on the ray alone. Boxes are BOX_MARGIN wider
- * than what is in them, and that is more than all rounding in these tests.
+ * A ray is the segment x = origin + t step, 0 <= t <= 1. It enters a box at the largest
+ * of the three t at which it enters the box's slabs, and leaves it at the smallest at
+ * which it leaves them. Which side of a slab comes first depends on the ray alone. Boxes
+ * are BOX_MARGIN wider than their triangles, and that is more than all rounding in these
+ * tests.
  *
- * Where a ray crosses a triangle's plane is computed in double, as geom/triangle.c does it. Whether
- * that point is inside of the triangle is looked at in float. Of at most 2.5 that is in a step the
- * point loses 20 x 2^-24 in float, and 2 x 2^-24 in double where the ray's ends differ by at least
- * CHANGE_LEAST in distance from the plane. A map of error e has a gradient below 2^20 e
- * (octree/build.c): that makes 1.4 e, and with the map's own error 2.5 e. Queries decide in double
- * what is nearer to an edge, or grazes the plane. */
+ * Where a ray crosses a triangle's plane is computed in double, as geom/triangle.c does
+ * it. Whether that point is inside of the triangle is looked at in float. Of at most 2.5
+ * that is in a step the point loses 20 x 2^-24 in float, and 2 x 2^-24 in double where
+ * the ray's ends differ by at least CHANGE_LEAST in distance from the plane. A map of
+ * error e has a gradient below 2^20 e (octree/build.c): that makes 1.4 e, and with the
+ * map's own error 2.5 e. Queries decide in double the points nearer to an edge, and rays
+ * that graze the plane. */
 #ifndef OCTREE_RAY_H
 #define OCTREE_RAY_H
 
@@ -18,15 +20,15 @@
 
 #include "octree/walk.h"
 
-/* For boxes the ray's numbers are in all lanes, too. A step of less than STEP_LEAST along an axis
- * counts as that, so that its inverse is a number. */
+/* For boxes the ray's numbers are in all lanes, too. A step of less than STEP_LEAST along
+ * an axis counts as that, so that its inverse is a number. */
 struct ray {
     struct vec3 from, to;
     float origin[3], step[3];
     lanes start[3];     /* the origin */
     lanes inverse[3];   /* 1 / step */
     lanes_mask weights; /* of the children: that of octant k ^ near is bit k */
-    int near;           /* the nearest octant: a bit for each axis that the ray runs down */
+    int near;           /* the nearest octant: bits of the axes that the ray runs down */
     float reach;        /* t up to which boxes are of use */
 };
 
@@ -41,7 +43,8 @@ INLINE void ray_set(struct ray *ray, struct vec3 from, struct vec3 to)
     ray->reach = 1.0f;
     for (int axis = 0; axis < 3; axis++) {
         float a = (float)vec3_axis(from, axis), step = (float)vec3_axis(to, axis) - a;
-        float size = fabsf(step), inverse = 1.0f / (size > STEP_LEAST ? size : STEP_LEAST);
+        float size = fabsf(step),
+              inverse = 1.0f / (size > STEP_LEAST ? size : STEP_LEAST);
         ray->near |= (signbit(step) != 0) << axis;
         ray->origin[axis] = a;
         ray->step[axis] = step;
@@ -75,7 +78,8 @@ INLINE unsigned ray_enters(const void *beam, const struct node *node, float ente
     return ~mask_select(&out, &ray->weights) & 0xffu;
 }
 
-/* Goes down along the ray, to the nearest box first. A visit may shorten the ray's reach. */
+/* Goes down along the ray, to the nearest box first. A visit may shorten the ray's
+ * reach. */
 INLINE bool ray_walk(const struct tree *tree, const struct ray *ray, leaf_visit *visit,
                      void *query, struct octree_counts *counts)
 {
@@ -91,15 +95,16 @@ struct ends {
 
 INLINE struct ends ends_of(const struct ray *ray, const struct record *r)
 {
-    return (struct ends){plane_distance(&r->plane, ray->from), plane_distance(&r->plane, ray->to)};
+    return (struct ends){plane_distance(&r->plane, ray->from),
+                         plane_distance(&r->plane, ray->to)};
 }
 
-/* What float knows of a ray's line and a triangle. */
+/* The verdict of float on a ray's line and a triangle. */
 enum passage { MISSES, MAY_MEET, MEETS };
 
 /* The line crosses the triangle's plane at t. */
-INLINE enum passage ray_passes(const struct ray *ray, const struct record *r, struct ends ends,
-                               double at)
+INLINE enum passage ray_passes(const struct ray *ray, const struct record *r,
+                               struct ends ends, double at)
 {
     const float *o = ray->origin, *d = ray->step, t = (float)at;
     float x[3] = {o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};

@@ -1,13 +1,13 @@
 /* One segment: is it blocked, and is there a wall?
  *
- * A segment goes down like a ray (octree/ray.h), to the nearest box first, and any triangle that
- * blocks it ends the walk. What float is sure of counts; all else is decided by
- * segment_is_blocked_by() in double, so the answers are those of geom/triangle.c to the bit. Links
- * of clusters ask for few segments each, to places far apart, and are better off so than with
- * bundles.
+ * A segment goes down like a ray (octree/ray.h), to the nearest box first, and any
+ * triangle that blocks it ends the walk. Float counts where it is sure; all else is
+ * decided by segment_is_blocked_by() in double, so the answers are those of
+ * geom/triangle.c to the bit. Links of clusters ask for few segments each, to places far
+ * apart, and are better off so than with bundles.
  *
- * Rejected: a shaft without width (octree/shaft.h), whose separating axes take twice as many operations
- * a box. */
+ * Rejected: a shaft without width (octree/shaft.h), whose separating axes take twice as
+ * many operations a box. */
 #include <stddef.h>
 
 #include "geom/wall.h"
@@ -30,7 +30,8 @@ static bool is_blocked_by(const struct query *query, const struct record *r)
     bool up = (ends.from < -GEOM_ROUNDING) & (ends.to > GEOM_ROUNDING);
     if (!(down | up))
         return false;
-    enum passage passage = ray_passes(&query->ray, r, ends, ends.from / (ends.from - ends.to));
+    enum passage passage =
+        ray_passes(&query->ray, r, ends, ends.from / (ends.from - ends.to));
     if (passage != MAY_MEET)
         return passage == MEETS;
     struct segment s = segment_make(query->ray.from, query->ray.to);
@@ -45,7 +46,8 @@ INLINE bool find_blocker(void *at, const struct record *records, int32_t count,
     counts->triangle_tests += count;
     for (int32_t i = 0; i < count; i++) {
         int32_t t = records[i].triangle;
-        if (t != query->own[0] && t != query->own[1] && is_blocked_by(query, &records[i])) {
+        if (t != query->own[0] && t != query->own[1] &&
+            is_blocked_by(query, &records[i])) {
             query->blocker = t;
             return true;
         }
@@ -54,7 +56,8 @@ INLINE bool find_blocker(void *at, const struct record *records, int32_t count,
 }
 
 bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct vec3 to,
-                           const int32_t own[2], int32_t *guess, struct octree_counts *counts)
+                           const int32_t own[2], int32_t *guess,
+                           struct octree_counts *counts)
 {
     const struct tree *tree = &octree->inside;
     struct query query; /* set by parts, since the ray is large */
@@ -90,8 +93,8 @@ INLINE bool find_wall(void *at, const struct record *records, int32_t count,
     counts->triangle_tests += count;
     for (int32_t i = 0; i < count; i++)
         if (is_blocked_by(&query->middle, &records[i]) &&
-            walls_stand_between(&walls, records[i].triangle, query->p, query->count_p, query->q,
-                                query->count_q))
+            walls_stand_between(&walls, records[i].triangle, query->p, query->count_p,
+                                query->q, query->count_q))
             return true;
     return false;
 }

@@ -86,7 +86,8 @@ bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p
                            const struct plane *plane_q, const int32_t own[2],
                            struct octree_counts *counts)
 {
-    struct shaft_query query = {octree->triangles, own, hull_of_pair(p, plane_p, q, plane_q)};
+    struct shaft_query query = {octree->triangles, own,
+                                hull_of_pair(p, plane_p, q, plane_q)};
     struct vec3 from[SHAFT_ENDS], to[SHAFT_ENDS];
     struct shaft shaft;
     for (int k = 0; k < SHAFT_ENDS; k++) {

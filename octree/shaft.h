@@ -1,8 +1,9 @@
 /* The shaft of all segments between two sets of four points; for octree/ only.
  *
- * A box is compared with the shaft by separating axes: the three of the box, and the cross
- * products of each with the direction of the shaft. No division, so nothing special happens in
- * axis planes. Eight boxes are one vector of lanes, so a node costs about as much as one box. */
+ * A box is compared with the shaft by separating axes: the three of the box, and the
+ * cross products of each with the direction of the shaft. No division, so nothing special
+ * happens in axis planes. Eight boxes are one vector of lanes, so a node costs about as
+ * much as one box. */
 #ifndef OCTREE_SHAFT_H
 #define OCTREE_SHAFT_H
 
@@ -21,7 +22,7 @@ struct shaft {
     struct slab cross[3]; /* n = direction x (x, y, z axis) */
     lanes direction[3];   /* from the mean start to the mean end, largest |.| 1 */
     lanes_mask weights;   /* of the children: that of octant k ^ near is bit k */
-    int near;             /* the nearest octant: a bit for each axis that the shaft runs down */
+    int near;             /* the nearest octant: bits of the axes that it runs down */
 };
 
 /* Sets the points. A walk needs the slabs around them, too. */
@@ -30,22 +31,23 @@ void shaft_set_points(struct shaft *shaft, const struct vec3 from[SHAFT_ENDS],
 void shaft_set_slabs(struct shaft *shaft);
 
 /* Boxes beyond the slab of an axis. */
-#define OUT_OF_OWN(axis)                                                                    \
-    mask_or(lanes_above(lanes_at(node->bound[axis][0]), shaft->own[axis].high),             \
+#define OUT_OF_OWN(axis) \
+    mask_or(lanes_above(lanes_at(node->bound[axis][0]), shaft->own[axis].high), \
             lanes_above(shaft->own[axis].low, lanes_at(node->bound[axis][1])))
 
 /* direction[j] x_i is largest on one side of a box, and smallest on the other. */
 #define MOST(i, j) lanes_mul(shaft->direction[j], lanes_at(node->bound[i][up##j]))
 #define LEAST(i, j) lanes_mul(shaft->direction[j], lanes_at(node->bound[i][!up##j]))
 
-/* Boxes beyond the slab of an axis's cross product with the direction, which lies across the axes
- * i and j. */
-#define OUT_OF_CROSS(axis, i, j)                                                            \
-    mask_or(lanes_above(lanes_sub(LEAST(i, j), MOST(j, i)), shaft->cross[axis].high),       \
+/* Boxes beyond the slab of an axis's cross product with the direction, which lies across
+ * the axes i and j. */
+#define OUT_OF_CROSS(axis, i, j) \
+    mask_or(lanes_above(lanes_sub(LEAST(i, j), MOST(j, i)), shaft->cross[axis].high), \
             lanes_above(shaft->cross[axis].low, lanes_sub(MOST(i, j), LEAST(j, i))))
 
 /* Children whose boxes the shaft may meet. */
-INLINE unsigned shaft_enters(const void *beam, const struct node *node, float enter[LANES])
+INLINE unsigned shaft_enters(const void *beam, const struct node *node,
+                             float enter[LANES])
 {
     const struct shaft *shaft = beam;
     int up0 = ~shaft->near & 1, up1 = ~shaft->near >> 1 & 1, up2 = ~shaft->near >> 2 & 1;
@@ -58,8 +60,8 @@ INLINE unsigned shaft_enters(const void *beam, const struct node *node, float en
 }
 
 /* Goes down wherever the shaft may be, to the nearest box first. */
-INLINE bool shaft_walk(const struct tree *tree, const struct shaft *shaft, leaf_visit *visit,
-                       void *query, struct octree_counts *counts)
+INLINE bool shaft_walk(const struct tree *tree, const struct shaft *shaft,
+                       leaf_visit *visit, void *query, struct octree_counts *counts)
 {
     return tree_walk(tree, shaft_enters, shaft, shaft->near, NULL, visit, query, counts);
 }

@@ -10,9 +10,9 @@
 #include "octree/lanes.h"
 
 enum {
-    LEAF_MAX = 16,    /* triangles of a leaf, at most */
-    TREE_DEPTH = 24,  /* from this level on cells are cut by number, not by place */
-    TREE_LEVELS = 36  /* a number below 2^31 is at most LEAF_MAX after 9 such cuts in eight */
+    LEAF_MAX = 16,   /* triangles of a leaf, at most */
+    TREE_DEPTH = 24, /* from this level on cells are cut by number, not by place */
+    TREE_LEVELS = 36 /* a number below 2^31 is at most LEAF_MAX after 9 cuts in eight */
 };
 
 /* For small functions that are called millions of times from a few places each, where a
@@ -23,14 +23,15 @@ enum {
 #define INLINE static inline
 #endif
 
-/* Boxes are so much wider than what is in them, in scene units, for the rounding of box tests:
- * coordinates are below 1.3 and direction components at most 1, so that each of some ten
- * operations is off by at most 2^-24. */
+/* By this margin boxes are wider than their triangles, in scene units, for the rounding
+ * of tests: coordinates are below 1.3 and direction components at most 1, so that each of
+ * some ten operations is off by at most 2^-24. */
 static const float BOX_MARGIN = 2e-6f;
 
-/* An inner node: the boxes of its eight children side by side, so that one instruction looks at
- * all of them. That of an absent child is far away and inside out, so that nothing meets it.
- * Children are in the order of the octants, bit k of which is the side along axis k. */
+/* An inner node: the boxes of its eight children side by side, so that one instruction
+ * looks at all of them. That of an absent child is far away and inside out, so that
+ * nothing meets it. Children are in the order of the octants, bit k of which is the side
+ * along axis k. */
 struct node {
     float bound[3][2][LANES]; /* per axis, the low and the high side */
     int32_t child[LANES]; /* an inner node if >= 0; a leaf if < 0, see leaf_of() */
@@ -53,7 +54,7 @@ struct record {
     struct plane plane; /* as the triangle has it */
     float u[4], v[4];
     float error_u, error_v; /* bounds on |r(x) - its exact value| for |x| <= 1 */
-    float error_w;          /* such a bound for the distance to the plane as a map in float */
+    float error_w;          /* such a bound for the distance to the plane as a map */
     int32_t triangle;
 };
 
@@ -73,8 +74,8 @@ struct tree {
 struct octree {
     const struct triangle *triangles;
     const struct plane *planes;
-    struct tree inside; /* triangles that can block something between two points of the scene */
-    struct tree hull;   /* triangles that have the whole scene on one side of their plane */
+    struct tree inside; /* triangles that can block a segment between two scene points */
+    struct tree hull;   /* triangles that have the whole scene on one side */
     int32_t *place;      /* [count] where a triangle's record is in `inside`, or -1 */
     int32_t *neighbours; /* [3 count] of the triangles in their walls, or -1 */
     int64_t count;

@@ -1,8 +1,9 @@
 /* The walk down a tree that answers every question; for octree/ only.
  *
- * A question goes down to the nearest child of a node as long as there is one, looks at the
- * triangles of the leaf, and goes on with the children that wait. Which children are met, and
- * which triangles end the walk, the question says by two functions, inlined where it is asked. */
+ * A question goes down to the nearest child of a node as long as there is one, looks at
+ * the triangles of the leaf, and goes on with the children that wait. Which children are
+ * met, and which triangles end the walk, the question says by two functions, inlined
+ * where it is asked. */
 #ifndef OCTREE_WALK_H
 #define OCTREE_WALK_H
 
@@ -16,9 +17,10 @@ struct waiting {
     float enter[LANES]; /* where a ray enters each child's box, by octant */
 };
 
-/* Returns the children of a node that are met, the one in octant k ^ near as bit k. Where the
- * walk has a reach, it also says for each octant how far away its box is. */
-typedef unsigned node_enter(const void *beam, const struct node *node, float enter[LANES]);
+/* Returns the children of a node that are met, the one in octant k ^ near as bit k. Where
+ * the walk has a reach, it also says for each octant how far away its box is. */
+typedef unsigned node_enter(const void *beam, const struct node *node,
+                            float enter[LANES]);
 
 /* Looks at the triangles of a leaf, and counts them. Returns true if the walk may end. */
 typedef bool leaf_visit(void *query, const struct record *records, int32_t count,
@@ -41,11 +43,11 @@ INLINE bool take_next(struct waiting *stack, int *height, int near, const float 
     return false;
 }
 
-/* Asks `query` of the leaves that `beam` meets, the child in octant `near` first. `*reach` is how
- * far away boxes are still of use, and visits may shorten it; NULL: all are. Returns true if a
- * visit did. */
-INLINE bool tree_walk(const struct tree *tree, node_enter *enter, const void *beam, int near,
-                      const float *reach, leaf_visit *visit, void *query,
+/* Asks `query` of the leaves that `beam` meets, the child in octant `near` first.
+ * `*reach` is how far away boxes are still of use, and visits may shorten it; NULL: all
+ * are. Returns true if a visit did. */
+INLINE bool tree_walk(const struct tree *tree, node_enter *enter, const void *beam,
+                      int near, const float *reach, leaf_visit *visit, void *query,
                       struct octree_counts *counts)
 {
     struct waiting stack[TREE_LEVELS]; /* at most one for each level */
