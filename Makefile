@@ -64,7 +64,7 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # Unit tests, bottom up; the last four are run with several ranks. Their sources lie in
 # folders, the programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
 TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree bundles \
-        bicgstab sequence id flux patch compact formfactor patch_exchange link patch_link linking \
+        bicgstab sequence id flux patch compact formfactor patch_exchange link patch_link linking method \
         cluster node oracle error_oracle pushpull closure \
         final_gather checksum paths plan balance assign spotcheck \
         text obj ply output store tone image camera viewpoint shading render options progress contour \
