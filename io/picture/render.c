@@ -20,7 +20,7 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "geom/stop.h"
-#include "rad/sample.h"
+#include "rad/beyond/sample.h"
 
 /* Segments to lamps for a pixel; and so many times as many where the first may be wrong by
  * more than this part of its light. */

@@ -28,7 +28,7 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "geom/stop.h"
-#include "rad/sample.h"
+#include "rad/beyond/sample.h"
 
 /* Keys that are compared by scatter: place, direction, size; and two of 0 and 1. */
 enum { KEYS = 7, NO_LAMP = KEYS, OTHER_SPACE, ALL_KEYS, BINS = 64 };

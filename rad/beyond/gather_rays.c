@@ -21,7 +21,7 @@
 #include "geom/hash.h"
 #include "geom/lambert.h"
 #include "rad/beyond/sequence.h"
-#include "rad/sample.h"
+#include "rad/beyond/sample.h"
 
 /* A leaf is too near for its size if the square of its distance is less than this part of
  * its area. */

@@ -13,7 +13,7 @@
 #include "geom/scene.h"
 #include "octree/octree.h"
 #include "rad/id.h"
-#include "rad/sample.h"
+#include "rad/beyond/sample.h"
 
 struct pathtracer {
     const struct scene *scene;    /* borrowed, prepared, something in it emits */

@@ -1,7 +1,7 @@
 /* Samples: two numbers give a point of the parallelogram of two edges, of which one half
  * is folded onto the other; the direction around the normal is that of a point in a
  * square, which is good enough and needs no sine. */
-#include "rad/sample.h"
+#include "rad/beyond/sample.h"
 
 #include "geom/hash.h"
 

@@ -1,6 +1,6 @@
 /* Points on triangles and rays from them, evenly distributed over seeds. */
-#ifndef RAD_SAMPLE_H
-#define RAD_SAMPLE_H
+#ifndef RAD_BEYOND_SAMPLE_H
+#define RAD_BEYOND_SAMPLE_H
 
 #include <stdint.h>
 
