@@ -1,0 +1,121 @@
+/* Reading on rank 0: the scene, its camera, and whether outputs can be written. */
+#include "tools/input.h"
+
+#include <math.h>
+
+#include "geom/stop.h"
+#include "io/run/output.h"
+#include "io/scene/obj.h"
+#include "io/scene/ply.h"
+#include "mpi/signals.h"
+#include "tools/viewfactor.h"
+
+static void warn_repairs(struct run *run, const struct obj_repairs *read,
+                         const struct scene_repairs *prepared)
+{
+    const char *path = run->options.scene;
+    if (read->libraries.count > 0)
+        run_say(run, "%s: warning: %lld material file(s) missing (first: %s)", path,
+            (long long)read->libraries.count, read->libraries.first);
+    if (read->materials.count > 0)
+        run_say(run, "%s: warning: %lld material(s) without a definition, taken as grey (first: %s)",
+            path, (long long)read->materials.count, read->materials.first);
+    if (read->transparent > 0)
+        run_say(run, "%s: warning: %lld transparent material(s) (d or Tr), taken as opaque", path,
+            (long long)read->transparent);
+    if (read->textured > 0)
+        run_say(run, "%s: warning: %lld material(s) with a texture, which is not read: Kd counts, or grey",
+            path, (long long)read->textured);
+    if (read->bad_normals > 0)
+        run_say(run, "%s: warning: %lld corner(s) with a vn that is no direction, or not there: ignored",
+            path, (long long)read->bad_normals);
+    if (read->unknown_lines > 0)
+        run_say(run, "%s: warning: %lld line(s) with unknown keywords passed over (first: line %ld)",
+            path, (long long)read->unknown_lines, read->first_unknown);
+    if (prepared->clamped > 0)
+        run_say(run, "%s: warning: %lld material(s) with a reflectance of 1 or more, set to 0.999",
+            path, (long long)prepared->clamped);
+    if (prepared->degenerate > 0)
+        run_say(run, "%s: warning: %lld face(s) without area dropped", path,
+            (long long)prepared->degenerate);
+}
+
+/* Emissions beyond these would leave the range of the float outputs. */
+static const double EMISSION_MIN = 1e-30, EMISSION_MAX = 1e30;
+
+static bool check_emission(const struct run *run, struct error *error)
+{
+    const struct scene *scene = run->scene;
+    double largest = 0.0;
+    for (int32_t i = 0; i < scene->input_count; i++)
+        for (int c = 0; c < BANDS && scene->areas[i] > 0.0; c++)
+            largest = fmax(largest, scene_root_material(scene, i)->emission.band[c]);
+    if (!(largest > 0.0))
+        return error_set(error, EXIT_USAGE,
+                         "%s: nothing emits light (no face with Ke or emission_r above 0)",
+                         run->options.scene);
+    if (largest < EMISSION_MIN || largest > EMISSION_MAX)
+        return error_set(error, EXIT_USAGE, "%s: the largest Ke, %g, is not within %g and %g",
+                         run->options.scene, largest, EMISSION_MIN, EMISSION_MAX);
+    return true;
+}
+
+static bool check_groups(const struct run *run, struct error *error)
+{
+    if (run->scene->group_count > VIEWFACTOR_GROUPS_MAX)
+        return error_set(error, EXIT_USAGE, "%s: %lld groups are more than %d", run->options.scene,
+                         (long long)run->scene->group_count, VIEWFACTOR_GROUPS_MAX);
+    return true;
+}
+
+static bool read_scene(struct run *run)
+{
+    struct error *error = &run->error;
+    struct obj_repairs read = {0};
+    struct scene_repairs prepared = {0};
+    const char *path = run->options.scene;
+    run->scene = ply_is_meant(path) ? ply_read(path, error) : obj_read(path, &read, error);
+    if (!run->scene || !stop_check(error))
+        return false;
+    run->scene->two_sided = run->options.two_sided;
+    run->scene->two_sided_lamps = run->options.two_sided_lamps;
+    struct error wrong = {0};
+    if (!scene_prepare(run->scene, &prepared, &wrong))
+        return error_set(error, wrong.code, "%s: %s", run->options.scene, wrong.text);
+    warn_repairs(run, &read, &prepared);
+    return run->options.form_factors ? check_groups(run, error) : check_emission(run, error);
+}
+
+/* The view file, if there is one. */
+static bool read_camera(struct run *run)
+{
+    const struct options *options = &run->options;
+    if (options->view && !camera_read(options->view, &run->camera, &run->error))
+        return false;
+    if (options->width > 0 || !options->view) {
+        run->camera.width = options->width > 0 ? options->width : CAMERA_SIZE;
+        run->camera.height = options->width > 0 ? options->height : CAMERA_SIZE;
+    }
+    return true;
+}
+
+static bool probe_outputs(struct run *run)
+{
+    const struct options *options = &run->options;
+    const char *others[] = {options->stats, options->save_links, options->checkpoint};
+    for (int i = 0; i < options->output_count; i++)
+        if (!output_probe(options->outputs[i], &run->error))
+            return false;
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+        if (others[i] && !output_probe(others[i], &run->error))
+            return false;
+    return true;
+}
+
+void input_read(struct run *run)
+{
+    signals_end_calls(true);
+    if (read_scene(run) && read_camera(run))
+        probe_outputs(run);
+    signals_end_calls(false);
+}

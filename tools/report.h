@@ -1,0 +1,24 @@
+/* Lines about a run. */
+#ifndef TOOLS_REPORT_H
+#define TOOLS_REPORT_H
+
+#include "tools/run.h"
+
+/* With --verbose: the memory of each rank before there are links. */
+void report_forecast(struct run *run);
+
+/* Ticks the progress of the iterations over the same links. run->first_bound is HUGE_VAL
+ * before the first. */
+void report_solving(struct run *run);
+
+/* Collective. With --verbose, the levels of refinement from number `first` on. */
+void report_levels(struct run *run, int64_t first);
+
+/* The pass that has ended; and with --accuracy the error of a round. */
+void report_iteration(struct run *run);
+void report_round(struct run *run);
+
+/* Collective. Warnings, the summary, --stats. False on an error, on all ranks. */
+bool report_summary(struct run *run);
+
+#endif

@@ -1,0 +1,46 @@
+/* One run of phr: its state, and the errors and lines on stderr that all its parts share. */
+#ifndef TOOLS_RUN_H
+#define TOOLS_RUN_H
+
+#include "io/run/options.h"
+#include "io/run/progress.h"
+#include "io/scene/camera.h"
+#include "mpi/beyond/beyond.h"
+#include "mpi/node.h"
+
+struct run {
+    struct comm comm;
+    struct options options;
+    struct scene *scene;
+    struct camera camera;
+    struct octree *octree;
+    struct node_block block; /* what scene and octree look into */
+    struct solver *solver;
+    bool half_linked; /* linking has ended at the memory limit */
+    struct vote vote; /* of the last iteration */
+    struct stats stats;
+    struct progress_view progress; /* on rank 0, unless --quiet */
+    const char *kept; /* path of the last checkpoint made or read, NULL: there is none */
+    struct error error;
+    double start;       /* comm_seconds() at the beginning */
+    double first_bound; /* vote.remaining of the first iteration of a pass */
+};
+
+/* A line on stderr from rank 0, unless --quiet. */
+#ifdef __GNUC__
+__attribute__((format(printf, 2, 3)))
+#endif
+void run_say(struct run *run, const char *format, ...);
+
+/* Sets the error that says by which signal the run ends here. Returns false. */
+bool run_stopped(struct run *run, int signal);
+
+/* Collective. All ranks end with the error of one of them, if one has got any: false then.
+ * On a rank that is asked to stop, an error comes from that. */
+bool run_agree(struct run *run);
+
+/* Collective. The end of a phase that breaks off when it is asked to: false if it was, on
+ * any rank. */
+bool run_goes_on(struct run *run);
+
+#endif

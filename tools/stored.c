@@ -1,0 +1,89 @@
+/* Link caches and checkpoints: the state of a run in a file (io/run/store.h). */
+#include "tools/stored.h"
+
+#include "geom/alloc.h"
+#include "mpi/beyond/keep.h"
+
+static struct store_terms terms_of(const struct run *run, enum store_kind kind)
+{
+    const struct options *options = &run->options;
+    return (struct store_terms){
+        .kind = kind,
+        .settings = kind == STORE_LINKS ? options_link_settings(options)
+                                        : options_run_settings(options),
+        .scene = run->scene,
+        .tree = run->solver->beyond->tree,
+    };
+}
+
+static void put_links(void *context, const struct link *links, int64_t count)
+{
+    store_put_links(context, links, count);
+}
+
+/* Collective. */
+bool stored_save(struct run *run, enum store_kind kind, const char *path)
+{
+    double start = comm_seconds();
+    struct store_terms terms = terms_of(run, kind);
+    struct store_writer writer;
+    struct snapshot snapshot;
+    snapshot_collect(run->solver, &run->vote, &snapshot);
+    if (run->comm.rank == 0)
+        store_create(&writer, path, &terms, &snapshot, &run->error);
+    snapshot_free(&snapshot);
+    if (!comm_agree(&run->comm, &run->error))
+        return false;
+    links_collect(run->solver, put_links, &writer);
+    if (run->comm.rank == 0)
+        store_finish(&writer, &run->error);
+    run->solver->account.seconds[PHASE_WRITE] += comm_seconds() - start;
+    bool good = comm_agree(&run->comm, &run->error);
+    if (good && kind == STORE_CHECKPOINT)
+        run->kept = path;
+    return good;
+}
+
+/* Collective. Deals the links of an open file. */
+static bool load_links(struct run *run, struct store_reader *reader, const int32_t *order,
+                       int64_t count)
+{
+    enum { BLOCK = 65536 };
+    struct link *block = alloc_array(BLOCK, sizeof *block);
+    bool good = true;
+    for (int64_t left = count; left > 0 && good; left -= BLOCK) {
+        int64_t now = left < BLOCK ? left : BLOCK;
+        if (run->comm.rank == 0)
+            store_get_links(reader, block, now, &run->error);
+        good = run_agree(run);
+        if (good)
+            links_deal(run->solver, order, block, now);
+    }
+    alloc_free(block);
+    return good;
+}
+
+/* Collective, before homes are assigned. */
+bool stored_load(struct run *run, enum store_kind kind, const char *path)
+{
+    double start = comm_seconds();
+    struct store_terms terms = terms_of(run, kind);
+    struct store_reader reader = {0};
+    if (run->comm.rank == 0)
+        store_open(&reader, path, &terms, &run->error);
+    bool good = run_agree(run);
+    if (good) {
+        int32_t *order = snapshot_restore(run->solver, &run->vote, &reader.snapshot);
+        good = load_links(run, &reader, order, reader.snapshot.link_count);
+        alloc_free(order);
+    }
+    if (good && kind == STORE_CHECKPOINT)
+        run->kept = path;
+    if (good)
+        run_say(run, "%s: %lld links after %lld passes, %.1f s", path,
+            (long long)reader.snapshot.link_count, (long long)run->solver->turn.pass,
+            comm_seconds() - run->start);
+    store_close(&reader);
+    run->solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
+    return good;
+}

@@ -1,0 +1,14 @@
+/* The state of a run, in a file and back. */
+#ifndef TOOLS_STORED_H
+#define TOOLS_STORED_H
+
+#include "io/run/store.h"
+#include "tools/run.h"
+
+/* Collective. Writes the state of a whole pass. False on an error, on all ranks. */
+bool stored_save(struct run *run, enum store_kind kind, const char *path);
+
+/* Collective, before homes are assigned. Reads it back. False on an error, on all ranks. */
+bool stored_load(struct run *run, enum store_kind kind, const char *path);
+
+#endif
