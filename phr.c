@@ -133,7 +133,9 @@ static enum finish finish_light(struct run *run)
         run_stopped(run, run->solver->turn.stop);
         return FINISH_STOPPED;
     }
-    enum finish finish = solver_finish(run->solver, &run->vote);
+    if (!run->solver->steps.finish)
+        return FINISH_DONE;
+    enum finish finish = run->solver->steps.finish(run->solver, &run->vote);
     report_round(run);
     if (finish == FINISH_STOPPED)
         run_goes_on(run);
@@ -221,7 +223,8 @@ int main(int argc, char **argv)
         if (broadcast_scene(&run))
             factors_tabulate(&run);
     } else if (parsed && compute_light(&run)) {
-        solver_measure_closure(run.solver, &run.stats);
+        if (!run.options.quiet || run.options.stats)
+            solver_measure_closure(run.solver, &run.stats);
         if (results_show(&run))
             report_summary(&run);
     }

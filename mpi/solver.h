@@ -88,6 +88,9 @@ struct beyond; /* mpi/beyond/beyond.h */
 struct solver;
 struct vote;
 
+/* After step 9: the light is there; a signal has come; or links want another pass. */
+enum finish { FINISH_DONE, FINISH_STOPPED, FINISH_AGAIN };
+
 /* The parts of steps that there are two ways to do: the paper's, and phr's own. NULL: there
  * is nothing to do. */
 struct steps {
@@ -96,6 +99,7 @@ struct steps {
     void (*collect)(struct solver *solver);     /* 5: flux of all ranks above the roots */
     void (*push_pull)(struct solver *solver);   /* 6: own leaves, and the ballot */
     struct vote (*vote)(struct solver *solver, const struct ballot *sum); /* 8 */
+    enum finish (*finish)(struct solver *solver, struct vote *vote);      /* 9 */
     void (*report)(const struct solver *solver, struct stats *stats);
     void (*end)(struct solver *solver);         /* releases solver->beyond */
 };

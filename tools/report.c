@@ -45,7 +45,7 @@ void report_iteration(struct run *run)
 
 void report_round(struct run *run)
 {
-    const struct gathered *gathered = &run->solver->beyond->answer.counts;
+    const struct gathered *gathered = &beyond_answer(run->solver)->counts;
     if (gathered->checked > 0)
         run_say(run, "round %lld: error %.2g %% (rays %.2g %%, mesh %.2g %%), by %lld paths",
             (long long)run->solver->beyond->accuracy.rounds, 100.0 * gathered->error,
@@ -107,7 +107,7 @@ bool report_summary(struct run *run)
 {
     run->solver->account.seconds[PHASE_TOTAL] = comm_seconds() - run->start;
     solver_report(run->solver, &run->vote, &run->stats);
-    run->stats.bytes_broadcast = (int64_t)(run->block.bytes + run->solver->beyond->tree_block.bytes);
+    run->stats.bytes_broadcast += (int64_t)run->block.bytes;
     progress_view_clear(&run->progress);
     if (run->comm.rank == 0) {
         if (run->stats.memory_limited)

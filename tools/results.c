@@ -33,7 +33,7 @@ static void write_outputs(struct run *run, const struct shading *shading, float 
         switch (output_format_of(path)) {
         case FORMAT_PPM: ppm_write(&image, &tone, path, &run->error); break;
         case FORMAT_PFM: pfm_write(&image, path, &run->error); break;
-        case FORMAT_PLY: mesh_write(shading, &tone, run->solver->beyond->answer.error, path, &run->error); break;
+        case FORMAT_PLY: mesh_write(shading, &tone, beyond_answer(run->solver)->error, path, &run->error); break;
         }
     }
 }
@@ -88,21 +88,24 @@ static float *make_picture(struct run *run, const uint8_t *open)
     struct octree_counts counts = model->counts;
     int64_t estimating = model->estimating;
     place_camera(run);
-    bool gathers = run->solver->beyond->answer.straight && !run->options.flat;
+    struct answer *answer = run->solver->beyond ? &run->solver->beyond->answer : NULL;
+    bool gathers = answer && answer->straight && !run->options.flat;
     struct shading *shading = NULL;
     if (!run->options.pixels)
-        shading = shade_leaves(run, gathers ? run->solver->beyond->answer.straight : NULL, open);
+        shading = shade_leaves(run, gathers ? answer->straight : NULL, open);
     struct renderer renderer =
-        renderer_make(run->octree, shading, gathers ? &run->solver->beyond->answer.gather : NULL);
-    run->solver->beyond->answer.gather.counts = (struct gather_counts){.rays = 0};
+        renderer_make(run->octree, shading, gathers ? &answer->gather : NULL);
+    if (gathers)
+        answer->gather.counts = (struct gather_counts){.rays = 0};
     progress_begin(&run->progress.progress, "rendering", -1, 0);
     float *rows = render_rows(&renderer, &run->camera, run->options.samples, comm->rank,
                               comm->size, &run->progress.progress);
     float *picture = picture_gather(comm, rows, 3 * (size_t)run->camera.width,
                                     run->camera.height);
-    run->solver->beyond->answer.counts.pixels =
-        run->solver->beyond->answer.gather.counts.rays + run->solver->beyond->answer.gather.counts.segments;
-    comm_add(comm, &run->solver->beyond->answer.counts.pixels, 1);
+    if (gathers) {
+        answer->counts.pixels = answer->gather.counts.rays + answer->gather.counts.segments;
+        comm_add(comm, &answer->counts.pixels, 1);
+    }
     model->counts = counts;
     model->estimating = estimating;
     shading_destroy(shading);

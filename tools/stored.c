@@ -12,7 +12,7 @@ static struct store_terms terms_of(const struct run *run, enum store_kind kind)
         .settings = kind == STORE_LINKS ? options_link_settings(options)
                                         : options_run_settings(options),
         .scene = run->scene,
-        .tree = run->solver->beyond->tree,
+        .tree = run->solver->beyond ? run->solver->beyond->tree : NULL,
     };
 }
 

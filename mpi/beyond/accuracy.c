@@ -249,8 +249,6 @@ static enum finish judge(struct solver *solver, struct vote *vote,
 enum finish solver_finish(struct solver *solver, struct vote *vote)
 {
     const struct criterion *criterion = &solver->model.criterion;
-    if (criterion->final_gather == 0 || !solver->beyond->tree)
-        return FINISH_DONE;
     struct linked linked = {.vote = *vote, .count = solver->model.forest->count};
     bool measures = criterion->accuracy > 0.0;
     linked.radiosity = measures ? forest_keep(solver->model.forest) : NULL;

@@ -31,6 +31,7 @@ static void report(const struct solver *solver, struct stats *stats)
     stats->converged = stats->converged && stats->hold == HOLD_NONE;
     stats->error_estimate = beyond->answer.counts.error;
     stats->gathered = beyond->answer.counts;
+    stats->bytes_broadcast += (int64_t)beyond->tree_block.bytes;
 }
 
 static void end(struct solver *solver)
@@ -45,19 +46,34 @@ static void end(struct solver *solver)
     alloc_free(beyond);
 }
 
+struct beyond *beyond_attach(struct solver *solver)
+{
+    if (solver->beyond)
+        return solver->beyond;
+    struct beyond *beyond = solver->beyond = alloc_array(1, sizeof *beyond);
+    beyond->descent.fresh = true;
+    beyond->descent.least_bend = 1.0;
+    solver->steps.report = report;
+    solver->steps.end = end;
+    return beyond;
+}
+
+const struct answer *beyond_answer(const struct solver *solver)
+{
+    static const struct answer NONE = {.error = NULL};
+    return solver->beyond ? &solver->beyond->answer : &NONE;
+}
+
 struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree, const struct criterion *criterion)
 {
     struct solver *solver = solver_create(comm, scene, octree, criterion);
     bool conjugate = criterion->solver == SOLVER_CG, tree = criterion->linking == LINKING_TREE;
+    if (!conjugate && !tree)
+        return solver;
     struct steps *steps = &solver->steps;
-    struct beyond *beyond = solver->beyond = alloc_array(1, sizeof *beyond);
-    beyond->descent.fresh = true;
-    beyond->descent.least_bend = 1.0;
-    steps->report = report;
-    steps->end = end;
-    if (conjugate || tree)
-        steps->transfer = transfer;
+    beyond_attach(solver);
+    steps->transfer = transfer;
     if (conjugate) {
         steps->begin = closing_begin;
         steps->push_pull = descent_push_pull;
@@ -66,6 +82,8 @@ struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
     if (tree) {
         above_create(solver);
         steps->collect = above_collect;
+        if (criterion->final_gather > 0)
+            steps->finish = solver_finish;
     }
     return solver;
 }

@@ -55,6 +55,12 @@ struct beyond {
 struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree, const struct criterion *criterion);
 
+/* What a solver has beyond the paper's; makes an empty one where there is none. */
+struct beyond *beyond_attach(struct solver *solver);
+
+/* The answer of its final gather; an empty one where there is none. */
+const struct answer *beyond_answer(const struct solver *solver);
+
 /* Step 5, when links have changed: row sums of the links there are, and the closure. */
 void closing_begin(struct solver *solver);
 
@@ -75,7 +81,6 @@ bool solver_final_gather(struct solver *solver, struct vote *vote);
 /* Step 9, if there is one, and with --accuracy the verdict on it: DONE; STOPPED by a signal; or AGAIN,
  * and then criterion and vote are those of the links, for more passes, or for this step with more
  * rays alone. */
-enum finish { FINISH_DONE, FINISH_STOPPED, FINISH_AGAIN };
 enum finish solver_finish(struct solver *solver, struct vote *vote);
 
 #endif

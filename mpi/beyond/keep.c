@@ -128,6 +128,7 @@ void snapshot_collect(struct solver *solver, const struct vote *vote, struct sna
 {
     struct forest *forest = solver->model.forest;
     bool collects = solver->comm->rank == 0;
+    beyond_attach(solver);
     closure_extend(&solver->beyond->closure, forest); /* patches that refinement has made since */
     conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
     int32_t *order = forest_order(forest);
@@ -323,8 +324,9 @@ int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snaps
     struct forest *forest = solver->model.forest;
     broadcast_snapshot(solver->comm, snapshot);
     restore_trees(forest, snapshot);
+    beyond_attach(solver);
     closure_extend(&solver->beyond->closure, forest);
-    conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own); /* own leaves: see closing_begin() */
+    conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
     int32_t *order = forest_order(forest);
     restore_leaves(solver, snapshot, order);
     for (int32_t root = 0; root < forest->root_count; root++)
