@@ -14,7 +14,7 @@
 #include "io/run/machine.h"
 #include "mpi/broadcast.h"
 #include "mpi/memory.h"
-#include "mpi/signals.h"
+#include "geom/signals.h"
 #include "tools/factors.h"
 #include "tools/input.h"
 #include "tools/report.h"
@@ -184,7 +184,8 @@ static void release(struct run *run)
     solver_destroy(run->solver);
     octree_destroy(run->octree);
     scene_destroy(run->scene);
-    node_block_destroy(&run->block);
+    if (run->block.data)
+        node_block_destroy(&run->block);
     options_free(&run->options);
 }
 

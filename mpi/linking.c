@@ -14,7 +14,7 @@
 #include "mpi/assign.h"
 #include "mpi/memory.h"
 #include "mpi/migrate.h"
-#include "mpi/signals.h"
+#include "geom/signals.h"
 
 #include "geom/alloc.h"
 #include "rad/linking.h"

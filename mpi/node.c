@@ -36,11 +36,6 @@
 
 enum { SPREAD_CHUNK = 1 << 20 }; /* bytes */
 
-struct node_policy node_policy(void)
-{
-    return (struct node_policy){.least_bytes = (size_t)1 << 20, .ranks_max = INT_MAX};
-}
-
 /* Collective. The least value of all ranks. */
 static int least(const struct comm *comm, int value)
 {

@@ -3,6 +3,8 @@
 #ifndef MPI_NODE_H
 #define MPI_NODE_H
 
+#include <limits.h>
+
 #include "mpi/comm.h"
 
 /* When blocks are shared. The tests vary it; phr takes node_policy(). */
@@ -22,7 +24,10 @@ struct node_block {
     struct comm node; /* the ranks that share the block; only if shared */
 };
 
-struct node_policy node_policy(void);
+static inline struct node_policy node_policy(void)
+{
+    return (struct node_policy){.least_bytes = (size_t)1 << 20, .ranks_max = INT_MAX};
+}
 
 /* Collective. A block of `bytes` bytes, the same number on all ranks. */
 void node_block_create(struct node_block *block, const struct comm *comm, size_t bytes,

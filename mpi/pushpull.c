@@ -1,7 +1,7 @@
 /* Step 6: push-pull on the own roots, and the ballot of this rank. */
 #include "mpi/solver.h"
 
-#include "mpi/signals.h"
+#include "geom/signals.h"
 
 static int64_t own_new_patches(const struct solver *solver)
 {

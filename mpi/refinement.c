@@ -12,7 +12,7 @@
 #include "mpi/balance.h"
 #include "mpi/memory.h"
 #include "mpi/migrate.h"
-#include "mpi/signals.h"
+#include "geom/signals.h"
 
 #include <string.h>
 

@@ -7,7 +7,7 @@
 #include "io/run/output.h"
 #include "io/scene/obj.h"
 #include "io/scene/ply.h"
-#include "mpi/signals.h"
+#include "geom/signals.h"
 #include "tools/viewfactor.h"
 
 static void warn_repairs(struct run *run, const struct obj_repairs *read,

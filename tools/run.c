@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "geom/stop.h"
-#include "mpi/signals.h"
+#include "geom/signals.h"
 
 void run_say(struct run *run, const char *format, ...)
 {

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "mpi/beyond/beyond.h"
-#include "mpi/signals.h"
+#include "geom/signals.h"
 #include "rad/beyond/node_link.h"
 #include "rad/beyond/patch_link.h"
 #include "tests/scenes.h"

@@ -15,7 +15,7 @@
 #define HAVE_SIGACTION 1
 #endif
 
-#include "mpi/signals.h"
+#include "geom/signals.h"
 
 #include <signal.h>
 #include <stddef.h>

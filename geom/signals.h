@@ -1,6 +1,6 @@
 /* Being asked to stop: SIGTERM and SIGINT. */
-#ifndef MPI_SIGNALS_H
-#define MPI_SIGNALS_H
+#ifndef GEOM_SIGNALS_H
+#define GEOM_SIGNALS_H
 
 #include <stdbool.h>
 
