@@ -242,15 +242,6 @@ static void keep_link(struct solver *solver, struct link *link)
     link_list_append(&solver->links, *link);
 }
 
-/* Tells the watcher, if there is one, about a link that was split. */
-static void report_split(struct solver *solver, const struct link *link, int64_t before,
-                         int64_t children)
-{
-    if (solver->account.watch)
-        solver->account.watch(solver->account.watcher, load_of(link),
-                      model_work(&solver->model) - before, children);
-}
-
 /* Enters a level into the ledger; the children that are to be split make the next one. */
 static void end_level(struct solver *solver, struct link_list *prolific,
                       struct link_list *next, struct level *level)
@@ -315,7 +306,6 @@ static void refine(struct solver *solver, struct link_list *prolific, struct lev
         load_balance(solver, prolific, level);
         /* for all interaction in prolificInteractions do */
         for (int64_t i = 0; goes_on(solver, prolific, i); i++) {
-            int64_t before = model_work(&solver->model), waiting = next.count;
             /* Subdivide interaction and its associated patches */
             int count = split_link(solver, &prolific->items[i], children);
             /* for all newInteraction in children of interaction do */
@@ -329,7 +319,6 @@ static void refine(struct solver *solver, struct link_list *prolific, struct lev
                     /* Add newInteraction to allInteractions */
                     keep_link(solver, &children[k]);
             }
-            report_split(solver, &prolific->items[i], before, next.count - waiting);
         }
         /* prolificInteractions <- newInteractions */
         end_level(solver, prolific, &next, level);

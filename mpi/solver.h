@@ -78,10 +78,6 @@ struct account {
     int64_t recorded[3];     /* of the last three, in the ledger */
     struct ledger ledger;
     int64_t *proxies;        /* [ranks] see struct stats */
-    /* For benches: is told of each link split here the predicted and the done work, in
-     * tests, and how many of its children are to be split too. NULL: nobody listens. */
-    void (*watch)(void *watcher, int64_t load, int64_t work, int64_t children);
-    void *watcher;
 };
 
 struct beyond; /* mpi/beyond/beyond.h */

@@ -42,12 +42,34 @@ struct totals {
 
 /* --- recording --- */
 
-static void note(void *context, int64_t load, int64_t work, int64_t children)
+/* The method that is recorded; its functions are called by those below, which take their place. */
+static struct method recorded;
+static struct record *record_of_run;
+
+static int split_and_note(struct model *model, const struct link *link, int32_t side,
+                          struct link *children)
 {
-    struct record *record = context;
+    struct record *record = record_of_run;
+    int64_t before = model_work(model);
+    int count = recorded.split_link(model, link, side, children);
+    struct split split = {.load = (int64_t)link_cost(link), .work = model_work(model) - before};
+    for (int k = 0; k < count; k++)
+        split.children += recorded.side_to_split(model, &children[k]) != NODE_NONE;
     record->splits = alloc_reserve(record->splits, &record->capacity, record->count + 1,
                                    sizeof *record->splits);
-    record->splits[record->count++] = (struct split){load, work, children, 0};
+    record->splits[record->count++] = split;
+    return count;
+}
+
+/* A new link that stays is a child of the last one that was split. */
+static void keep_and_note(struct model *model, struct link *link, bool is_new)
+{
+    struct record *record = record_of_run;
+    int64_t before = model_work(model);
+    if (recorded.keep_link)
+        recorded.keep_link(model, link, is_new);
+    if (is_new && record->count > 0)
+        record->splits[record->count - 1].work += model_work(model) - before;
 }
 
 static void record_run(const struct comm *comm, const struct scene *scene,
@@ -56,8 +78,10 @@ static void record_run(const struct comm *comm, const struct scene *scene,
     struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
     struct solver *solver = beyond_create(comm, scene, octree, criterion);
     struct vote vote;
-    solver->account.watch = note;
-    solver->account.watcher = record;
+    recorded = solver->model.method;
+    record_of_run = record;
+    solver->model.method.split_link = split_and_note;
+    solver->model.method.keep_link = keep_and_note;
     solver_link_roots(solver);
     solver_assign_roots(solver);
     do {
