@@ -10,7 +10,8 @@
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
 #   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
 #   make growth          docs/growth.csv, docs/growth.svg: rooms of 6,348 to a million triangles
-#   make scaling         docs/ranks.md: seconds on 1, 32 and 1,024 ranks, line by line
+#   make scaling         docs/ranks.md: seconds on 1, 32 and 1,024 ranks, line by line;
+#                        docs/tables.md: Tables 1 and 2 of the paper
 #   make prove           what takes longer: errors over six fourfold steps of epsilon; pictures beside the
 #                        path tracer's; kills at forty moments
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
@@ -171,9 +172,10 @@ chart: $(BENCHES:%=$(BUILD)/%) $(BUILD)/hits build/room
 growth: $(PHR) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/growth.sh
 
-# About two minutes on two cores; ROOM=1000000 takes ten.
+# About four minutes on two cores; ROOM=1000000 takes ten.
 scaling: $(PHR) $(BUILD)/replay build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
+	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/tables.sh
 
 check: $(PHR) $(IMGDIFF) pathtracer tests build/room
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \

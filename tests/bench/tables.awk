@@ -1,0 +1,111 @@
+# Runs on one rank, and runs on several with --balance greedy and none: phr's Tables 1 and
+# 2 for one network; see tables.sh.
+
+function value(key,    text) { # the number behind "key":
+    text = $0
+    sub(".*\"" key "\": *", "", text)
+    return text + 0
+}
+function log2(x) { return log(x) / log(2) }
+
+BEGIN { BYTES_PER_LINK = 32 }
+FNR == 1 {
+    n = split(FILENAME, part, ".")
+    run = part[n - 1] == "one" ? "one" : part[n - 1] " " part[n]
+    turn += run == "one"
+    if (run != "one" && part[n - 1] == "greedy") ranks[++rows] = part[n]
+}
+run == "one" && /"min".*"mean".*"max"/ && !/closure/ {
+    split($0, part, "\"")
+    now = value("max")
+    if (turn == 1 || now < seconds[part[2]]) seconds[part[2]] = now
+}
+/"phases"/ {
+    split($0, part, "\"")
+    all[run, part[2]] = value("all")
+    slowest[run, part[2]] = value("slowest")
+    sent[run, part[2]] = value("bytes")
+}
+/"(triangles|links|iterations|messages)": [0-9]*,$/ {
+    split($0, part, "\"")
+    count[run, part[2]] = value(part[2])
+}
+/"migration": [0-9]*, "gather"/ { moved[run] = value("migration") }
+
+# Fills the columns of a run on P ranks.
+function fill(run, p,    k, messages) {
+    messages = count[run, "iterations"] * log2(p) * message
+    column["refinement"] = (all[run, "splitting"] * test + all[run, "looks"] * look) / p
+    column["idle"] = slowest[run, "splitting"] * test + slowest[run, "looks"] * look - \
+                     column["refinement"]
+    column["migration"] = count[run, "messages"] * message - 2 * messages + \
+                          sent[run, "splitting"] / bandwidth
+    column["gather"] = messages + sent[run, "transfer"] / bandwidth
+    column["push-pull"] = slowest[run, "own"] * own
+    column["scatter"] = messages + sent[run, "own"] / bandwidth
+    column["light"] = slowest[run, "transfer"] * transfer
+    column["alike"] = alike
+    total = 0
+    for (k = 1; k <= columns; k++) total += column[name[k]]
+    linking = slowest[run, "linking"] * link_test + \
+              (moved[run] - BYTES_PER_LINK * links_sent[run]) / p / bandwidth
+    counted = column["refinement"] + column["idle"]
+}
+
+# Links that moved before levels: the lists "sent" of "balance".
+/"sent": \[/ {
+    text = $0
+    sub(/.*"sent": \[/, "", text)
+    sub(/\].*/, "", text)
+    k = split(text, part, ", ")
+    for (i = 1; i <= k; i++) links_sent[run] += part[i]
+}
+
+END {
+    columns = split("refinement idle migration gather push-pull scatter light alike", name)
+    test = (seconds["refinement"] - seconds["looks"] - seconds["prepare"]) / \
+           all["one", "splitting"]
+    look = seconds["looks"] / all["one", "looks"]
+    transfer = seconds["solve"] / all["one", "transfer"]
+    own = seconds["push_pull"] / all["one", "own"]
+    link_test = seconds["linking"] / all["one", "linking"]
+    alike = seconds["prepare"] + seconds["routes"] + seconds["sums"] + \
+            seconds["gather"] + seconds["scatter"]
+    printf "\n## %d triangles, %d links, epsilon %s; network: %s\n\n", \
+           count["one", "triangles"], count["one", "links"], epsilon, network
+    printf "`build/room %d 1 >room.obj`, `mpiexec -n P ./phr room.obj --paper ", size
+    printf "--epsilon %s --balance greedy --stats FILE`, and the same with `none`.\n\n", epsilon
+    printf "A test takes %.1f ns, a look %.1f, light over a link %.1f; ", 1e9 * test, \
+           1e9 * look, 1e9 * transfer
+    printf "a message %g s, a byte %g ns.\n\n", message, 1e9 / bandwidth
+    printf "Table 1: seconds, and speed-up. \"Counted\" is refinement and idle alone, "
+    printf "without a network; \"none\" is `--balance none`.\n\n"
+    printf "| ranks | counted | | counted, none | "
+    print "| without linking | | none | | with linking | | none | |"
+    print "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+    for (i = 1; i <= rows; i++) {
+        printf "| %d |", ranks[i]
+        for (b = 0; b < 2; b++) {
+            fill((b ? "none " : "greedy ") ranks[i], ranks[i])
+            c[b] = counted; t[b] = total; w[b] = total + linking
+        }
+        if (i == 1) { c1 = c[0]; t1 = t[0]; w1 = w[0] }
+        for (b = 0; b < 2; b++) printf " %.4f | %.1f |", c[b], c1 / c[b]
+        for (b = 0; b < 2; b++) printf " %.4f | %.1f |", t[b], t1 / t[b]
+        for (b = 0; b < 2; b++) printf " %.4f | %.1f |", w[b], w1 / w[b]
+        printf "\n"
+    }
+    printf "\nTable 2: seconds.\n\n| ranks |"
+    for (k = 1; k <= columns; k++) printf " %s |", name[k]
+    printf " linking | idle, none |\n|---|"
+    for (k = 1; k <= columns + 2; k++) printf "---|"
+    printf "\n"
+    for (i = 1; i <= rows; i++) {
+        fill("none " ranks[i], ranks[i])
+        idle = column["idle"]
+        fill("greedy " ranks[i], ranks[i])
+        printf "| %d |", ranks[i]
+        for (k = 1; k <= columns; k++) printf " %.4f |", column[name[k]]
+        printf " %.4f | %.4f |\n", linking, idle
+    }
+}
