@@ -18,24 +18,10 @@ struct wire_link {
     uint8_t parts_p[3], parts_q[3], seen, cost;
 };
 
-static struct patch_id id_of_node(const struct model *model, int32_t node)
-{
-    if (node_is_cluster(node))
-        return (struct patch_id){CLUSTER_ROOT,
-                                 model->clusters->tree->clusters[~node].hierarchy};
-    return model->forest->patches[node].id;
-}
-
-static int32_t reach_node(const struct model *model, struct patch_id id)
-{
-    return id.root == CLUSTER_ROOT ? cluster_reach(model->clusters->tree, id.hierarchy)
-                                   : forest_reach(model->forest, id);
-}
-
 static struct wire_link pack(const struct model *model, const struct link *link)
 {
-    struct wire_link wire = {.p = id_of_node(model, link->p),
-                             .q = id_of_node(model, link->q),
+    struct wire_link wire = {.p = model->method.node_id(model, link->p),
+                             .q = model->method.node_id(model, link->q),
                              .area = link->area,
                              .blocker = link->blocker,
                              .seen = link->seen,
@@ -47,8 +33,8 @@ static struct wire_link pack(const struct model *model, const struct link *link)
 
 static struct link unpack(const struct model *model, const struct wire_link *wire)
 {
-    struct link link = {.p = reach_node(model, wire->p),
-                        .q = reach_node(model, wire->q),
+    struct link link = {.p = model->method.node_reach(model, wire->p),
+                        .q = model->method.node_reach(model, wire->q),
                         .area = wire->area,
                         .blocker = wire->blocker,
                         .seen = wire->seen,

@@ -23,7 +23,7 @@
 /* Counts of a rank before a level. */
 struct level_counts {
     int64_t prolific;   /* links that are to be split */
-    int64_t of_patches; /* of these, links with a patch in them */
+    int64_t of_patches; /* of these, links with a patch on a side */
     int64_t load;       /* predicted work of splitting them, in tests */
     int64_t kept;       /* links that are not to be split */
     int64_t made;       /* patches that the rank has made and not shared */
@@ -63,7 +63,7 @@ static struct level_counts count_level(const struct solver *solver,
                                .stop = signals_seen()};
     for (int64_t i = 0; i < prolific->count; i++) {
         const struct link *link = &prolific->items[i];
-        own.of_patches += !node_is_cluster(link->p) || !node_is_cluster(link->q);
+        own.of_patches += link->p >= 0 || link->q >= 0; /* below 0: a cluster */
     }
     return own;
 }
@@ -83,7 +83,6 @@ static void exchange_loads(struct solver *solver, const struct link_list *prolif
         level->loads[r] = each[r].load;
         all->prolific += each[r].prolific;
         all->of_patches += each[r].of_patches;
-        all->load += each[r].load;
         all->kept += each[r].kept;
         all->made += each[r].made;
         all->stop = each[r].stop > all->stop ? each[r].stop : all->stop;

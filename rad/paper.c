@@ -9,7 +9,19 @@ static double emitted_power(struct model *model)
     return model->emitted_power;
 }
 
+static struct patch_id patch_id_of(const struct model *model, int32_t patch)
+{
+    return model->forest->patches[patch].id;
+}
+
+static int32_t reach_patch(const struct model *model, struct patch_id id)
+{
+    return forest_reach(model->forest, id);
+}
+
 const struct method PAPER = {
+    .node_id = patch_id_of,
+    .node_reach = reach_patch,
     .light_power = emitted_power,
     .make_link = link_make,
     .side_to_split = oracle_side_to_split,

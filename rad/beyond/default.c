@@ -55,7 +55,23 @@ static void prepare(struct model *model)
     }
 }
 
+static struct patch_id node_id(const struct model *model, int32_t node)
+{
+    if (!node_is_cluster(node))
+        return model->forest->patches[node].id;
+    return (struct patch_id){CLUSTER_ROOT,
+                             model->clusters->tree->clusters[~node].hierarchy};
+}
+
+static int32_t node_reach(const struct model *model, struct patch_id id)
+{
+    return id.root == CLUSTER_ROOT ? cluster_reach(model->clusters->tree, id.hierarchy)
+                                   : forest_reach(model->forest, id);
+}
+
 const struct method DEFAULT = {
+    .node_id = node_id,
+    .node_reach = node_reach,
     .light_power = light_power,
     .first_link = node_link_top,
     .prepare = prepare,
