@@ -62,7 +62,8 @@ function fill(run, p,    k, messages) {
 }
 
 END {
-    columns = split("refinement idle migration gather push-pull scatter light alike", name)
+    columns = split("refinement idle migration gather push-pull scatter light alike",
+                    name)
     test = (seconds["refinement"] - seconds["looks"] - seconds["prepare"]) / \
            all["one", "splitting"]
     look = seconds["looks"] / all["one", "looks"]
@@ -74,7 +75,8 @@ END {
     printf "\n## %d triangles, %d links, epsilon %s; network: %s\n\n", \
            count["one", "triangles"], count["one", "links"], epsilon, network
     printf "`build/room %d 1 >room.obj`, `mpiexec -n P ./phr room.obj --paper ", size
-    printf "--epsilon %s --balance greedy --stats FILE`, and the same with `none`.\n\n", epsilon
+    printf "--epsilon %s --balance greedy --stats FILE`, and the same with `none`.\n\n",
+           epsilon
     printf "A test takes %.1f ns, a look %.1f, light over a link %.1f; ", 1e9 * test, \
            1e9 * look, 1e9 * transfer
     printf "a message %g s, a byte %g ns.\n\n", message, 1e9 / bandwidth

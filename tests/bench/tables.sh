@@ -1,9 +1,9 @@
 # Tables 1 and 2 of the paper beside phr's, by counts: docs/tables.md. For `make scaling`.
 #
-# phr runs with --paper on 1, 4, 8, 16, 24 and 32 processes, which may share a few cores:
-# counts do not depend on the clock. Seconds are counts times prices: of work by the seconds
-# of the runs on one rank, the least of them counting, of messages and bytes by the network.
-# Each room runs again with --balance none.
+# phr runs with --paper on 1 to 32 processes, which may share a few cores: counts do not
+# depend on the clock. Seconds are counts times prices: of work by the seconds of the runs
+# on one rank, the least of them counting, of messages and bytes by the network. Each room
+# runs again with --balance none.
 # Knobs: ROOMS, as SIZE:EPSILON; RANKS; TURNS, runs on one rank; OUT, the file.
 set -eu
 : "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${ROOMS:=1000:1e-5 2000:3e-5}"
@@ -47,29 +47,30 @@ table() {
 # Tables 1 and 2 of the paper, beside phr's
 
 Made by `make scaling` (`tests/bench/tables.sh`) with `--paper`: Algorithm 1, with
-LoadBalance before every level. Counts of runs on that many processes, times the price of a
-test, a look, a link and a patch on one core of the machine that made this page; each rank is
-taken to have such a core of its own. Messages and bytes are priced by two networks: one of
-today, and the paper's Fast Ethernet. The rooms are phr's own (`make room`): those of Soda
-Hall are not at hand.
+LoadBalance before every level. Counts of runs on that many processes, times the price of
+a test, a look, a link and a patch on one core of the machine that made this page; each
+rank is taken to have such a core of its own. Messages and bytes are priced by two
+networks: one of today, and the paper's Fast Ethernet. The rooms are phr's own
+(`make room`): those of Soda Hall are not at hand.
 
-phr's seconds on one rank are thousands of times fewer than the paper's, and its messages are
-as many: on the paper's Ethernet they outweigh all work. "Counted" leaves the network out, and
-is to be held against the paper's speed-ups, whose network took a ninth of the time on 32 ranks.
+phr's seconds on one rank are thousands of times fewer than the paper's, and its messages
+are as many: on the paper's Ethernet they outweigh all work. "Counted" leaves the network
+out. It is to be held against the paper's speed-ups, whose network took a ninth of the time
+on 32 ranks.
 
 | column | in the paper | in phr |
 |---|---|---|
-| refinement | yes | tests of Algorithm 1, and looks at all links before it: mean over ranks |
+| refinement | yes | tests of Algorithm 1, and looks before it: mean over ranks |
 | idle | yes | the slowest rank's less that mean, summed over levels |
-| migration | yes | bytes of links before levels; all messages but those of gather and scatter |
-| gather, scatter | yes | bytes and messages of steps 5 and 7; the flux of all patches, not of updated ones |
+| migration | yes | links before levels; all messages but those of the next two |
+| gather, scatter | yes | steps 5 and 7; the flux of all patches, not of updated ones |
 | push-pull | yes | patches of the rank that has most at home |
 | light | in refinement | transfer over the links of the rank that has most |
 | alike | no | parts that all ranks repeat: bounds, routes, copies |
 | linking | not in Table 1 | step 2, and links sent home in step 3 |
 
-The paper's Table 1, seconds and speed-up (without initial linking), on a Pentium 4 of 2.4 GHz
-for each rank:
+The paper's Table 1, seconds and speed-up (without initial linking), on a Pentium 4 of
+2.4 GHz for each rank:
 
 | ranks | room 320 | | room 380 | | room 420 | |
 |---|---|---|---|---|---|---|
