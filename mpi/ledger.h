@@ -1,4 +1,5 @@
-/* What each rank has done, phase by phase: work in counts, for they do not depend on a noisy machine. */
+/* The work of each rank, phase by phase, in counts: they do not depend on a noisy machine.
+ */
 #ifndef MPI_LEDGER_H
 #define MPI_LEDGER_H
 
@@ -11,15 +12,15 @@ struct phase_work {
     int32_t kind;             /* enum work */
     int32_t level;            /* of refinement, or 0 */
     int64_t iteration;        /* or pass, of refinement */
-    struct level_share share; /* its work is `done`; the rest is of refinement and linking */
+    struct level_share share; /* `done`: its work; the rest is of refinement, linking */
     int64_t bytes;            /* that the rank sent for it */
 };
 
 struct ledger {
     struct phase_work *items; /* [count] phases that not all ranks know yet */
     int64_t count, capacity;
-    struct work_sums sums[WORK_COUNT]; /* of phases that all know, the same on all ranks */
-    struct level_balance *levels;      /* [level_count] linking and refinement: the same */
+    struct work_sums sums[WORK_COUNT]; /* of phases that all ranks know */
+    struct level_balance *levels;      /* [level_count] linking and refinement */
     int64_t level_count, level_capacity;
 };
 

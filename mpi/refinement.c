@@ -68,8 +68,8 @@ static struct level_counts count_level(const struct solver *solver,
     return own;
 }
 
-/* Collective. The first two steps of LoadBalance (Sec. 3.3.2): each rank sums the costs of
- * its links, and all learn all loads. Waiting is idle time. */
+/* Collective. The first two steps of LoadBalance (Sec. 3.3.2): each rank sums the costs
+ * of its links, and all learn all loads. Waiting is idle time. */
 static void exchange_loads(struct solver *solver, const struct link_list *prolific,
                            struct level *level)
 {
@@ -87,7 +87,8 @@ static void exchange_loads(struct solver *solver, const struct link_list *prolif
         all->made += each[r].made;
         all->stop = each[r].stop > all->stop ? each[r].stop : all->stop;
     }
-    solver->turn.stop = (int)all->stop > solver->turn.stop ? (int)all->stop : solver->turn.stop;
+    if (all->stop > solver->turn.stop)
+        solver->turn.stop = (int)all->stop;
     alloc_free(each);
 }
 
@@ -100,8 +101,8 @@ static void share_splits(struct solver *solver)
     const struct comm *comm = solver->comm;
     double start = comm_seconds();
     int64_t count = 0;
-    struct patch_id *split = alloc_array((size_t)(forest->count - solver->turn.shared) / 4,
-                                         sizeof *split);
+    int64_t made = forest->count - solver->turn.shared;
+    struct patch_id *split = alloc_array((size_t)made / 4, sizeof *split);
     for (int64_t p = solver->turn.shared; p < forest->count; p += 4)
         split[count++] = forest->patches[p].id;
     int *at = alloc_array((size_t)comm->size + 1, sizeof *at);

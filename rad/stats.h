@@ -12,7 +12,7 @@ enum phase {
     PHASE_OCTREE,    /* part of READ: rank 0 builds the octree */
     PHASE_SPACES,    /* part of READ: rays by which the tree tells spaces apart */
     PHASE_TREE,      /* part of READ: rank 0 builds the tree above the roots */
-    PHASE_PREPARE,   /* part of REFINEMENT: the solution so far is made ready, on all ranks */
+    PHASE_PREPARE,   /* part of REFINEMENT: bounds on the light so far, on all ranks */
     PHASE_LOOKS,     /* part of REFINEMENT: which links are to be split? */
     PHASE_SUMS,      /* sums through clusters and over all patches, on all ranks */
     PHASE_ROUTES,    /* the routes and what belongs to each patch, on all ranks */
@@ -41,8 +41,8 @@ struct level_share {
     int64_t received;  /* links that came */
 };
 
-/* A level of refinement, on all ranks. Linking of all pairs, of which nothing is predicted,
- * is level 0 of iteration 0. */
+/* A level of refinement, on all ranks. Linking of all pairs, of which nothing is
+ * predicted, is level 0 of iteration 0. */
 struct level_balance {
     int64_t iteration, level;
     int64_t links; /* that were split; of all pairs, that were made */
@@ -58,7 +58,7 @@ enum work {
     WORK_SPLITTING, /* refinement: tests */
     WORK_TRANSFER,  /* links over which light was transferred */
     WORK_OWN,       /* own patches in push-pull */
-    WORK_PATCHES,   /* patches copied: out to be sent, own ones too; in when they have come */
+    WORK_PATCHES,   /* patch records packed or unpacked */
     WORK_FINAL_GATHER, /* rows of the final gather: tests */
     WORK_COUNT
 };
@@ -88,27 +88,30 @@ struct gathered {
     int64_t looks;          /* rays and segments fired before there were rows */
     int64_t split;          /* leaves that the gathered light was seen to vary over */
     int64_t pixels;         /* rays and segments fired for the picture */
-    double closing;         /* largest part that irradiances of a closed scene were changed by, so
-                               that all that is emitted is absorbed; 0: it is open */
-    double error;           /* of the leaves, relative RMS of reflected radiosity: estimated, or measured */
-    double by_rays;         /* the part that comes from the choice of rays, */
-    double by_mesh;         /* and that from B varying within leaves: their squares sum to that of
-                               the error, less the doubt in a measurement */
-    int64_t checked, paths; /* leaves by which the error was measured, 0: it was not; paths for that */
+    double closing; /* largest part that irradiances of a closed scene were changed by, so
+                       that all emitted light is absorbed; 0: it is open */
+    double error;   /* of the leaves, relative RMS of reflected radiosity */
+    double by_rays; /* part of the error from the choice of rays */
+    double by_mesh; /* part from B varying within leaves; the squares of both parts sum to
+                       that of the error, less the doubt in a measurement */
+    int64_t checked; /* leaves by which the error was measured, 0: it was estimated */
+    int64_t paths;   /* fired for that */
 };
 
 struct stats {
     int64_t ranks, triangles, roots, patches, leaves, links, passes, iterations;
     bool converged;
     int64_t clusters;      /* of the tree above the roots, 0: there is none */
-    int64_t counted_bytes; /* of links, patches and clusters, as --memory counts them: one copy */
-    bool memory_limited;                                /* linking or refinement ended there */
-    double epsilon;                                     /* relative to the emitted power */
+    int64_t counted_bytes;     /* of links, patches and clusters, as --memory counts them */
+    bool memory_limited;       /* linking or refinement ended there */
+    double epsilon;            /* relative to the emitted power */
     double error_estimate;     /* of the leaves, relative RMS; 0: there is none */
     double accuracy;           /* asked for, 0: none was */
     enum hold hold;            /* what keeps it from being reached */
     int64_t rounds;            /* of --accuracy */
-    double emitted_power, absorbed_power, escaped_power; /* W, input units, sum over bands */
+    double emitted_power;  /* W, input units, sum over bands, like the next two */
+    double absorbed_power;
+    double escaped_power;
     uint64_t checksum;
     int64_t rays, node_tests, triangle_tests;                      /* of form factors */
     int64_t links_open;    /* links proved to be open, */
@@ -118,18 +121,20 @@ struct stats {
     int64_t walled_off;    /* links that ended since they were proved to be blocked */
     struct gathered gathered;
     int64_t rays_spared;   /* of 16 for each link ever made, those that were not fired */
-    double closure_min, closure_mean, closure_max, closure_rms;    /* row sums, rms of R - 1 */
+    double closure_min, closure_mean, closure_max; /* row sums R */
+    double closure_rms;                            /* of R - 1 */
     struct spread seconds[PHASE_COUNT];
     struct level_balance *levels; /* [level_count], borrowed from the solver */
     int64_t level_count;
-    int64_t *proxies;             /* [ranks] borrowed: patches of other homes in links of a rank */
-    int64_t bytes_migration, bytes_gather, bytes_scatter; /* sent from rank to rank, in the
-                                                             refinement levels and steps 5, 7 */
+    int64_t *proxies;        /* [ranks] borrowed: patches of other homes in a rank's links */
+    int64_t bytes_migration; /* of links that moved, all ranks */
+    int64_t bytes_gather;    /* sent in step 5 */
+    int64_t bytes_scatter;   /* got in step 7, and at the end of step 4 */
     struct work_sums work[WORK_COUNT];
     int64_t exchanges; /* collective operations */
-    int64_t messages;  /* log P for each, and links sent or received; the most of any rank */
-    int64_t bytes_broadcast;                              /* scene, octree and tree, one copy */
-    int64_t peak_rss_bytes;                               /* largest over ranks; 0 if unknown */
+    int64_t messages;  /* log P for each, and those with links; the most of any rank */
+    int64_t bytes_broadcast;    /* scene, octree and tree, one copy */
+    int64_t peak_rss_bytes;     /* largest over ranks; 0 if unknown */
     int64_t peak_rss_bytes_sum; /* sum over ranks; what they share counts for each */
 };
 

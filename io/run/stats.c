@@ -1,6 +1,6 @@
-/* Reporting a run. Keys of the JSON stand in one order, one a line, so that two files can be
- * compared with diff; times and bytes are the only values that depend on the machine or on the
- * number of ranks. */
+/* Reporting a run. Keys of the JSON stand in one order, one a line, so that two files can
+ * be compared with diff. Times and memory depend on the machine; "balance", "proxies",
+ * "work", "exchanges", "messages" and "bytes" depend on the number of ranks alone. */
 #include "io/run/stats.h"
 
 #include <inttypes.h>
@@ -8,25 +8,32 @@
 #include "io/run/output.h"
 
 static const char *const PHASE_NAMES[PHASE_COUNT] = {
-    "total", "read", "linking", "refinement", "idle", "migration",
-    "gather", "push_pull", "scatter", "solve", "render", "write", "octree", "spaces",
-    "tree", "prepare", "looks", "sums", "routes", "final_gather", "rows",
-    "spot_checks", "row_sums", "shading", "viewpoint"};
+    "total",     "read",        "linking",   "refinement", "idle",
+    "migration", "gather",      "push_pull", "scatter",    "solve",
+    "render",    "write",       "octree",    "spaces",     "tree",
+    "prepare",   "looks",       "sums",      "routes",     "final_gather",
+    "rows",      "spot_checks", "row_sums",  "shading",    "viewpoint"};
 
 /* In the order of enum hold. */
-static const char *const HOLD_NAMES[] = {"none", "level", "area", "memory", "iterations",
-                                         "rays", "epsilon", "rounds", "doubt"};
+static const char *const HOLD_NAMES[] = {"none",    "level",      "area",
+                                         "memory",  "iterations", "rays",
+                                         "epsilon", "rounds",     "doubt"};
 
-static const char *const WORK_NAMES[WORK_COUNT] = {"linking", "looks", "splitting", "transfer",
-                                                   "own", "patches", "final_gather"};
+static const char *const WORK_NAMES[WORK_COUNT] = {
+    "linking", "looks", "splitting", "transfer", "own", "patches", "final_gather"};
 
 void stats_print(const struct stats *stats, FILE *file)
 {
-    fprintf(file, "triangles   %" PRId64 " (%" PRId64 " roots)\n", stats->triangles, stats->roots);
-    fprintf(file, "patches     %" PRId64 " (%" PRId64 " leaves)\n", stats->patches, stats->leaves);
-    fprintf(file, "links       %" PRId64 " (%" PRId64 " rays)\n", stats->links, stats->rays);
+    fprintf(file, "triangles   %" PRId64 " (%" PRId64 " roots)\n", stats->triangles,
+            stats->roots);
+    fprintf(file, "patches     %" PRId64 " (%" PRId64 " leaves)\n", stats->patches,
+            stats->leaves);
+    fprintf(file, "links       %" PRId64 " (%" PRId64 " rays)\n", stats->links,
+            stats->rays);
     if (stats->gathered.rays + stats->gathered.exact > 0)
-        fprintf(file, "gathered    %" PRId64 " rays, %" PRId64 " to lamps, %" PRId64 " exact rows\n",
+        fprintf(file,
+                "gathered    %" PRId64 " rays, %" PRId64 " to lamps, %" PRId64
+                " exact rows\n",
                 stats->gathered.rays, stats->gathered.segments, stats->gathered.exact);
     fprintf(file, "iterations  %" PRId64 " (%s)\n", stats->iterations,
             stats->converged ? "converged" : "not converged");
@@ -64,14 +71,15 @@ static void write_counts(FILE *file, const struct stats *stats)
     fprintf(file, "  \"converged\": %s,\n", stats->converged ? "true" : "false");
     write_integer(file, "clusters", stats->clusters);
     write_integer(file, "counted_bytes", stats->counted_bytes);
-    fprintf(file, "  \"memory_limited\": %s,\n", stats->memory_limited ? "true" : "false");
+    fprintf(file, "  \"memory_limited\": %s,\n",
+            stats->memory_limited ? "true" : "false");
     write_real(file, "epsilon", stats->epsilon);
     write_real(file, "error_estimate", stats->error_estimate);
     fprintf(file,
-            "  \"accuracy\": {\"goal\": %.17g, \"rounds\": %" PRId64 ", \"leaves\": %" PRId64
-            ", \"paths\": %" PRId64 ", \"hold\": \"%s\"},\n",
-            stats->accuracy, stats->rounds, stats->gathered.checked, stats->gathered.paths,
-            HOLD_NAMES[stats->hold]);
+            "  \"accuracy\": {\"goal\": %.17g, \"rounds\": %" PRId64
+            ", \"leaves\": %" PRId64 ", \"paths\": %" PRId64 ", \"hold\": \"%s\"},\n",
+            stats->accuracy, stats->rounds, stats->gathered.checked,
+            stats->gathered.paths, HOLD_NAMES[stats->hold]);
     write_real(file, "emitted_power", stats->emitted_power);
     write_real(file, "absorbed_power", stats->absorbed_power);
     write_real(file, "escaped_power", stats->escaped_power);
@@ -80,22 +88,25 @@ static void write_counts(FILE *file, const struct stats *stats)
     write_integer(file, "node_tests", stats->node_tests);
     write_integer(file, "triangle_tests", stats->triangle_tests);
     fprintf(file,
-            "  \"visibility\": {\"open\": %" PRId64 ", \"seen\": %" PRId64 ", \"partly\": %" PRId64
-            ", \"unseen\": %" PRId64 ", \"walled_off\": %" PRId64 ", \"rays_spared\": %" PRId64
-            "},\n",
-            stats->links_open, stats->links_seen, stats->links_partly, stats->links_unseen,
-            stats->walled_off, stats->rays_spared);
+            "  \"visibility\": {\"open\": %" PRId64 ", \"seen\": %" PRId64
+            ", \"partly\": %" PRId64 ", \"unseen\": %" PRId64 ", \"walled_off\": %" PRId64
+            ", \"rays_spared\": %" PRId64 "},\n",
+            stats->links_open, stats->links_seen, stats->links_partly,
+            stats->links_unseen, stats->walled_off, stats->rays_spared);
     fprintf(file,
-            "  \"gathered\": {\"rays\": %" PRId64 ", \"segments\": %" PRId64 ", \"exact\": %" PRId64
-            ", \"terms\": %" PRId64 ", \"looks\": %" PRId64 ", \"split\": %" PRId64
-            ", \"pixels\": %" PRId64 ", \"closing\": %.17g"
+            "  \"gathered\": {\"rays\": %" PRId64 ", \"segments\": %" PRId64
+            ", \"exact\": %" PRId64 ", \"terms\": %" PRId64 ", \"looks\": %" PRId64
+            ", \"split\": %" PRId64 ", \"pixels\": %" PRId64 ", \"closing\": %.17g"
             ", \"error\": %.17g, \"by_rays\": %.17g, \"by_mesh\": %.17g},\n",
             stats->gathered.rays, stats->gathered.segments, stats->gathered.exact,
             stats->gathered.terms, stats->gathered.looks, stats->gathered.split,
             stats->gathered.pixels, stats->gathered.closing, stats->gathered.error,
             stats->gathered.by_rays, stats->gathered.by_mesh);
-    fprintf(file, "  \"closure\": {\"min\": %.17g, \"mean\": %.17g, \"max\": %.17g, \"rms\": %.17g},\n",
-            stats->closure_min, stats->closure_mean, stats->closure_max, stats->closure_rms);
+    fprintf(file,
+            "  \"closure\": {\"min\": %.17g, \"mean\": %.17g, \"max\": %.17g, \"rms\": "
+            "%.17g},\n",
+            stats->closure_min, stats->closure_mean, stats->closure_max,
+            stats->closure_rms);
 }
 
 static void write_seconds(FILE *file, const struct stats *stats)
@@ -109,8 +120,8 @@ static void write_seconds(FILE *file, const struct stats *stats)
 }
 
 /* The fields of struct level_share. */
-static const char *const SHARE_NAMES[] = {"split",  "load", "predicted",
-                                          "done", "sent", "received"};
+static const char *const SHARE_NAMES[] = {"split", "load", "predicted",
+                                          "done",  "sent", "received"};
 
 static int64_t share_field(const struct level_share *share, size_t field)
 {
@@ -135,11 +146,13 @@ static void write_balance(FILE *file, const struct stats *stats)
     for (int64_t i = 0; i < stats->level_count; i++) {
         const struct level_balance *level = &stats->levels[i];
         fprintf(file,
-                "%s\n    {\"iteration\": %" PRId64 ", \"level\": %" PRId64 ", \"links\": %" PRId64
+                "%s\n    {\"iteration\": %" PRId64 ", \"level\": %" PRId64
+                ", \"links\": %" PRId64
                 ", \"predicted_max\": %.17g, \"predicted_mean\": %.17g"
                 ", \"work_max\": %.17g, \"work_mean\": %.17g",
-                i ? "," : "", level->iteration, level->level, level->links, level->predicted_max,
-                level->predicted_mean, level->work_max, level->work_mean);
+                i ? "," : "", level->iteration, level->level, level->links,
+                level->predicted_max, level->predicted_mean, level->work_max,
+                level->work_mean);
         for (size_t field = 0; field < sizeof SHARE_NAMES / sizeof *SHARE_NAMES; field++)
             write_shares(file, stats, level, field);
         fputc('}', file);
@@ -156,8 +169,8 @@ static void write_work(FILE *file, const struct stats *stats)
     fprintf(file, "  \"work\": {\n");
     for (int kind = 0; kind < WORK_COUNT; kind++)
         fprintf(file,
-                "    \"%s\": {\"phases\": %" PRId64 ", \"all\": %" PRId64 ", \"slowest\": %" PRId64
-                ", \"bytes\": %" PRId64 "}%s\n",
+                "    \"%s\": {\"phases\": %" PRId64 ", \"all\": %" PRId64
+                ", \"slowest\": %" PRId64 ", \"bytes\": %" PRId64 "}%s\n",
                 WORK_NAMES[kind], stats->work[kind].phases, stats->work[kind].all,
                 stats->work[kind].slowest, stats->work[kind].bytes,
                 kind + 1 < WORK_COUNT ? "," : "");
@@ -177,8 +190,8 @@ bool stats_write(const struct stats *stats, const char *path, struct error *erro
     write_balance(output.file, stats);
     write_work(output.file, stats);
     fprintf(output.file,
-            "  \"bytes\": {\"migration\": %" PRId64 ", \"gather\": %" PRId64 ", \"scatter\": %" PRId64
-            ", \"broadcast\": %" PRId64 "},\n",
+            "  \"bytes\": {\"migration\": %" PRId64 ", \"gather\": %" PRId64
+            ", \"scatter\": %" PRId64 ", \"broadcast\": %" PRId64 "},\n",
             stats->bytes_migration, stats->bytes_gather, stats->bytes_scatter,
             stats->bytes_broadcast);
     write_integer(output.file, "peak_rss_bytes", stats->peak_rss_bytes);
