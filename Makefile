@@ -66,7 +66,7 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # folders, the programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
 TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree bundles \
         bicgstab sequence id flux patch compact formfactor patch_exchange link patch_link linking method \
-        cluster node oracle error_oracle pushpull closure \
+        cluster node oracle error_oracle pushpull caps \
         final_gather checksum paths plan balance assign spotcheck \
         text obj ply output store tone image camera viewpoint shading render options progress contour \
         stop norms cie whole stability gaps leaks exchange conjugate exact converge

@@ -225,7 +225,7 @@ int main(int argc, char **argv)
             factors_tabulate(&run);
     } else if (parsed && compute_light(&run)) {
         if (!run.options.quiet || run.options.stats)
-            solver_measure_closure(run.solver, &run.stats);
+            solver_measure_row_sums(run.solver, &run.stats);
         if (results_show(&run))
             report_summary(&run);
     }

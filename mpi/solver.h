@@ -184,7 +184,7 @@ struct vote vote_make(const struct solver *solver, const struct ballot *sum,
 /* Enters the work of the iteration into the ledger. */
 void solver_record_iteration(struct solver *solver);
 
-/* Fills `stats` but for the closure: counts and sums over all ranks, and the clocks of all ranks
+/* Fills `stats` but for the row sums: counts and sums over all ranks, and the clocks of all ranks
  * as they stand. Borrows the levels of the solver. */
 void solver_report(struct solver *solver, const struct vote *vote, struct stats *stats);
 

@@ -121,8 +121,8 @@ struct stats {
     int64_t walled_off;    /* links that ended since they were proved to be blocked */
     struct gathered gathered;
     int64_t rays_spared;   /* of 16 for each link ever made, those that were not fired */
-    double closure_min, closure_mean, closure_max; /* row sums R */
-    double closure_rms;                            /* of R - 1 */
+    double row_sum_min, row_sum_mean, row_sum_max; /* row sums R */
+    double row_sum_rms;                            /* of R - 1 */
     struct spread seconds[PHASE_COUNT];
     struct level_balance *levels; /* [level_count], borrowed from the solver */
     int64_t level_count;

@@ -72,7 +72,7 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
         }
     } while (!s.vote.diverged && solver_finish(s.solver, &s.vote) == FINISH_AGAIN);
     s.seconds = seconds_of_work(comm) - start;
-    solver_measure_closure(s.solver, &s.stats);
+    solver_measure_row_sums(s.solver, &s.stats);
     solver_report(s.solver, &s.vote, &s.stats);
     return s;
 }

@@ -40,7 +40,7 @@ void stats_print(const struct stats *stats, FILE *file)
     fprintf(file, "power       %.6g W emitted, %.6g W absorbed, %.6g W escaped\n",
             stats->emitted_power, stats->absorbed_power, stats->escaped_power);
     fprintf(file, "row sums    %.4f .. %.4f, mean %.4f (1 in a closed scene)\n",
-            stats->closure_min, stats->closure_max, stats->closure_mean);
+            stats->row_sum_min, stats->row_sum_max, stats->row_sum_mean);
     if (stats->error_estimate > 0.0)
         fprintf(file, "error       %.2g %% RMS at the leaves, %s, at epsilon %.3g\n",
                 100.0 * stats->error_estimate,
@@ -105,8 +105,8 @@ static void write_counts(FILE *file, const struct stats *stats)
     fprintf(file,
             "  \"closure\": {\"min\": %.17g, \"mean\": %.17g, \"max\": %.17g, \"rms\": "
             "%.17g},\n",
-            stats->closure_min, stats->closure_mean, stats->closure_max,
-            stats->closure_rms);
+            stats->row_sum_min, stats->row_sum_mean, stats->row_sum_max,
+            stats->row_sum_rms);
 }
 
 static void write_seconds(FILE *file, const struct stats *stats)

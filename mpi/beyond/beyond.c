@@ -38,7 +38,7 @@ static void end(struct solver *solver)
 {
     struct beyond *beyond = solver->beyond;
     above_free(solver);
-    closure_free(&beyond->closure);
+    caps_free(&beyond->caps);
     conjugate_free(&beyond->descent.vectors);
     alloc_free(beyond->answer.error);
     alloc_free(beyond->answer.straight);
@@ -75,7 +75,7 @@ struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
     beyond_attach(solver);
     steps->transfer = transfer;
     if (conjugate) {
-        steps->begin = closing_begin;
+        steps->begin = caps_begin;
         steps->push_pull = descent_push_pull;
         steps->vote = descent_vote;
     }

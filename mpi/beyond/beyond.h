@@ -44,7 +44,7 @@ struct answer {
 struct beyond {
     struct cluster_tree *tree;    /* above the roots; NULL: none */
     struct node_block tree_block; /* what it looks into */
-    struct closure closure;       /* factors of the leaves */
+    struct caps caps;       /* factors of the leaves */
     struct descent descent;
     struct accuracy accuracy;
     struct answer answer;
@@ -62,11 +62,11 @@ struct beyond *beyond_attach(struct solver *solver);
 const struct answer *beyond_answer(const struct solver *solver);
 
 /* Step 5, when links have changed: row sums of the links there are, and the closure. */
-void closing_begin(struct solver *solver);
+void caps_begin(struct solver *solver);
 
 /* Collective. After the last iteration: the row sums over the links there are, into
  * `stats`. */
-void solver_measure_closure(struct solver *solver, struct stats *stats);
+void solver_measure_row_sums(struct solver *solver, struct stats *stats);
 
 /* Steps 6 and 8 by conjugate gradients. When there is no other iteration B takes the place
  * of rho z. */

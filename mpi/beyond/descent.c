@@ -9,9 +9,9 @@
 static void start_conjugate(struct solver *solver)
 {
     struct conjugate *cg = &solver->beyond->descent.vectors;
-    conjugate_start(cg, &solver->model, &solver->beyond->closure, solver->flux);
+    conjugate_start(cg, &solver->model, &solver->beyond->caps, solver->flux);
     struct flux_unit any = flux_unit_for(1.0);
-    double own = conjugate_sum(cg, &solver->model, &solver->beyond->closure, any).largest;
+    double own = conjugate_sum(cg, &solver->model, &solver->beyond->caps, any).largest;
     solver->beyond->descent.bound_residual = comm_largest(solver->comm, own);
     solver->beyond->descent.bound_image = 0.0;
     for (int c = 0; c < BANDS; c++)
@@ -24,7 +24,7 @@ static void multiply(struct solver *solver, double bound, double product[BANDS])
     struct flux_unit unit = conjugate_unit(&solver->model, bound, solver->beyond->descent.bound_residual,
                                            solver->beyond->descent.weight);
     int64_t own[BANDS] = {0, 0, 0}, all[BANDS];
-    conjugate_apply(&solver->beyond->descent.vectors, &solver->model, &solver->beyond->closure,
+    conjugate_apply(&solver->beyond->descent.vectors, &solver->model, &solver->beyond->caps,
                     solver->flux, unit, own);
     MPI_Request request;
     MPI_Iallreduce(own, all, BANDS, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
@@ -93,7 +93,7 @@ static double brightest_own(const struct solver *solver)
 
 static struct ballot ballot_conjugate(const struct solver *solver)
 {
-    struct conjugate_sums sums = conjugate_sum(&solver->beyond->descent.vectors, &solver->model, &solver->beyond->closure,
+    struct conjugate_sums sums = conjugate_sum(&solver->beyond->descent.vectors, &solver->model, &solver->beyond->caps,
                                                square_unit(solver));
     struct ballot own = {.light = sums.light, .absorbed = sums.absorbed, .arriving = sums.arriving,
                          .negative = sums.negative, .bulk = sums.bulk, .missing = sums.missing,

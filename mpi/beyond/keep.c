@@ -70,7 +70,7 @@ static void collect_home_states(struct solver *solver, const int32_t *order,
             continue;
         own = alloc_reserve(own, &capacity, count + 1, sizeof *own);
         own[count++] = (struct home_state){solver->beyond->descent.vectors.irradiance[p],
-                                           solver->beyond->closure.factor[p]};
+                                           solver->beyond->caps.factor[p]};
     }
     struct funnel funnel;
     funnel_start(&funnel, solver->comm, own, count, sizeof *own);
@@ -129,7 +129,7 @@ void snapshot_collect(struct solver *solver, const struct vote *vote, struct sna
     struct forest *forest = solver->model.forest;
     bool collects = solver->comm->rank == 0;
     beyond_attach(solver);
-    closure_extend(&solver->beyond->closure, forest); /* patches that refinement has made since */
+    caps_extend(&solver->beyond->caps, forest); /* patches that refinement has made since */
     conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
     int32_t *order = forest_order(forest);
     *snapshot = (struct snapshot){.root_count = forest->root_count,
@@ -278,7 +278,7 @@ static void restore_leaves(struct solver *solver, const struct snapshot *snapsho
         const struct leaf_state *state = &snapshot->leaves[leaf++];
         forest->patches[p].radiosity = state->radiosity;
         solver->beyond->descent.vectors.irradiance[p] = state->irradiance;
-        solver->beyond->closure.factor[p] = state->factor;
+        solver->beyond->caps.factor[p] = state->factor;
     }
     forest_average(forest);
 }
@@ -325,7 +325,7 @@ int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snaps
     broadcast_snapshot(solver->comm, snapshot);
     restore_trees(forest, snapshot);
     beyond_attach(solver);
-    closure_extend(&solver->beyond->closure, forest);
+    caps_extend(&solver->beyond->caps, forest);
     conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
     int32_t *order = forest_order(forest);
     restore_leaves(solver, snapshot, order);

@@ -67,14 +67,14 @@ struct flux_unit conjugate_unit(const struct model *model, double a, double b, d
 }
 
 void conjugate_start(struct conjugate *cg, const struct model *model,
-                     const struct closure *closure, struct flux_unit flux)
+                     const struct caps *caps, struct flux_unit flux)
 {
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t leaf = cg->leaves[i];
         const struct material *material = forest_material(model->forest, leaf);
         struct rgb h = leaf_irradiance(model->forest, leaf, flux);
         for (int c = 0; c < BANDS; c++) {
-            double now = closure->factor[leaf] * h.band[c];
+            double now = caps->factor[leaf] * h.band[c];
             if (material->reflectance.band[c] == 0.0)
                 cg->irradiance[leaf].band[c] = now;
             cg->residual[leaf].band[c] = now - cg->irradiance[leaf].band[c];
@@ -84,17 +84,17 @@ void conjugate_start(struct conjugate *cg, const struct model *model,
 }
 
 void conjugate_apply(struct conjugate *cg, const struct model *model,
-                     const struct closure *closure, struct flux_unit flux, struct flux_unit unit,
+                     const struct caps *caps, struct flux_unit flux, struct flux_unit unit,
                      int64_t product[BANDS])
 {
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t leaf = cg->leaves[i];
         const struct material *material = forest_material(model->forest, leaf);
         struct rgb h = leaf_irradiance(model->forest, leaf, flux);
-        double weight = forest_area(model->forest, leaf) / closure->factor[leaf];
+        double weight = forest_area(model->forest, leaf) / caps->factor[leaf];
         for (int c = 0; c < BANDS; c++) {
             double z = cg->residual[leaf].band[c];
-            double w = z - closure->factor[leaf] * h.band[c];
+            double w = z - caps->factor[leaf] * h.band[c];
             cg->work[leaf].band[c] = w;
             double term = weight * material->reflectance.band[c] * (w * z);
             product[c] = flux_add(product[c], flux_from_watts(unit, term));
@@ -137,13 +137,13 @@ void conjugate_publish(const struct conjugate *cg, struct model *model, bool fin
 }
 
 struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct model *model,
-                                    const struct closure *closure, struct flux_unit unit)
+                                    const struct caps *caps, struct flux_unit unit)
 {
     struct conjugate_sums sums = {0};
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t leaf = cg->leaves[i];
         const struct material *material = forest_material(model->forest, leaf);
-        double area = forest_area(model->forest, leaf), weight = area / closure->factor[leaf];
+        double area = forest_area(model->forest, leaf), weight = area / caps->factor[leaf];
         double light = 0.0, absorbed = 0.0, arriving = 0.0, negative = 0.0, missing = 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = material->reflectance.band[c], h = cg->irradiance[leaf].band[c];

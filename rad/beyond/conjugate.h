@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "rad/beyond/closure.h"
+#include "rad/beyond/caps.h"
 #include "rad/model.h"
 
 struct conjugate {
@@ -47,11 +47,11 @@ struct flux_unit conjugate_unit(const struct model *model, double a, double b, d
 
 /* After B has been transferred: z = F' B - H. Where nothing is reflected, H = F' B and z = 0. */
 void conjugate_start(struct conjugate *cg, const struct model *model,
-                     const struct closure *closure, struct flux_unit flux);
+                     const struct caps *caps, struct flux_unit flux);
 
 /* After rho z has been transferred: work = K z. Adds <work, z> to `product`. */
 void conjugate_apply(struct conjugate *cg, const struct model *model,
-                     const struct closure *closure, struct flux_unit flux, struct flux_unit unit,
+                     const struct caps *caps, struct flux_unit flux, struct flux_unit unit,
                      int64_t product[BANDS]);
 
 /* p = z + turn p, K p = work + turn K p, H += step p, z -= step K p. */
@@ -62,6 +62,6 @@ void conjugate_advance(struct conjugate *cg, const struct model *model, const do
 void conjugate_publish(const struct conjugate *cg, struct model *model, bool final);
 
 struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct model *model,
-                                    const struct closure *closure, struct flux_unit unit);
+                                    const struct caps *caps, struct flux_unit unit);
 
 #endif

@@ -43,7 +43,7 @@ enum snapshot_value {
 struct leaf_state {
     struct rgb radiosity;  /* B, W/m^2 */
     struct rgb irradiance; /* H, W/m^2, of conjugate gradients */
-    double factor;         /* of the closure */
+    double factor;         /* the cap on its irradiance, 1 */
 };
 
 struct snapshot {

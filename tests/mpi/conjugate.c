@@ -1,5 +1,5 @@
 /* Conjugate gradients (rad/beyond/conjugate.h, mpi/beyond/descent.c) and the caps on row sums
- * (mpi/beyond/closing.c) against Gaussian elimination: a made-up forest with random links,
+ * (mpi/beyond/caps.c) against Gaussian elimination: a made-up forest with random links,
  * whose form factors are written down here once more as a dense matrix. On any number of
  * ranks; rank 0 reports. */
 #include "mpi/assign.h"
@@ -169,7 +169,7 @@ static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAV
             h[i] = 0.0;
             for (int j = 0; j < problem->count; j++) {
                 const struct material *m = forest_material(forest, problem->leaves[j]);
-                double factor = f[i][j] * solver->beyond->closure.factor[problem->leaves[i]];
+                double factor = f[i][j] * solver->beyond->caps.factor[problem->leaves[i]];
                 a[i][j] = (i == j ? 1.0 : 0.0) - factor * m->reflectance.band[c];
                 h[i] += factor * m->emission.band[c];
             }
@@ -197,7 +197,7 @@ static double residual(const struct problem *problem, double f[LEAVES_MAX][LEAVE
             int32_t leaf = problem->leaves[i];
             double h = 0.0;
             for (int j = 0; j < problem->count; j++)
-                h += f[i][j] * solver->beyond->closure.factor[leaf] *
+                h += f[i][j] * solver->beyond->caps.factor[leaf] *
                      forest->patches[problem->leaves[j]].radiosity.band[c];
             if (solver->homes.own[forest->patches[leaf].id.root])
                 worst = fmax(worst, fabs(h - solver->beyond->descent.vectors.irradiance[leaf].band[c]));
@@ -221,7 +221,7 @@ static double above_cap(const struct problem *problem, double f[LEAVES_MAX][LEAV
         double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2])), row = 0.0;
         for (int j = 0; j < problem->count; j++)
             row += f[i][j];
-        double factor = solver->beyond->closure.factor[leaf], most = fmax(0.95, 0.5 * (1.0 + largest));
+        double factor = solver->beyond->caps.factor[leaf], most = fmax(0.95, 0.5 * (1.0 + largest));
         double wanted = largest * row > most ? most / (largest * row) : 1.0;
         off = fmax(off, fmax(factor * row * largest - most, fabs(factor - wanted)));
         *capped += factor < 1.0;
@@ -233,11 +233,11 @@ static double above_cap(const struct problem *problem, double f[LEAVES_MAX][LEAV
 /* The factors are known only to the homes; all ranks need them here. */
 static void share_factors(const struct problem *problem)
 {
-    struct closure *closure = &problem->solver->beyond->closure;
+    struct caps *caps = &problem->solver->beyond->caps;
     const struct forest *forest = problem->solver->model.forest;
     for (int32_t p = 0; p < forest->count; p++) {
         bool own = problem->solver->homes.own[forest->patches[p].id.root];
-        closure->factor[p] = comm_largest(problem->comm, own ? closure->factor[p] : 0.0);
+        caps->factor[p] = comm_largest(problem->comm, own ? caps->factor[p] : 0.0);
     }
 }
 

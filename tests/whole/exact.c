@@ -84,11 +84,11 @@ static void test_iteration_bound(const struct comm *comm, double rho, double tol
         for (int c = 0; c < BANDS; c++)
             cube->materials[face].reflectance.band[c] = rho;
     struct solution rough = solve(comm, cube, criterion_of(1.0, 0, tolerance));
-    double row = rough.stats.closure_mean; /* all rows are the same here */
+    double row = rough.stats.row_sum_mean; /* all rows are the same here */
     double exact = 1.0 / (1.0 - rho * row);
     double b = rough.solver->model.forest->patches[0].radiosity.band[0];
     if (comm->rank == 0) {
-        tap_ok(rough.stats.closure_max - rough.stats.closure_min < 1e-12,
+        tap_ok(rough.stats.row_sum_max - rough.stats.row_sum_min < 1e-12,
                "max-level 0: all rows sum to %.6f", row);
         tap_ok(rough.vote.converged && fabs(b / exact - 1.0) <= tolerance,
                "rho %g: the iteration stops within %g of E / (1 - rho R): %.2g", rho, tolerance,

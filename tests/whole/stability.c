@@ -289,7 +289,7 @@ static void test_covered(const char *words)
         numbers = numbers && radiosity(&s, p) >= 1.0 - 1e-6; /* the tolerance */
         most = fmax(most, radiosity(&s, p));
     }
-    tap_ok(s.vote.converged && numbers && most <= 13.5 && s.stats.closure_min == 0.0,
+    tap_ok(s.vote.converged && numbers && most <= 13.5 && s.stats.row_sum_min == 0.0,
            "boxes through the floor and each other, %s: at most %.3f", words, most);
     solution_free(&s);
 }
@@ -581,7 +581,7 @@ static void test_flipped(void)
     paint(&painted, 0.5, 1.0);
     struct solution s = run(&painted, "");
     tap_ok(s.vote.converged && s.stats.escaped_power == s.stats.emitted_power &&
-           s.stats.absorbed_power == 0.0 && s.stats.closure_max == 0.0 &&
+           s.stats.absorbed_power == 0.0 && s.stats.row_sum_max == 0.0 &&
            everywhere_within(&s, 1.0), "a furnace inside out: all that is emitted escapes");
     solution_free(&s);
     add_room(&painted, 1);

@@ -1,6 +1,6 @@
-/* Tests of rad/beyond/closure.h: row sums, and the factors that cap them. (On all ranks, and
+/* Tests of rad/beyond/caps.h: row sums, and the factors that cap them. (On all ranks, and
  * what they do to the light: tests/mpi/conjugate.c.) */
-#include "rad/beyond/closure.h"
+#include "rad/beyond/caps.h"
 
 #include <string.h>
 
@@ -46,18 +46,18 @@ static void test_rows(void)
     forest->patches[child + 3].flux[0] = flux_from_watts(unit, 0.4 * b / 4.0);
     forest->patches[3].flux[0] = flux_from_watts(unit, 9.0);
     forest->patches[7].flux[0] = flux_from_watts(unit, 9.0);
-    struct closure_sums sums = closure_measure(forest, own, unit);
+    struct row_sums sums = row_sums_measure(forest, own, unit);
     /* All numbers are of size 1 and rounded a few times. */
     tap_ok(fabs(sums.min - 0.5) < 1e-13 && fabs(sums.max - 1.25) < 1e-13,
            "least and greatest row sum");
-    struct flux_unit coarse = {unit.per_watt / CLOSURE_ROOM, unit.watt * CLOSURE_ROOM};
+    struct flux_unit coarse = {unit.per_watt / ROW_SUMS_ROOM, unit.watt * ROW_SUMS_ROOM};
     tap_ok(fabs(flux_to_watts(coarse, sums.area) - (a + b)) < 1e-13,
            "the area counted is that of own leaves that are not dark");
     tap_ok(fabs(flux_to_watts(coarse, sums.rows) - (1.25 * a + 0.7 * b)) < 1e-13, "rows");
     double squares = 0.0625 * a + 0.5 * b * 0.25 + 0.5 * b * 0.01;
     tap_ok(fabs(flux_to_watts(coarse, sums.squares) - squares) < 1e-13, "squares");
     bool none[ROOTS] = {false};
-    sums = closure_measure(forest, none, unit);
+    sums = row_sums_measure(forest, none, unit);
     tap_ok(sums.min == HUGE_VAL && sums.max == -HUGE_VAL && sums.area == 0 && sums.rows == 0 &&
                sums.squares == 0,
            "no leaf at all");
@@ -77,7 +77,7 @@ static void test_rows(void)
             forest->patches[forest->patches[root].children + k].flux[0] =
                 flux_from_watts(unit, 0.25 * 1.5 * area);
         forest->patches[root].flux[0] = flux_from_watts(unit, 0.9375 * area);
-        sums = closure_measure(forest, none, unit);
+        sums = row_sums_measure(forest, none, unit);
         tried++;
         right += fabs((double)sums.rows / (double)sums.area - 2.4375) < 1e-12 &&
                  fabs((double)sums.squares / (double)sums.area - 1.4375 * 1.4375) < 1e-12;
@@ -96,33 +96,33 @@ static void test_caps(void)
     } CASES[] = {{0, 0.0, 1.0},  {0, 1.0, 1.0},  {0, 1.26, 1.0}, {0, 2.0, 0.95 / 1.5},
                  {1, 1.01, 1.0}, {1, 2.0, 0.99 / 1.96}, {7, 9.0, 1.0}};
     struct world world = make_world();
-    struct closure closure = {0};
-    closure_extend(&closure, world.model.forest);
+    struct caps caps = {0};
+    caps_extend(&caps, world.model.forest);
     double off = 0.0;
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
-        closure_cap(&closure, world.model.forest, CASES[i].root, CASES[i].row);
-        off = fmax(off, fabs(closure.factor[CASES[i].root] - CASES[i].factor));
+        caps_choose(&caps, world.model.forest, CASES[i].root, CASES[i].row);
+        off = fmax(off, fabs(caps.factor[CASES[i].root] - CASES[i].factor));
     }
     tap_ok(off < 1e-15, "rows that make light grow are capped, others are not");
-    closure_free(&closure);
+    caps_free(&caps);
     world_free(&world);
 }
 
 static void test_extending(void)
 {
     struct world world = make_world();
-    struct closure closure = {0};
+    struct caps caps = {0};
     struct forest *forest = world.model.forest;
-    closure_extend(&closure, forest);
-    closure.factor[4] = 0.75;
+    caps_extend(&caps, forest);
+    caps.factor[4] = 0.75;
     forest_split(forest, 4);
-    closure_extend(&closure, forest);
-    bool right = closure.count == forest->count && forest->count == ROOTS + 4;
-    for (int64_t p = 0; p < closure.count; p++)
-        right = right && closure.factor[p] == (p == 4 ? 0.75 : 1.0);
+    caps_extend(&caps, forest);
+    bool right = caps.count == forest->count && forest->count == ROOTS + 4;
+    for (int64_t p = 0; p < caps.count; p++)
+        right = right && caps.factor[p] == (p == 4 ? 0.75 : 1.0);
     tap_ok(right, "new patches have the factor 1, others keep theirs");
-    closure_free(&closure);
-    tap_ok(!closure.factor && closure.count == 0, "a closure is freed");
+    caps_free(&caps);
+    tap_ok(!caps.factor && caps.count == 0, "caps are freed");
     world_free(&world);
 }
 
