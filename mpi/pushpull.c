@@ -14,13 +14,11 @@ static int64_t own_new_patches(const struct solver *solver)
 
 void solver_push_pull_jacobi(struct solver *solver)
 {
-    struct push_pull_sums sums = push_pull(&solver->model, solver->flux, solver->homes.own,
-                                           solver->change.of_root);
+    struct push_pull_sums sums = push_pull(&solver->model, solver->flux, solver->homes.own);
     solver->ballot = (struct ballot){.light = sums.light,
                                      .absorbed = sums.absorbed,
                                      .change = sums.change,
-                                     .arriving = sums.arriving,
-                                     .shrink = sums.shrink};
+                                     .arriving = sums.arriving};
 }
 
 void solver_push_pull(struct solver *solver)

@@ -30,7 +30,6 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     solver->turn.fresh = true;
     solver->homes.owner = alloc_array(roots, sizeof *solver->homes.owner);
     solver->homes.own = alloc_array(roots, sizeof *solver->homes.own);
-    solver->change.of_root = alloc_array(roots, sizeof *solver->change.of_root);
     return solver;
 }
 
@@ -45,7 +44,6 @@ void solver_destroy(struct solver *solver)
     alloc_free(solver->homes.owner);
     alloc_free(solver->homes.own);
     routes_free(&solver->routes);
-    alloc_free(solver->change.of_root);
     ledger_free(&solver->account.ledger);
     alloc_free(solver->account.proxies);
     alloc_free(solver);

@@ -26,7 +26,7 @@ struct memory {
     int64_t clusters; /* above the roots */
 };
 
-/* What a rank says about an iteration; 136 bytes, no padding. */
+/* What a rank says about an iteration; 128 bytes, no padding. */
 struct ballot {
     int64_t light, absorbed, change, arriving; /* flux units */
     int64_t split, links;
@@ -34,7 +34,6 @@ struct ballot {
     int64_t stop;                              /* the signal that it has got */
     int64_t square[BANDS];                     /* --solver cg: <z, z>, */
     int64_t negative, bulk, missing;           /* and see conjugate_sum(), flux units */
-    double shrink;                             /* --solver jacobi: see push_pull() */
     double largest;                            /* --solver cg: |z| */
     double brightest;                          /* what leaves send, W/m^2 and band */
 };
@@ -60,12 +59,6 @@ struct turn {
     int64_t split_here; /* links that this rank split in this pass */
     bool fresh;         /* links have changed since light went over them */
     int stop;           /* signal that some rank has got, 0: none; the same on all ranks */
-};
-
-/* What the last push-pull has changed, flux units. */
-struct change {
-    int64_t *of_root; /* [roots] see push_pull() */
-    int64_t last;     /* of all ranks, in the iteration before */
 };
 
 /* What this rank has done, for the report. */
@@ -113,7 +106,6 @@ struct solver {
     struct turn turn;
     struct memory memory;
     struct flux_unit flux;     /* unit of the flux of the last transfer */
-    struct change change;
     struct ballot ballot;      /* of this rank after push-pull, of all after scatter */
     struct account account;
     struct steps steps;
@@ -129,7 +121,8 @@ struct vote {
     bool diverged;
     int64_t split;     /* links split in this iteration */
     int64_t links;     /* links there are */
-    double remaining;  /* bound on the remaining error, relative to all light; HUGE_VAL: none */
+    double remaining;  /* change of energy, or bound on the remaining error, relative to all
+                          light; HUGE_VAL: none */
     double absorbed;   /* W, areas in square scene units */
     double escaped;    /* the same: what leaves the surfaces less what the links deliver */
 };

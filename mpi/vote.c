@@ -1,9 +1,9 @@
 /* Step 8: the vote on another iteration.
  *
  * Each rank casts a ballot of integers and maxima, which travels with the radiosities of its leaves, and
- * all add them up, so the outcome is the same on any number of ranks. The iterations end
- * when nothing was split and the bound on what further ones could add, q / (1 - q) of the last change
- * (rad/pushpull.c), is small enough.
+ * all add them up, so the outcome is the same on any number of ranks. The iterations end when
+ * nothing was split and the energy changes by little, or, with --solver cg, the bound on what is
+ * still missing is small (mpi/beyond/descent.c).
  *
  * The power that escapes is what leaves the surfaces, emitted or reflected, less what the links
  * delivered: an open scene's real loss plus whatever the form factors lack or have too much. */
@@ -26,29 +26,17 @@ void ballot_add(struct ballot *sum, const struct ballot *ballot)
     sum->negative = flux_add(sum->negative, ballot->negative);
     sum->bulk = flux_add(sum->bulk, ballot->bulk);
     sum->missing = flux_add(sum->missing, ballot->missing);
-    sum->shrink = fmax(sum->shrink, ballot->shrink);
     sum->largest = fmax(sum->largest, ballot->largest);
     sum->brightest = fmax(sum->brightest, ballot->brightest);
 }
 
-/* Bound on the remaining error relative to all light; `before` is the change of the iteration
- * before. */
-static double remaining_by_change(const struct ballot *sum, int64_t before)
-{
-    if (sum->change == 0)
-        return 0.0;
-    double shrink = before > 0 ? (double)sum->change / (double)before : HUGE_VAL;
-    shrink = fmax(shrink, sum->shrink);
-    if (!(shrink < 1.0))
-        return HUGE_VAL;
-    return shrink / (1.0 - shrink) * ((double)sum->change / (double)sum->light);
-}
-
+/* "If the total energy change in the whole scene is above some threshold, the iterations should
+ * continue" (Sec. 2.2): relative to all light. */
 struct vote solver_vote_jacobi(struct solver *solver, const struct ballot *sum)
 {
-    double remaining = remaining_by_change(sum, solver->change.last);
-    solver->change.last = sum->change;
-    return vote_make(solver, sum, remaining);
+    double light = flux_to_watts(solver->model.flux_unit, sum->light);
+    double change = flux_to_watts(solver->model.flux_unit, sum->change);
+    return vote_make(solver, sum, sum->change > 0 ? change / light : 0.0);
 }
 
 struct vote vote_make(const struct solver *solver, const struct ballot *sum,

@@ -14,17 +14,15 @@ struct push_pull_sums {
     int64_t absorbed; /* sum over leaves of A (1 - rho) H */
     int64_t arriving; /* sum over leaves of A H */
     int64_t change;   /* sum over leaves of A |B - B of the iteration before| */
-    double shrink;    /* largest factor from the change before to that now of an unsettled root */
 };
 
 /* Irradiance H of a leaf, W/m^2: the flux of the leaf and of all above it, each over its area. */
 struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flux_unit unit);
 
 /* Push and pull on the roots with own[root] set: leaves get B = E + rho H, inner patches the
- * mean of their children. `flux`: unit of the flux. root_change[root] holds each own root's
- * change of the iteration before, and is renewed. */
+ * mean of their children. `flux`: unit of the flux. */
 struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux,
-                                const bool *own, int64_t *root_change);
+                                const bool *own);
 
 /* The pull alone, on one patch and on all: inner patches get the mean of their children. */
 void forest_average_patch(struct forest *forest, int32_t patch);

@@ -38,7 +38,10 @@ void report_iteration(struct run *run)
     const struct vote *vote = &run->vote;
     char bound[48] = "no bound yet on the remaining error";
     if (vote->remaining < HUGE_VAL)
-        snprintf(bound, sizeof bound, "remaining error at most %.2g", vote->remaining);
+        snprintf(bound, sizeof bound,
+                 run->options.criterion.solver == SOLVER_JACOBI
+                     ? "energy changed by %.2g" : "remaining error at most %.2g",
+                 vote->remaining);
     run_say(run, "iteration %lld: %lld links (%lld split), %s", (long long)run->solver->turn.iteration,
         (long long)vote->links, (long long)vote->split, bound);
 }

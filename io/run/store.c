@@ -64,8 +64,6 @@ static void put_snapshot(struct store_writer *writer, const struct snapshot *sna
         put64(writer, snapshot->number[i]);
     for (int i = 0; i < SNAPSHOT_VALUES; i++)
         put_double(writer, snapshot->value[i]);
-    for (int64_t i = 0; i < snapshot->root_count; i++)
-        put64(writer, snapshot->root_change[i]);
     put(writer, snapshot->split, (size_t)snapshot->patch_count);
     for (int64_t i = 0; i < snapshot_leaf_count(snapshot); i++) {
         put_rgb(writer, snapshot->leaves[i].radiosity);
@@ -170,7 +168,7 @@ static bool counts_fit(const struct header *h, int64_t size)
         return false;
     struct snapshot counts = {.root_count = h->roots, .patch_count = h->patches};
     return size == HEADER_BYTES + h->settings + 8 * (SNAPSHOT_NUMBERS + SNAPSHOT_VALUES) +
-                       8 * h->roots + h->patches + LEAF_BYTES * snapshot_leaf_count(&counts) +
+                       h->patches + LEAF_BYTES * snapshot_leaf_count(&counts) +
                        LINK_BYTES * h->links + 8;
 }
 
@@ -263,8 +261,6 @@ static bool get_snapshot(struct store_reader *reader, struct error *error)
         good = get64(reader, &snapshot->number[i], error);
     for (int i = 0; i < SNAPSHOT_VALUES && good; i++)
         good = get_doubles(reader, &snapshot->value[i], 1, error);
-    for (int64_t i = 0; i < snapshot->root_count && good; i++)
-        good = get64(reader, &snapshot->root_change[i], error);
     good = good && get(reader, snapshot->split, (size_t)snapshot->patch_count, error);
     for (int64_t i = 0; i < snapshot_leaf_count(snapshot) && good; i++) {
         struct leaf_state *leaf = &snapshot->leaves[i];

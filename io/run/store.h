@@ -11,9 +11,8 @@
  *     4  4     T  R
  *     8  8     N  M
  *     T        settings: lines "--option value", each with its newline
- *     8 x 12   snapshot.number
+ *     8 x 11   snapshot.number
  *     8 x 7    snapshot.value
- *     8 R      snapshot.root_change
  *     N        snapshot.split, a byte each
  *     56 L     leaves: radiosity (3 doubles), irradiance (3), factor
  *     24 M     links: p q (4 bytes each; below 0: clusters), area (float), blocker (4),

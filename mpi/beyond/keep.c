@@ -99,7 +99,6 @@ static void collect_numbers(const struct solver *solver, const struct vote *vote
     snapshot->number[SNAPSHOT_ITERATIONS] = solver->turn.iteration;
     snapshot->number[SNAPSHOT_SETTLED] = vote->settled;
     snapshot->number[SNAPSHOT_LIMITED] = solver->memory.reached;
-    snapshot->number[SNAPSHOT_CHANGE] = solver->change.last;
     snapshot->number[SNAPSHOT_ROUNDS] = solver->beyond->accuracy.rounds;
     snapshot->number[SNAPSHOT_GATHER] = model->criterion.final_gather;
     snapshot->value[SNAPSHOT_REMAINING] = vote->remaining;
@@ -109,19 +108,6 @@ static void collect_numbers(const struct solver *solver, const struct vote *vote
     snapshot->value[SNAPSHOT_COARSE] = solver->beyond->accuracy.coarse;
     snapshot->value[SNAPSHOT_COARSE_EPSILON] = solver->beyond->accuracy.coarse_epsilon;
     snapshot->value[SNAPSHOT_LEAST_BEND] = solver->beyond->descent.least_bend;
-}
-
-static void collect_root_changes(const struct solver *solver, struct snapshot *snapshot)
-{
-    int32_t roots = solver->model.forest->root_count;
-    int64_t *own = alloc_array((size_t)roots, sizeof *own);
-    for (int32_t root = 0; root < roots; root++)
-        own[root] = solver->homes.own[root] ? solver->change.of_root[root] : 0;
-    MPI_Request request;
-    MPI_Iallreduce(own, snapshot->root_change, roots, MPI_INT64_T, MPI_SUM, solver->comm->handle,
-                   &request);
-    comm_wait(&request);
-    alloc_free(own);
 }
 
 void snapshot_collect(struct solver *solver, const struct vote *vote, struct snapshot *snapshot)
@@ -139,7 +125,6 @@ void snapshot_collect(struct solver *solver, const struct vote *vote, struct sna
     if (collects)
         collect_trees(solver, order, snapshot);
     collect_home_states(solver, order, snapshot);
-    collect_root_changes(solver, snapshot);
     alloc_free(order);
 }
 
@@ -249,8 +234,6 @@ static void broadcast_snapshot(const struct comm *comm, struct snapshot *snapsho
         *snapshot = head;
         snapshot_allocate(snapshot);
     }
-    comm_broadcast(comm, snapshot->root_change,
-                   (size_t)snapshot->root_count * sizeof *snapshot->root_change);
     comm_broadcast(comm, snapshot->split, (size_t)snapshot->patch_count);
     comm_broadcast(comm, snapshot->leaves,
                    (size_t)snapshot_leaf_count(snapshot) * sizeof *snapshot->leaves);
@@ -299,7 +282,6 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
     solver->turn.iteration = number[SNAPSHOT_ITERATIONS];
     bool as_limited = number[SNAPSHOT_LIMITED] == solver->memory.limit;
     solver->memory.reached = as_limited ? number[SNAPSHOT_LIMITED] : 0;
-    solver->change.last = number[SNAPSHOT_CHANGE];
     solver->beyond->accuracy = (struct accuracy){
         .rounds = number[SNAPSHOT_ROUNDS],
         .coarse = snapshot->value[SNAPSHOT_COARSE],
@@ -329,8 +311,6 @@ int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snaps
     conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
     int32_t *order = forest_order(forest);
     restore_leaves(solver, snapshot, order);
-    for (int32_t root = 0; root < forest->root_count; root++)
-        solver->change.of_root[root] = snapshot->root_change[root];
     restore_numbers(solver, vote, snapshot);
     return order;
 }

@@ -15,15 +15,12 @@
 void snapshot_allocate(struct snapshot *snapshot)
 {
     size_t leaves = (size_t)snapshot_leaf_count(snapshot);
-    snapshot->root_change = alloc_array((size_t)snapshot->root_count,
-                                        sizeof *snapshot->root_change);
     snapshot->split = alloc_array((size_t)snapshot->patch_count, sizeof *snapshot->split);
     snapshot->leaves = alloc_array(leaves, sizeof *snapshot->leaves);
 }
 
 void snapshot_free(struct snapshot *snapshot)
 {
-    alloc_free(snapshot->root_change);
     alloc_free(snapshot->split);
     alloc_free(snapshot->leaves);
     *snapshot = (struct snapshot){0};
@@ -82,11 +79,7 @@ static bool numbers_are_sane(const struct snapshot *snapshot)
 {
     const double *value = snapshot->value;
     for (int i = 0; i < SNAPSHOT_NUMBERS; i++)
-        if (snapshot->number[i] < 0 || snapshot->number[i] > FLUX_LIMIT ||
-            (i != SNAPSHOT_CHANGE && snapshot->number[i] > MOST_COUNTED))
-            return false;
-    for (int64_t i = 0; i < snapshot->root_count; i++)
-        if (snapshot->root_change[i] < 0 || snapshot->root_change[i] > FLUX_LIMIT)
+        if (snapshot->number[i] < 0 || snapshot->number[i] > MOST_COUNTED)
             return false;
     return snapshot->number[SNAPSHOT_SETTLED] <= 1 &&
            snapshot->number[SNAPSHOT_GATHER] <= GATHER_RAYS_MOST &&

@@ -21,7 +21,6 @@ enum snapshot_number {
     SNAPSHOT_SETTLED,        /* 1: the last pass split nothing */
     SNAPSHOT_LIMITED,        /* bytes at which refinement ended for want of memory, 0:
                                 it did not */
-    SNAPSHOT_CHANGE,         /* change in the last iteration, flux units (Jacobi) */
     /* work of all ranks so far */
     SNAPSHOT_RAYS, SNAPSHOT_NODE_TESTS, SNAPSHOT_TRIANGLE_TESTS,
     SNAPSHOT_WALLED_OFF, SNAPSHOT_RAYS_SPARED,
@@ -50,7 +49,6 @@ struct snapshot {
     int64_t number[SNAPSHOT_NUMBERS];
     double value[SNAPSHOT_VALUES];
     int64_t root_count, patch_count, link_count;
-    int64_t *root_change;      /* [root_count] of Jacobi; see push_pull() */
     uint8_t *split;            /* [patch_count] 1: it has children, else 0 */
     struct leaf_state *leaves; /* [snapshot_leaf_count()] */
 };

@@ -70,8 +70,6 @@ static struct solver *run_two_passes(struct vote *vote)
     solver->beyond->accuracy =
         (struct accuracy){.rounds = 3, .coarse = 0.5, .coarse_epsilon = 0.25};
     solver->beyond->descent.least_bend = 0.25;
-    solver->change.last = 12;
-    solver->change.of_root[1] = 34;
     solver->model.walled_off = 56;
     solver->memory.limit = solver->memory.reached = 78;
     return solver;
@@ -102,8 +100,6 @@ static void test_round_trip(void)
            "with all links");
     tap_ok(other->turn.pass == 2 && other->turn.iteration == solver->turn.iteration &&
                other->beyond->descent.least_bend == solver->beyond->descent.least_bend &&
-               other->change.last == solver->change.last &&
-               other->change.of_root[1] == solver->change.of_root[1] &&
                other->model.criterion.epsilon == criterion.epsilon &&
                other->model.criterion.final_gather == 128 && other->memory.rays == 128 &&
                other->beyond->accuracy.rounds == 3 && other->beyond->accuracy.coarse == 0.5 &&
@@ -210,7 +206,7 @@ static void test_damage(const uint8_t *bytes, size_t size)
 /* Places in the file of a checkpoint with these settings; see io/run/store.h. */
 enum { SETTINGS = sizeof STORE_SETTINGS - 1, NUMBERS_AT = 40 + SETTINGS,
        VALUES_AT = NUMBERS_AT + 8 * SNAPSHOT_NUMBERS,
-       SPLITS_AT = VALUES_AT + 8 * SNAPSHOT_VALUES + 8 * 2 };
+       SPLITS_AT = VALUES_AT + 8 * SNAPSHOT_VALUES };
 
 /* With the bytes in place of those at `at`, and a checksum that is right. */
 static bool refuses_with(const uint8_t *bytes, size_t size, size_t at, const void *others,
