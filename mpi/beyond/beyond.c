@@ -1,4 +1,4 @@
-/* Plugs the methods that the criterion names into the steps of the paper's solver. */
+/* Exchanges steps of the paper's solver for phr's own, as the criterion names them. */
 #include "mpi/beyond/beyond.h"
 
 #include <math.h>
@@ -6,14 +6,14 @@
 #include "geom/alloc.h"
 #include "mpi/beyond/above.h"
 
-/* What patches send is largest where all know: at all of them, if that is B; else the ballots
- * have told. */
+/* Transfers light in a unit that fits the largest value that a patch sends: B, which all
+ * ranks know, or rho z, the largest of which the ballots have brought. */
 static void transfer(struct solver *solver)
 {
     const struct beyond *beyond = solver->beyond;
     double largest = beyond->descent.fresh ? solver_largest_radiosity(solver)
                                            : fmax(solver->ballot.brightest, 1e-250);
-    double room = beyond->tree ? 2.0 : 1.0; /* nodes receive over links of their cluster */
+    double room = beyond->tree ? 2.0 : 1.0; /* nodes receive by their clusters, too */
     if (beyond->tree)
         above_begin(solver);
     double start = comm_seconds();
@@ -52,7 +52,6 @@ struct beyond *beyond_attach(struct solver *solver)
         return solver->beyond;
     struct beyond *beyond = solver->beyond = alloc_array(1, sizeof *beyond);
     beyond->descent.fresh = true;
-    beyond->descent.least_bend = 1.0;
     solver->steps.report = report;
     solver->steps.end = end;
     return beyond;
@@ -65,10 +64,12 @@ const struct answer *beyond_answer(const struct solver *solver)
 }
 
 struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
-                             const struct octree *octree, const struct criterion *criterion)
+                             const struct octree *octree,
+                             const struct criterion *criterion)
 {
     struct solver *solver = solver_create(comm, scene, octree, criterion);
-    bool conjugate = criterion->solver == SOLVER_CG, tree = criterion->linking == LINKING_TREE;
+    bool conjugate = criterion->solver == SOLVER_CG;
+    bool tree = criterion->linking == LINKING_TREE;
     if (!conjugate && !tree)
         return solver;
     struct steps *steps = &solver->steps;

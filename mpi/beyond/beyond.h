@@ -6,81 +6,81 @@
 #include "rad/beyond/final_gather.h"
 #include "rad/beyond/conjugate.h"
 
-/* Conjugate gradients (rad/beyond/conjugate.c) on all ranks alike, but for the vectors. */
+/* Conjugate gradients (rad/beyond/conjugate.c); the same on all ranks but for vectors. */
 struct descent {
     struct conjugate vectors;
     bool fresh;            /* the links have changed: the next transfer is of B */
     bool diverged;         /* K is not positive: more is reflected than arrives */
-    double gain;           /* largest row sum, at least 1 */
-    double shrink;         /* largest row sum times reflectance */
-    double weight;         /* 1 over the least factor of a closure */
-    double share;          /* largest reflectance over that */
-    double gamma[BANDS];   /* <z, z>, W^2 m^-2, */
-    double gamma_before[BANDS]; /* and of the step before */
+    double gain;           /* largest row sum with its cap, at least 1 */
+    double shrink;         /* largest row sum with its cap, times reflectance; below 1 */
+    double weight;         /* 1 over the least cap */
+    double share;          /* largest reflectance times cap */
+    double gamma[BANDS];   /* <z, z>, W^2 m^-2 */
+    double gamma_before[BANDS]; /* <z, z> at the step before */
     double step_before[BANDS];
-    double bound_residual; /* |z| is nowhere larger, W/m^2 */
-    double bound_image;    /* the same of |K p| */
-    double least_bend;     /* least <K z, z> / <z, z> seen */
+    double bound_residual; /* bound on |z| anywhere, W/m^2 */
+    double bound_image;    /* bound on |K p| anywhere */
 };
 
-/* Where --accuracy is; see mpi/accuracy.c. */
+/* The state of --accuracy; see mpi/beyond/accuracy.c. */
 struct accuracy {
-    int64_t rounds;  /* so far */
-    bool clear;      /* the part of the mesh is more than doubt */
-    double coarse, coarse_epsilon; /* the mesh's part of the error for an epsilon before, 0: none */
-    enum hold hold;
+    int64_t rounds;        /* so far */
+    bool clear;            /* the mesh's part of the error exceeds the doubt */
+    double coarse;         /* the mesh's part of the error for coarse_epsilon */
+    double coarse_epsilon; /* an epsilon of a round before; 0: none */
+    enum hold hold;        /* the limit that ended it */
 };
 
 /* The answer of the final gather. */
 struct answer {
     struct gathered counts;
-    float *error;    /* [patches] bound on the error of a leaf's B, for 95 % of leaves and all
-                        bands, W/m^2; NULL: there was no final gather */
-    struct rgb *straight; /* [patches] what leaves reflect of light straight from lamps,
-                             W/m^2; NULL: there was no final gather */
+    float *error;         /* [patches] bound on the error of a leaf's B, for 95 % of
+                             leaves and all bands, W/m^2; NULL: there is no answer */
+    struct rgb *straight; /* [patches] light straight from lamps that a leaf reflects,
+                             W/m^2; NULL: there is no answer */
     struct final_gather gather; /* without its rows, for light at any point */
 };
 
+/* The state of a rank beyond the paper's. */
 struct beyond {
     struct cluster_tree *tree;    /* above the roots; NULL: none */
-    struct node_block tree_block; /* what it looks into */
-    struct caps caps;       /* factors of the leaves */
+    struct node_block tree_block; /* the memory of a tree that is a view */
+    struct caps caps;
     struct descent descent;
     struct accuracy accuracy;
     struct answer answer;
 };
 
-/* Collective. A solver for the criterion, whatever it asks for. Borrows comm, scene and
- * octree. */
+/* Collective. Creates a solver for any criterion. Borrows comm, scene and octree. */
 struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
-                             const struct octree *octree, const struct criterion *criterion);
+                             const struct octree *octree,
+                             const struct criterion *criterion);
 
-/* What a solver has beyond the paper's; makes an empty one where there is none. */
+/* Returns solver->beyond; creates an empty one where there is none. */
 struct beyond *beyond_attach(struct solver *solver);
 
-/* The answer of its final gather; an empty one where there is none. */
+/* The answer of the final gather; an empty one where there is none. */
 const struct answer *beyond_answer(const struct solver *solver);
 
-/* Step 5, when links have changed: row sums of the links there are, and the closure. */
+/* Collective. Step 5, when links have changed: measures row sums and caps them. */
 void caps_begin(struct solver *solver);
 
-/* Collective. After the last iteration: the row sums over the links there are, into
- * `stats`. */
+/* Collective. Writes the row sums of the links into `stats`, after the last iteration. */
 void solver_measure_row_sums(struct solver *solver, struct stats *stats);
 
-/* Steps 6 and 8 by conjugate gradients. When there is no other iteration B takes the place
- * of rho z. */
+/* Steps 6 and 8 by conjugate gradients. While iterations go on, patches have rho z in
+ * place of B; the last vote puts B there. */
 void descent_push_pull(struct solver *solver);
 struct vote descent_vote(struct solver *solver, const struct ballot *sum);
 
-/* Step 9, phr's own, after the last vote: the final gather. What all leaves see is traced, and light
- * solved for by that; `vote` says of the light from then on. The same on all ranks. False
- * if a signal has ended it. Pre: there are clusters. */
+/* Collective. Step 9, phr's own, after the last vote: the final gather. Traces rows for
+ * all leaves and solves for light by them; from then on `vote` is on that light. Returns
+ * false if a signal has ended it, on all ranks. Pre: there are clusters. */
 bool solver_final_gather(struct solver *solver, struct vote *vote);
 
-/* Step 9, if there is one, and with --accuracy the verdict on it: DONE; STOPPED by a signal; or AGAIN,
- * and then criterion and vote are those of the links, for more passes, or for this step with more
- * rays alone. */
+/* Collective. Step 9, if there is one, and with --accuracy the verdict on it. After
+ * FINISH_AGAIN criterion and vote are those of the links, for more passes, or for this
+ * step again with more rays. */
 enum finish solver_finish(struct solver *solver, struct vote *vote);
 
 #endif

@@ -14,11 +14,12 @@ static void set_ones(struct forest *forest)
 
 static void choose_caps(struct solver *solver)
 {
+    const struct forest *forest = solver->model.forest;
     const struct conjugate *vectors = &solver->beyond->descent.vectors;
     for (int64_t i = 0; i < vectors->leaf_count; i++) {
         int32_t leaf = vectors->leaves[i];
-        double row_sum = leaf_irradiance(solver->model.forest, leaf, solver->flux).band[0];
-        caps_choose(&solver->beyond->caps, solver->model.forest, leaf, row_sum);
+        struct rgb row_sum = leaf_irradiance(forest, leaf, solver->flux);
+        caps_choose(&solver->beyond->caps, forest, leaf, row_sum.band[0]);
     }
 }
 
@@ -31,7 +32,8 @@ static void bound_rows(struct solver *solver)
     double bound[4] = {1.0, 0.0, 1.0, 0.0}; /* gain, shrink, weight, share */
     for (int64_t i = 0; i < descent->vectors.leaf_count; i++) {
         int32_t leaf = descent->vectors.leaves[i];
-        double row_sum = factor[leaf] * leaf_irradiance(forest, leaf, solver->flux).band[0];
+        double row_sum =
+            factor[leaf] * leaf_irradiance(forest, leaf, solver->flux).band[0];
         struct rgb rho = forest_material(forest, leaf)->reflectance;
         double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2]));
         double weight = 1.0 / factor[leaf];

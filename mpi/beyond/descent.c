@@ -1,5 +1,5 @@
-/* Steps 6 and 8 by conjugate gradients (rad/beyond/conjugate.c): a step of theirs in the
- * place of push-pull, until the bound on the error that remains is small enough. */
+/* Steps 6 and 8 by conjugate gradients (rad/beyond/conjugate.c): one step of theirs takes
+ * the place of push-pull, until the bound on the remaining error is small enough. */
 #include "mpi/beyond/beyond.h"
 
 #include <math.h>
@@ -8,23 +8,26 @@
 
 static void start_conjugate(struct solver *solver)
 {
-    struct conjugate *cg = &solver->beyond->descent.vectors;
-    conjugate_start(cg, &solver->model, &solver->beyond->caps, solver->flux);
+    struct descent *descent = &solver->beyond->descent;
+    struct conjugate *cg = &descent->vectors;
+    const struct caps *caps = &solver->beyond->caps;
     struct flux_unit any = flux_unit_for(1.0);
-    double own = conjugate_sum(cg, &solver->model, &solver->beyond->caps, any).largest;
-    solver->beyond->descent.bound_residual = comm_largest(solver->comm, own);
-    solver->beyond->descent.bound_image = 0.0;
+    conjugate_start(cg, &solver->model, caps, solver->flux);
+    double own = conjugate_sum(cg, &solver->model, caps, any).largest;
+    descent->bound_residual = comm_largest(solver->comm, own);
+    descent->bound_image = 0.0;
     for (int c = 0; c < BANDS; c++)
-        solver->beyond->descent.step_before[c] = 0.0;
+        descent->step_before[c] = 0.0;
 }
 
 /* <K z, z> over all ranks, W^2 m^-2. */
 static void multiply(struct solver *solver, double bound, double product[BANDS])
 {
-    struct flux_unit unit = conjugate_unit(&solver->model, bound, solver->beyond->descent.bound_residual,
-                                           solver->beyond->descent.weight);
+    struct descent *descent = &solver->beyond->descent;
+    struct flux_unit unit = conjugate_unit(&solver->model, bound, descent->bound_residual,
+                                           descent->weight);
     int64_t own[BANDS] = {0, 0, 0}, all[BANDS];
-    conjugate_apply(&solver->beyond->descent.vectors, &solver->model, &solver->beyond->caps,
+    conjugate_apply(&descent->vectors, &solver->model, &solver->beyond->caps,
                     solver->flux, unit, own);
     MPI_Request request;
     MPI_Iallreduce(own, all, BANDS, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
@@ -35,31 +38,31 @@ static void multiply(struct solver *solver, double bound, double product[BANDS])
 
 static void step_conjugate(struct solver *solver)
 {
-    double image = solver->beyond->descent.bound_residual * (1.0 + solver->beyond->descent.gain);
+    struct descent *descent = &solver->beyond->descent;
+    double image = descent->bound_residual * (1.0 + descent->gain);
     double delta[BANDS], turn[BANDS] = {0.0}, step[BANDS] = {0.0};
     double longest_turn = 0.0, longest_step = 0.0;
     multiply(solver, image, delta);
     for (int c = 0; c < BANDS; c++) {
-        double gamma = solver->beyond->descent.gamma[c], before = solver->beyond->descent.step_before[c];
+        double gamma = descent->gamma[c], before = descent->step_before[c];
         if (!(gamma > 0.0))
             continue;
-        turn[c] = before > 0.0 ? gamma / solver->beyond->descent.gamma_before[c] : 0.0;
+        turn[c] = before > 0.0 ? gamma / descent->gamma_before[c] : 0.0;
         double bend = delta[c] - (before > 0.0 ? turn[c] * gamma / before : 0.0);
-        if (!(bend > 0.0) && solver->beyond->descent.shrink < 1.0) { /* rounding, since K is positive: start afresh */
+        if (!(bend > 0.0)) { /* rounding, since K is positive: start afresh */
             turn[c] = 0.0;
             bend = delta[c];
         }
-        solver->beyond->descent.diverged = solver->beyond->descent.diverged || !(bend > 0.0);
+        descent->diverged = descent->diverged || !(bend > 0.0);
         step[c] = bend > 0.0 ? gamma / bend : 0.0;
-        solver->beyond->descent.least_bend = fmin(solver->beyond->descent.least_bend, delta[c] / gamma);
         longest_turn = fmax(longest_turn, turn[c]);
         longest_step = fmax(longest_step, step[c]);
-        solver->beyond->descent.gamma_before[c] = gamma;
-        solver->beyond->descent.step_before[c] = step[c];
+        descent->gamma_before[c] = gamma;
+        descent->step_before[c] = step[c];
     }
-    conjugate_advance(&solver->beyond->descent.vectors, &solver->model, turn, step);
-    solver->beyond->descent.bound_image = image + longest_turn * solver->beyond->descent.bound_image;
-    solver->beyond->descent.bound_residual += longest_step * solver->beyond->descent.bound_image;
+    conjugate_advance(&descent->vectors, &solver->model, turn, step);
+    descent->bound_image = image + longest_turn * descent->bound_image;
+    descent->bound_residual += longest_step * descent->bound_image;
 }
 
 static void iterate(struct solver *solver)
@@ -75,28 +78,32 @@ static void iterate(struct solver *solver)
 /* The unit of <z, z>. */
 static struct flux_unit square_unit(const struct solver *solver)
 {
-    return conjugate_unit(&solver->model, solver->beyond->descent.bound_residual, solver->beyond->descent.bound_residual,
-                          solver->beyond->descent.weight);
+    const struct descent *descent = &solver->beyond->descent;
+    double bound = descent->bound_residual;
+    return conjugate_unit(&solver->model, bound, bound, descent->weight);
 }
 
-/* The largest that an own leaf sends. */
+/* The largest value that an own leaf sends. */
 static double brightest_own(const struct solver *solver)
 {
+    const struct conjugate *cg = &solver->beyond->descent.vectors;
     double brightest = 0.0;
-    for (int64_t i = 0; i < solver->beyond->descent.vectors.leaf_count; i++) {
-        int32_t leaf = solver->beyond->descent.vectors.leaves[i];
+    for (int64_t i = 0; i < cg->leaf_count; i++) {
+        struct rgb sent = solver->model.forest->patches[cg->leaves[i]].radiosity;
         for (int c = 0; c < BANDS; c++)
-            brightest = fmax(brightest, fabs(solver->model.forest->patches[leaf].radiosity.band[c]));
+            brightest = fmax(brightest, fabs(sent.band[c]));
     }
     return brightest;
 }
 
 static struct ballot ballot_conjugate(const struct solver *solver)
 {
-    struct conjugate_sums sums = conjugate_sum(&solver->beyond->descent.vectors, &solver->model, &solver->beyond->caps,
-                                               square_unit(solver));
-    struct ballot own = {.light = sums.light, .absorbed = sums.absorbed, .arriving = sums.arriving,
-                         .negative = sums.negative, .bulk = sums.bulk, .missing = sums.missing,
+    struct conjugate_sums sums =
+        conjugate_sum(&solver->beyond->descent.vectors, &solver->model,
+                      &solver->beyond->caps, square_unit(solver));
+    struct ballot own = {.light = sums.light, .absorbed = sums.absorbed,
+                         .arriving = sums.arriving, .negative = sums.negative,
+                         .bulk = sums.bulk, .missing = sums.missing,
                          .largest = sums.largest};
     for (int c = 0; c < BANDS; c++)
         own.square[c] = sums.square[c];
@@ -112,33 +119,37 @@ void descent_push_pull(struct solver *solver)
 
 /* --- step 8 --- */
 
-/* Light is not negative. Where rows sum to so much that there is no solution, the equation may have
- * one all the same, with more negative light than the remaining error can make and one part in so many. */
+/* A solution has diverged if its negative light is more than the remaining error can make
+ * and 1 / NEGATIVE of all light: where row sums are so large that there is no solution,
+ * the equation may still have one with negative light. */
 enum { NEGATIVE = 100 };
 
-/* While links are still being split the light is wanted only this well, in parts of what is reflected:
- * next to what lamps emit into the void, all that there is to find might be small. With 3 % a tenth of the
- * iterations is saved that 1 % takes, and a corridor that gets dimmer and dimmer has 0.2 % fewer patches; with
- * 6 % it has 0.4 % fewer. */
+/* The tolerance while links are still being split, in parts of the reflected light (not
+ * of all light: lamps may emit nearly all of theirs into the void). With 3 % a tenth of
+ * the iterations is saved that 1 % takes, and a corridor that gets dimmer and dimmer has
+ * 0.2 % fewer patches; with 6 % it has 0.4 % fewer. */
 static const double WHILE_SPLITTING = 0.03;
 
-/* Bound on the remaining error relative to all light. The error e of H solves K e = z, so it is z + F' rho z +
- * (F' rho)^2 z + ... Let |x| be the sum of A / d |x| over leaves and bands. A F being symmetric, |F' rho x| is at
- * most q |x|, q being the largest row sum times rho: what light is multiplied by from one bounce to the next,
- * at most. So |e| is at most |z| / (1 - q), and what B lacks, the sum of A rho |e|, at most |e| times the largest
- * rho d. Where q is not below 1, half of the least K seen, in the norm of <x, y>, takes the place
- * of 1 - q: an estimate.
+/* Returns a bound on the remaining error relative to all light. The error e of H solves K
+ * e = z, so it is z + F' rho z + (F' rho)^2 z + ... Let |x| be the sum of A / d |x| over
+ * leaves and bands. A F being symmetric, |F' rho x| is at most q |x|; q, the largest row
+ * sum times rho, is the factor that light grows by from one bounce to the next, at most.
+ * Caps keep q below 1. So |e| is at most |z| / (1 - q), and the light that B lacks, the
+ * sum of A rho |e|, at most |e| times the largest rho d.
  *
- * Rejected: |z| as the norm of <x, y>, from which Schwarz leads to the sum of A rho |e|. Where what is
- * missing is on a few bright leaves, as after a refinement, that is many times too large; it took a seventh
- * more iterations in the rooms. */
+ * Rejected: |z| as the norm of <x, y>, from which Schwarz leads to the sum of A rho |e|.
+ * Where the missing light is on a few bright leaves, as after a refinement, that bound is
+ * many times too large; it took a seventh more iterations in the rooms. */
 static double remaining_by_residual(const struct solver *solver, const struct ballot *sum)
 {
-    double least = solver->beyond->descent.shrink < 1.0 ? 1.0 - solver->beyond->descent.shrink : 0.5 * solver->beyond->descent.least_bend;
-    return sum->light > 0 ? solver->beyond->descent.share / least * ((double)sum->missing / (double)sum->light) : 0.0;
+    const struct descent *descent = &solver->beyond->descent;
+    if (sum->light <= 0)
+        return 0.0;
+    return descent->share / (1.0 - descent->shrink) *
+           ((double)sum->missing / (double)sum->light);
 }
 
-/* The remaining error, relative to all light, at which the iterations over these links may end. */
+/* The remaining error, relative to all light, at which iteration over the links ends. */
 static double wanted_of(const struct solver *solver, const struct ballot *sum)
 {
     double tolerance = solver->model.criterion.tolerance;
@@ -146,10 +157,11 @@ static double wanted_of(const struct solver *solver, const struct ballot *sum)
         return tolerance;
     double light = flux_to_watts(solver->model.flux_unit, sum->light);
     double reflected = light - solver->model.emitted_power;
-    return reflected > 0.0 ? fmax(tolerance, WHILE_SPLITTING * reflected / light) : tolerance;
+    return reflected > 0.0 ? fmax(tolerance, WHILE_SPLITTING * reflected / light)
+                           : tolerance;
 }
 
-/* Step 7 of radiosities that nobody votes on. */
+/* Step 7 without a vote. */
 static void scatter_unvoted(struct solver *solver)
 {
     solver->ballot = (struct ballot){0};
@@ -167,13 +179,15 @@ static void finish_conjugate(struct solver *solver)
 struct vote descent_vote(struct solver *solver, const struct ballot *sum)
 {
     const struct criterion *criterion = &solver->model.criterion;
+    struct descent *descent = &solver->beyond->descent;
     struct flux_unit unit = square_unit(solver);
     for (int c = 0; c < BANDS; c++)
-        solver->beyond->descent.gamma[c] = flux_to_watts(unit, sum->square[c]);
-    solver->beyond->descent.bound_residual = sum->largest;
-    double remaining = remaining_by_residual(solver, sum), wanted = wanted_of(solver, sum);
+        descent->gamma[c] = flux_to_watts(unit, sum->square[c]);
+    descent->bound_residual = sum->largest;
+    double remaining = remaining_by_residual(solver, sum);
+    double wanted = wanted_of(solver, sum);
     struct vote vote = vote_make(solver, sum, remaining);
-    vote.diverged = vote.diverged || solver->beyond->descent.diverged;
+    vote.diverged = vote.diverged || descent->diverged;
     bool more = !(remaining <= wanted) && !vote.diverged;
     vote.unfinished = more && solver->turn.iteration >= criterion->max_iterations;
     vote.again = more && !vote.unfinished;

@@ -1,15 +1,17 @@
 /* Collecting and restoring a run's snapshot.
  *
- * Between passes all ranks have the same trees with the same radiosities; what only the home of a
- * leaf knows, its irradiance and its closure factor, goes to rank 0 through a funnel, in the order
- * of the leaves. Not kept is what every pass computes anew: fluxes, bounds on rows, directions of
- * conjugate gradients (each pass starts them afresh), inner radiosities and extremes, and which
- * leaves are enclosed, for which rays are fired again.
+ * Between passes all ranks have the same trees with the same radiosities. Only the home
+ * of a leaf knows its irradiance and its cap; they go to rank 0 through a funnel, in the
+ * order of the leaves. Not kept are the quantities that every pass computes anew: fluxes,
+ * bounds on rows, directions of conjugate gradients (each pass starts them afresh), inner
+ * radiosities and extremes, and proofs that leaves are open, for which rays are fired
+ * again.
  *
- * Links are renumbered in place (patches depth first, as in forest_order()), sorted, merged on rank
- * 0, and given their local numbers back: no copy of them is made, since a checkpoint is wanted most
- * where memory is short. (So they are sorted here: many a qsort() makes a copy.) Reading, every block
- * of links is sent to all ranks, which take them in turn; homes are found when all are there. */
+ * Links are renumbered in place (patches depth first, as in forest_order()), sorted,
+ * merged on rank 0, and given their local numbers back: no copy of them is made, since a
+ * checkpoint is wanted most where memory is short. (So they are sorted here: many a
+ * qsort() makes a copy.) On reading, every block of links is sent to all ranks, which
+ * take them in turn; homes are found once all links are there. */
 #include "mpi/beyond/beyond.h"
 #include "mpi/beyond/keep.h"
 
@@ -22,10 +24,10 @@ enum { BLOCK = 4096 };
 
 /* --- collecting --- */
 
-/* What only the home of a leaf knows; no padding. */
+/* The values that only the home of a leaf knows; no padding. */
 struct home_state {
     struct rgb irradiance;
-    double factor;
+    double factor; /* the cap */
 };
 
 static void collect_trees(const struct solver *solver, const int32_t *order,
@@ -40,7 +42,7 @@ static void collect_trees(const struct solver *solver, const int32_t *order,
     }
 }
 
-/* Rank 0: takes what comes from the homes, leaf by leaf. */
+/* Rank 0: takes the values that come from the homes, leaf by leaf. */
 static void place_home_states(const struct solver *solver, const int32_t *order,
                               struct funnel *funnel, struct snapshot *snapshot)
 {
@@ -107,19 +109,21 @@ static void collect_numbers(const struct solver *solver, const struct vote *vote
     snapshot->value[SNAPSHOT_EPSILON] = model->criterion.epsilon;
     snapshot->value[SNAPSHOT_COARSE] = solver->beyond->accuracy.coarse;
     snapshot->value[SNAPSHOT_COARSE_EPSILON] = solver->beyond->accuracy.coarse_epsilon;
-    snapshot->value[SNAPSHOT_LEAST_BEND] = solver->beyond->descent.least_bend;
+    snapshot->value[SNAPSHOT_UNUSED] = 1.0;
 }
 
-void snapshot_collect(struct solver *solver, const struct vote *vote, struct snapshot *snapshot)
+void snapshot_collect(struct solver *solver, const struct vote *vote,
+                      struct snapshot *snapshot)
 {
     struct forest *forest = solver->model.forest;
     bool collects = solver->comm->rank == 0;
     beyond_attach(solver);
-    caps_extend(&solver->beyond->caps, forest); /* patches that refinement has made since */
+    caps_extend(&solver->beyond->caps, forest); /* the patches that are new */
     conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
     int32_t *order = forest_order(forest);
-    *snapshot = (struct snapshot){.root_count = forest->root_count,
-                                  .patch_count = collects ? forest->count : forest->root_count};
+    *snapshot = (struct snapshot){
+        .root_count = forest->root_count,
+        .patch_count = collects ? forest->count : forest->root_count};
     snapshot_allocate(snapshot);
     collect_numbers(solver, vote, snapshot);
     if (collects)
@@ -239,7 +243,7 @@ static void broadcast_snapshot(const struct comm *comm, struct snapshot *snapsho
                    (size_t)snapshot_leaf_count(snapshot) * sizeof *snapshot->leaves);
 }
 
-/* Splits as in the snapshot, depth first: patches come to be in the same order on all ranks. */
+/* Splits patches as in the snapshot, depth first: in the same order on all ranks. */
 static void restore_trees(struct forest *forest, const struct snapshot *snapshot)
 {
     int64_t i = 0;
@@ -266,15 +270,16 @@ static void restore_leaves(struct solver *solver, const struct snapshot *snapsho
     forest_average(forest);
 }
 
-/* The work so far is put down to rank 0. */
+/* Counts the work so far as rank 0's. */
 static void restore_numbers(struct solver *solver, struct vote *vote,
                             const struct snapshot *snapshot)
 {
     struct model *model = &solver->model;
     const int64_t *number = snapshot->number;
     if (solver->comm->rank == 0) {
-        model->counts = (struct octree_counts){number[SNAPSHOT_RAYS], number[SNAPSHOT_NODE_TESTS],
-                                                number[SNAPSHOT_TRIANGLE_TESTS]};
+        model->counts = (struct octree_counts){number[SNAPSHOT_RAYS],
+                                               number[SNAPSHOT_NODE_TESTS],
+                                               number[SNAPSHOT_TRIANGLE_TESTS]};
         model->walled_off = number[SNAPSHOT_WALLED_OFF];
         model->rays_spared = number[SNAPSHOT_RAYS_SPARED];
     }
@@ -286,13 +291,15 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
         .rounds = number[SNAPSHOT_ROUNDS],
         .coarse = snapshot->value[SNAPSHOT_COARSE],
         .coarse_epsilon = snapshot->value[SNAPSHOT_COARSE_EPSILON]};
-    if (model->criterion.accuracy > 0.0 && number[SNAPSHOT_GATHER] > 0)
-        model->criterion.final_gather = solver->memory.rays = (int)number[SNAPSHOT_GATHER];
-    solver->beyond->descent.least_bend = snapshot->value[SNAPSHOT_LEAST_BEND];
-    if (solver->turn.pass > 0) /* before the first pass a link cache does not bind epsilon */
+    if (model->criterion.accuracy > 0.0 && number[SNAPSHOT_GATHER] > 0) {
+        model->criterion.final_gather = (int)number[SNAPSHOT_GATHER];
+        solver->memory.rays = model->criterion.final_gather;
+    }
+    if (solver->turn.pass > 0) /* a link cache, before the first pass, has no epsilon */
         model_set_epsilon(model, snapshot->value[SNAPSHOT_EPSILON]);
     *vote = (struct vote){
-        .settled = number[SNAPSHOT_SETTLED] != 0 && (as_limited || number[SNAPSHOT_LIMITED] == 0),
+        .settled = number[SNAPSHOT_SETTLED] != 0 &&
+                   (as_limited || number[SNAPSHOT_LIMITED] == 0),
         .links = snapshot->link_count,
         .remaining = snapshot->value[SNAPSHOT_REMAINING],
         .absorbed = snapshot->value[SNAPSHOT_ABSORBED],
@@ -301,7 +308,8 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
     vote->converged = vote->settled && vote->remaining <= model->criterion.tolerance;
 }
 
-int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snapshot *snapshot)
+int32_t *snapshot_restore(struct solver *solver, struct vote *vote,
+                          struct snapshot *snapshot)
 {
     struct forest *forest = solver->model.forest;
     broadcast_snapshot(solver->comm, snapshot);
@@ -315,7 +323,8 @@ int32_t *snapshot_restore(struct solver *solver, struct vote *vote, struct snaps
     return order;
 }
 
-void links_deal(struct solver *solver, const int32_t *order, struct link *links, int64_t count)
+void links_deal(struct solver *solver, const int32_t *order, struct link *links,
+                int64_t count)
 {
     comm_broadcast(solver->comm, links, (size_t)count * sizeof *links);
     for (int64_t i = solver->comm->rank; i < count; i += solver->comm->size) {

@@ -1,24 +1,25 @@
 /* Conjugate gradients.
  *
- * F maps radiosities of leaves to irradiances; A F is symmetric, since links are. With the
- * caps F' = d F, d the factor of a leaf's irradiance, and with the scalar product
+ * F maps radiosities of leaves to irradiances; A F is symmetric, since links are. With
+ * the caps F' = d F, d the factor of a leaf's irradiance, and with the scalar product
  *
  *     <x, y> = sum over leaves of w x y,   w = A rho / d,
  *
- * K = 1 - F' rho is self-adjoint, and positive where row sums times rho are below 1: w F' rho =
- * rho (A F) rho. So conjugate gradients apply to K as it stands, without square roots of
- * rho, and surfaces that reflect nothing take no part: their w is 0. The three bands are three
- * systems, solved side by side.
+ * K = 1 - F' rho is self-adjoint, and positive where row sums times rho are below 1: w F'
+ * rho = rho (A F) rho. So conjugate gradients apply to K as it stands, without square
+ * roots of rho, and surfaces that reflect nothing take no part: their w is 0. The three
+ * bands are three systems, solved side by side.
  *
- * In the form of Chronopoulos and Gear one step costs one transfer of light and two sums of a few
- * numbers over all ranks: with w = K z, gamma = <z, z>, delta = <w, z>,
+ * In the form of Chronopoulos and Gear one step costs one transfer of light and two sums
+ * of a few numbers over all ranks: with w = K z, gamma = <z, z>, delta = <w, z>,
  *
  *     turn = gamma / gamma_before            p = z + turn p       K p = w + turn K p
  *     step = gamma / (delta - turn gamma / step_before)           H += step p   z -= step K p.
  *
- * Products are summed as integers in a unit that is chosen from bounds on their factors, so they
- * are the same on any number of ranks, and so is every bit of the result. Jacobi's method, the
- * paper's, gains a factor rho per iteration; this one needs some ten iterations for any rho. */
+ * Products are summed as integers in a unit that is chosen from bounds on their factors,
+ * so they are the same on any number of ranks, and so is every bit of the result.
+ * Jacobi's method, the paper's, gains a factor rho per iteration; this one needs some ten
+ * iterations for any rho. */
 #include "rad/beyond/conjugate.h"
 
 #include <math.h>
@@ -46,7 +47,8 @@ void conjugate_extend(struct conjugate *cg, const struct forest *forest, const b
                                     sizeof **vectors[i]);
     for (int64_t p = cg->count; p < forest->count; p++) {
         int32_t parent = forest->patches[p].parent;
-        cg->irradiance[p] = parent >= 0 ? cg->irradiance[parent] : (struct rgb){{0.0, 0.0, 0.0}};
+        cg->irradiance[p] =
+            parent >= 0 ? cg->irradiance[parent] : (struct rgb){{0.0, 0.0, 0.0}};
     }
     cg->count = forest->count;
     cg->leaf_count = 0;
@@ -61,7 +63,8 @@ void conjugate_extend(struct conjugate *cg, const struct forest *forest, const b
     }
 }
 
-struct flux_unit conjugate_unit(const struct model *model, double a, double b, double weight)
+struct flux_unit conjugate_unit(const struct model *model, double a, double b,
+                                double weight)
 {
     return flux_unit_for(fmax(a * b * weight * model->area, 1e-250));
 }
@@ -84,8 +87,8 @@ void conjugate_start(struct conjugate *cg, const struct model *model,
 }
 
 void conjugate_apply(struct conjugate *cg, const struct model *model,
-                     const struct caps *caps, struct flux_unit flux, struct flux_unit unit,
-                     int64_t product[BANDS])
+                     const struct caps *caps, struct flux_unit flux,
+                     struct flux_unit unit, int64_t product[BANDS])
 {
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t leaf = cg->leaves[i];
@@ -102,8 +105,8 @@ void conjugate_apply(struct conjugate *cg, const struct model *model,
     }
 }
 
-void conjugate_advance(struct conjugate *cg, const struct model *model, const double turn[BANDS],
-                       const double step[BANDS])
+void conjugate_advance(struct conjugate *cg, const struct model *model,
+                       const double turn[BANDS], const double step[BANDS])
 {
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t p = cg->leaves[i];
@@ -111,7 +114,7 @@ void conjugate_advance(struct conjugate *cg, const struct model *model, const do
         for (int c = 0; c < BANDS; c++) {
             double *direction = &cg->direction[p].band[c], *image = &cg->image[p].band[c];
             *image = cg->work[p].band[c] + turn[c] * *image;
-            if (material->reflectance.band[c] == 0.0) { /* p = z = 0, and H follows the others */
+            if (material->reflectance.band[c] == 0.0) { /* p = z = 0, H follows */
                 cg->irradiance[p].band[c] -= step[c] * *image;
                 continue;
             }
@@ -140,10 +143,12 @@ struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct mod
                                     const struct caps *caps, struct flux_unit unit)
 {
     struct conjugate_sums sums = {0};
+    struct flux_unit watt = model->flux_unit;
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t leaf = cg->leaves[i];
         const struct material *material = forest_material(model->forest, leaf);
-        double area = forest_area(model->forest, leaf), weight = area / caps->factor[leaf];
+        double area = forest_area(model->forest, leaf);
+        double weight = area / caps->factor[leaf];
         double light = 0.0, absorbed = 0.0, arriving = 0.0, negative = 0.0, missing = 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = material->reflectance.band[c], h = cg->irradiance[leaf].band[c];
@@ -158,12 +163,12 @@ struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct mod
             sums.largest = fmax(sums.largest, rho > 0.0 ? fabs(z) : 0.0);
         }
         double most = fmax(fabs(light), fmax(fabs(absorbed), fabs(arriving)));
-        sums.light = flux_add(sums.light, flux_from_watts(model->flux_unit, light));
-        sums.absorbed = flux_add(sums.absorbed, flux_from_watts(model->flux_unit, absorbed));
-        sums.arriving = flux_add(sums.arriving, flux_from_watts(model->flux_unit, arriving));
-        sums.bulk = flux_add(sums.bulk, flux_from_watts(model->flux_unit, most));
-        sums.negative = flux_add(sums.negative, flux_from_watts(model->flux_unit, negative));
-        sums.missing = flux_add(sums.missing, flux_from_watts(model->flux_unit, missing));
+        sums.light = flux_add(sums.light, flux_from_watts(watt, light));
+        sums.absorbed = flux_add(sums.absorbed, flux_from_watts(watt, absorbed));
+        sums.arriving = flux_add(sums.arriving, flux_from_watts(watt, arriving));
+        sums.bulk = flux_add(sums.bulk, flux_from_watts(watt, most));
+        sums.negative = flux_add(sums.negative, flux_from_watts(watt, negative));
+        sums.missing = flux_add(sums.missing, flux_from_watts(watt, missing));
     }
     return sums;
 }

@@ -1,8 +1,9 @@
 /* Conjugate gradients for the irradiances of the leaves of a rank's own roots.
  *
- * The equation is K H = F' E with K = 1 - F' rho: H is irradiance, W/m^2, and F' the form factors
- * with their caps. Vectors have three bands per patch; only those of own leaves mean anything.
- * Every function works on own leaves alone; what all ranks have to add is returned as integers. */
+ * The equation is K H = F' E with K = 1 - F' rho: H is irradiance, W/m^2, and F' the form
+ * factors with their caps. Vectors have three bands per patch; only those of own leaves
+ * mean anything. Every function works on own leaves alone; sums over all ranks are
+ * returned as this rank's part of them, in integers. */
 #ifndef RAD_BEYOND_CONJUGATE_H
 #define RAD_BEYOND_CONJUGATE_H
 
@@ -23,42 +24,45 @@ struct conjugate {
     int64_t leaf_count, leaf_capacity;
 };
 
-/* What one rank's leaves add up to. */
+/* Sums over one rank's leaves and over bands, in units of model.flux_unit except `square`.
+ */
 struct conjugate_sums {
-    int64_t square[BANDS];             /* <z, z> in the unit asked for */
-    int64_t light, absorbed, arriving; /* A B, A (1 - rho) H, A (H + z) over leaves and bands, in
-                                          units of model.flux_unit */
-    int64_t bulk;                      /* the largest magnitude of these three, summed: while it is
-                                          below FLUX_LIMIT, none of them has met that limit */
-    int64_t negative;                  /* A rho |H| where H < 0, in the same units, */
-    int64_t missing;                   /* and A / d |z| */
-    double largest;                    /* largest |z| */
+    int64_t square[BANDS]; /* <z, z>, band by band, in the unit given */
+    int64_t light;         /* A B */
+    int64_t absorbed;      /* A (1 - rho) H */
+    int64_t arriving;      /* A (H + z) */
+    int64_t bulk;          /* the largest magnitude of light, absorbed and arriving of each
+                              leaf: below FLUX_LIMIT, none of the three has met it */
+    int64_t negative;      /* A rho |H| where H < 0 */
+    int64_t missing;       /* A / d |z| */
+    double largest;        /* largest |z|, W/m^2 */
 };
 
 void conjugate_free(struct conjugate *cg);
 
-/* Makes room for all patches, of which new ones inherit H from their parents, and lists the own
- * leaves: to be called when patches have been split. */
+/* Makes room for all patches and lists the own leaves; new patches inherit H from their
+ * parents. To be called after patches have been split. */
 void conjugate_extend(struct conjugate *cg, const struct forest *forest, const bool *own);
 
-/* The unit in which scalar products of vectors that are nowhere larger than a and b are summed.
+/* The unit for scalar products of vectors that are nowhere larger than a and b.
  * `weight`: the largest 1 / d. */
-struct flux_unit conjugate_unit(const struct model *model, double a, double b, double weight);
+struct flux_unit conjugate_unit(const struct model *model, double a, double b,
+                                double weight);
 
-/* After B has been transferred: z = F' B - H. Where nothing is reflected, H = F' B and z = 0. */
+/* After a transfer of B: z = F' B - H. Where nothing is reflected, H = F' B and z = 0. */
 void conjugate_start(struct conjugate *cg, const struct model *model,
                      const struct caps *caps, struct flux_unit flux);
 
-/* After rho z has been transferred: work = K z. Adds <work, z> to `product`. */
+/* After a transfer of rho z: work = K z. Adds <work, z> to `product`. */
 void conjugate_apply(struct conjugate *cg, const struct model *model,
-                     const struct caps *caps, struct flux_unit flux, struct flux_unit unit,
-                     int64_t product[BANDS]);
+                     const struct caps *caps, struct flux_unit flux,
+                     struct flux_unit unit, int64_t product[BANDS]);
 
 /* p = z + turn p, K p = work + turn K p, H += step p, z -= step K p. */
-void conjugate_advance(struct conjugate *cg, const struct model *model, const double turn[BANDS],
-                       const double step[BANDS]);
+void conjugate_advance(struct conjugate *cg, const struct model *model,
+                       const double turn[BANDS], const double step[BANDS]);
 
-/* Makes rho z the radiosity of the own leaves, or B if `final`. */
+/* Writes rho z, or B if `final`, into the radiosity of the own leaves. */
 void conjugate_publish(const struct conjugate *cg, struct model *model, bool final);
 
 struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct model *model,

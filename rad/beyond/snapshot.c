@@ -1,11 +1,11 @@
 /* Checking a snapshot and its links.
  *
- * What comes from a file may say anything. Every number is held against what a run could
+ * A file may say anything. Every number is compared with the numbers that a run could
  * have written, so that nothing later on meets a patch that does not exist, a NaN, or a
- * flux that overflows: the transfer of light relies on what links_transfer() states,
- * that the links of a patch lead to patches that do not overlap, so their exchange areas
- * add up to no more than the area of the scene. That sum is checked as it stands, for
- * each patch. */
+ * flux that overflows: the transfer of light relies on the precondition of
+ * links_transfer(), that the links of a patch lead to patches that do not overlap, so
+ * their exchange areas add up to no more than the area of the scene. That sum is checked
+ * for each patch. */
 #include "rad/beyond/snapshot.h"
 
 #include <math.h>
@@ -30,13 +30,12 @@ void snapshot_free(struct snapshot *snapshot)
 
 /* A walk over the trees, depth first. */
 struct walk {
-    int32_t root; /* of the patch that comes next */
-    int level;    /* its level */
-    int child[ID_MAX_LEVEL + 1]; /* which child of its parent the patch of each level
-                                    is */
+    int32_t root; /* of the next patch */
+    int level;    /* of the next patch */
+    int child[ID_MAX_LEVEL + 1]; /* child number of the patch at each level */
 };
 
-/* Goes past a patch. Pre: it is not split if its level is ID_MAX_LEVEL. */
+/* Moves on to the next patch. Pre: it is not split if its level is ID_MAX_LEVEL. */
 static void walk_on(struct walk *walk, uint8_t split)
 {
     if (split) {
@@ -63,7 +62,7 @@ static bool trees_are_whole(const struct snapshot *snapshot)
 
 /* --- numbers --- */
 
-/* Beyond these no run gets: they leave room for sums, and for radiosities as floats. */
+/* No run exceeds these: they leave room for sums, and for radiosities as floats. */
 static const int64_t MOST_COUNTED = INT64_C(1) << 60;
 static const double MOST_LIGHT = 1e37, MOST_POWER = 1e60, MOST_FACTOR = 1e15;
 
@@ -73,6 +72,12 @@ static bool light_is_sane(struct rgb light)
         if (!(fabs(light.band[c]) <= MOST_LIGHT))
             return false;
     return true;
+}
+
+/* False for a NaN, too. */
+static bool is_within(double value)
+{
+    return value >= 0.0 && value <= MOST_LIGHT;
 }
 
 static bool numbers_are_sane(const struct snapshot *snapshot)
@@ -85,10 +90,10 @@ static bool numbers_are_sane(const struct snapshot *snapshot)
            snapshot->number[SNAPSHOT_GATHER] <= GATHER_RAYS_MOST &&
            value[SNAPSHOT_REMAINING] >= 0.0 &&
            fabs(value[SNAPSHOT_ABSORBED]) <= MOST_POWER &&
-           fabs(value[SNAPSHOT_ESCAPED]) <= MOST_POWER && value[SNAPSHOT_EPSILON] >= 0.0 &&
-           value[SNAPSHOT_EPSILON] <= MOST_LIGHT && value[SNAPSHOT_COARSE] >= 0.0 &&
-           value[SNAPSHOT_COARSE] <= MOST_LIGHT && value[SNAPSHOT_COARSE_EPSILON] >= 0.0 &&
-           value[SNAPSHOT_COARSE_EPSILON] <= MOST_LIGHT && fabs(value[SNAPSHOT_LEAST_BEND]) <= MOST_LIGHT;
+           fabs(value[SNAPSHOT_ESCAPED]) <= MOST_POWER &&
+           is_within(value[SNAPSHOT_EPSILON]) && is_within(value[SNAPSHOT_COARSE]) &&
+           is_within(value[SNAPSHOT_COARSE_EPSILON]) &&
+           fabs(value[SNAPSHOT_UNUSED]) <= MOST_LIGHT;
 }
 
 static bool leaves_are_sane(const struct snapshot *snapshot)
@@ -149,15 +154,15 @@ static bool parts_are_sane(const uint8_t parts[3])
     return parts[0] + parts[1] + parts[2] <= 256;
 }
 
-/* The pair of the link comes behind that of the last one. */
+/* True if the pair of the link comes after the pair of the last one. */
 static bool is_behind(const struct link_check *check, const struct link *link)
 {
     return !check->begun || link->p > check->last.p ||
            (link->p == check->last.p && link->q > check->last.q);
 }
 
-/* Both are nodes there are, and neither is part of the other, as far as that is easily
- * told; a cluster may be linked with itself. */
+/* True if both nodes exist and neither is part of the other, which is checked of patches
+ * alone; a cluster may be linked with itself. */
 static bool are_nodes(const struct link_check *check, int32_t p, int32_t q)
 {
     int64_t first = -check->cluster_count, end = check->patch_count;
@@ -166,13 +171,14 @@ static bool are_nodes(const struct link_check *check, int32_t p, int32_t q)
     return node_is_cluster(p) || node_is_cluster(q) || check->root[p] != check->root[q];
 }
 
-/* In the place of the blocker: a triangle, or the judgement of a link of a cluster,
- * whose upper half is a number, finite and not negative. */
+/* The blocker of a link of patches is a triangle; that of a link with a cluster is its
+ * judgement, whose upper half is a finite number, not negative. */
 static bool blocker_is_sane(const struct link_check *check, const struct link *link)
 {
     const int32_t infinite = 0x7f800000;
     if (node_is_cluster(link->p) || node_is_cluster(link->q))
-        return link->blocker >= 0 && link->blocker < infinite && link->seen <= LINK_ALL_SEEN;
+        return link->blocker >= 0 && link->blocker < infinite &&
+               link->seen <= LINK_ALL_SEEN;
     return link->blocker >= -1 && link->blocker < check->scene->input_count;
 }
 

@@ -1,8 +1,8 @@
-/* Where a run stands between two passes, but for its links: all that the passes to come
- * depend on. Patches have no local numbers here; they are counted roots in order, each
- * tree depth first (forest_order()), so it is the same on any number of ranks.
+/* The state of a run between two passes, without its links: all that later passes depend
+ * on. Patches have no local numbers here; they are counted roots in order, each tree
+ * depth first (forest_order()), so a snapshot is the same on any number of ranks.
  *
- * That all pairs of roots are linked, before the first pass, is such a state, too. */
+ * The state before the first pass, when all pairs of roots are linked, is one, too. */
 #ifndef RAD_BEYOND_SNAPSHOT_H
 #define RAD_BEYOND_SNAPSHOT_H
 
@@ -19,13 +19,12 @@ enum snapshot_number {
     SNAPSHOT_PASSES,         /* refinements */
     SNAPSHOT_ITERATIONS,     /* transfers of light */
     SNAPSHOT_SETTLED,        /* 1: the last pass split nothing */
-    SNAPSHOT_LIMITED,        /* bytes at which refinement ended for want of memory, 0:
-                                it did not */
+    SNAPSHOT_LIMITED,        /* memory limit that ended refinement, bytes; 0: none */
     /* work of all ranks so far */
     SNAPSHOT_RAYS, SNAPSHOT_NODE_TESTS, SNAPSHOT_TRIANGLE_TESTS,
     SNAPSHOT_WALLED_OFF, SNAPSHOT_RAYS_SPARED,
-    SNAPSHOT_ROUNDS,         /* of --accuracy, */
-    SNAPSHOT_GATHER,         /* and rays from a leaf, as it has raised them */
+    SNAPSHOT_ROUNDS,         /* of --accuracy */
+    SNAPSHOT_GATHER,         /* rays from a leaf, as --accuracy has raised them */
     SNAPSHOT_NUMBERS
 };
 
@@ -34,8 +33,8 @@ enum snapshot_value {
                                 HUGE_VAL: none */
     SNAPSHOT_ABSORBED, SNAPSHOT_ESCAPED, /* W, areas in square scene units */
     SNAPSHOT_EPSILON,        /* as --accuracy has lowered it */
-    SNAPSHOT_COARSE, SNAPSHOT_COARSE_EPSILON, /* of a mesh before, with --accuracy */
-    SNAPSHOT_LEAST_BEND,     /* of conjugate gradients */
+    SNAPSHOT_COARSE, SNAPSHOT_COARSE_EPSILON, /* see struct accuracy */
+    SNAPSHOT_UNUSED,         /* written as 1 */
     SNAPSHOT_VALUES
 };
 
@@ -53,31 +52,31 @@ struct snapshot {
     struct leaf_state *leaves; /* [snapshot_leaf_count()] */
 };
 
-/* Gives a snapshot whose three counts are set its arrays, all zero. */
+/* Allocates the arrays of a snapshot whose three counts are set, all zero. */
 void snapshot_allocate(struct snapshot *snapshot);
 void snapshot_free(struct snapshot *snapshot);
 
-/* Every split makes four patches of a leaf, which is none any more. */
+/* Number of leaves: every split turns a leaf into an inner patch with four children. */
 static inline int64_t snapshot_leaf_count(const struct snapshot *snapshot)
 {
     return snapshot->patch_count - (snapshot->patch_count - snapshot->root_count) / 4;
 }
 
 /* True if the splits are those of `root_count` whole trees, no deeper than IDs reach,
- * and every number and value is one that a run could have. The counts fit each other
- * already. Errors: what is wrong, without a file's name, EXIT_USAGE. */
+ * and every number and value is one that a run could have. Pre: the counts fit each
+ * other. Errors: the fault, without a file's name, EXIT_USAGE. */
 bool snapshot_check(const struct snapshot *snapshot, struct error *error);
 
-/* Links of a snapshot, looked at one after the other; p and q are its patch numbers, or
- * below 0: clusters. */
+/* The check of a snapshot's links, one after the other; their p and q are its patch
+ * numbers, or below 0: clusters. */
 struct link_check {
-    const struct scene *scene; /* borrowed, */
+    const struct scene *scene; /* borrowed */
     int64_t patch_count, cluster_count;
     int32_t *root;             /* [patch_count] */
     double *area;              /* [cluster_count + patch_count] square scene units;
                                   that of a node at its number + cluster_count */
-    double *load;              /* the same: sum of the exchange areas so far */
-    double most;               /* that no load may exceed */
+    double *load;              /* [as area] sum of the exchange areas so far */
+    double most;               /* limit of a load */
     struct link last;
     bool begun;
 };

@@ -69,7 +69,6 @@ static struct solver *run_two_passes(struct vote *vote)
     solver->model.criterion.final_gather = 128;
     solver->beyond->accuracy =
         (struct accuracy){.rounds = 3, .coarse = 0.5, .coarse_epsilon = 0.25};
-    solver->beyond->descent.least_bend = 0.25;
     solver->model.walled_off = 56;
     solver->memory.limit = solver->memory.reached = 78;
     return solver;
@@ -99,7 +98,6 @@ static void test_round_trip(void)
                error.code == EXIT_DONE,
            "with all links");
     tap_ok(other->turn.pass == 2 && other->turn.iteration == solver->turn.iteration &&
-               other->beyond->descent.least_bend == solver->beyond->descent.least_bend &&
                other->model.criterion.epsilon == criterion.epsilon &&
                other->model.criterion.final_gather == 128 && other->memory.rays == 128 &&
                other->beyond->accuracy.rounds == 3 && other->beyond->accuracy.coarse == 0.5 &&
