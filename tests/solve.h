@@ -70,7 +70,8 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
             solver_refine(s.solver);
             s.vote = solve_links(s.solver);
         }
-    } while (!s.vote.diverged && solver_finish(s.solver, &s.vote) == FINISH_AGAIN);
+    } while (!s.vote.diverged && s.solver->steps.finish &&
+             s.solver->steps.finish(s.solver, &s.vote) == FINISH_AGAIN);
     s.seconds = seconds_of_work(comm) - start;
     solver_measure_row_sums(s.solver, &s.stats);
     solver_report(s.solver, &s.vote, &s.stats);

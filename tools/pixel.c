@@ -7,10 +7,10 @@ struct pixel {
     int x, y;
 };
 
-static struct ray ray_of(const void *pixel, double u, double v)
+static struct half_line ray_of(const void *pixel, double u, double v)
 {
     const struct pixel *p = pixel;
-    return (struct ray){p->eye, camera_ray(p->camera, p->x + u, p->y + v)};
+    return (struct half_line){p->eye, camera_ray(p->camera, p->x + u, p->y + v)};
 }
 
 struct rgb pathtracer_pixel(const struct pathtracer *pathtracer,

@@ -104,8 +104,8 @@ static double by_solver(const struct facet *p, const struct facet *q, enum form_
 {
     struct octree *empty = octree_create(NULL, NULL, 0);
     struct octree_counts counts = {0};
-    struct sight sight = {.blocker = -1};
-    double g = exchange_estimate(p, q, kind, LOOK_ALL, empty, &sight, &counts).area;
+    struct visibility visibility = {.blocker = -1};
+    double g = exchange_estimate(p, q, kind, EFFORT_ALL, empty, &visibility, &counts).area;
     octree_destroy(empty);
     return g;
 }

@@ -36,27 +36,28 @@ enum { KEYS = 7, NO_LAMP = KEYS, OTHER_SPACE, ALL_KEYS, BINS = 64 };
 /* Scene units of place that count like a unit of direction, and of the root of area. */
 static const double DIRECTION_WEIGHT = 0.3, SIZE_WEIGHT = 3.0;
 
-struct item {
+/* A root on its way into the tree. */
+struct member {
     double key[ALL_KEYS], weight;
     int32_t root;
     int32_t space; /* roots that see each other, by way of others too, have the same */
 };
 
-struct builder {
+struct cutter {
     struct cluster_tree *tree;
     const struct scene *scene;
     double *share;      /* [all roots + 1] area of the items in each space; else 0 */
-    struct item *items; /* [tree->root_count] in the tree's order */
-    struct item *spare; /* [tree->root_count] room for a cut */
+    struct member *items; /* [tree->root_count] in the tree's order */
+    struct member *spare; /* [tree->root_count] room for a cut */
 };
 
-static struct item item_of(const struct scene *scene, int32_t root, double mean_area)
+static struct member member_of(const struct scene *scene, int32_t root, double mean_area)
 {
     struct triangle t = scene_root_triangle(scene, root);
     struct vec3 centre = triangle_centroid(&t),
                 normal = scene_root_plane(scene, root).normal;
     double area = scene_root_area(scene, root);
-    struct item item = {.weight = area + mean_area, .root = root};
+    struct member item = {.weight = area + mean_area, .root = root};
     for (int axis = 0; axis < 3; axis++) {
         item.key[axis] = vec3_axis(centre, axis);
         item.key[3 + axis] = DIRECTION_WEIGHT * vec3_axis(normal, axis);
@@ -68,17 +69,17 @@ static struct item item_of(const struct scene *scene, int32_t root, double mean_
 
 /* Brings the items whose key is below the limit to the front, each half in its order.
  * Returns their number. */
-static int32_t part_items(struct builder *builder, int32_t from, int32_t to, int key,
+static int32_t part_items(struct cutter *cutter, int32_t from, int32_t to, int key,
                           double limit)
 {
     int32_t front = from, back = 0;
     for (int32_t i = from; i < to; i++) {
-        if (builder->items[i].key[key] < limit)
-            builder->items[front++] = builder->items[i];
+        if (cutter->items[i].key[key] < limit)
+            cutter->items[front++] = cutter->items[i];
         else
-            builder->spare[back++] = builder->items[i];
+            cutter->spare[back++] = cutter->items[i];
     }
-    memcpy(builder->items + front, builder->spare, (size_t)back * sizeof *builder->spare);
+    memcpy(cutter->items + front, cutter->spare, (size_t)back * sizeof *cutter->spare);
     return front - from;
 }
 
@@ -102,7 +103,8 @@ static double scatter_of(const struct moments *m)
 
 /* The key that scatters most, and its range. Keys are taken from the first item's, so
  * that those of like items have no rounding. */
-static int widest_key(const struct item *items, int32_t count, double *low, double *high)
+static int widest_key(const struct member *items, int32_t count, double *low,
+                      double *high)
 {
     int widest = 0;
     *low = *high = 0.0;
@@ -128,7 +130,7 @@ static int widest_key(const struct item *items, int32_t count, double *low, doub
 
 /* The value of the key below which the first half ends: of the edges between bins that
  * with the least scatter in both halves. */
-static double best_limit(const struct item *items, int32_t count, int key, double low,
+static double best_limit(const struct member *items, int32_t count, int key, double low,
                          double high)
 {
     struct moments bins[BINS] = {{0}}, above = {0}, below = {0};
@@ -199,7 +201,7 @@ int32_t *places_met(const struct scene *scene, const struct octree *octree,
                 continue;
             uint64_t seed = hash_mix((uint64_t)root) + 8 * (uint64_t)i;
             struct vec3 normal = scene_root_plane(scene, root).normal;
-            struct ray ray = ray_sample(&t, normal, seed, i, SPACE_RAYS);
+            struct half_line ray = ray_sample(&t, normal, seed, i, SPACE_RAYS);
             *at = root_met(scene, octree, &ray, all, &counts);
         }
     }
@@ -227,45 +229,45 @@ static int32_t *find_spaces(const struct scene *scene, const int32_t *met)
 
 /* Finds the space with the largest part of the items' area, and sets the items' key
  * OTHER_SPACE. True if the space has not all, but enough for a cut. */
-static bool find_largest_space(struct builder *builder, struct item *items, int32_t count)
+static bool find_largest_space(struct cutter *cutter, struct member *items, int32_t count)
 {
     double sum = 0.0;
     int32_t largest = items[0].space;
     for (int32_t i = 0; i < count; i++) {
-        double area = scene_root_area(builder->scene, items[i].root);
-        builder->share[items[i].space] += area;
+        double area = scene_root_area(cutter->scene, items[i].root);
+        cutter->share[items[i].space] += area;
         sum += area;
     }
     for (int32_t i = 0; i < count; i++)
-        if (builder->share[items[i].space] > builder->share[largest])
+        if (cutter->share[items[i].space] > cutter->share[largest])
             largest = items[i].space;
-    double share = builder->share[largest];
+    double share = cutter->share[largest];
     bool has_others = false;
     for (int32_t i = 0; i < count; i++) {
         items[i].key[OTHER_SPACE] = items[i].space != largest;
         has_others = has_others || items[i].space != largest;
-        builder->share[items[i].space] = 0.0;
+        cutter->share[items[i].space] = 0.0;
     }
     return has_others && share >= SPACE_LEAST * sum;
 }
 
 /* Cuts items in two, neither half larger than `most`. Returns the size of the first. */
-static int32_t cut(struct builder *builder, int32_t from, int32_t to, int64_t most)
+static int32_t cut(struct cutter *cutter, int32_t from, int32_t to, int64_t most)
 {
     int32_t count = to - from;
     if (count < 2 ||
         stop_is_asked()) /* then any tree will do: nobody is going to use it */
         return (count + 1) / 2;
-    struct item *items = builder->items + from;
-    int32_t first = part_items(builder, from, to, NO_LAMP, 1.0);
+    struct member *items = cutter->items + from;
+    int32_t first = part_items(cutter, from, to, NO_LAMP, 1.0);
     if (first == 0 || first == count)
-        first = find_largest_space(builder, items, count)
-                    ? part_items(builder, from, to, OTHER_SPACE, 1.0) : 0;
+        first = find_largest_space(cutter, items, count)
+                    ? part_items(cutter, from, to, OTHER_SPACE, 1.0) : 0;
     if (first == 0 || first == count) {
         double low, high;
         int key = widest_key(items, count, &low, &high);
         double limit = best_limit(items, count, key, low, high);
-        first = part_items(builder, from, to, key, limit);
+        first = part_items(cutter, from, to, key, limit);
     }
     bool fits = first > 0 && first < count && first <= most && count - first <= most;
     return fits ? first : count / 2;
@@ -306,14 +308,14 @@ static void add_child(struct cluster *parent, const struct cluster *child)
 }
 
 /* Pre: the same is known of the clusters below it. */
-static void sum_up(struct builder *builder, struct cluster *cluster)
+static void sum_up(struct cutter *cutter, struct cluster *cluster)
 {
-    const struct cluster_tree *tree = builder->tree;
+    const struct cluster_tree *tree = cutter->tree;
     for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
         int32_t node = cluster->child[k];
         struct cluster child = node_is_cluster(node)
                                    ? tree->clusters[~node]
-                                   : cluster_of_root(builder->scene, node);
+                                   : cluster_of_root(cutter->scene, node);
         add_child(cluster, &child);
     }
     for (int c = 0; c < BANDS; c++)
@@ -321,7 +323,7 @@ static void sum_up(struct builder *builder, struct cluster *cluster)
 }
 
 /* Where the four parts of a cluster end. `below`: roots that a child can hold at most. */
-static void cut_in_four(struct builder *builder, int32_t from, int32_t to, int64_t below,
+static void cut_in_four(struct cutter *cutter, int32_t from, int32_t to, int64_t below,
                         int32_t ends[4])
 {
     if (to - from <= 4) {
@@ -329,75 +331,75 @@ static void cut_in_four(struct builder *builder, int32_t from, int32_t to, int64
             ends[k] = from + k + 1 < to ? from + k + 1 : to;
         return;
     }
-    int32_t middle = from + cut(builder, from, to, 2 * below);
-    ends[0] = from + cut(builder, from, middle, below);
+    int32_t middle = from + cut(cutter, from, to, 2 * below);
+    ends[0] = from + cut(cutter, from, middle, below);
     ends[1] = middle;
-    ends[2] = middle + cut(builder, middle, to, below);
+    ends[2] = middle + cut(cutter, middle, to, below);
     ends[3] = to;
 }
 
 /* Makes the cluster over the items from..to. Returns its node. */
-static int32_t build(struct builder *builder, int32_t from, int32_t to,
+static int32_t build(struct cutter *cutter, int32_t from, int32_t to,
                      uint32_t hierarchy, int level)
 {
-    struct cluster_tree *tree = builder->tree;
+    struct cluster_tree *tree = cutter->tree;
     int32_t number = tree->count++, ends[4], begin = from;
     int children = 0;
     struct cluster cluster = {.first = from, .end = to, .hierarchy = hierarchy,
                               .child = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE}};
-    cut_in_four(builder, from, to, INT64_C(1) << 2 * (ID_MAX_LEVEL - level), ends);
+    cut_in_four(cutter, from, to, INT64_C(1) << 2 * (ID_MAX_LEVEL - level), ends);
     for (int k = 0; k < 4; k++) {
         if (ends[k] - begin == 1) {
-            cluster.child[children++] = builder->items[begin].root;
+            cluster.child[children++] = cutter->items[begin].root;
         } else if (ends[k] > begin) {
             cluster.child[children] = build(
-                builder, begin, ends[k], hierarchy << 2 | (uint32_t)children, level + 1);
+                cutter, begin, ends[k], hierarchy << 2 | (uint32_t)children, level + 1);
             children++;
         }
         begin = ends[k];
     }
-    sum_up(builder, &cluster);
+    sum_up(cutter, &cluster);
     tree->clusters[number] = cluster;
     return ~number;
 }
 
-static void list_items(struct builder *builder)
+static void list_items(struct cutter *cutter)
 {
-    const struct scene *scene = builder->scene;
+    const struct scene *scene = cutter->scene;
     int32_t count = 0, all = scene_root_count(scene);
     for (int32_t root = 0; root < all; root++)
         count += scene_root_area(scene, root) > 0.0;
-    builder->items = alloc_array((size_t)count, sizeof *builder->items);
-    builder->spare = alloc_array((size_t)count, sizeof *builder->spare);
+    cutter->items = alloc_array((size_t)count, sizeof *cutter->items);
+    cutter->spare = alloc_array((size_t)count, sizeof *cutter->spare);
     double mean_area = scene_area(scene) / count;
     for (int32_t root = 0; root < all; root++)
         if (scene_root_area(scene, root) > 0.0)
-            builder->items[builder->tree->root_count++] = item_of(scene, root, mean_area);
+            cutter->items[cutter->tree->root_count++] = member_of(scene, root, mean_area);
 }
 
 /* The arrays by place and by root. */
-static void list_places(struct builder *builder)
+static void list_places(struct cutter *cutter)
 {
-    struct cluster_tree *tree = builder->tree;
+    struct cluster_tree *tree = cutter->tree;
     for (int32_t i = 0; i < tree->root_count; i++) {
-        int32_t root = builder->items[i].root;
+        int32_t root = cutter->items[i].root;
         tree->roots[i] = root;
         tree->place[root] = i;
         tree->area_before[i + 1] =
-            tree->area_before[i] + scene_root_area(builder->scene, root);
+            tree->area_before[i] + scene_root_area(cutter->scene, root);
     }
 }
 
 struct cluster_tree *cluster_tree_build(const struct scene *scene, const int32_t *met)
 {
     struct cluster_tree *tree = alloc_array(1, sizeof *tree);
-    struct builder builder = {.tree = tree, .scene = scene};
-    list_items(&builder);
-    builder.share =
-        alloc_array((size_t)scene_root_count(scene) + 1, sizeof *builder.share);
+    struct cutter cutter = {.tree = tree, .scene = scene};
+    list_items(&cutter);
+    cutter.share =
+        alloc_array((size_t)scene_root_count(scene) + 1, sizeof *cutter.share);
     int32_t *space = find_spaces(scene, met);
     for (int32_t i = 0; i < tree->root_count; i++)
-        builder.items[i].space = space[builder.items[i].root];
+        cutter.items[i].space = space[cutter.items[i].root];
     alloc_free(space);
     size_t count = (size_t)tree->root_count, all = (size_t)scene_root_count(scene);
     tree->all_roots = (int32_t)all;
@@ -407,13 +409,13 @@ struct cluster_tree *cluster_tree_build(const struct scene *scene, const int32_t
     tree->place = alloc_array(all, sizeof *tree->place);
     for (size_t root = 0; root < all; root++)
         tree->place[root] = -1;
-    build(&builder, 0, tree->root_count, 1, 0);
-    list_places(&builder);
+    build(&cutter, 0, tree->root_count, 1, 0);
+    list_places(&cutter);
     tree->clusters =
         alloc_resize(tree->clusters, (size_t)tree->count, sizeof *tree->clusters);
-    alloc_free(builder.share);
-    alloc_free(builder.items);
-    alloc_free(builder.spare);
+    alloc_free(cutter.share);
+    alloc_free(cutter.items);
+    alloc_free(cutter.spare);
     return tree;
 }
 

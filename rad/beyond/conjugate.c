@@ -13,8 +13,8 @@
  * In the form of Chronopoulos and Gear one step costs one transfer of light and two sums
  * of a few numbers over all ranks: with w = K z, gamma = <z, z>, delta = <w, z>,
  *
- *     turn = gamma / gamma_before            p = z + turn p       K p = w + turn K p
- *     step = gamma / (delta - turn gamma / step_before)           H += step p   z -= step K p.
+ *     turn = gamma / gamma_before,     step = gamma / (delta - turn gamma / step_before),
+ *     p = z + turn p,    K p = w + turn K p,    H += step p,    z -= step K p.
  *
  * Products are summed as integers in a unit that is chosen from bounds on their factors,
  * so they are the same on any number of ranks, and so is every bit of the result.

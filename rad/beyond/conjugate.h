@@ -24,15 +24,14 @@ struct conjugate {
     int64_t leaf_count, leaf_capacity;
 };
 
-/* Sums over one rank's leaves and over bands, in units of model.flux_unit except `square`.
- */
+/* Sums over one rank's leaves and over bands, in units of model.flux_unit unless said. */
 struct conjugate_sums {
     int64_t square[BANDS]; /* <z, z>, band by band, in the unit given */
     int64_t light;         /* A B */
     int64_t absorbed;      /* A (1 - rho) H */
     int64_t arriving;      /* A (H + z) */
-    int64_t bulk;          /* the largest magnitude of light, absorbed and arriving of each
-                              leaf: below FLUX_LIMIT, none of the three has met it */
+    int64_t bulk;          /* the largest magnitude of these three, leaf by leaf: while it
+                              is below FLUX_LIMIT, none of them has met that limit */
     int64_t negative;      /* A rho |H| where H < 0 */
     int64_t missing;       /* A / d |z| */
     double largest;        /* largest |z|, W/m^2 */

@@ -8,9 +8,8 @@
 
 #include <math.h>
 
-/* Of the light that there would be if it were spread evenly in a closed scene, this part
- * counts: in ordinary rooms less than what is emitted, in white ones many times as much.
- */
+/* The part that counts of the light of a closed scene if it were spread evenly: in
+ * ordinary rooms less than the emitted light, in white ones many times as much. */
 static const double LASTING = 0.1;
 
 /* The mean radiosity if all light were spread evenly in a closed scene: E / (1 - rho) of
@@ -38,8 +37,7 @@ static double emitted_power(struct model *model)
     return model->emitted_power;
 }
 
-/* As emitted or, where it is reflected for long, a part of what there would be if it
- * were spread evenly. */
+/* As emitted or, where light is reflected for long, LASTING of it spread evenly. */
 static double light_power(struct model *model)
 {
     double emitted = emitted_power(model);

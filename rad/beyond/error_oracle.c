@@ -1,7 +1,6 @@
 /* Refinement by error.
  *
- * A link is split for what is wrong with it. On the way from q to p, light is
- * misplaced by
+ * A link is split for its errors. On the way from q to p, light is misplaced by
  *
  *     rho_p B_q dG_p       the form factor varies over p: splitting p mends it,
  *     rho_p G dB_q         the radiosity varies over q: splitting q mends it,
@@ -9,11 +8,11 @@
  * with dG_p the spread of G over the sub-areas of p (shadows that begin or end on p are
  * in it) and dB_q the range of radiosity over the leaves of q; likewise from p to q. The
  * link itself tells the four children of p apart (rad/link.h). So the spread over p is
- * first of all a reason to give p children, which costs no ray; what is left then is the
- * spread within each child, about half as large, and the range within each child of q. A
- * sampled link may be wrong about what it did not see: a part of what G would be is in
- * doubt, less if all segments agree, nothing if the way is proved to be open. (Then it
- * is still in doubt if the patches are near: points on a lamp do not tell what the
+ * first of all a reason to give p children, which costs no ray; then the spread within
+ * each child is left, about half as large, and the range within each child of q. A
+ * sampled link may have missed a shadow or a gap: a part of the unoccluded G is in doubt,
+ * less if all segments agree, nothing if the way is proved to be open. (Then it is still
+ * in doubt if the patches are near: points on a lamp do not show how much light the
  * ceiling close above it receives.) All these are powers; their sum is compared with the
  * threshold, and the side that causes more of it is split. */
 #include "rad/beyond/error_oracle.h"
@@ -24,7 +23,7 @@
 #include "rad/beyond/range.h"
 #include "rad/oracle.h"
 
-/* Sum over bands of rho B: what the receiver makes of the sender's light, W/m^2. */
+/* Sum over bands of rho B: the sender's light as the receiver reflects it, W/m^2. */
 static double light_reflected(const struct forest *forest, int32_t from, int32_t to)
 {
     return rgb_dot(forest_material(forest, to)->reflectance,
@@ -48,7 +47,7 @@ static double doubt_of(const struct link *link)
     return link_unoccluded(link) * (agreed ? DOUBT_AGREED : DOUBT_MIXED);
 }
 
-/* Largest less smallest part, as an exchange area if all of the patch were like that. */
+/* Largest less smallest part, as exchange areas of a whole patch that is like it. */
 static double spread_of(const struct link *link, const uint8_t parts[3])
 {
     int last = 256 - parts[0] - parts[1] - parts[2], least = last, most = last;
@@ -59,8 +58,8 @@ static double spread_of(const struct link *link, const uint8_t parts[3])
     return 4.0 / 256.0 * (most - least) * link_area(link);
 }
 
-/* What one side causes: spread of what it receives within its children, range of what it
- * sends. */
+/* The error that one side causes: the spread of the light that it receives within its
+ * children, and the range of the light that it sends. */
 static double error_of(const struct model *model, const struct link *link, int32_t own,
                        int32_t other, const uint8_t parts[3], double light)
 {

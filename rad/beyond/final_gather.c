@@ -259,7 +259,8 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     }
     fixed = gather->model->estimating - fixed;
     look.fixed = 0.25f * (float)fixed;
-    look.work = (float)(model_work(gather->model) - before - fixed) / (4.0f * (float)rays);
+    look.work =
+        (float)(model_work(gather->model) - before - fixed) / (4.0f * (float)rays);
     look.noise = variance;
     look.variance = variance * rays;
     return look;

@@ -153,7 +153,7 @@ static bool is_to_be_split(const struct receiver *r, const struct triangle *send
 }
 
 /* A patch as a sender, or a part of a leaf. */
-struct part {
+struct sender_part {
     int32_t patch;
     struct triangle triangle;
     struct vec3 normal;
@@ -161,9 +161,9 @@ struct part {
     double size;      /* of its edges, those of the patch being 1; below 0 upside down */
 };
 
-static struct part part_child(const struct part *part, int k)
+static struct sender_part part_child(const struct sender_part *part, int k)
 {
-    struct part child = *part;
+    struct sender_part child = *part;
     child.triangle = triangle_child(&part->triangle, k);
     child.size = k == 3 ? -0.5 * part->size : 0.5 * part->size;
     for (int j = 0; j < 3 && k < 3; j++)
@@ -178,7 +178,7 @@ static double factor_to(const struct receiver *r, const struct triangle *sender)
 }
 
 /* Adds a part whose factor is known as a whole. */
-static void add_whole(struct receiver *r, const struct part *part, double factor)
+static void add_whole(struct receiver *r, const struct sender_part *part, double factor)
 {
     double w[3], at[3];
     place_of_light(&r->facet, &part->triangle, part->normal, w);
@@ -188,7 +188,7 @@ static void add_whole(struct receiver *r, const struct part *part, double factor
 }
 
 /* Adds the exact factors to a part of a leaf, or to its quarters. */
-static void add_part(struct receiver *r, const struct part *part, double range,
+static void add_part(struct receiver *r, const struct sender_part *part, double range,
                      double factor, int quarterings)
 {
     if (quarterings == 0 || !is_to_be_split(r, &part->triangle, factor, range)) {
@@ -196,7 +196,7 @@ static void add_part(struct receiver *r, const struct part *part, double range,
         return;
     }
     for (int k = 0; k < 4; k++) {
-        struct part child = part_child(part, k);
+        struct sender_part child = part_child(part, k);
         double of_child = factor_to(r, &child.triangle);
         if (of_child > 0.0)
             add_part(r, &child, 0.5 * range, of_child, quarterings - 1);
@@ -210,7 +210,7 @@ static bool add_sender(struct receiver *r, int32_t patch)
     const struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     const struct extremes *extremes = &forest->extremes[patch];
-    struct part whole = {.patch = patch,
+    struct sender_part whole = {.patch = patch,
                          .triangle = forest_triangle(forest, patch),
                          .centre = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0},
                          .size = 1.0};

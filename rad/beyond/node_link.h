@@ -1,6 +1,6 @@
 /* Links between any two nodes of the tree: patches, clusters, or one of each; and of a
- * cluster with itself, for what its own parts exchange. With two patches all of this is
- * rad/link.h and rad/oracle.h.
+ * cluster with itself, for the light that its own parts exchange. Links of two patches
+ * are left to rad/beyond/patch_link.h and rad/beyond/error_oracle.h.
  *
  * A link of a cluster with itself has half of its G, since transfer takes it both ways.
  */

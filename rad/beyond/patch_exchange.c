@@ -1,8 +1,8 @@
-/* What two patches exchange.
+/* The exchange of two patches.
  *
- * The 16 segments of rad/formfactor.c, weighted by the disks, say what is seen. How much
- * there would be to see without blockers is exact, from points of one patch to the whole
- * of the other: disks overlap where patches are close.
+ * Visibility comes from the 16 segments of rad/formfactor.c, weighted by the disks. The
+ * exchange area without blockers is exact, from points of one patch to the whole of the
+ * other: disks overlap where patches are close.
  *
  * No free segment does not mean that nothing passes. That is only taken so with a proof:
  * a wall that stops every segment (geom/wall.c). */
@@ -46,8 +46,8 @@ static double exchange_across_horizon(const struct facet *p, const struct facet 
     return p->area * q->area * cosines / (PI * r2 + fmax(p->area, q->area));
 }
 
-/* The four segments from each sub-area of p to one of q, as far as they are in `asked`:
- * what of them is blocked. */
+/* Of the four segments from each sub-area of p to one of q, those of `asked` that are
+ * blocked, as bits. */
 static unsigned block_diagonal(const struct bundle *bundle, unsigned asked,
                                const struct octree *octree, int32_t *blocker,
                                struct octree_counts *counts)
@@ -64,15 +64,15 @@ static unsigned block_diagonal(const struct bundle *bundle, unsigned asked,
 
 /* The segments that arrive, as bits. With four segments that agree, one for each
  * sub-area of p and of q, all others are taken to be like them. */
-static unsigned pair_look(struct facet_pair *pair, enum look look,
-                          const struct octree *octree,
-                      struct sight *sight, struct octree_counts *counts)
+static unsigned pair_look(struct facet_pair *pair, enum effort effort,
+                          const struct octree *octree, struct visibility *visibility,
+                          struct octree_counts *counts)
 {
     unsigned facing = pair->bundle.asked, diagonal = facing & DIAGONAL, blocked = 0;
-    if (sight->open || facing == 0)
+    if (visibility->open || facing == 0)
         return facing;
-    if (look == LOOK_FOUR_FIRST && diagonal != 0) {
-        blocked = block_diagonal(&pair->bundle, diagonal, octree, &sight->blocker,
+    if (effort == EFFORT_FOUR_FIRST && diagonal != 0) {
+        blocked = block_diagonal(&pair->bundle, diagonal, octree, &visibility->blocker,
                                  counts);
         if (blocked == 0)
             return facing;
@@ -81,7 +81,7 @@ static unsigned pair_look(struct facet_pair *pair, enum look look,
         pair->bundle.asked = facing & ~DIAGONAL;
     }
     if (pair->bundle.asked)
-        blocked |= octree_block(octree, &pair->bundle, &sight->blocker, counts);
+        blocked |= octree_block(octree, &pair->bundle, &visibility->blocker, counts);
     pair->bundle.asked = facing;
     return facing & ~blocked;
 }
@@ -114,8 +114,8 @@ static struct side side_by_disks(const struct facet_pair *pair, unsigned visible
     return side;
 }
 
-/* Mean over a sub-area of what it sees of the other patch, from three points: right
- * where that varies with the square of the place (Stroud's formula of degree 2). */
+/* The mean form factor from a sub-area to the other patch, by three points: exact where
+ * it varies with the square of the place (Stroud's formula of degree 2). */
 static double factor_close_by(const struct facet *own, int sub, const struct facet *other)
 {
     struct triangle area = triangle_child(&own->triangle, sub);
@@ -128,11 +128,10 @@ static double factor_close_by(const struct facet *own, int sub, const struct fac
     return sum / 3.0;
 }
 
-/* A sub-area none of whose segments faces has no kernels to tell what is seen: then what
- * the whole pair sees counts. */
+/* The visible share of a sub-area is that of its segments' kernels; where none of them
+ * faces, that of the whole pair. */
 static struct side side_by_points(const struct facet_pair *pair, unsigned visible,
-                                  bool of_p,
-                                  bool apart)
+                                  bool of_p, bool apart)
 {
     const struct facet *own = of_p ? pair->p : pair->q, *other = of_p ? pair->q : pair->p;
     const struct vec3 *points = of_p ? pair->bundle.from : pair->bundle.to;
@@ -149,7 +148,8 @@ static struct side side_by_points(const struct facet_pair *pair, unsigned visibl
                                                       &other->triangle)
                               : factor_close_by(own, sub, other);
         side.unoccluded[sub] = 0.25 * own->area * factor;
-        side.area[sub] = side.unoccluded[sub] * (all[sub] > 0.0 ? seen[sub] / all[sub] : share);
+        side.area[sub] =
+            side.unoccluded[sub] * (all[sub] > 0.0 ? seen[sub] / all[sub] : share);
     }
     return side;
 }
@@ -174,12 +174,12 @@ double exchange_guess(const struct facet *p, const struct facet *q)
                          triangle_centroid(&q->triangle), q->plane.normal, q->area);
 }
 
-/* Over the sum of the radii. Nearer, one disk might say that a patch receives more than
- * all there is. */
+/* Distance over the sum of the radii. Nearer, a patch might receive more than all light
+ * by one disk. */
 static const double FAR = 1.5;
 
-/* True if patches are far enough apart for their size for one disk to be good enough for
- * what is little (within 15 % or so). */
+/* True if patches are far enough apart for their size for one disk to be good enough
+ * where little light is at stake (within 15 % or so). */
 static bool is_apart(const struct facet *p, const struct facet *q)
 {
     struct vec3 x = triangle_centroid(&p->triangle), y = triangle_centroid(&q->triangle);
@@ -188,14 +188,15 @@ static bool is_apart(const struct facet *p, const struct facet *q)
 }
 
 static struct exchange exchange_by_one(const struct facet *p, const struct facet *q,
-                                       const struct octree *octree, struct sight *sight,
+                                       const struct octree *octree,
+                                       struct visibility *visibility,
                                        struct octree_counts *counts)
 {
     double unoccluded = exchange_guess(p, q);
     const int32_t own[2] = {p->input, q->input};
-    bool seen = sight->open ||
-                !octree_blocks_segment(octree, triangle_centroid(&p->triangle),
-                                       triangle_centroid(&q->triangle), own, &sight->blocker, counts);
+    struct vec3 x = triangle_centroid(&p->triangle), y = triangle_centroid(&q->triangle);
+    bool seen = visibility->open ||
+                !octree_blocks_segment(octree, x, y, own, &visibility->blocker, counts);
     return (struct exchange){.area = seen ? unoccluded : 0.0, .unoccluded = unoccluded,
                              .seen = seen ? 1.0 : 0.0, .apart = true,
                              .parts_p = {0.25, 0.25, 0.25, 0.25},
@@ -203,12 +204,13 @@ static struct exchange exchange_by_one(const struct facet *p, const struct facet
 }
 
 static struct exchange exchange_by_all(const struct facet *p, const struct facet *q,
-                                       enum form_factor kind, enum look look,
-                                       const struct octree *octree, struct sight *sight,
+                                       enum form_factor kind, enum effort effort,
+                                       const struct octree *octree,
+                                       struct visibility *visibility,
                                        struct octree_counts *counts)
 {
     struct facet_pair pair = facet_pair_make(p, q);
-    unsigned visible = pair_look(&pair, look, octree, sight, counts);
+    unsigned visible = pair_look(&pair, effort, octree, visibility, counts);
     bool points = kind == FORM_FACTOR_POLYGON, apart = is_apart(p, q);
     struct side side_p = points ? side_by_points(&pair, visible, true, apart)
                                 : side_by_disks(&pair, visible, true);
@@ -227,14 +229,15 @@ static struct exchange exchange_by_all(const struct facet *p, const struct facet
 }
 
 struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
-                                  enum form_factor kind, enum look look,
-                                  const struct octree *octree, struct sight *sight,
+                                  enum form_factor kind, enum effort effort,
+                                  const struct octree *octree,
+                                  struct visibility *visibility,
                                   struct octree_counts *counts)
 {
-    struct exchange exchange = look == LOOK_ONE && is_apart(p, q)
-                                   ? exchange_by_one(p, q, octree, sight, counts)
-                                   : exchange_by_all(p, q, kind, look, octree, sight,
-                                                     counts);
+    struct exchange exchange =
+        effort == EFFORT_ONE && is_apart(p, q)
+            ? exchange_by_one(p, q, octree, visibility, counts)
+            : exchange_by_all(p, q, kind, effort, octree, visibility, counts);
     double limit = fmin(p->area, q->area);
     if (exchange.unoccluded > limit) {
         exchange.area = fmin(limit, exchange.area * (limit / exchange.unoccluded));
@@ -250,11 +253,9 @@ bool facets_are_walled_off(const struct facet *p, const struct facet *q,
 }
 
 bool facets_are_open(const struct facet *p, const struct facet *q,
-                     const struct octree *octree,
-                     struct octree_counts *counts)
+                     const struct octree *octree, struct octree_counts *counts)
 {
     const int32_t own[2] = {p->input, q->input};
     return octree_shaft_is_empty(octree, &p->triangle, &p->plane, &q->triangle, &q->plane,
-                                 own,
-                                 counts);
+                                 own, counts);
 }

@@ -1,6 +1,6 @@
 /* Form factors of pairs of patches, phr's: from points to the whole other patch, or by
- * disks, with the parts that the children of either side have in it; and what is proved
- * of visibility.
+ * disks, with the parts that the children of either side have in them; and proofs of
+ * visibility.
  *
  * As in rad/formfactor.h it is the exchange area G = A_p F_pq = A_q F_qp. 0 <= G <=
  * min(A_p, A_q), always. */
@@ -15,15 +15,15 @@
 
 struct exchange {
     double area;       /* G with visibility */
-    double unoccluded; /* an estimate of what G would be without blockers, >= area */
+    double unoccluded; /* an estimate of G without blockers, >= area */
     double seen;       /* share of the segments that arrive, weighted, 1 */
     bool apart;        /* far enough apart for their size to trust G from points */
-    double parts_p[4]; /* the parts of G that go to the four children of p: sum 1 */
-    double parts_q[4]; /* and to those of q */
+    double parts_p[4]; /* the parts of G of the four children of p: sum 1 */
+    double parts_q[4]; /* the parts of G of the four children of q: sum 1 */
 };
 
-/* What is known of the visibility of a pair before it is looked at. */
-struct sight {
+/* Knowledge of the visibility of a pair, before segments are asked. */
+struct visibility {
     bool open;       /* proved: nothing can stand between the patches */
     int32_t blocker; /* in and out: as *guess of octree_block() */
 };
@@ -32,23 +32,24 @@ struct sight {
  * facing exchanges no light at all. */
 bool facets_face(const struct facet *p, const struct facet *q);
 
-/* How closely a pair is looked at. ONE: if the patches are far apart for their size, one
- * disk and a segment from centroid to centroid decide for all. FOUR_FIRST: four
+/* The effort that the estimate of a pair is worth. ONE: if the patches are far apart for
+ * their size, one disk and a segment from centroid to centroid. FOUR_FIRST: four
  * segments, one from each sub-area to another, decide if they agree, else all 16 do.
- * ALL: 16. */
-enum look { LOOK_ONE, LOOK_FOUR_FIRST, LOOK_ALL };
+ * ALL: 16 segments. */
+enum effort { EFFORT_ONE, EFFORT_FOUR_FIRST, EFFORT_ALL };
 
 /* The exchange of a pair: visibility from segments between sub-areas that face each
  * other, unless it is known; form factors by the disk or from points to the whole other
  * patch: one for each sub-area, or three where the patches are not apart. Pre:
  * facets_face(p, q). */
 struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
-                                  enum form_factor kind, enum look look,
-                                  const struct octree *octree, struct sight *sight,
+                                  enum form_factor kind, enum effort effort,
+                                  const struct octree *octree,
+                                  struct visibility *visibility,
                                   struct octree_counts *counts);
 
-/* What the pair would exchange without blockers, by one disk from centroid to centroid:
- * quick and rough, for deciding how closely to look. 0 if the centroids do not face each
+/* The exchange area of the pair without blockers, by one disk from centroid to centroid:
+ * quick and rough, for choosing the effort. 0 if the centroids do not face each
  * other. */
 double exchange_guess(const struct facet *p, const struct facet *q);
 
@@ -60,7 +61,6 @@ bool facets_are_walled_off(const struct facet *p, const struct facet *q,
 /* True if it is proved that all of one facet sees all of the other, as far as they face.
  */
 bool facets_are_open(const struct facet *p, const struct facet *q,
-                     const struct octree *octree,
-                     struct octree_counts *counts);
+                     const struct octree *octree, struct octree_counts *counts);
 
 #endif

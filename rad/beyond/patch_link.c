@@ -1,15 +1,15 @@
 /* Links of two patches, phr's.
  *
- * A child inherits what is known of its parent's visibility: that it is open, if that is
- * proved, and the last blocker, which is tested first. (A quarter of its segments, those
+ * A child inherits its parent's visibility: the proof that it is open, if there is one,
+ * and the last blocker, which is tested first. (A quarter of its segments, those
  * that begin or end at its centroid, were already fired for its parent; their answers
  * would take two bytes a link, and a bundle of 12 goes down the octree as one of 16
  * does.)
  *
  * Light that a link brings to a patch with children is dealt to them by the link's
- * parts, and what they send is weighted by them: that costs no ray, since the parts come
- * from the very segments that gave G. Where the parts are even it is the same as light
- * to the patch itself. */
+ * parts, and the light that they send is weighted by them: that costs no ray, since the
+ * parts come from the very segments that gave G. Where the parts are even it is the same
+ * as light to the patch itself. */
 #include "rad/beyond/patch_link.h"
 
 #include <math.h>
@@ -41,13 +41,13 @@ void link_set_parts(uint8_t parts[3], const double exact[4])
     }
 }
 
-/* Powers at stake, relative to the threshold, up to which one segment, and four, tell
- * enough of a pair. */
+/* Powers at stake, relative to the threshold, up to which one segment, and four, are
+ * enough for a pair. */
 static const double STAKE_ONE = 0.1, STAKE_FOUR = 1.0;
 
-/* The power that a pair makes of what it exchanges, W per square scene unit of G, both
- * ways together: with the radiosity of either and what the other reflects. In the first
- * pass little is lit yet, so radiosities count as at least what is typical. */
+/* The power that a pair reflects, W per square scene unit of G, both ways together: the
+ * radiosity of either times the reflectance of the other. In the first pass little is lit
+ * yet, so radiosities count as at least the typical one. */
 static double light_at_stake(const struct model *model, int32_t p, int32_t q)
 {
     const struct forest *forest = model->forest;
@@ -64,14 +64,15 @@ static double light_at_stake(const struct model *model, int32_t p, int32_t q)
     return light;
 }
 
-enum look patch_link_look(const struct model *model, int32_t p, int32_t q, double guess)
+enum effort patch_link_effort(const struct model *model, int32_t p, int32_t q,
+                              double guess)
 {
     if (!(guess > 0.0))
-        return LOOK_ALL;
+        return EFFORT_ALL;
     double stake = guess * light_at_stake(model, p, q);
-    return stake <= STAKE_ONE * model->link_threshold    ? LOOK_ONE
-           : stake <= STAKE_FOUR * model->link_threshold ? LOOK_FOUR_FIRST
-                                                          : LOOK_ALL;
+    return stake <= STAKE_ONE * model->link_threshold    ? EFFORT_ONE
+           : stake <= STAKE_FOUR * model->link_threshold ? EFFORT_FOUR_FIRST
+                                                          : EFFORT_ALL;
 }
 
 static bool make(struct model *model, int32_t p, const struct facet *facet_p, int32_t q,
@@ -84,11 +85,11 @@ static bool make(struct model *model, int32_t p, const struct facet *facet_p, in
         material_is_dark(forest_material(model->forest, q)))
         return false;
     struct octree_counts work = {0};
-    struct sight sight = {.open = parent && link_is_open(parent),
+    struct visibility visibility = {.open = parent && link_is_open(parent),
                           .blocker = parent ? parent->blocker : -1};
-    enum look look = patch_link_look(model, p, q, exchange_guess(facet_p, facet_q));
-    struct exchange exchange = exchange_estimate(facet_p, facet_q, form_factor, look,
-                                                 model->octree, &sight, &work);
+    enum effort effort = patch_link_effort(model, p, q, exchange_guess(facet_p, facet_q));
+    struct exchange exchange = exchange_estimate(facet_p, facet_q, form_factor, effort,
+                                                 model->octree, &visibility, &work);
     octree_counts_add(&model->counts, &work);
     model->rays_spared += BUNDLE_RAYS - work.rays;
     model->estimating += TESTS_PER_FORM_FACTOR;
@@ -96,8 +97,8 @@ static bool make(struct model *model, int32_t p, const struct facet *facet_p, in
         .p = p,
         .q = q,
         .area = float_below(exchange.seen > 0.0 ? exchange.area : exchange.unoccluded),
-        .blocker = sight.blocker,
-        .seen = compact_share(&exchange, sight.open),
+        .blocker = visibility.blocker,
+        .seen = compact_share(&exchange, visibility.open),
         .cost = compact8(link_predict_cost(model, &work, parent)),
     };
     link_set_parts(link->parts_p, exchange.parts_p);
@@ -106,8 +107,7 @@ static bool make(struct model *model, int32_t p, const struct facet *facet_p, in
 }
 
 bool patch_link_make(struct model *model, int32_t p, const struct facet *facet_p,
-                     int32_t q,
-                     const struct facet *facet_q, const struct link *parent,
+                     int32_t q, const struct facet *facet_q, const struct link *parent,
                      struct link *link)
 {
     return make(model, p, facet_p, q, facet_q, parent, FORM_FACTOR_POLYGON, link);

@@ -1,5 +1,5 @@
-/* Links of two patches that tell children apart, look as closely as the criterion asks
- * for, and know what is proved of their visibility.
+/* Links of two patches that tell children apart, spend the effort that the light at stake
+ * is worth, and keep proofs of visibility.
  *
  * `parts` say which parts of G go to (and come from) the children 0, 1 and 2 of p and
  * those of q, in 256ths; child 3 has the rest. So a link tells the four children of a
@@ -13,7 +13,7 @@
 #include "rad/beyond/patch_exchange.h"
 #include "rad/link.h"
 
-/* What G would be without blockers, within 1/500 of G or so. */
+/* G without blockers, within 1/500 of G or so. */
 static inline double link_unoccluded(const struct link *link)
 {
     return link_is_partly_seen(link) ? (double)link->area * LINK_ALL_SEEN / link->seen
@@ -44,12 +44,12 @@ static inline bool link_is_divided(const struct forest *forest, int32_t patch,
  * one. */
 void link_set_parts(uint8_t parts[3], const double exact[4]);
 
-/* A share of what arrives, 0..1, as the field `seen` has it. */
+/* The share of the light that arrives, 0..1, in the form of the field `seen`. */
 uint8_t link_seen(double share);
 
-/* What a link takes from a patch: its B, or that of its children weighted by the parts,
- * which is summed in `*sum`. (A transfer with copies of colours took half as long
- * again.) */
+/* Returns the B that a link takes from a patch: its own, or that of its children weighted
+ * by the parts, which is summed in `*sum`. (A pointer: a transfer with copies of colours
+ * took half as long again.) */
 const struct rgb *link_take(const struct forest *forest, int32_t patch,
                             const uint8_t parts[3], struct rgb *sum);
 
@@ -57,15 +57,14 @@ const struct rgb *link_take(const struct forest *forest, int32_t patch,
 void link_give(struct forest *forest, int32_t patch, const uint8_t parts[3], double area,
                const struct rgb *radiosity, struct flux_unit unit);
 
-/* How closely a pair has to be looked at of which `guess` would be exchanged without
- * blockers. */
-enum look patch_link_look(const struct model *model, int32_t p, int32_t q, double guess);
+/* The effort that a pair is worth. `guess`: its exchange area without blockers. */
+enum effort patch_link_effort(const struct model *model, int32_t p, int32_t q,
+                              double guess);
 
 /* Entries of struct method: make_link, with form factors from points or by disks, and
  * split_link, which ends links of two patches that are proved to be walled off. */
 bool patch_link_make(struct model *model, int32_t p, const struct facet *facet_p,
-                     int32_t q,
-                     const struct facet *facet_q, const struct link *parent,
+                     int32_t q, const struct facet *facet_q, const struct link *parent,
                      struct link *link);
 bool patch_link_make_by_disks(struct model *model, int32_t p, const struct facet *facet_p,
                               int32_t q, const struct facet *facet_q,

@@ -100,15 +100,16 @@ struct triangle pathtracer_part(struct patch_id id)
 
 /* --- light --- */
 
-struct spot {
+/* The end of a ray on a front. */
+struct arrival {
     struct vec3 x;
     int32_t root;
     double weight[3]; /* barycentric coordinates in the root, where a ray arrives */
 };
 
-/* Where the ray arrives. False for a miss or a black back. */
+/* Finds where the ray arrives. False for a miss or a black back. */
 static bool arrive(const struct pathtracer *pathtracer, struct vec3 origin,
-                   struct vec3 direction, bool fronts_only, struct spot *q)
+                   struct vec3 direction, bool fronts_only, struct arrival *q)
 {
     struct octree_hit hit;
     if (!octree_first_hit(pathtracer->octree, origin, direction, fronts_only, &hit,
@@ -137,7 +138,7 @@ static void find_hidden(struct pathtracer *pathtracer)
         struct triangle lamp = scene_root_triangle(scene, r);
         struct vec3 down = scene_root_plane(scene, r).normal;
         struct vec3 above = point_above(triangle_centroid(&lamp), down);
-        struct spot met;
+        struct arrival met;
         bool meets = arrive(pathtracer, above, vec3_scale(down, -1.0), false, &met);
         pathtracer->hidden[r] = meets && met.root != r;
     }
@@ -185,8 +186,8 @@ static int32_t emitter_at(const struct pathtracer *pathtracer, double power)
 }
 
 /* G, 1 / square scene unit; 0 where one of the two faces away. */
-static double coupling(const struct pathtracer *pathtracer, const struct spot *p,
-                       const struct spot *q)
+static double coupling(const struct pathtracer *pathtracer, const struct arrival *p,
+                       const struct arrival *q)
 {
     struct vec3 d = vec3_sub(q->x, p->x);
     double square = vec3_dot(d, d);
@@ -195,8 +196,8 @@ static double coupling(const struct pathtracer *pathtracer, const struct spot *p
     return out > 0.0 && in > 0.0 ? out * in / (PI * square * square) : 0.0;
 }
 
-static bool is_blocked(const struct pathtracer *pathtracer, const struct spot *p,
-                       const struct spot *q)
+static bool is_blocked(const struct pathtracer *pathtracer, const struct arrival *p,
+                       const struct arrival *q)
 {
     const int32_t own[2] = {scene_input_of(pathtracer->scene, p->root),
                             scene_input_of(pathtracer->scene, q->root)};
@@ -214,12 +215,12 @@ static void add_light(struct rgb *sum, struct rgb throughput, double factor,
 }
 
 /* Irradiance from a point chosen on the lights. */
-static void add_chosen_light(const struct pathtracer *pathtracer, const struct spot *p,
+static void add_chosen_light(const struct pathtracer *pathtracer, const struct arrival *p,
                              struct rgb throughput, struct draw *draw, struct rgb *sum)
 {
     const struct scene *scene = pathtracer->scene;
     double power = pathtracer_power(pathtracer);
-    struct spot light = {.root = emitter_at(pathtracer, power * draw_next(draw))};
+    struct arrival light = {.root = emitter_at(pathtracer, power * draw_next(draw))};
     struct triangle t = scene_root_triangle(scene, light.root);
     light.x = point_on(&t, draw);
     struct rgb emission = scene_root_material(scene, light.root)->emission;
@@ -230,8 +231,8 @@ static void add_chosen_light(const struct pathtracer *pathtracer, const struct s
 }
 
 /* Irradiance from the light that a path has met. */
-static void add_met_light(const struct pathtracer *pathtracer, const struct spot *p,
-                          const struct spot *q, struct rgb throughput, struct rgb *sum)
+static void add_met_light(const struct pathtracer *pathtracer, const struct arrival *p,
+                          const struct arrival *q, struct rgb throughput, struct rgb *sum)
 {
     struct rgb emission = scene_root_material(pathtracer->scene, q->root)->emission;
     if (!(rgb_sum(emission) > 0.0) || pathtracer->hidden[q->root])
@@ -246,8 +247,8 @@ static void add_met_light(const struct pathtracer *pathtracer, const struct spot
 
 /* The same for a ray that leaves a surface, in a direction whose density is its cosine to
  * the normal over pi. */
-static bool follow(const struct pathtracer *pathtracer, const struct spot *p,
-                   struct draw *draw, struct spot *q)
+static bool follow(const struct pathtracer *pathtracer, const struct arrival *p,
+                   struct draw *draw, struct arrival *q)
 {
     struct vec3 normal = scene_root_plane(pathtracer->scene, p->root).normal;
     double u = draw_next(draw), v = draw_next(draw);
@@ -268,12 +269,12 @@ static bool goes_on(const struct pathtracer *pathtracer, int32_t root, struct dr
     return true;
 }
 
-static struct rgb irradiance(const struct pathtracer *pathtracer, struct spot p,
+static struct rgb irradiance(const struct pathtracer *pathtracer, struct arrival p,
                              struct draw *draw)
 {
     struct rgb sum = {{0.0, 0.0, 0.0}}, throughput = {{1.0, 1.0, 1.0}};
     for (;;) {
-        struct spot q;
+        struct arrival q;
         add_chosen_light(pathtracer, &p, throughput, draw, &sum);
         if (!follow(pathtracer, &p, draw, &q))
             return sum;
@@ -293,7 +294,7 @@ struct rgb pathtracer_reflected(const struct pathtracer *pathtracer, int32_t roo
     struct draw draw = draw_make(seed);
     for (draw.sample = 0; draw.sample < samples; draw.sample++) {
         draw.used = 0;
-        struct spot start = {.root = root};
+        struct arrival start = {.root = root};
         start.x = triangle_point(&t, point_on(part, &draw));
         add_light(&sum, rho, 1.0 / samples, irradiance(pathtracer, start, &draw));
     }
@@ -307,7 +308,7 @@ void pathtracer_shine(const struct pathtracer *pathtracer, uint64_t seed,
     const struct scene *scene = pathtracer->scene;
     struct draw draw = draw_make(seed);
     double chosen = pathtracer_power(pathtracer) * draw_next(&draw);
-    struct spot p = {.root = emitter_at(pathtracer, chosen)}, q;
+    struct arrival p = {.root = emitter_at(pathtracer, chosen)}, q;
     struct triangle t = scene_root_triangle(scene, p.root);
     p.x = point_on(&t, &draw);
     struct rgb emission = scene_root_material(scene, p.root)->emission;
@@ -331,10 +332,10 @@ struct rgb pathtracer_seen(const struct pathtracer *pathtracer, pixel_ray *ray,
     struct rgb sum = {{0.0, 0.0, 0.0}}, one = {{1.0, 1.0, 1.0}};
     struct draw draw = draw_make(seed);
     for (draw.sample = 0; draw.sample < samples; draw.sample++) {
-        struct spot seen;
+        struct arrival seen;
         draw.used = 0;
         double u = draw_next(&draw), v = draw_next(&draw);
-        struct ray eye = ray(pixel, u, v);
+        struct half_line eye = ray(pixel, u, v);
         if (!arrive(pathtracer, eye.origin, eye.direction, fronts_only, &seen))
             continue;
         const struct material *material;

@@ -1,8 +1,8 @@
 /* A path tracer: the light that a surface reflects, without links, patches or form
  * factors; and light paths, which go the other way.
  *
- * It shares the octree and the scene with the program and nothing of its method, so it is
- * what the program's answers are compared with, by tests and by --accuracy. All seeds are
+ * It shares the octree and the scene with the program and nothing of its method, so tests
+ * and --accuracy compare the program's answers with it. All seeds are
  * hashed: the same seed gives the same bits, on every machine, and estimates with
  * different seeds are independent. */
 #ifndef RAD_BEYOND_PATHS_H
@@ -40,7 +40,7 @@ struct rgb pathtracer_reflected(const struct pathtracer *pathtracer, int32_t roo
 struct landing {
     int32_t root;
     double weight[3]; /* barycentric coordinates in the root */
-    struct rgb light; /* what arrives, as a share of the power of all lights and bands */
+    struct rgb light; /* that arrives, as a share of the power of all lights and bands */
 };
 
 /* Follows one light path from a light on, and tells of each place where it arrives. The
@@ -50,14 +50,14 @@ void pathtracer_shine(const struct pathtracer *pathtracer, uint64_t seed,
                       void (*land)(void *listener, const struct landing *landing),
                       void *listener);
 
-/* W in square scene units: what all lights emit, in all bands. */
+/* Power that all lights emit, in all bands, W in square scene units. */
 double pathtracer_power(const struct pathtracer *pathtracer);
 
 /* Barycentric coordinates of the corners of a patch in its root: a part, as above. */
 struct triangle pathtracer_part(struct patch_id id);
 
 /* A ray of a picture, for a place u, v in [0, 1) within a pixel. */
-typedef struct ray pixel_ray(const void *pixel, double u, double v);
+typedef struct half_line pixel_ray(const void *pixel, double u, double v);
 
 /* Estimate of the mean radiosity E + rho H, W/m^2, that the rays of a pixel meet; black
  * where they meet nothing, or a back. Its expectation is exact. `fronts_only`: they look

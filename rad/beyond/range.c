@@ -14,7 +14,8 @@ void forest_bound(struct forest *forest)
     for (int64_t p = forest->count - 1; p >= 0; p--) {
         const struct patch *patch = &forest->patches[p];
         float brightness = (float)rgb_sum(patch->radiosity);
-        struct extremes *own = &forest->extremes[p], *child = &forest->extremes[patch->children];
+        struct extremes *own = &forest->extremes[p];
+        const struct extremes *child = &forest->extremes[patch->children];
         *own = (struct extremes){brightness, brightness};
         for (int k = 0; k < 4 && !patch_is_leaf(patch); k++) {
             own->low = fminf(own->low, child[k].low);

@@ -28,17 +28,18 @@ struct vec3 direction_above(const struct triangle *t, struct vec3 normal, double
     return vec3_add(along, vec3_scale(normal, sqrt(1.0 - sine2)));
 }
 
-struct ray ray_sample(const struct triangle *t, struct vec3 normal, uint64_t seed,
+struct half_line ray_sample(const struct triangle *t, struct vec3 normal, uint64_t seed,
                       int ring, int rings)
 {
     double sine2 = (ring + hash_unit(seed + 4)) / rings;
-    return (struct ray){point_above(triangle_sample(t, seed), normal),
+    return (struct half_line){point_above(triangle_sample(t, seed), normal),
                         direction_above(t, normal, hash_unit(seed + 2),
                                         hash_unit(seed + 3), sine2)};
 }
 
 int32_t root_met(const struct scene *scene, const struct octree *octree,
-                 const struct ray *ray, int32_t outside, struct octree_counts *counts)
+                 const struct half_line *ray, int32_t outside,
+                 struct octree_counts *counts)
 {
     struct octree_hit hit;
     if (!octree_first_hit(octree, ray->origin, ray->direction, false, &hit, counts))

@@ -7,8 +7,8 @@
 #include "geom/scene.h"
 #include "octree/octree.h"
 
-/* A ray that begins just above a surface. */
-struct ray {
+/* A ray: one that begins at a surface begins just above it. */
+struct half_line {
     struct vec3 origin, direction; /* of length 1 */
 };
 
@@ -27,13 +27,14 @@ struct vec3 direction_above(const struct triangle *t, struct vec3 normal, double
                             double v, double sine2);
 
 /* A ray from a point of the triangle's front, distributed as the cosine to its unit
- * normal; `ring` of `rings` rings that are equally probable, from the normal outwards.
+ * normal, in ring `ring` of `rings` equally probable ones from the normal outwards.
  * Uses seed to seed + 4. */
-struct ray ray_sample(const struct triangle *t, struct vec3 normal, uint64_t seed,
+struct half_line ray_sample(const struct triangle *t, struct vec3 normal, uint64_t seed,
                       int ring, int rings);
 
 /* The root whose front the ray meets first; -1 if it meets a back, `outside` if none. */
 int32_t root_met(const struct scene *scene, const struct octree *octree,
-                 const struct ray *ray, int32_t outside, struct octree_counts *counts);
+                 const struct half_line *ray, int32_t outside,
+                 struct octree_counts *counts);
 
 #endif

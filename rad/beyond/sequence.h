@@ -1,5 +1,4 @@
-/* Points of a low-discrepancy sequence, and what they stand for on triangles and
- * hemispheres. */
+/* Points of a low-discrepancy sequence, and their images on triangles and hemispheres. */
 #ifndef RAD_BEYOND_SEQUENCE_H
 #define RAD_BEYOND_SEQUENCE_H
 
@@ -22,11 +21,10 @@ struct sequence sequence_start(uint64_t seed);
 void sequence_point(const struct sequence *sequence, uint32_t index,
                     double u[SEQUENCE_DIMENSIONS]);
 
-/* The point of the triangle that u and v in [0, 1) stand for: equal areas for equal
- * areas. */
+/* The image of (u, v) in [0, 1) on the triangle; the map keeps ratios of areas. */
 struct vec3 triangle_of_square(const struct triangle *t, double u, double v);
 
-/* The direction that u and v in [0, 1) stand for, distributed as the cosine to `normal`.
+/* The image of (u, v) in [0, 1) as a direction, distributed as the cosine to `normal`.
  * `along` is at right angles to it; both are of length 1. */
 struct vec3 cosine_direction(struct vec3 normal, struct vec3 along, double u, double v);
 

@@ -38,11 +38,11 @@ static void test_pairs(void)
         struct facet p = facet_make(world.model.forest, 0);
         struct facet q = facet_make(world.model.forest, 1);
         struct octree_counts counts = {0}, others = {0};
-        struct sight sight = {.blocker = -1};
+        struct visibility visibility = {.blocker = -1};
         int32_t blocker = -1;
         double seen, area = exchange_area(&p, &q, world.octree, &blocker, &seen, &counts);
-        struct exchange other = exchange_estimate(&p, &q, FORM_FACTOR_DISK, LOOK_ALL,
-                                                  world.octree, &sight, &others);
+        struct exchange other = exchange_estimate(&p, &q, FORM_FACTOR_DISK, EFFORT_ALL,
+                                                  world.octree, &visibility, &others);
         double limit = fmin(p.area, q.area);
         pairs += area > 0.0;
         partly += seen > 0.0 && seen < 1.0;

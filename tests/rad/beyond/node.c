@@ -206,7 +206,8 @@ static void look_around(const struct wood *wood, int32_t root, int32_t first, in
     struct mean hits = {0};
     for (int i = 0; i < RAYS; i++) {
         uint64_t seed = hash_mix((uint64_t)root << 32 | (uint64_t)i);
-        struct ray ray = ray_sample(&t, scene_root_plane(scene, root).normal, seed, 0, 1);
+        struct vec3 normal = scene_root_plane(scene, root).normal;
+        struct half_line ray = ray_sample(&t, normal, seed, 0, 1);
         int32_t met = root_met(scene, wood->world.octree, &ray, -1, &counts);
         int32_t place = met < 0 ? -1 : wood->tree->place[met];
         mean_add(&hits, place >= first && place < end);

@@ -14,18 +14,18 @@
 
 /* Nothing known, everything looked at. */
 static struct exchange estimate(const struct facet *p, const struct facet *q,
-                                enum form_factor kind, enum look look,
+                                enum form_factor kind, enum effort effort,
                                 const struct octree *octree, struct octree_counts *counts)
 {
-    struct sight sight = {.open = false, .blocker = -1};
-    return exchange_estimate(p, q, kind, look, octree, &sight, counts);
+    struct visibility visibility = {.open = false, .blocker = -1};
+    return exchange_estimate(p, q, kind, effort, octree, &visibility, counts);
 }
 
 /* 16 disks, 16 segments: the paper's. */
 static struct exchange exchange_of(const struct facet *p, const struct facet *q,
                                    const struct octree *octree, struct octree_counts *counts)
 {
-    return estimate(p, q, FORM_FACTOR_DISK, LOOK_ALL, octree, counts);
+    return estimate(p, q, FORM_FACTOR_DISK, EFFORT_ALL, octree, counts);
 }
 
 enum { PAIRS = 20000 };
@@ -528,9 +528,9 @@ static void test_known(void)
         struct facet p = facet_of(known->p, -1), q = facet_of(known->q, -1);
         double exact = known->factor * p.area;
         struct octree_counts counts = {0};
-        struct exchange there = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ALL, octree,
+        struct exchange there = estimate(&p, &q, FORM_FACTOR_POLYGON, EFFORT_ALL, octree,
                                          &counts);
-        struct exchange disk = estimate(&p, &q, FORM_FACTOR_DISK, LOOK_ALL, octree,
+        struct exchange disk = estimate(&p, &q, FORM_FACTOR_DISK, EFFORT_ALL, octree,
                                         &counts);
         double error = fabs(there.area / exact - 1.0);
         worst = fmax(worst, error);
@@ -557,9 +557,9 @@ static void test_speck(void)
     struct octree_counts counts = {0};
     struct vec3 centre = triangle_centroid(&speck);
     double exact = q.area * point_triangle_factor(centre, q.plane.normal, &floor);
-    struct exchange there = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ALL, octree,
+    struct exchange there = estimate(&p, &q, FORM_FACTOR_POLYGON, EFFORT_ALL, octree,
                                      &counts);
-    struct exchange back = estimate(&q, &p, FORM_FACTOR_POLYGON, LOOK_ALL, octree,
+    struct exchange back = estimate(&q, &p, FORM_FACTOR_POLYGON, EFFORT_ALL, octree,
                                     &counts);
     /* Its size over its distance is 2e-3, and the error of a point is of second order. */
     tap_ok(exact > 0.5 * q.area && fabs(there.area / exact - 1.0) < 4e-6 &&
@@ -624,7 +624,7 @@ static bool is_within_bounds(const struct exchange *e, const struct facet *p,
            e->seen >= 0.0 && e->seen <= 1.0 && (e->seen > 0.0 || e->area == 0.0);
 }
 
-static void test_any(enum form_factor kind, enum look look, const char *name)
+static void test_any(enum form_factor kind, enum effort effort, const char *name)
 {
     enum { TRIES = 20000 };
     struct random random = random_seed(71);
@@ -636,12 +636,12 @@ static void test_any(enum form_factor kind, enum look look, const char *name)
         if (!make_facing(&random, i, &p, &q))
             continue;
         struct octree_counts counts = {0};
-        struct exchange blocked = estimate(&p, &q, kind, look, octree, &counts);
-        struct exchange back = estimate(&q, &p, kind, look, octree, &counts);
-        struct exchange free = estimate(&p, &q, kind, look, none, &counts);
-        struct sight open = {.open = true, .blocker = -1};
+        struct exchange blocked = estimate(&p, &q, kind, effort, octree, &counts);
+        struct exchange back = estimate(&q, &p, kind, effort, octree, &counts);
+        struct exchange free = estimate(&p, &q, kind, effort, none, &counts);
+        struct visibility open = {.open = true, .blocker = -1};
         int64_t rays = counts.rays;
-        struct exchange told = exchange_estimate(&p, &q, kind, look, octree, &open,
+        struct exchange told = exchange_estimate(&p, &q, kind, effort, octree, &open,
                                                  &counts);
         facing++;
         partly += blocked.seen > 0.0 && blocked.seen < 1.0;
@@ -655,7 +655,7 @@ static void test_any(enum form_factor kind, enum look look, const char *name)
         one_way += blocked.area > 0.0 && !parts_match(&blocked, &back);
         dim += told.area != free.area || told.seen != free.seen || counts.rays != rays;
     }
-    tap_ok(facing > TRIES / 2 && (look == LOOK_ONE || partly > 50) && outside == 0,
+    tap_ok(facing > TRIES / 2 && (effort == EFFORT_ONE || partly > 50) && outside == 0,
            "%s: %d pairs exchange from 0 to the smaller area, %d are seen in part", name, facing,
            partly);
     tap_ok(more == 0, "%s: blockers never add", name);
@@ -688,8 +688,8 @@ static void test_four(void)
             continue;
         enum form_factor kind = i % 2 ? FORM_FACTOR_POLYGON : FORM_FACTOR_DISK;
         struct octree_counts all = {0}, four = {0};
-        struct exchange whole = estimate(&p, &q, kind, LOOK_ALL, octree, &all);
-        struct exchange part = estimate(&p, &q, kind, LOOK_FOUR_FIRST, octree, &four);
+        struct exchange whole = estimate(&p, &q, kind, EFFORT_ALL, octree, &all);
+        struct exchange part = estimate(&p, &q, kind, EFFORT_FOUR_FIRST, octree, &four);
         bool agreed = whole.seen == 0.0 || whole.seen == 1.0;
         free += whole.seen == 1.0;
         dark += whole.seen == 0.0;
@@ -735,9 +735,9 @@ static void test_one(void)
         double slope = fmin(vec3_dot(p.plane.normal, d),
                             -vec3_dot(q.plane.normal, d)) / distance;
         struct octree_counts all = {0}, one = {0};
-        struct exchange whole = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ALL, octree,
+        struct exchange whole = estimate(&p, &q, FORM_FACTOR_POLYGON, EFFORT_ALL, octree,
                                          &all);
-        struct exchange single = estimate(&p, &q, FORM_FACTOR_POLYGON, LOOK_ONE, octree,
+        struct exchange single = estimate(&p, &q, FORM_FACTOR_POLYGON, EFFORT_ONE, octree,
                                           &one);
         if (distance > 1.500001 * radii) {
             dear += one.rays > 1;
@@ -774,13 +774,13 @@ static void test_one_blocked(void)
     struct octree *octree = octree_create(t, planes, 3);
     struct facet a = facet_of(p, 0), b = facet_of(q, 1);
     struct octree_counts counts = {0};
-    struct sight sight = {.open = false, .blocker = -1};
-    struct exchange e = exchange_estimate(&a, &b, FORM_FACTOR_POLYGON, LOOK_ONE, octree,
-                                          &sight,
+    struct visibility visibility = {.open = false, .blocker = -1};
+    struct exchange e = exchange_estimate(&a, &b, FORM_FACTOR_POLYGON, EFFORT_ONE, octree,
+                                          &visibility,
                                           &counts);
     tap_ok(e.area == 0.0 && e.seen == 0.0 && e.unoccluded == exchange_guess(&a, &b) &&
-               sight.blocker == 2 && counts.rays == 1,
-           "one look that is blocked remembers what it would see, and by what");
+               visibility.blocker == 2 && counts.rays == 1,
+           "one segment that is blocked keeps the unoccluded exchange, and the blocker");
     octree_destroy(octree);
 }
 
@@ -798,10 +798,10 @@ int main(void)
     test_claims();
     test_known();
     test_speck();
-    test_any(FORM_FACTOR_DISK, LOOK_ALL, "disks, all");
-    test_any(FORM_FACTOR_POLYGON, LOOK_ALL, "polygons, all");
-    test_any(FORM_FACTOR_POLYGON, LOOK_FOUR_FIRST, "polygons, four first");
-    test_any(FORM_FACTOR_POLYGON, LOOK_ONE, "polygons, one");
+    test_any(FORM_FACTOR_DISK, EFFORT_ALL, "disks, all");
+    test_any(FORM_FACTOR_POLYGON, EFFORT_ALL, "polygons, all");
+    test_any(FORM_FACTOR_POLYGON, EFFORT_FOUR_FIRST, "polygons, four first");
+    test_any(FORM_FACTOR_POLYGON, EFFORT_ONE, "polygons, one");
     test_four();
     test_one();
     test_one_blocked();

@@ -284,10 +284,10 @@ static void test_parts(void)
         world.model.method.make_link = i % 2 ? patch_link_make : patch_link_make_by_disks;
         if (make(&world, 0, 1, &link)) {
             struct octree_counts counts = {0};
-            struct sight sight = {.open = false, .blocker = -1};
-            struct exchange exchange = exchange_estimate(&p, &q, kind, LOOK_ALL,
+            struct visibility visibility = {.open = false, .blocker = -1};
+            struct exchange exchange = exchange_estimate(&p, &q, kind, EFFORT_ALL,
                                                          world.octree,
-                                                         &sight, &counts);
+                                                         &visibility, &counts);
             made++;
             for (int k = 0; k < 4; k++) {
                 /* Within one in 256, and what rounds the exact parts. */
@@ -346,16 +346,16 @@ static void test_look(void)
     model->typical = (struct rgb){{0.0, 0.0, 0.0}};
     model->link_threshold = 1.0;
     /* 3/2 each way: a stake of 3 for a guess of 1. */
-    tap_ok(patch_link_look(model, 0, 1, 0.0999 / 3.0) == LOOK_ONE &&
-               patch_link_look(model, 0, 1, 0.1001 / 3.0) == LOOK_FOUR_FIRST &&
-               patch_link_look(model, 0, 1, 0.999 / 3.0) == LOOK_FOUR_FIRST &&
-               patch_link_look(model, 0, 1, 1.001 / 3.0) == LOOK_ALL,
+    tap_ok(patch_link_effort(model, 0, 1, 0.0999 / 3.0) == EFFORT_ONE &&
+               patch_link_effort(model, 0, 1, 0.1001 / 3.0) == EFFORT_FOUR_FIRST &&
+               patch_link_effort(model, 0, 1, 0.999 / 3.0) == EFFORT_FOUR_FIRST &&
+               patch_link_effort(model, 0, 1, 1.001 / 3.0) == EFFORT_ALL,
            "little at stake is looked at less");
     model->typical = (struct rgb){{3.0, 1.0, 1.0}}; /* 5/2 each way */
-    tap_ok(patch_link_look(model, 0, 1, 0.0999 / 5.0) == LOOK_ONE &&
-               patch_link_look(model, 0, 1, 0.1001 / 5.0) == LOOK_FOUR_FIRST,
+    tap_ok(patch_link_effort(model, 0, 1, 0.0999 / 5.0) == EFFORT_ONE &&
+               patch_link_effort(model, 0, 1, 0.1001 / 5.0) == EFFORT_FOUR_FIRST,
            "what is typical counts where it is more");
-    tap_ok(patch_link_look(model, 0, 1, 0.0) == LOOK_ALL && patch_link_look(model, 0, 1, NAN) == LOOK_ALL,
+    tap_ok(patch_link_effort(model, 0, 1, 0.0) == EFFORT_ALL && patch_link_effort(model, 0, 1, NAN) == EFFORT_ALL,
            "without a guess all is looked at");
     world_free(&world);
 }
