@@ -1,5 +1,5 @@
-/* Tests of geom/alloc.h: blocks are zeroed and never NULL, growth keeps what is there and is
- * amortised, the balance counts blocks, and what cannot be had calls the handler. */
+/* Tests of geom/alloc.h: blocks are zeroed and never NULL, growth keeps what is there and
+ * is amortised, the balance counts blocks, and what cannot be had calls the handler. */
 #include "geom/alloc.h"
 
 #include <setjmp.h>
@@ -50,7 +50,8 @@ static void test_balance(void)
         right = right && alloc_balance() == k + 1;
     }
     blocks[50] = alloc_resize(blocks[50], 100000, 5);
-    tap_ok(right && alloc_balance() == 100, "the balance counts blocks, resized ones once");
+    tap_ok(right && alloc_balance() == 100,
+           "the balance counts blocks, resized ones once");
     for (int k = 0; k < 100; k++) {
         alloc_free(blocks[k]);
         right = right && alloc_balance() == 99 - k;
@@ -89,7 +90,8 @@ static void test_reserve(void)
     for (int64_t i = 0; i < 1000000; i++)
         kept = kept && items[i] == 3 * i;
     tap_ok(kept, "a million numbers appended one by one");
-    /* log(1e6) / log(1.5) = 34 growths by half; the constant beside the half saves a few. */
+    /* log(1e6) / log(1.5) = 34 growths by half; the constant beside the half saves a
+     * few. */
     tap_ok(growths <= 35, "in %d growths, so at constant cost each", (int)growths);
     tap_ok(largest_jump <= 16, "room for no more than half as much again and 16");
     int64_t before = capacity;
@@ -104,7 +106,8 @@ static void test_string(void)
 {
     const char *text = "a\tb";
     char *copy = alloc_string(text), *empty = alloc_string("");
-    tap_ok(copy != text && strcmp(copy, text) == 0 && *empty == '\0' && alloc_balance() == 2,
+    tap_ok(copy != text && strcmp(copy, text) == 0 && *empty == '\0' &&
+               alloc_balance() == 2,
            "strings are copied");
     alloc_free(copy);
     alloc_free(empty);

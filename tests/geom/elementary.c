@@ -1,5 +1,5 @@
-/* Tests of geom/elementary.h against libm, which is right within a unit in the last place, and
- * against identities that hold in real numbers. */
+/* Tests of geom/elementary.h against libm, which is right within a unit in the last
+ * place, and against identities that hold in real numbers. */
 #include "geom/elementary.h"
 
 #include <float.h>
@@ -14,7 +14,8 @@ enum { ARGUMENTS = 1000000 };
 /* What elementary.h promises, and a unit in the last place (2.2e-16 at most) for libm. */
 static const double TOLERANCE = 4.5e-16 + 2.3e-16;
 
-/* Relative, with the smallest normal number as the least unit: below it digits are lost. */
+/* Relative, with the smallest normal number as the least unit: below it digits are
+ * lost. */
 static double error_of(double value, double right)
 {
     return fabs(value - right) / fmax(fabs(right), DBL_MIN);
@@ -47,8 +48,9 @@ static void test_arctangent(void)
 
 static void test_arctangent_corners(void)
 {
-    static const double values[] = {0.0, DBL_MIN / 4, DBL_MIN, 1e-20, 0.0625, 0.1875, 0.4375, 1.0,
-                                    1.0 + DBL_EPSILON, 3.0, 1e20, DBL_MAX / 2, DBL_MAX};
+    static const double values[] = {0.0, DBL_MIN / 4, DBL_MIN, 1e-20, 0.0625, 0.1875,
+                                    0.4375, 1.0, 1.0 + DBL_EPSILON, 3.0, 1e20,
+                                    DBL_MAX / 2, DBL_MAX};
     enum { VALUES = sizeof values / sizeof values[0] };
     double worst = 0.0;
     for (int i = 0; i < 4 * VALUES * VALUES; i++) {
@@ -59,8 +61,10 @@ static void test_arctangent_corners(void)
         double right = y == 0.0 ? (x < 0.0 ? PI : 0.0) : atan2(y, x);
         worst = fmax(worst, error_of(arctangent(y, x), right));
     }
-    tap_ok(worst <= TOLERANCE, "arctangent at the corners of its range: off by %.1e", worst);
-    tap_ok(arctangent(0.0, 0.0) == 0.0 && arctangent(0.0, -0.0) == 0.0, "0 for the origin");
+    tap_ok(worst <= TOLERANCE, "arctangent at the corners of its range: off by %.1e",
+           worst);
+    tap_ok(arctangent(0.0, 0.0) == 0.0 && arctangent(0.0, -0.0) == 0.0,
+           "0 for the origin");
     tap_ok(arctangent(0.0, -2.0) == PI && arctangent(3.0, 0.0) == PI / 2 &&
                arctangent(-3.0, 0.0) == -PI / 2 && arctangent(5.0, 5.0) == PI / 4,
            "the axes and the diagonal");
@@ -77,7 +81,8 @@ static void test_arctangent_joints(void)
         for (int i = 0; i < 200; i++, t = nextafter(t, 2.0), steps++)
             down += arctangent(nextafter(t, 2.0), 1.0) < arctangent(t, 1.0) - 2.3e-16;
     }
-    tap_ok(steps == 1800 && down == 0, "no step down, beyond a rounding, at the table's joints");
+    tap_ok(steps == 1800 && down == 0,
+           "no step down, beyond a rounding, at the table's joints");
 }
 
 static void test_logarithm(void)
@@ -97,7 +102,8 @@ static void test_logarithm(void)
     double worst = 0.0;
     for (int i = 0; i < 8; i++)
         worst = fmax(worst, error_of(logarithm(corners[i]), log(corners[i])));
-    tap_ok(worst <= TOLERANCE, "logarithm at the corners of its range: off by %.1e", worst);
+    tap_ok(worst <= TOLERANCE, "logarithm at the corners of its range: off by %.1e",
+           worst);
     tap_ok(logarithm(1.0) == 0.0, "0 at 1");
 }
 

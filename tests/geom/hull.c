@@ -1,6 +1,6 @@
-/* Tests of geom/hull.h and of octree_shaft_is_empty(): an empty hull is a proof, so no segment
- * from front to front may ever be blocked by a triangle that does not enter it; and one that does
- * enter blocks some. */
+/* Tests of geom/hull.h and of octree_shaft_is_empty(): an empty hull is a proof, so no
+ * segment from front to front may ever be blocked by a triangle that does not enter it;
+ * and one that does enter blocks some. */
 #include "geom/hull.h"
 
 #include "tests/scenes.h"
@@ -8,10 +8,11 @@
 
 enum { PAIRS = 20000, SEGMENTS = 40, SCENES = 200, TRIANGLES = 30 };
 
-/* Whether the triangle blocks some of the segments from front to front, chosen at random. */
-static bool blocks_some(struct random *random, const struct triangle *p, const struct plane *plane_p,
-                        const struct triangle *q, const struct plane *plane_q,
-                        const struct triangle *t)
+/* Whether the triangle blocks some of the segments from front to front, chosen at
+ * random. */
+static bool blocks_some(struct random *random, const struct triangle *p,
+                        const struct plane *plane_p, const struct triangle *q,
+                        const struct plane *plane_q, const struct triangle *t)
 {
     struct plane plane = triangle_plane(t);
     for (int i = 0; i < SEGMENTS; i++) {
@@ -33,7 +34,8 @@ static void test_proof(void)
         struct triangle p = random_triangle(&random, 0.4, 0.1);
         struct triangle q = random_triangle(&random, 0.4, 0.1);
         struct triangle t = random_triangle(&random, 0.3, 0.2);
-        if (triangle_is_degenerate(&p) || triangle_is_degenerate(&q) || triangle_is_degenerate(&t))
+        if (triangle_is_degenerate(&p) || triangle_is_degenerate(&q) ||
+            triangle_is_degenerate(&t))
             continue;
         struct plane plane_p = triangle_plane(&p), plane_q = triangle_plane(&q);
         struct hull hull = hull_of_pair(&p, &plane_p, &q, &plane_q);
@@ -45,10 +47,10 @@ static void test_proof(void)
         wrong += blocks && !enters;
     }
     tap_ok(tried > PAIRS / 2 && blocked > 100 && wrong == 0,
-           "what does not enter blocks nothing: %d triples, %d enter, %d block", tried, entered,
-           blocked);
-    /* A triangle may enter beside all 40 segments, but not often: if the hull were the box around
-     * both, ten times as many would. */
+           "what does not enter blocks nothing: %d triples, %d enter, %d block", tried,
+           entered, blocked);
+    /* A triangle may enter beside all 40 segments, but not often: if the hull were the
+     * box around both, ten times as many would. */
     tap_ok(entered < 2 * blocked + 100, "what enters blocks something, most often");
 }
 
@@ -65,13 +67,16 @@ static bool enters(struct triangle t)
 /* Between a floor and a ceiling, right above each other. */
 static void test_places(void)
 {
-    tap_ok(enters((struct triangle){{{0.04, 0.04, 0.1}, {0.06, 0.04, 0.1}, {0.04, 0.06, 0.1}}}),
+    tap_ok(enters((struct triangle){
+               {{0.04, 0.04, 0.1}, {0.06, 0.04, 0.1}, {0.04, 0.06, 0.1}}}),
            "a speck in the middle enters");
     tap_ok(enters((struct triangle){{{-1, -1, 0.1}, {3, -1, 0.1}, {-1, 3, 0.1}}}),
            "so does a wall all across, with no corner inside");
-    tap_ok(enters((struct triangle){{{0.15, 0.15, 0.1}, {0.09, 0.09, 0.1}, {0.15, 0.15, 0.12}}}),
+    tap_ok(enters((struct triangle){
+               {{0.15, 0.15, 0.1}, {0.09, 0.09, 0.1}, {0.15, 0.15, 0.12}}}),
            "and what pokes in");
-    tap_ok(!enters((struct triangle){{{0.15, 0.15, 0.1}, {0.11, 0.11, 0.1}, {0.15, 0.15, 0.12}}}),
+    tap_ok(!enters((struct triangle){
+               {{0.15, 0.15, 0.1}, {0.11, 0.11, 0.1}, {0.15, 0.15, 0.12}}}),
            "what ends before does not");
     tap_ok(!enters((struct triangle){{{0, 0, 0.1}, {0, 0.2, 0.1}, {0, 0.1, 0.15}}}) &&
                !enters((struct triangle){{{-0.1, 0, 0}, {0.3, 0, 0}, {0.1, 0, 0.2}}}),
@@ -85,7 +90,8 @@ static void test_places(void)
 
 static bool faces(const struct plane *plane, const struct triangle *t)
 {
-    return plane_distance(plane, t->corner[0]) > 0.0 || plane_distance(plane, t->corner[1]) > 0.0 ||
+    return plane_distance(plane, t->corner[0]) > 0.0 ||
+           plane_distance(plane, t->corner[1]) > 0.0 ||
            plane_distance(plane, t->corner[2]) > 0.0;
 }
 
@@ -105,9 +111,11 @@ static void test_octree(void)
             if (!faces(&scene->planes[a], &scene->triangles[a + 10]) ||
                 !faces(&scene->planes[a + 10], &scene->triangles[a]))
                 continue;
-            const struct triangle *p = &scene->triangles[a], *q = &scene->triangles[a + 10];
+            const struct triangle *p = &scene->triangles[a],
+                                  *q = &scene->triangles[a + 10];
             struct octree_counts counts = {0};
-            struct hull hull = hull_of_pair(p, &scene->planes[a], q, &scene->planes[a + 10]);
+            struct hull hull =
+                hull_of_pair(p, &scene->planes[a], q, &scene->planes[a + 10]);
             bool found = octree_shaft_is_empty(world.octree, p, &scene->planes[a], q,
                                                &scene->planes[a + 10], own, &counts);
             bool free = true;
@@ -122,7 +130,8 @@ static void test_octree(void)
         soup_free(&soup);
     }
     tap_ok(differ == 0 && empty > 100 && full > 100,
-           "the octree finds what brute force finds: %d empty shafts, %d others", empty, full);
+           "the octree finds what brute force finds: %d empty shafts, %d others", empty,
+           full);
 }
 
 int main(void)

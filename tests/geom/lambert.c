@@ -1,12 +1,13 @@
-/* Tests of geom/lambert.h: closed forms for rectangles, the illuminance of a room from the CIE's
- * test cases, and what holds for all polygons: what surrounds a point covers 1, parts add up, the
- * horizon cuts, moving, turning and scaling change nothing. */
+/* Tests of geom/lambert.h: closed forms for rectangles, the illuminance of a room from
+ * the CIE's test cases, and what holds for all polygons: what surrounds a point covers 1,
+ * parts add up, the horizon cuts, moving, turning and scaling change nothing. */
 #include "geom/lambert.h"
 
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
-/* Terms of order 1, some ten of them, each with an error of two units in the last place. */
+/* Terms of order 1, some ten of them, each with an error of two units in the last
+ * place. */
 static const double ROUNDING = 2e-15;
 
 static struct vec3 point(double x, double y, double z)
@@ -15,7 +16,8 @@ static struct vec3 point(double x, double y, double z)
 }
 
 /* The rectangle o, o + u, o + u + v, o + v. */
-static void make_rectangle(struct vec3 o, struct vec3 u, struct vec3 v, struct vec3 corners[4])
+static void make_rectangle(struct vec3 o, struct vec3 u, struct vec3 v,
+                           struct vec3 corners[4])
 {
     corners[0] = o;
     corners[1] = vec3_add(o, u);
@@ -23,8 +25,8 @@ static void make_rectangle(struct vec3 o, struct vec3 u, struct vec3 v, struct v
     corners[3] = vec3_add(o, v);
 }
 
-static double rectangle_factor(struct vec3 x, struct vec3 normal, struct vec3 o, struct vec3 u,
-                               struct vec3 v)
+static double rectangle_factor(struct vec3 x, struct vec3 normal, struct vec3 o,
+                               struct vec3 u, struct vec3 v)
 {
     struct vec3 corners[4];
     make_rectangle(o, u, v, corners);
@@ -33,15 +35,16 @@ static double rectangle_factor(struct vec3 x, struct vec3 normal, struct vec3 o,
 
 /* --- closed forms --- */
 
-/* Howell B-3: a rectangle a x b parallel to the horizon at height h, a corner above the point. */
+/* Howell B-3: a rectangle a x b parallel to the horizon at height h, a corner above the
+ * point. */
 static double above_corner(double a, double b, double h)
 {
     double x = hypot(a, h), y = hypot(b, h);
     return (a / x * atan(b / x) + b / y * atan(a / y)) / (2.0 * PI);
 }
 
-/* Howell B-4: a rectangle of width a and height h that stands on the horizon at distance d, a
- * lower corner straight ahead. */
+/* Howell B-4: a rectangle of width a and height h that stands on the horizon at distance
+ * d, a lower corner straight ahead. */
 static double wall_ahead(double a, double h, double d)
 {
     double s = hypot(d, h);
@@ -55,8 +58,10 @@ static void test_closed_forms(void)
     double worst[2] = {0.0, 0.0};
     for (int i = 0; i < 7 * 7 * 7; i++) {
         double a = sizes[i % 7], b = sizes[i / 7 % 7], c = sizes[i / 49];
-        double above = rectangle_factor(o, up, point(0, 0, c), point(0, b, 0), point(a, 0, 0));
-        double ahead = rectangle_factor(o, up, point(0, c, 0), point(a, 0, 0), point(0, 0, b));
+        double above =
+            rectangle_factor(o, up, point(0, 0, c), point(0, b, 0), point(a, 0, 0));
+        double ahead =
+            rectangle_factor(o, up, point(0, c, 0), point(a, 0, 0), point(0, 0, b));
         double right[2] = {above_corner(a, b, c), wall_ahead(a, b, c)};
         worst[0] = fmax(worst[0], fabs(above - right[0]) / (right[0] + 1e-6));
         worst[1] = fmax(worst[1], fabs(ahead - right[1]) / (right[1] + 1e-6));
@@ -66,13 +71,16 @@ static void test_closed_forms(void)
     tap_ok(worst[1] <= 1e-9, "343 walls ahead: off by %.1e", worst[1]);
 }
 
-/* CIE 171:2006, 5.3: a room 4 x 4 x 3 m, in the middle of its ceiling a light of 1 x 1 m and
- * 1000 cd/m^2. Illuminances in lx to eight digits, hence the tolerance. */
+/* CIE 171:2006, 5.3: a room 4 x 4 x 3 m, in the middle of its ceiling a light of 1 x 1 m
+ * and 1000 cd/m^2. Illuminances in lx to eight digits, hence the tolerance. */
 static void test_cie(void)
 {
-    static const double wall[6][2] = {{2.75, 32.676898}, {2.25, 75.193925}, {1.75, 81.323172},
-                                      {1.25, 69.060627}, {0.75, 53.403531}, {0.25, 40.001852}};
-    static const double floor[4][2] = {{0.25, 61.424099}, {0.75, 79.255157}, {1.25, 95.667276},
+    static const double wall[6][2] = {{2.75, 32.676898}, {2.25, 75.193925},
+                                      {1.75, 81.323172}, {1.25, 69.060627},
+                                      {0.75, 53.403531}, {0.25, 40.001852}};
+    static const double floor[4][2] = {{0.25, 61.424099},
+                                       {0.75, 79.255157},
+                                       {1.25, 95.667276},
                                        {1.75, 105.778242}};
     struct vec3 o = {1.5, 1.5, 3.0}, u = {0, 1, 0}, v = {1, 0, 0};
     double worst = 0.0;
@@ -135,9 +143,10 @@ static void test_closure(void)
         if (fabs(height) > 1e-3)
             worst = fmax(worst, fabs(sum - 1.0));
     }
-    /* The 12 edges are seen twice each, at the same angle; far faces by points, right to 1e-9. */
-    tap_ok(worst < 1e-9, "the faces of 100,000 tetrahedra cover 1 from inside (off by %.1e)",
-           worst);
+    /* The 12 edges are seen twice each, at the same angle; far faces by points, right to
+     * 1e-9. */
+    tap_ok(worst < 1e-9,
+           "the faces of 100,000 tetrahedra cover 1 from inside (off by %.1e)", worst);
 }
 
 static double sum_of_children(struct vec3 x, struct vec3 normal, const struct triangle *t,
@@ -153,7 +162,8 @@ static double sum_of_children(struct vec3 x, struct vec3 normal, const struct tr
     return sum;
 }
 
-/* The larger ones go by edges and their descendants by points; many are cut by the horizon. */
+/* The larger ones go by edges and their descendants by points; many are cut by the
+ * horizon. */
 static void test_additivity(void)
 {
     struct random random = random_seed(2);
@@ -169,13 +179,16 @@ static void test_additivity(void)
         unsure += whole > 0.0 && whole < 1e-6;
     }
     /* 64 parts of error 1e-9 F + 1e-15. */
-    tap_ok(lit > 10000 && worst <= 1.0, "64 parts make the whole, %d times (%d faint, %.2f of the"
-           " tolerance)", lit, unsure, worst);
+    tap_ok(lit > 10000 && worst <= 1.0,
+           "64 parts make the whole, %d times (%d faint, %.2f of the"
+           " tolerance)",
+           lit, unsure, worst);
 }
 
-/* By the integral over 256 parts, each taken as a point: (s/d)^2 / 256 of relative error. */
-static double factor_by_many_points(struct vec3 x, struct vec3 normal, const struct triangle *t,
-                                    int level)
+/* By the integral over 256 parts, each taken as a point: (s/d)^2 / 256 of relative
+ * error. */
+static double factor_by_many_points(struct vec3 x, struct vec3 normal,
+                                    const struct triangle *t, int level)
 {
     if (level > 0) {
         double sum = 0.0;
@@ -208,8 +221,8 @@ static void test_far(void)
         double right = factor_by_many_points(x, normal, &t, 4);
         worst = fmax(worst, fabs(point_triangle_factor(x, normal, &t) / right - 1.0));
     }
-    /* (2 / 1e4)^2 / 256 = 1.6e-10 from the points; rounding of x at 1e8, 1.5e-8 of t's size 1,
-     * turns the line of sight by 1.5e-16. */
+    /* (2 / 1e4)^2 / 256 = 1.6e-10 from the points; rounding of x at 1e8, 1.5e-8 of t's
+     * size 1, turns the line of sight by 1.5e-16. */
     tap_ok(worst < 1e-9, "triangles 1e4 to 1e8 sizes away: off by %.1e, relative", worst);
 }
 
@@ -225,13 +238,17 @@ static void test_horizon(void)
                                         point(0, 0, 1.0 + below));
         worst = fmax(worst, fabs(whole - wall_ahead(2, 1, d)));
     }
-    tap_ok(worst <= ROUNDING, "what is below the horizon does not count (off by %.1e)", worst);
-    tap_ok(rectangle_factor(o, up, point(0, 1, -2), point(2, 0, 0), point(0, 0, 2)) == 0.0,
+    tap_ok(worst <= ROUNDING, "what is below the horizon does not count (off by %.1e)",
+           worst);
+    tap_ok(rectangle_factor(o, up, point(0, 1, -2), point(2, 0, 0), point(0, 0, 2)) ==
+               0.0,
            "a wall below the horizon: 0");
     struct triangle touching = {{{0, 1, 0}, {-1, 1, -1}, {1, 1, -1}}};
-    tap_ok(point_triangle_factor(o, up, &touching) == 0.0, "a triangle with its tip on it: 0");
+    tap_ok(point_triangle_factor(o, up, &touching) == 0.0,
+           "a triangle with its tip on it: 0");
     /* A wall so wide and high that it takes half of the hemisphere but for 1e-8. */
-    double half = rectangle_factor(o, up, point(-5e7, 1, -5e7), point(1e8, 0, 0), point(0, 0, 1e8));
+    double half =
+        rectangle_factor(o, up, point(-5e7, 1, -5e7), point(1e8, 0, 0), point(0, 0, 1e8));
     tap_ok(fabs(half - 0.5) < 3e-8, "half of the hemisphere: %.9f", half);
 }
 
@@ -239,23 +256,27 @@ static void test_plane(void)
 {
     struct triangle t = {{{0, 0, 1}, {0, 1, 1}, {1, 0, 1}}};
     struct vec3 up = {0, 0, 1};
-    tap_ok(point_triangle_factor(point(0.2, 0.2, 1), up, &t) == 0.0, "on the plane, inside: 0");
-    tap_ok(point_triangle_factor(point(3, 2, 1), point(-1, 0, 0), &t) == 0.0, "outside: 0");
-    tap_ok(point_triangle_factor(t.corner[1], point(0, -1, 0), &t) == 0.0, "on a corner: 0");
+    tap_ok(point_triangle_factor(point(0.2, 0.2, 1), up, &t) == 0.0,
+           "on the plane, inside: 0");
+    tap_ok(point_triangle_factor(point(3, 2, 1), point(-1, 0, 0), &t) == 0.0,
+           "outside: 0");
+    tap_ok(point_triangle_factor(t.corner[1], point(0, -1, 0), &t) == 0.0,
+           "on a corner: 0");
     tap_ok(point_triangle_factor(point(0.5, 0.5, 1), up, &t) == 0.0, "on an edge: 0");
-    tap_ok(point_triangle_factor(point(0.2, 0.2, 2), point(0, 0, -1), &t) == 0.0, "behind: 0");
+    tap_ok(point_triangle_factor(point(0.2, 0.2, 2), point(0, 0, -1), &t) == 0.0,
+           "behind: 0");
     tap_ok(fabs(point_triangle_factor(point(0.2, 0.2, 1 - 1e-9), up, &t) - 1.0) < 1e-8,
            "just in front, inside: 1");
     tap_ok(point_triangle_factor(point(0.6, 0.6, 1 - 1e-9), up, &t) < 1e-8,
            "just in front, outside: 0");
-    /* Right below an edge half of the hemisphere is covered; the corners at distance 1e9 h leave
-     * out 1e-9 of it. */
+    /* Right below an edge half of the hemisphere is covered; the corners at distance 1e9
+     * h leave out 1e-9 of it. */
     tap_ok(fabs(point_triangle_factor(point(0.5, 0.5, 1 - 1e-9), up, &t) - 0.5) < 1e-8,
            "just in front of an edge: 1/2");
 }
 
-/* In a tilted plane rounding puts a point a little in front of the triangle or behind it; in front
- * of a twin that faces the other way all of its view would be covered. */
+/* In a tilted plane rounding puts a point a little in front of the triangle or behind it;
+ * in front of a twin that faces the other way all of its view would be covered. */
 static void test_tilted_plane(void)
 {
     struct random random = random_seed(6);
@@ -308,18 +329,20 @@ static void test_motions(void)
         double unit = 1.0 + 0.01 / area + 0.01 / fabs(plane_distance(&plane, x));
         double g = point_triangle_factor(turned(x, q), turned(normal, q), &u);
         rotation = fmax(rotation, fabs(f - g) / unit);
-        scale = fmax(scale, fabs(point_triangle_factor(vec3_scale(x, 1e6), normal, &v) - f) / unit);
+        scale =
+            fmax(scale,
+                 fabs(point_triangle_factor(vec3_scale(x, 1e6), normal, &v) - f) / unit);
         unequal += point_triangle_factor(vec3_scale(x, 0x1p-40), normal, &w) != f;
     }
-    /* Coordinates are rounded by 1e-16; seen from a distance h or across a width w that turns
-     * directions by 1e-16 / h and 1e-16 / w. */
+    /* Coordinates are rounded by 1e-16; seen from a distance h or across a width w that
+     * turns directions by 1e-16 / h and 1e-16 / w. */
     tap_ok(rotation < 1e-14, "turned: the same (off by %.1e)", rotation);
     tap_ok(scale < 1e-14, "1e6 times larger: the same (off by %.1e)", scale);
     tap_ok(unequal == 0, "2^40 times smaller: the same bits");
 }
 
-/* Any triangles, also those with corners in one place or in line, seen from anywhere, also from
- * their corners and edges. */
+/* Any triangles, also those with corners in one place or in line, seen from anywhere,
+ * also from their corners and edges. */
 static void test_bounds(void)
 {
     struct random random = random_seed(5);
@@ -333,13 +356,15 @@ static void test_bounds(void)
                                    random_point(&random, step));
         if (kind == 2)
             t.corner[1] = vec3_add(t.corner[0], random_point(&random, step));
-        struct vec3 x = random_bits(&random) & 1 ? random_point_on(&random, &t) : t.corner[2];
+        struct vec3 x =
+            random_bits(&random) & 1 ? random_point_on(&random, &t) : t.corner[2];
         x = vec3_add(x, random_point(&random, step));
         double f = point_triangle_factor(x, random_direction(&random), &t);
         wrong += !(f >= 0.0 && f <= 1.0);
         lit += f > 0.0;
     }
-    tap_ok(wrong == 0 && lit > 50000, "200,000 triangles of all kinds, %d seen: 0 <= F <= 1", lit);
+    tap_ok(wrong == 0 && lit > 50000,
+           "200,000 triangles of all kinds, %d seen: 0 <= F <= 1", lit);
 }
 
 /* --- polygons --- */
@@ -347,9 +372,11 @@ static void test_bounds(void)
 static void test_polygons(void)
 {
     struct vec3 up = {0, 0, 1}, x = {0.3, 0.4, 0};
-    struct vec3 ell[6] = {{0, 0, 1}, {0, 2, 1}, {1, 2, 1}, {1, 1, 1}, {2, 1, 1}, {2, 0, 1}};
-    double parts = rectangle_factor(x, up, point(0, 0, 1), point(0, 2, 0), point(1, 0, 0)) +
-                   rectangle_factor(x, up, point(1, 0, 1), point(0, 1, 0), point(1, 0, 0));
+    struct vec3 ell[6] = {{0, 0, 1}, {0, 2, 1}, {1, 2, 1},
+                          {1, 1, 1}, {2, 1, 1}, {2, 0, 1}};
+    double parts =
+        rectangle_factor(x, up, point(0, 0, 1), point(0, 2, 0), point(1, 0, 0)) +
+        rectangle_factor(x, up, point(1, 0, 1), point(0, 1, 0), point(1, 0, 0));
     double worst = 0.0;
     for (int first = 0; first < 6; first++) {
         struct vec3 corners[6];
@@ -362,9 +389,9 @@ static void test_polygons(void)
     for (int k = 0; k < 6; k++)
         back[k] = ell[5 - k];
     tap_ok(point_polygon_factor(x, up, back, 6) == 0.0, "its back: 0");
-    /* A regular polygon of 1000 corners and radius 1 at height 1: a disk, which covers 1/2, less
-     * 1 - sin(a)/a of its area (a = 2 pi / 1000) at the rim, where the density is 1/4 of that at
-     * the middle: 1/2 * 1/2 * 6.6e-6 in all. */
+    /* A regular polygon of 1000 corners and radius 1 at height 1: a disk, which covers
+     * 1/2, less 1 - sin(a)/a of its area (a = 2 pi / 1000) at the rim, where the density
+     * is 1/4 of that at the middle: 1/2 * 1/2 * 6.6e-6 in all. */
     enum { CORNERS = 1000 };
     static struct vec3 round[CORNERS];
     for (int k = 0; k < CORNERS; k++)

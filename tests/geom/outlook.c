@@ -1,4 +1,5 @@
-/* Tests of geom/outlook.h: what is left over of a triangle, by its factor and by segments. */
+/* Tests of geom/outlook.h: what is left over of a triangle, by its factor and by
+ * segments. */
 #include "geom/outlook.h"
 
 #include <math.h>
@@ -27,7 +28,8 @@ static struct vec3 at(double x, double y, double z)
  * factor of what is left over is that of the hole. */
 static void test_hole(void)
 {
-    static const double EDGE[4] = {-4.0, -0.01, 0.01, 4.0}, SIDE[4] = {-4.0, -0.05, 0.05, 4.0};
+    static const double EDGE[4] = {-4.0, -0.01, 0.01, 4.0},
+                        SIDE[4] = {-4.0, -0.05, 0.05, 4.0};
     const struct triangle lamp = {{{-3, -3, 1}, {0, 6, 1}, {3, -3, 1}}};
     const struct vec3 hole[4] = {{-0.01, -0.05, 0.5}, {-0.01, 0.05, 0.5},
                                  {0.01, 0.05, 0.5}, {0.01, -0.05, 0.5}};
@@ -48,7 +50,8 @@ static void test_hole(void)
         double exact = point_polygon_factor(x, UP, hole, 4);
         worst = fmax(worst, fabs(factor_left(&outlook) / exact - 1.0));
     }
-    tap_ok(worst <= 1e-9, "a hole in a screen is all that is left over, within %.1e", worst);
+    tap_ok(worst <= 1e-9, "a hole in a screen is all that is left over, within %.1e",
+           worst);
 }
 
 /* Barycentric coordinates tell if a point of the lamp's plane is in a piece. */
@@ -69,22 +72,24 @@ static bool is_left(const struct outlook *outlook, struct vec3 y)
     return false;
 }
 
-/* Random blockers, some of which are met by no segment, until pieces are too many: what is
- * blocked may be left over then, but nothing that is not may be missing. */
+/* Random blockers, some of which are met by no segment, until pieces are too many: what
+ * is blocked may be left over then, but nothing that is not may be missing. */
 static void test_random(int blockers, bool exact)
 {
     const struct triangle lamp = {{{0, 0, 1}, {0, 1, 1}, {1, 0, 1}}};
     struct random random = random_seed(3);
     int missing = 0, extra = 0, left = 0, points = 0;
     for (int trial = 0; trial < 200; trial++) {
-        struct vec3 x = at(random_between(&random, 0, 1), random_between(&random, 0, 1), 0.0);
+        struct vec3 x =
+            at(random_between(&random, 0, 1), random_between(&random, 0, 1), 0.0);
         struct triangle t[40];
         struct outlook outlook;
         outlook_start(&outlook, x, &lamp);
         for (int i = 0; i < blockers; i++) {
             for (int k = 0; k < 3; k++)
-                t[i].corner[k] = at(random_between(&random, 0, 1), random_between(&random, 0, 1),
-                                    random_between(&random, -0.2, 0.9));
+                t[i].corner[k] =
+                    at(random_between(&random, 0, 1), random_between(&random, 0, 1),
+                       random_between(&random, -0.2, 0.9));
             outlook_hide(&outlook, &t[i]);
         }
         for (int n = 0; n < 100; n++, points++) {

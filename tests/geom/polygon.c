@@ -1,9 +1,10 @@
 /* Tests of geom/polygon.h.
  *
- * A cut is judged twice. By its topology, exactly: every edge of the polygon belongs to one
- * triangle, in the polygon's direction, and every other edge to two triangles, in opposite
- * directions. By its area: the triangles' signed areas add up to the polygon's, and so do the
- * magnitudes, which no cut does that leaves the polygon or covers a part twice. */
+ * A cut is judged twice. By its topology, exactly: every edge of the polygon belongs to
+ * one triangle, in the polygon's direction, and every other edge to two triangles, in
+ * opposite directions. By its area: the triangles' signed areas add up to the polygon's,
+ * and so do the magnitudes, which no cut does that leaves the polygon or covers a part
+ * twice. */
 #include "geom/polygon.h"
 
 #include <math.h>
@@ -36,7 +37,8 @@ static bool topology_is_right(const int32_t *triangles, int32_t count)
     }
     for (int32_t i = 0; i < count && right; i++) {
         for (int32_t j = 0; j < i; j++) {
-            int there = edges[(int64_t)j * count + i], back = edges[(int64_t)i * count + j];
+            int there = edges[(int64_t)j * count + i],
+                back = edges[(int64_t)i * count + j];
             bool forward = i == j + 1, closing = j == 0 && i == count - 1;
             right = right && there - back == (closing ? -1 : forward ? 1 : 0);
         }
@@ -52,7 +54,8 @@ static struct vec3 cross_of(const struct vec3 *corners, int32_t a, int32_t b, in
 
 /* The sum of the triangles' areas seen along the polygon's normal is the sum of their
  * magnitudes, and that is the polygon's area. */
-static bool area_is_right(const struct vec3 *corners, int32_t count, const int32_t *triangles)
+static bool area_is_right(const struct vec3 *corners, int32_t count,
+                          const int32_t *triangles)
 {
     struct vec3 whole = {0.0, 0.0, 0.0};
     for (int32_t i = 1; i + 1 < count; i++)
@@ -65,16 +68,19 @@ static bool area_is_right(const struct vec3 *corners, int32_t count, const int32
         signed_sum += part;
         sum += fabs(part);
     }
-    return fabs(sum - area) <= AREA_ERROR * area && fabs(signed_sum - area) <= AREA_ERROR * area;
+    return fabs(sum - area) <= AREA_ERROR * area &&
+           fabs(signed_sum - area) <= AREA_ERROR * area;
 }
 
 /* Checks topology and, where `has_area`, area. */
-static void check(const char *name, const struct vec3 *corners, int32_t count, bool has_area)
+static void check(const char *name, const struct vec3 *corners, int32_t count,
+                  bool has_area)
 {
     int32_t *triangles = cut(corners, count);
     tap_ok(topology_is_right(triangles, count), "%s: each edge has its triangles", name);
     if (has_area)
-        tap_ok(area_is_right(corners, count, triangles), "%s: the area is covered once", name);
+        tap_ok(area_is_right(corners, count, triangles), "%s: the area is covered once",
+               name);
     alloc_free(triangles);
 }
 
@@ -114,11 +120,13 @@ static void test_orientations(void)
             for (int i = 0; i < 6; i++) {
                 double u = plane[behind ? 5 - i : i][0], v = plane[behind ? 5 - i : i][1];
                 double w = 3.0 + 0.125 * u - 0.25 * v;
-                corners[i] = axis == 0 ? (struct vec3){w, u, v}
-                             : axis == 1 ? (struct vec3){v, w, u} : (struct vec3){u, v, w};
+                corners[i] = axis == 0   ? (struct vec3){w, u, v}
+                             : axis == 1 ? (struct vec3){v, w, u}
+                                         : (struct vec3){u, v, w};
             }
             char name[32];
-            snprintf(name, sizeof name, "L along axis %d, %s", axis, behind ? "behind" : "front");
+            snprintf(name, sizeof name, "L along axis %d, %s", axis,
+                     behind ? "behind" : "front");
             check(name, corners, 6, true);
         }
     }
@@ -128,15 +136,16 @@ static void test_concave(void)
 {
     static const struct vec3 arrow[] = {{0, 2, 0}, {-1, -1, 0}, {0, 0, 0}, {1, -1, 0}};
     static const struct vec3 dart[] = {{-1, -1, 0}, {0, 0, 0}, {1, -1, 0}, {0, 2, 0}};
-    static const struct vec3 bent[] = {{-1, -1, 0.05}, {0, 0, 0}, {1, -1, 0.05}, {0, 2, 0},
-                                       {-0.5, 0.5, -0.03}};
+    static const struct vec3 bent[] = {
+        {-1, -1, 0.05}, {0, 0, 0}, {1, -1, 0.05}, {0, 2, 0}, {-0.5, 0.5, -0.03}};
     check("arrow", arrow, 4, true);
     check("arrow from another corner", dart, 4, true);
     int32_t *triangles = cut(bent, 5);
     bool upwards = true;
     for (int t = 0; t < 3; t++) {
         const int32_t *triangle = &triangles[3 * t];
-        upwards = upwards && cross_of(bent, triangle[0], triangle[1], triangle[2]).z > 0.0;
+        upwards =
+            upwards && cross_of(bent, triangle[0], triangle[1], triangle[2]).z > 0.0;
     }
     tap_ok(upwards, "bent arrow: all triangles face the polygon's side");
     alloc_free(triangles);
@@ -145,12 +154,14 @@ static void test_concave(void)
 /* The holes are cut in by seams, along which the polygon runs twice. */
 static void test_holes(void)
 {
-    static const struct vec3 frame[] = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0},
-                                        {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}};
-    static const struct vec3 two[] = {
-        {0, 0, 0}, {9, 0, 0}, {9, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0},
-        {3, 2, 0}, {5, 2, 0}, {5, 3, 0}, {7, 3, 0}, {7, 1, 0}, {5, 1, 0}, {5, 2, 0}, {3, 2, 0},
-        {3, 1, 0}, {1, 1, 0}};
+    static const struct vec3 frame[] = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0},
+                                        {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0},
+                                        {3, 1, 0}, {1, 1, 0}};
+    static const struct vec3 two[] = {{0, 0, 0}, {9, 0, 0}, {9, 4, 0}, {0, 4, 0},
+                                      {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0},
+                                      {3, 2, 0}, {5, 2, 0}, {5, 3, 0}, {7, 3, 0},
+                                      {7, 1, 0}, {5, 1, 0}, {5, 2, 0}, {3, 2, 0},
+                                      {3, 1, 0}, {1, 1, 0}};
     static const struct vec3 ahead[] = {{0, 5, 0}, {2, 4, 0}, {1, 4, 0}, {0, 2, 0},
                                         {2, 2, 0}, {5, 2, 0}, {3, 4, 0}, {3, 3, 0},
                                         {1, 3, 0}, {3, 4, 0}, {5, 2, 0}, {4, 5, 0}};
@@ -165,17 +176,19 @@ static void test_holes(void)
 
 static void test_repeated_and_collinear(void)
 {
-    static const struct vec3 straight[] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0},
-                                           {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
-    static const struct vec3 twice[] = {{2, 2, 0}, {0, 2, 0}, {0, 2, 0}, {0, 0, 0}, {1, 0, 0},
-                                        {1, 0, 0}, {1, 1, 0}, {1, 1, 0}, {2, 1, 0}, {2, 2, 0}};
-    static const struct vec3 spike[] = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {5, 1, 0}, {2, 1, 0},
-                                        {2, 2, 0}, {0, 2, 0}};
-    static const struct vec3 slit[] = {{4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {3, 2, 0},
-                                       {1, 1, 0}, {3, 2, 0}, {0, 0, 0}};
+    static const struct vec3 straight[] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0},
+                                           {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
+    static const struct vec3 twice[] = {{2, 2, 0}, {0, 2, 0}, {0, 2, 0}, {0, 0, 0},
+                                        {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 0},
+                                        {2, 1, 0}, {2, 2, 0}};
+    static const struct vec3 spike[] = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {5, 1, 0},
+                                        {2, 1, 0}, {2, 2, 0}, {0, 2, 0}};
+    static const struct vec3 slit[] = {{4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0},
+                                       {3, 2, 0}, {1, 1, 0}, {3, 2, 0}, {0, 0, 0}};
     static const struct vec3 point[7] = {{3, 3, 3}, {3, 3, 3}, {3, 3, 3}, {3, 3, 3},
                                          {3, 3, 3}, {3, 3, 3}, {3, 3, 3}};
-    static const struct vec3 line[] = {{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {2, 2, 2}, {5, 5, 5}};
+    static const struct vec3 line[] = {
+        {0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {2, 2, 2}, {5, 5, 5}};
     check("square with corners on its sides", straight, 8, true);
     int32_t *triangles = cut(straight, 8);
     bool thick = true;
@@ -211,7 +224,8 @@ static void make_spiral(struct vec3 *corners, int32_t count)
     for (int32_t i = 0; i < count; i++) {
         int32_t step = i < count / 2 ? i : count - 1 - i;
         double radius = (i < count / 2 ? 0.40 : 0.385) - 0.0006 * step;
-        corners[i] = (struct vec3){radius * cos(0.2 * step), radius * sin(0.2 * step), 0.0};
+        corners[i] =
+            (struct vec3){radius * cos(0.2 * step), radius * sin(0.2 * step), 0.0};
     }
 }
 
@@ -241,8 +255,9 @@ static void test_large(void)
     alloc_free(corners);
 }
 
-/* The lower and the upper border of a heap of columns: a simple polygon with many straight and
- * repeated corners. `turned` about a slanted axis, straight corners are so within rounding. */
+/* The lower and the upper border of a heap of columns: a simple polygon with many
+ * straight and repeated corners. `turned` about a slanted axis, straight corners are so
+ * within rounding. */
 static void make_heap(struct vec3 *corners, int32_t columns, uint32_t *seed, bool turned)
 {
     int32_t count = 4 * columns, start = (int32_t)(*seed >> 20) % count;

@@ -1,5 +1,5 @@
-/* Tests of geom/scene.h: the same bits at every power of two, stability far from the origin,
- * twins, repairs and their counts, areas and powers, and the errors. */
+/* Tests of geom/scene.h: the same bits at every power of two, stability far from the
+ * origin, twins, repairs and their counts, areas and powers, and the errors. */
 #include "geom/scene.h"
 
 #include <string.h>
@@ -48,7 +48,8 @@ static void test_scaling(void)
     bool right = true;
     for (int k = -400; k <= 400; k += 25) {
         struct scene *scaled = prepared(&soup, ldexp(1.0, k), 0.0);
-        right = right && same_geometry(plain, scaled) && scaled->exponent == plain->exponent + k;
+        right = right && same_geometry(plain, scaled) &&
+                scaled->exponent == plain->exponent + k;
         scene_destroy(scaled);
     }
     tap_ok(right, "a scene scaled by 2^k has the same bits in scene units");
@@ -76,8 +77,8 @@ static void test_offset(void)
     make_soup(&soup);
     struct scene *plain = prepared(&soup, 1.0, 0.0), *far = prepared(&soup, 1.0, 5e6);
     double difference = largest_difference(plain, far);
-    /* Numbers near 5e6 are 2^-30 = 9.3e-10 apart. A corner rounds by half of that, the centre by
-     * as much again from rounded bounds; three axes; a scene unit is 8 here. */
+    /* Numbers near 5e6 are 2^-30 = 9.3e-10 apart. A corner rounds by half of that, the
+     * centre by as much again from rounded bounds; three axes; a scene unit is 8 here. */
     tap_ok(plain->exponent == 3 && difference < 9.3e-10 * 1.7321 / 8.0,
            "a scene 1e6 sizes from the origin moves by its rounding alone");
     for (int64_t i = 0; i < 3 * soup.count; i++) {
@@ -162,7 +163,8 @@ static void test_twins(void)
     bool right = true;
     for (int32_t i = 0; i < COUNT; i++) {
         int32_t twin = i + COUNT;
-        struct triangle t = scene_root_triangle(scene, i), u = scene_root_triangle(scene, twin);
+        struct triangle t = scene_root_triangle(scene, i),
+                        u = scene_root_triangle(scene, twin);
         struct plane p = scene_root_plane(scene, i), q = scene_root_plane(scene, twin);
         right = right && memcmp(&t, &scene->triangles[i], sizeof t) == 0 &&
                 memcmp(&t.corner[0], &u.corner[0], sizeof t.corner[0]) == 0 &&
@@ -171,11 +173,14 @@ static void test_twins(void)
         right = right && p.normal.x == -q.normal.x && p.normal.y == -q.normal.y &&
                 p.normal.z == -q.normal.z && p.offset == -q.offset &&
                 vec3_dot(triangle_cross(&u), q.normal) > 0.0;
-        right = right && scene_input_of(scene, i) == i && scene_input_of(scene, twin) == i &&
+        right = right && scene_input_of(scene, i) == i &&
+                scene_input_of(scene, twin) == i &&
                 scene_root_area(scene, twin) == scene_root_area(scene, i) &&
                 scene_root_material(scene, twin) == scene_root_material(scene, i);
     }
-    tap_ok(right, "a twin has the corners (a, c, b), the other side of the plane, all else alike");
+    tap_ok(
+        right,
+        "a twin has the corners (a, c, b), the other side of the plane, all else alike");
     /* 200 more terms of a sum of positive numbers: 400 roundings. */
     tap_ok(fabs(scene_area(scene) / area - 2.0) < 1e-13 &&
                fabs(scene_emitted_power(scene) / power - 2.0) < 1e-13,
@@ -184,8 +189,8 @@ static void test_twins(void)
     soup_free(&soup);
 }
 
-/* True if the back of every lamp is black, without a root, and each other back is a twin's
- * front. */
+/* True if the back of every lamp is black, without a root, and each other back is a
+ * twin's front. */
 static bool lamps_are_single(const struct scene *scene)
 {
     bool right = true;
@@ -243,17 +248,20 @@ static void test_lamps(void)
 static void test_power(void)
 {
     struct soup soup = {0};
-    soup_add_quad(&soup, (struct vec3){0, 0, 0}, (struct vec3){6, 0, 0}, (struct vec3){0, 3, 0}, 1);
+    soup_add_quad(&soup, (struct vec3){0, 0, 0}, (struct vec3){6, 0, 0},
+                  (struct vec3){0, 3, 0}, 1);
     struct scene *scene = scene_of_soup(&soup, 2);
     scene->material_of[1] = 1;
     scene->materials[0] = (struct material){{{0, 0, 0}}, {{1, 2, 4}}};
     scene_prepare_or_exit(scene);
-    tap_ok(scene->exponent == 3 && scene_area_unit(scene) == 64.0, "a size of 6 has the unit 8");
+    tap_ok(scene->exponent == 3 && scene_area_unit(scene) == 64.0,
+           "a size of 6 has the unit 8");
     /* Dyadic corners: all of this is exact. */
     tap_ok(scene_area(scene) * scene_area_unit(scene) == 18.0, "the area in input units");
     tap_ok(scene_emitted_power(scene) * scene_area_unit(scene) == 9.0 * 7.0,
            "the power in input units, over roots and bands");
-    tap_ok(!material_is_dark(&scene->materials[0]) && material_is_dark(&scene->materials[1]),
+    tap_ok(!material_is_dark(&scene->materials[0]) &&
+               material_is_dark(&scene->materials[1]),
            "dark is what neither reflects nor emits");
     scene_destroy(scene);
     soup_free(&soup);
@@ -300,10 +308,12 @@ static void test_degenerate(void)
     for (int32_t i = 0; i < COUNT; i++) {
         struct vec3 normal = scene->planes[i].normal;
         if (i % 9 == 0)
-            dropped = dropped && scene->areas[i] == 0.0 && vec3_dot(normal, normal) == 0.0;
+            dropped =
+                dropped && scene->areas[i] == 0.0 && vec3_dot(normal, normal) == 0.0;
         else
             kept = kept && scene->areas[i] > 0.0 &&
-                   memcmp(&scene->triangles[i], &plain->triangles[i], sizeof(struct triangle)) == 0;
+                   memcmp(&scene->triangles[i], &plain->triangles[i],
+                          sizeof(struct triangle)) == 0;
     }
     tap_ok(dropped, "they have no area and no plane");
     tap_ok(kept, "the others keep their numbers");

@@ -1,6 +1,7 @@
-/* Tests of geom/triangle.h: areas, planes, subdivision to equal bits along shared edges, what
- * counts as degenerate, and the segment test: nothing slips through the edges and vertices of a
- * closed mesh, a line in the plane misses, and an end point in the plane is not blocked. */
+/* Tests of geom/triangle.h: areas, planes, subdivision to equal bits along shared edges,
+ * what counts as degenerate, and the segment test: nothing slips through the edges and
+ * vertices of a closed mesh, a line in the plane misses, and an end point in the plane is
+ * not blocked. */
 #include "geom/triangle.h"
 
 #include <string.h>
@@ -27,13 +28,15 @@ static void test_measure(void)
     struct triangle t = {{{1, 1, 2}, {4, 1, 2}, {1, 5, 2}}};
     struct plane plane = triangle_plane(&t);
     struct vec3 centroid = triangle_centroid(&t);
-    tap_ok(triangle_area(&t) == 6.0 && triangle_cross(&t).z == 12.0, "the 3-4-5 triangle");
+    tap_ok(triangle_area(&t) == 6.0 && triangle_cross(&t).z == 12.0,
+           "the 3-4-5 triangle");
     /* The factors 1 / 12 and 1 / 3 round once each: a few units in the last place. */
-    tap_ok(fabs(plane.normal.z - 1.0) < 1e-15 && plane.normal.x == 0.0 && plane.normal.y == 0.0 &&
-               fabs(plane.offset - 2.0) < 2e-15 && fabs(centroid.x - 2.0) < 2e-15 &&
-               fabs(centroid.y - 7.0 / 3.0) < 2e-15,
+    tap_ok(fabs(plane.normal.z - 1.0) < 1e-15 && plane.normal.x == 0.0 &&
+               plane.normal.y == 0.0 && fabs(plane.offset - 2.0) < 2e-15 &&
+               fabs(centroid.x - 2.0) < 2e-15 && fabs(centroid.y - 7.0 / 3.0) < 2e-15,
            "its plane and centroid; the front is where it is counter-clockwise");
-    tap_ok(plane_distance(&plane, point(9, 9, 5)) > 0 && plane_distance(&plane, point(9, 9, 1)) < 0,
+    tap_ok(plane_distance(&plane, point(9, 9, 5)) > 0 &&
+               plane_distance(&plane, point(9, 9, 1)) < 0,
            "the distance is positive in front");
 }
 
@@ -52,8 +55,9 @@ static void test_planes(void)
     }
     /* One division, one square root and three products. */
     tap_ok(longest <= 1e-15, "normals have unit length");
-    /* Points round by 1e-16; an area of 1e-4 with edges up to 0.35 tilts the normal by 6e-15 at
-     * the worst, over 0.2: what the program calls rounding is a bound with room to spare. */
+    /* Points round by 1e-16; an area of 1e-4 with edges up to 0.35 tilts the normal by
+     * 6e-15 at the worst, over 0.2: what the program calls rounding is a bound with room
+     * to spare. */
     tap_ok(furthest <= GEOM_ROUNDING, "corners lie in their plane within GEOM_ROUNDING");
 }
 
@@ -75,8 +79,8 @@ static void test_children(void)
     tap_ok(right, "children are (a, ab, ca), (ab, b, bc), (ca, bc, c), (bc, ca, ab)");
 }
 
-/* Dyadic corners make midpoints, edges and areas exact but for the root in the length: its
- * relative error of 1e-16 and that of the sum stay below 1e-15. */
+/* Dyadic corners make midpoints, edges and areas exact but for the root in the length:
+ * its relative error of 1e-16 and that of the sum stay below 1e-15. */
 static void test_child_areas(void)
 {
     struct random random = random_seed(2);
@@ -91,7 +95,8 @@ static void test_child_areas(void)
         for (int k = 0; k < 4; k++) {
             struct triangle child = triangle_child(&t, k);
             sum += triangle_area(&child);
-            facing = facing && vec3_dot(triangle_cross(&child), triangle_cross(&t)) >= 0.0;
+            facing =
+                facing && vec3_dot(triangle_cross(&child), triangle_cross(&t)) >= 0.0;
         }
         worst = fmax(worst, fabs(sum / triangle_area(&t) - 1.0));
     }
@@ -99,7 +104,8 @@ static void test_child_areas(void)
     tap_ok(facing, "and they face the way of the parent");
 }
 
-static void collect_corners(struct triangle t, int level, struct vec3 *corners, int *count)
+static void collect_corners(struct triangle t, int level, struct vec3 *corners,
+                            int *count)
 {
     if (level == 0) {
         for (int k = 0; k < 3; k++)
@@ -125,8 +131,8 @@ static int count_common(const struct vec3 *a, const struct vec3 *b, int count)
     return common;
 }
 
-/* Two triangles with an edge in common, at any place in their lists of corners and in opposite
- * directions, have after 4 splits 2^4 + 1 corners in common. */
+/* Two triangles with an edge in common, at any place in their lists of corners and in
+ * opposite directions, have after 4 splits 2^4 + 1 corners in common. */
 static void test_shared_edges(void)
 {
     enum { LEVEL = 4, CORNERS = 3 * 256 };
@@ -142,7 +148,8 @@ static void test_shared_edges(void)
         int count_a = 0, count_b = 0;
         collect_corners(t, LEVEL, a, &count_a);
         collect_corners(u, LEVEL, b, &count_b);
-        right = right && count_a == CORNERS && count_common(a, b, CORNERS) == (1 << LEVEL) + 1;
+        right = right && count_a == CORNERS &&
+                count_common(a, b, CORNERS) == (1 << LEVEL) + 1;
     }
     tap_ok(right, "neighbours split their edge at the same bits");
 }
@@ -158,12 +165,15 @@ static void test_degenerate(void)
         struct vec3 c = random_point(&random, 0.5);
         struct vec3 step = vec3_sub(b, a);
         struct vec3 across = vec3_unit(vec3_cross(step, vec3_sub(c, a)));
-        struct vec3 between = vec3_add(a, vec3_scale(step, random_between(&random, 0.1, 0.9)));
-        struct vec3 beside = vec3_add(between, vec3_scale(across, 1e-6 * vec3_length(step)));
+        struct vec3 between =
+            vec3_add(a, vec3_scale(step, random_between(&random, 0.1, 0.9)));
+        struct vec3 beside =
+            vec3_add(between, vec3_scale(across, 1e-6 * vec3_length(step)));
         repeated = repeated && triangle_is_degenerate(&(struct triangle){{a, b, a}}) &&
                    triangle_is_degenerate(&(struct triangle){{a, b, b}}) &&
                    triangle_is_degenerate(&(struct triangle){{a, a, a}});
-        collinear = collinear && triangle_is_degenerate(&(struct triangle){{a, b, between}}) &&
+        collinear = collinear &&
+                    triangle_is_degenerate(&(struct triangle){{a, b, between}}) &&
                     triangle_is_degenerate(&(struct triangle){{between, a, b}});
         sliver = sliver && !triangle_is_degenerate(&(struct triangle){{a, b, beside}}) &&
                  !triangle_is_degenerate(&(struct triangle){{beside, b, a}});
@@ -224,7 +234,8 @@ static void test_inside(void)
         both = both && blocks(from, to, &t) == blocks(to, from, &t);
         blocked += blocks(from, to, &t);
         double sum = volume[0] + volume[1] + volume[2];
-        for (int k = 0; meets && k < 3; k++) /* volumes above 1e-9 have 6 digits at least */
+        for (int k = 0; meets && k < 3;
+             k++) /* volumes above 1e-9 have 6 digits at least */
             weights = weights && fabs(weight[k] - volume[k] / sum) < 1e-6;
     }
     tap_ok(right && blocked > 1000, "segments are blocked where signed volumes say so");
@@ -232,8 +243,8 @@ static void test_inside(void)
     tap_ok(both, "a blocked segment is blocked in both directions");
 }
 
-/* A sphere whose vertices are moved at random, those of different triangles alike: each vertex is
- * scaled by a hash of its bits. */
+/* A sphere whose vertices are moved at random, those of different triangles alike: each
+ * vertex is scaled by a hash of its bits. */
 static void make_potato(struct soup *mesh, int level)
 {
     soup_add_sphere(mesh, 0.4, level);
@@ -246,8 +257,9 @@ static void make_potato(struct soup *mesh, int level)
     }
 }
 
-/* From near the centre, through a point that lies on an edge or a vertex up to rounding, and as
- * far again: an end inside, an end outside. The mesh is star-shaped about the origin. */
+/* From near the centre, through a point that lies on an edge or a vertex up to rounding,
+ * and as far again: an end inside, an end outside. The mesh is star-shaped about the
+ * origin. */
 static void test_closed_mesh(void)
 {
     struct soup mesh = {0};
@@ -255,7 +267,8 @@ static void test_closed_mesh(void)
     struct random random = random_seed(6);
     int escapes[3] = {0, 0, 0};
     for (int i = 0; i < SEGMENTS; i++) {
-        const struct triangle *t = &mesh.items[random_below(&random, (int32_t)mesh.count)];
+        const struct triangle *t =
+            &mesh.items[random_below(&random, (int32_t)mesh.count)];
         struct vec3 a = t->corner[i % 3], b = t->corner[(i + 1) % 3];
         struct vec3 along = vec3_scale(vec3_sub(b, a), random_unit(&random));
         struct vec3 from = random_point(&random, 0.05);
@@ -271,8 +284,8 @@ static void test_closed_mesh(void)
     soup_free(&mesh);
 }
 
-/* Segments through the apex of a fan to the last bit: the apex has few bits, and so has the
- * step to either side. Then the same, moved by units in the last place. */
+/* Segments through the apex of a fan to the last bit: the apex has few bits, and so has
+ * the step to either side. Then the same, moved by units in the last place. */
 static void test_fan(void)
 {
     struct random random = random_seed(7);
@@ -340,8 +353,9 @@ static void test_decals(void)
         struct vec3 from = random_point(&random, 0.5);
         if (triangle_area(&t) < 1e-4 || fabs(plane_distance(&plane, from)) < 0.05)
             continue;
-        struct vec3 on = vec3_add(vec3_scale(random_point_on(&random, &t), 0.98),
-                                  vec3_scale(triangle_centroid(&t), 0.02)); /* not at an edge */
+        struct vec3 on =
+            vec3_add(vec3_scale(random_point_on(&random, &t), 0.98),
+                     vec3_scale(triangle_centroid(&t), 0.02)); /* not at an edge */
         struct vec3 step = vec3_unit(vec3_sub(on, from));
         struct vec3 beyond = vec3_add(on, vec3_scale(step, 1e-11));
         seen = seen && !blocks(from, on, &t) && !blocks(on, from, &t);

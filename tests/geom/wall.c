@@ -122,7 +122,8 @@ static struct body box(struct vec3 low, struct vec3 high)
 static struct body random_body(struct random *random, double up)
 {
     double x = random_unit(random), y = random_unit(random);
-    double z = 0.05 * (random_below(random, 4) - 1), size = random_between(random, 0.0, 0.5);
+    double z = 0.05 * (random_below(random, 4) - 1),
+           size = random_between(random, 0.0, 0.5);
     struct body body = box(point(x, y, up * z),
                            point(x + size, y + 0.5 * size, up * (z + 0.1)));
     for (int k = 0; k < 3; k++)
