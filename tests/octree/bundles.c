@@ -1,7 +1,7 @@
-/* Bundles of the octree, and their segments one by one, against brute force in double precision: a
- * million segments in each of five scenes, a third of whose end points lie on edges and corners. No
- * answer may differ, near edges or not: what float cannot decide is decided by the same test in
- * double. */
+/* Bundles of the octree, and their segments one by one, against brute force in double
+ * precision: a million segments in each of five scenes, a third of whose end points lie
+ * on edges and corners. No answer may differ, near edges or not: what float cannot decide
+ * is decided by the same test in double. */
 #include "octree/lanes.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
@@ -38,8 +38,10 @@ static void make_star(struct soup *soup)
 static void make_planes(struct soup *soup)
 {
     struct random random = random_seed(13);
-    soup_add_quad(soup, (struct vec3){0, 0, 0}, (struct vec3){1, 0, 0}, (struct vec3){0, 1, 0}, 12);
-    soup_add_quad(soup, (struct vec3){0, 0, 0.3}, (struct vec3){1, 0, 0.2}, (struct vec3){0, 1, 0}, 12);
+    soup_add_quad(soup, (struct vec3){0, 0, 0}, (struct vec3){1, 0, 0},
+                  (struct vec3){0, 1, 0}, 12);
+    soup_add_quad(soup, (struct vec3){0, 0, 0.3}, (struct vec3){1, 0, 0.2},
+                  (struct vec3){0, 1, 0}, 12);
     for (int i = 0; i < 200; i++)
         soup_add(soup, soup->items[2 * i]);
     for (int i = 0; i < 100; i++) {
@@ -89,7 +91,8 @@ static unsigned block_one_by_one(const struct octree *octree, const struct bundl
     unsigned blocked = 0;
     for (int ray = 0; ray < BUNDLE_RAYS; ray++)
         if (octree_blocks_segment(octree, bundle->from[ray / BUNDLE_ENDS],
-                                  bundle->to[ray % BUNDLE_ENDS], bundle->own, guess, counts))
+                                  bundle->to[ray % BUNDLE_ENDS], bundle->own, guess,
+                                  counts))
             blocked |= 1u << ray;
     return blocked;
 }
@@ -120,12 +123,15 @@ static void test_scene(void (*make)(struct soup *), const char *name)
         unsigned answer = octree_block(world.octree, &bundle, &guess, &counts);
         unsigned right = brute_force(world.scene, &bundle);
         wrong += bit_count(answer ^ right);
-        wrong_alone += bit_count(block_one_by_one(world.octree, &bundle, &guess_alone, &alone) ^ right);
+        wrong_alone += bit_count(
+            block_one_by_one(world.octree, &bundle, &guess_alone, &alone) ^ right);
         blocked += answer != 0;
     }
     tap_ok(wrong == 0 && counts.rays == (int64_t)BUNDLES * BUNDLE_RAYS,
-           "%s: of a million segments %d have another answer than brute force", name, wrong);
-    tap_ok(wrong_alone == 0 && alone.rays == counts.rays, "%s: one by one, %d", name, wrong_alone);
+           "%s: of a million segments %d have another answer than brute force", name,
+           wrong);
+    tap_ok(wrong_alone == 0 && alone.rays == counts.rays, "%s: one by one, %d", name,
+           wrong_alone);
     tap_ok(blocked > BUNDLES / 20, "%s: %d bundles meet something", name, blocked);
     world_free(&world);
     soup_free(&soup);

@@ -1,9 +1,9 @@
-/* Tests of octree/octree.h against brute force over all triangles, in three scenes: a random
- * soup; a closed room with boxes on its floor; a sphere with coincident triangles, needles and
- * dropped triangles. Segments are random, run through vertices and edges, lie in axis planes,
- * graze planes, join two triangles of the scene or pass through one that is not to count. Then:
- * closed meshes let nothing out, ten thousand coincident triangles, the rules of the first hit, and the
- * counters. */
+/* Tests of octree/octree.h against brute force over all triangles, in three scenes: a
+ * random soup; a closed room with boxes on its floor; a sphere with coincident triangles,
+ * needles and dropped triangles. Segments are random, run through vertices and edges, lie
+ * in axis planes, graze planes, join two triangles of the scene or pass through one that
+ * is not to count. Then: closed meshes let nothing out, ten thousand coincident
+ * triangles, the rules of the first hit, and the counters. */
 #include "octree/octree.h"
 
 #include <string.h>
@@ -12,8 +12,8 @@
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
-/* Puts specks into the eight corners of space, far outside the world, so that its own triangles
- * are not the hull and segments that leave it can be asked about. */
+/* Puts specks into the eight corners of space, far outside the world, so that its own
+ * triangles are not the hull and segments that leave it can be asked about. */
 static void surround(struct world *world)
 {
     struct scene *scene = world->scene;
@@ -21,7 +21,8 @@ static void surround(struct world *world)
     scene->triangles = alloc_resize(scene->triangles, count, sizeof *scene->triangles);
     scene->planes = alloc_resize(scene->planes, count, sizeof *scene->planes);
     for (int k = 0; k < 8; k++) {
-        struct vec3 a = {k & 1 ? 0.99 : -0.99, k & 2 ? 0.99 : -0.99, k & 4 ? 0.99 : -0.99};
+        struct vec3 a = {k & 1 ? 0.99 : -0.99, k & 2 ? 0.99 : -0.99,
+                         k & 4 ? 0.99 : -0.99};
         struct vec3 b = vec3_scale(a, 0.999999), c = {a.x, b.y, b.z};
         struct triangle speck = {{a, b, c}};
         scene->triangles[count - 8 + (size_t)k] = speck;
@@ -32,8 +33,9 @@ static void surround(struct world *world)
 }
 
 /* The triangle that blocks a segment, or -1. */
-static int32_t octree_blocker(const struct octree *octree, struct vec3 from, struct vec3 to,
-                              const int32_t own[2], int32_t guess, struct octree_counts *counts)
+static int32_t octree_blocker(const struct octree *octree, struct vec3 from,
+                              struct vec3 to, const int32_t own[2], int32_t guess,
+                              struct octree_counts *counts)
 {
     return octree_blocks_segment(octree, from, to, own, &guess, counts) ? guess : -1;
 }
@@ -47,7 +49,8 @@ static void make_soup(struct soup *soup)
     struct random random = random_seed(1);
     for (int i = 0; i < 2000; i++) {
         struct triangle t = random_triangle(&random, 0.5, i % 10 == 0 ? 0.4 : 0.05);
-        int axis = i % 7; /* 0, 1, 2: lies in an axis plane, where rounding does not help */
+        int axis =
+            i % 7; /* 0, 1, 2: lies in an axis plane, where rounding does not help */
         for (int k = 1; k < 3; k++) {
             t.corner[k].x = axis == 0 ? t.corner[0].x : t.corner[k].x;
             t.corner[k].y = axis == 1 ? t.corner[0].y : t.corner[k].y;
@@ -61,8 +64,10 @@ static void make_room(struct soup *soup)
 {
     soup_add_box(soup, (struct vec3){0, 0, 0}, (struct vec3){4, 3, 2.5}, 10, true);
     soup_add_box(soup, (struct vec3){0.5, 0.5, 0}, (struct vec3){1.5, 1.25, 1}, 4, false);
-    soup_add_box(soup, (struct vec3){2.1, 1.2, 0}, (struct vec3){3.3, 2.2, 0.7}, 4, false);
-    soup_add_box(soup, (struct vec3){2.3, 1.3, 0.7}, (struct vec3){2.9, 1.9, 1.9}, 4, false);
+    soup_add_box(soup, (struct vec3){2.1, 1.2, 0}, (struct vec3){3.3, 2.2, 0.7}, 4,
+                 false);
+    soup_add_box(soup, (struct vec3){2.3, 1.3, 0.7}, (struct vec3){2.9, 1.9, 1.9}, 4,
+                 false);
 }
 
 static void make_sphere(struct soup *soup)
@@ -75,7 +80,8 @@ static void make_sphere(struct soup *soup)
         struct vec3 a = random_point(&random, 1.0), b = random_point(&random, 1.0), c = b;
         c.x += random_between(&random, -1e-6, 1e-6);
         c.y += random_between(&random, -1e-6, 1e-6);
-        soup_add(soup, (struct triangle){{a, b, i % 10 == 0 ? a : c}}); /* needle, or dropped */
+        soup_add(soup,
+                 (struct triangle){{a, b, i % 10 == 0 ? a : c}}); /* needle, or dropped */
     }
 }
 
@@ -94,7 +100,8 @@ static struct vec3 random_corner(struct random *random, const struct scene *scen
 
 static struct vec3 random_edge_point(struct random *random, const struct scene *scene)
 {
-    const struct triangle *t = &scene->triangles[random_below(random, scene->input_count)];
+    const struct triangle *t =
+        &scene->triangles[random_below(random, scene->input_count)];
     int k = random_below(random, 3);
     struct vec3 along = vec3_sub(t->corner[(k + 1) % 3], t->corner[k]);
     return vec3_add(t->corner[k], vec3_scale(along, random_unit(random)));
@@ -178,23 +185,27 @@ static void test_blockers(const struct world *world, const char *name)
     int wrong = 0, false_blockers = 0, misled = 0, blocked = 0;
     for (int i = 0; i < SEGMENTS; i++) {
         struct question q = random_question(&random, scene);
-        int32_t brute = brute_blocker(scene->triangles, scene->planes, scene->input_count, q.from,
-                                      q.to, q.own);
+        int32_t brute = brute_blocker(scene->triangles, scene->planes, scene->input_count,
+                                      q.from, q.to, q.own);
         int32_t found = octree_blocker(world->octree, q.from, q.to, q.own, -1, &counts);
         wrong += (brute >= 0) != (found >= 0);
         false_blockers += found >= 0 && !is_blocker(scene, &q, found);
-        int32_t guess = i % 3 == 0 ? q.own[i & 1] : i % 3 == 1 ? brute
-                                                  : random_below(&random, scene->input_count);
-        int32_t guessed = octree_blocker(world->octree, q.from, q.to, q.own, guess, &again);
+        int32_t guess = i % 3 == 0   ? q.own[i & 1]
+                        : i % 3 == 1 ? brute
+                                     : random_below(&random, scene->input_count);
+        int32_t guessed =
+            octree_blocker(world->octree, q.from, q.to, q.own, guess, &again);
         misled += (guessed >= 0) != (brute >= 0);
         misled += guessed >= 0 && !is_blocker(scene, &q, guessed);
         blocked += brute >= 0;
     }
-    tap_ok(wrong == 0, "%s: %d segments, of which %d are blocked, as by brute force", name,
-           (int)SEGMENTS, blocked);
-    tap_ok(false_blockers == 0, "%s: the blocker named blocks and is not one's own", name);
+    tap_ok(wrong == 0, "%s: %d segments, of which %d are blocked, as by brute force",
+           name, (int)SEGMENTS, blocked);
+    tap_ok(false_blockers == 0, "%s: the blocker named blocks and is not one's own",
+           name);
     tap_ok(misled == 0, "%s: no guess changes the answer", name);
-    tap_ok(counts.rays == SEGMENTS && again.rays == SEGMENTS, "%s: a question counts once", name);
+    tap_ok(counts.rays == SEGMENTS && again.rays == SEGMENTS,
+           "%s: a question counts once", name);
     /* 3 % of it are box tests in the soup; needles as long as the scene make it 15 %. */
     tap_ok(counts.triangle_tests > 0 && counts.triangle_tests < plain_work(scene) / 5 &&
                counts.node_tests < plain_work(scene) / 5,
@@ -210,18 +221,20 @@ static void test_counters(const struct world *world, const char *name)
         struct octree_counts counts[2] = {{0, 0, 0}, {0, 0, 0}};
         int32_t answer[2];
         for (int k = 0; k < 2; k++)
-            answer[k] = octree_blocker(world->octree, q.from, q.to, q.own, -1, &counts[k]);
+            answer[k] =
+                octree_blocker(world->octree, q.from, q.to, q.own, -1, &counts[k]);
         same = same && answer[0] == answer[1] && counts[0].rays == 1 &&
                memcmp(&counts[0], &counts[1], sizeof counts[0]) == 0;
     }
-    tap_ok(same, "%s: the same question has the same answer and takes the same work", name);
+    tap_ok(same, "%s: the same question has the same answer and takes the same work",
+           name);
 }
 
 /* --- first hits --- */
 
 /* Parameter of the ray's point in the triangle, in lengths of `ray`, or -1. */
-static double hit_distance(const struct scene *scene, int32_t t, const struct segment *ray,
-                           bool fronts_only)
+static double hit_distance(const struct scene *scene, int32_t t,
+                           const struct segment *ray, bool fronts_only)
 {
     const struct plane *plane = &scene->planes[t];
     double start = plane_distance(plane, ray->from);
@@ -269,24 +282,26 @@ static void test_first_hits(const struct world *world, const char *name, bool fr
             nearest = at >= 0.0 ? fmin(nearest, at) : nearest;
         }
         struct octree_hit hit;
-        bool found = octree_first_hit(world->octree, origin, direction, fronts_only, &hit, &counts);
+        bool found = octree_first_hit(world->octree, origin, direction, fronts_only, &hit,
+                                      &counts);
         hits += found;
         wrong += found != (nearest < HUGE_VAL);
         if (!found)
             continue;
         double at = hit_distance(scene, hit.triangle, &ray, fronts_only);
         double front = plane_distance(&scene->planes[hit.triangle], origin);
-        /* Positions are right to 1e-13 or so; planes of needles, whose normals come of an area
-         * of 1e-6, to 1e-8. */
+        /* Positions are right to 1e-13 or so; planes of needles, whose normals come of an
+         * area of 1e-6, to 1e-8. */
         double reach = vec3_length(direction);
         wrong += at < 0.0 || (at - nearest) * reach > 1e-8 || hit.front != (front > 0.0);
         struct vec3 x = vec3_add(origin, vec3_scale(direction, at)), y = {0, 0, 0};
         for (int k = 0; k < 3; k++)
-            y = vec3_add(y, vec3_scale(scene->triangles[hit.triangle].corner[k], hit.weight[k]));
+            y = vec3_add(y, vec3_scale(scene->triangles[hit.triangle].corner[k],
+                                       hit.weight[k]));
         wrong_weights += vec3_length(vec3_sub(x, y)) > 1e-6;
     }
-    tap_ok(wrong == 0 && hits > RAYS / 10, "%s%s: first hits as by brute force (%d hits)", name,
-           fronts_only ? ", fronts only" : "", hits);
+    tap_ok(wrong == 0 && hits > RAYS / 10, "%s%s: first hits as by brute force (%d hits)",
+           name, fronts_only ? ", fronts only" : "", hits);
     tap_ok(wrong_weights == 0, "%s: the weights give the point", name);
     tap_ok(counts.rays == RAYS, "%s: a ray counts once", name);
 }
@@ -344,8 +359,8 @@ static void test_walls(const struct world *world, const char *name)
            found, wrong);
 }
 
-/* The octree becomes a view of its own packed bytes, moved from where they were packed. Returns
- * their block. */
+/* The octree becomes a view of its own packed bytes, moved from where they were packed.
+ * Returns their block. */
 static char *repack(struct world *world)
 {
     struct pack count = {0}, write = {.writes = true}, read = {0};
@@ -357,8 +372,8 @@ static char *repack(struct world *world)
     alloc_free(write.block);
     octree_destroy(world->octree);
     world->octree = octree_view(&read, world->scene->triangles, world->scene->planes);
-    tap_ok(write.bytes == count.bytes && read.bytes == count.bytes, "%zu bytes when packed",
-           count.bytes);
+    tap_ok(write.bytes == count.bytes && read.bytes == count.bytes,
+           "%zu bytes when packed", count.bytes);
     return read.block;
 }
 
@@ -381,8 +396,8 @@ static void test_scene(void (*make)(struct soup *), bool packed, const char *nam
 
 /* --- closed meshes --- */
 
-/* From a point inside (the room is 0.31 scene units high) through corners and edges; the mesh is
- * convex, so that what lies as far behind is outside. */
+/* From a point inside (the room is 0.31 scene units high) through corners and edges; the
+ * mesh is convex, so that what lies as far behind is outside. */
 static void count_escapes(const struct world *world, int escapes[3])
 {
     const struct scene *scene = world->scene;
@@ -391,13 +406,14 @@ static void count_escapes(const struct world *world, int escapes[3])
     const int32_t own[2] = {-1, -1};
     for (int i = 0; i < CROSSINGS; i++) {
         struct vec3 from = random_point(&random, 0.1);
-        struct vec3 at[2] = {random_corner(&random, scene), random_edge_point(&random, scene)};
+        struct vec3 at[2] = {random_corner(&random, scene),
+                             random_edge_point(&random, scene)};
         for (int k = 0; k < 2; k++) {
             struct vec3 to = beyond(from, at[k]);
             struct octree_hit hit;
             escapes[k] += octree_blocker(world->octree, from, to, own, -1, &counts) < 0;
-            escapes[2] += !octree_first_hit(world->octree, from, vec3_sub(at[k], from), false, &hit,
-                                            &counts);
+            escapes[2] += !octree_first_hit(world->octree, from, vec3_sub(at[k], from),
+                                            false, &hit, &counts);
         }
     }
 }
@@ -444,8 +460,10 @@ static void test_coincident(void)
         struct vec3 to = beyond(from, through), along = vec3_sub(to, from);
         int32_t blocker = octree_blocker(world.octree, from, to, own, -1, &counts);
         right = right && blocker >= 0 && blocker != 5 && blocker != 6;
-        right = right && octree_blocker(world.octree, to, beyond(from, to), own, -1, &counts) < 0;
-        right = right && octree_first_hit(world.octree, from, along, false, &hit, &counts) &&
+        right = right &&
+                octree_blocker(world.octree, to, beyond(from, to), own, -1, &counts) < 0;
+        right = right &&
+                octree_first_hit(world.octree, from, along, false, &hit, &counts) &&
                 hit.triangle == COUNT - 1;
     }
     tap_ok(right, "ten thousand coincident triangles: they block, the last is met first");
@@ -453,8 +471,8 @@ static void test_coincident(void)
     soup_free(&soup);
 }
 
-/* A floor of tiles under, or over, one triangle in their plane that covers them all and is sorted
- * away from most of them: of all that a slanting ray meets the last counts. */
+/* A floor of tiles under, or over, one triangle in their plane that covers them all and
+ * is sorted away from most of them: of all that a slanting ray meets the last counts. */
 static void test_overlay(bool large_first)
 {
     struct soup soup = {0};
@@ -485,8 +503,9 @@ static void test_overlay(bool large_first)
         octree_first_hit(world.octree, from, vec3_sub(to, from), false, &hit, &counts);
         right = right && last >= 0 && hit.triangle == last;
     }
-    tap_ok(right, "%s", large_first ? "tiles that come after the floor are met instead of it"
-                                    : "a cover that comes after the tiles is met instead of them");
+    tap_ok(right, "%s",
+           large_first ? "tiles that come after the floor are met instead of it"
+                       : "a cover that comes after the tiles is met instead of them");
     world_free(&world);
     soup_free(&soup);
 }
@@ -505,23 +524,25 @@ static void test_nothing(void)
     octree_destroy(NULL);
 }
 
-/* A floor, a decal in its plane that comes after it, and a lid above both. With the decal turned
- * over, a front is met before a back, whichever comes later. */
+/* A floor, a decal in its plane that comes after it, and a lid above both. With the decal
+ * turned over, a front is met before a back, whichever comes later. */
 static void test_layers(void)
 {
-    struct triangle triangles[3] = {{{{-0.4, -0.4, 0}, {0.4, -0.4, 0}, {0, 0.4, 0}}},
-                                    {{{-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0, 0.1, 0}}},
-                                    {{{-0.4, -0.4, 0.2}, {0, 0.4, 0.2}, {0.4, -0.4, 0.2}}}};
+    struct triangle triangles[3] = {
+        {{{-0.4, -0.4, 0}, {0.4, -0.4, 0}, {0, 0.4, 0}}},
+        {{{-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0, 0.1, 0}}},
+        {{{-0.4, -0.4, 0.2}, {0, 0.4, 0.2}, {0.4, -0.4, 0.2}}}};
     struct plane planes[3];
     for (int k = 0; k < 3; k++)
         planes[k] = triangle_plane(&triangles[k]);
     struct octree *octree = octree_create(triangles, planes, 3);
     struct octree_counts counts = {0};
     struct octree_hit hit = {0};
-    struct vec3 above = {0.01, 0.02, 0.1}, aside = {0.2, -0.3, 0.1}, high = {0.01, 0.02, 4.0};
+    struct vec3 above = {0.01, 0.02, 0.1}, aside = {0.2, -0.3, 0.1},
+                high = {0.01, 0.02, 4.0};
     struct vec3 down = {0, 0, -0.1}, up = {0, 0, 0.3};
-    tap_ok(octree_first_hit(octree, above, down, false, &hit, &counts) && hit.triangle == 1 &&
-               hit.front,
+    tap_ok(octree_first_hit(octree, above, down, false, &hit, &counts) &&
+               hit.triangle == 1 && hit.front,
            "of two in one plane the later is met");
     struct vec3 swap = triangles[1].corner[1];
     triangles[1].corner[1] = triangles[1].corner[2];
@@ -529,22 +550,26 @@ static void test_layers(void)
     planes[1] = triangle_plane(&triangles[1]);
     octree_destroy(octree);
     octree = octree_create(triangles, planes, 3);
-    tap_ok(octree_first_hit(octree, above, down, false, &hit, &counts) && hit.triangle == 0 &&
-               hit.front,
+    tap_ok(octree_first_hit(octree, above, down, false, &hit, &counts) &&
+               hit.triangle == 0 && hit.front,
            "but a front before a back");
-    tap_ok(octree_first_hit(octree, (struct vec3){0.01, 0.02, -0.1}, (struct vec3){0, 0, 1}, false,
-                            &hit, &counts) && hit.triangle == 1 && hit.front,
+    tap_ok(octree_first_hit(octree, (struct vec3){0.01, 0.02, -0.1},
+                            (struct vec3){0, 0, 1}, false, &hit, &counts) &&
+               hit.triangle == 1 && hit.front,
            "from the other side the other one");
-    tap_ok(octree_first_hit(octree, aside, down, false, &hit, &counts) && hit.triangle == 0,
+    tap_ok(octree_first_hit(octree, aside, down, false, &hit, &counts) &&
+               hit.triangle == 0,
            "beside it the floor is met");
-    tap_ok(octree_first_hit(octree, above, up, true, &hit, &counts) && hit.triangle == 2 &&
-               hit.front,
+    tap_ok(octree_first_hit(octree, above, up, true, &hit, &counts) &&
+               hit.triangle == 2 && hit.front,
            "the lid above it faces down");
-    tap_ok(octree_first_hit(octree, high, down, false, &hit, &counts) && hit.triangle == 2 &&
-               !hit.front && octree_first_hit(octree, high, down, true, &hit, &counts) &&
+    tap_ok(octree_first_hit(octree, high, down, false, &hit, &counts) &&
+               hit.triangle == 2 && !hit.front &&
+               octree_first_hit(octree, high, down, true, &hit, &counts) &&
                hit.triangle == 0,
            "from above it is met, or looked through");
-    tap_ok(!octree_first_hit(octree, high, up, false, &hit, &counts), "nothing lies behind");
+    tap_ok(!octree_first_hit(octree, high, up, false, &hit, &counts),
+           "nothing lies behind");
     octree_destroy(octree);
 }
 
