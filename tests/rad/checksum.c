@@ -83,9 +83,10 @@ static void test_format(const struct scene *scene)
     bytes[25] = 0x09;
     /* after leaves 0, 1, 20 */
     memcpy(bytes + 25 + 2 + 3 * 24, leaf_bytes, sizeof leaf_bytes);
-    tap_ok(forest_checksum(forest) == hash_bytes(HASH_START, bytes, sizeof bytes),
-           "structure bits, the first in the lowest place, then the leaves' numbers, least "
-           "significant byte first");
+    tap_ok(
+        forest_checksum(forest) == hash_bytes(HASH_START, bytes, sizeof bytes),
+        "structure bits, the first in the lowest place, then the leaves' numbers, least "
+        "significant byte first");
     forest_destroy(forest);
 }
 
@@ -109,7 +110,8 @@ static void test_order(const struct scene *scene)
     struct forest *a = make_forest(scene, ids, false), *b = make_forest(scene, ids, true);
     bool numbers_differ = false;
     for (int64_t p = 0; p < a->count; p++)
-        numbers_differ = numbers_differ || a->patches[p].id.hierarchy != b->patches[p].id.hierarchy;
+        numbers_differ =
+            numbers_differ || a->patches[p].id.hierarchy != b->patches[p].id.hierarchy;
     tap_ok(numbers_differ && forest_checksum(a) == forest_checksum(b),
            "the checksum does not depend on the order of creation");
     forest_destroy(a);

@@ -23,7 +23,8 @@ static void test_unit(void)
     for (int k = -900; k <= 900; k++) {
         double largest = ldexp(random_between(&random, 0.5, 1.0), k);
         struct flux_unit unit = flux_unit_for(largest);
-        powers = powers && is_power_of_two(unit.per_watt) && unit.per_watt * unit.watt == 1.0;
+        powers =
+            powers && is_power_of_two(unit.per_watt) && unit.per_watt * unit.watt == 1.0;
         fits = fits && flux_from_watts(unit, largest) < FLUX_LIMIT;
         fine = fine && flux_from_watts(unit, 2.0 * largest) == FLUX_LIMIT;
     }
@@ -91,13 +92,15 @@ static void test_sums(void)
     bool associative = true, commutative = true, right = true;
     int saturated = 0;
     for (int i = 0; i < TRIES; i++) {
-        int64_t a = random_flux(&random), b = random_flux(&random), c = random_flux(&random);
+        int64_t a = random_flux(&random), b = random_flux(&random),
+                c = random_flux(&random);
         int64_t sum = flux_add(a, flux_add(b, c));
         associative = associative && sum == flux_add(flux_add(a, b), c);
         commutative = commutative && flux_add(a, b) == flux_add(b, a);
         uint64_t plain = (uint64_t)a + (uint64_t)b; /* at most 2^63 */
-        right = right && (uint64_t)flux_add(a, b) ==
-                             (plain < (uint64_t)FLUX_LIMIT ? plain : (uint64_t)FLUX_LIMIT);
+        right =
+            right && (uint64_t)flux_add(a, b) ==
+                         (plain < (uint64_t)FLUX_LIMIT ? plain : (uint64_t)FLUX_LIMIT);
         saturated += sum == FLUX_LIMIT;
     }
     tap_ok(right, "sums are exact up to the limit");

@@ -52,7 +52,8 @@ static void test_pairs(void)
         world_free(&world);
     }
     tap_ok(pairs > 100 && partly > 30 && off == 0,
-           "%d pairs, %d of them partly blocked: the sum over the rays that arrive", pairs, partly);
+           "%d pairs, %d of them partly blocked: the sum over the rays that arrive",
+           pairs, partly);
     tap_ok(beyond == 0, "never more than the smaller area, nor more than 16 rays");
 }
 

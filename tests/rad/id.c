@@ -48,7 +48,8 @@ static void test_layout(void)
     bool right = true;
     for (int k = 0; k < 4; k++) {
         id = id_child(id, children[k]);
-        right = right && id.root == 77 && id.hierarchy == expected[k] && id_level(id) == k + 1;
+        right = right && id.root == 77 && id.hierarchy == expected[k] &&
+                id_level(id) == k + 1;
     }
     tap_ok(right, "children 2, 0, 3, 1 in turn are 6, 18, 63, 18D in hexadecimal");
     for (int k = 0; k < 4; k++)
@@ -96,7 +97,8 @@ static void test_round_trips(void)
     for (int i = 0; i < PATHS; i++) {
         struct path path = random_path(&random, ID_MAX_LEVEL);
         struct patch_id id = id_of_path(&path);
-        valid = valid && id_is_valid(id) && id.root == path.root && id_level(id) == path.level;
+        valid = valid && id_is_valid(id) && id.root == path.root &&
+                id_level(id) == path.level;
         for (int k = 0; k < path.level; k++)
             down = down && id_step(id, k) == path.child[k];
         for (int k = path.level - 1; k >= 0; k--) {

@@ -24,7 +24,8 @@ static void test_making(void)
     double seen, area = exchange_area(&p, &q, world.octree, &blocker, &seen, &counts);
     struct link link;
     tap_ok(make(&world, 0, 1, &link) && link.p == 0 && link.q == 1 && area > 0.0 &&
-               link.area == float_below(area) && seen == 1.0 && link.seen == LINK_ALL_SEEN,
+               link.area == float_below(area) && seen == 1.0 &&
+               link.seen == LINK_ALL_SEEN,
            "a link carries the exchange of its patches");
     tap_ok(world.model.counts.rays == 16 && counts.rays == 16 &&
                tests_done(&world) == counts.node_tests + counts.triangle_tests,
@@ -108,7 +109,8 @@ static void test_split(void)
     bool right = count == 4 && forest->count == 6;
     double sum = 0.0;
     for (int k = 0; k < count; k++) {
-        right = right && children[k].p == 0 && children[k].q == forest->patches[1].children + k;
+        right = right && children[k].p == 0 &&
+                children[k].q == forest->patches[1].children + k;
         sum += link_area(&children[k]);
     }
     tap_ok(right, "the children of q take its place");
@@ -125,7 +127,8 @@ static void test_split(void)
     count = link_split(&world.model, &link, 0, children);
     right = count == 4 && forest->count == 10;
     for (int k = 0; k < count; k++)
-        right = right && children[k].q == 1 && children[k].p == forest->patches[0].children + k;
+        right = right && children[k].q == 1 &&
+                children[k].p == forest->patches[0].children + k;
     tap_ok(right, "or those of p its");
     world_free(&world);
 }
@@ -164,7 +167,8 @@ static void test_one_transfer(void)
     link_list_append(&list, PLAIN);
     links_transfer(&list, &world.model, unit);
     const int64_t *p = forest->patches[3].flux, *q = forest->patches[7].flux;
-    tap_ok(p[0] == 5 && p[1] == 4096 && p[2] == -1024 && q[0] == 256 && q[1] == 512 && q[2] == 0,
+    tap_ok(p[0] == 5 && p[1] == 4096 && p[2] == -1024 && q[0] == 256 && q[1] == 512 &&
+               q[2] == 0,
            "G B of either side is added to the flux of the other, whatever its sign");
     link_list_free(&list);
     tap_ok(!list.items && list.count == 0, "a list is freed");

@@ -63,7 +63,8 @@ static void test_choice(void)
     struct link mixed = link_of(child, 0);
     forest_split(model->forest, 0);
     struct link deep = link_of(model->forest->patches[0].children, child);
-    tap_ok(oracle_side_to_split(model, &mixed) == 0 && oracle_side_to_split(model, &deep) == NODE_NONE,
+    tap_ok(oracle_side_to_split(model, &mixed) == 0 &&
+               oracle_side_to_split(model, &deep) == NODE_NONE,
            "none is split beyond the deepest level");
     model->criterion.max_level = 0;
     tap_ok(oracle_side_to_split(model, &link) == NODE_NONE, "level 0 splits nothing");

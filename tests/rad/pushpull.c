@@ -1,5 +1,5 @@
-/* Tests of rad/pushpull.h: no light is lost on its way from any level to the leaves, pulls are
- * means, the sums of a push-pull, and the change of energy. */
+/* Tests of rad/pushpull.h: no light is lost on its way from any level to the leaves,
+ * pulls are means, the sums of a push-pull, and the change of energy. */
 #include "rad/beyond/range.h"
 #include "rad/pushpull.h"
 
@@ -10,8 +10,8 @@
 
 enum { ROOTS = 12, SPLITS = 200, NO_AREA = 5 };
 
-/* Random triangles, number 5 without an area. Materials: two that reflect, the first emits, and
- * a black one for number 7. */
+/* Random triangles, number 5 without an area. Materials: two that reflect, the first
+ * emits, and a black one for number 7. */
 static struct world make_world(void)
 {
     struct soup soup = {0};
@@ -39,7 +39,8 @@ static void grow(struct forest *forest, uint64_t seed)
     }
 }
 
-/* Flux at all levels, smaller on smaller patches. Returns its sum over roots with an area. */
+/* Flux at all levels, smaller on smaller patches. Returns its sum over roots with an
+ * area. */
 static int64_t pour(struct world *world, uint64_t seed)
 {
     struct forest *forest = world->model.forest;
@@ -69,9 +70,9 @@ static struct push_pull_sums pushed(struct world *world, const bool *own)
 
 /* --- push --- */
 
-/* Areas are fractions by powers of 4, so what is lost is rounding alone: a division and a sum of
- * 10 terms for each leaf, and the sum of about 600 leaves: 1e-13; and the comparison is of
- * numbers that a double holds to 1e-16. */
+/* Areas are fractions by powers of 4, so what is lost is rounding alone: a division and a
+ * sum of 10 terms for each leaf, and the sum of about 600 leaves: 1e-13; and the
+ * comparison is of numbers that a double holds to 1e-16. */
 static void test_push(void)
 {
     double worst = 0.0;
@@ -91,17 +92,20 @@ static void test_push(void)
         worst = fmax(worst, fabs(arrived / sent - 1.0));
         world_free(&world);
     }
-    tap_ok(worst < 1e-12, "what is poured in at all levels arrives at the leaves (to %.1e)", worst);
+    tap_ok(worst < 1e-12,
+           "what is poured in at all levels arrives at the leaves (to %.1e)", worst);
 }
 
-/* Fluxes chosen so that all of it is exact: the sums down the line are 1, 1 + 4 x 2, ... */
+/* Fluxes chosen so that all of it is exact: the sums down the line are 1, 1 + 4 x 2,
+ * ... */
 static void test_line(void)
 {
     struct world world = make_world();
     struct forest *forest = world.model.forest;
     struct flux_unit unit = world.model.flux_unit;
     int32_t leaf = forest_reach(forest, id_child(id_child(id_of_root(2), 3), 0));
-    int32_t middle = forest->patches[leaf].parent, other = forest->patches[middle].children + 1;
+    int32_t middle = forest->patches[leaf].parent,
+            other = forest->patches[middle].children + 1;
     double area = forest_area(forest, 2);
     forest->patches[2].flux[0] = flux_from_watts(unit, area);
     forest->patches[middle].flux[0] = flux_from_watts(unit, 2.0 * area);
@@ -111,8 +115,8 @@ static void test_line(void)
     struct rgb at_other = leaf_irradiance(forest, other, unit);
     /* Fluxes are rounded to 2^-62 of 16 times the light and more. */
     tap_ok(fabs(at_leaf.band[0] - (1.0 + 8.0 + 8.0)) < 1e-12 && at_leaf.band[1] == 0.0 &&
-               fabs(at_leaf.band[2] - 16.0) < 1e-12 && fabs(at_other.band[0] - 9.0) < 1e-12 &&
-               at_other.band[2] == 0.0,
+               fabs(at_leaf.band[2] - 16.0) < 1e-12 &&
+               fabs(at_other.band[0] - 9.0) < 1e-12 && at_other.band[2] == 0.0,
            "a leaf gets the flux of its own line of ancestors, each over its area");
     world_free(&world);
 }
@@ -134,7 +138,8 @@ static bool inner_are_means(const struct forest *forest, const bool *own)
 {
     for (int32_t p = 0; p < forest->count; p++)
         for (int c = 0; own[forest->patches[p].id.root] && c < BANDS; c++)
-            if (fabs(forest->patches[p].radiosity.band[c] - mean_of_leaves(forest, p, c)) > 1e-14)
+            if (fabs(forest->patches[p].radiosity.band[c] -
+                     mean_of_leaves(forest, p, c)) > 1e-14)
                 return false;
     return true;
 }
@@ -153,7 +158,8 @@ static void test_pull(void)
     bool before = inner_are_means(forest, own);
     forest_average(forest);
     forest_bound(forest);
-    tap_ok(!before && inner_are_means(forest, own), "a pull makes inner patches means of leaves");
+    tap_ok(!before && inner_are_means(forest, own),
+           "a pull makes inner patches means of leaves");
     world_free(&world);
 }
 
@@ -177,7 +183,8 @@ static void test_radiosity(void)
         const struct material *material = forest_material(forest, p);
         for (int c = 0; c < BANDS; c++) {
             double reflected = material->reflectance.band[c] * h.band[c];
-            right = right && patch->radiosity.band[c] == material->emission.band[c] + reflected;
+            right = right &&
+                    patch->radiosity.band[c] == material->emission.band[c] + reflected;
         }
     }
     tap_ok(right, "leaves get B = E + rho H");
@@ -191,8 +198,8 @@ static bool own_of(int32_t root)
     return root % 3 != 0;
 }
 
-/* Sums in double beside those in integers: half a unit for each of the leaves, nothing beside
- * the rounding of the double sums. */
+/* Sums in double beside those in integers: half a unit for each of the leaves, nothing
+ * beside the rounding of the double sums. */
 static void test_sums(void)
 {
     struct world world = make_world();
@@ -214,7 +221,8 @@ static void test_sums(void)
         struct rgb h = leaf_irradiance(forest, p, unit);
         const struct material *m = forest_material(forest, p);
         for (int c = 0; c < BANDS; c++) {
-            double rho = m->reflectance.band[c], b = m->emission.band[c] + rho * h.band[c];
+            double rho = m->reflectance.band[c],
+                   b = m->emission.band[c] + rho * h.band[c];
             light += forest_area(forest, p) * b;
             absorbed += forest_area(forest, p) * (1.0 - rho) * h.band[c];
             arriving += forest_area(forest, p) * h.band[c];
@@ -222,7 +230,8 @@ static void test_sums(void)
         }
     }
     struct push_pull_sums sums = pushed(&world, own);
-    tap_ok(fabs(flux_to_watts(unit, sums.light) / light - 1.0) < 1e-12, "light is A B of leaves");
+    tap_ok(fabs(flux_to_watts(unit, sums.light) / light - 1.0) < 1e-12,
+           "light is A B of leaves");
     tap_ok(fabs(flux_to_watts(unit, sums.absorbed) / absorbed - 1.0) < 1e-12,
            "absorbed is A (1 - rho) H of leaves");
     tap_ok(fabs(flux_to_watts(unit, sums.arriving) / arriving - 1.0) < 1e-12,
@@ -236,7 +245,8 @@ static void test_sums(void)
     world_free(&world);
 }
 
-/* Sums over the roots of two ranks are those of one rank with all roots, to the last integer. */
+/* Sums over the roots of two ranks are those of one rank with all roots, to the last
+ * integer. */
 static void test_two_ranks(void)
 {
     struct push_pull_sums sums[3];
@@ -257,18 +267,21 @@ static void test_two_ranks(void)
            "the sums of two ranks are those of one");
 }
 
-/* Light that is as much as the unit can count shows as a sum at the limit: the vote ends it. */
+/* Light that is as much as the unit can count shows as a sum at the limit: the vote ends
+ * it. */
 static void test_divergence(void)
 {
     struct world world = make_world();
     bool own[ROOTS] = {false};
-    forest_split(world.model.forest, 2); /* rho 0.5 in band 0: half the limit for itself */
+    forest_split(world.model.forest,
+                 2); /* rho 0.5 in band 0: half the limit for itself */
     world.model.forest->patches[2].flux[0] = FLUX_LIMIT; /* an inner patch counts too */
     forest_split(world.model.forest, 4);
     world.model.forest->patches[4].flux[0] = FLUX_LIMIT;
     own[0] = true;
     struct push_pull_sums sums = pushed(&world, own);
-    tap_ok(sums.light < FLUX_LIMIT && sums.arriving < FLUX_LIMIT, "others' fluxes do not count");
+    tap_ok(sums.light < FLUX_LIMIT && sums.arriving < FLUX_LIMIT,
+           "others' fluxes do not count");
     own[2] = own[4] = true;
     sums = pushed(&world, own);
     tap_ok(sums.light == FLUX_LIMIT && sums.arriving == FLUX_LIMIT,

@@ -9,8 +9,8 @@
 
 enum { ROOTS = 12, NO_AREA = 5 };
 
-/* Random triangles, number 5 without an area. Materials: two that reflect, the first emits, and
- * a black one for number 7. */
+/* Random triangles, number 5 without an area. Materials: two that reflect, the first
+ * emits, and a black one for number 7. */
 static struct world make_world(void)
 {
     struct soup soup = {0};
@@ -27,8 +27,8 @@ static struct world make_world(void)
     return world_make(scene);
 }
 
-/* Root 0 gets 1.25 of its area, root 1 half of it, in two of its children 0.4 more; root 7 is
- * dark and root 3 another's. */
+/* Root 0 gets 1.25 of its area, root 1 half of it, in two of its children 0.4 more; root
+ * 7 is dark and root 3 another's. */
 static void test_rows(void)
 {
     struct world world = make_world();
@@ -40,7 +40,8 @@ static void test_rows(void)
     double a = forest_area(forest, 0), b = forest_area(forest, 1);
     int32_t child = forest->patches[1].children;
     forest->patches[0].flux[0] = flux_from_watts(unit, 1.25 * a);
-    forest->patches[0].flux[1] = flux_from_watts(unit, 7.0 * a); /* another band: no matter */
+    forest->patches[0].flux[1] =
+        flux_from_watts(unit, 7.0 * a); /* another band: no matter */
     forest->patches[1].flux[0] = flux_from_watts(unit, 0.5 * b);
     forest->patches[child].flux[0] = flux_from_watts(unit, 0.4 * b / 4.0);
     forest->patches[child + 3].flux[0] = flux_from_watts(unit, 0.4 * b / 4.0);
@@ -58,8 +59,8 @@ static void test_rows(void)
     tap_ok(fabs(flux_to_watts(coarse, sums.squares) - squares) < 1e-13, "squares");
     bool none[ROOTS] = {false};
     sums = row_sums_measure(forest, none, unit);
-    tap_ok(sums.min == HUGE_VAL && sums.max == -HUGE_VAL && sums.area == 0 && sums.rows == 0 &&
-               sums.squares == 0,
+    tap_ok(sums.min == HUGE_VAL && sums.max == -HUGE_VAL && sums.area == 0 &&
+               sums.rows == 0 && sums.squares == 0,
            "no leaf at all");
     /* The unit of a transfer of B = 1 is chosen for a flux as large as the area. */
     int tried = 0, right = 0;
@@ -86,8 +87,8 @@ static void test_rows(void)
     world_free(&world);
 }
 
-/* The largest reflectance counts: 0.75 of root 0, 0.98 of root 1, 0 of root 7. Light may grow
- * by 0.95, or by the mean of 1 and the reflectance where that is more. */
+/* The largest reflectance counts: 0.75 of root 0, 0.98 of root 1, 0 of root 7. Light may
+ * grow by 0.95, or by the mean of 1 and the reflectance where that is more. */
 static void test_caps(void)
 {
     static const struct {

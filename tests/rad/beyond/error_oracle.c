@@ -109,7 +109,8 @@ static void test_range(void)
     struct link link = link_of(0, 1);
     make_range(world.model.forest, 0, 0.75);
     tap_ok(error_is(&world, &link, 0.125 * 0.5 * 0.75, 0),
-           "a range of radiosity within a child splits its patch, though the other is larger; "
+           "a range of radiosity within a child splits its patch, though the other is "
+           "larger; "
            "children that differ do not count");
     world.scene->materials[1].reflectance = (struct rgb){{0.0, 0.0, 0.0}};
     tap_ok(at_threshold(&world, &link, 0.0) == NODE_NONE, "unless the receiver is black");
@@ -160,7 +161,8 @@ static void test_error_limits(void)
     link.parts_q[0] = 96;
     model->patch_threshold = nextafter(0.25 * forest_area(model->forest, 0), HUGE_VAL);
     tap_ok(at_threshold(&world, &link, 0.185) == 1,
-           "a patch that is too small leaves it to the other, which causes half a threshold");
+           "a patch that is too small leaves it to the other, which causes half a "
+           "threshold");
     tap_ok(at_threshold(&world, &link, 0.19) == NODE_NONE,
            "if it causes less nothing is split");
     model->patch_threshold = nextafter(0.25 * forest_area(model->forest, 1), HUGE_VAL);
@@ -183,7 +185,8 @@ static bool divides(struct world *world, const struct link *link, double thresho
     world->model.link_threshold = threshold;
     error_oracle_divide(&world->model, link);
     bool only = patch < 0 ? forest->count == before
-                          : forest->count == before + 4 && !patch_is_leaf(&forest->patches[patch]);
+                          : forest->count == before + 4 &&
+                                !patch_is_leaf(&forest->patches[patch]);
     for (int32_t root = 0; root < forest->root_count; root++) /* as it was */
         forest->patches[root].children = 0;
     forest->count = before;
@@ -303,7 +306,8 @@ static void test_scale(void)
         }
     }
     tap_ok(splits > 100 && divisions > 10 && same,
-           "a scene 2^k times as large and bright is refined alike (%d splits, %d divisions)",
+           "a scene 2^k times as large and bright is refined alike (%d splits, %d "
+           "divisions)",
            splits, divisions);
 }
 

@@ -129,17 +129,19 @@ static void test_open(void)
     trial_free(&g);
 }
 
-/* A sheet lies on a bright floor, and nothing stands between them: exact factors are tried,
- * and given up, as the sheet hides what they would tell. Rays make the rows, and lamps,
- * which its underside does not face, bring nothing. */
+/* A sheet lies on a bright floor, and nothing stands between them: exact factors are
+ * tried, and given up, as the sheet hides what they would tell. Rays make the rows, and
+ * lamps, which its underside does not face, bring nothing. */
 static void test_given_up(void)
 {
     struct painted painted = {0};
-    soup_add_quad(&painted.soup, point(0.4, 0.4, 1e-3), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(0.4, 0.4, 1e-3), point(0, 0.2, 0),
+                  point(0.2, 0, 0), 1);
     paint(&painted, 0.5, 0.0);
     soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
     paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0), point(0.2, 0, 0),
+                  1);
     paint(&painted, 0.0, 100.0);
     struct trial g = gather_scene(&painted, "--max-level 0", 64);
     const struct forest *forest = g.s.solver->model.forest;
@@ -278,7 +280,8 @@ static void test_flush_lamp(void)
         solution_free(&s);
     }
     tap_ok(mean[0] > 0.0 && fabs(mean[1] / mean[0] - 1.0) < 0.05,
-           "a lamp before its ceiling in the file: %.4f, behind it: %.4f", mean[1], mean[0]);
+           "a lamp before its ceiling in the file: %.4f, behind it: %.4f", mean[1],
+           mean[0]);
 }
 
 /* --- the mesh --- */
@@ -354,7 +357,8 @@ static void test_even(void)
     paint(&painted, 0.5, 1.0);
     struct solution s =
         solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 1e-2");
-    tap_ok(s.solver->beyond->answer.counts.split == 0 && s.solver->beyond->answer.counts.looks > 0,
+    tap_ok(s.solver->beyond->answer.counts.split == 0 &&
+               s.solver->beyond->answer.counts.looks > 0,
            "in a furnace nothing is split, by %lld rays",
            (long long)s.solver->beyond->answer.counts.looks);
     solution_free(&s);

@@ -20,8 +20,9 @@ static unsigned difference(const struct method *a, const struct method *b)
            (unsigned)(a->transfer != b->transfer) << 7;
 }
 
-static void test(enum oracle oracle, enum form_factor form_factor, enum linking_kind linking,
-                 const struct method *from, unsigned expected, const char *name)
+static void test(enum oracle oracle, enum form_factor form_factor,
+                 enum linking_kind linking, const struct method *from, unsigned expected,
+                 const char *name)
 {
     struct criterion criterion = {
         .oracle = oracle, .form_factor = form_factor, .linking = linking};

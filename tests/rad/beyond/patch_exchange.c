@@ -23,7 +23,8 @@ static struct exchange estimate(const struct facet *p, const struct facet *q,
 
 /* 16 disks, 16 segments: the paper's. */
 static struct exchange exchange_of(const struct facet *p, const struct facet *q,
-                                   const struct octree *octree, struct octree_counts *counts)
+                                   const struct octree *octree,
+                                   struct octree_counts *counts)
 {
     return estimate(p, q, FORM_FACTOR_DISK, EFFORT_ALL, octree, counts);
 }
@@ -42,7 +43,8 @@ static double parallel_squares(double d)
 {
     double x = 1.0 / d, x2 = x * x, root = sqrt(1.0 + x2);
     double logarithm = 0.5 * log((1.0 + x2) * (1.0 + x2) / (1.0 + 2.0 * x2));
-    return 2.0 / (PI * x2) * (logarithm + 2.0 * x * root * atan(x / root) - 2.0 * x * atan(x));
+    return 2.0 / (PI * x2) *
+           (logarithm + 2.0 * x * root * atan(x / root) - 2.0 * x * atan(x));
 }
 
 /* From a rectangle of width w to one of height h that stands on its edge, of length 1. */
@@ -52,7 +54,8 @@ static double perpendicular(double w, double h)
     double logarithm = log((1.0 + w2) * (1.0 + h2) / (1.0 + s)) +
                        w2 * log(w2 * (1.0 + s) / ((1.0 + w2) * s)) +
                        h2 * log(h2 * (1.0 + s) / ((1.0 + h2) * s));
-    return (w * atan(1.0 / w) + h * atan(1.0 / h) - root * atan(1.0 / root) + 0.25 * logarithm) /
+    return (w * atan(1.0 / w) + h * atan(1.0 / h) - root * atan(1.0 / root) +
+            0.25 * logarithm) /
            (PI * w);
 }
 
@@ -65,7 +68,8 @@ static void test_closed_forms(void)
            "the formula for parallel squares");
     tap_ok(fabs(perpendicular(1.0, 1.0) - 0.200043776075) < 1e-12 &&
                fabs(perpendicular(2.0, 1.0) - 0.116426301398) < 1e-12 &&
-               fabs(2.0 * perpendicular(2.0, 1.0) - perpendicular(1.0, 1.0) - 0.0328088267) < 1e-10,
+               fabs(2.0 * perpendicular(2.0, 1.0) - perpendicular(1.0, 1.0) -
+                    0.0328088267) < 1e-10,
            "the formula for perpendicular rectangles");
 }
 
@@ -290,8 +294,9 @@ static void judge_pair(const struct facet *p, const struct facet *q,
     findings->too_large += !(there.area <= least) || !(there.unoccluded <= least);
     findings->too_little += !(there.area <= there.unoccluded);
     /* 16 positive terms in another order: 15 roundings of 1.1e-16 each. */
-    findings->lop_sided += fabs(there.area - back.area) > 1e-14 * there.area ||
-                           fabs(there.unoccluded - back.unoccluded) > 1e-14 * there.unoccluded;
+    findings->lop_sided +=
+        fabs(there.area - back.area) > 1e-14 * there.area ||
+        fabs(there.unoccluded - back.unoccluded) > 1e-14 * there.unoccluded;
     findings->blocked += facets_are_walled_off(p, q, octree, &counts) && there.area > 0.0;
     findings->one_way += facets_are_walled_off(p, q, octree, &counts) !=
                          facets_are_walled_off(q, p, octree, &counts);
@@ -320,7 +325,8 @@ static void test_bounds(enum kind kind)
             judge_pair(&p, &q, octree, &findings);
     }
     const char *name = kind_names[kind];
-    tap_ok(findings.facing > PAIRS / 10 && findings.lit > PAIRS / 20 && findings.negative == 0,
+    tap_ok(findings.facing > PAIRS / 10 && findings.lit > PAIRS / 20 &&
+               findings.negative == 0,
            "%s: %d pairs exchange nothing negative", name, findings.facing);
     tap_ok(findings.too_large == 0,
            "%s: nor more than the smaller area (at most %.4f of it)", name,
@@ -344,7 +350,8 @@ static void test_flat(void)
     struct octree_counts counts = {0};
     struct exchange exchange = exchange_of(&p, &q, octree, &counts);
     tap_ok(exchange.unoccluded <= q.area && exchange.area == exchange.unoccluded,
-           "a speck above a flat triangle: F is at most 1 (%.4f)", exchange.area / q.area);
+           "a speck above a flat triangle: F is at most 1 (%.4f)",
+           exchange.area / q.area);
     octree_destroy(octree);
 }
 
@@ -629,7 +636,8 @@ static void test_any(enum form_factor kind, enum effort effort, const char *name
     enum { TRIES = 20000 };
     struct random random = random_seed(71);
     struct blockers blockers;
-    struct octree *octree = hang_blockers(&blockers, 0.2, 5), *none = octree_create(NULL, NULL, 0);
+    struct octree *octree = hang_blockers(&blockers, 0.2, 5),
+                  *none = octree_create(NULL, NULL, 0);
     int facing = 0, partly = 0, outside = 0, more = 0, broken = 0, one_way = 0, dim = 0;
     for (int i = 0; i < TRIES; i++) {
         struct facet p, q;
@@ -651,13 +659,14 @@ static void test_any(enum form_factor kind, enum effort effort, const char *name
         broken += !parts_are_whole(blocked.parts_p) || !parts_are_whole(blocked.parts_q);
         /* Sums of 16 terms in another order; of unequal areas the points are on the same
          * side. */
-        one_way += fabs(back.area - blocked.area) > 1e-14 * blocked.area && p.area != q.area;
+        one_way +=
+            fabs(back.area - blocked.area) > 1e-14 * blocked.area && p.area != q.area;
         one_way += blocked.area > 0.0 && !parts_match(&blocked, &back);
         dim += told.area != free.area || told.seen != free.seen || counts.rays != rays;
     }
     tap_ok(facing > TRIES / 2 && (effort == EFFORT_ONE || partly > 50) && outside == 0,
-           "%s: %d pairs exchange from 0 to the smaller area, %d are seen in part", name, facing,
-           partly);
+           "%s: %d pairs exchange from 0 to the smaller area, %d are seen in part", name,
+           facing, partly);
     tap_ok(more == 0, "%s: blockers never add", name);
     tap_ok(broken == 0, "%s: parts are not negative and add up to 1", name);
     tap_ok(one_way == 0, "%s: the same in both directions, parts too", name);
@@ -668,7 +677,8 @@ static void test_any(enum form_factor kind, enum effort effort, const char *name
 
 static bool is_same_exchange(const struct exchange *a, const struct exchange *b)
 {
-    bool same = a->area == b->area && a->unoccluded == b->unoccluded && a->seen == b->seen;
+    bool same =
+        a->area == b->area && a->unoccluded == b->unoccluded && a->seen == b->seen;
     for (int k = 0; k < 4; k++)
         same = same && a->parts_p[k] == b->parts_p[k] && a->parts_q[k] == b->parts_q[k];
     return same;
@@ -699,8 +709,8 @@ static void test_four(void)
         missed += !agreed && four.rays == all.rays && !is_same_exchange(&whole, &part);
     }
     tap_ok(free > 100 && dark > 20 && mixed > 100 && wrong == 0,
-           "four first: as with all 16 where nothing (%d) or everything (%d) is blocked", free,
-           dark);
+           "four first: as with all 16 where nothing (%d) or everything (%d) is blocked",
+           free, dark);
     tap_ok(dear == 0, "with four segments");
     tap_ok(missed == 0,
            "and where they disagree (some of %d) all are asked, with the same answer",
@@ -724,7 +734,8 @@ static void test_one(void)
         struct facet q = facet_of(random_triangle(&random, 1.0, 0.4), -1);
         if (!facets_face(&p, &q))
             continue;
-        struct vec3 x = triangle_centroid(&p.triangle), y = triangle_centroid(&q.triangle);
+        struct vec3 x = triangle_centroid(&p.triangle),
+                    y = triangle_centroid(&q.triangle);
         struct vec3 d = vec3_sub(y, x);
         double distance = vec3_length(d), reach[2] = {0.0, 0.0};
         for (int k = 0; k < 3; k++) {
@@ -754,7 +765,8 @@ static void test_one(void)
     }
     /* Measured 15.4 and 7.0 %, and a quarter more. */
     tap_ok(far > 200 && worst < 0.19 && worst_twice < 0.1,
-           "one look: within %.1f %% of the full one from 1.5 radii, %.1f %% from 2 (%d pairs)",
+           "one look: within %.1f %% of the full one from 1.5 radii, %.1f %% from 2 (%d "
+           "pairs)",
            100.0 * worst, 100.0 * worst_twice, far);
     tap_ok(dear == 0, "with one ray");
     tap_ok(near > 1000 && wrong == 0, "near by it is the full one");

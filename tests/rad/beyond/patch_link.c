@@ -132,8 +132,8 @@ static void test_areas(void)
     link.cost = compact8(1000.0);
     tap_ok(link_cost(&link) == 1024.0, "a cost is rounded up: 1000 to 1024");
     const uint8_t parts[3] = {128, 64, 0};
-    tap_ok(link_part(parts, 0) == 0.5 && link_part(parts, 1) == 0.25 && link_part(parts, 2) == 0.0 &&
-               link_part(parts, 3) == 0.25,
+    tap_ok(link_part(parts, 0) == 0.5 && link_part(parts, 1) == 0.25 &&
+               link_part(parts, 2) == 0.0 && link_part(parts, 3) == 0.25,
            "the last part is the rest");
 }
 
@@ -166,7 +166,8 @@ static void test_dealing(void)
                p[3].flux[0] == 1920 && p[0].flux[2] == 1024 && p[1].flux[2] == 0 &&
                p[2].flux[2] == 768 && p[3].flux[2] == 256 && p[0].flux[1] == 0,
            "what p receives is dealt to its children by the parts of p; none for part 0");
-    tap_ok(q[0].flux[0] == 0 && q[1].flux[0] == 0 && q[2].flux[0] == 272 && q[3].flux[0] == 816,
+    tap_ok(q[0].flux[0] == 0 && q[1].flux[0] == 0 && q[2].flux[0] == 272 &&
+               q[3].flux[0] == 816,
            "and what q receives by those of q");
     tap_ok(forest->patches[2].flux[0] == 0 && forest->patches[4].flux[0] == 0,
            "and nothing to the patches themselves");
@@ -303,9 +304,10 @@ static void test_parts(void)
         }
         world_free(&world);
     }
-    tap_ok(made > 40 && uneven > made / 2 && blocked > 5 && off == 0,
-           "%d links, %d of them blocked: their parts are those of the exchange, in 256ths", made,
-           blocked);
+    tap_ok(
+        made > 40 && uneven > made / 2 && blocked > 5 && off == 0,
+        "%d links, %d of them blocked: their parts are those of the exchange, in 256ths",
+        made, blocked);
 }
 
 /* A child of an open link is open, and fires no ray. */
@@ -355,7 +357,8 @@ static void test_look(void)
     tap_ok(patch_link_effort(model, 0, 1, 0.0999 / 5.0) == EFFORT_ONE &&
                patch_link_effort(model, 0, 1, 0.1001 / 5.0) == EFFORT_FOUR_FIRST,
            "what is typical counts where it is more");
-    tap_ok(patch_link_effort(model, 0, 1, 0.0) == EFFORT_ALL && patch_link_effort(model, 0, 1, NAN) == EFFORT_ALL,
+    tap_ok(patch_link_effort(model, 0, 1, 0.0) == EFFORT_ALL &&
+               patch_link_effort(model, 0, 1, NAN) == EFFORT_ALL,
            "without a guess all is looked at");
     world_free(&world);
 }

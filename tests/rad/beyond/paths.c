@@ -1,9 +1,9 @@
 /* The path tracer and light paths against exact answers.
  *
- * An estimate is random, so each is made RUNS times with other seeds; their mean is compared with
- * the exact answer. The tolerance is 5 standard deviations of the mean, as the runs themselves
- * scatter: a right tracer fails one check of two million. It must be small beside the answer as
- * well, or a check could not fail; each says how small. */
+ * An estimate is random, so each is made RUNS times with other seeds; their mean is
+ * compared with the exact answer. The tolerance is 5 standard deviations of the mean, as
+ * the runs themselves scatter: a right tracer fails one check of two million. It must be
+ * small beside the answer as well, or a check could not fail; each says how small. */
 #include <math.h>
 
 #include "tools/pixel.h"
@@ -13,19 +13,21 @@
 enum { RUNS = 64, SAMPLES = 2048 };
 
 static const struct triangle WHOLE = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-static const struct triangle CENTRE = {{{0.25, 0.25, 0.5}, {0.25, 0.25, 0.5}, {0.25, 0.25, 0.5}}};
+static const struct triangle CENTRE = {
+    {{0.25, 0.25, 0.5}, {0.25, 0.25, 0.5}, {0.25, 0.25, 0.5}}};
 
 struct outcome {
     double mean, sigma; /* of the mean */
 };
 
-static struct outcome trace(const struct world *world, int32_t root, const struct triangle *part,
-                            int band)
+static struct outcome trace(const struct world *world, int32_t root,
+                            const struct triangle *part, int band)
 {
     struct pathtracer pathtracer = pathtracer_make(world->scene, world->octree);
     double sum = 0.0, squares = 0.0;
     for (int run = 0; run < RUNS; run++) {
-        struct rgb h = pathtracer_reflected(&pathtracer, root, part, SAMPLES, (uint64_t)run);
+        struct rgb h =
+            pathtracer_reflected(&pathtracer, root, part, SAMPLES, (uint64_t)run);
         sum += h.band[band];
         squares += h.band[band] * h.band[band];
     }
@@ -34,8 +36,8 @@ static struct outcome trace(const struct world *world, int32_t root, const struc
     return (struct outcome){mean, sqrt(variance / (RUNS - 1))};
 }
 
-/* `precise`: the largest standard deviation that is small enough, relative to the answer. 1e-12
- * is rounding, for answers without noise. */
+/* `precise`: the largest standard deviation that is small enough, relative to the answer.
+ * 1e-12 is rounding, for answers without noise. */
 static void expect(struct outcome outcome, double exact, double precise, const char *what)
 {
     tap_ok(fabs(outcome.mean - exact) <= 5.0 * outcome.sigma + 1e-12 * exact &&
@@ -60,7 +62,8 @@ static struct world furnace(bool two_sided)
 static void test_furnace(void)
 {
     struct world room = furnace(false);
-    expect(trace(&room, 3, &WHOLE, 0), 1.0, 0.004, "furnace, rho 0.5, E 1: rho H over a root");
+    expect(trace(&room, 3, &WHOLE, 0), 1.0, 0.004,
+           "furnace, rho 0.5, E 1: rho H over a root");
     expect(trace(&room, 3, &WHOLE, 1), 8.0, 0.004, "rho 0.8, E 2: rho H over a root");
     expect(trace(&room, 4, &CENTRE, 1), 8.0, 0.004, "rho 0.8, E 2: rho H at a point");
     expect(trace(&room, 3, &WHOLE, 2), 0.0, 0.0, "rho 0, E 3: rho H");
@@ -76,7 +79,8 @@ static struct outcome trace_pixel(const struct world *world, int band)
     struct pathtracer pathtracer = pathtracer_make(world->scene, world->octree);
     double sum = 0.0, squares = 0.0;
     for (int run = 0; run < RUNS; run++) {
-        struct rgb b = pathtracer_pixel(&pathtracer, &camera, 1, 1, SAMPLES, (uint64_t)run);
+        struct rgb b =
+            pathtracer_pixel(&pathtracer, &camera, 1, 1, SAMPLES, (uint64_t)run);
         sum += b.band[band];
         squares += b.band[band] * b.band[band];
     }
@@ -95,7 +99,8 @@ static void test_pixel(void)
     world_free(&twins);
 }
 
-/* A row of form factors: one reflecting triangle in a closed black room that glows receives E. */
+/* A row of form factors: one reflecting triangle in a closed black room that glows
+ * receives E. */
 static void test_row(void)
 {
     struct soup soup = {0};
@@ -106,26 +111,30 @@ static void test_row(void)
     scene->material_of[5] = 1;
     soup_free(&soup);
     struct world room = world_make(scene);
-    expect(trace(&room, 5, &WHOLE, 0), 0.5, 0.004, "a black room with E 2: rho H, rho 0.25");
+    expect(trace(&room, 5, &WHOLE, 0), 0.5, 0.004,
+           "a black room with E 2: rho H, rho 0.25");
     world_free(&room);
 }
 
-/* The room whose fronts are outside: its twins, inside, are a furnace; a box reflects nothing to
- * its own outside, which is convex. */
+/* The room whose fronts are outside: its twins, inside, are a furnace; a box reflects
+ * nothing to its own outside, which is convex. */
 static void test_two_sided(void)
 {
     struct world room = furnace(true);
     int32_t inside = room.scene->input_count + 3;
-    expect(trace(&room, inside, &WHOLE, 1), 8.0, 0.004, "two-sided furnace, a twin: rho H");
+    expect(trace(&room, inside, &WHOLE, 1), 8.0, 0.004,
+           "two-sided furnace, a twin: rho H");
     expect(trace(&room, 3, &WHOLE, 1), 0.0, 0.0, "its other side, outside: rho H");
     world_free(&room);
 }
 
 /* --- direct light: Lambert's formula --- */
 
-/* Irradiance over the radiosity of a polygon, seen from a point with this normal: the sum over
- * the edges of the angle that an edge spans, times the cosine of its plane's normal. */
-static double lambert(const struct vec3 *corners, int count, struct vec3 x, struct vec3 normal)
+/* Irradiance over the radiosity of a polygon, seen from a point with this normal: the sum
+ * over the edges of the angle that an edge spans, times the cosine of its plane's
+ * normal. */
+static double lambert(const struct vec3 *corners, int count, struct vec3 x,
+                      struct vec3 normal)
 {
     double sum = 0.0;
     for (int k = 0; k < count; k++) {
@@ -139,9 +148,9 @@ static double lambert(const struct vec3 *corners, int count, struct vec3 x, stru
 
 enum { FLOOR, LIGHT, BLOCKER, MATERIALS };
 
-/* A floor that reflects 0.5, a black light of side 1 with E = 4 at height 1 that faces down, and
- * on request a black screen halfway up. Under the centre of root 0, which is (1, 0, 0), the
- * screen hides the half of the light with y below 1/2. */
+/* A floor that reflects 0.5, a black light of side 1 with E = 4 at height 1 that faces
+ * down, and on request a black screen halfway up. Under the centre of root 0, which is
+ * (1, 0, 0), the screen hides the half of the light with y below 1/2. */
 static struct scene *lamp_scene(bool with_screen, double *seen)
 {
     struct soup soup = {0};
@@ -195,11 +204,13 @@ static void test_direct(void)
 {
     double seen;
     struct world open = lamp(false, &seen), screened;
-    expect(trace(&open, 0, &CENTRE, 0), 0.5 * 4.0 * seen, 0.004, "under a square light: rho H");
+    expect(trace(&open, 0, &CENTRE, 0), 0.5 * 4.0 * seen, 0.004,
+           "under a square light: rho H");
     expect(trace(&open, 2, &CENTRE, 0), 0.0, 0.0, "the light, which is black: rho H");
     world_free(&open);
     screened = lamp(true, &seen);
-    expect(trace(&screened, 0, &CENTRE, 0), 0.5 * 4.0 * seen, 0.004, "with half of it screened");
+    expect(trace(&screened, 0, &CENTRE, 0), 0.5 * 4.0 * seen, 0.004,
+           "with half of it screened");
     world_free(&screened);
 }
 
