@@ -1,5 +1,5 @@
-/* Homes of roots: every root has one, sums of weights are even, and the answer is the same for any
- * caller. */
+/* Homes of roots: every root has one, sums of weights are even, and the answer is the
+ * same for any caller. */
 #include "mpi/assign.h"
 
 #include "geom/alloc.h"
@@ -27,7 +27,8 @@ static void test_even_sums(int32_t roots, int ranks)
         largest = sums[r] > largest ? sums[r] : largest;
     tap_ok(in_range, "%d roots on %d ranks: all have a home", (int)roots, ranks);
     double mean = (double)total / ranks;
-    double best = mean > (double)biggest ? mean : (double)biggest; /* no plan is below this */
+    double best =
+        mean > (double)biggest ? mean : (double)biggest; /* no plan is below this */
     tap_ok((double)largest <= 4.0 / 3.0 * best, "largest sum %.3f of the best possible",
            (double)largest / best);
     alloc_free(weights);
@@ -35,8 +36,8 @@ static void test_even_sums(int32_t roots, int ranks)
     alloc_free(sums);
 }
 
-/* Graham's rule by brute force: the heaviest root that is left goes to the lowest rank with
- * the smallest sum. Half of the weights are equal. */
+/* Graham's rule by brute force: the heaviest root that is left goes to the lowest rank
+ * with the smallest sum. Half of the weights are equal. */
 static void test_rule(int32_t roots, int ranks)
 {
     struct random random = random_seed(11);
@@ -59,8 +60,8 @@ static void test_rule(int32_t roots, int ranks)
         sums[least] += weights[heaviest];
         dealt[heaviest] = true;
     }
-    tap_ok(right, "%d roots on %d ranks: the heaviest first, to the least sum", (int)roots,
-           ranks);
+    tap_ok(right, "%d roots on %d ranks: the heaviest first, to the least sum",
+           (int)roots, ranks);
     alloc_free(weights);
     alloc_free(sums);
     alloc_free(owner);

@@ -84,9 +84,9 @@ static bool deal(const struct deck *deck, enum balance balance, int64_t *after,
     return right;
 }
 
-/* Greedily the largest load does not grow, and no rank is above the mean by more than half
- * a link for each of the senders that it receives from. In turn no rank has more links than
- * the mean by more than one for each rank. */
+/* Greedily the largest load does not grow, and no rank is above the mean by more than
+ * half a link for each of the senders that it receives from. In turn no rank has more
+ * links than the mean by more than one for each rank. */
 static void test_dealing(int ranks, int count, int64_t modulus, const char *links)
 {
     struct deck deck = deck_create(ranks, count, modulus);
@@ -98,8 +98,8 @@ static void test_dealing(int ranks, int count, int64_t modulus, const char *link
         int64_t before = largest_of(deck.loads, ranks), now = largest_of(after, ranks);
         const char *name = balance == BALANCE_GREEDY ? "greedily" : "in turn";
         tap_ok(right && sum_of(after, ranks) == sum_of(deck.loads, ranks),
-               "%d %s on %d ranks, %s: each has one rank, whenever it is asked", count, links,
-               ranks, name);
+               "%d %s on %d ranks, %s: each has one rank, whenever it is asked", count,
+               links, ranks, name);
         if (balance == BALANCE_GREEDY)
             tap_ok(now <= before && (ranks > 64 || now <= mean + 1 + ranks * modulus / 2),
                    "the largest load does not grow (%lld, then %lld; mean %lld)",
@@ -121,7 +121,8 @@ static void test_round_robin(void)
     const int expected[9] = {0, 1, 2, 0, 1, 2, 0, 1, 2};
     int to[9];
     deal_greedily((struct loads){loads, 3, 0}, costs, 9, to);
-    tap_ok(memcmp(to, expected, sizeof to) == 0, "equal links go in turn to two receivers");
+    tap_ok(memcmp(to, expected, sizeof to) == 0,
+           "equal links go in turn to two receivers");
     const int64_t half[3] = {60, 30, 0};
     deal_greedily((struct loads){half, 3, 1}, costs, 3, to);
     tap_ok(to[0] == 1 && to[1] == 1 && to[2] == 1, "a rank with the mean sends nothing");

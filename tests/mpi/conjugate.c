@@ -1,7 +1,7 @@
-/* Conjugate gradients (rad/beyond/conjugate.h, mpi/beyond/descent.c) and the caps on row sums
- * (mpi/beyond/caps.c) against Gaussian elimination: a made-up forest with random links,
- * whose form factors are written down here once more as a dense matrix. On any number of
- * ranks; rank 0 reports. */
+/* Conjugate gradients (rad/beyond/conjugate.h, mpi/beyond/descent.c) and the caps on row
+ * sums (mpi/beyond/caps.c) against Gaussian elimination: a made-up forest with random
+ * links, whose form factors are written down here once more as a dense matrix. On any
+ * number of ranks; rank 0 reports. */
 #include "mpi/assign.h"
 #include "mpi/beyond/beyond.h"
 
@@ -24,7 +24,8 @@ struct problem {
     int count;
 };
 
-/* Roots of made-up areas. Root 4 reflects nothing, root 6 nothing in one band; 0 and 3 glow. */
+/* Roots of made-up areas. Root 4 reflects nothing, root 6 nothing in one band; 0 and 3
+ * glow. */
 static struct scene *make_scene(double rho)
 {
     struct scene *scene = scene_create(ROOTS, ROOTS);
@@ -33,7 +34,8 @@ static struct scene *make_scene(double rho)
         scene->areas[i] = 0.05 + 0.1 * random_unit(&random);
         scene->material_of[i] = i;
         for (int c = 0; c < BANDS && i != BLACK; c++)
-            scene->materials[i].reflectance.band[c] = rho * (0.5 + 0.5 * random_unit(&random));
+            scene->materials[i].reflectance.band[c] =
+                rho * (0.5 + 0.5 * random_unit(&random));
     }
     scene->materials[6].reflectance.band[1] = 0.0;
     scene->materials[0].emission = (struct rgb){{3.0, 0.5, 1.0}};
@@ -42,8 +44,8 @@ static struct scene *make_scene(double rho)
     return scene;
 }
 
-/* A link from every root, and every child if there are any, to every other root, with random parts
- * where there are children. Every rank keeps its share. */
+/* A link from every root, and every child if there are any, to every other root, with
+ * random parts where there are children. Every rank keeps its share. */
 static void add_links(struct solver *solver, double strength)
 {
     struct forest *forest = solver->model.forest;
@@ -53,7 +55,8 @@ static void add_links(struct solver *solver, double strength)
         for (int32_t q = 0; q < ROOTS; q++) {
             struct link link = {.p = p, .q = q, .seen = LINK_ALL_SEEN};
             double least = fmin(forest_area(forest, p), forest_area(forest, q));
-            link.area = float_below(strength * 0.035 * least * (0.5 + random_unit(&random)));
+            link.area =
+                float_below(strength * 0.035 * least * (0.5 + random_unit(&random)));
             for (int k = 0; k < 3; k++) {
                 link.parts_p[k] = (uint8_t)random_below(&random, 86);
                 link.parts_q[k] = (uint8_t)random_below(&random, 86);
@@ -91,7 +94,8 @@ static void problem_free(struct problem *problem)
     scene_destroy(problem->scene);
 }
 
-/* The part of what a link has to do with `patch` that falls to the leaf: 0 if it is elsewhere. */
+/* The part of what a link has to do with `patch` that falls to the leaf: 0 if it is
+ * elsewhere. */
 static double share_of(const struct forest *forest, int32_t leaf, int32_t patch,
                        const uint8_t parts[3])
 {
@@ -101,8 +105,9 @@ static double share_of(const struct forest *forest, int32_t leaf, int32_t patch,
             return share;
         int32_t parent = forest->patches[p].parent;
         if (parent >= 0)
-            share *= parent == patch ? link_part(parts, p - forest->patches[parent].children)
-                                     : 0.25;
+            share *= parent == patch
+                         ? link_part(parts, p - forest->patches[parent].children)
+                         : 0.25;
     }
     return 0.0;
 }
@@ -126,8 +131,8 @@ static void build(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX
             }
         }
     MPI_Request request;
-    MPI_Iallreduce(own, f, LEAVES_MAX * LEAVES_MAX, MPI_DOUBLE, MPI_SUM, problem->comm->handle,
-                   &request);
+    MPI_Iallreduce(own, f, LEAVES_MAX * LEAVES_MAX, MPI_DOUBLE, MPI_SUM,
+                   problem->comm->handle, &request);
     comm_wait(&request);
 }
 
@@ -157,7 +162,8 @@ static void eliminate(double a[LEAVES_MAX][LEAVES_MAX], double *b, int n)
         b[k] /= a[k][k];
 }
 
-/* Largest difference of B from E + rho H with (1 - d F rho) H = d F E, over the largest B. */
+/* Largest difference of B from E + rho H with (1 - d F rho) H = d F E, over the largest
+ * B. */
 static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX])
 {
     static double a[LEAVES_MAX][LEAVES_MAX], h[LEAVES_MAX];
@@ -186,7 +192,8 @@ static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAV
     return worst / largest;
 }
 
-/* Largest |z| that is left where H is computed once more from B = E + rho H, by the links. */
+/* Largest |z| that is left where H is computed once more from B = E + rho H, by the
+ * links. */
 static double residual(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX])
 {
     const struct solver *solver = problem->solver;
@@ -200,13 +207,17 @@ static double residual(const struct problem *problem, double f[LEAVES_MAX][LEAVE
                 h += f[i][j] * solver->beyond->caps.factor[leaf] *
                      forest->patches[problem->leaves[j]].radiosity.band[c];
             if (solver->homes.own[forest->patches[leaf].id.root])
-                worst = fmax(worst, fabs(h - solver->beyond->descent.vectors.irradiance[leaf].band[c]));
+                worst =
+                    fmax(worst,
+                         fabs(h -
+                              solver->beyond->descent.vectors.irradiance[leaf].band[c]));
         }
     return comm_largest(problem->comm, worst);
 }
 
-/* By how much the capped row sum R of a leaf times rho exceeds c = max(0.95, (1 + rho) / 2), at
- * most; and by how much a factor differs from min(1, c / (rho R)). Counts capped rows. */
+/* By how much the capped row sum R of a leaf times rho exceeds c = max(0.95, (1 + rho) /
+ * 2), at most; and by how much a factor differs from min(1, c / (rho R)). Counts capped
+ * rows. */
 static double above_cap(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX],
                         int64_t *capped)
 {
@@ -221,7 +232,8 @@ static double above_cap(const struct problem *problem, double f[LEAVES_MAX][LEAV
         double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2])), row = 0.0;
         for (int j = 0; j < problem->count; j++)
             row += f[i][j];
-        double factor = solver->beyond->caps.factor[leaf], most = fmax(0.95, 0.5 * (1.0 + largest));
+        double factor = solver->beyond->caps.factor[leaf],
+               most = fmax(0.95, 0.5 * (1.0 + largest));
         double wanted = largest * row > most ? most / (largest * row) : 1.0;
         off = fmax(off, fmax(factor * row * largest - most, fabs(factor - wanted)));
         *capped += factor < 1.0;
@@ -244,8 +256,11 @@ static void share_factors(const struct problem *problem)
 static void test_dense(const struct comm *comm, double strength, double rho, int splits)
 {
     static double f[LEAVES_MAX][LEAVES_MAX];
-    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG, .tolerance = 1e-12,
-                                  .max_level = 15, .max_iterations = 1000};
+    struct criterion criterion = {.oracle = ORACLE_ERROR,
+                                  .solver = SOLVER_CG,
+                                  .tolerance = 1e-12,
+                                  .max_level = 15,
+                                  .max_iterations = 1000};
     struct problem problem = problem_make(comm, strength, rho, splits, &criterion);
     struct vote vote = solve_links(problem.solver);
     share_factors(&problem);
@@ -253,7 +268,8 @@ static void test_dense(const struct comm *comm, double strength, double rho, int
     int64_t capped;
     double off = deviation(&problem, f), rest = residual(&problem, f);
     double above = above_cap(&problem, f, &capped);
-    int steps = (int)problem.solver->turn.iteration - 1; /* the first transfer is of B itself */
+    int steps =
+        (int)problem.solver->turn.iteration - 1; /* the first transfer is of B itself */
     int most = 0; /* in exact arithmetic as many steps as there are unknowns */
     for (int i = 0; i < problem.count; i++)
         most += rgb_sum(forest_material(problem.solver->model.forest,
@@ -261,7 +277,8 @@ static void test_dense(const struct comm *comm, double strength, double rho, int
     if (comm->rank == 0) {
         /* The bound asks for 1e-12 of all light; fluxes are rounded to 2^-61 or so. */
         tap_ok(vote.converged && off < 1e-9,
-               "links times %g, rho to %g, %d leaves: as by elimination, to %.1e of the largest B",
+               "links times %g, rho to %g, %d leaves: as by elimination, to %.1e of the "
+               "largest B",
                strength, rho, problem.count, off);
         tap_ok(rest < 1e-9, "and what arrives is what was solved for: %.1e W/m^2", rest);
         tap_ok(steps <= most, "in %d steps, at most %d", steps, most);
@@ -272,19 +289,23 @@ static void test_dense(const struct comm *comm, double strength, double rho, int
     problem_free(&problem);
 }
 
-/* From the answer of before the next start is at once good enough, with factors that are found
- * again. */
+/* From the answer of before the next start is at once good enough, with factors that are
+ * found again. */
 static void test_restart(const struct comm *comm)
 {
-    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG, .tolerance = 1e-6,
-                                  .max_level = 15, .max_iterations = 1000};
+    struct criterion criterion = {.oracle = ORACLE_ERROR,
+                                  .solver = SOLVER_CG,
+                                  .tolerance = 1e-6,
+                                  .max_level = 15,
+                                  .max_iterations = 1000};
     struct problem problem = problem_make(comm, STRONG, 0.9, 4, &criterion);
     solve_links(problem.solver);
     int64_t before = problem.solver->turn.iteration;
     problem.solver->turn.fresh = true;
     struct vote vote = solve_links(problem.solver);
     if (comm->rank == 0)
-        tap_ok(before > 3 && vote.converged && problem.solver->turn.iteration == before + 1,
+        tap_ok(before > 3 && vote.converged &&
+                   problem.solver->turn.iteration == before + 1,
                "from its own answer it needs no step");
     problem_free(&problem);
 }
@@ -298,7 +319,8 @@ static double difference(const struct problem *a, const struct problem *b)
         for (int c = 0; c < BANDS; c++) {
             int32_t leaf = a->leaves[i];
             double at = p->patches[leaf].radiosity.band[c];
-            missing += forest_area(p, leaf) * fabs(at - q->patches[leaf].radiosity.band[c]);
+            missing +=
+                forest_area(p, leaf) * fabs(at - q->patches[leaf].radiosity.band[c]);
             light += forest_area(p, leaf) * at;
         }
     return missing / light;
@@ -307,8 +329,11 @@ static double difference(const struct problem *a, const struct problem *b)
 /* The bound on what is missing holds after each step, and is not much too large. */
 static void test_bound(const struct comm *comm, double strength)
 {
-    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG, .tolerance = 1e-12,
-                                  .max_level = 15, .max_iterations = 1000};
+    struct criterion criterion = {.oracle = ORACLE_ERROR,
+                                  .solver = SOLVER_CG,
+                                  .tolerance = 1e-12,
+                                  .max_level = 15,
+                                  .max_iterations = 1000};
     struct problem exact = problem_make(comm, strength, 0.8, 3, &criterion);
     double first = 0.0, last = 0.0, closest = 0.0, furthest = 1.0;
     bool counted = true;
@@ -327,18 +352,23 @@ static void test_bound(const struct comm *comm, double strength)
     }
     if (comm->rank == 0)
         tap_ok(counted && last < 1e-3 * first && closest <= 1.0 && furthest >= 0.01,
-               "links times %g: what is missing is %.3f to %.3f of the bound on it, %.1e after none "
-               "to %.1e after 7 steps", strength, furthest, closest, first, last);
+               "links times %g: what is missing is %.3f to %.3f of the bound on it, %.1e "
+               "after none "
+               "to %.1e after 7 steps",
+               strength, furthest, closest, first, last);
     problem_free(&exact);
 }
 
-/* Where all rows, reflectances and emissions are the same, the bound is what is missing. Rows
- * sum to 1. */
+/* Where all rows, reflectances and emissions are the same, the bound is what is missing.
+ * Rows sum to 1. */
 static void test_bound_is_sharp(const struct comm *comm)
 {
     const double rho = 0.6, area = 0.1;
-    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG, .tolerance = 1e-12,
-                                  .max_level = 15, .max_iterations = 1};
+    struct criterion criterion = {.oracle = ORACLE_ERROR,
+                                  .solver = SOLVER_CG,
+                                  .tolerance = 1e-12,
+                                  .max_level = 15,
+                                  .max_iterations = 1};
     struct scene *scene = make_scene(0.0);
     for (int32_t i = 0; i < ROOTS; i++) {
         scene->areas[i] = area;
@@ -349,8 +379,12 @@ static void test_bound_is_sharp(const struct comm *comm)
     int number = 0;
     for (int32_t p = 0; p < ROOTS; p++)
         for (int32_t q = p + 1; q < ROOTS; q++) {
-            struct link link = {.p = p, .q = q, .seen = LINK_ALL_SEEN, .parts_p = {64, 64, 64},
-                                .parts_q = {64, 64, 64}, .area = (float)(area / (ROOTS - 1))};
+            struct link link = {.p = p,
+                                .q = q,
+                                .seen = LINK_ALL_SEEN,
+                                .parts_p = {64, 64, 64},
+                                .parts_q = {64, 64, 64},
+                                .area = (float)(area / (ROOTS - 1))};
             if (number++ % comm->size == comm->rank)
                 link_list_append(&solver->links, link);
         }
@@ -358,8 +392,10 @@ static void test_bound_is_sharp(const struct comm *comm)
     struct vote vote = solve_links(solver);
     double missing = 1.0 / (1.0 - rho) - 1.0; /* B is E as yet */
     if (comm->rank == 0)
-        tap_ok(fabs(vote.remaining / missing - 1.0) < 1e-6, "what a furnace lacks after one transfer is %.7f of the "
-               "bound", missing / vote.remaining);
+        tap_ok(fabs(vote.remaining / missing - 1.0) < 1e-6,
+               "what a furnace lacks after one transfer is %.7f of the "
+               "bound",
+               missing / vote.remaining);
     solver_destroy(solver);
     scene_destroy(scene);
 }
@@ -367,25 +403,32 @@ static void test_bound_is_sharp(const struct comm *comm)
 /* On any number of ranks the same bits as on one. */
 static void test_ranks(const struct comm *comm, const struct comm *self, double strength)
 {
-    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG, .tolerance = 1e-9,
-                                  .max_level = 15, .max_iterations = 1000,
+    struct criterion criterion = {.oracle = ORACLE_ERROR,
+                                  .solver = SOLVER_CG,
+                                  .tolerance = 1e-9,
+                                  .max_level = 15,
+                                  .max_iterations = 1000,
                                   .balance = BALANCE_DEFAULT};
     struct problem parallel = problem_make(comm, strength, 0.97, 5, &criterion);
     struct problem alone = problem_make(self, strength, 0.97, 5, &criterion);
     struct vote a = solve_links(parallel.solver), b = solve_links(alone.solver);
-    bool same = a.absorbed == b.absorbed && a.escaped == b.escaped && a.remaining == b.remaining &&
+    bool same = a.absorbed == b.absorbed && a.escaped == b.escaped &&
+                a.remaining == b.remaining &&
                 parallel.solver->turn.iteration == alone.solver->turn.iteration &&
                 forest_checksum(parallel.solver->model.forest) ==
                     forest_checksum(alone.solver->model.forest);
-    for (int64_t p = 0; p < alone.solver->model.forest->count; p++) /* all ranks know all radiosities */
+    for (int64_t p = 0; p < alone.solver->model.forest->count;
+         p++) /* all ranks know all radiosities */
         same = same && memcmp(&parallel.solver->model.forest->patches[p].radiosity,
-                              &alone.solver->model.forest->patches[p].radiosity, sizeof(struct rgb)) == 0;
+                              &alone.solver->model.forest->patches[p].radiosity,
+                              sizeof(struct rgb)) == 0;
     struct error error = {0};
     if (!same)
         error_set(&error, EXIT_FAILED, "rank %d", comm->rank);
     same = comm_agree(comm, &error);
     if (comm->rank == 0)
-        tap_ok(same, "links times %g: on %d ranks as on one, to the bit", strength, comm->size);
+        tap_ok(same, "links times %g: on %d ranks as on one, to the bit", strength,
+               comm->size);
     problem_free(&parallel);
     problem_free(&alone);
 }

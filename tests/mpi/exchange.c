@@ -1,11 +1,11 @@
-/* The exchanges of the distributed algorithm on a made-up forest, on any number of ranks: gather,
- * push-pull and scatter end with the same forest as one rank alone, links that migrate arrive
- * once and mean the same, and the vote adds up to the same sums. Collectives give what they say,
- * and a cube is refined alike on all ranks.
+/* The exchanges of the distributed algorithm on a made-up forest, on any number of ranks:
+ * gather, push-pull and scatter end with the same forest as one rank alone, links that
+ * migrate arrive once and mean the same, and the vote adds up to the same sums.
+ * Collectives give what they say, and a cube is refined alike on all ranks.
  *
- * Every rank knows all of the made-up links and holds those that a hash deals to it; beside the
- * parallel solver runs one on MPI_COMM_SELF that holds them all. To be run with mpiexec; rank 0
- * reports. */
+ * Every rank knows all of the made-up links and holds those that a hash deals to it;
+ * beside the parallel solver runs one on MPI_COMM_SELF that holds them all. To be run
+ * with mpiexec; rank 0 reports. */
 #define _POSIX_C_SOURCE 200112L
 #include <limits.h>
 #include <stdio.h>
@@ -25,7 +25,8 @@
 
 enum { ROOTS = 23, LINKS = 4000 };
 
-/* A scene of triangles with all the material that the exchanges need: areas and reflectances. */
+/* A scene of triangles with all the material that the exchanges need: areas and
+ * reflectances. */
 static struct scene *make_scene(void)
 {
     struct scene *scene = scene_create(ROOTS, 2);
@@ -49,7 +50,8 @@ static struct patch_id random_id(struct random *random)
     return id;
 }
 
-/* A fifth of the links are dealt to nobody in the first round: their patches appear later. */
+/* A fifth of the links are dealt to nobody in the first round: their patches appear
+ * later. */
 static void add_links(struct solver *solver, int round)
 {
     struct random random = random_seed(99);
@@ -71,7 +73,9 @@ static void add_links(struct solver *solver, int round)
 
 static struct solver *make_solver(const struct comm *comm, const struct scene *scene)
 {
-    const struct criterion criterion = {.epsilon = 1.0, .tolerance = 1e-3, .max_level = 15};
+    const struct criterion criterion = {.epsilon = 1.0,
+                                        .tolerance = 1e-3,
+                                        .max_level = 15};
     struct solver *solver = beyond_create(comm, scene, NULL, &criterion);
     solver_assign_roots(solver);
     return solver;
@@ -135,11 +139,13 @@ static void test_rounds(struct solver *parallel, struct solver *alone)
         struct vote a = iterate(parallel, round), b = iterate(alone, round);
         same_forest = same_forest && forest_checksum(parallel->model.forest) ==
                                          forest_checksum(alone->model.forest);
-        same_size = same_size && parallel->model.forest->count == alone->model.forest->count;
+        same_size =
+            same_size && parallel->model.forest->count == alone->model.forest->count;
         same_vote = same_vote && a.links == b.links && a.absorbed == b.absorbed &&
                     a.escaped == b.escaped && a.remaining == b.remaining;
     }
-    report(comm, same_forest, "four iterations: the same trees as on one rank, to the bit");
+    report(comm, same_forest,
+           "four iterations: the same trees as on one rank, to the bit");
     report(comm, same_size, "no rank has a patch that another lacks");
     report(comm, same_vote, "the votes agree with one rank's, to the bit");
 }
@@ -164,9 +170,12 @@ static int64_t fingerprint(const struct solver *solver)
         uint64_t word = p.root + 31u * (uint64_t)p.hierarchy + 1009u * (uint64_t)q.root +
                         99991u * (uint64_t)q.hierarchy + 7u * (uint64_t)link->cost;
         for (int k = 0; k < 3; k++)
-            word = 257u * word + 65537u * (uint64_t)link->parts_p[k] + (uint64_t)link->parts_q[k];
-        word = 259u * word + 17u * (uint64_t)(uint32_t)link->blocker + (uint64_t)link->seen;
-        sum += (word * UINT64_C(0x9E3779B97F4A7C15) >> 16) + (uint64_t)((double)link->area * 1e15);
+            word = 257u * word + 65537u * (uint64_t)link->parts_p[k] +
+                   (uint64_t)link->parts_q[k];
+        word =
+            259u * word + 17u * (uint64_t)(uint32_t)link->blocker + (uint64_t)link->seen;
+        sum += (word * UINT64_C(0x9E3779B97F4A7C15) >> 16) +
+               (uint64_t)((double)link->area * 1e15);
     }
     return (int64_t)(sum & UINT64_C(0xffffffffffff));
 }
@@ -178,14 +187,16 @@ static void test_migration(struct solver *parallel, struct solver *alone)
     int64_t count = total_of(comm, parallel->links.count);
     bool right_place = true;
     for (int turn = 1; turn <= 3; turn++) {
-        int *destination = alloc_array((size_t)parallel->links.count, sizeof *destination);
+        int *destination =
+            alloc_array((size_t)parallel->links.count, sizeof *destination);
         for (int64_t i = 0; i < parallel->links.count; i++)
             destination[i] = parallel->links.items[i].blocker / turn % comm->size;
         links_migrate(parallel, &parallel->links, destination);
         alloc_free(destination);
         for (int64_t i = 0; i < parallel->links.count; i++)
-            right_place = right_place && parallel->links.items[i].blocker / turn % comm->size ==
-                                             comm->rank;
+            right_place =
+                right_place &&
+                parallel->links.items[i].blocker / turn % comm->size == comm->rank;
     }
     int64_t after = total_of(comm, fingerprint(parallel)) & INT64_C(0xffffffffffff);
     report(comm, right_place, "each link is where it was sent");
@@ -193,7 +204,9 @@ static void test_migration(struct solver *parallel, struct solver *alone)
            "links that migrate arrive once and unchanged");
     iterate(parallel, 2);
     iterate(alone, 2);
-    report(comm, forest_checksum(parallel->model.forest) == forest_checksum(alone->model.forest),
+    report(comm,
+           forest_checksum(parallel->model.forest) ==
+               forest_checksum(alone->model.forest),
            "and carry the same light from their new ranks");
 }
 
@@ -229,7 +242,8 @@ static void test_sums(const struct comm *comm)
     int size = comm->size;
     double values[4] = {comm->rank == size / 2 ? 1e300 : -1.0, -1.0 - comm->rank,
                         comm->rank - 0.5 * size, comm->rank == size - 1 ? HUGE_VAL : 0.0};
-    bool right = comm_largest(comm, values[0]) == 1e300 && comm_largest(comm, values[1]) == -1.0 &&
+    bool right = comm_largest(comm, values[0]) == 1e300 &&
+                 comm_largest(comm, values[1]) == -1.0 &&
                  comm_largest(comm, values[2]) == size - 1 - 0.5 * size &&
                  comm_largest(comm, values[3]) == HUGE_VAL;
     report(comm, right, "the largest value of all ranks, whatever its sign");
@@ -248,21 +262,23 @@ enum windows { WINDOWS_WORK, WINDOWS_REFUSED, WINDOWS_EMPTY };
 static enum windows windows;
 
 #ifndef MPI_SERIAL_MPI_H
-int MPI_Win_allocate_shared(MPI_Aint size, int unit, MPI_Info info, MPI_Comm comm, void *base,
-                            MPI_Win *window)
+int MPI_Win_allocate_shared(MPI_Aint size, int unit, MPI_Info info, MPI_Comm comm,
+                            void *base, MPI_Win *window)
 {
     return windows == WINDOWS_REFUSED
                ? MPI_ERR_OTHER
                : PMPI_Win_allocate_shared(size, unit, info, comm, base, window);
 }
 
-/* A window that is empty lies in a file without a byte: to touch it is an error of the bus. */
+/* A window that is empty lies in a file without a byte: to touch it is an error of the
+ * bus. */
 int MPI_Win_shared_query(MPI_Win window, int rank, MPI_Aint *size, int *unit, void *base)
 {
     int code = PMPI_Win_shared_query(window, rank, size, unit, base);
     if (windows == WINDOWS_EMPTY) {
         FILE *file = tmpfile();
-        void *nothing = mmap(NULL, (size_t)*size, PROT_READ | PROT_WRITE, MAP_SHARED, fileno(file), 0);
+        void *nothing = mmap(NULL, (size_t)*size, PROT_READ | PROT_WRITE, MAP_SHARED,
+                             fileno(file), 0);
         memcpy(base, &nothing, sizeof nothing);
         fclose(file);
     }
@@ -289,14 +305,16 @@ static struct scene *full_scene(const struct comm *comm, bool normals)
 /* Rays through the cube meet the same as with an octree that this rank builds. */
 static bool sees_alike(const struct octree *octree, const struct scene *scene)
 {
-    struct octree *own = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *own =
+        octree_create(scene->triangles, scene->planes, scene->input_count);
     struct random random = random_seed(5);
     bool alike = true;
     for (int i = 0; i < 200; i++) {
         struct octree_counts counts[2] = {{0}};
         struct octree_hit hits[2];
         struct vec3 from = {0.2 * random_unit(&random), 0.2 * random_unit(&random), 0.1};
-        struct vec3 along = {random_unit(&random) - 0.5, random_unit(&random) - 0.5, 0.01 * i - 1.0};
+        struct vec3 along = {random_unit(&random) - 0.5, random_unit(&random) - 0.5,
+                             0.01 * i - 1.0};
         bool first = octree_first_hit(octree, from, along, false, &hits[0], &counts[0]);
         bool second = octree_first_hit(own, from, along, false, &hits[1], &counts[1]);
         alike = alike && first && second && hits[0].triangle == hits[1].triangle &&
@@ -307,7 +325,8 @@ static bool sees_alike(const struct octree *octree, const struct scene *scene)
     return alike;
 }
 
-/* How many ranks look into this rank's copy if `ranks_max` may: all ranks of the test run on one node. */
+/* How many ranks look into this rank's copy if `ranks_max` may: all ranks of the test run
+ * on one node. */
 static int sharing(const struct comm *comm, int ranks_max)
 {
     if (ranks_max >= comm->size)
@@ -316,18 +335,18 @@ static int sharing(const struct comm *comm, int ranks_max)
     return left < ranks_max ? left : ranks_max;
 }
 
-/* The scene of rank 0 and an octree over it come to all, with normals if it has some. `together`: so
- * many ranks look into this rank's copy. */
-static void test_broadcast(const struct comm *comm, struct node_policy policy, bool normals,
-                           int together, const char *name)
+/* The scene of rank 0 and an octree over it come to all, with normals if it has some.
+ * `together`: so many ranks look into this rank's copy. */
+static void test_broadcast(const struct comm *comm, struct node_policy policy,
+                           bool normals, int together, const char *name)
 {
     struct scene *scene = full_scene(comm, normals);
     struct octree *octree;
     struct node_block block = scene_broadcast(comm, policy, &scene, &octree);
     bool right = scene->input_count == 12 && scene->two_sided && scene->two_sided_lamps &&
-                 scene->areas[11] > 0.0 &&
-                 scene->materials[5].emission.band[1] == 2.0 &&
-                 strcmp(scene->group_names, "default") == 0 && !scene->normals == !normals;
+                 scene->areas[11] > 0.0 && scene->materials[5].emission.band[1] == 2.0 &&
+                 strcmp(scene->group_names, "default") == 0 &&
+                 !scene->normals == !normals;
     for (int i = 0; i < 3 * 12 && right && normals; i++)
         right = scene->normals[i].x == i && scene->normals[i].z == -i;
     right = right && sees_alike(octree, scene);
@@ -342,7 +361,8 @@ static void test_broadcast(const struct comm *comm, struct node_policy policy, b
 static void test_broadcasts(const struct comm *comm)
 {
     struct node_policy policy = {0, INT_MAX};
-    test_broadcast(comm, policy, true, comm->size, "a scene comes to all ranks, one copy per node");
+    test_broadcast(comm, policy, true, comm->size,
+                   "a scene comes to all ranks, one copy per node");
     test_broadcast(comm, policy, false, comm->size, "also one without normals");
     policy.ranks_max = 2;
     test_broadcast(comm, policy, true, sharing(comm, 2), "one copy for every two ranks");
@@ -367,8 +387,9 @@ static bool trees_agree(const struct solver *solver)
     return on_all(solver->comm, own == first);
 }
 
-/* A cube, refined twice: right after a refinement all ranks have the same trees, which are those
- * that one rank makes, though the links that split them live on different ranks. */
+/* A cube, refined twice: right after a refinement all ranks have the same trees, which
+ * are those that one rank makes, though the links that split them live on different
+ * ranks. */
 static void test_refinement(const struct comm *comm, const struct comm *self,
                             const struct criterion *criterion, const char *name)
 {
@@ -378,7 +399,8 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
     for (int face = 0; face < 6; face++)
         cube->materials[face] = (struct material){{{0.3 + 0.1 * face, 0.5, 0.2}},
                                                   {{face == 1, face == 1, face == 2}}};
-    struct octree *octree = octree_create(cube->triangles, cube->planes, cube->input_count);
+    struct octree *octree =
+        octree_create(cube->triangles, cube->planes, cube->input_count);
     for (int k = 0; k < 2; k++) {
         solvers[k] = beyond_create(comms[k], cube, octree, criterion);
         solver_link_roots(solvers[k]);
@@ -390,18 +412,22 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
         int64_t before = solvers[0]->model.forest->count;
         for (int k = 0; k < 2; k++)
             solver_refine(solvers[k]);
-        const struct forest *here = solvers[0]->model.forest, *there = solvers[1]->model.forest;
+        const struct forest *here = solvers[0]->model.forest,
+                            *there = solvers[1]->model.forest;
         int64_t split = total_of(comm, solvers[0]->turn.split_here);
-        apart = apart && (comm->size == 1 || pass > 0 || solvers[0]->turn.split_here < split);
+        apart =
+            apart && (comm->size == 1 || pass > 0 || solvers[0]->turn.split_here < split);
         agree = agree && trees_agree(solvers[0]);
         alike = alike && here->count == there->count &&
                 forest_checksum(here) == forest_checksum(there);
         grows = grows && (pass > 0 || here->count > before);
         for (int k = 0; k < 2; k++)
             vote[k] = solve_links(solvers[k]);
-        even = even && trees_agree(solvers[0]) && forest_checksum(here) == forest_checksum(there) &&
+        even = even && trees_agree(solvers[0]) &&
+               forest_checksum(here) == forest_checksum(there) &&
                vote[0].links == vote[1].links && vote[0].split == vote[1].split &&
-               vote[0].remaining == vote[1].remaining && vote[0].absorbed == vote[1].absorbed &&
+               vote[0].remaining == vote[1].remaining &&
+               vote[0].absorbed == vote[1].absorbed &&
                vote[0].escaped == vote[1].escaped &&
                solvers[0]->turn.iteration == solvers[1]->turn.iteration;
     }
@@ -415,7 +441,8 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
     scene_destroy(cube);
 }
 
-/* With more ranks than roots some own nothing; the picture has fewer rows than ranks too. */
+/* With more ranks than roots some own nothing; the picture has fewer rows than ranks
+ * too. */
 static void test_picture(const struct comm *comm)
 {
     enum { HEIGHT = 5, ROW = 6 };
@@ -432,7 +459,8 @@ static void test_picture(const struct comm *comm)
     alloc_free(picture);
 }
 
-/* Records in pieces of any size arrive as they do in one: from rank s to rank r go (7 s + 3 r) mod 11. */
+/* Records in pieces of any size arrive as they do in one: from rank s to rank r go (7 s +
+ * 3 r) mod 11. */
 static void test_pieces(struct comm *comm)
 {
     enum { MOST = 11 };
@@ -488,7 +516,8 @@ int main(int argc, char **argv)
     }
     criterion = criterion_best(4e-5, 10, 1e-4);
     criterion.balance = BALANCE_DEFAULT;
-    test_refinement(&comm, &self, &criterion, "error oracle and cg: several ranks split links");
+    test_refinement(&comm, &self, &criterion,
+                    "error oracle and cg: several ranks split links");
     scene_destroy(scene);
     comm_stop(&comm);
     return comm.rank == 0 ? tap_done() : alloc_balance() != 0;

@@ -1,5 +1,5 @@
-/* The greedy plan: every unit of load is placed once, no rank both sends and receives, the
- * largest load never grows, and what remains is the mean, for up to 1,024 ranks. */
+/* The greedy plan: every unit of load is placed once, no rank both sends and receives,
+ * the largest load never grows, and what remains is the mean, for up to 1,024 ranks. */
 #include "mpi/plan.h"
 
 #include "tests/random.h"
@@ -35,7 +35,8 @@ static struct outcome follow_plan(const int64_t *loads, int ranks)
         outcome.sender_receives = outcome.sender_receives || (sends[r] && receives[r]);
         outcome.negative = outcome.negative || now[r] < 0;
         outcome.largest_grew = outcome.largest_grew || now[r] > largest;
-        outcome.uneven = outcome.uneven || now[r] < total / ranks || now[r] > total / ranks + 1;
+        outcome.uneven =
+            outcome.uneven || now[r] < total / ranks || now[r] > total / ranks + 1;
         after += now[r];
     }
     outcome.wrong_total = after != total;
@@ -48,8 +49,8 @@ static struct outcome follow_plan(const int64_t *loads, int ranks)
 
 static bool is_right(struct outcome o)
 {
-    return !(o.sender_receives || o.negative || o.largest_grew || o.uneven || o.wrong_total ||
-             o.self);
+    return !(o.sender_receives || o.negative || o.largest_grew || o.uneven ||
+             o.wrong_total || o.self);
 }
 
 static void test_paper_example(void)
@@ -61,7 +62,8 @@ static void test_paper_example(void)
     tap_ok(t[0].from == 0 && t[0].to == 1 && t[0].load == 40,
            "the largest sender fills the emptiest receiver first");
     tap_ok(t[1].from == 0 && t[1].to == 3 && t[1].load == 10, "then the next");
-    tap_ok(t[2].from == 2 && t[2].to == 3 && t[2].load == 10, "the second sender follows");
+    tap_ok(t[2].from == 2 && t[2].to == 3 && t[2].load == 10,
+           "the second sender follows");
 }
 
 static void test_random_loads(int ranks, int trials, uint64_t modulus)
