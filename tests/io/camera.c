@@ -1,6 +1,6 @@
-/* Tests of io/scene/camera.h. Proved are: what a view file means and which line of it is wrong; that
- * rays make the angles that trigonometry says; and that a camera that frames a scene has all of it
- * in its picture, and little more. */
+/* Tests of io/scene/camera.h. Proved are: what a view file means and which line of it is
+ * wrong; that rays make the angles that trigonometry says; and that a camera that frames
+ * a scene has all of it in its picture, and little more. */
 #include "io/scene/camera.h"
 
 #include <math.h>
@@ -38,14 +38,15 @@ static void test_keywords(void)
 {
     struct camera camera;
     tap_ok(read_view("# all\r\nsize 640 480 # pixels\n\nup 0 0 2\n  fov 30.5\nat 1 -2 3\n"
-                     "eye 4 \\\n5e-1 -6\n", &camera) &&
+                     "eye 4 \\\n5e-1 -6\n",
+                     &camera) &&
                is_point(camera.eye, 4, 0.5, -6) && is_point(camera.at, 1, -2, 3) &&
-               is_point(camera.up, 0, 0, 2) && camera.fov == 30.5 && camera.width == 640 &&
-               camera.height == 480 && !camera.fronts_only,
+               is_point(camera.up, 0, 0, 2) && camera.fov == 30.5 &&
+               camera.width == 640 && camera.height == 480 && !camera.fronts_only,
            "all keywords, in any order, with comments");
     tap_ok(read_view(PLACE, &camera) && is_point(camera.eye, 0, 0, 5) &&
-               is_point(camera.at, 0, 0, 0) && is_point(camera.up, 0, 1, 0) && camera.fov == 45.0 &&
-               camera.width == 512 && camera.height == 512,
+               is_point(camera.at, 0, 0, 0) && is_point(camera.up, 0, 1, 0) &&
+               camera.fov == 45.0 && camera.width == 512 && camera.height == 512,
            "defaults");
     tap_ok(read_view("eye 0 9 0\nat 0 1 0\n", &camera) && is_point(camera.up, 0, 0, 1),
            "looking along the default up, up is z");
@@ -85,7 +86,8 @@ static void test_bad_lines(void)
 static void test_bad_values(void)
 {
     static const char *const fovs[] = {"0", "-1", "180", "1e9"};
-    static const char *const sizes[] = {"0 5", "5 0", "-5 5", "5.5 5", "5 32769", "1e9 1"};
+    static const char *const sizes[] = {"0 5", "5 0", "-5 5", "5.5 5", "5 32769",
+                                        "1e9 1"};
     char text[100];
     for (size_t i = 0; i < sizeof fovs / sizeof fovs[0]; i++) {
         snprintf(text, sizeof text, PLACE "fov %s\n", fovs[i]);
@@ -111,7 +113,8 @@ static void test_bad_views(void)
     check_refused(PLACE "\001\n", VIEW ": not a text file");
 }
 
-/* Reads `size` bytes as a view file. True if that ends well or in one line that names the file. */
+/* Reads `size` bytes as a view file. True if that ends well or in one line that names the
+ * file. */
 static bool ends_well(const char *bytes, size_t size)
 {
     struct camera camera;
@@ -123,7 +126,8 @@ static bool ends_well(const char *bytes, size_t size)
     if (camera_read(VIEW, &camera, &error))
         return error.code == EXIT_DONE && camera.fov > 0.0 && camera.fov < 180.0 &&
                camera.width >= 1 && camera.height >= 1;
-    return error.code == EXIT_USAGE && strncmp(error.text, VIEW ":", strlen(VIEW) + 1) == 0 &&
+    return error.code == EXIT_USAGE &&
+           strncmp(error.text, VIEW ":", strlen(VIEW) + 1) == 0 &&
            !strchr(error.text, '\n');
 }
 
@@ -152,15 +156,16 @@ static void test_missing_view(void)
 {
     struct camera camera;
     error = (struct error){EXIT_DONE, ""};
-    tap_ok(!camera_read("build/camera_test_absent", &camera, &error) && error.code == EXIT_USAGE &&
+    tap_ok(!camera_read("build/camera_test_absent", &camera, &error) &&
+               error.code == EXIT_USAGE &&
                strncmp(error.text, "build/camera_test_absent: cannot read: ", 39) == 0,
            "%s", error.text);
 }
 
 /* --- rays --- */
 
-/* A ray as (right, up) per unit of forward, in the frame of a camera at (0, 0, 5) that looks
- * along -z: right is x and up is y. */
+/* A ray as (right, up) per unit of forward, in the frame of a camera at (0, 0, 5) that
+ * looks along -z: right is x and up is y. */
 static struct vec3 slope(const struct camera *camera, double x, double y)
 {
     struct vec3 ray = camera_ray(camera, x, y);
@@ -181,8 +186,10 @@ static void check_angles(struct camera *camera, double fov, int width, int heigh
     camera->width = width;
     camera->height = height;
     struct vec3 middle = slope(camera, 0.5 * width, 0.5 * height);
-    struct vec3 top = slope(camera, 0.5 * width, 0.0), bottom = slope(camera, 0.5 * width, height);
-    struct vec3 left = slope(camera, 0.0, 0.5 * height), right = slope(camera, width, 0.5 * height);
+    struct vec3 top = slope(camera, 0.5 * width, 0.0),
+                bottom = slope(camera, 0.5 * width, height);
+    struct vec3 left = slope(camera, 0.0, 0.5 * height),
+                right = slope(camera, width, 0.5 * height);
     tap_ok(is_point(middle, 0.0, 0.0, 0.0) && is_tangent(top.y, half) &&
                is_tangent(-bottom.y, half) && top.x == 0.0 && bottom.x == 0.0,
            "%g degrees, %d x %d: up and down", fov, width, height);
@@ -193,7 +200,8 @@ static void check_angles(struct camera *camera, double fov, int width, int heigh
 
 static void test_angles(void)
 {
-    static const double fovs[] = {0.001, 1.0, 20.0, 39.3076, 45.0, 60.0, 90.0, 120.0, 150.0, 179.0};
+    static const double fovs[] = {0.001, 1.0, 20.0, 39.3076, 45.0, 60.0, 90.0, 120.0,
+                                  150.0, 179.0};
     struct camera camera;
     read_view(PLACE, &camera);
     for (size_t i = 0; i < sizeof fovs / sizeof fovs[0]; i++)
@@ -225,7 +233,7 @@ static void test_directions(void)
         struct vec3 middle = camera_ray(&camera, 150.0, 100.0);
         struct vec3 top = camera_ray(&camera, 150.0, 0.0);
         double size = vec3_length(forward);
-        double sine = vec3_length(side) / (size * vec3_length(camera.up)); /* up is as good */
+        double sine = vec3_length(side) / (size * vec3_length(camera.up));
         right += fabs(vec3_dot(middle, forward) / size - 1.0) < 1e-14 &&
                  vec3_length(vec3_cross(middle, forward)) < 1e-14 * size &&
                  fabs(vec3_dot(top, side)) < 1e-14 / sine * vec3_length(side) &&
@@ -262,12 +270,13 @@ static struct scene *make_scene(struct vec3 low, struct vec3 high)
     return scene;
 }
 
-/* Whether a camera in the direction `towards` has the whole box in its picture, and one a fifth
- * nearer has not. */
+/* Whether a camera in the direction `towards` has the whole box in its picture, and one a
+ * fifth nearer has not. */
 static bool box_is_framed(struct vec3 low, struct vec3 high, struct vec3 towards)
 {
     struct scene *scene = make_scene(low, high);
-    struct camera camera = {.up = {0.0, 1.0, 0.0}, .fov = 40.0, .width = 150, .height = 400};
+    struct camera camera = {
+        .up = {0.0, 1.0, 0.0}, .fov = 40.0, .width = 150, .height = 400};
     camera_frame(&camera, scene, towards);
     struct camera nearer = camera;
     nearer.eye = vec3_add(vec3_scale(camera.eye, 0.8), vec3_scale(camera.at, 0.2));
@@ -279,8 +288,8 @@ static bool box_is_framed(struct vec3 low, struct vec3 high, struct vec3 towards
         near_sees = near_sees && camera_sees(&nearer, corner);
     }
     struct vec3 eye = camera.eye;
-    bool inside = eye.x >= low.x && eye.x <= high.x && eye.y >= low.y && eye.y <= high.y &&
-                  eye.z >= low.z && eye.z <= high.z;
+    bool inside = eye.x >= low.x && eye.x <= high.x && eye.y >= low.y &&
+                  eye.y <= high.y && eye.z >= low.z && eye.z <= high.z;
     scene_destroy(scene);
     return seen && !near_sees && !inside;
 }

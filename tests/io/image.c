@@ -1,5 +1,5 @@
-/* Tests of io/picture/image.h: one picture of 2 x 3 pixels, byte for byte as the two formats say; the
- * reader on what other programs write, and on what nobody should.
+/* Tests of io/picture/image.h: one picture of 2 x 3 pixels, byte for byte as the two
+ * formats say; the reader on what other programs write, and on what nobody should.
  *
  *      top    -> 1, 2, 4          0.5, 0.25, 0
  *      middle -> 0, 0, 0          -1, 100, 0.125
@@ -15,11 +15,13 @@
 #define PFM "build/image_test.pfm"
 #define PPM "build/image_test.ppm"
 
-static float pixels[3 * 2 * 3] = {1.0f, 2.0f,  4.0f,  0.5f,    0.25f, 0.0f,   0.0f, 0.0f, 0.0f,
-                                  -1.0f, 100.0f, 0.125f, 8.0f, 16.0f, 32.0f, 0.0625f, 1.0f, 0.0f};
+static float pixels[3 * 2 * 3] = {1.0f, 2.0f, 4.0f, 0.5f, 0.25f, 0.0f, 0.0f, 0.0f, 0.0f,
+                                  -1.0f, 100.0f, 0.125f, 8.0f, 16.0f, 32.0f, 0.0625f,
+                                  1.0f, 0.0f};
 static const struct image picture = {2, 3, pixels};
 
-static bool file_is(const char *path, const char *header, const unsigned char *bytes, size_t count)
+static bool file_is(const char *path, const char *header, const unsigned char *bytes,
+                    size_t count)
 {
     unsigned char found[200];
     size_t length = strlen(header);
@@ -32,7 +34,8 @@ static bool file_is(const char *path, const char *header, const unsigned char *b
            memcmp(found + length, bytes, count) == 0;
 }
 
-/* A power of two 2^k is (k + 127) << 23 as a float: its two last bytes tell all. Bottom first. */
+/* A power of two 2^k is (k + 127) << 23 as a float: its two last bytes tell all. Bottom
+ * first. */
 static void test_pfm(void)
 {
     static const unsigned char bytes[] = {
@@ -88,13 +91,15 @@ static bool read_bytes(const char *bytes, size_t size)
 {
     struct binary binary;
     reading = (struct error){EXIT_DONE, ""};
-    return binary_of_bytes(&binary, "p", bytes, size, "P", "a picture (PFM or PPM)", &reading) &&
+    return binary_of_bytes(&binary, "p", bytes, size, "P", "a picture (PFM or PPM)",
+                           &reading) &&
            image_of_binary(&found, &kind, &binary, &reading);
 }
 
 /* The bytes are a picture of that size and kind with these samples. */
-static void check_read(const char *name, const char *bytes, size_t size, enum image_kind expected,
-                       int width, int height, const float *samples)
+static void check_read(const char *name, const char *bytes, size_t size,
+                       enum image_kind expected, int width, int height,
+                       const float *samples)
 {
     bool right = read_bytes(bytes, size) && kind == expected && found.width == width &&
                  found.height == height;
@@ -108,21 +113,24 @@ static void check_read(const char *name, const char *bytes, size_t size, enum im
 static void test_back(void)
 {
     struct error error = {EXIT_DONE, ""};
-    bool right = pfm_write(&picture, PFM, &error) && image_read(&found, &kind, PFM, &error) &&
-                 kind == IMAGE_PFM && found.width == 2 && found.height == 3 &&
+    bool right = pfm_write(&picture, PFM, &error) &&
+                 image_read(&found, &kind, PFM, &error) && kind == IMAGE_PFM &&
+                 found.width == 2 && found.height == 3 &&
                  memcmp(found.rgb, pixels, sizeof pixels) == 0;
     tap_ok(right, "what is written as PFM reads back");
     alloc_free(found.rgb);
     struct tone tone = tone_make(1.0);
-    right = ppm_write(&picture, &tone, PPM, &error) && image_read(&found, &kind, PPM, &error) &&
-            kind == IMAGE_PPM && found.rgb[3] == (float)(188 / 255.0) && found.rgb[0] == 1.0f;
+    right = ppm_write(&picture, &tone, PPM, &error) &&
+            image_read(&found, &kind, PPM, &error) && kind == IMAGE_PPM &&
+            found.rgb[3] == (float)(188 / 255.0) && found.rgb[0] == 1.0f;
     tap_ok(right, "what is written as PPM reads back, in codes");
     alloc_free(found.rgb);
     found.rgb = NULL;
 }
 
 #define CHECK_READ(name, bytes, kind, width, height, ...) \
-    check_read(name, bytes, sizeof(bytes) - 1, kind, width, height, (const float[]){__VA_ARGS__})
+    check_read(name, bytes, sizeof(bytes) - 1, kind, width, height, \
+               (const float[]){__VA_ARGS__})
 
 static void test_reading(void)
 {
@@ -130,19 +138,23 @@ static void test_reading(void)
                "PF\n1 2\n1\n" "\x3F\x80\0\0" "\x40\0\0\0" "\0\0\0\0"
                "\xC0\0\0\0" "\x3F\0\0\0" "\x3F\x80\0\0",
                IMAGE_PFM, 1, 2, -2, 0.5f, 1, 1, 2, 0);
-    CHECK_READ("grey, a scale", "Pf 2 1 -2.5 " "\0\0\x80\x3F" "\0\0\0\xC0", IMAGE_PFM, 2, 1, 2.5f,
-               2.5f, 2.5f, -5, -5, -5);
-    CHECK_READ("CR LF behind the scale", "Pf\r\n1 1\r\n-1\r\n" "\0\0\x80\x3F", IMAGE_PFM, 1, 1, 1,
-               1, 1);
+    CHECK_READ("grey, a scale",
+               "Pf 2 1 -2.5 " "\0\0\x80\x3F" "\0\0\0\xC0",
+               IMAGE_PFM, 2, 1, 2.5f, 2.5f, 2.5f, -5, -5, -5);
+    CHECK_READ("CR LF behind the scale",
+               "Pf\r\n1 1\r\n-1\r\n" "\0\0\x80\x3F",
+               IMAGE_PFM, 1, 1, 1, 1, 1);
     CHECK_READ("CR alone, a sample that begins with LF", "Pf\r1 1\r-1\r" "\n\0\x80\x3F",
                IMAGE_PFM, 1, 1, 1.00000119f, 1.00000119f, 1.00000119f);
-    CHECK_READ("beyond the largest float", "Pf 1 1 -1e30 " "\0\0\x80\x7E", IMAGE_PFM, 1, 1,
-               3.40282347e38f, 3.40282347e38f, 3.40282347e38f);
-    CHECK_READ("plain, comments", "P3 # 1 2\n2#\r1\n8 # eight\n0 2 4\n6 8 #\n0", IMAGE_PPM, 2, 1, 0,
-               0.25f, 0.5f, 0.75f, 1, 0);
-    CHECK_READ("raw, 255, a sample like a blank", "P6\n1 1 255\n\n\0\xFF", IMAGE_PPM, 1, 1,
-               10 / 255.0f, 0, 1);
-    CHECK_READ("raw, two bytes, most significant first", "P6 1 1 65535\n" "\xFF\xFF" "\x01\0" "\0\x01",
+    CHECK_READ("beyond the largest float",
+               "Pf 1 1 -1e30 " "\0\0\x80\x7E",
+               IMAGE_PFM, 1, 1, 3.40282347e38f, 3.40282347e38f, 3.40282347e38f);
+    CHECK_READ("plain, comments", "P3 # 1 2\n2#\r1\n8 # eight\n0 2 4\n6 8 #\n0",
+               IMAGE_PPM, 2, 1, 0, 0.25f, 0.5f, 0.75f, 1, 0);
+    CHECK_READ("raw, 255, a sample like a blank", "P6\n1 1 255\n\n\0\xFF", IMAGE_PPM, 1,
+               1, 10 / 255.0f, 0, 1);
+    CHECK_READ("raw, two bytes, most significant first",
+               "P6 1 1 65535\n" "\xFF\xFF" "\x01\0" "\0\x01",
                IMAGE_PPM, 1, 1, 1, 256 / 65535.0f, 1 / 65535.0f);
     bool right = read_bytes("Pf 1 1 -1 \0\0\xC0\x7F", 14) && isnan(found.rgb[0]);
     tap_ok(right, "NaN is a sample");
@@ -182,9 +194,12 @@ static void test_refusing(void)
     REFUSED("P6\n1 1 0\nabc", "bad greatest value of the picture");
     REFUSED("P6\n1 1 65536\nabcdef", "bad greatest value of the picture");
     REFUSED("P6\n1 1 98\nabc", "a sample is above the greatest value");
-    REFUSED("P3\n1 1 9\n1 2 10", "a sample is missing or not a number up to the greatest value");
-    REFUSED("P3\n1 1 9\n1 2     ", "a sample is missing or not a number up to the greatest value");
-    REFUSED("P3\n1 1 9\n1 2 -3", "a sample is missing or not a number up to the greatest value");
+    REFUSED("P3\n1 1 9\n1 2 10",
+            "a sample is missing or not a number up to the greatest value");
+    REFUSED("P3\n1 1 9\n1 2     ",
+            "a sample is missing or not a number up to the greatest value");
+    REFUSED("P3\n1 1 9\n1 2 -3",
+            "a sample is missing or not a number up to the greatest value");
     REFUSED("P3\n1 1 9\n1 2 3 4", "bytes are left behind the picture");
     reading = (struct error){EXIT_DONE, ""};
     tap_ok(!image_read(&found, &kind, "build/image_test_absent", &reading) &&

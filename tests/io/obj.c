@@ -1,4 +1,5 @@
-/* Tests of io/scene/obj.h, with io/scene/mtl.h and io/scene/text.h behind it. Files are written into build/. */
+/* Tests of io/scene/obj.h, with io/scene/mtl.h and io/scene/text.h behind it. Files are
+ * written into build/. */
 #include "io/scene/obj.h"
 
 #include <math.h>
@@ -62,14 +63,15 @@ static void check_library_refused(const char *library, const char *message)
     check_refused("mtllib obj_test.mtl\n" CORNERS "f 1 2 3\n", message);
 }
 
-static bool corner_is(const struct scene *scene, int32_t triangle, int k, double x, double y,
-                      double z)
+static bool corner_is(const struct scene *scene, int32_t triangle, int k, double x,
+                      double y, double z)
 {
     struct vec3 corner = scene->triangles[triangle].corner[k];
     return corner.x == x && corner.y == y && corner.z == z;
 }
 
-/* Whether the text is one triangle (0,0,0), (1,0,0), (1,1,0), or several, all like that. */
+/* Whether the text is one triangle (0,0,0), (1,0,0), (1,1,0), or several, all like
+ * that. */
 static void check_triangle(const char *name, const char *text)
 {
     struct scene *scene = read_scene(text);
@@ -97,10 +99,12 @@ static void test_numbers(void)
         const char *word;
         double value;
     } right[] = {{"1", 1}, {"+1", 1}, {"-1", -1}, {".5", 0.5}, {"1.", 1}, {"-.5", -0.5},
-                 {"1e-3", 1e-3}, {"1E+2", 100}, {"007", 7}, {"1e-999", 0}, {"1e308", 1e308}};
-    static const char *const wrong[] = {"", ".", "+", "-", "e5", "1e", "1e+", "1.2.3", "--1", "+-1",
-                                        "1-", "nan", "NaN", "-nan", "inf", "-Infinity", "0x10",
-                                        "1e999", "-1e999", "1,5", "1f", "1 ", " 1", "1.#IND"};
+                 {"1e-3", 1e-3}, {"1E+2", 100}, {"007", 7}, {"1e-999", 0},
+                 {"1e308", 1e308}};
+    static const char *const wrong[] = {"", ".", "+", "-", "e5", "1e", "1e+", "1.2.3",
+                                        "--1", "+-1", "1-", "nan", "NaN", "-nan", "inf",
+                                        "-Infinity", "0x10", "1e999", "-1e999", "1,5",
+                                        "1f", "1 ", " 1", "1.#IND"};
     for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
         double value = -77;
         tap_ok(text_is_number(right[i].word, &value) && value == right[i].value,
@@ -121,7 +125,8 @@ static void test_lines(void)
     check_triangle("byte order mark", "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
     check_triangle("blank lines and blanks",
                    "\n \t\n  v\t0 0  0 \nv 1 0 0\t\n\tv 1 1 0\n\n f 1 2 3 \n");
-    check_triangle("continuation", "v 0 \\\n0 0\nv\\\r\n1 0 0\nv 1 1\\\n\\\n 0\nf 1\\\r2 3\n");
+    check_triangle("continuation",
+                   "v 0 \\\n0 0\nv\\\r\n1 0 0\nv 1 1\\\n\\\n 0\nf 1\\\r2 3\n");
     check_triangle("backslash at the end of the file", CORNERS "f 1 2 3\\");
     check_triangle("continuation at the end of the file", CORNERS "f 1 2 3\\\n");
     check_triangle("comments", "# one\n" CORNERS "  # two\nf 1 2 3 # three\n#");
@@ -152,13 +157,15 @@ static void test_long_file(void)
 
 static void test_vertices(void)
 {
-    struct scene *scene = read_scene("v 1e3 -.5 2.\nv +4 5 6 1.0\nv 7 8 9 0.1 .2 .3 x\nf 1 2 3\n");
-    tap_ok(scene && corner_is(scene, 0, 0, 1000, -0.5, 2) && corner_is(scene, 0, 1, 4, 5, 6) &&
-               corner_is(scene, 0, 2, 7, 8, 9),
+    struct scene *scene =
+        read_scene("v 1e3 -.5 2.\nv +4 5 6 1.0\nv 7 8 9 0.1 .2 .3 x\nf 1 2 3\n");
+    tap_ok(scene && corner_is(scene, 0, 0, 1000, -0.5, 2) &&
+               corner_is(scene, 0, 1, 4, 5, 6) && corner_is(scene, 0, 2, 7, 8, 9),
            "coordinates, with what stands behind them passed over");
     scene_destroy(scene);
-    check_triangle("unknown keywords", "vt 0 0\nvn x y z\ns off\nl 1 2\np 1\no thing\ng a b\nfo\n"
-                                       "\xC3\xA9t\xC3\xA9\nvp 1\ncall x.obj\n" CORNERS "f 1 2 3\n");
+    check_triangle("unknown keywords",
+                   "vt 0 0\nvn x y z\ns off\nl 1 2\np 1\no thing\ng a b\nfo\n"
+                   "\xC3\xA9t\xC3\xA9\nvp 1\ncall x.obj\n" CORNERS "f 1 2 3\n");
     tap_ok(repairs.unknown_lines == 3 && repairs.first_unknown == 8,
            "of which those that may mean something are counted");
     check_refused("v 1 2\n", OBJ ":1: vertex has 2 coordinates instead of 3");
@@ -178,12 +185,14 @@ static void test_corners(void)
     check_triangle("v/vt/vn", CORNERS "f 1/1/9 2/-2/0 +3/3/3\n");
     check_triangle("v/ and v//", CORNERS "f 1/ 2// 3/1/\n");
     check_triangle("negative indices", CORNERS "f -4 -3 -2\n");
-    check_triangle("negative indices count from their line",
-                   "v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 5 5 5\nf -4 -3 -2\nf 1/1 -3//1 3\n");
+    check_triangle(
+        "negative indices count from their line",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 5 5 5\nf -4 -3 -2\nf 1/1 -3//1 3\n");
     check_refused(CORNERS "f 1 2 0\n", OBJ ":5: face refers to vertex 0 of 4");
     check_refused(CORNERS "f 1 2 5\n", OBJ ":5: face refers to vertex 5 of 4");
     check_refused(CORNERS "\nf 1 -5/1 2\n", OBJ ":6: face refers to vertex -5 of 4");
-    check_refused(CORNERS "f 1 2 4294967297\n", OBJ ":5: face refers to vertex 4294967297 of 4");
+    check_refused(CORNERS "f 1 2 4294967297\n",
+                  OBJ ":5: face refers to vertex 4294967297 of 4");
     check_refused(CORNERS "f 1 2 18446744073709551617\n",
                   OBJ ":5: face refers to vertex 18446744073709551617 of 4");
     check_refused(CORNERS "f 1 2 -99999999999999999999999\n",
@@ -199,8 +208,8 @@ static void test_corners(void)
     check_refused(CORNERS "f\n", OBJ ":5: face has 0 corners instead of 3 or more");
 }
 
-static bool normal_is(const struct scene *scene, int32_t triangle, int k, double x, double y,
-                      double z)
+static bool normal_is(const struct scene *scene, int32_t triangle, int k, double x,
+                      double y, double z)
 {
     struct vec3 n = scene->normals[3 * triangle + k];
     return vec3_length(vec3_sub(n, (struct vec3){x, y, z})) < 1e-15;
@@ -212,21 +221,26 @@ static void test_normals(void)
                                      "f 1//1 2//2 3//-1\nvn 1e-90 0 0\nf 1 2/7/-1 3/7\n"
                                      "f 1//2 2//2 3//2 4//1\n");
     tap_ok(scene && scene->normals && normal_is(scene, 0, 0, 0, 0, 1) &&
-               normal_is(scene, 0, 1, 0.6, 0, 0.8) && normal_is(scene, 0, 2, 0.6, 0, 0.8) &&
-               normal_is(scene, 1, 0, 0, 0, 0) && normal_is(scene, 1, 1, 1, 0, 0) &&
-               normal_is(scene, 1, 2, 0, 0, 0) && normal_is(scene, 2, 2, 0.6, 0, 0.8) &&
-               normal_is(scene, 3, 2, 0, 0, 1) && repairs.bad_normals == 0,
+               normal_is(scene, 0, 1, 0.6, 0, 0.8) &&
+               normal_is(scene, 0, 2, 0.6, 0, 0.8) && normal_is(scene, 1, 0, 0, 0, 0) &&
+               normal_is(scene, 1, 1, 1, 0, 0) && normal_is(scene, 1, 2, 0, 0, 0) &&
+               normal_is(scene, 2, 2, 0.6, 0, 0.8) && normal_is(scene, 3, 2, 0, 0, 1) &&
+               repairs.bad_normals == 0,
            "normals, where corners have some");
     scene_destroy(scene);
     scene = read_scene(CORNERS "vn 0 0 1\nf 1 2 3\nf 1//2 2//0 3//-2\n");
-    tap_ok(scene && !scene->normals && repairs.bad_normals == 3, "normals that are not there");
+    tap_ok(scene && !scene->normals && repairs.bad_normals == 3,
+           "normals that are not there");
     scene_destroy(scene);
-    scene = read_scene(CORNERS "vn 0 0 0\nvn nan nan nan\nvn -1.#IND 0 1\nvn 1 0\nvn\nvn 1e101 0 0\n"
-                               "vn 1e-101 0 0\nvn x y z\nf 1//1 2//2 3//3 4//4\nf 1//5 2//6 3//7\n");
-    tap_ok(scene && !scene->normals && repairs.bad_normals == 7 && repairs.unknown_lines == 0,
+    scene = read_scene(
+        CORNERS "vn 0 0 0\nvn nan nan nan\nvn -1.#IND 0 1\nvn 1 0\nvn\nvn 1e101 0 0\n"
+                "vn 1e-101 0 0\nvn x y z\nf 1//1 2//2 3//3 4//4\nf 1//5 2//6 3//7\n");
+    tap_ok(scene && !scene->normals && repairs.bad_normals == 7 &&
+               repairs.unknown_lines == 0,
            "normals without a direction");
     scene_destroy(scene);
-    check_refused("vn 0 0 1\n" CORNERS "f 1//1a 2 3\n", OBJ ":6: bad corner '1//1a' of a face");
+    check_refused("vn 0 0 1\n" CORNERS "f 1//1a 2 3\n",
+                  OBJ ":6: bad corner '1//1a' of a face");
 }
 
 static void test_polygons(void)
@@ -244,19 +258,21 @@ static void test_polygons(void)
     double area = 0.0;
     for (int32_t i = 0; scene && i < scene->input_count; i++)
         area += triangle_area(&scene->triangles[i]);
-    tap_ok(scene && scene->input_count == 2 && area == 2.0, "a concave face is cut inside");
+    tap_ok(scene && scene->input_count == 2 && area == 2.0,
+           "a concave face is cut inside");
     scene_destroy(scene);
 }
 
-/* One face of 1000 corners: a strip 2.5 wide that winds about the origin four times. The area of
- * all triangles is that of the polygon: none lies outside or over another. */
+/* One face of 1000 corners: a strip 2.5 wide that winds about the origin four times. The
+ * area of all triangles is that of the polygon: none lies outside or over another. */
 static void test_spiral(void)
 {
     enum { HALF = 500 };
     char *text = alloc_array(2 * HALF * 60, 1), *to = text;
     double expected = 0.0, area = 0.0;
     for (int i = 0; i < 2 * HALF; i++) {
-        double turn = 0.05 * (i < HALF ? i : 2 * HALF - 1 - i), r = turn + (i < HALF ? 3.5 : 1.0);
+        double turn = 0.05 * (i < HALF ? i : 2 * HALF - 1 - i),
+               r = turn + (i < HALF ? 3.5 : 1.0);
         to += sprintf(to, "v %.17g %.17g 5\n", r * cos(turn), r * sin(turn));
     }
     *to++ = 'f';
@@ -294,21 +310,24 @@ static void test_many_corners(void)
 
 static void test_materials(void)
 {
-    write_file(MTL, "# library\nnewmtl red brick \r\nKa 1 1 1\nKd .8 .1 0\nKs 1 1 1\n"
-                    "map_Kd a b.png\nnewmtl lamp\nkd 0.25\nKE 17 12 4 1\nillum 2\n"
-                    "newmtl bright\nKd 1.5 1 1\n"
-                    "newmtl spectral\nKd spectral file.rfl 1\nKe xyz 1 1 1\n\tnewmtl\ttwice\n"
-                    "Kd 1 0 0\nKe 1 # one\nnewmtl twice\nKe 3\nnewmtl unused\nKd 9\n");
+    write_file(MTL,
+               "# library\nnewmtl red brick \r\nKa 1 1 1\nKd .8 .1 0\nKs 1 1 1\n"
+               "map_Kd a b.png\nnewmtl lamp\nkd 0.25\nKE 17 12 4 1\nillum 2\n"
+               "newmtl bright\nKd 1.5 1 1\n"
+               "newmtl spectral\nKd spectral file.rfl 1\nKe xyz 1 1 1\n\tnewmtl\ttwice\n"
+               "Kd 1 0 0\nKe 1 # one\nnewmtl twice\nKe 3\nnewmtl unused\nKd 9\n");
     struct scene *scene = read_scene(
-        CORNERS "f 1 2 3\nusemtl red brick\nmtllib obj_test.mtl\nf 1 2 3 4\nusemtl  lamp \n"
-                "f 1 2 3\nusemtl bright\nf 1 2 3\nusemtl red brick\nf 1 2 3\nusemtl spectral\n"
-                "f 1 2 3\nusemtl twice\nf 1 2 3\nusemtl\nf 1 2 3\n");
-    if (!tap_ok(scene && scene->input_count == 9, "a scene with materials %s", error.text))
+        CORNERS
+        "f 1 2 3\nusemtl red brick\nmtllib obj_test.mtl\nf 1 2 3 4\nusemtl  lamp \n"
+        "f 1 2 3\nusemtl bright\nf 1 2 3\nusemtl red brick\nf 1 2 3\nusemtl spectral\n"
+        "f 1 2 3\nusemtl twice\nf 1 2 3\nusemtl\nf 1 2 3\n");
+    if (!tap_ok(scene && scene->input_count == 9, "a scene with materials %s",
+                error.text))
         return;
     tap_ok(scene->material_count == 6, "the scene has the used materials");
     const struct material *grey = material_at(scene, 0);
-    tap_ok(colour_is(grey->reflectance, 0.5, 0.5, 0.5) && colour_is(grey->emission, 0, 0, 0) &&
-               material_at(scene, 8) == grey,
+    tap_ok(colour_is(grey->reflectance, 0.5, 0.5, 0.5) &&
+               colour_is(grey->emission, 0, 0, 0) && material_at(scene, 8) == grey,
            "faces without a material are grey");
     tap_ok(colour_is(material_at(scene, 1)->reflectance, 0.8, 0.1, 0.0) &&
                colour_is(material_at(scene, 1)->emission, 0, 0, 0) &&
@@ -318,7 +337,8 @@ static void test_materials(void)
     tap_ok(colour_is(material_at(scene, 3)->reflectance, 0.25, 0.25, 0.25) &&
                colour_is(material_at(scene, 3)->emission, 17, 12, 4),
            "kd with one number, KE with four");
-    tap_ok(colour_is(material_at(scene, 4)->reflectance, 1.5, 1, 1), "Kd of 1 and more is left");
+    tap_ok(colour_is(material_at(scene, 4)->reflectance, 1.5, 1, 1),
+           "Kd of 1 and more is left");
     tap_ok(colour_is(material_at(scene, 6)->reflectance, 0, 0, 0) &&
                colour_is(material_at(scene, 6)->emission, 0, 0, 0),
            "spectral and xyz are passed over");
@@ -333,17 +353,20 @@ static void test_materials(void)
 
 static void test_notes(void)
 {
-    write_file(MTL, "newmtl opaque\nKd 1 1 1\nd 1.0\nTr 1.0\nnewmtl also opaque\nTr 1\nd 1\n"
-                    "newmtl clear\nd 0.5\nnewmtl glass\nTr 0.25\nnewmtl halo\nd -halo 0.5\n"
-                    "newmtl words\nd\nTr none\nnewmtl painted\nmap_Kd a b.png\n"
-                    "newmtl dyed\nmap_Kd x.png\nKd 0.25 0 0\nnewmtl dyed too\nKd 0.25 0 0\n"
-                    "map_Kd x.png\nnewmtl unused\nd 0\nmap_Kd x.png\n");
+    write_file(MTL,
+               "newmtl opaque\nKd 1 1 1\nd 1.0\nTr 1.0\nnewmtl also opaque\nTr 1\nd 1\n"
+               "newmtl clear\nd 0.5\nnewmtl glass\nTr 0.25\nnewmtl halo\nd -halo 0.5\n"
+               "newmtl words\nd\nTr none\nnewmtl painted\nmap_Kd a b.png\n"
+               "newmtl dyed\nmap_Kd x.png\nKd 0.25 0 0\nnewmtl dyed too\nKd 0.25 0 0\n"
+               "map_Kd x.png\nnewmtl unused\nd 0\nmap_Kd x.png\n");
     struct scene *scene = read_scene(
-        "mtllib obj_test.mtl\n" CORNERS "usemtl opaque\nf 1 2 3\nusemtl also opaque\nf 1 2 3\n"
+        "mtllib obj_test.mtl\n" CORNERS
+        "usemtl opaque\nf 1 2 3\nusemtl also opaque\nf 1 2 3\n"
         "usemtl clear\nf 1 2 3\nf 1 2 3\nusemtl glass\nf 1 2 3\nusemtl halo\nf 1 2 3\n"
         "usemtl words\nf 1 2 3\nusemtl painted\nf 1 2 3\nusemtl dyed\nf 1 2 3\n"
         "usemtl dyed too\nf 1 2 3\n");
-    tap_ok(scene && repairs.transparent == 3, "transparent materials that are used are counted");
+    tap_ok(scene && repairs.transparent == 3,
+           "transparent materials that are used are counted");
     tap_ok(scene && repairs.textured == 3 &&
                colour_is(material_at(scene, 7)->reflectance, 0.5, 0.5, 0.5) &&
                colour_is(material_at(scene, 8)->reflectance, 0.25, 0, 0) &&
@@ -354,9 +377,9 @@ static void test_notes(void)
 
 static void test_missing(void)
 {
-    struct scene *scene =
-        read_scene(CORNERS "usemtl none\nf 1 2 3\nusemtl nothing\nf 1 2 3\nusemtl none\nf 1 2 3\n"
-                           "usemtl no face\n");
+    struct scene *scene = read_scene(
+        CORNERS "usemtl none\nf 1 2 3\nusemtl nothing\nf 1 2 3\nusemtl none\nf 1 2 3\n"
+                "usemtl no face\n");
     tap_ok(scene && repairs.materials.count == 2 && repairs.libraries.count == 0 &&
                strcmp(repairs.materials.first, "none") == 0,
            "a missing material counts once for its name");
@@ -364,8 +387,9 @@ static void test_missing(void)
                colour_is(material_at(scene, 1)->emission, 0, 0, 0),
            "a missing material is grey");
     scene_destroy(scene);
-    scene = read_scene("mtllib nowhere.mtl\nmtllib nowhere.mtl\nmtllib\nmtllib .\n" CORNERS
-                       "usemtl none\nf 1 2 3\n");
+    scene =
+        read_scene("mtllib nowhere.mtl\nmtllib nowhere.mtl\nmtllib\nmtllib .\n" CORNERS
+                   "usemtl none\nf 1 2 3\n");
     tap_ok(scene && repairs.libraries.count == 2 && repairs.materials.count == 1 &&
                strcmp(repairs.materials.first, "none") == 0 &&
                strcmp(repairs.libraries.first, "nowhere.mtl") == 0,
@@ -376,7 +400,8 @@ static void test_missing(void)
 static void check_libraries(const char *name, const char *line, int64_t missing)
 {
     char text[400];
-    snprintf(text, sizeof text, "%s\n" CORNERS "usemtl one\nf 1 2 3\nusemtl two\nf 1 2 3\n", line);
+    snprintf(text, sizeof text,
+             "%s\n" CORNERS "usemtl one\nf 1 2 3\nusemtl two\nf 1 2 3\n", line);
     struct scene *scene = read_scene(text);
     tap_ok(scene && repairs.libraries.count == missing && repairs.materials.count == 0 &&
                colour_is(material_at(scene, 0)->reflectance, 0.125, 0.125, 0.125) &&
@@ -391,17 +416,21 @@ static void test_libraries(void)
     write_file(OTHER, "\xEF\xBB\xBFnewmtl two\nKd 0.25");
     check_libraries("two libraries", "mtllib  obj_test.mtl \nmtllib obj test two.mtl", 0);
     check_libraries("two in one line", "mtllib obj_test.mtl obj\\ test\\ two.mtl", 0);
-    check_libraries("two of four", "mtllib x.mtl\tobj\\ test\\ two.mtl y.mtl  obj_test.mtl", 2);
+    check_libraries("two of four",
+                    "mtllib x.mtl\tobj\\ test\\ two.mtl y.mtl  obj_test.mtl", 2);
     check_libraries("names with folders",
                     "mtllib ../build/obj_test.mtl\nmtllib ./obj test two.mtl", 0);
     check_libraries("folders of other machines",
-                    "mtllib /home/a/obj_test.mtl\nmtllib C:\\a\\b c\\obj test two.mtl", 0);
+                    "mtllib /home/a/obj_test.mtl\nmtllib C:\\a\\b c\\obj test two.mtl",
+                    0);
     check_libraries("a folder with a blank: perhaps a list",
                     "mtllib /home/a b/obj_test.mtl\nmtllib obj test two.mtl", 1);
     check_libraries("no file is a folder's name",
                     "mtllib obj_test.mtl a/b/ obj\\ test\\ two.mtl a\\ /", 2);
-    check_libraries("a list, not a folder with a blank", "mtllib obj_test.mtl c/obj_test.mtl\n"
-                    "mtllib x obj_test.mtl\nmtllib c/d/obj test two.mtl", 1);
+    check_libraries("a list, not a folder with a blank",
+                    "mtllib obj_test.mtl c/obj_test.mtl\n"
+                    "mtllib x obj_test.mtl\nmtllib c/d/obj test two.mtl",
+                    1);
     char *text = alloc_array(20000, 1);
     for (int i = 0; i <= 1000; i++)
         sprintf(text + strlen(text), "mtllib x%d\n", i);
@@ -413,10 +442,12 @@ static void test_many_names(void)
 {
     enum { NAMES = 20000 };
     char *text = alloc_array(NAMES * 40, 1), *library = alloc_array(NAMES * 40, 1);
-    char *end = text + sprintf(text, "mtllib obj_test.mtl\n" CORNERS), *library_end = library;
+    char *end = text + sprintf(text, "mtllib obj_test.mtl\n" CORNERS),
+         *library_end = library;
     for (int i = 0; i < NAMES; i++) {
         end += sprintf(end, "usemtl m%d\nf 1 2 3\n", i);
-        library_end += sprintf(library_end, "newmtl m%d\nKd %d\n", NAMES - 1 - i, NAMES - 1 - i);
+        library_end +=
+            sprintf(library_end, "newmtl m%d\nKd %d\n", NAMES - 1 - i, NAMES - 1 - i);
     }
     write_file(MTL, library);
     struct scene *scene = read_scene(text);
@@ -434,9 +465,12 @@ static void test_bad_libraries(void)
     check_library_refused("newmtl a\nKd -0.1 0 0\n", MTL ":2: negative number '-0.1'");
     check_library_refused("newmtl a\n\nKe 0 0 -1\n", MTL ":3: negative number '-1'");
     check_library_refused("newmtl a\nKd 0 nan 0\n", MTL ":2: bad number 'nan'");
-    check_library_refused("newmtl a\nKe 1e200\n", MTL ":2: number '1e200' is out of range");
-    check_library_refused("newmtl a\nKd 1 1\n", MTL ":2: Kd has 2 numbers instead of 1 or 3");
-    check_library_refused("newmtl a\nke #\n", MTL ":2: ke has 0 numbers instead of 1 or 3");
+    check_library_refused("newmtl a\nKe 1e200\n",
+                          MTL ":2: number '1e200' is out of range");
+    check_library_refused("newmtl a\nKd 1 1\n",
+                          MTL ":2: Kd has 2 numbers instead of 1 or 3");
+    check_library_refused("newmtl a\nke #\n",
+                          MTL ":2: ke has 0 numbers instead of 1 or 3");
     check_library_refused("newmtl a\nKd red\n", MTL ":2: bad number 'red'");
     check_library_refused("newmtl  \n", MTL ":1: newmtl without a name");
     check_library_refused("Ka 1\nKd 1 1 1\n", MTL ":2: Kd before newmtl");
@@ -453,7 +487,8 @@ static void test_bad_files(void)
     static const char zeros[] = CORNERS "f 1 2 3\n\0";
     error = (struct error){EXIT_DONE, ""};
     write_bytes(OBJ, zeros, sizeof zeros);
-    tap_ok(failed_with(obj_read(OBJ, &repairs, &error), OBJ ": not a text file"), "a zero byte");
+    tap_ok(failed_with(obj_read(OBJ, &repairs, &error), OBJ ": not a text file"),
+           "a zero byte");
     error = (struct error){EXIT_DONE, ""};
     struct scene *scene = obj_read("build/obj_test_absent.obj", &repairs, &error);
     tap_ok(!scene && error.code == EXIT_USAGE &&
@@ -478,12 +513,14 @@ static void test_random_bytes(void)
         bool binary = round % 4 == 0;
         for (size_t i = binary ? 0 : sizeof CORNERS - 1; i < sizeof text; i++) {
             seed = seed * 1664525u + 1013904223u;
-            text[i] = binary ? (char)(seed >> 24) : alphabet[(seed >> 8) % (sizeof alphabet - 1)];
+            text[i] = binary ? (char)(seed >> 24)
+                             : alphabet[(seed >> 8) % (sizeof alphabet - 1)];
         }
         error = (struct error){EXIT_DONE, ""};
         write_bytes(OBJ, text, sizeof text);
         struct scene *scene = obj_read(OBJ, &repairs, &error);
-        refused += !scene && error.code == EXIT_USAGE && strncmp(error.text, OBJ ":", 19) == 0;
+        refused +=
+            !scene && error.code == EXIT_USAGE && strncmp(error.text, OBJ ":", 19) == 0;
         read += scene && error.code == EXIT_DONE && scene->input_count > 0;
         scene_destroy(scene);
     }

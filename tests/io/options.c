@@ -1,6 +1,7 @@
-/* Tests of io/run/options.h. Proved are: each option goes to its field; each kind of wrong argument
- * is refused with a line that names it; and the help, the table of options in io/run/options.c and
- * the table below know the same options and the same default values. */
+/* Tests of io/run/options.h. Proved are: each option goes to its field; each kind of
+ * wrong argument is refused with a line that names it; and the help, the table of options
+ * in io/run/options.c and the table below know the same options and the same default
+ * values. */
 #include "io/run/options.h"
 
 #include <math.h>
@@ -14,7 +15,8 @@ enum { ARGUMENTS_MAX = 12, TEXT_MAX = 100000 };
 
 static struct error error;
 
-/* Parses a command line that is written with blanks between its words ("_" is an empty one). */
+/* Parses a command line that is written with blanks between its words ("_" is an empty
+ * one). */
 static bool parse(const char *line, struct options *options)
 {
     static char words[200]; /* the options keep pointers into it */
@@ -22,7 +24,8 @@ static bool parse(const char *line, struct options *options)
     int count = 0;
     error = (struct error){EXIT_DONE, ""};
     snprintf(words, sizeof words, "phr %s", line);
-    for (char *word = strtok(words, " "); word && count < ARGUMENTS_MAX; word = strtok(NULL, " "))
+    for (char *word = strtok(words, " "); word && count < ARGUMENTS_MAX;
+         word = strtok(NULL, " "))
         arguments[count++] = strcmp(word, "_") == 0 ? word + 1 : word;
     arguments[count] = NULL;
     return options_parse(options, count, arguments, &error);
@@ -39,9 +42,9 @@ static void test_defaults(void)
 {
     struct options options;
     tap_ok(parse("room.obj", &options) && error.code == EXIT_DONE &&
-               is_same(options.scene, "room.obj") && options.output_count == 0 && !options.view &&
-               !options.stats && options.width == 0 && options.height == 0 &&
-               options.exposure == 0.0,
+               is_same(options.scene, "room.obj") && options.output_count == 0 &&
+               !options.view && !options.stats && options.width == 0 &&
+               options.height == 0 && options.exposure == 0.0,
            "a scene alone");
     tap_ok(!options.flat && !options.two_sided && !options.two_sided_lamps &&
                !options.quiet && !options.verbose && !options.help && !options.version,
@@ -68,13 +71,15 @@ static void test_texts(void)
 static void test_outputs(void)
 {
     struct options options;
-    tap_ok(parse("-o a.ppm room.obj -o b.ply -o d/c.pfm", &options) && options.output_count == 3 &&
-               is_same(options.outputs[0], "a.ppm") && is_same(options.outputs[1], "b.ply") &&
+    tap_ok(parse("-o a.ppm room.obj -o b.ply -o d/c.pfm", &options) &&
+               options.output_count == 3 && is_same(options.outputs[0], "a.ppm") &&
+               is_same(options.outputs[1], "b.ply") &&
                is_same(options.outputs[2], "d/c.pfm"),
            "-o, three times");
     options_free(&options);
     tap_ok(!options.outputs, "options_free() forgets the outputs");
-    tap_ok(output_format_of("a.PPM") == FORMAT_PPM && output_format_of("a.ppm.pfm") == FORMAT_PFM &&
+    tap_ok(output_format_of("a.PPM") == FORMAT_PPM &&
+               output_format_of("a.ppm.pfm") == FORMAT_PFM &&
                output_format_of("d.ppm/a.ply") == FORMAT_PLY,
            "the suffix is the format");
 }
@@ -82,7 +87,8 @@ static void test_outputs(void)
 static void test_switches(void)
 {
     struct options options;
-    tap_ok(parse("--flat a.obj", &options) && options.flat && !options.two_sided, "--flat");
+    tap_ok(parse("--flat a.obj", &options) && options.flat && !options.two_sided,
+           "--flat");
     options_free(&options);
     tap_ok(parse("--two-sided a.obj", &options) && options.two_sided && !options.flat &&
                !options.two_sided_lamps,
@@ -92,11 +98,14 @@ static void test_switches(void)
                options.two_sided_lamps,
            "--two-sided-lamps includes --two-sided");
     options_free(&options);
-    tap_ok(parse("--quiet a.obj", &options) && options.quiet && !options.verbose, "--quiet");
+    tap_ok(parse("--quiet a.obj", &options) && options.quiet && !options.verbose,
+           "--quiet");
     options_free(&options);
-    tap_ok(parse("--verbose a.obj", &options) && options.verbose && !options.quiet, "--verbose");
+    tap_ok(parse("--verbose a.obj", &options) && options.verbose && !options.quiet,
+           "--verbose");
     options_free(&options);
-    tap_ok(parse("--help", &options) && options.help && !options.version && !options.scene,
+    tap_ok(parse("--help", &options) && options.help && !options.version &&
+               !options.scene,
            "--help needs no scene");
     options_free(&options);
     tap_ok(parse("--version", &options) && options.version && !options.help,
@@ -105,8 +114,9 @@ static void test_switches(void)
     tap_ok(parse("--validate", &options) && options.validate && !options.scene,
            "--validate needs no scene");
     options_free(&options);
-    tap_ok(parse("--accuracy 2.5% a.obj", &options) && options.criterion.accuracy == 0.025 &&
-               options.criterion.epsilon == 1e-3 && options.criterion.final_gather == 64,
+    tap_ok(parse("--accuracy 2.5% a.obj", &options) &&
+               options.criterion.accuracy == 0.025 && options.criterion.epsilon == 1e-3 &&
+               options.criterion.final_gather == 64,
            "--accuracy in percent, from a coarse epsilon and few rays");
     options_free(&options);
     tap_ok(parse("--accuracy 0.5 --epsilon 1e-4 --final-gather 32 a.obj", &options) &&
@@ -138,16 +148,16 @@ struct choice {
     const char *bars; /* as an error lists them */
 };
 
+#define FIELD(field) offsetof(struct options, field)
+
 static const struct choice CHOICES[] = {
-    {"--oracle", offsetof(struct options, criterion.oracle), 2, {"bf", "error", NULL}, "bf|error"},
-    {"--linking", offsetof(struct options, criterion.linking), 2, {"pairs", "tree", NULL},
-     "pairs|tree"},
-    {"--form-factor", offsetof(struct options, criterion.form_factor), 2,
-     {"disk", "polygon", NULL}, "disk|polygon"},
-    {"--solver", offsetof(struct options, criterion.solver), 2, {"jacobi", "cg", NULL},
-     "jacobi|cg"},
-    {"--balance", offsetof(struct options, criterion.balance), 3,
-     {"none", "greedy", "default", NULL}, "none|greedy|default"},
+    {"--oracle", FIELD(criterion.oracle), 2, {"bf", "error", NULL}, "bf|error"},
+    {"--linking", FIELD(criterion.linking), 2, {"pairs", "tree", NULL}, "pairs|tree"},
+    {"--form-factor", FIELD(criterion.form_factor), 2, {"disk", "polygon", NULL},
+     "disk|polygon"},
+    {"--solver", FIELD(criterion.solver), 2, {"jacobi", "cg", NULL}, "jacobi|cg"},
+    {"--balance", FIELD(criterion.balance), 3, {"none", "greedy", "default", NULL},
+     "none|greedy|default"},
 };
 enum { CHOICE_COUNT = sizeof CHOICES / sizeof CHOICES[0] };
 
@@ -185,12 +195,13 @@ static void test_choices(void)
             for (int j = 0; j < CHOICE_COUNT; j++)
                 others = others && (j == i || chosen(&CHOICES[j], &options) ==
                                                   chosen(&CHOICES[j], &plain));
-            tap_ok(parsed && chosen(choice, &options) == k && others, "%s %s, and no other",
-                   choice->name, choice->values[k]);
+            tap_ok(parsed && chosen(choice, &options) == k && others,
+                   "%s %s, and no other", choice->name, choice->values[k]);
             options_free(&options);
             options_free(&plain);
         }
-        snprintf(line, sizeof line, "%.2s", choice->values[1]); /* the start of a name is none */
+        /* The start of a name is none. */
+        snprintf(line, sizeof line, "%.2s", choice->values[1]);
         tap_ok(refuses_choice(choice, "of-delphi") && refuses_choice(choice, "_") &&
                    refuses_choice(choice, "|") && refuses_choice(choice, choice->bars) &&
                    (strlen(choice->values[1]) == 2 || refuses_choice(choice, line)),
@@ -205,9 +216,11 @@ static void test_enums(void)
                LINKING_PAIRS == 0 && LINKING_TREE == 1 && BALANCE_NONE == 0 &&
                BALANCE_GREEDY == 1 && BALANCE_DEFAULT == 2,
            "the names are in the order of the enums");
-    tap_ok(sizeof(enum oracle) == sizeof(int) && sizeof(enum form_factor) == sizeof(int) &&
+    tap_ok(sizeof(enum oracle) == sizeof(int) &&
+               sizeof(enum form_factor) == sizeof(int) &&
                sizeof(enum solver_kind) == sizeof(int) &&
-               sizeof(enum balance) == sizeof(int) && sizeof(enum linking_kind) == sizeof(int),
+               sizeof(enum balance) == sizeof(int) &&
+               sizeof(enum linking_kind) == sizeof(int),
            "which are as large as an int");
 }
 
@@ -215,9 +228,10 @@ static void test_paper(void)
 {
     struct options options, plain;
     parse("a.obj", &plain);
-    tap_ok(!parse("--solver cg --oracle error --form-factor polygon --paper",
-                  &options) && is_same(error.text, "no scene given; see --help") &&
-               options.criterion.oracle == ORACLE_BF && options.criterion.solver == SOLVER_JACOBI &&
+    tap_ok(!parse("--solver cg --oracle error --form-factor polygon --paper", &options) &&
+               is_same(error.text, "no scene given; see --help") &&
+               options.criterion.oracle == ORACLE_BF &&
+               options.criterion.solver == SOLVER_JACOBI &&
                options.criterion.form_factor == FORM_FACTOR_DISK &&
                options.criterion.balance == BALANCE_GREEDY &&
                options.criterion.linking == LINKING_PAIRS &&
@@ -227,7 +241,8 @@ static void test_paper(void)
     options_free(&options);
     options_free(&plain);
     tap_ok(parse("--paper --solver cg a.obj", &options) &&
-               options.criterion.solver == SOLVER_CG && options.criterion.oracle == ORACLE_BF,
+               options.criterion.solver == SOLVER_CG &&
+               options.criterion.oracle == ORACLE_BF,
            "what follows it counts");
     options_free(&options);
 }
@@ -235,15 +250,18 @@ static void test_paper(void)
 static void test_sizes(void)
 {
     struct options options;
-    tap_ok(parse("--size 640x480 a.obj", &options) && options.width == 640 && options.height == 480,
+    tap_ok(parse("--size 640x480 a.obj", &options) && options.width == 640 &&
+               options.height == 480,
            "--size 640x480");
     options_free(&options);
-    tap_ok(parse("--size 1X32768 a.obj", &options) && options.width == 1 && options.height == 32768,
+    tap_ok(parse("--size 1X32768 a.obj", &options) && options.width == 1 &&
+               options.height == 32768,
            "--size 1X32768");
     options_free(&options);
 }
 
-/* Options with a number: where it goes, its range, and whether the help says its default. */
+/* Options with a number: where it goes, its range, and whether the help says its
+ * default. */
 struct number {
     const char *name;
     size_t offset;         /* in struct options */
@@ -251,8 +269,6 @@ struct number {
     const char *low, *high; /* inside the range */
     const char *below, *above; /* outside */
 };
-
-#define FIELD(field) offsetof(struct options, field)
 
 static const struct number NUMBERS[] = {
     {"--samples", FIELD(samples), true, true, "1", "64", "0", "65"},
@@ -264,21 +280,22 @@ static const struct number NUMBERS[] = {
     {"--alpha", FIELD(criterion.alpha), false, true, "0", "1", "-0.1", "1.1"},
     {"--tolerance", FIELD(criterion.tolerance), false, true, "0", "1", "-1", "2"},
     {"--every", FIELD(every), true, true, "1", "1000000000", "0", "1e10"},
-    {"--max-iterations", FIELD(criterion.max_iterations), true, true, "1", "1000000000", "0",
-     "1e300"},
-    {"--final-gather", FIELD(criterion.final_gather), true, true, "0", "16384", "-1", "16385"},
+    {"--max-iterations", FIELD(criterion.max_iterations), true, true, "1", "1000000000",
+     "0", "1e300"},
+    {"--final-gather", FIELD(criterion.final_gather), true, true, "0", "16384", "-1",
+     "16385"},
 };
 enum { NUMBER_COUNT = sizeof NUMBERS / sizeof NUMBERS[0] };
 
 /* The other options, with what stands behind each. */
 static const char *const OTHERS[][2] = {
-    {"-o", " a.ppm"},  {"--view", " a"},    {"--size", " 2x3"}, {"--stats", " a"},
-    {"--oracle", " bf"}, {"--flat", ""},    {"--two-sided", ""}, {"--quiet", ""},
-    {"--two-sided-lamps", ""}, {"--verbose", ""}, {"--validate", ""},
-    {"--help", ""},    {"--version", ""},
-    {"--linking", " pairs"}, {"--form-factor", " disk"}, {"--solver", " cg"}, {"--balance", " greedy"}, {"--paper", ""},
-    {"--form-factors", ""}, {"--save-links", " a"}, {"--load-links", " a"}, {"--resume", " a"},
-    {"--checkpoint", " a"}, {"--memory", " 1G"}};
+    {"-o", " a.ppm"}, {"--view", " a"}, {"--size", " 2x3"}, {"--stats", " a"},
+    {"--oracle", " bf"}, {"--flat", ""}, {"--two-sided", ""}, {"--quiet", ""},
+    {"--two-sided-lamps", ""}, {"--verbose", ""}, {"--validate", ""}, {"--help", ""},
+    {"--version", ""}, {"--linking", " pairs"}, {"--form-factor", " disk"},
+    {"--solver", " cg"}, {"--balance", " greedy"}, {"--paper", ""},
+    {"--form-factors", ""}, {"--save-links", " a"}, {"--load-links", " a"},
+    {"--resume", " a"}, {"--checkpoint", " a"}, {"--memory", " 1G"}};
 enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
 
 static double number_of(const struct number *number, const struct options *options)
@@ -294,12 +311,14 @@ static bool takes(const struct number *number, const char *value)
     char line[100];
     struct options options;
     snprintf(line, sizeof line, "%s %s a.obj --checkpoint b", number->name, value);
-    bool taken = parse(line, &options) && number_of(number, &options) == strtod(value, NULL);
+    bool taken =
+        parse(line, &options) && number_of(number, &options) == strtod(value, NULL);
     options_free(&options);
     return taken;
 }
 
-/* Whether the value is refused with a line that starts with the option and quotes the value. */
+/* Whether the value is refused with a line that starts with the option and quotes the
+ * value. */
 static bool refuses(const struct number *number, const char *value, const char *reason)
 {
     char line[100], start[100];
@@ -317,12 +336,13 @@ static void test_numbers(void)
 {
     for (int i = 0; i < NUMBER_COUNT; i++) {
         const struct number *number = &NUMBERS[i];
-        tap_ok(takes(number, number->low) && takes(number, number->high), "%s takes %s and %s",
-               number->name, number->low, number->high);
+        tap_ok(takes(number, number->low) && takes(number, number->high),
+               "%s takes %s and %s", number->name, number->low, number->high);
         tap_ok(refuses(number, number->below, "not between") &&
                    refuses(number, number->above, "not between"),
                "%s refuses %s and %s", number->name, number->below, number->above);
-        tap_ok(refuses(number, "x", "not a number") && refuses(number, "1x", "not a number") &&
+        tap_ok(refuses(number, "x", "not a number") &&
+                   refuses(number, "1x", "not a number") &&
                    refuses(number, "nan", "not a number") &&
                    refuses(number, "inf", "not a number") &&
                    refuses(number, "0x1", "not a number"),
@@ -338,7 +358,8 @@ static void test_numbers(void)
 static void check_refused(const char *line, const char *message)
 {
     struct options options;
-    bool right = !parse(line, &options) && error.code == EXIT_USAGE && is_same(error.text, message);
+    bool right = !parse(line, &options) && error.code == EXIT_USAGE &&
+                 is_same(error.text, message);
     tap_ok(right, "%s%s%s", message, right ? "" : " is not: ", right ? "" : error.text);
     options_free(&options);
 }
@@ -353,7 +374,8 @@ static void test_errors(void)
     check_refused("a.obj --Flat", "unknown option --Flat; see --help");
     check_refused("a.obj --", "unknown option --; see --help");
     check_refused("a.obj -f", "unknown option -f; see --help");
-    check_refused("a.obj --oracle of-delphi", "--oracle: 'of-delphi' is not one of bf|error");
+    check_refused("a.obj --oracle of-delphi",
+                  "--oracle: 'of-delphi' is not one of bf|error");
     check_refused("a.obj --samples 2.5", "--samples: '2.5' is not a whole number");
     check_refused("a.obj --epsilon ten", "--epsilon: 'ten' is not a number");
     check_refused("a.obj --epsilon _", "--epsilon: '' is not a number");
@@ -370,8 +392,8 @@ static void test_memory(void)
         int64_t bytes;
     } CASES[] = {{"1", 1}, {"1000", 1000}, {"3K", 3072}, {"512M", INT64_C(1) << 29},
                  {"2G", INT64_C(1) << 31}, {"3T", INT64_C(3) << 40}};
-    static const char *const BAD[] = {"0", "-1G", "G", "1.5G", "1g", "1GB", "1e9", "", "x",
-                                      "9999999999T"};
+    static const char *const BAD[] = {"0", "-1G", "G", "1.5G", "1g", "1GB", "1e9", "",
+                                      "x", "9999999999T"};
     char line[100];
     struct options options;
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
@@ -397,15 +419,18 @@ static void test_restart(void)
                options.every == 3,
            "a checkpoint may be renewed");
     options_free(&options);
-    tap_ok(parse("a.obj --paper --save-links l", &options) && is_same(options.save_links, "l"),
+    tap_ok(parse("a.obj --paper --save-links l", &options) &&
+               is_same(options.save_links, "l"),
            "--save-links");
     options_free(&options);
     tap_ok(parse("a.obj --load-links l --linking pairs", &options) &&
                is_same(options.load_links, "l"),
            "--load-links");
     options_free(&options);
-    check_refused("a.obj --save-links l", "--save-links goes with --linking pairs (--paper)");
-    check_refused("a.obj --paper --final-gather 64", "--final-gather goes with --linking tree");
+    check_refused("a.obj --save-links l",
+                  "--save-links goes with --linking pairs (--paper)");
+    check_refused("a.obj --paper --final-gather 64",
+                  "--final-gather goes with --linking tree");
     check_refused("a.obj --paper --final-gather pixels",
                   "--final-gather pixels needs rays, and a tree");
     check_refused("a.obj --final-gather 0,pixels",
@@ -414,7 +439,8 @@ static void test_restart(void)
                   "--flat and --final-gather pixels do not go together");
     check_refused("a.obj --final-gather 64pixels",
                   "--final-gather: '64pixels' is not N, pixels or N,pixels");
-    check_refused("a.obj --final-gather 6x,pixels", "--final-gather: '6x' is not a number");
+    check_refused("a.obj --final-gather 6x,pixels",
+                  "--final-gather: '6x' is not a number");
     tap_ok(parse("a.obj --final-gather pixels", &options) && options.pixels &&
                options.criterion.final_gather == 256,
            "a final gather of pixels has as many rays as one of leaves");
@@ -424,7 +450,8 @@ static void test_restart(void)
            "or as many as are given");
     options_free(&options);
     check_refused("a.obj --paper --accuracy 1%", "--accuracy goes with --linking tree");
-    check_refused("a.obj --accuracy 1% --linking pairs", "--accuracy goes with --linking tree");
+    check_refused("a.obj --accuracy 1% --linking pairs",
+                  "--accuracy goes with --linking tree");
     check_refused("a.obj --final-gather 0 --accuracy 1%",
                   "--accuracy and --final-gather 0 do not go together");
     check_refused("a.obj --paper --linking tree --load-links l",
@@ -432,10 +459,12 @@ static void test_restart(void)
     check_refused("a.obj --every 2", "--every needs --checkpoint");
     check_refused("a.obj --save-links l --load-links m",
                   "--save-links and --load-links do not go together");
-    check_refused("a.obj --resume c --load-links l",
-                  "--resume and --load-links do not go together: the initial links are long gone");
-    check_refused("a.obj --resume c --save-links c",
-                  "--resume and --save-links do not go together: the initial links are long gone");
+    check_refused(
+        "a.obj --resume c --load-links l",
+        "--resume and --load-links do not go together: the initial links are long gone");
+    check_refused(
+        "a.obj --resume c --save-links c",
+        "--resume and --save-links do not go together: the initial links are long gone");
     check_refused("a.obj --checkpoint a.obj", "a.obj is named twice");
     check_refused("a.obj --paper --load-links l --checkpoint l", "l is named twice");
     check_refused("a.obj --paper --save-links l --checkpoint l", "l is named twice");
@@ -474,21 +503,22 @@ static void test_settings(void)
 
 static void test_bad_suffixes(void)
 {
-    static const char *const names[] = {"a", "a.png", "a.ppm.gz", ".ppm", "ppm", "a.ppm/"};
+    static const char *const names[] = {"a", "a.png", "a.ppm.gz", ".ppm", "ppm",
+                                        "a.ppm/"};
     char line[50], message[100];
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         snprintf(line, sizeof line, "a.obj -o %s", names[i]);
-        snprintf(message, sizeof message, "-o %s: the name must end in .ppm, .pfm or .ply",
-                 names[i]);
+        snprintf(message, sizeof message,
+                 "-o %s: the name must end in .ppm, .pfm or .ply", names[i]);
         check_refused(line, message);
     }
 }
 
 static void test_bad_sizes(void)
 {
-    static const char *const sizes[] = {"5", "5x", "x5", "5x5x", "5x5x5", "0x5", "5x0", "-5x5",
-                                        "5.5x5", "32769x1", "1x32769", "axb", "5*5", "nanx5",
-                                        "99999999999999999999x5", "4294967297x5"};
+    static const char *const sizes[] = {
+        "5", "5x", "x5", "5x5x", "5x5x5", "0x5", "5x0", "-5x5", "5.5x5", "32769x1",
+        "1x32769", "axb", "5*5", "nanx5", "99999999999999999999x5", "4294967297x5"};
     char line[50], message[100];
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         snprintf(line, sizeof line, "a.obj --size %s", sizes[i]);
@@ -502,7 +532,8 @@ static void test_missing_values(void)
 {
     char line[50], message[100];
     for (int i = 0; i < NUMBER_COUNT + OTHER_COUNT; i++) {
-        const char *name = i < NUMBER_COUNT ? NUMBERS[i].name : OTHERS[i - NUMBER_COUNT][0];
+        const char *name =
+            i < NUMBER_COUNT ? NUMBERS[i].name : OTHERS[i - NUMBER_COUNT][0];
         if (i >= NUMBER_COUNT && !*OTHERS[i - NUMBER_COUNT][1])
             continue;
         snprintf(line, sizeof line, "a.obj %s", name);
@@ -553,7 +584,8 @@ static bool is_known(const char *name)
     return known;
 }
 
-/* Options stand in the parser's table as {"--name", and nothing else there looks like that. */
+/* Options stand in the parser's table as {"--name", and nothing else there looks like
+ * that. */
 static void test_parser_table(const char *help)
 {
     static char source[TEXT_MAX];
@@ -569,8 +601,8 @@ static void test_parser_table(const char *help)
         tap_ok(is_known(name), "this test knows %s", name);
         count++;
     }
-    tap_ok(count == NUMBER_COUNT + OTHER_COUNT, "the parser knows %d options (%d here)", count,
-           NUMBER_COUNT + OTHER_COUNT);
+    tap_ok(count == NUMBER_COUNT + OTHER_COUNT, "the parser knows %d options (%d here)",
+           count, NUMBER_COUNT + OTHER_COUNT);
 }
 
 static void test_help_is_true(const char *help)
@@ -594,8 +626,10 @@ static void test_help_defaults(const char *help)
         if (!NUMBERS[i].in_help)
             continue;
         size_t ahead = line ? strcspn(line, "(\n") : 0;
-        double said = line && line[ahead] == '(' ? strtod(line + ahead + 1, NULL) : NAN, is = number_of(&NUMBERS[i], &options);
-        tap_ok(said == is, "%s: the help says %g, the default is %g", NUMBERS[i].name, said, is);
+        double said = line && line[ahead] == '(' ? strtod(line + ahead + 1, NULL) : NAN,
+               is = number_of(&NUMBERS[i], &options);
+        tap_ok(said == is, "%s: the help says %g, the default is %g", NUMBERS[i].name,
+               said, is);
     }
     options_free(&options);
 }
@@ -603,7 +637,8 @@ static void test_help_defaults(const char *help)
 static void test_help(void)
 {
     static char help[TEXT_MAX];
-    if (!tap_ok(read_help(help) && strncmp(help, "usage: phr ", 11) == 0, "there is a help"))
+    if (!tap_ok(read_help(help) && strncmp(help, "usage: phr ", 11) == 0,
+                "there is a help"))
         return;
     test_parser_table(help);
     test_help_is_true(help);

@@ -1,6 +1,6 @@
-/* Tests of io/run/output.h. Proved are: a file appears whole or not at all; after an error the old
- * file has its old bytes and nothing lies beside it; what cannot be written is known from a
- * probe, with a line that says why; and numbers have one byte order. */
+/* Tests of io/run/output.h. Proved are: a file appears whole or not at all; after an
+ * error the old file has its old bytes and nothing lies beside it; what cannot be written
+ * is known from a probe, with a line that says why; and numbers have one byte order. */
 #include "io/run/output.h"
 
 #include <stdio.h>
@@ -56,17 +56,19 @@ static void test_whole_file(void)
     tap_ok(start(&output, PATH) && path_is_free(PATH) && !path_is_free(BESIDE),
            "a new file grows beside its place");
     fputs("new", output.file);
-    tap_ok(output_close(&output, &error) && file_is(PATH, "new", 3) && path_is_free(BESIDE),
+    tap_ok(output_close(&output, &error) && file_is(PATH, "new", 3) &&
+               path_is_free(BESIDE),
            "and goes there when it is closed");
     start(&output, PATH);
     fputs("newer", output.file);
     tap_ok(fflush(output.file) == 0 && file_is(PATH, "new", 3),
            "the old file is there while the next one grows");
-    tap_ok(output_close(&output, &error) && file_is(PATH, "newer", 5) && path_is_free(BESIDE) &&
-               error.code == EXIT_DONE,
+    tap_ok(output_close(&output, &error) && file_is(PATH, "newer", 5) &&
+               path_is_free(BESIDE) && error.code == EXIT_DONE,
            "which then takes its place");
     start(&output, PATH);
-    tap_ok(output_close(&output, &error) && file_is(PATH, "", 0), "an empty file is a file");
+    tap_ok(output_close(&output, &error) && file_is(PATH, "", 0),
+           "an empty file is a file");
 }
 
 /* After an error of another part of the program. */
@@ -77,7 +79,8 @@ static void test_error_elsewhere(void)
     start(&output, PATH);
     fputs("new", output.file);
     error_set(&error, EXIT_USAGE, "elsewhere");
-    tap_ok(!output_close(&output, &error) && file_is(PATH, "old", 3) && path_is_free(BESIDE),
+    tap_ok(!output_close(&output, &error) && file_is(PATH, "old", 3) &&
+               path_is_free(BESIDE),
            "an error elsewhere leaves the old file");
     tap_ok(error.code == EXIT_USAGE && strcmp(error.text, "elsewhere") == 0,
            "and stays the error that is told");
@@ -100,14 +103,16 @@ static void test_write_error(void)
     tap_ok(refused && !output_close(&output, &error) && error.code == EXIT_FAILED &&
                strncmp(error.text, line, strlen(line)) == 0 && error.text[strlen(line)],
            "a write error: %s", error.text);
-    tap_ok(file_is(PATH, "old", 3) && path_is_free(BESIDE), "leaves the old file and no other");
+    tap_ok(file_is(PATH, "old", 3) && path_is_free(BESIDE),
+           "leaves the old file and no other");
 }
 
 static bool is_refused(bool good, const char *path)
 {
     size_t length = strlen(path);
     return !good && error.code == EXIT_FAILED && strncmp(error.text, path, length) == 0 &&
-           strncmp(error.text + length, ": cannot write: ", 16) == 0 && error.text[length + 16];
+           strncmp(error.text + length, ": cannot write: ", 16) == 0 &&
+           error.text[length + 16];
 }
 
 /* A path that both output_probe() and output_open() refuse, for the same reason. */
@@ -118,8 +123,8 @@ static void check_unwritable(const char *path)
     bool probed = is_refused(output_probe(path, &error), path);
     struct error first = error;
     bool opened = is_refused(start(&output, path), path);
-    tap_ok(probed && opened && strcmp(first.text, error.text) == 0, "'%s' is refused: %s", path,
-           error.text);
+    tap_ok(probed && opened && strcmp(first.text, error.text) == 0, "'%s' is refused: %s",
+           path, error.text);
     tap_ok(!output_close(&output, &error), "what did not open does not close well");
 }
 
@@ -130,8 +135,8 @@ static void test_probe(void)
     tap_ok(output_probe(PATH, &error) && path_is_free(PATH) && path_is_free(BESIDE),
            "probing a new file leaves nothing");
     write_old("old");
-    tap_ok(output_probe(PATH, &error) && file_is(PATH, "old", 3) && path_is_free(BESIDE) &&
-               error.code == EXIT_DONE,
+    tap_ok(output_probe(PATH, &error) && file_is(PATH, "old", 3) &&
+               path_is_free(BESIDE) && error.code == EXIT_DONE,
            "probing an old file leaves it");
     check_unwritable("build");
     check_unwritable("build/");
@@ -150,8 +155,9 @@ static bool is_full(const char *path)
     return full;
 }
 
-/* A device is written in place. Where the system has none, there is nothing to prove; where one
- * was opened beside its place, closing would replace it, so an error keeps that from happening. */
+/* A device is written in place. Where the system has none, there is nothing to prove;
+ * where one was opened beside its place, closing would replace it, so an error keeps that
+ * from happening. */
 static void test_full_device(void)
 {
     static const char path[] = "/dev/full";
@@ -160,14 +166,16 @@ static void test_full_device(void)
         tap_ok(true, "a full device # SKIP there is no %s", path);
         return;
     }
-    tap_ok(start(&output, path) && output_probe(path, &error), "a device is opened in place");
+    tap_ok(start(&output, path) && output_probe(path, &error),
+           "a device is opened in place");
     if (!tap_ok(!output.temporary, "and not beside it")) {
         error_set(&error, EXIT_FAILED, "do not rename");
         output_close(&output, &error);
         return;
     }
     fputs("lost", output.file);
-    tap_ok(is_refused(output_close(&output, &error), path), "a few bytes: %s", error.text);
+    tap_ok(is_refused(output_close(&output, &error), path), "a few bytes: %s",
+           error.text);
     start(&output, path);
     for (int i = 0; i < 100000; i++)
         output_uint32(&output, 1);
@@ -178,7 +186,9 @@ static void test_full_device(void)
 static void test_numbers(void)
 {
     static const unsigned char expected[] = {
-        0x00, 0x00, 0x00, 0x00, 0x04, 0x03, 0x02, 0x01, 0xFF, 0xFE, 0xFD, 0xFC, /* integers */
+        0x00, 0x00, 0x00, 0x00, /* 0 */
+        0x04, 0x03, 0x02, 0x01, /* 0x01020304 */
+        0xFF, 0xFE, 0xFD, 0xFC, /* 0xFCFDFEFF */
         0x00, 0x00, 0x80, 0x3F, /* 1 */
         0x00, 0x00, 0x20, 0xC0, /* -2.5 = -1.25 * 2^1 */
         0x00, 0x00, 0x00, 0x00, /* 0 */
@@ -195,7 +205,8 @@ static void test_numbers(void)
     output_float(&output, 0.0f);
     output_float(&output, 3.40282346638528859812e38f);
     output_float(&output, 0.1f);
-    tap_ok(output_close(&output, &error) && file_is(PATH, (const char *)expected, sizeof expected),
+    tap_ok(output_close(&output, &error) &&
+               file_is(PATH, (const char *)expected, sizeof expected),
            "integers and floats, least significant byte first");
 }
 

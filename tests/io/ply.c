@@ -1,5 +1,6 @@
-/* Tests of io/scene/ply.h, with io/scene/plyfile.h, io/scene/binary.h and io/scene/palette.h behind it. Binary files are
- * made byte by byte in both orders from one list of values. */
+/* Tests of io/scene/ply.h, with io/scene/plyfile.h, io/scene/binary.h and
+ * io/scene/palette.h behind it. Binary files are made byte by byte in both orders from
+ * one list of values. */
 #include "io/scene/ply.h"
 
 #include <stdarg.h>
@@ -14,6 +15,8 @@
 #define XYZ "property float x\nproperty float y\nproperty float z\n"
 #define SQUARE "element vertex 4\n" XYZ
 #define FACE(count) "element face " #count "\nproperty list uchar int vertex_indices\n"
+#define COLOURS(type) \
+    "property " type " red\nproperty " type " green\nproperty " type " blue\n"
 #define CORNERS "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
 #define ASCII "ply\nformat ascii 1.0\n"
 
@@ -37,7 +40,8 @@ static struct scene *read_text(const char *text)
 static void check_refused(const char *text, const char *message)
 {
     struct scene *scene = read_text(text);
-    bool right = !scene && error.code == EXIT_USAGE && strncmp(error.text, PLY, strlen(PLY)) == 0 &&
+    bool right = !scene && error.code == EXIT_USAGE &&
+                 strncmp(error.text, PLY, strlen(PLY)) == 0 &&
                  strcmp(error.text + strlen(PLY), message) == 0;
     if (!right)
         printf("# expected '%s', got '%s'\n", message, error.text);
@@ -45,8 +49,8 @@ static void check_refused(const char *text, const char *message)
     scene_destroy(scene);
 }
 
-static bool corner_is(const struct scene *scene, int32_t triangle, int k, double x, double y,
-                      double z)
+static bool corner_is(const struct scene *scene, int32_t triangle, int k, double x,
+                      double y, double z)
 {
     struct vec3 corner = scene->triangles[triangle].corner[k];
     return corner.x == x && corner.y == y && corner.z == z;
@@ -71,27 +75,33 @@ static void check_square(const char *name, const char *text)
 static void test_text(void)
 {
     check_square("text", ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n");
-    check_square("two triangles", ASCII SQUARE FACE(2) "end_header\n" CORNERS "3 0 1 2\n3 0 2 3");
+    check_square("two triangles",
+                 ASCII SQUARE FACE(2) "end_header\n" CORNERS "3 0 1 2\n3 0 2 3");
     check_square("vertex_index, other names of types",
-                 ASCII SQUARE "element face 1\nproperty list uint8 int32 vertex_index\nend_header\n"
-                 CORNERS "4 0 1 2 3\n");
-    check_square("faces before vertices", ASCII FACE(1) SQUARE "end_header\n4 0 1 2 3\n" CORNERS);
+                 ASCII SQUARE "element face 1\nproperty list uint8 int32 vertex_index\n"
+                 "end_header\n" CORNERS "4 0 1 2 3\n");
+    check_square("faces before vertices",
+                 ASCII FACE(1) SQUARE "end_header\n4 0 1 2 3\n" CORNERS);
     check_square("comments, blank lines, CR LF",
                  "ply\r\ncomment made by hand\r\nformat ascii 1.0\r\nobj_info none\r\n"
-                 "element vertex 4\r\nproperty double x\r\nproperty double y\r\nproperty double z\r\n"
-                 "element face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n"
+                 "element vertex 4\r\nproperty double x\r\nproperty double y\r\n"
+                 "property double z\r\nelement face 1\r\n"
+                 "property list uchar int vertex_indices\r\nend_header\r\n"
                  "0 0 0\r\n1 0 0\r\n\r\n1 1 0\r\n 0\t1 0 \r\n4 0 1 2 3\r\n\r\n");
     check_square("CR alone",
-                 "ply\rformat ascii 1.0\relement vertex 4\rproperty int x\rproperty int y\r"
-                 "property int z\relement face 1\rproperty list char char vertex_indices\r"
+                 "ply\rformat ascii 1.0\relement vertex 4\rproperty int x\r"
+                 "property int y\rproperty int z\relement face 1\r"
+                 "property list char char vertex_indices\r"
                  "end_header\r0 0 0\r1 0 0\r1 1 0\r0 1 0\r4 0 1 2 3\r");
     check_square("other properties, lists and elements, NaN among them",
                  ASCII "element camera 2\nproperty list int float view\nproperty char c\n"
-                 "element vertex 4\nproperty float nx\n" XYZ "property list uchar int more\n"
-                 "element nothing 1000000000\n"
-                 "element face 1\nproperty int flag\nproperty list uchar int vertex_indices\n"
+                 "element vertex 4\nproperty float nx\n" XYZ
+                 "property list uchar int more\nelement nothing 1000000000\n"
+                 "element face 1\nproperty int flag\n"
+                 "property list uchar int vertex_indices\n"
                  "property list uchar float texcoord\nend_header\n2 nan inf 3\n0 7\n"
-                 "nan 0 0 0 0\n1 1 0 0 1 9\n1 1 1 0 0\n1 0 1 0 0\n5 4 0 1 2 3 2 0.5 0.5\n");
+                 "nan 0 0 0 0\n1 1 0 0 1 9\n1 1 1 0 0\n1 0 1 0 0\n"
+                 "5 4 0 1 2 3 2 0.5 0.5\n");
 }
 
 /* --- binary files --- */
@@ -128,7 +138,8 @@ static void put_text(struct bytes *to, const char *text)
     to->size += strlen(text);
 }
 
-/* All types, a list to pass over in the middle of a row, an element without lists before all. */
+/* All types, a list to pass over in the middle of a row, an element without lists before
+ * all. */
 static struct bytes make_binary(bool big)
 {
     static const float square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -167,10 +178,11 @@ static struct bytes make_binary(bool big)
 }
 
 /* Materials that the tests expect. */
-static const struct material
-    BY_TYPE = {{{0.2, 0.2, 0.25}}, {{0, 1000, 0.5}}}, GREY = {{{0.5, 0.5, 0.5}}, {{0, 0, 0}}},
-    MEAN = {{{1.0 / 3, 0.2, 0.2}}, {{0, 0, 0}}}, OWN = {{{0.1, 0.2, 0.3}}, {{0, 0, 0}}},
-    GREY_LAMP = {{{0.5, 0.5, 0.5}}, {{5, 6, 7}}};
+static const struct material BY_TYPE = {{{0.2, 0.2, 0.25}}, {{0, 1000, 0.5}}},
+                             GREY = {{{0.5, 0.5, 0.5}}, {{0, 0, 0}}},
+                             MEAN = {{{1.0 / 3, 0.2, 0.2}}, {{0, 0, 0}}},
+                             OWN = {{{0.1, 0.2, 0.3}}, {{0, 0, 0}}},
+                             GREY_LAMP = {{{0.5, 0.5, 0.5}}, {{5, 6, 7}}};
 
 static void check_material(const struct scene *scene, int32_t triangle,
                            const struct material *expected, const char *name)
@@ -178,8 +190,9 @@ static void check_material(const struct scene *scene, int32_t triangle,
     bool right = scene != NULL;
     for (int c = 0; right && c < BANDS; c++) {
         const struct material *found = &scene->materials[scene->material_of[triangle]];
-        right = fabs(found->reflectance.band[c] - expected->reflectance.band[c]) < 1e-15 &&
-                found->emission.band[c] == expected->emission.band[c];
+        right =
+            fabs(found->reflectance.band[c] - expected->reflectance.band[c]) < 1e-15 &&
+            found->emission.band[c] == expected->emission.band[c];
     }
     tap_ok(right, "%s%s", name, error.text);
 }
@@ -189,7 +202,8 @@ static void test_binary(void)
     for (int big = 0; big < 2; big++) {
         struct bytes file = make_binary(big);
         struct scene *scene = read_bytes(file.data, file.size);
-        tap_ok(is_square(scene), "binary, %s endian: %s", big ? "big" : "little", error.text);
+        tap_ok(is_square(scene), "binary, %s endian: %s", big ? "big" : "little",
+               error.text);
         check_material(scene, 1, &BY_TYPE,
                        "colours by type, emission as it is");
         scene_destroy(scene);
@@ -209,7 +223,8 @@ static void test_lengths(void)
     tap_ok(accepted == 0, "cut off at every byte");
     put(&file, 1, 1);
     struct scene *scene = read_bytes(file.data, file.size);
-    tap_ok(!scene && strcmp(error.text, PLY ": 1 bytes are left behind the last element") == 0,
+    tap_ok(!scene &&
+               strcmp(error.text, PLY ": 1 bytes are left behind the last element") == 0,
            "a byte too many: %s", error.text);
     scene_destroy(scene);
 }
@@ -236,36 +251,41 @@ static void test_binary_errors(void)
 
 static void test_colours(void)
 {
-    struct scene *scene = read_text(ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n");
+    struct scene *scene =
+        read_text(ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n");
     check_material(scene, 0, &GREY, "no colours: grey");
     scene_destroy(scene);
-    scene = read_text(ASCII SQUARE "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                      FACE(2) "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n"
+    scene = read_text(ASCII SQUARE COLOURS("uchar") FACE(2)
+                      "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n"
                       "0 1 0 0 0 0\n3 0 1 2\n3 2 3 0\n");
     check_material(scene, 0, &MEAN,
                    "colours of vertices: the mean of the corners");
     scene_destroy(scene);
-    scene = read_text(ASCII SQUARE "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                      FACE(3) "property double red\nproperty double green\nproperty double blue\n"
-                      "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n0 1 0 0 0 0\n"
-                      "3 0 1 2 0.1 0.2 0.3\n3 2 3 0 0.5 0.5 0.5\n3 0 1 3 0.1 0.2 0.3\n");
+    scene = read_text(ASCII SQUARE COLOURS("uchar") FACE(3) COLOURS("double")
+                      "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n"
+                      "0 1 0 0 0 0\n3 0 1 2 0.1 0.2 0.3\n"
+                      "3 2 3 0 0.5 0.5 0.5\n3 0 1 3 0.1 0.2 0.3\n");
     check_material(scene, 0, &OWN,
                    "colours of faces come first");
-    tap_ok(scene && scene->material_count == 2 && scene->material_of[2] == scene->material_of[0],
+    tap_ok(scene && scene->material_count == 2 &&
+               scene->material_of[2] == scene->material_of[0],
            "faces of one colour share a material");
     scene_destroy(scene);
-    scene = read_text(ASCII SQUARE FACE(2) "property float emission_r\nproperty float emission_g\n"
+    scene = read_text(ASCII SQUARE FACE(2)
+                      "property float emission_r\nproperty float emission_g\n"
                       "property float emission_b\nend_header\n" CORNERS
                       "3 0 1 2 5 6 7\n3 0 2 3 0 0 0\n");
     check_material(scene, 0, &GREY_LAMP, "a lamp without colours");
     scene_destroy(scene);
 }
 
-/* An arrow head: corner 3 is concave, so the fan from corner 0 is right and one from 1 is not. */
+/* An arrow head: corner 3 is concave, so the fan from corner 0 is right and one from 1 is
+ * not. */
 static void test_concave(void)
 {
-    struct scene *scene = read_text(ASCII "element vertex 4\n" XYZ FACE(1)
-                                    "end_header\n1 3 0\n0 0 0\n1 1 0\n2 0 0\n4 1 2 3 0\n");
+    struct scene *scene =
+        read_text(ASCII "element vertex 4\n" XYZ FACE(1)
+                  "end_header\n1 3 0\n0 0 0\n1 1 0\n2 0 0\n4 1 2 3 0\n");
     double area = 0.0;
     for (int32_t i = 0; scene && i < scene->input_count; i++)
         area += triangle_area(&scene->triangles[i]);
@@ -301,7 +321,8 @@ static void test_header_errors(void)
     check_refused(ASCII "element vertex -1\n", ":3: bad number of elements '-1'");
     check_refused(ASCII "element vertex 3x\n", ":3: bad number of elements '3x'");
     check_refused(ASCII "element vertex\n", ":3: bad number of elements ''");
-    check_refused(ASCII "property float x\n", ":3: a property before any element: 'float x'");
+    check_refused(ASCII "property float x\n",
+                  ":3: a property before any element: 'float x'");
     check_refused(ASCII SQUARE "property real w\n", ":7: bad property 'w'");
     check_refused(ASCII SQUARE "property list float int w\n", ":7: bad property 'w'");
     check_refused(ASCII SQUARE "property float x\n", ":7: a second property 'x'");
@@ -312,24 +333,30 @@ static void test_header_errors(void)
                   ":4: the wrong kind of property for 'vertex_index'");
     check_refused(ASCII FACE(1) "end_header\n3 0 1 2\n", ": no vertices with x, y and z");
     check_refused(ASCII SQUARE "end_header\n" CORNERS, ": no faces with vertex_indices");
-    check_refused(ASCII SQUARE FACE(0) "end_header\n" CORNERS, ": no faces with vertex_indices");
+    check_refused(ASCII SQUARE FACE(0) "end_header\n" CORNERS,
+                  ": no faces with vertex_indices");
     check_refused(ASCII "element vertex 1000000000000\n" XYZ FACE(1) "end_header\n",
                   ":3: the file is too short for 1000000000000 elements of this kind");
-    check_refused("ply\nformat binary_little_endian 1.0\n" SQUARE FACE(1) "end_header\nshort",
+    check_refused("ply\nformat binary_little_endian 1.0\n" SQUARE FACE(1)
+                  "end_header\nshort",
                   ":3: the file is too short for 4 elements of this kind");
 }
 
 static void test_row_errors(void)
 {
-    check_refused(ASCII SQUARE FACE(1) "end_header\n0 0 0\n1 0 nan\n1 1 0\n0 1 0\n3 0 1 2\n",
+    check_refused(ASCII SQUARE FACE(1)
+                  "end_header\n0 0 0\n1 0 nan\n1 1 0\n0 1 0\n3 0 1 2\n",
                   ":11: bad number 'nan'");
-    check_refused(ASCII SQUARE FACE(1) "end_header\n0 0 0\n1 0 inf\n1 1 0\n0 1 0\n3 0 1 2\n",
+    check_refused(ASCII SQUARE FACE(1)
+                  "end_header\n0 0 0\n1 0 inf\n1 1 0\n0 1 0\n3 0 1 2\n",
                   ":11: bad number 'inf'");
-    check_refused(ASCII SQUARE FACE(1) "end_header\n0 0 0\n1 0 1e200\n1 1 0\n0 1 0\n3 0 1 2\n",
+    check_refused(ASCII SQUARE FACE(1)
+                  "end_header\n0 0 0\n1 0 1e200\n1 1 0\n0 1 0\n3 0 1 2\n",
                   ":11: a number is not finite or out of range");
     check_refused(ASCII SQUARE FACE(1) "end_header\n0 0 0\n1 0\n1 1 0\n0 1 0\n3 0 1 2\n",
                   ":11: fewer values than the header says");
-    check_refused(ASCII SQUARE FACE(1) "end_header\n0 0 0\n1 0 0 0\n1 1 0\n0 1 0\n3 0 1 2\n",
+    check_refused(ASCII SQUARE FACE(1)
+                  "end_header\n0 0 0\n1 0 0 0\n1 1 0\n0 1 0\n3 0 1 2\n",
                   ":11: more values than the header says");
     check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "3 0 1 4\n",
                   ":14: corner 4, but the last vertex is 3");
@@ -348,8 +375,8 @@ static void test_row_errors(void)
     check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "3 0 1 2\n3 0 2 3\n",
                   ": 8 bytes are left behind the last element");
     check_refused(ASCII SQUARE FACE(1)
-                  "property float red\nproperty float green\nproperty float blue\nend_header\n" CORNERS
-                  "3 0 1 2 0 -0.1 0\n", ":17: a negative colour or emission");
+                  COLOURS("float") "end_header\n" CORNERS "3 0 1 2 0 -0.1 0\n",
+                  ":17: a negative colour or emission");
 }
 
 static void write_file(const char *path, const char *text)

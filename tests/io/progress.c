@@ -1,6 +1,6 @@
-/* Tests of geom/progress.h and io/run/progress.h. Proved are the text of the line, that it fits its width
- * whatever it has to say, that a log is not flooded, and that nobody looks unless asked to. (The line on a
- * terminal is tests/52-words.sh's.) */
+/* Tests of geom/progress.h and io/run/progress.h. Proved are the text of the line, that
+ * it fits its width whatever it has to say, that a log is not flooded, and that nobody
+ * looks unless asked to. (The line on a terminal is tests/52-words.sh's.) */
 #include "io/run/progress.h"
 
 #include <string.h>
@@ -39,7 +39,8 @@ static void test_width(void)
                                 .links = INT64_MAX, .share = 0.02};
     char text[PROGRESS_WIDTH + 1];
     int length = progress_text(text, &progress, 1e300);
-    tap_ok(length == PROGRESS_WIDTH && strlen(text) == PROGRESS_WIDTH, "the longest line: %s", text);
+    tap_ok(length == PROGRESS_WIDTH && strlen(text) == PROGRESS_WIDTH,
+           "the longest line: %s", text);
 }
 
 /* Ticks that nobody looks at. */
@@ -69,7 +70,8 @@ static void test_pairs(void)
     progress_tick_pairs(&progress, 5, 10);
     right = right && last_share == 0.75;
     progress_tick_pairs(&progress, 10, 10);
-    tap_ok(right && last_share == 1.0, "half of the rows are three quarters of the pairs");
+    tap_ok(right && last_share == 1.0,
+           "half of the rows are three quarters of the pairs");
 }
 
 /* --- a log --- */

@@ -1,5 +1,5 @@
-/* Tests of io/picture/render.h: light gathered at the points that pictures show, against closed
- * forms, where no mesh could show them. */
+/* Tests of io/picture/render.h: light gathered at the points that pictures show, against
+ * closed forms, where no mesh could show them. */
 #include "mpi/beyond/beyond.h"
 #include "io/picture/render.h"
 
@@ -9,12 +9,13 @@
 
 static const struct comm *world_comm;
 
-/* Radiosity at a point of root `first` or the next, as a picture shows it; `shading` NULL:
- * all light is gathered. */
+/* Radiosity at a point of root `first` or the next, as a picture shows it; `shading`
+ * NULL: all light is gathered. */
 static double shown(struct solution *s, const struct shading *shading, int32_t first,
                     struct vec3 at)
 {
-    struct renderer renderer = renderer_make(s->octree, shading, &s->solver->beyond->answer.gather);
+    struct renderer renderer =
+        renderer_make(s->octree, shading, &s->solver->beyond->answer.gather);
     struct vec3 x = scene_from_input(s->scene, at);
     for (int32_t root = first; root < first + 2; root++) {
         double weight[3];
@@ -31,7 +32,8 @@ static struct shading *shade_rest(const struct solution *s)
     int64_t count;
     const struct forest *forest = s->solver->model.forest;
     uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
-    struct shading *shading = shading_create(forest, s->solver->beyond->answer.straight, open);
+    struct shading *shading =
+        shading_create(forest, s->solver->beyond->answer.straight, open);
     alloc_free(open);
     return shading;
 }
@@ -48,19 +50,21 @@ static double factor_to_lamp(struct vec3 x, double from, double to)
            point_triangle_factor(x, point(0, 0, 1), &parts[1]);
 }
 
-/* A floor of two leaves, a square lamp above, of which a smaller plate halfway between hides
- * some: the shadow has its edges where they are, although no leaf knows of them. */
+/* A floor of two leaves, a square lamp above, of which a smaller plate halfway between
+ * hides some: the shadow has its edges where they are, although no leaf knows of them. */
 static void test_shadow(bool all)
 {
     struct painted painted = {0};
     soup_add_quad(&painted.soup, point(-1, -1, 0), point(2, 0, 0), point(0, 2, 0), 1);
     paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(-0.1, -0.1, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(-0.1, -0.1, 1), point(0, 0.2, 0), point(0.2, 0, 0),
+                  1);
     paint(&painted, 0.0, 100.0);
-    soup_add_quad(&painted.soup, point(-0.2, -0.2, 0.5), point(0.4, 0, 0), point(0, 0.4, 0), 1);
+    soup_add_quad(&painted.soup, point(-0.2, -0.2, 0.5), point(0.4, 0, 0),
+                  point(0, 0.4, 0), 1);
     paint(&painted, 0.0, 0.0);
-    struct solution s =
-        solve_scene(world_comm, scene_of_painted(&painted), "--max-level 0 --final-gather 64");
+    struct solution s = solve_scene(world_comm, scene_of_painted(&painted),
+                                    "--max-level 0 --final-gather 64");
     struct shading *shading = all ? NULL : shade_rest(&s);
     double lit = 0.0, dark = 0.0, half = 0.0;
     for (int i = 0; i <= 10; i++) {
@@ -90,8 +94,10 @@ static void test_furnace(void)
     soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, true);
     soup_add_box(&painted.soup, point(0.3, 0.3, 0.01), point(0.7, 0.6, 0.5), 1, false);
     paint(&painted, 0.5, 0.5);
-    struct solution s = solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 1e-2");
-    struct renderer renderer = renderer_make(s.octree, NULL, &s.solver->beyond->answer.gather);
+    struct solution s =
+        solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 1e-2");
+    struct renderer renderer =
+        renderer_make(s.octree, NULL, &s.solver->beyond->answer.gather);
     double worst = 0.0;
     int points = 0;
     for (int32_t root = 0; root < scene_root_count(s.scene); root++)
@@ -108,8 +114,8 @@ static void test_furnace(void)
 
 /* --- smooth surfaces --- */
 
-/* A column of eight facets, a small lamp far away: light falls as the cosine of the smooth
- * surface, beyond the horizon of the facets too. */
+/* A column of eight facets, a small lamp far away: light falls as the cosine of the
+ * smooth surface, beyond the horizon of the facets too. */
 static void test_column(void)
 {
     static const double FAR = 40.0, TURN = 0.17453292519943295; /* 10 degrees */
@@ -123,7 +129,8 @@ static void test_column(void)
         soup_add_quad(&painted.soup, rim[i], vec3_sub(rim[(i + 1) % 8], rim[i]),
                       point(0, 0, 1), 1);
     paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(FAR, -0.2, 0.3), point(0, 0, 0.4), point(0, 0.4, 0), 1);
+    soup_add_quad(&painted.soup, point(FAR, -0.2, 0.3), point(0, 0, 0.4),
+                  point(0, 0.4, 0), 1);
     paint(&painted, 0.0, 1e4);
     struct scene *scene = scene_of_painted(&painted);
     scene_add_normals(scene);
@@ -132,21 +139,25 @@ static void test_column(void)
             struct vec3 corner = scene->triangles[i].corner[k];
             scene->normals[3 * i + k] = point(corner.x, corner.y, 0);
         }
-    struct solution s = solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
+    struct solution s =
+        solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
     struct shading *shading = shade_rest(&s);
     double brightest = 0.5 * 1e4 * 0.16 / (PI * (FAR - 1) * (FAR - 1));
     double worst = 0.0;
     for (int facet = 6; facet < 10; facet++) /* 300 to 480 degrees */
         for (int k = 1; k < 8; k++) {
             struct vec3 a = rim[facet % 8], b = rim[(facet + 1) % 8];
-            struct vec3 x = vec3_add(vec3_scale(a, 1.0 - k / 8.0), vec3_scale(b, k / 8.0));
+            struct vec3 x =
+                vec3_add(vec3_scale(a, 1.0 - k / 8.0), vec3_scale(b, k / 8.0));
             double cosine = fmax(0.0, x.x / vec3_length(x));
-            double off = shown(&s, shading, 2 * (facet % 8), vec3_add(x, point(0, 0, 0.5))) /
-                             brightest - cosine;
+            double off =
+                shown(&s, shading, 2 * (facet % 8), vec3_add(x, point(0, 0, 0.5))) /
+                    brightest -
+                cosine;
             worst = fmax(worst, fabs(off));
         }
-    tap_ok(worst <= 0.05, "a column of facets is lit as a round one, within %.3f of the most",
-           worst);
+    tap_ok(worst <= 0.05,
+           "a column of facets is lit as a round one, within %.3f of the most", worst);
     shading_destroy(shading);
     solution_free(&s);
 }
@@ -158,7 +169,8 @@ static void test_bowl(void)
     struct painted painted = {0};
     soup_add_quad(&painted.soup, point(0, 0, 0), point(0, 1, 0), point(0, 0, 1), 1);
     paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(-0.6, 3, 0.4), point(0.2, 0, 0), point(0, 0, 0.2), 1);
+    soup_add_quad(&painted.soup, point(-0.6, 3, 0.4), point(0.2, 0, 0), point(0, 0, 0.2),
+                  1);
     paint(&painted, 0.0, 1e3);
     struct scene *scene = scene_of_painted(&painted);
     scene_add_normals(scene);
@@ -168,7 +180,8 @@ static void test_bowl(void)
             bool left = scene->triangles[i].corner[k].y < middle;
             scene->normals[3 * i + k] = point(0.8, left ? 0.6 : -0.6, 0);
         }
-    struct solution s = solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
+    struct solution s =
+        solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
     struct shading *shading = shade_rest(&s);
     double most = 0.0;
     for (int i = 1; i < 20; i++)
@@ -178,8 +191,8 @@ static void test_bowl(void)
     solution_free(&s);
 }
 
-/* A box whose normals are smoothed over its edges, as some programs write them: a plate above it
- * keeps the light of a lamp off. */
+/* A box whose normals are smoothed over its edges, as some programs write them: a plate
+ * above it keeps the light of a lamp off. */
 static void test_smoothed_box(void)
 {
     struct painted painted = {0};
@@ -187,14 +200,16 @@ static void test_smoothed_box(void)
     paint(&painted, 0.5, 0.0);
     soup_add_quad(&painted.soup, point(-1, -1, 0.7), point(2, 0, 0), point(0, 2, 0), 1);
     paint(&painted, 0.0, 0.0);
-    soup_add_quad(&painted.soup, point(-0.2, -0.2, 2), point(0, 0.4, 0), point(0.4, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(-0.2, -0.2, 2), point(0, 0.4, 0), point(0.4, 0, 0),
+                  1);
     paint(&painted, 0.0, 100.0);
     struct scene *scene = scene_of_painted(&painted);
     scene_add_normals(scene);
     for (int i = 0; i < 12; i++)
         for (int k = 0; k < 3; k++)
             scene->normals[3 * i + k] = vec3_unit(scene->triangles[i].corner[k]);
-    struct solution s = solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
+    struct solution s =
+        solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
     struct shading *shading = shade_rest(&s);
     double most = 0.0;
     for (int32_t root = 0; root < 12; root += 2)

@@ -1,16 +1,19 @@
-/* Tests of io/picture/shading.h. Proved are: the interpolation is continuous over every smooth surface,
- * also where large leaves meet small ones and where roots meet; it keeps constants and, on a
- * regular subdivision, linear functions; it neither depends on the order in which patches were
- * made nor blends what must stay apart (materials, creases, sides, the dark under a box); facets
- * whose normals agree show one curved surface.
+/* Tests of io/picture/shading.h. Proved are: the interpolation is continuous over every
+ * smooth surface, also where large leaves meet small ones and where roots meet; it keeps
+ * constants and, on a regular subdivision, linear functions; it neither depends on the
+ * order in which patches were made nor blends what must stay apart (materials, creases,
+ * sides, the dark under a box); facets whose normals agree show one curved surface.
  *
- *      3-------2     the square: roots (0, 1, 2) and (0, 2, 3), whose common edge is the
- *      | 1  /  |     diagonal. Barycentric coordinates of all leaves are dyadic numbers, so a
- *      |  / 0  |     point on an edge, and one 2^-50 beside it, are exact, and so is the way
- *      0-------1     down the quadtree to the leaf that holds it.
+ *      3-------2     the square: roots (0, 1, 2) and (0, 2, 3), whose common edge is
+ *      | 1  /  |     the diagonal
+ *      |  / 0  |
+ *      0-------1
  *
- * 2^-50 off an edge of a leaf of level 6 the value is off by 2^6 2^-50 = 6e-14 at most; the
- * tolerance of continuity, 1e-12, leaves room for rounding. */
+ * Barycentric coordinates of all leaves are dyadic numbers, so a point on an edge, and
+ * one 2^-50 beside it, are exact, and so is the way down the quadtree to its leaf.
+ *
+ * 2^-50 off an edge of a leaf of level 6 the value is off by 2^6 2^-50 = 6e-14 at most;
+ * the tolerance of continuity, 1e-12, leaves room for rounding. */
 #include "io/picture/shading.h"
 
 #include <math.h>
@@ -34,13 +37,14 @@ struct stage {
 
 /* --- scenes --- */
 
-static void put_triangle(struct scene *scene, int32_t number, struct vec3 a, struct vec3 b,
-                         struct vec3 c)
+static void put_triangle(struct scene *scene, int32_t number, struct vec3 a,
+                         struct vec3 b, struct vec3 c)
 {
     scene->triangles[number] = (struct triangle){{a, b, c}};
 }
 
-/* The quadrilateral abcd as the roots `number` = (a, b, c) and `number` + 1 = (a, c, d). */
+/* The quadrilateral abcd as the roots `number` = (a, b, c) and `number` + 1 = (a, c,
+ * d). */
 static void put_square(struct scene *scene, int32_t number, struct vec3 a, struct vec3 b,
                        struct vec3 c, struct vec3 d)
 {
@@ -56,7 +60,8 @@ static struct stage stage_of(struct scene *scene)
         printf("Bail out! %s\n", error.text);
         exit(1);
     }
-    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *octree =
+        octree_create(scene->triangles, scene->planes, scene->input_count);
     return (struct stage){scene, octree, forest_create(scene), NULL};
 }
 
@@ -75,8 +80,9 @@ static struct vec3 unit_or_zero(struct vec3 x)
     return length > 0.0 ? vec3_scale(x, 1.0 / length) : x;
 }
 
-/* The square folded by 45 degrees about its diagonal, with the same normal at all corners of both
- * roots but for corner 2 of root 1 = (0, 2, 3), which is one end of the diagonal. */
+/* The square folded by 45 degrees about its diagonal, with the same normal at all corners
+ * of both roots but for corner 2 of root 1 = (0, 2, 3), which is one end of the
+ * diagonal. */
 static struct scene *curved_square(struct vec3 normal, struct vec3 other)
 {
     struct scene *scene = folded_square(0.0);
@@ -90,7 +96,8 @@ static struct scene *curved_square(struct vec3 normal, struct vec3 other)
 }
 
 static const struct vec3 UP = {0.0, 0.0, 1.0};
-static const struct vec3 BETWEEN = {0.27059805007309849, -0.27059805007309849, 0.92387953251128674};
+static const struct vec3 BETWEEN = {0.27059805007309849, -0.27059805007309849,
+                                    0.92387953251128674};
 
 static struct stage curved_stage(void)
 {
@@ -106,7 +113,8 @@ static void shade(struct stage *stage, bool flat)
 {
     shading_destroy(stage->shading);
     int64_t leaves;
-    uint8_t *open = flat ? NULL : shading_open_quarters(stage->forest, stage->octree, 0, 1, &leaves);
+    uint8_t *open =
+        flat ? NULL : shading_open_quarters(stage->forest, stage->octree, 0, 1, &leaves);
     stage->shading = shading_create(stage->forest, NULL, open);
     alloc_free(open);
 }
@@ -187,7 +195,8 @@ struct crossing {
     struct vec3 weight[2];
 };
 
-/* Over the diagonal (w0, 0, w2) of root 0 is (w0, w2, 0) of root 1, and the other way round. */
+/* Over the diagonal (w0, 0, w2) of root 0 is (w0, w2, 0) of root 1, and the other way
+ * round. */
 static bool cross_diagonal(struct crossing *crossing, struct vec3 on_edge)
 {
     const double tiny = ldexp(1.0, -50);
@@ -200,7 +209,8 @@ static bool cross_diagonal(struct crossing *crossing, struct vec3 on_edge)
     return true;
 }
 
-/* Steps off the edge k of a leaf at the share t of it. False where the surface ends there. */
+/* Steps off the edge k of a leaf at the share t of it. False where the surface ends
+ * there. */
 static bool make_crossing(const struct stage *stage, int32_t leaf, int k, double t,
                           struct crossing *crossing)
 {
@@ -213,7 +223,8 @@ static bool make_crossing(const struct stage *stage, int32_t leaf, int k, double
     crossing->root[0] = crossing->root[1] = (int32_t)id.root;
     crossing->weight[0] = vec3_add(on_edge, step);
     crossing->weight[1] = beyond;
-    return fmin(beyond.x, fmin(beyond.y, beyond.z)) >= 0.0 || cross_diagonal(crossing, on_edge);
+    return fmin(beyond.x, fmin(beyond.y, beyond.z)) >= 0.0 ||
+           cross_diagonal(crossing, on_edge);
 }
 
 /* What was seen at the edges of a stage. */
@@ -235,15 +246,18 @@ static void visit_edge(const struct stage *stage, int32_t leaf, int k, double t,
     seen->largest = fmax(seen->largest, jump);
 }
 
-/* Each edge of each leaf at its middle, at a quarter (where T-vertices are) and at random. */
-static void visit_edges(const struct stage *stage, struct random *random, struct continuity *seen)
+/* Each edge of each leaf at its middle, at a quarter (where T-vertices are) and at
+ * random. */
+static void visit_edges(const struct stage *stage, struct random *random,
+                        struct continuity *seen)
 {
     for (int32_t p = 0; p < stage->forest->count; p++) {
         for (int k = 0; k < 3 && patch_is_leaf(&stage->forest->patches[p]); k++) {
             visit_edge(stage, p, k, 0.5, seen);
             visit_edge(stage, p, k, 0.25, seen);
             for (int i = 0; i < 3; i++)
-                visit_edge(stage, p, k, (double)(1 + random_bits(random) % 1023) / 1024.0, seen);
+                visit_edge(stage, p, k, (double)(1 + random_bits(random) % 1023) / 1024.0,
+                           seen);
         }
     }
 }
@@ -260,9 +274,10 @@ static void test_continuity(const char *name, struct stage (*make)(void))
         visit_edges(&stage, &random, &seen);
         dismantle(&stage);
     }
-    tap_ok(seen.crossings > 20000 && seen.over_diagonal > 1000 && seen.largest < CONTINUOUS,
-           "%s: continuous at %d points, %d of them between roots (largest jump %.1e)", name,
-           seen.crossings, seen.over_diagonal, seen.largest);
+    tap_ok(seen.crossings > 20000 && seen.over_diagonal > 1000 &&
+               seen.largest < CONTINUOUS,
+           "%s: continuous at %d points, %d of them between roots (largest jump %.1e)",
+           name, seen.crossings, seen.over_diagonal, seen.largest);
 }
 
 /* One root stays whole, the other one is split down to the diagonal in one place. */
@@ -280,8 +295,8 @@ static void test_large_beside_small(void)
         shade(&stage, false);
         visit_edges(&stage, &random, &seen);
         tap_ok(seen.over_diagonal > 20 && seen.largest < CONTINUOUS,
-               "level %d beside an undivided root %d (largest jump %.1e)", DEEPEST, 1 - (int)fine,
-               seen.largest);
+               "level %d beside an undivided root %d (largest jump %.1e)", DEEPEST,
+               1 - (int)fine, seen.largest);
         dismantle(&stage);
     }
 }
@@ -312,7 +327,8 @@ static struct vec3 random_weights(struct random *random)
     return (struct vec3){1.0 - a - b, a, b};
 }
 
-/* About ten roundings of 1.1e-16 each, in the mean and in the interpolation: 1e-15 relative. */
+/* About ten roundings of 1.1e-16 each, in the mean and in the interpolation: 1e-15
+ * relative. */
 static void test_constant(void)
 {
     struct random random = random_seed(14);
@@ -334,9 +350,9 @@ static void test_constant(void)
     dismantle(&stage);
 }
 
-/* Around a vertex inside a regular subdivision the leaves lie in opposite pairs; those at the border
- * have too little on one side, and leaves there hand that on to the vertices next to it. 1e-14:
- * about 30 roundings of numbers of size 2. */
+/* Around a vertex inside a regular subdivision the leaves lie in opposite pairs; those at
+ * the border have too little on one side, and leaves there hand that on to the vertices
+ * next to it. 1e-14: about 30 roundings of numbers of size 2. */
 static void test_linear(void)
 {
     struct stage stage = square_stage();
@@ -361,14 +377,16 @@ static void test_linear(void)
     dismantle(&stage);
 }
 
-/* Bright along one side of the square, as beside a lamp. `height`: of all of the square. */
+/* Bright along one side of the square, as beside a lamp. `height`: of all of the
+ * square. */
 static double edge_field(const struct stage *stage, struct vec3 x)
 {
     double height = stage->scene->high.y - stage->scene->low.y;
     return exp(-25.0 * (x.y - stage->scene->low.y) / height);
 }
 
-/* Gives the leaves below `patch` their means. Where the field varies much there are small ones. */
+/* Gives the leaves below `patch` their means. Where the field varies much there are small
+ * ones. */
 static double set_edge_field(struct stage *stage, int32_t patch)
 {
     struct forest *forest = stage->forest;
@@ -393,7 +411,8 @@ static double set_edge_field(struct stage *stage, int32_t patch)
     return mean;
 }
 
-/* RMS of what is shown less the field, over many points; mean and least of what is shown. */
+/* RMS of what is shown less the field, over many points; mean and least of what is
+ * shown. */
 static double edge_error(struct stage *stage, bool flat, double *mean, double *least)
 {
     struct random random = random_seed(17);
@@ -404,9 +423,11 @@ static double edge_error(struct stage *stage, bool flat, double *mean, double *l
     for (int i = 0; i < 100000; i++) {
         struct vec3 w = random_weights(&random);
         struct triangle t = scene_root_triangle(stage->scene, i % 2);
-        struct vec3 x = vec3_add(vec3_add(vec3_scale(t.corner[0], w.x), vec3_scale(t.corner[1], w.y)),
-                                 vec3_scale(t.corner[2], w.z));
-        double shown = value_at(stage, i % 2, w).band[0], off = shown - edge_field(stage, x);
+        struct vec3 x =
+            vec3_add(vec3_add(vec3_scale(t.corner[0], w.x), vec3_scale(t.corner[1], w.y)),
+                     vec3_scale(t.corner[2], w.z));
+        double shown = value_at(stage, i % 2, w).band[0],
+               off = shown - edge_field(stage, x);
         square += off * off / 100000.0;
         *mean += shown / 100000.0;
         *least = fmin(*least, shown);
@@ -424,15 +445,16 @@ static void test_bright_edge(void)
     double flat = edge_error(&stage, true, &flat_mean, &darkest);
     double smooth = edge_error(&stage, false, &mean, &least);
     tap_ok(smooth < 0.6 * flat && fabs(mean / flat_mean - 1.0) < 0.05,
-           "light that falls off within a few leaves: RMS error %.4f, flat %.4f; %.2f of the light",
+           "light that falls off within a few leaves: RMS error %.4f, flat %.4f; %.2f of "
+           "the light",
            smooth, flat, mean / flat_mean);
-    tap_ok(least >= darkest * (1.0 - 1e-12), "nothing is shown darker than the darkest leaf (%.2g, %.2g)",
-           least, darkest);
+    tap_ok(least >= darkest * (1.0 - 1e-12),
+           "nothing is shown darker than the darkest leaf (%.2g, %.2g)", least, darkest);
     dismantle(&stage);
 }
 
-/* Where small bright leaves meet a large dark one, each gives the vertex what it lacks as far as it is
- * large: so what is shown there is hardly brighter than the large one. */
+/* Where small bright leaves meet a large dark one, each gives the vertex what it lacks as
+ * far as it is large: so what is shown there is hardly brighter than the large one. */
 static void test_large_leaf_counts(void)
 {
     const double corner[3] = {1.0, 0.0, 0.0};
@@ -447,7 +469,9 @@ static void test_large_leaf_counts(void)
             stage.forest->patches[p].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
     shade(&stage, false);
     double shown = shading_at(stage.shading, 0, corner).band[0];
-    tap_ok(shown < 0.2, "a bright leaf of 1/256 of its area makes a dark one shine little: %.2f", shown);
+    tap_ok(shown < 0.2,
+           "a bright leaf of 1/256 of its area makes a dark one shine little: %.2f",
+           shown);
     dismantle(&stage);
 }
 
@@ -462,12 +486,14 @@ static bool is_flat(const struct stage *stage)
         if (!patch_is_leaf(patch))
             continue;
         struct triangle w = weights_of(patch->id), t = forest_triangle(forest, p);
-        struct rgb value = value_at(stage, (int32_t)patch->id.root, triangle_centroid(&w));
+        struct rgb value =
+            value_at(stage, (int32_t)patch->id.root, triangle_centroid(&w));
         flat = flat && difference(value, patch->radiosity) == 0.0;
         for (int k = 0; k < 3; k++) {
             int32_t v = stage->shading->corners[3 * (int64_t)p + k];
-            flat = flat && difference(stage->shading->values[v], patch->radiosity) < 1e-15 &&
-                   vec3_length(vec3_sub(stage->shading->positions[v], t.corner[k])) == 0.0;
+            flat =
+                flat && difference(stage->shading->values[v], patch->radiosity) < 1e-15 &&
+                vec3_length(vec3_sub(stage->shading->positions[v], t.corner[k])) == 0.0;
         }
     }
     return flat;
@@ -500,7 +526,8 @@ static void set_by_id(struct forest *forest)
 }
 
 /* Makes the patches of `from` in `to`, in an order that has nothing to do with theirs. */
-static void copy_shuffled(const struct forest *from, struct forest *to, struct random *random)
+static void copy_shuffled(const struct forest *from, struct forest *to,
+                          struct random *random)
 {
     int64_t count = from->count;
     int32_t *order = alloc_array((size_t)count, sizeof *order);
@@ -556,7 +583,8 @@ static void test_numbering(void)
     }
 }
 
-/* As leaves, roots in order and depth first, meet them: each new number is the next one. */
+/* As leaves, roots in order and depth first, meet them: each new number is the next
+ * one. */
 static void test_vertex_order(void)
 {
     struct random random = random_seed(17);
@@ -581,7 +609,8 @@ static void test_vertex_order(void)
 
 /* --- what stays apart --- */
 
-/* The jump in the middle of the diagonal when root 0 has the radiosity 1 and root 1 has 0. */
+/* The jump in the middle of the diagonal when root 0 has the radiosity 1 and root 1 has
+ * 0. */
 static double jump_of(struct stage *stage)
 {
     stage->forest->patches[0].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
@@ -615,12 +644,15 @@ static void test_materials_and_sides(void)
     scene->material_of[1] = 1;
     check_jump("two materials", scene, 1.0);
     scene = folded_square(0.0);
-    struct triangle *t = &scene->triangles[1]; /* corners 0, 3, 2: root 1 faces away, and the */
-    put_triangle(scene, 1, t->corner[0], t->corner[2], t->corner[1]); /* edge is (w0, 0, w2) */
+    struct triangle *t =
+        &scene->triangles[1]; /* corners 0, 3, 2: root 1 faces away, and the */
+    put_triangle(scene, 1, t->corner[0], t->corner[2],
+                 t->corner[1]); /* edge is (w0, 0, w2) */
     struct stage stage = stage_of(scene);
     jump_of(&stage);
     struct vec3 middle = {0.5, 0.0, 0.5};
-    tap_ok(fabs(difference(value_at(&stage, 0, middle), value_at(&stage, 1, middle)) - 1.0) < 1e-15,
+    tap_ok(fabs(difference(value_at(&stage, 0, middle), value_at(&stage, 1, middle)) -
+                1.0) < 1e-15,
            "front beside back: a jump");
     dismantle(&stage);
 }
@@ -663,7 +695,8 @@ static void test_normals_on_a_plane(void)
     dismantle(&with);
 }
 
-/* Twins: fronts blend with fronts (roots 0, 1), backs with backs (2, 3), not with each other. */
+/* Twins: fronts blend with fronts (roots 0, 1), backs with backs (2, 3), not with each
+ * other. */
 static void test_two_sided(void)
 {
     struct scene *scene = folded_square(0.0);
@@ -674,7 +707,8 @@ static void test_two_sided(void)
     split_regularly(stage.forest, 3);
     shade(&stage, false);
     struct rgb front = value_at(&stage, 0, (struct vec3){0.5, 0.0, 0.5});
-    struct rgb back = value_at(&stage, 2, (struct vec3){0.5, 0.5, 0.0}); /* corners 0, 2, 1 */
+    struct rgb back =
+        value_at(&stage, 2, (struct vec3){0.5, 0.5, 0.0}); /* corners 0, 2, 1 */
     tap_ok(difference(front, (struct rgb){{0.5, 0.0, 0.5}}) < 1e-14 &&
                difference(back, (struct rgb){{2.5, 1.0, 0.5}}) < 1e-14,
            "two-sided: sides do not blend, neighbours do");
@@ -683,8 +717,8 @@ static void test_two_sided(void)
 
 /* --- covered leaves --- */
 
-/* A floor of 8 x 8 with a box without bottom on (2..4) x (2..6), or with a plate in the place of
- * the box's top that shows the floor its front. */
+/* A floor of 8 x 8 with a box without bottom on (2..4) x (2..6), or with a plate in the
+ * place of the box's top that shows the floor its front. */
 static struct scene *floor_scene(bool box)
 {
     const double low[2] = {2.0, 2.0}, high[2] = {4.0, 6.0};
@@ -702,7 +736,8 @@ static struct scene *floor_scene(bool box)
     else
         put_square(scene, 2, top[3], top[2], top[1], top[0]);
     for (int i = 0; i < 4 && box; i++)
-        put_square(scene, 4 + 2 * i, base[i], base[(i + 1) % 4], top[(i + 1) % 4], top[i]);
+        put_square(scene, 4 + 2 * i, base[i], base[(i + 1) % 4], top[(i + 1) % 4],
+                   top[i]);
     return scene;
 }
 
@@ -711,9 +746,9 @@ static bool is_under(struct vec3 x)
     return x.x >= 2.0 && x.x <= 4.0 && x.y >= 2.0 && x.y <= 6.0;
 }
 
-/* Divides the floor along the box, makes what is under it 1/4 and all else 1, and returns the
- * smallest and the largest value of the floor's vertices off the box and on its edge, and the
- * largest one inside. */
+/* Divides the floor along the box, makes what is under it 1/4 and all else 1, and returns
+ * the smallest and the largest value of the floor's vertices off the box and on its edge,
+ * and the largest one inside. */
 static void shade_floor(struct stage *stage, double *low, double *high, double *inside)
 {
     split_regularly(stage->forest, 4);
@@ -728,10 +763,12 @@ static void shade_floor(struct stage *stage, double *low, double *high, double *
     *low = *high = 1.0;
     *inside = 0.0;
     for (int i = 0; i <= 16; i++) {
-        for (int j = 0; j <= 16; j++) { /* (0, 0), (8, 0), (8, 8): x = 8 (b + c), y = 8 c */
+        for (int j = 0; j <= 16;
+             j++) { /* (0, 0), (8, 0), (8, 8): x = 8 (b + c), y = 8 c */
             double b = (i - j) / 16.0, c = j / 16.0;
-            struct rgb value = i >= j ? value_at(stage, 0, (struct vec3){1.0 - b - c, b, c})
-                                      : value_at(stage, 1, (struct vec3){1.0 - c, i / 16.0, -b});
+            struct rgb value =
+                i >= j ? value_at(stage, 0, (struct vec3){1.0 - b - c, b, c})
+                       : value_at(stage, 1, (struct vec3){1.0 - c, i / 16.0, -b});
             if (i > 4 && i < 8 && j > 4 && j < 12) {
                 *inside = fmax(*inside, value.band[0]);
                 continue;
@@ -742,19 +779,21 @@ static void shade_floor(struct stage *stage, double *low, double *high, double *
     }
 }
 
-/* A covered leaf has 1e-12 of the weight of an open one, and up to five lie around a vertex. */
+/* A covered leaf has 1e-12 of the weight of an open one, and up to five lie around a
+ * vertex. */
 static void test_covered(void)
 {
     double low, high, inside;
     struct stage stage = stage_of(floor_scene(true));
     shade_floor(&stage, &low, &high, &inside);
-    tap_ok(low > 1.0 - 1e-10 && high <= 1.0 + 1e-15, "under a box: no darkness outside (1 - %.1e)",
-           1.0 - low);
+    tap_ok(low > 1.0 - 1e-10 && high <= 1.0 + 1e-15,
+           "under a box: no darkness outside (1 - %.1e)", 1.0 - low);
     tap_ok(inside == 0.25, "and none of the light inside");
     dismantle(&stage);
     stage = stage_of(floor_scene(false));
     shade_floor(&stage, &low, &high, &inside);
-    tap_ok(low < 0.9, "under a lamp's front the floor is open: shadows blend (%.2f)", low);
+    tap_ok(low < 0.9, "under a lamp's front the floor is open: shadows blend (%.2f)",
+           low);
     dismantle(&stage);
     struct scene *scene = floor_scene(true);
     scene->two_sided = true;
@@ -778,13 +817,14 @@ static double open_share(const struct stage *stage, int32_t leaf)
     double share = 0.0;
     for (int k = 0; k < 4; k++) {
         struct triangle child = triangle_child(&t, k);
-        share += is_under(scene_to_input(stage->scene, triangle_centroid(&child))) ? 0.0 : 0.25;
+        share += is_under(scene_to_input(stage->scene, triangle_centroid(&child))) ? 0.0
+                                                                                   : 0.25;
     }
     return share;
 }
 
-/* The floor divided once has leaves that are open to 1/2, 3/4 and 1. With the share s open and
- * the emission E, the radiosity E + s (1 - E) must show as 1 everywhere. */
+/* The floor divided once has leaves that are open to 1/2, 3/4 and 1. With the share s
+ * open and the emission E, the radiosity E + s (1 - E) must show as 1 everywhere. */
 static void test_partly_covered(void)
 {
     static const double emission[BANDS] = {0.0, 0.5, 0.25};
@@ -805,19 +845,22 @@ static void test_partly_covered(void)
             continue;
         least = fmin(least, open_share(&stage, p));
         for (int k = 0; k < 3; k++)
-            largest = fmax(largest, difference(value_at(&stage, (int32_t)id.root, w.corner[k]),
-                                               (struct rgb){{1.0, 1.0, 1.0}}));
+            largest =
+                fmax(largest, difference(value_at(&stage, (int32_t)id.root, w.corner[k]),
+                                         (struct rgb){{1.0, 1.0, 1.0}}));
     }
-    tap_ok(least == 0.5 && largest < 1e-15, "the open part of a leaf is shown (within %.1e)",
-           largest);
+    tap_ok(least == 0.5 && largest < 1e-15,
+           "the open part of a leaf is shown (within %.1e)", largest);
     dismantle(&stage);
 }
 
-/* A triangle without area keeps its number and has no vertices; its neighbours do without it. */
+/* A triangle without area keeps its number and has no vertices; its neighbours do without
+ * it. */
 static void test_dropped_triangle(void)
 {
     struct scene *scene = scene_create(3, 1);
-    struct vec3 a = {0.0, 0.0, 0.0}, b = {1.0, 0.0, 0.0}, c = {1.0, 1.0, 0.0}, d = {0.0, 1.0, 0.0};
+    struct vec3 a = {0.0, 0.0, 0.0}, b = {1.0, 0.0, 0.0}, c = {1.0, 1.0, 0.0},
+                d = {0.0, 1.0, 0.0};
     put_triangle(scene, 0, a, b, c);
     put_triangle(scene, 1, a, c, c);
     put_triangle(scene, 2, a, c, d);

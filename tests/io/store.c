@@ -1,7 +1,8 @@
-/* Tests of io/run/store.h, rad/beyond/snapshot.h and mpi/keep.h on one rank. Proved are: what is restored from a
- * file makes the same file again; a file of another kind, version, scene or setting is refused with
- * the reason; so is one that is cut off or changed at any byte; and numbers that no run could have
- * are refused though the checksum is right. Several ranks: tests/67-restart.sh. */
+/* Tests of io/run/store.h, rad/beyond/snapshot.h and mpi/keep.h on one rank. Proved are:
+ * what is restored from a file makes the same file again; a file of another kind,
+ * version, scene or setting is refused with the reason; so is one that is cut off or
+ * changed at any byte; and numbers that no run could have are refused though the checksum
+ * is right. Several ranks: tests/67-restart.sh. */
 #define _POSIX_C_SOURCE 200809L /* fmemopen() */
 #include "mpi/beyond/beyond.h"
 #include "tests/fuzz/store.h"
@@ -28,7 +29,8 @@ static bool save(struct solver *solver, const struct vote *vote, enum store_kind
                  const char *path)
 {
     struct error error = {0};
-    struct store_terms terms = {kind, STORE_SETTINGS, solver->model.scene, solver->beyond->tree};
+    struct store_terms terms = {kind, STORE_SETTINGS, solver->model.scene,
+                                solver->beyond->tree};
     struct snapshot snapshot;
     struct store_writer writer;
     snapshot_collect(solver, vote, &snapshot);
@@ -47,8 +49,8 @@ static size_t load(const char *path, uint8_t *bytes)
     return size;
 }
 
-/* A run that has two passes behind it. What only other methods change, --accuracy among them, is given
- * values, so that none is its first one. */
+/* A run that has two passes behind it. What only other methods change, --accuracy among
+ * them, is given values, so that none is its first one. */
 static struct solver *run_two_passes(struct vote *vote)
 {
     struct criterion criterion = STORE_CRITERION;
@@ -89,18 +91,21 @@ static void test_round_trip(void)
     struct link *links = alloc_array(ROOM, sizeof *links);
     other->memory.limit = solver->memory.limit;
     tap_ok(store_open(&reader, PATH, &terms, &error), "and read");
-    tap_ok(reader.snapshot.patch_count > reader.snapshot.root_count, "it has split patches");
+    tap_ok(reader.snapshot.patch_count > reader.snapshot.root_count,
+           "it has split patches");
     int32_t *order = snapshot_restore(other, &vote, &reader.snapshot);
     int64_t count = store_get_links(&reader, links, ROOM, &error);
     links_deal(other, order, links, count);
     solver_assign_roots(other);
-    tap_ok(count == solver->links.count && store_get_links(&reader, links, ROOM, &error) == 0 &&
+    tap_ok(count == solver->links.count &&
+               store_get_links(&reader, links, ROOM, &error) == 0 &&
                error.code == EXIT_DONE,
            "with all links");
     tap_ok(other->turn.pass == 2 && other->turn.iteration == solver->turn.iteration &&
                other->model.criterion.epsilon == criterion.epsilon &&
                other->model.criterion.final_gather == 128 && other->memory.rays == 128 &&
-               other->beyond->accuracy.rounds == 3 && other->beyond->accuracy.coarse == 0.5 &&
+               other->beyond->accuracy.rounds == 3 &&
+               other->beyond->accuracy.coarse == 0.5 &&
                other->beyond->accuracy.coarse_epsilon == 0.25 &&
                forest_patch_count(other->model.forest) ==
                    forest_patch_count(solver->model.forest),
@@ -148,27 +153,33 @@ static bool refuses(const uint8_t *bytes, size_t size, const struct store_terms 
 static void test_refusals(const uint8_t *bytes, size_t size)
 {
     static uint8_t changed[ROOM];
-    struct store_terms right = {STORE_CHECKPOINT, STORE_SETTINGS, scene, NULL}, wrong = right;
+    struct store_terms right = {STORE_CHECKPOINT, STORE_SETTINGS, scene, NULL},
+                       wrong = right;
     struct error error;
     tap_ok(takes(bytes, size, &right, &error), "the file is taken");
     wrong.kind = STORE_LINKS;
-    tap_ok(refuses(bytes, size, &wrong, "F: not a link cache but a checkpoint"), "another kind");
+    tap_ok(refuses(bytes, size, &wrong, "F: not a link cache but a checkpoint"),
+           "another kind");
     wrong = right;
     wrong.settings = "--oracle bf\n--epsilon 0.01\n";
-    tap_ok(refuses(bytes, size, &wrong, "F: made with --oracle error, this run has --oracle bf"),
+    tap_ok(refuses(bytes, size, &wrong,
+                   "F: made with --oracle error, this run has --oracle bf"),
            "another setting");
     wrong.settings = "--oracle error\n--epsilon 0.02\n";
-    tap_ok(refuses(bytes, size, &wrong, "F: made with --epsilon 0.01, this run has --epsilon 0.02"),
+    tap_ok(refuses(bytes, size, &wrong,
+                   "F: made with --epsilon 0.01, this run has --epsilon 0.02"),
            "another number");
     struct scene *other = store_scene();
     wrong = (struct store_terms){STORE_CHECKPOINT, STORE_SETTINGS, other, NULL};
     tap_ok(takes(bytes, size, &wrong, &error), "the same scene again is the same scene");
     other->materials[1].reflectance.band[2] = 0.25;
-    tap_ok(refuses(bytes, size, &wrong, "F: made from another scene"), "another material");
+    tap_ok(refuses(bytes, size, &wrong, "F: made from another scene"),
+           "another material");
     scene_destroy(other);
     memcpy(changed, bytes, size);
     changed[7] = '1';
-    tap_ok(refuses(changed, size, &right, "F: a checkpoint of version 1"), "another version");
+    tap_ok(refuses(changed, size, &right, "F: a checkpoint of version 1"),
+           "another version");
     tap_ok(refuses((const uint8_t *)"solid things", 12, &right, "F: not a checkpoint"),
            "another format");
     struct store_reader reader;
@@ -232,16 +243,20 @@ static void test_lies(const uint8_t *bytes, size_t size)
     little_put64(rays, GATHER_RAYS_MOST + 1);
     tap_ok(links >= 2, "there are links to change");
     for (size_t at = 20; at <= 32; at += at == 20 ? 4 : 8)
-        tap_ok(refuses_with(bytes, size, at, at == 20 ? "\xff\xff\xff\x7f" : (const char *)many,
+        tap_ok(refuses_with(bytes, size, at,
+                            at == 20 ? "\xff\xff\xff\x7f" : (const char *)many,
                             at == 20 ? 4 : 8, "F: damaged: its size"),
                "a count at byte %d that lies", (int)at);
     tap_ok(refuses_with(bytes, size, NUMBERS_AT, minus, 8, RANGE), "-1 passes");
     tap_ok(refuses_with(bytes, size, NUMBERS_AT + 8 * SNAPSHOT_GATHER, rays, 8, RANGE),
            "more rays than a leaf can have");
-    tap_ok(refuses_with(bytes, size, VALUES_AT, nan, 8, RANGE), "a bound that is no number");
-    tap_ok(refuses_with(bytes, size, SPLITS_AT, "\0", 1, "F: damaged: its patches are no trees"),
+    tap_ok(refuses_with(bytes, size, VALUES_AT, nan, 8, RANGE),
+           "a bound that is no number");
+    tap_ok(refuses_with(bytes, size, SPLITS_AT, "\0", 1,
+                        "F: damaged: its patches are no trees"),
            "a split root that is a leaf");
-    tap_ok(refuses_with(bytes, size, SPLITS_AT, "\2", 1, "F: damaged: its patches are no trees"),
+    tap_ok(refuses_with(bytes, size, SPLITS_AT, "\2", 1,
+                        "F: damaged: its patches are no trees"),
            "a split that is none");
     tap_ok(refuses_with(bytes, size, leaves_at, nan, 8, RANGE) &&
                refuses_with(bytes, size, leaves_at, huge, 8, RANGE) &&
@@ -252,15 +267,19 @@ static void test_lies(const uint8_t *bytes, size_t size)
                refuses_with(bytes, size, last, "\xff\xff\xff\xff", 4, LINK),
            "a link of a patch that does not exist");
     tap_ok(refuses_with(bytes, size, last, bytes + last + 4, 4, LINK), "with itself");
-    tap_ok(refuses_with(bytes, size, last, bytes + last - 24, 24, LINK), "twice the same");
+    tap_ok(refuses_with(bytes, size, last, bytes + last - 24, 24, LINK),
+           "twice the same");
     tap_ok(refuses_with(bytes, size, last - 24, bytes + last, 24, LINK), "out of order");
     tap_ok(refuses_with(bytes, size, last + 8, "\0\0\xc0\x7f", 4, LINK) &&
                refuses_with(bytes, size, last + 8, "\0\0\x80\x3f", 4, LINK) &&
                refuses_with(bytes, size, last + 8, "\0\0\x80\xbf", 4, LINK),
            "an exchange area that is no number, too large, negative");
-    tap_ok(refuses_with(bytes, size, last + 12, "\x02\0\0\0", 4, LINK), "an absent blocker");
-    tap_ok(refuses_with(bytes, size, last + 16, "\xff\x02\0", 3, LINK), "parts of more than all");
-    tap_ok(refuses_with(bytes, size, last + 22, "\xff", 1, LINK), "a visibility that is none");
+    tap_ok(refuses_with(bytes, size, last + 12, "\x02\0\0\0", 4, LINK),
+           "an absent blocker");
+    tap_ok(refuses_with(bytes, size, last + 16, "\xff\x02\0", 3, LINK),
+           "parts of more than all");
+    tap_ok(refuses_with(bytes, size, last + 22, "\xff", 1, LINK),
+           "a visibility that is none");
 }
 
 /* --- clusters --- */
@@ -311,7 +330,8 @@ static void test_clusters(void)
     struct octree *over = octree_create(box->triangles, box->planes, box->input_count);
     struct vote vote;
     struct solver *solver = run_with_clusters(box, over, &vote);
-    struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, box, solver->beyond->tree};
+    struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, box,
+                                solver->beyond->tree};
     struct error error;
     int64_t clusters = 0;
     for (int64_t i = 0; i < solver->links.count; i++)

@@ -1,6 +1,7 @@
-/* Tests of io/scene/text.h. Proved are: how bytes become logical lines with the right line numbers
- * (LF, CRLF, CR, continuation, comments, byte order mark), how lines become words, numbers and
- * integers, which files are refused and with which words, and that names keep their numbers.
+/* Tests of io/scene/text.h. Proved are: how bytes become logical lines with the right
+ * line numbers (LF, CRLF, CR, continuation, comments, byte order mark), how lines become
+ * words, numbers and integers, which files are refused and with which words, and that
+ * names keep their numbers.
  *
  * Lines and words are compared in one string, "1:first|2:second|". */
 #include "io/scene/text.h"
@@ -73,7 +74,8 @@ static void test_line_ends(void)
     check_lines("empty lines count", "\n\na\r\n\r\nb\n", "1:|2:|3:a|4:|5:b|");
     check_lines("LF and CR in this order are two ends", "a\n\rb", "1:a|2:|3:b|");
     check_lines("other blanks end no line", "a\tb\vc\fd\n", "1:a\tb\vc\fd|");
-    check_lines("bytes from 127 on are text", "\x7F\xC3\xA9\xFF\n", "1:\x7F\xC3\xA9\xFF|");
+    check_lines("bytes from 127 on are text", "\x7F\xC3\xA9\xFF\n",
+                "1:\x7F\xC3\xA9\xFF|");
 }
 
 static void test_continuation(void)
@@ -95,7 +97,9 @@ static void test_byte_order_mark(void)
 {
     check_lines("a byte order mark is skipped", "\xEF\xBB\xBF" "a\nb", "1:a|2:b|");
     check_lines("the mark alone is an empty file", "\xEF\xBB\xBF", "");
-    check_lines("a mark elsewhere is text", "a\n\xEF\xBB\xBF" "b", "1:a|2:\xEF\xBB\xBF" "b|");
+    check_lines("a mark elsewhere is text",
+                "a\n\xEF\xBB\xBF" "b",
+                "1:a|2:\xEF\xBB\xBF" "b|");
     check_lines("half a mark is text", "\xEF\xBB" "a", "1:\xEF\xBB" "a|");
 }
 
@@ -107,9 +111,10 @@ static bool size_is_read(size_t count)
     bytes[count / 2] = '\n';
     struct text text;
     bool good = read_bytes(&text, bytes, count);
-    const char *first = good ? text_line(&text) : NULL, *second = first ? text_line(&text) : NULL;
-    good = second && strlen(first) == count / 2 && strlen(second) == count - count / 2 - 1 &&
-           text.line == 2 && !text_line(&text);
+    const char *first = good ? text_line(&text) : NULL,
+               *second = first ? text_line(&text) : NULL;
+    good = second && strlen(first) == count / 2 &&
+           strlen(second) == count - count / 2 - 1 && text.line == 2 && !text_line(&text);
     text_free(&text);
     alloc_free(bytes);
     return good;
@@ -117,7 +122,8 @@ static bool size_is_read(size_t count)
 
 static void test_sizes(void)
 {
-    static const size_t sizes[] = {3, BLOCK - 1, BLOCK, BLOCK + 1, 2 * BLOCK, 5 * BLOCK + 7};
+    static const size_t sizes[] = {3, BLOCK - 1, BLOCK, BLOCK + 1, 2 * BLOCK,
+                                   5 * BLOCK + 7};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
         tap_ok(size_is_read(sizes[i]), "a file of %zu bytes", sizes[i]);
 }
@@ -159,18 +165,19 @@ static void test_numbers(void)
     static const struct {
         const char *word;
         double value;
-    } right[] = {{"0", 0.0}, {"1", 1.0}, {"+1", 1.0}, {"-.5", -0.5}, {"1.", 1.0}, {"1e-3", 1e-3},
-                 {"1E+3", 1e3}, {"007", 7.0}, {"0.1", 0.1}, {"1e100", 1e100}, {"-1e100", -1e100},
+    } right[] = {{"0", 0.0}, {"1", 1.0}, {"+1", 1.0}, {"-.5", -0.5}, {"1.", 1.0},
+                 {"1e-3", 1e-3}, {"1E+3", 1e3}, {"007", 7.0}, {"0.1", 0.1},
+                 {"1e100", 1e100}, {"-1e100", -1e100},
                  {"2.2250738585072011e-308", 2.2250738585072011e-308}, {"1e-999", 0.0},
                  {"1.7976931348623157e308", 1.7976931348623157e308}};
-    static const char *const wrong[] = {"", ".", "-", "+-1", "1e", "e1", "1e+", "1.2.3", "1,5",
-                                        "1 ", " 1", "0x10", "0x1p3", "nan", "NaN", "nan(1)", "inf",
-                                        "-Infinity", "1e309", "-1e999", "1d3", "1f", "1_000",
-                                        "--1"};
+    static const char *const wrong[] = {"", ".", "-", "+-1", "1e", "e1", "1e+", "1.2.3",
+                                        "1,5", "1 ", " 1", "0x10", "0x1p3", "nan", "NaN",
+                                        "nan(1)", "inf", "-Infinity", "1e309", "-1e999",
+                                        "1d3", "1f", "1_000", "--1"};
     for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
         double value = -7.0;
-        tap_ok(text_is_number(right[i].word, &value) && value == right[i].value, "'%s' is a number",
-               right[i].word);
+        tap_ok(text_is_number(right[i].word, &value) && value == right[i].value,
+               "'%s' is a number", right[i].word);
     }
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         double value;
@@ -182,8 +189,11 @@ static void test_numbers(void)
 static char *put_digits(char *to, struct random *random, int most)
 {
     int kind = (int)(random_bits(random) % 4);
-    for (int count = (int)(random_bits(random) % (uint64_t)(most + 1)); count > 0; count--)
-        *to++ = kind == 0 ? '0' : kind == 1 ? '9' : (char)('0' + random_bits(random) % 10);
+    for (int count = (int)(random_bits(random) % (uint64_t)(most + 1)); count > 0;
+         count--)
+        *to++ = kind == 0   ? '0'
+                : kind == 1 ? '9'
+                            : (char)('0' + random_bits(random) % 10);
     return to;
 }
 
@@ -191,11 +201,13 @@ static char *put_digits(char *to, struct random *random, int most)
 static void test_against_strtod(void)
 {
     static const char *const doubtful[] = {
-        "9007199254740992", "9007199254740993", "9007199254740991e22", "9007199254740993e-22",
-        "1e22", "1e23", "1e-22", "1e-23", "-0", "-0.0", "0e99999999999999999999", "8.5e22",
-        "123456789012345678901234567890", "0.000000000000000000000000000001",
-        "00000000000000000000000001.5", "9007199254740992.00", "3e-324", "4.9e-324", "1e-400",
-        "179769313486231570814527423731704356798070e267", "1.e5", ".5e+1", "+.5E-1", "2e0000000001"};
+        "9007199254740992", "9007199254740993", "9007199254740991e22",
+        "9007199254740993e-22", "1e22", "1e23", "1e-22", "1e-23", "-0", "-0.0",
+        "0e99999999999999999999", "8.5e22", "123456789012345678901234567890",
+        "0.000000000000000000000000000001", "00000000000000000000000001.5",
+        "9007199254740992.00", "3e-324", "4.9e-324", "1e-400",
+        "179769313486231570814527423731704356798070e267", "1.e5", ".5e+1", "+.5E-1",
+        "2e0000000001"};
     struct random random = random_seed(3);
     int numbers = 0, wrong = 0, fixed = (int)(sizeof doubtful / sizeof doubtful[0]);
     for (int round = 0; round < 300000; round++) {
@@ -207,7 +219,8 @@ static void test_against_strtod(void)
             *to++ = '.';
         to = put_digits(to, &random, 20);
         if (random_bits(&random) % 2)
-            to += sprintf(to, "%c%d", "eE"[round % 2], (int)(random_bits(&random) % 80) - 40);
+            to += sprintf(to, "%c%d", "eE"[round % 2],
+                          (int)(random_bits(&random) % 80) - 40);
         *to = '\0';
         const char *tried = round < fixed ? doubtful[round] : word;
         double value = -7.0, expected = strtod(tried, &end);
@@ -219,7 +232,8 @@ static void test_against_strtod(void)
         if (!same && wrong == 1)
             printf("# '%s'\n", tried);
     }
-    tap_ok(wrong == 0 && numbers > 200000, "%d random numbers are those of strtod", numbers);
+    tap_ok(wrong == 0 && numbers > 200000, "%d random numbers are those of strtod",
+           numbers);
 }
 
 /* An empty message: the word is a number in range. */
@@ -241,8 +255,9 @@ static void test_number_errors(void)
 {
     check_number("-2.5", "");
     check_number("1e100", "");
-    check_number("1.0000000000000002e100", FILE_NAME ":2: number '1.0000000000000002e100' is out "
-                                                     "of range");
+    check_number("1.0000000000000002e100",
+                 FILE_NAME ":2: number '1.0000000000000002e100' is out "
+                           "of range");
     check_number("-1e101", FILE_NAME ":2: number '-1e101' is out of range");
     check_number("nan", FILE_NAME ":2: bad number 'nan'");
     check_number("1e400", FILE_NAME ":2: bad number '1e400'");
@@ -254,7 +269,8 @@ static void check_integer(const char *word, int64_t expected, const char *expect
 {
     const char *cursor = word;
     int64_t value = 0;
-    tap_ok(text_integer(&cursor, &value) && value == expected && is_same(cursor, expected_rest),
+    tap_ok(text_integer(&cursor, &value) && value == expected &&
+               is_same(cursor, expected_rest),
            "integer at '%s'", word);
 }
 
@@ -308,7 +324,8 @@ static void check_utf16(const char *name, const char *bytes, size_t count)
            "UTF-16, %s", name);
     error = (struct error){EXIT_DONE, ""};
     good = text_of_bytes(&text, "here", bytes, count, &error);
-    tap_ok(!good && is_same(error.text, "here: is UTF-16; save it as UTF-8"), "also in memory");
+    tap_ok(!good && is_same(error.text, "here: is UTF-16; save it as UTF-8"),
+           "also in memory");
 }
 
 static void test_bytes(void)
@@ -356,7 +373,8 @@ static void check_unreadable(const char *path)
     bool good = text_read(&text, path, &error);
     tap_ok(!good && text.unreadable && error.code == EXIT_USAGE &&
                strncmp(error.text, path, length) == 0 &&
-               strncmp(error.text + length, ": cannot read: ", 15) == 0 && error.text[length + 15],
+               strncmp(error.text + length, ": cannot read: ", 15) == 0 &&
+               error.text[length + 15],
            "%s", error.text);
     text_free(&text);
 }
@@ -371,13 +389,15 @@ static void test_names(void)
         snprintf(name, sizeof name, "name %d", i);
         numbered += text_names_add(&names, name) == i;
     }
-    tap_ok(numbered == MANY && names.count == MANY, "%d names are numbered as they come", MANY);
+    tap_ok(numbered == MANY && names.count == MANY, "%d names are numbered as they come",
+           MANY);
     for (int i = MANY - 1; i >= 0; i--) {
         snprintf(name, sizeof name, "name %d", i);
         found += text_names_add(&names, name) == i && strcmp(names.name[i], name) == 0;
     }
     tap_ok(found == MANY && names.count == MANY, "and found again, as copies");
-    tap_ok(text_names_add(&names, "") == MANY && text_names_add(&names, "Name 1") == MANY + 1 &&
+    tap_ok(text_names_add(&names, "") == MANY &&
+               text_names_add(&names, "Name 1") == MANY + 1 &&
                text_names_add(&names, "") == MANY,
            "an empty name is a name; capitals count");
     text_names_free(&names);

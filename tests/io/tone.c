@@ -1,6 +1,7 @@
-/* Tests of io/picture/tone.h. Proved are: the codes are those of the sRGB formula, computed here with
- * pow() in the forward direction, while io/picture/tone.c inverts it without pow(); they are monotone
- * and stay in range; the automatic exposure is the percentile that its contract names. */
+/* Tests of io/picture/tone.h. Proved are: the codes are those of the sRGB formula,
+ * computed here with pow() in the forward direction, while io/picture/tone.c inverts it
+ * without pow(); they are monotone and stay in range; the automatic exposure is the
+ * percentile that its contract names. */
 #include "io/picture/tone.h"
 
 #include <math.h>
@@ -15,15 +16,17 @@ static double srgb_scaled(double linear)
     return 255.0 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1.0 / 2.4) - 0.055);
 }
 
-/* Whether `code` is the nearest to the formula. At a threshold, where 255 s + 1/2 is a whole
- * number, both neighbours are: 1e-12 relative is 50 times the error of pow() and of this line. */
+/* Whether `code` is the nearest to the formula. At a threshold, where 255 s + 1/2 is a
+ * whole number, both neighbours are: 1e-12 relative is 50 times the error of pow() and of
+ * this line. */
 static bool code_is_right(int code, double linear)
 {
     double scaled = srgb_scaled(linear) + 0.5;
     int nearest = (int)scaled;
     double whole = floor(scaled + 0.5);
     bool doubtful = fabs(scaled - whole) <= 1e-12 * scaled;
-    return code == nearest || (doubtful && (code == (int)whole || code == (int)whole - 1));
+    return code == nearest ||
+           (doubtful && (code == (int)whole || code == (int)whole - 1));
 }
 
 static void test_formula(void)
@@ -33,7 +36,8 @@ static void test_formula(void)
     int wrong = 0;
     for (int i = 0; i < 100000; i++) {
         double linear = random_unit(&random);
-        linear = i % 2 ? 1.2 * linear : exp(-14.0 * linear); /* evenly, or evenly in logarithm */
+        linear = i % 2 ? 1.2 * linear
+                       : exp(-14.0 * linear); /* evenly, or evenly in logarithm */
         wrong += !code_is_right(tone_encode(&tone, linear), linear);
     }
     tap_ok(wrong == 0, "100,000 codes follow the formula (%d do not)", wrong);
@@ -50,7 +54,8 @@ static void test_thresholds(void)
         right += tone_encode(&tone, x * (1.0 - 1e-12)) == k &&
                  tone_encode(&tone, x * (1.0 + 1e-12)) == k + 1;
     }
-    tap_ok(right == 255, "the code changes within 1e-12 of each of 255 thresholds (of %d)", right);
+    tap_ok(right == 255,
+           "the code changes within 1e-12 of each of 255 thresholds (of %d)", right);
 }
 
 static void test_monotone(void)
@@ -92,7 +97,8 @@ static void test_range(void)
 
 static void test_exposure(void)
 {
-    struct tone plain = tone_make(1.0), quarter = tone_make(0.25), strong = tone_make(1e6);
+    struct tone plain = tone_make(1.0), quarter = tone_make(0.25),
+                strong = tone_make(1e6);
     int wrong = 0;
     for (int i = 0; i < 1000; i++) {
         double linear = i / 700.0;
@@ -105,7 +111,8 @@ static void test_exposure(void)
 
 enum { PIXELS = 1000 };
 
-/* `bright` of the lit pixels have 50 in the band `band`, the others 2; `black` are black. */
+/* `bright` of the lit pixels have 50 in the band `band`, the others 2; `black` are
+ * black. */
 static double exposure_of(int bright, int black, int band)
 {
     float rgb[3 * PIXELS] = {0.0f};
@@ -128,7 +135,8 @@ static void test_automatic(void)
     float few[3 * 21], black[3 * 4] = {0.0f}, one[3] = {0.0f, 0.0f, 3.0f};
     for (int i = 0; i < 21; i++)
         few[3 * i] = few[3 * i + 1] = few[3 * i + 2] = (float)(21 - i);
-    check_exposure("the 95th percentile of 1..21 is 20", tone_automatic(few, 21), 0.9 / 20.0);
+    check_exposure("the 95th percentile of 1..21 is 20", tone_automatic(few, 21),
+                   0.9 / 20.0);
     check_exposure("one pixel", tone_automatic(one, 1), 0.9 / 3.0);
     for (int band = 0; band < 3; band++) {
         check_exposure("48 in 1000 are bright", exposure_of(48, 0, band), 0.9 / 2.0);
@@ -142,7 +150,8 @@ static void test_automatic(void)
     check_exposure("a spot in the dark", tone_automatic(spot, 10), 16.0 * 0.9 / 80.0);
     for (int i = 0; i < 5; i++)
         slope[3 * i + 1] = (float)(i + 1);
-    check_exposure("within four medians the percentile counts", tone_automatic(slope, 5), 0.9 / 4.0);
+    check_exposure("within four medians the percentile counts", tone_automatic(slope, 5),
+                   0.9 / 4.0);
     tap_ok(tone_automatic(black, 4) == 1.0, "all black: 1");
     tap_ok(tone_automatic(NULL, 0) == 1.0, "no pixels: 1");
 }

@@ -1,6 +1,7 @@
-/* Tests of io/picture/viewpoint.h. Proved are, by many more rays than the choice is made with: in a room the
- * eye is within and sees nothing but fronts, far away for the most part; what is no room is seen from
- * outside, whole, by its fronts; and up is where it should be. */
+/* Tests of io/picture/viewpoint.h. Proved are, by many more rays than the choice is made
+ * with: in a room the eye is within and sees nothing but fronts, far away for the most
+ * part; what is no room is seen from outside, whole, by its fronts; and up is where it
+ * should be. */
 #include "io/picture/viewpoint.h"
 
 #include <stdio.h>
@@ -31,7 +32,8 @@ static struct sight look(const struct scene *scene, const struct octree *octree,
         struct octree_hit hit;
         double x = (i % SIDE + 0.5) * camera->width / SIDE;
         double y = (i / SIDE + 0.5) * camera->height / SIDE;
-        if (!octree_first_hit(octree, eye, camera_ray(camera, x, y), false, &hit, &counts))
+        if (!octree_first_hit(octree, eye, camera_ray(camera, x, y), false, &hit,
+                              &counts))
             continue;
         struct vec3 point = {0.0, 0.0, 0.0};
         for (int k = 0; k < 3; k++)
@@ -50,9 +52,10 @@ static struct sight look(const struct scene *scene, const struct octree *octree,
 
 static bool is_inside(const struct scene *scene, const struct camera *camera)
 {
-    struct vec3 eye = scene_from_input(scene, camera->eye), low = scene->low, high = scene->high;
-    return eye.x > low.x && eye.x < high.x && eye.y > low.y && eye.y < high.y && eye.z > low.z &&
-           eye.z < high.z;
+    struct vec3 eye = scene_from_input(scene, camera->eye), low = scene->low,
+                high = scene->high;
+    return eye.x > low.x && eye.x < high.x && eye.y > low.y && eye.y < high.y &&
+           eye.z > low.z && eye.z < high.z;
 }
 
 /* A scene, the camera that is chosen for it, and what that sees. */
@@ -94,9 +97,10 @@ static struct shot shoot_soup(struct soup *soup, int64_t lamp, int width, int he
 static void describe(const struct shot *shot)
 {
     const struct camera *camera = &shot->camera;
-    printf("# eye %.3f %.3f %.3f at %.3f %.3f %.3f: %.3f fronts, %.3f backs, depth %.3f\n",
-           camera->eye.x, camera->eye.y, camera->eye.z, camera->at.x, camera->at.y, camera->at.z,
-           shot->sight.fronts, shot->sight.backs, shot->sight.depth);
+    printf(
+        "# eye %.3f %.3f %.3f at %.3f %.3f %.3f: %.3f fronts, %.3f backs, depth %.3f\n",
+        camera->eye.x, camera->eye.y, camera->eye.z, camera->at.x, camera->at.y,
+        camera->at.z, shot->sight.fronts, shot->sight.backs, shot->sight.depth);
 }
 
 /* --- rooms --- */
@@ -124,8 +128,8 @@ static void test_cube(void)
     check_room("the same, in a tall picture", shoot_soup(&soup, 0, 200, 700), 0.3, false);
     soup_add_box(&soup, ZERO, (struct vec3){1.0, 1.0, 1.0}, 2, true);
     check_room("in a wide one", shoot_soup(&soup, 0, 1600, 400), 0.3, false);
-    soup_add_box(&soup, (struct vec3){1e6, 1e6, 1e6}, (struct vec3){1e6 + 5, 1e6 + 4, 1e6 + 3}, 2,
-                 true);
+    soup_add_box(&soup, (struct vec3){1e6, 1e6, 1e6},
+                 (struct vec3){1e6 + 5, 1e6 + 4, 1e6 + 3}, 2, true);
     check_room("a room far from the origin", shoot_soup(&soup, 0, 99, 99), 0.3, true);
 }
 
@@ -141,13 +145,16 @@ static void test_corridor(void)
     check_room("a corridor of 1 : 10", shot, 0.08, false);
 }
 
-/* A ceiling lamp along `up`, a table, a cupboard that reaches to the ceiling and fills a corner. */
+/* A ceiling lamp along `up`, a table, a cupboard that reaches to the ceiling and fills a
+ * corner. */
 static struct soup furnished(bool z_up, int64_t *lamp)
 {
     struct soup soup = {0};
     soup_add_box(&soup, ZERO, (struct vec3){4.0, 5.0, 2.5}, 1, true);
-    soup_add_box(&soup, (struct vec3){0.01, 0.01, 0.01}, (struct vec3){1.2, 1.5, 2.49}, 1, false);
-    soup_add_box(&soup, (struct vec3){2.0, 2.0, 0.7}, (struct vec3){3.0, 3.5, 0.75}, 1, false);
+    soup_add_box(&soup, (struct vec3){0.01, 0.01, 0.01}, (struct vec3){1.2, 1.5, 2.49}, 1,
+                 false);
+    soup_add_box(&soup, (struct vec3){2.0, 2.0, 0.7}, (struct vec3){3.0, 3.5, 0.75}, 1,
+                 false);
     *lamp = soup.count;
     soup_add_quad(&soup, (struct vec3){1.5, 2.0, 2.45}, (struct vec3){0.0, 1.0, 0.0},
                   (struct vec3){1.0, 0.0, 0.0}, 1);
@@ -164,8 +171,8 @@ static void test_furniture(void)
     int64_t lamp;
     for (int z_up = 0; z_up < 2; z_up++) {
         struct soup soup = furnished(z_up, &lamp);
-        check_room(z_up ? "furniture, z up" : "furniture, y up", shoot_soup(&soup, lamp, 400, 300),
-                   0.2, z_up);
+        check_room(z_up ? "furniture, z up" : "furniture, y up",
+                   shoot_soup(&soup, lamp, 400, 300), 0.2, z_up);
     }
 }
 
@@ -176,8 +183,10 @@ static void test_generated(void)
         char command[100];
         struct obj_repairs repairs = {0};
         struct error error = {0};
-        snprintf(command, sizeof command, "build/room %d %d >" ROOM, 1000 * seed * seed, seed);
-        struct scene *scene = system(command) == 0 ? obj_read(ROOM, &repairs, &error) : NULL;
+        snprintf(command, sizeof command, "build/room %d %d >" ROOM, 1000 * seed * seed,
+                 seed);
+        struct scene *scene =
+            system(command) == 0 ? obj_read(ROOM, &repairs, &error) : NULL;
         if (!tap_ok(scene != NULL, "%s: %s", command, error.text))
             continue;
         snprintf(command, sizeof command, "an office, seed %d", seed);
@@ -186,8 +195,8 @@ static void test_generated(void)
     remove(ROOM);
 }
 
-/* Where both sides shine, the side of a face does not tell what is inside; and lamps shine
- * nowhere more than elsewhere. */
+/* Where both sides shine, the side of a face does not tell what is inside; and lamps
+ * shine nowhere more than elsewhere. */
 static void test_two_sided(void)
 {
     int64_t lamp;
@@ -226,21 +235,24 @@ static void test_dark_room(void)
     struct soup soup = {0};
     soup_add_box(&soup, ZERO, (struct vec3){8.0, 3.0, 6.0}, 1, true);
     int32_t lit = (int32_t)soup.count;
-    soup_add_box(&soup, (struct vec3){8.1, 0.0, 0.0}, (struct vec3){11.0, 3.0, 6.0}, 1, true);
+    soup_add_box(&soup, (struct vec3){8.1, 0.0, 0.0}, (struct vec3){11.0, 3.0, 6.0}, 1,
+                 true);
     struct world world = world_make(scene_of_soup(&soup, 1));
     soup_free(&soup);
     const struct octree *octree = world.octree;
     struct camera any = viewpoint_choose(world.scene, octree, NULL, 512, 512);
     for (int32_t i = lit; i < world.scene->input_count; i++)
         world.model.forest->patches[i].radiosity = (struct rgb){{0.0, 0.1, 0.0}};
-    struct camera seen = viewpoint_choose(world.scene, octree, world.model.forest, 512, 512);
+    struct camera seen =
+        viewpoint_choose(world.scene, octree, world.model.forest, 512, 512);
     tap_ok(any.eye.x < 8.0 && seen.eye.x > 8.1, "of two rooms, the one with light");
     world_free(&world);
 }
 
 /* --- open scenes --- */
 
-/* From outside, by fronts alone, with at least `share` of the picture; consumes the shot. */
+/* From outside, by fronts alone, with at least `share` of the picture; consumes the
+ * shot. */
 static void check_open(const char *name, struct shot shot, double share, bool z_up)
 {
     const struct camera *camera = &shot.camera;
@@ -259,11 +271,14 @@ static void test_objects(void)
     check_open("a sphere", shoot_soup(&soup, 0, 512, 512), 0.2, false);
     soup_add_box(&soup, ZERO, (struct vec3){2.0, 3.0, 1.0}, 1, false);
     check_open("a box", shoot_soup(&soup, 0, 300, 200), 0.1, false);
-    soup_add_quad(&soup, ZERO, (struct vec3){0.0, 0.0, 1.0}, (struct vec3){1.0, 0.0, 0.0}, 1);
+    soup_add_quad(&soup, ZERO, (struct vec3){0.0, 0.0, 1.0}, (struct vec3){1.0, 0.0, 0.0},
+                  1);
     check_open("a floor", shoot_soup(&soup, 0, 512, 512), 0.05, false);
-    soup_add_quad(&soup, ZERO, (struct vec3){1.0, 0.0, 0.0}, (struct vec3){0.0, 0.0, 1.0}, 1);
+    soup_add_quad(&soup, ZERO, (struct vec3){1.0, 0.0, 0.0}, (struct vec3){0.0, 0.0, 1.0},
+                  1);
     check_open("a ceiling", shoot_soup(&soup, -1, 512, 512), 0.05, false);
-    soup_add_quad(&soup, ZERO, (struct vec3){0.0, 1.0, 0.0}, (struct vec3){0.0, 0.0, 1.0}, 1);
+    soup_add_quad(&soup, ZERO, (struct vec3){0.0, 1.0, 0.0}, (struct vec3){0.0, 0.0, 1.0},
+                  1);
     check_open("a wall", shoot_soup(&soup, 0, 512, 512), 0.1, false);
 }
 
@@ -271,7 +286,8 @@ static void test_objects(void)
 static void test_lamp_from_below(void)
 {
     struct soup soup = {0};
-    soup_add_quad(&soup, ZERO, (struct vec3){1.0, 0.0, 0.0}, (struct vec3){0.0, 0.0, 1.0}, 1);
+    soup_add_quad(&soup, ZERO, (struct vec3){1.0, 0.0, 0.0}, (struct vec3){0.0, 0.0, 1.0},
+                  1);
     struct scene *scene = scene_of_soup(&soup, 1);
     soup_free(&soup);
     scene->materials[0] = material_grey(0.5, 1.0);
@@ -283,12 +299,14 @@ static void test_lamp_from_below(void)
 static void test_lamp_above(void)
 {
     struct soup soup = {0};
-    soup_add_quad(&soup, ZERO, (struct vec3){9.0, 0.0, 0.0}, (struct vec3){0.0, 9.0, 0.0}, 1);
+    soup_add_quad(&soup, ZERO, (struct vec3){9.0, 0.0, 0.0}, (struct vec3){0.0, 9.0, 0.0},
+                  1);
     soup_add_quad(&soup, (struct vec3){4.0, 4.0, 9.0}, (struct vec3){0.0, 0.1, 0.0},
                   (struct vec3){0.1, 0.0, 0.0}, 1);
     struct shot shot = shoot_soup(&soup, 2, 512, 512);
-    tap_ok(shot.camera.up.z == 1.0 && shot.camera.fronts_only && shot.sight.fronts > 0.1 &&
-               shot.camera.eye.z > 0.0, "a floor with a lamp above it along z, seen from above");
+    tap_ok(shot.camera.up.z == 1.0 && shot.camera.fronts_only &&
+               shot.sight.fronts > 0.1 && shot.camera.eye.z > 0.0,
+           "a floor with a lamp above it along z, seen from above");
     shot_free(&shot);
 }
 
@@ -302,7 +320,8 @@ static void test_cornell(void)
         return;
     struct shot shot = shoot(scene, 512, 512);
     struct vec3 eye = shot.camera.eye;
-    tap_ok(fabs(eye.x - 278.0) < 10.0 && fabs(eye.y - 273.0) < 10.0 && fabs(eye.z + 800.0) < 40.0,
+    tap_ok(fabs(eye.x - 278.0) < 10.0 && fabs(eye.y - 273.0) < 10.0 &&
+               fabs(eye.z + 800.0) < 40.0,
            "is seen as in scenes/cornell.view");
     check_open("the Cornell box", shot, 0.9, false);
 }
