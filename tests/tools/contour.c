@@ -1,6 +1,6 @@
-/* Tests of tools/contour.h: the table of exact values (tools/cases.c), closed forms of rectangles
- * in any place, and identities: rows of closed solids add up to 1, parts add up to the whole, no
- * order of arguments, no motion and no unit matters. */
+/* Tests of tools/contour.h: the table of exact values (tools/cases.c), closed forms of
+ * rectangles in any place, and identities: rows of closed solids add up to 1, parts add
+ * up to the whole, no order of arguments, no motion and no unit matters. */
 #include "tools/contour.h"
 
 #include <string.h>
@@ -12,9 +12,10 @@
 
 static const long double LONG_PI = 3.14159265358979323846264338327950288L;
 
-/* What is asked of any value: 1e-11 of the smaller area, and 1e-6 of the value. The sums behind it
- * are right to some 1e-16 of the square of the size: the first is for areas that are thin, down to
- * 1e-5 of that square, the second for exchanges down to 1e-10 of it. */
+/* What is asked of any value: 1e-11 of the smaller area, and 1e-6 of the value. The sums
+ * behind it are right to some 1e-16 of the square of the size: the first is for areas
+ * that are thin, down to 1e-5 of that square, the second for exchanges down to 1e-10 of
+ * it. */
 static const double ABSOLUTE = 1e-11, RELATIVE = 1e-6;
 
 enum { CORNERS = 64 };
@@ -60,15 +61,16 @@ struct tally {
 static void tally_add(struct tally *tally, double value, double right, double area)
 {
     double error = fabs(value - right);
-    double part = fmax(error / (ABSOLUTE * area), right > 0.0 ? error / (RELATIVE * right) : 0.0);
+    double part =
+        fmax(error / (ABSOLUTE * area), right > 0.0 ? error / (RELATIVE * right) : 0.0);
     tally->worst = part > tally->worst || !(part == part) ? part : tally->worst;
     tally->count++;
 }
 
 static void tally_ok(const struct tally *tally, const char *name)
 {
-    tap_ok(tally->worst <= 1.0, "%s, %d pairs: off by %.2g of the tolerance", name, tally->count,
-           tally->worst);
+    tap_ok(tally->worst <= 1.0, "%s, %d pairs: off by %.2g of the tolerance", name,
+           tally->count, tally->worst);
 }
 
 /* --- the table --- */
@@ -90,10 +92,10 @@ static void test_table(void)
 
 /* --- rectangles in closed form --- */
 
-/* Integrals four times over of cos cos' / (pi r^2): for parallel planes at distance z between
- * points x and y apart, and for perpendicular planes at distances a and b from their line, y apart
- * along it (Ehlert and Smith 1993; Howell C-13 and C-15). Long double, since the 16 of them
- * cancel. */
+/* Integrals four times over of cos cos' / (pi r^2): for parallel planes at distance z
+ * between points x and y apart, and for perpendicular planes at distances a and b from
+ * their line, y apart along it (Ehlert and Smith 1993; Howell C-13 and C-15). Long
+ * double, since the 16 of them cancel. */
 static long double parallel_term(long double x, long double y, long double z)
 {
     long double p = sqrtl(x * x + z * z), q = sqrtl(y * y + z * z);
@@ -110,7 +112,8 @@ static long double perpendicular_term(long double a, long double b, long double 
     return (angle - (k2 - y * y) / 4 * logl(r2)) / (2 * LONG_PI);
 }
 
-/* x0, x1, y0, y1 of the lower rectangle, u0, u1, v0, v1 of the upper one, at distance z. */
+/* x0, x1, y0, y1 of the lower rectangle, u0, u1, v0, v1 of the upper one, at distance
+ * z. */
 static double parallel_exchange(const double lower[4], const double upper[4], double z)
 {
     long double sum = 0;
@@ -137,18 +140,21 @@ static double perpendicular_exchange(const double floor[4], const double wall[4]
 
 static struct polygon floor_rectangle(const double x[4])
 {
-    return rectangle(point(x[0], x[2], 0), point(x[1] - x[0], 0, 0), point(0, x[3] - x[2], 0));
+    return rectangle(point(x[0], x[2], 0), point(x[1] - x[0], 0, 0),
+                     point(0, x[3] - x[2], 0));
 }
 
 static struct polygon ceiling_rectangle(const double x[4], double z)
 {
-    return rectangle(point(x[0], x[2], z), point(0, x[3] - x[2], 0), point(x[1] - x[0], 0, 0));
+    return rectangle(point(x[0], x[2], z), point(0, x[3] - x[2], 0),
+                     point(x[1] - x[0], 0, 0));
 }
 
 /* In the plane x = 0, facing positive x. */
 static struct polygon wall_rectangle(const double x[4])
 {
-    return rectangle(point(0, x[2], x[0]), point(0, x[3] - x[2], 0), point(0, 0, x[1] - x[0]));
+    return rectangle(point(0, x[2], x[0]), point(0, x[3] - x[2], 0),
+                     point(0, 0, x[1] - x[0]));
 }
 
 static double extent(const double x[4])
@@ -167,10 +173,12 @@ static void test_catalogue(void)
         const double beyond[4] = {c / 100, c / 100 + a, 0, b};
         struct polygon p = floor_rectangle(lower), q = ceiling_rectangle(lower, c);
         struct polygon r = wall_rectangle(wall), s = floor_rectangle(beyond);
-        tally_add(&parallel, exchange_of(&p, &q), parallel_exchange(lower, lower, c), a * b);
+        tally_add(&parallel, exchange_of(&p, &q), parallel_exchange(lower, lower, c),
+                  a * b);
         tally_add(&corner, exchange_of(&p, &r), perpendicular_exchange(lower, wall),
                   fmin(a, c) * b);
-        tally_add(&gap, exchange_of(&s, &r), perpendicular_exchange(beyond, wall), fmin(a, c) * b);
+        tally_add(&gap, exchange_of(&s, &r), perpendicular_exchange(beyond, wall),
+                  fmin(a, c) * b);
     }
     tally_ok(&parallel, "C-11, aligned parallel rectangles");
     tally_ok(&corner, "C-14, perpendicular rectangles with a common edge");
@@ -190,7 +198,8 @@ static void test_rectangles(void)
     for (int i = 0; i < 2000; i++) {
         double x[8];
         for (int k = 0; k < 8; k += 2) {
-            /* Of eight places, so that edges often meet; from 0 on for what is on a wall. */
+            /* Of eight places, so that edges often meet; from 0 on for what is on a
+             * wall. */
             x[k] = (double)random_below(&random, 8) / 4.0;
             x[k + 1] = x[k] + (double)(1 + random_below(&random, 8)) / 4.0;
         }
@@ -200,18 +209,20 @@ static void test_rectangles(void)
         struct polygon wall = wall_rectangle(x + 4);
         /* Far away the 16 terms of size z^2 cancel to z^-2: 1e-19 z^4 of the result. */
         if (z < 30.0)
-            tally_add(&parallel, exchange_of(&floor, &ceiling), parallel_exchange(x, x + 4, z),
-                      least);
-        tally_add(&perpendicular, exchange_of(&wall, &floor), perpendicular_exchange(x, x + 4),
-                  least);
+            tally_add(&parallel, exchange_of(&floor, &ceiling),
+                      parallel_exchange(x, x + 4, z), least);
+        tally_add(&perpendicular, exchange_of(&wall, &floor),
+                  perpendicular_exchange(x, x + 4), least);
     }
     for (int i = 0; i < 200; i++) {
         /* Small ones close to a large one. */
         double side = 0.01 * (1 + i % 10), z = 0.005 * (1 + i / 10);
-        const double lower[4] = {-1, 1, -1, 1}, upper[4] = {0.3, 0.3 + side, 0.2, 0.2 + side};
-        struct polygon floor = floor_rectangle(lower), ceiling = ceiling_rectangle(upper, z);
-        tally_add(&parallel, exchange_of(&floor, &ceiling), parallel_exchange(lower, upper, z),
-                  extent(upper));
+        const double lower[4] = {-1, 1, -1, 1},
+                     upper[4] = {0.3, 0.3 + side, 0.2, 0.2 + side};
+        struct polygon floor = floor_rectangle(lower),
+                       ceiling = ceiling_rectangle(upper, z);
+        tally_add(&parallel, exchange_of(&floor, &ceiling),
+                  parallel_exchange(lower, upper, z), extent(upper));
     }
     tally_ok(&parallel, "parallel rectangles anywhere");
     tally_ok(&perpendicular, "perpendicular rectangles anywhere");
@@ -228,13 +239,15 @@ static double hinge_exchange(double length, double angle)
     return exchange_of(&floor, &lid);
 }
 
-/* For endless strips Hottel's crossed strings give 1 - sin(angle / 2) per length. The ends of a
- * strip of length L take away a constant and terms of 1/L, which is the error of a difference. */
+/* For endless strips Hottel's crossed strings give 1 - sin(angle / 2) per length. The
+ * ends of a strip of length L take away a constant and terms of 1/L, which is the error
+ * of a difference. */
 static void test_hinges(void)
 {
     for (int degrees = 15; degrees < 180; degrees += 15) {
         double angle = degrees * PI / 180.0, length = 4000.0;
-        double once = hinge_exchange(length, angle), twice = hinge_exchange(2.0 * length, angle);
+        double once = hinge_exchange(length, angle),
+               twice = hinge_exchange(2.0 * length, angle);
         double each = (twice - once) / length;
         tap_ok(fabs(each - (1.0 - sin(0.5 * angle))) < 1.0 / (length * length),
                "hinged at %d degrees, endless: %.8f", degrees, each);
@@ -279,18 +292,21 @@ static struct solid unit_box(void)
 {
     struct vec3 o = {0, 0, 0}, e = {1, 1, 1}, x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1};
     struct vec3 u = vec3_scale(x, -1), v = vec3_scale(y, -1), w = vec3_scale(z, -1);
-    return (struct solid){6, {rectangle(o, x, y), rectangle(o, y, z), rectangle(o, z, x),
-                              rectangle(e, v, u), rectangle(e, w, v), rectangle(e, u, w)}};
+    return (struct solid){6,
+                          {rectangle(o, x, y), rectangle(o, y, z), rectangle(o, z, x),
+                           rectangle(e, v, u), rectangle(e, w, v), rectangle(e, u, w)}};
 }
 
 /* With its faces turned inwards. */
 static struct solid unit_tetrahedron(void)
 {
     struct vec3 o = {0, 0, 0}, x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1};
-    return (struct solid){4, {{3, {o, x, y}}, {3, {o, y, z}}, {3, {o, z, x}}, {3, {x, z, y}}}};
+    return (struct solid){
+        4, {{3, {o, x, y}}, {3, {o, y, z}}, {3, {o, z, x}}, {3, {x, z, y}}}};
 }
 
-/* 16 triangles, of which three and four lie in one plane and many share edges and corners. */
+/* 16 triangles, of which three and four lie in one plane and many share edges and
+ * corners. */
 static struct solid split_tetrahedron(void)
 {
     struct solid whole = unit_tetrahedron(), solid = {.count = 16};
@@ -350,8 +366,10 @@ static double sum_of_parts(const struct triangle *t, const struct triangle *u, i
     return sum;
 }
 
-/* Apart, with a corner in common, with an edge in common, and one edge in a part of another. */
-static void random_pair(struct random *random, int kind, struct triangle *t, struct triangle *u)
+/* Apart, with a corner in common, with an edge in common, and one edge in a part of
+ * another. */
+static void random_pair(struct random *random, int kind, struct triangle *t,
+                        struct triangle *u)
 {
     *t = random_triangle(random, 0.5, 0.5);
     *u = random_triangle(random, 0.5, 0.5);
@@ -364,7 +382,8 @@ static void random_pair(struct random *random, int kind, struct triangle *t, str
 /* The whole goes by contours, half of the parts by points; planes cut many of them. */
 static void test_parts(void)
 {
-    static const char *const names[4] = {"apart", "at a corner", "at an edge", "at half an edge"};
+    static const char *const names[4] = {"apart", "at a corner", "at an edge",
+                                         "at half an edge"};
     for (int kind = 0; kind < 4; kind++) {
         struct random random = random_seed(10 + (uint64_t)kind);
         struct tally tally = {0.0, 0};
@@ -392,8 +411,8 @@ static double point_exchange(const struct triangle *t, const struct triangle *u)
            (PI * r2 * r2);
 }
 
-/* Of triangles of size 1 at distance d all but 1 / d^2 is the exchange of two points; coordinates
- * are rounded by 1e-16 d. */
+/* Of triangles of size 1 at distance d all but 1 / d^2 is the exchange of two points;
+ * coordinates are rounded by 1e-16 d. */
 static void test_far(void)
 {
     struct random random = random_seed(5);
@@ -408,15 +427,18 @@ static void test_far(void)
             u.corner[k] = vec3_add(u.corner[k], step);
         double right = point_exchange(&t, &u);
         /* Where neither cosine is small. */
-        if (right * distance * distance < 0.002 || vec3_dot(triangle_cross(&t), step) < 0.0)
+        if (right * distance * distance < 0.002 ||
+            vec3_dot(triangle_cross(&t), step) < 0.0)
             continue;
         worst = fmax(worst, fabs(triangle_exchange(&t, &u) / right - 1.0));
         count++;
     }
-    tap_ok(count > 20 && worst < 1e-9, "%d far pairs are like points (off by %.1e)", count, worst);
+    tap_ok(count > 20 && worst < 1e-9, "%d far pairs are like points (off by %.1e)",
+           count, worst);
 }
 
-/* Where the plane is tilted, rounding leaves neighbours a little in front of each other. */
+/* Where the plane is tilted, rounding leaves neighbours a little in front of each
+ * other. */
 static void test_plane(void)
 {
     struct random random = random_seed(6);
@@ -424,7 +446,8 @@ static void test_plane(void)
     for (int i = 0; i < 1000; i++) {
         struct triangle whole = random_triangle(&random, 0.5, 0.5);
         for (int k = 0; k < 16; k++) {
-            struct triangle t = triangle_child(&whole, k / 4), u = triangle_child(&whole, k % 4);
+            struct triangle t = triangle_child(&whole, k / 4),
+                            u = triangle_child(&whole, k % 4);
             seen += triangle_area(&whole) > 0.02 && triangle_exchange(&t, &u) > 0.0;
         }
     }
@@ -464,13 +487,15 @@ static void test_symmetries(void)
     for (int i = 0; i < 2000; i++) {
         struct triangle t, u;
         random_pair(&random, i % 4, &t, &u);
-        double least = fmin(triangle_area(&t), triangle_area(&u)), g = triangle_exchange(&t, &u);
+        double least = fmin(triangle_area(&t), triangle_area(&u)),
+               g = triangle_exchange(&t, &u);
         if (least < 0.02 || g < 1e-5 * least)
             continue;
         double q[4];
         for (int k = 0; k < 4; k++)
             q[k] = random_between(&random, 0.1, 1.0);
-        struct triangle v = shifted(t, q, point(1, 2, 3)), w = shifted(u, q, point(1, 2, 3));
+        struct triangle v = shifted(t, q, point(1, 2, 3)),
+                        w = shifted(u, q, point(1, 2, 3));
         tally_add(&motion, triangle_exchange(&v, &w), g, least);
         for (int k = -6; k <= 6; k += 12) {
             double s = pow(10.0, k);
@@ -502,7 +527,9 @@ static void test_bounds(void)
         double step = pow(10.0, random_between(&random, -17.0, 0.0));
         struct vec3 small = random_point(&random, step);
         switch (random_below(&random, 4)) {
-        case 0: u.corner[2] = vec3_add(vec3_middle(u.corner[0], u.corner[1]), small); break;
+        case 0:
+            u.corner[2] = vec3_add(vec3_middle(u.corner[0], u.corner[1]), small);
+            break;
         case 1: u.corner[2] = vec3_add(t.corner[2], small); break;
         case 2:
             for (int k = 0; k < 3; k++)
@@ -510,26 +537,31 @@ static void test_bounds(void)
             break;
         default: u = scaled(u, step);
         }
-        double g = triangle_exchange(&t, &u), least = fmin(triangle_area(&t), triangle_area(&u));
+        double g = triangle_exchange(&t, &u),
+               least = fmin(triangle_area(&t), triangle_area(&u));
         wrong += !(g >= 0.0 && g <= least * (1.0 + 1e-15));
         lit += g > 0.0;
     }
-    tap_ok(wrong == 0 && lit > 5000, "20,000 pairs of all kinds, %d lit: 0 <= F <= 1", lit);
+    tap_ok(wrong == 0 && lit > 5000, "20,000 pairs of all kinds, %d lit: 0 <= F <= 1",
+           lit);
 }
 
 /* --- other polygons --- */
 
 static void test_polygons(void)
 {
-    const double lower[4] = {0, 1, 0, 2}, right[4] = {1, 2, 0, 1}, upper[4] = {0.5, 5, 0.25, 4};
-    struct polygon ell = {6, {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}};
+    const double lower[4] = {0, 1, 0, 2}, right[4] = {1, 2, 0, 1},
+                 upper[4] = {0.5, 5, 0.25, 4};
+    struct polygon ell = {
+        6, {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}};
     struct tally tally = {0.0, 0};
     for (int k = 0; k < 18; k++) {
         double z = k < 6 ? 0.125 : k < 12 ? 1.5 : 15.0;
         struct polygon lid = ceiling_rectangle(upper, z), turn = {.count = 6};
         for (int i = 0; i < 6; i++)
             turn.corner[i] = ell.corner[(i + k) % 6];
-        double sum = parallel_exchange(lower, upper, z) + parallel_exchange(right, upper, z);
+        double sum =
+            parallel_exchange(lower, upper, z) + parallel_exchange(right, upper, z);
         tally_add(&tally, exchange_of(&turn, &lid), sum, 3.0);
     }
     for (int k = 0; k < 3; k++) {
@@ -537,27 +569,30 @@ static void test_polygons(void)
         const double small[4] = {0.45, 0.55, 0.4, 0.6};
         double z = 0.005 * (k + 1);
         struct polygon lid = ceiling_rectangle(small, z);
-        double sum = parallel_exchange(lower, small, z) + parallel_exchange(right, small, z);
+        double sum =
+            parallel_exchange(lower, small, z) + parallel_exchange(right, small, z);
         tally_add(&tally, exchange_of(&ell, &lid), sum, extent(small));
     }
     tally_ok(&tally, "an L below a rectangle");
-    /* A wall in the plane y = 1/2 + k/4 that leaves one or two arms of a U in front of it. */
-    struct polygon u = {8, {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {2, 2, 0}, {2, 1, 0}, {1, 1, 0},
-                            {1, 2, 0}, {0, 2, 0}}};
+    /* A wall in the plane y = 1/2 + k/4 that leaves one or two arms of a U in front of
+     * it. */
+    struct polygon u = {8, {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {2, 2, 0},
+                            {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}};
     tally = (struct tally){0.0, 0};
     for (int k = 0; k < 5; k++) {
         double y = 0.5 + 0.25 * k, bar = fmax(0.0, 1.0 - y);
         const double wall[4] = {0, 1, 0, 2}, middle[4] = {0, bar, 0, 3};
         const double left[4] = {bar, 2.0 - y, 0, 1}, rest[4] = {bar, 2.0 - y, 2, 3};
-        double sum = perpendicular_exchange(left, wall) + perpendicular_exchange(rest, wall);
+        double sum =
+            perpendicular_exchange(left, wall) + perpendicular_exchange(rest, wall);
         sum += bar > 0.0 ? perpendicular_exchange(middle, wall) : 0.0;
         struct polygon plate = rectangle(point(0, y, 0), point(0, 0, 1), point(2, 0, 0));
         tally_add(&tally, exchange_of(&u, &plate), sum, 2.0 * (2.0 - y));
     }
     tally_ok(&tally, "a U cut by a wall");
-    /* Regular polygons of 64 corners on coaxial circles of radius 1, 1 apart: disks exchange
-     * (3 - sqrt 5) / 2 of their area; with areas that are 1 - (2 pi / 64)^2 / 6 of a disk each, the
-     * exchange falls by about twice that, 3.2e-3. */
+    /* Regular polygons of 64 corners on coaxial circles of radius 1, 1 apart: disks
+     * exchange (3 - sqrt 5) / 2 of their area; with areas that are 1 - (2 pi / 64)^2 / 6
+     * of a disk each, the exchange falls by about twice that, 3.2e-3. */
     struct polygon floor = {.count = 64}, top = {.count = 64};
     for (int k = 0; k < 64; k++) {
         double angle = 2.0 * PI * k / 64.0;
@@ -565,8 +600,8 @@ static void test_polygons(void)
         top.corner[63 - k] = point(cos(angle), sin(angle), 1);
     }
     double g = exchange_of(&floor, &top), disks = PI * (3.0 - sqrt(5.0)) / 2.0;
-    tap_ok(g < disks && g > disks * (1.0 - 3.3e-3), "64 corners for a disk: %.6f of %.6f", g,
-           disks);
+    tap_ok(g < disks && g > disks * (1.0 - 3.3e-3), "64 corners for a disk: %.6f of %.6f",
+           g, disks);
     tap_ok(polygon_area(ell.corner, 6) == 3.0, "the area of an L");
 }
 
@@ -587,8 +622,8 @@ static void test_gauss(void)
         }
     }
     /* Nodes are right to 1e-16, which the 31st power makes 3e-15 of it. */
-    tap_ok(worst < 5e-15, "Gauss' rules integrate all powers that they should (off by %.1e)",
-           worst);
+    tap_ok(worst < 5e-15,
+           "Gauss' rules integrate all powers that they should (off by %.1e)", worst);
     struct gauss rule = gauss_rule(4);
     double sum = 0.0;
     for (int k = 0; k < 4; k++) {
