@@ -1,16 +1,17 @@
-/* The room tests of CIE 171:2006 that need neither glass nor sky, against closed forms: 5.3 a
- * square area source, 5.6 light reflected by a bright floor, 5.7 the same with a slab in the way,
- * 5.8 interreflection.
+/* The room tests of CIE 171:2006 that need neither glass nor sky, against closed forms:
+ * 5.3 a square area source, 5.6 light reflected by a bright floor, 5.7 the same with a
+ * slab in the way, 5.8 interreflection.
  *
- * In the first three only one plane reflects at a time, so that nothing but the light of the source
- * arrives there, B = rho E, and E / B_source is the form factor from the point to what it sees of
- * the source: Lambert's closed form, with the polygon cut where the slab covers it. The numbers are
- * those in percent; the CIE's Table 19 for 5.7 is wrong. Points are taken as pictures show them,
- * from the interpolated radiosity. The limit is 1 % of the value; no value is below 1 % of the source
- * but two that are 0. Of these one lies on the very edge of the shadow: from there on it gets
- * brighter by 6 % a metre, and of this a leaf's mean and the interpolation show some at the edge.
- * What is allowed, 0.1 %, is reached 1.6 cm away. The other, half a metre into the shadow, may have
- * what a link is allowed to be off by, epsilon. */
+ * In the first three only one plane reflects at a time, so that nothing but the light of
+ * the source arrives there, B = rho E, and E / B_source is the form factor from the point
+ * to what it sees of the source: Lambert's closed form, with the polygon cut where the
+ * slab covers it. The numbers are those in percent; the CIE's Table 19 for 5.7 is wrong.
+ * Points are taken as pictures show them, from the interpolated radiosity. The limit is 1
+ * % of the value; no value is below 1 % of the source but two that are 0. Of these one
+ * lies on the very edge of the shadow: from there on it gets brighter by 6 % a metre, and
+ * of this a leaf's mean and the interpolation show some at the edge. What is allowed, 0.1
+ * %, is reached 1.6 cm away. The other, half a metre into the shadow, may have what a
+ * link is allowed to be off by, epsilon. */
 #include "tests/defaults.h"
 #include "tests/tap.h"
 
@@ -19,24 +20,29 @@ static const double REFLECTANCE = 0.5, LIMIT = 0.01;
 enum plane_name { WALL, FLOOR, CEILING, OPPOSITE, PLANES };
 
 struct sample {
-    double at;      /* m: height on the wall, distance from the wall on floor and ceiling */
+    double at; /* m: height on the wall, distance from the wall on floor and ceiling */
     double percent; /* exact E / B_source */
     double slack;   /* what else it may be off by, in percent of the source */
 };
 
-/* Wall y = 0, floor z = 0, ceiling z = 3, wall y = 4, each in two triangles, fronts inwards, with
- * these materials: all black but for what the receiver reflects and the source emits. */
-static void add_planes(struct painted *painted, enum plane_name receiver, enum plane_name source)
+/* Wall y = 0, floor z = 0, ceiling z = 3, wall y = 4, each in two triangles, fronts
+ * inwards, with these materials: all black but for what the receiver reflects and the
+ * source emits. */
+static void add_planes(struct painted *painted, enum plane_name receiver,
+                       enum plane_name source)
 {
     soup_add_quad(&painted->soup, point(0, 0, 0), point(0, 0, 3), point(4, 0, 0), 1);
     paint(painted, receiver == WALL ? REFLECTANCE : 0.0, 0.0);
     soup_add_quad(&painted->soup, point(0, 0, 0), point(4, 0, 0), point(0, 4, 0), 1);
     paint(painted, receiver == FLOOR ? REFLECTANCE : 0.0, source == FLOOR ? 1.0 : 0.0);
-    if (source == CEILING) /* 1 x 1 in the middle; black around it is as good as nothing */
-        soup_add_quad(&painted->soup, point(1.5, 1.5, 3), point(0, 1, 0), point(1, 0, 0), 1);
+    if (source ==
+        CEILING) /* 1 x 1 in the middle; black around it is as good as nothing */
+        soup_add_quad(&painted->soup, point(1.5, 1.5, 3), point(0, 1, 0), point(1, 0, 0),
+                      1);
     else
         soup_add_quad(&painted->soup, point(0, 0, 3), point(0, 4, 0), point(4, 0, 0), 1);
-    paint(painted, receiver == CEILING ? REFLECTANCE : 0.0, source == CEILING ? 1.0 : 0.0);
+    paint(painted, receiver == CEILING ? REFLECTANCE : 0.0,
+          source == CEILING ? 1.0 : 0.0);
     soup_add_quad(&painted->soup, point(0, 4, 0), point(4, 0, 0), point(0, 0, 3), 1);
     paint(painted, 0.0, source == OPPOSITE ? 1.0 : 0.0);
 }
@@ -46,10 +52,11 @@ static struct vec3 place_of(enum plane_name plane, double at)
     return plane == WALL ? point(2, 0, at) : point(2, at, plane == FLOOR ? 0.0 : 3.0);
 }
 
-/* Compares the samples on one receiver. Each has LIMIT of its value, and its slack, to be off. */
-static void test_samples(const struct comm *comm, const char *name, struct painted *painted,
-                         enum plane_name receiver, const char *words,
-                         const struct sample *samples, int count)
+/* Compares the samples on one receiver. Each has LIMIT of its value, and its slack, to be
+ * off. */
+static void test_samples(const struct comm *comm, const char *name,
+                         struct painted *painted, enum plane_name receiver,
+                         const char *words, const struct sample *samples, int count)
 {
     struct solution s = solve_scene(comm, scene_of_painted(painted), words);
     struct shading *shading = shade(&s);
@@ -63,10 +70,11 @@ static void test_samples(const struct comm *comm, const char *name, struct paint
         if (exact > 0.0)
             worst = fmax(worst, off / exact);
         else
-            printf("# %s: %.2g %% where it is dark, %g %% allowed\n", name, off, samples[i].slack);
+            printf("# %s: %.2g %% where it is dark, %g %% allowed\n", name, off,
+                   samples[i].slack);
     }
-    tap_ok(right, "%s, %s: worst of %d points off by %.2f %% (%lld links)", name, words, count,
-           100.0 * worst, (long long)s.stats.links);
+    tap_ok(right, "%s, %s: worst of %d points off by %.2f %% (%lld links)", name, words,
+           count, 100.0 * worst, (long long)s.stats.links);
     shading_destroy(shading);
     solution_free(&s);
 }
@@ -78,9 +86,11 @@ static void test_area_source(const struct comm *comm)
 {
     static const double PERCENT = 100.0 / (PI * 1000.0); /* of a lux */
     static const struct sample lux_wall[] = {{2.75, 32.676898, 0}, {2.25, 75.193925, 0},
-        {1.75, 81.323172, 0}, {1.25, 69.060627, 0}, {0.75, 53.403531, 0}, {0.25, 40.001852, 0}};
-    static const struct sample lux_floor[] = {{0.25, 61.424099, 0}, {0.75, 79.255157, 0},
-        {1.25, 95.667276, 0}, {1.75, 105.778242, 0}, {2.25, 105.778242, 0}, {2.75, 95.667276, 0},
+                                             {1.75, 81.323172, 0}, {1.25, 69.060627, 0},
+                                             {0.75, 53.403531, 0}, {0.25, 40.001852, 0}};
+    static const struct sample lux_floor[] = {
+        {0.25, 61.424099, 0}, {0.75, 79.255157, 0}, {1.25, 95.667276, 0},
+        {1.75, 105.778242, 0}, {2.25, 105.778242, 0}, {2.75, 95.667276, 0},
         {3.25, 79.255157, 0}, {3.75, 61.424099, 0}};
     struct sample wall[COUNT(lux_wall)], ground[COUNT(lux_floor)];
     for (int i = 0; i < COUNT(lux_wall); i++)
@@ -92,8 +102,8 @@ static void test_area_source(const struct comm *comm)
     test_samples(comm, "5.3 area source, wall", &painted, WALL, "--epsilon 1e-6", wall,
                  COUNT(wall));
     add_planes(&painted, FLOOR, CEILING);
-    test_samples(comm, "5.3 area source, floor", &painted, FLOOR, "--epsilon 1e-6", ground,
-                 COUNT(ground));
+    test_samples(comm, "5.3 area source, floor", &painted, FLOOR, "--epsilon 1e-6",
+                 ground, COUNT(ground));
 }
 
 static void test_bright_floor(const struct comm *comm)
@@ -101,38 +111,41 @@ static void test_bright_floor(const struct comm *comm)
     static const struct sample wall[] = {{0.75, 35.900505, 0}, {1.25, 27.991624, 0},
         {1.75, 21.638511, 0}, {2.25, 16.716315, 0}, {2.75, 12.967372, 0}};
     static const struct sample ceiling[] = {{0.25, 26.795188, 0}, {0.75, 30.938711, 0},
-        {1.25, 33.975719, 0}, {1.75, 35.566592, 0}, {2.25, 35.566592, 0}, {2.75, 33.975719, 0},
-        {3.25, 30.938711, 0}, {3.75, 26.795188, 0}};
+                                            {1.25, 33.975719, 0}, {1.75, 35.566592, 0},
+                                            {2.25, 35.566592, 0}, {2.75, 33.975719, 0},
+                                            {3.25, 30.938711, 0}, {3.75, 26.795188, 0}};
     struct painted painted = {0};
     add_planes(&painted, WALL, FLOOR);
     test_samples(comm, "5.6 bright floor, wall", &painted, WALL, "--epsilon 1e-6", wall,
                  COUNT(wall));
     add_planes(&painted, CEILING, FLOOR);
-    test_samples(comm, "5.6 bright floor, ceiling", &painted, CEILING, "--epsilon 1e-6", ceiling,
-                 COUNT(ceiling));
+    test_samples(comm, "5.6 bright floor, ceiling", &painted, CEILING, "--epsilon 1e-6",
+                 ceiling, COUNT(ceiling));
 }
 
 /* The slab stands across the room, 1 m high. */
 static void test_slab(const struct comm *comm)
 {
     static const struct sample wall[] = {{2.75, 16.070642, 0}, {2.25, 16.329677, 0},
-        {1.75, 15.398810, 0}, {1.25, 13.322018, 0}, {0.75, 10.316924, 0}, {0.25, 7.078969, 0}};
+                                         {1.75, 15.398810, 0}, {1.25, 13.322018, 0},
+                                         {0.75, 10.316924, 0}, {0.25, 7.078969, 0}};
     static const struct sample ground[] = {{0.25, 3.382335, 0}, {0.75, 3.628986, 0},
         {1.25, 3.012951, 0}, {1.75, 0.0, 0.1}, {2.25, 0.0, 100.0 * 1e-9}};
     struct painted painted = {0};
     add_planes(&painted, WALL, OPPOSITE);
     soup_add_box(&painted.soup, point(0, 2.5, 0), point(4, 2.7, 1), 1, false);
     paint(&painted, 0.0, 0.0);
-    test_samples(comm, "5.7 slab, wall", &painted, WALL, "--epsilon 1e-8 --final-gather 0", wall,
-                 COUNT(wall));
+    test_samples(comm, "5.7 slab, wall", &painted, WALL,
+                 "--epsilon 1e-8 --final-gather 0", wall, COUNT(wall));
     add_planes(&painted, FLOOR, OPPOSITE);
     soup_add_box(&painted.soup, point(0, 2.5, 0), point(4, 2.7, 1), 1, false);
     paint(&painted, 0.0, 0.0);
-    test_samples(comm, "5.7 slab, floor", &painted, FLOOR, "--epsilon 1e-9 --final-gather 0", ground,
-                 COUNT(ground));
+    test_samples(comm, "5.7 slab, floor", &painted, FLOOR,
+                 "--epsilon 1e-9 --final-gather 0", ground, COUNT(ground));
 }
 
-/* A cube of 4 m, its sides 4 x 4 squares of 1 m; one of these is the source of 10000 lm. */
+/* A cube of 4 m, its sides 4 x 4 squares of 1 m; one of these is the source of 10000
+ * lm. */
 static struct scene *glowing_square(double reflectance)
 {
     struct painted painted = {0};
@@ -148,9 +161,9 @@ static struct scene *glowing_square(double reflectance)
     return scene_of_painted(&painted);
 }
 
-/* 5.8: the mean of what arrives after one reflection or more is rho Phi / (96 (1 - rho)), exactly
- * and wherever the source is. From the solution: of all that arrives, (B - E) / rho, the first
- * Phi / 96 comes from the source. */
+/* 5.8: the mean of what arrives after one reflection or more is rho Phi / (96 (1 - rho)),
+ * exactly and wherever the source is. From the solution: of all that arrives, (B - E) /
+ * rho, the first Phi / 96 comes from the source. */
 static void test_interreflection(const struct comm *comm, double rho, double exact,
                                  const char *words, double limit)
 {
@@ -158,28 +171,29 @@ static void test_interreflection(const struct comm *comm, double rho, double exa
     const struct forest *forest = s.solver->model.forest;
     double light = 0.0, unit = scene_area_unit(s.scene);
     for (int32_t root = 0; root < forest->root_count; root++)
-        light += unit * forest_area(forest, root) * forest->patches[root].radiosity.band[0];
+        light +=
+            unit * forest_area(forest, root) * forest->patches[root].radiosity.band[0];
     double indirect = ((light - 10000.0) / rho - 10000.0) / 96.0;
-    tap_ok(s.vote.converged && fabs(indirect / exact - 1.0) <= limit,
-           "5.8 rho %g%s%s: %.6g lx, exact %.10g: off by %.2g, at most %g (%lld iterations)", rho,
-           *words ? ", " : "", words, indirect, exact, fabs(indirect / exact - 1.0), limit,
-           (long long)s.stats.iterations);
+    tap_ok(
+        s.vote.converged && fabs(indirect / exact - 1.0) <= limit,
+        "5.8 rho %g%s%s: %.6g lx, exact %.10g: off by %.2g, at most %g (%lld iterations)",
+        rho, *words ? ", " : "", words, indirect, exact, fabs(indirect / exact - 1.0),
+        limit, (long long)s.stats.iterations);
     solution_free(&s);
 }
 
-/* The clusters sample what arrives from the source itself, which is 0.1 to 0.2 % off at the default
- * epsilon; a quarter of the 1 % that sums of light may be. Of indirect light it is (1 - rho) / rho
- * times as much. */
+/* The clusters sample what arrives from the source itself, which is 0.1 to 0.2 % off at
+ * the default epsilon; a quarter of the 1 % that sums of light may be. Of indirect light
+ * it is (1 - rho) / rho times as much. */
 static const double FIRST = 0.0025;
 
-/* The CIE's column, up to where an error of row sums, which is multiplied by rho / (1 - rho), is
- * below its limit. */
+/* The CIE's column, up to where an error of row sums, which is multiplied by rho / (1 -
+ * rho), is below its limit. */
 static const struct {
     double rho, lux;
 } INTERREFLECTION[] = {
-    {0.05, 5.482456}, {0.1, 11.574074}, {0.2, 26.041667}, {0.3, 44.642857}, {0.4, 69.444444},
-    {0.5, 104.166667}, {0.6, 156.25}, {0.7, 243.055556},
-};
+    {0.05, 5.482456}, {0.1, 11.574074}, {0.2, 26.041667}, {0.3, 44.642857},
+    {0.4, 69.444444}, {0.5, 104.166667}, {0.6, 156.25}, {0.7, 243.055556}};
 
 int main(int argc, char **argv)
 {

@@ -1,9 +1,9 @@
 /* converge ROOM.obj
  *
- * The Cornell box and a closed room against the path tracer, which shares nothing with the method:
- * both error norms fall with every halving of epsilon; in the box the defaults need far fewer links
- * than the paper's variant, and --accuracy keeps its word. To be run with mpiexec on as many ranks
- * as there are cores; rank 0 reports.
+ * The Cornell box and a closed room against the path tracer, which shares nothing with
+ * the method: both error norms fall with every halving of epsilon; in the box the
+ * defaults need far fewer links than the paper's variant, and --accuracy keeps its word.
+ * To be run with mpiexec on as many ranks as there are cores; rank 0 reports.
  *
  * The truth has TRUTH elements with PATHS paths for each of its two halves, or more where
  * errors are small: the RMS is not biased by noise, but light paths give noise to many
@@ -45,14 +45,15 @@ static struct scene *read_scene(const struct comm *comm, const char *path,
 struct result {
     bool converged;
     double leaf, shown; /* relative RMS; on rank 0 */
-    double pixels;      /* the same where all light is gathered at each point, if asked for */
+    double pixels; /* the same where all light is gathered at each point, if asked for */
     double estimate;
     enum hold hold;
     int64_t links;
 };
 
-static struct result run(const struct comm *comm, const char *path, struct criterion criterion,
-                         const struct truth *truth, bool pixels)
+static struct result run(const struct comm *comm, const char *path,
+                         struct criterion criterion, const struct truth *truth,
+                         bool pixels)
 {
     struct node_block block;
     struct solution s = solve(comm, read_scene(comm, path, &block), criterion);
@@ -64,9 +65,12 @@ static struct result run(const struct comm *comm, const char *path, struct crite
         const struct forest *forest = s.solver->model.forest;
         int64_t leaves;
         uint8_t *open = shading_open_quarters(forest, s.octree, 0, 1, &leaves);
-        struct shading *shading = shading_create(forest, s.solver->beyond->answer.straight, open);
-        struct renderer renderer =
-            renderer_make(s.octree, shading, s.solver->beyond->answer.straight ? &s.solver->beyond->answer.gather : NULL);
+        struct shading *shading =
+            shading_create(forest, s.solver->beyond->answer.straight, open);
+        struct renderer renderer = renderer_make(s.octree, shading,
+                                                 s.solver->beyond->answer.straight
+                                                     ? &s.solver->beyond->answer.gather
+                                                     : NULL);
         result.leaf = deviation_of_leaves(forest, truth).rms;
         result.shown = deviation_of_points(&renderer, s.scene, truth).rms;
         if (pixels) {
@@ -81,23 +85,26 @@ static struct result run(const struct comm *comm, const char *path, struct crite
     return result;
 }
 
-/* Epsilon halved each time: both norms fall, to below `leaf` and `shown`: a tenth above what they are. */
-static void test_falling(const struct comm *comm, const char *path, const struct truth *truth,
-                         double leaf, double shown)
+/* Epsilon halved each time: both norms fall, to below `leaf` and `shown`: a tenth above
+ * what they are. */
+static void test_falling(const struct comm *comm, const char *path,
+                         const struct truth *truth, double leaf, double shown)
 {
     struct result before = {.leaf = HUGE_VAL, .shown = HUGE_VAL};
     double epsilon = 1e-3;
     for (int step = 0; step < STEPS; step++, epsilon /= 2.0) {
-        struct result now = run(comm, path, criterion_best(epsilon, 10, 1e-3), truth, false);
+        struct result now =
+            run(comm, path, criterion_best(epsilon, 10, 1e-3), truth, false);
         if (comm->rank == 0)
             tap_ok(now.converged && now.leaf < before.leaf && now.shown < before.shown,
-                   "%s, epsilon %.2g, %lld links: leaf error %.2f %%, shown %.2f %%", path, epsilon,
-                   (long long)now.links, 100.0 * now.leaf, 100.0 * now.shown);
+                   "%s, epsilon %.2g, %lld links: leaf error %.2f %%, shown %.2f %%",
+                   path, epsilon, (long long)now.links, 100.0 * now.leaf,
+                   100.0 * now.shown);
         before = now;
     }
     if (comm->rank == 0)
-        tap_ok(before.leaf < leaf && before.shown < shown, "down to %.3g and %.3g %%", 100.0 * leaf,
-               100.0 * shown);
+        tap_ok(before.leaf < leaf && before.shown < shown, "down to %.3g and %.3g %%",
+               100.0 * leaf, 100.0 * shown);
 }
 
 static void test_paper(const struct comm *comm, const struct truth *truth)
@@ -106,14 +113,16 @@ static void test_paper(const struct comm *comm, const struct truth *truth)
     struct result best = run(comm, CORNELL, criterion_best(1e-3, 10, 1e-3), truth, false);
     if (comm->rank == 0)
         tap_ok(best.leaf < paper.leaf && 10 * best.links < paper.links,
-               "the paper's variant: %.2f %% with %lld links; %.2f %% with a tenth of them and less "
-               "(%lld)", 100.0 * paper.leaf, (long long)paper.links, 100.0 * best.leaf,
+               "the paper's variant: %.2f %% with %lld links; %.2f %% with a tenth of "
+               "them and less "
+               "(%lld)",
+               100.0 * paper.leaf, (long long)paper.links, 100.0 * best.leaf,
                (long long)best.links);
 }
 
-/* The promise of --accuracy: the true error is at most 1.5 times what is claimed, which is
- * what was asked for or less, or there is a limit that holds it back. The claim is not to
- * be much more than the error either. */
+/* The promise of --accuracy: the true error is at most 1.5 times what is claimed, which
+ * is what was asked for or less, or there is a limit that holds it back. The claim is not
+ * to be much more than the error either. */
 static void test_accuracy(const struct comm *comm, const char *path,
                           const struct truth *truth, double accuracy, int max_level,
                           double min_area, enum hold hold)
@@ -129,7 +138,8 @@ static void test_accuracy(const struct comm *comm, const char *path,
                    result.converged == reached,
                "%s, --accuracy %.3g, max level %d: a claim of %.2f %%, hold %d", path,
                accuracy, max_level, 100.0 * result.estimate, (int)result.hold);
-        tap_ok(result.leaf <= 1.5 * result.estimate && result.leaf >= 0.5 * result.estimate,
+        tap_ok(result.leaf <= 1.5 * result.estimate &&
+                   result.leaf >= 0.5 * result.estimate,
                "the true error is %.2f %%", 100.0 * result.leaf);
     }
 }
@@ -155,13 +165,16 @@ static void test_gathered(const struct comm *comm, const char *path,
         bool less = steps[k].worse < 0 || now.leaf < 1.1 * error[steps[k].worse];
         error[k] = now.leaf;
         if (comm->rank == 0)
-            tap_ok(now.converged && less && now.estimate < 2.0 * now.leaf &&
-                       now.estimate > 0.5 * now.leaf,
-                   "%s, epsilon %g, gathered with %d rays: leaf error %.2f %%, said to be "
-                   "%.2f %%", path, steps[k].epsilon, steps[k].rays, 100.0 * now.leaf,
-                   100.0 * now.estimate);
+            tap_ok(
+                now.converged && less && now.estimate < 2.0 * now.leaf &&
+                    now.estimate > 0.5 * now.leaf,
+                "%s, epsilon %g, gathered with %d rays: leaf error %.2f %%, said to be "
+                "%.2f %%",
+                path, steps[k].epsilon, steps[k].rays, 100.0 * now.leaf,
+                100.0 * now.estimate);
         if (comm->rank == 0 && k == 1)
-            tap_ok(now.pixels < 2.0 * now.leaf, "gathered at points: %.2f %%", 100.0 * now.pixels);
+            tap_ok(now.pixels < 2.0 * now.leaf, "gathered at points: %.2f %%",
+                   100.0 * now.pixels);
         if (comm->rank == 0 && k == 3)
             tap_ok(now.shown < shown * now.leaf, "shown: %.2f %%", 100.0 * now.shown);
     }

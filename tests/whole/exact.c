@@ -1,15 +1,15 @@
-/* Exact answers, whole runs: the furnace, the cube that glows on one side, and where the power
- * goes; and what a signal leaves. On any number of ranks; rank 0 reports.
+/* Exact answers, whole runs: the furnace, the cube that glows on one side, and where the
+ * power goes; and what a signal leaves. On any number of ranks; rank 0 reports.
  *
- * The method is the paper's: disk form factors by 16 rays and links at mixed levels. Its row
- * sums in a closed cube are not 1, so B = E / (1 - rho R) where R should be 1, and an error of
- * dR in the row sums becomes rho / (1 - rho) dR in B. The tolerances below are 1.3 to 1.5 times
- * what the method reaches; they are its honest accuracy, not the rounding of the program. The
- * mean converges with epsilon; single leaves do not, since a leaf with near links of its own and
- * averaged far links counts some directions twice.
+ * The method is the paper's: disk form factors by 16 rays and links at mixed levels. Its
+ * row sums in a closed cube are not 1, so B = E / (1 - rho R) where R should be 1, and an
+ * error of dR in the row sums becomes rho / (1 - rho) dR in B. The tolerances below are
+ * 1.3 to 1.5 times what the method reaches; they are its honest accuracy, not the
+ * rounding of the program. The mean converges with epsilon; single leaves do not, since a
+ * leaf with near links of its own and averaged far links counts some directions twice.
  *
- * With form factors from points to polygons one level of the cube is right within the errors
- * of the points. */
+ * With form factors from points to polygons one level of the cube is right within the
+ * errors of the points. */
 #include <math.h>
 #include <signal.h>
 #include <string.h>
@@ -51,7 +51,8 @@ static void furnace_errors(const struct solution *s, double reflectance, double 
     for (int64_t p = 0; p < forest->count; p++) {
         if (!patch_is_leaf(&forest->patches[p]))
             continue;
-        double b = forest->patches[p].radiosity.band[0], a = forest_area(forest, (int32_t)p);
+        double b = forest->patches[p].radiosity.band[0],
+               a = forest_area(forest, (int32_t)p);
         *largest = fmax(*largest, fabs(b / exact - 1.0));
         sum += a * b;
         area += a;
@@ -66,8 +67,8 @@ static void test_furnace(const struct comm *comm, double epsilon, double largest
     double largest, mean;
     furnace_errors(&s, REFLECTANCE, &largest, &mean);
     if (comm->rank == 0) {
-        tap_ok(s.vote.converged, "furnace, epsilon %g: %lld links, %lld iterations", epsilon,
-               (long long)s.stats.links, (long long)s.stats.iterations);
+        tap_ok(s.vote.converged, "furnace, epsilon %g: %lld links, %lld iterations",
+               epsilon, (long long)s.stats.links, (long long)s.stats.iterations);
         tap_ok(largest <= largest_allowed, "largest error of B %.2f %%, at most %.0f %%",
                100.0 * largest, 100.0 * largest_allowed);
         tap_ok(fabs(mean) <= mean_allowed, "error of the mean %+.2f %%, at most %.1f %%",
@@ -76,9 +77,10 @@ static void test_furnace(const struct comm *comm, double epsilon, double largest
     solution_free(&s);
 }
 
-/* The same cube at one level, so that all patches are alike: what remains is the disk. The last
- * change of energy is within the tolerance; what is still to come is that times q / (1 - q), with
- * the factor q = rho R of one iteration: the paper's stop leaves so much of it. */
+/* The same cube at one level, so that all patches are alike: what remains is the disk.
+ * The last change of energy is within the tolerance; what is still to come is that times
+ * q / (1 - q), with the factor q = rho R of one iteration: the paper's stop leaves so
+ * much of it. */
 static void test_iteration_stop(const struct comm *comm, double rho, double tolerance)
 {
     struct scene *cube = furnace_create();
@@ -95,16 +97,16 @@ static void test_iteration_stop(const struct comm *comm, double rho, double tole
         double left = fabs(b / exact - 1.0), q = rho * row;
         tap_ok(rough.vote.converged && left <= tolerance * q / (1.0 - q) &&
                    left > tolerance * q * q / (1.0 - q),
-               "rho %g: the change is within %g when the rest of E / (1 - rho R) is %.2g", rho,
-               tolerance, left);
+               "rho %g: the change is within %g when the rest of E / (1 - rho R) is %.2g",
+               rho, tolerance, left);
     }
     solution_free(&rough);
 }
 
 enum { ROOTS = 12, BOUNCES = 400 };
 
-/* The cube with one element for each triangle, E = 1 at the bottom: bounce after bounce over exact form
- * factors. 0.8^400 is 1e-39. */
+/* The cube with one element for each triangle, E = 1 at the bottom: bounce after bounce
+ * over exact form factors. 0.8^400 is 1e-39. */
 static void glowing_cube_exact(const struct scene *cube, double rho, double exact[ROOTS])
 {
     double factor[ROOTS][ROOTS], before[ROOTS];
@@ -144,13 +146,15 @@ static void test_glowing_cube(const struct comm *comm, double rho, double allowe
         error = fmax(error, fabs(b / exact[i] - 1.0));
     }
     if (comm->rank == 0)
-        tap_ok(error <= allowed, "cube with one glowing face, %s, rho %g: worst triangle off by "
-               "%.2f %%, at most %g %%", name, rho, 100.0 * error, 100.0 * allowed);
+        tap_ok(error <= allowed,
+               "cube with one glowing face, %s, rho %g: worst triangle off by "
+               "%.2f %%, at most %g %%",
+               name, rho, 100.0 * error, 100.0 * allowed);
     solution_free(&s);
 }
 
-/* A closed cube with walls that differ, lit from one that is black: what the paper's solver ends
- * with, conjugate gradients end with too, over the same links. */
+/* A closed cube with walls that differ, lit from one that is black: what the paper's
+ * solver ends with, conjugate gradients end with too, over the same links. */
 static void test_same_answer(const struct comm *comm)
 {
     struct solution s[2];
@@ -158,14 +162,15 @@ static void test_same_answer(const struct comm *comm)
         struct scene *cube = cube_create();
         for (int face = 0; face < 6; face++)
             for (int c = 0; c < BANDS; c++)
-                cube->materials[face].reflectance.band[c] = face == 1 ? 0.0
-                                                                      : 0.3 + 0.1 * face + 0.05 * c;
+                cube->materials[face].reflectance.band[c] =
+                    face == 1 ? 0.0 : 0.3 + 0.1 * face + 0.05 * c;
         for (int c = 0; c < BANDS; c++)
             cube->materials[1].emission.band[c] = 5.0 + c;
         struct criterion criterion = criterion_best(1e-2, 10, 1e-9);
         criterion.solver = k ? SOLVER_CG : SOLVER_JACOBI;
         criterion.max_level = 0;
-        criterion.linking = LINKING_PAIRS; /* one pass: all iterations are over the same links */
+        criterion.linking =
+            LINKING_PAIRS; /* one pass: all iterations are over the same links */
         s[k] = solve(comm, cube, criterion);
     }
     double off = 0.0;
@@ -175,14 +180,16 @@ static void test_same_answer(const struct comm *comm)
             off = fmax(off, fabs(a->patches[p].radiosity.band[c] -
                                  b->patches[p].radiosity.band[c]));
     double emitted = s[0].stats.emitted_power;
-    double absorbed = fabs(s[0].stats.absorbed_power - s[1].stats.absorbed_power) / emitted;
+    double absorbed =
+        fabs(s[0].stats.absorbed_power - s[1].stats.absorbed_power) / emitted;
     double escaped = fabs(s[0].stats.escaped_power - s[1].stats.escaped_power) / emitted;
     if (comm->rank == 0) {
         /* Tolerances of 1e-9 of all light, which is below 20 W/m^2 a leaf. */
         tap_ok(s[0].vote.converged && s[1].vote.converged && off <= 1e-7,
                "Jacobi and conjugate gradients: B differs by %.1e W/m^2 at most", off);
         tap_ok(absorbed <= 1e-8 && escaped <= 1e-8,
-               "and the power absorbed, also by the black face, by %.1e of all, escaped %.1e",
+               "and the power absorbed, also by the black face, by %.1e of all, escaped "
+               "%.1e",
                absorbed, escaped);
         tap_ok(2 * s[1].stats.iterations < s[0].stats.iterations,
                "with %lld iterations in place of %lld", (long long)s[1].stats.iterations,
@@ -206,8 +213,9 @@ static double sent_by(const struct model *model, int32_t node, const uint8_t par
     if (!node_is_cluster(node) && patch_is_leaf(&model->forest->patches[node]))
         return light_of(model, node);
     for (int k = 0; k < 4; k++) {
-        int32_t child = node_is_cluster(node) ? model->clusters->tree->clusters[~node].child[k]
-                                              : model->forest->patches[node].children + k;
+        int32_t child = node_is_cluster(node)
+                            ? model->clusters->tree->clusters[~node].child[k]
+                            : model->forest->patches[node].children + k;
         sum += child == NODE_NONE ? 0.0 : link_part(parts, k) * light_of(model, child);
     }
     return sum;
@@ -231,8 +239,8 @@ static double power_of_links(const struct solution *s)
     return sum;
 }
 
-/* An open cube (no front) lit from the top: what leaves the surfaces and is not delivered by
- * the links has escaped, and all that was emitted is absorbed or escapes. */
+/* An open cube (no front) lit from the top: what leaves the surfaces and is not delivered
+ * by the links has escaped, and all that was emitted is absorbed or escapes. */
 static void test_power(const struct comm *comm, const struct criterion *criterion,
                        const char *name)
 {
@@ -252,19 +260,22 @@ static void test_power(const struct comm *comm, const struct criterion *criterio
     double escaped = (leaving - power_of_links(&s)) * scene_area_unit(s.scene);
     double balance = s.stats.absorbed_power + s.stats.escaped_power - emitted;
     if (comm->rank == 0) {
-        tap_ok(fabs(balance) <= 1e-9 * emitted, "%s: absorbed + escaped = emitted: off by %.1e",
-               name, fabs(balance) / emitted);
+        tap_ok(fabs(balance) <= 1e-9 * emitted,
+               "%s: absorbed + escaped = emitted: off by %.1e", name,
+               fabs(balance) / emitted);
         tap_ok(fabs(escaped - s.stats.escaped_power) <= 1e-9 * emitted,
                "%s: escaped is what the links do not deliver: off by %.1e", name,
                fabs(escaped - s.stats.escaped_power) / emitted);
-        tap_ok(escaped > 0.1 * emitted, "much of it escapes through the missing front: %.0f %%",
+        tap_ok(escaped > 0.1 * emitted,
+               "much of it escapes through the missing front: %.0f %%",
                100.0 * escaped / emitted);
     }
     solution_free(&s);
 }
 
 /* The sum over ranks of two fields of a level. */
-static void sum_shares(const struct level_balance *level, int ranks, struct level_share *sum)
+static void sum_shares(const struct level_balance *level, int ranks,
+                       struct level_share *sum)
 {
     *sum = (struct level_share){0};
     for (int r = 0; r < ranks; r++) {
@@ -285,14 +296,15 @@ static int64_t find_proxies(const struct solver *solver)
         bool is_met = false;
         for (int64_t i = 0; i < solver->links.count && !is_met; i++)
             is_met = solver->links.items[i].p == p || solver->links.items[i].q == p;
-        count += is_met && solver->homes.owner[forest->patches[p].id.root] != solver->comm->rank;
+        count += is_met &&
+                 solver->homes.owner[forest->patches[p].id.root] != solver->comm->rank;
     }
     return count;
 }
 
-/* The greedy plan at work: with several ranks links migrate, and after that no level of many
- * links is predicted to be uneven by more than a fiftieth. Links that are sent are received,
- * and their loads with them. Iteration 0 is initial linking. */
+/* The greedy plan at work: with several ranks links migrate, and after that no level of
+ * many links is predicted to be uneven by more than a fiftieth. Links that are sent are
+ * received, and their loads with them. Iteration 0 is initial linking. */
 static void test_balance(const struct comm *comm)
 {
     struct solution s = solve(comm, furnace_create(), criterion_of(1e-4, 10, 1e-3));
@@ -319,10 +331,12 @@ static void test_balance(const struct comm *comm)
         tap_ok((sent > 0) == (comm->size > 1), "%lld links move before levels",
                (long long)sent);
         tap_ok(adds_up, "links that are sent are received, and their loads with them");
-        tap_ok(large > 0 && worst < 1.02, "on %lld levels of 100 links a rank and more, the "
-               "largest load is at most 2 %% above the mean: %.2f %%", (long long)large,
-               100.0 * (worst - 1.0));
-        tap_ok(proxies && wrong == 0, "every rank reports its proxies, one alone has none");
+        tap_ok(large > 0 && worst < 1.02,
+               "on %lld levels of 100 links a rank and more, the "
+               "largest load is at most 2 %% above the mean: %.2f %%",
+               (long long)large, 100.0 * (worst - 1.0));
+        tap_ok(proxies && wrong == 0,
+               "every rank reports its proxies, one alone has none");
     }
     solution_free(&s);
 }
@@ -360,12 +374,14 @@ static struct scene *room_with_box(void)
     return scene;
 }
 
-/* A refinement that a signal to the last rank ends counts as not begun on all ranks: its links are lost,
- * and nobody goes on from there. The signal of the first test stays for the second. */
+/* A refinement that a signal to the last rank ends counts as not begun on all ranks: its
+ * links are lost, and nobody goes on from there. The signal of the first test stays for
+ * the second. */
 static void test_stopped(const struct comm *comm, enum linking_kind linking)
 {
     struct scene *scene = room_with_box();
-    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *octree =
+        octree_create(scene->triangles, scene->planes, scene->input_count);
     struct criterion criterion = criterion_best(1e-3, 10, 1e-3);
     criterion.linking = linking;
     struct solver *solver = beyond_create(comm, scene, octree, &criterion);
@@ -391,12 +407,16 @@ int main(int argc, char **argv)
     test_iteration_stop(&comm, 0.5, 1e-6);
     test_iteration_stop(&comm, 0.9, 1e-6);
     struct criterion paper = criterion_of(1.0, 0, 1e-9);
-    test_glowing_cube(&comm, 0.2, 0.17, &paper, "disks"); /* measured 12.6 %: single factors, */
+    test_glowing_cube(&comm, 0.2, 0.17, &paper,
+                      "disks"); /* measured 12.6 %: single factors, */
     test_glowing_cube(&comm, 0.5, 0.15, &paper, "disks"); /* 11.3 %: rows of 0.973, and */
-    test_glowing_cube(&comm, 0.8, 0.19, &paper, "disks"); /* 14.3 %: 1 / (1 - 0.8 R) is 10 % low */
+    test_glowing_cube(&comm, 0.8, 0.19, &paper,
+                      "disks"); /* 14.3 %: 1 / (1 - 0.8 R) is 10 % low */
     struct criterion best = criterion_best(1.0, 0, 1e-9);
-    best.linking = LINKING_PAIRS; /* each pair of triangles by its own factor, at any epsilon */
-    /* The twelve points of a triangle miss the factor of one that it touches by 1 % or so. */
+    best.linking =
+        LINKING_PAIRS; /* each pair of triangles by its own factor, at any epsilon */
+    /* The twelve points of a triangle miss the factor of one that it touches by 1 % or
+     * so. */
     test_glowing_cube(&comm, 0.2, 0.015, &best, "polygons"); /* measured 1.21 % */
     test_glowing_cube(&comm, 0.5, 0.007, &best, "polygons"); /* 0.55 % */
     test_glowing_cube(&comm, 0.8, 0.003, &best, "polygons"); /* 0.22 % */

@@ -149,8 +149,8 @@ struct found {
     double light, error;
 };
 
-/* The leaf beside the truth: paths are traced until they tell, by four deviations of their
- * mean. NOISY and WRONG are said after all of them. */
+/* The leaf beside the truth: paths are traced until they tell, by four deviations of
+ * their mean. NOISY and WRONG are said after all of them. */
 static enum verdict judge_leaf(const struct pathtracer *pathtracer, struct patch_id id,
                                struct found found, double least, double *truth)
 {
@@ -208,7 +208,8 @@ static void test_room(void)
     for (int32_t p = 0; p < forest->count; p++) {
         if (!patch_is_leaf(&forest->patches[p]))
             continue;
-        struct found found = {reflected(&s, p), (double)s.solver->beyond->answer.error[p]};
+        struct found found = {reflected(&s, p),
+                              (double)s.solver->beyond->answer.error[p]};
         enum verdict verdict = judge_leaf(&pathtracer, forest->patches[p].id, found,
                                           SEEN * mean, &truth);
         double times = fmax(found.light / truth, truth / found.light);
@@ -217,8 +218,9 @@ static void test_room(void)
             struct triangle t = forest_triangle(forest, p);
             struct vec3 x = scene_to_input(s.scene, triangle_centroid(&t));
             worst = times;
-            snprintf(where, sizeof where, "; at %.3f %.3f %.3f %.3f of the mean, not %.3f",
-                     x.x, x.y, x.z, found.light / mean, truth / mean);
+            snprintf(where, sizeof where,
+                     "; at %.3f %.3f %.3f %.3f of the mean, not %.3f", x.x, x.y, x.z,
+                     found.light / mean, truth / mean);
         }
     }
     int seen = counts[RIGHT] + counts[NOISY] + counts[WRONG];

@@ -1,4 +1,5 @@
-/* The error norms on made-up samples with known answers, and the truth's elements and file. */
+/* The error norms on made-up samples with known answers, and the truth's elements and
+ * file. */
 #include "tests/deviation.h"
 
 #include <math.h>
@@ -26,19 +27,21 @@ static struct sample sample_of(double area, double value, double truth)
     return (struct sample){area, grey(value), {grey(truth), grey(truth)}};
 }
 
-/* Areas 1, 2, 6 with errors 0.5, 1, 3 of truths 2, 4, 6 in each of three bands: squares of errors
- * 0.25 + 2 + 54 of 4 + 32 + 216; errors 0.5 + 2 + 18 of 2 + 8 + 36. More than half the area has
- * an error of 3; the mean truth is 46 / 9; the differences are 18 - 0.5 + 2. What is not exact in
- * binary is within 1e-15. */
+/* Areas 1, 2, 6 with errors 0.5, 1, 3 of truths 2, 4, 6 in each of three bands: squares
+ * of errors 0.25 + 2 + 54 of 4 + 32 + 216; errors 0.5 + 2 + 18 of 2 + 8 + 36. More than
+ * half the area has an error of 3; the mean truth is 46 / 9; the differences are 18 - 0.5
+ * + 2. What is not exact in binary is within 1e-15. */
 static void test_known(void)
 {
-    struct sample samples[3] = {sample_of(6, 9, 6), sample_of(1, 1.5, 2), sample_of(2, 5, 4)};
+    struct sample samples[3] = {sample_of(6, 9, 6), sample_of(1, 1.5, 2),
+                                sample_of(2, 5, 4)};
     struct deviation d = deviation_of(samples, 3);
     tap_ok(near(d.rms, sqrt(56.25 / 252.0), 1e-15), "rms %.6f", d.rms);
     tap_ok(near(d.l1, 20.5 / 46.0, 1e-15), "l1 %.6f", d.l1);
     tap_ok(near(d.median, 27.0 / 46.0, 1e-15), "median %.6f", d.median);
     tap_ok(near(d.bias, 19.5 / 46.0, 1e-15), "bias %.6f", d.bias);
-    tap_ok(d.noise == 0.0 && near(d.square, 84.0, 1e-12), "no noise; mean square %g", d.square);
+    tap_ok(d.noise == 0.0 && near(d.square, 84.0, 1e-12), "no noise; mean square %g",
+           d.square);
 }
 
 static void test_ends(void)
@@ -61,17 +64,21 @@ static void test_ends(void)
 /* One band has all the error: bands are added before the root and before the median. */
 static void test_bands(void)
 {
-    struct sample sample = {1.0, {{1.0, 2.0, 5.0}}, {{{1.0, 2.0, 2.0}}, {{1.0, 2.0, 2.0}}}};
+    struct sample sample = {1.0,
+                            {{1.0, 2.0, 5.0}},
+                            {{{1.0, 2.0, 2.0}}, {{1.0, 2.0, 2.0}}}};
     struct deviation d = deviation_of(&sample, 1);
-    tap_ok(near(d.rms, 1.0, 1e-15) && near(d.l1, 0.6, 1e-15) && near(d.median, 0.6, 1e-15),
+    tap_ok(near(d.rms, 1.0, 1e-15) && near(d.l1, 0.6, 1e-15) &&
+               near(d.median, 0.6, 1e-15),
            "bands are added: %.3f, %.3f, %.3f", d.rms, d.l1, d.median);
 }
 
 enum { MANY = 100000 };
 
-/* Truth 1, even noise of +-0.5 in each half (variance 1/12), solution off by 0.1. The rms is
- * sqrt(mean of (0.1 + a)(0.1 + b)): the mean has a standard deviation of about 1/12 / sqrt(3 MANY),
- * 1.5e-4, on 0.01; 5 of them are 4 % of the rms. A biased sum would give 0.1 + noise: 0.23. */
+/* Truth 1, even noise of +-0.5 in each half (variance 1/12), solution off by 0.1. The rms
+ * is sqrt(mean of (0.1 + a)(0.1 + b)): the mean has a standard deviation of about 1/12 /
+ * sqrt(3 MANY), 1.5e-4, on 0.01; 5 of them are 4 % of the rms. A biased sum would give
+ * 0.1 + noise: 0.23. */
 static void test_noise(void)
 {
     struct sample *samples = alloc_array(MANY, sizeof *samples);
@@ -83,13 +90,15 @@ static void test_noise(void)
                 samples[i].truth[half].band[c] = 0.5 + random_unit(&random);
     }
     struct deviation d = deviation_of(samples, MANY);
-    tap_ok(near(d.rms, 0.1, 0.004), "noise does not bias the rms: %.4f, exact 0.1", d.rms);
-    tap_ok(near(d.noise, sqrt(1.0 / 24.0), 0.002), "the noise is known: %.4f, exact %.4f", d.noise,
-           sqrt(1.0 / 24.0)); /* itself known to 0.2 % */
+    tap_ok(near(d.rms, 0.1, 0.004), "noise does not bias the rms: %.4f, exact 0.1",
+           d.rms);
+    tap_ok(near(d.noise, sqrt(1.0 / 24.0), 0.002), "the noise is known: %.4f, exact %.4f",
+           d.noise, sqrt(1.0 / 24.0)); /* itself known to 0.2 % */
     tap_ok(d.l1 > 0.15, "the l1 carries it: %.4f", d.l1);
     for (int i = 0; i < MANY; i++)
         samples[i].value = grey(1.0);
-    tap_ok(deviation_of(samples, MANY).rms < 0.03, "no error: rms near 0 whatever the noise");
+    tap_ok(deviation_of(samples, MANY).rms < 0.03,
+           "no error: rms near 0 whatever the noise");
     alloc_free(samples);
 }
 
@@ -105,8 +114,9 @@ static struct world two_roots(void)
     return world_make(scene);
 }
 
-/* Truth of root 0: 3 and 5 in turn, swapped in the other half, so 4 without noise over any patch of
- * several elements. Of root 1: 5 and 3 for the halves, so 4 with a noise of 1. */
+/* Truth of root 0: 3 and 5 in turn, swapped in the other half, so 4 without noise over
+ * any patch of several elements. Of root 1: 5 and 3 for the halves, so 4 with a noise of
+ * 1. */
 static struct truth two_truths(const struct scene *scene)
 {
     struct truth truth = truth_make(scene, 32);
@@ -118,9 +128,9 @@ static struct truth two_truths(const struct scene *scene)
     return truth;
 }
 
-/* B - E is 1, 2, 3, 6 on the children of root 0, whose mean is off by -1, and 6 on root 1, which is
- * not divided: off by 2, its product of deviations 1 * 3. Squares of truths are 16 and 5 * 3. All
- * weighted with the areas 2 and 4. */
+/* B - E is 1, 2, 3, 6 on the children of root 0, whose mean is off by -1, and 6 on root
+ * 1, which is not divided: off by 2, its product of deviations 1 * 3. Squares of truths
+ * are 16 and 5 * 3. All weighted with the areas 2 and 4. */
 static void test_roots(void)
 {
     static const double reflected[4] = {1.0, 2.0, 3.0, 6.0};
@@ -129,7 +139,8 @@ static void test_roots(void)
     struct truth truth = two_truths(world.scene);
     forest_split(forest, 0);
     for (int k = 0; k < 4; k++)
-        forest->patches[forest->patches[0].children + k].radiosity = grey(0.5 + reflected[k]);
+        forest->patches[forest->patches[0].children + k].radiosity =
+            grey(0.5 + reflected[k]);
     forest_average_patch(forest, 0);
     forest->patches[1].radiosity = grey(0.5 + 6.0);
     struct deviation root = deviation_of_roots(forest, &truth);
@@ -140,10 +151,11 @@ static void test_roots(void)
     tap_ok(near(root.median, 0.5, 1e-15), "root median %.6f", root.median);
     tap_ok(near(root.bias, 6.0 / 24.0, 1e-15), "root bias %.6f", root.bias);
     tap_ok(near(root.noise, sqrt(4.0 / 92.0), 1e-15), "root noise %.6f", root.noise);
-    tap_ok(near(leaf.rms, sqrt((2.0 * 18.0 / 4.0 + 12.0) / 92.0), 1e-15) &&
-               near(leaf.l1, 12.0 / 24.0, 1e-15) && near(leaf.bias, root.bias, 1e-15),
-           "leaf rms %.6f, l1 %.6f: errors inside a root count, the bias is that of roots",
-           leaf.rms, leaf.l1);
+    tap_ok(
+        near(leaf.rms, sqrt((2.0 * 18.0 / 4.0 + 12.0) / 92.0), 1e-15) &&
+            near(leaf.l1, 12.0 / 24.0, 1e-15) && near(leaf.bias, root.bias, 1e-15),
+        "leaf rms %.6f, l1 %.6f: errors inside a root count, the bias is that of roots",
+        leaf.rms, leaf.l1);
     truth_free(&truth);
     world_free(&world);
 }
@@ -175,7 +187,8 @@ static void test_elements(const struct scene *scene, const struct truth *truth)
             for (int k = 0; k < 3; k++)
                 w[k] = child == 3 ? 1.0 - 2.0 * w[k] : 2.0 * w[k] - (k == child);
         }
-        inside = inside && fmin(w[0], fmin(w[1], w[2])) >= -1e-12; /* rounding times 4^2 */
+        inside =
+            inside && fmin(w[0], fmin(w[1], w[2])) >= -1e-12; /* rounding times 4^2 */
     }
     tap_ok(truth->count == 32, "2 of 4 roots reflect, 16 elements each: %lld",
            (long long)truth->count);
@@ -190,13 +203,15 @@ static void test_file(const struct scene *scene, const struct truth *truth)
 {
     struct truth copy = {0};
     struct error error = {0};
-    bool same = truth_write(truth, FILE_NAME, &error) &&
-                truth_read(&copy, FILE_NAME, scene, &error) && copy.count == truth->count &&
-                memcmp(copy.items, truth->items, (size_t)copy.count * sizeof *copy.items) == 0;
+    bool same =
+        truth_write(truth, FILE_NAME, &error) &&
+        truth_read(&copy, FILE_NAME, scene, &error) && copy.count == truth->count &&
+        memcmp(copy.items, truth->items, (size_t)copy.count * sizeof *copy.items) == 0;
     tap_ok(same, "a file gives back what was written");
     truth_free(&copy);
     struct scene other = *scene;
-    double areas[4] = {scene->areas[0], scene->areas[1], scene->areas[2], 2.0 * scene->areas[3]};
+    double areas[4] = {scene->areas[0], scene->areas[1], scene->areas[2],
+                       2.0 * scene->areas[3]};
     other.areas = areas;
     tap_ok(!truth_read(&copy, FILE_NAME, &other, &error) && error.code == EXIT_USAGE,
            "the reference of another scene is refused: %s", error.text);

@@ -76,9 +76,10 @@ static bool everywhere_within(const struct solution *s, double most)
     return within(s, 0, s->solver->model.forest->root_count, most);
 }
 
-/* Largest relative difference between two solutions, patch by patch by their IDs; infinite if
- * their patches differ. The first is multiplied by `factor` before. */
-static double difference(const struct solution *a, const struct solution *b, double factor)
+/* Largest relative difference between two solutions, patch by patch by their IDs;
+ * infinite if their patches differ. The first is multiplied by `factor` before. */
+static double difference(const struct solution *a, const struct solution *b,
+                         double factor)
 {
     const struct forest *one = a->solver->model.forest, *two = b->solver->model.forest;
     double worst = one->count == two->count ? 0.0 : HUGE_VAL;
@@ -119,7 +120,8 @@ static struct scene *furnished(double lamp, double box)
     paint(&painted, 0.5, 0.0);
     soup_add_box(&painted.soup, point(0.3, 0.2, 0.1), point(0.7, 0.5, 0.4), 1, false);
     paint(&painted, 0.3, box);
-    soup_add_quad(&painted.soup, point(0.4, 0.4, 0.95), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(0.4, 0.4, 0.95), point(0, 0.2, 0),
+                  point(0.2, 0, 0), 1);
     paint(&painted, 0.0, lamp);
     return scene_of_painted(&painted);
 }
@@ -144,12 +146,17 @@ static void test_bounds(const char *words)
         f += link_area(link) / (2.0 * forest_area(forest, 0));
     }
     for (int i = 0; i < 4; i++)
-        exact += triangle_exchange(&s.scene->triangles[i / 2], &s.scene->triangles[2 + i % 2]) /
+        exact += triangle_exchange(&s.scene->triangles[i / 2],
+                                   &s.scene->triangles[2 + i % 2]) /
                  (2.0 * forest_area(forest, 0));
-    tap_ok(largest > 0.1 && largest <= 1.0, "0 <= G <= the smaller area%s%s: at most %.3f of it on "
-           "%lld links", *words ? ", " : "", words, largest, (long long)s.stats.links);
-    tap_ok(f <= 1.0 && (*words || fabs(f / exact - 1.0) <= 0.01), "a square below a large one: "
-           "F %.5f, exact %.5f", f, exact); /* 1 %: as the default epsilon has it elsewhere */
+    tap_ok(largest > 0.1 && largest <= 1.0,
+           "0 <= G <= the smaller area%s%s: at most %.3f of it on "
+           "%lld links",
+           *words ? ", " : "", words, largest, (long long)s.stats.links);
+    tap_ok(f <= 1.0 && (*words || fabs(f / exact - 1.0) <= 0.01),
+           "a square below a large one: "
+           "F %.5f, exact %.5f",
+           f, exact); /* 1 %: as the default epsilon has it elsewhere */
     solution_free(&s);
 }
 
@@ -166,21 +173,26 @@ static void test_false_convergence(void)
             paint(&painted, 0.99, 0.0);
             painted.ends[0] -= 2;
             paint(&painted, 0.99, 1.0);
-            snprintf(words, sizeof words, "--epsilon 1e30 --final-gather 0 --tolerance %s "
-                     "--max-iterations 100000 --solver %s", exact ? "1e-12" : "1e-6", solvers[k]);
+            snprintf(words, sizeof words,
+                     "--epsilon 1e30 --final-gather 0 --tolerance %s "
+                     "--max-iterations 100000 --solver %s",
+                     exact ? "1e-12" : "1e-6", solvers[k]);
             s[exact] = run(&painted, words);
         }
         double mean = mean_radiosity(&s[0], 0, 12), truth = mean_radiosity(&s[1], 0, 12);
-        tap_ok(s[0].vote.converged && s[1].vote.converged && fabs(mean / truth - 1.0) <= 1e-6,
-               "rho 0.99, tolerance 1e-6, %s: the true error is %.1e (%lld iterations, B %.3f)",
-               solvers[k], fabs(mean / truth - 1.0), (long long)s[0].stats.iterations, mean);
+        tap_ok(s[0].vote.converged && s[1].vote.converged &&
+                   fabs(mean / truth - 1.0) <= 1e-6,
+               "rho 0.99, tolerance 1e-6, %s: the true error is %.1e (%lld iterations, B "
+               "%.3f)",
+               solvers[k], fabs(mean / truth - 1.0), (long long)s[0].stats.iterations,
+               mean);
         solution_free(&s[0]);
         solution_free(&s[1]);
     }
 }
 
-/* Splits only: every refinement keeps all patches and adds some, until nothing is left to split.
- * With epsilon 0 what ends it is the level. */
+/* Splits only: every refinement keeps all patches and adds some, until nothing is left to
+ * split. With epsilon 0 what ends it is the level. */
 static void test_termination(void)
 {
     static const char *const words[] = {"--epsilon 0 --max-level 3", "--epsilon 1e-5"};
@@ -188,7 +200,8 @@ static void test_termination(void)
         struct scene *scene = furnished(1.0, 0.0);
         scene_prepare_or_exit(scene);
         struct criterion criterion = criterion_parse(words[k]);
-        struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+        struct octree *octree =
+            octree_create(scene->triangles, scene->planes, scene->input_count);
         struct solver *solver = beyond_create(world_comm, scene, octree, &criterion);
         solver_link_roots(solver);
         solver_assign_roots(solver);
@@ -202,10 +215,12 @@ static void test_termination(void)
             split = forest_leaf_count(forest) - before;
             grows = grows && split >= 0;
             vote = solve_links(solver);
-            grows = grows && (split > 0 || vote.split > 0 || vote.converged || passes > 0);
+            grows =
+                grows && (split > 0 || vote.split > 0 || vote.converged || passes > 0);
         } while (++passes < 50 && !vote.converged && !vote.diverged);
-        tap_ok(grows && vote.converged, "%s: leaves only become more, it ends after %d refinements",
-               words[k], passes);
+        tap_ok(grows && vote.converged,
+               "%s: leaves only become more, it ends after %d refinements", words[k],
+               passes);
         solver_destroy(solver);
         octree_destroy(octree);
         scene_destroy(scene);
@@ -225,34 +240,42 @@ static void test_leak(void)
     paint(&painted, 0.9, 0.0);
     struct solution s = run(&painted, "--epsilon 1e-4");
     tap_ok(s.vote.converged && within(&s, 12, 24, 0.0),
-           "rooms beside a lit one are dark, exactly (%lld links)", (long long)s.stats.links);
-    tap_ok(mean_radiosity(&s, 0, 12) > 8.0, "which is not: %.2f", mean_radiosity(&s, 0, 12));
+           "rooms beside a lit one are dark, exactly (%lld links)",
+           (long long)s.stats.links);
+    tap_ok(mean_radiosity(&s, 0, 12) > 8.0, "which is not: %.2f",
+           mean_radiosity(&s, 0, 12));
     solution_free(&s);
 }
 
-/* A lamp in the plane of the ceiling and a picture in that of a wall, over them. Coplanar faces do
- * not block each other: light comes to both. Of the room's 6 m^2 0.29 are there twice, so up to 1.048
- * of what leaves arrives, and rho is as if it were up to 0.524: B up to 1.10 of the room alone. */
+/* A lamp in the plane of the ceiling and a picture in that of a wall, over them. Coplanar
+ * faces do not block each other: light comes to both. Of the room's 6 m^2 0.29 are there
+ * twice, so up to 1.048 of what leaves arrives, and rho is as if it were up to 0.524: B
+ * up to 1.10 of the room alone. */
 static void test_coplanar(void)
 {
     struct painted painted = {0};
     add_room(&painted, 1);
     paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0), point(0.2, 0, 0),
+                  1);
     paint(&painted, 0.5, 1.0);
-    soup_add_quad(&painted.soup, point(0, 0.25, 0.25), point(0, 0.5, 0), point(0, 0, 0.5), 1);
+    soup_add_quad(&painted.soup, point(0, 0.25, 0.25), point(0, 0.5, 0), point(0, 0, 0.5),
+                  1);
     paint(&painted, 0.5, 0.0);
     struct solution s = run(&painted, "--tolerance 1e-6");
     double exact = 0.04 * 0.5 / (1.0 - 0.5) / 6.0, mean = mean_radiosity(&s, 0, 12);
-    tap_ok(s.vote.converged && everywhere_within(&s, 1.1) && mean_radiosity(&s, 14, 2) > 0.5 * exact &&
-           mean >= 0.99 * exact && mean <= 1.10 * exact, "a lamp flush with the ceiling, a picture in a wall: "
-           "the room has %.5f, alone %.5f; the picture %.5f", mean, exact,
-           mean_radiosity(&s, 14, 2));
+    tap_ok(s.vote.converged && everywhere_within(&s, 1.1) &&
+               mean_radiosity(&s, 14, 2) > 0.5 * exact && mean >= 0.99 * exact &&
+               mean <= 1.10 * exact,
+           "a lamp flush with the ceiling, a picture in a wall: "
+           "the room has %.5f, alone %.5f; the picture %.5f",
+           mean, exact, mean_radiosity(&s, 14, 2));
     solution_free(&s);
 }
 
-/* Every face of a furnace twice: rows of links sum to 2 and B = E / (1 - 2 rho), which diverges from
- * rho = 0.5 on, and is said to; capped, rho times the row sum is 0.95 at most. */
+/* Every face of a furnace twice: rows of links sum to 2 and B = E / (1 - 2 rho), which
+ * diverges from rho = 0.5 on, and is said to; capped, rho times the row sum is 0.95 at
+ * most. */
 static void test_duplicates(double rho, const char *words, double exact, double limit)
 {
     struct painted painted = {0};
@@ -262,18 +285,20 @@ static void test_duplicates(double rho, const char *words, double exact, double 
     struct solution s = run(&painted, words);
     double mean = mean_radiosity(&s, 0, 24);
     if (exact > 0.0)
-        tap_ok(s.vote.converged && fabs(mean / exact - 1.0) <= limit, "all faces twice, rho %g, %s: "
-               "B %.6f, %.6f is expected (within %g)", rho, words, mean, exact, limit);
+        tap_ok(s.vote.converged && fabs(mean / exact - 1.0) <= limit,
+               "all faces twice, rho %g, %s: "
+               "B %.6f, %.6f is expected (within %g)",
+               rho, words, mean, exact, limit);
     else
-        tap_ok(s.vote.diverged && !s.vote.converged, "all faces twice, rho %g, %s: diverges", rho,
-               words);
+        tap_ok(s.vote.diverged && !s.vote.converged,
+               "all faces twice, rho %g, %s: diverges", rho, words);
     solution_free(&s);
 }
 
-/* A furnace in which a box stands on the floor and another goes through that and the floor.
- * Nothing may be brighter than E / (1 - rho) = 10, but leaves that are covered in part are not
- * closed, and their rows sum to up to R = 1.33: such a leaf may have 1 + rho R 10 = 13. Some
- * leaves lie inside the boxes, where the row sum is 0. */
+/* A furnace in which a box stands on the floor and another goes through that and the
+ * floor. Nothing may be brighter than E / (1 - rho) = 10, but leaves that are covered in
+ * part are not closed, and their rows sum to up to R = 1.33: such a leaf may have 1 + rho
+ * R 10 = 13. Some leaves lie inside the boxes, where the row sum is 0. */
 static void test_covered(const char *words)
 {
     struct painted painted = {0};
@@ -295,9 +320,11 @@ static void test_covered(const char *words)
 }
 
 /* A flat triangle, `width` times as wide as long, with a twin of opposite winding. */
-static void add_sliver(struct painted *painted, struct vec3 from, struct vec3 to, double width)
+static void add_sliver(struct painted *painted, struct vec3 from, struct vec3 to,
+                       double width)
 {
-    struct vec3 side = vec3_add(to, point(0.0, 0.0, width * vec3_length(vec3_sub(to, from))));
+    struct vec3 side =
+        vec3_add(to, point(0.0, 0.0, width * vec3_length(vec3_sub(to, from))));
     soup_add(&painted->soup, (struct triangle){{from, to, side}});
     soup_add(&painted->soup, (struct triangle){{from, side, to}});
 }
@@ -323,7 +350,8 @@ static void test_slivers(void)
 
 static void test_degenerate(void)
 {
-    struct scene *plain = furnished(1.0, 0.0), *spoilt = scene_create(plain->input_count + 3, 3);
+    struct scene *plain = furnished(1.0, 0.0),
+                 *spoilt = scene_create(plain->input_count + 3, 3);
     for (int i = 0; i < 3; i++)
         spoilt->materials[i] = plain->materials[i];
     for (int32_t i = 0; i < plain->input_count; i++) {
@@ -333,7 +361,8 @@ static void test_degenerate(void)
     struct vec3 a = point(0.1, 0.2, 0.3), b = point(0.5, 0.6, 0.7);
     spoilt->triangles[plain->input_count] = (struct triangle){{a, a, b}};
     spoilt->triangles[plain->input_count + 1] = (struct triangle){{a, a, a}};
-    spoilt->triangles[plain->input_count + 2] = (struct triangle){{a, b, vec3_middle(a, b)}};
+    spoilt->triangles[plain->input_count + 2] =
+        (struct triangle){{a, b, vec3_middle(a, b)}};
     struct solution one = solve_scene(world_comm, plain, "--epsilon 1e-4");
     struct solution two = solve_scene(world_comm, spoilt, "--epsilon 1e-4");
     bool same = one.stats.links == two.stats.links;
@@ -345,10 +374,10 @@ static void test_degenerate(void)
     solution_free(&two);
 }
 
-/* A tetrahedron of 64 triangles seen from inside, one side lit, each coordinate times `scale` plus
- * `offset`. All sees all, so that no segment hits or misses an edge by a rounding; and no two sides
- * have the same area, so that it is clear which patch of a link is the smaller one, from which its
- * form factor is taken. */
+/* A tetrahedron of 64 triangles seen from inside, one side lit, each coordinate times
+ * `scale` plus `offset`. All sees all, so that no segment hits or misses an edge by a
+ * rounding; and no two sides have the same area, so that it is clear which patch of a
+ * link is the smaller one, from which its form factor is taken. */
 static struct scene *tetrahedron(double scale, double offset)
 {
     const struct vec3 v[4] = {point(0, 0, 0), point(1, 0.1, 0), point(0.2, 0.8, 0.1),
@@ -369,20 +398,23 @@ static struct scene *tetrahedron(double scale, double offset)
     return scene_of_painted(&painted);
 }
 
-/* Largest relative difference of roots; root i of one is (i times + plus) % count of two. */
-static double roots_differ(const struct solution *one, const struct solution *two, int times,
-                           int plus)
+/* Largest relative difference of roots; root i of one is (i times + plus) % count of
+ * two. */
+static double roots_differ(const struct solution *one, const struct solution *two,
+                           int times, int plus)
 {
     int32_t count = one->scene->input_count;
     double worst = 0.0;
     for (int32_t i = 0; i < count; i++)
-        worst = fmax(worst, fabs(radiosity(two, (i * times + plus) % count) / radiosity(one, i) -
-                                 1.0));
+        worst = fmax(worst,
+                     fabs(radiosity(two, (i * times + plus) % count) / radiosity(one, i) -
+                          1.0));
     return worst;
 }
 
-/* Form factors are kept as floats: a rounding of the coordinates may move each by 2^-24, 6e-8.
- * 1e-7 for a few reflections of that; more where the coordinates have fewer digits. */
+/* Form factors are kept as floats: a rounding of the coordinates may move each by 2^-24,
+ * 6e-8. 1e-7 for a few reflections of that; more where the coordinates have fewer
+ * digits. */
 static void test_moved(const char *name, double scale, double offset, double limit)
 {
     const char *words = "--epsilon 0 --max-level 0 --tolerance 1e-12 --final-gather 0";
@@ -404,8 +436,8 @@ static void test_emission_scale(void)
         double factor = ldexp(1.0, powers[k]);
         struct solution two = solve_scene(world_comm, furnished(factor, 0.25 * factor),
                                           "--epsilon 1e-4");
-        tap_ok(exact_bits(&one, &two, factor), "emission times 2^%d: so is the light, to the bit",
-               powers[k]);
+        tap_ok(exact_bits(&one, &two, factor),
+               "emission times 2^%d: so is the light, to the bit", powers[k]);
         solution_free(&two);
     }
     tap_ok(one.stats.patches > 1000, "on %lld patches", (long long)one.stats.patches);
@@ -421,7 +453,8 @@ static void test_linearity(void)
     struct solution both = solve_scene(world_comm, furnished(1.0, 0.7), words);
     double worst = 0.0;
     for (int32_t i = 0; i < both.scene->input_count; i++)
-        worst = fmax(worst, fabs((radiosity(&one, i) + radiosity(&two, i)) / radiosity(&both, i) -
+        worst = fmax(worst, fabs((radiosity(&one, i) + radiosity(&two, i)) /
+                                     radiosity(&both, i) -
                                  1.0));
     tap_ok(worst <= 1e-12 && radiosity(&one, 0) > 0.0 && radiosity(&two, 0) > 0.0,
            "light of two lamps is the sum of the light of each (within %.1e)", worst);
@@ -430,14 +463,16 @@ static void test_linearity(void)
     solution_free(&both);
 }
 
-/* rho_j A_j B_i, where only j emits, is A_i rho_i B_j, where only i does: (A_i / rho_i) R_ij. */
+/* rho_j A_j B_i, where only j emits, is A_i rho_i B_j, where only i does: (A_i / rho_i)
+ * R_ij. */
 static void test_reciprocity(void)
 {
     static const int32_t lamps[] = {0, 5, 13, 22};
     double b[4][4], area[4], rho[4], worst = 0.0, least = HUGE_VAL;
     const char *words = "--epsilon 0 --max-level 0 --tolerance 1e-13 --final-gather 0";
     for (int i = 0; i < 4; i++) {
-        struct scene *scene = furnished(0.0, 0.0), *lit = scene_create(scene->input_count, 24);
+        struct scene *scene = furnished(0.0, 0.0),
+                     *lit = scene_create(scene->input_count, 24);
         for (int32_t t = 0; t < 24; t++) {
             lit->triangles[t] = scene->triangles[t];
             lit->material_of[t] = t;
@@ -460,13 +495,14 @@ static void test_reciprocity(void)
             worst = fmax(worst, fabs(there / back - 1.0));
             least = fmin(least, fmin(b[i][j], b[j][i]));
         }
-    tap_ok(least > 0.0 && worst <= 1e-12, "the response is reciprocal (within %.1e)", worst);
+    tap_ok(least > 0.0 && worst <= 1e-12, "the response is reciprocal (within %.1e)",
+           worst);
 }
 
-/* A light 1e-4 of the room wide: E = B A cos^2 / (pi d^2) at the floor. All of the light on the
- * floor is right to a float; where on the floor it falls is told in 256ths of a patch, a quarter
- * of which is 64 of them: within 1.6 %. That and a little for the interpolation, 2 %, is the limit at a point; 0.5 % is
- * that of the RMS. */
+/* A light 1e-4 of the room wide: E = B A cos^2 / (pi d^2) at the floor. All of the light
+ * on the floor is right to a float; where on the floor it falls is told in 256ths of a
+ * patch, a quarter of which is 64 of them: within 1.6 %. That and a little for the
+ * interpolation, 2 %, is the limit at a point; 0.5 % is that of the RMS. */
 static void test_tiny_light(const char *words)
 {
     enum { GRID = 41 };
@@ -474,13 +510,15 @@ static void test_tiny_light(const char *words)
     struct painted painted = {0};
     soup_add_quad(&painted.soup, point(-0.5, -0.5, 0), point(1, 0, 0), point(0, 1, 0), 1);
     paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(0, 0, 0.5), point(0, size, 0), point(size, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(0, 0, 0.5), point(0, size, 0), point(size, 0, 0),
+                  1);
     paint(&painted, 0.0, b);
     struct solution s = run(&painted, words);
     struct shading *shading = shade(&s);
     double worst = 0.0, squares = 0.0;
     for (int i = 0; i < GRID * GRID; i++) {
-        double x = 0.9 * ((i % GRID) / (GRID - 1.0) - 0.5), y = 0.9 * ((i / GRID) / (GRID - 1.0) - 0.5);
+        double x = 0.9 * ((i % GRID) / (GRID - 1.0) - 0.5),
+               y = 0.9 * ((i / GRID) / (GRID - 1.0) - 0.5);
         double d2 = 0.25 + x * x + y * y;
         double e = b * size * size * 0.25 / (PI * d2 * d2);
         double off = fabs(shown_at(&s, shading, 0, 2, point(x, y, 0)) / 0.5 / e - 1.0);
@@ -489,28 +527,32 @@ static void test_tiny_light(const char *words)
     }
     int level = deepest_level(&s);
     double rms = sqrt(squares / (GRID * GRID));
-    tap_ok(s.vote.converged && rms <= 0.005 && worst <= 0.02, "a light of 1e-4 of the room, %s: "
-           "off by %.3f %% RMS, %.2f %% at most (level %d, %lld links)", words, 100.0 * rms,
-           100.0 * worst, level, (long long)s.stats.links);
+    tap_ok(s.vote.converged && rms <= 0.005 && worst <= 0.02,
+           "a light of 1e-4 of the room, %s: "
+           "off by %.3f %% RMS, %.2f %% at most (level %d, %lld links)",
+           words, 100.0 * rms, 100.0 * worst, level, (long long)s.stats.links);
     shading_destroy(shading);
     solution_free(&s);
 }
 
-/* Level 15 is reached where it is wanted: below a lamp of 4e-5, 1e-5 above the floor. 1 %: what
- * epsilon leaves, a third of which is measured. */
+/* Level 15 is reached where it is wanted: below a lamp of 4e-5, 1e-5 above the floor. 1
+ * %: what epsilon leaves, a third of which is measured. */
 static void test_fifteen_levels(void)
 {
     struct painted painted = {0};
     soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
     paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(0.3, 0.4, 1e-5), point(0, 4e-5, 0), point(4e-5, 0, 0), 1);
+    soup_add_quad(&painted.soup, point(0.3, 0.4, 1e-5), point(0, 4e-5, 0),
+                  point(4e-5, 0, 0), 1);
     paint(&painted, 0.0, 1.0);
-    struct solution s = run(&painted, "--epsilon 1e-3 --max-level 15 --min-area 0 --tolerance 1e-6");
+    struct solution s =
+        run(&painted, "--epsilon 1e-3 --max-level 15 --min-area 0 --tolerance 1e-6");
     int level = deepest_level(&s);
     double area = 2.0 * forest_area(s.solver->model.forest, 0);
     double exact = 0.0, arrived = area * mean_radiosity(&s, 0, 2) / 0.5;
     for (int i = 0; i < 4; i++)
-        exact += triangle_exchange(&s.scene->triangles[i / 2], &s.scene->triangles[2 + i % 2]);
+        exact +=
+            triangle_exchange(&s.scene->triangles[i / 2], &s.scene->triangles[2 + i % 2]);
     tap_ok(s.vote.converged && level == 15 && fabs(arrived / exact - 1.0) <= 0.01,
            "level %d below a lamp of 4e-5: off by %.2f %% (%lld links)", level,
            100.0 * fabs(arrived / exact - 1.0), (long long)s.stats.links);
@@ -524,13 +566,16 @@ static double mean_shown(struct solution *s)
     int64_t count;
     const struct forest *forest = s->solver->model.forest;
     uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
-    struct shading *shading = shading_create(forest, s->solver->beyond->answer.straight, open);
-    struct renderer renderer = renderer_make(s->octree, shading, &s->solver->beyond->answer.gather);
+    struct shading *shading =
+        shading_create(forest, s->solver->beyond->answer.straight, open);
+    struct renderer renderer =
+        renderer_make(s->octree, shading, &s->solver->beyond->answer.gather);
     double sum = 0.0;
     for (int i = 0; i < 2 * GRID * GRID; i++) {
         double u = (i % GRID + 0.5) / GRID, v = (i / GRID % GRID + 0.5) / GRID;
         bool over = u + v > 1.0;
-        const double weight[3] = {fabs(1.0 - u - v), over ? 1.0 - u : u, over ? 1.0 - v : v};
+        const double weight[3] = {fabs(1.0 - u - v), over ? 1.0 - u : u,
+                                  over ? 1.0 - v : v};
         sum += render_point(&renderer, i / (GRID * GRID), weight, (uint64_t)i).band[0];
     }
     shading_destroy(shading);
@@ -538,19 +583,23 @@ static double mean_shown(struct solution *s)
     return sum / (2 * GRID * GRID);
 }
 
-/* A large lamp, a screen with a hole, a receiver close to it: each point sees the lamp wherever it
- * sees the hole, so the hole is a lamp of its size. What gets through is 1/60 and 1/500 of the lamp.
- * What hides the lamp is cut out of it exactly, so 3 % leaves room for the mesh alone. */
+/* A large lamp, a screen with a hole, a receiver close to it: each point sees the lamp
+ * wherever it sees the hole, so the hole is a lamp of its size. What gets through is 1/60
+ * and 1/500 of the lamp. What hides the lamp is cut out of it exactly, so 3 % leaves room
+ * for the mesh alone. */
 static void test_hole(const char *name, double width, double height)
 {
     struct painted painted = {0};
     struct vec3 low = point(-0.5 * width, -0.5 * height, 0.25);
-    soup_add_quad(&painted.soup, point(-0.25, -0.25, 0), point(0.5, 0, 0), point(0, 0.5, 0), 1);
+    soup_add_quad(&painted.soup, point(-0.25, -0.25, 0), point(0.5, 0, 0),
+                  point(0, 0.5, 0), 1);
     paint(&painted, 0.5, 0.0);
     soup_add_quad(&painted.soup, point(-2, -2, 0.5), point(0, 4, 0), point(4, 0, 0), 1);
     paint(&painted, 0.0, 1.0);
-    soup_add_quad(&painted.soup, point(-3, -3, 0.25), point(6, 0, 0), point(0, 3 + low.y, 0), 1);
-    soup_add_quad(&painted.soup, point(-3, -low.y, 0.25), point(6, 0, 0), point(0, 3 + low.y, 0), 1);
+    soup_add_quad(&painted.soup, point(-3, -3, 0.25), point(6, 0, 0),
+                  point(0, 3 + low.y, 0), 1);
+    soup_add_quad(&painted.soup, point(-3, -low.y, 0.25), point(6, 0, 0),
+                  point(0, 3 + low.y, 0), 1);
     soup_add_quad(&painted.soup, point(-3, low.y, 0.25), point(3 + low.x, 0, 0),
                   point(0, height, 0), 1);
     soup_add_quad(&painted.soup, point(-low.x, low.y, 0.25), point(3 + low.x, 0, 0),
@@ -558,22 +607,23 @@ static void test_hole(const char *name, double width, double height)
     paint(&painted, 0.0, 0.0);
     struct vec3 hole[4] = {low, point(low.x, -low.y, 0.25), point(-low.x, -low.y, 0.25),
                            point(-low.x, low.y, 0.25)};
-    struct vec3 floor[4] = {point(-0.25, -0.25, 0), point(0.25, -0.25, 0), point(0.25, 0.25, 0),
-                            point(-0.25, 0.25, 0)};
+    struct vec3 floor[4] = {point(-0.25, -0.25, 0), point(0.25, -0.25, 0),
+                            point(0.25, 0.25, 0), point(-0.25, 0.25, 0)};
     double exact = 0.5 * polygon_exchange(hole, 4, floor, 4) / polygon_area(floor, 4);
     struct solution s = run(&painted, "");
     double leaves = mean_radiosity(&s, 0, 2), shown = mean_shown(&s);
     tap_ok(s.vote.converged && fabs(leaves / exact - 1.0) <= 0.03,
-           "light through a %s, %.6f of the lamp's: leaves are off by %+.2f %% (%lld of them)",
+           "light through a %s, %.6f of the lamp's: leaves are off by %+.2f %% (%lld of "
+           "them)",
            name, exact, 100.0 * (leaves / exact - 1.0), (long long)s.stats.leaves);
     tap_ok(fabs(shown / exact - 1.0) <= 0.03, "as shown: off by %+.2f %%",
            100.0 * (shown / exact - 1.0));
     solution_free(&s);
 }
 
-/* A furnace inside out: all light escapes, and the report says so. With one face flipped part of it
- * does, and leaves that see it are not closed: the furnace's 2 is exceeded by what their rows sum to
- * above 1, up to 0.2. */
+/* A furnace inside out: all light escapes, and the report says so. With one face flipped
+ * part of it does, and leaves that see it are not closed: the furnace's 2 is exceeded by
+ * what their rows sum to above 1, up to 0.2. */
 static void test_flipped(void)
 {
     struct painted painted = {0};
@@ -581,8 +631,9 @@ static void test_flipped(void)
     paint(&painted, 0.5, 1.0);
     struct solution s = run(&painted, "");
     tap_ok(s.vote.converged && s.stats.escaped_power == s.stats.emitted_power &&
-           s.stats.absorbed_power == 0.0 && s.stats.row_sum_max == 0.0 &&
-           everywhere_within(&s, 1.0), "a furnace inside out: all that is emitted escapes");
+               s.stats.absorbed_power == 0.0 && s.stats.row_sum_max == 0.0 &&
+               everywhere_within(&s, 1.0),
+           "a furnace inside out: all that is emitted escapes");
     solution_free(&s);
     add_room(&painted, 1);
     struct triangle *t = &painted.soup.items[5];
@@ -590,7 +641,8 @@ static void test_flipped(void)
     paint(&painted, 0.5, 1.0);
     s = run(&painted, "--epsilon 1e-3");
     tap_ok(s.vote.converged && s.stats.escaped_power > 0.05 * s.stats.emitted_power &&
-           everywhere_within(&s, 2.4), "one of 12 faces flipped: %.1f %% escape, none is made up",
+               everywhere_within(&s, 2.4),
+           "one of 12 faces flipped: %.1f %% escape, none is made up",
            100.0 * s.stats.escaped_power / s.stats.emitted_power);
     solution_free(&s);
 }
@@ -604,7 +656,8 @@ static void test_open(void)
     soup_add_quad(&painted.soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 1);
     paint(&painted, 0.4, 0.0);
     struct solution s = run(&painted, "--tolerance 1e-12");
-    double balance = s.stats.absorbed_power + s.stats.escaped_power - s.stats.emitted_power;
+    double balance =
+        s.stats.absorbed_power + s.stats.escaped_power - s.stats.emitted_power;
     tap_ok(fabs(balance) <= 1e-9 * s.stats.emitted_power && s.stats.escaped_power > 0.0,
            "two plates: absorbed + escaped = emitted, within %.1e", fabs(balance));
     solution_free(&s);
@@ -618,24 +671,30 @@ static void test_cracks(void)
     for (int64_t p = 0; p < forest->count; p++)
         forest->patches[p].radiosity = (struct rgb){{2.0, 2.0, 2.0}};
     struct shading *shading = shade(&s);
-    struct camera camera = {.eye = point(0.05, 0.07, 0.9), .at = point(0.6, 0.5, 0.3),
-                            .up = point(0, 0, 1), .fov = 100.0, .width = 200, .height = 200};
+    struct camera camera = {.eye = point(0.05, 0.07, 0.9),
+                            .at = point(0.6, 0.5, 0.3),
+                            .up = point(0, 0, 1),
+                            .fov = 100.0,
+                            .width = 200,
+                            .height = 200};
     struct renderer renderer = renderer_make(s.octree, shading, NULL);
     float *pixels = render_rows(&renderer, &camera, 2, 0, 1, NULL);
     int off = 0;
     for (int i = 0; i < 3 * 200 * 200; i++)
         off += !(pixels[i] == 2.0f);
-    tap_ok(off == 0 && s.stats.leaves > 1000, "no cracks: all 40000 pixels over %lld leaves are "
-           "the same (%d are not)", (long long)s.stats.leaves, off / 3);
+    tap_ok(off == 0 && s.stats.leaves > 1000,
+           "no cracks: all 40000 pixels over %lld leaves are "
+           "the same (%d are not)",
+           (long long)s.stats.leaves, off / 3);
     alloc_free(pixels);
     shading_destroy(shading);
     solution_free(&s);
 }
 
-/* Faces in another order and corners turned: sums are integers, so only the corner at which a
- * calculation begins matters: last bits of form factors, kept as floats. It does not hold between
- * patches of equal areas, nor with blockers: which patch's points are taken, and which segments are
- * tried, depends on the numbers of the roots. */
+/* Faces in another order and corners turned: sums are integers, so only the corner at
+ * which a calculation begins matters: last bits of form factors, kept as floats. It does
+ * not hold between patches of equal areas, nor with blockers: which patch's points are
+ * taken, and which segments are tried, depends on the numbers of the roots. */
 static void test_order(void)
 {
     const char *words = "--epsilon 0 --max-level 0 --tolerance 1e-13";
@@ -650,7 +709,8 @@ static void test_order(void)
             int32_t to = (i * 11 + 5) % count; /* 64 faces: 11 has no factor in common */
             int k = turn * (i % 3);
             struct vec3 *c = again->triangles[i].corner;
-            mixed->triangles[to] = (struct triangle){{c[k], c[(k + 1) % 3], c[(k + 2) % 3]}};
+            mixed->triangles[to] =
+                (struct triangle){{c[k], c[(k + 1) % 3], c[(k + 2) % 3]}};
             mixed->material_of[to] = again->material_of[i];
         }
         scene_destroy(again);
@@ -676,8 +736,10 @@ int main(int argc, char **argv)
     test_termination();
     test_leak();
     test_coplanar();
-    test_duplicates(0.3, "--epsilon 1e-4 --final-gather 0", 2.5, 0.02); /* as exact as the row sums: 0.9 % measured */
-    test_duplicates(0.3, "--epsilon 1e-4", 1.0 / 0.7, 1e-6); /* what lies below is not seen */
+    test_duplicates(0.3, "--epsilon 1e-4 --final-gather 0", 2.5,
+                    0.02); /* as exact as the row sums: 0.9 % measured */
+    test_duplicates(0.3, "--epsilon 1e-4", 1.0 / 0.7,
+                    1e-6); /* what lies below is not seen */
     test_duplicates(0.6, "--epsilon 1e-3 --final-gather 0", 1.0 / 0.05, 1e-3);
     test_duplicates(0.6, "--epsilon 1e-3 --paper", 0.0, 0.0);
     test_covered("--epsilon 1e-4 --tolerance 1e-6");

@@ -428,8 +428,9 @@ static void add_room(struct painted *painted, enum room room)
 }
 
 /* B = E / (1 - rho) of every leaf, whatever it sees; of a furnished room whose triangles
- * have rho and half of it in turns, with E = 1 - rho, B = 1. Rows sum to 1, and there is no
- * noise where all is alike; the tolerance bounds the mean error, so less is asked for. */
+ * have rho and half of it in turns, with E = 1 - rho, B = 1. Rows sum to 1, and there is
+ * no noise where all is alike; the tolerance bounds the mean error, so less is asked
+ * for. */
 static void test_furnace(const struct comm *comm, enum room room, double rho, bool mixed,
                          const char *words)
 {
