@@ -15,7 +15,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     FUZZ_PROMISE(!scene == (error.code != EXIT_DONE));
     bool good = scene && scene_prepare(scene, &prepared, &error);
     for (int32_t i = 0; scene && i < scene->input_count; i++) {
-        FUZZ_PROMISE(scene->material_of[i] >= 0 && scene->material_of[i] < scene->material_count);
+        FUZZ_PROMISE(scene->material_of[i] >= 0 &&
+                     scene->material_of[i] < scene->material_count);
         FUZZ_PROMISE(scene->group_of[i] >= 0 && scene->group_of[i] < scene->group_count);
     }
     scene_destroy(scene);

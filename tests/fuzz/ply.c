@@ -1,10 +1,12 @@
-/* Fuzzing PLY: reading a scene, and the preparation of what was read; reading a solution. */
+/* Fuzzing PLY: reading a scene, and the preparation of what was read; reading a
+ * solution. */
 #include "io/scene/ply.h"
 
 #include "tests/fuzz/fuzz.h"
 #include "tools/compare.h"
 
-static bool load(struct binary *binary, const uint8_t *data, size_t size, struct error *error)
+static bool load(struct binary *binary, const uint8_t *data, size_t size,
+                 struct error *error)
 {
     return binary_of_bytes(binary, "fuzz.ply", data, size, "ply", "a PLY file", error);
 }
@@ -20,7 +22,8 @@ static void read_scene(const uint8_t *data, size_t size)
     FUZZ_PROMISE(!scene == (error.code != EXIT_DONE));
     bool good = scene && scene_prepare(scene, &prepared, &error);
     for (int32_t i = 0; scene && i < scene->input_count; i++)
-        FUZZ_PROMISE(scene->material_of[i] >= 0 && scene->material_of[i] < scene->material_count);
+        FUZZ_PROMISE(scene->material_of[i] >= 0 &&
+                     scene->material_of[i] < scene->material_count);
     for (int32_t i = 0; scene && i < scene->material_count; i++)
         FUZZ_PROMISE(rgb_sum(scene->materials[i].reflectance) >= 0.0 &&
                      rgb_sum(scene->materials[i].emission) >= 0.0);
@@ -38,7 +41,8 @@ static void read_solution(const uint8_t *data, size_t size)
     bool good = load(&binary, data, size, &error) &&
                 solution_of_binary(&solution, &binary, &error);
     map = alloc_array((size_t)solution.count, sizeof *map);
-    FUZZ_PROMISE(!good || compare_solutions(&solution, &solution, &difference, map, &different));
+    FUZZ_PROMISE(!good ||
+                 compare_solutions(&solution, &solution, &difference, map, &different));
     FUZZ_PROMISE(difference.largest == 0.0 && difference.broken == 0);
     alloc_free(map);
     solution_free(&solution);

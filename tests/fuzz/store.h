@@ -1,9 +1,10 @@
 /* Fuzzing stored snapshot: what the harnesses of its two kinds share.
  *
- * A checksum would stop a fuzzer at the door, so the right one is put at the end of every input
- * first. What the reader takes is restored, refined and solved for one iteration: it promises to
- * let nothing in that the method cannot live with. The scene is two triangles that face each
- * other, a lamp and a wall; with a tree above the roots, a box with a lamp in it. */
+ * A checksum would stop a fuzzer at the door, so the right one is put at the end of every
+ * input first. What the reader takes is restored, refined and solved for one iteration:
+ * it promises to let nothing in that the method cannot live with. The scene is two
+ * triangles that face each other, a lamp and a wall; with a tree above the roots, a box
+ * with a lamp in it. */
 #ifndef TESTS_FUZZ_STORE_H
 #define TESTS_FUZZ_STORE_H
 
@@ -19,8 +20,8 @@
 #define STORE_SETTINGS "--oracle error\n--epsilon 0.01\n"
 
 static const struct criterion STORE_CRITERION = {
-    .oracle = ORACLE_ERROR, .form_factor = FORM_FACTOR_POLYGON,
-    .solver = SOLVER_CG, .epsilon = 0.01, .max_level = 2, .tolerance = 1e-3, .max_iterations = 3};
+    .oracle = ORACLE_ERROR, .form_factor = FORM_FACTOR_POLYGON, .solver = SOLVER_CG,
+    .epsilon = 0.01, .max_level = 2, .tolerance = 1e-3, .max_iterations = 3};
 
 static inline struct scene *store_scene(void)
 {
@@ -57,7 +58,8 @@ static inline struct criterion store_criterion_tree(void)
     return criterion;
 }
 
-/* All links of an open file, then a pass. Returns false where the reader refuses a link. */
+/* All links of an open file, then a pass. Returns false where the reader refuses a
+ * link. */
 static inline bool store_continue(struct store_reader *reader, struct solver *solver,
                                   struct error *error)
 {
@@ -102,7 +104,8 @@ static inline void store_try(enum store_kind kind, enum linking_kind linking,
     bool pairs = linking == LINKING_PAIRS;
     struct criterion criterion = pairs ? STORE_CRITERION : store_criterion_tree();
     struct scene *scene = pairs ? store_scene() : store_box();
-    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *octree =
+        octree_create(scene->triangles, scene->planes, scene->input_count);
     struct solver *solver = beyond_create(&store_comm, scene, octree, &criterion);
     struct store_terms terms = {kind, STORE_SETTINGS, scene, solver->beyond->tree};
     struct store_reader reader;
