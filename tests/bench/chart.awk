@@ -1,10 +1,11 @@
 # The tables of docs/accuracy.md out of docs/chart.csv.
 #
-# Seconds for a leaf error: interpolated on the curve in logarithms; one that zigzags is read
-# where it comes down for good. The path tracer's are for the leaves of phr's runs: its
-# error falls as one over the square root of its seconds, so a run of t seconds with an
-# error of x would take t (x / e)^2 for the error e that phr has at those leaves, and that curve
-# is read as the others are. Where phr does not get there, it is read at phr's finest run.
+# Seconds for a leaf error: interpolated on the curve in logarithms; one that zigzags is
+# read where it comes down for good. The path tracer's are for the leaves of phr's runs:
+# its error falls as one over the square root of its seconds, so a run of t seconds with
+# an error of x would take t (x / e)^2 for the error e that phr has at those leaves, and
+# that curve is read as the others are. Where phr does not get there, it is read at phr's
+# finest run.
 #
 # Slopes: the line of least squares, in logarithms, through the runs of the last decade of
 # seconds.
@@ -88,7 +89,8 @@ function ratio(a, b) {
 function row(scene, wanted,    gather, paths) {
     gather = needed(scene SUBSEP "gather", wanted); paths = traced(scene, wanted)
     printf "| %s | %g %% | %s | %s | %s | %s | %s |\n", scene, 100 * wanted,
-        show(needed(scene SUBSEP "paper", wanted)), show(needed(scene SUBSEP "links", wanted)),
+        show(needed(scene SUBSEP "paper", wanted)),
+        show(needed(scene SUBSEP "links", wanted)),
         show(gather), show(paths), ratio(paths, gather)
 }
 
@@ -98,15 +100,18 @@ function rate(key) {
 }
 
 function second_row(scene,    paths, octree, embree) {
-    paths = scene SUBSEP "paths"; octree = scene SUBSEP "octree"; embree = scene SUBSEP "embree"
+    paths = scene SUBSEP "paths"; octree = scene SUBSEP "octree"
+    embree = scene SUBSEP "embree"
     printf "| %s | %s | %s | %s | %s | %s | %s | %s | %s |\n", scene,
         slope(scene SUBSEP "links"), slope(scene SUBSEP "gather"),
-        show(samples[paths] * 1e-6), ratio(rays[paths], samples[paths]), show(rate(paths)),
-        show(rate(octree)), show(rate(embree)), ratio(rate(octree), rate(embree))
+        show(samples[paths] * 1e-6), ratio(rays[paths], samples[paths]),
+        show(rate(paths)), show(rate(octree)), show(rate(embree)),
+        ratio(rate(octree), rate(embree))
 }
 
 END {
-    print "| scene | leaf error | s, paper | s, links alone | s, phr | s, path tracer | ratio |"
+    print "| scene | leaf error | s, paper | s, links alone | s, phr |" \
+        " s, path tracer | ratio |"
     print "|---|---|---|---|---|---|---|"
     for (i = 1; i <= scene_count; i++) {
         row(scenes[i], 0.05)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Speed against error: docs/chart.csv, the tables of docs/accuracy.md on stdout and, where gnuplot
-# is installed, docs/chart-leaf.svg and docs/chart-shown.svg.
+# Speed against error: docs/chart.csv, the tables of docs/accuracy.md on stdout and, where
+# gnuplot is installed, docs/chart-leaf.svg and docs/chart-shown.svg.
 #
 #   make chart
 #       all scenes: an hour and a half on two cores, half an hour of it for references
@@ -14,8 +14,8 @@
 #   paper   --paper: all pairs of triangles
 #   links   the defaults without the final gather
 #   gather  the defaults: --epsilon and --final-gather move together, as in PAIRS
-#   paths   the path tracer at the leaves of the gather with the same setting, for about as
-#           many seconds (tests/bench/measure.c, --trace); samples are its paths
+#   paths   the path tracer at the leaves of the gather with the same setting, for about
+#           as many seconds (tests/bench/measure.c, --trace); samples are its paths
 #   octree, embree   100,000 rays that wander (tests/bench/hits.c)
 # A line ends with the first run of more than SECONDS_MOST, or before one that is broken
 # off: after a minute, or after five where the path tracer follows. Lines take turns, so
@@ -109,8 +109,8 @@ exceeds() {
     awk "BEGIN { exit !($1 > $2) }"
 }
 
-# measured SCENE VARIANT SETTING: a line of the CSV, or two with the path tracer's; none if the
-# light diverges, or the run is broken off.
+# measured SCENE VARIANT SETTING: a line of the CSV, or two with the path tracer's; none
+# if the light diverges, or the run is broken off.
 measured() {
     limit=60
     [ "$2" != gather ] || limit=300
@@ -125,8 +125,8 @@ measured() {
                     $10, $11, $12, $13, $14, $15, $16, $17 }'
 }
 
-# The runs of a variant: of each kind of line that with the least seconds times the square of
-# the error.
+# The runs of a variant: of each kind of line that with the least seconds times the square
+# of the error.
 fastest() {
     measured "$@" >"$folder/runs"
     [ -s "$folder/runs" ] || return
@@ -185,8 +185,9 @@ for scene in $SCENES; do
     make_reference "$scene"
 done
 {
-    echo "scene,variant,setting,seconds,links,leaves,samples,rays,leaf_rms,leaf_l1,leaf_median," \
-        "shown_rms,shown_l1,shown_median,leaf_noise,shown_noise" | tr -d ' '
+    echo "scene,variant,setting,seconds,links,leaves,samples,rays,leaf_rms," \
+        "leaf_l1,leaf_median,shown_rms,shown_l1,shown_median,leaf_noise,shown_noise" |
+        tr -d ' '
     for scene in $SCENES; do
         sweep "$scene"
     done

@@ -1,21 +1,23 @@
-/* Makes the truth about a scene that has direct light only, in closed form: a file like that of
- * tests/bench/reference.c, without noise.
+/* Makes the truth about a scene that has direct light only, in closed form: a file like
+ * that of tests/bench/reference.c, without noise.
  *
  *   make chart, or  build/mpi/direct scenes/shadow.obj shadow.ref [ELEMENTS]
  *
- * The scene: a floor that reflects, in one plane; above it black screens, in a plane parallel to
- * it; above those, black lamps. A point x of the floor then has
+ * The scene: a floor that reflects, in one plane; above it black screens, in a plane
+ * parallel to it; above those, black lamps. A point x of the floor then has
  *
- *     rho H(x) = rho  sum over lamps of  E (F(x, lamp) - sum over screens of F(x, lamp behind screen)),
+ *     rho H(x) = rho  sum over lamps of  E (F(x, lamp) - hidden(x, lamp)),
+ *     hidden(x, lamp) = sum over screens of F(x, lamp behind screen),
  *
- * where F is Lambert's form factor (geom/lambert.h), and what of a lamp is behind a triangle is the
- * lamp cut by the three planes through x and the triangle's edges. Triangles of one plane hide
- * different parts, so nothing is taken away twice.
+ * where F is Lambert's form factor (geom/lambert.h), and what of a lamp is behind a
+ * triangle is the lamp cut by the three planes through x and the triangle's edges.
+ * Triangles of one plane hide different parts, so nothing is taken away twice.
  *
- * The mean over an element is Radon's rule of seven points, on quarters of quarters, until the
- * four quarters agree with the whole; the limit is that of the worst element, CLOSE times
- * the light of a hemisphere filled by the lamp. Both halves of the truth are the same, and
- * its points are those that reference.c has, from truth_find_point() with one path. */
+ * The mean over an element is Radon's rule of seven points, on quarters of quarters,
+ * until the four quarters agree with the whole; the limit is that of the worst element,
+ * CLOSE times the light of a hemisphere filled by the lamp. Both halves of the truth are
+ * the same, and its points are those that reference.c has, from truth_find_point() with
+ * one path. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,8 +56,8 @@ static struct sector cut(const struct sector *whole, struct vec3 x, struct vec3 
 }
 
 /* What of the lamp is behind the screen, as seen from x. */
-static struct sector hidden_part(const struct triangle *lamp, const struct triangle *screen,
-                                 struct vec3 x)
+static struct sector hidden_part(const struct triangle *lamp,
+                                 const struct triangle *screen, struct vec3 x)
 {
     struct sector part = {{lamp->corner[0], lamp->corner[1], lamp->corner[2]}, 3};
     struct vec3 a = vec3_sub(screen->corner[0], x), b = vec3_sub(screen->corner[1], x);
@@ -104,7 +106,8 @@ static struct vec3 point_beside(const struct triangle *t, int k, double a)
 }
 
 /* Mean irradiance over a triangle by Radon's rule, exact to degree 5. */
-static struct rgb mean_by_points(const struct scene *scene, int32_t root, const struct triangle *t)
+static struct rgb mean_by_points(const struct scene *scene, int32_t root,
+                                 const struct triangle *t)
 {
     static const double PLACE[2] = {0.10128650732345634, 0.4701420641051151};
     static const double WEIGHT[2] = {0.12593918054482714, 0.1323941527885062};
@@ -120,8 +123,9 @@ static struct rgb mean_by_points(const struct scene *scene, int32_t root, const 
 }
 
 /* Mean irradiance over a triangle, to `limit` W/m^2; `whole` is that by seven points. */
-static struct rgb mean_over(const struct scene *scene, int32_t root, const struct triangle *t,
-                            struct rgb whole, double limit, int level)
+static struct rgb mean_over(const struct scene *scene, int32_t root,
+                            const struct triangle *t, struct rgb whole, double limit,
+                            int level)
 {
     struct triangle child[4];
     struct rgb part[4], mean = {{0.0, 0.0, 0.0}};
@@ -147,7 +151,8 @@ static struct rgb mean_over(const struct scene *scene, int32_t root, const struc
 
 /* --- elements --- */
 
-static struct rgb reflected(const struct scene *scene, int32_t root, struct rgb irradiance)
+static struct rgb reflected(const struct scene *scene, int32_t root,
+                            struct rgb irradiance)
 {
     for (int c = 0; c < BANDS; c++)
         irradiance.band[c] *= scene_root_material(scene, root)->reflectance.band[c];
@@ -162,7 +167,8 @@ static void find_element(const struct scene *scene, struct element *element, dou
         part = triangle_child(&part, id_step(element->id, step));
     struct vec3 weight = {element->weight[0], element->weight[1], element->weight[2]};
     struct vec3 x = triangle_point(&whole, weight);
-    struct rgb mean = mean_over(scene, root, &part, mean_by_points(scene, root, &part), limit, 0);
+    struct rgb mean =
+        mean_over(scene, root, &part, mean_by_points(scene, root, &part), limit, 0);
     for (int half = 0; half < TRUTH_HALVES; half++) {
         element->mean[half] = reflected(scene, root, mean);
         element->point[half] = reflected(scene, root, irradiance_at(scene, root, x));
@@ -171,7 +177,8 @@ static void find_element(const struct scene *scene, struct element *element, dou
 
 static void make_truth(const struct scene *scene, struct truth *truth)
 {
-    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *octree =
+        octree_create(scene->triangles, scene->planes, scene->input_count);
     struct pathtracer pathtracer = pathtracer_make(scene, octree);
     double brightest = 0.0;
     for (int32_t m = 0; m < scene->material_count; m++)
@@ -187,7 +194,8 @@ static void make_truth(const struct scene *scene, struct truth *truth)
 /* --- what the formula holds for --- */
 
 /* Extends low..high to the heights of a root over the floor's plane. */
-static void extend(const struct plane *floor, const struct triangle *t, double *low, double *high)
+static void extend(const struct plane *floor, const struct triangle *t, double *low,
+                   double *high)
 {
     for (int k = 0; k < 3; k++) {
         double height = plane_distance(floor, t->corner[k]);
@@ -212,10 +220,12 @@ static bool check_scene(const struct scene *scene, struct error *error)
         mixed = mixed || (lamp && rgb_sum(material->reflectance) > 0.0);
         extend(floor, &scene->triangles[root], &low[kind], &high[kind]);
     }
-    bool layered = high[FLOOR] < low[SCREEN] && high[FLOOR] < low[LAMP] && high[SCREEN] < low[LAMP];
+    bool layered =
+        high[FLOOR] < low[SCREEN] && high[FLOOR] < low[LAMP] && high[SCREEN] < low[LAMP];
     bool flat = high[FLOOR] - low[FLOOR] < 1e-12 && high[SCREEN] - low[SCREEN] < 1e-12;
     return (floor && !mixed && layered && flat) ||
-           error_set(error, EXIT_USAGE, "not a floor, black screens over it, black lamps over them");
+           error_set(error, EXIT_USAGE,
+                     "not a floor, black screens over it, black lamps over them");
 }
 
 int main(int argc, char **argv)
@@ -236,8 +246,8 @@ int main(int argc, char **argv)
         struct truth truth = truth_make(scene, elements);
         make_truth(scene, &truth);
         if (truth_write(&truth, argv[2], &error))
-            printf("%s: %lld elements in closed form, %.1f s\n", argv[2], (long long)truth.count,
-                   comm_seconds() - start);
+            printf("%s: %lld elements in closed form, %.1f s\n", argv[2],
+                   (long long)truth.count, comm_seconds() - start);
         truth_free(&truth);
     }
     if (error.code != EXIT_DONE)

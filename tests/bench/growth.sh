@@ -1,11 +1,13 @@
-# make growth: rooms of 6,348 to a million triangles, from reading to a picture, on two ranks, at
-# epsilon 1e-3, and the smaller four at 1e-4. Writes docs/growth.csv and, with gnuplot,
-# docs/growth.svg; prints by which power of the triangles links and work grow. Sizes are those that
-# the generator is asked for. OFFICE3= and CLASSROOM= name two-sided scenes that join the table.
-# Memory is the sum of the ranks' peaks; what they share counts for each.
+# make growth: rooms of 6,348 to a million triangles, from reading to a picture, on two
+# ranks, at epsilon 1e-3, and the smaller four at 1e-4. Writes docs/growth.csv and, with
+# gnuplot, docs/growth.svg; prints by which power of the triangles links and work grow.
+# Sizes are those that the generator is asked for. OFFICE3= and CLASSROOM= name two-sided
+# scenes that join the table. Memory is the sum of the ranks' peaks; what they share
+# counts for each.
 set -eu
 : "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${OFFICE3:=}" "${CLASSROOM:=}"
-: "${SIZES:=6350 18510 31933 100000 300000 1000000}" "${FINE_SIZES:=6350 18510 31933 100000}"
+: "${SIZES:=6350 18510 31933 100000 300000 1000000}" \
+    "${FINE_SIZES:=6350 18510 31933 100000}"
 work=$BUILD/growth
 mkdir -p "$work"
 cp scenes/room.mtl "$work"
@@ -16,14 +18,16 @@ number_of() { grep -o "\"$2\": *[0-9.e+-]*" "$1" | head -n 1 | sed 's/.*: *//'; 
 # most_of FILE PHASE: the seconds of the slowest rank.
 most_of() { sed -n "s/.*\"$2\": {.*\"max\": \([0-9.e+-]*\)}.*/\1/p" "$1"; }
 
-# all_of FILE KIND: the work of all ranks; first levels, which all ranks split alike, count once.
+# all_of FILE KIND: the work of all ranks; first levels, which all ranks split alike,
+# count once.
 all_of() { sed -n "s/.*\"$2\": {\"phases\": [0-9]*, \"all\": \([0-9]*\).*/\1/p" "$1"; }
 
 # grow NAME SCENE EPSILON OPTIONS: one run and its line.
 grow() {
     name=$1 scene=$2 epsilon=$3 json=$work/$1-$3.json
     shift 3
-    $MPIEXEC -n 2 ./phr "$scene" --epsilon "$epsilon" "$@" --quiet -o "$work/$name-$epsilon.ppm" \
+    $MPIEXEC -n 2 ./phr "$scene" --epsilon "$epsilon" "$@" --quiet \
+        -o "$work/$name-$epsilon.ppm" \
         --stats "$json"
     first=$(($(all_of "$json" linking) / 2))
     tests=$(($(number_of "$json" node_tests) + $(number_of "$json" triangle_tests)))
@@ -55,8 +59,9 @@ awk -F, '$1 == "room" {
 } END {
     for (e in k) if (k[e] > k0[e]) {
         span = log(k[e] / k0[e])
-        printf "epsilon %s, %d to %d triangles: links grow as k^%.2f, refinement work as k^%.2f\n",
-               e, k0[e], k[e], log(links[e] / links0[e]) / span, log(work[e] / work0[e]) / span
+        printf "epsilon %s, %d to %d triangles: ", e, k0[e], k[e]
+        printf "links grow as k^%.2f, refinement work as k^%.2f\n",
+               log(links[e] / links0[e]) / span, log(work[e] / work0[e]) / span
     }
 }' docs/growth.csv
 if command -v gnuplot >/dev/null; then

@@ -148,8 +148,9 @@ static double run_octree(const struct octree *octree, struct rays *rays,
     for (int i = 0; i < rays->count; i++) {
         int32_t guess = -1;
         if (rays->are_segments)
-            rays->answers[i] = octree_blocks_segment(octree, rays->origins[i], rays->ends[i],
-                                                     rays->own[i], &guess, counts);
+            rays->answers[i] =
+                octree_blocks_segment(octree, rays->origins[i], rays->ends[i],
+                                      rays->own[i], &guess, counts);
         else
             rays->answers[i] = octree_first_hit(octree, rays->origins[i], rays->ends[i],
                                                 false, &hit, counts)
@@ -208,7 +209,8 @@ static void bench_rays(const struct subject *subject, struct rays *rays)
     double best = HUGE_VAL;
 #ifdef WITH_EMBREE
     struct RTCRayHit *embree = alloc_array((size_t)rays->count + 1, sizeof *embree);
-    struct RTCRayHit *aligned = (struct RTCRayHit *)(((uintptr_t)embree + 15) & ~(uintptr_t)15);
+    struct RTCRayHit *aligned =
+        (struct RTCRayHit *)(((uintptr_t)embree + 15) & ~(uintptr_t)15);
     double embree_best = HUGE_VAL;
     int64_t differ = 0;
 #endif

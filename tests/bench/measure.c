@@ -12,17 +12,17 @@
  * The scene and the reference come first; --two-sided or --two-sided-lamps has to be
  * given where the reference was made with it. Outputs that are asked for are not written.
  *
- * The norms are those of tests/deviation.h, for three answers. `leaf`: the constant of a leaf, with
- * the mean of the truth over that leaf; where leaves are smaller than an element of the truth,
- * their mean over the element. The errors of small leaves cancel in that mean, so only numbers
- * that one reference gives can be compared. `shown`: the radiosity that pictures show, with the
- * truth at one point of each element; points that no light reaches at all, such as those that a
- * box covers, are left out. `root`: the mean of a root triangle, with the mean of the truth over
- * it; it judges the light that roots exchange, not the mesh. The seconds are those of linking,
- * iterating and the final gather, with the octree: of the processor, on several ranks those until
- * the last is done. `emitters` is what turns
- * the relative RMS, which is that of the reflected light, into one relative to all radiosity,
- * emission included: multiply by it. */
+ * The norms are those of tests/deviation.h, for three answers. `leaf`: the constant of a
+ * leaf, with the mean of the truth over that leaf; where leaves are smaller than an
+ * element of the truth, their mean over the element. The errors of small leaves cancel in
+ * that mean, so only numbers that one reference gives can be compared. `shown`: the
+ * radiosity that pictures show, with the truth at one point of each element; points that
+ * no light reaches at all, such as those that a box covers, are left out. `root`: the
+ * mean of a root triangle, with the mean of the truth over it; it judges the light that
+ * roots exchange, not the mesh. The seconds are those of linking, iterating and the final
+ * gather, with the octree: of the processor, on several ranks those until the last is
+ * done. `emitters` is what turns the relative RMS, which is that of the reflected light,
+ * into one relative to all radiosity, emission included: multiply by it. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -37,7 +37,8 @@
 #include "tests/solve.h"
 
 static const char *const HEADER =
-    "scene,options,seconds,links,rays,node_tests,triangle_tests,iterations,patches,leaf_rms,"
+    "scene,options,seconds,links,rays,node_tests,triangle_tests,iterations,patches,"
+    "leaf_rms,"
     "leaf_l1,leaf_median,shown_rms,shown_l1,shown_median,noise,shown_noise,emitters,"
     "leaf_bias,shown_bias,root_rms,root_l1,root_median,root_bias,root_noise,leaves";
 
@@ -66,7 +67,8 @@ static struct shading *shade(const struct measure *measure, const struct solutio
     uint8_t *open = shading_open_quarters(forest, s->octree, measure->comm.rank,
                                           measure->comm.size, &leaves);
     comm_add_bytes(&measure->comm, open, leaves);
-    struct shading *shading = shading_create(forest, s->solver->beyond->answer.straight, open);
+    struct shading *shading =
+        shading_create(forest, s->solver->beyond->answer.straight, open);
     alloc_free(open);
     return shading;
 }
@@ -244,14 +246,16 @@ static int take_own(struct measure *measure, int argc, char **argv)
     return kept;
 }
 
-/* Collective. The prepared scene on all ranks, the truth on rank 0; NULL on all after an error. */
+/* Collective. The prepared scene on all ranks, the truth on rank 0; NULL on all after an
+ * error. */
 static struct scene *read_all(struct measure *measure)
 {
     struct obj_repairs read = {0};
     struct scene_repairs prepared;
     struct error *error = &measure->error;
     struct scene *scene = NULL;
-    if (measure->comm.rank == 0 && (scene = obj_read(measure->options.scene, &read, error))) {
+    if (measure->comm.rank == 0 &&
+        (scene = obj_read(measure->options.scene, &read, error))) {
         scene->two_sided = measure->options.two_sided;
         scene->two_sided_lamps = measure->options.two_sided_lamps;
         if (scene_prepare(scene, &prepared, error))
@@ -271,7 +275,8 @@ static void report(const struct measure *measure, struct solution *s,
     const struct forest *forest = s->solver->model.forest;
     bool gathers = s->solver->beyond->answer.straight && !measure->options.flat;
     struct renderer renderer =
-        renderer_make(s->octree, shading, gathers ? &s->solver->beyond->answer.gather : NULL);
+        renderer_make(s->octree, shading,
+                      gathers ? &s->solver->beyond->answer.gather : NULL);
     struct measured answer = {
         .stats = s->stats,
         .seconds = s->seconds,

@@ -1,9 +1,9 @@
 /* How fast OBJ files are read: parsing FILE.obj [RUNS]
  *
- * Prints the megabytes per second (10^6 bytes) of obj_read(), and of a reader that only looks at
- * every byte of the file, one fgetc() after the other; each the best of some runs, since a
- * machine can only be slower than it is. Seconds are those of the processor, so that a crowded
- * machine counts less. */
+ * Prints the megabytes per second (10^6 bytes) of obj_read(), and of a reader that only
+ * looks at every byte of the file, one fgetc() after the other; each the best of some
+ * runs, since a machine can only be slower than it is. Seconds are those of the
+ * processor, so that a crowded machine counts less. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -15,7 +15,8 @@ static double seconds(void)
     return (double)clock() / CLOCKS_PER_SEC;
 }
 
-/* Number of bytes in the file; `*lines` is there so that the bytes have to be looked at. */
+/* Number of bytes in the file; `*lines` is there so that the bytes have to be looked
+ * at. */
 static long count_bytes(const char *path, long *lines)
 {
     FILE *file = fopen(path, "rb");

@@ -1,18 +1,21 @@
-/* Visibility bench: segments per second of octree/ on the program's own workload, and beside it,
- * where it is compiled in (-DWITH_EMBREE), Embree 3 on the same segments, one thread.
+/* Visibility bench: segments per second of octree/ on the program's own workload, and
+ * beside it, where it is compiled in (-DWITH_EMBREE), Embree 3 on the same segments, one
+ * thread.
  *
  *   make bench BUILD=build/native CFLAGS="-O2 -march=native"
- *   build/room 6350 1 > build/room.obj && build/native/rays build/room.obj [BUNDLES [SEED]]
+ *   build/room 6350 1 > build/room.obj
+ *   build/native/rays build/room.obj [BUNDLES [SEED]]
  *
- * The workload is bundles of 16 segments between the sub-triangle centres of two facing patches,
- * both 0 to 4 levels below their roots, in two orders: pairs at random, and in refinement order:
- * a pair, the four that come from splitting one of its patches, and the four of each of those.
- * The first of four starts with the last blocker of the pair that it comes from, each other one
- * with that of the one before, as in link_split(). Both try that blocker first, and both leave out
- * the triangles that have the whole scene on one side. Programs take turns, five times, and the
- * fastest turn counts, in seconds of the processor. Embree's rays are made beforehand, in float,
- * and cut short by 1e-4 at both ends, where it would meet the triangles they lie on; what it sees
- * otherwise is counted and is near edges or in those cuts. */
+ * The workload is bundles of 16 segments between the sub-triangle centres of two facing
+ * patches, both 0 to 4 levels below their roots, in two orders: pairs at random, and in
+ * refinement order: a pair, the four that come from splitting one of its patches, and the
+ * four of each of those. The first of four starts with the last blocker of the pair that
+ * it comes from, each other one with that of the one before, as in link_split(). Both try
+ * that blocker first, and both leave out the triangles that have the whole scene on one
+ * side. Programs take turns, five times, and the fastest turn counts, in seconds of the
+ * processor. Embree's rays are made beforehand, in float, and cut short by 1e-4 at both
+ * ends, where it would meet the triangles they lie on; what it sees otherwise is counted
+ * and is near edges or in those cuts. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -34,7 +37,7 @@ enum { TURNS = 5, TRIES = 100000 };
 struct load {
     struct bundle *bundles;    /* [count] */
     unsigned *blocked;         /* [count] answer of the octree */
-    int *start;                /* [count] the bundle before with whose blocker it starts, or -1 */
+    int *start; /* [count] the bundle before with whose blocker it starts, or -1 */
     int32_t *guess;            /* [count] the last blocker */
     int count;
     bool refinement_order;
@@ -59,20 +62,24 @@ static struct bundle bundle_of(const struct facet *p, const struct facet *q)
         bundle.to[k] = sub_centre(&q->triangle, k);
     }
     for (int k = 0; k < BUNDLE_RAYS; k++) {
-        struct vec3 d = vec3_sub(bundle.to[k % BUNDLE_ENDS], bundle.from[k / BUNDLE_ENDS]);
-        bool faces = vec3_dot(p->plane.normal, d) > 0.0 && vec3_dot(q->plane.normal, d) < 0.0;
+        struct vec3 d =
+            vec3_sub(bundle.to[k % BUNDLE_ENDS], bundle.from[k / BUNDLE_ENDS]);
+        bool faces =
+            vec3_dot(p->plane.normal, d) > 0.0 && vec3_dot(q->plane.normal, d) < 0.0;
         bundle.asked |= (unsigned)faces << k;
     }
     return bundle;
 }
 
-static struct facet random_facet(const struct scene *scene, struct random *random, int levels)
+static struct facet random_facet(const struct scene *scene, struct random *random,
+                                 int levels)
 {
     int32_t root;
     do
         root = (int32_t)(random_bits(random) % (uint64_t)scene->input_count);
     while (scene->areas[root] <= 0.0);
-    struct facet facet = {scene->triangles[root], scene->planes[root], scene->areas[root], root};
+    struct facet facet = {scene->triangles[root], scene->planes[root], scene->areas[root],
+                          root};
     for (int level = (int)(random_bits(random) % (uint64_t)levels); level > 0; level--)
         facet.triangle = triangle_child(&facet.triangle, (int)(random_bits(random) % 4));
     return facet;
@@ -101,18 +108,21 @@ static void add_family(struct load *load, int *filled, const struct facet *p,
     for (int k = 0, start = parent; k < 4; k++) {
         child[k] = *p;
         child[k].triangle = triangle_child(&p->triangle, k);
-        made[k] = add_bundle(load, filled, &child[k], q, start) ? start = *filled - 1 : -1;
+        made[k] =
+            add_bundle(load, filled, &child[k], q, start) ? start = *filled - 1 : -1;
     }
     for (int k = 0; k < 4; k++) {
         for (int m = 0, start = made[k]; m < 4 && made[k] >= 0; m++) {
             struct facet part = *q;
             part.triangle = triangle_child(&q->triangle, m);
-            start = add_bundle(load, filled, &child[k], &part, start) ? *filled - 1 : start;
+            start =
+                add_bundle(load, filled, &child[k], &part, start) ? *filled - 1 : start;
         }
     }
 }
 
-/* Fills the load; cuts it short where pairs that face each other are too rare to be found. */
+/* Fills the load; cuts it short where pairs that face each other are too rare to be
+ * found. */
 static void fill_load(const struct scene *scene, struct load *load, struct random *random)
 {
     int filled = 0;
@@ -135,17 +145,19 @@ static double cpu_seconds(void)
     return (double)clock() / CLOCKS_PER_SEC;
 }
 
-static void run_octree(const struct octree *octree, struct load *load, struct figures *figures)
+static void run_octree(const struct octree *octree, struct load *load,
+                       struct figures *figures)
 {
     struct octree_counts counts = {0};
     double start = cpu_seconds();
     for (int i = 0; i < load->count; i++) {
         load->guess[i] = load->start[i] >= 0 ? load->guess[load->start[i]] : -1;
-        load->blocked[i] = octree_block(octree, &load->bundles[i], &load->guess[i], &counts);
+        load->blocked[i] =
+            octree_block(octree, &load->bundles[i], &load->guess[i], &counts);
     }
     double seconds = cpu_seconds() - start;
-    figures->seconds = figures->seconds > 0.0 && figures->seconds < seconds ? figures->seconds
-                                                                             : seconds;
+    figures->seconds =
+        figures->seconds > 0.0 && figures->seconds < seconds ? figures->seconds : seconds;
     figures->counts = counts;
 }
 
@@ -174,9 +186,10 @@ static void set_rays(const struct bundle *bundle, struct RTCRay16 *rays, int *va
     }
 }
 
-/* Takes the rays of the bundle that the triangle blocks out of `valid` (Moeller, Trumbore). */
-static void mask_blocked(const struct scene *scene, int32_t blocker, const struct RTCRay16 *rays,
-                         int *valid)
+/* Takes the rays of the bundle that the triangle blocks out of `valid` (Moeller,
+ * Trumbore). */
+static void mask_blocked(const struct scene *scene, int32_t blocker,
+                         const struct RTCRay16 *rays, int *valid)
 {
     const struct vec3 *corner = scene->triangles[blocker].corner;
     struct vec3 e1 = vec3_sub(corner[1], corner[0]), e2 = vec3_sub(corner[2], corner[0]);
@@ -185,13 +198,18 @@ static void mask_blocked(const struct scene *scene, int32_t blocker, const struc
     float c[3] = {(float)e2.x, (float)e2.y, (float)e2.z};
     for (int k = 0; k < BUNDLE_RAYS; k++) {
         float dx = rays->dir_x[k], dy = rays->dir_y[k], dz = rays->dir_z[k];
-        float px = dy * c[2] - dz * c[1], py = dz * c[0] - dx * c[2], pz = dx * c[1] - dy * c[0];
-        float sx = rays->org_x[k] - a[0], sy = rays->org_y[k] - a[1], sz = rays->org_z[k] - a[2];
-        float qx = sy * b[2] - sz * b[1], qy = sz * b[0] - sx * b[2], qz = sx * b[1] - sy * b[0];
+        float px = dy * c[2] - dz * c[1], py = dz * c[0] - dx * c[2],
+              pz = dx * c[1] - dy * c[0];
+        float sx = rays->org_x[k] - a[0], sy = rays->org_y[k] - a[1],
+              sz = rays->org_z[k] - a[2];
+        float qx = sy * b[2] - sz * b[1], qy = sz * b[0] - sx * b[2],
+              qz = sx * b[1] - sy * b[0];
         float scale = 1.0f / (b[0] * px + b[1] * py + b[2] * pz);
-        float u = (sx * px + sy * py + sz * pz) * scale, v = (dx * qx + dy * qy + dz * qz) * scale;
+        float u = (sx * px + sy * py + sz * pz) * scale,
+              v = (dx * qx + dy * qy + dz * qz) * scale;
         float t = (c[0] * qx + c[1] * qy + c[2] * qz) * scale;
-        int hit = (u >= 0.0f) & (v >= 0.0f) & (u + v <= 1.0f) & (t > CUT) & (t < 1.0f - CUT);
+        int hit =
+            (u >= 0.0f) & (v >= 0.0f) & (u + v <= 1.0f) & (t > CUT) & (t < 1.0f - CUT);
         valid[k] = hit ? 0 : valid[k];
     }
 }
@@ -217,10 +235,11 @@ static int any_valid(const int *valid)
     return any;
 }
 
-/* Starts with the blocker that the octree has found for the bundle before, as the octree does. What
- * is left goes through Embree's best mode here, 16-wide and coherent, or one by one. */
-static double run_embree(RTCScene embree, const struct scene *scene, const struct load *load,
-                         struct embree_load *ready, bool packet)
+/* Starts with the blocker that the octree has found for the bundle before, as the octree
+ * does. What is left goes through Embree's best mode here, 16-wide and coherent, or one
+ * by one. */
+static double run_embree(RTCScene embree, const struct scene *scene,
+                         const struct load *load, struct embree_load *ready, bool packet)
 {
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -275,9 +294,11 @@ static void print_octree(const struct load *load, const struct figures *figures)
     double rays = (double)figures->counts.rays;
     printf("  octree: %.3f million segments/s, per bundle %.1f nodes and %.1f triangles; "
            "bundles %.0f %% open, %.0f %% blocked, %.0f %% mixed\n",
-           1e-6 * rays / figures->seconds, (double)figures->counts.node_tests / load->count,
-           (double)figures->counts.triangle_tests / load->count, 100.0 * open / load->count,
-           100.0 * blocked / load->count, 100.0 * (load->count - open - blocked) / load->count);
+           1e-6 * rays / figures->seconds,
+           (double)figures->counts.node_tests / load->count,
+           (double)figures->counts.triangle_tests / load->count,
+           100.0 * open / load->count, 100.0 * blocked / load->count,
+           100.0 * (load->count - open - blocked) / load->count);
 }
 
 int main(int argc, char **argv)
@@ -297,7 +318,8 @@ int main(int argc, char **argv)
         return EXIT_USAGE;
     }
     double start = comm_seconds();
-    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *octree =
+        octree_create(scene->triangles, scene->planes, scene->input_count);
     printf("%s: %d triangles, octree built in %.3f s, %.1f bytes per triangle\n", argv[1],
            (int)scene->input_count, comm_seconds() - start,
            (double)octree_bytes(octree) / scene->input_count);
@@ -331,7 +353,8 @@ int main(int argc, char **argv)
         alloc_free(ready.memory[0]);
         alloc_free(ready.memory[1]);
         print_octree(&load, &figures);
-        printf("  Embree: 16-wide coherent %.3f, one by one %.3f million segments/s; octree is %.2f "
+        printf("  Embree: 16-wide coherent %.3f, one by one %.3f million segments/s; "
+               "octree is %.2f "
                "and %.2f of that; %" PRId64 " of %" PRId64 " segments differ\n",
                1e-6 * (double)figures.counts.rays / packet,
                1e-6 * (double)figures.counts.rays / single, packet / figures.seconds,

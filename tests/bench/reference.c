@@ -1,15 +1,17 @@
-/* Makes the truth about a scene: a file that tests/bench/measure.c compares solutions with.
+/* Makes the truth about a scene: a file that tests/bench/measure.c compares solutions
+ * with.
  *
  *   make errors
  *   mpiexec -n 2 build/mpi/reference scenes/cornell.obj cornell.ref
  *   build/mpi/measure scenes/cornell.obj cornell.ref --epsilon 1e-4
  *
- * ELEMENTS (20000) sets their size: each has at most that share of the scene's area. SAMPLES (1000)
- * is the number of light paths, for each element, of each of the two estimates of their means, and
- * a quarter of that the number of paths from its point (tests/truth.c).
+ * ELEMENTS (20000) sets their size: each has at most that share of the scene's area.
+ * SAMPLES (1000) is the number of light paths, for each element, of each of the two
+ * estimates of their means, and a quarter of that the number of paths from its point
+ * (tests/truth.c).
  *
- * The file is the same bytes on any number of ranks. The noise falls as one over the square root of
- * SAMPLES, and the time grows with the elements times SAMPLES. */
+ * The file is the same bytes on any number of ranks. The noise falls as one over the
+ * square root of SAMPLES, and the time grows with the elements times SAMPLES. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,12 +58,14 @@ static bool parse(struct arguments *arguments, int argc, char **argv, struct err
 }
 
 /* Collective. The prepared scene, or NULL on all ranks. */
-static struct scene *read_scene(const struct comm *comm, const struct arguments *arguments,
+static struct scene *read_scene(const struct comm *comm,
+                                const struct arguments *arguments,
                                 struct node_block *block, struct error *error)
 {
     struct obj_repairs read = {0};
     struct scene_repairs prepared;
-    struct scene *scene = comm->rank == 0 ? obj_read(arguments->scene, &read, error) : NULL;
+    struct scene *scene =
+        comm->rank == 0 ? obj_read(arguments->scene, &read, error) : NULL;
     if (scene) {
         scene->two_sided = arguments->two_sided;
         scene->two_sided_lamps = arguments->two_sided_lamps;
@@ -81,14 +85,17 @@ static void make_reference(const struct comm *comm, const struct arguments *argu
                            const struct scene *scene, struct error *error)
 {
     double start = comm_seconds();
-    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *octree =
+        octree_create(scene->triangles, scene->planes, scene->input_count);
     struct truth truth = truth_trace(comm, scene, octree, arguments->numbers[0],
                                      (int)arguments->numbers[1]);
     if (comm->rank == 0 && truth_write(&truth, arguments->out, error))
         printf("%s: %lld elements, %lld light paths each twice, %.1f s on %d rank(s); "
-               "noise of elements %.2f %%, of points %.2f %%\n", arguments->out,
-               (long long)truth.count, arguments->numbers[1], comm_seconds() - start, comm->size,
-               100.0 * truth_noise(&truth, scene, false), 100.0 * truth_noise(&truth, scene, true));
+               "noise of elements %.2f %%, of points %.2f %%\n",
+               arguments->out, (long long)truth.count, arguments->numbers[1],
+               comm_seconds() - start, comm->size,
+               100.0 * truth_noise(&truth, scene, false),
+               100.0 * truth_noise(&truth, scene, true));
     truth_free(&truth);
     octree_destroy(octree);
 }

@@ -1,13 +1,15 @@
-/* replay RANKS[,RANKS...] SCENE [OPTIONS of phr]: refinement on more ranks than there are.
+/* replay RANKS[,RANKS...] SCENE [OPTIONS of phr]: refinement on more ranks than there
+ * are.
  *
- * A run on one rank tells of each link that it splits the predicted load, the work that it took,
- * and the number of its children that are to be split too. Links come level by level, each behind
- * its parent's other children, so these three numbers are the whole tree of a pass. It is then dealt
- * to so many ranks by the functions that phr deals by (mpi/balance.h), without a memory limit.
+ * A run on one rank tells of each link that it splits the predicted load, the work that
+ * it took, and the number of its children that are to be split too. Links come level by
+ * level, each behind its parent's other children, so these three numbers are the whole
+ * tree of a pass. It is then dealt to so many ranks by the functions that phr deals by
+ * (mpi/balance.h), without a memory limit.
  *
- * What the replay does not know is where the links live that a later pass begins with: they are
- * spread evenly, in turn. One line for each number of ranks: ranks, work of all, sum over levels of
- * the slowest rank's and of the most bytes that a rank sends. */
+ * What the replay does not know is where the links live that a later pass begins with:
+ * they are spread evenly, in turn. One line for each number of ranks: ranks, work of all,
+ * sum over levels of the slowest rank's and of the most bytes that a rank sends. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,7 +44,8 @@ struct totals {
 
 /* --- recording --- */
 
-/* The method that is recorded; its functions are called by those below, which take their place. */
+/* The method that is recorded; its functions are called by those below, which take their
+ * place. */
 static struct method recorded;
 static struct record *record_of_run;
 
@@ -52,7 +55,8 @@ static int split_and_note(struct model *model, const struct link *link, int32_t 
     struct record *record = record_of_run;
     int64_t before = model_work(model);
     int count = recorded.split_link(model, link, side, children);
-    struct split split = {.load = (int64_t)link_cost(link), .work = model_work(model) - before};
+    struct split split = {.load = (int64_t)link_cost(link),
+                          .work = model_work(model) - before};
     for (int k = 0; k < count; k++)
         split.children += recorded.side_to_split(model, &children[k]) != NODE_NONE;
     record->splits = alloc_reserve(record->splits, &record->capacity, record->count + 1,
@@ -75,7 +79,8 @@ static void keep_and_note(struct model *model, struct link *link, bool is_new)
 static void record_run(const struct comm *comm, const struct scene *scene,
                        const struct criterion *criterion, struct record *record)
 {
-    struct octree *octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *octree =
+        octree_create(scene->triangles, scene->planes, scene->input_count);
     struct solver *solver = beyond_create(comm, scene, octree, criterion);
     struct vote vote;
     recorded = solver->model.method;
@@ -110,14 +115,15 @@ static int64_t number_children(struct record *record, int64_t begin, int64_t end
 
 static void put(struct pile *pile, int64_t item)
 {
-    pile->items = alloc_reserve(pile->items, &pile->capacity, pile->count + 1, sizeof *pile->items);
+    pile->items =
+        alloc_reserve(pile->items, &pile->capacity, pile->count + 1, sizeof *pile->items);
     pile->items[pile->count++] = item;
 }
 
-/* As load_balance() in mpi/refinement.c: each rank keeps the order of links that stay; those that
- * come, come behind them. Returns the most bytes that a rank sends. */
-static int64_t deal(const struct record *record, dealing *rule, struct pile *piles, int ranks,
-                    const int64_t *all)
+/* As load_balance() in mpi/refinement.c: each rank keeps the order of links that stay;
+ * those that come, come behind them. Returns the most bytes that a rank sends. */
+static int64_t deal(const struct record *record, dealing *rule, struct pile *piles,
+                    int ranks, const int64_t *all)
 {
     struct pile *arriving = alloc_array((size_t)ranks, sizeof *arriving);
     int64_t most = 0;
@@ -134,7 +140,8 @@ static int64_t deal(const struct record *record, dealing *rule, struct pile *pil
             else
                 put(&arriving[destination[i]], piles[r].items[i]);
         }
-        most = BYTES_PER_LINK * (count - kept) > most ? BYTES_PER_LINK * (count - kept) : most;
+        most = BYTES_PER_LINK * (count - kept) > most ? BYTES_PER_LINK * (count - kept)
+                                                      : most;
         piles[r].count = kept;
         alloc_free(destination);
         alloc_free(costs);
@@ -165,8 +172,8 @@ static int64_t split(const struct record *record, struct pile *pile)
 }
 
 /* Returns the number of links of a level. */
-static int64_t find_loads(const struct record *record, const struct pile *piles, int ranks,
-                          int64_t *loads)
+static int64_t find_loads(const struct record *record, const struct pile *piles,
+                          int ranks, int64_t *loads)
 {
     int64_t links = 0;
     for (int r = 0; r < ranks; r++) {
@@ -178,8 +185,8 @@ static int64_t find_loads(const struct record *record, const struct pile *piles,
     return links;
 }
 
-static void replay_pass(struct record *record, const struct criterion *criterion, int pass,
-                        int ranks, struct totals *totals)
+static void replay_pass(struct record *record, const struct criterion *criterion,
+                        int pass, int ranks, struct totals *totals)
 {
     int64_t at = record->pass_at[pass];
     int64_t links = number_children(record, at, record->pass_at[pass + 1]);
@@ -190,7 +197,8 @@ static void replay_pass(struct record *record, const struct criterion *criterion
     while (find_loads(record, piles, ranks, loads) > 0) {
         int64_t slowest = 0;
         if (DEALINGS[criterion->balance])
-            totals->bytes += deal(record, DEALINGS[criterion->balance], piles, ranks, loads);
+            totals->bytes +=
+                deal(record, DEALINGS[criterion->balance], piles, ranks, loads);
         for (int r = 0; r < ranks; r++) {
             int64_t work = split(record, &piles[r]);
             totals->dealt += work;
@@ -217,7 +225,8 @@ int main(int argc, char **argv)
     if (argc < 3 || !options_parse(&options, argc - 1, argv + 1, &error) ||
         !(scene = obj_read(options.scene, &read, &error)) ||
         !scene_prepare(scene, &prepared, &error)) {
-        fprintf(stderr, "replay RANKS[,RANKS...] SCENE [OPTIONS of phr] %s\n", error.text);
+        fprintf(stderr, "replay RANKS[,RANKS...] SCENE [OPTIONS of phr] %s\n",
+                error.text);
         return EXIT_FAILURE;
     }
     record_run(&comm, scene, &options.criterion, &record);
@@ -225,8 +234,8 @@ int main(int argc, char **argv)
         struct totals totals = {0};
         for (int pass = 0; pass < record.passes; pass++)
             replay_pass(&record, &options.criterion, pass, atoi(ranks), &totals);
-        printf("%s %lld %lld %lld\n", ranks, (long long)totals.dealt, (long long)totals.slowest,
-               (long long)totals.bytes);
+        printf("%s %lld %lld %lld\n", ranks, (long long)totals.dealt,
+               (long long)totals.slowest, (long long)totals.bytes);
     }
     alloc_free(record.splits);
     scene_destroy(scene);

@@ -70,7 +70,8 @@ END {
     printf "\n## %s\n\n", title
     printf "%d triangles, %d links. A message takes %g s, and a byte %g ns.\n\n", \
            count["triangles"], count["links"], message, 1e9 / bandwidth
-    printf "| seconds | how | 1 rank, run | %d ranks, counts of a run | 1,024 ranks |\n", ranks
+    printf "| seconds | how | 1 rank, run | %d ranks, counts of a run |", ranks
+    print " 1,024 ranks |"
     print "|---|---|---|---|---|"
     read = seconds["read"] - seconds["octree"] - seconds["spaces"] - seconds["tree"]
     line("reading", "serial", read, read, read, "serial")
@@ -91,18 +92,19 @@ END {
     same("sums through clusters and patches", "repeated", "sums")
     copies = seconds["gather"] + seconds["scatter"]
     share = slowest["many", "patches"] / all["one", "patches"]
-    line("copies of flux and radiosity", "repeated", copies, copies * share, copies * share,
-         "repeated")
+    line("copies of flux and radiosity", "repeated", copies, copies * share,
+         copies * share, "repeated")
     divided("push-pull at home", "push_pull", "own")
     same("routes", "repeated", "routes")
     if (tree) divided("rows of the final gather", "rows", "final_gather")
-    if (tree) line("light solved for by rows", "repeated", seconds["final_gather"] - seconds["rows"],
-                   seconds["final_gather"] - seconds["rows"],
-                   seconds["final_gather"] - seconds["rows"], "repeated")
+    solved = seconds["final_gather"] - seconds["rows"]
+    if (tree)
+        line("light solved for by rows", "repeated", solved, solved, solved, "repeated")
     same("row sums for the report", "repeated", "row_sums")
     same("blend of leaves for the picture", "repeated", "shading")
     if (seconds["viewpoint"] > 0) same("viewpoint", "repeated", "viewpoint")
-    even("rays of the picture", seconds["render"] - seconds["shading"] - seconds["viewpoint"])
+    even("rays of the picture",
+         seconds["render"] - seconds["shading"] - seconds["viewpoint"])
     same("writing", "serial", "write")
     least = rest[1]
     for (i in rest) least = rest[i] < least ? rest[i] : least

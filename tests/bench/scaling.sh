@@ -1,17 +1,19 @@
 # make scaling: where the seconds of a run go on 1, 32 and 1,024 ranks, line by line.
 #
-# Runs on one rank tell the seconds of each phase, the least of them counting. A run of
-# 32 processes tells how much of the counted work the slowest rank has in each phase, and what is
-# sent; it may share a few cores, since counts do not depend on the clock. For 1,024 ranks,
-# build/.../replay deals the links that a run splits (tests/bench/replay.c); its answer for 32 is
-# printed beside that of the run. Seconds on P ranks: those on one rank times the slowest rank's
-# share of the work, and messages by the prices below. A line says how it comes about:
+# Runs on one rank tell the seconds of each phase, the least of them counting. A run of 32
+# processes tells how much of the counted work the slowest rank has in each phase, and
+# what is sent; it may share a few cores, since counts do not depend on the clock. For
+# 1,024 ranks, build/.../replay deals the links that a run splits (tests/bench/replay.c);
+# its answer for 32 is printed beside that of the run. Seconds on P ranks: those on one
+# rank times the slowest rank's share of the work, and messages by the prices below. A
+# line says how it comes about:
 #   serial    rank 0 alone, the others wait        repeated  all ranks do it alike
 #   divided   counted in the run; on 1,024 ranks as uneven as on 32
-#   even      divided, and taken as even           replayed  counted; on 1,024 ranks replayed
+#   even      divided, and taken as even
+#   replayed  counted; on 1,024 ranks replayed
 #   messages  bytes and messages counted on 32 ranks, by price
-# Knobs: ROOM, size of the room; EPSILON; PAPER_ROOM and PAPER_EPSILON for --paper (0: without);
-# RANKS, of the run; TURNS, runs on one rank; OUT, the file.
+# Knobs: ROOM, size of the room; EPSILON; PAPER_ROOM and PAPER_EPSILON for --paper (0:
+# without); RANKS, of the run; TURNS, runs on one rank; OUT, the file.
 set -eu
 : "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${ROOM:=100000}" "${EPSILON:=1e-3}"
 : "${PAPER_ROOM:=2000}" "${PAPER_EPSILON:=1e-3}" "${RANKS:=32}"
@@ -29,7 +31,8 @@ measure() {
     for turn in $TURNS; do
         ./phr "$name.obj" "$@" --quiet -o "$name.ppm" --stats "$name.one.$turn"
     done
-    $MPIEXEC -n "$RANKS" ./phr "$name.obj" "$@" --quiet -o "$name.ppm" --stats "$name.many"
+    $MPIEXEC -n "$RANKS" ./phr "$name.obj" "$@" --quiet -o "$name.ppm" \
+        --stats "$name.many"
     "$BUILD/replay" "$RANKS,1024" "$name.obj" "$@" >"$name.replay"
 }
 
@@ -46,9 +49,11 @@ measure default "$ROOM" --epsilon "$EPSILON"
 {
     echo "# Seconds on 1, $RANKS and 1,024 ranks"
     echo
-    echo "Made by \`make scaling\`; \`tests/bench/scaling.sh\` says how. Each rank has a core of its own,"
-    echo "like the one that the run on one rank had; shared memory of ranks is not made use of."
+    echo "Made by \`make scaling\`; \`tests/bench/scaling.sh\` says how."
+    echo "Each rank has a core of its own, like the one that the run on one rank had;"
+    echo "shared memory of ranks is not made use of."
     table default "Room, epsilon $EPSILON; network of today" 2e-6 1e10
     table default "Room, epsilon $EPSILON; the paper's Ethernet" 1e-4 1e7
-    [ "$PAPER_ROOM" = 0 ] || table paper "Room, --paper, epsilon $PAPER_EPSILON; the paper's Ethernet" 1e-4 1e7
+    [ "$PAPER_ROOM" = 0 ] ||
+        table paper "Room, --paper, epsilon $PAPER_EPSILON; the paper's Ethernet" 1e-4 1e7
 } | tee "$OUT"

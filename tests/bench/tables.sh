@@ -55,8 +55,8 @@ networks: one of today, and the paper's Fast Ethernet. The rooms are phr's own
 
 phr's seconds on one rank are thousands of times fewer than the paper's, and its messages
 are as many: on the paper's Ethernet they outweigh all work. "Counted" leaves the network
-out. It is to be held against the paper's speed-ups, whose network took a ninth of the time
-on 32 ranks.
+out. It is to be held against the paper's speed-ups, whose network took a ninth of the
+time on 32 ranks.
 
 | column | in the paper | in phr |
 |---|---|---|
