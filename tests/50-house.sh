@@ -67,17 +67,25 @@ gone=$(quoted '[a-z0-9_]+\(\)' | while read -r name; do
         echo "$name"; done)
 check "and the functions: $gone" [ -z "$gone" ]
 
-$MPIEXEC -n 2 ./phr scenes/cornell.obj --view scenes/cornell.view >"$work/summary" 2>/dev/null
-missing=$(while IFS= read -r line; do grep -qxF -- "$line" README.md || echo "$line"; done <"$work/summary")
+$MPIEXEC -n 2 ./phr scenes/cornell.obj --view scenes/cornell.view \
+    >"$work/summary" 2>/dev/null
+missing=$(while IFS= read -r line; do
+    grep -qxF -- "$line" README.md || echo "$line"
+done <"$work/summary")
 check "the README shows the summary of make demo: $missing" [ -z "$missing" ]
 check "which has nine lines" [ "$(wc -l <"$work/summary")" -eq 9 ]
 
-$MAKE BUILD="$BUILD" install DESTDIR="$work/root" prefix=/opt/phr >"$work/install.log" 2>&1
-check "install: the program runs" [ "$("$work/root/opt/phr/bin/phr" --version)" = "$(./phr --version)" ]
+$MAKE BUILD="$BUILD" install DESTDIR="$work/root" prefix=/opt/phr \
+    >"$work/install.log" 2>&1
+check "install: the program runs" \
+    [ "$("$work/root/opt/phr/bin/phr" --version)" = "$(./phr --version)" ]
 check "install: the man page is there" [ -s "$work/root/opt/phr/share/man/man1/phr.1" ]
-check "install: imgdiff runs" [ "$("$work/root/opt/phr/bin/imgdiff" --version)" = "imgdiff 0.3" ]
-check "install: its man page is there" [ -s "$work/root/opt/phr/share/man/man1/imgdiff.1" ]
-$MAKE BUILD="$BUILD" uninstall DESTDIR="$work/root" prefix=/opt/phr >>"$work/install.log" 2>&1
+check "install: imgdiff runs" \
+    [ "$("$work/root/opt/phr/bin/imgdiff" --version)" = "imgdiff 0.3" ]
+check "install: its man page is there" \
+    [ -s "$work/root/opt/phr/share/man/man1/imgdiff.1" ]
+$MAKE BUILD="$BUILD" uninstall DESTDIR="$work/root" prefix=/opt/phr \
+    >>"$work/install.log" 2>&1
 check "uninstall leaves no file" [ -z "$(find "$work/root" -type f)" ]
 
 tap_done

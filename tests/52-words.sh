@@ -1,5 +1,5 @@
-# The words: --help fits a screen and agrees with the man page, which renders without a warning;
-# --version; and progress, on a terminal, in a log and with --quiet.
+# The words: --help fits a screen and agrees with the man page, which renders without a
+# warning; --version; and progress, on a terminal, in a log and with --quiet.
 
 . tests/tap.sh
 
@@ -8,7 +8,8 @@
 ./phr --help >"$work/help"
 check "--help fits a screen of 24 lines" [ "$(wc -l <"$work/help")" -le 24 ]
 check "and 79 columns" [ -z "$(grep -E '^.{80}' "$work/help")" ]
-check "and shows two examples" [ "$(sed '1,/Examples:/d' "$work/help" | grep -cE '^  (mpiexec .*)?phr ')" -eq 2 ]
+check "and shows two examples" \
+    [ "$(sed '1,/Examples:/d' "$work/help" | grep -cE '^  (mpiexec .*)?phr ')" -eq 2 ]
 
 # same_lines A B: the files are alike; what is different is shown.
 same_lines() {
@@ -17,15 +18,18 @@ same_lines() {
     return 1
 }
 
-grep -oE '(^|[^a-zA-Z-])-(o|-[a-z][a-z-]*)' "$work/help" | grep -oE '\-(o|-[a-z-]+)' | sort -u >"$work/in-help"
+grep -oE '(^|[^a-zA-Z-])-(o|-[a-z][a-z-]*)' "$work/help" | grep -oE '\-(o|-[a-z-]+)' |
+    sort -u >"$work/in-help"
 # What a tagged paragraph of OPTIONS begins with.
 sed 's/\\-/-/g' phr.1 | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.TP' |
     sed -n 's/^\(\\fB\|\.B \)\(-[a-z-]*\).*/\2/p' | sort -u >"$work/in-man"
 check "the man page has a paragraph for each option of --help, and no other" \
     same_lines "$work/in-help" "$work/in-man"
-sed -n 's/^    {"\(-[a-z-]*\)", KIND_.*/\1/p' io/run/options.c | sort -u >"$work/in-parser"
+sed -n 's/^    {"\(-[a-z-]*\)", KIND_.*/\1/p' io/run/options.c |
+    sort -u >"$work/in-parser"
 check "as has the parser" same_lines "$work/in-help" "$work/in-parser"
-sed 's/\\-/-/g' phr.1 | grep -oE '(^|[^a-zA-Z-])--[a-z][a-z-]+' | grep -oE '\-\-[a-z-]+' | sort -u >"$work/named"
+sed 's/\\-/-/g' phr.1 | grep -oE '(^|[^a-zA-Z-])--[a-z][a-z-]+' |
+    grep -oE '\-\-[a-z-]+' | sort -u >"$work/named"
 check "the man page names no option that does not exist" \
     [ -z "$(grep -vxF -f "$work/in-help" "$work/named")" ]
 
@@ -39,7 +43,8 @@ fi
 
 version=$(./phr --version)
 case $version in
-"phr "[0-9]*" (MPI build), MIT licence" | "phr "[0-9]*" (serial build), MIT licence") tap 0 "--version: $version" ;;
+"phr "[0-9]*" (MPI build), MIT licence" | "phr "[0-9]*" (serial build), MIT licence")
+    tap 0 "--version: $version" ;;
 *) tap 1 "--version: $version" ;;
 esac
 number=$(echo "$version" | sed 's/^phr \([0-9.]*\).*/\1/')
@@ -47,11 +52,13 @@ check "the man page is of this version" grep -q "^\.TH PHR 1 .*\"phr $number\"" 
 
 # --- progress ---
 
-run="./phr scenes/cornell.obj --max-level 3 --samples 8 --size 128x128 -o $work/cornell.pfm"
+run="./phr scenes/cornell.obj --max-level 3 --samples 8 --size 128x128"
+run="$run -o $work/cornell.pfm"
 $run >"$work/out" 2>"$work/log"
 check "a log has no carriage return" [ -z "$(tr -dc '\r' <"$work/log")" ]
 check "and one line for linking, one for the roots, one for each iteration" \
-    [ "$(grep -vcE '^phr: (iteration [0-9]+: |roots are linked, |.*; linking$)' "$work/log")" -eq 0 ]
+    [ "$(grep -vcE '^phr: (iteration [0-9]+: |roots are linked, |.*; linking$)' \
+        "$work/log")" -eq 0 ]
 $run --quiet >"$work/out" 2>"$work/log"
 check "with --quiet there is no word" [ ! -s "$work/out" -a ! -s "$work/log" ]
 
@@ -60,9 +67,11 @@ if command -v script >/dev/null && script -qec true /dev/null >/dev/null 2>&1; t
     tr '\r' '\n' <"$work/terminal" >"$work/lines"
     check "on a terminal a line tells the phase and the share" \
         grep -qE '^phr: (linking|refining|solving|rendering)[^%]* [0-9]+ %' "$work/lines"
-    check "which is rewritten" grep -q "$(printf '\r')phr: rendering, [0-9]* %" "$work/terminal"
+    check "which is rewritten" \
+        grep -q "$(printf '\r')phr: rendering, [0-9]* %" "$work/terminal"
     check "fits 79 columns" [ -z "$(grep -E '^.{80}' "$work/lines")" ]
-    # Between two carriage returns stand a line that is to go, the blanks in its place, or what stays.
+    # Between two carriage returns stand a line that is to go, the blanks in its place, or
+    # what stays.
     check "and is gone when something else is written" awk -v RS='\r' '
         /^phr: [^\n]*%/ { drawn = 1; next }
         drawn && !/^ +$/ { exit bad = 1 }

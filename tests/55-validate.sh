@@ -1,5 +1,5 @@
-# phr --validate: all form factors are as good as stated, the table has what it should have, and it
-# is the same with any number of ranks.
+# phr --validate: all form factors are as good as stated, the table has what it should
+# have, and it is the same with any number of ranks.
 
 . tests/tap.sh
 
@@ -12,13 +12,15 @@ check "silently" [ ! -s "$work/errors" ]
 check "and says so in its last line" [ "$(tail -n 1 "$work/table")" = "all as stated" ]
 check "81 pairs" [ "$(grep -cE '^[PLWSGFZE][0-9][0-9] ' "$work/table")" -eq 81 ]
 check "10 points" [ "$(grep -cE '^(wall|floor), [yz] = ' "$work/table")" -eq 10 ]
-check "8 lines of what is stated, each passed" [ "$(grep -c ' pass$' "$work/table")" -eq 8 ]
+check "8 lines of what is stated, each passed" \
+    [ "$(grep -c ' pass$' "$work/table")" -eq 8 ]
 check "nothing fails" [ "$(grep -cE 'FAIL|[+-]nan|[+-]inf' "$work/table")" -eq 0 ]
 
-# Opposed unit squares one apart have F = 0.199825, and the solver's 16 rays make it 2.08 % too much.
-check "a line to be trusted" grep -qE \
-    '^P01 opposed unit squares, distance 1 +0\.199825 +0\.707 +\(\+15\.89 %\) +\(\+2\.08 %\) +-3e-04' \
-    "$work/table"
+# Opposed unit squares one apart have F = 0.199825, and the solver's 16 rays make it 2.08
+# % too much.
+line='^P01 opposed unit squares, distance 1 +0\.199825 +0\.707 +'
+line=$line'\(\+15\.89 %\) +\(\+2\.08 %\) +-3e-04'
+check "a line to be trusted" grep -qE "$line" "$work/table"
 
 # No scene is read, and what else is asked for does not matter.
 "$PHR" --validate "$work/absent.obj" >"$work/again" 2>&1

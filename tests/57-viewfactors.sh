@@ -1,6 +1,6 @@
-# phr --form-factors: exact without blockers, within 1 % with them and within 0.1 % if asked for;
-# tables have what they should have, and are the same on any number of ranks and without MPI,
-# whatever the unit of length and the place of the scene.
+# phr --form-factors: exact without blockers, within 1 % with them and within 0.1 % if
+# asked for; tables have what they should have, and are the same on any number of ranks
+# and without MPI, whatever the unit of length and the place of the scene.
 
 . tests/tap.sh
 
@@ -26,8 +26,9 @@ near() {
         if (v == "" || !(d <= limit)) { print "# " v " instead of " e; exit 1 } }'
 }
 
-# objs FILE POLYGONS: writes each case of a CSV file as $work/ID.obj, its polygons as groups
-# p1, p2, ..., and lists "ID F". POLYGONS is the field with their number, or 0 if they are two.
+# objs FILE POLYGONS: writes each case of a CSV file as $work/ID.obj, its polygons as
+# groups p1, p2, ..., and lists "ID F". POLYGONS is the field with their number, or 0 if
+# they are two.
 objs() {
     awk -F, -v counted="$2" -v work="$work" 'NR > 1 {
         polygons = counted ? $counted : 2
@@ -94,8 +95,8 @@ while read -r id exact; do
     check "$id at epsilon 1e-6" near "$(value "$id" p1 p2)" "$exact" 0.001 1e-12
 done <"$work/cases"
 
-# What tools/viewfactor.c says of the error, c sqrt(epsilon F) with the F without blockers, at most 1:
-# c = 0.13 was the worst in 230 runs.
+# What tools/viewfactor.c says of the error, c sqrt(epsilon F) with the F without
+# blockers, at most 1: c = 0.13 was the worst in 230 runs.
 while read -r id exact; do
     for epsilon in 1e-3 1e-4; do
         table "$id" --epsilon $epsilon
@@ -106,8 +107,8 @@ done <"$work/cases"
 
 # --- the unit of length, and which way the scene looks ---
 
-# moved FROM TO SCALE: turned by 73.74 degrees about one axis and 36.87 about another, moved, and
-# scaled.
+# moved FROM TO SCALE: turned by 73.74 degrees about one axis and 36.87 about another,
+# moved, and scaled.
 moved() {
     awk -v s="$3" '$1 == "v" {
         x = 0.28 * $2 - 0.96 * $3; y = 0.96 * $2 + 0.28 * $3
@@ -120,7 +121,8 @@ moved() {
 same_factors() {
     paste -d, "$work/$1.csv" "$work/$2.csv" | awk -F, -v s="$3" 'NR > 1 {
         d = $4 - $8; a = $7 / ($3 * s * s) - 1
-        if ($1 != $5 || $2 != $6 || d * d > 1e-18 || a * a > 1e-18) { print "# " $0; bad = 1 } }
+        if ($1 != $5 || $2 != $6 || d * d > 1e-18 || a * a > 1e-18) {
+            print "# " $0; bad = 1 } }
         END { exit bad || NR < 2 }'
 }
 
@@ -148,15 +150,19 @@ block() {
     awk -v low="$1" -v high="$2" 'BEGIN {
         print "g block"
         for (k = 0; k < 8; k++)
-            print "v", k % 2 ? high : low, int(k / 2) % 2 ? high : low, int(k / 4) ? high : low
-        print "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3" }'
+            print "v", k % 2 ? high : low, int(k / 2) % 2 ? high : low,
+                int(k / 4) ? high : low
+        print "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4"
+        print "f -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3" }'
 }
 
 # rows_are_one FILE TOLERANCE: and there are as many as groups.
 rows_are_one() {
-    awk -F, -v t="$2" 'NR == 1 { next } !($1 in seen) { seen[$1] = 1; groups++ } $2 == "*" {
+    awk -F, -v t="$2" \
+        'NR == 1 { next } !($1 in seen) { seen[$1] = 1; groups++ } $2 == "*" {
         rows++; if ($4 < 1 - t || $4 > 1 + t) { print "# " $0; bad = 1 } }
-        END { exit bad || rows != groups || NR != 1 + groups * (groups + 1) }' "$work/$1.csv"
+        END { exit bad || rows != groups || NR != 1 + groups * (groups + 1) }' \
+        "$work/$1.csv"
 }
 
 # is_reciprocal FILE: A_i F_ij = A_j F_ji but for the rounding of a division.
@@ -164,14 +170,16 @@ is_reciprocal() {
     awk -F, 'NR > 1 && $2 != "*" { g[$1, $2] = $3 * $4; name[$1] = 1 } END {
         for (i in name) for (j in name) {
             d = g[i, j] - g[j, i]; d = d < 0 ? -d : d
-            if (d > 1e-15 * g[i, j]) { print "# " i, j, g[i, j], g[j, i]; exit 1 } } }' "$work/$1.csv"
+            if (d > 1e-15 * g[i, j]) { print "# " i, j, g[i, j], g[j, i]; exit 1 } } }' \
+        "$work/$1.csv"
 }
 
 box >"$work/box.obj"
 table box
 check "a box: its header" [ "$(head -n 1 "$work/box.csv")" = "from,to,area_from,F" ]
 check "its groups, in the order of the file" \
-    [ "$(awk -F, '$2 == "*" { printf "%s ", $1 }' "$work/box.csv")" = "floor ceiling front back left right " ]
+    [ "$(awk -F, '$2 == "*" { printf "%s ", $1 }' "$work/box.csv")" = \
+        "floor ceiling front back left right " ]
 check "its rows sum to 1" rows_are_one box 1e-9
 check "opposite faces" near "$(value box floor ceiling)" 0.199824895698387 1e-9 0
 check "adjacent faces" near "$(value box left back)" 0.200043776075403 1e-9 0
@@ -192,7 +200,8 @@ check "the block does not see itself" [ "$(value blocked block block)" = 0 ]
 table blocked --epsilon 1e-6
 check "nearer at epsilon 1e-6" rows_are_one blocked 2e-4
 
-# A block that stands on the floor: what it covers sees nothing, all else sees all there is.
+# A block that stands on the floor: what it covers sees nothing, all else sees all there
+# is.
 { box; block 0.3 0.6 | awk '$1 == "v" { $4 -= 0.3 } { print }'; } >"$work/standing.obj"
 table standing
 check "a block on the floor: the row of the floor lacks what is covered" \
@@ -204,10 +213,12 @@ check "the other rows sum to 1" rows_are_one others 1e-3
 
 { box | sed 's/^o .*//'; block 0.3 0.6 | sed 's/^g .*//'; } >"$work/nameless.obj"
 table nameless
-check "without names: one group" [ "$(cut -d, -f1-2 "$work/nameless.csv" | tr '\n' ' ')" = \
+check "without names: one group" \
+    [ "$(cut -d, -f1-2 "$work/nameless.csv" | tr '\n' ' ')" = \
     "from,to default,default default,* " ]
 check "which is closed" near "$(value nameless default default)" 1 1e-3 0
-check "and has the area of all" near "$(awk -F, 'NR == 2 { print $3 }' "$work/nameless.csv")" \
+check "and has the area of all" \
+    near "$(awk -F, 'NR == 2 { print $3 }' "$work/nameless.csv")" \
     6.54 1e-12 0
 
 cat >"$work/names.obj" <<'END'
@@ -234,16 +245,19 @@ check "names: order, blanks, quotes, default, repeated, unused" \
     [ "$(grep ',\*,' "$work/names.csv" | sed 's/,\*,.*//' | tr '\n' ';')" = \
     '"upper, ""left""";default;lower right;' ]
 check "the groups of a repeated name are one" \
-    near "$(sed -n 's/^"upper, ""left""",\*,1,//p' "$work/names.csv")" 0.199824895698387 1e-9 0
+    near "$(sed -n 's/^"upper, ""left""",\*,1,//p' "$work/names.csv")" \
+        0.199824895698387 1e-9 0
 
 # Two squares, back to back: with twins each has two sides, one of which sees the other.
-printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n' >"$work/back.obj"
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n' \
+    >"$work/back.obj"
 printf 'g a\nf 4 3 2 1\ng b\nf 5 6 7 8\n' >>"$work/back.obj"
 table back
 check "squares back to back" [ "$(value back a b)" = 0 ]
 table back --two-sided
 check "see each other with --two-sided" near "$(value back a b)" 0.0999124478491935 1e-9 0
-check "where both sides count" [ "$(awk -F, 'NR == 2 { print $3 }' "$work/back.csv")" = 2 ]
+check "where both sides count" \
+    [ "$(awk -F, 'NR == 2 { print $3 }' "$work/back.csv")" = 2 ]
 # The first is a lamp.
 printf 'newmtl lamp\nKe 1 1 1\nnewmtl grey\n' >"$work/lamp.mtl"
 awk 'BEGIN { print "mtllib lamp.mtl" }
@@ -261,14 +275,17 @@ check "a blocked pair with --two-sided" near "$(value OB1 p1 p2)" 0.074934335887
 
 # --- the same bytes everywhere ---
 
-$MAKE SERIAL=1 CFLAGS=-O1 BUILD="$work/serial" PHR="$work/serial/phr.out" "$work/serial/phr" \
+$MAKE SERIAL=1 CFLAGS=-O1 BUILD="$work/serial" PHR="$work/serial/phr.out" \
+    "$work/serial/phr" \
     >"$work/serial.log" 2>&1
 check "the serial build" [ $? -eq 0 ]
 cp scenes/cornell.obj scenes/cornell.mtl "$work"
 for scene in cornell blocked V7; do
-    "$work/serial/phr" --quiet --form-factors "$work/$scene.obj" --epsilon 1e-4 >"$work/serial.csv"
+    "$work/serial/phr" --quiet --form-factors "$work/$scene.obj" --epsilon 1e-4 \
+        >"$work/serial.csv"
     for ranks in 1 2 3 7; do
-        $MPIEXEC -n $ranks "$PHR" --quiet --form-factors "$work/$scene.obj" --epsilon 1e-4 \
+        $MPIEXEC -n $ranks "$PHR" --quiet --form-factors "$work/$scene.obj" \
+            --epsilon 1e-4 \
             >"$work/ranks.csv" 2>"$work/errors"
         check "$scene on $ranks ranks" cmp "$work/serial.csv" "$work/ranks.csv"
         check "silently" [ ! -s "$work/errors" ]
@@ -277,22 +294,31 @@ done
 
 # --- what is refused ---
 
-# refused TEXT ARGUMENTS...: status 2 at once, one line that begins with the text, no table.
+# refused TEXT ARGUMENTS...: status 2 at once, one line that begins with the text, no
+# table.
 refused() {
     text=$1
     shift
     timeout 5 "$PHR" --form-factors "$@" >"$work/out" 2>"$work/errors"
     [ $? -eq 2 ] && [ ! -s "$work/out" ] && [ "$(wc -l <"$work/errors")" -eq 1 ] &&
-        case $(cat "$work/errors") in "phr: $text"*) ;; *) cat "$work/errors"; false ;; esac
+        case $(cat "$work/errors") in
+        "phr: $text"*) ;;
+        *) cat "$work/errors"; false ;;
+        esac
 }
 
-awk 'BEGIN { print "v 0 0 0\nv 1 0 0\nv 0 1 0"; for (i = 0; i < 8193; i++) print "g " i "\nf 1 2 3" }' \
+awk 'BEGIN { print "v 0 0 0\nv 1 0 0\nv 0 1 0"; for (i = 0; i < 8193; i++)
+    print "g " i "\nf 1 2 3" }' \
     >"$work/many.obj"
 check "no scene" refused "no scene given"
-check "a scene that is not there" refused "$work/absent.obj: cannot read" "$work/absent.obj"
+check "a scene that is not there" \
+    refused "$work/absent.obj: cannot read" "$work/absent.obj"
 check "an output" refused "--form-factors and -o" "$work/box.obj" -o "$work/box.ppm"
-check "a view" refused "--form-factors and --view" "$work/box.obj" --view scenes/cornell.view
-check "--stats" refused "--form-factors and --stats" "$work/box.obj" --stats "$work/box.json"
-check "too many groups" refused "$work/many.obj: 8193 groups are more than 8192" "$work/many.obj"
+check "a view" \
+    refused "--form-factors and --view" "$work/box.obj" --view scenes/cornell.view
+check "--stats" \
+    refused "--form-factors and --stats" "$work/box.obj" --stats "$work/box.json"
+check "too many groups" \
+    refused "$work/many.obj: 8193 groups are more than 8192" "$work/many.obj"
 
 tap_done

@@ -1,5 +1,6 @@
-# The same bytes everywhere: every output file, the checksum and the counts are the same on any
-# number of ranks, in the serial build, with every compiler at hand and at every optimisation.
+# The same bytes everywhere: every output file, the checksum and the counts are the same
+# on any number of ranks, in the serial build, with every compiler at hand and at every
+# optimisation.
 
 . tests/tap.sh
 
@@ -7,7 +8,8 @@ counts="checksum links patches leaves passes iterations rays node_tests triangle
         absorbed_power escaped_power error_estimate"
 quiet="--quiet --epsilon 1e-4 --size 96x96"
 
-# build NAME ARGUMENTS...: another phr as $work/NAME/phr; fails with the log if it has warnings.
+# build NAME ARGUMENTS...: another phr as $work/NAME/phr; fails with the log if it has
+# warnings.
 build() {
     name=$1
     shift
@@ -18,8 +20,8 @@ build() {
     fi
 }
 
-# produce DIRECTORY COMMAND...: the three outputs and the stats of a run, and the table of --validate,
-# which shows the last bits of the exact form factors.
+# produce DIRECTORY COMMAND...: the three outputs and the stats of a run, and the table of
+# --validate, which shows the last bits of the exact form factors.
 produce() {
     directory=$work/$1
     shift
@@ -39,7 +41,8 @@ same() {
     done
     cmp "$work/$1/visibility" "$work/$2/visibility" || return 1
     for key in $counts; do
-        if [ "$(stat_of "$work/$1/s.json" $key)" != "$(stat_of "$work/$2/s.json" $key)" ] ||
+        if [ "$(stat_of "$work/$1/s.json" $key)" != \
+            "$(stat_of "$work/$2/s.json" $key)" ] ||
             [ -z "$(stat_of "$work/$1/s.json" $key)" ]; then
             echo "# $key differs or is missing: $1 and $2"
             return 1
@@ -72,7 +75,8 @@ check "the serial build compiles without MPI and without warnings" build serial 
 produce serial "$work/serial/phr" $cornell
 for ranks in 1 2 3 4 7 16; do
     produce ranks-$ranks $MPIEXEC -n $ranks "$BUILD/phr" $cornell
-    check "Cornell box: $ranks ranks give the bytes of the serial build" same ranks-$ranks serial
+    check "Cornell box: $ranks ranks give the bytes of the serial build" \
+        same ranks-$ranks serial
 done
 
 produce flat-serial "$work/serial/phr" $cornell --flat --two-sided
@@ -108,8 +112,10 @@ check "and gives the lamp one" [ "$(roots lamps-3)" = "0-75 " ]
 
 # from_above OPTIONS...: the sum of a picture of nothing but the lamp's back.
 from_above() {
-    printf 'eye 278 900 280\nat 278 548.8 280\nup 0 0 1\nfov 8\nsize 9 9\n' >"$work/above.view"
-    "$work/serial/phr" scenes/cornell.obj --view "$work/above.view" $quiet --size 9x9 "$@" \
+    printf 'eye 278 900 280\nat 278 548.8 280\nup 0 0 1\nfov 8\nsize 9 9\n' \
+        >"$work/above.view"
+    "$work/serial/phr" scenes/cornell.obj --view "$work/above.view" $quiet \
+        --size 9x9 "$@" \
         -o "$work/above.ppm" && tail -c 243 "$work/above.ppm" | od -An -v -t u1 |
         awk '{ for (i = 1; i <= NF; i++) sum += $i } END { print sum }'
 }
@@ -135,16 +141,20 @@ method bf --oracle bf
 method accuracy --accuracy 1.5% --epsilon 1e-2
 method pixels --final-gather 8,pixels --samples 2
 
-"$work/serial/phr" --form-factors scenes/cornell.obj --epsilon 1e-3 --quiet >"$work/table-serial"
+"$work/serial/phr" --form-factors scenes/cornell.obj --epsilon 1e-3 --quiet \
+    >"$work/table-serial"
 for ranks in 2 3 7; do
-    $MPIEXEC -n $ranks "$BUILD/phr" --form-factors scenes/cornell.obj --epsilon 1e-3 --quiet \
+    $MPIEXEC -n $ranks "$BUILD/phr" --form-factors scenes/cornell.obj --epsilon 1e-3 \
+        --quiet \
         >"$work/table-$ranks"
     check "$ranks ranks: --form-factors" cmp "$work/table-$ranks" "$work/table-serial"
 done
 
-produce levels-serial "$work/serial/phr" scenes/cornell.obj --max-level 3 --min-area 1e-3 \
+produce levels-serial "$work/serial/phr" scenes/cornell.obj --max-level 3 \
+    --min-area 1e-3 \
     --alpha 0 --tolerance 1e-6 --oracle bf --samples 1 --exposure 0.1
-produce levels-4 $MPIEXEC -n 4 "$BUILD/phr" scenes/cornell.obj --max-level 3 --min-area 1e-3 \
+produce levels-4 $MPIEXEC -n 4 "$BUILD/phr" scenes/cornell.obj --max-level 3 \
+    --min-area 1e-3 \
     --alpha 1 --tolerance 1e-6 --oracle bf --samples 1 --exposure 0.1
 check "other limits, no view; alpha moves links, not light" same levels-4 levels-serial
 
@@ -154,7 +164,8 @@ for ranks in 2 3 7; do
     check "two roots on $ranks ranks" same two-$ranks two-serial
 done
 
-# A lamp that reflects nothing is split by other ranks than its home, and no radiosity tells.
+# A lamp that reflects nothing is split by other ranks than its home, and no radiosity
+# tells.
 sed 's/^Kd.*/Kd 0 0 0/' "$work/two.mtl" >"$work/lamp.mtl"
 printf 'newmtl floor\nKd 0.5 0.5 0.5\n' >>"$work/lamp.mtl"
 cat >"$work/lamp.obj" <<END
@@ -179,11 +190,13 @@ for ranks in 2 3 5; do
     check "a black lamp on $ranks ranks" same lamp-$ranks lamp-serial
 done
 
-# Enough triangles for ranks to share one copy of scene and octree: a lamp over a floor, squares between.
+# Enough triangles for ranks to share one copy of scene and octree: a lamp over a floor,
+# squares between.
 cp "$work/lamp.mtl" "$work/tiles.mtl"
 awk 'function square(x, y, z, size, name) {
-         printf "usemtl %s\nv %g %g %g\nv %g %g %g\nv %g %g %g\nv %g %g %g\nf -4 -3 -2 -1\n", name,
-             x, y, z, x, y, z + size, x + size, y, z + size, x + size, y, z
+         printf "usemtl %s\nv %g %g %g\nv %g %g %g\n", name, x, y, z, x, y, z + size
+         printf "v %g %g %g\nv %g %g %g\nf -4 -3 -2 -1\n", x + size, y, z + size,
+             x + size, y, z
      }
      BEGIN {
          print "mtllib tiles.mtl\nusemtl lamp\nv 3 9 3\nv 5 9 3\nv 4 9 5\nf 1 2 3"
@@ -196,14 +209,17 @@ for ranks in 2 3; do
     check "5001 triangles on $ranks ranks" same tiles-$ranks tiles-serial
 done
 if "$BUILD/phr" --version | grep -q "MPI build"; then
-    $MPIEXEC -n 3 "$BUILD/phr" "$work/tiles.obj" --verbose --max-level 0 >"$work/tiles.log" 2>&1
-    check "which look into one copy" grep -q "one copy of scene and octree for 3 ranks" "$work/tiles.log"
+    $MPIEXEC -n 3 "$BUILD/phr" "$work/tiles.obj" --verbose --max-level 0 \
+        >"$work/tiles.log" 2>&1
+    check "which look into one copy" \
+        grep -q "one copy of scene and octree for 3 ranks" "$work/tiles.log"
 fi
 
 check "-O0 builds without warnings" build O0 SERIAL=1 CFLAGS=-O0
 produce O0 "$work/O0/phr" $cornell
 check "-O0 gives the same bytes" same O0 serial
-check "-O3 -march=native builds without warnings" build O3 SERIAL=1 CFLAGS="-O3 -march=native"
+check "-O3 -march=native builds without warnings" \
+    build O3 SERIAL=1 CFLAGS="-O3 -march=native"
 produce O3 "$work/O3/phr" $cornell
 check "-O3 -march=native gives the same bytes" same O3 serial
 for compiler in gcc clang; do

@@ -2,13 +2,15 @@
 
 . tests/tap.sh
 
-# move EXPRESSION: the Cornell box and its view with every coordinate c replaced by EXPRESSION.
+# move EXPRESSION: the Cornell box and its view with every coordinate c replaced by
+# EXPRESSION.
 move() {
     awk "function f(c) { return sprintf(\"%.17g\", $1) }
          \$1 == \"v\" { print \"v\", f(\$2), f(\$3), f(\$4); next } { print }" \
         scenes/cornell.obj >"$work/moved.obj"
     awk "function f(c) { return sprintf(\"%.17g\", $1) }
-         \$1 == \"eye\" || \$1 == \"at\" { print \$1, f(\$2), f(\$3), f(\$4); next } { print }" \
+         \$1 == \"eye\" || \$1 == \"at\" {
+             print \$1, f(\$2), f(\$3), f(\$4); next } { print }" \
         scenes/cornell.view >"$work/moved.view"
     cp scenes/cornell.mtl "$work/"
 }
@@ -23,13 +25,15 @@ run plain scenes/cornell.obj scenes/cornell.view
 for scale in 1048576 9.5367431640625e-07 0.5; do
     move "c * $scale"
     run scaled "$work/moved.obj" "$work/moved.view"
-    check "scaled by $scale: the same picture, to the bit" cmp "$work/plain.pfm" "$work/scaled.pfm"
+    check "scaled by $scale: the same picture, to the bit" \
+        cmp "$work/plain.pfm" "$work/scaled.pfm"
     check "scaled by $scale: the same solution" \
-        [ "$(stat_of "$work/plain.json" checksum)" = "$(stat_of "$work/scaled.json" checksum)" ]
+        [ "$(stat_of "$work/plain.json" checksum)" = \
+            "$(stat_of "$work/scaled.json" checksum)" ]
 done
 
-# Seven digits of the box's 3 survive an offset of a million sizes in a double: 16 - 6 - 3 (the
-# coordinates' own). Decisions to split may flip on that; the powers may not notice.
+# Seven digits of the box's 3 survive an offset of a million sizes in a double: 16 - 6 - 3
+# (the coordinates' own). Decisions to split may flip on that; the powers may not notice.
 move "c + 5.5e8"
 run shifted "$work/moved.obj" "$work/moved.view"
 a=$(stat_of "$work/plain.json" absorbed_power)
@@ -44,9 +48,10 @@ b=$(stat_of "$work/metres.json" absorbed_power)
 check "in metres: a million times less power, within 1e-4" \
     holds "($a - 1e6 * $b < 1e-4 * $a) && (1e6 * $b - $a < 1e-4 * $a)"
 
-# A lamp far away that shines into the void, with 200 times the power of the other, is no reason to look less
-# closely at what the other lights: with as much less epsilon, as many links. A fifth more or less, since
-# clusters are cut by place, direction and size, of which place is told in units of the scene's box.
+# A lamp far away that shines into the void, with 200 times the power of the other, is no
+# reason to look less closely at what the other lights: with as much less epsilon, as many
+# links. A fifth more or less, since clusters are cut by place, direction and size, of
+# which place is told in units of the scene's box.
 cp scenes/cornell.mtl "$work/void.mtl"
 printf 'newmtl away\nKd 0 0 0\nKe 200 200 200\n' >>"$work/void.mtl"
 {
@@ -58,6 +63,7 @@ emitted=$(stat_of "$work/plain.json" emitted_power)
     --epsilon "$(awk "BEGIN { printf \"%.9g\", 1e-4 * $emitted / ($emitted + 3e8) }")"
 a=$(stat_of "$work/plain.json" links)
 b=$(stat_of "$work/void.json" links)
-check "beside a strong lamp that shines into the void: links $a, $b" holds "($b - $a)^2 < (0.2 * $a)^2"
+check "beside a strong lamp that shines into the void: links $a, $b" \
+    holds "($b - $a)^2 < (0.2 * $a)^2"
 
 tap_done

@@ -1,6 +1,7 @@
-# Link caches, checkpoints and the memory limit: a file is the same whatever the number of ranks that
-# wrote it; what goes on from it, on any number of ranks, is what an uninterrupted run is; what was
-# made from another scene or with other settings is refused, with the reason.
+# Link caches, checkpoints and the memory limit: a file is the same whatever the number of
+# ranks that wrote it; what goes on from it, on any number of ranks, is what an
+# uninterrupted run is; what was made from another scene or with other settings is
+# refused, with the reason.
 . tests/tap.sh
 
 : "${PHR:=./phr}"
@@ -29,7 +30,8 @@ same() {
         echo "# $key differs or is missing: $1 and $2"
         return 1
     done
-    [ "$(grep '"closure"' "$work/$1.json")" = "$(grep '"closure"' "$work/$2.json")" ] && return
+    [ "$(grep '"closure"' "$work/$1.json")" = "$(grep '"closure"' "$work/$2.json")" ] &&
+        return
     echo "# row sums differ: $1 and $2"
     return 1
 }
@@ -38,7 +40,8 @@ same() {
 refused() {
     start=$1
     shift
-    $MPIEXEC -n 2 sh -c 'exec 2>>"$0"; exec "$@"' "$work/refused" "$PHR" "$@" >/dev/null 2>&1
+    $MPIEXEC -n 2 sh -c 'exec 2>>"$0"; exec "$@"' "$work/refused" "$PHR" "$@" \
+        >/dev/null 2>&1
     status=$?
     line=$(cat "$work/refused")
     rm -f "$work/refused"
@@ -65,22 +68,31 @@ check "other settings than those of links are free" same load-closed closed
 
 cp scenes/cornell.obj "$work/moved.obj"
 cp scenes/cornell.mtl "$work/cornell.mtl"
-run moved 2 "$work/moved.obj" --epsilon 1e-4 --linking pairs --size 40x40 --quiet --load-links "$work/links-1"
+run moved 2 "$work/moved.obj" --epsilon 1e-4 --linking pairs --size 40x40 --quiet \
+    --load-links "$work/links-1"
 check "the scene may have moved" same moved plain
 sed 's/^Kd 0.7/Kd 0.6/' scenes/cornell.mtl >"$work/cornell.mtl"
-check "another material is another scene" refused "$work/links-1: made from another scene" \
+check "another material is another scene" \
+    refused "$work/links-1: made from another scene" \
     "$work/moved.obj" --epsilon 1e-4 --linking pairs --load-links "$work/links-1"
 for other in "--epsilon 1e-3" "--oracle bf" "--form-factor disk" "--two-sided"; do
-    case $other in --epsilon*) was=0.0001 ;; --oracle*) was=error ;; *disk) was=polygon ;; *) was=off ;; esac
+    case $other in
+    --epsilon*) was=0.0001 ;;
+    --oracle*) was=error ;;
+    *disk) was=polygon ;;
+    *) was=off ;;
+    esac
     check "made without $other" \
-        refused "$work/links-1: made with ${other%% *} $was" $pairs --load-links "$work/links-1" $other
+        refused "$work/links-1: made with ${other%% *} $was" $pairs \
+            --load-links "$work/links-1" $other
 done
 $MPIEXEC -n 2 "$PHR" $pairs --two-sided --save-links "$work/links-two"
 check "made without --two-sided-lamps" \
     refused "$work/links-two: made with --two-sided-lamps off" $pairs \
     --load-links "$work/links-two" --two-sided-lamps
 for option in --save-links --load-links; do
-    check "the tree has none: $option" refused "$option goes with --linking pairs (--paper)" \
+    check "the tree has none: $option" \
+        refused "$option goes with --linking pairs (--paper)" \
         $cornell $option "$work/links-1"
 done
 
@@ -88,7 +100,8 @@ done
 
 run plain 2 $cornell
 for ranks in 1 3 4; do
-    $MPIEXEC -n $ranks "$PHR" $cornell --max-iterations 8 --checkpoint "$work/check-$ranks"
+    $MPIEXEC -n $ranks "$PHR" $cornell --max-iterations 8 \
+        --checkpoint "$work/check-$ranks"
 done
 check "a checkpoint by 3 ranks is that by 1" cmp "$work/check-3" "$work/check-1"
 check "and that by 4" cmp "$work/check-4" "$work/check-1"
@@ -101,7 +114,8 @@ run final 3 $cornell --resume "$work/going"
 check "that of a finished run needs no iteration" same final plain
 run tight 2 $cornell --resume "$work/going" --tolerance 1e-8
 check "but can be taken further" \
-    holds "$(stat_of "$work/tight.json" iterations) > $(stat_of "$work/plain.json" iterations)"
+    holds "$(stat_of "$work/tight.json" iterations) > \
+        $(stat_of "$work/plain.json" iterations)"
 
 # resumes NAME N OPTIONS...: another method, interrupted by a limit of N iterations.
 resumes() {
@@ -109,7 +123,8 @@ resumes() {
     limit=$2
     shift 2
     run "$name" 1 $cornell "$@"
-    $MPIEXEC -n 2 "$PHR" $cornell --max-iterations "$limit" --checkpoint "$work/$name.check" "$@"
+    $MPIEXEC -n 2 "$PHR" $cornell --max-iterations "$limit" \
+        --checkpoint "$work/$name.check" "$@"
     run "$name-on" 3 $cornell --resume "$work/$name.check" "$@"
     check "goes on: $*" same "$name-on" "$name"
 }
@@ -120,12 +135,15 @@ for limit in 4 26 40; do # in the first round, in the second, and at its end
     resumes accuracy-$limit $limit --accuracy 1.5% --epsilon 1e-2
 done
 check "which takes two rounds and more" \
-    holds "$(stat_of "$work/accuracy-40.json" passes) > $(stat_of "$work/plain.json" passes)"
-counts="checksum links patches passes iterations absorbed_power" # rays fired again are counted again
+    holds "$(stat_of "$work/accuracy-40.json" passes) > \
+        $(stat_of "$work/plain.json" passes)"
+# Rays fired again are counted again.
+counts="checksum links patches passes iterations absorbed_power"
 resumes two-sided 8 --two-sided --max-level 4
 resumes jacobi 8 --solver jacobi --max-level 3
 
-check "--solver is bound" refused "$work/check-1: made with --solver cg, this run has --solver jacobi" \
+check "--solver is bound" \
+    refused "$work/check-1: made with --solver cg, this run has --solver jacobi" \
     $cornell --resume "$work/check-1" --solver jacobi
 check "so is --linking" \
     refused "$work/check-1: made with --linking tree, this run has --linking pairs" \
@@ -133,26 +151,30 @@ check "so is --linking" \
 check "so are twins of lamps" refused \
     "$work/two-sided.check: made with --two-sided-lamps off" \
     $cornell --max-level 4 --resume "$work/two-sided.check" --two-sided-lamps
-check "a link cache is no checkpoint" refused "$work/links-1: not a checkpoint but a link cache" \
+check "a link cache is no checkpoint" \
+    refused "$work/links-1: not a checkpoint but a link cache" \
     $cornell --resume "$work/links-1"
-check "a missing one" refused "$work/absent: cannot read: " $cornell --resume "$work/absent"
+check "a missing one" \
+    refused "$work/absent: cannot read: " $cornell --resume "$work/absent"
 head -c 1000 "$work/check-1" >"$work/cut"
 check "one that is cut off" refused "$work/cut: damaged: " $cornell --resume "$work/cut"
 cp "$work/check-1" "$work/flipped"
 printf x | dd of="$work/flipped" bs=1 seek=5000 conv=notrunc 2>/dev/null
-check "one with a changed byte" refused "$work/flipped: damaged: its checksum" $cornell --resume "$work/flipped"
+check "one with a changed byte" \
+    refused "$work/flipped: damaged: its checksum" $cornell --resume "$work/flipped"
 
 # --- stopped at ten moments ---
 
-# A run that is stopped N ms after it began, and goes on elsewhere: on 1, 2 or 4 ranks. One that has
-# no checkpoint yet says nothing of it; then there is nothing to go on from, and one too late to be
-# stopped goes on as well.
+# A run that is stopped N ms after it began, and goes on elsewhere: on 1, 2 or 4 ranks.
+# One that has no checkpoint yet says nothing of it; then there is nothing to go on from,
+# and one too late to be stopped goes on as well.
 fine="scenes/cornell.obj --epsilon 3e-6 --size 40x40"
 run straight 2 $fine --quiet
 begun=0
 for moment in 1 2 3 4 5 6 7 8 9 10; do
     rm -f "$work/stopped"
-    $MPIEXEC -n 3 "$PHR" $fine --checkpoint "$work/stopped" >/dev/null 2>"$work/stopped.err" &
+    $MPIEXEC -n 3 "$PHR" $fine --checkpoint "$work/stopped" \
+        >/dev/null 2>"$work/stopped.err" &
     launched=$!
     sleep "$(awk "BEGIN { print 0.15 * $moment }")"
     kill -TERM $launched 2>/dev/null
@@ -176,7 +198,8 @@ counts="checksum links patches passes iterations rays node_tests converged memor
         absorbed_power"
 fine="scenes/cornell.obj --epsilon 1e-5 --size 40x40"
 for ranks in 1 2 3 4; do
-    run small-$ranks $ranks $fine --memory 2M --checkpoint "$work/small-$ranks.check" >/dev/null
+    run small-$ranks $ranks $fine --memory 2M \
+        --checkpoint "$work/small-$ranks.check" >/dev/null
 done
 for ranks in 2 3 4; do
     check "2 MiB on $ranks ranks are 2 MiB on one" same small-$ranks small-1
@@ -184,15 +207,20 @@ for ranks in 2 3 4; do
 done
 run large 2 $fine --memory 1G >/dev/null
 check "1 GiB is enough" [ "$(stat_of "$work/large.json" memory_limited)" = false ]
-check "2 MiB are not, and the run says so" [ "$(stat_of "$work/small-1.json" memory_limited)" = true ]
-check "once" [ "$(grep -c 'phr: warning: refinement ended at the memory limit' "$work/small-3.err")" -eq 1 ]
+check "2 MiB are not, and the run says so" \
+    [ "$(stat_of "$work/small-1.json" memory_limited)" = true ]
+check "once" [ "$(grep -c 'phr: warning: refinement ended at the memory limit' \
+    "$work/small-3.err")" -eq 1 ]
 check "so it has not converged" [ "$(stat_of "$work/small-1.json" converged)" = false ]
 check "it has fewer links" \
-    holds "$(stat_of "$work/small-1.json" links) < $(stat_of "$work/large.json" links) / 2"
+    holds "$(stat_of "$work/small-1.json" links) < \
+        $(stat_of "$work/large.json" links) / 2"
 check "which absorb within 5 % as much" \
-    holds "($(stat_of "$work/small-1.json" absorbed_power) / $(stat_of "$work/large.json" absorbed_power) - 1) ^ 2 < 0.05 ^ 2"
+    holds "($(stat_of "$work/small-1.json" absorbed_power) / \
+        $(stat_of "$work/large.json" absorbed_power) - 1) ^ 2 < 0.05 ^ 2"
 run grown 3 $fine --memory 1G --resume "$work/small-2.check" >/dev/null
-check "it goes on where there is more memory" [ "$(stat_of "$work/grown.json" memory_limited)" = false ]
+check "it goes on where there is more memory" \
+    [ "$(stat_of "$work/grown.json" memory_limited)" = false ]
 check "to the end" [ "$(stat_of "$work/grown.json" converged)" = true ]
 run still 3 $fine --memory 2M --resume "$work/small-4.check" >/dev/null
 check "and not where there is not" same still small-1
@@ -206,7 +234,8 @@ held() {
     check "held back by $*: exit status 0" [ $? -eq 0 ]
     run "$name-3" 3 scenes/cornell.obj --size 40x40 --accuracy 1% "$@" >/dev/null
     check "on 3 ranks alike" same "$name-3" "$name-1"
-    check "and it says so" grep -q "^phr: warning: the error is [2-9].* %, not the 1 % of --accuracy: $words" \
+    said="^phr: warning: the error is [2-9].* %, not the 1 % of --accuracy: $words"
+    check "and it says so" grep -q "$said" \
         "$work/$name-3.err"
     check "has not converged" [ "$(stat_of "$work/$name-1.json" converged)" = false ]
     check "and --stats has the limit" grep -q "\"hold\": \"$hold\"" "$work/$name-1.json"
@@ -225,13 +254,16 @@ done
 check "linking that does not fit: 2 ranks give the bytes of 1" same part-2 part-1
 check "and 3" same part-3 part-1
 check "a warning says so" \
-    [ "$(grep -c 'phr: warning: linking ended at the memory limit .*: light is missing' "$work/part-3.err")" -eq 1 ]
+    [ "$(grep -c 'phr: warning: linking ended at the memory limit .*: light is missing' \
+        "$work/part-3.err")" -eq 1 ]
 check "the links fit" holds "36 * $(stat_of "$work/part-1.json" links) < 3 * 1048576"
 check "there are some" holds "$(stat_of "$work/part-1.json" links) > 10000"
 check "there is light" \
-    holds "$(stat_of "$work/part-1.json" absorbed_power) > 0.1 * $(stat_of "$work/part-1.json" emitted_power)"
+    holds "$(stat_of "$work/part-1.json" absorbed_power) > \
+        0.1 * $(stat_of "$work/part-1.json" emitted_power)"
 check "no checkpoint is made of that" [ ! -e "$work/part.check" ]
-$MPIEXEC -n 2 sh -c 'exec 2>>"$0/part.err"; exec "$@"' "$work" "$PHR" $room --quiet --memory 3M \
+$MPIEXEC -n 2 sh -c 'exec 2>>"$0/part.err"; exec "$@"' "$work" "$PHR" $room \
+    --quiet --memory 3M \
     --save-links "$work/part.links" >/dev/null 2>&1
 status=$?
 check "nor a link cache: exit status 1" [ "$status" -eq 1 ]

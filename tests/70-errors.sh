@@ -1,9 +1,9 @@
-# Bad input, bad usage, outputs that cannot be written: on 1 and on 4 ranks each ends with one
-# line on stderr, nothing on stdout, the right exit status, and no file touched. Nothing hangs
-# (10 seconds are the limit of a hang, not of a speed).
+# Bad input, bad usage, outputs that cannot be written: on 1 and on 4 ranks each ends with
+# one line on stderr, nothing on stdout, the right exit status, and no file touched.
+# Nothing hangs (10 seconds are the limit of a hang, not of a speed).
 #
-# What the ranks print is taken from each rank itself, so that words of the launcher about an
-# exit status that is not 0 do not count as ours.
+# What the ranks print is taken from each rank itself, so that words of the launcher about
+# an exit status that is not 0 do not count as ours.
 . tests/tap.sh
 
 : "${PHR:=./phr}"
@@ -12,7 +12,8 @@ out=$work/stdout
 err=$work/stderr
 old=$work/old.ppm
 
-# phr_on RANKS LIMIT ARGUMENTS...: runs it; leaves $out, $err and the exit status in $status.
+# phr_on RANKS LIMIT ARGUMENTS...: runs it; leaves $out, $err and the exit status in
+# $status.
 phr_on() {
     ranks=$1
     limit=$2
@@ -37,7 +38,8 @@ is_untouched() {
 
 # ended CODE START: the last run ended as an error should.
 ended() {
-    [ "$status" -eq "$1" ] && [ ! -s "$out" ] && is_one_line "$err" && starts_with "$err" "$2" &&
+    [ "$status" -eq "$1" ] && [ ! -s "$out" ] && is_one_line "$err" &&
+        starts_with "$err" "$2" &&
         is_untouched && ! grep -q 'BAD TERMINATION' "$work/launcher" && return
     echo "# expected status $1 and '$2...', got status $status and:"
     sed 's/^/# /' "$err" "$out"
@@ -57,9 +59,11 @@ refuse() {
     done
 }
 
-# refuse_scene SUFFIX NAME: $scene is refused with "FILE" and the suffix, whatever else is asked.
+# refuse_scene SUFFIX NAME: $scene is refused with "FILE" and the suffix, whatever else is
+# asked.
 refuse_scene() {
-    refuse 2 "$scene$1" "$2" "$scene" -o "$old" -o "$work/new.ppm" --stats "$work/new.json"
+    refuse 2 "$scene$1" "$2" "$scene" -o "$old" -o "$work/new.ppm" \
+        --stats "$work/new.json"
 }
 
 # scene NAME: the file that stdin becomes is the scene of what follows.
@@ -170,7 +174,8 @@ end_header
 1 1 0
 3 0 1 3
 END
-refuse_scene ":13: corner 3, but the last vertex is 2" "a corner of a PLY face out of range"
+refuse_scene ":13: corner 3, but the last vertex is 2" \
+    "a corner of a PLY face out of range"
 
 scene claim.ply <<END
 $(echo "$ply_header" | sed 's/vertex 3/vertex 3000000000/')
@@ -194,15 +199,18 @@ f 1 2 3 4
 END
 
 printf 'eye 0 0 5\nat 0 0 0\nfov 200\n' >"$work/bad.view"
-refuse 2 "$work/bad.view:3: fov must" "a bad view" "$scene" --view "$work/bad.view" -o "$old"
-refuse 2 "$work/absent.view: cannot read: " "a missing view" "$scene" --view "$work/absent.view" \
+refuse 2 "$work/bad.view:3: fov must" "a bad view" "$scene" --view "$work/bad.view" \
+    -o "$old"
+refuse 2 "$work/absent.view: cannot read: " "a missing view" "$scene" \
+    --view "$work/absent.view" \
     -o "$old"
 refuse 2 "unknown option --fast" "an unknown option" "$scene" -o "$old" --fast
 refuse 2 "--epsilon needs a value" "a missing value" "$scene" -o "$old" --epsilon
 refuse 2 "--samples: 'x' is not a number" "a bad value" "$scene" -o "$old" --samples x
 refuse 2 "no scene given" "no scene" -o "$old"
 refuse 2 "one scene at a time" "two scenes" "$scene" "$scene" -o "$old"
-refuse 2 "-o $work/new.png: the name must" "an unknown format" "$scene" -o "$old" -o "$work/new.png"
+refuse 2 "-o $work/new.png: the name must" "an unknown format" "$scene" -o "$old" \
+    -o "$work/new.png"
 
 # --- outputs ---
 
@@ -216,7 +224,8 @@ refuse 1 "$work/absent/new.json: cannot write: " "a report in a missing folder" 
 
 if [ -c /dev/full ]; then
     ln -s /dev/full "$work/full.ppm"
-    refuse 1 "$work/full.ppm: cannot write: " "a full disk" "$scene" --quiet -o "$work/full.ppm"
+    refuse 1 "$work/full.ppm: cannot write: " "a full disk" "$scene" --quiet \
+        -o "$work/full.ppm"
 else
     tap 0 "a full disk # SKIP there is no /dev/full"
 fi
@@ -228,7 +237,8 @@ help_is_right() {
 }
 
 version_is_right() {
-    [ "$status" -eq 0 ] && [ ! -s "$err" ] && is_one_line "$out" && starts_with "$out" "phr "
+    [ "$status" -eq 0 ] && [ ! -s "$err" ] && is_one_line "$out" &&
+        starts_with "$out" "phr "
 }
 
 is_silent() {

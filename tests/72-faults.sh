@@ -1,6 +1,6 @@
-# Faults: a rank killed, SIGTERM, a full disk. Each ends without a hang, with an exit status that is
-# not 0, and with no file half written; the last checkpoint is whole, and what goes on from it is what
-# an uninterrupted run is.
+# Faults: a rank killed, SIGTERM, a full disk. Each ends without a hang, with an exit
+# status that is not 0, and with no file half written; the last checkpoint is whole, and
+# what goes on from it is what an uninterrupted run is.
 #
 # Ranks write down their process numbers, and only those are sent signals.
 . tests/tap.sh
@@ -16,7 +16,8 @@ start() {
     shift
     rm -f "$work/ranks" "$work/out" "$work/launcher"
     : >"$work/err"
-    $MPIEXEC -n "$on" sh -c 'echo $$ >>"$0/ranks"; exec 2>>"$0/err" >>"$0/out"; exec "$@"' "$work" \
+    $MPIEXEC -n "$on" \
+        sh -c 'echo $$ >>"$0/ranks"; exec 2>>"$0/err" >>"$0/out"; exec "$@"' "$work" \
         "$PHR" "$@" >"$work/launcher" 2>&1 </dev/null &
     launched=$!
 }
@@ -55,18 +56,22 @@ ranks_are_gone() {
     return 0
 }
 
-# A launcher that was sent a signal may end with 0 whatever its ranks end with: then what phr says counts.
+# A launcher that was sent a signal may end with 0 whatever its ranks end with: then what
+# phr says counts.
 was_stopped() {
     [ "$status" != hang ] && [ "$(grep -c '^phr: stopped by SIGTERM' "$work/err")" -eq 1 ]
 }
 
 # goes_on CHECKPOINT: what is resumed from it is the whole run.
 goes_on() {
-    $MPIEXEC -n 3 "$PHR" $scene --quiet --resume "$work/$1" -o "$work/on.pfm" -o "$work/on.ply" \
+    $MPIEXEC -n 3 "$PHR" $scene --quiet --resume "$work/$1" -o "$work/on.pfm" \
+        -o "$work/on.ply" \
         --stats "$work/on.json" || return 1
-    cmp "$work/on.pfm" "$work/whole.pfm" && cmp "$work/on.ply" "$work/whole.ply" || return 1
+    cmp "$work/on.pfm" "$work/whole.pfm" && cmp "$work/on.ply" "$work/whole.ply" ||
+        return 1
     for key in checksum links patches passes iterations rays node_tests; do
-        [ "$(stat_of "$work/on.json" $key)" = "$(stat_of "$work/whole.json" $key)" ] || return 1
+        [ "$(stat_of "$work/on.json" $key)" = "$(stat_of "$work/whole.json" $key)" ] ||
+            return 1
     done
 }
 
@@ -74,7 +79,8 @@ nothing_is_left() {
     [ ! -e "$work/new.pfm" ] && [ -z "$(find "$work" -name 'new.*.tmp')" ]
 }
 
-$MPIEXEC -n 2 "$PHR" $scene --quiet -o "$work/whole.pfm" -o "$work/whole.ply" --stats "$work/whole.json"
+$MPIEXEC -n 2 "$PHR" $scene --quiet -o "$work/whole.pfm" -o "$work/whole.ply" \
+    --stats "$work/whole.json"
 
 # --- a rank is killed ---
 
@@ -83,7 +89,8 @@ start 2 $scene -o "$work/new.pfm" --checkpoint "$work/check"
 check "a checkpoint comes before the end" wait_for 2 " split)"
 kill -9 "$(tail -n 1 "$work/ranks")"
 finish
-check "a rank is killed: no hang, and not 0 ($status)" [ "$status" != 0 ] && [ "$status" != hang ]
+check "a rank is killed: no hang, and not 0 ($status)" \
+    [ "$status" != 0 ] && [ "$status" != hang ]
 check "all ranks are gone" ranks_are_gone
 check "no output" [ ! -e "$work/new.pfm" ]
 rm -f "$work"/new.*.tmp "$work"/check.*.tmp
@@ -96,7 +103,8 @@ check "a run to be stopped has begun" wait_for 1 " split)"
 kill -TERM "$launched"
 finish
 check "SIGTERM to the launcher ends the run ($status); one rank says so" was_stopped
-check "and how to go on" grep -q '^phr: stopped by SIGTERM; go on with --resume ' "$work/err"
+check "and how to go on" \
+    grep -q '^phr: stopped by SIGTERM; go on with --resume ' "$work/err"
 check "nothing is left" nothing_is_left
 check "the checkpoint is whole" goes_on check
 
@@ -116,7 +124,8 @@ check "SIGTERM without a checkpoint ends it too ($status)" was_stopped
 check "it says what happened, and no more" grep -q '^phr: stopped by SIGTERM$' "$work/err"
 check "and nothing is left" nothing_is_left
 
-start 2 scenes/cornell.obj --epsilon 1e-3 --size 1000x1000 --samples 32 -o "$work/new.ppm" \
+start 2 scenes/cornell.obj --epsilon 1e-3 --size 1000x1000 --samples 32 \
+    -o "$work/new.ppm" \
     --checkpoint "$work/check"
 wait_for 1 "(0 split)"
 begun=$(date +%s)
@@ -180,20 +189,24 @@ check "for there is nothing" [ ! -e "$work/early" -a ! -e "$work/new.ppm" ]
 
 # --- a full disk ---
 
-# A limit of the size of files takes the place of a disk that fills up half way: the checkpoint of the
-# first pass fits, that of the second does not. (What MPI shares between ranks has to fit as well.)
-$MPIEXEC -n 2 sh -c 'ulimit -f 10000; exec 2>>"$0/full.err"; exec "$@"' "$work" "$PHR" $scene --quiet \
-    -o "$work/new.pfm" --checkpoint "$work/full" >/dev/null 2>&1
+# A limit of the size of files takes the place of a disk that fills up half way: the
+# checkpoint of the first pass fits, that of the second does not. (What MPI shares between
+# ranks has to fit as well.)
+$MPIEXEC -n 2 \
+    sh -c 'ulimit -f 10000; exec 2>>"$0/full.err"; exec "$@"' "$work" "$PHR" $scene \
+    --quiet -o "$work/new.pfm" --checkpoint "$work/full" >/dev/null 2>&1
 status=$?
 check "a disk that fills up: exit status 1" [ "$status" -eq 1 ]
-check "one line says which file" [ "$(cat "$work/full.err")" = "phr: $work/full: cannot write: File too large" ]
+check "one line says which file" \
+    [ "$(cat "$work/full.err")" = "phr: $work/full: cannot write: File too large" ]
 check "nothing is left" nothing_is_left
 check "nor beside the checkpoint" [ -z "$(find "$work" -name 'full*.tmp')" ]
 check "which is the one before, whole" goes_on full
 
 if [ -c /dev/full ]; then
     for option in --checkpoint "--paper --save-links"; do
-        $MPIEXEC -n 2 sh -c 'exec 2>"$0/full.err"; exec "$@"' "$work" "$PHR" $scene --quiet $option /dev/full \
+        $MPIEXEC -n 2 sh -c 'exec 2>"$0/full.err"; exec "$@"' "$work" "$PHR" $scene \
+            --quiet $option /dev/full \
             >/dev/null 2>&1
         status=$?
         check "$option on a full device: exit status 1" [ "$status" -eq 1 ]

@@ -1,5 +1,5 @@
-# Materials that are no materials: each is refused with a line that says what and where, and exit
-# status 2; reflectances of 1 and more are not, but said to be set to 0.999.
+# Materials that are no materials: each is refused with a line that says what and where,
+# and exit status 2; reflectances of 1 and more are not, but said to be set to 0.999.
 
 . tests/tap.sh
 
@@ -32,13 +32,16 @@ check "a negative reflectance" refused "-0.5 0 0" "1 1 1" "$mtl:2: negative numb
 check "a negative emission" refused "0 0 0" "1 -1 1" "$mtl:3: negative number '-1'"
 check "NaN as reflectance" refused "nan 0 0" "1 1 1" "$mtl:2: bad number 'nan'"
 check "infinite emission" refused "0 0 0" "inf 0 0" "$mtl:3: bad number 'inf'"
-check "an emission that no double holds" refused "0 0 0" "1e400 0 0" "$mtl:3: bad number '1e400'"
+check "an emission that no double holds" \
+    refused "0 0 0" "1e400 0 0" "$mtl:3: bad number '1e400'"
 check "one beyond the floats of the outputs" refused "0 0 0" "1e31 0 0" \
     "$work/scene.obj: the largest Ke, 1e+31, is not within 1e-30 and 1e+30"
 
 try "1 2 1" "1 1 1"
 clamped="warning: 1 material(s) with a reflectance of 1 or more, set to 0.999"
-is_clamped() { [ "$status" -eq 0 ] && case $said in *"$clamped"*) ;; *) return 1 ;; esac; }
+is_clamped() {
+    [ "$status" -eq 0 ] && case $said in *"$clamped"*) ;; *) return 1 ;; esac
+}
 check "reflectances of 1 and 2 are clamped, with a warning" is_clamped
 try "0.5 0.5 0.5" "1e30 1e30 1e30"
 is_done() { [ "$status" -eq 0 ] && ! grep -qiE 'nan|inf' "$work/stdout"; }
@@ -102,6 +105,7 @@ check "those of the Cornell box do not" \
 check "a closed room that was off its balance is said to be" \
     [ "$(warnings ./phr tests/golden/corridor.obj --epsilon 1 --final-gather 4)" = 1 ]
 check "it is not with more rays" \
-    [ "$(warnings ./phr tests/golden/corridor.obj --epsilon 1e-3 --final-gather 256)" = 0 ]
+    [ "$(warnings ./phr tests/golden/corridor.obj --epsilon 1e-3 \
+        --final-gather 256)" = 0 ]
 
 tap_done

@@ -1,5 +1,6 @@
-# imgdiff: the figures it prints, against ones worked out by hand; its exit status; what it writes.
-# Solutions of phr against themselves and against a finer one; and phr reads its own meshes.
+# imgdiff: the figures it prints, against ones worked out by hand; its exit status; what
+# it writes. Solutions of phr against themselves and against a finer one; and phr reads
+# its own meshes.
 . tests/tap.sh
 
 : "${PHR:=./phr}" "${IMGDIFF:=build/imgdiff}"
@@ -66,8 +67,10 @@ check "and is counted" says 'not finite  3 samples'
 
 # --- blocks: 3 x 2 grey pixels, of 64; the third column is a block of its own ---
 
-printf 'P3 3 2 64 16 16 16 32 32 32 32 32 32  48 48 48 32 32 32 16 16 16' >"$work/noisy.ppm"
-printf 'P3 3 2 64 32 32 32 32 32 32 32 32 32  32 32 32 32 32 32 64 64 64' >"$work/smooth.ppm"
+printf 'P3 3 2 64 16 16 16 32 32 32 32 32 32  48 48 48 32 32 32 16 16 16' \
+    >"$work/noisy.ppm"
+printf 'P3 3 2 64 32 32 32 32 32 32 32 32 32  32 32 32 32 32 32 64 64 64' \
+    >"$work/smooth.ppm"
 ends 0 "a block has the mean of its pixels" --blocks 2 --below 0.9 "$work/noisy.ppm" \
     "$work/smooth.ppm"
 check "the one with a bright pixel is left out" says 'psnr        infinite'
@@ -78,7 +81,8 @@ check "0.375 / sqrt(3), of sqrt((2 * 0.5^2 + 0.75^2) / 3)" says \
     'relative    0.630126 max, 0.363803 rms'
 row='\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\300\076\0\0\300\076\0\0\300\076'
 printf "PF\n3 2\n-1.0\n$row$row" >"$work/map.expected"
-check "-o: the difference of a block in its pixels" cmp "$work/map.pfm" "$work/map.expected"
+check "-o: the difference of a block in its pixels" \
+    cmp "$work/map.pfm" "$work/map.expected"
 ends 2 "nothing is left" --below 0.1 "$work/noisy.ppm" "$work/smooth.ppm"
 ends 2 "half a pixel" --blocks 2.5 "$work/noisy.ppm" "$work/smooth.ppm"
 ends 2 "no pixel" --blocks 0 "$work/noisy.ppm" "$work/smooth.ppm"
@@ -86,7 +90,8 @@ ends 2 "no pixel" --blocks 0 "$work/noisy.ppm" "$work/smooth.ppm"
 # --- the difference as a picture ---
 
 diff_of "$work/off.ppm" "$work/b.ppm" -o "$work/map.pfm"
-printf 'PF\n2 1\n-1.0\n\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\232\231\231\076' >"$work/map.expected"
+printf 'PF\n2 1\n-1.0\n\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\232\231\231\076' \
+    >"$work/map.expected"
 check "-o: |A - B| as PFM" cmp "$work/map.pfm" "$work/map.expected"
 diff_of "$work/off.ppm" "$work/b.ppm" -o "$work/map.ppm"
 printf 'P6\n2 1\n255\n\0\0\0\0\0\377' >"$work/map.expected"
@@ -127,8 +132,10 @@ check "the way back is alike" holds \
         sed -n 's/.* max, \(.*\) rms/\1/p' "$out")"
 ends 2 "blocks of a mesh" --blocks 2 "$work/fine.ply" "$work/fine.ply"
 ends 2 "solutions of two scenes" "$work/fine.ply" "$work/furnace.ply"
-ends 2 "a mesh, its difference as a picture" "$work/fine.ply" "$work/fine.ply" -o "$work/map.ppm"
-ends 2 "pictures, their difference as a mesh" "$work/b.ppm" "$work/b.ppm" -o "$work/map.ply"
+ends 2 "a mesh, its difference as a picture" "$work/fine.ply" "$work/fine.ply" \
+    -o "$work/map.ppm"
+ends 2 "pictures, their difference as a mesh" "$work/b.ppm" "$work/b.ppm" \
+    -o "$work/map.ply"
 diff_of "$work/coarse.ply" "$work/coarse.ply" -o "$work/nothing.ply"
 diff_of "$work/coarse.ply" "$work/fine.ply" -o "$work/map.ply"
 mean=$(sed -n 's/^mean *//p' "$out")
@@ -142,8 +149,12 @@ ends 2 "a solution cut off" "$work/cut.ply" "$work/fine.ply"
 $MPIEXEC -n 2 "$PHR" --quiet "$work/coarse.ply" -o "$work/again.ply" 2>"$err"
 grep -q 'nothing emits light' "$err"
 tap $? "phr reads its own mesh, which has no lamps"
-area() { $MPIEXEC -n 2 "$PHR" --quiet --form-factors --max-level 0 --epsilon 1 "$1" | awk -F, '$2 == "*" { s += $3 } END { print s }'; }
-check "of the same area" holds "$(area "$work/coarse.ply") / $(area tests/golden/room.obj) - 1 < 1e-6"
+area() {
+    $MPIEXEC -n 2 "$PHR" --quiet --form-factors --max-level 0 --epsilon 1 "$1" |
+        awk -F, '$2 == "*" { s += $3 } END { print s }'
+}
+check "of the same area" \
+    holds "$(area "$work/coarse.ply") / $(area tests/golden/room.obj) - 1 < 1e-6"
 
 # --- what is no error ---
 
@@ -151,7 +162,8 @@ diff_of --help
 check "--help" [ "$status" -eq 0 ]
 check "fits a screen" [ "$(wc -l <"$out")" -le 24 ]
 missing=
-for option in $(grep -oE '(^|[^a-zA-Z-])--[a-z]+' "$out" | grep -oE '\-\-[a-z]+' | sort -u); do
+for option in $(grep -oE '(^|[^a-zA-Z-])--[a-z]+' "$out" | grep -oE '\-\-[a-z]+' |
+    sort -u); do
     sed 's/\\-/-/g' tools/imgdiff.1 | grep -q -- "$option" || missing="$missing $option"
 done
 check "the man page has every option:$missing" [ -z "$missing" ]

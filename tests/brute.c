@@ -1,6 +1,6 @@
-/* The ray caster by brute force: the interface of octree/octree.h, every triangle tested against
- * every segment in double precision. It defines what is right: linked in place of octree/ it must
- * give the same bytes, only slower (tests/60-ranks.sh). */
+/* The ray caster by brute force: the interface of octree/octree.h, every triangle tested
+ * against every segment in double precision. It defines what is right: linked in place of
+ * octree/ it must give the same bytes, only slower (tests/60-ranks.sh). */
 #include "octree/octree.h"
 
 #include <stddef.h>
@@ -54,14 +54,16 @@ int64_t octree_bytes(const struct octree *octree)
     return (int64_t)sizeof *octree;
 }
 
-static bool is_blocked_by(const struct octree *octree, int32_t t, struct vec3 from, struct vec3 to)
+static bool is_blocked_by(const struct octree *octree, int32_t t, struct vec3 from,
+                          struct vec3 to)
 {
     struct segment s = segment_make(from, to);
     return segment_is_blocked_by(&s, &octree->triangles[t], &octree->planes[t]);
 }
 
 bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct vec3 to,
-                           const int32_t own[2], int32_t *guess, struct octree_counts *counts)
+                           const int32_t own[2], int32_t *guess,
+                           struct octree_counts *counts)
 {
     counts->rays++;
     for (int32_t t = 0; t < octree->count; t++)
@@ -72,14 +74,15 @@ bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct
     return false;
 }
 
-unsigned octree_block(const struct octree *octree, const struct bundle *bundle, int32_t *guess,
-                      struct octree_counts *counts)
+unsigned octree_block(const struct octree *octree, const struct bundle *bundle,
+                      int32_t *guess, struct octree_counts *counts)
 {
     unsigned blocked = 0;
     for (int k = 0; k < BUNDLE_RAYS; k++)
         if ((bundle->asked >> k & 1u) &&
             octree_blocks_segment(octree, bundle->from[k / BUNDLE_ENDS],
-                                  bundle->to[k % BUNDLE_ENDS], bundle->own, guess, counts))
+                                  bundle->to[k % BUNDLE_ENDS], bundle->own, guess,
+                                  counts))
             blocked |= 1u << k;
     return blocked;
 }
@@ -118,8 +121,9 @@ bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p
     return true;
 }
 
-bool octree_first_hit(const struct octree *octree, struct vec3 origin, struct vec3 direction,
-                      bool fronts_only, struct octree_hit *hit, struct octree_counts *counts)
+bool octree_first_hit(const struct octree *octree, struct vec3 origin,
+                      struct vec3 direction, bool fronts_only, struct octree_hit *hit,
+                      struct octree_counts *counts)
 {
     struct segment s = segment_make(origin, vec3_add(origin, direction));
     double nearest = HUGE_VAL;
@@ -127,7 +131,8 @@ bool octree_first_hit(const struct octree *octree, struct vec3 origin, struct ve
     counts->rays++;
     for (int32_t t = 0; t < octree->count; t++) {
         const struct plane *plane = &octree->planes[t];
-        double start = plane_distance(plane, origin), slope = vec3_dot(plane->normal, direction);
+        double start = plane_distance(plane, origin),
+               slope = vec3_dot(plane->normal, direction);
         double at = -start / slope, weight[3]; /* in lengths of `direction` */
         bool faces = start > 0.0;
         bool ties = at <= nearest * (1.0 + 1e-12) && at > nearest * (1.0 - 1e-12);

@@ -1,9 +1,11 @@
-/* Replays the files named as arguments through a fuzz harness (tests/fuzz/fuzz.h): as they are,
- * and small ones cut off at every byte and with every byte changed, in its lowest bit and in all
- * of them. The corpus holds small files that make sense and what fuzzing has found. A harness
- * aborts where its reader breaks a promise; the last file named in the log is the culprit.
+/* Replays the files named as arguments through a fuzz harness (tests/fuzz/fuzz.h): as
+ * they are, and small ones cut off at every byte and with every byte changed, in its
+ * lowest bit and in all of them. The corpus holds small files that make sense and what
+ * fuzzing has found. A harness aborts where its reader breaks a promise; the last file
+ * named in the log is the culprit.
  *
- * Each variant is a block of its own size, so that sanitizers see reading past its end. */
+ * Each variant is a block of its own size, so that sanitizers see reading past its
+ * end. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,10 +36,12 @@ static uint8_t *load(const char *path, size_t *size)
     return bytes;
 }
 
-/* Seconds that the harness takes for the first `size` bytes, of which byte `at` is changed. */
+/* Seconds that the harness takes for the first `size` bytes, of which byte `at` is
+ * changed. */
 static double replay(const uint8_t *bytes, size_t size, size_t at, uint8_t change)
 {
-    uint8_t *copy = malloc(size + !size); /* uncounted: the harness asks for a balance of 0 */
+    uint8_t *copy =
+        malloc(size + !size); /* uncounted: the harness asks for a balance of 0 */
     memcpy(copy, bytes, size);
     if (at < size)
         copy[at] ^= change;

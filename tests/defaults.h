@@ -1,5 +1,5 @@
-/* Whole runs as phr makes them: its default options, scenes of painted triangles, and radiosity
- * at a point as pictures show it. For tests on one rank. */
+/* Whole runs as phr makes them: its default options, scenes of painted triangles, and
+ * radiosity at a point as pictures show it. For tests on one rank. */
 #ifndef TESTS_DEFAULTS_H
 #define TESTS_DEFAULTS_H
 
@@ -12,7 +12,8 @@
 #include "tests/scenes.h"
 #include "tests/solve.h"
 
-/* What phr does when these options, separated by single spaces, stand behind the scene. */
+/* What phr does when these options, separated by single spaces, stand behind the
+ * scene. */
 static inline struct criterion criterion_parse(const char *words)
 {
     enum { WORDS_MAX = 32, TEXT_MAX = 256 };
@@ -20,7 +21,8 @@ static inline struct criterion criterion_parse(const char *words)
     char *argv[WORDS_MAX] = {(char[]){"phr"}, (char[]){"scene.obj"}};
     int argc = 2;
     snprintf(text, sizeof text, "%s", words);
-    for (char *word = strtok(text, " "); word && argc < WORDS_MAX; word = strtok(NULL, " "))
+    for (char *word = strtok(text, " "); word && argc < WORDS_MAX;
+         word = strtok(NULL, " "))
         argv[argc++] = word;
     struct options options;
     struct error error = {0};
@@ -39,7 +41,8 @@ static inline struct criterion criterion_parse(const char *words)
 struct painted {
     struct soup soup;
     struct material materials[64];
-    int64_t ends[64]; /* [count] the triangles before this have a material up to this one */
+    int64_t
+        ends[64]; /* [count] the triangles before this have a material up to this one */
     int count;
 };
 
@@ -89,7 +92,8 @@ static inline struct shading *shade(const struct solution *s)
 /* Barycentric coordinates of a point on the triangle's plane. */
 static inline void weights_at(const struct triangle *t, struct vec3 x, double weight[3])
 {
-    struct vec3 a = vec3_sub(t->corner[1], t->corner[0]), b = vec3_sub(t->corner[2], t->corner[0]);
+    struct vec3 a = vec3_sub(t->corner[1], t->corner[0]),
+                b = vec3_sub(t->corner[2], t->corner[0]);
     struct vec3 normal = vec3_cross(a, b), to = vec3_sub(x, t->corner[0]);
     double unit = vec3_dot(normal, normal);
     weight[1] = vec3_dot(vec3_cross(to, b), normal) / unit;
@@ -97,8 +101,8 @@ static inline void weights_at(const struct triangle *t, struct vec3 x, double we
     weight[0] = 1.0 - weight[1] - weight[2];
 }
 
-/* Radiosity at a point in input units of one of the roots first .. first + count - 1, the one
- * that the point is on (or is least outside of). W/m^2, first band. */
+/* Radiosity at a point in input units of one of the roots first .. first + count - 1, the
+ * one that the point is on (or is least outside of). W/m^2, first band. */
 static inline double shown_at(const struct solution *s, const struct shading *shading,
                               int32_t first, int32_t count, struct vec3 point)
 {

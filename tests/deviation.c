@@ -1,7 +1,8 @@
 /* The error norms; the header defines them.
  *
- * The square of the error uses the product of two deviations rather than the square of one less
- * an estimate of the variance: it is the same sum, and nothing has to be subtracted. */
+ * The square of the error uses the product of two deviations rather than the square of
+ * one less an estimate of the variance: it is the same sum, and nothing has to be
+ * subtracted. */
 #include "tests/deviation.h"
 
 #include <math.h>
@@ -125,20 +126,22 @@ static struct sample sample_of(const struct forest *forest, int32_t patch,
     return sample;
 }
 
-/* The leaves of a patch, which holds these elements, or the patch if it is one element. */
-static void add_leaves(const struct forest *forest, int32_t patch, const struct element *elements,
-                       int64_t count, struct list *list)
+/* The leaves of a patch, which holds these elements, or the patch if it is one
+ * element. */
+static void add_leaves(const struct forest *forest, int32_t patch,
+                       const struct element *elements, int64_t count, struct list *list)
 {
     const struct patch *at = &forest->patches[patch];
     if (count > 1 && !patch_is_leaf(at))
         for (int k = 0; k < 4; k++)
-            add_leaves(forest, at->children + k, elements + k * (count / 4), count / 4, list);
+            add_leaves(forest, at->children + k, elements + k * (count / 4), count / 4,
+                       list);
     else
         list->items[list->count++] = sample_of(forest, patch, elements, count);
 }
 
-static struct deviation deviation_of_patches(const struct forest *forest, const struct truth *truth,
-                                             bool roots)
+static struct deviation deviation_of_patches(const struct forest *forest,
+                                             const struct truth *truth, bool roots)
 {
     struct list list = {alloc_array((size_t)truth->count, sizeof *list.items), 0};
     for (int64_t i = 0; i < truth->count;) {
@@ -156,12 +159,14 @@ static struct deviation deviation_of_patches(const struct forest *forest, const 
     return deviation;
 }
 
-struct deviation deviation_of_leaves(const struct forest *forest, const struct truth *truth)
+struct deviation deviation_of_leaves(const struct forest *forest,
+                                     const struct truth *truth)
 {
     return deviation_of_patches(forest, truth, false);
 }
 
-struct deviation deviation_of_roots(const struct forest *forest, const struct truth *truth)
+struct deviation deviation_of_roots(const struct forest *forest,
+                                    const struct truth *truth)
 {
     return deviation_of_patches(forest, truth, true);
 }
@@ -171,8 +176,8 @@ bool element_is_black(const struct element *element)
     return rgb_sum(element->point[0]) + rgb_sum(element->point[1]) == 0.0;
 }
 
-struct deviation deviation_of_points(const struct renderer *renderer, const struct scene *scene,
-                                     const struct truth *truth)
+struct deviation deviation_of_points(const struct renderer *renderer,
+                                     const struct scene *scene, const struct truth *truth)
 {
     struct list list = {alloc_array((size_t)truth->count, sizeof *list.items), 0};
     for (int64_t i = 0; i < truth->count; i++) {
@@ -180,11 +185,13 @@ struct deviation deviation_of_points(const struct renderer *renderer, const stru
         int32_t root = (int32_t)element->id.root;
         if (element_is_black(element))
             continue;
-        list.items[list.count++] = (struct sample){
-            .area = element_area(element, scene),
-            .value = reflected(scene, root,
-                               render_point(renderer, root, element->weight, (uint64_t)i)),
-            .truth = {element->point[0], element->point[1]}};
+        list.items[list.count++] =
+            (struct sample){.area = element_area(element, scene),
+                            .value =
+                                reflected(scene, root,
+                                          render_point(renderer, root, element->weight,
+                                                       (uint64_t)i)),
+                            .truth = {element->point[0], element->point[1]}};
     }
     struct deviation deviation = deviation_of(list.items, list.count);
     alloc_free(list.items);

@@ -1,6 +1,7 @@
 #!/bin/sh
-# golden.sh FOLDER COMMAND...: makes the pictures of tests/golden/cases in FOLDER, with COMMAND as
-# phr: NAME.pfm, or what SUFFIXES names. `make golden` has it renew tests/golden itself.
+# golden.sh FOLDER COMMAND...: makes the pictures of tests/golden/cases in FOLDER, with
+# COMMAND as phr: NAME.pfm, or what SUFFIXES names. `make golden` has it renew
+# tests/golden itself.
 
 folder=$1
 shift

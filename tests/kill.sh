@@ -1,6 +1,6 @@
-# `make check-long`: a rank is killed at forty moments, spread evenly over a run that writes a
-# checkpoint after every pass. Each time the run ends, the checkpoint there is whole (or there is none
-# yet), and what goes on from it is what an uninterrupted run is.
+# `make check-long`: a rank is killed at forty moments, spread evenly over a run that
+# writes a checkpoint after every pass. Each time the run ends, the checkpoint there is
+# whole (or there is none yet), and what goes on from it is what an uninterrupted run is.
 . tests/tap.sh
 
 : "${PHR:=./phr}"
@@ -21,12 +21,14 @@ ranks_are_gone() {
 
 goes_on() {
     [ -e "$work/check" ] || return 0
-    $MPIEXEC -n 2 "$PHR" $scene --resume "$work/check" -o "$work/on.pfm" -o "$work/on.ply" &&
+    $MPIEXEC -n 2 "$PHR" $scene --resume "$work/check" -o "$work/on.pfm" \
+        -o "$work/on.ply" &&
         cmp "$work/on.pfm" "$work/whole.pfm" && cmp "$work/on.ply" "$work/whole.ply"
 }
 
 begun=$(now)
-$MPIEXEC -n 3 "$PHR" $scene -o "$work/whole.pfm" -o "$work/whole.ply" --checkpoint "$work/check"
+$MPIEXEC -n 3 "$PHR" $scene -o "$work/whole.pfm" -o "$work/whole.ply" \
+    --checkpoint "$work/check"
 lasts=$(awk "BEGIN { print $(now) - $begun }")
 rm -f "$work/check"
 
@@ -35,7 +37,8 @@ killed=0
 found=0
 while [ $moment -lt $moments ]; do
     rm -f "$work"/check* "$work/ranks" "$work"/new*
-    $MPIEXEC -n 3 sh -c 'echo $$ >>"$0/ranks"; exec "$@"' "$work" "$PHR" $scene -o "$work/new.pfm" \
+    $MPIEXEC -n 3 sh -c 'echo $$ >>"$0/ranks"; exec "$@"' "$work" "$PHR" $scene \
+        -o "$work/new.pfm" \
         --checkpoint "$work/check" >"$work/launcher" 2>&1 </dev/null &
     launched=$!
     sleep "$(awk "BEGIN { print $lasts * ($moment + 0.5) / $moments }")"

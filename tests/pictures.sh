@@ -1,12 +1,14 @@
-# `make prove`: pictures of phr beside those of the path tracer, the Cornell box and a furnished
-# room of 1,506 triangles, 512 x 512. They are compared in the means of 8 x 8 pixels, without
-# blocks in which there is a lamp: RMS and worst block, relative to the RMS of the rest.
+# `make prove`: pictures of phr beside those of the path tracer, the Cornell box and a
+# furnished room of 1,506 triangles, 512 x 512. They are compared in the means of 8 x 8
+# pixels, without blocks in which there is a lamp: RMS and worst block, relative to the
+# RMS of the rest.
 #
-# Traced pictures are kept in $BUILD/prove. With SAMPLES=2048 they take about half an hour on two
-# cores; the noise of a block, some 0.4 % in the room, falls like the root of that number. It is
-# told by the picture of a quarter of the samples, which are the first of the others: as the mean
-# of N is that of N/4 and of 3N/4 more, both differ by sqrt(3) times the deviation of the whole.
-# The pictures to be looked at, of the same exposure, are there too, as .ppm.
+# Traced pictures are kept in $BUILD/prove. With SAMPLES=2048 they take about half an hour
+# on two cores; the noise of a block, some 0.4 % in the room, falls like the root of that
+# number. It is told by the picture of a quarter of the samples, which are the first of
+# the others: as the mean of N is that of N/4 and of 3N/4 more, both differ by sqrt(3)
+# times the deviation of the whole. The pictures to be looked at, of the same exposure,
+# are there too, as .ppm.
 . tests/tap.sh
 
 : "${PHR:=./phr}" "${IMGDIFF:=build/imgdiff}" "${PATHTRACER:=build/pathtracer}"
@@ -33,7 +35,8 @@ trace() {
         -o "$traced.pfm" -o "$traced.ppm"
 }
 
-# picture NAME SCENE RMS WORST OPTIONS...: at most so many percent, the RMS without the noise.
+# picture NAME SCENE RMS WORST OPTIONS...: at most so many percent, the RMS without the
+# noise.
 picture() {
     name=$1 scene=$2 rms=$3 worst=$4
     shift 4
@@ -46,7 +49,7 @@ picture() {
     set -- "$*" $(differ "$shown.pfm" "$traced.pfm") $(differ "$first.pfm" "$traced.pfm")
     noise=$(awk "BEGIN { print $4 / sqrt(3) }")
     worst_noise=$(awk "BEGIN { print $5 / sqrt(3) }")
-    check "$name, ${1:-defaults}: noise of the reference $noise %, worst block $worst_noise %" \
+    check "$name, ${1:-defaults}: noise of the reference $noise %, worst $worst_noise %" \
         holds "$noise < $rms / 3 && $worst_noise < $worst / 3"
     check "RMS $2 %, worst block $3 % (at most $rms and $worst)" \
         holds "$2^2 - $noise^2 <= $rms^2 && $3 <= $worst"

@@ -1,9 +1,10 @@
 #!/bin/sh
-# Golden pictures on other compilers, C libraries, MPIs and processors, as far as they are installed
-# here (`make portability`). Each platform builds phr, imgdiff and two unit tests of what reads
-# and writes files, makes the pictures of tests/golden/cases, and compares them by its own
-# imgdiff with the golden ones; .ppm and .ply files have to be those of the first platform. In the
-# table, "identical" is what cmp says of all files. Exit status 1: something is beyond its tolerance.
+# Golden pictures on other compilers, C libraries, MPIs and processors, as far as they are
+# installed here (`make portability`). Each platform builds phr, imgdiff and two unit
+# tests of what reads and writes files, makes the pictures of tests/golden/cases, and
+# compares them by its own imgdiff with the golden ones; .ppm and .ply files have to be
+# those of the first platform. In the table, "identical" is what cmp says of all files.
+# Exit status 1: something is beyond its tolerance.
 #
 # Debian 12 has the platforms as gcc clang musl-tools mpich openmpi-bin libopenmpi-dev
 # gcc-aarch64-linux-gnu gcc-s390x-linux-gnu libc6-dev-arm64-cross libc6-dev-s390x-cross
@@ -25,7 +26,8 @@ tolerance_of() {
     sed -n "s/^$1 \([^ ]*\) .*/\1/p" tests/golden/cases
 }
 
-# compare NAME: one case on the present platform; counts it, and says what is not identical.
+# compare NAME: one case on the present platform; counts it, and says what is not
+# identical.
 compare() {
     cmp -s "$here/golden/$1.pfm" "tests/golden/$1.pfm" && same=$((same + 1))
     for suffix in ppm ply; do
@@ -37,8 +39,8 @@ compare() {
     beyond="$beyond $1 ($(sed -n 's/^relative *//p' "$here/golden/$1.diff"))"
 }
 
-# platform NAME WHAT RUN MAKE-ARGUMENTS...: builds and compares. WHAT are programs that it needs;
-# RUN is put before a program; $launch, where set, before phr in place of RUN.
+# platform NAME WHAT RUN MAKE-ARGUMENTS...: builds and compares. WHAT are programs that it
+# needs; RUN is put before a program; $launch, where set, before phr in place of RUN.
 platform() {
     name=$1
     needs=$2
@@ -48,8 +50,8 @@ platform() {
     here=$top/$name
     : "${first:=$here}"
     mkdir -p "$here"
-    if ! $MAKE "$@" BUILD="$here" "$here/phr" "$here/imgdiff" "$here/tests/ply" "$here/tests/image" \
-        >"$here/log" 2>&1; then
+    if ! $MAKE "$@" BUILD="$here" "$here/phr" "$here/imgdiff" "$here/tests/ply" \
+        "$here/tests/image"         >"$here/log" 2>&1; then
         printf '%-22s FAILED to build, see %s\n' "$name" "$here/log"
         failed=1
         return

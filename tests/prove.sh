@@ -1,10 +1,12 @@
-# `make prove`, the long sweeps: errors fall with every fourfold step of epsilon, over six steps,
-# over links alone, and with a final gather whose rays double with each step, in the
-# Cornell box and in rooms of 1,004 and 6,348 triangles; with OFFICE3=FILE.obj also in that
-# scene, two-sided. References are made first, where $BUILD/prove has none. About an hour.
+# `make prove`, the long sweeps: errors fall with every fourfold step of epsilon, over six
+# steps, over links alone, and with a final gather whose rays double with each step, in
+# the Cornell box and in rooms of 1,004 and 6,348 triangles; with OFFICE3=FILE.obj also in
+# that scene, two-sided. References are made first, where $BUILD/prove has none. About an
+# hour.
 #
-# A step counts as a fall where RMS and L1, of leaves and of roots, become smaller by more than the noise
-# of the reference, or both are below it. Each step is four times the epsilon before.
+# A step counts as a fall where RMS and L1, of leaves and of roots, become smaller by more
+# than the noise of the reference, or both are below it. Each step is four times the
+# epsilon before.
 . tests/tap.sh
 
 : "${ELEMENTS:=20000}" "${SAMPLES:=2000}"
@@ -35,7 +37,8 @@ prove() {
     name=$1 scene=$2
     shift 2
     [ -e "$folder/$name.ref" ] ||
-        "$BUILD/reference" "$scene" "$folder/$name.ref" "$@" "$ELEMENTS" "$SAMPLES" >/dev/null
+        "$BUILD/reference" "$scene" "$folder/$name.ref" "$@" \
+            "$ELEMENTS" "$SAMPLES" >/dev/null
     sweep "$name" links "$scene" "$@"
     sweep "$name" gather "$scene" "$@"
 }

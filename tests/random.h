@@ -1,4 +1,5 @@
-/* Random numbers for tests: xorshift64*, seeded by the test, the same on every machine. */
+/* Random numbers for tests: xorshift64*, seeded by the test, the same on every
+ * machine. */
 #ifndef TESTS_RANDOM_H
 #define TESTS_RANDOM_H
 

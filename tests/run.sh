@@ -1,9 +1,9 @@
 #!/bin/sh
-# Runs all tests: the unit tests named as arguments, the corpora of the fuzz harnesses, then the
-# scripts tests/[0-9]*.sh in order.
-# Each prints TAP lines; what fails is shown, and the last line is "N passed, N failed".
-# A test that dies or ends without its plan counts as one failure more. Called by `make check`,
-# which sets BUILD, MPIEXEC, MPICC, CC and MAKE.
+# Runs all tests: the unit tests named as arguments, the corpora of the fuzz harnesses,
+# then the scripts tests/[0-9]*.sh in order. Each prints TAP lines; what fails is shown,
+# and the last line is "N passed, N failed". A test that dies or ends without its plan
+# counts as one failure more. Called by `make check`, which sets BUILD, MPIEXEC, MPICC, CC
+# and MAKE.
 
 cd "$(dirname "$0")/.." || exit 2
 logs=$BUILD/tests/logs
@@ -21,7 +21,8 @@ run() {
     status=$?
     good=$(grep -c '^ok ' "$log")
     bad=$(grep -c '^not ok ' "$log")
-    grep -q '^1\.\.[0-9]' "$log" || { bad=$((bad + 1)); echo "# $name ended without its plan"; }
+    grep -q '^1\.\.[0-9]' "$log" ||
+        { bad=$((bad + 1)); echo "# $name ended without its plan"; }
     if [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; then
         bad=1
         echo "# $name: exit status $status"

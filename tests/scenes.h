@@ -1,5 +1,5 @@
-/* Small scenes for tests: a growing list of triangles, shapes that are added to it, and the whole
- * of scene, octree, forest and model that is made of it. */
+/* Small scenes for tests: a growing list of triangles, shapes that are added to it, and
+ * the whole of scene, octree, forest and model that is made of it. */
 #ifndef TESTS_SCENES_H
 #define TESTS_SCENES_H
 
@@ -47,7 +47,8 @@ static inline struct vec3 random_point_on(struct random *random, const struct tr
 }
 
 /* Three points around a random centre, none further away than `size` along an axis. */
-static inline struct triangle random_triangle(struct random *random, double half, double size)
+static inline struct triangle random_triangle(struct random *random, double half,
+                                              double size)
 {
     struct vec3 centre = random_point(random, half);
     struct triangle t;
@@ -96,13 +97,14 @@ static inline void soup_add_quad(struct soup *soup, struct vec3 origin, struct v
 }
 
 /* The six sides of a box, n x n cells each; fronts outwards, or inwards for a room. */
-static inline void soup_add_box(struct soup *soup, struct vec3 low, struct vec3 high, int n,
-                                bool inwards)
+static inline void soup_add_box(struct soup *soup, struct vec3 low, struct vec3 high,
+                                int n, bool inwards)
 {
     struct vec3 size = vec3_sub(high, low);
     struct vec3 edge[3] = {{size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z}};
     for (int k = 0; k < 3; k++) {
-        struct vec3 u = edge[(k + 1) % 3], v = edge[(k + 2) % 3]; /* u x v points along axis k */
+        struct vec3 u = edge[(k + 1) % 3],
+                    v = edge[(k + 2) % 3]; /* u x v points along axis k */
         struct vec3 top = vec3_add(low, edge[k]);
         soup_add_quad(soup, low, inwards ? u : v, inwards ? v : u, n);
         soup_add_quad(soup, top, inwards ? v : u, inwards ? u : v, n);
@@ -114,10 +116,10 @@ static inline struct vec3 vec3_unit(struct vec3 a)
     return vec3_scale(a, 1.0 / vec3_length(a));
 }
 
-/* Splits a triangle of the unit sphere `level` times and adds the parts. Edges are split at the
- * same bits from both sides. */
-static inline void soup_add_sphere_part(struct soup *soup, struct triangle t, double radius,
-                                        int level)
+/* Splits a triangle of the unit sphere `level` times and adds the parts. Edges are split
+ * at the same bits from both sides. */
+static inline void soup_add_sphere_part(struct soup *soup, struct triangle t,
+                                        double radius, int level)
 {
     if (level == 0) {
         for (int k = 0; k < 3; k++)
@@ -180,7 +182,8 @@ struct world {
     struct model model; /* model.forest is the forest */
 };
 
-/* Prepares the scene, owns it, and makes the rest with a criterion that a test may change. */
+/* Prepares the scene, owns it, and makes the rest with a criterion that a test may
+ * change. */
 static inline struct world world_make(struct scene *scene)
 {
     static const struct criterion criterion = {.epsilon = 1e-3, .max_level = ID_MAX_LEVEL,
@@ -209,13 +212,15 @@ static inline void clear_flux(struct forest *forest)
 /* --- answers by brute force --- */
 
 /* The first of the triangles that blocks the segment, `own` left out, or -1. */
-static inline int32_t brute_blocker(const struct triangle *triangles, const struct plane *planes,
-                                    int32_t count, struct vec3 from, struct vec3 to,
+static inline int32_t brute_blocker(const struct triangle *triangles,
+                                    const struct plane *planes, int32_t count,
+                                    struct vec3 from, struct vec3 to,
                                     const int32_t own[2])
 {
     struct segment segment = segment_make(from, to);
     for (int32_t i = 0; i < count; i++)
-        if (i != own[0] && i != own[1] && vec3_dot(planes[i].normal, planes[i].normal) > 0.0 &&
+        if (i != own[0] && i != own[1] &&
+            vec3_dot(planes[i].normal, planes[i].normal) > 0.0 &&
             segment_is_blocked_by(&segment, &triangles[i], &planes[i]))
             return i;
     return -1;

@@ -23,15 +23,21 @@ static inline double seconds_of_work(const struct comm *comm)
 }
 
 /* The paper's variant. */
-static inline struct criterion criterion_of(double epsilon, int max_level, double tolerance)
+static inline struct criterion criterion_of(double epsilon, int max_level,
+                                            double tolerance)
 {
-    return (struct criterion){.epsilon = epsilon, .min_area = 0.0, .max_level = max_level,
-                              .alpha = 0.5, .tolerance = tolerance, .max_iterations = 100000,
+    return (struct criterion){.epsilon = epsilon,
+                              .min_area = 0.0,
+                              .max_level = max_level,
+                              .alpha = 0.5,
+                              .tolerance = tolerance,
+                              .max_iterations = 100000,
                               .balance = BALANCE_GREEDY};
 }
 
 /* The error oracle, form factors of polygons, and conjugate gradients. */
-static inline struct criterion criterion_best(double epsilon, int max_level, double tolerance)
+static inline struct criterion criterion_best(double epsilon, int max_level,
+                                              double tolerance)
 {
     struct criterion criterion = criterion_of(epsilon, max_level, tolerance);
     criterion.oracle = ORACLE_ERROR;
@@ -85,8 +91,9 @@ static inline void solution_free(struct solution *s)
     scene_destroy(s->scene);
 }
 
-/* The cube [0, 1]^3 seen from inside, faces in the order bottom, top (y), then the sides, two
- * triangles each; every face has material `face`, of which there are six, all zero. Prepared. */
+/* The cube [0, 1]^3 seen from inside, faces in the order bottom, top (y), then the sides,
+ * two triangles each; every face has material `face`, of which there are six, all zero.
+ * Prepared. */
 static inline struct scene *cube_create(void)
 {
     static const int quads[6][4] = {{0, 4, 5, 1}, {2, 3, 7, 6}, {0, 1, 3, 2},

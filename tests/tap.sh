@@ -1,7 +1,9 @@
-# TAP for shell tests: `. tests/tap.sh` at the top, `tap_done` as the last line. The current
-# directory is the top of the source tree; $work is an empty folder of the test's own.
+# TAP for shell tests: `. tests/tap.sh` at the top, `tap_done` as the last line. The
+# current directory is the top of the source tree; $work is an empty folder of the test's
+# own.
 
-: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${MPICC:=mpicc}" "${CC:=cc}" "${MAKE:=make}"
+: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${MPICC:=mpicc}" "${CC:=cc}" \
+    "${MAKE:=make}"
 tap_count=0
 tap_failed=0
 work=$BUILD/tests/$(basename "$0" .sh).work

@@ -30,7 +30,8 @@ static inline uint64_t flux_hash(const struct forest *forest)
     uint64_t hash = 1;
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
-            hash = (hash ^ (uint64_t)forest->patches[p].flux[c]) * UINT64_C(1099511628211);
+            hash =
+                (hash ^ (uint64_t)forest->patches[p].flux[c]) * UINT64_C(1099511628211);
     return hash;
 }
 

@@ -66,7 +66,8 @@ double element_area(const struct element *element, const struct scene *scene)
 
 struct truth truth_make(const struct scene *scene, int64_t wanted)
 {
-    struct truth truth = {.root_count = scene_root_count(scene), .area = scene_area(scene)};
+    struct truth truth = {.root_count = scene_root_count(scene),
+                          .area = scene_area(scene)};
     int64_t capacity = 0;
     for (int32_t root = 0; root < truth.root_count; root++) {
         int level = level_of(scene, root, truth.area / (double)wanted);
@@ -74,7 +75,8 @@ struct truth truth_make(const struct scene *scene, int64_t wanted)
         truth.items = alloc_reserve(truth.items, &capacity, truth.count + parts,
                                     sizeof *truth.items);
         for (int64_t i = 0; i < parts; i++)
-            truth.items[truth.count++] = (struct element){.id = id_of_element(root, level, i)};
+            truth.items[truth.count++] =
+                (struct element){.id = id_of_element(root, level, i)};
     }
     return truth;
 }
@@ -106,14 +108,16 @@ bool truth_write(const struct truth *truth, const char *path, struct error *erro
     return (written && closed) || error_set(error, EXIT_FAILED, "%s: cannot write", path);
 }
 
-static bool read_elements(struct truth *truth, FILE *file, const char *path, struct error *error)
+static bool read_elements(struct truth *truth, FILE *file, const char *path,
+                          struct error *error)
 {
     struct header header, own = header_of(truth);
     if (fread(&header, sizeof header, 1, file) != 1 ||
         memcmp(header.magic, own.magic, sizeof own.magic) != 0 || header.count < 0)
         return error_set(error, EXIT_USAGE, "%s: not a reference", path);
     if (header.root_count != own.root_count || header.area != own.area)
-        return error_set(error, EXIT_USAGE, "%s: the reference is of another scene", path);
+        return error_set(error, EXIT_USAGE, "%s: the reference is of another scene",
+                         path);
     truth->count = header.count;
     truth->items = alloc_array((size_t)truth->count, sizeof *truth->items);
     if (fread(truth->items, sizeof *truth->items, (size_t)truth->count, file) !=
@@ -125,7 +129,8 @@ static bool read_elements(struct truth *truth, FILE *file, const char *path, str
 bool truth_read(struct truth *truth, const char *path, const struct scene *scene,
                 struct error *error)
 {
-    *truth = (struct truth){.root_count = scene_root_count(scene), .area = scene_area(scene)};
+    *truth =
+        (struct truth){.root_count = scene_root_count(scene), .area = scene_area(scene)};
     FILE *file = fopen(path, "rb");
     if (!file)
         return error_set(error, EXIT_USAGE, "%s: cannot read", path);

@@ -1,9 +1,9 @@
-/* The truth about a scene: the reflected radiosity of elements and of points, each estimated twice
- * by rad/beyond/paths.h.
+/* The truth about a scene: the reflected radiosity of elements and of points, each
+ * estimated twice by rad/beyond/paths.h.
  *
- * Elements are patches of a forest in which each root that reflects is divided evenly. Each holds
- * one point. What is kept is rho H, the radiosity less the emission: that is what a program has to
- * find; E is given. */
+ * Elements are patches of a forest in which each root that reflects is divided evenly.
+ * Each holds one point. What is kept is rho H, the radiosity less the emission: that is
+ * what a program has to find; E is given. */
 #ifndef TESTS_TRUTH_H
 #define TESTS_TRUTH_H
 
@@ -17,20 +17,22 @@ enum { TRUTH_HALVES = 2, TRUTH_MAX_LEVEL = 10 };
 /* 128 bytes without padding: it travels from rank to rank and to the file as it is. */
 struct element {
     struct patch_id id;
-    double weight[3];                 /* barycentric coordinates of the point in its root */
-    struct rgb mean[TRUTH_HALVES];    /* over the element, W/m^2; two independent estimates */
+    double weight[3]; /* barycentric coordinates of the point in its root */
+    struct rgb
+        mean[TRUTH_HALVES]; /* over the element, W/m^2; two independent estimates */
     struct rgb point[TRUTH_HALVES];   /* at the point, W/m^2; two independent estimates */
 };
 
 struct truth {
-    struct element *items; /* [count], roots in order, those of a root in the order of IDs */
+    struct element
+        *items; /* [count], roots in order, those of a root in the order of IDs */
     int64_t count;
     int32_t root_count;    /* of the scene */
     double area;           /* of the scene, square scene units: tells scenes apart */
 };
 
-/* Elements without estimates for a prepared scene: at level 10, or each at most 1 / `wanted` of the
- * scene's area. */
+/* Elements without estimates for a prepared scene: at level 10, or each at most 1 /
+ * `wanted` of the scene's area. */
 struct truth truth_make(const struct scene *scene, int64_t wanted);
 void truth_free(struct truth *truth);
 
