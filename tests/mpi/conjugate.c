@@ -256,10 +256,8 @@ static void share_factors(const struct problem *problem)
 static void test_dense(const struct comm *comm, double strength, double rho, int splits)
 {
     static double f[LEAVES_MAX][LEAVES_MAX];
-    struct criterion criterion = {.oracle = ORACLE_ERROR,
-                                  .solver = SOLVER_CG,
-                                  .tolerance = 1e-12,
-                                  .max_level = 15,
+    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
+                                  .tolerance = 1e-12, .max_level = 15,
                                   .max_iterations = 1000};
     struct problem problem = problem_make(comm, strength, rho, splits, &criterion);
     struct vote vote = solve_links(problem.solver);
@@ -293,10 +291,8 @@ static void test_dense(const struct comm *comm, double strength, double rho, int
  * found again. */
 static void test_restart(const struct comm *comm)
 {
-    struct criterion criterion = {.oracle = ORACLE_ERROR,
-                                  .solver = SOLVER_CG,
-                                  .tolerance = 1e-6,
-                                  .max_level = 15,
+    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
+                                  .tolerance = 1e-6, .max_level = 15,
                                   .max_iterations = 1000};
     struct problem problem = problem_make(comm, STRONG, 0.9, 4, &criterion);
     solve_links(problem.solver);
@@ -329,10 +325,8 @@ static double difference(const struct problem *a, const struct problem *b)
 /* The bound on what is missing holds after each step, and is not much too large. */
 static void test_bound(const struct comm *comm, double strength)
 {
-    struct criterion criterion = {.oracle = ORACLE_ERROR,
-                                  .solver = SOLVER_CG,
-                                  .tolerance = 1e-12,
-                                  .max_level = 15,
+    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
+                                  .tolerance = 1e-12, .max_level = 15,
                                   .max_iterations = 1000};
     struct problem exact = problem_make(comm, strength, 0.8, 3, &criterion);
     double first = 0.0, last = 0.0, closest = 0.0, furthest = 1.0;
@@ -352,9 +346,8 @@ static void test_bound(const struct comm *comm, double strength)
     }
     if (comm->rank == 0)
         tap_ok(counted && last < 1e-3 * first && closest <= 1.0 && furthest >= 0.01,
-               "links times %g: what is missing is %.3f to %.3f of the bound on it, %.1e "
-               "after none "
-               "to %.1e after 7 steps",
+               "links times %g: the missing light is %.3f to %.3f of its bound, %.1e at "
+               "first, %.1e after 7 steps",
                strength, furthest, closest, first, last);
     problem_free(&exact);
 }
@@ -364,10 +357,8 @@ static void test_bound(const struct comm *comm, double strength)
 static void test_bound_is_sharp(const struct comm *comm)
 {
     const double rho = 0.6, area = 0.1;
-    struct criterion criterion = {.oracle = ORACLE_ERROR,
-                                  .solver = SOLVER_CG,
-                                  .tolerance = 1e-12,
-                                  .max_level = 15,
+    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
+                                  .tolerance = 1e-12, .max_level = 15,
                                   .max_iterations = 1};
     struct scene *scene = make_scene(0.0);
     for (int32_t i = 0; i < ROOTS; i++) {
@@ -379,11 +370,8 @@ static void test_bound_is_sharp(const struct comm *comm)
     int number = 0;
     for (int32_t p = 0; p < ROOTS; p++)
         for (int32_t q = p + 1; q < ROOTS; q++) {
-            struct link link = {.p = p,
-                                .q = q,
-                                .seen = LINK_ALL_SEEN,
-                                .parts_p = {64, 64, 64},
-                                .parts_q = {64, 64, 64},
+            struct link link = {.p = p, .q = q, .seen = LINK_ALL_SEEN,
+                                .parts_p = {64, 64, 64}, .parts_q = {64, 64, 64},
                                 .area = (float)(area / (ROOTS - 1))};
             if (number++ % comm->size == comm->rank)
                 link_list_append(&solver->links, link);
@@ -403,12 +391,9 @@ static void test_bound_is_sharp(const struct comm *comm)
 /* On any number of ranks the same bits as on one. */
 static void test_ranks(const struct comm *comm, const struct comm *self, double strength)
 {
-    struct criterion criterion = {.oracle = ORACLE_ERROR,
-                                  .solver = SOLVER_CG,
-                                  .tolerance = 1e-9,
-                                  .max_level = 15,
-                                  .max_iterations = 1000,
-                                  .balance = BALANCE_DEFAULT};
+    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
+                                  .tolerance = 1e-9, .max_level = 15,
+                                  .max_iterations = 1000, .balance = BALANCE_DEFAULT};
     struct problem parallel = problem_make(comm, strength, 0.97, 5, &criterion);
     struct problem alone = problem_make(self, strength, 0.97, 5, &criterion);
     struct vote a = solve_links(parallel.solver), b = solve_links(alone.solver);

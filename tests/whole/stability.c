@@ -1,5 +1,5 @@
-/* What breaks radiosity programs: one test for each entry of a checklist, but for those that other
- * tests cover:
+/* What breaks radiosity programs: one test for each entry of a checklist, but for those
+ * that other tests cover:
  *
  *     F <= 1, G <= the smaller area      here, after refinement; formfactor.c, contour.c
  *     singular shared edges              contour.c, 55-validate.sh
@@ -11,7 +11,7 @@
  *     covered patches, interpenetration  here
  *     slivers                            here
  *     faces without area                 here; scene.c counts them
- *     scale                              here, fixed mesh; 65-invariance.sh, 2^k to the bit
+ *     scale                              here, fixed mesh; 65-invariance.sh, to the bit
  *     offset                             here, fixed mesh; 65-invariance.sh
  *     scale of the emission              here
  *     a tiny bright light                here
@@ -154,13 +154,14 @@ static void test_bounds(const char *words)
            "%lld links",
            *words ? ", " : "", words, largest, (long long)s.stats.links);
     tap_ok(f <= 1.0 && (*words || fabs(f / exact - 1.0) <= 0.01),
-           "a square below a large one: "
-           "F %.5f, exact %.5f",
+           "a square below a large one: F %.5f, exact %.5f",
            f, exact); /* 1 %: as the default epsilon has it elsewhere */
     solution_free(&s);
 }
 
-/* Both solvers stop by their own bound: the truth is what they end with if they go on. */
+/* The truth is the end of many more iterations. Conjugate gradients stop by their bound;
+ * the paper's iterations by the last change of energy, and then the rest may be q / (1 - q)
+ * times that, where q < 0.99 is the factor of one iteration. */
 static void test_false_convergence(void)
 {
     static const char *const solvers[] = {"jacobi", "cg"};
@@ -181,7 +182,7 @@ static void test_false_convergence(void)
         }
         double mean = mean_radiosity(&s[0], 0, 12), truth = mean_radiosity(&s[1], 0, 12);
         tap_ok(s[0].vote.converged && s[1].vote.converged &&
-                   fabs(mean / truth - 1.0) <= 1e-6,
+                   fabs(mean / truth - 1.0) <= (k == 0 ? 99e-6 : 1e-6),
                "rho 0.99, tolerance 1e-6, %s: the true error is %.1e (%lld iterations, B "
                "%.3f)",
                solvers[k], fabs(mean / truth - 1.0), (long long)s[0].stats.iterations,
@@ -671,11 +672,8 @@ static void test_cracks(void)
     for (int64_t p = 0; p < forest->count; p++)
         forest->patches[p].radiosity = (struct rgb){{2.0, 2.0, 2.0}};
     struct shading *shading = shade(&s);
-    struct camera camera = {.eye = point(0.05, 0.07, 0.9),
-                            .at = point(0.6, 0.5, 0.3),
-                            .up = point(0, 0, 1),
-                            .fov = 100.0,
-                            .width = 200,
+    struct camera camera = {.eye = point(0.05, 0.07, 0.9), .at = point(0.6, 0.5, 0.3),
+                            .up = point(0, 0, 1), .fov = 100.0, .width = 200,
                             .height = 200};
     struct renderer renderer = renderer_make(s.octree, shading, NULL);
     float *pixels = render_rows(&renderer, &camera, 2, 0, 1, NULL);
