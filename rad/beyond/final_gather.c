@@ -1,8 +1,7 @@
 /* The final gather: its rows, kept, and their products with radiosities.
  *
- * A row says what a leaf receives of the radiosity of each leaf that it sees. It is made
- * by rays (gather_rays.c) or, where nothing is in the way, by exact factors
- * (gather_exact.c).
+ * A row holds the form factors from a leaf to the leaves that it sees. It is made by rays
+ * (gather_rays.c) or, where nothing is in the way, by exact factors (gather_exact.c).
  *
  * As a sender a leaf is no constant: where it has sisters, B is linear over it,
  *
@@ -10,8 +9,8 @@
  *
  * with the barycentric coordinates w of x in the leaf and the means b_0, b_1, b_2 of its
  * parent's outer children: the linear function that has these means. (Over the parent
- * itself s is 2.) It is linear in the
- * radiosities, so the row just has terms for the sisters, and what is added sums to 0.
+ * itself s is 2.) It is linear in the radiosities, so the row has terms for the sisters,
+ * which sum to 0.
  * Constants move light outwards at each reflection where leaves are as wide as the gap
  * between them. Where the linear function is below 0 somewhere, its slope is made less.
  *
@@ -29,7 +28,7 @@
 #include "rad/beyond/sequence.h"
 #include "rad/pushpull.h"
 
-/* A lamp emits so many times what is reflected in the mean: where all surfaces are
+/* A lamp emits more than this times the mean reflected radiosity: where all surfaces are
  * alike, as in a furnace, there is none. */
 static const double LAMP = 4.0;
 
@@ -60,8 +59,8 @@ static double mean_reflected(const struct model *model)
     return sum / model->area;
 }
 
-/* Halves the rays for each fourfold of MANY leaves: what is shown of them together is as
- * smooth as before, and the time grows with the root of their number only. */
+/* Halves the rays for each fourfold of MANY leaves: a picture of them is as smooth as
+ * before, and the time grows only with the root of their number. */
 static int rays_for(int rays, int64_t leaves)
 {
     for (; leaves >= 2 * MANY && rays >= 2 * FEWEST; leaves /= 4)
@@ -107,8 +106,8 @@ void final_gather_free(struct final_gather *gather)
 
 /* --- rows --- */
 
-/* The part, at most 1, that a parent's slope is taken with: over no child B is below 0.
- */
+/* The factor, at most 1, that a parent's slope is made less by, so that B is not below 0
+ * over any child. */
 static double slope_part(const struct rgb b[4], struct rgb middle)
 {
     double part = 1.0;
@@ -178,7 +177,7 @@ void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
     }
 }
 
-/* By place, then by weight, so that the order is one that no sorting can change. */
+/* By place, then by weight: any sorting gives the same order. */
 static int compare_terms(const void *left, const void *right)
 {
     const struct gather_term *a = left, *b = right;
@@ -188,8 +187,8 @@ static int compare_terms(const void *left, const void *right)
     return order;
 }
 
-/* Joins the terms of the same patch, by sums of doubles: thousands of equal floats have a
- * sum of floats that is wrong in the sixth digit. */
+/* Joins the terms of the same patch, in double: a sum of thousands of equal floats, in
+ * float, is wrong in the sixth digit. */
 static void join_terms(struct receiver *r)
 {
     struct gather_term *terms = r->gather->terms;
@@ -224,7 +223,7 @@ static uint64_t seed_of(const struct final_gather *gather, int32_t leaf)
     return hash_mix((uint64_t)id.root << 32 | id.hierarchy);
 }
 
-/* H that has been found. */
+/* H by lamps and rays. */
 static struct rgb light_of(const struct receiver *r)
 {
     struct rgb h = r->lamps;
@@ -245,10 +244,8 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
         struct facet quarter = facet;
         quarter.triangle = triangle_child(&facet.triangle, k);
         quarter.area = 0.25 * facet.area;
-        struct receiver r = receiver_make(gather, quarter,
-                                          hash_mix(seed_of(gather,
-                                                           leaf) + 1 + (uint64_t)k),
-                                          rays);
+        uint64_t seed = hash_mix(seed_of(gather, leaf) + 1 + (uint64_t)k);
+        struct receiver r = receiver_make(gather, quarter, seed, rays);
         receiver_aim(&r);
         receiver_fire(&r);
         struct rgb h = light_of(&r);
@@ -266,7 +263,7 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     return look;
 }
 
-/* What lamps bring by what they emit, of an exact row. */
+/* The irradiance straight from lamps, by an exact row. */
 static struct rgb light_of_lamps(const struct receiver *r)
 {
     const struct final_gather *g = r->gather;
@@ -293,7 +290,7 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
     if (exact && receiver_add_exact(&r)) {
         r.row.lamps = light_of_lamps(&r);
     } else {
-        r.row.end = r.first_term; /* what exact factors have brought is given up */
+        r.row.end = r.first_term; /* without the terms of exact factors */
         r.light = (struct rgb){{0.0, 0.0, 0.0}};
         receiver_aim(&r);
         receiver_fire(&r);

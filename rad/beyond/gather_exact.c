@@ -15,11 +15,11 @@
 
 #include "geom/alloc.h"
 
-/* A root has exact rows if it faces at most so many times as many roots as rays would be
- * fired. */
+/* A root has exact rows only if it faces at most this many roots for each ray that would
+ * be fired. */
 enum { FACED_PER_RAY = 4 };
 
-/* A root is slender if the square of its radius is more than so many times its area. */
+/* A root is slender if the square of its radius is more than this times its area. */
 static const double SLENDER = 16.0;
 
 /* A sender is taken as a whole in an exact row if B over it, times its factor and the
@@ -27,15 +27,15 @@ static const double SLENDER = 16.0;
  * for, there is more to win. */
 static const double VARIES = 0.1;
 
-/* A leaf is quartered so many times at most. */
+/* Most times that a leaf is quartered. */
 enum { QUARTERINGS = 3 };
 
 /* An exact row whose sum is within this of 1 sees no way out. */
 static const double CLOSED = 1e-3;
 
-/* --- what a root faces --- */
+/* --- the roots that a root faces --- */
 
-/* Adds the roots below a node that the root faces; false once there are too many. */
+/* Adds the roots below a node that the root faces. False once there are too many. */
 static bool view_node(struct final_gather *g, const struct end *root, int32_t node)
 {
     struct gather_view *view = &g->view;
@@ -56,8 +56,8 @@ static bool view_node(struct final_gather *g, const struct end *root, int32_t no
     return true;
 }
 
-/* True if it is proved that nothing stands between the root and what it faces. Segments
- * come first: most that is hidden is found out by them. */
+/* True if it is proved that nothing stands between the root and the roots that it faces.
+ * Segments come first: they find most blockers. */
 static bool is_open(struct final_gather *g, const struct facet *root)
 {
     const struct octree *octree = g->model->octree;
@@ -100,8 +100,8 @@ static const struct gather_view *view_of(struct final_gather *g, int32_t root)
     return &g->view;
 }
 
-/* True if the leaf lies so close on a much larger one that it hides from others what it
- * sees of it: the light of the whole is not what it gets. */
+/* True if the leaf lies so close on a much larger one that it shades the part of it that
+ * it sees: that part is darker than the mean of the whole. */
 static bool lies_on(const struct receiver *r, int32_t sender, double factor)
 {
     const struct forest *forest = r->gather->model->forest;
@@ -122,7 +122,7 @@ static void three_points(const struct triangle *t, struct vec3 x[3])
         x[k] = vec3_add(sum, vec3_scale(c[k], 0.5));
 }
 
-/* Where on a sender its light comes from in the mean, in barycentric coordinates. */
+/* The mean place on a sender that its light comes from, in barycentric coordinates. */
 static void place_of_light(const struct facet *to, const struct triangle *sender,
                            struct vec3 normal, double w[3])
 {

@@ -5,15 +5,15 @@
  * scene each row sums to 1, by construction and not by luck. Noise is their only fault,
  * and lamps are where most of it would come from: lamps (rad/beyond/lamps.c) are aimed at
  * by segments, in proportion to the light that they would bring unoccluded, which is
- * known from exact factors; rays that meet a lamp count what it reflects and not what it
- * emits.
+ * known from exact factors; rays that meet a lamp count its reflected light and not its
+ * emission.
  *
  * The mesh is wrong where a ray ends nearer than the leaf there is large: under a
  * sheet of paper on a table the table is dark, but the leaf is not. And it is wrong in
  * a gap that is narrow for the leaf, also far from where the ray began: the leaf may
  * reach into the light. There the ray goes on: the point that it met receives light
  * from a lamp, by one segment, and from one more ray, until a ray ends far enough
- * away. That is a path tracer for what is near and radiosity for the rest. */
+ * away. That is a path tracer for near surfaces and radiosity for the rest. */
 #include "rad/beyond/receiver.h"
 
 #include <math.h>
@@ -38,13 +38,14 @@ static const double OPPOSITE = -0.7;
 /* A lamp is wide if its factor from the leaf, unoccluded, is more than this. */
 static const double WIDE = 0.05;
 
-/* A lamp is near if the square of its distance is less than so many times its area. */
+/* A lamp is near if the square of its distance is less than this times its area. */
 static const double NEAR_LAMP = 4.0;
 
-/* A path ends after so many points at the latest. */
+/* Most points of a path, most tries for a point of a lamp above the horizon, points of a
+ * leaf that are tested for being bare. */
 enum { PATH_MOST = 8, AIMS_MOST = 4, BARE_POINTS = 4 };
 
-/* Fewer segments than that say too little of what is seen by themselves. */
+/* Fewest segments that are enough to estimate the visible share of lamps. */
 enum { VOLLEY = 4 };
 
 /* --- points that rays meet --- */
@@ -80,7 +81,7 @@ static int32_t leaf_at(const struct forest *forest, int32_t root, struct vec3 x,
 
 enum met { MET_NOTHING, MET_BACK, MET_FRONT };
 
-/* What the ray meets; a front's point is filled in. */
+/* Finds the first surface that the ray meets; fills in the point of a front. */
 static enum met trace(struct receiver *r, struct vec3 origin, struct vec3 direction,
                   struct point *point)
 {
@@ -148,11 +149,11 @@ int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32
     return blocker_of(r, x, input, y, lamp);
 }
 
-/* Segments to groups that are next to each other in the tree, each in two halves: they
- * might bring `direct` and bring `seen`, over all bands, W/m^2. */
+/* Segments to groups that are next to each other in the tree, in two halves. */
 struct volley {
-    double direct[2], seen[2];
-    int count[2];
+    double direct[2]; /* light without blockers, over all bands, W/m^2 */
+    double seen[2];   /* light with them */
+    int count[2];     /* segments */
 };
 
 /* The half that segment `i` of `count` to a group belongs to; a single one, the smaller.
@@ -162,8 +163,8 @@ static int half_of(const struct volley *volley, int i, int count)
     return count > 1 ? 2 * i >= count : volley->count[0] > volley->count[1];
 }
 
-/* Adds the variance of what they bring, as the share that is seen tells it, and as its
- * halves do, in the colour of one of the lamps. */
+/* Adds the variance of the volley's light, in the colour of one of its lamps: by its
+ * visible share as if by chance, and by the difference of its halves. */
 static void end_volley(struct receiver *r, struct volley *volley, struct rgb emission)
 {
     double direct = volley->direct[0] + volley->direct[1];
@@ -181,14 +182,14 @@ static void end_volley(struct receiver *r, struct volley *volley, struct rgb emi
     *volley = (struct volley){.direct = {0.0, 0.0}};
 }
 
-/* Of the segments to a node. */
+/* The sequence of the segments to a node. */
 static struct sequence sequence_to(const struct receiver *r, int32_t node)
 {
     return sequence_start(hash_mix(r->seed + 8) ^ hash_mix((uint64_t)node));
 }
 
-/* Segments to a single lamp: `count` of them bring the irradiance `direct` all together,
- * summed over bands, but for what is blocked: of that each has its kernel's share. */
+/* Fires `count` segments at a single lamp: without blockers they bring the irradiance
+ * `direct` all together, summed over bands, each in proportion to its kernel. */
 static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int count,
                         int32_t root, double direct, struct volley *volley)
 {
@@ -219,7 +220,7 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
                    direct * ((seen[0] + seen[1]) / sum) / rgb_sum(emission));
 }
 
-/* The same to a lamp that is wide; its variance is known. */
+/* The same for a wide lamp, whose variance is known. */
 static void aim_at_wide_lamp(struct receiver *r, int count, int32_t root, double direct)
 {
     static const struct rgb ALL = {{1.0, 1.0, 1.0}};
@@ -234,8 +235,8 @@ static void aim_at_wide_lamp(struct receiver *r, int count, int32_t root, double
     }
 }
 
-/* One segment to a lamp of a cluster, which is far away: it stands for `each` of what the
- * group brings. */
+/* Fires one segment at a lamp of a far cluster: it stands for `each` of the group's
+ * light. */
 static void aim_at_cluster(struct receiver *r, const struct sequence *sequence,
                            uint32_t index, const struct lamp_group *group, double each)
 {
@@ -257,7 +258,7 @@ static void aim_at_cluster(struct receiver *r, const struct sequence *sequence,
                        (each / group->direct));
 }
 
-/* `count` segments to a group, which bring `direct` all together. */
+/* Fires `count` segments at a group; unoccluded they bring `direct` all together. */
 static void aim_at_group(struct receiver *r, const struct lamp_group *group, int count,
                          double direct, struct volley *volley)
 {
@@ -282,9 +283,9 @@ static bool is_wide(const struct receiver *r, const struct lamp_group *group)
                WIDE * rgb_sum(scene_root_material(scene, group->node)->emission);
 }
 
-/* What lamps bring to the leaf: as many segments as rays, dealt over the groups in
- * proportion to their light. A group that is sure to get one counts with its own light,
- * shared among its segments: their number depends on where dealing starts. */
+/* Adds the light of lamps: as many segments as rays, dealt to the groups in proportion to
+ * their light. A group that is sure to get a segment counts with its own light, shared
+ * among its segments, for their number depends on where dealing starts. */
 static void aim_at_lamps(struct receiver *r)
 {
     struct final_gather *g = r->gather;
@@ -361,11 +362,11 @@ static void aim_beside(struct receiver *r, const struct point *x,
     }
 }
 
-/* True if a leaf is too near to a point, for its size, for what the mesh says of the
- * point of it that a ray has met. What counts is its centroid, so that the point sees
- * either all of the leaf by the mesh or nothing: where only its far part were, that
- * would be given the mean of the whole. In a gap that is narrow for the leaf all of it
- * is too near, for it may reach from the gap into the light. */
+/* True if the leaf that a ray has met is too near to the ray's origin, for its size, for
+ * its mean radiosity to hold there. The distance is that of its centroid, so that a point
+ * takes the mean of the whole leaf or none of it: a far part alone would be given the
+ * mean of the whole. In a gap that is narrow for the leaf all of it is too near, for it
+ * may reach from the gap into the light. */
 static bool is_too_near(const struct forest *forest, const struct point *met,
                         struct vec3 x, struct vec3 normal)
 {
@@ -389,7 +390,7 @@ static void look_inside(struct receiver *r, struct vec3 origin, struct vec3 dire
         r->escaped++;
 }
 
-/* Adds what the mesh says of a point; `aimed`: without what it emits. */
+/* Adds the mesh's light at a point; `aimed`: without emission. */
 static void add_mesh(struct receiver *r, const struct point *point, bool aimed,
                      const struct rgb *weight)
 {
@@ -400,8 +401,8 @@ static void add_mesh(struct receiver *r, const struct point *point, bool aimed,
 }
 
 /* Russian roulette: the path goes on, for all that would have, with the probability of
- * the largest reflectance. What is expected of the path is the mesh's light and what it
- * finds beyond that, so that rows still sum to 1. */
+ * the largest reflectance. The mesh's light is added in the mean whether it goes on or
+ * not, so that rows still sum to 1. */
 static bool goes_on(struct receiver *r, const struct point *point, bool aimed, double u,
                     struct rgb *weight)
 {
@@ -419,8 +420,7 @@ static bool goes_on(struct receiver *r, const struct point *point, bool aimed, d
     return u < most;
 }
 
-/* A ray and what follows from it, the seed of which is `seed`. `weight`: of the light
- * that it finds. */
+/* Follows a path from its first ray on, and adds its light, times `weight`. */
 static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction,
                    struct rgb weight, uint64_t seed)
 {
@@ -460,8 +460,8 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
     }
 }
 
-/* Enters the light of a ray, of the first half of them or the second, and of what
- * followed. */
+/* Adds the light of a ray's path to the sums, and to the half of the rays that it belongs
+ * to. */
 static void count_light(struct receiver *r, int half)
 {
     for (int c = 0; c < BANDS; c++) {
@@ -496,9 +496,6 @@ void receiver_fire(struct receiver *r)
         r->gather->counts.escaped += r->escaped;
 }
 
-/* The share of the leaf that is met from just above it, and not a face that lies on it: a
- * picture in the plane of a wall, a lamp in that of the ceiling; and that is not inside
- * of things. */
 float receiver_bare_share(const struct receiver *r)
 {
     static const double ABOVE = 0x1p-20; /* scene units */
@@ -526,8 +523,8 @@ double receiver_kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,
                        struct vec3 normal_y)
 {
     struct vec3 d = vec3_sub(y, x);
-    double d2 = vec3_dot(d, d), rise = vec3_dot(normal_x, d),
-           fall = -vec3_dot(normal_y, d);
+    double d2 = vec3_dot(d, d);
+    double rise = vec3_dot(normal_x, d), fall = -vec3_dot(normal_y, d);
     return rise > 0.0 && fall > 0.0 ? rise * fall / (PI * d2 * d2) : 0.0;
 }
 

@@ -1,16 +1,16 @@
 /* Lamps that are wide as seen from a receiver, and may be seen through a narrow opening.
  *
- * Segments to points all over such a lamp hardly ever find the opening. But those that
- * are blocked tell by which triangles, and what these hide from a point can be cut out
- * of the lamp exactly (geom/outlook.h). So each further segment is aimed at what the
- * blockers that are known leave over: with V = 1 where it passes, and 0 where it does
- * not,
+ * Segments to points all over such a lamp hardly ever find the opening. But each blocked
+ * one names a blocker, and the part of the lamp that a blocker hides from a point can be
+ * cut out exactly (geom/outlook.h). So each further segment is aimed at the remainder,
+ * the part of the lamp that no known blocker hides: with V = 1 where it passes, and 0
+ * where it does not,
  *
- *     H at x  =  E F(what is left over, x) V.
+ *     H at x  =  E F(remainder, x) V.
  *
  * Where one does not pass, a blocker more is known, and all begins anew. A wall with a
- * hole is known after some ten segments, and what is left over is the hole. Then the
- * light at each point is exact, half-shadows included.
+ * hole is known after some ten segments, and the remainder is the hole. Then the light at
+ * each point is exact, half-shadows included.
  *
  * Of more than BLOCKERS_MOST blockers the last ones count by V alone, as all do where
  * the lamp is small: there it is the place on the leaf that decides on light and shadow,
@@ -25,7 +25,7 @@
 
 enum { BLOCKERS_MOST = 8 };
 
-/* A lamp, triangles that hide parts of it, and what is left over at one point. */
+/* A lamp, triangles that hide parts of it, and the remainder at one point. */
 struct wide_lamp {
     int32_t root;
     struct triangle triangle;
@@ -96,8 +96,8 @@ static struct vec3 point_of_piece(const struct outlook_piece *piece, double u, d
                               v);
 }
 
-/* A point of what is left over, as u and v in [0, 1) choose it. */
-static struct vec3 point_left_over(const struct wide_lamp *lamp, double u, double v)
+/* A point of the remainder, chosen by u and v in [0, 1). */
+static struct vec3 point_of_remainder(const struct wide_lamp *lamp, double u, double v)
 {
     int i = 0;
     double at = u * lamp->before[lamp->outlook.count];
@@ -122,7 +122,7 @@ static bool add_point(struct receiver *r, struct wide_lamp *lamp,
     look_out(r, lamp, x);
     double seen = lamp->before[lamp->outlook.count];
     if (seen > 0.0) {
-        struct vec3 y = point_left_over(lamp, u[2], u[3]);
+        struct vec3 y = point_of_remainder(lamp, u[2], u[3]);
         int32_t blocker = -1;
         if (receiver_kernel(x, r->facet.plane.normal, y, lamp->plane.normal) > 0.0)
             blocker = receiver_blocker(r, x, y, lamp->root);

@@ -209,8 +209,7 @@ struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u)
     places_of(tree, node, &first, &end);
     double all = lamps->before[end] - lamps->before[first];
     double at = lamps->before[first] + u * all;
-    while (end - first >
-           1) { /* before[first] <= at, and at < before[end] or all but so */
+    while (end - first > 1) { /* before[first] <= at, and at is below before[end] */
         int32_t middle = first + (end - first) / 2;
         if (lamps->before[middle] <= at)
             first = middle;

@@ -7,16 +7,15 @@
 
 struct lamps {
     const struct model *model; /* borrowed */
-    double least;   /* emission of a lamp, summed over bands, W/m^2: above this */
-    double *before; /* [tree->root_count + 1] W that lamps emit before a place in the
-                       tree's order, over all bands and square scene units */
+    double least;   /* a lamp emits more than this, summed over bands, W/m^2 */
+    double *before; /* [tree->root_count + 1] power of the lamps before a place in the
+                       tree's order, over all bands, W in square scene units */
 };
 
 /* A node whose lamps count as one, as seen from a leaf. */
 struct lamp_group {
     int32_t node;
-    double
-        direct; /* irradiance of the leaf, about, over all bands and unoccluded, W/m^2 */
+    double direct; /* irradiance of the leaf, about, over all bands, unoccluded, W/m^2 */
     double around; /* the same for a surface beside the leaf that faces the group */
 };
 
@@ -29,7 +28,7 @@ struct lamp_groups {
 /* A lamp that was chosen. */
 struct lamp {
     int32_t root;
-    double share; /* W that all lamps of its group emit, for each that it does, 1 */
+    double share; /* power of all lamps of its group over its own, 1 */
 };
 
 /* Borrows the model, which has clusters. A lamp emits more than `least`, over all bands.

@@ -8,19 +8,19 @@
 
 struct receiver {
     struct final_gather *gather;
-    struct facet facet;   /* the leaf; of points a triangle without extent, */
-    const struct gather_points *points; /* and these; NULL: of a leaf there are any */
+    struct facet facet;   /* the leaf; for points, a triangle without extent */
+    const struct gather_points *points; /* NULL: the receiver is a leaf */
     bool keeps;           /* its terms are kept, as a row */
     struct gather_row row;
     int64_t first_term;
     uint64_t seed;        /* made of an ID */
     struct vec3 along;    /* a direction in the plane */
     int rays;             /* to be fired */
-    int escaped;          /* rays, and what follows from them, out of the scene */
+    int escaped;          /* rays and paths that have left the scene */
     int inside;           /* rays from points inside of things */
-    struct rgb light;     /* H that this ray has found, with the radiosities there are */
-    struct rgb lamps;     /* H that lamps bring */
-    struct rgb sum, squares, half[2]; /* of the light of all rays */
+    struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
+    struct rgb lamps;     /* H by lamps */
+    struct rgb sum, squares, half[2]; /* sums over all rays of H, H^2, H by halves */
 };
 
 /* Adds `weight` times the radiosity of a patch as a whole. */
@@ -31,8 +31,10 @@ void receiver_add(struct receiver *r, int32_t patch, const struct rgb *weight);
 void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
                         const struct rgb *weight);
 
-/* Adds the light that lamps bring, by segments; and after that what rays find. */
+/* Adds the light of lamps, by segments. */
 void receiver_aim(struct receiver *r);
+
+/* Adds the rest of the light, by rays. Pre: receiver_aim() has been called. */
 void receiver_fire(struct receiver *r);
 
 /* The point of the receiver that u and v in [0, 1) stand for. */
@@ -45,27 +47,26 @@ int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32
 /* The part of the light of a lamp that is seen, 1. */
 struct receiver_share {
     double seen;
-    double variance; /* by the choice of points, as if by chance, */
-    double halves;   /* and as the first and second half of them tell it */
+    double variance; /* of `seen`, if points were chosen by chance */
+    double halves;   /* squared difference of the halves of the points, over 4 */
 };
 
-/* For lamps that are wide as seen from the receiver: by so many points of it, of the
- * sequence. */
+/* The share of a lamp that is wide as seen from the receiver, by `count` points of the
+ * receiver, of the sequence. */
 struct receiver_share receiver_share_of_wide(struct receiver *r,
                                              const struct sequence *sequence, int count,
                                              int32_t lamp);
 
-/* The share of a leaf that is met from just above it, and not a face that lies on it: a
- * picture in the plane of a wall, a lamp in that of the ceiling; and that is not inside
- * of things, as its rays have told. */
+/* The share of a leaf's area that is bare: not covered by another face in its plane (a
+ * picture on a wall, a lamp in the ceiling), nor, as its rays have shown, inside of a
+ * thing that stands on it. */
 float receiver_bare_share(const struct receiver *r);
 
-/* Makes the row of a leaf from exact factors, where its root is open to all that it
- * faces. False if that is not so; the row is to be made by rays then. */
+/* Makes the row of a leaf from exact factors. False if its root is not open, or the row
+ * cannot be exact; then it is to be made by rays. */
 bool receiver_add_exact(struct receiver *r);
 
-/* Light of E = 1 that goes from dA at x to dA' at y, for each dA and dA', less
- * visibility; 0 below a horizon. */
+/* cos cos' / (pi r^2) of the points x and y, without visibility; 0 below a horizon. */
 double receiver_kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,
                        struct vec3 normal_y);
 
