@@ -11,7 +11,7 @@
 /* --- building --- */
 
 static int32_t *places_gather(const struct comm *comm, const struct scene *scene,
-                       const struct octree *octree)
+                              const struct octree *octree)
 {
     int64_t all = scene_root_count(scene);
     int32_t first = (int32_t)(all * comm->rank / comm->size);
@@ -27,9 +27,10 @@ static int32_t *places_gather(const struct comm *comm, const struct scene *scene
     return met;
 }
 
-static struct node_block tree_broadcast(const struct comm *comm, struct node_policy policy,
-                                 const struct scene *scene, const int32_t *met,
-                                 struct cluster_tree **tree)
+static struct node_block tree_broadcast(const struct comm *comm,
+                                        struct node_policy policy,
+                                        const struct scene *scene, const int32_t *met,
+                                        struct cluster_tree **tree)
 {
     struct node_block block = {.data = NULL};
     struct pack count = {0};
@@ -103,4 +104,3 @@ void above_collect(struct solver *solver)
     solver->account.seconds[PHASE_GATHER] += come - start;
     solver->account.seconds[PHASE_SUMS] += comm_seconds() - come;
 }
-

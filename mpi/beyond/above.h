@@ -1,16 +1,20 @@
-/* The tree above the roots, and light over it, on all ranks. All functions are collective. */
+/* The tree above the roots, and light over it, on all ranks. All functions are
+ * collective. */
 #ifndef MPI_BEYOND_ABOVE_H
 #define MPI_BEYOND_ABOVE_H
 
 #include "mpi/solver.h"
 
-/* Builds solver->beyond->tree, and what a solver with a tree has besides. */
+/* Builds solver->beyond->tree, and the light and the arrays that a tree needs. */
 void above_create(struct solver *solver);
 void above_free(struct solver *solver);
 
-/* Step 5: before a transfer, what clusters send; after it, the sums over all ranks of the
- * flux of clusters, pushed down to the roots. */
+/* Step 5, before a transfer: computes the radiosity of clusters, and clears their flux.
+ */
 void above_begin(struct solver *solver);
+
+/* Step 5, after a transfer: sums the flux of clusters over all ranks and pushes it down
+ * to the roots. */
 void above_collect(struct solver *solver);
 
 #endif

@@ -1,19 +1,19 @@
 /* --accuracy: links and rays are tightened until the error of the answer is small enough.
  *
  * A round is: links converge for an epsilon, the final gather fires N rays from a leaf,
- * spot checks (mpi/spotcheck.c) measure the error of its answer. The claim is that error
- * with one deviation of its measurement,
+ * spot checks (mpi/beyond/spotcheck.c) measure the error of its answer. The claim is that
+ * error with one deviation of its measurement,
  *
  *     claim^2 = E^2 + deviation,        E^2 = rays^2 + mesh^2.
  *
- * The gather estimates the two parts (mpi/final_gather.c). Where E^2 is more than these
- * by more than chance, the mesh has the surplus. If the claim is above the goal, the next
- * round brings E to AIM of it, which leaves room for the deviation, with both parts alike
- * unless one is small already: noise falls like N^-0.6 and costs N, the mesh's part falls
- * like the third root of epsilon, and leaves grow like the square root of 1 / epsilon, so
- * both cost about as much. The links go on from where they are, from their own solution:
- * a run is the same whether it is resumed before the gather or never interrupted. Leaves
- * that the gather has split stay split.
+ * The gather estimates the two parts (mpi/beyond/final_gather.c). Where E^2 is more than
+ * these by more than chance, the mesh has the surplus. If the claim is above the goal,
+ * the next round brings E to AIM of it, which leaves room for the deviation, with both
+ * parts alike unless one is small already: noise falls like N^-0.6 and costs N, the
+ * mesh's part falls like the third root of epsilon, and leaves grow like the square root
+ * of 1 / epsilon, so both cost about as much. The links go on from where they are, from
+ * their own solution: a run is the same whether it is resumed before the gather or never
+ * interrupted. Leaves that the gather has split stay split.
  *
  * A limit that holds it back is named. The mesh is at its end where memory, iterations,
  * --max-level or --min-area are, or where epsilon was lowered much and nothing came of
@@ -34,25 +34,25 @@ enum { ROUNDS_MOST = 12 };
 
 static const double AIM = 0.85, SMALLEST_EPSILON = 1e-10;
 
-/* Rays become at most so many times as many in a round: with few of them it is cheap to
- * find out about the mesh. */
+/* Rays are multiplied by at most this in a round: with few of them it is cheap to find
+ * the mesh's part. */
 enum { MORE = 8 };
 
-/* The noise of twice as many rays. */
+/* Noise with twice the rays over noise now. */
 static const double TWICE = 0.66;
 
-/* Epsilon is lowered by no less and no more than this in a round. */
+/* Epsilon is multiplied by at most LITTLE and at least MUCH in a round. */
 static const double LITTLE = 0.5, MUCH = 0.125;
 
-/* So many deviations are no chance. */
+/* A surplus of more deviations than this is not by chance. */
 static const double SURE = 2.0;
 
-/* Where epsilon was lowered by EIGHTH and more and this part of the mesh's error is left,
- * it does not help. */
+/* Epsilon does not help if it was lowered to EIGHTH and STUCK of the mesh's error is
+ * left. */
 static const double EIGHTH = 0.125, STUCK = 0.9;
 
-/* Where limits keep so many of the leaves from being split, there is no finer mesh; where
- * they keep some, they are why epsilon does not help. */
+/* Where limits keep this share of the leaves from being split: ALL, there is no finer
+ * mesh; SOME, they are the reason why epsilon does not help. */
 static const double ALL = 0.97, SOME = 0.1;
 
 /* --- the claim --- */
@@ -100,7 +100,7 @@ static enum hold hold_of_leaves(const struct solver *solver, double *share)
     return deep > small ? HOLD_LEVEL : HOLD_AREA;
 }
 
-/* What keeps the mesh from becoming finer, or keeps that from helping. */
+/* The limit that keeps the mesh from becoming finer, or a finer mesh from helping. */
 static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
 {
     const struct accuracy *accuracy = &solver->beyond->accuracy;
@@ -119,7 +119,7 @@ static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
     return stuck ? HOLD_EPSILON : HOLD_NONE;
 }
 
-/* What keeps rays from becoming twice as many. */
+/* The limit that keeps rays from being doubled. */
 static enum hold hold_of_rays(const struct solver *solver, int rays, int64_t links)
 {
     struct memory memory = solver->memory;
@@ -173,7 +173,8 @@ static void lower_epsilon(struct solver *solver, double allowed)
 /* Returns false if nothing can be tightened, and says why. `lowered`: epsilon was. */
 static bool tighten(struct solver *solver, int64_t links, bool *lowered)
 {
-    double by_rays = solver->beyond->answer.counts.by_rays, by_mesh = solver->beyond->answer.counts.by_mesh;
+    double by_rays = solver->beyond->answer.counts.by_rays;
+    double by_mesh = solver->beyond->answer.counts.by_mesh;
     double aim = AIM * solver->model.criterion.accuracy;
     enum hold mesh = hold_of_mesh(solver, links);
     enum hold rays = hold_of_rays(solver, solver->model.criterion.final_gather, links);
@@ -212,15 +213,15 @@ static bool wants_more(struct solver *solver, int64_t links, bool *lowered)
 
 /* --- rounds --- */
 
-/* What the links have brought. */
+/* The solution of the links. */
 struct linked {
     struct vote vote;
     struct rgb *radiosity; /* [count] of the patches that there were then */
     int64_t count;
 };
 
-/* Puts the light of the links back. Leaves that the gather has split stay split; their
- * children have what they had. */
+/* Puts the light of the links back. Leaves that the gather has split stay split, and
+ * their children get their radiosities. */
 static void restore_light(struct forest *forest, const struct linked *linked)
 {
     for (int64_t p = 0; p < forest->count; p++)

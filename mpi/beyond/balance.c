@@ -1,8 +1,8 @@
 /* Dealing by default: in turn, like cards.
  *
  * Each rank deals all of its links to all ranks, so that each gets its part of every
- * neighbourhood, with the links that are predicted too low and too high. Nothing has to be
- * predicted, and the links that are not split end up even, too, over which light is
+ * neighbourhood, with the links that are predicted too low and too high. No prediction is
+ * needed, and the links that are not split end up even, too, over which light is
  * transferred. The work of the slowest rank, in means, and the bytes of links that moved
  * (phr ROOM --epsilon E --final-gather 0 --balance B --stats FILE, "work", "splitting"):
  *

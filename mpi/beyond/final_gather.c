@@ -1,7 +1,7 @@
 /* Step 9, phr's own: the final gather and its solution.
  *
  * The links have brought a solution that is right in the large. Here each leaf gets a row
- * of what it really sees (rad/beyond/final_gather.c), and
+ * of form factors by rays (rad/beyond/final_gather.c), and
  *
  *     B = E + rho (source + W B)
  *
@@ -10,14 +10,13 @@
  * this costs one tracing, and products with a sparse matrix.
  *
  * W is not symmetric: BiCGSTAB (van der Vorst, 1992), for the three bands side by side,
- * with areas for weights. Rows are dealt to the ranks. All ranks know all
- * vectors, so only W B takes an exchange, and scalar products are the same on all of
- * them.
+ * with areas for weights. Rows are dealt to the ranks. All ranks know all vectors, so
+ * only W B takes an exchange, and scalar products are the same on all ranks.
  *
- * In a closed scene all that is emitted is absorbed, by what no other face lies on.
- * Noise, and leaves of which a dark part cannot be seen from afar (the table under a
- * sheet of paper), leave that untrue by a percent; one factor for each band, for all
- * irradiances, makes it true.
+ * In a closed scene all emitted light is absorbed, by bare surfaces (on which no other
+ * face lies). Noise, and leaves of which a dark part cannot be seen from afar (the table
+ * under a sheet of paper), leave that untrue by a percent; one factor for each band, for
+ * all irradiances, makes it true.
  *
  * Rejected: the defect solved for over the links, and added. Where links reflect less
  * than is right, as in bright closed rooms, each round leaves nine tenths of it. */
@@ -40,22 +39,23 @@ static const double CRACKS = 1e-5;
 /* The light of a root that is not divided varies by about this part. */
 static const double UNDIVIDED = 0.2;
 
-/* Leaves by number, as in forest_order(): the same on all ranks. Rows of a rank are in the
- * order of its leaves. */
+/* Leaves have numbers, in the order of forest_order(), the same on all ranks. Rows of a
+ * rank are in the order of its leaves. */
 struct gathering {
     struct solver *solver;
     struct final_gather gather;
     struct gather_mesh mesh;
-    int32_t *leaves;        /* [count] local numbers, of the mesh */
+    int32_t *leaves;        /* [count] local numbers; borrowed from the mesh */
     double *areas;          /* [count] square scene units */
-    double *bare;           /* [count] the same, less what other faces lie on */
+    double *bare;           /* [count] bare areas, square scene units */
     int64_t count;
-    bool closed;            /* next to no ray of any rank escapes */
-    struct rgb *radiosity;  /* by place: room for what is to be gathered */
-    struct rgb *all;        /* room for what the rows of all ranks have of each leaf */
-    int64_t shares;         /* of values of all rows, so far */
-    int *rank_of;           /* [count] that makes the row of a leaf, of the mesh */
-    int *counts, *at; /* [ranks] of rows, and where those of a rank begin in `all` */
+    bool closed;            /* hardly any ray of any rank escapes */
+    struct rgb *radiosity;  /* by place: radiosities to be gathered */
+    struct rgb *all;        /* [count] buffer: a value of each row, rank by rank */
+    int64_t shares;         /* times that such values were exchanged so far */
+    int *rank_of;           /* [count] rank that has the row; borrowed from the mesh */
+    int *counts;            /* [ranks] rows of a rank */
+    int *at;                /* [ranks] place of a rank's first row in `all` */
 };
 
 /* --- rows --- */
@@ -82,7 +82,7 @@ static void gathering_start(struct gathering *g, struct solver *solver)
     comm_displacements(comm, g->counts, g->at);
 }
 
-/* The gather itself is the solver's then. */
+/* Hands the gather over to the solver. */
 static void gathering_end(struct gathering *g)
 {
     final_gather_drop_rows(&g->gather);
@@ -97,7 +97,7 @@ static void gathering_end(struct gathering *g)
     alloc_free(g->at);
 }
 
-/* False if a signal ends it, on any rank. */
+/* Collective. False if a signal on any rank has ended it. */
 static bool make_rows(struct gathering *g)
 {
     struct solver *solver = g->solver;
@@ -120,15 +120,15 @@ static bool make_rows(struct gathering *g)
                       counts->exact, g->gather.term_count, g->mesh.traced};
     comm_add(solver->comm, sums, sizeof sums / sizeof sums[0]);
     g->closed = (double)sums[0] <= CRACKS * (double)(sums[2] + g->count);
-    solver->beyond->answer.counts = (struct gathered){.rays = sums[2], .segments = sums[3],
-                                         .exact = sums[4], .terms = sums[5],
-                                         .looks = sums[6], .split = g->mesh.split};
+    solver->beyond->answer.counts = (struct gathered){
+        .rays = sums[2], .segments = sums[3], .exact = sums[4],
+        .terms = sums[5], .looks = sums[6], .split = g->mesh.split};
     return sums[1] == 0;
 }
 
 /* --- the equation --- */
 
-/* Collective. What the rows have of each leaf comes to all ranks. */
+/* Collective. Brings the value of each row, from `all`, to all ranks, by leaf number. */
 static void share_rows(struct gathering *g, struct rgb *values)
 {
     const struct comm *comm = g->solver->comm;
@@ -141,7 +141,7 @@ static void share_rows(struct gathering *g, struct rgb *values)
     alloc_free(next);
 }
 
-/* Makes these radiosities of leaves those to be gathered. */
+/* Sets the radiosities to be gathered: of leaves, and by the pull of all patches. */
 static void place_radiosities(struct gathering *g, const struct rgb *b)
 {
     for (int64_t i = 0; i < g->count; i++)
@@ -149,8 +149,8 @@ static void place_radiosities(struct gathering *g, const struct rgb *b)
     final_gather_pull(&g->gather, g->radiosity);
 }
 
-/* Collective. Irradiances of all leaves, W/m^2, for their radiosities, with what lamps
- * bring, or without. */
+/* Collective. Irradiances of all leaves, W/m^2, for their radiosities `b`, with the
+ * source if `lamps`. */
 static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
                         struct rgb *h)
 {
@@ -199,16 +199,16 @@ static void set_radiosities(const struct gathering *g, const struct rgb *h, stru
     }
 }
 
-/* The area of a leaf whose emission arrives: of a lamp all, for segments look through a
- * ceiling in whose plane it is. */
+/* The area of a leaf whose emission arrives: all of a lamp, for segments pass through a
+ * ceiling in whose plane it is; else the bare area. */
 static double shining_area(const struct gathering *g, int64_t i)
 {
     uint32_t root = g->solver->model.forest->patches[g->leaves[i]].id.root;
     return root_is_lamp(&g->gather.lamps, (int32_t)root) ? g->areas[i] : g->bare[i];
 }
 
-/* Makes irradiances of a closed scene such that all that is emitted is absorbed. Returns the largest
- * part that they are changed by. */
+/* Scales the irradiances of a closed scene so that all emitted light is absorbed. Returns
+ * the largest relative change. */
 static double close_balance(const struct gathering *g, struct rgb *h)
 {
     struct rgb emitted = {{0.0, 0.0, 0.0}}, absorbed = {{0.0, 0.0, 0.0}};
@@ -232,7 +232,7 @@ static double close_balance(const struct gathering *g, struct rgb *h)
     return largest;
 }
 
-/* What the vote says of the light there is now. */
+/* Updates the vote for the gathered light. */
 static void judge(const struct gathering *g, const struct rgb *h, const struct rgb *b,
                   double residual, struct vote *vote)
 {
@@ -258,24 +258,25 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
 
 /* --- errors --- */
 
-/* Half of what leaves differ by from the mean over their parents: as B varies within a leaf. Of
- * undivided roots a part of their B. */
+/* An estimate of how B varies within a leaf: half of its difference from the mean over
+ * its parent; of undivided roots, a part of the reflected radiosity. */
 static struct rgb variation_of(const struct gathering *g, int64_t place)
 {
     const struct forest *forest = g->solver->model.forest;
     int32_t patch = g->gather.order[place], parent = forest->patches[patch].parent;
+    const struct rgb *mean = &g->radiosity[parent >= 0 ? g->gather.place[parent] : place];
     struct rgb b = g->radiosity[place], deviation;
     struct rgb e = forest_material(forest, patch)->emission;
     for (int c = 0; c < BANDS; c++)
         deviation.band[c] =
-            parent >= 0 ? 0.5 * (b.band[c] - g->radiosity[g->gather.place[parent]].band[c])
+            parent >= 0 ? 0.5 * (b.band[c] - mean->band[c])
                         : UNDIVIDED * (b.band[c] - e.band[c]);
     return deviation;
 }
 
 /* Collective. Variance of H that comes from B varying within the leaves that rows see,
- * (W/m^2)^2. Where it varies is another place in each, so the errors of different leaves
- * have nothing to do with each other. Pre: g->radiosity is the solution. */
+ * (W/m^2)^2. B varies independently in different leaves, so their errors add up as
+ * variances. Pre: g->radiosity is the solution. */
 static void variances_by_mesh(struct gathering *g, struct rgb *variance)
 {
     const struct final_gather *gather = &g->gather;
@@ -293,8 +294,9 @@ static void variances_by_mesh(struct gathering *g, struct rgb *variance)
     share_rows(g, variance);
 }
 
-/* Collective. Variance of H that comes from the choice of rays: as if by chance, times
- * what the sequence is better than chance, which all leaves together tell. */
+/* Collective. Variance of H that comes from the choice of rays: the variance by chance,
+ * times the ratio of the sequence's variance to it, estimated over all leaves together.
+ */
 static void variances_by_rays(struct gathering *g, struct rgb *variance)
 {
     struct rgb *own = g->all + g->at[g->solver->comm->rank];
@@ -330,7 +332,8 @@ static void estimate_errors(struct gathering *g)
     variances_by_mesh(g, mesh);
     variances_by_rays(g, rays);
     alloc_free(solver->beyond->answer.error);
-    solver->beyond->answer.error = alloc_array((size_t)solver->model.forest->count, sizeof *solver->beyond->answer.error);
+    float *error = alloc_array((size_t)solver->model.forest->count, sizeof *error);
+    solver->beyond->answer.error = error;
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m = forest_material(solver->model.forest, g->leaves[i]);
         double largest = 0.0;
@@ -344,7 +347,7 @@ static void estimate_errors(struct gathering *g)
             by_mesh += g->areas[i] * rho * rho * mesh[i].band[c];
             light += g->areas[i] * reflected * reflected;
         }
-        solver->beyond->answer.error[g->leaves[i]] = (float)(2.0 * largest);
+        error[g->leaves[i]] = (float)(2.0 * largest);
     }
     if (light > 0.0) {
         solver->beyond->answer.counts.by_rays = sqrt(by_rays / light);
@@ -375,7 +378,7 @@ static void share_straight_light(struct gathering *g)
     alloc_free(light);
 }
 
-/* From the links' solution on. */
+/* Collective. Solves for light by the rows, from the links' solution on. */
 static void solve_rows(struct gathering *g, struct vote *vote)
 {
     struct forest *forest = g->solver->model.forest;

@@ -1,25 +1,24 @@
 /* The mesh of a final gather.
  *
- * The links have split patches where they exchange much, whether the light varies there
- * or not. Before rows are made, a few rays look at the quarters of each leaf. Where their
+ * The links have split patches where they exchange much light, whether it varies there or
+ * not. Before rows are made, a few rays look at the quarters of each leaf. Where their
  * light differs by more than chance explains, the leaf is split and its children are
- * looked at, and so on. What counts is the squared error that is left, by area: a leaf is
- * split if
+ * looked at, and so on. The goal is an even squared error, by area: a leaf is split if
  *
  *     area * variance of rho H over it  >  MESH * epsilon * sum of area * (rho H)^2,
  *
- * so that all leaves have about the same share of it. At most, if all of it falls on one
- * quarter, the light of a leaf has a variance of 3 times its square: a leaf that could not
- * even then be split, by the light that the links bring, is not looked at. In a scene of
- * many small triangles few are.
+ * so that all leaves have about the same share of it. At most, if all of its light falls
+ * on one quarter, a leaf has a variance of 3 times the square of its light: a leaf that
+ * could not even then be split, by the light of the links, is not looked at. In a scene
+ * of many small triangles few are looked at.
  *
  * Looks also tell how noisy the light of a leaf is: rows get rays in proportion to the
  * square root of area times variance, which makes the noise, by area, least for a given
  * number of all rays (Neyman, 1934). A leaf under a lamp housing gets many, a leaf of a
  * plain wall few.
  *
- * Looks are dealt in turns. They also tell the work that a ray takes, and by that rows are
- * dealt: sorted by work, to the ranks up and down. */
+ * Looks are dealt in turns. They also measure the work of a ray, and rows are dealt by
+ * the work that this predicts: sorted by it, to the ranks up and down. */
 #include "mpi/beyond/gather_mesh.h"
 
 #include <math.h>
@@ -46,14 +45,14 @@ enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 4 };
 enum { MOST_DOUBLED = 4, MOST_HALVED = 2 };
 enum { ROUNDS = 6, FEWEST_RAYS = 4 };
 
-/* In place of a variance: the row will be exact; the leaf is not looked at. */
+/* Marks in place of a variance: the row will be exact; the leaf is not looked at. */
 static const double IS_EXACT = -1.0, IS_UNSEEN = -2.0;
 
-/* Of a leaf, by its look or its parent's. */
+/* Estimates for a leaf, by its look or its parent's. */
 struct known {
     double variance; /* of rho H by one ray, (W/m^2)^2; IS_EXACT, IS_UNSEEN */
-    float fixed;    /* tests that its row takes, */
-    float work;     /* and each ray of it */
+    float fixed;     /* tests of its row, without its rays */
+    float work;      /* tests of each ray */
 };
 
 struct looking {
@@ -70,9 +69,9 @@ struct looking {
 
 /* --- dealing --- */
 
-/* Of as many things as there are ranks, one after the other, each rank gets one, in an
- * order that changes from turn to turn: dealt in the same order, things of as many
- * triangles as ranks would all have the same side on the same rank. */
+/* The rank of the next item dealt. In each turn every rank gets one, in an order that
+ * changes from turn to turn: dealt in one order, objects of as many triangles as ranks
+ * would all have the same side on the same rank. */
 static int rank_of_next(int64_t *dealt, int ranks)
 {
     uint64_t index = (uint64_t)(*dealt)++, size = (uint64_t)ranks;
@@ -81,9 +80,9 @@ static int rank_of_next(int64_t *dealt, int ranks)
 
 /* --- open roots --- */
 
-/* Collective. Which roots are open. Exact rows are dear, and their mesh is that of the
- * links, which is good where nothing casts shadows: only if half of the scene's area is
- * open are there any. */
+/* Collective. Finds the open roots. Exact rows are dear, and their mesh is that of the
+ * links, which is good where nothing casts shadows: there are exact rows only if half of
+ * the scene's area is open. */
 static void find_open_roots(struct looking *l)
 {
     const struct solver *solver = l->solver;
@@ -143,7 +142,7 @@ static struct gather_look *look(struct looking *l, const int32_t *leaves, int64_
     return looks;
 }
 
-/* Variance of rho H over the leaf, less what chance explains; summed over bands. */
+/* Variance of rho H over the leaf, less the variance by chance; summed over bands. */
 static double spread_of(const struct gather_look *look)
 {
     double spread = 0.0;
@@ -164,12 +163,14 @@ static double square_of(const struct gather_look *look)
     double square = 0.0;
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < BANDS; c++)
-            square += 0.25 * (double)look->reflected[k][c] * (double)look->reflected[k][c];
+            square +=
+                0.25 * (double)look->reflected[k][c] * (double)look->reflected[k][c];
     return square;
 }
 
-/* Splits a leaf; its children reflect what their looks say. */
-static void split_leaf(struct forest *forest, int32_t leaf, const struct gather_look *look)
+/* Splits a leaf; its children get the reflected light of its quarters. */
+static void split_leaf(struct forest *forest, int32_t leaf,
+                       const struct gather_look *look)
 {
     forest_split(forest, leaf);
     int32_t first = forest->patches[leaf].children;
@@ -200,8 +201,8 @@ static double square_of_light(const struct forest *forest, int32_t leaf)
     return square;
 }
 
-/* Looks at leaves and splits them, those of `leaves` that are split are replaced by their
- * children, the others go. Returns how many there are then. */
+/* Looks at `leaves` and splits those over which light varies; the children of these take
+ * the place of all. Returns their number. */
 static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
                             double *threshold)
 {
@@ -238,7 +239,8 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
 static void know_nothing(struct looking *l)
 {
     const struct forest *forest = l->solver->model.forest;
-    l->known = alloc_reserve(l->known, &l->known_capacity, forest->count, sizeof *l->known);
+    l->known =
+        alloc_reserve(l->known, &l->known_capacity, forest->count, sizeof *l->known);
     for (int64_t i = 0; i < l->mesh->count; i++) {
         int32_t leaf = l->mesh->leaves[i];
         bool open = l->open[forest->patches[leaf].id.root];
@@ -276,8 +278,8 @@ static int32_t *choose_leaves(struct looking *l, int64_t *count)
     return leaves;
 }
 
-/* Leaves that were not looked at are as noisy, for their light, as those that were, and
- * their rays take as much work. */
+/* Gives leaves that were not looked at the mean noise, relative to their light, and the
+ * mean work of those that were. */
 static void guess_unseen(struct looking *l)
 {
     const struct gather_mesh *mesh = l->mesh;
@@ -324,7 +326,7 @@ static void refine(struct looking *l)
 
 /* --- rays --- */
 
-/* Which power of two times the mean number of rays a leaf of this worth gets. */
+/* The power of two by which a leaf of this worth gets more than the mean rays. */
 static int class_of(double worth)
 {
     int class = 0;
@@ -341,12 +343,13 @@ static int rays_of_class(int rays, int class)
     return rays > FEWEST_RAYS ? rays : FEWEST_RAYS;
 }
 
-/* Rays in proportion to worth, as many as there would be if all leaves had as many. */
+/* Shares rays in proportion to worth; their sum is that of equal rays for all leaves. */
 static void share_rays(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;
     const struct forest *forest = l->solver->model.forest;
-    double *worth = alloc_array((size_t)mesh->count, sizeof *worth), low = 0.0, high = 0.0;
+    double *worth = alloc_array((size_t)mesh->count, sizeof *worth);
+    double low = 0.0, high = 0.0;
     for (int64_t i = 0; i < mesh->count; i++) {
         double variance = l->known[mesh->leaves[i]].variance;
         worth[i] = sqrt(forest_area(forest, mesh->leaves[i]) * fmax(0.0, variance));
@@ -385,7 +388,7 @@ static int compare_work(const void *left, const void *right)
     return order != 0 ? order : (a->index > b->index) - (a->index < b->index);
 }
 
-/* To the ranks up and down: 0, 1, 2, 2, 1, 0, 0, 1, ... */
+/* Deals rows to the ranks up and down: 0, 1, 2, 2, 1, 0, 0, 1, ... */
 static void deal_rows(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;

@@ -16,16 +16,17 @@
  * the deviation of that mean. A third of q goes by area, one by area times the square of
  * the reflected radiosity, one by area times the square of the error that the gather
  * itself has estimated: leaves that are large, bright or held for bad are drawn often,
- * and where the estimate errs it is found out. Draws are spread evenly over the leaves in the
+ * and errors of the estimate are found. Draws are spread evenly over the leaves in the
  * order of forest_order(), so over the scene; BATCH at a time, each batch between those
  * before (multiples of the golden ratio).
  *
  * Many leaves by few paths or few leaves by many? With n^2 the variance of r, the product
  * scatters by E^4 kappa + 2 n^2 E^2 + n^4; trials say that n^2 between E^2 and 2 E^2
- * takes fewest rays. A few paths for each leaf of a batch that does not count tell what n is.
+ * takes fewest rays. n is measured by a few paths for each leaf of a batch that is not
+ * counted.
  *
  * Rejected: the difference of two solutions, of which the finer is taken for the truth.
- * Much of what both lack is the same, all the more where --max-level is in the way. */
+ * Both lack much of the same light, all the more where --max-level is in the way. */
 #include "mpi/beyond/beyond.h"
 #include "mpi/beyond/spotcheck.h"
 
@@ -63,10 +64,10 @@ struct checking {
     double light;     /* area times the square of the reflected radiosity of all leaves */
     int64_t rays_most;
     int paths;        /* for each half */
-    int32_t drawn[BATCH];          /* numbers of leaves, */
-    struct finding found[BATCH];   /* and what paths say of them; */
-    double value[BATCH];           /* of each draw: see above, */
-    double noise[BATCH];           /* and its part that is noise */
+    int32_t drawn[BATCH];          /* numbers of the leaves of a batch */
+    struct finding found[BATCH];   /* estimates of these leaves by paths */
+    double value[BATCH];           /* of each draw, a term of E^2: see above */
+    double noise[BATCH];           /* variance of the paths of each draw, alike */
     struct spotcheck result;
 };
 
@@ -79,10 +80,11 @@ static struct rgb reflected(const struct forest *forest, int32_t leaf)
     return b;
 }
 
-/* What a leaf has of the three sums that its probability goes by. */
+/* The parts of a leaf in the three sums that its probability goes by. */
 struct merit {
-    double area, light, error; /* area; times the square of its reflected radiosity; of
-                                  its estimated error */
+    double area;
+    double light; /* area times the square of the reflected radiosity */
+    double error; /* area times the square of the estimated error */
 };
 
 static struct merit merit_of(const struct checking *c, int32_t leaf)
@@ -98,7 +100,7 @@ static double over(double part, double sum)
     return sum > 0.0 ? part / sum : 0.0;
 }
 
-/* Leaves that can be drawn, and how likely each is. */
+/* Lists the leaves that can be drawn, and their probabilities. */
 static void list_leaves(struct checking *c)
 {
     const struct forest *forest = c->solver->model.forest;
@@ -209,7 +211,7 @@ static void check_batch(struct checking *c, int batch)
     }
 }
 
-/* Collective. How many paths are best for an error of this square. */
+/* Collective. Chooses the number of paths that is best for an error of this square. */
 static void choose_paths(struct checking *c, double square)
 {
     double noise = 0.0;
@@ -263,7 +265,8 @@ struct spotcheck spotcheck_run(struct solver *solver, double goal)
     ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
                                    .iteration = solver->turn.iteration,
-                                   .share.done = counts->node_tests + counts->triangle_tests});
+                                   .share.done =
+                                       counts->node_tests + counts->triangle_tests});
     alloc_free(c.leaves);
     alloc_free(c.upto);
     pathtracer_free(&c.pathtracer);
