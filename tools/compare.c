@@ -139,7 +139,7 @@ static bool read_vertices(struct solution_reader *reader, const struct ply_eleme
     const double *value = reader->file.value;
     reader->vertices = alloc_array((size_t)element->count, sizeof *reader->vertices);
     for (int64_t i = 0; i < element->count; i++) {
-        if (!ply_file_row(&reader->file, element, i, reader->error))
+        if (!ply_file_record(&reader->file, element, i, reader->error))
             return false;
         reader->vertices[i] = (struct vec3){value[PLY_X], value[PLY_Y], value[PLY_Z]};
     }
@@ -186,7 +186,7 @@ static bool read_leaves(struct solution_reader *reader, const struct ply_element
 {
     solution->leaves = alloc_array((size_t)element->count, sizeof *solution->leaves);
     for (int64_t i = 0; i < element->count; i++) {
-        if (!ply_file_row(&reader->file, element, i, reader->error) ||
+        if (!ply_file_record(&reader->file, element, i, reader->error) ||
             !take_leaf(reader, &solution->leaves[i]))
             return false;
         if (!is_in_order(i > 0 ? &solution->leaves[i - 1] : NULL, &solution->leaves[i]))

@@ -1,9 +1,10 @@
 /* Reading binary files.
  *
- * The file is read in blocks until it ends and held in memory, so what a header claims can be
- * held against what is there before anything is allocated for it, and pipes work. The first
- * block has to begin as the format says: /dev/zero ends there. Numbers are put together byte by
- * byte, so the machine's own byte order does not matter. */
+ * The file is read in chunks to its end and kept in memory. So the counts of a header can
+ * be checked against the size before anything is allocated for them, and pipes work. The
+ * first chunk has to begin with the magic of the format: reading /dev/zero ends there.
+ * Numbers are put together byte by byte, so the byte order of the machine does not
+ * matter. */
 #include "io/scene/binary.h"
 
 #include <errno.h>
@@ -13,7 +14,7 @@
 #include "geom/alloc.h"
 #include "geom/stop.h"
 
-enum { BLOCK = 65536 };
+enum { CHUNK = 65536 };
 
 static bool fail_to_read(const char *path, struct error *error)
 {
@@ -29,14 +30,15 @@ static bool has_magic(const struct binary *binary, const char *magic, const char
     return true;
 }
 
-static bool read_blocks(struct binary *binary, FILE *file, const char *magic, const char *kind,
-                        struct error *error)
+static bool read_chunks(struct binary *binary, FILE *file, const char *magic,
+                        const char *kind, struct error *error)
 {
     int64_t capacity = 0;
     size_t got;
     do {
-        binary->data = alloc_reserve(binary->data, &capacity, binary->size + BLOCK + 1, 1);
-        got = fread(binary->data + binary->size, 1, BLOCK, file);
+        binary->data =
+            alloc_reserve(binary->data, &capacity, binary->size + CHUNK + 1, 1);
+        got = fread(binary->data + binary->size, 1, CHUNK, file);
         if (!stop_check(error))
             return false;
         if (ferror(file))
@@ -45,27 +47,28 @@ static bool read_blocks(struct binary *binary, FILE *file, const char *magic, co
         binary->data[binary->size] = '\0';
         if (!has_magic(binary, magic, kind, error))
             return false;
-    } while (got == BLOCK);
+    } while (got == CHUNK);
     return true;
 }
 
-bool binary_read(struct binary *binary, const char *path, const char *magic, const char *kind,
-                struct error *error)
+bool binary_read(struct binary *binary, const char *path, const char *magic,
+                 const char *kind, struct error *error)
 {
     *binary = (struct binary){.path = path, .line = 1};
     errno = 0;
     FILE *file = fopen(path, "rb");
     if (!file)
         return fail_to_read(path, error);
-    bool good = read_blocks(binary, file, magic, kind, error);
+    bool good = read_chunks(binary, file, magic, kind, error);
     fclose(file);
     if (!good)
         binary_free(binary);
     return good;
 }
 
-bool binary_of_bytes(struct binary *binary, const char *path, const void *data, size_t size,
-                     const char *magic, const char *kind, struct error *error)
+bool binary_of_bytes(struct binary *binary, const char *path, const void *data,
+                     size_t size, const char *magic, const char *kind,
+                     struct error *error)
 {
     *binary = (struct binary){.path = path, .line = 1, .size = (int64_t)size};
     binary->data = alloc_array(size + 1, 1);

@@ -14,8 +14,10 @@ static const double MARGIN = 1.04; /* around a framed scene */
 static double tangent(double x)
 {
     enum { HALVINGS = 6 };
-    double h = x / (double)(1 << HALVINGS), h2 = h * h; /* h < 0.025: 1e-19 beyond these terms */
-    double t = h * (1.0 + h2 * (1.0 / 3 + h2 * (2.0 / 15 + h2 * (17.0 / 315 + h2 * 62.0 / 2835))));
+    double h = x / (double)(1 << HALVINGS), h2 = h * h; /* h < 0.025: the rest is 1e-19 */
+    double t =
+        h *
+        (1.0 + h2 * (1.0 / 3 + h2 * (2.0 / 15 + h2 * (17.0 / 315 + h2 * 62.0 / 2835))));
     for (int k = 0; k < HALVINGS; k++)
         t = 2.0 * t / (1.0 - t * t);
     return t;
@@ -26,9 +28,10 @@ static struct vec3 unit(struct vec3 v)
     return vec3_scale(v, 1.0 / vec3_length(v));
 }
 
+/* True also if one of them is 0. */
 static bool are_parallel(struct vec3 a, struct vec3 b)
 {
-    return !(vec3_length(vec3_cross(unit(a), unit(b))) > 1e-9); /* also if one has no length */
+    return !(vec3_length(vec3_cross(unit(a), unit(b))) > 1e-9);
 }
 
 /* Reads exactly `count` numbers from the rest of a line. */
@@ -45,8 +48,8 @@ static bool read_numbers(const struct text *text, char *rest, int count, double 
     }
     const char *more = text_word(&rest);
     if (more)
-        return error_set(error, EXIT_USAGE, "%s:%ld: unexpected '%s'", text->path, text->line,
-                         more);
+        return error_set(error, EXIT_USAGE, "%s:%ld: unexpected '%s'", text->path,
+                         text->line, more);
     return true;
 }
 
@@ -58,14 +61,15 @@ static bool read_size(const struct text *text, char *rest, struct camera *camera
         return false;
     for (int i = 0; i < 2; i++)
         if (!(size[i] >= 1.0 && size[i] <= IMAGE_SIZE_MAX) || size[i] != floor(size[i]))
-            return error_set(error, EXIT_USAGE, "%s:%ld: a size is a whole number from 1 to %d",
-                             text->path, text->line, (int)IMAGE_SIZE_MAX);
+            return error_set(error, EXIT_USAGE,
+                             "%s:%ld: a size is a whole number from 1 to %d", text->path,
+                             text->line, (int)IMAGE_SIZE_MAX);
     camera->width = (int)size[0];
     camera->height = (int)size[1];
     return true;
 }
 
-/* Which of the keywords a view file has had so far. */
+/* The required keywords that were read so far. */
 struct view_seen {
     bool eye, at, up;
 };
@@ -83,36 +87,40 @@ static bool read_view_line(const struct text *text, char *line, struct camera *c
         if (!read_numbers(text, line, 1, &camera->fov, error))
             return false;
         if (!(camera->fov > 0.0 && camera->fov < 180.0))
-            return error_set(error, EXIT_USAGE, "%s:%ld: fov must lie between 0 and 180 degrees",
-                             text->path, text->line);
+            return error_set(error, EXIT_USAGE,
+                             "%s:%ld: fov must lie between 0 and 180 degrees", text->path,
+                             text->line);
         return true;
     }
     bool eye = strcmp(keyword, "eye") == 0, at = strcmp(keyword, "at") == 0;
     bool up = strcmp(keyword, "up") == 0;
     if (!eye && !at && !up)
-        return error_set(error, EXIT_USAGE, "%s:%ld: unknown keyword '%s'", text->path, text->line,
-                         keyword);
+        return error_set(error, EXIT_USAGE, "%s:%ld: unknown keyword '%s'", text->path,
+                         text->line, keyword);
     if (!read_numbers(text, line, 3, v, error))
         return false;
-    *(eye ? &camera->eye : at ? &camera->at : &camera->up) = (struct vec3){v[0], v[1], v[2]};
+    struct vec3 *field = eye ? &camera->eye : at ? &camera->at : &camera->up;
+    *field = (struct vec3){v[0], v[1], v[2]};
     seen->eye = seen->eye || eye;
     seen->at = seen->at || at;
     seen->up = seen->up || up;
     return true;
 }
 
-static bool check_view(const char *path, struct camera *camera, const struct view_seen *seen,
-                       struct error *error)
+static bool check_view(const char *path, struct camera *camera,
+                       const struct view_seen *seen, struct error *error)
 {
     struct vec3 forward = vec3_sub(camera->at, camera->eye);
     if (!seen->eye || !seen->at)
-        return error_set(error, EXIT_USAGE, "%s: no '%s' line", path, seen->eye ? "at" : "eye");
+        return error_set(error, EXIT_USAGE, "%s: no '%s' line", path,
+                         seen->eye ? "at" : "eye");
     if (!(vec3_length(forward) > 0.0))
         return error_set(error, EXIT_USAGE, "%s: eye and at are the same point", path);
     if (!seen->up && are_parallel(forward, camera->up))
         camera->up = (struct vec3){0.0, 0.0, 1.0};
     if (are_parallel(forward, camera->up))
-        return error_set(error, EXIT_USAGE, "%s: up points along the viewing direction", path);
+        return error_set(error, EXIT_USAGE, "%s: up points along the viewing direction",
+                         path);
     return true;
 }
 
@@ -141,7 +149,8 @@ bool camera_read(const char *path, struct camera *camera, struct error *error)
 void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 towards)
 {
     struct vec3 back = unit(towards), right = unit(vec3_cross(camera->up, back));
-    struct vec3 above = vec3_cross(back, right), middle = vec3_middle(scene->low, scene->high);
+    struct vec3 above = vec3_cross(back, right),
+                middle = vec3_middle(scene->low, scene->high);
     double slope = tangent(camera->fov * PI / 360.0), distance = 0.0;
     double aspect = (double)camera->width / camera->height;
     for (int k = 0; k < 8; k++) {
@@ -151,7 +160,8 @@ void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 
         struct vec3 arm = vec3_sub(corner, middle);
         double across = fabs(vec3_dot(arm, right)) / (slope * aspect);
         double up = fabs(vec3_dot(arm, above)) / slope;
-        distance = real_max(distance, MARGIN * real_max(across, up) + vec3_dot(arm, back));
+        distance =
+            real_max(distance, MARGIN * real_max(across, up) + vec3_dot(arm, back));
     }
     camera->at = scene_to_input(scene, middle);
     camera->eye = scene_to_input(scene, vec3_add(middle, vec3_scale(back, distance)));
@@ -164,6 +174,7 @@ struct vec3 camera_ray(const struct camera *camera, double x, double y)
     struct vec3 above = vec3_cross(right, forward);
     double half = tangent(camera->fov * PI / 360.0);
     double pixel = 2.0 * half / camera->height;
-    double across = (x - 0.5 * camera->width) * pixel, up = (0.5 * camera->height - y) * pixel;
+    double across = (x - 0.5 * camera->width) * pixel,
+           up = (0.5 * camera->height - y) * pixel;
     return vec3_add(forward, vec3_add(vec3_scale(right, across), vec3_scale(above, up)));
 }

@@ -1,4 +1,4 @@
-/* The camera: where a picture is taken from. */
+/* The camera: the eye, direction and size of a picture. */
 #ifndef IO_SCENE_CAMERA_H
 #define IO_SCENE_CAMERA_H
 
@@ -8,31 +8,33 @@
 #include "io/scene/text.h"
 
 enum {
-    CAMERA_SIZE = 512,     /* pixels along a side, unless said */
-    IMAGE_SIZE_MAX = 32768 /* the most that may be said */
+    CAMERA_SIZE = 512,     /* pixels along a side by default */
+    IMAGE_SIZE_MAX = 32768 /* pixels along a side at most */
 };
 
 struct camera {
-    struct vec3 eye, at, up; /* input units */
+    struct vec3 eye;         /* input units */
+    struct vec3 at;          /* a point in the middle of the picture, input units */
+    struct vec3 up;          /* direction, not along at - eye */
     double fov;              /* vertical, degrees, 0..180 exclusive */
     int width, height;       /* pixels */
-    bool fronts_only;        /* look through the backs of the input triangles */
+    bool fronts_only;        /* rays pass through the backs of input triangles */
 };
 
-/* Reads a view file: lines `eye x y z`, `at x y z`, `up x y z`, `fov degrees`, `size w h` in any
- * order, # comments. eye and at must be there; up is 0 1 0 (or 0 0 1 where that is the viewing
- * direction), fov 45 and the size 512 512 unless said.
- * Errors: "FILE:LINE: what is wrong", EXIT_USAGE. */
+/* Reads a view file: lines `eye x y z`, `at x y z`, `up x y z`, `fov degrees`, `size w h`
+ * in any order, # comments. eye and at are required. Defaults: up 0 1 0 (0 0 1 if the
+ * view is along y), fov 45, size 512 512.
+ * Errors: "FILE:LINE: REASON", EXIT_USAGE. */
 bool camera_read(const char *path, struct camera *camera, struct error *error);
 bool camera_of_text(struct camera *camera, struct text *text, struct error *error);
 
-/* Puts the camera outside the bounding box of the scene, in the direction `towards` from its middle
- * (of any length but 0, not along up), as near as all of the box is in the picture. Reads up, fov and size;
- * writes eye and at. */
+/* Puts the camera outside the bounding box of the scene, in the direction `towards` from
+ * its middle (of any length but 0, not along up), at the smallest distance that shows the
+ * whole box. Reads up, fov and size; writes eye and at. */
 void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 towards);
 
-/* Direction, of no certain length, of the ray through the point (x, y) of the picture, in
- * pixels from the top left corner. */
+/* Returns the direction, not of length 1, of the ray through the point (x, y) of the
+ * picture, in pixels from the top left corner. */
 struct vec3 camera_ray(const struct camera *camera, double x, double y);
 
 #endif

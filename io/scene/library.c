@@ -1,13 +1,14 @@
 /* Material libraries by name.
  *
- * `mtllib` lists names between blanks, but programs also write single names with blanks in
- * them. So the whole rest of the line is tried first, then its words, where a backslash before a
- * blank keeps a word together. A name is tried once, however often it occurs.
+ * `mtllib` lists names between blanks, but programs also write single names with blanks
+ * in them. So the whole rest of the line is tried first, then its words, where a
+ * backslash before a blank keeps a word together. A name is tried once, however often it
+ * occurs.
  *
- * Programs also write folders of the machine that they ran on, with either slash. Where such a
- * file does not exist, one with the same last name beside the OBJ file is taken: no other can
- * have been meant. If all blanks are in the folders, the line may as well be a list, and its words
- * decide. */
+ * Programs also write folders of the machine that they ran on, with either slash. Where
+ * such a file does not exist, the file of the same last name beside the OBJ file is
+ * taken. If only the folders have blanks, the line may as well be a list, and its words
+ * are tried. */
 #include "io/scene/library.h"
 
 #include <string.h>
@@ -23,7 +24,8 @@ struct lookup {
     struct error *error;
 };
 
-/* The path of a file that the OBJ file names: relative to its folder. The caller frees it. */
+/* Returns the path of a file that the OBJ file names, relative to its folder. To be
+ * freed. */
 static char *path_beside(const char *path, const char *name)
 {
     const char *slash = strrchr(path, '/');
@@ -34,7 +36,7 @@ static char *path_beside(const char *path, const char *name)
     return joined;
 }
 
-/* What stands behind the last slash or backslash; empty if that is all there is. */
+/* The part of a path behind its last slash or backslash; may be empty. */
 static const char *last_part(const char *name)
 {
     const char *part = name;
@@ -52,8 +54,8 @@ static bool read_file(const struct lookup *lookup, const char *name, bool *found
     return good;
 }
 
-/* Reads the library `name`, unless it has been tried before. `*missing` says whether this is
- * the first time that it turns out not to exist. */
+/* Reads the library `name`, unless it has been tried before. Sets `*missing` if the file
+ * does not exist and was not tried before. */
 static bool try_name(const struct lookup *lookup, const char *name, bool *missing)
 {
     *missing = false;
@@ -89,8 +91,9 @@ static char *next_name(char **rest)
     return *name ? name : NULL;
 }
 
-bool library_read(struct mtl_table *table, struct text_names *tried, const struct text *obj,
-                  char *rest, struct text_missing *lost, struct error *error)
+bool library_read(struct mtl_table *table, struct text_names *tried,
+                  const struct text *obj, char *rest, struct text_missing *lost,
+                  struct error *error)
 {
     struct lookup lookup = {table, tried, obj, error};
     char *whole = text_trim(rest);

@@ -1,4 +1,4 @@
-/* The material libraries of an OBJ file: which files its mtllib lines mean. */
+/* The material libraries that the mtllib lines of an OBJ file name. */
 #ifndef IO_SCENE_LIBRARY_H
 #define IO_SCENE_LIBRARY_H
 
@@ -8,11 +8,13 @@
 #include "io/scene/mtl.h"
 #include "io/scene/text.h"
 
-/* Reads what `rest`, the rest of the present mtllib line of `obj`, names, relative to the folder of
- * `obj`, into the table. `tried` are the names of earlier lines, which are passed over; it starts
- * as {0} and is the caller's. Names of files that do not exist are counted in `lost`.
+/* Reads the libraries named in `rest`, the rest of the current mtllib line of `obj`, into
+ * the table; names are relative to the folder of `obj`. `tried` has the names of earlier
+ * lines, which are skipped; it starts as {0} and is the caller's. `lost` counts the names
+ * of files that do not exist.
  * Errors: those of mtl_read(); too many names. EXIT_USAGE. */
-bool library_read(struct mtl_table *table, struct text_names *tried, const struct text *obj,
-                  char *rest, struct text_missing *lost, struct error *error);
+bool library_read(struct mtl_table *table, struct text_names *tried,
+                  const struct text *obj, char *rest, struct text_missing *lost,
+                  struct error *error);
 
 #endif

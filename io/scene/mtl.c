@@ -1,18 +1,18 @@
 /* Material libraries.
  *
- * Names asked for and names defined share one table, and what a name means is settled when all
- * is read: a library may come after the faces that use its materials. A name that nobody
- * defines keeps the neutral grey with which it entered the table.
+ * Names used by faces and names defined are in one table, and definitions are looked up
+ * after the last line: a library may come after the faces that use its materials. A name
+ * that nobody defines keeps the neutral grey with which it entered the table.
  *
- * Ke is not in the original description of the format, but it is what modelling programs write
- * for lights. A material that has only Ke is taken as a black light: the grey would be a
- * reflectance that nobody wrote down. A texture without Kd is the one exception: it says that
- * something is reflected, but not what, so the neutral grey stands for it. Ka, Ks, Tf and illum
- * say nothing about a diffuse surface and are passed over. Where d and Tr contradict each other,
- * d counts: programs disagree on what Tr 1 means.
+ * Ke is not in the original description of the format, but modelling programs write it
+ * for lights. A material with Ke alone is a black light: grey would be a reflectance that
+ * nobody wrote down. A texture without Kd is neutral grey: it reflects light of an
+ * unknown colour. Ka, Ks, Tf and illum do not describe diffuse surfaces and are skipped.
+ * Where d and Tr contradict each other, d counts: programs disagree on the meaning of Tr
+ * 1.
  *
- * A library is not a place to be lenient about Kd and Ke themselves: a negative or misspelt
- * number would be a wrong picture without a message. */
+ * Kd and Ke themselves are read strictly: a negative or misspelt number would give a
+ * wrong picture without a message. */
 #include "io/scene/mtl.h"
 
 #include <ctype.h>
@@ -27,8 +27,8 @@ int32_t mtl_find(struct mtl_table *table, const char *name)
     int32_t count = table->names.count;
     int32_t number = text_names_add(&table->names, name);
     if (number == count) {
-        table->entries = alloc_reserve(table->entries, &table->capacity, (int64_t)count + 1,
-                                       sizeof *table->entries);
+        table->entries = alloc_reserve(table->entries, &table->capacity,
+                                       (int64_t)count + 1, sizeof *table->entries);
         table->entries[number] = (struct mtl_entry){.material = NEUTRAL};
     }
     return number;
@@ -43,17 +43,17 @@ static bool is_keyword(const char *word, const char *keyword)
     return *word == *keyword;
 }
 
-/* Reads up to three numbers; those behind them are passed over. */
-static bool read_numbers(const struct text *text, char *word, char *rest, struct rgb *colour,
-                         int *count, struct error *error)
+/* Reads up to three numbers; further ones are skipped. */
+static bool read_numbers(const struct text *text, char *word, char *rest,
+                         struct rgb *colour, int *count, struct error *error)
 {
     for (*count = 0; word && *count < BANDS; word = text_word(&rest)) {
         double *value = &colour->band[*count];
         if (!text_number(text, word, value, error))
             return false;
         if (*value < 0.0)
-            return error_set(error, EXIT_USAGE, "%s:%ld: negative number '%.40s'", text->path,
-                             text->line, word);
+            return error_set(error, EXIT_USAGE, "%s:%ld: negative number '%.40s'",
+                             text->path, text->line, word);
         ++*count;
     }
     return true;
@@ -91,8 +91,7 @@ static bool start_material(struct mtl_table *table, const struct text *text, cha
     return true;
 }
 
-/* Transparency cannot be had, so what d and Tr say is kept for a warning, and nothing about them
- * is an error. */
+/* Notes d or Tr for a warning: surfaces are opaque. A malformed value is no error. */
 static void note_opacity(struct mtl_entry *entry, char *rest, bool is_d)
 {
     const char *word = text_word(&rest);
@@ -124,8 +123,8 @@ static bool read_line(struct mtl_table *table, const struct text *text, char *li
     bool is_kd = is_keyword(keyword, "kd");
     bool is_colour = is_kd || is_keyword(keyword, "ke");
     if (*current < 0 && is_colour)
-        return error_set(error, EXIT_USAGE, "%s:%ld: %s before newmtl", text->path, text->line,
-                         keyword);
+        return error_set(error, EXIT_USAGE, "%s:%ld: %s before newmtl", text->path,
+                         text->line, keyword);
     if (*current < 0)
         return true;
     struct mtl_entry *entry = &table->entries[*current];

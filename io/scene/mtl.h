@@ -1,9 +1,9 @@
 /* Reading Wavefront MTL material libraries.
  *
- * Understood: newmtl, Kd (the reflectance rho, 1) and Ke (the emitted radiosity E, W/m^2),
- * each as three numbers or one for grey, in capitals or not. Of d, Tr and map_Kd only that they
- * mean transparency or a texture is kept, for a warning: all is opaque and of one colour. Kd and
- * Ke in the forms `spectral` and `xyz` and all other keywords are passed over. */
+ * Understood: newmtl, Kd (the reflectance rho, 1) and Ke (the emitted radiosity E,
+ * W/m^2), each as three numbers or one for grey, in capitals or not. d, Tr and map_Kd
+ * only set flags for a warning: every material is opaque and of one colour. Kd and Ke in
+ * the forms `spectral` and `xyz` and all other keywords are skipped. */
 #ifndef IO_SCENE_MTL_H
 #define IO_SCENE_MTL_H
 
@@ -17,10 +17,11 @@
 struct mtl_entry {
     struct material material; /* neutral grey until it is defined */
     bool defined;             /* a library defines it */
-    bool used;                /* for the caller: a face has it */
+    bool used;                /* a face has it; set by the caller */
     bool transparent;         /* d below 1 or, without d, Tr above 0 */
     bool textured;            /* has map_Kd */
-    bool has_kd, has_d;       /* while it is read */
+    bool has_kd;              /* Kd was read */
+    bool has_d;               /* d was read, which overrides Tr */
 };
 
 /* The materials that are defined or asked for. Starts as {0}. */
@@ -30,16 +31,18 @@ struct mtl_table {
     int64_t capacity;          /* of entries */
 };
 
-/* The number of the material `name`, which is added, not defined, if it is new. */
+/* Returns the number of the material `name`. A new name is added, not yet defined. */
 int32_t mtl_find(struct mtl_table *table, const char *name);
 
-/* Adds the materials of the library `path`. A material without Kd is black, or grey
- * if it has a texture; one without Ke emits nothing; of two definitions the later one counts. If the file cannot be read
- * `*found` is false and the table as before; that is no error.
- * Errors: "FILE:LINE: what is wrong"; EXIT_USAGE. */
-bool mtl_read(struct mtl_table *table, const char *path, bool *found, struct error *error);
+/* Adds the materials of the library `path`. A material without Kd is black, or grey if it
+ * has a texture; one without Ke emits nothing; of two definitions the later one counts.
+ * If the file cannot be read, `*found` is false and the table unchanged, without an
+ * error.
+ * Errors: "FILE:LINE: REASON"; EXIT_USAGE. */
+bool mtl_read(struct mtl_table *table, const char *path, bool *found,
+              struct error *error);
 
-/* The same for a text that is in memory. Its lines are used up; it stays the caller's. */
+/* Does the same with a text in memory. Its lines are used up; it stays the caller's. */
 bool mtl_of_text(struct mtl_table *table, struct text *text, struct error *error);
 
 void mtl_free(struct mtl_table *table);

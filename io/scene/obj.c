@@ -1,22 +1,22 @@
 /* Scenes from Wavefront OBJ files.
  *
- * One pass over the lines. Faces are checked against the vertices before them, cut into
- * triangles at once and kept as vertex numbers; the scene is made when all counts are known and
- * the text is gone from memory. Vertices that come after their face are refused: negative
- * indices count back from the line of the face, so a reader that allowed both would give
- * another meaning to some wrong files instead of a message.
+ * The lines are read in one pass. A face is checked against the vertices before it, cut
+ * into triangles at once and kept as vertex numbers; the scene is made when all counts
+ * are known and the text is freed. A vertex after its face is refused: negative indices
+ * count back from the line of the face, so a reader that allowed both would misread some
+ * wrong files without a message.
  *
- * Repairs are for what does not touch the geometry: a missing library or material gives grey.
- * A wrong index, number or face ends the reading, since what was meant cannot be known. Normals
- * touch pictures alone: one that is not a direction, or not there, is none.
+ * Materials are repaired: a missing library or material gives grey. Geometry is not: a
+ * wrong index, number or face ends the reading, since its meaning cannot be guessed.
+ * Normals change pictures alone: a missing one, or one of length 0, leaves the corner
+ * without a normal.
  *
- * Cutting a concave face takes a time that is quadratic in its corners; the limit on them keeps
- * one line of a file from taking minutes. */
+ * Cutting a concave face takes time quadratic in its corners; their limit keeps one line
+ * of a file from taking minutes. */
 #include "io/scene/obj.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "geom/alloc.h"
@@ -27,7 +27,7 @@
 #include "io/scene/text.h"
 
 enum {
-    COUNT_MAX = (1 << 30) - 1, /* vertices; triangles, which with their twins fit an int32_t */
+    COUNT_MAX = (1 << 30) - 1, /* vertices; triangles: with twins in an int32_t */
     CORNER_MAX = 1 << 14       /* corners of one face */
 };
 
@@ -56,21 +56,21 @@ struct obj_triangles {
 struct obj_reader {
     struct text text;
     struct obj_vectors vertices;
-    struct obj_vectors normals;    /* of length 1, or 0 for one without a direction */
+    struct obj_vectors normals;    /* of length 1, or 0 where the line has no direction */
     bool has_normals;              /* a face has a normal with a direction */
     struct obj_triangles triangles;
-    struct obj_corner *corners;    /* of the present face */
+    struct obj_corner *corners;    /* of the current face */
     int64_t corner_count, corner_capacity;
-    struct mtl_table materials;    /* the first one is for faces without a material */
+    struct mtl_table materials;    /* number 0: for faces without a material */
     int32_t material;              /* of the next face */
-    struct text_names libraries;   /* for library_read() */
+    struct text_names libraries;   /* names tried by library_read() */
     struct text_names groups;      /* names of groups, also of those without a face */
     int32_t group;                 /* of the next face */
     struct obj_repairs *repairs;
     struct error *error;
 };
 
-/* A normal shorter than this has no direction: its square might have lost digits. */
+/* A shorter normal counts as 0: its square may have lost digits. */
 static const double DIRECTION_MIN = 1e-100;
 
 static const char DEFAULT_GROUP[] = "default";
@@ -101,7 +101,7 @@ static bool read_vertex(struct obj_reader *reader, char *rest)
     return true;
 }
 
-/* Three numbers that make a direction, of length 1; otherwise 0. */
+/* Returns the direction of three numbers, of length 1, or 0 if they have none. */
 static struct vec3 parse_direction(char *rest)
 {
     double value[3];
@@ -112,7 +112,8 @@ static struct vec3 parse_direction(char *rest)
     }
     struct vec3 x = {value[0], value[1], value[2]};
     double length = vec3_length(x);
-    return length > DIRECTION_MIN ? vec3_scale(x, 1.0 / length) : (struct vec3){0.0, 0.0, 0.0};
+    return length > DIRECTION_MIN ? vec3_scale(x, 1.0 / length)
+                                  : (struct vec3){0.0, 0.0, 0.0};
 }
 
 static bool read_normal(struct obj_reader *reader, char *rest)
@@ -124,8 +125,9 @@ static bool read_normal(struct obj_reader *reader, char *rest)
     return true;
 }
 
-/* A corner is V, V/VT, V//VN or V/VT/VN; VT only has to be an integer. */
-static bool parse_corner(const char *word, int64_t *vertex, int64_t *normal, bool *has_normal)
+/* Reads a corner: V, V/VT, V//VN or V/VT/VN. VT only has to be an integer. */
+static bool parse_corner(const char *word, int64_t *vertex, int64_t *normal,
+                         bool *has_normal)
 {
     int64_t unused;
     *has_normal = false;
@@ -142,8 +144,8 @@ static bool parse_corner(const char *word, int64_t *vertex, int64_t *normal, boo
     return *word == '\0';
 }
 
-/* The place in a list of `count` that an index means at this line; negative if none: index 0
- * means the place behind the last. */
+/* Returns the place in a list of `count` that an index of this line means, or a negative
+ * number. Index 0 would be the place behind the last. */
 static int32_t find_place(int64_t index, int64_t count)
 {
     int64_t place = index > 0 ? index - 1 : count + index;
@@ -162,20 +164,22 @@ static int32_t find_normal(struct obj_reader *reader, int64_t index)
     return normal;
 }
 
-static bool read_corner(struct obj_reader *reader, const char *word, struct obj_corner *corner)
+static bool read_corner(struct obj_reader *reader, const char *word,
+                        struct obj_corner *corner)
 {
     int64_t vertex, normal = 0;
     bool has_normal;
     if (!parse_corner(word, &vertex, &normal, &has_normal))
-        return error_set(reader->error, EXIT_USAGE, "%s:%ld: bad corner '%.40s' of a face",
-                         reader->text.path, reader->text.line, word);
+        return error_set(reader->error, EXIT_USAGE,
+                         "%s:%ld: bad corner '%.40s' of a face", reader->text.path,
+                         reader->text.line, word);
     corner->vertex = find_place(vertex, reader->vertices.count);
     if (corner->vertex < 0) {
         size_t digits = strcspn(word, "/");
         return error_set(reader->error, EXIT_USAGE,
-                         "%s:%ld: face refers to vertex %.*s of %" PRId64, reader->text.path,
-                         reader->text.line, digits < 40 ? (int)digits : 40, word,
-                         reader->vertices.count);
+                         "%s:%ld: face refers to vertex %.*s of %" PRId64,
+                         reader->text.path, reader->text.line,
+                         digits < 40 ? (int)digits : 40, word, reader->vertices.count);
     }
     corner->normal = has_normal ? find_normal(reader, normal) : -1;
     return true;
@@ -186,10 +190,12 @@ static bool read_corners(struct obj_reader *reader, char *rest)
     reader->corner_count = 0;
     for (const char *word; (word = text_word(&rest)) != NULL;) {
         if (reader->corner_count == CORNER_MAX)
-            return error_set(reader->error, EXIT_USAGE, "%s:%ld: face of more than %d corners",
-                             reader->text.path, reader->text.line, CORNER_MAX);
-        reader->corners = alloc_reserve(reader->corners, &reader->corner_capacity,
-                                        reader->corner_count + 1, sizeof *reader->corners);
+            return error_set(reader->error, EXIT_USAGE,
+                             "%s:%ld: face of more than %d corners", reader->text.path,
+                             reader->text.line, CORNER_MAX);
+        reader->corners =
+            alloc_reserve(reader->corners, &reader->corner_capacity,
+                          reader->corner_count + 1, sizeof *reader->corners);
         if (!read_corner(reader, word, &reader->corners[reader->corner_count]))
             return false;
         reader->corner_count++;
@@ -249,12 +255,13 @@ static bool read_group(struct obj_reader *reader, char *rest)
     return true;
 }
 
-/* Whether lines with the keyword say nothing about triangles and their colours. */
+/* True if lines with the keyword do not concern triangles or their colours. */
 static bool is_harmless(const char *keyword)
 {
-    static const char *const words[] = {"vt", "s", "l", "p", "vp", "vw", "mg", "usemap", "maplib",
-                                        "lod", "c_interp", "d_interp", "bevel", "shadow_obj",
-                                        "trace_obj"};
+    static const char *const words[] = {"vt",     "s",          "l",        "p",
+                                        "vp",     "vw",         "mg",       "usemap",
+                                        "maplib", "lod",        "c_interp", "d_interp",
+                                        "bevel",  "shadow_obj", "trace_obj"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         if (strcmp(keyword, words[i]) == 0)
             return true;
@@ -297,7 +304,7 @@ static bool read_lines(struct obj_reader *reader)
     return true;
 }
 
-/* Numbers the used materials of the table, in its order, for the scene. Returns how many. */
+/* Numbers the used materials of the table in its order. Returns their number. */
 static int32_t number_materials(const struct obj_reader *reader, int32_t *number)
 {
     struct obj_repairs *repairs = reader->repairs;
@@ -314,11 +321,12 @@ static int32_t number_materials(const struct obj_reader *reader, int32_t *number
     return count;
 }
 
-/* Numbers the groups that have faces, in the order of these, and names them in the scene. */
+/* Numbers the groups that have faces, by their first faces, and names them in the
+ * scene. */
 static void make_groups(const struct obj_reader *reader, struct scene *scene)
 {
     int32_t known = reader->groups.count, count = 0;
-    int32_t *number = alloc_array((size_t)known, sizeof *number); /* from 1; 0: no face yet */
+    int32_t *number = alloc_array((size_t)known, sizeof *number); /* from 1; 0: no face */
     int32_t *order = alloc_array((size_t)known, sizeof *order);
     size_t bytes = 0;
     for (int32_t i = 0; i < scene->input_count; i++) {
@@ -375,7 +383,8 @@ static struct scene *make_scene(const struct obj_reader *reader)
     return scene;
 }
 
-struct scene *obj_of_text(struct text *text, struct obj_repairs *repairs, struct error *error)
+struct scene *obj_of_text(struct text *text, struct obj_repairs *repairs,
+                          struct error *error)
 {
     *repairs = (struct obj_repairs){0};
     struct obj_reader reader = {.text = *text, .repairs = repairs, .error = error};

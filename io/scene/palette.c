@@ -1,5 +1,5 @@
-/* A hash table of materials, like that of names in io/scene/text.c: a scanned mesh may have as many
- * colours as faces, and looking through a list would take quadratic time. */
+/* A hash table of materials, built like the names in io/scene/text.c: a scanned mesh may
+ * have a colour for each face, and searching a list would take quadratic time. */
 #include "io/scene/palette.h"
 
 #include <string.h>
@@ -24,14 +24,15 @@ static uint64_t mix(uint64_t sum, double value)
     return sum ^ sum >> 32;
 }
 
-/* The slot of a material, or the empty one where it belongs. */
+/* Returns the slot of a material, or the empty slot where it belongs. */
 static int32_t *find_slot(const struct palette *palette, const struct material *material)
 {
     uint64_t mask = (uint64_t)palette->slot_count - 1, at = 0;
     for (int c = 0; c < BANDS; c++)
         at = mix(mix(at, material->reflectance.band[c]), material->emission.band[c]);
     at &= mask;
-    while (palette->slots[at] && !is_same(&palette->materials[palette->slots[at] - 1], material))
+    while (palette->slots[at] &&
+           !is_same(&palette->materials[palette->slots[at] - 1], material))
         at = (at + 1) & mask;
     return &palette->slots[at];
 }

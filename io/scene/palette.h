@@ -8,14 +8,14 @@
 
 /* Starts as {0}. */
 struct palette {
-    struct material *materials; /* [count], no two alike */
+    struct material *materials; /* [count], all different */
     int32_t count;
     int64_t capacity;           /* of materials */
     int32_t *slots;             /* hash table: 0, or the number of a material plus 1 */
     int64_t slot_count;         /* a power of two, at least twice count */
 };
 
-/* The number of the material, which is added if it is new. Its numbers have to be finite. */
+/* Returns the number of the material, which is added if it is new. Pre: it is finite. */
 int32_t palette_add(struct palette *palette, const struct material *material);
 void palette_free(struct palette *palette);
 

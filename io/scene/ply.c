@@ -1,14 +1,12 @@
 /* Scenes from PLY files.
  *
- * Rows come in the order of the file, and faces may come before their vertices. So faces are
- * kept as numbers of corners until all is read, and become triangles and materials then; their
- * corners are checked at once, against the number of vertices that the header has declared and
- * the file must still prove.
+ * Faces may come before their vertices. So faces are kept as numbers of corners and
+ * become triangles after the last record; their corners are checked at once, against the
+ * number of vertices that the header declares.
  *
- * Colours are reflectances as they stand. Modellers write them for the eye, in sRGB or in no
- * declared space at all, and the format cannot say which; decoding them would make every mesh
- * that was made for computing wrong, and a 128 would no longer be what a reader of the file
- * expects, half. Alpha is passed over: surfaces are opaque. */
+ * Colours are taken as linear reflectances. Modellers may mean sRGB, but the format
+ * cannot declare it; decoding would falsify every mesh made for computing, and 128 would
+ * no longer mean one half. Alpha is skipped: surfaces are opaque. */
 #include "io/scene/ply.h"
 
 #include <stdio.h>
@@ -22,7 +20,7 @@
 #include "io/scene/text.h"
 
 enum {
-    COUNT_MAX = (1 << 30) - 1, /* vertices; triangles, which with their twins fit an int32_t */
+    COUNT_MAX = (1 << 30) - 1, /* vertices; triangles: with twins in an int32_t */
     CORNER_MAX = 1 << 14       /* corners of one face: cutting it takes quadratic time */
 };
 
@@ -37,7 +35,7 @@ struct face {
 struct reader {
     struct ply_file file;
     struct vec3 *vertices;
-    struct rgb *colours;   /* of the vertices, where faces have none; else NULL */
+    struct rgb *colours;   /* of the vertices; NULL if faces have colours */
     int64_t vertex_count;  /* as the header declares */
     struct face *faces;
     int64_t face_count;
@@ -48,28 +46,34 @@ struct reader {
     struct error *error;
 };
 
-/* True if the element has three properties from `first` on; false also if there is no element. */
+/* True if there is an element and it has the three properties from `first` on. */
 static bool has_three(const struct ply_element *element, enum ply_field first)
 {
     return element && element->type_of[first] != PLY_NONE &&
-           element->type_of[first + 1] != PLY_NONE && element->type_of[first + 2] != PLY_NONE;
+           element->type_of[first + 1] != PLY_NONE &&
+           element->type_of[first + 2] != PLY_NONE;
 }
 
-/* What one is in the numbers of a colour. */
+/* Returns the value of a colour that means a reflectance of 1. */
 static double unit_of(enum ply_type type)
 {
-    return type >= PLY_FLOAT ? 1.0 : type == PLY_SHORT || type == PLY_USHORT ? 65535.0 : 255.0;
+    return type >= PLY_FLOAT                         ? 1.0
+           : type == PLY_SHORT || type == PLY_USHORT ? 65535.0
+                                                     : 255.0;
 }
 
-/* Three values of the present row from `first` on, over those that stand for 1. */
+/* Takes three values of the current record from `first` on; if `scaled`, divided by
+ * unit_of(). */
 static bool take_rgb(struct reader *reader, const struct ply_element *element,
                      enum ply_field first, bool scaled, struct rgb *colour)
 {
     for (int c = 0; c < BANDS; c++) {
         double value = reader->file.value[(int)first + c];
         if (value < 0.0)
-            return ply_fail(&reader->file, reader->error, "a negative colour or emission");
-        colour->band[c] = scaled ? value / unit_of(element->type_of[(int)first + c]) : value;
+            return ply_fail(&reader->file, reader->error,
+                            "a negative colour or emission");
+        colour->band[c] =
+            scaled ? value / unit_of(element->type_of[(int)first + c]) : value;
     }
     return true;
 }
@@ -78,13 +82,15 @@ static bool read_vertices(struct reader *reader, const struct ply_element *eleme
 {
     const double *value = reader->file.value;
     reader->vertices = alloc_array((size_t)element->count, sizeof *reader->vertices);
-    if (has_three(element, PLY_RED) && !has_three(ply_file_find(&reader->file, PLY_FACE), PLY_RED))
+    if (has_three(element, PLY_RED) &&
+        !has_three(ply_file_find(&reader->file, PLY_FACE), PLY_RED))
         reader->colours = alloc_array((size_t)element->count, sizeof *reader->colours);
     for (int64_t i = 0; i < element->count; i++) {
-        if (!ply_file_row(&reader->file, element, i, reader->error))
+        if (!ply_file_record(&reader->file, element, i, reader->error))
             return false;
         reader->vertices[i] = (struct vec3){value[PLY_X], value[PLY_Y], value[PLY_Z]};
-        if (reader->colours && !take_rgb(reader, element, PLY_RED, true, &reader->colours[i]))
+        if (reader->colours &&
+            !take_rgb(reader, element, PLY_RED, true, &reader->colours[i]))
             return false;
     }
     return true;
@@ -104,7 +110,8 @@ static bool check_corners(const struct reader *reader)
     return !text[0] || ply_fail(file, reader->error, text);
 }
 
-static bool add_face(struct reader *reader, const struct ply_element *element, struct face *face)
+static bool add_face(struct reader *reader, const struct ply_element *element,
+                     struct face *face)
 {
     const struct ply_file *file = &reader->file;
     struct material material = NEUTRAL;
@@ -132,7 +139,7 @@ static bool read_faces(struct reader *reader, const struct ply_element *element)
     reader->faces = alloc_array((size_t)element->count, sizeof *reader->faces);
     reader->face_count = element->count;
     for (int64_t i = 0; i < element->count; i++)
-        if (!ply_file_row(&reader->file, element, i, reader->error) ||
+        if (!ply_file_record(&reader->file, element, i, reader->error) ||
             !add_face(reader, element, &reader->faces[i]))
             return false;
     return true;
@@ -144,13 +151,15 @@ static bool check_header(struct reader *reader)
     const struct ply_element *face = ply_file_find(&reader->file, PLY_FACE);
     const char *path = reader->file.binary.path;
     if (!has_three(vertex, PLY_X))
-        return error_set(reader->error, EXIT_USAGE, "%s: no vertices with x, y and z", path);
+        return error_set(reader->error, EXIT_USAGE, "%s: no vertices with x, y and z",
+                         path);
     if (!face || face->type_of[PLY_CORNERS] == PLY_NONE || face->count == 0)
-        return error_set(reader->error, EXIT_USAGE, "%s: no faces with vertex_indices", path);
+        return error_set(reader->error, EXIT_USAGE, "%s: no faces with vertex_indices",
+                         path);
     reader->vertex_count = vertex->count;
     if (vertex->count > COUNT_MAX || face->count > COUNT_MAX)
-        return error_set(reader->error, EXIT_USAGE, "%s: more than %d vertices or faces", path,
-                         COUNT_MAX);
+        return error_set(reader->error, EXIT_USAGE, "%s: more than %d vertices or faces",
+                         path, COUNT_MAX);
     return true;
 }
 
@@ -169,7 +178,7 @@ static bool read_file(struct reader *reader, const struct binary *binary)
     return good && ply_file_end(file, reader->error);
 }
 
-/* Gives the faces the mean colours of their corners; their emission stays. */
+/* Gives the faces the mean colours of their corners, and leaves their emissions. */
 static void mix_colours(struct reader *reader)
 {
     struct palette mixed = {0};
@@ -188,9 +197,9 @@ static void mix_colours(struct reader *reader)
     reader->palette = mixed;
 }
 
-/* Makes a face triangles of the scene, from number `at` on. */
-static void cut_face(const struct reader *reader, const struct face *face, struct scene *scene,
-                     int32_t at)
+/* Cuts a face into triangles of the scene, from number `at` on. */
+static void cut_face(const struct reader *reader, const struct face *face,
+                     struct scene *scene, int32_t at)
 {
     int32_t triangle[3] = {0, 1, 2}, *cut = triangle;
     struct vec3 *positions = alloc_array((size_t)face->count, sizeof *positions);
@@ -209,10 +218,11 @@ static void cut_face(const struct reader *reader, const struct face *face, struc
         alloc_free(cut);
 }
 
-/* NULL if it is stopped. */
+/* Returns NULL if the program is asked to stop. */
 static struct scene *make_scene(const struct reader *reader)
 {
-    struct scene *scene = scene_create((int32_t)reader->triangle_count, reader->palette.count);
+    struct scene *scene =
+        scene_create((int32_t)reader->triangle_count, reader->palette.count);
     memcpy(scene->materials, reader->palette.materials,
            (size_t)reader->palette.count * sizeof *scene->materials);
     int32_t at = 0;
@@ -258,5 +268,6 @@ bool ply_is_meant(const char *path)
     bool seen = file && fseek(file, 0, SEEK_SET) == 0 && fread(start, 1, 4, file) == 4;
     if (file)
         fclose(file);
-    return seen && strncmp(start, "ply", 3) == 0 && (start[3] == '\n' || start[3] == '\r');
+    return seen && strncmp(start, "ply", 3) == 0 &&
+           (start[3] == '\n' || start[3] == '\r');
 }

@@ -1,11 +1,12 @@
 /* Reading scenes from PLY meshes, as text or binary in either byte order.
  *
- * Vertices are x y z in any types. Faces have corners (vertex_indices or vertex_index), and
- * polygons are cut as those of OBJ files are. Faces or else vertices may have `red green blue`,
- * taken as linear reflectances: an integer type counts in 255ths (16 bits: in 65535ths), float
- * and double as they are. A face without colours of its own has the mean of its corners'; where
- * nothing has colours all faces are neutral grey, 0.5. Faces may have `emission_r emission_g
- * emission_b`, the emitted radiosity E in W/m^2. All else is passed over. */
+ * Vertices are x y z in any types. Faces have corners (vertex_indices or vertex_index),
+ * and polygons are cut into triangles as in OBJ files. Faces or else vertices may have
+ * `red green blue`, taken as linear reflectances: an integer type counts in 255ths (16
+ * bits: in 65535ths), float and double as they are. A face without a colour has the mean
+ * colour of its corners; in a file without colours all faces are neutral grey, 0.5. Faces
+ * may have `emission_r emission_g emission_b`, the emitted radiosity E in W/m^2. Other
+ * properties are skipped. */
 #ifndef IO_SCENE_PLY_H
 #define IO_SCENE_PLY_H
 
@@ -15,19 +16,19 @@
 #include "geom/scene.h"
 #include "io/scene/binary.h"
 
-/* True if a scene is to be read as PLY: its name ends in .ply, or it does not end in .obj, the
- * file can be looked at without taking bytes from a pipe, and begins as a PLY file does. */
+/* True if a scene is to be read as PLY: its name ends in .ply; or it does not end in
+ * .obj, and the file is not a pipe and begins as a PLY file does. */
 bool ply_is_meant(const char *path);
 
-/* Reads `path`. Returns a scene that is not prepared yet (positions in input units), of one
- * group, with one material for each different pair of reflectance and emission; or NULL with
- * `error` filled (EXIT_USAGE): "FILE:LINE: what is wrong" for text and headers, else "FILE: face
- * 3: what is wrong", counted from 0.
- * Errors: those of io/scene/plyfile.h; no x y z, no faces, faces with fewer than three corners or one
- * that is out of range, negative colours or emission. */
+/* Reads `path`. Returns a scene before scene_prepare() (positions in input units), of one
+ * group, with one material for each different pair of reflectance and emission; or NULL
+ * with `error` set (EXIT_USAGE): "FILE:LINE: REASON" for text and headers, else "FILE:
+ * face 3: REASON", counted from 0.
+ * Errors: those of io/scene/plyfile.h; no x y z, no faces, a face with fewer than three
+ * corners, a corner out of range, a negative colour or emission. */
 struct scene *ply_read(const char *path, struct error *error);
 
-/* The same for a file in memory, which it takes over. */
+/* Does the same with a file in memory, which it frees. */
 struct scene *ply_of_binary(const struct binary *binary, struct error *error);
 
 #endif

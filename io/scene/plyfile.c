@@ -1,21 +1,21 @@
-/* Reading PLY files row by row.
+/* Reading PLY files record by record.
  *
- * The header is a list of claims, and each is held against the size of the file before anything
- * is allocated or counted: a row has at least the bytes of its scalars and of its lists' counts,
- * or, as text, two characters for each value. So a file of a hundred bytes cannot ask for a
- * billion vertices. A list is believed when its items are there.
+ * The counts of the header are checked against the size of the file before anything is
+ * allocated: a record has at least the bytes of its scalars and of its lists' counts, or,
+ * as text, two characters for each value. So a file of a hundred bytes cannot ask for a
+ * billion vertices. The count of a list is checked in the same way.
  *
- * A row of a text file is a line, as the format's description has it. Readers that take words
- * wherever they stand forgive broken lines, but one value too many then shifts all that follow,
- * which is a wrong scene without a message. For the same reason nothing may be left behind the
- * last row but blanks.
+ * A record of a text file is a line, as the format's description has it. Readers that
+ * ignore line ends forgive broken lines, but one value too many then shifts all later
+ * ones and gives a wrong scene without a message. For the same reason only blanks may
+ * follow the last record.
  *
- * Values that nobody wants are passed over unseen, be they NaN. All others have to be finite.
- * Types are those of the header for binary files only: a text file may write 300 for a uchar. */
+ * Values of properties that are not read may be NaN; all others have to be finite. The
+ * types of the header hold for binary files only: a text file may write 300 for a
+ * uchar. */
 #include "io/scene/plyfile.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "geom/alloc.h"
@@ -53,11 +53,11 @@ static const struct {
               {PLY_FACE, "root", PLY_ROOT},
               {PLY_FACE, "hierarchy", PLY_HIERARCHY}};
 
-static const char *const ROW_NAMES[] = {"vertex", "face", "row"};
+static const char *const RECORD_NAMES[] = {"vertex", "face", "row"};
 
 /* --- the header --- */
 
-/* The next line without its end, or NULL behind the last one. */
+/* Returns the next line without its end, or NULL behind the last one. */
 static char *next_line(struct ply_file *file)
 {
     struct binary *binary = &file->binary;
@@ -77,11 +77,12 @@ static char *next_line(struct ply_file *file)
 static bool fail_word(const struct ply_file *file, struct error *error, const char *what,
                         const char *word)
 {
-    return error_set(error, EXIT_USAGE, "%s:%ld: %s '%.40s'", file->binary.path, file->line, what,
-                     word ? word : "");
+    return error_set(error, EXIT_USAGE, "%s:%ld: %s '%.40s'", file->binary.path,
+                     file->line, what, word ? word : "");
 }
 
-static bool read_format(struct ply_file *file, char *rest, bool *known, struct error *error)
+static bool read_format(struct ply_file *file, char *rest, bool *known,
+                        struct error *error)
 {
     const char *name = text_word(&rest), *version = text_word(&rest);
     if (*known)
@@ -136,7 +137,8 @@ static enum ply_field find_field(enum ply_kind kind, const char *name)
     return PLY_FIELDS;
 }
 
-/* Corners are lists of integers, all others are single numbers. */
+/* Checks the type of a property: corners are lists of integers, all others single
+ * numbers. */
 static bool check_field(struct ply_file *file, struct ply_element *element,
                         const struct ply_property *property, const char *name,
                         struct error *error)
@@ -165,7 +167,8 @@ static bool read_property(struct ply_file *file, char *rest, struct error *error
     enum ply_type type = find_type(type_name);
     if (type == PLY_NONE || !name || (list && count_type >= PLY_FLOAT))
         return fail_word(file, error, "bad property", name);
-    struct ply_property property = {.type = (uint8_t)type, .count_type = (uint8_t)count_type,
+    struct ply_property property = {.type = (uint8_t)type,
+                                    .count_type = (uint8_t)count_type,
                                     .field = (uint8_t)find_field(element->kind, name)};
     header->properties = alloc_reserve(header->properties, &header->property_capacity,
                                        header->property_count + 1,
@@ -173,25 +176,28 @@ static bool read_property(struct ply_file *file, char *rest, struct error *error
     header->properties[header->property_count++] = property;
     element->property_count++;
     element->has_list = element->has_list || list;
-    element->row_size += TYPES[list ? count_type : type].size;
+    element->record_size += TYPES[list ? count_type : type].size;
     return check_field(file, element, &property, name, error);
 }
 
-/* Holds what the elements claim against the size of the file. */
+/* Checks the counts of the elements against the size of the file. */
 static bool check_claims(struct ply_file *file, struct error *error)
 {
     const struct binary *binary = &file->binary;
-    if (file->ascii && (int64_t)strlen(binary->data + binary->position) < binary_left(binary))
+    if (file->ascii &&
+        (int64_t)strlen(binary->data + binary->position) < binary_left(binary))
         return error_set(error, EXIT_USAGE, "%s: not text, though its header says ascii",
                          binary->path);
-    int64_t left = binary_left(binary) + (file->ascii ? 1 : 0); /* a last line without end */
+    int64_t last_end = file->ascii ? 1 : 0; /* the last line may lack its end */
+    int64_t left = binary_left(binary) + last_end;
     for (int64_t i = 0; i < file->header.element_count; i++) {
         struct ply_element *element = &file->header.elements[i];
         if (file->ascii)
-            element->row_size = 2 * element->property_count;
-        if (element->row_size > 0 && element->count > left / element->row_size)
+            element->record_size = 2 * element->property_count;
+        if (element->record_size > 0 && element->count > left / element->record_size)
             return error_set(error, EXIT_USAGE,
-                             "%s:%ld: the file is too short for %lld elements of this kind",
+                             "%s:%ld: the file is too short for %lld elements "
+                             "of this kind",
                              binary->path, element->line, (long long)element->count);
     }
     return true;
@@ -204,7 +210,8 @@ static bool read_header(struct ply_file *file, struct error *error)
     next_line(file);
     for (char *rest; good && (rest = next_line(file)) != NULL;) {
         keyword = text_word(&rest);
-        if (!keyword || strcmp(keyword, "comment") == 0 || strcmp(keyword, "obj_info") == 0)
+        if (!keyword || strcmp(keyword, "comment") == 0 ||
+            strcmp(keyword, "obj_info") == 0)
             continue;
         if (strcmp(keyword, "format") == 0)
             good = read_format(file, rest, &known, error);
@@ -227,9 +234,10 @@ bool ply_file_load(struct binary *binary, const char *path, struct error *error)
     return binary_read(binary, path, "ply", "a PLY file", error);
 }
 
-bool ply_file_open(struct ply_file *file, const struct binary *binary, struct error *error)
+bool ply_file_open(struct ply_file *file, const struct binary *binary,
+                   struct error *error)
 {
-    *file = (struct ply_file){.binary = *binary, .row_name = ROW_NAMES[PLY_OTHER]};
+    *file = (struct ply_file){.binary = *binary, .record_name = RECORD_NAMES[PLY_OTHER]};
     char end = binary->data[3];
     if (end != '\n' && end != '\r')
         return error_set(error, EXIT_USAGE, "%s: not a PLY file", binary->path);
@@ -254,20 +262,21 @@ const struct ply_element *ply_file_find(const struct ply_file *file, enum ply_ki
     return NULL;
 }
 
-/* --- the rows --- */
+/* --- the records --- */
 
 bool ply_fail(const struct ply_file *file, struct error *error, const char *text)
 {
     if (file->ascii)
-        return error_set(error, EXIT_USAGE, "%s:%ld: %s", file->binary.path, file->line, text);
-    return error_set(error, EXIT_USAGE, "%s: %s %lld: %s", file->binary.path, file->row_name,
-                     (long long)file->row, text);
+        return error_set(error, EXIT_USAGE, "%s:%ld: %s", file->binary.path, file->line,
+                         text);
+    return error_set(error, EXIT_USAGE, "%s: %s %lld: %s", file->binary.path,
+                     file->record_name, (long long)file->record, text);
 }
 
 static bool fail_short(const struct ply_file *file, struct error *error)
 {
     return error_set(error, EXIT_USAGE, "%s: the file ends in %s %lld", file->binary.path,
-                     file->row_name, (long long)file->row);
+                     file->record_name, (long long)file->record);
 }
 
 static double decode(const char *at, enum ply_type type, bool big_endian)
@@ -282,8 +291,9 @@ static double decode(const char *at, enum ply_type type, bool big_endian)
     return (double)binary_integer(at, size, big_endian);
 }
 
-/* The next value of the row; passed over where `value` is NULL. */
-static bool take(struct ply_file *file, enum ply_type type, double *value, struct error *error)
+/* Reads the next value of the record; skips it if `value` is NULL. */
+static bool take(struct ply_file *file, enum ply_type type, double *value,
+                 struct error *error)
 {
     if (file->ascii) {
         const char *word = text_word(&file->rest);
@@ -304,9 +314,9 @@ static bool take(struct ply_file *file, enum ply_type type, double *value, struc
     return true;
 }
 
-/* The number of items of a list, for which there are bytes left. */
-static bool take_count(struct ply_file *file, const struct ply_property *property, int64_t *count,
-                       struct error *error)
+/* Reads the number of items of a list, for which enough bytes have to be left. */
+static bool take_count(struct ply_file *file, const struct ply_property *property,
+                       int64_t *count, struct error *error)
 {
     double value;
     if (!take(file, (enum ply_type)property->count_type, &value, error))
@@ -368,7 +378,7 @@ static bool take_property(struct ply_file *file, const struct ply_property *prop
 }
 
 /* Moves to the next line that is not blank. */
-static bool find_row(struct ply_file *file, struct error *error)
+static bool find_record(struct ply_file *file, struct error *error)
 {
     do {
         file->rest = next_line(file);
@@ -379,12 +389,12 @@ static bool find_row(struct ply_file *file, struct error *error)
     return true;
 }
 
-bool ply_file_row(struct ply_file *file, const struct ply_element *element, int64_t row,
-                  struct error *error)
+bool ply_file_record(struct ply_file *file, const struct ply_element *element,
+                     int64_t record, struct error *error)
 {
-    file->row = row;
-    file->row_name = ROW_NAMES[element->kind];
-    if (!stop_check(error) || (file->ascii && !find_row(file, error)))
+    file->record = record;
+    file->record_name = RECORD_NAMES[element->kind];
+    if (!stop_check(error) || (file->ascii && !find_record(file, error)))
         return false;
     for (int64_t i = 0; i < element->property_count; i++)
         if (!take_property(file, &file->header.properties[element->property + i], error))
@@ -400,15 +410,15 @@ bool ply_file_skip(struct ply_file *file, const struct ply_element *element,
     if (element->property_count == 0)
         return true;
     if (!file->ascii && !element->has_list) {
-        file->row_name = ROW_NAMES[element->kind];
-        file->row = binary_left(&file->binary) / element->row_size;
-        if (element->count > file->row)
+        file->record_name = RECORD_NAMES[element->kind];
+        file->record = binary_left(&file->binary) / element->record_size;
+        if (element->count > file->record)
             return fail_short(file, error);
-        file->binary.position += element->count * element->row_size;
+        file->binary.position += element->count * element->record_size;
         return true;
     }
-    for (int64_t row = 0; row < element->count; row++)
-        if (!ply_file_row(file, element, row, error))
+    for (int64_t record = 0; record < element->count; record++)
+        if (!ply_file_record(file, element, record, error))
             return false;
     return true;
 }
@@ -416,7 +426,8 @@ bool ply_file_skip(struct ply_file *file, const struct ply_element *element,
 bool ply_file_end(const struct ply_file *file, struct error *error)
 {
     if (!binary_is_over(&file->binary))
-        return error_set(error, EXIT_USAGE, "%s: %lld bytes are left behind the last element",
+        return error_set(error, EXIT_USAGE,
+                         "%s: %lld bytes are left behind the last element",
                          file->binary.path, (long long)binary_left(&file->binary));
     return true;
 }

@@ -1,10 +1,11 @@
-/* The container format PLY: a header of elements and properties, then rows of values, as text or
- * binary in either byte order. What the rows mean is the caller's business.
+/* The container format PLY: a header of elements and properties, then for each element
+ * its records of values, as text or binary in either byte order.
  *
- * Understood: `format`, `element`, `property`, `property list`, `comment`, `obj_info`; the types
- * char uchar short ushort int uint float double and their other names, int8 ... float64. Lines of
- * the header end in LF, CRLF or CR, as its first one does. Properties without a field below, and
- * elements that the caller does not read, are passed over by their size. */
+ * Understood: `format`, `element`, `property`, `property list`, `comment`, `obj_info`;
+ * the types char uchar short ushort int uint float double and their other names, int8 ...
+ * float64. Lines of the header end in LF, CRLF or CR, as its first one does. Properties
+ * without a field below, and elements that the caller does not read, are skipped by their
+ * size. */
 #ifndef IO_SCENE_PLYFILE_H
 #define IO_SCENE_PLYFILE_H
 
@@ -16,7 +17,7 @@
 
 enum ply_kind { PLY_VERTEX, PLY_FACE, PLY_OTHER };
 
-/* Properties that somebody wants: of vertices, of faces, or of both. */
+/* Properties that are read: of vertices, of faces, or of both. */
 enum ply_field {
     PLY_X, PLY_Y, PLY_Z,
     PLY_RED, PLY_GREEN, PLY_BLUE,
@@ -32,19 +33,19 @@ enum ply_type { PLY_CHAR, PLY_UCHAR, PLY_SHORT, PLY_USHORT, PLY_INT, PLY_UINT, P
 
 struct ply_property {
     uint8_t type;       /* enum ply_type of the value, or of a list's items */
-    uint8_t count_type; /* of a list's count; PLY_NONE: no list */
-    uint8_t field;      /* enum ply_field; PLY_FIELDS: passed over */
+    uint8_t count_type; /* enum ply_type of a list's count; PLY_NONE: no list */
+    uint8_t field;      /* enum ply_field; PLY_FIELDS: skipped */
 };
 
 struct ply_element {
     enum ply_kind kind;
-    int64_t count;         /* rows, as the header claims */
+    int64_t count;         /* records, as the header claims */
     int64_t property;      /* number of its first property */
     int64_t property_count;
-    int64_t row_size;      /* bytes that a row has at least, with empty lists */
+    int64_t record_size;      /* smallest size of a record, with empty lists, bytes */
     bool has_list;
     long line;             /* of the header, where it is declared */
-    enum ply_type type_of[PLY_FIELDS]; /* PLY_NONE where it has no such property */
+    enum ply_type type_of[PLY_FIELDS]; /* PLY_NONE: it lacks the property */
 };
 
 struct ply_header {
@@ -59,41 +60,47 @@ struct ply_file {
     bool ascii, big_endian;
     char line_end;                   /* the last character of a line */
     struct ply_header header;
-    double value[PLY_FIELDS];        /* of the row that was read last */
-    int32_t *corners;                /* [corner_count] of it, each >= 0 */
+    double value[PLY_FIELDS];        /* of the current record */
+    int32_t *corners;                /* [corner_count] of the current record, each >= 0 */
     int64_t corner_count, corner_capacity;
-    int64_t row;                     /* its number, from 0 */
-    const char *row_name;            /* "vertex", "face" or "row", for messages */
-    long line;                       /* of the text line that was read last */
-    char *rest;                      /* what is left of it */
+    int64_t record;                     /* number of the current record, from 0 */
+    const char *record_name;            /* "vertex", "face" or "row", for messages */
+    long line;                       /* number of the current text line */
+    char *rest;                      /* unread part of the current text line */
 };
 
 /* Reads the file. Errors: "PATH: not a PLY file" among those of binary_read(). */
 bool ply_file_load(struct binary *binary, const char *path, struct error *error);
 
-/* Reads the header of a file in memory, which it takes over. To be closed in any case.
- * Errors: "PATH:LINE: what is wrong"; EXIT_USAGE. An element that claims more rows than the file
- * has bytes for is one of them. */
-bool ply_file_open(struct ply_file *file, const struct binary *binary, struct error *error);
+/* Reads the header of a file in memory, which it takes over. To be closed also after an
+ * error.
+ * Errors: "PATH:LINE: REASON"; EXIT_USAGE; also for an element with more records than the
+ * file has bytes for. */
+bool ply_file_open(struct ply_file *file, const struct binary *binary,
+                   struct error *error);
 void ply_file_close(struct ply_file *file);
 
-/* The first element of the kind, or NULL. */
+/* Returns the first element of the kind, or NULL. */
 const struct ply_element *ply_file_find(const struct ply_file *file, enum ply_kind kind);
 
-/* Reads row `row` of the element into `file`; the rows are to be read in order, the elements too.
- * Numbers are at most TEXT_NUMBER_MAX in magnitude, and corners fit an int32_t.
- * Errors: as ply_fail(), for what is cut off, not a number, infinite, out of range. */
-bool ply_file_row(struct ply_file *file, const struct ply_element *element, int64_t row,
-                  struct error *error);
+/* Reads record `record` of the element into `file`. Elements and their records are to be
+ * read in order. Numbers are at most TEXT_NUMBER_MAX in magnitude, and corners fit an
+ * int32_t.
+ * Errors: as ply_fail(), for a value that is missing, no number, infinite or out of
+ * range. */
+bool ply_file_record(struct ply_file *file, const struct ply_element *element,
+                     int64_t record, struct error *error);
 
-/* Passes over all rows of an element. Errors: the same. */
+/* Skips all records of an element. Errors: the same. */
 bool ply_file_skip(struct ply_file *file, const struct ply_element *element,
                    struct error *error);
 
-/* To be called behind the last element. Errors: something other than blanks is left. */
+/* Checks the end of the file, behind the last element. Errors: bytes other than blanks
+ * are left. */
 bool ply_file_end(const struct ply_file *file, struct error *error);
 
-/* Sets an error at the present row: "PATH:LINE: TEXT" in a text file, else "PATH: face 3: TEXT".
+/* Sets an error at the current record: "PATH:LINE: TEXT" in a text file, else "PATH: face
+ * 3: TEXT".
  * Returns false. */
 bool ply_fail(const struct ply_file *file, struct error *error, const char *text);
 

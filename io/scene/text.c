@@ -1,21 +1,20 @@
 /* Reading text.
  *
- * The file is read in blocks until it ends, so no size that the system claims is believed, and
- * pipes work. Each block is looked at for control characters before the next one is asked for:
- * a mesh in a binary format, UTF-16 or /dev/zero ends there and not in a thousand messages
- * about bad lines. Lines and words are then cut out in place: a continuation is two or three
- * characters that become blanks, a word ends where a blank becomes a zero. Nothing is copied,
- * and there is no longest line.
+ * The file is read in chunks to its end, so pipes work and no size has to be known. Each
+ * chunk is searched for control characters before the next one is read: a mesh in a
+ * binary format, UTF-16 or /dev/zero ends there and not in a thousand messages about bad
+ * lines. Lines and words are then cut out in place: the characters of a continuation
+ * become blanks, the blank behind a word becomes a zero. So lines may have any length.
  *
- * Numbers are rounded correctly. Almost all that files hold are an integer below 2^53 times or
- * over a power of ten up to 10^22; a double holds both exactly, so one operation rounds once, and
- * takes a fifth of the time of strtod. For the others there is strtod, the one function of C99 that
- * does it. It also takes NaN, infinity and hexadecimal numbers, so the characters are checked
- * first; it follows the locale, which the program never sets. sscanf was rejected: its behaviour
- * on overflow is undefined.
+ * Numbers are rounded correctly. Almost all numbers in files are an integer below 2^53
+ * times or over a power of ten up to 10^22; a double holds both exactly, so one operation
+ * rounds once, in a fifth of the time of strtod. The others go to strtod. It also takes
+ * NaN, infinity and hexadecimal numbers, so the characters are checked first; it follows
+ * the locale, which the program never sets. Rejected: sscanf, whose behaviour on overflow
+ * is undefined.
  *
- * Names are found by hashing (linear probing): a list searched from the start takes a
- * time that is quadratic in the number of materials, and a file can have a million. */
+ * Names are found by hashing (linear probing): searching a list takes time quadratic in
+ * the number of materials, and a file can have a million. */
 #include "io/scene/text.h"
 
 #include <ctype.h>
@@ -30,7 +29,7 @@
 #include "geom/hash.h"
 #include "geom/stop.h"
 
-enum { BLOCK = 65536 };
+enum { CHUNK = 65536 };
 
 static bool is_blank(char c)
 {
@@ -54,26 +53,30 @@ static bool is_text(const char *bytes, size_t count)
     return true;
 }
 
-/* UTF-16 starts with a mark of its byte order, or every other one of its first bytes is zero. */
+/* UTF-16 starts with a mark of its byte order, or every other one of its first bytes is
+ * zero. */
 static bool is_utf16(const char *bytes, size_t count)
 {
-    if (count >= 2 && (memcmp(bytes, "\xFF\xFE", 2) == 0 || memcmp(bytes, "\xFE\xFF", 2) == 0))
+    if (count >= 2 &&
+        (memcmp(bytes, "\xFF\xFE", 2) == 0 || memcmp(bytes, "\xFE\xFF", 2) == 0))
         return true;
-    return count >= 4 && !bytes[0] == !bytes[2] && !bytes[1] == !bytes[3] && !bytes[0] != !bytes[1];
+    return count >= 4 && !bytes[0] == !bytes[2] && !bytes[1] == !bytes[3] &&
+           !bytes[0] != !bytes[1];
 }
 
-/* `bytes` follow what has been read of the text. */
+/* Checks the bytes of a chunk, which follow text->size bytes of the text. */
 static bool check_bytes(const struct text *text, const char *bytes, size_t count,
                         struct error *error)
 {
     if (text->size == 0 && is_utf16(bytes, count))
-        return error_set(error, EXIT_USAGE, "%s: is UTF-16; save it as UTF-8", text->path);
+        return error_set(error, EXIT_USAGE, "%s: is UTF-16; save it as UTF-8",
+                         text->path);
     if (!is_text(bytes, count))
         return error_set(error, EXIT_USAGE, "%s: not a text file", text->path);
     return true;
 }
 
-/* Where the first line starts: behind a byte order mark. */
+/* Moves to the first line, behind a byte order mark. */
 static void start(struct text *text)
 {
     text->bytes[text->size] = '\0';
@@ -87,18 +90,18 @@ static bool fail_to_read(struct text *text, struct error *error)
                      errno ? strerror(errno) : "unknown reason");
 }
 
-static bool read_blocks(struct text *text, FILE *file, struct error *error)
+static bool read_chunks(struct text *text, FILE *file, struct error *error)
 {
     int64_t capacity = 0;
     size_t got;
     do {
-        text->bytes = alloc_reserve(text->bytes, &capacity, text->size + BLOCK + 1, 1);
-        got = fread(text->bytes + text->size, 1, BLOCK, file);
+        text->bytes = alloc_reserve(text->bytes, &capacity, text->size + CHUNK + 1, 1);
+        got = fread(text->bytes + text->size, 1, CHUNK, file);
         if (!stop_check(error) ||
             !check_bytes(text, text->bytes + text->size, got, error))
             return false;
         text->size += (int64_t)got;
-    } while (got == BLOCK);
+    } while (got == CHUNK);
     start(text);
     return ferror(file) ? fail_to_read(text, error) : true;
 }
@@ -110,7 +113,7 @@ bool text_read(struct text *text, const char *path, struct error *error)
     FILE *file = fopen(path, "rb");
     if (!file)
         return fail_to_read(text, error);
-    bool good = read_blocks(text, file, error);
+    bool good = read_chunks(text, file, error);
     fclose(file);
     if (!good)
         text_free(text);
@@ -197,11 +200,11 @@ char *text_trim(char *rest)
 /* A decimal number as it is written: +-digits * 10^exponent. */
 struct decimal {
     bool negative;
-    uint64_t digits; /* beyond DIGITS_MAX: some number beyond it */
+    uint64_t digits; /* above DIGITS_MAX: not exact */
     int64_t exponent;
 };
 
-/* The largest integer up to which a double holds all. */
+/* Doubles hold every integer up to this one. */
 static const uint64_t DIGITS_MAX = UINT64_C(1) << 53;
 
 static const char *scan_digits(const char *at, struct decimal *decimal)
@@ -212,7 +215,7 @@ static const char *scan_digits(const char *at, struct decimal *decimal)
     return at;
 }
 
-/* The word as a decimal number; false if it is anything else. */
+/* Reads the word as a decimal number; false if it is none. */
 static bool scan_decimal(const char *word, struct decimal *decimal)
 {
     *decimal = (struct decimal){.negative = *word == '-'};
@@ -299,7 +302,7 @@ bool text_ends_with(const char *path, const char *suffix)
     return length > tail && *end == '\0';
 }
 
-/* The slot of a name, or the empty one where it belongs. */
+/* Returns the slot of a name, or the empty slot where it belongs. */
 static int32_t *find_slot(const struct text_names *names, const char *name)
 {
     uint64_t mask = (uint64_t)names->slot_count - 1;
@@ -324,8 +327,8 @@ int32_t text_names_add(struct text_names *names, const char *name)
         make_slots(names, names->slot_count ? 2 * names->slot_count : 16);
     int32_t *slot = find_slot(names, name);
     if (*slot == 0) {
-        names->name = alloc_reserve(names->name, &names->capacity, (int64_t)names->count + 1,
-                                    sizeof *names->name);
+        names->name = alloc_reserve(names->name, &names->capacity,
+                                    (int64_t)names->count + 1, sizeof *names->name);
         names->name[names->count] = alloc_string(name);
         *slot = ++names->count;
     }

@@ -1,5 +1,5 @@
-/* Text files: whole in memory, handed out in logical lines, words and numbers; and sets of
- * names that occur in them. */
+/* Text files: whole in memory, handed out in logical lines, words and numbers; and sets
+ * of names that occur in them. */
 #ifndef IO_SCENE_TEXT_H
 #define IO_SCENE_TEXT_H
 
@@ -9,71 +9,73 @@
 
 #include "geom/error.h"
 
-/* Numbers larger than this in magnitude are out of the program's range: squares and products
- * of three of them must not overflow. */
+/* The largest magnitude of an input number: squares and products of three of them do not
+ * overflow. */
 #define TEXT_NUMBER_MAX 1e100
 
 struct text {
     const char *path;  /* borrowed from the caller of text_read() */
-    char *bytes;       /* [size], and a zero behind; lines and words are cut out in place */
+    char *bytes;       /* [size], and a zero behind; cut in place */
     int64_t size;      /* bytes */
-    int64_t position;  /* where the next line starts */
-    long line;         /* number of the physical line where the last logical line started */
+    int64_t position;  /* of the start of the next line */
+    long line;         /* number of the first physical line of the last logical line */
     long next_line;    /* number of the physical line at `position` */
-    bool unreadable;   /* text_read() failed since the system does not give the file */
+    bool unreadable;   /* text_read() failed in opening or reading the file */
 };
 
 /* Reads the file `path`; a UTF-8 byte order mark is skipped. Owned by the caller until
  * text_free(), which is allowed (not needed) after a failure.
- * Errors: "PATH: cannot read: REASON" (then `unreadable` is set); "PATH: not a text file" for
- * control characters other than blanks and line ends; "PATH: is UTF-16; save it as UTF-8". All
- * ask for EXIT_USAGE. */
+ * Errors: "PATH: cannot read: REASON" (then `unreadable` is set); "PATH: not a text file"
+ * for control characters other than blanks and line ends; "PATH: is UTF-16; save it as
+ * UTF-8". All ask for EXIT_USAGE. */
 bool text_read(struct text *text, const char *path, struct error *error);
 void text_free(struct text *text);
 
-/* The same for a copy of `size` bytes in memory, which errors call `path`. */
+/* Does the same with a copy of `size` bytes in memory, which errors call `path`. */
 bool text_of_bytes(struct text *text, const char *path, const void *bytes, size_t size,
                    struct error *error);
 
-/* The next logical line, without its end, or NULL behind the last one. Lines end in LF, CRLF,
- * CR, or with the file. A line that ends in a backslash goes on in the next one, as if after a
- * blank; a comment (its first word starts with '#') does not. Lives as long as the text. */
+/* Returns the next logical line, without its end, or NULL behind the last one. Lines end
+ * in LF, CRLF, CR, or with the file. A line that ends in a backslash goes on in the next
+ * one, as if after a blank, unless it is a comment (its first word starts with '#').
+ * Lives as long as the text. */
 char *text_line(struct text *text);
 
-/* Cuts the next word off `*rest`, which moves behind it, or returns NULL at the end of the line
- * or at a word that starts with '#'. */
+/* Cuts the next word off `*rest`, which moves behind it, or returns NULL at the end of
+ * the line or at a word that starts with '#'. */
 char *text_word(char **rest);
 
-/* The text without the blanks around it; cut in place. */
+/* Returns the text without the blanks around it; cut in place. */
 char *text_trim(char *rest);
 
-/* True if the whole word is a decimal number such as 1, +1, -.5, 1. or 1e-3 that a double can
- * hold, which is then in `*value`. NaN, infinity, hexadecimal numbers and overflow are not;
- * what is too small for a double is rounded to one. */
+/* True if the whole word is a decimal number in the range of a double, such as 1, +1,
+ * -.5, 1. or 1e-3, which is then in `*value`. NaN, infinity, hexadecimal numbers and
+ * overflow are refused; numbers too small for a double are rounded to one. */
 bool text_is_number(const char *word, double *value);
 
-/* The same for numbers up to TEXT_NUMBER_MAX.
- * Errors: "PATH:LINE: bad number 'WORD'", or that it is out of range. */
+/* Reads a number up to TEXT_NUMBER_MAX in magnitude, in the same form.
+ * Errors: "PATH:LINE: bad number 'WORD'", "PATH:LINE: number 'WORD' is out of range". */
 bool text_number(const struct text *text, const char *word, double *value,
                  struct error *error);
 
-/* Reads a decimal integer at `*cursor` and moves it behind. False if there is none. Beyond
- * +-10^18 the value stays at a number of that size. */
+/* Reads a decimal integer at `*cursor` and moves it behind. False if there is none. A
+ * value of more than 18 digits is cut to its first 18. */
 bool text_integer(const char **cursor, int64_t *value);
 
-/* True if the name of a file ends in a suffix such as ".ply" (in small letters), in letters of
- * either size, and has something before it. */
+/* True if the name of a file ends in a suffix such as ".ply" (given in small letters), in
+ * letters of either case, and is longer than the suffix. */
 bool text_ends_with(const char *path, const char *suffix);
 
-/* Names that are looked for in vain. Starts as {0}. */
+/* Names that were not found. Starts as {0}. */
 struct text_missing {
     int64_t count;
-    char first[128]; /* the first such name, cut if it is long, for a message */
+    char first[128]; /* the first of them, cut if it is long, for a message */
 };
 
 void text_missing_add(struct text_missing *missing, const char *name);
 
-/* Different names, numbered 0, 1, 2, ... in the order in which they were added. Starts as {0}. */
+/* Different names, numbered 0, 1, 2, ... in the order in which they were added. Starts as
+ * {0}. */
 struct text_names {
     char **name;       /* [count] */
     int32_t count;
@@ -82,7 +84,7 @@ struct text_names {
     int64_t slot_count; /* a power of two, at least twice count */
 };
 
-/* The number of `name`, which is added (copied) if it is new. */
+/* Returns the number of `name`, which is added (copied) if it is new. */
 int32_t text_names_add(struct text_names *names, const char *name);
 void text_names_free(struct text_names *names);
 
