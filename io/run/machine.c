@@ -1,6 +1,6 @@
-/* Memory: the pages that there are, or the limit of the container (a control group, of either version)
- * where that is less. Free memory is not asked for: it changes from moment to moment, and most of what
- * looks taken is the cache of files. */
+/* Memory: the physical pages, or the limit of the container (a control group, of either
+ * version) if it is lower. Free memory is no measure: it changes from moment to moment,
+ * and most of the memory in use is the cache of files. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _XOPEN_SOURCE 700
 #include <unistd.h>
@@ -10,7 +10,8 @@
 
 #include <stdio.h>
 
-/* What the limit's file says: a number, or "max" and the like for none. */
+/* Reads the file of a limit: a number, or "max" and the like for none. Returns bytes or
+ * 0. */
 static int64_t read_limit(const char *path)
 {
     long long bytes = 0;

@@ -4,7 +4,8 @@
 
 #include <stdint.h>
 
-/* Bytes of memory that the system would let its processes use together, 0 if it does not tell. */
+/* Returns the memory that the system lets all its processes use together, bytes; 0:
+ * unknown. */
 int64_t machine_memory(void);
 
 #endif

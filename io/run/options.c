@@ -1,8 +1,8 @@
 /* The command line.
  *
- * Options are a table: a name, what kind of value follows, where it goes, and its range. --help is
- * plain text beside it, so that it reads as it prints, and fits a screen of 24 lines; tests/io/options.c
- * holds the two together, tests/52-words.sh the man page. */
+ * Options are a table: name, kind of value, field in struct options, and range. --help is
+ * plain text beside it, so that it reads as it prints, and fits a screen of 24 lines;
+ * tests/io/options.c compares the two, tests/52-words.sh the man page. */
 #include "io/run/options.h"
 
 #include <stddef.h>
@@ -14,56 +14,55 @@
 #include "io/scene/text.h"
 
 enum kind { KIND_FLAG, KIND_TEXT, KIND_REAL, KIND_INTEGER, KIND_OUTPUT, KIND_SIZE,
-            KIND_CHOICE, KIND_SHARE, KIND_BYTES, KIND_GATHER, KIND_PAPER };
+            KIND_CHOICE, KIND_FRACTION, KIND_BYTES, KIND_GATHER, KIND_PAPER };
 
 struct option {
     const char *name;
     enum kind kind;
-    size_t offset;    /* of the field in struct options */
-    double low, high; /* inclusive range of a number */
-    const char *choices; /* names, separated by bars, in the order of the enum at `offset` */
+    size_t offset;       /* of the field in struct options */
+    double low, high;    /* inclusive range of a number */
+    const char *choices; /* names, separated by bars, in the order of the field's enum */
 };
+
+#define FIELD(name) offsetof(struct options, name)
 
 static const struct option OPTIONS[] = {
     {"-o", KIND_OUTPUT, 0, 0, 0, NULL},
-    {"--view", KIND_TEXT, offsetof(struct options, view), 0, 0, NULL},
+    {"--view", KIND_TEXT, FIELD(view), 0, 0, NULL},
     {"--size", KIND_SIZE, 0, 0, 0, NULL},
-    {"--samples", KIND_INTEGER, offsetof(struct options, samples), 1, 64, NULL},
-    {"--exposure", KIND_REAL, offsetof(struct options, exposure), 1e-30, 1e30, NULL},
-    {"--flat", KIND_FLAG, offsetof(struct options, flat), 0, 0, NULL},
-    {"--epsilon", KIND_REAL, offsetof(struct options, criterion.epsilon), 0, 1e30, NULL},
-    {"--accuracy", KIND_SHARE, offsetof(struct options, criterion.accuracy), 1e-4, 1, NULL},
-    {"--max-level", KIND_INTEGER, offsetof(struct options, criterion.max_level), 0, ID_MAX_LEVEL, NULL},
-    {"--min-area", KIND_REAL, offsetof(struct options, criterion.min_area), 0, 1, NULL},
-    {"--oracle", KIND_CHOICE, offsetof(struct options, criterion.oracle), 0, 0, "bf|error"},
-    {"--linking", KIND_CHOICE, offsetof(struct options, criterion.linking), 0, 0, "pairs|tree"},
-    {"--form-factor", KIND_CHOICE, offsetof(struct options, criterion.form_factor), 0, 0,
-     "disk|polygon"},
-    {"--solver", KIND_CHOICE, offsetof(struct options, criterion.solver), 0, 0, "jacobi|cg"},
-    {"--balance", KIND_CHOICE, offsetof(struct options, criterion.balance), 0, 0,
-     "none|greedy|default"},
-    {"--final-gather", KIND_GATHER, offsetof(struct options, criterion.final_gather), 0,
+    {"--samples", KIND_INTEGER, FIELD(samples), 1, 64, NULL},
+    {"--exposure", KIND_REAL, FIELD(exposure), 1e-30, 1e30, NULL},
+    {"--flat", KIND_FLAG, FIELD(flat), 0, 0, NULL},
+    {"--epsilon", KIND_REAL, FIELD(criterion.epsilon), 0, 1e30, NULL},
+    {"--accuracy", KIND_FRACTION, FIELD(criterion.accuracy), 1e-4, 1, NULL},
+    {"--max-level", KIND_INTEGER, FIELD(criterion.max_level), 0, ID_MAX_LEVEL, NULL},
+    {"--min-area", KIND_REAL, FIELD(criterion.min_area), 0, 1, NULL},
+    {"--oracle", KIND_CHOICE, FIELD(criterion.oracle), 0, 0, "bf|error"},
+    {"--linking", KIND_CHOICE, FIELD(criterion.linking), 0, 0, "pairs|tree"},
+    {"--form-factor", KIND_CHOICE, FIELD(criterion.form_factor), 0, 0, "disk|polygon"},
+    {"--solver", KIND_CHOICE, FIELD(criterion.solver), 0, 0, "jacobi|cg"},
+    {"--balance", KIND_CHOICE, FIELD(criterion.balance), 0, 0, "none|greedy|default"},
+    {"--final-gather", KIND_GATHER, FIELD(criterion.final_gather), 0,
      GATHER_RAYS_MOST, NULL},
     {"--paper", KIND_PAPER, 0, 0, 0, NULL},
-    {"--alpha", KIND_REAL, offsetof(struct options, criterion.alpha), 0, 1, NULL},
-    {"--tolerance", KIND_REAL, offsetof(struct options, criterion.tolerance), 0, 1, NULL},
-    {"--max-iterations", KIND_INTEGER, offsetof(struct options, criterion.max_iterations), 1, 1e9, NULL},
-    {"--two-sided", KIND_FLAG, offsetof(struct options, two_sided), 0, 0, NULL},
-    {"--two-sided-lamps", KIND_FLAG, offsetof(struct options, two_sided_lamps), 0, 0,
-     NULL},
-    {"--save-links", KIND_TEXT, offsetof(struct options, save_links), 0, 0, NULL},
-    {"--load-links", KIND_TEXT, offsetof(struct options, load_links), 0, 0, NULL},
-    {"--checkpoint", KIND_TEXT, offsetof(struct options, checkpoint), 0, 0, NULL},
-    {"--every", KIND_INTEGER, offsetof(struct options, every), 1, 1e9, NULL},
-    {"--resume", KIND_TEXT, offsetof(struct options, resume), 0, 0, NULL},
-    {"--memory", KIND_BYTES, offsetof(struct options, memory), 0, 0, NULL},
-    {"--stats", KIND_TEXT, offsetof(struct options, stats), 0, 0, NULL},
-    {"--quiet", KIND_FLAG, offsetof(struct options, quiet), 0, 0, NULL},
-    {"--verbose", KIND_FLAG, offsetof(struct options, verbose), 0, 0, NULL},
-    {"--validate", KIND_FLAG, offsetof(struct options, validate), 0, 0, NULL},
-    {"--form-factors", KIND_FLAG, offsetof(struct options, form_factors), 0, 0, NULL},
-    {"--help", KIND_FLAG, offsetof(struct options, help), 0, 0, NULL},
-    {"--version", KIND_FLAG, offsetof(struct options, version), 0, 0, NULL},
+    {"--alpha", KIND_REAL, FIELD(criterion.alpha), 0, 1, NULL},
+    {"--tolerance", KIND_REAL, FIELD(criterion.tolerance), 0, 1, NULL},
+    {"--max-iterations", KIND_INTEGER, FIELD(criterion.max_iterations), 1, 1e9, NULL},
+    {"--two-sided", KIND_FLAG, FIELD(two_sided), 0, 0, NULL},
+    {"--two-sided-lamps", KIND_FLAG, FIELD(two_sided_lamps), 0, 0, NULL},
+    {"--save-links", KIND_TEXT, FIELD(save_links), 0, 0, NULL},
+    {"--load-links", KIND_TEXT, FIELD(load_links), 0, 0, NULL},
+    {"--checkpoint", KIND_TEXT, FIELD(checkpoint), 0, 0, NULL},
+    {"--every", KIND_INTEGER, FIELD(every), 1, 1e9, NULL},
+    {"--resume", KIND_TEXT, FIELD(resume), 0, 0, NULL},
+    {"--memory", KIND_BYTES, FIELD(memory), 0, 0, NULL},
+    {"--stats", KIND_TEXT, FIELD(stats), 0, 0, NULL},
+    {"--quiet", KIND_FLAG, FIELD(quiet), 0, 0, NULL},
+    {"--verbose", KIND_FLAG, FIELD(verbose), 0, 0, NULL},
+    {"--validate", KIND_FLAG, FIELD(validate), 0, 0, NULL},
+    {"--form-factors", KIND_FLAG, FIELD(form_factors), 0, 0, NULL},
+    {"--help", KIND_FLAG, FIELD(help), 0, 0, NULL},
+    {"--version", KIND_FLAG, FIELD(version), 0, 0, NULL},
 };
 
 static const struct option *find_option(const char *name)
@@ -85,7 +84,8 @@ static bool add_output(struct options *options, const char *path, struct error *
 {
     if (!text_ends_with(path, ".ppm") && !text_ends_with(path, ".pfm") &&
         !text_ends_with(path, ".ply"))
-        return error_set(error, EXIT_USAGE, "-o %s: the name must end in .ppm, .pfm or .ply", path);
+        return error_set(error, EXIT_USAGE,
+                         "-o %s: the name must end in .ppm, .pfm or .ply", path);
     options->outputs[options->output_count++] = path;
     return true;
 }
@@ -94,21 +94,23 @@ static bool parse_number(const struct option *option, const char *value, double 
                          struct error *error)
 {
     if (!text_is_number(value, number))
-        return error_set(error, EXIT_USAGE, "%s: '%s' is not a number", option->name, value);
+        return error_set(error, EXIT_USAGE, "%s: '%s' is not a number", option->name,
+                         value);
     if (!(*number >= option->low && *number <= option->high))
-        return error_set(error, EXIT_USAGE, "%s: %s is not between %g and %g", option->name, value,
-                         option->low, option->high);
+        return error_set(error, EXIT_USAGE, "%s: %s is not between %g and %g",
+                         option->name, value, option->low, option->high);
     return true;
 }
 
-static bool set_integer(struct options *options, const struct option *option, const char *value,
-                        struct error *error)
+static bool set_integer(struct options *options, const struct option *option,
+                        const char *value, struct error *error)
 {
     double number;
     if (!parse_number(option, value, &number, error))
         return false;
     if (number != (double)(int)number)
-        return error_set(error, EXIT_USAGE, "%s: '%s' is not a whole number", option->name, value);
+        return error_set(error, EXIT_USAGE, "%s: '%s' is not a whole number",
+                         option->name, value);
     *(int *)(void *)((char *)options + option->offset) = (int)number;
     return true;
 }
@@ -119,18 +121,20 @@ static bool set_size(struct options *options, const char *value, struct error *e
     const char *at = value;
     if (text_integer(&at, &width) && (*at == 'x' || *at == 'X')) {
         at++;
-        if (text_integer(&at, &height) && *at == '\0' && width >= 1 && width <= IMAGE_SIZE_MAX &&
-            height >= 1 && height <= IMAGE_SIZE_MAX) {
+        if (text_integer(&at, &height) && *at == '\0' && width >= 1 &&
+            width <= IMAGE_SIZE_MAX && height >= 1 && height <= IMAGE_SIZE_MAX) {
             options->width = (int)width;
             options->height = (int)height;
             return true;
         }
     }
-    return error_set(error, EXIT_USAGE, "--size: '%s' is not WIDTHxHEIGHT, each from 1 to %d", value,
+    return error_set(error, EXIT_USAGE,
+                     "--size: '%s' is not WIDTHxHEIGHT, each from 1 to %d", value,
                      (int)IMAGE_SIZE_MAX);
 }
 
-/* The enums of rad/model.h are ints: each has a constant for each choice, counted from 0. */
+/* Sets an enum of rad/model.h: an int, with a constant for each choice, counted from
+ * 0. */
 static bool set_choice(const struct option *option, const char *value, int *field,
                        struct error *error)
 {
@@ -147,8 +151,8 @@ static bool set_choice(const struct option *option, const char *value, int *fiel
                      option->choices);
 }
 
-/* A number, or a number of percent. */
-static bool set_share(const struct option *option, const char *value, double *field,
+/* Sets a fraction: a number, or a percentage. */
+static bool set_fraction(const struct option *option, const char *value, double *field,
                       struct error *error)
 {
     char digits[64];
@@ -160,15 +164,16 @@ static bool set_share(const struct option *option, const char *value, double *fi
     digits[length - 1] = '\0';
     double number;
     if (!text_is_number(digits, &number))
-        return error_set(error, EXIT_USAGE, "%s: '%s' is not a number", option->name, value);
+        return error_set(error, EXIT_USAGE, "%s: '%s' is not a number", option->name,
+                         value);
     *field = number / 100.0;
     if (!(*field >= option->low && *field <= option->high))
-        return error_set(error, EXIT_USAGE, "%s: %s is not between %g %% and %g %%", option->name,
-                         value, 100.0 * option->low, 100.0 * option->high);
+        return error_set(error, EXIT_USAGE, "%s: %s is not between %g %% and %g %%",
+                         option->name, value, 100.0 * option->low, 100.0 * option->high);
     return true;
 }
 
-/* A number of bytes, or of K, M, G or T: powers of 1024. */
+/* Sets a number of bytes, or of K, M, G or T: powers of 1024. */
 static bool set_bytes(const struct option *option, const char *value, int64_t *field,
                       struct error *error)
 {
@@ -186,13 +191,14 @@ static bool set_bytes(const struct option *option, const char *value, int64_t *f
             return true;
         }
     }
-    return error_set(error, EXIT_USAGE, "%s: '%s' is not a number of bytes, such as 512M or 2G",
+    return error_set(error, EXIT_USAGE,
+                     "%s: '%s' is not a number of bytes, such as 512M or 2G",
                      option->name, value);
 }
 
-/* N, "pixels", or both: "N,pixels". */
-static bool set_gather(struct options *options, const struct option *option, const char *value,
-                       struct error *error)
+/* Sets rays and pixels: N, "pixels", or both as "N,pixels". */
+static bool set_gather(struct options *options, const struct option *option,
+                       const char *value, struct error *error)
 {
     static const char PIXELS[] = "pixels";
     char number[64];
@@ -220,8 +226,8 @@ static void set_paper(struct criterion *criterion)
     criterion->balance = BALANCE_GREEDY;
 }
 
-static bool set_value(struct options *options, const struct option *option, const char *value,
-                      struct error *error)
+static bool set_value(struct options *options, const struct option *option,
+                      const char *value, struct error *error)
 {
     char *field = (char *)options + option->offset;
     switch (option->kind) {
@@ -235,8 +241,8 @@ static bool set_value(struct options *options, const struct option *option, cons
         return set_gather(options, option, value, error);
     case KIND_REAL:
         return parse_number(option, value, (double *)(void *)field, error);
-    case KIND_SHARE:
-        return set_share(option, value, (double *)(void *)field, error);
+    case KIND_FRACTION:
+        return set_fraction(option, value, (double *)(void *)field, error);
     case KIND_BYTES:
         return set_bytes(option, value, (int64_t *)(void *)field, error);
     case KIND_CHOICE:
@@ -250,32 +256,37 @@ static bool set_value(struct options *options, const struct option *option, cons
 static bool add_scene(struct options *options, const char *path, struct error *error)
 {
     if (options->scene)
-        return error_set(error, EXIT_USAGE, "one scene at a time: %s and %s", options->scene, path);
+        return error_set(error, EXIT_USAGE, "one scene at a time: %s and %s",
+                         options->scene, path);
     options->scene = path;
     return true;
 }
 
-/* The i-th path that is written, NULL if it is not given. `count` is how many there may be. */
+/* Returns the i-th path to write, or NULL if it is not given. Sets `*count` to the number
+ * of such paths. */
 static const char *written_path(const struct options *options, int i, int *count)
 {
     const char *others[] = {options->stats, options->save_links, options->checkpoint};
     int last = (int)(sizeof others / sizeof others[0]);
     *count = options->output_count + last;
-    return i < options->output_count ? options->outputs[i] : others[i - options->output_count];
+    return i < options->output_count ? options->outputs[i]
+                                     : others[i - options->output_count];
 }
 
-/* Refuses to write a file twice, or over what is read; but a run that is resumed from a checkpoint
- * may renew it. */
+/* Refuses to write a file twice, or over an input file; but a run resumed from a
+ * checkpoint may renew it. */
 static bool check_paths(const struct options *options, struct error *error)
 {
-    const char *read[] = {options->scene, options->view, options->load_links, options->resume};
+    const char *read[] = {options->scene, options->view, options->load_links,
+                          options->resume};
     int count = 1;
     for (int i = 0; i < count; i++) {
         const char *path = written_path(options, i, &count);
         bool clash = false;
         for (size_t j = 0; j < sizeof read / sizeof read[0]; j++)
-            clash = clash || (path && read[j] && strcmp(path, read[j]) == 0 &&
-                              !(path == options->checkpoint && read[j] == options->resume));
+            clash =
+                clash || (path && read[j] && strcmp(path, read[j]) == 0 &&
+                          !(path == options->checkpoint && read[j] == options->resume));
         for (int j = 0; j < i; j++) {
             const char *other = written_path(options, j, &count);
             clash = clash || (path && other && strcmp(path, other) == 0);
@@ -291,19 +302,22 @@ static bool check_restart(const struct options *options, struct error *error)
     const char *links = options->save_links ? "--save-links" : "--load-links";
     if (options->resume && (options->save_links || options->load_links))
         return error_set(error, EXIT_USAGE,
-                         "--resume and %s do not go together: the initial links are long gone",
+                         "--resume and %s do not go together: "
+                         "the initial links are long gone",
                          links);
     if (options->save_links && options->load_links)
-        return error_set(error, EXIT_USAGE, "--save-links and --load-links do not go together");
+        return error_set(error, EXIT_USAGE,
+                         "--save-links and --load-links do not go together");
     if ((options->save_links || options->load_links) &&
         options->criterion.linking != LINKING_PAIRS)
-        return error_set(error, EXIT_USAGE, "%s goes with --linking pairs (--paper)", links);
+        return error_set(error, EXIT_USAGE, "%s goes with --linking pairs (--paper)",
+                         links);
     if (options->every > 0 && !options->checkpoint)
         return error_set(error, EXIT_USAGE, "--every needs --checkpoint");
     return true;
 }
 
-/* A table of form factors is all that a run prints: no light is computed that could be shown. */
+/* Refuses outputs of light with --form-factors, which computes none. */
 static bool check_table(const struct options *options, struct error *error)
 {
     const char *other = options->output_count > 0 ? "-o"
@@ -315,17 +329,18 @@ static bool check_table(const struct options *options, struct error *error)
                         : options->resume         ? "--resume"
                                                   : NULL;
     if (options->form_factors && other)
-        return error_set(error, EXIT_USAGE, "--form-factors and %s do not go together", other);
+        return error_set(error, EXIT_USAGE, "--form-factors and %s do not go together",
+                         other);
     return true;
 }
 
-/* --epsilon and --final-gather where they are not given; with --accuracy, which begins
- * there. */
+/* Defaults of --epsilon and --final-gather: without --accuracy, and with it, as its
+ * start. */
 static const double EPSILON = 1e-4, COARSE = 1e-3;
 enum { GATHER_RAYS = 256, FEW_RAYS = 64 };
 
-/* Rows of the final gather need the tree, to find lamps in; --accuracy goes by their
- * error. */
+/* Checks the final gather: its rows find lamps in the tree, and --accuracy measures the
+ * error of these rows. Sets the defaults. */
 static bool check_gather(struct options *options, struct error *error)
 {
     struct criterion *criterion = &options->criterion;
@@ -342,7 +357,8 @@ static bool check_gather(struct options *options, struct error *error)
     if (criterion->epsilon < 0.0)
         criterion->epsilon = accurate ? COARSE : EPSILON;
     if (options->pixels && criterion->final_gather == 0)
-        return error_set(error, EXIT_USAGE, "--final-gather pixels needs rays, and a tree");
+        return error_set(error, EXIT_USAGE,
+                         "--final-gather pixels needs rays, and a tree");
     if (options->pixels && options->flat)
         return error_set(error, EXIT_USAGE,
                          "--flat and --final-gather pixels do not go together");
@@ -353,10 +369,18 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
 {
     *options = (struct options){
         .samples = 3,
-        .criterion = {.oracle = ORACLE_ERROR, .linking = LINKING_TREE, .form_factor = FORM_FACTOR_POLYGON,
-                      .solver = SOLVER_CG, .balance = BALANCE_DEFAULT,
-                      .epsilon = -1.0, .min_area = 1e-7, .max_level = 10, .alpha = 0.5, .tolerance = 1e-5,
-                      .max_iterations = 1000, .final_gather = -1},
+        .criterion = {.oracle = ORACLE_ERROR,
+                      .linking = LINKING_TREE,
+                      .form_factor = FORM_FACTOR_POLYGON,
+                      .solver = SOLVER_CG,
+                      .balance = BALANCE_DEFAULT,
+                      .epsilon = -1.0,
+                      .min_area = 1e-7,
+                      .max_level = 10,
+                      .alpha = 0.5,
+                      .tolerance = 1e-5,
+                      .max_iterations = 1000,
+                      .final_gather = -1},
     };
     options->outputs = alloc_array((size_t)argc, sizeof *options->outputs);
     for (int i = 1; i < argc; i++) {
@@ -368,7 +392,8 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         }
         const struct option *option = find_option(argument);
         if (!option)
-            return error_set(error, EXIT_USAGE, "unknown option %s; see --help", argument);
+            return error_set(error, EXIT_USAGE, "unknown option %s; see --help",
+                             argument);
         if (option->kind == KIND_PAPER) {
             set_paper(&options->criterion);
             continue;
@@ -387,15 +412,16 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         return false;
     if (!options->scene && !options->help && !options->version && !options->validate)
         return error_set(error, EXIT_USAGE, "no scene given; see --help");
-    if (options->scene && !(check_table(options, error) && check_restart(options, error) &&
-                            check_paths(options, error)))
+    if (options->scene && !(check_table(options, error) &&
+                            check_restart(options, error) && check_paths(options, error)))
         return false;
     options->every = options->every > 0 ? options->every : 1;
     return true;
 }
 
 /* Appends a line "--option value" to `text`. */
-static void describe(const struct options *options, const char *name, char *text, size_t room)
+static void describe(const struct options *options, const char *name, char *text,
+                     size_t room)
 {
     const struct option *option = find_option(name);
     const char *field = (const char *)options + option->offset, *choice = option->choices;
@@ -404,7 +430,8 @@ static void describe(const struct options *options, const char *name, char *text
     room -= at;
     switch (option->kind) {
     case KIND_FLAG:
-        snprintf(line, room, "%s %s\n", name, *(const bool *)(const void *)field ? "on" : "off");
+        snprintf(line, room, "%s %s\n", name,
+                 *(const bool *)(const void *)field ? "on" : "off");
         break;
     case KIND_INTEGER:
         snprintf(line, room, "%s %d\n", name, *(const int *)(const void *)field);
@@ -432,7 +459,7 @@ const char *options_link_settings(const struct options *options)
 {
     static const char *const BY_ENERGY[] = {
         "--two-sided", "--two-sided-lamps", "--oracle", "--form-factor", NULL};
-    static const char *const BY_ERROR[] = { /* what is at stake decides how closely it looks */
+    static const char *const BY_ERROR[] = { /* visibility is refined by --epsilon, too */
         "--two-sided", "--two-sided-lamps", "--oracle", "--form-factor", "--epsilon",
         NULL};
     bool by_error = options->criterion.oracle == ORACLE_ERROR;
@@ -453,31 +480,33 @@ void options_free(struct options *options)
     options->outputs = NULL;
 }
 
+static const char HELP[] =
+    "usage: phr [options] SCENE         or  mpiexec -n P phr [options] SCENE\n"
+    "Computes the light in a diffuse scene, OBJ or PLY. Defaults in brackets.\n"
+    "  -o FILE          .ppm picture, .pfm linear picture, .ply mesh; repeatable\n"
+    "  --view FILE      eye x y z, at x y z, up x y z, fov deg, size w h (chosen)\n"
+    "  --size WxH       pixels (512x512)       --samples N   N x N rays a pixel (3)\n"
+    "  --exposure X     factor (automatic)     --flat        no interpolation\n"
+    "  --epsilon E      error of a link (1e-4) --accuracy A  refine to this error\n"
+    "  --max-level N    of subdivision (10)    --min-area A  of a patch (1e-7)\n"
+    "  --tolerance T    of the solution (1e-5) --max-iterations N   at most (1000)\n"
+    "  --oracle error|bf   what splits a link  --form-factor polygon|disk\n"
+    "  --linking tree|pairs  where links begin --final-gather N[,pixels]  rays (256)\n"
+    "  --solver cg|jacobi                      of the light over the links (cg)\n"
+    "  --paper          the paper's of these   --alpha A     inherited cost (0.5)\n"
+    "  --two-sided      backs reflect, too     --two-sided-lamps  those of lamps\n"
+    "  --save-links F   those of all pairs     --load-links F  in their place\n"
+    "  --checkpoint F   after each pass        --every N     only each N-th pass (1)\n"
+    "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
+    "  --form-factors   print them, as CSV     --validate    check form factors\n"
+    "  --stats FILE     report as JSON         --verbose     levels of refinement\n"
+    "  --balance default|greedy|none           --quiet       print nothing\n"
+    "  --help           print this             --version     and licence\n"
+    "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
+    "  phr room.obj -o room.ppm\n"
+    "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n";
+
 void options_print_help(FILE *file)
 {
-    fputs("usage: phr [options] SCENE         or  mpiexec -n P phr [options] SCENE\n"
-          "Computes the light in a diffuse scene, OBJ or PLY. Defaults in brackets.\n"
-          "  -o FILE          .ppm picture, .pfm linear picture, .ply mesh; repeatable\n"
-          "  --view FILE      eye x y z, at x y z, up x y z, fov deg, size w h (chosen)\n"
-          "  --size WxH       pixels (512x512)       --samples N   N x N rays a pixel (3)\n"
-          "  --exposure X     factor (automatic)     --flat        no interpolation\n"
-          "  --epsilon E      error of a link (1e-4) --accuracy A  refine to this error\n"
-          "  --max-level N    of subdivision (10)    --min-area A  of a patch (1e-7)\n"
-          "  --tolerance T    of the solution (1e-5) --max-iterations N   at most (1000)\n"
-          "  --oracle error|bf   what splits a link  --form-factor polygon|disk\n"
-          "  --linking tree|pairs  where links begin --final-gather N[,pixels]  rays (256)\n"
-          "  --solver cg|jacobi                      of the light over the links (cg)\n"
-          "  --paper          the paper's of these   --alpha A     inherited cost (0.5)\n"
-          "  --two-sided      backs reflect, too     --two-sided-lamps  those of lamps\n"
-          "  --save-links F   those of all pairs     --load-links F  in their place\n"
-          "  --checkpoint F   after each pass        --every N     only each N-th pass (1)\n"
-          "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
-          "  --form-factors   print them, as CSV     --validate    check form factors\n"
-          "  --stats FILE     report as JSON         --verbose     levels of refinement\n"
-          "  --balance default|greedy|none           --quiet       print nothing\n"
-          "  --help           print this             --version     and licence\n"
-          "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
-          "  phr room.obj -o room.ppm\n"
-          "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n",
-          file);
+    fputs(HELP, file);
 }

@@ -1,9 +1,9 @@
 /* Output files.
  *
- * A reader never sees half a file: the bytes go to a new file PATH.N.tmp, and rename() puts the
- * whole file in place or nothing. A link is followed first, so that what it points to is
- * replaced and not the link. What is not a regular file (/dev/stdout, a pipe) has no place beside it
- * and is written directly. */
+ * A reader never sees half a file: the bytes go to a new file PATH.N.tmp, and rename()
+ * replaces the old file by the whole new one. A symbolic link is followed first, so that
+ * its target is replaced and the link stays. A device or a pipe (/dev/stdout) has no
+ * place beside it and is written directly. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _XOPEN_SOURCE 700
 #include <fcntl.h>
@@ -24,7 +24,8 @@ static bool is_special(const char *path)
 {
 #ifdef HAVE_POSIX
     struct stat status;
-    return stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+    return stat(path, &status) == 0 && !S_ISREG(status.st_mode) &&
+           !S_ISDIR(status.st_mode);
 #else
     (void)path;
     return false;
@@ -55,7 +56,8 @@ static void release(struct output *output)
     *output = (struct output){0};
 }
 
-/* The path behind links, or the path itself where nothing is there yet. To be freed. */
+/* Returns the path with symbolic links resolved, or the path itself if there is no file
+ * yet. To be freed. */
 static char *follow_links(const char *path)
 {
     char *copy;
@@ -69,7 +71,7 @@ static char *follow_links(const char *path)
     return copy;
 }
 
-/* Opens a file that did not exist; NULL with errno if it does or cannot be made. */
+/* Creates a file. Returns NULL and sets errno if it exists or cannot be made. */
 static FILE *open_new(const char *path)
 {
 #ifdef HAVE_POSIX

@@ -10,29 +10,29 @@
 
 struct output {
     FILE *file;
-    char *shown;     /* the path as it was given, owned */
-    char *path;      /* the path behind links, owned */
-    char *temporary; /* owned; NULL when written in place (a device or a pipe) */
+    char *shown;     /* the path as given, for messages; owned */
+    char *path;      /* the path with symbolic links resolved; owned */
+    char *temporary; /* path of the new file; owned; NULL: written in place */
 };
 
-/* True if the file could be written: tried by creating what would be renamed later, so that a
- * wrong path is known before the computation and not after it.
+/* True if the file can be written: creates and removes the temporary file, so that a
+ * wrong path is reported before the computation and not after it.
  * Errors: "PATH: cannot write: REASON", EXIT_FAILED. */
 bool output_probe(const char *path, struct error *error);
 
-/* Opens a new file PATH.N.tmp, or PATH itself where it exists and is not a regular file. Links
+/* Opens a new file PATH.N.tmp, or PATH itself if it is a device or a pipe. Symbolic links
  * are followed. */
 bool output_open(struct output *output, const char *path, struct error *error);
 
-/* Closes and renames. On any write error so far, or if `error` is already set, nothing is left
- * behind and PATH stays as it was. Returns whether PATH holds the new content. */
+/* Closes and renames. On any write error so far, or if `error` is already set, the new
+ * file is removed and PATH stays as it was. Returns true if PATH has the new content. */
 bool output_close(struct output *output, struct error *error);
 
-/* Makes sure that what was written so far is on the disk and not only on its way: for files whose
- * whole point is to outlive a crash. */
+/* Waits until all bytes written so far are on the disk: for files that have to outlive a
+ * crash. */
 void output_sync(struct output *output, struct error *error);
 
-/* Binary numbers, byte by byte, least significant first, the same on every machine. */
+/* Write binary numbers, least significant byte first. */
 void output_uint32(struct output *output, uint32_t value);
 void output_float(struct output *output, float value);
 

@@ -1,12 +1,12 @@
 /* Progress on stderr.
  *
- * On a terminal a line is rewritten with a carriage return, ten times a second at most, and padded
- * with blanks over what stood there: that needs no terminal database and no escape sequences. In a
- * log, a line is written when nothing was for half a minute, so that a long phase does not look
- * dead and a short one stays silent. Under mpiexec stderr is a pipe on every rank, so that phr
- * writes a log there.
+ * On a terminal a line is rewritten with a carriage return, ten times a second at most,
+ * and padded with blanks to the length of the line before it: no terminal database and no
+ * escape sequences are needed. In a log, a line is written after half a minute without
+ * one, so that a long phase does not look dead and a short one stays silent. Under
+ * mpiexec stderr is a pipe on every rank: phr writes a log.
  *
- * The share is that of rank 0. Work is balanced, so the others are about as far. */
+ * The percentage is that of rank 0. Work is balanced, so the others are about as far. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _POSIX_C_SOURCE 200112L
 #include <unistd.h>
@@ -19,8 +19,8 @@
 
 static const double REWRITE = 0.1, LOG = 30.0; /* seconds between lines */
 
-/* From a share below the first, or in less than the second, nothing follows. */
-static const double SHARE_LEAST = 0.02, SECONDS_LEAST = 1.0;
+/* The time left is shown from this part of a stage and this many seconds on. */
+static const double DONE_LEAST = 0.02, SECONDS_LEAST = 1.0;
 
 static bool stderr_is_terminal(void)
 {
@@ -31,10 +31,11 @@ static bool stderr_is_terminal(void)
 #endif
 }
 
-/* As "9 s", "12 min" or "3 h 05 min". */
+/* Prints "9 s", "12 min" or "3 h 05 min". */
 static void print_duration(char *text, size_t size, double seconds)
 {
-    int64_t s = seconds < 1e9 ? (int64_t)(seconds + 1.0) : (int64_t)1e9, minutes = (s + 30) / 60;
+    int64_t s = seconds < 1e9 ? (int64_t)(seconds + 1.0) : (int64_t)1e9,
+            minutes = (s + 30) / 60;
     if (s < 100)
         snprintf(text, size, "%lld s", (long long)s);
     else if (minutes < 100)
@@ -44,26 +45,27 @@ static void print_duration(char *text, size_t size, double seconds)
                  (long long)(minutes % 60));
 }
 
-int progress_text(char text[PROGRESS_WIDTH + 1], const struct progress *progress, double seconds)
+int progress_text(char text[PROGRESS_WIDTH + 1], const struct progress *progress,
+                  double seconds)
 {
     char level[32] = "", links[32] = "", left[64] = "", duration[32];
-    double share = progress->share > 1.0 ? 1.0 : progress->share;
+    double done = progress->share > 1.0 ? 1.0 : progress->share;
     if (progress->level >= 0)
         snprintf(level, sizeof level, ", level %lld", (long long)progress->level);
     if (progress->links > 0)
         snprintf(links, sizeof links, ", %lld links", (long long)progress->links);
-    if (share >= SHARE_LEAST && seconds >= SECONDS_LEAST) {
-        print_duration(duration, sizeof duration, seconds * (1.0 - share) / share);
+    if (done >= DONE_LEAST && seconds >= SECONDS_LEAST) {
+        print_duration(duration, sizeof duration, seconds * (1.0 - done) / done);
         snprintf(left, sizeof left, ", about %s left", duration);
     }
-    int length = snprintf(text, PROGRESS_WIDTH + 1, "phr: %s%s%s, %d %%%s", progress->phase, level,
-                          links, (int)(100.0 * share), left);
+    int length = snprintf(text, PROGRESS_WIDTH + 1, "phr: %s%s%s, %d %%%s",
+                          progress->phase, level, links, (int)(100.0 * done), left);
     return length < PROGRESS_WIDTH ? length : PROGRESS_WIDTH;
 }
 
 static void show(struct progress *progress)
 {
-    struct progress_view *view = (struct progress_view *)(void *)progress; /* its first field */
+    struct progress_view *view = (void *)progress; /* its first field */
     double now = view->clock();
     if (view->stage != progress->stage) {
         view->stage = progress->stage;
@@ -84,7 +86,8 @@ static void show(struct progress *progress)
 
 void progress_view_open(struct progress_view *view, double (*clock)(void))
 {
-    *view = (struct progress_view){.progress = {.show = show}, .clock = clock, .shown = clock(),
+    *view = (struct progress_view){.progress = {.show = show}, .clock = clock,
+                                   .shown = clock(),
                                    .terminal = stderr_is_terminal()};
 }
 

@@ -130,7 +130,7 @@ static int64_t share_field(const struct level_share *share, size_t field)
     return fields[field];
 }
 
-/* One field of all ranks. */
+/* Writes one field of all ranks. */
 static void write_shares(FILE *file, const struct stats *stats,
                          const struct level_balance *level, size_t field)
 {

@@ -8,7 +8,8 @@
 #include "geom/error.h"
 #include "rad/stats.h"
 
-/* The summary: what was computed, nothing that depends on the machine or the ranks. */
+/* Prints the summary, whose figures do not depend on the machine or the number of
+ * ranks. */
 void stats_print(const struct stats *stats, FILE *file);
 
 /* Writes the JSON file of --stats. Errors: as output_close(). */

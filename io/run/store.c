@@ -1,12 +1,12 @@
-/* Stored snapshot; the format is in io/run/store.h.
+/* Stored snapshots; the format is in io/run/store.h.
  *
- * Reading trusts nothing: the size of the file has to be what its counts say, so no more is
- * allocated than a small multiple of it; then the checksum, the settings and the scene; then every
- * number (rad/beyond/snapshot.c). The file is read twice for that, which keeps the links, by far the most
- * of it, out of rank 0's memory.
+ * Reading checks first that the counts agree with the size of the file, so allocations
+ * stay within a small multiple of it; then the checksum, the settings and the scene; then
+ * every number (rad/beyond/snapshot.c). The file is read twice, so that the links, by far
+ * its largest part, need not fit into the memory of rank 0.
  *
- * The checksum is there for accidents. Rejected: a CRC for each section, which finds no more and
- * takes a table; text, which is four times as long. */
+ * The checksum finds accidents, not attacks. Rejected: a CRC for each section, which
+ * finds no more and takes a table; text, which is four times as long. */
 #include "io/run/store.h"
 
 #include <errno.h>
@@ -18,7 +18,7 @@
 #include "geom/stop.h"
 
 enum { MAGIC_BYTES = 8, HEADER_BYTES = 40, LEAF_BYTES = 56, LINK_BYTES = 24,
-       BLOCK = 4096, SETTINGS_MAX = 4096 };
+       CHUNK = 4096, SETTINGS_MAX = 4096 };
 
 static const char *const MAGIC[] = {"PHRLINK3", "PHRCHKP3"};
 static const char *const NAMES[] = {"link cache", "checkpoint"};
@@ -72,8 +72,9 @@ static void put_snapshot(struct store_writer *writer, const struct snapshot *sna
     }
 }
 
-bool store_create(struct store_writer *writer, const char *path, const struct store_terms *terms,
-                  const struct snapshot *snapshot, struct error *error)
+bool store_create(struct store_writer *writer, const char *path,
+                  const struct store_terms *terms, const struct snapshot *snapshot,
+                  struct error *error)
 {
     *writer = (struct store_writer){.hash = HASH_START};
     if (!output_open(&writer->output, path, error))
@@ -117,32 +118,35 @@ bool store_finish(struct store_writer *writer, struct error *error)
 
 /* --- reading --- */
 
-/* A file as its header describes it. */
+/* Hash of the scene and counts, as in the header of a file. */
 struct header {
     uint64_t scene;
     int64_t settings, roots, patches, links;
 };
 
-static bool damaged(const struct store_reader *reader, const char *how, struct error *error)
+static bool damaged(const struct store_reader *reader, const char *how,
+                    struct error *error)
 {
     return error_set(error, EXIT_USAGE, "%s: damaged: %s", reader->path, how);
 }
 
-/* A system's error, or the end of a file that has become shorter. */
+/* Reports a system's error, or the end of a file that has become shorter. */
 static bool unreadable(const struct store_reader *reader, struct error *error)
 {
     return error_set(error, EXIT_USAGE, "%s: cannot read: %s", reader->path,
-                     ferror(reader->file) && errno ? strerror(errno) : "the file ends too early");
+                     ferror(reader->file) && errno ? strerror(errno)
+                                                   : "the file ends too early");
 }
 
-static bool get(struct store_reader *reader, void *bytes, size_t count, struct error *error)
+static bool get(struct store_reader *reader, void *bytes, size_t count,
+                struct error *error)
 {
     errno = 0;
     return stop_check(error) &&
            (fread(bytes, 1, count, reader->file) == count || unreadable(reader, error));
 }
 
-/* The first bytes tell the kind and the version. */
+/* Checks the kind and the version, which are the first bytes. */
 static bool check_magic(const struct store_reader *reader, const uint8_t *magic,
                         enum store_kind kind, struct error *error)
 {
@@ -150,10 +154,11 @@ static bool check_magic(const struct store_reader *reader, const uint8_t *magic,
     if (memcmp(magic, MAGIC[kind], MAGIC_BYTES) == 0)
         return true;
     if (memcmp(magic, MAGIC[other], MAGIC_BYTES - 1) == 0)
-        return error_set(error, EXIT_USAGE, "%s: not a %s but a %s", reader->path, NAMES[kind],
-                         NAMES[other]);
+        return error_set(error, EXIT_USAGE, "%s: not a %s but a %s", reader->path,
+                         NAMES[kind], NAMES[other]);
     if (memcmp(magic, MAGIC[kind], MAGIC_BYTES - 1) == 0)
-        return error_set(error, EXIT_USAGE, "%s: a %s of version %c, and this program knows %c",
+        return error_set(error, EXIT_USAGE,
+                         "%s: a %s of version %c, and this program knows %c",
                          reader->path, NAMES[kind], magic[MAGIC_BYTES - 1],
                          MAGIC[kind][MAGIC_BYTES - 1]);
     return error_set(error, EXIT_USAGE, "%s: not a %s", reader->path, NAMES[kind]);
@@ -162,9 +167,9 @@ static bool check_magic(const struct store_reader *reader, const uint8_t *magic,
 /* True if the counts are in their ranges and make a file of `size` bytes. */
 static bool counts_fit(const struct header *h, int64_t size)
 {
-    if (h->settings > SETTINGS_MAX || h->settings > size || h->roots > size || h->patches < h->roots ||
-        h->patches > size || h->patches > INT32_MAX || (h->patches - h->roots) % 4 != 0 ||
-        h->links < 0 || h->links > size / LINK_BYTES)
+    if (h->settings > SETTINGS_MAX || h->settings > size || h->roots > size ||
+        h->patches < h->roots || h->patches > size || h->patches > INT32_MAX ||
+        (h->patches - h->roots) % 4 != 0 || h->links < 0 || h->links > size / LINK_BYTES)
         return false;
     struct snapshot counts = {.root_count = h->roots, .patch_count = h->patches};
     return size == HEADER_BYTES + h->settings + 8 * (SNAPSHOT_NUMBERS + SNAPSHOT_VALUES) +
@@ -172,11 +177,12 @@ static bool counts_fit(const struct header *h, int64_t size)
                        LINK_BYTES * h->links + 8;
 }
 
-static bool read_header(struct store_reader *reader, enum store_kind kind, struct header *header,
-                        int64_t *size, struct error *error)
+static bool read_header(struct store_reader *reader, enum store_kind kind,
+                        struct header *header, int64_t *size, struct error *error)
 {
     uint8_t bytes[HEADER_BYTES];
-    if (!get(reader, bytes, MAGIC_BYTES, error) || !check_magic(reader, bytes, kind, error) ||
+    if (!get(reader, bytes, MAGIC_BYTES, error) ||
+        !check_magic(reader, bytes, kind, error) ||
         !get(reader, bytes + MAGIC_BYTES, HEADER_BYTES - MAGIC_BYTES, error))
         return false;
     *header = (struct header){
@@ -189,28 +195,29 @@ static bool read_header(struct store_reader *reader, enum store_kind kind, struc
     errno = 0;
     *size = fseek(reader->file, 0, SEEK_END) == 0 ? ftell(reader->file) : -1;
     if (*size < 0)
-        return error_set(error, EXIT_USAGE, "%s: cannot read: %s", reader->path, strerror(errno));
+        return error_set(error, EXIT_USAGE, "%s: cannot read: %s", reader->path,
+                         strerror(errno));
     return counts_fit(header, *size) ||
            damaged(reader, "its size is not what its counts say", error);
 }
 
-/* Reads all of the file and holds it against the hash at its end. */
+/* Reads the whole file and compares its hash with the one at its end. */
 static bool check_hash(struct store_reader *reader, int64_t size, struct error *error)
 {
-    uint8_t block[BLOCK];
+    uint8_t chunk[CHUNK];
     uint64_t hash = HASH_START;
     if (fseek(reader->file, 0, SEEK_SET) != 0)
         return unreadable(reader, error);
     for (int64_t left = size - 8; left > 0;) {
-        size_t now = left < BLOCK ? (size_t)left : BLOCK;
-        if (!get(reader, block, now, error))
+        size_t now = left < CHUNK ? (size_t)left : CHUNK;
+        if (!get(reader, chunk, now, error))
             return false;
-        hash = hash_bytes(hash, block, now);
+        hash = hash_bytes(hash, chunk, now);
         left -= (int64_t)now;
     }
-    if (!get(reader, block, 8, error))
+    if (!get(reader, chunk, 8, error))
         return false;
-    return hash == little_get64(block) || damaged(reader, "its checksum is wrong", error);
+    return hash == little_get64(chunk) || damaged(reader, "its checksum is wrong", error);
 }
 
 /* Names the first setting that differs. */
@@ -297,7 +304,8 @@ bool store_open_file(struct store_reader *reader, FILE *file, const char *name,
         return unreadable(reader, error);
     if (!check_settings(reader, header.settings, terms->settings, error))
         return false;
-    if (header.scene != scene_hash(terms->scene) || header.roots != scene_root_count(terms->scene))
+    if (header.scene != scene_hash(terms->scene) ||
+        header.roots != scene_root_count(terms->scene))
         return error_set(error, EXIT_USAGE, "%s: made from another scene", name);
     reader->snapshot.root_count = header.roots;
     reader->snapshot.patch_count = header.patches;
@@ -309,8 +317,8 @@ bool store_open_file(struct store_reader *reader, FILE *file, const char *name,
     return true;
 }
 
-bool store_open(struct store_reader *reader, const char *path, const struct store_terms *terms,
-                struct error *error)
+bool store_open(struct store_reader *reader, const char *path,
+                const struct store_terms *terms, struct error *error)
 {
     *reader = (struct store_reader){.path = path};
     FILE *file = fopen(path, "rb");
