@@ -98,7 +98,7 @@ static float *make_picture(struct run *run, const uint8_t *open)
     if (gathers)
         answer->gather.counts = (struct gather_counts){.rays = 0};
     progress_begin(&run->progress.progress, "rendering", -1, 0);
-    float *rows = render_rows(&renderer, &run->camera, run->options.samples, comm->rank,
+    float *rows = render_scanlines(&renderer, &run->camera, run->options.samples, comm->rank,
                               comm->size, &run->progress.progress);
     float *picture = picture_gather(comm, rows, 3 * (size_t)run->camera.width,
                                     run->camera.height);

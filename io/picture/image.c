@@ -1,10 +1,10 @@
-/* Writing and reading pictures. Both formats are a line or three of text and then plain samples;
- * they differ in the row they begin with: PFM at the bottom, PPM at the top.
+/* Writing and reading pictures. Both formats are a short header of text and then the
+ * samples; PFM begins with the bottom scanline, PPM with the top one.
  *
- * The reader takes what other programs write: words of the header between any blanks, comments
- * in PPM, grey PFM, a scale that is not 1 (samples are multiplied by it, as Debevec's
- * description and most readers have it). It is strict about the size: samples that are missing or
- * left over mean that the header is about another picture. */
+ * The reader accepts the variants of other programs: any blanks between words of the
+ * header, comments in PPM, grey PFM, a scale other than 1 (samples are multiplied by it,
+ * as in Debevec's description and most readers). It is strict about the size: missing or
+ * extra samples mean that the header belongs to another picture. */
 #include "io/picture/image.h"
 
 #include <float.h>
@@ -19,7 +19,7 @@
 
 enum { SIZE_MOST = 1 << 24 }; /* pixels on a side */
 
-static const double SCALE_LEAST = 1e-30, SCALE_MOST = 1e30; /* of a PFM */
+static const double SCALE_LEAST = 1e-30, SCALE_MOST = 1e30; /* of a PFM, magnitude */
 
 bool pfm_write(const struct image *image, const char *path, struct error *error)
 {
@@ -28,9 +28,9 @@ bool pfm_write(const struct image *image, const char *path, struct error *error)
         return false;
     fprintf(output.file, "PF\n%d %d\n-1.0\n", image->width, image->height);
     for (int y = image->height - 1; y >= 0 && stop_check(error); y--) {
-        const float *row = image->rgb + (size_t)y * (size_t)image->width * 3;
+        const float *scanline = image->rgb + (size_t)y * (size_t)image->width * 3;
         for (int i = 0; i < 3 * image->width; i++)
-            output_float(&output, row[i]);
+            output_float(&output, scanline[i]);
     }
     return output_close(&output, error);
 }
@@ -55,7 +55,7 @@ struct image_reader {
     struct image *image;
     bool plain, grey, big_endian;
     int sample_size; /* bytes */
-    double scale;    /* of PFM samples, or 1 / the greatest value of PPM ones */
+    double scale;    /* factor on samples: of the PFM, or 1 / most of the PPM */
     int64_t most;    /* the greatest value of PPM samples */
     struct error *error;
 };
@@ -70,8 +70,8 @@ static bool is_blank(char c)
     return c != '\0' && strchr(" \t\v\f\r\n", c) != NULL;
 }
 
-/* The next word of the header or of plain samples, without the blank behind it. Comments, in PPM
- * only, go from # to the end of the line. */
+/* Reads the next word of the header or of plain samples, without the blank behind it.
+ * Comments, in PPM only, go from # to the end of the line. */
 static bool next_word(struct image_reader *reader, bool comments, char word[32])
 {
     const char *data = reader->binary->data;
@@ -79,19 +79,21 @@ static bool next_word(struct image_reader *reader, bool comments, char word[32])
     while (is_blank(data[at]) || (comments && data[at] == '#'))
         at += data[at] == '#' ? (int64_t)strcspn(data + at, "\r\n") : 1;
     int length = 0;
-    while (data[at] != '\0' && !is_blank(data[at]) && !(comments && data[at] == '#') && length < 31)
+    while (data[at] != '\0' && !is_blank(data[at]) && !(comments && data[at] == '#') &&
+           length < 31)
         word[length++] = data[at++];
     word[length] = '\0';
     reader->binary->position = at;
     return length > 0 && length < 31;
 }
 
-static bool next_integer(struct image_reader *reader, bool comments, int64_t most, int64_t *value)
+static bool next_integer(struct image_reader *reader, bool comments, int64_t most,
+                         int64_t *value)
 {
     char word[32];
     const char *end = word;
-    return next_word(reader, comments, word) && text_integer(&end, value) && *end == '\0' &&
-           *value >= 0 && *value <= most;
+    return next_word(reader, comments, word) && text_integer(&end, value) &&
+           *end == '\0' && *value >= 0 && *value <= most;
 }
 
 static bool read_size(struct image_reader *reader, bool comments)
@@ -133,7 +135,8 @@ static bool read_ppm_header(struct image_reader *reader)
     return true;
 }
 
-/* Passes over the one blank behind the header; CR LF are one where the samples fit behind them. */
+/* Skips the one blank behind the header; CR LF count as one if all samples follow
+ * them. */
 static bool find_samples(struct image_reader *reader, int64_t bytes)
 {
     struct binary *binary = reader->binary;
@@ -151,7 +154,8 @@ static bool read_plain(struct image_reader *reader, int64_t count)
     for (int64_t i = 0; i < count; i++) {
         int64_t value;
         if (!next_integer(reader, true, reader->most, &value))
-            return refuse(reader, "a sample is missing or not a number up to the greatest value");
+            return refuse(reader,
+                          "a sample is missing or not a number up to the greatest value");
         reader->image->rgb[i] = (float)((double)value * reader->scale);
     }
     return true;
@@ -161,7 +165,8 @@ static bool read_raw(struct image_reader *reader, int64_t count)
 {
     struct binary *binary = reader->binary;
     for (int64_t i = 0; i < count; i++, binary->position += reader->sample_size) {
-        uint64_t value = binary_integer(binary->data + binary->position, reader->sample_size, true);
+        uint64_t value =
+            binary_integer(binary->data + binary->position, reader->sample_size, true);
         if (value > (uint64_t)reader->most)
             return refuse(reader, "a sample is above the greatest value");
         reader->image->rgb[i] = (float)((double)value * reader->scale);
@@ -169,10 +174,13 @@ static bool read_raw(struct image_reader *reader, int64_t count)
     return true;
 }
 
-/* The nearest float; C99 does not define the conversion of what is beyond the largest one. */
+/* Returns the nearest float. C99 does not define the conversion of doubles beyond the
+ * largest. */
 static float nearest_float(double x)
 {
-    return fabs(x) <= (double)FLT_MAX || !isfinite(x) ? (float)x : x > 0.0 ? FLT_MAX : -FLT_MAX;
+    return fabs(x) <= (double)FLT_MAX || !isfinite(x) ? (float)x
+           : x > 0.0                                  ? FLT_MAX
+                                                      : -FLT_MAX;
 }
 
 static void read_floats(struct image_reader *reader)
@@ -180,10 +188,12 @@ static void read_floats(struct image_reader *reader)
     struct binary *binary = reader->binary;
     int width = reader->image->width, bands = reader->grey ? 1 : 3;
     for (int y = reader->image->height - 1; y >= 0; y--) {
-        float *row = reader->image->rgb + (size_t)y * (size_t)width * 3;
+        float *scanline = reader->image->rgb + (size_t)y * (size_t)width * 3;
         for (int i = 0; i < 3 * width; i++) {
-            const char *at = binary->data + binary->position + 4 * (bands == 1 ? i / 3 : i);
-            row[i] = nearest_float((double)binary_float(at, reader->big_endian) * reader->scale);
+            const char *at =
+                binary->data + binary->position + 4 * (bands == 1 ? i / 3 : i);
+            scanline[i] = nearest_float((double)binary_float(at, reader->big_endian) *
+                                        reader->scale);
         }
         binary->position += 4 * (int64_t)width * bands;
     }
@@ -201,7 +211,8 @@ static bool read_samples(struct image_reader *reader, enum image_kind kind)
         read_floats(reader);
     else if (!(reader->plain ? read_plain(reader, count) : read_raw(reader, count)))
         return false;
-    return binary_is_over(reader->binary) || refuse(reader, "bytes are left behind the picture");
+    return binary_is_over(reader->binary) ||
+           refuse(reader, "bytes are left behind the picture");
 }
 
 static bool read_image(struct image_reader *reader, enum image_kind *kind)
@@ -229,15 +240,13 @@ bool image_of_binary(struct image *image, enum image_kind *kind, struct binary *
     return good;
 }
 
-bool image_load(struct binary *binary, const char *path, struct error *error)
-{
-    return binary_read(binary, path, "P", "a picture (PFM or PPM)", error);
-}
+
 
 bool image_read(struct image *image, enum image_kind *kind, const char *path,
                 struct error *error)
 {
     struct binary binary;
     *image = (struct image){0};
-    return image_load(&binary, path, error) && image_of_binary(image, kind, &binary, error);
+    return binary_read(&binary, path, "P", "a picture (PFM or PPM)", error) &&
+           image_of_binary(image, kind, &binary, error);
 }

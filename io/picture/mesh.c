@@ -1,11 +1,11 @@
 /* The solution mesh. Leaves share the vertices of the smooth shading, so a viewer that
- * interpolates vertex colours shows what phr's own pictures show. */
+ * interpolates vertex colours shows the same light as phr's pictures. */
 #include "io/picture/mesh.h"
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
 
-/* The next leaf in canonical order after `p` (-1: the first one), or -1. */
+/* Returns the leaf after `p` (-1: the first one) in canonical order, or -1. */
 static int32_t next_leaf(const struct forest *forest, int32_t p)
 {
     int32_t root = p < 0 ? -1 : (int32_t)forest->patches[p].id.root;
@@ -25,18 +25,22 @@ static int32_t next_leaf(const struct forest *forest, int32_t p)
     }
 }
 
-void mesh_write_header(struct output *output, int64_t vertices, int64_t faces, bool errors)
+void mesh_write_header(struct output *output, int64_t vertices, int64_t faces,
+                       bool errors)
 {
     fprintf(output->file,
-            "ply\nformat binary_little_endian 1.0\ncomment radiosity in W/m^2, made by phr\n"
+            "ply\nformat binary_little_endian 1.0\n"
+            "comment radiosity in W/m^2, made by phr\n"
             "element vertex %lld\n"
             "property float x\nproperty float y\nproperty float z\n"
             "property uchar red\nproperty uchar green\nproperty uchar blue\n"
             "element face %lld\n"
             "property list uchar int vertex_indices\n"
-            "property float radiosity_r\nproperty float radiosity_g\nproperty float radiosity_b\n"
+            "property float radiosity_r\nproperty float radiosity_g\n"
+            "property float radiosity_b\n"
             "property uint root\nproperty uint hierarchy\n%send_header\n",
-            (long long)vertices, (long long)faces, errors ? "property float error\n" : "");
+            (long long)vertices, (long long)faces,
+            errors ? "property float error\n" : "");
 }
 
 static void write_vertices(struct output *output, const struct shading *shading,

@@ -1,18 +1,18 @@
-/* Rendering. A pixel depends on nothing but its place, so rows can be dealt to ranks in any
- * way. A triangle shows its twin, if it has one, where its back is met.
+/* Rendering. A pixel depends only on its place, so scanlines can be dealt to ranks in any
+ * way. A ray that meets the back of a triangle sees its twin, if there is one.
  *
- * Light straight from lamps has edges that no mesh follows, so it is gathered at each point
- * that is shown, by segments; what surfaces reflect to each other is smooth, and
- * interpolated over the mesh. Or all light is gathered at the point: the picture has no
- * trace of the mesh then. All points of a pixel on one triangle are gathered together;
- * where lamps are seen in part, a second time by more segments.
+ * Direct light of lamps has edges that no mesh follows, so it is gathered at each visible
+ * point, by segments; reflected light is smooth and interpolated over the mesh. Or all
+ * light is gathered at the point: then the picture has no trace of the mesh. All points
+ * of a pixel on one triangle are gathered together; where lamps are seen in part, a
+ * second time by more segments.
  *
- * On a surface with normals of its own the light is that of the smooth surface, which the
- * facets are inscribed in: a point is lifted to the planes through the corners, each across
- * its normal, by as much as the corner counts there (Hanika, 2021). So facets do not
- * shadow each other where the smooth surface is lit. A facet may hide a lamp from its own
- * points: that of a bowl, which is not lifted, has some above its tangent plane that are
- * behind it. */
+ * A surface with normals of its own has the light of the smooth surface in which the
+ * facets are inscribed: a point is lifted towards the plane through each corner across
+ * its normal, weighted by the barycentric coordinate of the corner (Hanika, 2021). So
+ * facets do not shadow each other where the smooth surface is lit. A facet of a bowl is
+ * not lifted, and may hide from its own points a lamp that is above their tangent planes
+ * but behind the facet. */
 #include "io/picture/render.h"
 
 #include <math.h>
@@ -22,10 +22,12 @@
 #include "geom/stop.h"
 #include "rad/beyond/sample.h"
 
-/* Segments to lamps for a pixel; and so many times as many where the first may be wrong by
- * more than this part of its light. */
-static const double NOISE = 0.02;
-enum { SEGMENTS = 32, MORE = 4 };
+enum {
+    SEGMENTS = 32, /* to lamps, for a pixel */
+    MORE = 4       /* factor on them in a noisy pixel */
+};
+
+static const double NOISE = 0.02; /* error of a noisy pixel, relative to its light */
 
 struct renderer renderer_make(const struct octree *octree, const struct shading *shading,
                               struct final_gather *gather)
@@ -36,30 +38,32 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
     return renderer;
 }
 
-/* --- points that are shown --- */
+/* --- visible points --- */
 
-/* The roots that camera rays of a pixel meet: an entry for each ray that meets one. */
+/* The roots that the camera rays of a pixel meet: an entry for each ray that meets
+ * one. */
 struct pixel_roots {
     int32_t *roots;
-    struct vec3 *weights, *at; /* barycentric coordinates in the root; points */
+    struct vec3 *weights; /* barycentric coordinates in the root */
+    struct vec3 *at;      /* points, scene units; room for add_light() */
     int count;
 };
 
 /* Light of a pixel. */
 struct pixel_light {
-    struct rgb sum;  /* radiosity, times rays of the camera, W/m^2 */
-    double variance; /* of that by the choice of segments, over bands, (W/m^2)^2 */
+    struct rgb sum;  /* of the radiosities that the camera rays meet, W/m^2 */
+    double variance; /* of `sum` by the choice of segments, over bands, (W/m^2)^2 */
 };
 
 static struct vec3 corners_mean(const struct vec3 corner[3], struct vec3 weight)
 {
-    return vec3_add(vec3_add(vec3_scale(corner[0], weight.x), vec3_scale(corner[1], weight.y)),
-                    vec3_scale(corner[2], weight.z));
+    struct vec3 a = vec3_scale(corner[0], weight.x), b = vec3_scale(corner[1], weight.y);
+    return vec3_add(vec3_add(a, b), vec3_scale(corner[2], weight.z));
 }
 
-/* Normals within 45 degrees of the plane's, by the cosine, say that facets stand for a smooth
- * surface. Those of a box that is smoothed over its edges do not: lifted to a sphere, its
- * sides would end up above what stands on them. */
+/* Least cosine between the normal at a corner and that of the plane, 45 degrees, for
+ * facets of a smooth surface. A box with normals smoothed over its edges is beyond it:
+ * lifted towards a sphere, its sides would cover the objects that stand on them. */
 static const double LEAN = 0.7;
 
 /* A root as it is shown: with normals at its corners, or flat. */
@@ -67,7 +71,7 @@ struct facade {
     struct triangle triangle;
     struct vec3 normals[3];
     struct plane plane;
-    bool curved; /* else all normals are 0 */
+    bool curved; /* false: all normals are 0 */
 };
 
 static struct facade facade_make(const struct scene *scene, int32_t root)
@@ -86,7 +90,8 @@ static struct facade facade_make(const struct scene *scene, int32_t root)
     return facade;
 }
 
-/* The point with these coordinates, above the planes through the corners. */
+/* Returns the point with these coordinates, lifted towards the planes through the
+ * corners. */
 static struct vec3 facade_point(const struct facade *facade, struct vec3 weight)
 {
     struct vec3 x = corners_mean(facade->triangle.corner, weight), lifts[3];
@@ -99,8 +104,9 @@ static struct vec3 facade_point(const struct facade *facade, struct vec3 weight)
     return facade->curved ? point_above(x, facade->plane.normal) : x;
 }
 
-/* Its tangent plane there. */
-static struct plane facade_plane(const struct facade *facade, struct vec3 weight, struct vec3 x)
+/* Returns the tangent plane at x, the point with these coordinates. */
+static struct plane facade_plane(const struct facade *facade, struct vec3 weight,
+                                 struct vec3 x)
 {
     struct vec3 normal = corners_mean(facade->normals, weight);
     if (!(vec3_dot(normal, facade->plane.normal) > 0.0))
@@ -109,7 +115,7 @@ static struct plane facade_plane(const struct facade *facade, struct vec3 weight
     return (struct plane){normal, vec3_dot(normal, x)};
 }
 
-/* Adds light of the first `count` entries, which are of one root. */
+/* Adds the light of the first `count` entries, which are of one root. */
 static void add_light(const struct renderer *renderer, const struct pixel_roots *view,
                       int count, uint64_t seed, int rays, struct pixel_light *pixel)
 {
@@ -139,7 +145,7 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
     pixel->variance += count * count * rho * rho * light.variance;
 }
 
-/* Moves the entries of the root of the first one to the front; returns their number. */
+/* Moves the entries with the first entry's root to the front. Returns their number. */
 static int collect_root(struct pixel_roots *view)
 {
     int count = 0;
@@ -155,8 +161,8 @@ static int collect_root(struct pixel_roots *view)
     return count;
 }
 
-/* What the entries show together, by about so many rays if light is gathered. Their order
- * is lost. */
+/* Returns the light of all entries together, gathered by about `rays` rays. Reorders the
+ * entries. */
 static struct pixel_light show(const struct renderer *renderer,
                                const struct pixel_roots *view, uint64_t seed, int rays)
 {
@@ -171,8 +177,8 @@ static struct pixel_light show(const struct renderer *renderer,
     struct pixel_roots rest = *view;
     while (rest.count > 0 && renderer->gather) {
         int count = collect_root(&rest);
-        int share = (rays * count + view->count - 1) / view->count;
-        add_light(renderer, &rest, count, hash_mix(seed) + (uint64_t)rest.roots[0], share,
+        int own = (rays * count + view->count - 1) / view->count;
+        add_light(renderer, &rest, count, hash_mix(seed) + (uint64_t)rest.roots[0], own,
                   &pixel);
         rest.roots += count;
         rest.weights += count;
@@ -191,7 +197,8 @@ struct rgb render_point(const struct renderer *renderer, int32_t root,
 
 /* --- pixels --- */
 
-/* What the ray through a place of the picture meets joins the view. */
+/* Adds the root that the ray through the point (x, y) of the picture meets to the
+ * view. */
 static void look(const struct renderer *renderer, const struct scene *scene,
                  const struct camera *camera, double x, double y,
                  struct pixel_roots *view)
@@ -207,7 +214,7 @@ static void look(const struct renderer *renderer, const struct scene *scene,
     const double *w = hit.weight;
     view->roots[view->count] = root;
     view->weights[view->count++] = hit.front ? (struct vec3){w[0], w[1], w[2]}
-                                             : (struct vec3){w[0], w[2], w[1]}; /* (a, c, b) */
+                                             : (struct vec3){w[0], w[2], w[1]};
 }
 
 static void render_pixel(const struct renderer *renderer, const struct scene *scene,
@@ -228,22 +235,22 @@ static void render_pixel(const struct renderer *renderer, const struct scene *sc
         rgb[c] = (float)(pixel.sum.band[c] / parts);
 }
 
-float *render_rows(const struct renderer *renderer, const struct camera *camera, int samples,
-                   int first, int step, struct progress *progress)
+float *render_scanlines(const struct renderer *renderer, const struct camera *camera,
+                        int samples, int first, int step, struct progress *progress)
 {
     const struct scene *scene = renderer->gather ? renderer->gather->model->scene
                                                  : renderer->shading->forest->scene;
-    size_t row = 3 * (size_t)camera->width, parts = (size_t)samples * (size_t)samples;
-    int rows = first < camera->height ? (camera->height - first - 1) / step + 1 : 0;
-    float *rgb = alloc_array((size_t)rows * row, sizeof *rgb);
+    size_t length = 3 * (size_t)camera->width, parts = (size_t)samples * (size_t)samples;
+    int scanlines = first < camera->height ? (camera->height - first - 1) / step + 1 : 0;
+    float *rgb = alloc_array((size_t)scanlines * length, sizeof *rgb);
     struct pixel_roots view = {.roots = alloc_array(parts, sizeof *view.roots),
                                .weights = alloc_array(parts, sizeof *view.weights),
                                .at = alloc_array(parts, sizeof *view.at)};
-    for (int i = 0; i < rows; i++) {
-        progress_tick(progress, (double)i / rows);
+    for (int i = 0; i < scanlines; i++) {
+        progress_tick(progress, (double)i / scanlines);
         for (int x = 0; x < camera->width && !stop_is_asked(); x++)
             render_pixel(renderer, scene, camera, samples, x, first + i * step, &view,
-                         rgb + (size_t)i * row + 3 * (size_t)x);
+                         rgb + (size_t)i * length + 3 * (size_t)x);
     }
     alloc_free(view.roots);
     alloc_free(view.weights);

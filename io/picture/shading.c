@@ -1,27 +1,29 @@
 /* Smooth shading.
  *
- * A vertex is a corner of leaves. Leaves share a vertex where they have the same point and lie
- * on one smooth surface (io/picture/surface.h). The value of a vertex is the mean of the leaves around it.
+ * A vertex is a corner of leaves. Leaves on one smooth surface (io/picture/surface.h)
+ * have a common vertex where their corners are the same point. The value of a vertex is
+ * the mean radiosity of the leaves around it.
  *
- * Means blur: where the light changes fast, as at a lamp, the leaves around are bright and dim, and
- * a leaf shows more or less light than it has. So what each leaf lacks, its own radiosity less the
- * mean of its corners, is given to its corners, where leaves count by their areas; within the
- * range of the leaves around, so that shadows get no bright rims. The error of pictures falls by a
- * tenth to a third (furnished room, Cornell box). Giving again gains a few percent more, but makes
- * every difference between leaves stand out.
+ * Means blur: where the light changes fast, as at a lamp, a leaf shows more or less light
+ * than it has. So the deficit of each leaf, its radiosity less the mean of its corners,
+ * is added to its corners, as a mean over the leaves around weighted by area; the value
+ * of a vertex stays in the range of these leaves, so that shadows get no bright rims. The
+ * error of pictures falls by a tenth to a third (furnished room, Cornell box). A second
+ * correction gains a few percent more, but exaggerates differences between leaves.
  *
- * Where a box stands on the floor, leaves are covered in part. The covered part is dark, is not
- * seen and must not leak. It is found with the four points where the rays of the leaf's links
- * begin: a point is covered if four rays from it, up and far aside, all meet a back first: it
- * lies inside a solid, not merely below a shelf. The light of the leaf then belongs to its open
- * share: the irradiance that is shown is the leaf's over that share. A vertex with nothing but
- * covered leaves around it takes their mean.
+ * Where a box stands on the floor, leaves are covered in part. The covered part is dark
+ * and invisible, and must not darken the rest. It is found with the four points where the
+ * rays of the leaf's links begin: a point is covered if four rays from it, up and far
+ * aside, all meet a back first: it lies inside a solid, not merely below a shelf. The
+ * light of the leaf then belongs to its open part: the shown irradiance is that of the
+ * leaf over the fraction that is open. A vertex with only covered leaves around it takes
+ * their mean.
  *
- * Between the vertices a leaf interpolates linearly. That alone would crack at T-vertices, where
- * a fine leaf has a vertex in the middle of a coarse leaf's edge: the coarse side does not know
- * of it. Such a vertex gets the mean of the edge's ends, which is what the coarse side shows
- * there; edges are treated from coarse to fine, so the ends are settled before. The result is
- * continuous on every smooth surface; T-junctions of the input mesh itself are not joined. */
+ * Between its vertices a leaf interpolates linearly. At a T-vertex, a vertex of a fine
+ * leaf in the middle of a coarse leaf's edge, the two sides would differ. Such a vertex
+ * gets the mean of the edge's ends, as on the coarse side; edges are treated from coarse
+ * to fine, so that the ends are settled first. The result is continuous on every smooth
+ * surface, but for T-junctions of the input mesh itself. */
 #include "io/picture/shading.h"
 
 #include <math.h>
@@ -31,9 +33,9 @@
 #include "geom/stop.h"
 #include "io/picture/surface.h"
 
-/* --- leaves, and how much of each is covered --- */
+/* --- leaves, and their covered quarters --- */
 
-/* Calls for each leaf of the wanted level (-1: of any), roots in order, depth first. */
+/* Calls `visit` for each leaf of the level (-1: of any), roots in order, depth first. */
 static void for_each_leaf(const struct forest *forest, int level,
                           void (*visit)(void *context, int32_t leaf), void *context)
 {
@@ -52,8 +54,9 @@ static void for_each_leaf(const struct forest *forest, int level,
 struct survey {
     const struct forest *forest;
     const struct octree *octree;
-    int64_t count, first, step; /* leaves seen, those to look at */
-    uint8_t *open;              /* [count], NULL while only counting */
+    int64_t count;       /* leaves visited */
+    int64_t first, step; /* the leaves to examine: first, first + step, ... */
+    uint8_t *open;       /* [count]; NULL: leaves are only counted */
 };
 
 static bool meets_back(const struct survey *survey, struct vec3 start,
@@ -65,7 +68,8 @@ static bool meets_back(const struct survey *survey, struct vec3 start,
            scene_root_on(survey->forest->scene, hit.triangle, hit.front) < 0;
 }
 
-/* `aside`: a triangle about the point, whose corners give three directions along the surface. */
+/* True if the point is covered. `aside`: a triangle around it, whose corners give three
+ * directions along the surface. */
 static bool is_covered(const struct survey *survey, struct vec3 point, struct vec3 normal,
                        const struct triangle *aside)
 {
@@ -89,7 +93,8 @@ static void survey_leaf(void *context, int32_t leaf)
     if (!survey->open || number % survey->step != survey->first)
         return;
     struct triangle t = forest_triangle(forest, leaf);
-    struct plane plane = scene_root_plane(forest->scene, (int32_t)forest->patches[leaf].id.root);
+    struct plane plane =
+        scene_root_plane(forest->scene, (int32_t)forest->patches[leaf].id.root);
     for (int k = 0; k < 4; k++) {
         struct triangle child = triangle_child(&t, k);
         if (!is_covered(survey, triangle_centroid(&child), plane.normal, &child))
@@ -97,8 +102,8 @@ static void survey_leaf(void *context, int32_t leaf)
     }
 }
 
-uint8_t *shading_open_quarters(const struct forest *forest, const struct octree *octree, int first,
-                               int step, int64_t *count)
+uint8_t *shading_open_quarters(const struct forest *forest, const struct octree *octree,
+                               int first, int step, int64_t *count)
 {
     struct survey survey = {forest, octree, 0, first, step, NULL};
     for_each_leaf(forest, -1, survey_leaf, &survey);
@@ -113,7 +118,7 @@ uint8_t *shading_open_quarters(const struct forest *forest, const struct octree 
 
 struct table {
     struct vec3 *positions;  /* [count] scene units */
-    struct rgb *values;      /* [count] sum of weighted radiosities, W/m^2; later the mean */
+    struct rgb *values;      /* [count] sum of weighted radiosities, then mean, W/m^2 */
     double *weights;         /* [count] sum of the weights */
     int32_t *surfaces;       /* [count] */
     int64_t count, capacity;
@@ -139,7 +144,7 @@ static bool is_same_point(struct vec3 a, struct vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* The slot that holds the vertex, or the free one where it would go. */
+/* Returns the slot of the vertex, or the free slot where it belongs. */
 static int64_t find_slot(const struct table *table, struct vec3 x, int32_t surface)
 {
     int64_t slot = (int64_t)(hash_point(x, surface) & (uint64_t)(table->slot_count - 1));
@@ -159,7 +164,8 @@ static void grow_slots(struct table *table)
     for (int64_t slot = 0; slot < table->slot_count; slot++)
         table->slots[slot] = -1;
     for (int64_t v = 0; v < table->count; v++)
-        table->slots[find_slot(table, table->positions[v], table->surfaces[v])] = (int32_t)v;
+        table->slots[find_slot(table, table->positions[v], table->surfaces[v])] =
+            (int32_t)v;
 }
 
 static int32_t append_vertex(struct table *table, struct vec3 x, int32_t surface)
@@ -195,7 +201,8 @@ static int32_t reach_vertex(struct table *table, struct vec3 x, int32_t surface)
     return table->slots[slot];
 }
 
-static void add_value(struct table *table, int32_t vertex, struct rgb value, double weight)
+static void add_value(struct table *table, int32_t vertex, struct rgb value,
+                      double weight)
 {
     table->weights[vertex] += weight;
     for (int c = 0; c < BANDS; c++)
@@ -209,7 +216,7 @@ static void find_means(struct table *table)
             table->values[v].band[c] /= table->weights[v];
 }
 
-/* What remains is the caller's: positions and values. */
+/* Frees all but positions and values, which the caller takes over. */
 static void drop_index(struct table *table)
 {
     alloc_free(table->weights);
@@ -219,25 +226,27 @@ static void drop_index(struct table *table)
 
 /* --- values --- */
 
-/* Weight of a leaf that is covered as a whole: it counts only where no other leaf does. */
+/* Weight of a covered leaf: it counts only at vertices without open leaves. */
 static const double COVERED = 1e-12;
 
-/* Share of a leaf that is not covered: 1/2, 3/4 or 1; below, too little is known: 0. */
-static double open_share(uint8_t quarters)
+/* Returns the open fraction of a leaf: 1/2, 3/4 or 1; with fewer open quarters it counts
+ * as covered: 0. */
+static double open_fraction(uint8_t quarters)
 {
     return quarters < 2 ? 0.0 : 0.25 * quarters;
 }
 
-/* Radiosity of the open share of a leaf, less what is left out: what it receives, it receives
- * there. */
+/* Returns the radiosity of the open part of a leaf, less less[leaf]. The whole irradiance
+ * of the leaf falls on its open part. */
 static struct rgb open_radiosity(const struct forest *forest, const struct rgb *less,
-                                 int32_t leaf, double share)
+                                 int32_t leaf, double fraction)
 {
-    struct rgb b = forest->patches[leaf].radiosity, e = forest_material(forest, leaf)->emission;
+    struct rgb b = forest->patches[leaf].radiosity,
+               e = forest_material(forest, leaf)->emission;
     for (int c = 0; c < BANDS && less; c++)
         b.band[c] = fmax(e.band[c], b.band[c] - less[leaf].band[c]);
-    for (int c = 0; c < BANDS && share > 0.0; c++)
-        b.band[c] = e.band[c] + (b.band[c] - e.band[c]) / share;
+    for (int c = 0; c < BANDS && fraction > 0.0; c++)
+        b.band[c] = e.band[c] + (b.band[c] - e.band[c]) / fraction;
     return b;
 }
 
@@ -246,13 +255,14 @@ static struct rgb open_radiosity(const struct forest *forest, const struct rgb *
 struct blend {
     struct shading *shading;
     struct table table;
-    const struct rgb *less;
-    const uint8_t *open; /* shading_open_quarters(), */
-    int64_t next;        /* and how many of it are used up, leaf by leaf */
-    int32_t *surface;    /* [roots] */
-    struct rgb *lacking; /* [vertex_count] what leaves lack, weighted; */
-    double *areas;       /* [vertex_count] the weights; */
-    struct rgb *least, *most; /* [vertex_count] and the range of the leaves around */
+    const struct rgb *less; /* [patches] radiosity to subtract, W/m^2, or NULL */
+    const uint8_t *open;    /* of shading_open_quarters() */
+    int64_t next;           /* number of the next leaf in canonical order */
+    int32_t *surface;       /* [roots] of surface_of_roots() */
+    struct rgb *lacking;    /* [vertex_count] sum of area times deficit of leaves, W */
+    double *areas;          /* [vertex_count] sum of open areas of leaves, scene units */
+    struct rgb *least;      /* [vertex_count] least value of open leaves around, W/m^2 */
+    struct rgb *most;       /* [vertex_count] largest value of them, W/m^2 */
 };
 
 static void add_flat_leaf(void *context, int32_t leaf)
@@ -268,11 +278,11 @@ static void add_flat_leaf(void *context, int32_t leaf)
     }
 }
 
-/* The value of the next leaf. Its open share goes to `*share`. */
-static struct rgb leaf_value(struct blend *blend, int32_t leaf, double *share)
+/* Returns the value of the next leaf, and sets `*fraction` to its open fraction. */
+static struct rgb leaf_value(struct blend *blend, int32_t leaf, double *fraction)
 {
-    *share = open_share(blend->open[blend->next++]);
-    return open_radiosity(blend->shading->forest, blend->less, leaf, *share);
+    *fraction = open_fraction(blend->open[blend->next++]);
+    return open_radiosity(blend->shading->forest, blend->less, leaf, *fraction);
 }
 
 static void add_leaf(void *context, int32_t leaf)
@@ -280,18 +290,18 @@ static void add_leaf(void *context, int32_t leaf)
     struct blend *blend = context;
     const struct forest *forest = blend->shading->forest;
     struct triangle t = forest_triangle(forest, leaf);
-    double share;
-    struct rgb value = leaf_value(blend, leaf, &share);
+    double fraction;
+    struct rgb value = leaf_value(blend, leaf, &fraction);
     for (int k = 0; k < 3; k++) {
         int32_t v = reach_vertex(&blend->table, t.corner[k],
                                  blend->surface[forest->patches[leaf].id.root]);
         blend->shading->corners[3 * (int64_t)leaf + k] = v;
-        add_value(&blend->table, v, value, fmax(share, COVERED));
+        add_value(&blend->table, v, value, fmax(fraction, COVERED));
     }
 }
 
-/* Makes all vertices inside the edge from u to v follow the line between its ends. Ends at an
- * edge without a vertex in its middle, at most ID_MAX_LEVEL halvings down. */
+/* Interpolates all vertices inside the edge from u to v between its ends. Recurses down
+ * to an edge without a vertex in its middle, at most ID_MAX_LEVEL halvings. */
 static void settle_edge(struct table *table, int32_t u, int32_t v)
 {
     struct vec3 x = vec3_middle(table->positions[u], table->positions[v]);
@@ -299,7 +309,8 @@ static void settle_edge(struct table *table, int32_t u, int32_t v)
     if (middle < 0)
         return;
     for (int c = 0; c < BANDS; c++)
-        table->values[middle].band[c] = 0.5 * (table->values[u].band[c] + table->values[v].band[c]);
+        table->values[middle].band[c] =
+            0.5 * (table->values[u].band[c] + table->values[v].band[c]);
     settle_edge(table, u, middle);
     settle_edge(table, middle, v);
 }
@@ -322,9 +333,9 @@ static void add_lacking(void *context, int32_t leaf)
 {
     struct blend *blend = context;
     const int32_t *corner = &blend->shading->corners[3 * (int64_t)leaf];
-    double share;
-    struct rgb value = leaf_value(blend, leaf, &share);
-    double area = fmax(share, COVERED) * forest_area(blend->shading->forest, leaf);
+    double fraction;
+    struct rgb value = leaf_value(blend, leaf, &fraction);
+    double area = fmax(fraction, COVERED) * forest_area(blend->shading->forest, leaf);
     for (int c = 0; c < BANDS; c++) {
         double lacking = 0.0;
         for (int k = 0; k < 3; k++)
@@ -333,15 +344,16 @@ static void add_lacking(void *context, int32_t leaf)
             double *least = &blend->least[corner[k]].band[c];
             double *most = &blend->most[corner[k]].band[c];
             blend->lacking[corner[k]].band[c] += area * lacking;
-            *least = share > 0.0 ? fmin(*least, value.band[c]) : *least;
-            *most = share > 0.0 ? fmax(*most, value.band[c]) : *most;
+            *least = fraction > 0.0 ? fmin(*least, value.band[c]) : *least;
+            *most = fraction > 0.0 ? fmax(*most, value.band[c]) : *most;
         }
     }
     for (int k = 0; k < 3; k++)
         blend->areas[corner[k]] += area;
 }
 
-/* Vertices with nothing but covered leaves around them keep their values. */
+/* Adds the mean deficit of the leaves around to each vertex; a vertex with only covered
+ * leaves around it keeps its value. */
 static void give_what_lacks(struct blend *blend)
 {
     size_t count = (size_t)blend->table.count;
@@ -356,7 +368,8 @@ static void give_what_lacks(struct blend *blend)
     blend->next = 0;
     for_each_leaf(blend->shading->forest, -1, add_lacking, blend);
     for (size_t v = 0; v < count; v++)
-        for (int c = 0; c < BANDS && blend->least[v].band[c] <= blend->most[v].band[c]; c++) {
+        for (int c = 0; c < BANDS && blend->least[v].band[c] <= blend->most[v].band[c];
+             c++) {
             double *value = &blend->table.values[v].band[c];
             *value += blend->lacking[v].band[c] / blend->areas[v];
             *value = fmin(blend->most[v].band[c], fmax(blend->least[v].band[c], *value));
@@ -408,7 +421,8 @@ void shading_destroy(struct shading *shading)
     alloc_free(shading);
 }
 
-/* Takes barycentric coordinates of a patch to those of the child that holds the point. */
+/* Turns barycentric coordinates in a patch into those in the child with the point.
+ * Returns the number of the child. */
 static int descend(double w[3])
 {
     for (int k = 0; k < 3; k++) {

@@ -10,29 +10,32 @@
 
 struct shading {
     const struct forest *forest; /* borrowed */
-    bool flat;                   /* each leaf shows its constant */
-    int32_t *corners;            /* [3 * forest->count] vertex at corner k of leaf p: [3 p + k] */
+    bool flat;                   /* each leaf has its constant radiosity */
+    int32_t *corners;            /* [3 * forest->count] vertex of p, k: [3 p + k] */
     struct vec3 *positions;      /* [vertex_count] scene units */
     struct rgb *values;          /* [vertex_count] radiosity, W/m^2 */
     int64_t vertex_count;
 };
 
-/* How much of each leaf is open, not covered by a solid that stands on it: the number of open
- * quarters, 0 to 4. Leaves are in canonical order: roots in order, depth first. Only the leaves
- * first, first + step, ... are looked at, the others get 0: ranks look at some each and add.
- * Returns [count] numbers, to be freed with alloc_free(); `octree` is that of the scene. */
-uint8_t *shading_open_quarters(const struct forest *forest, const struct octree *octree, int first,
-                               int step, int64_t *count);
+/* Counts the open quarters of each leaf, 0 to 4: those not covered by a solid that stands
+ * on the leaf. Leaves are in canonical order: roots in order, depth first. Only the
+ * leaves first, first + step, ... are examined, the others get 0, so that ranks can
+ * divide the leaves and add their counts. `octree` is that of the scene.
+ * Returns [count] numbers, to be freed with alloc_free(). */
+uint8_t *shading_open_quarters(const struct forest *forest, const struct octree *octree,
+                               int first, int step, int64_t *count);
 
-/* Prepares the shading of a solution. `open`: the open quarters of all leaves. NULL gives flat
- * shading: each leaf has three vertices of its own with its constant. `less`: [patches] radiosity
- * that is left out, W/m^2, or NULL. Vertices are numbered as the leaves meet them in canonical
- * order: the same on every rank. */
+/* Prepares the shading of a solution. `open`: the open quarters of all leaves. NULL gives
+ * flat shading: each leaf has three vertices of its own with its constant. `less`:
+ * [patches] radiosity to subtract, W/m^2, or NULL. Vertices are numbered in the canonical
+ * order of leaves: the same on every rank. */
 struct shading *shading_create(const struct forest *forest, const struct rgb *less,
                                const uint8_t *open);
 void shading_destroy(struct shading *shading);
 
-/* Radiosity at the point of a root with the given barycentric coordinates, W/m^2. */
-struct rgb shading_at(const struct shading *shading, int32_t root, const double weight[3]);
+/* Returns the radiosity at the point of a root with these barycentric coordinates,
+ * W/m^2. */
+struct rgb shading_at(const struct shading *shading, int32_t root,
+                      const double weight[3]);
 
 #endif

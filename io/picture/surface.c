@@ -1,13 +1,13 @@
 /* Smooth surfaces: roots joined over common edges.
  *
- * All edges of all roots are sorted, so that equal ones (the same end points, to the bit) lie
- * beside each other; roots over a smooth edge are joined (union-find).
+ * All edges of all roots are sorted, so that equal edges (the same end points, to the
+ * bit) are neighbours; roots on both sides of a smooth edge are joined (union-find).
  *
- * Where the scene gives normals for corners, its triangles may stand for a curved surface: such
- * an edge is smooth if the normals agree at both of its ends. Normals are turned to the front, so
- * a front never goes on in a back. A surface joined at one edge is one surface everywhere: a
- * crease that ends inside a smooth surface is not seen. Telling its two sides apart would take
- * another number for each corner of a root and for each of its edges. */
+ * Triangles with normals at their corners may stand for a curved surface: an edge is
+ * smooth if the normals agree at both of its ends. Normals are turned to the front, so a
+ * front never goes on in a back. Roots joined at one edge are one surface everywhere: a
+ * crease that ends inside a smooth surface is lost, since telling its two sides apart
+ * would take a number for each corner and each edge of a root. */
 #include "io/picture/surface.h"
 
 #include <stddef.h>
@@ -21,7 +21,7 @@ static const double SMOOTH_COSINE = 0.999;
 struct root_edge {
     struct vec3 low, high; /* end points, in lexical order */
     int32_t root;
-    int8_t low_corner, high_corner; /* of the root, 0 to 2 */
+    int8_t low_corner, high_corner; /* corners of the root at low and high, 0 to 2 */
 };
 
 static int compare_points(struct vec3 a, struct vec3 b)
@@ -55,7 +55,7 @@ static bool normals_agree(const struct scene *scene, int32_t a, int corner_a, in
                     scene_root_normal(scene, b, corner_b)) >= SMOOTH_COSINE;
 }
 
-/* Whether the surface goes on smoothly over the edge that both have. */
+/* True if the surface is smooth over the common edge of two roots. */
 static bool is_smooth(const struct scene *scene, const struct root_edge *a,
                       const struct root_edge *b)
 {
@@ -81,16 +81,19 @@ int32_t *surface_of_roots(const struct scene *scene)
             int next = (k + 1) % 3;
             bool ordered = compare_points(t.corner[k], t.corner[next]) <= 0;
             int low = ordered ? k : next, high = ordered ? next : k;
-            edges[count++] = (struct root_edge){t.corner[low], t.corner[high], root, (int8_t)low,
-                                                (int8_t)high};
+            edges[count++] = (struct root_edge){t.corner[low], t.corner[high], root,
+                                                (int8_t)low, (int8_t)high};
         }
     }
     qsort(edges, count, sizeof *edges, compare_edges);
     for (size_t i = 0; i < count; i++) {
-        for (size_t j = i + 1; j < count && compare_points(edges[i].low, edges[j].low) == 0 &&
-                               compare_points(edges[i].high, edges[j].high) == 0; j++)
+        for (size_t j = i + 1;
+             j < count && compare_points(edges[i].low, edges[j].low) == 0 &&
+             compare_points(edges[i].high, edges[j].high) == 0;
+             j++)
             if (is_smooth(scene, &edges[i], &edges[j]))
-                surface[first_of(surface, edges[i].root)] = first_of(surface, edges[j].root);
+                surface[first_of(surface, edges[i].root)] =
+                    first_of(surface, edges[j].root);
     }
     for (int32_t root = 0; root < roots; root++)
         surface[root] = first_of(surface, root);

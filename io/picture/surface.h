@@ -1,4 +1,4 @@
-/* Which roots are one smooth surface, over which shading may blend. */
+/* Smooth surfaces: sets of roots over which shading interpolates. */
 #ifndef IO_PICTURE_SURFACE_H
 #define IO_PICTURE_SURFACE_H
 
@@ -6,9 +6,9 @@
 
 #include "geom/scene.h"
 
-/* surface[root]: a number that all roots of one smooth surface share: roots of one material that
- * meet in whole edges where their planes agree within 2.5 degrees or the normals that the scene
- * gives agree so at both ends. To be freed with alloc_free(). */
+/* Returns surface[root], the number of the smooth surface of each root: roots of one
+ * material that meet in whole edges, where their planes agree within 2.5 degrees, or the
+ * normals of the scene agree so at both ends. To be freed with alloc_free(). */
 int32_t *surface_of_roots(const struct scene *scene);
 
 #endif

@@ -1,15 +1,16 @@
 /* Tone.
  *
- * The sRGB curve has a power in it, and pow() differs from library to library in the last bit,
+ * The sRGB curve has a power, and pow() differs from library to library in the last bit,
  * enough to change a byte of a golden image. So codes are found by comparing with 255
- * thresholds, and these come from the inverse curve, ((s + 0.055) / 1.055)^2.4 = u^2 (u^2)^(1/5),
- * whose fifth root takes only + * / with Newton's method.
+ * thresholds, and these come from the inverse curve, ((s + 0.055) / 1.055)^2.4 = u^2
+ * (u^2)^(1/5), whose fifth root takes only + * / with Newton's method.
  *
- * The automatic exposure goes by percentiles of what is lit: an average would follow a tiny lamp that is a
- * thousand times brighter than its room, and go down with every black pixel around an object.
- * The 95th percentile shows such a room well, but not one whose windows are a tenth of the picture;
- * so what is above four times the median may be cut off (a grey card then lies in the
- * middle). And a picture that is nearly dark but for one lit spot shows the spot. */
+ * The automatic exposure goes by percentiles of the lit pixels: an average would follow a
+ * tiny lamp a thousand times brighter than its room, and fall with every black pixel
+ * around an object. The 95th percentile shows such a room well, but not a room whose
+ * windows are a tenth of the picture; so light above four times the median may be cut off
+ * (a grey card is then in the middle of the range). A picture that is nearly dark but for
+ * one lit spot shows the spot. */
 #include "io/picture/tone.h"
 
 #include <stddef.h>
@@ -18,12 +19,12 @@
 #include "geom/alloc.h"
 
 static const double PERCENTILE = 0.95, SHOWN = 0.9;
-static const double HIGHLIGHT = 4.0; /* medians that are not cut off */
-static const double SPOT = 16.0;     /* the 95th percentile is never shown as more than this times SHOWN */
+static const double HIGHLIGHT = 4.0; /* values up to this many medians are not cut off */
+static const double SPOT = 16.0;     /* the percentile becomes at most SPOT * SHOWN */
 
 static double fifth_root(double x)
 {
-    double y = 1.0; /* from above for x < 1, so the iteration falls steadily */
+    double y = 1.0; /* above the root of x < 1: the iteration falls steadily */
     for (int step = 0; step < 40; step++)
         y = (4.0 * y + x / (y * y * y * y)) / 5.0;
     return y;

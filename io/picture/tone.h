@@ -5,19 +5,20 @@
 #include <stdint.h>
 
 struct tone {
-    double exposure;     /* factor on linear values; 1 becomes full white */
-    double threshold[255]; /* linear value from which code k + 1 is nearer than code k */
+    double exposure;       /* factor on linear values: their product 1 is full white */
+    double threshold[255]; /* least product that gets code k + 1 and not k */
 };
 
-/* The sRGB curve with an exposure. */
+/* Returns the sRGB curve with an exposure. */
 struct tone tone_make(double exposure);
 
-/* The 8-bit sRGB code of a linear value. */
+/* Returns the 8-bit sRGB code of a linear value. */
 uint8_t tone_encode(const struct tone *tone, double linear);
 
-/* The exposure for `count` linear RGB pixels, by the largest band of each that is not black: it brings to
- * 0.9 their 95th percentile, so that hardly any colour is cut off, or four times their median if that is
- * less, but at least a 16th of the percentile. 1 if all are black. */
+/* Returns the exposure for `count` linear RGB pixels, from the largest band of each pixel
+ * that is not black. It maps to 0.9 the 95th percentile of these values, so that hardly
+ * any colour is cut off, or four times their median if that is lower, but at least a 16th
+ * of the percentile. 1 if all pixels are black. */
 double tone_automatic(const float *rgb, int64_t count);
 
 #endif

@@ -1,26 +1,30 @@
-/* The camera of a scene that has no view file.
+/* The camera of a scene without a view file.
  *
- * Room or object? From a grid of points in the bounding box rays go out in 26 directions. Points
- * that see backs are inside of something, or behind the walls; those that see fronts stand free.
- * If next to nothing that leaves the free points gets lost, the scene is a room, else it is open: a
- * box without its front, like Cornell's, loses one ray in six.
+ * Room or object? From a grid of points in the bounding box rays go out in 26 directions.
+ * Points that see backs are inside an object or behind the walls; points that see fronts
+ * are free. If fewer than a tenth of the rays of free points leave the scene, it is a
+ * room, else it is open: a box without its front, like Cornell's, loses one ray in six.
  *
- * In a room, each free point is moved to eye height between what is below it and above, and looks
- * around. That view is taken which is deep, as of square roots of distances, and has something in it:
- * the material changes often from ray to ray. The root keeps a view through a gap from beating one of
- * the whole room, the materials an empty wall. Such an eye is never behind a wall or in a cupboard, as
- * it sees fronts, and deep views begin at corners by themselves. What no light reaches does not count,
- * so that of several rooms a lit one is seen.
+ * In a room, each free point is moved to eye height between the surfaces below and above
+ * it, and rates the views around. The best view is deep, by the sum of square roots of
+ * distances, and rich: the material changes often from ray to ray. The roots keep a view
+ * through a gap from beating one of the whole room, the materials an empty wall. Such an
+ * eye is never behind a wall or in a cupboard, as it sees fronts, and deep views begin at
+ * corners by themselves. Unlit surfaces do not count, so that of several rooms a lit one
+ * is chosen.
  *
- * An open scene is seen whole, from the direction in which the picture has the fewest backs; from
- * the front and a little aside and above unless another is clearly better.
+ * An open scene is seen whole, from the direction with the fewest backs in the picture;
+ * the front, a little aside and above, is taken unless another direction is clearly
+ * better.
  *
- * OBJ does not say which way is up. Lamps shine down more than anywhere else: if they shine along
- * -y, y is up, along -z, z. Else (tubes, windows, globes) a room is taken to be wider than high: z is
- * up where it is the shortest side of the box; and y is up in all that is left, as in most files.
+ * OBJ does not define the axis that is up. Lamps shine mostly down: if they shine along
+ * -y, y is up, along -z, z. Else (tubes, windows, globes) a room is assumed wider than
+ * high: z is up if it is the shortest side of the box. In all other cases y is up, as in
+ * most files.
  *
- * Rejected: a fixed corner of the bounding box, which is in a wall or a cupboard as often as not;
- * the brightest picture, which has to wait for the light and changes with epsilon. */
+ * Rejected: a fixed corner of the bounding box, which is in a wall or a cupboard as often
+ * as not; the brightest picture, which has to wait for the light and changes with
+ * epsilon. */
 #include "io/picture/viewpoint.h"
 
 #include "geom/elementary.h"
@@ -28,20 +32,20 @@
 
 enum {
     GRID = 6,      /* points along a side of the bounding box */
-    AZIMUTHS = 32, /* directions of a look around */
-    HALF = 3,      /* azimuths to either side in a view: 70 degrees in all, the middle counts most */
-    SLOPES = 5,
+    AZIMUTHS = 32, /* level directions from an eye */
+    HALF = 3,      /* azimuths to either side of a view: 70 degrees in all */
+    SLOPES = 5,    /* rays above and below each azimuth */
     SAMPLES = 16   /* rays along a side of a picture from outside */
 };
 
 static const double EYE_HEIGHT = 0.6;   /* between floor and ceiling */
 static const double DOWN = 0.2;         /* slope of a view into a room */
 static const double SLOPE[SLOPES] = {-0.8, -0.5, -0.2, 0.1, 0.4};
-static const double VARIETY = 0.1;      /* what a change of material is worth, in depths */
-static const double WIDE = 0.7;         /* tangent of half the wider side's angle in a room */
+static const double VARIETY = 0.1;      /* added to the rating by a change of material */
+static const double WIDE = 0.7;         /* tangent of half the wider angle in a room */
 static const double OUTSIDE_FOV = 40.0; /* degrees */
 
-/* Where the choice is made. */
+/* The scene in which the choice is made. */
 struct site {
     const struct scene *scene;
     const struct octree *octree;
@@ -49,10 +53,10 @@ struct site {
     bool z_up;
 };
 
-/* What a ray meets: how far away a front is (> 0), or a back, or nothing. */
+/* Results of a ray: the distance of a front (> 0), or one of these. */
 enum { BACK = 0, NOTHING = -1 };
 
-/* `*triangle` becomes what is met, if something is. */
+/* Casts a ray. Sets `*triangle` to the triangle that it meets, if any. */
 static double look_at(const struct site *site, struct vec3 from, struct vec3 direction,
                       int32_t *triangle)
 {
@@ -77,13 +81,15 @@ static double look(const struct site *site, struct vec3 from, struct vec3 direct
     return look_at(site, from, direction, &triangle);
 }
 
-/* A direction from its parts along two level axes and up. */
+/* Returns a direction from its parts along two level axes and up. */
 static struct vec3 lift(const struct site *site, double right, double front, double up)
 {
-    return site->z_up ? (struct vec3){right, -front, up} : (struct vec3){right, up, front};
+    return site->z_up ? (struct vec3){right, -front, up}
+                      : (struct vec3){right, up, front};
 }
 
-/* One of AZIMUTHS level directions, evenly spread within 2 degrees; made without sine and cosine. */
+/* Returns one of AZIMUTHS level directions, with a slope. They are even within 2 degrees;
+ * made without sine and cosine. */
 static struct vec3 azimuth(const struct site *site, int k, double slope)
 {
     static const double QUARTER[AZIMUTHS / 4][2] = {{5, 0}, {5, 1}, {5, 2}, {3, 2},
@@ -108,14 +114,16 @@ static struct vec3 grid_point(const struct scene *scene, int cell)
                                               (cell / (GRID * GRID) + 0.5) * side.z});
 }
 
-/* True if the point stands free. Adds the rays that go out from it, and those that are lost. */
+/* True if the point is free. Adds the rays from a free point to `*rays`, and those that
+ * leave the scene to `*lost`. */
 static bool is_free(const struct site *site, struct vec3 point, int *rays, int *lost)
 {
     int fronts = 0, backs = 0, nothing = 0;
     for (int k = 0; k < 27; k++) {
         if (k == 13)
             continue;
-        double met = look(site, point, (struct vec3){k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1});
+        double met =
+            look(site, point, (struct vec3){k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1});
         fronts += met > 0.0;
         backs += met == BACK;
         nothing += met == NOTHING;
@@ -140,7 +148,8 @@ static bool find_up(const struct scene *scene, bool is_room)
     struct vec3 side = vec3_sub(scene->high, scene->low), shine = {0.0, 0.0, 0.0};
     double power = 0.0;
     for (int32_t i = 0; i < scene->input_count; i++) {
-        double emitted = scene->areas[i] * rgb_sum(scene_root_material(scene, i)->emission);
+        double emitted =
+            scene->areas[i] * rgb_sum(scene_root_material(scene, i)->emission);
         if (!(emitted > 0.0) || scene_has_twin(scene, i))
             continue;
         shine = vec3_add(shine, vec3_scale(scene->planes[i].normal, emitted));
@@ -153,7 +162,7 @@ static bool find_up(const struct scene *scene, bool is_room)
 
 /* --- inside --- */
 
-/* Straight above or below the point, between what is there. */
+/* Moves a point to eye height between the surfaces straight below and above it. */
 static struct vec3 stand(const struct site *site, struct vec3 point)
 {
     double below = look(site, point, lift(site, 0.0, 0.0, -1.0));
@@ -172,7 +181,7 @@ static bool is_lit(const struct site *site, int32_t triangle)
            (twin >= 0 && rgb_sum(forest->patches[twin].radiosity) > 0.0);
 }
 
-/* How good the rays above and below one azimuth are. */
+/* Rates the rays above and below one azimuth by depth and variety. */
 static double rate_azimuth(const struct site *site, struct vec3 eye, int k)
 {
     double depth = 0.0;
@@ -188,7 +197,8 @@ static double rate_azimuth(const struct site *site, struct vec3 eye, int k)
     return depth * (1.0 + VARIETY * changes);
 }
 
-/* The best of the directions from `eye`, and how good it is. */
+/* Finds the best azimuth from `eye`. The middle of a view counts most. Returns the
+ * rating. */
 static double look_around(const struct site *site, struct vec3 eye, int *best)
 {
     double rating[AZIMUTHS], highest = -1.0;
@@ -224,16 +234,18 @@ static void enter_room(const struct site *site, const bool free[GRID * GRID * GR
             towards = k;
         }
     }
-    double narrow = camera->width > camera->height ? (double)camera->height / camera->width : 1.0;
+    double narrow =
+        camera->width > camera->height ? (double)camera->height / camera->width : 1.0;
     camera->eye = scene_to_input(site->scene, eye);
-    camera->at = scene_to_input(site->scene, vec3_add(eye, azimuth(site, towards, -DOWN)));
+    camera->at =
+        scene_to_input(site->scene, vec3_add(eye, azimuth(site, towards, -DOWN)));
     camera->fov = 360.0 / PI * arctangent(WIDE * narrow, 1.0);
 }
 
 /* --- outside --- */
 
-/* Share of the picture's rays that meet a front, less those that meet a back, of all that meet
- * something. */
+/* Returns the rays that meet a front less those that meet a back, over the number of
+ * both. */
 static double rate(const struct site *site, const struct camera *camera)
 {
     struct vec3 eye = scene_from_input(site->scene, camera->eye);
@@ -273,8 +285,11 @@ struct camera viewpoint_choose(const struct scene *scene, const struct octree *o
     bool free[GRID * GRID * GRID];
     bool is_room = find_room(&site, free);
     site.z_up = find_up(scene, is_room);
-    struct camera camera = {.up = lift(&site, 0.0, 0.0, 1.0), .fov = OUTSIDE_FOV, .width = width,
-                            .height = height, .fronts_only = !is_room};
+    struct camera camera = {.up = lift(&site, 0.0, 0.0, 1.0),
+                            .fov = OUTSIDE_FOV,
+                            .width = width,
+                            .height = height,
+                            .fronts_only = !is_room};
     if (is_room)
         enter_room(&site, free, &camera);
     else

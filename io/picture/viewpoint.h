@@ -1,4 +1,4 @@
-/* The camera of a scene that has no view file: chosen by what rays meet. */
+/* The camera of a scene without a view file, chosen by casting rays. */
 #ifndef IO_PICTURE_VIEWPOINT_H
 #define IO_PICTURE_VIEWPOINT_H
 
@@ -6,10 +6,11 @@
 #include "octree/octree.h"
 #include "rad/patch.h"
 
-/* A camera for a picture of this size. A room is seen from within, from eye height near one of its
- * corners; anything else from outside, whole, looking through backs. Up is y or z.
- * `forest` holds the light, which rooms without any do not; NULL: all is lit.
- * The same for everyone: nothing but + - * / and sqrt takes part in the choice. */
+/* Returns a camera for a picture of this size. A room is seen from within, from eye
+ * height near one of its corners; any other scene from outside, whole, looking through
+ * backs. Up is y or z. `forest` has the light, so that dark rooms are avoided; NULL:
+ * every surface counts as lit. The choice takes only + - * / and sqrt: it is the same on
+ * every rank and machine. */
 struct camera viewpoint_choose(const struct scene *scene, const struct octree *octree,
                                const struct forest *forest, int width, int height);
 

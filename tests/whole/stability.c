@@ -676,7 +676,7 @@ static void test_cracks(void)
                             .up = point(0, 0, 1), .fov = 100.0, .width = 200,
                             .height = 200};
     struct renderer renderer = renderer_make(s.octree, shading, NULL);
-    float *pixels = render_rows(&renderer, &camera, 2, 0, 1, NULL);
+    float *pixels = render_scanlines(&renderer, &camera, 2, 0, 1, NULL);
     int off = 0;
     for (int i = 0; i < 3 * 200 * 200; i++)
         off += !(pixels[i] == 2.0f);

@@ -165,7 +165,7 @@ static int64_t shade_smooth(void)
 static int64_t render(void)
 {
     struct renderer renderer = renderer_make(world.octree, shading, NULL);
-    float *rows = render_rows(&renderer, &CAMERA, 1, 0, 1, NULL);
+    float *rows = render_scanlines(&renderer, &CAMERA, 1, 0, 1, NULL);
     int64_t lit = 0;
     for (int i = 0; i < 3 * SIZE * SIZE; i++)
         lit += rows[i] > 0.0f;
