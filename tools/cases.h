@@ -1,4 +1,4 @@
-/* Cases with exact answers: what phr --validate computes. */
+/* Cases with exact answers, for phr --validate. */
 #ifndef TOOLS_CASES_H
 #define TOOLS_CASES_H
 
@@ -11,7 +11,7 @@ enum { CASE_CORNERS = 4 };
 /* Two polygons and the form factor from the first to the second. */
 struct pair_case {
     const char *id, *text;
-    double factor; /* 1; every digit is right */
+    double factor; /* 1; exact in all digits */
     int32_t count[2];
     struct vec3 corner[2][CASE_CORNERS]; /* counter-clockwise seen from the front */
 };
@@ -19,13 +19,14 @@ struct pair_case {
 extern const struct pair_case PAIR_CASES[];
 extern const int PAIR_CASE_COUNT;
 
-/* Illuminances of CIE 171:2006, 5.3: at a point of a room of 4 x 4 x 3 m, by a light of 1 x 1 m and
- * 1000 cd/m^2 in the middle of its ceiling. */
+/* Illuminances of CIE 171:2006, 5.3: at a point of a room of 4 x 4 x 3 m, by a light of 1
+ * x 1 m and 1000 cd/m^2 in the middle of its ceiling. */
 struct point_case {
     const char *text;
-    struct vec3 x, normal; /* m, 1 */
+    struct vec3 x;         /* m */
+    struct vec3 normal;    /* 1 */
     double exact;          /* lx */
-    double printed;        /* lx, in the report */
+    double printed;        /* lx, as the report rounds it */
 };
 
 extern const struct point_case POINT_CASES[];

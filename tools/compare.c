@@ -1,13 +1,14 @@
 /* Comparing.
  *
- * Pictures are compared pixel by pixel or block by block: of a path tracer's picture only
- * means over many pixels are without much noise. Solutions are compared on the leaves that both
- * divisions have in common: a child has a quarter of its parent's area, so with a root as an
- * interval of 4^15 units, depth first, each leaf is an interval, and two divisions are walked
- * side by side. A leaf's value is a mean, so what is compared is exact, whatever the depths.
+ * Pictures are compared pixel by pixel or block by block: in a path tracer's picture only
+ * means over many pixels have little noise. Solutions are compared on the common
+ * refinement of both divisions: a child has a quarter of its parent's area, so with a
+ * root as an interval of 4^15 units, depth first, each leaf is an interval, and two
+ * divisions are walked side by side. A leaf's value is a mean, so the comparison is exact
+ * at any depths.
  *
- * Errors are told relative to the root mean square of the expected side and not sample by
- * sample: a dark pixel that is off by a rounding would be off by any share of itself. */
+ * Errors are relative to the root mean square of the expected side and not to each
+ * sample: in a dark pixel a rounding can have any relative size. */
 #include "tools/compare.h"
 
 #include <float.h>
@@ -74,7 +75,7 @@ static const float *pixel_at(const struct image *image, int x, int y)
     return &image->rgb[3 * ((size_t)y * (size_t)image->width + (size_t)x)];
 }
 
-/* Of one band. */
+/* Returns the mean of one band. */
 static double block_mean(const struct block *block, const struct image *image, int band)
 {
     double sum = 0.0;
@@ -134,7 +135,8 @@ struct solution_reader {
     struct error *error;
 };
 
-static bool read_vertices(struct solution_reader *reader, const struct ply_element *element)
+static bool read_vertices(struct solution_reader *reader,
+                          const struct ply_element *element)
 {
     const double *value = reader->file.value;
     reader->vertices = alloc_array((size_t)element->count, sizeof *reader->vertices);
@@ -147,7 +149,7 @@ static bool read_vertices(struct solution_reader *reader, const struct ply_eleme
     return true;
 }
 
-/* The leaf of the present row. */
+/* Takes the leaf of the current record. */
 static bool take_leaf(const struct solution_reader *reader, struct solution_leaf *leaf)
 {
     const struct ply_file *file = &reader->file;
@@ -164,7 +166,8 @@ static bool take_leaf(const struct solution_reader *reader, struct solution_leaf
         return ply_fail(file, reader->error, "not a leaf of a solution");
     int level = id_level(id), below = 2 * (ID_MAX_LEVEL - level);
     int64_t path = (int64_t)id.hierarchy - ((int64_t)1 << 2 * level);
-    *leaf = (struct solution_leaf){.id = id, .start = path << below, .end = (path + 1) << below};
+    *leaf = (struct solution_leaf){
+        .id = id, .start = path << below, .end = (path + 1) << below};
     for (int k = 0; k < 3; k++)
         leaf->triangle.corner[k] = reader->vertices[file->corners[k]];
     for (int c = 0; c < BANDS; c++)
@@ -173,8 +176,9 @@ static bool take_leaf(const struct solution_reader *reader, struct solution_leaf
     return true;
 }
 
-/* True if the leaves follow each other as those of whole roots do. */
-static bool is_in_order(const struct solution_leaf *before, const struct solution_leaf *leaf)
+/* True if `leaf` begins at the end of `before`, or both are at the ends of roots. */
+static bool is_in_order(const struct solution_leaf *before,
+                        const struct solution_leaf *leaf)
 {
     if (before && before->end < ROOT_UNITS)
         return leaf->id.root == before->id.root && leaf->start == before->end;
@@ -199,7 +203,7 @@ static bool read_leaves(struct solution_reader *reader, const struct ply_element
     return true;
 }
 
-/* True if the file has vertices and, behind them, the faces of a solution. */
+/* True if the file has vertices and, after them, the faces of a solution. */
 static bool is_solution(const struct ply_file *file)
 {
     const struct ply_element *vertex = ply_file_find(file, PLY_VERTEX);
@@ -219,8 +223,8 @@ static bool read_solution(struct solution_reader *reader, struct solution *solut
 {
     struct ply_file *file = &reader->file;
     if (!is_solution(file))
-        return error_set(reader->error, EXIT_USAGE, "%s: a mesh, but not a solution of phr",
-                         file->binary.path);
+        return error_set(reader->error, EXIT_USAGE,
+                         "%s: a mesh, but not a solution of phr", file->binary.path);
     bool good = true;
     for (int64_t i = 0; good && i < file->header.element_count; i++) {
         const struct ply_element *element = &file->header.elements[i];
@@ -238,7 +242,8 @@ bool solution_of_binary(struct solution *solution, const struct binary *binary,
 {
     struct solution_reader reader = {.error = error};
     *solution = (struct solution){0};
-    bool good = ply_file_open(&reader.file, binary, error) && read_solution(&reader, solution);
+    bool good =
+        ply_file_open(&reader.file, binary, error) && read_solution(&reader, solution);
     ply_file_close(&reader.file);
     alloc_free(reader.vertices);
     if (!good)
@@ -250,7 +255,8 @@ bool solution_read(struct solution *solution, const char *path, struct error *er
 {
     struct binary binary;
     *solution = (struct solution){0};
-    return ply_file_load(&binary, path, error) && solution_of_binary(solution, &binary, error);
+    return ply_file_load(&binary, path, error) &&
+           solution_of_binary(solution, &binary, error);
 }
 
 void solution_free(struct solution *solution)
@@ -260,7 +266,8 @@ void solution_free(struct solution *solution)
 }
 
 bool compare_solutions(const struct solution *a, const struct solution *b,
-                       struct difference *difference, struct rgb *map, struct error *error)
+                       struct difference *difference, struct rgb *map,
+                       struct error *error)
 {
     *difference = (struct difference){0};
     int64_t i = 0, j = 0;
@@ -270,10 +277,11 @@ bool compare_solutions(const struct solution *a, const struct solution *b,
             break;
         int64_t start = left->start > right->start ? left->start : right->start;
         int64_t end = left->end < right->end ? left->end : right->end;
-        double area = right->area * (double)(end - start) / (double)(right->end - right->start);
-        double share = (double)(end - start) / (double)(left->end - left->start);
+        double area =
+            right->area * (double)(end - start) / (double)(right->end - right->start);
+        double fraction = (double)(end - start) / (double)(left->end - left->start);
         for (int c = 0; c < BANDS; c++)
-            map[i].band[c] += share * add_sample(difference, left->radiosity.band[c],
+            map[i].band[c] += fraction * add_sample(difference, left->radiosity.band[c],
                                                  right->radiosity.band[c], area);
         i += left->end == end;
         j += right->end == end;
@@ -283,7 +291,7 @@ bool compare_solutions(const struct solution *a, const struct solution *b,
     return true;
 }
 
-/* A value in the range of floats. */
+/* Returns a value cut to the range of floats. */
 static float as_float(double x)
 {
     return x < (double)FLT_MAX ? (float)x : FLT_MAX;

@@ -1,38 +1,40 @@
-/* Two integrals for one number.
+/* Exchange areas by two integrals: of near pairs, and of far pairs.
  *
  * Near pairs. By Stokes' theorem, used once on each polygon (Sparrow 1963),
  *
- *     G = 1 / (4 pi)  sum over edges e of a, g of b of  (e . g)  integral over e of  I_g(x) dt,
+ *     G = 1 / (4 pi) sum over edges e of a, g of b  (e . g) integral over e of I_g(x) dt,
  *     I_g(x) = integral over g of ln r^2 ds = s1 ln r1^2 - s0 ln r0^2 - 2 L + 2 h theta,
  *
- * e and g of unit length, L the length of g, r0 and r1 the distances of its ends from x, s0 and s1
- * their places along g seen from the foot of x, h the distance of x from the line of g and theta
- * the angle at x between the ends. The inner integral is exact even where x lies on g. The outer
- * one is taken by Gauss' rule on panels. I_g is analytic in t but for branch points in the complex
- * plane: at t* +- i d, where d is the distance of an end of g from the line of e and t* its foot
- * there; and where e and g pass each other, with d their distance over the sine of the angle.
- * Panels are cut until the ellipse through the nearest branch point is wide enough for 16 points to
- * give all digits, so that shared edges, parts of edges, corners in edges and narrow gaps are all
- * the same case: panels that shrink towards a point, fivefold each. At the point itself I_g is like
- * t ln t, so that a panel of 1e-6 of the edge counts 1e-14 and may be wrong.
+ * e and g of unit length, L the length of g, r0 and r1 the distances of its ends from x,
+ * s0 and s1 their places along g seen from the foot of x, h the distance of x from the
+ * line of g and theta the angle at x between the ends. The inner integral is exact even
+ * where x lies on g. The outer one is taken by Gauss' rule on panels. I_g is analytic in
+ * t but for branch points in the complex plane: at t* +- i d, where d is the distance of
+ * an end of g from the line of e and t* its foot there; and where e and g pass each
+ * other, with d their distance over the sine of the angle. Panels are cut until the
+ * ellipse through the nearest branch point is wide enough for 16 points to give all
+ * digits, so that shared edges, parts of edges, corners in edges and narrow gaps are one
+ * case: panels that shrink towards a point by a factor of five each. At the point itself
+ * I_g is like t ln t, so that a panel of 1e-6 of the edge adds 1e-14 and may be wrong.
  *
- * Far pairs. There the terms above cancel. Where the smaller polygon p is farther from the edges of
- * the other one, q, than 2.5 times its radius,
+ * Far pairs. The terms above cancel. If the smaller polygon p is farther from the edges
+ * of the other one, q, than 2.5 times its radius,
  *
  *     G = integral over p of F(x, q) dA,
  *
- * F from geom/lambert.h, needs few points: Gauss' rule in both coordinates of quadrilaterals, 4 to
- * 10 points as the distance demands.
+ * F from geom/lambert.h, needs few points: Gauss' rule in both coordinates of
+ * quadrilaterals, 4 to 10 points as the distance demands.
  *
- * Both need each polygon in front of the other's plane: what is behind is cut off first, and
- * corners within rounding of the plane count as on it. Neither needs convex polygons; those with
- * very many corners are cut into triangles to save memory. So that the order of the arguments and
- * the unit of length do not matter, the polygons are put in an order of their own, moved to the
- * first corner and scaled by a power of two.
+ * Both need each polygon in front of the other's plane: parts behind it are cut off
+ * first, and corners within rounding of the plane count as on it. Polygons need not be
+ * convex; those with many corners are cut into triangles to save memory. So that the
+ * order of the arguments and the unit of length do not matter, the polygons are sorted,
+ * moved to the first corner and scaled by a power of two.
  *
- * Rejected: the closed form of the double integral (Schroeder and Hanrahan 1993), which needs the
- * dilogarithm of complex numbers and care with its branches, and cancels in the distance all the
- * same; adaptive panels by comparing rules, which cost more than panels whose width is known. */
+ * Rejected: the closed form of the double integral (Schroeder and Hanrahan 1993), which
+ * needs the dilogarithm of complex numbers and care with its branches, and cancels for
+ * far pairs, too; adaptive panels by comparing rules, which cost more than panels of
+ * known width. */
 #include "tools/contour.h"
 
 #include <math.h>
@@ -54,7 +56,7 @@ struct shape {
 
 /* --- shapes --- */
 
-/* Twice the area, towards the front. */
+/* Returns the normal towards the front, of a length of twice the area. */
 static struct vec3 area_vector(const struct vec3 *corners, int32_t count)
 {
     struct vec3 sum = {0.0, 0.0, 0.0};
@@ -91,9 +93,9 @@ static double shape_radius(const struct shape *shape)
     return radius;
 }
 
-/* Keeps what is in front of the plane through `foot`; corners within rounding are on it. Leaves
- * no corners where nothing is in front. Where several pieces are left, edges along the plane join
- * them, there and back, and exchange nothing in sum. */
+/* Keeps the part in front of the plane through `foot`; corners within rounding are on it.
+ * Leaves no corners if no part is in front. Several pieces are joined by edges along the
+ * plane, there and back, which cancel in the sum. */
 static void cut_behind(struct shape *shape, struct vec3 normal, struct vec3 foot)
 {
     struct shape old = *shape;
@@ -113,13 +115,13 @@ static void cut_behind(struct shape *shape, struct vec3 normal, struct vec3 foot
             shape->corner[shape->count++] = from;
         if (!(height[k] * height[next] < 0.0))
             continue;
-        double share = height[k] / (height[k] - height[next]);
-        struct vec3 along = vec3_scale(vec3_sub(to, from), share);
+        double t = height[k] / (height[k] - height[next]);
+        struct vec3 along = vec3_scale(vec3_sub(to, from), t);
         shape->corner[shape->count++] = vec3_add(from, along);
     }
 }
 
-/* Leaves what each has in front of the other's plane. False if that is nothing. */
+/* Keeps the part of each in front of the other's plane. False if there is none. */
 static bool cut_each_other(struct shape *a, struct shape *b)
 {
     struct vec3 normal_a = area_vector(a->corner, a->count), foot_a = a->corner[0];
@@ -138,24 +140,26 @@ static double segment_distance(struct vec3 x, struct vec3 from, struct vec3 to)
 {
     struct vec3 edge = vec3_sub(to, from), r = vec3_sub(x, from);
     double length2 = vec3_dot(edge, edge);
-    double share = length2 > 0.0 ? vec3_dot(r, edge) / length2 : 0.0;
-    return vec3_length(vec3_sub(r, vec3_scale(edge, fmax(0.0, fmin(1.0, share)))));
+    double t = length2 > 0.0 ? vec3_dot(r, edge) / length2 : 0.0;
+    return vec3_length(vec3_sub(r, vec3_scale(edge, fmax(0.0, fmin(1.0, t)))));
 }
 
-/* Distance of a point from the nearest edge of a shape: that is where F(x, shape) is singular.
- * Close to the middle of the shape it is as smooth as it is far away. */
+/* Returns the distance of a point from the nearest edge of a shape: F(x, shape) is
+ * singular at the edges, and as smooth near the middle of the shape as far away. */
 static double edge_distance(const struct shape *shape, struct vec3 x)
 {
     double nearest = HUGE_VAL;
     for (int32_t k = 0; k < shape->count; k++) {
-        struct vec3 from = shape->corner[k], to = shape->corner[k + 1 < shape->count ? k + 1 : 0];
+        struct vec3 from = shape->corner[k],
+                    to = shape->corner[k + 1 < shape->count ? k + 1 : 0];
         nearest = fmin(nearest, segment_distance(x, from, to));
     }
     return nearest;
 }
 
-/* The integral of F(x, q) over the quadrilateral c[0..3], by a rule in both of its coordinates;
- * the third and the fourth corner may be the same. Negative where it is clockwise. */
+/* Integrates F(x, q) over the quadrilateral c[0..3], by a rule in both of its
+ * coordinates; the third and the fourth corner may be the same. Negative if it is
+ * clockwise. */
 static double integrate_quadrilateral(const struct vec3 c[4], struct vec3 normal,
                                       const struct shape *q, const struct gauss *rule)
 {
@@ -169,13 +173,16 @@ static double integrate_quadrilateral(const struct vec3 c[4], struct vec3 normal
         struct vec3 along_s = vec3_add(u, vec3_scale(twist, t));
         struct vec3 along_t = vec3_add(v, vec3_scale(twist, s));
         double area = vec3_dot(normal, vec3_cross(along_s, along_t));
-        struct vec3 x = vec3_add(c[0], vec3_add(vec3_scale(along_s, s), vec3_scale(v, t)));
-        sum += weight_s * weight_t * area * point_polygon_factor(x, normal, q->corner, q->count);
+        struct vec3 x =
+            vec3_add(c[0], vec3_add(vec3_scale(along_s, s), vec3_scale(v, t)));
+        sum += weight_s * weight_t * area *
+               point_polygon_factor(x, normal, q->corner, q->count);
     }
     return sum;
 }
 
-/* The quadrilaterals of a fan: where p is not convex some overlap, and some are negative. */
+/* Integrates over p as a fan of quadrilaterals. If p is not convex, some overlap and some
+ * are negative. */
 static double integrate_points(const struct shape *p, const struct shape *q, int points)
 {
     struct gauss rule = gauss_rule(points);
@@ -184,14 +191,15 @@ static double integrate_points(const struct shape *p, const struct shape *q, int
     double sum = 0.0;
     for (int32_t k = 1; k + 1 < p->count; k += 2) {
         int32_t last = k + 2 < p->count ? k + 2 : k + 1;
-        const struct vec3 c[4] = {p->corner[0], p->corner[k], p->corner[k + 1], p->corner[last]};
+        const struct vec3 c[4] = {p->corner[0], p->corner[k], p->corner[k + 1],
+                                  p->corner[last]};
         sum += integrate_quadrilateral(c, normal, q, &rule);
     }
     return sum;
 }
 
-/* Points in each direction that give 11 digits or more where the nearest singularity of F is
- * `ratio` radii from the centre, in any direction; 0 if that is too near. */
+/* Returns the points in each direction for 11 digits or more if the nearest singularity
+ * of F is `ratio` radii from the centre; 0 if it is too near. */
 static int points_for(double ratio)
 {
     return ratio >= 20.0 ? 4 : ratio >= 6.0 ? 6 : ratio >= 2.5 ? 10 : 0;
@@ -216,21 +224,21 @@ static struct edge edge_of(const struct shape *shape, int32_t k)
     return edge;
 }
 
-/* s ln r^2, which is 0 with s. */
+/* Returns s ln r^2, whose limit is 0. */
 static double end_term(double s, double r2)
 {
     return r2 > 0.0 ? s * logarithm(r2) : 0.0;
 }
 
-/* The integral of ln r^2 over the edge g, as seen from x. */
+/* Integrates ln r^2 over the edge g, with r the distance from x. */
 static double logarithm_over(const struct edge *g, struct vec3 x)
 {
     struct vec3 r0 = vec3_sub(g->from, x), r1 = vec3_sub(g->to, x);
     double square0 = vec3_dot(r0, r0), square1 = vec3_dot(r1, r1);
     double h = vec3_length(vec3_cross(square0 < square1 ? r0 : r1, g->along));
     double theta = arctangent(h * g->length, vec3_dot(r0, r1));
-    return end_term(vec3_dot(r1, g->along), square1) - end_term(vec3_dot(r0, g->along), square0) -
-           2.0 * g->length + 2.0 * h * theta;
+    return end_term(vec3_dot(r1, g->along), square1) -
+           end_term(vec3_dot(r0, g->along), square0) - 2.0 * g->length + 2.0 * h * theta;
 }
 
 /* A branch point of the inner integral, at + i off along the outer edge. */
@@ -246,7 +254,8 @@ static struct branch branch_at_end(const struct edge *e, struct vec3 end)
     return (struct branch){vec3_dot(r, e->along), vec3_length(vec3_cross(r, e->along))};
 }
 
-/* Where the edges' lines pass each other; far away if they are parallel. */
+/* Returns the branch point where the lines of the edges pass each other; far off if they
+ * are parallel. */
 static struct branch branch_at_crossing(const struct edge *e, const struct edge *g)
 {
     struct vec3 cross = vec3_cross(e->along, g->along), r = vec3_sub(g->from, e->from);
@@ -257,15 +266,16 @@ static struct branch branch_at_crossing(const struct edge *e, const struct edge 
     return (struct branch){at, fabs(vec3_dot(r, cross)) / sine2};
 }
 
-/* Sum of the distances of the branch point from the ends of a panel, in widths of the panel. */
+/* Returns the sum of the distances of the branch point from the ends of a panel, in
+ * widths of the panel. */
 static double clearance(const struct branch *branch, double from, double to)
 {
     double a = from - branch->at, b = to - branch->at, off2 = branch->off * branch->off;
     return (sqrt(a * a + off2) + sqrt(b * b + off2)) / (to - from);
 }
 
-static double integrate_panel(const struct edge *e, const struct edge *g, double from, double to,
-                              int points)
+static double integrate_panel(const struct edge *e, const struct edge *g, double from,
+                              double to, int points)
 {
     struct gauss rule = gauss_rule(points);
     double sum = 0.0;
@@ -276,10 +286,13 @@ static double integrate_panel(const struct edge *e, const struct edge *g, double
     return sum * (to - from);
 }
 
-/* Clearance from which 16 and 10 points give 13 digits, and the part of an edge that is not cut. */
-static const double CLEAR_16 = 1.5, CLEAR_10 = 2.5, SHORTEST = 1e-6;
+/* Clearances from which 16 and 10 points give 13 digits. */
+static const double CLEAR_16 = 1.5, CLEAR_10 = 2.5;
 
-/* Where to cut a panel: at the branch point, or a fifth away from the end that it is near to. */
+static const double SHORTEST = 1e-6; /* part of an edge that is not cut further */
+
+/* Returns the place to cut a panel: at the branch point, but at least a fifth from both
+ * ends. */
 static double cut_for(const struct branch *branch, double from, double to)
 {
     double width = to - from;
@@ -297,7 +310,8 @@ static double integrate_edge(const struct edge *e, const struct edge *g,
     if (clear >= CLEAR_16 || !(to - from > SHORTEST * e->length))
         return integrate_panel(e, g, from, to, clear >= CLEAR_10 ? 10 : 16);
     double cut = cut_for(worst, from, to);
-    return integrate_edge(e, g, branches, from, cut) + integrate_edge(e, g, branches, cut, to);
+    return integrate_edge(e, g, branches, from, cut) +
+           integrate_edge(e, g, branches, cut, to);
 }
 
 static double integrate_edges(const struct edge *e, const struct edge *g)
@@ -305,8 +319,8 @@ static double integrate_edges(const struct edge *e, const struct edge *g)
     double cosine = vec3_dot(e->along, g->along);
     if (cosine == 0.0)
         return 0.0;
-    const struct branch branches[BRANCHES] = {branch_at_end(e, g->from), branch_at_end(e, g->to),
-                                              branch_at_crossing(e, g)};
+    const struct branch branches[BRANCHES] = {
+        branch_at_end(e, g->from), branch_at_end(e, g->to), branch_at_crossing(e, g)};
     return cosine * integrate_edge(e, g, branches, 0.0, e->length);
 }
 
@@ -327,7 +341,7 @@ static double integrate_contours(const struct shape *a, const struct shape *b)
 
 /* --- pairs --- */
 
-/* Of shapes in the unit cube; cuts them. */
+/* Returns the exchange of shapes in the unit cube, which it cuts. */
 static double exchange_of_shapes(struct shape *a, struct shape *b)
 {
     if (!cut_each_other(a, b))
@@ -335,15 +349,16 @@ static double exchange_of_shapes(struct shape *a, struct shape *b)
     bool first = shape_radius(a) <= shape_radius(b);
     const struct shape *p = first ? a : b, *q = first ? b : a;
     int points = points_for(edge_distance(q, shape_centre(p)) / shape_radius(p));
-    double exchange = points > 0 ? integrate_points(p, q, points) : integrate_contours(a, b);
+    double exchange =
+        points > 0 ? integrate_points(p, q, points) : integrate_contours(a, b);
     return fmax(0.0, fmin(exchange, fmin(shape_area(a), shape_area(b))));
 }
 
-/* A polygon of the caller, and how it is cut. */
+/* A polygon of the caller and its triangles. */
 struct parts {
     const struct vec3 *corners;
-    int32_t count;      /* of its corners */
-    int32_t parts;      /* 1: it is not cut */
+    int32_t count;      /* corners */
+    int32_t parts;      /* triangles; 1: the whole polygon */
     int32_t *triangles; /* owned, [3 * parts] corner numbers, or NULL */
 };
 
@@ -358,7 +373,7 @@ static struct parts parts_create(const struct vec3 *corners, int32_t count)
     return parts;
 }
 
-/* Part k, moved and scaled. */
+/* Returns part k, moved and scaled. */
 static struct shape part_shape(const struct parts *parts, int32_t k, struct vec3 origin,
                                double scale)
 {
@@ -370,7 +385,7 @@ static struct shape part_shape(const struct parts *parts, int32_t k, struct vec3
     return shape;
 }
 
-/* Largest coordinate of a polygon as seen from `origin`. */
+/* Returns the largest coordinate of a polygon relative to `origin`. */
 static double extent_of(const struct vec3 *corners, int32_t count, struct vec3 origin)
 {
     double extent = 0.0;
@@ -381,7 +396,7 @@ static double extent_of(const struct vec3 *corners, int32_t count, struct vec3 o
     return extent;
 }
 
-/* An order of polygons: below 0 if a comes first, 0 if they are equal. */
+/* Compares polygons: below 0 if a is first in the order, 0 if they are equal. */
 static int compare_polygons(const struct vec3 *a, int32_t count_a, const struct vec3 *b,
                             int32_t count_b)
 {

@@ -9,9 +9,9 @@ void factors_tabulate(struct run *run)
 {
     const struct criterion *criterion = &run->options.criterion;
     run_say(run, "%s: %lld triangles in %lld groups", run->options.scene,
-        (long long)run->scene->input_count, (long long)run->scene->group_count);
-    struct viewfactors *factors = viewfactors_create(run->scene, run->octree, criterion->epsilon,
-                                                     criterion->max_level);
+            (long long)run->scene->input_count, (long long)run->scene->group_count);
+    struct viewfactors *factors = viewfactors_create(
+        run->scene, run->octree, criterion->epsilon, criterion->max_level);
     progress_begin(&run->progress.progress, "form factors", -1, 0);
     pairs_add(&run->comm, factors, &run->progress.progress);
     progress_view_clear(&run->progress);

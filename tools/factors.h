@@ -4,8 +4,8 @@
 
 #include "tools/run.h"
 
-/* Collective, on a run that has a scene: prints the form factors between its groups. Errors
- * are in run->error, on all ranks. */
+/* Collective. Prints the form factors between the groups of the scene. Pre: run->scene
+ * and run->octree are there. Errors are in run->error, on all ranks. */
 void factors_tabulate(struct run *run);
 
 #endif

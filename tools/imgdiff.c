@@ -1,11 +1,11 @@
-/* imgdiff: how far a picture, or a solution, is from the expected one. A program of its own,
- * which make install installs: it is what a user of golden pictures runs.
+/* imgdiff: compares a picture, or a solution, with the expected one. A program of its
+ * own, installed for users of golden pictures.
  *
- * The bound is on the largest difference, so that one wrong pixel in a large picture is found,
- * and relative to the root mean square of the expected side, so that it means the same in dim
- * scenes and in bright ones. A bound on the RMS takes its place where single pixels may differ,
- * at edges that move by a rounding. What is not a finite number is beyond any bound. */
-#include <float.h>
+ * The bound is on the largest difference, so that one wrong pixel in a large picture is
+ * found, and relative to the root mean square of the expected side, so that it means the
+ * same in dim scenes and in bright ones. A bound on the RMS replaces it if single pixels
+ * may differ, at edges that move by a rounding. A sample that is not finite exceeds any
+ * bound. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -25,28 +25,31 @@ static const char HELP[] =
     "same size, or two solution meshes of phr (.ply) of the same scene, by area.\n"
     "\n"
     "  --tolerance T  pass if no sample is off by more than T (0)\n"
-    "  --rms T        pass if the RMS error is at most T; --tolerance then only if given\n"
+    "  --rms T        pass if the RMS error is at most T; --tolerance then only if "
+    "given\n"
     "  --blocks N     compare means over blocks of N by N pixels (1)\n"
     "  --below X      leave out blocks where a sample of B is above X, such as lamps\n"
     "  -o FILE        write |A - B|: as it is (.pfm), or scaled so that the largest\n"
     "                 difference is white (.ppm); of meshes as a mesh (.ply)\n"
     "  --help  --version\n"
     "\n"
-    "T is relative to the root mean square of B's samples. Samples of a .ppm are its codes,\n"
+    "T is relative to the root mean square of B's samples. Samples of a .ppm are its "
+    "codes,\n"
     "as shares of the greatest. A sample that is not a finite number never passes.\n"
     "\n"
-    "Exit status: 0 passed; 1 not passed, or FILE cannot be written; 2 bad usage or input.\n";
+    "Exit status: 0 passed; 1 not passed, or FILE cannot be written; 2 bad usage or "
+    "input.\n";
 
 struct request {
     const char *paths[2]; /* A and B */
     const char *output;
     double tolerance, rms; /* negative: not given */
-    double blocks;         /* pixels along a side of a block, whole */
-    double below;          /* most of B in a block that is compared */
+    double blocks;         /* pixels along a side of a block; an integer */
+    double below;          /* blocks with a sample of B above it are left out */
     bool help, version;
 };
 
-/* Where the option's number goes; NULL if it has none. */
+/* Returns the field of an option with a number, or NULL. */
 static double *number_of(struct request *request, const char *name)
 {
     static const char *const names[] = {"--tolerance", "--rms", "--blocks", "--below"};
@@ -69,14 +72,17 @@ static bool set_option(struct request *request, const char *name, const char *va
         return error_set(error, EXIT_USAGE, "%s needs a value", name);
     if (output && !text_ends_with(value, ".pfm") && !text_ends_with(value, ".ppm") &&
         !text_ends_with(value, ".ply"))
-        return error_set(error, EXIT_USAGE, "-o %s: the name must end in .pfm, .ppm or .ply", value);
+        return error_set(error, EXIT_USAGE,
+                         "-o %s: the name must end in .pfm, .ppm or .ply", value);
     if (output)
         request->output = value;
     else if (!text_is_number(value, number) || *number < 0.0)
-        return error_set(error, EXIT_USAGE, "%s: '%s' is not a number of at least 0", name, value);
+        return error_set(error, EXIT_USAGE, "%s: '%s' is not a number of at least 0",
+                         name, value);
     if (number == &request->blocks && !(*number >= 1.0 && *number <= IMAGE_SIZE_MAX &&
                                         *number == floor(*number)))
-        return error_set(error, EXIT_USAGE, "--blocks: '%s' is not a number of pixels", value);
+        return error_set(error, EXIT_USAGE, "--blocks: '%s' is not a number of pixels",
+                         value);
     return true;
 }
 
@@ -94,7 +100,8 @@ static bool parse(struct request *request, int argc, char **argv, struct error *
         else if (argument[0] != '-' && paths < 2)
             request->paths[paths++] = argument;
         else if (argument[0] != '-')
-            return error_set(error, EXIT_USAGE, "more than two files to compare: %s", argument);
+            return error_set(error, EXIT_USAGE, "more than two files to compare: %s",
+                             argument);
         else if (!set_option(request, argument, argv[++i], error))
             return false;
     }
@@ -117,7 +124,8 @@ static void report(const struct difference *difference, double peak)
            difference_relative(difference, difference->largest),
            difference_relative(difference, rms));
     if (rms > 0.0)
-        printf("psnr        %.2f dB (peak %.6g)\n", difference_psnr(difference, peak), peak);
+        printf("psnr        %.2f dB (peak %.6g)\n", difference_psnr(difference, peak),
+               peak);
     else
         printf("psnr        infinite\n");
 }
@@ -126,12 +134,13 @@ static bool passes(const struct request *request, const struct difference *diffe
 {
     double most = difference_relative(difference, difference->largest);
     double rms = difference_relative(difference, difference_rms(difference));
-    return difference->broken == 0 && (request->tolerance < 0.0 || most <= request->tolerance) &&
+    return difference->broken == 0 &&
+           (request->tolerance < 0.0 || most <= request->tolerance) &&
            (request->rms < 0.0 || rms <= request->rms);
 }
 
-static bool write_map(const struct request *request, const struct image *map, double largest,
-                      struct error *error)
+static bool write_map(const struct request *request, const struct image *map,
+                      double largest, struct error *error)
 {
     if (text_ends_with(request->output, ".pfm"))
         return pfm_write(map, request->output, error);
@@ -139,12 +148,13 @@ static bool write_map(const struct request *request, const struct image *map, do
     return ppm_write(map, &tone, request->output, error);
 }
 
-/* Refuses -o with the name of a mesh for pictures, and the other way round; and for meshes
- * what concerns pixels. */
+/* Refuses -o with the name of a mesh for pictures, or of a picture for meshes; and
+ * options of pixels for meshes. */
 static bool check_output(const struct request *request, bool meshes, struct error *error)
 {
     if (request->output && text_ends_with(request->output, ".ply") != meshes)
-        return error_set(error, EXIT_USAGE, "-o %s: the difference of %s", request->output,
+        return error_set(error, EXIT_USAGE, "-o %s: the difference of %s",
+                         request->output,
                          meshes ? "meshes is a mesh (.ply)" : "pictures is a picture");
     if (meshes && (request->blocks > 1.0 || request->below < HUGE_VAL))
         return error_set(error, EXIT_USAGE, "--blocks and --below are for pictures");
@@ -159,11 +169,12 @@ static bool diff_images(const struct request *request, struct difference *differ
     bool good = image_read(&a, &kind_a, request->paths[0], error) &&
                 image_read(&b, &kind_b, request->paths[1], error);
     if (good && kind_a != kind_b)
-        good = error_set(error, EXIT_USAGE, "%s and %s: one is linear (PFM), the other not (PPM)",
+        good = error_set(error, EXIT_USAGE,
+                         "%s and %s: one is linear (PFM), the other not (PPM)",
                          request->paths[0], request->paths[1]);
     if (good && (a.width != b.width || a.height != b.height))
-        good = error_set(error, EXIT_USAGE, "%s is %dx%d, %s is %dx%d", request->paths[0], a.width,
-                         a.height, request->paths[1], b.width, b.height);
+        good = error_set(error, EXIT_USAGE, "%s is %dx%d, %s is %dx%d", request->paths[0],
+                         a.width, a.height, request->paths[1], b.width, b.height);
     if (good) {
         map = (struct image){a.width, a.height, NULL};
         map.rgb = alloc_array((size_t)a.width * (size_t)a.height, 3 * sizeof *map.rgb);

@@ -1,4 +1,4 @@
-/* Reading on rank 0: the scene, its camera, and whether outputs can be written. */
+/* Reading the scene and its camera on rank 0, and probing the outputs. */
 #include "tools/input.h"
 
 #include <math.h>
@@ -16,28 +16,39 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
     const char *path = run->options.scene;
     if (read->libraries.count > 0)
         run_say(run, "%s: warning: %lld material file(s) missing (first: %s)", path,
-            (long long)read->libraries.count, read->libraries.first);
+                (long long)read->libraries.count, read->libraries.first);
     if (read->materials.count > 0)
-        run_say(run, "%s: warning: %lld material(s) without a definition, taken as grey (first: %s)",
-            path, (long long)read->materials.count, read->materials.first);
+        run_say(run,
+                "%s: warning: %lld material(s) without a definition, "
+                "taken as grey (first: %s)",
+                path, (long long)read->materials.count, read->materials.first);
     if (read->transparent > 0)
-        run_say(run, "%s: warning: %lld transparent material(s) (d or Tr), taken as opaque", path,
-            (long long)read->transparent);
+        run_say(run,
+                "%s: warning: %lld transparent material(s) (d or Tr), taken as opaque",
+                path, (long long)read->transparent);
     if (read->textured > 0)
-        run_say(run, "%s: warning: %lld material(s) with a texture, which is not read: Kd counts, or grey",
-            path, (long long)read->textured);
+        run_say(run,
+                "%s: warning: %lld material(s) with a texture, "
+                "which is not read: Kd counts, or grey",
+                path, (long long)read->textured);
     if (read->bad_normals > 0)
-        run_say(run, "%s: warning: %lld corner(s) with a vn that is no direction, or not there: ignored",
-            path, (long long)read->bad_normals);
+        run_say(run,
+                "%s: warning: %lld corner(s) with a vn that is no direction, "
+                "or not there: ignored",
+                path, (long long)read->bad_normals);
     if (read->unknown_lines > 0)
-        run_say(run, "%s: warning: %lld line(s) with unknown keywords passed over (first: line %ld)",
-            path, (long long)read->unknown_lines, read->first_unknown);
+        run_say(run,
+                "%s: warning: %lld line(s) with unknown keywords "
+                "passed over (first: line %ld)",
+                path, (long long)read->unknown_lines, read->first_unknown);
     if (prepared->clamped > 0)
-        run_say(run, "%s: warning: %lld material(s) with a reflectance of 1 or more, set to 0.999",
-            path, (long long)prepared->clamped);
+        run_say(run,
+                "%s: warning: %lld material(s) with a reflectance of 1 or more, "
+                "set to 0.999",
+                path, (long long)prepared->clamped);
     if (prepared->degenerate > 0)
         run_say(run, "%s: warning: %lld face(s) without area dropped", path,
-            (long long)prepared->degenerate);
+                (long long)prepared->degenerate);
 }
 
 /* Emissions beyond these would leave the range of the float outputs. */
@@ -52,10 +63,12 @@ static bool check_emission(const struct run *run, struct error *error)
             largest = fmax(largest, scene_root_material(scene, i)->emission.band[c]);
     if (!(largest > 0.0))
         return error_set(error, EXIT_USAGE,
-                         "%s: nothing emits light (no face with Ke or emission_r above 0)",
+                         "%s: nothing emits light "
+                         "(no face with Ke or emission_r above 0)",
                          run->options.scene);
     if (largest < EMISSION_MIN || largest > EMISSION_MAX)
-        return error_set(error, EXIT_USAGE, "%s: the largest Ke, %g, is not within %g and %g",
+        return error_set(error, EXIT_USAGE,
+                         "%s: the largest Ke, %g, is not within %g and %g",
                          run->options.scene, largest, EMISSION_MIN, EMISSION_MAX);
     return true;
 }
@@ -63,8 +76,9 @@ static bool check_emission(const struct run *run, struct error *error)
 static bool check_groups(const struct run *run, struct error *error)
 {
     if (run->scene->group_count > VIEWFACTOR_GROUPS_MAX)
-        return error_set(error, EXIT_USAGE, "%s: %lld groups are more than %d", run->options.scene,
-                         (long long)run->scene->group_count, VIEWFACTOR_GROUPS_MAX);
+        return error_set(error, EXIT_USAGE, "%s: %lld groups are more than %d",
+                         run->options.scene, (long long)run->scene->group_count,
+                         VIEWFACTOR_GROUPS_MAX);
     return true;
 }
 
@@ -74,7 +88,8 @@ static bool read_scene(struct run *run)
     struct obj_repairs read = {0};
     struct scene_repairs prepared = {0};
     const char *path = run->options.scene;
-    run->scene = ply_is_meant(path) ? ply_read(path, error) : obj_read(path, &read, error);
+    run->scene =
+        ply_is_meant(path) ? ply_read(path, error) : obj_read(path, &read, error);
     if (!run->scene || !stop_check(error))
         return false;
     run->scene->two_sided = run->options.two_sided;
@@ -83,10 +98,11 @@ static bool read_scene(struct run *run)
     if (!scene_prepare(run->scene, &prepared, &wrong))
         return error_set(error, wrong.code, "%s: %s", run->options.scene, wrong.text);
     warn_repairs(run, &read, &prepared);
-    return run->options.form_factors ? check_groups(run, error) : check_emission(run, error);
+    return run->options.form_factors ? check_groups(run, error)
+                                     : check_emission(run, error);
 }
 
-/* The view file, if there is one. */
+/* Reads the view file, if there is one; --size overrides its size. */
 static bool read_camera(struct run *run)
 {
     const struct options *options = &run->options;

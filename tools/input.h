@@ -1,12 +1,12 @@
-/* Reading what a run needs. */
+/* Reading the input of a run. */
 #ifndef TOOLS_INPUT_H
 #define TOOLS_INPUT_H
 
 #include "tools/run.h"
 
-/* On rank 0: run->scene, prepared, and run->camera, as the options say; warns of repairs.
- * Errors (a wrong file, nothing that emits, an output that can't be written) are in
- * run->error. */
+/* On rank 0. Reads run->scene, prepared, and run->camera as the options say, warns of
+ * repairs, and probes the outputs. Errors (a wrong file, a scene without light, an output
+ * that cannot be written) are in run->error. */
 void input_read(struct run *run);
 
 #endif

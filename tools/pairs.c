@@ -1,9 +1,11 @@
-/* Pairs of roots in the order of the cards: the k-th that faces each other goes to rank k mod P.
+/* Pairs of roots, dealt like cards: the k-th pair that faces each other goes to rank k
+ * mod P.
  *
- * Neighbours in this order cost about the same, so that each rank gets its part of the dear ones,
- * and a scene of a dozen triangles is divided as evenly as a large one. To know k every rank looks
- * at all pairs, which is a thousandth of the work. Sums are integers: who adds what is not seen in
- * them. They are sent in pieces that MPI can count. */
+ * Neighbours in this order cost about the same, so that each rank gets its part of the
+ * expensive pairs, and a scene of a dozen triangles is divided as evenly as a large one.
+ * To count, every rank goes through all pairs, a thousandth of the work. Sums are
+ * integers, so they do not depend on the ranks that add. They are sent in pieces that MPI
+ * can count. */
 #include "tools/pairs.h"
 
 #include "geom/alloc.h"
@@ -16,8 +18,9 @@ static void add_own_pairs(const struct comm *comm, struct viewfactors *factors,
     int32_t roots = scene_root_count(scene);
     struct facet *facets = alloc_array((size_t)roots, sizeof *facets);
     for (int32_t i = 0; i < roots; i++)
-        facets[i] = (struct facet){scene_root_triangle(scene, i), scene_root_plane(scene, i),
-                                   scene_root_area(scene, i), scene_input_of(scene, i)};
+        facets[i] =
+            (struct facet){scene_root_triangle(scene, i), scene_root_plane(scene, i),
+                           scene_root_area(scene, i), scene_input_of(scene, i)};
     int64_t dealt = 0;
     for (int32_t i = 0; i < roots && !stop_is_asked(); i++) {
         progress_tick_pairs(progress, i, roots);
@@ -29,7 +32,8 @@ static void add_own_pairs(const struct comm *comm, struct viewfactors *factors,
     alloc_free(facets);
 }
 
-void pairs_add(const struct comm *comm, struct viewfactors *factors, struct progress *progress)
+void pairs_add(const struct comm *comm, struct viewfactors *factors,
+               struct progress *progress)
 {
     const int64_t most = 1 << 20;
     add_own_pairs(comm, factors, progress);

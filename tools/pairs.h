@@ -6,9 +6,10 @@
 #include "mpi/comm.h"
 #include "tools/viewfactor.h"
 
-/* Collective. Adds all pairs of roots that face each other to `factors`, which are all 0 and
- * alike on all ranks. All ranks end with the same exchanges; counts and links stay those of the
- * rank. Ticks `progress`, which may be NULL. */
-void pairs_add(const struct comm *comm, struct viewfactors *factors, struct progress *progress);
+/* Collective. Adds all pairs of roots that face each other to `factors`, which are new
+ * and equal on all ranks. All ranks end with the same exchanges; counts and links are
+ * those of the rank alone. Ticks `progress`, which may be NULL. */
+void pairs_add(const struct comm *comm, struct viewfactors *factors,
+               struct progress *progress);
 
 #endif

@@ -1,25 +1,23 @@
-/* pathtracer: pictures and solution meshes by path tracing alone, which phr's own are
- * compared with.
+/* pathtracer: pictures and solution meshes by path tracing alone, as references for
+ * phr's.
  *
  *   make pathtracer
  *   build/pathtracer room.obj --view room.view --samples 256 -o truth.pfm
  *   build/pathtracer room.obj --leaves room.ply --samples 256 -o truth.ply
  *   imgdiff room.ply truth.ply -o error.ply
  *
- * Options are phr's, those that concern the scene, the camera and the files; --samples is
- * the number of paths a pixel, or a leaf. With --leaves the answer is a mesh with the
- * leaves of that solution, each with the mean of E + rho H over it, and the norms of
- * the solution's error are printed, those of tests/deviation.h: of the reflected light
- * rho H alone, since E is given and would hide any error; so black lamps are left out.
+ * Options of scene, camera and files are phr's; --samples is the number of paths a pixel,
+ * or a leaf. With --leaves the output is a mesh with the leaves of that solution, each
+ * with the mean of E + rho H over it, and the norms of the solution's error are printed,
+ * as in tests/deviation.h: of the reflected light rho H alone, since E is given and would
+ * hide any error; so black lamps are left out.
  *
- * Half of a leaf's paths make one estimate, half another that is independent of it. The
- * product of the deviations from both has the square of the error as its expectation,
- * whatever the noise; L1 and median go by the mean of both, and see no error that is
- * much below `noise`.
+ * The paths of a leaf make two independent estimates. The product of the deviations from
+ * both has the square of the error as its expectation, whatever the noise; L1 and median
+ * use the mean of both, and cannot show errors much below `noise`.
  *
  * Seeds are the numbers of pixels and leaves, which are dealt to the ranks in turn: files
- * are the same on any number of ranks. Each rank reads the input for itself. Times and
- * rates are on stderr. */
+ * do not depend on the number of ranks. Each rank reads the input for itself. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -50,14 +48,14 @@ struct tracing {
     struct scene *scene;
     struct octree *octree;
     struct camera camera;
-    struct solution solution; /* that of --leaves */
+    struct solution solution; /* of --leaves */
     struct pathtracer pathtracer;
     struct error error;
 };
 
 /* --- input --- */
 
-/* Takes --leaves and --samples out of the arguments. Returns the number of those left. */
+/* Takes --leaves and --samples out of the arguments. Returns the number of the others. */
 static int take_own(struct tracing *run, int argc, char **argv)
 {
     double samples = SAMPLES;
@@ -84,7 +82,8 @@ static bool is_mesh(const char *path)
     return output_format_of(path) == FORMAT_PLY;
 }
 
-/* Every output has to be possible: a mesh with --leaves, which nothing else needs. */
+/* Checks the outputs: there has to be one, and meshes need --leaves and it needs a
+ * mesh. */
 static bool check_outputs(struct tracing *run)
 {
     bool meshes = false;
@@ -114,7 +113,7 @@ static bool read_scene(struct tracing *run)
            error_set(&run->error, EXIT_USAGE, "%s: nothing emits light", path);
 }
 
-/* The solution of --leaves. */
+/* Reads the solution of --leaves. */
 static bool read_leaves(struct tracing *run)
 {
     if (!run->leaves)
@@ -163,13 +162,13 @@ static bool read_all(struct tracing *run)
 
 /* --- tracing --- */
 
-/* Collective. Top row first, on rank 0. */
+/* Collective. Returns the picture on rank 0, top scanline first. */
 static float *trace_picture(const struct tracing *run)
 {
     int width = run->camera.width, height = run->camera.height;
-    size_t row = (size_t)width * BANDS;
-    int rows = (height + run->comm.size - 1) / run->comm.size;
-    float *own = alloc_array((size_t)rows * row, sizeof *own), *at = own;
+    size_t length = (size_t)width * BANDS;
+    int scanlines = (height + run->comm.size - 1) / run->comm.size;
+    float *own = alloc_array((size_t)scanlines * length, sizeof *own), *at = own;
     for (int y = run->comm.rank; y < height; y += run->comm.size)
         for (int x = 0; x < width; x++) {
             uint64_t seed = (uint64_t)y * IMAGE_SIZE_MAX + (uint64_t)x;
@@ -178,17 +177,18 @@ static float *trace_picture(const struct tracing *run)
             for (int c = 0; c < BANDS; c++)
                 *at++ = (float)b.band[c];
         }
-    float *picture = picture_gather(&run->comm, own, row, height);
+    float *picture = picture_gather(&run->comm, own, length, height);
     alloc_free(own);
     return picture;
 }
 
-/* Collective. rho H of the halves of each leaf, HALVES * BANDS floats, on rank 0. */
+/* Collective. Returns two estimates of rho H for each leaf, HALVES * BANDS floats, on
+ * rank 0. */
 static float *trace_leaves(const struct tracing *run)
 {
     int64_t count = run->solution.count, size = run->comm.size;
-    size_t row = HALVES * BANDS;
-    float *own = alloc_array((size_t)(count / size + 1) * row, sizeof *own), *at = own;
+    size_t length = HALVES * BANDS;
+    float *own = alloc_array((size_t)(count / size + 1) * length, sizeof *own), *at = own;
     for (int64_t i = run->comm.rank; i < count; i += size) {
         struct patch_id id = run->solution.leaves[i].id;
         struct triangle part = pathtracer_part(id);
@@ -200,7 +200,8 @@ static float *trace_leaves(const struct tracing *run)
                 *at++ = (float)h.band[c];
         }
     }
-    float *leaves = picture_gather(&run->comm, own, row, comm_count(&run->comm, count));
+    float *leaves =
+        picture_gather(&run->comm, own, length, comm_count(&run->comm, count));
     alloc_free(own);
     return leaves;
 }
@@ -242,7 +243,7 @@ static void add_leaf(struct norms *norms, const struct solution_leaf *leaf,
     norms->offs[norms->count++] = off;
 }
 
-/* Median by area of the leaves' errors. */
+/* Returns the median by area of the leaves' errors. */
 static double median_of(struct norms *norms)
 {
     double below = 0.0;
@@ -258,7 +259,7 @@ static double over(double a, double b)
     return b > 0.0 ? a / b : 0.0;
 }
 
-/* Norms over all leaves that reflect. */
+/* Prints the norms over all leaves that reflect. */
 static void print_norms(const struct tracing *run, const float *halves)
 {
     const struct solution *solution = &run->solution;
@@ -282,7 +283,7 @@ static void print_norms(const struct tracing *run, const float *halves)
 
 /* --- output --- */
 
-/* The leaves with E + rho H in place of their radiosities. */
+/* Writes the leaves with E + rho H in place of their radiosities. */
 static void write_leaves(struct tracing *run, const float *halves, const char *path)
 {
     size_t count = (size_t)run->solution.count;
@@ -318,7 +319,7 @@ static void write_picture(struct tracing *run, float *picture, const char *path)
         ppm_write(&image, &tone, path, &run->error);
 }
 
-/* Collective. Rays of all ranks, and the seconds of the slowest. */
+/* Collective. Prints the rays of all ranks, and the seconds of the slowest. */
 static void report(const struct tracing *run, int64_t samples, double seconds)
 {
     int64_t rays = run->pathtracer.counts->rays;

@@ -1,4 +1,4 @@
-/* Rays through the places of a pixel begin at the eye, in the units of the scene. */
+/* Rays through points of a pixel begin at the eye, in the units of the scene. */
 #include "tools/pixel.h"
 
 struct pixel {
@@ -18,5 +18,6 @@ struct rgb pathtracer_pixel(const struct pathtracer *pathtracer,
                             uint64_t seed)
 {
     struct pixel pixel = {camera, scene_from_input(pathtracer->scene, camera->eye), x, y};
-    return pathtracer_seen(pathtracer, ray_of, &pixel, camera->fronts_only, samples, seed);
+    return pathtracer_seen(pathtracer, ray_of, &pixel, camera->fronts_only, samples,
+                           seed);
 }

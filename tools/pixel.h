@@ -5,8 +5,8 @@
 #include "io/scene/camera.h"
 #include "rad/beyond/paths.h"
 
-/* Estimate of the mean radiosity E + rho H, W/m^2, that is seen through pixel (x, y) of a
- * picture; black where nothing is met, or a back. Its expectation is exact.
+/* Returns an estimate of the mean radiosity E + rho H, W/m^2, seen through pixel (x, y)
+ * of a picture; a path that meets nothing, or a back, is black. Its expectation is exact.
  * Pre: samples > 0. */
 struct rgb pathtracer_pixel(const struct pathtracer *pathtracer,
                             const struct camera *camera, int x, int y, int samples,

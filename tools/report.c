@@ -7,14 +7,15 @@
 #include "io/run/stats.h"
 #include "mpi/memory.h"
 
-/* The part of a rank in a level. */
+/* Prints the share of a rank in a level. */
 static void report_share(struct run *run, int rank, const struct level_share *share)
 {
     run_say(run,
             "  rank %d: load %lld, sent %lld links, received %lld; work predicted %lld, "
             "done %lld",
             rank, (long long)share->load, (long long)share->sent,
-            (long long)share->received, (long long)share->predicted, (long long)share->done);
+            (long long)share->received, (long long)share->predicted,
+            (long long)share->done);
 }
 
 void report_levels(struct run *run, int64_t first)
@@ -43,20 +44,23 @@ void report_iteration(struct run *run)
                  run->options.criterion.solver == SOLVER_JACOBI
                      ? "energy changed by %.2g" : "remaining error at most %.2g",
                  vote->remaining);
-    run_say(run, "iteration %lld: %lld links (%lld split), %s", (long long)run->solver->turn.iteration,
-        (long long)vote->links, (long long)vote->split, bound);
+    run_say(run, "iteration %lld: %lld links (%lld split), %s",
+            (long long)run->solver->turn.iteration, (long long)vote->links,
+            (long long)vote->split, bound);
 }
 
 void report_round(struct run *run)
 {
     const struct gathered *gathered = &beyond_answer(run->solver)->counts;
     if (gathered->checked > 0)
-        run_say(run, "round %lld: error %.2g %% (rays %.2g %%, mesh %.2g %%), by %lld paths",
-            (long long)run->solver->beyond->accuracy.rounds, 100.0 * gathered->error,
-            100.0 * gathered->by_rays, 100.0 * gathered->by_mesh, (long long)gathered->paths);
+        run_say(run,
+                "round %lld: error %.2g %% (rays %.2g %%, mesh %.2g %%), by %lld paths",
+                (long long)run->solver->beyond->accuracy.rounds, 100.0 * gathered->error,
+                100.0 * gathered->by_rays, 100.0 * gathered->by_mesh,
+                (long long)gathered->paths);
 }
 
-/* Each iteration takes off about the same part of the bound on the remaining error. */
+/* Each iteration reduces the bound on the remaining error by about the same factor. */
 void report_solving(struct run *run)
 {
     double tolerance = run->options.criterion.tolerance, now = run->vote.remaining;
@@ -68,20 +72,22 @@ void report_solving(struct run *run)
                   known ? log(first / now) / log(first / tolerance) : 0.0);
 }
 
-/* A cluster has two children at least. */
+/* A cluster has two children or more: there are at most half as many as roots. */
 void report_forecast(struct run *run)
 {
     int64_t roots = scene_root_count(run->scene);
     struct memory memory = {.copies = 1};
     memory.clusters = run->options.criterion.linking == LINKING_TREE ? roots / 2 : 0;
     if (run->options.verbose)
-        run_say(run, "%lld roots and some %lld clusters: %.1f MB on each rank before there are links",
-            (long long)roots, (long long)memory.clusters,
-            1e-6 * (double)memory_needed(&memory, 1, 0, roots));
+        run_say(run,
+                "%lld roots and some %lld clusters: "
+                "%.1f MB on each rank before there are links",
+                (long long)roots, (long long)memory.clusters,
+                1e-6 * (double)memory_needed(&memory, 1, 0, roots));
 }
 
-/* Parts of the light by which more may be absorbed than is emitted, and by which a closed scene may
- * be off its balance, before it is said. */
+/* Least excess of absorbed over emitted power, and least correction of a closed scene's
+ * balance, that are warned of; relative to the power. */
 static const double ABSORBED_TOO_MUCH = 0.01, OFF_BALANCE = 0.05;
 
 static void warn_balance(struct run *run)
@@ -90,22 +96,24 @@ static void warn_balance(struct run *run)
     double much = stats->absorbed_power / stats->emitted_power - 1.0;
     if (much > ABSORBED_TOO_MUCH)
         run_say(run,
-            "warning: %.3g %% more light is absorbed than emitted: faces may lie on each other or be "
-            "there twice, or --epsilon is too large",
-            100.0 * much);
+                "warning: %.3g %% more light is absorbed than emitted: "
+                "faces may lie on each other or be there twice, "
+                "or --epsilon is too large",
+                100.0 * much);
     else if (stats->gathered.closing > OFF_BALANCE)
         run_say(run,
-            "warning: light of this closed scene was off its balance by %.3g %%, which is made up "
-            "for: --epsilon is too large, rays are too few, or faces lie on each other",
-            100.0 * stats->gathered.closing);
+                "warning: light of this closed scene was off its balance by %.3g %%, "
+                "which is made up for: --epsilon is too large, rays are too few, "
+                "or faces lie on each other",
+                100.0 * stats->gathered.closing);
 }
 
-/* What keeps --accuracy from being reached, in the order of enum hold. */
+/* Reasons why --accuracy was not reached, in the order of enum hold. */
 static const char *const HOLDS[] = {
     "", "--max-level is in the way", "--min-area is in the way",
     "the memory limit is in the way", "--max-iterations is in the way",
-    "leaves cannot have more rays", "a smaller epsilon no longer helps", "too many rounds",
-    "paths do not tell it well enough"};
+    "leaves cannot have more rays", "a smaller epsilon no longer helps",
+    "too many rounds", "paths do not tell it well enough"};
 
 bool report_summary(struct run *run)
 {
@@ -116,17 +124,19 @@ bool report_summary(struct run *run)
     if (run->comm.rank == 0) {
         if (run->stats.memory_limited)
             run_say(run,
-                "warning: %s ended at the memory limit of %lld bytes, with %lld links%s",
-                run->half_linked ? "linking" : "refinement",
-                (long long)run->solver->memory.limit, (long long)run->stats.links,
-                run->half_linked ? ": light is missing" : "");
+                    "warning: %s ended at the memory limit of %lld bytes, "
+                    "with %lld links%s",
+                    run->half_linked ? "linking" : "refinement",
+                    (long long)run->solver->memory.limit, (long long)run->stats.links,
+                    run->half_linked ? ": light is missing" : "");
         else if (!run->vote.converged)
             run_say(run, "warning: not converged after %lld iterations",
-                (long long)run->stats.iterations);
+                    (long long)run->stats.iterations);
         if (run->stats.hold != HOLD_NONE)
-            run_say(run, "warning: the error is %.2g %%, not the %.3g %% of --accuracy: %s",
-                100.0 * run->stats.error_estimate, 100.0 * run->stats.accuracy,
-                HOLDS[run->stats.hold]);
+            run_say(run,
+                    "warning: the error is %.2g %%, not the %.3g %% of --accuracy: %s",
+                    100.0 * run->stats.error_estimate, 100.0 * run->stats.accuracy,
+                    HOLDS[run->stats.hold]);
         warn_balance(run);
         if (!run->options.quiet)
             stats_print(&run->stats, stdout);

@@ -4,21 +4,22 @@
 
 #include "tools/run.h"
 
-/* With --verbose: the memory of each rank before there are links. */
+/* With --verbose: prints the memory of each rank before linking. */
 void report_forecast(struct run *run);
 
-/* Ticks the progress of the iterations over the same links. run->first_bound is HUGE_VAL
- * before the first. */
+/* Ticks the progress of the iterations over the same links. Pre: run->first_bound is
+ * HUGE_VAL before the first. */
 void report_solving(struct run *run);
 
-/* Collective. With --verbose, the levels of refinement from number `first` on. */
+/* Collective. With --verbose: prints the levels of refinement from number `first` on. */
 void report_levels(struct run *run, int64_t first);
 
-/* The pass that has ended; and with --accuracy the error of a round. */
+/* Print the pass that has ended, and with --accuracy the error of a round. */
 void report_iteration(struct run *run);
 void report_round(struct run *run);
 
-/* Collective. Warnings, the summary, --stats. False on an error, on all ranks. */
+/* Collective. Prints warnings and the summary, and writes --stats. False on an error, on
+ * all ranks. */
 bool report_summary(struct run *run);
 
 #endif

@@ -1,4 +1,4 @@
-/* Pictures and meshes of the answer. */
+/* Pictures and meshes of the solution. */
 #include "tools/results.h"
 
 #include "geom/alloc.h"
@@ -9,13 +9,15 @@
 #include "io/run/output.h"
 #include "mpi/picture.h"
 
-/* The tone of 8-bit colours: --exposure, or chosen from the picture, or from the leaves. */
+/* Returns the tone of 8-bit colours: --exposure, or chosen from the picture or the
+ * leaves. */
 static struct tone choose_tone(const struct run *run, const float *picture)
 {
+    int64_t pixels = (int64_t)run->camera.width * run->camera.height;
     if (run->options.exposure > 0.0)
         return tone_make(run->options.exposure);
     if (picture)
-        return tone_make(tone_automatic(picture, (int64_t)run->camera.width * run->camera.height));
+        return tone_make(tone_automatic(picture, pixels));
     int64_t count;
     float *colours = mesh_colours(run->solver->model.forest, &count);
     struct tone tone = tone_make(tone_automatic(colours, count));
@@ -23,7 +25,7 @@ static struct tone choose_tone(const struct run *run, const float *picture)
     return tone;
 }
 
-/* Rank 0 only. */
+/* Writes the outputs. On rank 0 alone. */
 static void write_outputs(struct run *run, const struct shading *shading, float *picture)
 {
     struct tone tone = choose_tone(run, picture);
@@ -33,7 +35,10 @@ static void write_outputs(struct run *run, const struct shading *shading, float 
         switch (output_format_of(path)) {
         case FORMAT_PPM: ppm_write(&image, &tone, path, &run->error); break;
         case FORMAT_PFM: pfm_write(&image, path, &run->error); break;
-        case FORMAT_PLY: mesh_write(shading, &tone, beyond_answer(run->solver)->error, path, &run->error); break;
+        case FORMAT_PLY:
+            mesh_write(shading, &tone, beyond_answer(run->solver)->error, path,
+                       &run->error);
+            break;
         }
     }
 }
@@ -47,21 +52,22 @@ static bool wants(const struct options *options, bool mesh)
     return false;
 }
 
-/* Collective. How far leaves are covered: each rank looks at some of them. NULL: all show their
- * constants. */
+/* Collective. Returns the open quarters of all leaves, of which each rank examines some;
+ * NULL with --flat. */
 static uint8_t *survey_leaves(struct run *run)
 {
     if (run->options.flat)
         return NULL;
     int64_t leaves;
-    uint8_t *open = shading_open_quarters(run->solver->model.forest, run->octree, run->comm.rank,
-                                          run->comm.size, &leaves);
+    uint8_t *open = shading_open_quarters(run->solver->model.forest, run->octree,
+                                          run->comm.rank, run->comm.size, &leaves);
     comm_add_bytes(&run->comm, open, leaves);
     return open;
 }
 
-/* All leaves, less some of their radiosity, or NULL. */
-static struct shading *shade_leaves(struct run *run, const struct rgb *less, const uint8_t *open)
+/* Prepares the shading of all leaves, less the radiosities `less`, which may be NULL. */
+static struct shading *shade_leaves(struct run *run, const struct rgb *less,
+                                    const uint8_t *open)
 {
     double start = comm_seconds();
     struct shading *shading = shading_create(run->solver->model.forest, less, open);
@@ -79,8 +85,8 @@ static void place_camera(struct run *run)
     run->solver->account.seconds[PHASE_VIEWPOINT] = comm_seconds() - start;
 }
 
-/* Collective. The picture of the camera, on rank 0; NULL on the others. Rays that it takes are no
- * part of the solution's. */
+/* Collective. Returns the picture of the camera on rank 0, NULL on the others. Its rays
+ * are not counted among the solution's. */
 static float *make_picture(struct run *run, const uint8_t *open)
 {
     const struct comm *comm = &run->comm;
@@ -98,18 +104,19 @@ static float *make_picture(struct run *run, const uint8_t *open)
     if (gathers)
         answer->gather.counts = (struct gather_counts){.rays = 0};
     progress_begin(&run->progress.progress, "rendering", -1, 0);
-    float *rows = render_scanlines(&renderer, &run->camera, run->options.samples, comm->rank,
-                              comm->size, &run->progress.progress);
-    float *picture = picture_gather(comm, rows, 3 * (size_t)run->camera.width,
+    float *scanlines = render_scanlines(&renderer, &run->camera, run->options.samples,
+                                        comm->rank, comm->size, &run->progress.progress);
+    float *picture = picture_gather(comm, scanlines, 3 * (size_t)run->camera.width,
                                     run->camera.height);
     if (gathers) {
-        answer->counts.pixels = answer->gather.counts.rays + answer->gather.counts.segments;
+        answer->counts.pixels =
+            answer->gather.counts.rays + answer->gather.counts.segments;
         comm_add(comm, &answer->counts.pixels, 1);
     }
     model->counts = counts;
     model->estimating = estimating;
     shading_destroy(shading);
-    alloc_free(rows);
+    alloc_free(scanlines);
     return picture;
 }
 
@@ -120,7 +127,8 @@ bool results_show(struct run *run)
         return true;
     uint8_t *open = survey_leaves(run);
     float *picture = wants(&run->options, false) ? make_picture(run, open) : NULL;
-    struct shading *shading = wants(&run->options, true) ? shade_leaves(run, NULL, open) : NULL;
+    struct shading *shading =
+        wants(&run->options, true) ? shade_leaves(run, NULL, open) : NULL;
     run->solver->account.seconds[PHASE_RENDER] = comm_seconds() - start;
     start = comm_seconds();
     if (run_goes_on(run) && run->comm.rank == 0)

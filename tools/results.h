@@ -1,11 +1,11 @@
-/* The answer as pictures and meshes. */
+/* The solution as pictures and meshes. */
 #ifndef TOOLS_RESULTS_H
 #define TOOLS_RESULTS_H
 
 #include "tools/run.h"
 
-/* Collective. Renders by rows and writes the outputs that the options name. False on an
- * error, on all ranks. */
+/* Collective. Renders and writes the outputs that the options name. False on an error, on
+ * all ranks. */
 bool results_show(struct run *run);
 
 #endif

@@ -1,5 +1,5 @@
-/* The state of one run. Errors of the user or the system are values (geom/error.h) on which
- * all ranks agree after each phase; rank 0 prints them once. */
+/* The state of one run. Errors of the user or the system are values (geom/error.h) on
+ * which all ranks agree after each phase; rank 0 prints them once. */
 #include "tools/run.h"
 
 #include <stdarg.h>

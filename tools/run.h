@@ -1,4 +1,5 @@
-/* One run of phr: its state, and the errors and lines on stderr that all its parts share. */
+/* One run of phr: its state, and the errors and lines on stderr that all its parts
+ * share. */
 #ifndef TOOLS_RUN_H
 #define TOOLS_RUN_H
 
@@ -14,33 +15,33 @@ struct run {
     struct scene *scene;
     struct camera camera;
     struct octree *octree;
-    struct node_block block; /* what scene and octree look into */
+    struct node_block block;       /* memory of scene and octree */
     struct solver *solver;
-    bool half_linked; /* linking has ended at the memory limit */
-    struct vote vote; /* of the last iteration */
+    bool half_linked;              /* linking ended at the memory limit */
+    struct vote vote;              /* of the last iteration */
     struct stats stats;
     struct progress_view progress; /* on rank 0, unless --quiet */
-    const char *kept; /* path of the last checkpoint made or read, NULL: there is none */
+    const char *kept;              /* path of the last checkpoint made or read, or NULL */
     struct error error;
-    double start;       /* comm_seconds() at the beginning */
-    double first_bound; /* vote.remaining of the first iteration of a pass */
+    double start;                  /* comm_seconds() at the beginning */
+    double first_bound;            /* vote.remaining of the first iteration of a pass */
 };
 
-/* A line on stderr from rank 0, unless --quiet. */
+/* Prints a line on stderr, from rank 0, unless --quiet. */
 #ifdef __GNUC__
 __attribute__((format(printf, 2, 3)))
 #endif
 void run_say(struct run *run, const char *format, ...);
 
-/* Sets the error that says by which signal the run ends here. Returns false. */
+/* Sets the error of a run that a signal stops. Returns false. */
 bool run_stopped(struct run *run, int signal);
 
-/* Collective. All ranks end with the error of one of them, if one has got any: false then.
- * On a rank that is asked to stop, an error comes from that. */
+/* Collective. Gives all ranks the error of one of them, if any has one; false then. On a
+ * rank that was asked to stop, the signal is the error. */
 bool run_agree(struct run *run);
 
-/* Collective. The end of a phase that breaks off when it is asked to: false if it was, on
- * any rank. */
+/* Collective. Ends a phase that can be stopped: false if a rank was asked to stop or has
+ * an error. */
 bool run_goes_on(struct run *run);
 
 #endif

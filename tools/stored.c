@@ -21,7 +21,6 @@ static void put_links(void *context, const struct link *links, int64_t count)
     store_put_links(context, links, count);
 }
 
-/* Collective. */
 bool stored_save(struct run *run, enum store_kind kind, const char *path)
 {
     double start = comm_seconds();
@@ -44,26 +43,25 @@ bool stored_save(struct run *run, enum store_kind kind, const char *path)
     return good;
 }
 
-/* Collective. Deals the links of an open file. */
+/* Collective. Reads the links of an open file and deals them to the ranks. */
 static bool load_links(struct run *run, struct store_reader *reader, const int32_t *order,
                        int64_t count)
 {
-    enum { BLOCK = 65536 };
-    struct link *block = alloc_array(BLOCK, sizeof *block);
+    enum { CHUNK = 65536 };
+    struct link *chunk = alloc_array(CHUNK, sizeof *chunk);
     bool good = true;
-    for (int64_t left = count; left > 0 && good; left -= BLOCK) {
-        int64_t now = left < BLOCK ? left : BLOCK;
+    for (int64_t left = count; left > 0 && good; left -= CHUNK) {
+        int64_t now = left < CHUNK ? left : CHUNK;
         if (run->comm.rank == 0)
-            store_get_links(reader, block, now, &run->error);
+            store_get_links(reader, chunk, now, &run->error);
         good = run_agree(run);
         if (good)
-            links_deal(run->solver, order, block, now);
+            links_deal(run->solver, order, chunk, now);
     }
-    alloc_free(block);
+    alloc_free(chunk);
     return good;
 }
 
-/* Collective, before homes are assigned. */
 bool stored_load(struct run *run, enum store_kind kind, const char *path)
 {
     double start = comm_seconds();
@@ -81,8 +79,8 @@ bool stored_load(struct run *run, enum store_kind kind, const char *path)
         run->kept = path;
     if (good)
         run_say(run, "%s: %lld links after %lld passes, %.1f s", path,
-            (long long)reader.snapshot.link_count, (long long)run->solver->turn.pass,
-            comm_seconds() - run->start);
+                (long long)reader.snapshot.link_count, (long long)run->solver->turn.pass,
+                comm_seconds() - run->start);
     store_close(&reader);
     run->solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
     return good;

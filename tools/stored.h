@@ -5,10 +5,11 @@
 #include "io/run/store.h"
 #include "tools/run.h"
 
-/* Collective. Writes the state of a whole pass. False on an error, on all ranks. */
+/* Collective. Writes the state after a pass. False on an error, on all ranks. */
 bool stored_save(struct run *run, enum store_kind kind, const char *path);
 
-/* Collective, before homes are assigned. Reads it back. False on an error, on all ranks. */
+/* Collective. Reads a state. Pre: homes are not assigned. False on an error, on all
+ * ranks. */
 bool stored_load(struct run *run, enum store_kind kind, const char *path);
 
 #endif

@@ -1,8 +1,8 @@
 /* Form factors as CSV.
  *
- * 17 digits say each double exactly, so that A_i F_ij and A_j F_ji, read back, are the same number
- * but for the rounding of one division. The sum of a row is added from what is printed, in the
- * order in which it is printed. */
+ * 17 digits represent each double exactly, so that A_i F_ij and A_j F_ji, read back, are
+ * equal but for the rounding of one division. The sum of a row adds its printed factors,
+ * in their order. */
 #include "tools/table.h"
 
 #include <string.h>
@@ -26,7 +26,8 @@ static void print_name(const char *name, FILE *file)
     fputc('"', file);
 }
 
-static void print_line(const char *from, const char *to, double area, double factor, FILE *file)
+static void print_line(const char *from, const char *to, double area, double factor,
+                       FILE *file)
 {
     print_name(from, file);
     fputc(',', file);

@@ -6,9 +6,10 @@
 
 #include "tools/viewfactor.h"
 
-/* Prints the header `from,to,area_from,F`, then for each group a line for each group and one for
- * the sum, where `to` is `*`. Order: that of the groups in the file. Areas in square input units.
- * A name with a comma or a quote, or that is `*`, is quoted, with quotes doubled (RFC 4180). */
+/* Prints the header `from,to,area_from,F`, then for each group a line for each group and
+ * one for the sum, whose `to` is `*`. Order: that of the groups in the file. Areas in
+ * square input units. The name `*` and names with a comma or a quote are quoted, with
+ * quotes doubled (RFC 4180). */
 void table_print(const struct viewfactors *factors, FILE *file);
 
 #endif

@@ -3,17 +3,17 @@
  * Each case is a pair of polygons with a known form factor. Four methods compute it:
  *
  *     disk 1     one ray: A A' cos cos' / (pi r^2 + max(A, A')) between the centroids
- *     disk 16    the same between 4 x 4 sub-areas, as rad/formfactor.c has it
- *     polygon    Lambert's formula from the centroids of the 4 children of the smaller patch to all
- *                of the larger one; from 12 points where they are near
+ *     disk 16    the same between 4 x 4 sub-areas, by rad/formfactor.c
+ *     polygon    Lambert's formula from the centroids of the 4 children of the smaller
+ *                patch to the larger one; from 12 points if they are near
  *     exact      the contour integral of tools/contour.c
  *
- * The first three work on triangles: a quadrilateral is two of them and pairs add. What decides how
- * good they are is the distance of the centres in sums of the radii, so each states what it is
- * good for from some such distance on. Outside of that its errors are shown in brackets: there the
- * solver has to split, and they tell why.
+ * The first three work on triangles: a quadrilateral is two of them, and pairs add. Their
+ * error depends on the distance of the centres in sums of the radii, so each states its
+ * error from some distance on. Errors of nearer pairs, which the solver has to split, are
+ * shown in brackets.
  *
- * Everything is scaled into the unit cube, where the solver works too. */
+ * Polygons are scaled into the unit cube, in which the solver works, too. */
 #include "tools/validate.h"
 
 #include <math.h>
@@ -91,21 +91,25 @@ static struct prepared pair_make(const struct pair_case *known)
 
 static double by_one_disk(const struct facet *p, const struct facet *q)
 {
-    struct vec3 d = vec3_sub(triangle_centroid(&q->triangle), triangle_centroid(&p->triangle));
+    struct vec3 d =
+        vec3_sub(triangle_centroid(&q->triangle), triangle_centroid(&p->triangle));
     double rise_p = vec3_dot(p->plane.normal, d), rise_q = -vec3_dot(q->plane.normal, d);
     if (rise_p <= 0.0 || rise_q <= 0.0)
         return 0.0;
     double r2 = vec3_dot(d, d);
-    double g = p->area * q->area * (rise_p * rise_q / r2) / (PI * r2 + fmax(p->area, q->area));
+    double g =
+        p->area * q->area * (rise_p * rise_q / r2) / (PI * r2 + fmax(p->area, q->area));
     return fmin(g, fmin(p->area, q->area));
 }
 
-static double by_solver(const struct facet *p, const struct facet *q, enum form_factor kind)
+static double by_solver(const struct facet *p, const struct facet *q,
+                        enum form_factor kind)
 {
     struct octree *empty = octree_create(NULL, NULL, 0);
     struct octree_counts counts = {0};
     struct visibility visibility = {.blocker = -1};
-    double g = exchange_estimate(p, q, kind, EFFORT_ALL, empty, &visibility, &counts).area;
+    double g =
+        exchange_estimate(p, q, kind, EFFORT_ALL, empty, &visibility, &counts).area;
     octree_destroy(empty);
     return g;
 }
@@ -120,7 +124,7 @@ static double by_polygon(const struct facet *p, const struct facet *q)
     return by_solver(p, q, FORM_FACTOR_POLYGON);
 }
 
-/* What is stated of a method from some distance on: both bounds hold. */
+/* The stated error of a method from some distance on: both bounds hold. */
 struct promise {
     double from;               /* in sums of the radii */
     double relative, absolute; /* errors of F */
@@ -135,11 +139,15 @@ struct estimate {
     struct promise promise[PROMISES]; /* nearest first */
 };
 
-/* Measured, and up to a quarter more; what is stated of `exact` is in tools/contour.h. */
+/* Measured errors and up to a quarter more; that of `exact` is stated in
+ * tools/contour.h. */
 static const struct estimate ESTIMATES[METHODS] = {
     {"disk 1", by_one_disk, 2, {{1.0, 0.3, 1.0}, {3.0, 0.02, 1.0}}},
     {"disk 16", by_disks, 2, {{1.0, 0.08, 1.0}, {3.0, 0.005, 1.0}}},
-    {"polygon", by_polygon, 3, {{0.5, 0.032, 1.0}, {1.0, 0.025, 1.0}, {3.0, 0.0025, 1.0}}},
+    {"polygon",
+     by_polygon,
+     3,
+     {{0.5, 0.032, 1.0}, {1.0, 0.025, 1.0}, {3.0, 0.0025, 1.0}}},
     {"exact", NULL, 1, {{0.0, 1e-6, 1e-9}}},
 };
 
@@ -162,8 +170,8 @@ static double factor_by(const struct estimate *estimate, const struct prepared *
 
 /* One method on one case. */
 struct outcome {
-    double relative; /* error of F; of an F that is 0, the value */
-    double absolute;
+    double relative; /* error of F, relative to F; of F = 0, absolute */
+    double absolute; /* error of F */
 };
 
 static struct outcome outcome_of(const struct estimate *estimate,
@@ -180,14 +188,16 @@ static bool is_kept(const struct promise *promise, const struct prepared *pair,
                                            fabs(outcome->absolute) <= promise->absolute);
 }
 
-/* In per cent where that is readable, else as a power of ten; in brackets if nothing is stated. */
+/* Prints an error in per cent, or as a power of ten if it is small; in brackets if none
+ * is stated. */
 static void print_error(FILE *file, double error, bool stated)
 {
     char number[20], cell[24];
     if (error == 0.0)
         snprintf(number, sizeof number, "0");
     else if (fabs(error) >= 0.0005)
-        snprintf(number, sizeof number, "%+.*f %%", fabs(error) < 1.0 ? 2 : 0, 100.0 * error);
+        snprintf(number, sizeof number, "%+.*f %%", fabs(error) < 1.0 ? 2 : 0,
+                 100.0 * error);
     else
         snprintf(number, sizeof number, "%+.0e", error);
     snprintf(cell, sizeof cell, stated ? "%s " : "(%s)", number);
@@ -197,8 +207,8 @@ static void print_error(FILE *file, double error, bool stated)
 static void print_pair(FILE *file, const struct prepared *pair,
                        const struct outcome *outcomes)
 {
-    fprintf(file, "%s %-48s %11.6g %8.3g", pair->known->id, pair->known->text, pair->known->factor,
-            pair->apart);
+    fprintf(file, "%s %-48s %11.6g %8.3g", pair->known->id, pair->known->text,
+            pair->known->factor, pair->apart);
     bool kept = true;
     for (int m = 0; m < METHODS; m++) {
         const struct estimate *estimate = &ESTIMATES[m];
@@ -217,7 +227,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Median, 90th percentile and worst of all cases that exchange anything. */
+/* Prints median, 90th percentile and worst error of all cases with an exchange. */
 static void print_spread(FILE *file, const struct estimate *estimate,
                          const struct outcome *outcomes)
 {
@@ -235,7 +245,7 @@ static void print_spread(FILE *file, const struct estimate *estimate,
     alloc_free(errors);
 }
 
-/* One line for what is stated, and whether it holds. */
+/* Prints a line for a stated error. Returns true if it holds. */
 static bool print_promise(FILE *file, const struct estimate *estimate,
                           const struct promise *promise, const struct outcome *outcomes)
 {
@@ -266,19 +276,22 @@ static bool print_summary(FILE *file, const struct outcome *outcomes)
     fprintf(file, "\n%-10s %10s  %10s  %10s\n", "all cases", "median", "90 %", "worst");
     for (int m = 0; m < METHODS; m++)
         print_spread(file, &ESTIMATES[m], &outcomes[m]);
-    fprintf(file, "\n%-10s %11s  %10s  %10s  %6s  %10s\n", "stated", "apart from", "cases",
-            "worst", "in", "at most");
+    fprintf(file, "\n%-10s %11s  %10s  %10s  %6s  %10s\n", "stated", "apart from",
+            "cases", "worst", "in", "at most");
     bool kept = true;
     for (int m = 0; m < METHODS; m++)
         for (int k = 0; k < ESTIMATES[m].promises; k++)
-            kept &= print_promise(file, &ESTIMATES[m], &ESTIMATES[m].promise[k], &outcomes[m]);
+            kept &= print_promise(file, &ESTIMATES[m], &ESTIMATES[m].promise[k],
+                                  &outcomes[m]);
     return kept;
 }
 
 static bool print_pairs(FILE *file)
 {
-    struct outcome *outcomes = alloc_array((size_t)(METHODS * PAIR_CASE_COUNT), sizeof *outcomes);
-    fprintf(file, "%-52s %11s %8s", "form factor from one polygon to another", "exact", "apart");
+    struct outcome *outcomes =
+        alloc_array((size_t)(METHODS * PAIR_CASE_COUNT), sizeof *outcomes);
+    fprintf(file, "%-52s %11s %8s", "form factor from one polygon to another", "exact",
+            "apart");
     for (int m = 0; m < METHODS; m++)
         fprintf(file, "  %10s", ESTIMATES[m].name);
     fputs("\n", file);
@@ -295,14 +308,14 @@ static bool print_pairs(FILE *file)
 
 /* --- points --- */
 
-/* What geom/lambert.h promises. */
+/* The error that geom/lambert.h states. */
 static const double POINT_BOUND = 1e-9;
 
 static bool print_points(FILE *file)
 {
     bool good = true;
-    fprintf(file, "\n%-52s %11s %8s  %10s\n", "CIE 171:2006, 5.3: illuminance in lx", "exact",
-            "printed", "polygon");
+    fprintf(file, "\n%-52s %11s %8s  %10s\n", "CIE 171:2006, 5.3: illuminance in lx",
+            "exact", "printed", "polygon");
     for (int i = 0; i < POINT_CASE_COUNT; i++) {
         const struct point_case *known = &POINT_CASES[i];
         double factor = point_polygon_factor(known->x, known->normal, CIE_LIGHT, 4);
@@ -317,8 +330,9 @@ static bool print_points(FILE *file)
 
 bool validate_print(FILE *file)
 {
-    fputs("Relative errors; apart: distance of the centres in sums of the radii; in brackets:\n"
-          "nearer than anything is stated of the method.\n\n", file);
+    fputs("Relative errors; apart: distance of the centres in sums of the radii; "
+          "in brackets:\nnearer than anything is stated of the method.\n\n",
+          file);
     bool pairs = print_pairs(file), points = print_points(file);
     fputs(pairs && points ? "\nall as stated\n" : "\nNOT as stated\n", file);
     return pairs && points;

@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* Prints a table of all cases and methods and a summary. False if a method is worse than what is
- * stated of it, on any case in the range for which it is stated. Takes milliseconds. */
+/* Prints a table of all cases and methods and a summary. False if a method exceeds its
+ * stated error on a case in its stated range. Takes milliseconds. */
 bool validate_print(FILE *file);
 
 #endif

@@ -1,39 +1,40 @@
-/* View factors by the means of the light: facets, quadtrees, proofs of visibility, 16 segments.
+/* View factors by facets, quadtrees, proofs of visibility and 16 segments, as in solving.
  *
  * For a pair of patches, with G their exact exchange without blockers (tools/contour.h):
  *
- *   - an empty shaft is proved open, and G is the answer, whatever the size of the patches;
- *   - one triangle that stops all nine segments between the corners proves that the answer is 0;
- *   - else the pair is in doubt: G times the share that is seen by 16 segments, each weighted by
- *     what it would carry, if G is at most the threshold, and the sum over the four children of
- *     the larger patch if not.
+ *   - an empty shaft is proved open, and the exchange is G, for patches of any size;
+ *   - one triangle that stops all nine segments between the corners proves that it is 0;
+ *   - else the pair is in doubt: if G is at most the threshold, the exchange is G times
+ *     the visible fraction of 16 segments, weighted by the light that they would carry;
+ *     if not, the sum over the four children of the larger patch.
  *
- * So scenes without blockers are exact at any epsilon, and patches shrink along the edges of
- * shadows only.
+ * So scenes without blockers are exact at any epsilon, and patches shrink along the edges
+ * of shadows only.
  *
- * What the threshold has to be: pairs in doubt are wrong by some part of G <= T each, and
- * independently of each other, since the ends of the segments are at places of their own in each
- * pair. Of a whole D in doubt there are about D / T such pairs, so that the error goes with
- * sqrt(T D), and the cost with D / T. Let T be epsilon times the area A of the smaller group. D
- * is a part, smaller the finer the patches are, of F A, with F the factor from the smaller group
- * without blockers. Then the error of the factor is at most c sqrt(epsilon F) (measured in the
- * 17 cases of tests/57-viewfactors.sh, each with several sets of ends, epsilon from 1e-3 to
- * 1e-6: c = 0.03 RMS and 0.13 at worst), and the cost F / epsilon for each pair of groups: as
- * the factors of a row have a bounded sum, all of them cost some 1 / epsilon for each group and
- * not for each pair. A small factor is less exact, relative to itself, than a large one, as 1 /
- * sqrt(F): heat balances weigh it like that. Rejected: T relative to the power in the scene, as
- * for the light, where small groups would be lost; T relative to G itself, where each faint pair
- * costs as much as a strong one.
+ * The threshold T: each pair in doubt has an error of some part of G <= T, independent of
+ * the others, since each has its own random ends of segments. A sum D of exchange in
+ * doubt has about D / T such pairs, so that the error goes with sqrt(T D), and the cost
+ * with D / T. Let T be epsilon times the area A of the smaller group. D is a part,
+ * smaller the finer the patches are, of F A, with F the factor from the smaller group
+ * without blockers. Then the error of the factor is at most c sqrt(epsilon F) (measured
+ * in the 17 cases of tests/57-viewfactors.sh, each with several sets of ends, epsilon
+ * from 1e-3 to 1e-6: c = 0.03 RMS and 0.13 at worst), and the cost F / epsilon for each
+ * pair of groups: as the factors of a row have a bounded sum, they cost about 1 / epsilon
+ * for each group and not for each pair. The relative error of a factor goes with 1 /
+ * sqrt(F), which suits heat balances: small factors count little there. Rejected: T
+ * relative to the power in the scene, as for the light, where small groups would be lost;
+ * T relative to G itself, where each faint pair costs as much as a strong one.
  *
- * Pairs whose segments agree are treated like those whose segments differ, since an answer that is
- * believed only when it is 0 or 1 is not right on average: with twice the threshold for them the
- * time falls by a fifth and the errors are three times as large.
+ * Pairs whose segments agree are split like those whose segments differ: to stop earlier
+ * at fractions of 0 or 1 would bias the mean. With twice the threshold for them the time
+ * falls by a fifth and the errors are three times as large.
  *
- * Why the ends are at random places (hashed from the IDs of the patches, so they are always the
- * same): walls that stand at halves and quarters of each other cast shadows that go exactly
- * through the centres of patches at every level. Ties are then so many, and all of them decided
- * the same way, that the error falls only with the size of the patches; and which way they are
- * decided would depend on the last bit, so that a scene turned around would get other answers. */
+ * The ends of the segments are random (hashed from the IDs of the patches, so always the
+ * same): walls at halves and quarters of each other cast shadows exactly through the
+ * centres of patches at every level. With ends at the centres, all these ties would be
+ * decided the same way, so that the error would fall only with the size of the patches;
+ * and the decision would depend on the last bit, so that a rotated scene would get other
+ * factors. */
 #include "tools/viewfactor.h"
 
 #include <math.h>
@@ -50,17 +51,18 @@ struct piece {
     struct patch_id id;
 };
 
-/* What the parts of a pair of roots have in common. */
+/* The common data of all parts of a pair of roots. */
 struct root_pair {
     struct viewfactors *factors;
-    double threshold;       /* square scene units */
+    double threshold;       /* of an exchange in doubt, square scene units */
     struct flux_unit unit;  /* of the sum */
-    int64_t sum;            /* what has been found */
-    int32_t blocker;        /* the last one */
+    int64_t sum;            /* exchange of the parts added so far */
+    int32_t blocker;        /* the last triangle that stopped a segment */
 };
 
-struct viewfactors *viewfactors_create(const struct scene *scene, const struct octree *octree,
-                                       double epsilon, int max_level)
+struct viewfactors *viewfactors_create(const struct scene *scene,
+                                       const struct octree *octree, double epsilon,
+                                       int max_level)
 {
     struct viewfactors *factors = alloc_array(1, sizeof *factors);
     factors->scene = scene;
@@ -92,7 +94,7 @@ void viewfactors_destroy(struct viewfactors *factors)
 
 /* --- one pair of roots --- */
 
-/* A point of the triangle, anywhere with the same chance; never on its edges. */
+/* Returns a random point of the triangle, uniformly distributed, never on its edges. */
 static struct vec3 point_of(const struct triangle *t, uint64_t bits)
 {
     double u = ((double)(bits >> 32) + 0.5) / 4294967296.0;
@@ -106,8 +108,9 @@ static struct vec3 point_of(const struct triangle *t, uint64_t bits)
     return vec3_add(t->corner[0], vec3_add(along_u, along_v));
 }
 
-/* One point in each quarter. */
-static void points_of(const struct piece *piece, uint64_t seed, struct vec3 points[BUNDLE_ENDS])
+/* Sets one random point in each quarter. */
+static void points_of(const struct piece *piece, uint64_t seed,
+                      struct vec3 points[BUNDLE_ENDS])
 {
     for (int k = 0; k < BUNDLE_ENDS; k++) {
         struct triangle quarter = triangle_child(&piece->facet.triangle, k);
@@ -116,9 +119,11 @@ static void points_of(const struct piece *piece, uint64_t seed, struct vec3 poin
     }
 }
 
-/* What a segment carries, up to a constant: cos cos' / (pi r^2 + A), with A a quarter of the larger
- * area, so that close ends do not outweigh all others. 0 below a horizon. */
-static double weight_of(const struct piece *p, const struct piece *q, struct vec3 x, struct vec3 y)
+/* Returns the light that a segment carries, up to a constant: cos cos' / (pi r^2 + A),
+ * with A a quarter of the larger area, so that close ends do not outweigh all others. 0
+ * below a horizon. */
+static double weight_of(const struct piece *p, const struct piece *q, struct vec3 x,
+                        struct vec3 y)
 {
     struct vec3 d = vec3_sub(y, x);
     double rise_p = vec3_dot(p->facet.plane.normal, d);
@@ -129,13 +134,14 @@ static double weight_of(const struct piece *p, const struct piece *q, struct vec
     return rise_p * rise_q / r2 / (PI * r2 + 0.25 * fmax(p->facet.area, q->facet.area));
 }
 
-/* The share of 16 segments that arrives, 0 to 1 and exactly that where all agree; `otherwise` if
- * none of them faces both patches. */
-static double share_seen(struct root_pair *pair, const struct piece *p,
+/* Returns the visible fraction of 16 segments, 0 to 1, and exactly 0 or 1 if all agree;
+ * `otherwise` if none of them faces both patches. */
+static double fraction_seen(struct root_pair *pair, const struct piece *p,
                          const struct piece *q, double otherwise)
 {
     struct bundle bundle = {.own = {p->facet.input, q->facet.input}};
-    uint64_t seed = hash_finish(hash_mix(id_number(p->id)) + 3 * hash_mix(id_number(q->id)));
+    uint64_t seed =
+        hash_finish(hash_mix(id_number(p->id)) + 3 * hash_mix(id_number(q->id)));
     points_of(p, seed, bundle.from);
     points_of(q, ~seed, bundle.to);
     double weights[BUNDLE_RAYS], all = 0.0, seen = 0.0;
@@ -164,8 +170,8 @@ static struct piece piece_child(const struct piece *piece, int child)
     return part;
 }
 
-/* The larger one; areas that differ by rounding are the same, lest a scene that is turned around
- * gets other patches. -1 if neither may be split. */
+/* Returns the side of the larger patch, 0 or 1, or -1 if neither may be split. Areas that
+ * differ by rounding count as equal, lest a rotated scene gets other patches. */
 static int side_to_split(const struct root_pair *pair, const struct piece *p,
                          const struct piece *q)
 {
@@ -176,17 +182,17 @@ static int side_to_split(const struct root_pair *pair, const struct piece *p,
 }
 
 static bool is_settled(struct root_pair *pair, const struct piece *p,
-                       const struct piece *q, double share)
+                       const struct piece *q, double fraction)
 {
     const struct octree *octree = pair->factors->octree;
     struct octree_counts *counts = &pair->factors->counts;
-    return share == 0.0   ? facets_are_walled_off(&p->facet, &q->facet, octree, counts)
-           : share == 1.0 ? facets_are_open(&p->facet, &q->facet, octree, counts)
+    return fraction == 0.0   ? facets_are_walled_off(&p->facet, &q->facet, octree, counts)
+           : fraction == 1.0 ? facets_are_open(&p->facet, &q->facet, octree, counts)
                           : false;
 }
 
-/* Adds the exchange of p and q. `otherwise`: the share that is seen of the pair that this one is a
- * part of. */
+/* Adds the exchange of p and q. `otherwise`: the visible fraction of their parents'
+ * pair. */
 static void add_pair(struct root_pair *pair, const struct piece *p, const struct piece *q,
                      double otherwise)
 {
@@ -195,16 +201,16 @@ static void add_pair(struct root_pair *pair, const struct piece *p, const struct
     double exchange = triangle_exchange(&p->facet.triangle, &q->facet.triangle);
     if (!(exchange > 0.0))
         return;
-    double share = share_seen(pair, p, q, otherwise);
+    double fraction = fraction_seen(pair, p, q, otherwise);
     int side = exchange <= pair->threshold ? -1 : side_to_split(pair, p, q);
-    if (side < 0 || is_settled(pair, p, q, share)) {
-        pair->sum += flux_from_watts(pair->unit, share * exchange);
+    if (side < 0 || is_settled(pair, p, q, fraction)) {
+        pair->sum += flux_from_watts(pair->unit, fraction * exchange);
         pair->factors->links++;
         return;
     }
     for (int k = 0; k < 4; k++) {
         struct piece part = piece_child(side == 0 ? p : q, k);
-        add_pair(pair, side == 0 ? &part : p, side == 0 ? q : &part, share);
+        add_pair(pair, side == 0 ? &part : p, side == 0 ? q : &part, fraction);
     }
 }
 
@@ -216,8 +222,9 @@ static int64_t place_of(const struct viewfactors *factors, int32_t i, int32_t j)
     return row * factors->count - row * (row - 1) / 2 + (column - row);
 }
 
-/* G_ij is a sum over pairs of roots of what is at most the area of the smaller one: at most
- * n_j A_i and n_i A_j, with n the numbers of roots. Twice that leaves room for rounding. */
+/* Returns the unit of G_ij, a sum over pairs of roots with at most the area of the
+ * smaller root each: at most n_j A_i and n_i A_j, with n the numbers of roots. Twice this
+ * bound leaves room for rounding. */
 static struct flux_unit unit_of(const struct viewfactors *factors, int32_t i, int32_t j)
 {
     double of_i = factors->roots[j] * factors->areas[i];
@@ -225,28 +232,33 @@ static struct flux_unit unit_of(const struct viewfactors *factors, int32_t i, in
     return flux_unit_for(2.0 * fmin(of_i, of_j));
 }
 
-void viewfactors_add(struct viewfactors *factors, int32_t p, const struct facet *fp, int32_t q,
-                     const struct facet *fq)
+void viewfactors_add(struct viewfactors *factors, int32_t p, const struct facet *fp,
+                     int32_t q, const struct facet *fq)
 {
-    int32_t i = factors->scene->group_of[fp->input], j = factors->scene->group_of[fq->input];
+    int32_t i = factors->scene->group_of[fp->input],
+            j = factors->scene->group_of[fq->input];
     struct root_pair pair = {
         .factors = factors,
         .threshold = factors->epsilon * fmin(factors->areas[i], factors->areas[j]),
         .unit = unit_of(factors, i, j),
         .blocker = -1,
     };
-    struct piece piece_p = {*fp, id_of_root((uint32_t)p)}, piece_q = {*fq, id_of_root((uint32_t)q)};
+    struct piece piece_p = {*fp, id_of_root((uint32_t)p)},
+                 piece_q = {*fq, id_of_root((uint32_t)q)};
     add_pair(&pair, &piece_p, &piece_q, 1.0);
     factors->sums[place_of(factors, i, j)] += pair.sum;
 }
 
-double viewfactors_exchange(const struct viewfactors *factors, int32_t i, int32_t j)
+/* Returns G_ij by the pairs added so far, square scene units. */
+static double exchange_between(const struct viewfactors *factors, int32_t i, int32_t j)
 {
-    double one_way = flux_to_watts(unit_of(factors, i, j), factors->sums[place_of(factors, i, j)]);
+    double one_way =
+        flux_to_watts(unit_of(factors, i, j), factors->sums[place_of(factors, i, j)]);
     return i == j ? 2.0 * one_way : one_way; /* a pair within a group counts both ways */
 }
 
 double viewfactors_factor(const struct viewfactors *factors, int32_t i, int32_t j)
 {
-    return factors->areas[i] > 0.0 ? viewfactors_exchange(factors, i, j) / factors->areas[i] : 0.0;
+    return factors->areas[i] > 0.0 ? exchange_between(factors, i, j) / factors->areas[i]
+                                   : 0.0;
 }
