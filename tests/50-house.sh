@@ -3,7 +3,7 @@
 
 . tests/tap.sh
 
-# forbidden FOLDER PATTERN: no source in FOLDER includes what matches.
+# forbidden FOLDER PATTERN: no source in FOLDER includes a file that matches.
 forbidden() {
     ! grep -nE "#include \"($2)/" "$1"/*.[ch]
 }

@@ -32,7 +32,7 @@ judge() {
     holds "${2:-1e9} <= $goal" || echo "# $1 $2, goal $goal${3:+: $3}"
 }
 
-# --- what the sources show ---
+# --- figures of the sources ---
 
 source_files() {
     ls phr.c geom/*.[ch] octree/*.[ch] rad/*.[ch] rad/beyond/*.[ch] mpi/*.[ch] \
@@ -59,7 +59,7 @@ while read -r name figure details; do
     judge "$name" "$figure" "$details"
 done <"$work/figures"
 
-# --- what a run of --paper shows: two triangles that face each other, no picture ---
+# --- figures of a run of --paper: two triangles that face each other, no picture ---
 
 here=$BUILD/storeys # kept, so that the next build is short
 flags='-O0 -w -fno-inline --coverage -finstrument-functions -no-pie'

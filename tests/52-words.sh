@@ -11,7 +11,7 @@ check "and 79 columns" [ -z "$(grep -E '^.{80}' "$work/help")" ]
 check "and shows two examples" \
     [ "$(sed '1,/Examples:/d' "$work/help" | grep -cE '^  (mpiexec .*)?phr ')" -eq 2 ]
 
-# same_lines A B: the files are alike; what is different is shown.
+# same_lines A B: the files are alike; differing lines are shown.
 same_lines() {
     diff "$1" "$2" >"$work/diff" && return
     sed 's/^/# /' "$work/diff"
@@ -20,7 +20,7 @@ same_lines() {
 
 grep -oE '(^|[^a-zA-Z-])-(o|-[a-z][a-z-]*)' "$work/help" | grep -oE '\-(o|-[a-z-]+)' |
     sort -u >"$work/in-help"
-# What a tagged paragraph of OPTIONS begins with.
+# The first words of a tagged paragraph of OPTIONS.
 sed 's/\\-/-/g' phr.1 | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.TP' |
     sed -n 's/^\(\\fB\|\.B \)\(-[a-z-]*\).*/\2/p' | sort -u >"$work/in-man"
 check "the man page has a paragraph for each option of --help, and no other" \
@@ -71,7 +71,7 @@ if command -v script >/dev/null && script -qec true /dev/null >/dev/null 2>&1; t
         grep -q "$(printf '\r')phr: rendering, [0-9]* %" "$work/terminal"
     check "fits 79 columns" [ -z "$(grep -E '^.{80}' "$work/lines")" ]
     # Between two carriage returns stand a line that is to go, the blanks in its place, or
-    # what stays.
+    # a line that stays.
     check "and is gone when something else is written" awk -v RS='\r' '
         /^phr: [^\n]*%/ { drawn = 1; next }
         drawn && !/^ +$/ { exit bad = 1 }

@@ -12,7 +12,7 @@ check "silently" [ ! -s "$work/errors" ]
 check "and says so in its last line" [ "$(tail -n 1 "$work/table")" = "all as stated" ]
 check "81 pairs" [ "$(grep -cE '^[PLWSGFZE][0-9][0-9] ' "$work/table")" -eq 81 ]
 check "10 points" [ "$(grep -cE '^(wall|floor), [yz] = ' "$work/table")" -eq 10 ]
-check "8 lines of what is stated, each passed" \
+check "8 stated lines, each passed" \
     [ "$(grep -c ' pass$' "$work/table")" -eq 8 ]
 check "nothing fails" [ "$(grep -cE 'FAIL|[+-]nan|[+-]inf' "$work/table")" -eq 0 ]
 
@@ -22,7 +22,7 @@ line='^P01 opposed unit squares, distance 1 +0\.199825 +0\.707 +'
 line=$line'\(\+15\.89 %\) +\(\+2\.08 %\) +-3e-04'
 check "a line to be trusted" grep -qE "$line" "$work/table"
 
-# No scene is read, and what else is asked for does not matter.
+# No scene is read, and further options do not matter.
 "$PHR" --validate "$work/absent.obj" >"$work/again" 2>&1
 check "the same table with a scene" cmp -s "$work/table" "$work/again"
 

@@ -95,8 +95,8 @@ while read -r id exact; do
     check "$id at epsilon 1e-6" near "$(value "$id" p1 p2)" "$exact" 0.001 1e-12
 done <"$work/cases"
 
-# What tools/viewfactor.c says of the error, c sqrt(epsilon F) with the F without
-# blockers, at most 1: c = 0.13 was the worst in 230 runs.
+# The error stated in tools/viewfactor.c, c sqrt(epsilon F) with the F without blockers,
+# at most 1: c = 0.13 was the worst in 230 runs.
 while read -r id exact; do
     for epsilon in 1e-3 1e-4; do
         table "$id" --epsilon $epsilon
@@ -200,11 +200,10 @@ check "the block does not see itself" [ "$(value blocked block block)" = 0 ]
 table blocked --epsilon 1e-6
 check "nearer at epsilon 1e-6" rows_are_one blocked 2e-4
 
-# A block that stands on the floor: what it covers sees nothing, all else sees all there
-# is.
+# A block that stands on the floor: the covered part sees nothing, the rest sees all.
 { box; block 0.3 0.6 | awk '$1 == "v" { $4 -= 0.3 } { print }'; } >"$work/standing.obj"
 table standing
-check "a block on the floor: the row of the floor lacks what is covered" \
+check "a block on the floor: the row of the floor lacks the covered part" \
     near "$(value standing floor '*')" 0.91 1e-3 0
 check "so does that of the block, of which a face is hidden" \
     near "$(value standing block '*')" 0.8333333333333333 1e-9 0
@@ -292,7 +291,7 @@ for scene in cornell blocked V7; do
     done
 done
 
-# --- what is refused ---
+# --- refused options and scenes ---
 
 # refused TEXT ARGUMENTS...: status 2 at once, one line that begins with the text, no
 # table.

@@ -86,7 +86,7 @@ produce lamps-serial "$work/serial/phr" $cornell --flat --two-sided-lamps
 produce lamps-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided-lamps
 check "and with --flat --two-sided-lamps" same lamps-3 lamps-serial
 
-# power NAME: what is emitted, W.
+# power NAME: the emitted power, W.
 power() {
     stat_of "$work/$1/s.json" emitted_power
 }
@@ -244,7 +244,7 @@ produce brute "$work/brute/phr" $cornell
 counts="checksum links patches leaves passes iterations rays"
 check "brute force gives the same bytes" same brute serial
 
-# What the comparison is worth: it notices one changed byte.
+# The comparison notices one changed byte.
 cp -r "$work/ranks-1" "$work/planted"
 printf x | dd of="$work/planted/a.ply" bs=1 seek=1000 conv=notrunc 2>/dev/null
 same planted serial >/dev/null 2>&1

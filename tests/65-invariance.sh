@@ -1,4 +1,4 @@
-# What must not matter: the unit of length, and where the scene lies.
+# Two things must not matter: the unit of length, and where the scene lies.
 
 . tests/tap.sh
 

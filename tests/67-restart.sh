@@ -1,7 +1,7 @@
 # Link caches, checkpoints and the memory limit: a file is the same whatever the number of
-# ranks that wrote it; what goes on from it, on any number of ranks, is what an
-# uninterrupted run is; what was made from another scene or with other settings is
-# refused, with the reason.
+# ranks that wrote it; a run that goes on from it, on any number of ranks, equals an
+# uninterrupted one; what was made from another scene or with other settings is refused,
+# with the reason.
 . tests/tap.sh
 
 : "${PHR:=./phr}"

@@ -2,8 +2,8 @@
 # one line on stderr, nothing on stdout, the right exit status, and no file touched.
 # Nothing hangs (10 seconds are the limit of a hang, not of a speed).
 #
-# What the ranks print is taken from each rank itself, so that words of the launcher about
-# an exit status that is not 0 do not count as ours.
+# Output is taken from each rank itself, so that words of the launcher about an exit
+# status that is not 0 do not count as ours.
 . tests/tap.sh
 
 : "${PHR:=./phr}"
@@ -66,7 +66,7 @@ refuse_scene() {
         --stats "$work/new.json"
 }
 
-# scene NAME: the file that stdin becomes is the scene of what follows.
+# scene NAME: the file that stdin becomes is the scene of the following tests.
 scene() {
     scene=$work/$1
     cat >"$scene"
@@ -230,7 +230,7 @@ else
     tap 0 "a full disk # SKIP there is no /dev/full"
 fi
 
-# --- what is no error ---
+# --- no errors ---
 
 help_is_right() {
     [ "$status" -eq 0 ] && [ ! -s "$err" ] && [ "$(grep -c '^usage: phr' "$out")" -eq 1 ]

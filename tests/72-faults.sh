@@ -1,6 +1,6 @@
 # Faults: a rank killed, SIGTERM, a full disk. Each ends without a hang, with an exit
-# status that is not 0, and with no file half written; the last checkpoint is whole, and
-# what goes on from it is what an uninterrupted run is.
+# status that is not 0, and with no file half written; the last checkpoint is whole, and a
+# run from it equals an uninterrupted one.
 #
 # Ranks write down their process numbers, and only those are sent signals.
 . tests/tap.sh
@@ -56,13 +56,13 @@ ranks_are_gone() {
     return 0
 }
 
-# A launcher that was sent a signal may end with 0 whatever its ranks end with: then what
-# phr says counts.
+# A launcher that was sent a signal may end with 0 whatever its ranks end with: then the
+# message of phr counts.
 was_stopped() {
     [ "$status" != hang ] && [ "$(grep -c '^phr: stopped by SIGTERM' "$work/err")" -eq 1 ]
 }
 
-# goes_on CHECKPOINT: what is resumed from it is the whole run.
+# goes_on CHECKPOINT: the run resumed from it equals the whole run.
 goes_on() {
     $MPIEXEC -n 3 "$PHR" $scene --quiet --resume "$work/$1" -o "$work/on.pfm" \
         -o "$work/on.ply" \
@@ -121,7 +121,7 @@ wait_for 1 " split)"
 kill -TERM "$launched"
 finish
 check "SIGTERM without a checkpoint ends it too ($status)" was_stopped
-check "it says what happened, and no more" grep -q '^phr: stopped by SIGTERM$' "$work/err"
+check "it names the signal, and no more" grep -q '^phr: stopped by SIGTERM$' "$work/err"
 check "and nothing is left" nothing_is_left
 
 start 2 scenes/cornell.obj --epsilon 1e-3 --size 1000x1000 --samples 32 \
@@ -137,7 +137,7 @@ check "and no picture" [ ! -e "$work/new.ppm" ]
 check "it goes on from the checkpoint of the solution" \
     grep -q "^phr: stopped by SIGTERM; go on with --resume $work/check\$" "$work/err"
 
-# stopped_early NAME: what runs is stopped before there is anything to go on from.
+# stopped_early NAME: the run is stopped before its first checkpoint.
 stopped_early() {
     kill -TERM "$launched"
     finish
@@ -190,8 +190,8 @@ check "for there is nothing" [ ! -e "$work/early" -a ! -e "$work/new.ppm" ]
 # --- a full disk ---
 
 # A limit of the size of files takes the place of a disk that fills up half way: the
-# checkpoint of the first pass fits, that of the second does not. (What MPI shares between
-# ranks has to fit as well.)
+# checkpoint of the first pass fits, that of the second does not. (MPI's shared memory has
+# to fit as well.)
 $MPIEXEC -n 2 \
     sh -c 'ulimit -f 10000; exec 2>>"$0/full.err"; exec "$@"' "$work" "$PHR" $scene \
     --quiet -o "$work/new.pfm" --checkpoint "$work/full" >/dev/null 2>&1

@@ -47,7 +47,7 @@ try "0.5 0.5 0.5" "1e30 1e30 1e30"
 is_done() { [ "$status" -eq 0 ] && ! grep -qiE 'nan|inf' "$work/stdout"; }
 check "the largest emission has a defined result" is_done
 
-# What is read in vain is said once for each kind.
+# Statements without effect are noted once for each kind.
 cat >"$work/notes.mtl" <<END
 newmtl lamp
 Kd 0 0 0
@@ -90,9 +90,9 @@ are_the_notes() {
     echo "$said" | sed 's/^/# /'
     return 1
 }
-check "what is read in vain is said once for each kind" are_the_notes
+check "statements without effect are noted once for each kind" are_the_notes
 
-# warnings COMMAND...: what it says of the balance of light.
+# warnings COMMAND...: number of warnings about the balance of light.
 warnings() {
     "$@" 2>&1 >"$work/stdout" | grep -c 'absorbed than emitted\|off its balance'
 }

@@ -1,5 +1,5 @@
 # Golden pictures: the cases of tests/golden/cases, made anew on two ranks and compared
-# with tests/golden/NAME.pfm. What is beyond its tolerance stays in $BUILD/golden, with
+# with tests/golden/NAME.pfm. A picture beyond its tolerance stays in $BUILD/golden, with
 # the difference as NAME.diff.ppm, scaled so that its largest sample is white. `make
 # golden` renews the expected ones.
 . tests/tap.sh

@@ -1,6 +1,6 @@
-# imgdiff: the figures it prints, against ones worked out by hand; its exit status; what
-# it writes. Solutions of phr against themselves and against a finer one; and phr reads
-# its own meshes.
+# imgdiff: the figures it prints, against ones worked out by hand; its exit status; its
+# files. Solutions of phr against themselves and against a finer one; and phr reads its
+# own meshes.
 . tests/tap.sh
 
 : "${PHR:=./phr}" "${IMGDIFF:=build/imgdiff}"
@@ -156,7 +156,7 @@ area() {
 check "of the same area" \
     holds "$(area "$work/coarse.ply") / $(area tests/golden/room.obj) - 1 < 1e-6"
 
-# --- what is no error ---
+# --- no errors ---
 
 diff_of --help
 check "--help" [ "$status" -eq 0 ]

@@ -1,6 +1,6 @@
 /* The ray caster by brute force: the interface of octree/octree.h, every triangle tested
- * against every segment in double precision. It defines what is right: linked in place of
- * octree/ it must give the same bytes, only slower (tests/60-ranks.sh). */
+ * against every segment in double precision. It is the truth: linked in place of octree/
+ * it must give the same bytes, only slower (tests/60-ranks.sh). */
 #include "octree/octree.h"
 
 #include <stddef.h>

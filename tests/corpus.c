@@ -1,7 +1,7 @@
 /* Replays the files named as arguments through a fuzz harness (tests/fuzz/fuzz.h): as
  * they are, and small ones cut off at every byte and with every byte changed, in its
- * lowest bit and in all of them. The corpus holds small files that make sense and what
- * fuzzing has found. A harness aborts where its reader breaks a promise; the last file
+ * lowest bit and in all of them. The corpus holds small files that make sense and the
+ * finds of fuzzing. A harness aborts where its reader breaks a promise; the last file
  * named in the log is the culprit.
  *
  * Each variant is a block of its own size, so that sanitizers see reading past its
@@ -36,8 +36,7 @@ static uint8_t *load(const char *path, size_t *size)
     return bytes;
 }
 
-/* Seconds that the harness takes for the first `size` bytes, of which byte `at` is
- * changed. */
+/* Seconds of the harness for the first `size` bytes, byte `at` changed. */
 static double replay(const uint8_t *bytes, size_t size, size_t at, uint8_t change)
 {
     uint8_t *copy =

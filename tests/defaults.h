@@ -12,8 +12,7 @@
 #include "tests/scenes.h"
 #include "tests/solve.h"
 
-/* What phr does when these options, separated by single spaces, stand behind the
- * scene. */
+/* Runs phr with these options, separated by single spaces, behind the scene. */
 static inline struct criterion criterion_parse(const char *words)
 {
     enum { WORDS_MAX = 32, TEXT_MAX = 256 };

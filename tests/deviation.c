@@ -126,8 +126,7 @@ static struct sample sample_of(const struct forest *forest, int32_t patch,
     return sample;
 }
 
-/* The leaves of a patch, which holds these elements, or the patch if it is one
- * element. */
+/* The leaves of a patch of these elements, or the patch if it is one element. */
 static void add_leaves(const struct forest *forest, int32_t patch,
                        const struct element *elements, int64_t count, struct list *list)
 {

@@ -22,7 +22,7 @@ struct node {
     double b;            /* radiosity, W/m^2 */
 };
 
-/* `size` is what the shape is given by: a distance, an angle, a length. */
+/* `size`: a distance, an angle or a length, by the shape. */
 struct shape {
     double (*kernel)(double size, int to, double u, double v, const struct node *from);
     double (*lamp)(double size, double u); /* irradiance of surface 0, W/m^2; or NULL */
@@ -149,7 +149,7 @@ static void add_panel(struct equation *e, int surface, double low, double high)
 }
 
 /* Panels that double in width from `edge`, where another surface is met, to `end`. The
- * last 2^-panels at the edge are left out: what they send matters only as near to it as
+ * last 2^-panels at the edge are left out: their light matters only as near to it as
  * that. */
 static void add_graded(struct equation *e, int surface, double edge, double end,
                        int panels)
@@ -262,9 +262,9 @@ static double equation_mean(const struct equation *e, int surface)
     return sum / area;
 }
 
-/* What `sides` plane sides in place of round ones may cost: they have the area of a
- * circle of radius 1, and the radius of the circle in them is less by (2 pi / sides)^2
- * / 12. What B differs by, relative, if that is the radius. */
+/* The error of `sides` plane sides in place of round ones: they have the area of a
+ * circle of radius 1, and the radius of the circle in them is less by (2 pi / sides)^2 /
+ * 12. The relative difference of B, if that is the radius. */
 static double cost_of_sides(const struct equation *e, int sides)
 {
     struct equation *in =

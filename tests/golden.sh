@@ -1,6 +1,6 @@
 #!/bin/sh
 # golden.sh FOLDER COMMAND...: makes the pictures of tests/golden/cases in FOLDER, with
-# COMMAND as phr: NAME.pfm, or what SUFFIXES names. `make golden` has it renew
+# COMMAND as phr: NAME.pfm, or the suffixes of SUFFIXES. `make golden` has it renew
 # tests/golden itself.
 
 folder=$1

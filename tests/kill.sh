@@ -1,6 +1,6 @@
 # `make check-long`: a rank is killed at forty moments, spread evenly over a run that
 # writes a checkpoint after every pass. Each time the run ends, the checkpoint there is
-# whole (or there is none yet), and what goes on from it is what an uninterrupted run is.
+# whole (or there is none yet), and a run from it equals an uninterrupted one.
 . tests/tap.sh
 
 : "${PHR:=./phr}"

@@ -3,8 +3,8 @@
 # installed here (`make portability`). Each platform builds phr, imgdiff and two unit
 # tests of what reads and writes files, makes the pictures of tests/golden/cases, and
 # compares them by its own imgdiff with the golden ones; .ppm and .ply files have to be
-# those of the first platform. In the table, "identical" is what cmp says of all files.
-# Exit status 1: something is beyond its tolerance.
+# those of the first platform. In the table, "identical" is by cmp, for all files. Exit
+# status 1: a picture is beyond its tolerance.
 #
 # Debian 12 has the platforms as gcc clang musl-tools mpich openmpi-bin libopenmpi-dev
 # gcc-aarch64-linux-gnu gcc-s390x-linux-gnu libc6-dev-arm64-cross libc6-dev-s390x-cross
@@ -26,8 +26,8 @@ tolerance_of() {
     sed -n "s/^$1 \([^ ]*\) .*/\1/p" tests/golden/cases
 }
 
-# compare NAME: one case on the present platform; counts it, and says what is not
-# identical.
+# compare NAME: one case on the present platform; counts it, and names the files that
+# differ.
 compare() {
     cmp -s "$here/golden/$1.pfm" "tests/golden/$1.pfm" && same=$((same + 1))
     for suffix in ppm ply; do

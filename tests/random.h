@@ -1,5 +1,4 @@
-/* Random numbers for tests: xorshift64*, seeded by the test, the same on every
- * machine. */
+/* Random numbers: xorshift64*, seeded by the test, the same on every machine. */
 #ifndef TESTS_RANDOM_H
 #define TESTS_RANDOM_H
 

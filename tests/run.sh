@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs all tests: the unit tests named as arguments, the corpora of the fuzz harnesses,
-# then the scripts tests/[0-9]*.sh in order. Each prints TAP lines; what fails is shown,
+# then the scripts tests/[0-9]*.sh in order. Each prints TAP lines; failures are shown,
 # and the last line is "N passed, N failed". A test that dies or ends without its plan
 # counts as one failure more. Called by `make check`, which sets BUILD, MPIEXEC, MPICC, CC
 # and MAKE.

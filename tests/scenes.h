@@ -182,7 +182,7 @@ struct world {
     struct model model; /* model.forest is the forest */
 };
 
-/* Prepares the scene, owns it, and makes the rest with a criterion that a test may
+/* Prepares and owns the scene, and makes the rest by a criterion that a test may
  * change. */
 static inline struct world world_make(struct scene *scene)
 {

@@ -1,9 +1,9 @@
 /* The truth about a scene, in elements and points.
  *
- * The elements are much finer than what they are to judge and all of about one size, so
- * the mean over any leaf is that of the elements in it. Their means are found by light
- * paths, which serve all elements at once: an element that has the share s of all the
- * light that arrives somewhere is known to 1 / sqrt(s N) by N of them. Light is added
+ * The elements are much finer than the leaves they are to judge and all of about one
+ * size, so the mean over any leaf is that of the elements in it. Their means are found by
+ * light paths, which serve all elements at once: an element that has the share s of all
+ * the light that arrives somewhere is known to 1 / sqrt(s N) by N of them. Light is added
  * in fixed point where it lands, so sums are the same in any order and on any ranks.
  * Rejected: paths from each element on. With as many rays they have some five times the
  * noise in a furnished room of 6,348 triangles.
@@ -12,9 +12,8 @@
  * An element of area a gets them in proportion to sqrt(a), which has the least noise,
  * weighted by area, for as many paths in all. Each point is random in its element: an
  * even grid would meet the leaves' corners or their centres alone. Rejected: more paths
- * for fewer points. In rooms a few points near lamps have most of the error of
- * pictures, and among 4,000 points they are too few to tell it: RMS of 6 to 9 % where
- * all have 6.
+ * for fewer points. In rooms a few points near lamps have most of the error of pictures,
+ * and among 4,000 points they are too few to tell it: RMS of 6 to 9 % where all have 6.
  *
  * Two estimates instead of one of twice the paths: the product of the deviations from
  * both has the square of the error as its expectation, without the variance of the
@@ -247,7 +246,7 @@ void truth_find_point(struct truth *truth, int64_t number,
             (uint64_t)(TRUTH_HALVES * number + half));
 }
 
-/* Rank 0 receives what the others have estimated. */
+/* Rank 0 receives the estimates of the others. */
 static void gather_elements(const struct comm *comm, struct truth *truth)
 {
     int64_t own = 0, arriving, at = 0;

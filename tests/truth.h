@@ -2,8 +2,8 @@
  * estimated twice by rad/beyond/paths.h.
  *
  * Elements are patches of a forest in which each root that reflects is divided evenly.
- * Each holds one point. What is kept is rho H, the radiosity less the emission: that is
- * what a program has to find; E is given. */
+ * Each holds one point. It is rho H, the radiosity less the emission: that is the part
+ * that a program has to find; E is given. */
 #ifndef TESTS_TRUTH_H
 #define TESTS_TRUTH_H
 

@@ -73,7 +73,7 @@ function slope(key,    k, n, x, y, sx, sy, sxx, sxy) {
     return n > 1 ? sprintf("%.2f", (n * sxy - sx * sy) / (n * sxx - sx * sx)) : "-"
 }
 
-# Two digits; a dash for what is not reached.
+# Two digits; a dash for an error not reached.
 function show(x,    unit) {
     if (!(x > 0))
         return "-"

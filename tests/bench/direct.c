@@ -9,7 +9,7 @@
  *     rho H(x) = rho  sum over lamps of  E (F(x, lamp) - hidden(x, lamp)),
  *     hidden(x, lamp) = sum over screens of F(x, lamp behind screen),
  *
- * where F is Lambert's form factor (geom/lambert.h), and what of a lamp is behind a
+ * where F is Lambert's form factor (geom/lambert.h), and the part of a lamp behind a
  * triangle is the lamp cut by the three planes through x and the triangle's edges.
  * Triangles of one plane hide different parts, so nothing is taken away twice.
  *
@@ -37,7 +37,7 @@ struct sector {
     int count;
 };
 
-/* Keeps what of the polygon has dot(normal, y - x) >= 0. */
+/* Keeps the part of the polygon with dot(normal, y - x) >= 0. */
 static struct sector cut(const struct sector *whole, struct vec3 x, struct vec3 normal)
 {
     struct sector rest = {.count = 0};
@@ -55,7 +55,7 @@ static struct sector cut(const struct sector *whole, struct vec3 x, struct vec3 
     return rest;
 }
 
-/* What of the lamp is behind the screen, as seen from x. */
+/* The part of the lamp behind the screen, as seen from x. */
 static struct sector hidden_part(const struct triangle *lamp,
                                  const struct triangle *screen, struct vec3 x)
 {
@@ -191,7 +191,7 @@ static void make_truth(const struct scene *scene, struct truth *truth)
     octree_destroy(octree);
 }
 
-/* --- what the formula holds for --- */
+/* --- scenes of the formula --- */
 
 /* Extends low..high to the heights of a root over the floor's plane. */
 static void extend(const struct plane *floor, const struct triangle *t, double *low,

@@ -2,8 +2,8 @@
 # ranks, at epsilon 1e-3, and the smaller four at 1e-4. Writes docs/growth.csv and, with
 # gnuplot, docs/growth.svg; prints by which power of the triangles links and work grow.
 # Sizes are those that the generator is asked for. OFFICE3= and CLASSROOM= name two-sided
-# scenes that join the table. Memory is the sum of the ranks' peaks; what they share
-# counts for each.
+# scenes that join the table. Memory is the sum of the ranks' peaks; shared memory counts
+# for each.
 set -eu
 : "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${OFFICE3:=}" "${CLASSROOM:=}"
 : "${SIZES:=6350 18510 31933 100000 300000 1000000}" \

@@ -10,7 +10,7 @@
  * seconds of the processor. Rays are made for either beforehand. Embree's begin 1e-5
  * further on, its segments are cut short by 1e-4 at both ends, where they would meet the
  * triangles that they leave; both are asked about segments without the triangles that
- * have the scene on one side. What Embree sees otherwise is counted. */
+ * have the scene on one side. Differences of Embree's answers are counted. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -35,7 +35,7 @@ struct rays {
     bool are_segments;
 };
 
-/* What rays are shot at. */
+/* The target of rays. */
 struct subject {
     const struct scene *scene;
     struct octree *octree;
@@ -258,7 +258,7 @@ static void bench_all(const struct subject *subject, int count, uint64_t seed)
     }
 }
 
-/* The octree, Embree's scenes and what rays are chosen by. */
+/* The octree, Embree's scenes and the choice of rays. */
 static void bench_scene(const struct scene *scene, int count, uint64_t seed)
 {
     struct subject subject = {.scene = scene};

@@ -7,7 +7,7 @@
  * estimation) that finds the same leaves in about the same time: as many paths for each
  * leaf as the seconds allow, and as many for each point where `shown` is measured. Its
  * seconds are those of the leaves, with an octree of its own, on one rank. Its error
- * falls as one over their square root, which tells what as small an error takes it.
+ * falls as one over their square root, which tells its seconds for as small an error.
  *
  * The scene and the reference come first; --two-sided or --two-sided-lamps has to be
  * given where the reference was made with it. Outputs that are asked for are not written.
@@ -21,8 +21,8 @@
  * mean of a root triangle, with the mean of the truth over it; it judges the light that
  * roots exchange, not the mesh. The seconds are those of linking, iterating and the final
  * gather, with the octree: of the processor, on several ranks those until the last is
- * done. `emitters` is what turns the relative RMS, which is that of the reflected light,
- * into one relative to all radiosity, emission included: multiply by it. */
+ * done. `emitters` turns the relative RMS, which is that of the reflected light, into
+ * one relative to all radiosity, emission included: multiply by it. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -47,7 +47,7 @@ static const uint64_t SEEDS = UINT64_C(1) << 40;
 
 struct measure {
     struct comm comm;
-    struct node_block block; /* what the scene looks into */
+    struct node_block block; /* the memory of the scene */
     struct options options;
     const char *reference;
     bool header, trace;
@@ -77,7 +77,7 @@ static struct shading *shade(const struct measure *measure, const struct solutio
 
 /* An answer, by phr or by the path tracer. */
 struct measured {
-    struct stats stats; /* what does not apply is 0 */
+    struct stats stats; /* 0 where one does not apply */
     double seconds;
     int64_t leaves; /* those that reflect */
     struct deviation leaf, root, shown;
@@ -246,7 +246,7 @@ static int take_own(struct measure *measure, int argc, char **argv)
     return kept;
 }
 
-/* Collective. The prepared scene on all ranks, the truth on rank 0; NULL on all after an
+/* Collective. The prepared scene on all ranks, the truth on rank 0; NULL after an
  * error. */
 static struct scene *read_all(struct measure *measure)
 {

@@ -15,8 +15,7 @@ static double seconds(void)
     return (double)clock() / CLOCKS_PER_SEC;
 }
 
-/* Number of bytes in the file; `*lines` is there so that the bytes have to be looked
- * at. */
+/* Number of bytes in the file; `*lines` makes it look at them. */
 static long count_bytes(const char *path, long *lines)
 {
     FILE *file = fopen(path, "rb");

@@ -14,8 +14,8 @@
  * that blocker first, and both leave out the triangles that have the whole scene on one
  * side. Programs take turns, five times, and the fastest turn counts, in seconds of the
  * processor. Embree's rays are made beforehand, in float, and cut short by 1e-4 at both
- * ends, where it would meet the triangles they lie on; what it sees otherwise is counted
- * and is near edges or in those cuts. */
+ * ends, where it would meet the triangles they lie on; differences are counted and are
+ * near edges or in those cuts. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -121,8 +121,7 @@ static void add_family(struct load *load, int *filled, const struct facet *p,
     }
 }
 
-/* Fills the load; cuts it short where pairs that face each other are too rare to be
- * found. */
+/* Fills the load; cuts it short where facing pairs are too rare to be found. */
 static void fill_load(const struct scene *scene, struct load *load, struct random *random)
 {
     int filled = 0;
@@ -186,8 +185,7 @@ static void set_rays(const struct bundle *bundle, struct RTCRay16 *rays, int *va
     }
 }
 
-/* Takes the rays of the bundle that the triangle blocks out of `valid` (Moeller,
- * Trumbore). */
+/* Takes the rays that the triangle blocks out of `valid` (Moeller, Trumbore). */
 static void mask_blocked(const struct scene *scene, int32_t blocker,
                          const struct RTCRay16 *rays, int *valid)
 {
@@ -236,8 +234,8 @@ static int any_valid(const int *valid)
 }
 
 /* Starts with the blocker that the octree has found for the bundle before, as the octree
- * does. What is left goes through Embree's best mode here, 16-wide and coherent, or one
- * by one. */
+ * does. The rest goes through Embree's best mode here, 16-wide and coherent, or one by
+ * one. */
 static double run_embree(RTCScene embree, const struct scene *scene,
                          const struct load *load, struct embree_load *ready, bool packet)
 {

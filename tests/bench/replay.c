@@ -7,9 +7,9 @@
  * tree of a pass. It is then dealt to so many ranks by the functions that phr deals by
  * (mpi/balance.h), without a memory limit.
  *
- * What the replay does not know is where the links live that a later pass begins with:
- * they are spread evenly, in turn. One line for each number of ranks: ranks, work of all,
- * sum over levels of the slowest rank's and of the most bytes that a rank sends. */
+ * The replay does not know where the first links of a later pass live: they are spread
+ * evenly, in turn. One line for each number of ranks: ranks, work of all, sum over levels
+ * of the slowest rank's and of the most bytes that a rank sends. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,8 +44,7 @@ struct totals {
 
 /* --- recording --- */
 
-/* The method that is recorded; its functions are called by those below, which take their
- * place. */
+/* The recorded method; the functions below call its functions in their place. */
 static struct method recorded;
 static struct record *record_of_run;
 

@@ -1,8 +1,8 @@
 # make scaling: where the seconds of a run go on 1, 32 and 1,024 ranks, line by line.
 #
 # Runs on one rank tell the seconds of each phase, the least of them counting. A run of 32
-# processes tells how much of the counted work the slowest rank has in each phase, and
-# what is sent; it may share a few cores, since counts do not depend on the clock. For
+# processes tells how much of the counted work the slowest rank has in each phase, and the
+# bytes sent; it may share a few cores, since counts do not depend on the clock. For
 # 1,024 ranks, build/.../replay deals the links that a run splits (tests/bench/replay.c);
 # its answer for 32 is printed beside that of the run. Seconds on P ranks: those on one
 # rank times the slowest rank's share of the work, and messages by the prices below. A

@@ -1,9 +1,9 @@
-/* Fuzzing: what the harnesses tests/fuzz/FORMAT.c share.
+/* Fuzzing: the common part of the harnesses tests/fuzz/FORMAT.c.
  *
  * A harness is one function, the entry of libFuzzer and of AFL++'s persistent mode, that
- * gives the bytes to the reader of its format and checks what every reader promises: it
- * succeeds, or fails with one line of text and the exit code for bad input, and leaves no
- * memory behind. What breaks a promise aborts. `make fuzz` links it with libFuzzer;
+ * gives the bytes to the reader of its format and checks the promises of every reader:
+ * it succeeds, or fails with one line of text and the exit code for bad input, and leaves
+ * no memory behind. A broken promise aborts. `make fuzz` links it with libFuzzer;
  * tests/corpus.c replays files. */
 #ifndef TESTS_FUZZ_FUZZ_H
 #define TESTS_FUZZ_FUZZ_H
@@ -27,8 +27,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
          ? (void)0 \
          : (fprintf(stderr, "%s:%d: broken: %s\n", __FILE__, __LINE__, #kept), abort()))
 
-/* For the end of a harness that has freed all it got: `good` is what the reader
- * returned. */
+/* Ends a harness that has freed all it got; `good`: the reader's answer. */
 static inline void fuzz_verdict(bool good, const struct error *error)
 {
     FUZZ_PROMISE(good == (error->code == EXIT_DONE));

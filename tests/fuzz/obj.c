@@ -1,4 +1,4 @@
-/* Fuzzing OBJ: reading, and the preparation of what was read. */
+/* Fuzzing OBJ: reading, and the preparation of the scene. */
 #include "io/scene/obj.h"
 
 #include "tests/fuzz/fuzz.h"

@@ -1,5 +1,4 @@
-/* Fuzzing PLY: reading a scene, and the preparation of what was read; reading a
- * solution. */
+/* Fuzzing PLY: reading and preparing a scene; reading a solution. */
 #include "io/scene/ply.h"
 
 #include "tests/fuzz/fuzz.h"

@@ -1,10 +1,10 @@
-/* Fuzzing stored snapshot: what the harnesses of its two kinds share.
+/* Fuzzing stored snapshots: the common part of both harnesses.
  *
  * A checksum would stop a fuzzer at the door, so the right one is put at the end of every
- * input first. What the reader takes is restored, refined and solved for one iteration:
- * it promises to let nothing in that the method cannot live with. The scene is two
- * triangles that face each other, a lamp and a wall; with a tree above the roots, a box
- * with a lamp in it. */
+ * input first. A snapshot that the reader takes is restored, refined and solved for one
+ * iteration: it promises to let nothing in that the method cannot live with. The scene is
+ * two triangles that face each other, a lamp and a wall; with a tree above the roots, a
+ * box with a lamp in it. */
 #ifndef TESTS_FUZZ_STORE_H
 #define TESTS_FUZZ_STORE_H
 
@@ -58,8 +58,7 @@ static inline struct criterion store_criterion_tree(void)
     return criterion;
 }
 
-/* All links of an open file, then a pass. Returns false where the reader refuses a
- * link. */
+/* All links of an open file, then a pass. Returns false if a link is refused. */
 static inline bool store_continue(struct store_reader *reader, struct solver *solver,
                                   struct error *error)
 {

@@ -1,5 +1,5 @@
-/* Tests of geom/alloc.h: blocks are zeroed and never NULL, growth keeps what is there and
- * is amortised, the balance counts blocks, and what cannot be had calls the handler. */
+/* Tests of geom/alloc.h: blocks are zeroed and never NULL, growth keeps the items and is
+ * amortised, the balance counts blocks, and a request that fails calls the handler. */
 #include "geom/alloc.h"
 
 #include <setjmp.h>
@@ -21,7 +21,7 @@ static void test_zeroing(void)
     for (size_t count = 1; count < 5000; count += 7) {
         unsigned char *block = alloc_array(count, 3);
         zero = zero && is_zero(block, 3 * count);
-        memset(block, 0xA5, 3 * count); /* what the next block may get back */
+        memset(block, 0xA5, 3 * count); /* the next block may be this one */
         alloc_free(block);
     }
     tap_ok(zero, "arrays are zeroed");
@@ -69,7 +69,7 @@ static void test_resize(void)
     bool kept = true;
     for (int32_t i = 0; i < 7; i++)
         kept = kept && block[i] == i * i;
-    tap_ok(kept, "resizing keeps what both sizes have");
+    tap_ok(kept, "resizing keeps the items that both sizes have");
     alloc_free(block);
 }
 
@@ -90,13 +90,12 @@ static void test_reserve(void)
     for (int64_t i = 0; i < 1000000; i++)
         kept = kept && items[i] == 3 * i;
     tap_ok(kept, "a million numbers appended one by one");
-    /* log(1e6) / log(1.5) = 34 growths by half; the constant beside the half saves a
-     * few. */
+    /* log(1e6) / log(1.5) = 34 growths by half; the constant saves a few. */
     tap_ok(growths <= 35, "in %d growths, so at constant cost each", (int)growths);
     tap_ok(largest_jump <= 16, "room for no more than half as much again and 16");
     int64_t before = capacity;
     items = alloc_reserve(items, &capacity, before, sizeof *items);
-    tap_ok(capacity == before, "what there is room for does not grow");
+    tap_ok(capacity == before, "an array with room does not grow");
     items = alloc_reserve(items, &capacity, 5 * before, sizeof *items);
     tap_ok(capacity == 5 * before, "a large need is met exactly");
     alloc_free(items);

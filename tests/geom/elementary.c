@@ -11,10 +11,10 @@
 
 enum { ARGUMENTS = 1000000 };
 
-/* What elementary.h promises, and a unit in the last place (2.2e-16 at most) for libm. */
+/* The bound of elementary.h, and a unit in the last place (2.2e-16 at most) for libm. */
 static const double TOLERANCE = 4.5e-16 + 2.3e-16;
 
-/* Relative, with the smallest normal number as the least unit: below it digits are
+/* Relative; the least unit is the smallest normal number, below which digits are
  * lost. */
 static double error_of(double value, double right)
 {

@@ -8,8 +8,7 @@
 
 enum { PAIRS = 20000, SEGMENTS = 40, SCENES = 200, TRIANGLES = 30 };
 
-/* Whether the triangle blocks some of the segments from front to front, chosen at
- * random. */
+/* Whether the triangle blocks one of some random segments from front to front. */
 static bool blocks_some(struct random *random, const struct triangle *p,
                         const struct plane *plane_p, const struct triangle *q,
                         const struct plane *plane_q, const struct triangle *t)
@@ -47,11 +46,11 @@ static void test_proof(void)
         wrong += blocks && !enters;
     }
     tap_ok(tried > PAIRS / 2 && blocked > 100 && wrong == 0,
-           "what does not enter blocks nothing: %d triples, %d enter, %d block", tried,
-           entered, blocked);
+           "triangles outside the hull block nothing: %d triples, %d enter, %d block",
+           tried, entered, blocked);
     /* A triangle may enter beside all 40 segments, but not often: if the hull were the
      * box around both, ten times as many would. */
-    tap_ok(entered < 2 * blocked + 100, "what enters blocks something, most often");
+    tap_ok(entered < 2 * blocked + 100, "most triangles that enter block a segment");
 }
 
 static const struct triangle FLOOR = {{{0, 0, 0}, {0.2, 0, 0}, {0, 0.2, 0}}};
@@ -74,18 +73,18 @@ static void test_places(void)
            "so does a wall all across, with no corner inside");
     tap_ok(enters((struct triangle){
                {{0.15, 0.15, 0.1}, {0.09, 0.09, 0.1}, {0.15, 0.15, 0.12}}}),
-           "and what pokes in");
+           "and one that pokes in");
     tap_ok(!enters((struct triangle){
                {{0.15, 0.15, 0.1}, {0.11, 0.11, 0.1}, {0.15, 0.15, 0.12}}}),
-           "what ends before does not");
+           "one that ends before does not");
     tap_ok(!enters((struct triangle){{{0, 0, 0.1}, {0, 0.2, 0.1}, {0, 0.1, 0.15}}}) &&
                !enters((struct triangle){{{-0.1, 0, 0}, {0.3, 0, 0}, {0.1, 0, 0.2}}}),
-           "nor what lies in a side");
+           "nor one in a side");
     tap_ok(!enters((struct triangle){{{-1, -1, 0}, {3, -1, 0}, {-1, 3, 0}}}) &&
                !enters((struct triangle){{{-1, -1, -0.1}, {3, -1, -0.1}, {-1, 3, 0}}}),
-           "nor what lies in the plane of one, or behind");
+           "nor one in the plane of a side, or behind");
     tap_ok(!enters((struct triangle){{{0.21, -1, 0.1}, {0.21, 1, 0}, {0.21, 1, 0.2}}}),
-           "nor what stands beside");
+           "nor one that stands beside");
 }
 
 static bool faces(const struct plane *plane, const struct triangle *t)
@@ -130,7 +129,7 @@ static void test_octree(void)
         soup_free(&soup);
     }
     tap_ok(differ == 0 && empty > 100 && full > 100,
-           "the octree finds what brute force finds: %d empty shafts, %d others", empty,
+           "the octree agrees with brute force: %d empty shafts, %d others", empty,
            full);
 }
 

@@ -1,13 +1,12 @@
 /* Tests of geom/lambert.h: closed forms for rectangles, the illuminance of a room from
- * the CIE's test cases, and what holds for all polygons: what surrounds a point covers 1,
- * parts add up, the horizon cuts, moving, turning and scaling change nothing. */
+ * the CIE's test cases, and laws of all polygons: those around a point cover 1, parts
+ * add up, the horizon cuts, moving, turning and scaling change nothing. */
 #include "geom/lambert.h"
 
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
-/* Terms of order 1, some ten of them, each with an error of two units in the last
- * place. */
+/* Some ten terms of order 1, each with an error of two units in the last place. */
 static const double ROUNDING = 2e-15;
 
 static struct vec3 point(double x, double y, double z)
@@ -35,8 +34,7 @@ static double rectangle_factor(struct vec3 x, struct vec3 normal, struct vec3 o,
 
 /* --- closed forms --- */
 
-/* Howell B-3: a rectangle a x b parallel to the horizon at height h, a corner above the
- * point. */
+/* Howell B-3: a rectangle a x b, parallel to the horizon, a corner h above the point. */
 static double above_corner(double a, double b, double h)
 {
     double x = hypot(a, h), y = hypot(b, h);
@@ -66,7 +64,7 @@ static void test_closed_forms(void)
         worst[0] = fmax(worst[0], fabs(above - right[0]) / (right[0] + 1e-6));
         worst[1] = fmax(worst[1], fabs(ahead - right[1]) / (right[1] + 1e-6));
     }
-    /* What lambert.h promises; the closed form of the wall cancels as well, to 1e-16. */
+    /* The bound of lambert.h; the closed form of the wall cancels as well, to 1e-16. */
     tap_ok(worst[0] <= 1e-9, "343 rectangles above a corner: off by %.1e", worst[0]);
     tap_ok(worst[1] <= 1e-9, "343 walls ahead: off by %.1e", worst[1]);
 }
@@ -95,7 +93,7 @@ static void test_cie(void)
     tap_ok(worst < 6e-7, "CIE 171 5.3, ten illuminances: off by %.1e lx", worst);
 }
 
-/* --- what holds for all triangles --- */
+/* --- laws of all triangles --- */
 
 static struct triangle reversed(struct triangle t)
 {
@@ -238,7 +236,7 @@ static void test_horizon(void)
                                         point(0, 0, 1.0 + below));
         worst = fmax(worst, fabs(whole - wall_ahead(2, 1, d)));
     }
-    tap_ok(worst <= ROUNDING, "what is below the horizon does not count (off by %.1e)",
+    tap_ok(worst <= ROUNDING, "a polygon below the horizon does not count (off by %.1e)",
            worst);
     tap_ok(rectangle_factor(o, up, point(0, 1, -2), point(2, 0, 0), point(0, 0, 2)) ==
                0.0,

@@ -1,4 +1,4 @@
-/* Tests of geom/outlook.h: what is left over of a triangle, by its factor and by
+/* Tests of geom/outlook.h: the visible part of a triangle, by its factor and by
  * segments. */
 #include "geom/outlook.h"
 
@@ -25,7 +25,7 @@ static struct vec3 at(double x, double y, double z)
 }
 
 /* A screen of eight triangles with a hole of 2 cm by 10 cm, halfway to a lamp of 9 m: the
- * factor of what is left over is that of the hole. */
+ * factor of the visible part is that of the hole. */
 static void test_hole(void)
 {
     static const double EDGE[4] = {-4.0, -0.01, 0.01, 4.0},
@@ -72,8 +72,8 @@ static bool is_left(const struct outlook *outlook, struct vec3 y)
     return false;
 }
 
-/* Random blockers, some of which are met by no segment, until pieces are too many: what
- * is blocked may be left over then, but nothing that is not may be missing. */
+/* Random blockers, some of which are met by no segment, until pieces are too many: the
+ * part that is blocked may be left over then, but nothing that is not may be missing. */
 static void test_random(int blockers, bool exact)
 {
     const struct triangle lamp = {{{0, 0, 1}, {0, 1, 1}, {1, 0, 1}}};

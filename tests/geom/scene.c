@@ -189,8 +189,8 @@ static void test_twins(void)
     soup_free(&soup);
 }
 
-/* True if the back of every lamp is black, without a root, and each other back is a
- * twin's front. */
+/* True if lamps have black backs, without a root, and other backs are fronts of
+ * twins. */
 static bool lamps_are_single(const struct scene *scene)
 {
     bool right = true;
@@ -262,7 +262,7 @@ static void test_power(void)
            "the power in input units, over roots and bands");
     tap_ok(!material_is_dark(&scene->materials[0]) &&
                material_is_dark(&scene->materials[1]),
-           "dark is what neither reflects nor emits");
+           "dark roots neither reflect nor emit");
     scene_destroy(scene);
     soup_free(&soup);
 }
@@ -283,7 +283,8 @@ static void test_clamping(void)
     tap_ok(first[0] == 0.999 && first[1] == 0.5 && first[2] == 0.999 &&
                scene->materials[2].reflectance.band[2] == 0.999,
            "bands of 1 or more become 0.999, the others stay");
-    tap_ok(scene->materials[1].reflectance.band[0] == 0.9995, "what is below 1 stays");
+    tap_ok(scene->materials[1].reflectance.band[0] == 0.9995,
+           "a reflectance below 1 stays");
     scene_destroy(scene);
     soup_free(&soup);
 }

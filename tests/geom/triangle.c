@@ -1,5 +1,5 @@
 /* Tests of geom/triangle.h: areas, planes, subdivision to equal bits along shared edges,
- * what counts as degenerate, and the segment test: nothing slips through the edges and
+ * degenerate triangles, and the segment test: nothing slips through the edges and
  * vertices of a closed mesh, a line in the plane misses, and an end point in the plane is
  * not blocked. */
 #include "geom/triangle.h"
@@ -56,8 +56,8 @@ static void test_planes(void)
     /* One division, one square root and three products. */
     tap_ok(longest <= 1e-15, "normals have unit length");
     /* Points round by 1e-16; an area of 1e-4 with edges up to 0.35 tilts the normal by
-     * 6e-15 at the worst, over 0.2: what the program calls rounding is a bound with room
-     * to spare. */
+     * 6e-15 at the worst, over 0.2: the program's bound of rounding has room to
+     * spare. */
     tap_ok(furthest <= GEOM_ROUNDING, "corners lie in their plane within GEOM_ROUNDING");
 }
 

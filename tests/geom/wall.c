@@ -1,4 +1,5 @@
-/* Tests of geom/wall.h: with which triangles walls go on, and what they block. */
+/* Tests of geom/wall.h: how walls go on from triangle to triangle, and the pairs that
+ * they block. */
 #include "geom/wall.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
-/* Tests of io/scene/camera.h. Proved are: what a view file means and which line of it is
- * wrong; that rays make the angles that trigonometry says; and that a camera that frames
- * a scene has all of it in its picture, and little more. */
+/* Tests of io/scene/camera.h. Proved are: the meaning of a view file and the number of a
+ * wrong line; that rays make the angles that trigonometry says; and that a camera that
+ * frames a scene has all of it in its picture, and little more. */
 #include "io/scene/camera.h"
 
 #include <math.h>
@@ -99,7 +99,7 @@ static void test_bad_values(void)
     }
 }
 
-/* What is wrong with the file as a whole has no line. */
+/* Errors of the file as a whole name no line. */
 static void test_bad_views(void)
 {
     check_refused("", VIEW ": no 'eye' line");
@@ -113,7 +113,7 @@ static void test_bad_views(void)
     check_refused(PLACE "\001\n", VIEW ": not a text file");
 }
 
-/* Reads `size` bytes as a view file. True if that ends well or in one line that names the
+/* Reads the bytes as a view file. True at success, or at one line that names the
  * file. */
 static bool ends_well(const char *bytes, size_t size)
 {

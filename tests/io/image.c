@@ -1,5 +1,5 @@
 /* Tests of io/picture/image.h: one picture of 2 x 3 pixels, byte for byte as the two
- * formats say; the reader on what other programs write, and on what nobody should.
+ * formats say; the reader on pictures of other programs, and on bad ones.
  *
  *      top    -> 1, 2, 4          0.5, 0.25, 0
  *      middle -> 0, 0, 0          -1, 100, 0.125
@@ -34,8 +34,7 @@ static bool file_is(const char *path, const char *header, const unsigned char *b
            memcmp(found + length, bytes, count) == 0;
 }
 
-/* A power of two 2^k is (k + 127) << 23 as a float: its two last bytes tell all. Bottom
- * first. */
+/* A power of two 2^k is (k + 127) << 23 as a float: two bytes tell all. Bottom first. */
 static void test_pfm(void)
 {
     static const unsigned char bytes[] = {
@@ -117,13 +116,13 @@ static void test_back(void)
                  image_read(&found, &kind, PFM, &error) && kind == IMAGE_PFM &&
                  found.width == 2 && found.height == 3 &&
                  memcmp(found.rgb, pixels, sizeof pixels) == 0;
-    tap_ok(right, "what is written as PFM reads back");
+    tap_ok(right, "a picture written as PFM reads back");
     alloc_free(found.rgb);
     struct tone tone = tone_make(1.0);
     right = ppm_write(&picture, &tone, PPM, &error) &&
             image_read(&found, &kind, PPM, &error) && kind == IMAGE_PPM &&
             found.rgb[3] == (float)(188 / 255.0) && found.rgb[0] == 1.0f;
-    tap_ok(right, "what is written as PPM reads back, in codes");
+    tap_ok(right, "a picture written as PPM reads back, in codes");
     alloc_free(found.rgb);
     found.rgb = NULL;
 }

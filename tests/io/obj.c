@@ -70,8 +70,7 @@ static bool corner_is(const struct scene *scene, int32_t triangle, int k, double
     return corner.x == x && corner.y == y && corner.z == z;
 }
 
-/* Whether the text is one triangle (0,0,0), (1,0,0), (1,1,0), or several, all like
- * that. */
+/* Whether the text is one or more triangles, each (0,0,0), (1,0,0), (1,1,0). */
 static void check_triangle(const char *name, const char *text)
 {
     struct scene *scene = read_scene(text);
@@ -161,7 +160,7 @@ static void test_vertices(void)
         read_scene("v 1e3 -.5 2.\nv +4 5 6 1.0\nv 7 8 9 0.1 .2 .3 x\nf 1 2 3\n");
     tap_ok(scene && corner_is(scene, 0, 0, 1000, -0.5, 2) &&
                corner_is(scene, 0, 1, 4, 5, 6) && corner_is(scene, 0, 2, 7, 8, 9),
-           "coordinates, with what stands behind them passed over");
+           "coordinates; more numbers behind them are passed over");
     scene_destroy(scene);
     check_triangle("unknown keywords",
                    "vt 0 0\nvn x y z\ns off\nl 1 2\np 1\no thing\ng a b\nfo\n"

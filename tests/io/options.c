@@ -15,8 +15,7 @@ enum { ARGUMENTS_MAX = 12, TEXT_MAX = 100000 };
 
 static struct error error;
 
-/* Parses a command line that is written with blanks between its words ("_" is an empty
- * one). */
+/* Parses a command line; blanks separate its words ("_" is an empty one). */
 static bool parse(const char *line, struct options *options)
 {
     static char words[200]; /* the options keep pointers into it */
@@ -243,7 +242,7 @@ static void test_paper(void)
     tap_ok(parse("--paper --solver cg a.obj", &options) &&
                options.criterion.solver == SOLVER_CG &&
                options.criterion.oracle == ORACLE_BF,
-           "what follows it counts");
+           "options behind it count");
     options_free(&options);
 }
 
@@ -260,8 +259,7 @@ static void test_sizes(void)
     options_free(&options);
 }
 
-/* Options with a number: where it goes, its range, and whether the help says its
- * default. */
+/* Options with a number: its field, its range, and whether the help says its default. */
 struct number {
     const char *name;
     size_t offset;         /* in struct options */
@@ -287,7 +285,7 @@ static const struct number NUMBERS[] = {
 };
 enum { NUMBER_COUNT = sizeof NUMBERS / sizeof NUMBERS[0] };
 
-/* The other options, with what stands behind each. */
+/* The other options, each with an argument. */
 static const char *const OTHERS[][2] = {
     {"-o", " a.ppm"}, {"--view", " a"}, {"--size", " 2x3"}, {"--stats", " a"},
     {"--oracle", " bf"}, {"--flat", ""}, {"--two-sided", ""}, {"--quiet", ""},
@@ -317,8 +315,7 @@ static bool takes(const struct number *number, const char *value)
     return taken;
 }
 
-/* Whether the value is refused with a line that starts with the option and quotes the
- * value. */
+/* Whether the value is refused by a line that names the option and quotes the value. */
 static bool refuses(const struct number *number, const char *value, const char *reason)
 {
     char line[100], start[100];
@@ -346,7 +343,7 @@ static void test_numbers(void)
                    refuses(number, "nan", "not a number") &&
                    refuses(number, "inf", "not a number") &&
                    refuses(number, "0x1", "not a number"),
-               "%s refuses what is not a number", number->name);
+               "%s refuses words that are no number", number->name);
         tap_ok(number->is_int ? refuses(number, "1.5", "not a whole number")
                               : takes(number, "0.375"),
                "%s %s a fraction", number->name, number->is_int ? "refuses" : "takes");
@@ -479,13 +476,13 @@ static void test_settings(void)
     tap_ok(is_same(options_link_settings(&options),
                    "--two-sided off\n--two-sided-lamps off\n--oracle error\n"
                    "--form-factor polygon\n--epsilon 0.0001\n"),
-           "what links are bound to");
+           "the options that links are bound to");
     tap_ok(is_same(options_run_settings(&options),
                    "--two-sided off\n--two-sided-lamps off\n--oracle error\n"
                    "--linking tree\n--form-factor polygon\n--solver cg\n"
                    "--epsilon 0.0001\n--accuracy 0\n--max-level 10\n"
                    "--min-area 9.9999999999999995e-08\n"),
-           "what a run is bound to");
+           "the options that a run is bound to");
     options_free(&options);
     parse("a.obj --paper --two-sided --epsilon 0.5", &options);
     tap_ok(is_same(options_link_settings(&options),
@@ -584,8 +581,7 @@ static bool is_known(const char *name)
     return known;
 }
 
-/* Options stand in the parser's table as {"--name", and nothing else there looks like
- * that. */
+/* Options stand in the parser's table as {"--name", and only they do. */
 static void test_parser_table(const char *help)
 {
     static char source[TEXT_MAX];

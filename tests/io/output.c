@@ -1,6 +1,6 @@
 /* Tests of io/run/output.h. Proved are: a file appears whole or not at all; after an
- * error the old file has its old bytes and nothing lies beside it; what cannot be written
- * is known from a probe, with a line that says why; and numbers have one byte order. */
+ * error the old file has its old bytes and nothing lies beside it; a probe tells a file
+ * that cannot be written, with a line that says why; and numbers have one byte order. */
 #include "io/run/output.h"
 
 #include <stdio.h>
@@ -125,7 +125,8 @@ static void check_unwritable(const char *path)
     bool opened = is_refused(start(&output, path), path);
     tap_ok(probed && opened && strcmp(first.text, error.text) == 0, "'%s' is refused: %s",
            path, error.text);
-    tap_ok(!output_close(&output, &error), "what did not open does not close well");
+    tap_ok(!output_close(&output, &error),
+           "an output that did not open does not close well");
 }
 
 static void test_probe(void)

@@ -138,8 +138,7 @@ static void put_text(struct bytes *to, const char *text)
     to->size += strlen(text);
 }
 
-/* All types, a list to pass over in the middle of a row, an element without lists before
- * all. */
+/* All types, a list to pass over amid a row, first an element without lists. */
 static struct bytes make_binary(bool big)
 {
     static const float square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -279,8 +278,8 @@ static void test_colours(void)
     scene_destroy(scene);
 }
 
-/* An arrow head: corner 3 is concave, so the fan from corner 0 is right and one from 1 is
- * not. */
+/* An arrow head: corner 3 is concave; the fan from corner 0 is right, one from 1
+ * wrong. */
 static void test_concave(void)
 {
     struct scene *scene =

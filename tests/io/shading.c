@@ -1,8 +1,8 @@
 /* Tests of io/picture/shading.h. Proved are: the interpolation is continuous over every
  * smooth surface, also where large leaves meet small ones and where roots meet; it keeps
  * constants and, on a regular subdivision, linear functions; it neither depends on the
- * order in which patches were made nor blends what must stay apart (materials, creases,
- * sides, the dark under a box); facets whose normals agree show one curved surface.
+ * order in which patches were made nor blends across bounds (materials, creases, sides,
+ * the dark under a box); facets whose normals agree show one curved surface.
  *
  *      3-------2     the square: roots (0, 1, 2) and (0, 2, 3), whose common edge is
  *      | 1  /  |     the diagonal
@@ -43,8 +43,7 @@ static void put_triangle(struct scene *scene, int32_t number, struct vec3 a,
     scene->triangles[number] = (struct triangle){{a, b, c}};
 }
 
-/* The quadrilateral abcd as the roots `number` = (a, b, c) and `number` + 1 = (a, c,
- * d). */
+/* The quadrilateral abcd: root `number` is (a, b, c), `number` + 1 is (a, c, d). */
 static void put_square(struct scene *scene, int32_t number, struct vec3 a, struct vec3 b,
                        struct vec3 c, struct vec3 d)
 {
@@ -195,8 +194,7 @@ struct crossing {
     struct vec3 weight[2];
 };
 
-/* Over the diagonal (w0, 0, w2) of root 0 is (w0, w2, 0) of root 1, and the other way
- * round. */
+/* Over the diagonal: (w0, 0, w2) of root 0 is (w0, w2, 0) of root 1, and back. */
 static bool cross_diagonal(struct crossing *crossing, struct vec3 on_edge)
 {
     const double tiny = ldexp(1.0, -50);
@@ -209,8 +207,7 @@ static bool cross_diagonal(struct crossing *crossing, struct vec3 on_edge)
     return true;
 }
 
-/* Steps off the edge k of a leaf at the share t of it. False where the surface ends
- * there. */
+/* Steps off a leaf over edge k at its share t. False where the surface ends there. */
 static bool make_crossing(const struct stage *stage, int32_t leaf, int k, double t,
                           struct crossing *crossing)
 {
@@ -227,7 +224,7 @@ static bool make_crossing(const struct stage *stage, int32_t leaf, int k, double
            cross_diagonal(crossing, on_edge);
 }
 
-/* What was seen at the edges of a stage. */
+/* Jumps and steps at the edges of a stage. */
 struct continuity {
     int crossings, over_diagonal;
     double largest; /* jump */
@@ -246,8 +243,7 @@ static void visit_edge(const struct stage *stage, int32_t leaf, int k, double t,
     seen->largest = fmax(seen->largest, jump);
 }
 
-/* Each edge of each leaf at its middle, at a quarter (where T-vertices are) and at
- * random. */
+/* Each edge of each leaf: its middle, a quarter (T-vertices), a random point. */
 static void visit_edges(const struct stage *stage, struct random *random,
                         struct continuity *seen)
 {
@@ -327,8 +323,7 @@ static struct vec3 random_weights(struct random *random)
     return (struct vec3){1.0 - a - b, a, b};
 }
 
-/* About ten roundings of 1.1e-16 each, in the mean and in the interpolation: 1e-15
- * relative. */
+/* Some ten roundings of 1.1e-16, in the mean and the interpolation: 1e-15 relative. */
 static void test_constant(void)
 {
     struct random random = random_seed(14);
@@ -377,16 +372,14 @@ static void test_linear(void)
     dismantle(&stage);
 }
 
-/* Bright along one side of the square, as beside a lamp. `height`: of all of the
- * square. */
+/* Bright along one side of the square, as beside a lamp. `height`: of the square. */
 static double edge_field(const struct stage *stage, struct vec3 x)
 {
     double height = stage->scene->high.y - stage->scene->low.y;
     return exp(-25.0 * (x.y - stage->scene->low.y) / height);
 }
 
-/* Gives the leaves below `patch` their means. Where the field varies much there are small
- * ones. */
+/* Gives the leaves below `patch` their means; small ones where the field varies much. */
 static double set_edge_field(struct stage *stage, int32_t patch)
 {
     struct forest *forest = stage->forest;
@@ -411,8 +404,7 @@ static double set_edge_field(struct stage *stage, int32_t patch)
     return mean;
 }
 
-/* RMS of what is shown less the field, over many points; mean and least of what is
- * shown. */
+/* RMS of the picture less the field at many points; mean and least of the picture. */
 static double edge_error(struct stage *stage, bool flat, double *mean, double *least)
 {
     struct random random = random_seed(17);
@@ -453,8 +445,8 @@ static void test_bright_edge(void)
     dismantle(&stage);
 }
 
-/* Where small bright leaves meet a large dark one, each gives the vertex what it lacks as
- * far as it is large: so what is shown there is hardly brighter than the large one. */
+/* Where small bright leaves meet a large dark one, each gives the vertex its lack as far
+ * as it is large: so the picture there is hardly brighter than the large one. */
 static void test_large_leaf_counts(void)
 {
     const double corner[3] = {1.0, 0.0, 0.0};
@@ -583,8 +575,7 @@ static void test_numbering(void)
     }
 }
 
-/* As leaves, roots in order and depth first, meet them: each new number is the next
- * one. */
+/* Leaves, roots in order and depth first, meet new numbers one after the other. */
 static void test_vertex_order(void)
 {
     struct random random = random_seed(17);
@@ -607,10 +598,9 @@ static void test_vertex_order(void)
     dismantle(&stage);
 }
 
-/* --- what stays apart --- */
+/* --- bounds: no blend across them --- */
 
-/* The jump in the middle of the diagonal when root 0 has the radiosity 1 and root 1 has
- * 0. */
+/* The jump in the middle of the diagonal when root 0 has B = 1 and root 1 has 0. */
 static double jump_of(struct stage *stage)
 {
     stage->forest->patches[0].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
@@ -695,8 +685,7 @@ static void test_normals_on_a_plane(void)
     dismantle(&with);
 }
 
-/* Twins: fronts blend with fronts (roots 0, 1), backs with backs (2, 3), not with each
- * other. */
+/* Twins: fronts blend with fronts (roots 0, 1), backs with backs (2, 3), no other. */
 static void test_two_sided(void)
 {
     struct scene *scene = folded_square(0.0);
@@ -746,9 +735,9 @@ static bool is_under(struct vec3 x)
     return x.x >= 2.0 && x.x <= 4.0 && x.y >= 2.0 && x.y <= 6.0;
 }
 
-/* Divides the floor along the box, makes what is under it 1/4 and all else 1, and returns
- * the smallest and the largest value of the floor's vertices off the box and on its edge,
- * and the largest one inside. */
+/* Divides the floor along the box, makes the part under it 1/4 and all else 1, and
+ * returns the smallest and the largest value of the floor's vertices off the box and on
+ * its edge, and the largest one inside. */
 static void shade_floor(struct stage *stage, double *low, double *high, double *inside)
 {
     split_regularly(stage->forest, 4);
@@ -779,8 +768,7 @@ static void shade_floor(struct stage *stage, double *low, double *high, double *
     }
 }
 
-/* A covered leaf has 1e-12 of the weight of an open one, and up to five lie around a
- * vertex. */
+/* A covered leaf weighs 1e-12 of an open one; up to five lie around a vertex. */
 static void test_covered(void)
 {
     double low, high, inside;
@@ -854,8 +842,7 @@ static void test_partly_covered(void)
     dismantle(&stage);
 }
 
-/* A triangle without area keeps its number and has no vertices; its neighbours do without
- * it. */
+/* A triangle without area keeps its number, has no vertices and no neighbours. */
 static void test_dropped_triangle(void)
 {
     struct scene *scene = scene_create(3, 1);

@@ -1,5 +1,5 @@
 /* Tests of io/run/store.h, rad/beyond/snapshot.h and mpi/keep.h on one rank. Proved are:
- * what is restored from a file makes the same file again; a file of another kind,
+ * a state restored from a file makes the same file again; a file of another kind,
  * version, scene or setting is refused with the reason; so is one that is cut off or
  * changed at any byte; and numbers that no run could have are refused though the checksum
  * is right. Several ranks: tests/67-restart.sh. */
@@ -49,8 +49,8 @@ static size_t load(const char *path, uint8_t *bytes)
     return size;
 }
 
-/* A run that has two passes behind it. What only other methods change, --accuracy among
- * them, is given values, so that none is its first one. */
+/* A run that has two passes behind it. State that only other methods change, --accuracy
+ * among them, is given values, so that none is its first one. */
 static struct solver *run_two_passes(struct vote *vote)
 {
     struct criterion criterion = STORE_CRITERION;
@@ -109,7 +109,7 @@ static void test_round_trip(void)
                other->beyond->accuracy.coarse_epsilon == 0.25 &&
                forest_patch_count(other->model.forest) ==
                    forest_patch_count(solver->model.forest),
-           "what was restored is the same");
+           "the restored state is the same");
     tap_ok(save(other, &vote, STORE_CHECKPOINT, AGAIN), "it is written again");
     size_t size = load(PATH, bytes);
     tap_ok(size > 0 && size == load(AGAIN, again) && memcmp(bytes, again, size) == 0,
@@ -124,7 +124,7 @@ static void test_round_trip(void)
 
 /* --- refusals --- */
 
-/* Opens the bytes as a file and reads all; what is said of them is in `error`. */
+/* Opens the bytes as a file and reads all; the message is in `error`. */
 static bool takes(const uint8_t *bytes, size_t size, const struct store_terms *terms,
                   struct error *error)
 {

@@ -78,7 +78,7 @@ static void check_code(double linear, int expected)
     tap_ok(code == expected, "%g has the code %d (%d)", linear, expected, code);
 }
 
-/* Known codes, and what lies outside 0..1. */
+/* Known codes, and numbers outside 0..1. */
 static void test_range(void)
 {
     check_code(0.0, 0);
@@ -111,8 +111,7 @@ static void test_exposure(void)
 
 enum { PIXELS = 1000 };
 
-/* `bright` of the lit pixels have 50 in the band `band`, the others 2; `black` are
- * black. */
+/* `bright` of the lit pixels have 50 in band `band`, the others 2; `black` are black. */
 static double exposure_of(int bright, int black, int band)
 {
     float rgb[3 * PIXELS] = {0.0f};

@@ -1,7 +1,7 @@
 /* Tests of io/picture/viewpoint.h. Proved are, by many more rays than the choice is made
  * with: in a room the eye is within and sees nothing but fronts, far away for the most
- * part; what is no room is seen from outside, whole, by its fronts; and up is where it
- * should be. */
+ * part; a scene that is no room is seen from outside, whole, by its fronts; and up is
+ * where it should be. */
 #include "io/picture/viewpoint.h"
 
 #include <stdio.h>
@@ -15,7 +15,7 @@
 
 enum { SIDE = 100 }; /* rays along a side of a picture */
 
-/* What the rays of a picture meet. */
+/* Shares of a picture's rays, by the surface they meet. */
 struct sight {
     double fronts, backs; /* share of all rays */
     double depth;         /* mean distance of fronts, relative to the scene's diagonal */
@@ -58,7 +58,7 @@ static bool is_inside(const struct scene *scene, const struct camera *camera)
            eye.z > low.z && eye.z < high.z;
 }
 
-/* A scene, the camera that is chosen for it, and what that sees. */
+/* A scene, its camera, and the view from there. */
 struct shot {
     struct scene *scene;
     struct octree *octree;
@@ -145,8 +145,7 @@ static void test_corridor(void)
     check_room("a corridor of 1 : 10", shot, 0.08, false);
 }
 
-/* A ceiling lamp along `up`, a table, a cupboard that reaches to the ceiling and fills a
- * corner. */
+/* A ceiling lamp along `up`, a table, a cupboard in a corner up to the ceiling. */
 static struct soup furnished(bool z_up, int64_t *lamp)
 {
     struct soup soup = {0};
@@ -195,8 +194,8 @@ static void test_generated(void)
     remove(ROOM);
 }
 
-/* Where both sides shine, the side of a face does not tell what is inside; and lamps
- * shine nowhere more than elsewhere. */
+/* Where both sides shine, the side of a face does not tell inside from outside; and
+ * lamps shine nowhere more than elsewhere. */
 static void test_two_sided(void)
 {
     int64_t lamp;
@@ -251,8 +250,7 @@ static void test_dark_room(void)
 
 /* --- open scenes --- */
 
-/* From outside, by fronts alone, with at least `share` of the picture; consumes the
- * shot. */
+/* From outside, fronts alone, at least `share` of the picture; consumes the shot. */
 static void check_open(const char *name, struct shot shot, double share, bool z_up)
 {
     const struct camera *camera = &shot.camera;

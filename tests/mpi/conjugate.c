@@ -24,8 +24,7 @@ struct problem {
     int count;
 };
 
-/* Roots of made-up areas. Root 4 reflects nothing, root 6 nothing in one band; 0 and 3
- * glow. */
+/* Roots of made-up areas: 4 is black, 6 black in one band; 0 and 3 glow. */
 static struct scene *make_scene(double rho)
 {
     struct scene *scene = scene_create(ROOTS, ROOTS);
@@ -94,8 +93,7 @@ static void problem_free(struct problem *problem)
     scene_destroy(problem->scene);
 }
 
-/* The part of what a link has to do with `patch` that falls to the leaf: 0 if it is
- * elsewhere. */
+/* The leaf's share of a link of `patch`: 0 if the leaf is not below it. */
 static double share_of(const struct forest *forest, int32_t leaf, int32_t patch,
                        const uint8_t parts[3])
 {
@@ -162,7 +160,7 @@ static void eliminate(double a[LEAVES_MAX][LEAVES_MAX], double *b, int n)
         b[k] /= a[k][k];
 }
 
-/* Largest difference of B from E + rho H with (1 - d F rho) H = d F E, over the largest
+/* Largest difference of B from E + rho H, (1 - d F rho) H = d F E, over the largest
  * B. */
 static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX])
 {
@@ -192,8 +190,7 @@ static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAV
     return worst / largest;
 }
 
-/* Largest |z| that is left where H is computed once more from B = E + rho H, by the
- * links. */
+/* Largest |z| where the links compute H once more from B = E + rho H. */
 static double residual(const struct problem *problem, double f[LEAVES_MAX][LEAVES_MAX])
 {
     const struct solver *solver = problem->solver;
@@ -278,7 +275,8 @@ static void test_dense(const struct comm *comm, double strength, double rho, int
                "links times %g, rho to %g, %d leaves: as by elimination, to %.1e of the "
                "largest B",
                strength, rho, problem.count, off);
-        tap_ok(rest < 1e-9, "and what arrives is what was solved for: %.1e W/m^2", rest);
+        tap_ok(rest < 1e-9, "and the light that arrives is the solution: %.1e W/m^2",
+               rest);
         tap_ok(steps <= most, "in %d steps, at most %d", steps, most);
         tap_ok(above < 1e-8 && (capped > 0 || strength == WEAK),
                "%lld rows are capped, none times rho is above its cap: by %.1e",
@@ -287,8 +285,7 @@ static void test_dense(const struct comm *comm, double strength, double rho, int
     problem_free(&problem);
 }
 
-/* From the answer of before the next start is at once good enough, with factors that are
- * found again. */
+/* A start from the last answer is good enough at once; its factors are found again. */
 static void test_restart(const struct comm *comm)
 {
     struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
@@ -322,7 +319,7 @@ static double difference(const struct problem *a, const struct problem *b)
     return missing / light;
 }
 
-/* The bound on what is missing holds after each step, and is not much too large. */
+/* The bound on the missing light holds after each step, and is not much too large. */
 static void test_bound(const struct comm *comm, double strength)
 {
     struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
@@ -352,8 +349,8 @@ static void test_bound(const struct comm *comm, double strength)
     problem_free(&exact);
 }
 
-/* Where all rows, reflectances and emissions are the same, the bound is what is missing.
- * Rows sum to 1. */
+/* Where all rows, reflectances and emissions are the same, the bound is the missing
+ * light. Rows sum to 1. */
 static void test_bound_is_sharp(const struct comm *comm)
 {
     const double rho = 0.6, area = 0.1;
@@ -381,7 +378,7 @@ static void test_bound_is_sharp(const struct comm *comm)
     double missing = 1.0 / (1.0 - rho) - 1.0; /* B is E as yet */
     if (comm->rank == 0)
         tap_ok(fabs(vote.remaining / missing - 1.0) < 1e-6,
-               "what a furnace lacks after one transfer is %.7f of the "
+               "a furnace's missing light after one transfer is %.7f of the "
                "bound",
                missing / vote.remaining);
     solver_destroy(solver);

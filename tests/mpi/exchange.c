@@ -1,7 +1,8 @@
 /* The exchanges of the distributed algorithm on a made-up forest, on any number of ranks:
  * gather, push-pull and scatter end with the same forest as one rank alone, links that
  * migrate arrive once and mean the same, and the vote adds up to the same sums.
- * Collectives give what they say, and a cube is refined alike on all ranks.
+ * Collectives give the sums and bytes of their contracts, and a cube is refined alike on
+ * all ranks.
  *
  * Every rank knows all of the made-up links and holds those that a hash deals to it;
  * beside the parallel solver runs one on MPI_COMM_SELF that holds them all. To be run
@@ -25,8 +26,7 @@
 
 enum { ROOTS = 23, LINKS = 4000 };
 
-/* A scene of triangles with all the material that the exchanges need: areas and
- * reflectances. */
+/* A scene of triangles with all that exchanges need: areas and reflectances. */
 static struct scene *make_scene(void)
 {
     struct scene *scene = scene_create(ROOTS, 2);
@@ -50,8 +50,7 @@ static struct patch_id random_id(struct random *random)
     return id;
 }
 
-/* A fifth of the links are dealt to nobody in the first round: their patches appear
- * later. */
+/* A fifth of the links are not dealt in the first round: their patches come later. */
 static void add_links(struct solver *solver, int round)
 {
     struct random random = random_seed(99);
@@ -257,7 +256,7 @@ static void test_sums(const struct comm *comm)
 
 /* --- the scene, once per node --- */
 
-/* What windows of shared memory are like, here in place of MPI's own. */
+/* How windows of shared memory are made here, in place of MPI's own. */
 enum windows { WINDOWS_WORK, WINDOWS_REFUSED, WINDOWS_EMPTY };
 static enum windows windows;
 
@@ -270,8 +269,7 @@ int MPI_Win_allocate_shared(MPI_Aint size, int unit, MPI_Info info, MPI_Comm com
                : PMPI_Win_allocate_shared(size, unit, info, comm, base, window);
 }
 
-/* A window that is empty lies in a file without a byte: to touch it is an error of the
- * bus. */
+/* An empty window lies in a file of no bytes: to touch it is a bus error. */
 int MPI_Win_shared_query(MPI_Win window, int rank, MPI_Aint *size, int *unit, void *base)
 {
     int code = PMPI_Win_shared_query(window, rank, size, unit, base);
@@ -325,8 +323,8 @@ static bool sees_alike(const struct octree *octree, const struct scene *scene)
     return alike;
 }
 
-/* How many ranks look into this rank's copy if `ranks_max` may: all ranks of the test run
- * on one node. */
+/* Number of ranks that look into this rank's copy if `ranks_max` may; all are on one
+ * node. */
 static int sharing(const struct comm *comm, int ranks_max)
 {
     if (ranks_max >= comm->size)
@@ -368,7 +366,7 @@ static void test_broadcasts(const struct comm *comm)
     test_broadcast(comm, policy, true, sharing(comm, 2), "one copy for every two ranks");
     policy.ranks_max = 1;
     test_broadcast(comm, policy, true, 1, "one copy per rank");
-    test_broadcast(comm, node_policy(), true, 1, "so by default what is small");
+    test_broadcast(comm, node_policy(), true, 1, "so by default a small scene");
     policy.ranks_max = INT_MAX;
     windows = WINDOWS_REFUSED;
     test_broadcast(comm, policy, true, 1, "and where windows are refused");
@@ -441,8 +439,7 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
     scene_destroy(cube);
 }
 
-/* With more ranks than roots some own nothing; the picture has fewer rows than ranks
- * too. */
+/* With more ranks than roots some own nothing; the picture has fewer rows than ranks. */
 static void test_picture(const struct comm *comm)
 {
     enum { HEIGHT = 5, ROW = 6 };

@@ -1,5 +1,5 @@
 /* The greedy plan: every unit of load is placed once, no rank both sends and receives,
- * the largest load never grows, and what remains is the mean, for up to 1,024 ranks. */
+ * the largest load never grows, and the end is the mean, for up to 1,024 ranks. */
 #include "mpi/plan.h"
 
 #include "tests/random.h"

@@ -1,7 +1,7 @@
 /* Bundles of the octree, and their segments one by one, against brute force in double
  * precision: a million segments in each of five scenes, a third of whose end points lie
- * on edges and corners. No answer may differ, near edges or not: what float cannot decide
- * is decided by the same test in double. */
+ * on edges and corners. No answer may differ, near edges or not: cases that float cannot
+ * decide are decided by the same test in double. */
 #include "octree/lanes.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"

@@ -397,7 +397,7 @@ static void test_scene(void (*make)(struct soup *), bool packed, const char *nam
 /* --- closed meshes --- */
 
 /* From a point inside (the room is 0.31 scene units high) through corners and edges; the
- * mesh is convex, so that what lies as far behind is outside. */
+ * mesh is convex, so that a point as far behind is outside. */
 static void count_escapes(const struct world *world, int escapes[3])
 {
     const struct scene *scene = world->scene;

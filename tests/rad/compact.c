@@ -23,12 +23,12 @@ static void test_float_below(void)
     }
     tap_ok(below, "a float below is never above");
     tap_ok(largest, "and the next one is");
-    tap_ok(kept, "floats stay what they are");
+    tap_ok(kept, "floats stay as they are");
     tap_ok(ordered, "order is kept");
     tap_ok(float_below(0.0) == 0.0f && float_below(1e-60) == 0.0f &&
                float_below(1.0 - DBL_EPSILON) < 1.0f && float_below(1e38) <= 1e38f &&
                float_below(nextafter(1.0, 0.0)) == 1.0f - 0.5f * FLT_EPSILON,
-           "zero, what is too small for a float, and just below 1");
+           "zero, numbers too small for a float, and just below 1");
 }
 
 static void test_codes(void)
@@ -70,7 +70,7 @@ static void test_rounding(void)
     tap_ok(compact8(1.875 * 2147483648.0) == 255 && compact8(1e10) == 255 &&
                compact8(1e300) == 255 && compact8(HUGE_VAL) == 255 &&
                compact8(1.75 * 2147483648.0) == 254,
-           "what is too much is the most");
+           "numbers above the largest become the largest");
 }
 
 int main(void)

@@ -46,7 +46,7 @@ static void test_round_trips(void)
         struct flux_unit unit = flux_unit_for(ldexp(1.0,
                                                     random_below(&random, 200) - 100));
         int64_t flux = (int64_t)(random_bits(&random) >> random_below(&random, 53));
-        flux &= (INT64_C(1) << 53) - 1; /* what a double holds */
+        flux &= (INT64_C(1) << 53) - 1; /* the bits that a double holds */
         exact = exact && flux_from_watts(unit, flux_to_watts(unit, flux)) == flux;
         double watts = 0.5 * random_unit(&random) / unit.per_watt * 4611686018427387904.0;
         double error = flux_to_watts(unit, flux_from_watts(unit, watts)) - watts;
@@ -71,7 +71,7 @@ static void test_limit(void)
                flux_from_watts(unit, 2.0 * limit) == FLUX_LIMIT &&
                flux_from_watts(unit, HUGE_VAL) == FLUX_LIMIT &&
                flux_from_watts(unit, HUGE_VAL - HUGE_VAL) == FLUX_LIMIT,
-           "what is too much, infinite or not a number is the limit");
+           "a flux too large, infinite or not a number is the limit");
 }
 
 /* Small numbers, numbers near the limit and the limit itself. */

@@ -1,4 +1,4 @@
-/* Tests of rad/formfactor.h: Eq. 2 by hand, and what 16 rays make of it. (With all else
+/* Tests of rad/formfactor.h: Eq. 2 by hand, and its error by 16 rays. (With all else
  * about the disks in tests/rad/beyond/patch_exchange.c, which goes another way to the
  * same numbers.) */
 #include "rad/formfactor.h"
@@ -47,7 +47,7 @@ static void test_pairs(void)
         pairs += area > 0.0;
         partly += seen > 0.0 && seen < 1.0;
         beyond += area > limit || counts.rays > 16 || counts.rays != others.rays;
-        /* Where disks overlap the other kernel cuts down what nothing blocks. */
+        /* Where disks overlap the other kernel is smaller without blockers. */
         off += other.unoccluded < limit && fabs(area - other.area) > 1e-14 * limit;
         world_free(&world);
     }

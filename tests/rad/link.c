@@ -1,5 +1,5 @@
-/* Tests of rad/link.h: which links are made and with what cost, what the children of a
- * link are, and that light goes both ways to the last integer. */
+/* Tests of rad/link.h: which links are made and with which cost, the children of a link
+ * are, and that light goes both ways to the last integer. */
 #include "rad/link.h"
 
 #include <string.h>
@@ -57,7 +57,7 @@ static void test_dropping(void)
     tap_ok(!make(&covered, 0, 1,
                  &link) && covered.model.counts.rays == 16 && link.blocker >= 2 &&
                link.blocker <= 3,
-           "nor are two between which no ray passes; what blocked them is known");
+           "nor are two between which no ray passes; their blocker is known");
     world_free(&covered);
     soup_free(&more);
 }
@@ -123,7 +123,7 @@ static void test_split(void)
            "a patch that is split already stays as it is, and the links are the same");
     /* 16 rays against 64 over the same pair: their difference is the error of either. */
     tap_ok(fabs(sum / link_area(&link) - 1.0) < 0.03,
-           "together they exchange what the link did");
+           "together they exchange as much as the link did");
     count = link_split(&world.model, &link, 0, children);
     right = count == 4 && forest->count == 10;
     for (int k = 0; k < count; k++)

@@ -173,7 +173,7 @@ static void test_reach(struct scene *scene)
     for (int i = 0; i < PATHS; i++)
         found = reaches(first, ids[i]) && found;
     tap_ok(found && first->count == count,
-           "what is reached has the ID, and is there the next time");
+           "the patch reached has the ID, and is there the next time");
     for (int round = 0; round < 20; round++) {
         struct forest *other = forest_create(scene);
         shuffle(ids, PATHS, &random);
@@ -231,7 +231,7 @@ static void test_walk(struct scene *scene)
     }
     tap_ok(ordered && seen == forest->count,
            "the walk visits each patch once, depth first");
-    tap_ok(skipped, "and skips what is below a patch on request");
+    tap_ok(skipped, "and skips descendants of a patch on request");
     forest_destroy(forest);
 }
 

@@ -39,8 +39,7 @@ static void grow(struct forest *forest, uint64_t seed)
     }
 }
 
-/* Flux at all levels, smaller on smaller patches. Returns its sum over roots with an
- * area. */
+/* Flux at all levels, less on smaller patches. Returns its sum over roots with area. */
 static int64_t pour(struct world *world, uint64_t seed)
 {
     struct forest *forest = world->model.forest;
@@ -70,7 +69,7 @@ static struct push_pull_sums pushed(struct world *world, const bool *own)
 
 /* --- push --- */
 
-/* Areas are fractions by powers of 4, so what is lost is rounding alone: a division and a
+/* Areas are fractions by powers of 4, so the loss is rounding alone: a division and a
  * sum of 10 terms for each leaf, and the sum of about 600 leaves: 1e-13; and the
  * comparison is of numbers that a double holds to 1e-16. */
 static void test_push(void)
@@ -93,11 +92,10 @@ static void test_push(void)
         world_free(&world);
     }
     tap_ok(worst < 1e-12,
-           "what is poured in at all levels arrives at the leaves (to %.1e)", worst);
+           "flux poured in at all levels arrives at the leaves (to %.1e)", worst);
 }
 
-/* Fluxes chosen so that all of it is exact: the sums down the line are 1, 1 + 4 x 2,
- * ... */
+/* Fluxes for exact sums: those down the line are 1, 1 + 4 x 2, ... */
 static void test_line(void)
 {
     struct world world = make_world();
@@ -245,8 +243,7 @@ static void test_sums(void)
     world_free(&world);
 }
 
-/* Sums over the roots of two ranks are those of one rank with all roots, to the last
- * integer. */
+/* Sums over the roots of two ranks equal those of one rank with all roots. */
 static void test_two_ranks(void)
 {
     struct push_pull_sums sums[3];
@@ -267,8 +264,7 @@ static void test_two_ranks(void)
            "the sums of two ranks are those of one");
 }
 
-/* Light that is as much as the unit can count shows as a sum at the limit: the vote ends
- * it. */
+/* A sum at the limit of the unit is light without end: the vote stops. */
 static void test_divergence(void)
 {
     struct world world = make_world();

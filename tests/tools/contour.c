@@ -12,7 +12,7 @@
 
 static const long double LONG_PI = 3.14159265358979323846264338327950288L;
 
-/* What is asked of any value: 1e-11 of the smaller area, and 1e-6 of the value. The sums
+/* The tolerance of any value: 1e-11 of the smaller area, and 1e-6 of the value. The sums
  * behind it are right to some 1e-16 of the square of the size: the first is for areas
  * that are thin, down to 1e-5 of that square, the second for exchanges down to 1e-10 of
  * it. */
@@ -112,8 +112,7 @@ static long double perpendicular_term(long double a, long double b, long double 
     return (angle - (k2 - y * y) / 4 * logl(r2)) / (2 * LONG_PI);
 }
 
-/* x0, x1, y0, y1 of the lower rectangle, u0, u1, v0, v1 of the upper one, at distance
- * z. */
+/* x0, x1, y0, y1 of the lower rectangle; u0, u1, v0, v1 of the upper one, z above. */
 static double parallel_exchange(const double lower[4], const double upper[4], double z)
 {
     long double sum = 0;
@@ -198,8 +197,7 @@ static void test_rectangles(void)
     for (int i = 0; i < 2000; i++) {
         double x[8];
         for (int k = 0; k < 8; k += 2) {
-            /* Of eight places, so that edges often meet; from 0 on for what is on a
-             * wall. */
+            /* Of eight places, so that edges often meet; from 0 on for one on a wall. */
             x[k] = (double)random_below(&random, 8) / 4.0;
             x[k + 1] = x[k] + (double)(1 + random_below(&random, 8)) / 4.0;
         }
@@ -263,7 +261,7 @@ struct solid {
     struct polygon face[FACES];
 };
 
-/* The rows of a convex solid: what leaves a face arrives at the others. */
+/* The rows of a convex solid: the light of a face arrives at the others. */
 static void add_rows(struct tally *tally, const struct solid *solid)
 {
     for (int i = 0; i < solid->count; i++) {
@@ -305,8 +303,7 @@ static struct solid unit_tetrahedron(void)
         4, {{3, {o, x, y}}, {3, {o, y, z}}, {3, {o, z, x}}, {3, {x, z, y}}}};
 }
 
-/* 16 triangles, of which three and four lie in one plane and many share edges and
- * corners. */
+/* 16 triangles: three and four in one plane, many with common edges and corners. */
 static struct solid split_tetrahedron(void)
 {
     struct solid whole = unit_tetrahedron(), solid = {.count = 16};
@@ -366,8 +363,7 @@ static double sum_of_parts(const struct triangle *t, const struct triangle *u, i
     return sum;
 }
 
-/* Apart, with a corner in common, with an edge in common, and one edge in a part of
- * another. */
+/* Apart; a common corner; a common edge; one edge in a part of another. */
 static void random_pair(struct random *random, int kind, struct triangle *t,
                         struct triangle *u)
 {
@@ -437,8 +433,7 @@ static void test_far(void)
            count, worst);
 }
 
-/* Where the plane is tilted, rounding leaves neighbours a little in front of each
- * other. */
+/* Where the plane is tilted, rounding puts neighbours a little before each other. */
 static void test_plane(void)
 {
     struct random random = random_seed(6);

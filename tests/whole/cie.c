@@ -4,14 +4,14 @@
  *
  * In the first three only one plane reflects at a time, so that nothing but the light of
  * the source arrives there, B = rho E, and E / B_source is the form factor from the point
- * to what it sees of the source: Lambert's closed form, with the polygon cut where the
- * slab covers it. The numbers are those in percent; the CIE's Table 19 for 5.7 is wrong.
- * Points are taken as pictures show them, from the interpolated radiosity. The limit is 1
- * % of the value; no value is below 1 % of the source but two that are 0. Of these one
- * lies on the very edge of the shadow: from there on it gets brighter by 6 % a metre, and
- * of this a leaf's mean and the interpolation show some at the edge. What is allowed, 0.1
- * %, is reached 1.6 cm away. The other, half a metre into the shadow, may have what a
- * link is allowed to be off by, epsilon. */
+ * to the visible part of the source: Lambert's closed form, with the polygon cut where
+ * the slab covers it. The numbers are those in percent; the CIE's Table 19 for 5.7 is
+ * wrong. Points are taken as pictures show them, from the interpolated radiosity. The
+ * limit is 1 % of the value; no value is below 1 % of the source but two that are 0. Of
+ * these one lies on the very edge of the shadow: from there on it gets brighter by 6 % a
+ * metre, and of this a leaf's mean and the interpolation show some at the edge. The
+ * tolerance, 0.1 %, is met 1.6 cm away. The other, half a metre into the shadow, may
+ * have the error of a link, epsilon. */
 #include "tests/defaults.h"
 #include "tests/tap.h"
 
@@ -22,12 +22,12 @@ enum plane_name { WALL, FLOOR, CEILING, OPPOSITE, PLANES };
 struct sample {
     double at; /* m: height on the wall, distance from the wall on floor and ceiling */
     double percent; /* exact E / B_source */
-    double slack;   /* what else it may be off by, in percent of the source */
+    double slack;   /* a further tolerance, in percent of the source */
 };
 
 /* Wall y = 0, floor z = 0, ceiling z = 3, wall y = 4, each in two triangles, fronts
- * inwards, with these materials: all black but for what the receiver reflects and the
- * source emits. */
+ * inwards, with these materials: the receiver reflects, the source emits, all else is
+ * black. */
 static void add_planes(struct painted *painted, enum plane_name receiver,
                        enum plane_name source)
 {
@@ -52,8 +52,7 @@ static struct vec3 place_of(enum plane_name plane, double at)
     return plane == WALL ? point(2, 0, at) : point(2, at, plane == FLOOR ? 0.0 : 3.0);
 }
 
-/* Compares the samples on one receiver. Each has LIMIT of its value, and its slack, to be
- * off. */
+/* Compares the samples on one receiver. Tolerance: LIMIT of the value, and the slack. */
 static void test_samples(const struct comm *comm, const char *name,
                          struct painted *painted, enum plane_name receiver,
                          const char *words, const struct sample *samples, int count)
@@ -144,8 +143,7 @@ static void test_slab(const struct comm *comm)
                  "--epsilon 1e-9 --final-gather 0", ground, COUNT(ground));
 }
 
-/* A cube of 4 m, its sides 4 x 4 squares of 1 m; one of these is the source of 10000
- * lm. */
+/* A cube of 4 m, sides of 4 x 4 squares of 1 m; one of them is a source of 10000 lm. */
 static struct scene *glowing_square(double reflectance)
 {
     struct painted painted = {0};
@@ -161,9 +159,9 @@ static struct scene *glowing_square(double reflectance)
     return scene_of_painted(&painted);
 }
 
-/* 5.8: the mean of what arrives after one reflection or more is rho Phi / (96 (1 - rho)),
- * exactly and wherever the source is. From the solution: of all that arrives, (B - E) /
- * rho, the first Phi / 96 comes from the source. */
+/* 5.8: the mean light that arrives after one reflection or more is rho Phi / (96 (1 -
+ * rho)), exactly and wherever the source is. From the solution: of all that arrives, (B -
+ * E) / rho, the first Phi / 96 comes from the source. */
 static void test_interreflection(const struct comm *comm, double rho, double exact,
                                  const char *words, double limit)
 {
@@ -182,9 +180,9 @@ static void test_interreflection(const struct comm *comm, double rho, double exa
     solution_free(&s);
 }
 
-/* The clusters sample what arrives from the source itself, which is 0.1 to 0.2 % off at
- * the default epsilon; a quarter of the 1 % that sums of light may be. Of indirect light
- * it is (1 - rho) / rho times as much. */
+/* The clusters sample the light of the source itself, which is 0.1 to 0.2 % off at the
+ * default epsilon; a quarter of the 1 % that sums of light may be. Of indirect light it
+ * is (1 - rho) / rho times as much. */
 static const double FIRST = 0.0025;
 
 /* The CIE's column, up to where an error of row sums, which is multiplied by rho / (1 -
@@ -204,7 +202,7 @@ int main(int argc, char **argv)
     test_slab(&comm);
     for (int i = 0; i < COUNT(INTERREFLECTION); i++) {
         double rho = INTERREFLECTION[i].rho, exact = INTERREFLECTION[i].lux;
-        if (rho <= 0.7) /* what row sums are off by is multiplied by rho / (1 - rho) */
+        if (rho <= 0.7) /* errors of row sums count rho / (1 - rho) times */
             test_interreflection(&comm, rho, exact, "--tolerance 1e-4",
                                  fmax(LIMIT, FIRST * (1.0 - rho) / rho));
         /* All that is sent arrives where the final gather is, so the mean is exact at any

@@ -7,8 +7,8 @@
  *
  * The truth has TRUTH elements with PATHS paths for each of its two halves, or more where
  * errors are small: the RMS is not biased by noise, but light paths give noise to many
- * elements alike. What is left of it is a tenth of the smallest error here, and is the
- * same for all epsilons. */
+ * elements alike. The rest of it is a tenth of the smallest error here, and is the same
+ * for all epsilons. */
 #include <math.h>
 
 #include "mpi/beyond/beyond.h"
@@ -85,8 +85,8 @@ static struct result run(const struct comm *comm, const char *path,
     return result;
 }
 
-/* Epsilon halved each time: both norms fall, to below `leaf` and `shown`: a tenth above
- * what they are. */
+/* Epsilon halved each time: both norms fall, to below `leaf` and `shown` (measured + 10
+ * %). */
 static void test_falling(const struct comm *comm, const char *path,
                          const struct truth *truth, double leaf, double shown)
 {
@@ -120,9 +120,9 @@ static void test_paper(const struct comm *comm, const struct truth *truth)
                (long long)best.links);
 }
 
-/* The promise of --accuracy: the true error is at most 1.5 times what is claimed, which
- * is what was asked for or less, or there is a limit that holds it back. The claim is not
- * to be much more than the error either. */
+/* The promise of --accuracy: the true error is at most 1.5 times the claim, which is
+ * --accuracy or less, or there is a limit that holds it back. The claim is not to be
+ * much more than the error either. */
 static void test_accuracy(const struct comm *comm, const char *path,
                           const struct truth *truth, double accuracy, int max_level,
                           double min_area, enum hold hold)
@@ -144,10 +144,10 @@ static void test_accuracy(const struct comm *comm, const char *path,
     }
 }
 
-/* The final gather: less error with more rays, and with more leaves; what it says of its
- * error is true within a factor of 2, where rays are what is wrong and, with 2,048 of
- * them, where the mesh is. `most`: a tenth above what the last has. `shown`:
- * the most that interpolation between leaves may have, in errors of leaves. */
+/* The final gather: less error with more rays, and with more leaves; its own estimate of
+ * the error is true within a factor of 2, where rays cause it and, with 2,048 of them,
+ * where the mesh is. `most`: a tenth above the last one's error. `shown`: the most that
+ * interpolation between leaves may have, in errors of leaves. */
 static void test_gathered(const struct comm *comm, const char *path,
                           const struct truth *truth, double most, double shown)
 {

@@ -1,5 +1,5 @@
 /* Exact answers, whole runs: the furnace, the cube that glows on one side, and where the
- * power goes; and what a signal leaves. On any number of ranks; rank 0 reports.
+ * power goes; and a run that a signal ends. On any number of ranks; rank 0 reports.
  *
  * The method is the paper's: disk form factors by 16 rays and links at mixed levels. Its
  * row sums in a closed cube are not 1, so B = E / (1 - rho R) where R should be 1, and an
@@ -77,10 +77,9 @@ static void test_furnace(const struct comm *comm, double epsilon, double largest
     solution_free(&s);
 }
 
-/* The same cube at one level, so that all patches are alike: what remains is the disk.
- * The last change of energy is within the tolerance; what is still to come is that times
- * q / (1 - q), with the factor q = rho R of one iteration: the paper's stop leaves so
- * much of it. */
+/* The same cube at one level, so that all patches are alike: the error is the disk's.
+ * The last change of energy is within the tolerance; the rest is that times q / (1 - q),
+ * with the factor q = rho R of one iteration: the paper's stop leaves so much of it. */
 static void test_iteration_stop(const struct comm *comm, double rho, double tolerance)
 {
     struct scene *cube = furnace_create();
@@ -153,8 +152,9 @@ static void test_glowing_cube(const struct comm *comm, double rho, double allowe
     solution_free(&s);
 }
 
-/* A closed cube with walls that differ, lit from one that is black: what the paper's
- * solver ends with, conjugate gradients end with too, over the same links. */
+/* A closed cube with walls that differ, lit from one that is black: the power at which
+ * the paper's solver ends with, conjugate gradients end with too, over the same
+ * links. */
 static void test_same_answer(const struct comm *comm)
 {
     struct solution s[2];
@@ -206,7 +206,7 @@ static double light_of(const struct model *model, int32_t node)
                                          : model->forest->patches[node].radiosity);
 }
 
-/* What a link takes of a node, sum over bands, W/m^2. */
+/* The radiosity of a node as a link takes it, sum over bands, W/m^2. */
 static double sent_by(const struct model *model, int32_t node, const uint8_t parts[3])
 {
     double sum = 0.0;
@@ -239,8 +239,8 @@ static double power_of_links(const struct solution *s)
     return sum;
 }
 
-/* An open cube (no front) lit from the top: what leaves the surfaces and is not delivered
- * by the links has escaped, and all that was emitted is absorbed or escapes. */
+/* An open cube (no front) lit from the top: light that leaves the surfaces and is not
+ * delivered by the links has escaped, and all that was emitted is absorbed or escapes. */
 static void test_power(const struct comm *comm, const struct criterion *criterion,
                        const char *name)
 {
@@ -264,7 +264,7 @@ static void test_power(const struct comm *comm, const struct criterion *criterio
                "%s: absorbed + escaped = emitted: off by %.1e", name,
                fabs(balance) / emitted);
         tap_ok(fabs(escaped - s.stats.escaped_power) <= 1e-9 * emitted,
-               "%s: escaped is what the links do not deliver: off by %.1e", name,
+               "%s: the links do not deliver the escaped power: off by %.1e", name,
                fabs(escaped - s.stats.escaped_power) / emitted);
         tap_ok(escaped > 0.1 * emitted,
                "much of it escapes through the missing front: %.0f %%",

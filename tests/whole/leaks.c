@@ -154,7 +154,7 @@ static struct scene *books(bool open)
 
 /* --- tests --- */
 
-/* What arrives at all roots of a material: W, W/m^2 in the mean. */
+/* The light that arrives at all roots of a material: W, W/m^2 in the mean. */
 struct arriving {
     double power, irradiance;
 };
@@ -236,8 +236,8 @@ static void test_dark(const struct dark_part *part)
 
 /* From depth d between planes g apart the mouth has a form factor of g^2 / 4 d^2: from 10
  * to 20 cm that is 1.1e-4 in the mean at most; the gaps have a hundredth of all area. A
- * path tracer finds 1.03e-6 there (within 5 %); the final gather 1.0e-5, for what a ray
- * meets is a leaf, and leaves at the mouth are larger than the gap. */
+ * path tracer finds 1.03e-6 there (within 5 %); the final gather 1.0e-5, as the light
+ * that a ray meets is a leaf, and leaves at the mouth are larger than the gap. */
 static const struct dark_part PARTS[] = {
     {"an unlit room beside a lit one", rooms, share_of_irradiance, MOST, 1e-6, 1e-6},
     {"the inside of a closed cupboard", cupboard, share_of_irradiance, MOST, 1e-6, 1e-6},

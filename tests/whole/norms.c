@@ -1,5 +1,4 @@
-/* The error norms on made-up samples with known answers, and the truth's elements and
- * file. */
+/* The error norms on made-up samples, and the truth's elements and file. */
 #include "tests/deviation.h"
 
 #include <math.h>
@@ -30,7 +29,7 @@ static struct sample sample_of(double area, double value, double truth)
 /* Areas 1, 2, 6 with errors 0.5, 1, 3 of truths 2, 4, 6 in each of three bands: squares
  * of errors 0.25 + 2 + 54 of 4 + 32 + 216; errors 0.5 + 2 + 18 of 2 + 8 + 36. More than
  * half the area has an error of 3; the mean truth is 46 / 9; the differences are 18 - 0.5
- * + 2. What is not exact in binary is within 1e-15. */
+ * + 2. Numbers inexact in binary are within 1e-15. */
 static void test_known(void)
 {
     struct sample samples[3] = {sample_of(6, 9, 6), sample_of(1, 1.5, 2),
@@ -207,7 +206,7 @@ static void test_file(const struct scene *scene, const struct truth *truth)
         truth_write(truth, FILE_NAME, &error) &&
         truth_read(&copy, FILE_NAME, scene, &error) && copy.count == truth->count &&
         memcmp(copy.items, truth->items, (size_t)copy.count * sizeof *copy.items) == 0;
-    tap_ok(same, "a file gives back what was written");
+    tap_ok(same, "a file gives back the truth written");
     truth_free(&copy);
     struct scene other = *scene;
     double areas[4] = {scene->areas[0], scene->areas[1], scene->areas[2],
@@ -221,8 +220,8 @@ static void test_file(const struct scene *scene, const struct truth *truth)
            "and so is none: %s", error.text);
 }
 
-/* Light paths say of the elements what paths from them say. The product of two halves
- * whose noise is 1.2 %, over 32 elements, deviates by a sixth of the square of 1 %. */
+/* Light paths and paths from the elements agree. The product of two halves whose noise
+ * is 1.2 %, over 32 elements, deviates by a sixth of the square of 1 %. */
 static void test_means(const struct comm *comm, const struct world *world)
 {
     struct truth truth = truth_trace(comm, world->scene, world->octree, 64, 16384);

@@ -1,4 +1,4 @@
-/* What breaks radiosity programs: one test for each entry of a checklist, but for those
+/* Pitfalls of radiosity programs: one test for each entry of a checklist, but for those
  * that other tests cover:
  *
  *     F <= 1, G <= the smaller area      here, after refinement; formfactor.c, contour.c
@@ -25,7 +25,7 @@
  *     order of faces and corners         here
  *     linearity, reciprocity             here
  *
- * All with phr's defaults but for what a test says. */
+ * All with phr's defaults but for the options that a test names. */
 #include "mpi/beyond/beyond.h"
 #include "io/scene/camera.h"
 #include "io/picture/render.h"
@@ -160,7 +160,7 @@ static void test_bounds(const char *words)
 }
 
 /* The truth is the end of many more iterations. Conjugate gradients stop by their bound;
- * the paper's iterations by the last change of energy, and then the rest may be q / (1 - q)
+ * the paper's iterations by the last change of energy: the rest is up to q / (1 - q)
  * times that, where q < 0.99 is the factor of one iteration. */
 static void test_false_convergence(void)
 {
@@ -193,7 +193,7 @@ static void test_false_convergence(void)
 }
 
 /* Splits only: every refinement keeps all patches and adds some, until nothing is left to
- * split. With epsilon 0 what ends it is the level. */
+ * split. With epsilon 0 the level ends it. */
 static void test_termination(void)
 {
     static const char *const words[] = {"--epsilon 0 --max-level 3", "--epsilon 1e-5"};
@@ -250,8 +250,8 @@ static void test_leak(void)
 
 /* A lamp in the plane of the ceiling and a picture in that of a wall, over them. Coplanar
  * faces do not block each other: light comes to both. Of the room's 6 m^2 0.29 are there
- * twice, so up to 1.048 of what leaves arrives, and rho is as if it were up to 0.524: B
- * up to 1.10 of the room alone. */
+ * twice, so up to 1.048 of the light arrives, and rho is as if it were up to 0.524: B up
+ * to 1.10 of the room alone. */
 static void test_coplanar(void)
 {
     struct painted painted = {0};
@@ -399,8 +399,7 @@ static struct scene *tetrahedron(double scale, double offset)
     return scene_of_painted(&painted);
 }
 
-/* Largest relative difference of roots; root i of one is (i times + plus) % count of
- * two. */
+/* Largest relative difference; root i of one is (i times + plus) % count of two. */
 static double roots_differ(const struct solution *one, const struct solution *two,
                            int times, int plus)
 {
@@ -464,8 +463,7 @@ static void test_linearity(void)
     solution_free(&both);
 }
 
-/* rho_j A_j B_i, where only j emits, is A_i rho_i B_j, where only i does: (A_i / rho_i)
- * R_ij. */
+/* rho_j A_j B_i with lamp j is A_i rho_i B_j with lamp i: (A_i / rho_i) R_ij. */
 static void test_reciprocity(void)
 {
     static const int32_t lamps[] = {0, 5, 13, 22};
@@ -585,8 +583,8 @@ static double mean_shown(struct solution *s)
 }
 
 /* A large lamp, a screen with a hole, a receiver close to it: each point sees the lamp
- * wherever it sees the hole, so the hole is a lamp of its size. What gets through is 1/60
- * and 1/500 of the lamp. What hides the lamp is cut out of it exactly, so 3 % leaves room
+ * wherever it sees the hole, so the hole is a lamp of its size. Light of 1/60 and 1/500
+ * of the lamp gets through. Its blockers are cut out of it exactly, so 3 % leaves room
  * for the mesh alone. */
 static void test_hole(const char *name, double width, double height)
 {
@@ -623,8 +621,8 @@ static void test_hole(const char *name, double width, double height)
 }
 
 /* A furnace inside out: all light escapes, and the report says so. With one face flipped
- * part of it does, and leaves that see it are not closed: the furnace's 2 is exceeded by
- * what their rows sum to above 1, up to 0.2. */
+ * part of it does, and leaves that see it are not closed: the furnace's 2 is exceeded as
+ * their rows sum to above 1, up to 0.2. */
 static void test_flipped(void)
 {
     struct painted painted = {0};
@@ -648,7 +646,7 @@ static void test_flipped(void)
     solution_free(&s);
 }
 
-/* Two facing plates: what is emitted is absorbed or escapes. */
+/* Two facing plates: all emitted light is absorbed or escapes. */
 static void test_open(void)
 {
     struct painted painted = {0};
@@ -737,7 +735,7 @@ int main(int argc, char **argv)
     test_duplicates(0.3, "--epsilon 1e-4 --final-gather 0", 2.5,
                     0.02); /* as exact as the row sums: 0.9 % measured */
     test_duplicates(0.3, "--epsilon 1e-4", 1.0 / 0.7,
-                    1e-6); /* what lies below is not seen */
+                    1e-6); /* the copies below are not seen */
     test_duplicates(0.6, "--epsilon 1e-3 --final-gather 0", 1.0 / 0.05, 1e-3);
     test_duplicates(0.6, "--epsilon 1e-3 --paper", 0.0, 0.0);
     test_covered("--epsilon 1e-4 --tolerance 1e-6");

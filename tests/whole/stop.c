@@ -37,7 +37,7 @@ static bool is_time(void)
 }
 
 static struct error error;
-static struct world world; /* what the phases look at */
+static struct world world; /* that the phases look at */
 static struct shading *shading;
 static float picture[3 * SIZE * SIZE];
 
@@ -45,7 +45,7 @@ static const struct camera CAMERA = {.eye = {0.1, 0.2, 0.3}, .at = {0.9, 0.8, 0.
                                      .up = {0, 0, 1}, .fov = 70.0, .width = SIZE,
                                      .height = SIZE};
 
-/* --- what may be stopped; each returns how much it has made --- */
+/* --- phases that stop; each returns the number of items made --- */
 
 static int64_t count_triangles(struct scene *scene)
 {
@@ -282,7 +282,7 @@ static void test_questions(void)
     tap_ok(!stop_check(&error) && error.code == EXIT_FAILED, "which is an error");
 }
 
-/* --- what they work on --- */
+/* --- the scene they work on --- */
 
 /* A lit room with a box in it, each side of n x n cells. */
 static struct scene *make_room(int n)

@@ -23,7 +23,7 @@ struct errors {
     double mean, rms, worst;
 };
 
-/* What is asked of all scenes: that an eye sees nothing, and next to edges little. */
+/* The limits of all scenes: errors that no eye sees, few next to edges. */
 static const struct errors BARS = {1e-3, 2e-3, 1e-2};
 
 /* Beside a bright edge on a dark wall, where B changes most, leaves are off by a little
@@ -34,7 +34,7 @@ static const struct errors HINGES = {1e-3, 2.5e-3, 1e-2};
  * a bright edge: it is as far off as this, for a finer epsilon finds the same. */
 static const struct errors CRATER = {4e-3, 5e-3, 1.5e-2};
 
-/* --- what is measured --- */
+/* --- errors measured --- */
 
 /* An answer for one surface: by an equation, by root, or the same everywhere. */
 struct truth {
@@ -121,7 +121,7 @@ static struct errors measure(const struct solution *s, int material,
     return (struct errors){found / exact - 1.0, sqrt(square / area), worst};
 }
 
-/* The limits are those without facets; what these cost goes on top. */
+/* The limits are those without facets; their cost goes on top. */
 static void judge(const struct solution *s, const char *name, int material,
                   const struct truth *truth, struct errors limit, double cost)
 {
@@ -178,9 +178,9 @@ static struct solution solve_strips(const struct comm *comm, const struct equati
     return solve_scene(comm, scene_of_painted(&painted), words);
 }
 
-/* The ends are 18 widths and more from what is looked at, and take less than 1e-4 of its
- * light: from a point between plates, 2 / (3 pi 18^3) = 4e-5 of its view. Where plates
- * are a tenth as far apart, an eighth of the length is as good. */
+/* The ends are 18 widths and more from the part looked at, and take less than 1e-4 of
+ * its light: from a point between plates, 2 / (3 pi 18^3) = 4e-5 of its view. Where
+ * plates are a tenth as far apart, an eighth of the length is as good. */
 enum { STRIP = 40, SHORT = 8, MIDDLE = 4 };
 
 /* The numbers beside it are from a method of higher order, at two resolutions. 1e-5:
@@ -348,8 +348,8 @@ static double *facets_solve(const struct scene *scene)
     return b;
 }
 
-/* Paints what is below these heights, from the south pole up, zone by zone. A zone that
- * neither reflects nor emits is left out. */
+/* Paints the parts below these heights, from the south pole up, zone by zone. A zone
+ * that neither reflects nor emits is left out. */
 struct zone {
     double height; /* of its upper end */
     struct material material;
@@ -377,8 +377,8 @@ static struct scene *sphere_of_zones(const struct zone *zones, int count, int le
 }
 
 /* H = sum f E / (1 - sum f rho), f being the shares of 4 pi that zones have: in a sphere;
- * facets are another sum of shares, and cost what facets_solve() has more or less of
- * each. */
+ * facets are another sum of shares, and cost as much more or less as facets_solve() has
+ * of each. */
 static void test_sphere(const struct comm *comm, const char *name,
                         const struct zone *zones, int count, int level,
                         struct errors limit)

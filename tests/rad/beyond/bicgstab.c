@@ -95,7 +95,7 @@ static void test_known(struct random *random, struct system *s, double bright)
     double before = worst_of(x, truth);
     done = bicgstab_solve(apply, s, b, weights, SIZE, 1e-12, 200, x);
     tap_ok(done.steps == 0 && worst_of(x, truth) == before,
-           "what is solved stays as it is");
+           "a band that is solved stays as it is");
     memset(b, 0, sizeof b);
     memset(x, 0, sizeof x);
     done = bicgstab_solve(apply, s, b, weights, SIZE, 0.0, 200, x);

@@ -1,5 +1,5 @@
 /* Tests of rad/beyond/caps.h: row sums, and the factors that cap them. (On all ranks, and
- * what they do to the light: tests/mpi/conjugate.c.) */
+ * their effect on the light: tests/mpi/conjugate.c.) */
 #include "rad/beyond/caps.h"
 
 #include <string.h>

@@ -100,7 +100,8 @@ static void extend(struct vec3 *low, struct vec3 *high, struct vec3 by)
     *high = (struct vec3){fmax(high->x, by.x), fmax(high->y, by.y), fmax(high->z, by.z)};
 }
 
-/* A cluster is what its roots are. Sums may be off by their rounding, 1e-16 a root. */
+/* A cluster has the sums of its roots. Sums may be off by their rounding, 1e-16 a
+ * root. */
 static bool is_true(const struct cluster_tree *tree, const struct scene *scene,
                     int32_t number)
 {
@@ -236,7 +237,7 @@ static void test_few(int count)
     scene_destroy(scene);
 }
 
-/* The checks above see what is wrong. */
+/* The checks above notice planted errors. */
 static void test_checks(void)
 {
     struct scene *scene = mixture(300);
@@ -409,7 +410,8 @@ static void test_lamps(void)
     scene_prepare_or_exit(scene);
     soup_free(&soup);
     struct cluster_tree *tree = tree_create(scene, NULL);
-    tap_ok(parts_at(tree, others), "lamps are cut off from what they light");
+    tap_ok(parts_at(tree, others),
+           "lamps are in other clusters than the surfaces they light");
     cluster_tree_destroy(tree);
     scene_destroy(scene);
 }

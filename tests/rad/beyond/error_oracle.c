@@ -122,7 +122,7 @@ static void test_range(void)
     /* Doubt alone is left: 1/8 of G x rho B both ways. */
     double to_p = 0.5 * rgb_sum(world.model.forest->patches[1].radiosity), to_q = 1.5;
     tap_ok(error_is(&world, &link, 0.125 * 0.125 * (to_p + to_q), 1),
-           "what a blocked link might carry is only in doubt");
+           "the light that a blocked link might carry is only in doubt");
     world_free(&world);
 }
 
@@ -150,7 +150,8 @@ static void test_error_doubt(void)
     world_free(&world);
 }
 
-/* What may not be split leaves it to the other side, if that causes enough of the error.
+/* A side that may not be split leaves it to the other, if that causes enough of the
+ * error.
  */
 static void test_error_limits(void)
 {
@@ -233,7 +234,7 @@ static void test_dividing(void)
 
 enum { DECISIONS = 4000 };
 
-/* What becomes of a scene of random triangles, `scale` times as large and bright: one
+/* Figures of a refined scene of random triangles, `scale` times as large and bright: one
  * number for each link, and for each of its children, split or not, as long as there is
  * room. */
 static int decide(double scale, uint64_t seed, int32_t decisions[DECISIONS])

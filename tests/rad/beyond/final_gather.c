@@ -1,4 +1,4 @@
-/* Tests of rad/beyond/final_gather.h and rad/beyond/lamps.h: what a leaf receives, by
+/* Tests of rad/beyond/final_gather.h and rad/beyond/lamps.h: the light of a leaf, by
  * exact factors and by rays, against closed forms. */
 #include "mpi/beyond/beyond.h"
 #include "rad/beyond/final_gather.h"
@@ -130,8 +130,8 @@ static void test_open(void)
 }
 
 /* A sheet lies on a bright floor, and nothing stands between them: exact factors are
- * tried, and given up, as the sheet hides what they would tell. Rays make the rows, and
- * lamps, which its underside does not face, bring nothing. */
+ * tried, and given up, as the sheet hides their blockers. Rays make the rows, and lamps,
+ * which its underside does not face, bring nothing. */
 static void test_given_up(void)
 {
     struct painted painted = {0};
@@ -193,9 +193,9 @@ static double lit_floor(int lamps, bool screened, double *exact, int64_t *groups
     return mean;
 }
 
-/* Where nothing hides the lamp its light is that of exact factors, but for what the
- * corner of the box takes (its share of the hemisphere below the lamp, .2 % at most).
- * Lamps of a group are chosen by chance: 1 %. */
+/* Where nothing hides the lamp its light is that of exact factors, but for that which
+ * the corner of the box takes (its share of the hemisphere below the lamp, .2 % at
+ * most). Lamps of a group are chosen by chance: 1 %. */
 static void test_lamps(void)
 {
     double exact;
@@ -210,11 +210,11 @@ static void test_lamps(void)
     tap_ok(fabs(h / exact - 0.5) <= 0.02, "half hidden: %.3f of its light", h / exact);
 }
 
-/* --- what is near --- */
+/* --- near clusters --- */
 
 /* A sheet 1 mm above a table, under a lamp; neither is divided. The table is bright, but
- * what the sheet sees of it is dark: only the light that creeps in from the sides, less
- * than a hundredth. */
+ * the part in sight of the sheet is dark: only the light that creeps in from the sides,
+ * less than a hundredth. */
 static void test_gap(void)
 {
     struct painted painted = {0};

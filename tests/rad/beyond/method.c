@@ -35,11 +35,11 @@ int main(void)
     test(ORACLE_BF, FORM_FACTOR_DISK, LINKING_PAIRS, &PAPER, 0, "the paper's");
     test(ORACLE_ERROR, FORM_FACTOR_POLYGON, LINKING_TREE, &DEFAULT, 0, "the default");
     test(ORACLE_BF, FORM_FACTOR_POLYGON, LINKING_TREE, &DEFAULT, 0x10,
-         "--oracle bf: what is split");
+         "--oracle bf: the links that are split");
     test(ORACLE_ERROR, FORM_FACTOR_DISK, LINKING_TREE, &DEFAULT, 0x08,
          "--form-factor disk: the kernel");
     test(ORACLE_ERROR, FORM_FACTOR_POLYGON, LINKING_PAIRS, &DEFAULT, 0x03,
-         "--linking pairs: what there is at first, and what epsilon is relative to");
+         "--linking pairs: the first links, and the unit of epsilon");
     test(ORACLE_BF, FORM_FACTOR_DISK, LINKING_TREE, &DEFAULT, 0x18, "two at a time");
     tap_ok(difference(&PAPER, &DEFAULT) == 0xff, "the two have no entry in common");
     return tap_done();

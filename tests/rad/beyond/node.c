@@ -195,7 +195,7 @@ static double variance_of(const struct mean *mean)
     return fmax(0.0, square) / (mean->count - 1);
 }
 
-/* Of all that a root sends, what arrives at roots of q, G. */
+/* The part of a root's light that arrives at roots of q, G. */
 static void look_around(const struct wood *wood, int32_t root, int32_t first, int32_t end,
                         double *area, double *variance)
 {
@@ -339,9 +339,9 @@ static struct link_list links_below_top(struct wood *wood)
     return all;
 }
 
-/* The field `blocker` of a link of far clusters has what its first look found, as drawn
- * in rad/beyond/node_link.c, and keeps it when the link settles; that of near ones has
- * nothing. */
+/* The field `blocker` of a link of far clusters has the finding of its first look, as
+ * drawn in rad/beyond/node_link.c, and keeps it when the link settles; that of near ones
+ * has nothing. */
 static bool has_judgement(struct model *model, struct link *link)
 {
     struct end p = end_of(model, link->p), q = end_of(model, link->q);
@@ -376,8 +376,8 @@ static void test_judgement(void)
         count++;
         right += has_judgement(&wood.world.model, link);
     }
-    tap_ok(count > 100 && right == count, "%d of %d links keep what their first look "
-           "found", right, count);
+    tap_ok(count > 100 && right == count,
+           "%d of %d links keep the blocker of their first look", right, count);
     link_list_free(&links);
     wood_free(&wood);
 }

@@ -1,6 +1,6 @@
 /* Tests of rad/beyond/patch_exchange.h: sums over subdivided squares converge to closed
- * forms, bounds and symmetry hold for any pair, and what is claimed to be blocked for
- * sure is blocked.
+ * forms, bounds and symmetry hold for any pair, and pairs claimed to be blocked for sure
+ * is blocked.
  *
  * Closed forms are those of Howell's catalogue: C-11, aligned parallel rectangles, and
  * C-14, perpendicular rectangles with a common edge, from which follows the case with a
@@ -164,7 +164,7 @@ static void test_squares(void)
     check_convergence(&gap, exact, bound_gap, 3.8, "perpendicular squares with a gap");
     soup_free(&gap);
     /* At the common edge distance and size shrink alike: there the error of each pair
-     * stays, and what falls is the share of such pairs, half with each level. */
+     * stays, and the share of such pairs falls, half with each level. */
     static const double bound_edge[4] = {1.4e-3, 8.3e-3, 7.3e-3, 4.7e-3};
     soup_add_quad(&edge, o, x, y, 1);
     soup_add_quad(&edge, o, y, z, 1);
@@ -333,7 +333,7 @@ static void test_bounds(enum kind kind)
            findings.worst);
     tap_ok(findings.too_little == 0, "%s: nor more than without blockers", name);
     tap_ok(findings.lop_sided == 0, "%s: the same in both directions", name);
-    tap_ok(findings.blocked == 0, "%s: what is proved to be blocked exchanges nothing",
+    tap_ok(findings.blocked == 0, "%s: pairs proved to be blocked exchange nothing",
            name);
     tap_ok(findings.one_way == 0, "%s: and is so in both directions", name);
     octree_destroy(octree);
@@ -374,7 +374,7 @@ static void test_facing(void)
     tap_ok(!facets_face(&p, &up) && !facets_face(&up, &p) && !facets_face(&p, &below),
            "a floor above does not, nor one below");
     tap_ok(!facets_face(&p, &beside) && !facets_face(&p, &inside) && !facets_face(&p, &p),
-           "nor does what lies in the plane");
+           "nor does one in the plane");
     tap_ok(facets_face(&p, &turned) && !facets_face(&p, &cut),
            "a wall that rises above the floor faces it with its front");
 }
@@ -404,8 +404,8 @@ static void test_horizon(void)
 enum pieces { WHOLE, HALVES, BENT }; /* in one piece, in two, in two that are not in
                                         one plane */
 
-/* Exchange of two triangles face to face with one between them: scaled by `size` from
- * what covers all straight lines exactly. */
+/* Exchange of two triangles face to face with one between them: scaled by `size` from a
+ * cover of all straight lines, exactly. */
 static struct exchange between(double size, bool reverse, enum pieces in_two,
                                struct octree_counts *counts,
                                bool *walled_off)

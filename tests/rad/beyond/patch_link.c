@@ -120,7 +120,7 @@ static void test_areas(void)
     struct link link = PLAIN;
     link.seen = 0;
     tap_ok(link_area(&link) == 0.0 && link_unoccluded(&link) == 0.25,
-           "a blocked link has no area, but remembers what it would have");
+           "a blocked link has no area, but remembers its unoccluded one");
     link.seen = LINK_ALL_SEEN / 2;
     tap_ok(link_area(&link) == 0.25 && link_unoccluded(&link) == 0.5,
            "one that is half seen would have twice as much");
@@ -128,7 +128,7 @@ static void test_areas(void)
     bool right = link_area(&link) == 0.25 && link_unoccluded(&link) == 0.25;
     link.seen = LINK_OPEN;
     tap_ok(right && link_area(&link) == 0.25 && link_unoccluded(&link) == 0.25,
-           "one that is seen or open has what it would have");
+           "one that is seen or open has its unoccluded area");
     link.cost = compact8(1000.0);
     tap_ok(link_cost(&link) == 1024.0, "a cost is rounded up: 1000 to 1024");
     const uint8_t parts[3] = {128, 64, 0};
@@ -165,10 +165,10 @@ static void test_dealing(void)
     tap_ok(p[0].flux[0] == 7680 && p[1].flux[0] == 0 && p[2].flux[0] == 5760 &&
                p[3].flux[0] == 1920 && p[0].flux[2] == 1024 && p[1].flux[2] == 0 &&
                p[2].flux[2] == 768 && p[3].flux[2] == 256 && p[0].flux[1] == 0,
-           "what p receives is dealt to its children by the parts of p; none for part 0");
+           "light of p is dealt to its children by the parts of p; none for part 0");
     tap_ok(q[0].flux[0] == 0 && q[1].flux[0] == 0 && q[2].flux[0] == 272 &&
                q[3].flux[0] == 816,
-           "and what q receives by those of q");
+           "and light of q by those of q");
     tap_ok(forest->patches[2].flux[0] == 0 && forest->patches[4].flux[0] == 0,
            "and nothing to the patches themselves");
     /* The same with even parts: 20 x 1/2 W to p, and 2.5 x 1/2 to q. */
@@ -205,7 +205,8 @@ static void test_dealing(void)
     world_free(&world);
 }
 
-/* What a patch sends: B of a leaf, the children weighted by the parts of another. */
+/* The radiosity that a patch sends: B of a leaf, the children weighted by the parts of
+ * another. */
 static struct rgb sent_by(const struct forest *forest, int32_t patch,
                           const uint8_t parts[3])
 {
@@ -291,7 +292,7 @@ static void test_parts(void)
                                                          &visibility, &counts);
             made++;
             for (int k = 0; k < 4; k++) {
-                /* Within one in 256, and what rounds the exact parts. */
+                /* Within one in 256, and the rounding of exact parts. */
                 off += fabs(link_part(link.parts_p,
                                       k) - exchange.parts_p[k]) > 1.0001 / 256.0 ||
                        fabs(link_part(link.parts_q,
@@ -331,15 +332,15 @@ static void test_inheriting(void)
     world = make_default_pair(1.0, material_grey(0.5, 0), material_grey(0, 1), &more);
     bool made = make(&world, 0, 1, &link);
     tap_ok(made && link.seen == 0 && link.blocker >= 2 && link.blocker <= 3,
-           "a link knows what blocked it");
+           "a link knows its blocker");
     world_free(&world);
     soup_free(&more);
 }
 
 /* --- looking --- */
 
-/* The floor sends 1 and 3, the ceiling nothing: what is typical counts as long as there
- * is less. */
+/* The floor sends 1 and 3, the ceiling nothing: the typical B counts as long as there is
+ * less. */
 static void test_look(void)
 {
     struct material grey = material_grey(0.5, 1);
@@ -356,7 +357,7 @@ static void test_look(void)
     model->typical = (struct rgb){{3.0, 1.0, 1.0}}; /* 5/2 each way */
     tap_ok(patch_link_effort(model, 0, 1, 0.0999 / 5.0) == EFFORT_ONE &&
                patch_link_effort(model, 0, 1, 0.1001 / 5.0) == EFFORT_FOUR_FIRST,
-           "what is typical counts where it is more");
+           "the typical B counts where it is more");
     tap_ok(patch_link_effort(model, 0, 1, 0.0) == EFFORT_ALL &&
                patch_link_effort(model, 0, 1, NAN) == EFFORT_ALL,
            "without a guess all is looked at");

@@ -242,7 +242,7 @@ static void test_flush(void)
 
 enum { LIGHT_PATHS = 2 * SAMPLES };
 
-/* What arrives at the children of a root. */
+/* The light that arrives at the children of a root. */
 struct basin {
     int32_t root;
     int band;

@@ -10,8 +10,8 @@
 enum { POINTS = 256, SIDE = 16 };
 
 /* Of the first 2^k points one lies in each interval of 2^-k, in every dimension; of the
- * first two dimensions, one in each box of that area. That is what Sobol's points
- * promise, and scrambling must keep. */
+ * first two dimensions, one in each box of that area. That is the merit of Sobol's
+ * points: promise, and scrambling must keep. */
 static void test_strata(void)
 {
     bool one = true, two = true;
