@@ -14,11 +14,11 @@ functions_run           173   150
 files_run                29    20
 calls_to_form_factor      8     7
 includes_of_beyond        1     0
-ground_floor_lines     5544  4500
-source_lines          23591 16000
+ground_floor_lines     4437  4500
+source_lines          23253 16000
 test_lines            25674 16000
-long_lines              222     0
-what_per_1000_words     2.9     2
+long_lines              201     0
+what_per_1000_words     1.3     2
 large_structs             1     0
 structs_twice             0     0
 files_in_circles          7     0
