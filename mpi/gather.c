@@ -9,22 +9,27 @@
 #include <math.h>
 #include <string.h>
 
-double solver_largest_radiosity(const struct solver *solver)
+struct rgb *solver_vector(const struct solver *solver)
 {
-    const struct forest *forest = solver->model.forest;
+    return solver->steps.vector ? solver->steps.vector(solver)
+                                : solver->model.forest->radiosity;
+}
+
+double solver_largest(const struct solver *solver, const struct rgb *vector)
+{
     double largest = 1e-250;
-    for (int64_t p = 0; p < forest->count; p++)
+    for (int64_t p = 0; p < solver->model.forest->count; p++)
         for (int c = 0; c < BANDS; c++)
-            largest = fmax(largest, fabs(forest->patches[p].radiosity.band[c]));
+            largest = fmax(largest, fabs(vector[p].band[c]));
     return largest;
 }
 
 /* No patch receives more than all surfaces send where B is largest. */
-void solver_transfer(struct solver *solver)
+void solver_transfer(struct solver *solver, const struct rgb *vector)
 {
     double start = comm_seconds();
-    solver->flux = flux_unit_for(solver_largest_radiosity(solver) * solver->model.area);
-    solver->model.method.transfer(&solver->links, &solver->model, solver->flux);
+    solver->flux = flux_unit_for(solver_largest(solver, vector) * solver->model.area);
+    solver->model.method.transfer(&solver->links, &solver->model, vector, solver->flux);
     solver->account.seconds[PHASE_SOLVE] += comm_seconds() - start;
 }
 
@@ -71,10 +76,10 @@ static void bring_home(struct solver *solver)
     solver->account.seconds[PHASE_GATHER] += comm_seconds() - start;
 }
 
-void solver_carry(struct solver *solver)
+void solver_carry(struct solver *solver, const struct rgb *vector)
 {
     clear_own_flux(solver);
-    solver->steps.transfer(solver);
+    solver->steps.transfer(solver, vector);
     bring_home(solver);
     if (solver->steps.collect)
         solver->steps.collect(solver);
@@ -90,5 +95,5 @@ void solver_gather(struct solver *solver)
             solver->steps.begin(solver);
     }
     solver->turn.fresh = false;
-    solver_carry(solver);
+    solver_carry(solver, solver_vector(solver));
 }

@@ -15,30 +15,30 @@ static struct rgb *ballot_of(const struct solver *solver, int home)
 }
 
 /* The radiosities of the own leaves, and the own ballot. */
-static void pack(struct solver *solver)
+static void pack(struct solver *solver, const struct rgb *vector)
 {
     const struct routes *routes = &solver->routes;
     int rank = solver->comm->rank;
     const int32_t *leaves = routes->leaves + routes->leaf_at[rank];
     struct rgb *records = routes->radiosities + routes->record_at[rank];
     for (int i = 0; i < routes->leaf_counts[rank]; i++)
-        records[i] = solver->model.forest->patches[leaves[i]].radiosity;
+        records[i] = vector[leaves[i]];
     memcpy(ballot_of(solver, rank), &solver->ballot, sizeof solver->ballot);
     solver->account.copied += routes->leaf_counts[rank];
 }
 
 /* Gives the leaves of a home what it has sent. */
-static void renew_home(struct solver *solver, int home)
+static void renew_home(struct solver *solver, int home, struct rgb *vector)
 {
     const struct routes *routes = &solver->routes;
-    struct forest *forest = solver->model.forest;
+    const struct forest *forest = solver->model.forest;
     const int32_t *leaves = routes->leaves + routes->leaf_at[home];
     const struct rgb *records = routes->radiosities + routes->record_at[home];
     for (int i = 0; i < routes->leaf_counts[home]; i++)
-        forest->patches[leaves[i]].radiosity = records[i];
+        vector[leaves[i]] = records[i];
     const int32_t *patches = routes->receivers + routes->receiver_at[home]; /* children after parents */
     for (int i = routes->receiver_counts[home] - 1; i >= 0; i--)
-        forest_average_patch(forest, patches[i]);
+        patch_average(forest, patches[i], vector);
     solver->account.copied += routes->receiver_counts[home];
 }
 
@@ -72,10 +72,11 @@ static void share(struct solver *solver)
 void solver_scatter(struct solver *solver)
 {
     double start = comm_seconds();
-    pack(solver);
+    struct rgb *vector = solver_vector(solver);
+    pack(solver, vector);
     share(solver);
     add_ballots(solver);
     for (int home = 0; home < solver->comm->size; home++)
-        renew_home(solver, home);
+        renew_home(solver, home, vector);
     solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
 }

@@ -84,7 +84,9 @@ enum finish { FINISH_DONE, FINISH_STOPPED, FINISH_AGAIN };
  * is nothing to do. */
 struct steps {
     void (*begin)(struct solver *solver);       /* 5: before new links carry light */
-    void (*transfer)(struct solver *solver);    /* 5: flux over the links that live here */
+    struct rgb *(*vector)(const struct solver *solver); /* 5 and 7; NULL: B */
+    void (*transfer)(struct solver *solver, const struct rgb *vector); /* 5: flux over the
+                                                   links that live here */
     void (*collect)(struct solver *solver);     /* 5: flux of all ranks above the roots */
     void (*push_pull)(struct solver *solver);   /* 6: own leaves, and the ballot */
     struct vote (*vote)(struct solver *solver, const struct ballot *sum); /* 8 */
@@ -150,11 +152,15 @@ bool solver_refine(struct solver *solver);
 /* Step 5: light is transferred over the links there are, and flux of proxies goes home. */
 void solver_gather(struct solver *solver);
 
-/* The transfer alone, whether links have changed or not. */
-void solver_carry(struct solver *solver);
+/* The vector over patches, [patches], W/m^2, that step 5 transfers and step 7 tells to all
+ * ranks: B, or that of a solver. */
+struct rgb *solver_vector(const struct solver *solver);
 
-/* Over all patches and bands, W/m^2; the same on all ranks. */
-double solver_largest_radiosity(const struct solver *solver);
+/* The transfer alone, of any vector [patches], over links whose routes are known. */
+void solver_carry(struct solver *solver, const struct rgb *vector);
+
+/* The largest magnitude of a vector [patches] over patches and bands. */
+double solver_largest(const struct solver *solver, const struct rgb *vector);
 
 /* Step 6: push-pull on the own roots, and this rank's ballot. */
 void solver_push_pull(struct solver *solver);
@@ -166,7 +172,7 @@ void solver_scatter(struct solver *solver);
 struct vote solver_vote(struct solver *solver);
 
 /* The parts of STEPS_PAPER. */
-void solver_transfer(struct solver *solver);
+void solver_transfer(struct solver *solver, const struct rgb *vector);
 void solver_push_pull_jacobi(struct solver *solver);
 struct vote solver_vote_jacobi(struct solver *solver, const struct ballot *sum);
 

@@ -98,13 +98,12 @@ static void receive(struct patch *patch, double area, const struct rgb *radiosit
 }
 
 void links_transfer(const struct link_list *list, const struct model *model,
-                    struct flux_unit unit)
+                    const struct rgb *vector, struct flux_unit unit)
 {
     for (int64_t i = 0; i < list->count; i++) {
         const struct link *link = &list->items[i];
-        struct patch *p = &model->forest->patches[link->p];
-        struct patch *q = &model->forest->patches[link->q];
-        receive(p, (double)link->area, &q->radiosity, unit);
-        receive(q, (double)link->area, &p->radiosity, unit);
+        struct patch *patches = model->forest->patches;
+        receive(&patches[link->p], (double)link->area, &vector[link->q], unit);
+        receive(&patches[link->q], (double)link->area, &vector[link->p], unit);
     }
 }

@@ -55,10 +55,10 @@ struct method {
      */
     void (*keep_link)(struct model *model, struct link *link, bool is_new);
 
-    /* Transfers light over all links: adds G B of either side to the flux of the other.
-     */
+    /* Transfers light over all links: adds G x of either side to the flux of the other.
+     * x is B, or a vector of a solver, [patches], W/m^2. */
     void (*transfer)(const struct link_list *list, const struct model *model,
-                     struct flux_unit unit);
+                     const struct rgb *vector, struct flux_unit unit);
 };
 
 extern const struct method PAPER;   /* rad/paper.c */

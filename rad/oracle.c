@@ -21,9 +21,9 @@ bool p_is_larger(const struct forest *forest, const struct link *link)
 
 int32_t oracle_side_to_split(const struct model *model, const struct link *link)
 {
-    const struct patch *patches = model->forest->patches;
-    double energy = link_area(link) * (rgb_sum(patches[link->p].radiosity) +
-                                       rgb_sum(patches[link->q].radiosity));
+    const struct rgb *radiosity = model->forest->radiosity;
+    double energy = link_area(link) * (rgb_sum(radiosity[link->p]) +
+                                       rgb_sum(radiosity[link->q]));
     int32_t larger = p_is_larger(model->forest, link) ? link->p : link->q;
     return energy > model->link_threshold && patch_may_split(model,
                                                              larger) ? larger : NODE_NONE;

@@ -1,7 +1,8 @@
 /* The patch forest.
  *
- * A patch is 64 bytes: one cache line, and less than three links. Its corners, normal
- * and area follow from its root and its ID, so they are not stored. The four children of
+ * A patch is 40 bytes, and 24 more for its radiosity, which is a vector of its own: what
+ * is transferred is either that or a vector of a solver. Its corners, normal and area
+ * follow from its root and its ID, so they are not stored. The four children of
  * a patch lie side by side, hence one number finds them all and 0 (always a root, never
  * a child) means none. */
 #include "rad/patch.h"
@@ -19,12 +20,13 @@ struct forest *forest_create(const struct scene *scene)
     forest->patches = alloc_reserve(NULL, &forest->capacity, forest->root_count,
                                     sizeof *forest->patches);
     forest->count = forest->root_count;
-    for (int32_t root = 0; root < forest->root_count; root++)
-        forest->patches[root] = (struct patch){
-            .radiosity = scene_root_material(scene, root)->emission,
-            .id = id_of_root((uint32_t)root),
-            .parent = -1,
-        };
+    forest->radiosity = alloc_reserve(NULL, &forest->radiosity_capacity, forest->count,
+                                      sizeof *forest->radiosity);
+    for (int32_t root = 0; root < forest->root_count; root++) {
+        forest->patches[root] =
+            (struct patch){.id = id_of_root((uint32_t)root), .parent = -1};
+        forest->radiosity[root] = scene_root_material(scene, root)->emission;
+    }
     return forest;
 }
 
@@ -33,6 +35,7 @@ void forest_destroy(struct forest *forest)
     if (!forest)
         return;
     alloc_free(forest->patches);
+    alloc_free(forest->radiosity);
     alloc_free(forest->extremes);
     alloc_free(forest->above);
     alloc_free(forest);
@@ -46,14 +49,15 @@ void forest_split(struct forest *forest, int32_t patch)
         alloc_fail(SIZE_MAX); /* local numbers end at 2^31 patches, 128 GiB */
     forest->patches = alloc_reserve(forest->patches, &forest->capacity, forest->count + 4,
                                     sizeof *forest->patches);
+    forest->radiosity = alloc_reserve(forest->radiosity, &forest->radiosity_capacity,
+                                      forest->count + 4, sizeof *forest->radiosity);
     struct patch *parent = &forest->patches[patch];
     parent->children = (int32_t)forest->count;
-    for (int k = 0; k < 4; k++)
-        forest->patches[forest->count++] = (struct patch){
-            .radiosity = parent->radiosity,
-            .id = id_child(parent->id, k),
-            .parent = patch,
-        };
+    for (int k = 0; k < 4; k++, forest->count++) {
+        forest->patches[forest->count] =
+            (struct patch){.id = id_child(parent->id, k), .parent = patch};
+        forest->radiosity[forest->count] = forest->radiosity[patch];
+    }
 }
 
 int32_t forest_reach(struct forest *forest, struct patch_id id)
@@ -82,21 +86,6 @@ double forest_area(const struct forest *forest, int32_t patch)
     struct patch_id id = forest->patches[patch].id;
     double share = 1.0 / (double)(UINT32_C(1) << (2 * id_level(id)));
     return scene_root_area(forest->scene, (int32_t)id.root) * share;
-}
-
-struct rgb *forest_keep(const struct forest *forest)
-{
-    struct rgb *kept = alloc_array((size_t)forest->count, sizeof *kept);
-    for (int64_t p = 0; p < forest->count; p++)
-        kept[p] = forest->patches[p].radiosity;
-    return kept;
-}
-
-void forest_restore(struct forest *forest, struct rgb *kept)
-{
-    for (int64_t p = 0; p < forest->count; p++)
-        forest->patches[p].radiosity = kept[p];
-    alloc_free(kept);
 }
 
 static int64_t count_patches(const struct forest *forest, bool leaves_only)
@@ -179,7 +168,7 @@ uint64_t forest_checksum(const struct forest *forest)
         hash = hash_splits(hash, forest, root);
         for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
             for (int c = 0; c < BANDS && patch_is_leaf(&forest->patches[p]); c++)
-                hash = hash_number(hash, forest->patches[p].radiosity.band[c]);
+                hash = hash_number(hash, forest->radiosity[p].band[c]);
     }
     return hash;
 }

@@ -13,7 +13,6 @@
 #include "rad/id.h"
 
 struct patch {
-    struct rgb radiosity;   /* B, W/m^2; of an inner patch: the mean over its leaves */
     int64_t flux[BANDS];    /* Phi received in this iteration over links of this very
                                patch */
     struct patch_id id;     /* global name */
@@ -32,11 +31,13 @@ enum { NODE_NONE = INT32_MIN };
 struct forest {
     const struct scene *scene; /* borrowed */
     struct patch *patches;     /* [count] */
+    struct rgb *radiosity;     /* [count] B, W/m^2; of an inner patch the mean over its
+                                  leaves */
     struct extremes *extremes; /* [bounded] see rad/beyond/range.h; NULL: there are
                                   none */
     struct rgb *above;         /* [root_count] irradiance that clusters hand down to
                                   each root, W/m^2; NULL: there are none */
-    int64_t count, capacity, bounded, extremes_capacity;
+    int64_t count, capacity, radiosity_capacity, bounded, extremes_capacity;
     int32_t root_count;
 };
 
@@ -69,11 +70,6 @@ static inline const struct material *forest_material(const struct forest *forest
 {
     return scene_root_material(forest->scene, (int32_t)forest->patches[patch].id.root);
 }
-
-/* A copy of all radiosities, and putting it back (which frees it): B makes room for what
- * else is to be transferred. No patch may be split in between. */
-struct rgb *forest_keep(const struct forest *forest);
-void forest_restore(struct forest *forest, struct rgb *kept);
 
 /* Number of leaves under all roots that have an area. */
 int64_t forest_leaf_count(const struct forest *forest);

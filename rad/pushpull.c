@@ -34,7 +34,7 @@ struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flu
 static void update_leaf(const struct model *model, struct flux_unit flux, int32_t leaf,
                            struct push_pull_sums *sums)
 {
-    struct patch *patch = &model->forest->patches[leaf];
+    struct rgb *radiosity = &model->forest->radiosity[leaf];
     const struct material *material = forest_material(model->forest, leaf);
     struct rgb irradiance = leaf_irradiance(model->forest, leaf, flux);
     double area = forest_area(model->forest, leaf);
@@ -46,8 +46,8 @@ static void update_leaf(const struct model *model, struct flux_unit flux, int32_
         light += area * b;
         absorbed += area * ((1.0 - rho) * h);
         arriving += area * h;
-        change += area * fabs(b - patch->radiosity.band[c]);
-        patch->radiosity.band[c] = b;
+        change += area * fabs(b - radiosity->band[c]);
+        radiosity->band[c] = b;
     }
     sums->light = flux_add(sums->light, flux_from_watts(model->flux_unit, light));
     sums->arriving = flux_add(sums->arriving, flux_from_watts(model->flux_unit, arriving));
@@ -55,22 +55,20 @@ static void update_leaf(const struct model *model, struct flux_unit flux, int32_
     sums->change = flux_add(sums->change, flux_from_watts(model->flux_unit, change));
 }
 
-void forest_average_patch(struct forest *forest, int32_t p)
+void patch_average(const struct forest *forest, int32_t p, struct rgb *vector)
 {
-    struct patch *patch = &forest->patches[p];
-    if (patch_is_leaf(patch))
+    if (patch_is_leaf(&forest->patches[p]))
         return;
-    const struct patch *child = &forest->patches[patch->children];
+    const struct rgb *child = &vector[forest->patches[p].children];
     for (int c = 0; c < BANDS; c++)
-        patch->radiosity.band[c] =
-            0.25 * ((child[0].radiosity.band[c] + child[1].radiosity.band[c]) +
-                    (child[2].radiosity.band[c] + child[3].radiosity.band[c]));
+        vector[p].band[c] = 0.25 * ((child[0].band[c] + child[1].band[c]) +
+                                    (child[2].band[c] + child[3].band[c]));
 }
 
 void forest_average(struct forest *forest)
 {
     for (int64_t p = forest->count - 1; p >= 0; p--)
-        forest_average_patch(forest, (int32_t)p);
+        patch_average(forest, (int32_t)p, forest->radiosity);
 }
 
 struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux,
@@ -86,6 +84,6 @@ struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux
     }
     for (int64_t p = forest->count - 1; p >= 0; p--)
         if (own[forest->patches[p].id.root])
-            forest_average_patch(forest, (int32_t)p);
+            patch_average(forest, (int32_t)p, forest->radiosity);
     return sums;
 }

@@ -24,8 +24,11 @@ struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flu
 struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux,
                                 const bool *own);
 
-/* The pull alone, on one patch and on all: inner patches get the mean of their children. */
-void forest_average_patch(struct forest *forest, int32_t patch);
+/* The pull alone, of one patch in a vector [forest->count]: an inner patch gets the mean of
+ * its children. */
+void patch_average(const struct forest *forest, int32_t patch, struct rgb *vector);
+
+/* The pull of all radiosities. */
 void forest_average(struct forest *forest);
 
 #endif

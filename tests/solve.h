@@ -1,10 +1,11 @@
-/* Solving a scene inside a test: the loop of phr.c without pictures. */
+/* Solving a scene inside a test, by the loop of phr.c. */
 #ifndef TESTS_SOLVE_H
 #define TESTS_SOLVE_H
 
 #include <time.h>
 
 #include "mpi/beyond/beyond.h"
+#include "phr.h"
 
 struct solution {
     struct scene *scene; /* owned */
@@ -66,18 +67,16 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
 {
     struct solution s = {.scene = scene};
     double start = seconds_of_work(comm);
-    s.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
-    s.solver = beyond_create(comm, scene, s.octree, &criterion);
-    solver_link_roots(s.solver);
-    solver_assign_roots(s.solver);
-    do {
-        while (!s.vote.converged && !s.vote.diverged &&
-               s.solver->turn.iteration < criterion.max_iterations) {
-            solver_refine(s.solver);
-            s.vote = solve_links(s.solver);
-        }
-    } while (!s.vote.diverged && s.solver->steps.finish &&
-             s.solver->steps.finish(s.solver, &s.vote) == FINISH_AGAIN);
+    struct run run = {.comm = *comm, .scene = scene};
+    run.options.quiet = true;
+    run.options.criterion = criterion;
+    run.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    compute_light(&run);
+    s.octree = run.octree;
+    s.solver = run.solver;
+    s.vote = run.vote;
+    s.solver->comm = comm;
+    s.solver->progress = NULL;
     s.seconds = seconds_of_work(comm) - start;
     solver_measure_row_sums(s.solver, &s.stats);
     solver_report(s.solver, &s.vote, &s.stats);

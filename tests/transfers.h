@@ -20,7 +20,7 @@ static inline struct world make_many(void)
         forest_split(world.model.forest, r);
     for (int64_t p = 0; p < world.model.forest->count; p++)
         for (int c = 0; c < BANDS; c++)
-            world.model.forest->patches[p].radiosity.band[c] = random_unit(&random);
+            world.model.forest->radiosity[p].band[c] = random_unit(&random);
     return world;
 }
 

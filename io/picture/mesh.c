@@ -63,7 +63,7 @@ static void write_face(struct output *output, const struct shading *shading, int
     for (int k = 0; k < 3; k++)
         output_uint32(output, (uint32_t)shading->corners[3 * (int64_t)leaf + k]);
     for (int c = 0; c < BANDS; c++)
-        output_float(output, (float)patch->radiosity.band[c]);
+        output_float(output, (float)shading->forest->radiosity[leaf].band[c]);
     output_uint32(output, patch->id.root);
     output_uint32(output, patch->id.hierarchy);
 }
@@ -93,7 +93,7 @@ float *mesh_colours(const struct forest *forest, int64_t *count)
     int64_t at = 0;
     for (int32_t leaf = next_leaf(forest, -1); leaf >= 0; leaf = next_leaf(forest, leaf))
         for (int c = 0; c < BANDS; c++)
-            rgb[at++] = (float)forest->patches[leaf].radiosity.band[c];
+            rgb[at++] = (float)forest->radiosity[leaf].band[c];
     *count = at / 3;
     return rgb;
 }

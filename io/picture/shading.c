@@ -241,7 +241,7 @@ static double open_fraction(uint8_t quarters)
 static struct rgb open_radiosity(const struct forest *forest, const struct rgb *less,
                                  int32_t leaf, double fraction)
 {
-    struct rgb b = forest->patches[leaf].radiosity,
+    struct rgb b = forest->radiosity[leaf],
                e = forest_material(forest, leaf)->emission;
     for (int c = 0; c < BANDS && less; c++)
         b.band[c] = fmax(e.band[c], b.band[c] - less[leaf].band[c]);
@@ -274,7 +274,7 @@ static void add_flat_leaf(void *context, int32_t leaf)
         int32_t v = append_vertex(&blend->table, t.corner[k],
                                   (int32_t)forest->patches[leaf].id.root);
         blend->shading->corners[3 * (int64_t)leaf + k] = v;
-        add_value(&blend->table, v, forest->patches[leaf].radiosity, 1.0);
+        add_value(&blend->table, v, forest->radiosity[leaf], 1.0);
     }
 }
 
@@ -446,7 +446,7 @@ struct rgb shading_at(const struct shading *shading, int32_t root, const double 
     while (!patch_is_leaf(&forest->patches[leaf]))
         leaf = forest->patches[leaf].children + descend(w);
     if (shading->flat)
-        return forest->patches[leaf].radiosity;
+        return forest->radiosity[leaf];
     const int32_t *corner = &shading->corners[3 * (int64_t)leaf];
     struct rgb sum = {{0.0, 0.0, 0.0}};
     for (int k = 0; k < 3; k++)

@@ -177,8 +177,8 @@ static bool is_lit(const struct site *site, int32_t triangle)
 {
     const struct forest *forest = site->forest;
     int32_t twin = scene_root_on(site->scene, triangle, false);
-    return !forest || rgb_sum(forest->patches[triangle].radiosity) > 0.0 ||
-           (twin >= 0 && rgb_sum(forest->patches[twin].radiosity) > 0.0);
+    return !forest || rgb_sum(forest->radiosity[triangle]) > 0.0 ||
+           (twin >= 0 && rgb_sum(forest->radiosity[twin]) > 0.0);
 }
 
 /* Rates the rays above and below one azimuth by depth and variety. */

@@ -81,11 +81,11 @@ void above_free(struct solver *solver)
 
 /* --- step 5 --- */
 
-void above_begin(struct solver *solver)
+void above_begin(struct solver *solver, const struct rgb *vector)
 {
     struct cluster_light *clusters = solver->model.clusters;
     double start = comm_seconds();
-    cluster_light_pull(clusters, solver->model.forest);
+    cluster_light_send(clusters, solver->model.forest, vector);
     memset(clusters->flux, 0,
            BANDS * (size_t)clusters->tree->count * sizeof *clusters->flux);
     solver->account.seconds[PHASE_SUMS] += comm_seconds() - start;

@@ -25,6 +25,7 @@
 #include "mpi/beyond/beyond.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "geom/alloc.h"
 #include "mpi/memory.h"
@@ -220,14 +221,21 @@ struct linked {
     int64_t count;
 };
 
+static struct rgb *keep_light(const struct forest *forest)
+{
+    struct rgb *kept = alloc_array((size_t)forest->count, sizeof *kept);
+    memcpy(kept, forest->radiosity, (size_t)forest->count * sizeof *kept);
+    return kept;
+}
+
 /* Puts the light of the links back. Leaves that the gather has split stay split, and
  * their children get their radiosities. */
 static void restore_light(struct forest *forest, const struct linked *linked)
 {
     for (int64_t p = 0; p < forest->count; p++)
-        forest->patches[p].radiosity =
+        forest->radiosity[p] =
             p < linked->count ? linked->radiosity[p]
-                              : forest->patches[forest->patches[p].parent].radiosity;
+                              : forest->radiosity[forest->patches[p].parent];
 }
 
 /* Collective. The verdict on a gather. */
@@ -252,7 +260,7 @@ enum finish solver_finish(struct solver *solver, struct vote *vote)
     const struct criterion *criterion = &solver->model.criterion;
     struct linked linked = {.vote = *vote, .count = solver->model.forest->count};
     bool measures = criterion->accuracy > 0.0;
-    linked.radiosity = measures ? forest_keep(solver->model.forest) : NULL;
+    linked.radiosity = measures ? keep_light(solver->model.forest) : NULL;
     enum finish finish = solver_final_gather(solver, vote) ? FINISH_DONE : FINISH_STOPPED;
     if (measures && finish == FINISH_DONE)
         finish = judge(solver, vote, &linked);

@@ -6,19 +6,19 @@
 #include "geom/alloc.h"
 #include "mpi/beyond/above.h"
 
-/* Transfers light in a unit that fits the largest value that a patch sends: B, which all
- * ranks know, or rho z, the largest of which the ballots have brought. */
-static void transfer(struct solver *solver)
+/* Transfers a vector in a unit that fits its largest value: B, which all ranks know, or
+ * rho z, the largest of which the ballots have brought. */
+static void transfer(struct solver *solver, const struct rgb *vector)
 {
     const struct beyond *beyond = solver->beyond;
-    double largest = beyond->descent.fresh ? solver_largest_radiosity(solver)
+    double largest = beyond->descent.fresh ? solver_largest(solver, vector)
                                            : fmax(solver->ballot.brightest, 1e-250);
     double room = beyond->tree ? 2.0 : 1.0; /* nodes receive by their clusters, too */
     if (beyond->tree)
-        above_begin(solver);
+        above_begin(solver, vector);
     double start = comm_seconds();
     solver->flux = flux_unit_for(room * largest * solver->model.area);
-    solver->model.method.transfer(&solver->links, &solver->model, solver->flux);
+    solver->model.method.transfer(&solver->links, &solver->model, vector, solver->flux);
     solver->account.seconds[PHASE_SOLVE] += comm_seconds() - start;
 }
 
@@ -76,6 +76,7 @@ struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
     beyond_attach(solver);
     steps->transfer = transfer;
     if (conjugate) {
+        steps->vector = descent_vector;
         steps->begin = caps_begin;
         steps->push_pull = descent_push_pull;
         steps->vote = descent_vote;

@@ -9,7 +9,7 @@
 /* Conjugate gradients (rad/beyond/conjugate.c); the same on all ranks but for vectors. */
 struct descent {
     struct conjugate vectors;
-    bool fresh;            /* the links have changed: the next transfer is of B */
+    bool fresh;            /* the next transfer is of B, and not of rho z */
     bool diverged;         /* K is not positive: more is reflected than arrives */
     double gain;           /* largest row sum with its cap, at least 1 */
     double shrink;         /* largest row sum with its cap, times reflectance; below 1 */
@@ -68,8 +68,9 @@ void caps_begin(struct solver *solver);
 /* Collective. Writes the row sums of the links into `stats`, after the last iteration. */
 void solver_measure_row_sums(struct solver *solver, struct stats *stats);
 
-/* Steps 6 and 8 by conjugate gradients. While iterations go on, patches have rho z in
- * place of B; the last vote puts B there. */
+/* Steps 5 to 8 by conjugate gradients: B is transferred first, then rho z. When there is no
+ * other iteration all ranks learn B. */
+struct rgb *descent_vector(const struct solver *solver);
 void descent_push_pull(struct solver *solver);
 struct vote descent_vote(struct solver *solver, const struct ballot *sum);
 

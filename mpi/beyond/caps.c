@@ -6,10 +6,15 @@
 
 #include "geom/alloc.h"
 
-static void set_ones(struct forest *forest)
+/* Transfers 1 from all patches. */
+static void carry_ones(struct solver *solver)
 {
-    for (int64_t p = 0; p < forest->count; p++)
-        forest->patches[p].radiosity = (struct rgb){{1.0, 0.0, 0.0}};
+    size_t count = (size_t)solver->model.forest->count;
+    struct rgb *ones = alloc_array(count, sizeof *ones);
+    for (size_t p = 0; p < count; p++)
+        ones[p] = (struct rgb){{1.0, 0.0, 0.0}};
+    solver_carry(solver, ones);
+    alloc_free(ones);
 }
 
 static void choose_caps(struct solver *solver)
@@ -58,26 +63,19 @@ void caps_begin(struct solver *solver)
     caps_extend(&solver->beyond->caps, forest);
     conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
     solver->beyond->descent.fresh = true;
-    struct rgb *kept = forest_keep(forest);
-    set_ones(forest);
-    solver_carry(solver);
+    carry_ones(solver);
     choose_caps(solver);
     bound_rows(solver);
-    forest_restore(forest, kept);
 }
 
-/* Transfers B = 1 over all links, and leaves no trace in the accounts: the transfer is
- * not of the method. */
-static void carry_ones(struct solver *solver)
+/* The same, and leaves no trace in the accounts: it is not of the method. */
+static void carry_ones_unseen(struct solver *solver)
 {
     int64_t bytes = solver->account.bytes_gather, copied = solver->account.copied;
     double seconds[PHASE_COUNT];
     memcpy(seconds, solver->account.seconds, sizeof seconds);
-    struct rgb *kept = forest_keep(solver->model.forest);
-    set_ones(solver->model.forest);
     routes_renew(solver); /* a finished run that was resumed has none */
-    solver_carry(solver);
-    forest_restore(solver->model.forest, kept);
+    carry_ones(solver);
     solver->account.bytes_gather = bytes;
     solver->account.copied = copied;
     memcpy(solver->account.seconds, seconds, sizeof seconds);
@@ -87,7 +85,7 @@ void solver_measure_row_sums(struct solver *solver, struct stats *stats)
 {
     const struct comm *comm = solver->comm;
     double start = comm_seconds();
-    carry_ones(solver);
+    carry_ones_unseen(solver);
     struct row_sums own =
         row_sums_measure(solver->model.forest, solver->homes.own, solver->flux);
     struct row_sums *all = comm_gather_each(comm, &own, sizeof own);

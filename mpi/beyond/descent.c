@@ -72,7 +72,7 @@ static void iterate(struct solver *solver)
     else
         step_conjugate(solver);
     solver->beyond->descent.fresh = false;
-    conjugate_publish(&solver->beyond->descent.vectors, &solver->model, false);
+    conjugate_send(&solver->beyond->descent.vectors, &solver->model);
 }
 
 /* The unit of <z, z>. */
@@ -89,7 +89,7 @@ static double brightest_own(const struct solver *solver)
     const struct conjugate *cg = &solver->beyond->descent.vectors;
     double brightest = 0.0;
     for (int64_t i = 0; i < cg->leaf_count; i++) {
-        struct rgb sent = solver->model.forest->patches[cg->leaves[i]].radiosity;
+        struct rgb sent = cg->sent[cg->leaves[i]];
         for (int c = 0; c < BANDS; c++)
             brightest = fmax(brightest, fabs(sent.band[c]));
     }
@@ -108,6 +108,12 @@ static struct ballot ballot_conjugate(const struct solver *solver)
     for (int c = 0; c < BANDS; c++)
         own.square[c] = sums.square[c];
     return own;
+}
+
+struct rgb *descent_vector(const struct solver *solver)
+{
+    const struct descent *descent = &solver->beyond->descent;
+    return descent->fresh ? solver->model.forest->radiosity : descent->vectors.sent;
 }
 
 void descent_push_pull(struct solver *solver)
@@ -161,19 +167,13 @@ static double wanted_of(const struct solver *solver, const struct ballot *sum)
                            : tolerance;
 }
 
-/* Step 7 without a vote. */
-static void scatter_unvoted(struct solver *solver)
-{
-    solver->ballot = (struct ballot){0};
-    solver_scatter(solver);
-}
-
-/* B takes the place of rho z, on all ranks. */
+/* All ranks learn B: step 7 with an empty ballot. */
 static void finish_conjugate(struct solver *solver)
 {
-    conjugate_publish(&solver->beyond->descent.vectors, &solver->model, true);
-    scatter_unvoted(solver);
+    conjugate_finish(&solver->beyond->descent.vectors, &solver->model);
     solver->beyond->descent.fresh = true;
+    solver->ballot = (struct ballot){0};
+    solver_scatter(solver);
 }
 
 struct vote descent_vote(struct solver *solver, const struct ballot *sum)

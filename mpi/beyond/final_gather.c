@@ -389,7 +389,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     irradiances(g, b, true, h); /* of lamps alone */
     set_radiosities(g, h, start);
     for (int64_t i = 0; i < g->count; i++) {
-        b[i] = forest->patches[g->leaves[i]].radiosity;
+        b[i] = forest->radiosity[g->leaves[i]];
         struct rgb rho = forest_material(forest, g->leaves[i])->reflectance;
         for (int c = 0; c < BANDS; c++)
             brightest = fmax(brightest, rho.band[c]);
@@ -410,7 +410,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     estimate_errors(g);
     share_straight_light(g);
     for (int64_t i = 0; i < g->count; i++)
-        forest->patches[g->leaves[i]].radiosity = b[i];
+        forest->radiosity[g->leaves[i]] = b[i];
     forest_average(forest);
     alloc_free(start);
     alloc_free(h);

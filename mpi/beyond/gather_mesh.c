@@ -177,7 +177,7 @@ static void split_leaf(struct forest *forest, int32_t leaf,
     const struct rgb *emission = &forest_material(forest, leaf)->emission;
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < BANDS; c++)
-            forest->patches[first + k].radiosity.band[c] =
+            forest->radiosity[first + k].band[c] =
                 emission->band[c] + (double)look->reflected[k][c];
 }
 
@@ -195,7 +195,7 @@ static double square_of_light(const struct forest *forest, int32_t leaf)
     const struct rgb *emission = &forest_material(forest, leaf)->emission;
     double square = 0.0;
     for (int c = 0; c < BANDS; c++) {
-        double b = forest->patches[leaf].radiosity.band[c] - emission->band[c];
+        double b = forest->radiosity[leaf].band[c] - emission->band[c];
         square += b * b;
     }
     return square;

@@ -38,7 +38,8 @@ static void collect_trees(const struct solver *solver, const int32_t *order,
         const struct patch *patch = &solver->model.forest->patches[order[i]];
         snapshot->split[i] = !patch_is_leaf(patch);
         if (patch_is_leaf(patch))
-            snapshot->leaves[leaf++].radiosity = patch->radiosity;
+            snapshot->leaves[leaf++].radiosity =
+                solver->model.forest->radiosity[order[i]];
     }
 }
 
@@ -263,7 +264,7 @@ static void restore_leaves(struct solver *solver, const struct snapshot *snapsho
         if (!patch_is_leaf(&forest->patches[p]))
             continue;
         const struct leaf_state *state = &snapshot->leaves[leaf++];
-        forest->patches[p].radiosity = state->radiosity;
+        forest->radiosity[p] = state->radiosity;
         solver->beyond->descent.vectors.irradiance[p] = state->irradiance;
         solver->beyond->caps.factor[p] = state->factor;
     }

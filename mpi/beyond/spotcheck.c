@@ -73,7 +73,7 @@ struct checking {
 
 static struct rgb reflected(const struct forest *forest, int32_t leaf)
 {
-    struct rgb b = forest->patches[leaf].radiosity;
+    struct rgb b = forest->radiosity[leaf];
     struct rgb e = forest_material(forest, leaf)->emission;
     for (int c = 0; c < BANDS; c++)
         b.band[c] -= e.band[c];

@@ -14,6 +14,7 @@ struct cluster_light *cluster_light_create(const struct cluster_tree *tree)
     size_t count = (size_t)tree->count;
     light->tree = tree;
     light->radiosity = alloc_array(count, sizeof *light->radiosity);
+    light->sent = alloc_array(count, sizeof *light->sent);
     light->range = alloc_array(count, sizeof *light->range);
     light->flux = alloc_array(BANDS * count, sizeof *light->flux);
     light->irradiance = alloc_array(count, sizeof *light->irradiance);
@@ -25,6 +26,7 @@ void cluster_light_destroy(struct cluster_light *light)
     if (!light)
         return;
     alloc_free(light->radiosity);
+    alloc_free(light->sent);
     alloc_free(light->range);
     alloc_free(light->flux);
     alloc_free(light->irradiance);
@@ -35,10 +37,12 @@ const struct rgb *cluster_light_radiosity(const struct cluster_light *light,
                                           const struct forest *forest, int32_t node)
 {
     return node_is_cluster(node) ? &light->radiosity[~node]
-                                 : &forest->patches[node].radiosity;
+                                 : &forest->radiosity[node];
 }
 
-void cluster_light_pull(struct cluster_light *light, const struct forest *forest)
+/* Means over clusters, of a vector over patches. */
+static void average(const struct cluster_light *light, const struct forest *forest,
+                    const struct rgb *of_patches, struct rgb *of_clusters)
 {
     for (int32_t i = light->tree->count - 1; i >= 0; i--) {
         const struct cluster *cluster = &light->tree->clusters[i];
@@ -47,12 +51,24 @@ void cluster_light_pull(struct cluster_light *light, const struct forest *forest
             int32_t node = cluster->child[k];
             double area = cluster_node_area(light->tree, forest->scene, node);
             double share = area / cluster->area;
-            const struct rgb *child = cluster_light_radiosity(light, forest, node);
+            const struct rgb *child =
+                node_is_cluster(node) ? &of_clusters[~node] : &of_patches[node];
             for (int c = 0; c < BANDS; c++)
                 sum.band[c] += share * child->band[c];
         }
-        light->radiosity[i] = sum;
+        of_clusters[i] = sum;
     }
+}
+
+void cluster_light_pull(struct cluster_light *light, const struct forest *forest)
+{
+    average(light, forest, forest->radiosity, light->radiosity);
+}
+
+void cluster_light_send(struct cluster_light *light, const struct forest *forest,
+                        const struct rgb *vector)
+{
+    average(light, forest, vector, light->sent);
 }
 
 /* The variance of B in a root is that of its extremes; in a cluster, that within its

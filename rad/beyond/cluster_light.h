@@ -9,6 +9,7 @@
 struct cluster_light {
     const struct cluster_tree *tree; /* borrowed */
     struct rgb *radiosity;  /* [tree->count] B, W/m^2: the mean over the area */
+    struct rgb *sent;       /* [tree->count] means of the vector that is transferred */
     double *range;          /* [tree->count] twice the deviation of B, summed over bands,
                                within the children, W/m^2 */
     int64_t *flux;          /* [BANDS * tree->count] Phi of the links of clusters */
@@ -23,8 +24,11 @@ void cluster_light_destroy(struct cluster_light *light);
 const struct rgb *cluster_light_radiosity(const struct cluster_light *light,
                                           const struct forest *forest, int32_t node);
 
-/* The pull: means of the children, from the roots up. */
+/* The pull: means of the children, from the roots up; of B, into `radiosity`, and of a
+ * vector [patches], into `sent`. */
 void cluster_light_pull(struct cluster_light *light, const struct forest *forest);
+void cluster_light_send(struct cluster_light *light, const struct forest *forest,
+                        const struct rgb *vector);
 
 /* The ranges, after a pull; the extremes of the roots are those of forest_bound(). */
 void cluster_light_bound(struct cluster_light *light, const struct forest *forest);

@@ -34,21 +34,23 @@ void conjugate_free(struct conjugate *cg)
     alloc_free(cg->work);
     alloc_free(cg->direction);
     alloc_free(cg->image);
+    alloc_free(cg->sent);
     alloc_free(cg->leaves);
     *cg = (struct conjugate){0};
 }
 
 void conjugate_extend(struct conjugate *cg, const struct forest *forest, const bool *own)
 {
-    struct rgb **vectors[5] = {&cg->irradiance, &cg->residual, &cg->work, &cg->direction,
-                               &cg->image};
-    for (int i = 0; i < 5; i++)
+    struct rgb **vectors[6] = {&cg->irradiance, &cg->residual, &cg->work, &cg->direction,
+                               &cg->image, &cg->sent};
+    for (int i = 0; i < 6; i++)
         *vectors[i] = alloc_reserve(*vectors[i], &cg->capacity[i], forest->count,
                                     sizeof **vectors[i]);
     for (int64_t p = cg->count; p < forest->count; p++) {
         int32_t parent = forest->patches[p].parent;
         cg->irradiance[p] =
             parent >= 0 ? cg->irradiance[parent] : (struct rgb){{0.0, 0.0, 0.0}};
+        cg->sent[p] = (struct rgb){{0.0, 0.0, 0.0}};
     }
     cg->count = forest->count;
     cg->leaf_count = 0;
@@ -125,17 +127,26 @@ void conjugate_advance(struct conjugate *cg, const struct model *model,
     }
 }
 
-void conjugate_publish(const struct conjugate *cg, struct model *model, bool final)
+void conjugate_send(struct conjugate *cg, const struct model *model)
 {
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t p = cg->leaves[i];
         const struct material *material = forest_material(model->forest, p);
-        for (int c = 0; c < BANDS; c++) {
-            double rho = material->reflectance.band[c];
-            model->forest->patches[p].radiosity.band[c] =
-                final ? material->emission.band[c] + rho * cg->irradiance[p].band[c]
-                      : rho * cg->residual[p].band[c];
-        }
+        for (int c = 0; c < BANDS; c++)
+            cg->sent[p].band[c] =
+                material->reflectance.band[c] * cg->residual[p].band[c];
+    }
+}
+
+void conjugate_finish(const struct conjugate *cg, struct model *model)
+{
+    for (int64_t i = 0; i < cg->leaf_count; i++) {
+        int32_t p = cg->leaves[i];
+        const struct material *material = forest_material(model->forest, p);
+        for (int c = 0; c < BANDS; c++)
+            model->forest->radiosity[p].band[c] =
+                material->emission.band[c] +
+                material->reflectance.band[c] * cg->irradiance[p].band[c];
     }
 }
 

@@ -19,7 +19,8 @@ struct conjugate {
     struct rgb *work;       /* K z */
     struct rgb *direction;  /* p */
     struct rgb *image;      /* K p */
-    int64_t count, capacity[5];
+    struct rgb *sent;       /* rho z of all ranks, and its means over inner patches */
+    int64_t count, capacity[6];
     int32_t *leaves;        /* [leaf_count] the own leaves, by local patch number */
     int64_t leaf_count, leaf_capacity;
 };
@@ -61,8 +62,9 @@ void conjugate_apply(struct conjugate *cg, const struct model *model,
 void conjugate_advance(struct conjugate *cg, const struct model *model,
                        const double turn[BANDS], const double step[BANDS]);
 
-/* Writes rho z, or B if `final`, into the radiosity of the own leaves. */
-void conjugate_publish(const struct conjugate *cg, struct model *model, bool final);
+/* Puts rho z of the own leaves into `sent`; and their B into the radiosities. */
+void conjugate_send(struct conjugate *cg, const struct model *model);
+void conjugate_finish(const struct conjugate *cg, struct model *model);
 
 struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct model *model,
                                     const struct caps *caps, struct flux_unit unit);

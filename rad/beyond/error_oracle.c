@@ -27,7 +27,7 @@
 static double light_reflected(const struct forest *forest, int32_t from, int32_t to)
 {
     return rgb_dot(forest_material(forest, to)->reflectance,
-                   forest->patches[from].radiosity);
+                   forest->radiosity[from]);
 }
 
 /* Part of the exchange that is in doubt when segments disagree, when all agree, and when

@@ -45,7 +45,7 @@ static double mean_radiosity(const struct model *model)
     double sum = 0.0;
     for (int32_t root = 0; root < scene_root_count(model->scene); root++)
         sum += scene_root_area(model->scene, root) *
-               rgb_sum(model->forest->patches[root].radiosity);
+               rgb_sum(model->forest->radiosity[root]);
     return sum / model->area;
 }
 
@@ -54,7 +54,7 @@ static double mean_reflected(const struct model *model)
     double sum = 0.0;
     for (int32_t root = 0; root < scene_root_count(model->scene); root++)
         sum += scene_root_area(model->scene, root) *
-               (rgb_sum(model->forest->patches[root].radiosity) -
+               (rgb_sum(model->forest->radiosity[root]) -
                 rgb_sum(scene_root_material(model->scene, root)->emission));
     return sum / model->area;
 }
@@ -129,7 +129,8 @@ static double slope_part(const struct rgb b[4], struct rgb middle)
 
 struct gather_slope gather_slope(const struct final_gather *gather, int32_t patch)
 {
-    const struct patch *patches = gather->model->forest->patches;
+    const struct forest *forest = gather->model->forest;
+    const struct patch *patches = forest->patches;
     bool leaf = patch_is_leaf(&patches[patch]);
     int32_t parent = leaf ? patches[patch].parent : patch;
     if (parent < 0)
@@ -137,7 +138,7 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     struct gather_slope slope = {.first = patches[parent].children};
     struct rgb b[4], middle;
     for (int k = 0; k < 4; k++)
-        b[k] = patches[slope.first + k].radiosity;
+        b[k] = forest->radiosity[slope.first + k];
     for (int c = 0; c < BANDS; c++)
         middle.band[c] = (b[0].band[c] + b[1].band[c] + b[2].band[c]) / 3.0;
     for (int k = 0; k < 3; k++)
@@ -151,7 +152,7 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
 void receiver_add(struct receiver *r, int32_t patch, const struct rgb *weight)
 {
     struct final_gather *g = r->gather;
-    struct rgb b = g->model->forest->patches[patch].radiosity;
+    struct rgb b = g->model->forest->radiosity[patch];
     for (int c = 0; c < BANDS; c++)
         r->light.band[c] += weight->band[c] * b.band[c];
     if (!r->keeps)

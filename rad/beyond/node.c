@@ -37,7 +37,7 @@ struct end end_of(const struct model *model, int32_t node)
     struct end end = {.node = node, .facet = facet_make(model->forest, node),
                       .id = model->forest->patches[node].id,
                       .reflectance = material->reflectance,
-                      .radiosity = model->forest->patches[node].radiosity,
+                      .radiosity = model->forest->radiosity[node],
                       .is_dark = material_is_dark(material)};
     const struct vec3 *corner = end.facet.triangle.corner;
     end.low = vec3_least(corner[0], vec3_least(corner[1], corner[2]));

@@ -328,17 +328,18 @@ static double part_of(const struct cluster *cluster, const uint8_t parts[3], int
 
 /* As link_take(), of a node. */
 static const struct rgb *take(const struct model *model, int32_t node,
-                              const uint8_t parts[3], struct rgb *sum)
+                              const uint8_t parts[3], const struct rgb *vector,
+                              struct rgb *sum)
 {
     const struct cluster_light *light = model->clusters;
     if (!node_is_cluster(node))
-        return link_take(model->forest, node, parts, sum);
+        return link_take(model->forest, node, parts, vector, sum);
     const struct cluster *cluster = &light->tree->clusters[~node];
     *sum = (struct rgb){{0.0, 0.0, 0.0}};
     for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
         double part = part_of(cluster, parts, k);
-        const struct rgb *b =
-            cluster_light_radiosity(light, model->forest, cluster->child[k]);
+        int32_t child = cluster->child[k];
+        const struct rgb *b = node_is_cluster(child) ? &light->sent[~child] : &vector[child];
         for (int c = 0; c < BANDS; c++)
             sum->band[c] += part * b->band[c];
     }
@@ -366,13 +367,13 @@ static void give(const struct model *model, int32_t node, const uint8_t parts[3]
 }
 
 void node_links_transfer(const struct link_list *list, const struct model *model,
-                         struct flux_unit unit)
+                         const struct rgb *vector, struct flux_unit unit)
 {
     for (int64_t i = 0; i < list->seen; i++) {
         const struct link *link = &list->items[i];
         struct rgb sum_p, sum_q;
-        const struct rgb *from_p = take(model, link->p, link->parts_p, &sum_p);
-        const struct rgb *from_q = take(model, link->q, link->parts_q, &sum_q);
+        const struct rgb *from_p = take(model, link->p, link->parts_p, vector, &sum_p);
+        const struct rgb *from_q = take(model, link->q, link->parts_q, vector, &sum_q);
         give(model, link->p, link->parts_p, (double)link->area, from_q, unit);
         give(model, link->q, link->parts_q, (double)link->area, from_p, unit);
     }

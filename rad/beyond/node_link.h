@@ -28,7 +28,8 @@ int node_link_split(struct model *model, const struct link *link, int32_t node,
  * so that it is not biased by the decision that has accepted it. */
 void node_link_keep(struct model *model, struct link *link, bool is_new);
 
+/* As links_transfer(); of clusters goes model->clusters->sent. */
 void node_links_transfer(const struct link_list *list, const struct model *model,
-                         struct flux_unit unit);
+                         const struct rgb *vector, struct flux_unit unit);
 
 #endif

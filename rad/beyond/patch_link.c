@@ -51,8 +51,8 @@ static const double STAKE_ONE = 0.1, STAKE_FOUR = 1.0;
 static double light_at_stake(const struct model *model, int32_t p, int32_t q)
 {
     const struct forest *forest = model->forest;
-    struct rgb radiosity_p = forest->patches[p].radiosity;
-    struct rgb radiosity_q = forest->patches[q].radiosity;
+    struct rgb radiosity_p = forest->radiosity[p];
+    struct rgb radiosity_q = forest->radiosity[q];
     struct rgb reflectance_p = forest_material(forest, p)->reflectance;
     struct rgb reflectance_q = forest_material(forest, q)->reflectance;
     double light = 0.0;
@@ -138,17 +138,17 @@ int patch_link_split(struct model *model, const struct link *link, int32_t patch
 }
 
 const struct rgb *link_take(const struct forest *forest, int32_t patch,
-                            const uint8_t parts[3], struct rgb *sum)
+                            const uint8_t parts[3], const struct rgb *vector,
+                            struct rgb *sum)
 {
-    const struct patch *at = &forest->patches[patch];
     if (!link_is_divided(forest, patch, parts))
-        return &at->radiosity;
-    const struct patch *child = &forest->patches[at->children];
+        return &vector[patch];
+    const struct rgb *child = &vector[forest->patches[patch].children];
     *sum = (struct rgb){{0.0, 0.0, 0.0}};
     for (int k = 0; k < 4; k++) {
         double part = link_part(parts, k);
         for (int c = 0; c < BANDS; c++)
-            sum->band[c] += part * child[k].radiosity.band[c];
+            sum->band[c] += part * child[k].band[c];
     }
     return sum;
 }

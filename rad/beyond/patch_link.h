@@ -47,11 +47,12 @@ void link_set_parts(uint8_t parts[3], const double exact[4]);
 /* The share of the light that arrives, 0..1, in the form of the field `seen`. */
 uint8_t link_seen(double share);
 
-/* Returns the B that a link takes from a patch: its own, or that of its children weighted
- * by the parts, which is summed in `*sum`. (A pointer: a transfer with copies of colours
- * took half as long again.) */
+/* Returns the entry of a vector [patches] that a link takes from a patch: its own, or the
+ * sum, in `*sum`, of those of its children weighted by the parts. (A pointer: a transfer
+ * with copies of colours took half as long again.) */
 const struct rgb *link_take(const struct forest *forest, int32_t patch,
-                            const uint8_t parts[3], struct rgb *sum);
+                            const uint8_t parts[3], const struct rgb *vector,
+                            struct rgb *sum);
 
 /* Adds light, G B, to the flux of a patch, or of its children by the parts. */
 void link_give(struct forest *forest, int32_t patch, const uint8_t parts[3], double area,

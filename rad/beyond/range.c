@@ -13,7 +13,7 @@ void forest_bound(struct forest *forest)
     forest->bounded = forest->count;
     for (int64_t p = forest->count - 1; p >= 0; p--) {
         const struct patch *patch = &forest->patches[p];
-        float brightness = (float)rgb_sum(patch->radiosity);
+        float brightness = (float)rgb_sum(forest->radiosity[p]);
         struct extremes *own = &forest->extremes[p];
         const struct extremes *child = &forest->extremes[patch->children];
         *own = (struct extremes){brightness, brightness};

@@ -155,14 +155,14 @@ static int64_t trace_leaves(struct forest *forest, const struct pathtracer *path
         if (!reflects(forest, i))
             continue;
         if (!patch_is_leaf(patch)) {
-            forest_average_patch(forest, (int32_t)i);
+            patch_average(forest, (int32_t)i, forest->radiosity);
             continue;
         }
         struct triangle part = pathtracer_part(patch->id);
-        patch->radiosity = pathtracer_reflected(pathtracer, root, &part, paths,
-                                                SEEDS + 2 * (uint64_t)i);
+        forest->radiosity[i] = pathtracer_reflected(pathtracer, root, &part, paths,
+                                                    SEEDS + 2 * (uint64_t)i);
         for (int c = 0; c < BANDS; c++)
-            patch->radiosity.band[c] +=
+            forest->radiosity[i].band[c] +=
                 scene_root_material(forest->scene, root)->emission.band[c];
         leaves++;
     }

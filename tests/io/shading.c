@@ -148,14 +148,14 @@ static void split_randomly(struct forest *forest, struct random *random, double 
 static void set_constant(struct forest *forest, double value)
 {
     for (int64_t p = 0; p < forest->count; p++)
-        forest->patches[p].radiosity = (struct rgb){{value, 2.0 * value, 0.0}};
+        forest->radiosity[p] = (struct rgb){{value, 2.0 * value, 0.0}};
 }
 
 static void set_randomly(struct forest *forest, struct random *random)
 {
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
-            forest->patches[p].radiosity.band[c] = random_unit(random);
+            forest->radiosity[p].band[c] = random_unit(random);
 }
 
 static struct rgb linear_field(struct vec3 x)
@@ -354,7 +354,7 @@ static void test_linear(void)
     split_regularly(stage.forest, 4);
     for (int32_t p = 0; p < stage.forest->count; p++) {
         struct triangle t = forest_triangle(stage.forest, p);
-        stage.forest->patches[p].radiosity = linear_field(triangle_centroid(&t));
+        stage.forest->radiosity[p] = linear_field(triangle_centroid(&t));
     }
     shade(&stage, false);
     int inner = 0;
@@ -400,7 +400,7 @@ static double set_edge_field(struct stage *stage, int32_t patch)
             at = triangle_child(&at, i >> 2 * level & 3);
         mean += edge_field(stage, triangle_centroid(&at)) / 1024.0;
     }
-    forest->patches[patch].radiosity = (struct rgb){{mean, mean, mean}};
+    forest->radiosity[patch] = (struct rgb){{mean, mean, mean}};
     return mean;
 }
 
@@ -458,7 +458,7 @@ static void test_large_leaf_counts(void)
     set_constant(stage.forest, 0.0);
     for (int64_t p = 0; p < stage.forest->count; p++)
         if (stage.forest->patches[p].id.root == 1)
-            stage.forest->patches[p].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
+            stage.forest->radiosity[p] = (struct rgb){{1.0, 1.0, 1.0}};
     shade(&stage, false);
     double shown = shading_at(stage.shading, 0, corner).band[0];
     tap_ok(shown < 0.2,
@@ -480,11 +480,11 @@ static bool is_flat(const struct stage *stage)
         struct triangle w = weights_of(patch->id), t = forest_triangle(forest, p);
         struct rgb value =
             value_at(stage, (int32_t)patch->id.root, triangle_centroid(&w));
-        flat = flat && difference(value, patch->radiosity) == 0.0;
+        flat = flat && difference(value, forest->radiosity[p]) == 0.0;
         for (int k = 0; k < 3; k++) {
             int32_t v = stage->shading->corners[3 * (int64_t)p + k];
             flat =
-                flat && difference(stage->shading->values[v], patch->radiosity) < 1e-15 &&
+                flat && difference(stage->shading->values[v], forest->radiosity[p]) < 1e-15 &&
                 vec3_length(vec3_sub(stage->shading->positions[v], t.corner[k])) == 0.0;
         }
     }
@@ -513,7 +513,7 @@ static void set_by_id(struct forest *forest)
         struct patch_id id = forest->patches[p].id;
         struct random random = random_seed((uint64_t)id.root << 32 | id.hierarchy);
         for (int c = 0; c < BANDS; c++)
-            forest->patches[p].radiosity.band[c] = random_unit(&random);
+            forest->radiosity[p].band[c] = random_unit(&random);
     }
 }
 
@@ -603,8 +603,8 @@ static void test_vertex_order(void)
 /* The jump in the middle of the diagonal when root 0 has B = 1 and root 1 has 0. */
 static double jump_of(struct stage *stage)
 {
-    stage->forest->patches[0].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
-    stage->forest->patches[1].radiosity = (struct rgb){{0.0, 0.0, 0.0}};
+    stage->forest->radiosity[0] = (struct rgb){{1.0, 1.0, 1.0}};
+    stage->forest->radiosity[1] = (struct rgb){{0.0, 0.0, 0.0}};
     split_regularly(stage->forest, 2);
     shade(stage, false);
     return difference(value_at(stage, 0, (struct vec3){0.5, 0.0, 0.5}),
@@ -692,7 +692,7 @@ static void test_two_sided(void)
     scene->two_sided = true;
     struct stage stage = stage_of(scene);
     for (int32_t root = 0; root < 4; root++)
-        stage.forest->patches[root].radiosity = (struct rgb){{root, root / 2, root % 2}};
+        stage.forest->radiosity[root] = (struct rgb){{root, root / 2, root % 2}};
     split_regularly(stage.forest, 3);
     shade(&stage, false);
     struct rgb front = value_at(&stage, 0, (struct vec3){0.5, 0.0, 0.5});
@@ -746,7 +746,7 @@ static void shade_floor(struct stage *stage, double *low, double *high, double *
         bool dark = is_under(scene_to_input(stage->scene, triangle_centroid(&t)));
         dark = dark && stage->forest->patches[p].id.root < 2;
         double value = dark ? 0.25 : 1.0;
-        stage->forest->patches[p].radiosity = (struct rgb){{value, value, value}};
+        stage->forest->radiosity[p] = (struct rgb){{value, value, value}};
     }
     shade(stage, false);
     *low = *high = 1.0;
@@ -822,7 +822,7 @@ static void test_partly_covered(void)
     for (int c = 0; c < BANDS; c++) {
         stage.scene->materials[0].emission.band[c] = emission[c];
         for (int32_t p = 0; p < stage.forest->count; p++)
-            stage.forest->patches[p].radiosity.band[c] =
+            stage.forest->radiosity[p].band[c] =
                 emission[c] + open_share(&stage, p) * (1.0 - emission[c]);
     }
     shade(&stage, false);

@@ -241,7 +241,7 @@ static void test_dark_room(void)
     const struct octree *octree = world.octree;
     struct camera any = viewpoint_choose(world.scene, octree, NULL, 512, 512);
     for (int32_t i = lit; i < world.scene->input_count; i++)
-        world.model.forest->patches[i].radiosity = (struct rgb){{0.0, 0.1, 0.0}};
+        world.model.forest->radiosity[i] = (struct rgb){{0.0, 0.1, 0.0}};
     struct camera seen =
         viewpoint_choose(world.scene, octree, world.model.forest, 512, 512);
     tap_ok(any.eye.x < 8.0 && seen.eye.x > 8.1, "of two rooms, the one with light");

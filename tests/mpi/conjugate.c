@@ -182,7 +182,7 @@ static double deviation(const struct problem *problem, double f[LEAVES_MAX][LEAV
         for (int i = 0; i < problem->count; i++) {
             const struct material *m = forest_material(forest, problem->leaves[i]);
             double exact = m->emission.band[c] + m->reflectance.band[c] * h[i];
-            double b = forest->patches[problem->leaves[i]].radiosity.band[c];
+            double b = forest->radiosity[problem->leaves[i]].band[c];
             worst = fmax(worst, fabs(b - exact));
             largest = fmax(largest, exact);
         }
@@ -202,7 +202,7 @@ static double residual(const struct problem *problem, double f[LEAVES_MAX][LEAVE
             double h = 0.0;
             for (int j = 0; j < problem->count; j++)
                 h += f[i][j] * solver->beyond->caps.factor[leaf] *
-                     forest->patches[problem->leaves[j]].radiosity.band[c];
+                     forest->radiosity[problem->leaves[j]].band[c];
             if (solver->homes.own[forest->patches[leaf].id.root])
                 worst =
                     fmax(worst,
@@ -311,9 +311,9 @@ static double difference(const struct problem *a, const struct problem *b)
     for (int i = 0; i < a->count; i++)
         for (int c = 0; c < BANDS; c++) {
             int32_t leaf = a->leaves[i];
-            double at = p->patches[leaf].radiosity.band[c];
+            double at = p->radiosity[leaf].band[c];
             missing +=
-                forest_area(p, leaf) * fabs(at - q->patches[leaf].radiosity.band[c]);
+                forest_area(p, leaf) * fabs(at - q->radiosity[leaf].band[c]);
             light += forest_area(p, leaf) * at;
         }
     return missing / light;
@@ -401,8 +401,8 @@ static void test_ranks(const struct comm *comm, const struct comm *self, double 
                     forest_checksum(alone.solver->model.forest);
     for (int64_t p = 0; p < alone.solver->model.forest->count;
          p++) /* all ranks know all radiosities */
-        same = same && memcmp(&parallel.solver->model.forest->patches[p].radiosity,
-                              &alone.solver->model.forest->patches[p].radiosity,
+        same = same && memcmp(&parallel.solver->model.forest->radiosity[p],
+                              &alone.solver->model.forest->radiosity[p],
                               sizeof(struct rgb)) == 0;
     struct error error = {0};
     if (!same)

@@ -27,8 +27,8 @@ static void spoil(struct solution *s, uint32_t roots, double factor)
     for (int64_t p = 0; p < forest->count; p++)
         if (forest->patches[p].id.root < roots)
             for (int c = 0; c < BANDS; c++)
-                forest->patches[p].radiosity.band[c] =
-                    1.0 + factor * (forest->patches[p].radiosity.band[c] - 1.0);
+                forest->radiosity[p].band[c] =
+                    1.0 + factor * (forest->radiosity[p].band[c] - 1.0);
 }
 
 /* The square of the error is found, within 3 of the deviations that are told, which are

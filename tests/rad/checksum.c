@@ -53,7 +53,7 @@ static void set_values(struct forest *forest)
         struct random random = random_seed((uint64_t)id.root << 32 | id.hierarchy);
         random_bits(&random);
         for (int c = 0; c < BANDS; c++)
-            forest->patches[p].radiosity.band[c] = random_double(&random);
+            forest->radiosity[p].band[c] = random_double(&random);
     }
 }
 
@@ -79,7 +79,7 @@ static void test_format(const struct scene *scene)
                                            0, 0, 0, 0xC0, 1, 0, 0, 0,    0, 0, 0, 0};
     struct forest *forest = forest_create(scene);
     int32_t leaf = forest_reach(forest, id_child(id_child(id_of_root(1), 2), 1));
-    forest->patches[leaf].radiosity = (struct rgb){{1.0, -2.0, 0x1p-1074}};
+    forest->radiosity[leaf] = (struct rgb){{1.0, -2.0, 0x1p-1074}};
     bytes[25] = 0x09;
     /* after leaves 0, 1, 20 */
     memcpy(bytes + 25 + 2 + 3 * 24, leaf_bytes, sizeof leaf_bytes);
@@ -129,7 +129,7 @@ static void test_bits(const struct scene *scene)
     for (int32_t p = 0; p < forest->count; p++) {
         if (!patch_is_leaf(&forest->patches[p]))
             continue;
-        double *value = &forest->patches[p].radiosity.band[p % 3];
+        double *value = &forest->radiosity[p].band[p % 3];
         double before = *value;
         uint64_t bits;
         memcpy(&bits, value, sizeof bits);

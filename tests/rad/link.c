@@ -160,12 +160,12 @@ static void test_one_transfer(void)
     struct world world = make_many();
     struct forest *forest = world.model.forest;
     struct flux_unit unit = {1024.0, 1.0 / 1024.0};
-    forest->patches[3].radiosity = (struct rgb){{1.0, 2.0, 0.0}};
-    forest->patches[7].radiosity = (struct rgb){{0.0, 16.0, -4.0}};
+    forest->radiosity[3] = (struct rgb){{1.0, 2.0, 0.0}};
+    forest->radiosity[7] = (struct rgb){{0.0, 16.0, -4.0}};
     forest->patches[3].flux[0] = 5;
     struct link_list list = {0};
     link_list_append(&list, PLAIN);
-    links_transfer(&list, &world.model, unit);
+    links_transfer(&list, &world.model, forest->radiosity, unit);
     const int64_t *p = forest->patches[3].flux, *q = forest->patches[7].flux;
     tap_ok(p[0] == 5 && p[1] == 4096 && p[2] == -1024 && q[0] == 256 && q[1] == 512 &&
                q[2] == 0,
@@ -193,12 +193,12 @@ static void test_transfer(void)
                             .area = float_below(1e-6 * random_unit(&random)),
                             .seen = LINK_ALL_SEEN};
         link_list_append(&list, link);
-        sent += link_area(&link) * (rgb_sum(forest->patches[p].radiosity) +
-                                    rgb_sum(forest->patches[q].radiosity));
+        sent += link_area(&link) * (rgb_sum(forest->radiosity[p]) +
+                                    rgb_sum(forest->radiosity[q]));
     }
     for (int64_t i = 0; i < list.count; i++)
         link_list_append(&turned, list.items[list.count - 1 - i]);
-    links_transfer(&list, &world.model, unit);
+    links_transfer(&list, &world.model, forest->radiosity, unit);
     int64_t received = 0;
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
@@ -209,7 +209,7 @@ static void test_transfer(void)
            "what is received is what is sent");
     uint64_t hash = flux_hash(forest);
     clear_flux(forest);
-    links_transfer(&turned, &world.model, unit);
+    links_transfer(&turned, &world.model, forest->radiosity, unit);
     tap_ok(flux_hash(forest) == hash, "bit by bit the same in another order of links");
     link_list_free(&list);
     link_list_free(&turned);

@@ -29,7 +29,7 @@ static void test_energy(void)
            "above it, in the sum of the bands, it is not");
     tap_ok(oracle_side_to_split(model, &swapped) == 0, "also if it names the lamp first");
     model->link_threshold = 1.75;
-    model->forest->patches[0].radiosity.band[1] = 7.0;
+    model->forest->radiosity[0].band[1] = 7.0;
     tap_ok(oracle_side_to_split(model, &link) == NODE_NONE, "both ways count together");
     model->link_threshold = nextafter(1.75, 0.0);
     tap_ok(oracle_side_to_split(model, &link) == 0, "to the last bit");

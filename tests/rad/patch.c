@@ -50,7 +50,7 @@ static void test_creation(struct scene *scene)
         const struct patch *patch = &forest->patches[r];
         right = right && patch_is_leaf(patch) && patch->parent == -1 &&
                 same_id(patch->id, id_of_root((uint32_t)r)) && patch->flux[0] == 0 &&
-                patch->radiosity.band[2] == (r == 1 ? 3.0 : 0.0) &&
+                forest->radiosity[r].band[2] == (r == 1 ? 3.0 : 0.0) &&
                 forest_area(forest, r) == scene->areas[r] &&
                 forest_material(forest, r) == &scene->materials[r == 1];
     }
@@ -65,7 +65,7 @@ static void test_creation(struct scene *scene)
 static void test_split(struct scene *scene)
 {
     struct forest *forest = forest_create(scene);
-    forest->patches[2].radiosity = (struct rgb){{0.5, 0.25, 7.0}};
+    forest->radiosity[2] = (struct rgb){{0.5, 0.25, 7.0}};
     forest->patches[2].flux[1] = 99;
     forest_split(forest, 2);
     int32_t first = forest->patches[2].children;
@@ -75,7 +75,7 @@ static void test_split(struct scene *scene)
         right = right && same_id(child->id,
                                  id_child(id_of_root(2), k)) && child->parent == 2 &&
                 patch_is_leaf(child) && child->flux[0] == 0 && child->flux[1] == 0 &&
-                memcmp(&child->radiosity, &forest->patches[2].radiosity,
+                memcmp(&forest->radiosity[first + k], &forest->radiosity[2],
                        sizeof(struct rgb)) == 0;
     }
     tap_ok(right && forest->patches[2].flux[1] == 99,

@@ -124,7 +124,7 @@ static void test_line(void)
 static double mean_of_leaves(const struct forest *forest, int32_t patch, int band)
 {
     if (patch_is_leaf(&forest->patches[patch]))
-        return forest->patches[patch].radiosity.band[band];
+        return forest->radiosity[patch].band[band];
     double sum = 0.0;
     for (int k = 0; k < 4; k++)
         sum += mean_of_leaves(forest, forest->patches[patch].children + k, band);
@@ -136,7 +136,7 @@ static bool inner_are_means(const struct forest *forest, const bool *own)
 {
     for (int32_t p = 0; p < forest->count; p++)
         for (int c = 0; own[forest->patches[p].id.root] && c < BANDS; c++)
-            if (fabs(forest->patches[p].radiosity.band[c] -
+            if (fabs(forest->radiosity[p].band[c] -
                      mean_of_leaves(forest, p, c)) > 1e-14)
                 return false;
     return true;
@@ -152,7 +152,7 @@ static void test_pull(void)
     grow(forest, 3);
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
-            forest->patches[p].radiosity.band[c] = random_unit(&random);
+            forest->radiosity[p].band[c] = random_unit(&random);
     bool before = inner_are_means(forest, own);
     forest_average(forest);
     forest_bound(forest);
@@ -182,7 +182,7 @@ static void test_radiosity(void)
         for (int c = 0; c < BANDS; c++) {
             double reflected = material->reflectance.band[c] * h.band[c];
             right = right &&
-                    patch->radiosity.band[c] == material->emission.band[c] + reflected;
+                    forest->radiosity[p].band[c] == material->emission.band[c] + reflected;
         }
     }
     tap_ok(right, "leaves get B = E + rho H");
@@ -210,7 +210,7 @@ static void test_sums(void)
     pour(&world, 5);
     for (int32_t r = 0; r < ROOTS; r++) /* no mean of any leaves */
         if (!own[r])
-            forest->patches[r].radiosity.band[0] = 42.0;
+            forest->radiosity[r].band[0] = 42.0;
     double light = 0.0, absorbed = 0.0, arriving = 0.0, changed = 0.0;
     for (int32_t p = 0; p < forest->count; p++) {
         const struct patch *patch = &forest->patches[p];
@@ -224,7 +224,7 @@ static void test_sums(void)
             light += forest_area(forest, p) * b;
             absorbed += forest_area(forest, p) * (1.0 - rho) * h.band[c];
             arriving += forest_area(forest, p) * h.band[c];
-            changed += forest_area(forest, p) * fabs(b - patch->radiosity.band[c]);
+            changed += forest_area(forest, p) * fabs(b - forest->radiosity[p].band[c]);
         }
     }
     struct push_pull_sums sums = pushed(&world, own);
@@ -238,7 +238,7 @@ static void test_sums(void)
            "change is A |B - B before| of leaves");
     bool others = true;
     for (int32_t r = 0; r < ROOTS; r++)
-        others = others && (own[r] || forest->patches[r].radiosity.band[0] == 42.0);
+        others = others && (own[r] || forest->radiosity[r].band[0] == 42.0);
     tap_ok(others, "roots of others stay as they are");
     world_free(&world);
 }

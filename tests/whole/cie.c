@@ -170,7 +170,7 @@ static void test_interreflection(const struct comm *comm, double rho, double exa
     double light = 0.0, unit = scene_area_unit(s.scene);
     for (int32_t root = 0; root < forest->root_count; root++)
         light +=
-            unit * forest_area(forest, root) * forest->patches[root].radiosity.band[0];
+            unit * forest_area(forest, root) * forest->radiosity[root].band[0];
     double indirect = ((light - 10000.0) / rho - 10000.0) / 96.0;
     tap_ok(
         s.vote.converged && fabs(indirect / exact - 1.0) <= limit,

@@ -51,7 +51,7 @@ static void furnace_errors(const struct solution *s, double reflectance, double 
     for (int64_t p = 0; p < forest->count; p++) {
         if (!patch_is_leaf(&forest->patches[p]))
             continue;
-        double b = forest->patches[p].radiosity.band[0],
+        double b = forest->radiosity[p].band[0],
                a = forest_area(forest, (int32_t)p);
         *largest = fmax(*largest, fabs(b / exact - 1.0));
         sum += a * b;
@@ -89,7 +89,7 @@ static void test_iteration_stop(const struct comm *comm, double rho, double tole
     struct solution rough = solve(comm, cube, criterion_of(1.0, 0, tolerance));
     double row = rough.stats.row_sum_mean; /* all rows are the same here */
     double exact = 1.0 / (1.0 - rho * row);
-    double b = rough.solver->model.forest->patches[0].radiosity.band[0];
+    double b = rough.solver->model.forest->radiosity[0].band[0];
     if (comm->rank == 0) {
         tap_ok(rough.stats.row_sum_max - rough.stats.row_sum_min < 1e-12,
                "max-level 0: all rows sum to %.6f", row);
@@ -141,7 +141,7 @@ static void test_glowing_cube(const struct comm *comm, double rho, double allowe
     double exact[ROOTS], error = 0.0;
     glowing_cube_exact(s.scene, rho, exact);
     for (int i = 0; i < ROOTS; i++) {
-        double b = s.solver->model.forest->patches[i].radiosity.band[0];
+        double b = s.solver->model.forest->radiosity[i].band[0];
         error = fmax(error, fabs(b / exact[i] - 1.0));
     }
     if (comm->rank == 0)
@@ -177,8 +177,8 @@ static void test_same_answer(const struct comm *comm)
     const struct forest *a = s[0].solver->model.forest, *b = s[1].solver->model.forest;
     for (int32_t p = 0; p < a->root_count; p++)
         for (int c = 0; c < BANDS; c++)
-            off = fmax(off, fabs(a->patches[p].radiosity.band[c] -
-                                 b->patches[p].radiosity.band[c]));
+            off = fmax(off, fabs(a->radiosity[p].band[c] -
+                                 b->radiosity[p].band[c]));
     double emitted = s[0].stats.emitted_power;
     double absorbed =
         fabs(s[0].stats.absorbed_power - s[1].stats.absorbed_power) / emitted;
@@ -203,7 +203,7 @@ static void test_same_answer(const struct comm *comm)
 static double light_of(const struct model *model, int32_t node)
 {
     return rgb_sum(node_is_cluster(node) ? model->clusters->radiosity[~node]
-                                         : model->forest->patches[node].radiosity);
+                                         : model->forest->radiosity[node]);
 }
 
 /* The radiosity of a node as a link takes it, sum over bands, W/m^2. */
@@ -256,7 +256,7 @@ static void test_power(const struct comm *comm, const struct criterion *criterio
     const struct forest *forest = s.solver->model.forest;
     double leaving = 0.0, emitted = s.stats.emitted_power;
     for (int32_t root = 0; root < forest->root_count; root++)
-        leaving += forest_area(forest, root) * rgb_sum(forest->patches[root].radiosity);
+        leaving += forest_area(forest, root) * rgb_sum(forest->radiosity[root]);
     double escaped = (leaving - power_of_links(&s)) * scene_area_unit(s.scene);
     double balance = s.stats.absorbed_power + s.stats.escaped_power - emitted;
     if (comm->rank == 0) {

@@ -181,7 +181,7 @@ static enum verdict judge_leaf(const struct pathtracer *pathtracer, struct patch
 static double reflected(const struct solution *s, int32_t patch)
 {
     const struct forest *forest = s->solver->model.forest;
-    return forest->patches[patch].radiosity.band[0] -
+    return forest->radiosity[patch].band[0] -
            forest_material(forest, patch)->emission.band[0];
 }
 

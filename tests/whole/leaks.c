@@ -167,7 +167,7 @@ static struct arriving arriving_at(const struct solution *s, int material)
     for (int32_t root = 0; root < forest->root_count; root++)
         if (s->scene->material_of[root] == material) {
             double own = forest_area(forest, root);
-            sum.power += own * forest->patches[root].radiosity.band[0] / REFLECTANCE;
+            sum.power += own * forest->radiosity[root].band[0] / REFLECTANCE;
             area += own;
         }
     sum.irradiance = area > 0.0 ? sum.power / area : 0.0;

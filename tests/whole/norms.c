@@ -138,10 +138,10 @@ static void test_roots(void)
     struct truth truth = two_truths(world.scene);
     forest_split(forest, 0);
     for (int k = 0; k < 4; k++)
-        forest->patches[forest->patches[0].children + k].radiosity =
+        forest->radiosity[forest->patches[0].children + k] =
             grey(0.5 + reflected[k]);
-    forest_average_patch(forest, 0);
-    forest->patches[1].radiosity = grey(0.5 + 6.0);
+    patch_average(forest, 0, forest->radiosity);
+    forest->radiosity[1] = grey(0.5 + 6.0);
     struct deviation root = deviation_of_roots(forest, &truth);
     struct deviation leaf = deviation_of_leaves(forest, &truth);
     tap_ok(truth.count == 16 + 64, "roots of 16 and 64 elements");

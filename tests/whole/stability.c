@@ -44,7 +44,7 @@ static struct solution run(struct painted *painted, const char *words)
 
 static double radiosity(const struct solution *s, int64_t patch)
 {
-    return s->solver->model.forest->patches[patch].radiosity.band[0];
+    return s->solver->model.forest->radiosity[patch].band[0];
 }
 
 /* Sum over the roots first .. first + count - 1 of area times radiosity over the area. */
@@ -668,7 +668,7 @@ static void test_cracks(void)
     struct solution s = solve_scene(world_comm, furnished(1.0, 1.0), "--epsilon 1e-4");
     struct forest *forest = s.solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++)
-        forest->patches[p].radiosity = (struct rgb){{2.0, 2.0, 2.0}};
+        forest->radiosity[p] = (struct rgb){{2.0, 2.0, 2.0}};
     struct shading *shading = shade(&s);
     struct camera camera = {.eye = point(0.05, 0.07, 0.9), .at = point(0.6, 0.5, 0.3),
                             .up = point(0, 0, 1), .fov = 100.0, .width = 200,

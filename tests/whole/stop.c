@@ -334,7 +334,7 @@ int main(void)
     world = world_make(make_room(2));
     struct forest *forest = world.model.forest;
     for (int64_t p = 0; p < forest->count; p++)
-        forest->patches[p].radiosity = (struct rgb){{1.0, 1.0, 1.0}};
+        forest->radiosity[p] = (struct rgb){{1.0, 1.0, 1.0}};
     shading = shading_create(forest, NULL, NULL);
     write_scenes();
     test_questions();

@@ -110,7 +110,7 @@ static struct errors measure(const struct solution *s, int material,
         if (!patch_is_leaf(&forest->patches[p]) ||
             !is_looked_at(truth, s, root, material))
             continue;
-        double a = forest_area(forest, p), b = forest->patches[p].radiosity.band[0];
+        double a = forest_area(forest, p), b = forest->radiosity[p].band[0];
         double is = truth_of_leaf(truth, s, p), off = b / is - 1.0;
         area += a;
         exact += a * is;
@@ -468,7 +468,7 @@ static void test_light_is_kept(const struct comm *comm, double rho, const char *
     double sum = 0.0, area = 0.0, power = s.stats.emitted_power / BANDS;
     for (int32_t r = 0; r < scene_root_count(s.scene); r++) {
         double a = s.scene->areas[r] * scene_area_unit(s.scene);
-        sum += a * s.solver->model.forest->patches[r].radiosity.band[0];
+        sum += a * s.solver->model.forest->radiosity[r].band[0];
         area += a;
     }
     double exact = power / (1.0 - rho) / area,

@@ -50,7 +50,7 @@ static void test_nothing_wrong(void)
     struct link link = link_of(0, 1);
     tap_ok(at_threshold(&world, &link, 0.0) == NODE_NONE,
            "an open link with even parts and no range is never split");
-    world.model.forest->patches[1].radiosity = (struct rgb){{1e6, 1e6, 1e6}};
+    world.model.forest->radiosity[1] = (struct rgb){{1e6, 1e6, 1e6}};
     tap_ok(at_threshold(&world, &link, 0.0) == NODE_NONE, "however bright it is");
     world_free(&world);
 }
@@ -96,8 +96,8 @@ static void make_range(struct forest *forest, int32_t patch, double range)
     int32_t child = forest->patches[patch].children;
     forest_split(forest, child + 2);
     int32_t grandchild = forest->patches[child + 2].children;
-    forest->patches[child].radiosity = (struct rgb){{50.0, 1.0, 1.0}};
-    forest->patches[grandchild + 1].radiosity.band[1] = 1.0 + range;
+    forest->radiosity[child] = (struct rgb){{50.0, 1.0, 1.0}};
+    forest->radiosity[grandchild + 1].band[1] = 1.0 + range;
     forest_average(forest);
     forest_bound(forest);
 }
@@ -120,7 +120,7 @@ static void test_range(void)
     tap_ok(error_is(&world, &link, 0.125 * 0.5 * 0.75, 1), "the same on the other side");
     link.seen = 0;
     /* Doubt alone is left: 1/8 of G x rho B both ways. */
-    double to_p = 0.5 * rgb_sum(world.model.forest->patches[1].radiosity), to_q = 1.5;
+    double to_p = 0.5 * rgb_sum(world.model.forest->radiosity[1]), to_q = 1.5;
     tap_ok(error_is(&world, &link, 0.125 * 0.125 * (to_p + to_q), 1),
            "the light that a blocked link might carry is only in doubt");
     world_free(&world);

@@ -27,7 +27,7 @@ static struct trial gather_scene(struct painted *painted, const char *words, int
     g.radiosity = alloc_array((size_t)forest->count, sizeof *g.radiosity);
     for (int64_t i = 0; i < forest->count; i++) {
         int32_t p = g.gather.order[i];
-        g.radiosity[i] = forest->patches[p].radiosity;
+        g.radiosity[i] = forest->radiosity[p];
         if (patch_is_leaf(&forest->patches[p]) && forest_area(forest, p) > 0.0)
             final_gather_add(&g.gather, p, rays, true);
     }
@@ -230,9 +230,9 @@ static void test_gap(void)
     paint(&painted, 0.5, 0.0);
     struct solution s =
         solve_scene(world_comm, scene_of_painted(&painted), "--max-level 0");
-    const struct patch *patches = s.solver->model.forest->patches;
-    double below = patches[14].radiosity.band[0] + patches[15].radiosity.band[0];
-    double above = patches[16].radiosity.band[0] + patches[17].radiosity.band[0];
+    const struct rgb *radiosity = s.solver->model.forest->radiosity;
+    double below = radiosity[14].band[0] + radiosity[15].band[0];
+    double above = radiosity[16].band[0] + radiosity[17].band[0];
     tap_ok(below < 0.02 * above && above > 0.0,
            "below a sheet on a table: %.5f of the light above it", below / above);
     solution_free(&s);
@@ -276,7 +276,7 @@ static void test_flush_lamp(void)
             }
         struct solution s = solve_scene(world_comm, scene_of_painted(&painted), "");
         int32_t floor = (first == 0 ? 0 : 2) + 8; /* z = 0 */
-        mean[first] = s.solver->model.forest->patches[floor].radiosity.band[0];
+        mean[first] = s.solver->model.forest->radiosity[floor].band[0];
         solution_free(&s);
     }
     tap_ok(mean[0] > 0.0 && fabs(mean[1] / mean[0] - 1.0) < 0.05,

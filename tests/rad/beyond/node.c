@@ -388,7 +388,7 @@ static void set_light(struct model *model, uint64_t seed)
     struct forest *forest = model->forest;
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
-            forest->patches[p].radiosity.band[c] =
+            forest->radiosity[p].band[c] =
                 hash_unit(hash_mix(seed) + BANDS * (uint64_t)p + (uint64_t)c);
     cluster_light_pull(model->clusters, forest);
 }
@@ -401,7 +401,7 @@ static double product(const struct model *model)
     double sum = 0.0;
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
-            sum += forest->patches[p].radiosity.band[c] *
+            sum += forest->radiosity[p].band[c] *
                    (double)forest->patches[p].flux[c];
     for (int64_t i = 0; i < clusters->tree->count; i++)
         for (int c = 0; c < BANDS; c++)
@@ -418,7 +418,9 @@ static double product_over(struct model *model, const struct link_list *links,
     memset(clusters->flux, 0,
            BANDS * (size_t)clusters->tree->count * sizeof *clusters->flux);
     set_light(model, from);
-    node_links_transfer(links, model, flux_unit_for(model->area));
+    cluster_light_send(clusters, model->forest, model->forest->radiosity);
+    node_links_transfer(links, model, model->forest->radiosity,
+                        flux_unit_for(model->area));
     set_light(model, to);
     return product(model);
 }
@@ -471,8 +473,8 @@ static double difference(const struct solution *a, const struct solution *b)
         if (a->scene->material_of[root] == LAMP)
             continue;
         double area = scene_root_area(a->scene, root);
-        double x = a->solver->model.forest->patches[root].radiosity.band[0];
-        double y = b->solver->model.forest->patches[root].radiosity.band[0];
+        double x = a->solver->model.forest->radiosity[root].band[0];
+        double y = b->solver->model.forest->radiosity[root].band[0];
         square += area * (x - y) * (x - y);
         light += area * y * y;
     }
@@ -511,7 +513,7 @@ static void test_total(void)
     double leaving = 0.0, unit = scene_area_unit(s.scene);
     for (int32_t root = 0; root < s.scene->input_count; root++)
         leaving += unit * scene_root_area(s.scene, root) *
-                   rgb_sum(s.solver->model.forest->patches[root].radiosity);
+                   rgb_sum(s.solver->model.forest->radiosity[root]);
     double bias = -s.stats.escaped_power / leaving;
     tap_ok(fabs(bias) <= 0.01, "of all light %+.2f %% too much arrives (%lld links)",
            100.0 * bias, (long long)s.stats.links);

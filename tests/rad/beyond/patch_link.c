@@ -149,8 +149,9 @@ static void test_dealing(void)
     struct patch *p = &forest->patches[forest->patches[2].children];
     struct patch *q = &forest->patches[forest->patches[4].children];
     for (int k = 0; k < 4; k++) {
-        p[k].radiosity = (struct rgb){{k + 1.0, 0.0, 0.0}};
-        q[k].radiosity = (struct rgb){{8.0 * (k + 1), 0.0, 4.0}};
+        int32_t first_p = forest->patches[2].children, first_q = forest->patches[4].children;
+        forest->radiosity[first_p + k] = (struct rgb){{k + 1.0, 0.0, 0.0}};
+        forest->radiosity[first_q + k] = (struct rgb){{8.0 * (k + 1), 0.0, 4.0}};
     }
     forest_average(forest);
     forest_bound(forest);
@@ -159,7 +160,7 @@ static void test_dealing(void)
     struct link_list list = {0};
     link_list_append(&list, link);
     link_list_sort(&list);
-    node_links_transfer(&list, &world.model, unit);
+    node_links_transfer(&list, &world.model, forest->radiosity, unit);
     /* From q: 8 (3/4 + 4 x 3/4) = 30 and 4, times G = 1/2: 15 and 2 W to the children of
      * p. From p: 1/2 + 9/8 + 4/8 = 17/8, times 1/2: 17/16 W. */
     tap_ok(p[0].flux[0] == 7680 && p[1].flux[0] == 0 && p[2].flux[0] == 5760 &&
@@ -178,7 +179,7 @@ static void test_dealing(void)
     list.items[0].q = 4;
     list.items[0].area = 0.5f;
     link_list_sort(&list);
-    node_links_transfer(&list, &world.model, unit);
+    node_links_transfer(&list, &world.model, forest->radiosity, unit);
     double due = 10.0 / forest_area(forest, 2);
     bool same = forest->patches[2].flux[0] == 10240 && forest->patches[4].flux[0] == 1280;
     for (int k = 0; k < 4; k++) {
@@ -192,7 +193,7 @@ static void test_dealing(void)
     list.items[0].parts_p[0] = 65;
     list.items[0].parts_q[2] = 63;
     link_list_sort(&list);
-    node_links_transfer(&list, &world.model, unit);
+    node_links_transfer(&list, &world.model, forest->radiosity, unit);
     bool dealt = forest->patches[2].flux[0] == 0 && forest->patches[4].flux[0] == 0;
     for (int k = 0; k < 4; k++) {
         int32_t child = forest->patches[2].children + k;
@@ -212,12 +213,12 @@ static struct rgb sent_by(const struct forest *forest, int32_t patch,
 {
     const struct patch *at = &forest->patches[patch];
     if (patch_is_leaf(at))
-        return at->radiosity;
+        return forest->radiosity[patch];
     struct rgb sum = {{0.0, 0.0, 0.0}};
     for (int k = 0; k < 4; k++)
         for (int c = 0; c < BANDS; c++)
             sum.band[c] += link_part(parts, k) *
-                           forest->patches[at->children + k].radiosity.band[c];
+                           forest->radiosity[at->children + k].band[c];
     return sum;
 }
 
@@ -231,7 +232,7 @@ static void test_transfer(void)
     forest_bound(forest);
     make_links(forest, &list);
     link_list_sort(&list);
-    node_links_transfer(&list, &world.model, unit);
+    node_links_transfer(&list, &world.model, forest->radiosity, unit);
     int64_t received = 0;
     double sent = 0.0;
     for (int64_t i = 0; i < list.count; i++) {
@@ -258,7 +259,7 @@ static void test_transfer(void)
         memcpy(link->parts_q, old.parts_p, sizeof link->parts_q);
     }
     link_list_sort(&turned);
-    node_links_transfer(&turned, &world.model, unit);
+    node_links_transfer(&turned, &world.model, forest->radiosity, unit);
     tap_ok(flux_hash(forest) == hash, "bit by bit the same in another order of links");
     link_list_free(&list);
     link_list_free(&turned);
