@@ -92,29 +92,6 @@ static const struct material *material_at(const struct scene *scene, int32_t tri
     return &scene->materials[scene->material_of[triangle]];
 }
 
-static void test_numbers(void)
-{
-    static const struct {
-        const char *word;
-        double value;
-    } right[] = {{"1", 1}, {"+1", 1}, {"-1", -1}, {".5", 0.5}, {"1.", 1}, {"-.5", -0.5},
-                 {"1e-3", 1e-3}, {"1E+2", 100}, {"007", 7}, {"1e-999", 0},
-                 {"1e308", 1e308}};
-    static const char *const wrong[] = {"", ".", "+", "-", "e5", "1e", "1e+", "1.2.3",
-                                        "--1", "+-1", "1-", "nan", "NaN", "-nan", "inf",
-                                        "-Infinity", "0x10", "1e999", "-1e999", "1,5",
-                                        "1f", "1 ", " 1", "1.#IND"};
-    for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
-        double value = -77;
-        tap_ok(text_is_number(right[i].word, &value) && value == right[i].value,
-               "'%s' is a number", right[i].word);
-    }
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        double value;
-        tap_ok(!text_is_number(wrong[i], &value), "'%s' is no number", wrong[i]);
-    }
-}
-
 static void test_lines(void)
 {
     check_triangle("LF", CORNERS "f 1 2 3\n");
@@ -528,7 +505,6 @@ static void test_random_bytes(void)
 
 int main(void)
 {
-    test_numbers();
     test_lines();
     test_long_file();
     test_vertices();

@@ -173,7 +173,8 @@ static void test_numbers(void)
     static const char *const wrong[] = {"", ".", "-", "+-1", "1e", "e1", "1e+", "1.2.3",
                                         "1,5", "1 ", " 1", "0x10", "0x1p3", "nan", "NaN",
                                         "nan(1)", "inf", "-Infinity", "1e309", "-1e999",
-                                        "1d3", "1f", "1_000", "--1"};
+                                        "1d3", "1f", "1_000", "--1", "-nan", "1-",
+                                        "1.#IND"};
     for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
         double value = -7.0;
         tap_ok(text_is_number(right[i].word, &value) && value == right[i].value,

@@ -494,64 +494,6 @@ static void test_claims(void)
 
 /* --- points to polygons --- */
 
-/* Two triangles, F from the first to the second (tests/formfactors.csv,
- * exact to 15 digits), and how far the form factor from the twelve points of the
- * smaller one is off: measured, and a quarter more. */
-struct known {
-    const char *name;
-    struct triangle p, q;
-    double factor, allowed;
-};
-
-static const struct known KNOWN[] = {
-    {"opposed right triangles", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
-     {{{0, 0, 1}, {0, 1, 1}, {1, 0, 1}}}, 0.11504922814961051, 0.0005},
-    {"under the other half of the square", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
-     {{{1, 0, 0.5}, {0, 1, 0.5}, {1, 1, 0.5}}}, 0.13661586248337540, 0.0003},
-    {"general triangles 2", {{{-1.1, 0.2, 0.4}, {0.7, -0.6, 0}, {0.9, 1.3, 0.5}}},
-     {{{0.4, 0.1, 0.9}, {1.9, 1.2, 2.4},
-       {2.6, -0.7, 0.3}}}, 0.099235399192365528, 0.0112},
-    {"parallel slivers", {{{0, 0, 0}, {1, 0, 0}, {0.5, 0.0001, 0}}},
-     {{{0, 0, 0.1}, {0.5, 0.0001, 0.1}, {1, 0, 0.1}}}, 0.00032025124676048735, 0.006},
-    {"corner tetrahedron, legs", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
-     {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}}, 0.21132486540518712, 0.0082},
-    {"corner tetrahedron, leg to hypotenuse", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
-     {{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}}}, 0.57735026918962576, 0.006},
-    {"equilateral, hinged at 90 deg",
-     {{{0, 0, 0}, {1, 0, 0}, {0.5, 0.8660254037844386, 0}}},
-     {{{0, 0, 0}, {0.5, 0, 0.8660254037844386}, {1, 0, 0}}}, 0.22382159142570599, 0.0053},
-    {"scalene, hinged at 30 deg", {{{0, 0, 0}, {2, 0, 0}, {0.3, 0.7, 0}}},
-     {{{0, 0, 0}, {1.6, 0.8660254037844386, 0.5},
-       {2, 0, 0}}}, 0.61328462043135936, 0.003},
-};
-enum { KNOWN_COUNT = sizeof KNOWN / sizeof KNOWN[0] };
-
-static void test_known(void)
-{
-    struct octree *octree = octree_create(NULL, NULL, 0);
-    double worst = 0.0, worst_disk = 0.0;
-    for (int i = 0; i < KNOWN_COUNT; i++) {
-        const struct known *known = &KNOWN[i];
-        struct facet p = facet_of(known->p, -1), q = facet_of(known->q, -1);
-        double exact = known->factor * p.area;
-        struct octree_counts counts = {0};
-        struct exchange there = estimate(&p, &q, FORM_FACTOR_POLYGON, EFFORT_ALL, octree,
-                                         &counts);
-        struct exchange disk = estimate(&p, &q, FORM_FACTOR_DISK, EFFORT_ALL, octree,
-                                        &counts);
-        double error = fabs(there.area / exact - 1.0);
-        worst = fmax(worst, error);
-        worst_disk = fmax(worst_disk, fabs(disk.area / exact - 1.0));
-        tap_ok(error <= known->allowed, "%s: off by %.2f %%, at most %.2f %%",
-               known->name,
-               100.0 * error, 100.0 * known->allowed);
-    }
-    tap_ok(worst < 0.5 * worst_disk, "at worst %.1f %%, and by disks %.1f %%",
-           100.0 * worst,
-           100.0 * worst_disk);
-    octree_destroy(octree);
-}
-
 /* A speck close to a large triangle is a point to it, and the triangle is all but that
  * to the speck: the points have to be on the speck, whichever comes first. */
 static void test_speck(void)
@@ -808,7 +750,6 @@ int main(void)
     test_horizon();
     test_proof();
     test_claims();
-    test_known();
     test_speck();
     test_any(FORM_FACTOR_DISK, EFFORT_ALL, "disks, all");
     test_any(FORM_FACTOR_POLYGON, EFFORT_ALL, "polygons, all");
