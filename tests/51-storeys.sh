@@ -16,7 +16,7 @@ calls_to_form_factor      8     7
 includes_of_beyond        1     0
 ground_floor_lines     4437  4500
 source_lines          23253 16000
-test_lines            26369 16000
+test_lines            26373 16000
 long_lines              200     0
 what_per_1000_words     1.3     2
 large_structs             1     0

@@ -118,9 +118,9 @@ static struct sample sample_of(const struct forest *forest, int32_t patch,
                                const struct element *elements, int64_t count)
 {
     const struct patch *at = &forest->patches[patch];
-    struct sample sample = {
-        .area = forest_area(forest, patch),
-        .value = reflected(forest->scene, (int32_t)at->id.root, forest->radiosity[patch])};
+    struct sample sample = {.area = forest_area(forest, patch),
+                            .value = reflected(forest->scene, (int32_t)at->id.root,
+                                               forest->radiosity[patch])};
     for (int half = 0; half < TRUTH_HALVES; half++)
         sample.truth[half] = mean_of(elements, count, half);
     return sample;

@@ -484,7 +484,8 @@ static bool is_flat(const struct stage *stage)
         for (int k = 0; k < 3; k++) {
             int32_t v = stage->shading->corners[3 * (int64_t)p + k];
             flat =
-                flat && difference(stage->shading->values[v], forest->radiosity[p]) < 1e-15 &&
+                flat &&
+                difference(stage->shading->values[v], forest->radiosity[p]) < 1e-15 &&
                 vec3_length(vec3_sub(stage->shading->positions[v], t.corner[k])) == 0.0;
         }
     }

@@ -181,8 +181,8 @@ static void test_radiosity(void)
         const struct material *material = forest_material(forest, p);
         for (int c = 0; c < BANDS; c++) {
             double reflected = material->reflectance.band[c] * h.band[c];
-            right = right &&
-                    forest->radiosity[p].band[c] == material->emission.band[c] + reflected;
+            right = right && forest->radiosity[p].band[c] ==
+                                 material->emission.band[c] + reflected;
         }
     }
     tap_ok(right, "leaves get B = E + rho H");

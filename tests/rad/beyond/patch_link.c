@@ -149,7 +149,8 @@ static void test_dealing(void)
     struct patch *p = &forest->patches[forest->patches[2].children];
     struct patch *q = &forest->patches[forest->patches[4].children];
     for (int k = 0; k < 4; k++) {
-        int32_t first_p = forest->patches[2].children, first_q = forest->patches[4].children;
+        int32_t first_p = forest->patches[2].children,
+                first_q = forest->patches[4].children;
         forest->radiosity[first_p + k] = (struct rgb){{k + 1.0, 0.0, 0.0}};
         forest->radiosity[first_q + k] = (struct rgb){{8.0 * (k + 1), 0.0, 4.0}};
     }
