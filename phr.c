@@ -45,7 +45,7 @@ static void create_solver(struct run *run)
     struct solver *solver = beyond_create(&run->comm, run->scene, run->octree,
                                           &run->options.criterion);
     run->solver = solver;
-    memory_watch(solver, run->options.memory, machine_memory());
+    memory_watch(&solver->memory, &run->comm, run->options.memory, machine_memory());
     solver->account.seconds[PHASE_READ] = comm_seconds() - run->start;
     solver->account.seconds[PHASE_OCTREE] = run->block.seconds;
     solver->progress = &run->progress.progress;

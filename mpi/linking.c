@@ -51,21 +51,18 @@ static int64_t exchange_notices(struct solver *solver)
     return links;
 }
 
-/* Links this rank's pairs up to before pair number `end`, unless a signal comes. */
-static void link_round(struct solver *solver, struct linking *linking, int64_t end)
+/* True before pair number `done` of a rank's round, unless a signal has come. */
+static bool goes_on(struct solver *solver, const struct linking *linking, int64_t done)
 {
-    double pairs = (double)linking_pairs(linking);
-    for (int done = 0; linking->number < end; done++) {
-        if (done % PAIRS_PER_TICK == 0) {
-            if (signals_seen() != 0)
-                return;
-            progress_tick(solver->progress, (double)linking->number / pairs);
-        }
-        linking_add(linking);
-    }
+    if (done % PAIRS_PER_TICK != 0)
+        return true;
+    progress_tick(solver->progress,
+                  (double)linking->number / (double)linking_pairs(linking));
+    return signals_seen() == 0;
 }
 
-/* Returns false if a signal or the memory limit has ended it. */
+/* Links this rank's pairs, round by round. Returns false if a signal or the memory limit
+ * has ended it. */
 static bool link_pairs(struct solver *solver, struct linking *linking)
 {
     int64_t pairs = linking_pairs(linking), patches = solver->model.forest->count;
@@ -78,7 +75,9 @@ static bool link_pairs(struct solver *solver, struct linking *linking)
         if (!fits || solver->turn.stop)
             return false;
         end += round;
-        link_round(solver, linking, end);
+        for (int64_t done = 0; linking->number < end && goes_on(solver, linking, done);
+             done++)
+            linking_add(linking);
     }
     exchange_notices(solver);
     return solver->turn.stop == 0;

@@ -59,16 +59,15 @@ static int64_t machines_together(const struct comm *comm, int64_t bytes)
     return known ? sum : 0;
 }
 
-void memory_watch(struct solver *solver, int64_t limit, int64_t machine)
+void memory_watch(struct memory *memory, const struct comm *comm, int64_t limit,
+                  int64_t machine)
 {
-    struct memory *memory = &solver->memory;
     memory->limit = limit;
     memory->copies = 1;
-    memory->rays = solver->model.criterion.final_gather;
     if (limit > 0)
         return;
-    memory->limit = (int64_t)(SHARE * (double)machines_together(solver->comm, machine));
-    memory->copies = solver->comm->size;
+    memory->limit = (int64_t)(SHARE * (double)machines_together(comm, machine));
+    memory->copies = comm->size;
 }
 
 int64_t memory_needed(const struct memory *memory, int copies, int64_t links,

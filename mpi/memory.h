@@ -1,14 +1,25 @@
-/* Watching what links, patches and clusters need. */
+/* The memory limit: links, patches and clusters are counted. */
 #ifndef MPI_MEMORY_H
 #define MPI_MEMORY_H
 
-#include "mpi/solver.h"
+#include <stdbool.h>
+#include <stdint.h>
 
-/* Collective, on a new solver. The links of all ranks and one copy of patches and
- * clusters may take `limit` bytes; 0: links and a copy for every rank may take most of
- * what the machines of the run have, each of which has `machine` bytes (0: unknown, and
- * there is no limit). */
-void memory_watch(struct solver *solver, int64_t limit, int64_t machine);
+#include "mpi/comm.h"
+
+struct memory {
+    int64_t limit;    /* bytes, 0: none */
+    int64_t reached;  /* the limit that has ended linking or refinement, 0: none has */
+    int copies;       /* of patches and clusters, that count */
+    int rays;         /* of the final gather */
+    int64_t clusters; /* above the roots */
+};
+
+/* Collective. The links of all ranks and one copy of patches and clusters may take `limit`
+ * bytes; 0: links and a copy for every rank may take most of the memory of the machines of
+ * the run, each of which has `machine` bytes (0: unknown, and there is no limit). */
+void memory_watch(struct memory *memory, const struct comm *comm, int64_t limit,
+                  int64_t machine);
 
 /* Bytes that links take, the rows of the final gather, and `copies` copies of the patches
  * and clusters. */

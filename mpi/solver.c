@@ -11,7 +11,6 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "mpi/memory.h"
 
 const struct steps STEPS_PAPER = {
     .transfer = solver_transfer,
@@ -27,6 +26,7 @@ struct solver *solver_create(const struct comm *comm, const struct scene *scene,
     solver->comm = comm;
     solver->model = model_make(scene, octree, forest_create(scene), criterion);
     solver->steps = STEPS_PAPER;
+    solver->memory.rays = criterion->final_gather;
     solver->turn.fresh = true;
     solver->homes.owner = alloc_array(roots, sizeof *solver->homes.owner);
     solver->homes.own = alloc_array(roots, sizeof *solver->homes.own);

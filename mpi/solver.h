@@ -9,22 +9,13 @@
 #include "geom/progress.h"
 #include "mpi/comm.h"
 #include "mpi/ledger.h"
+#include "mpi/memory.h"
 #include "mpi/node.h"
 #include "mpi/routes.h"
-#include "rad/beyond/node_link.h"
 #include "rad/link.h"
 #include "rad/model.h"
 #include "rad/pushpull.h"
 #include "rad/stats.h"
-
-/* The memory limit; see mpi/memory.h. */
-struct memory {
-    int64_t limit;   /* bytes, 0: none */
-    int64_t reached; /* the limit that has ended linking or refinement, 0: none has */
-    int copies;      /* of patches and clusters, that count */
-    int rays;        /* of the final gather */
-    int64_t clusters; /* above the roots */
-};
 
 /* What a rank says about an iteration; 128 bytes, no padding. */
 struct ballot {

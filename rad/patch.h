@@ -28,6 +28,12 @@ struct extremes {
 /* In place of a local number: no patch, and no cluster either. */
 enum { NODE_NONE = INT32_MIN };
 
+/* True of the number of a cluster (rad/beyond/cluster.h) in the place of a patch's. */
+static inline bool node_is_cluster(int32_t node)
+{
+    return node < 0;
+}
+
 struct forest {
     const struct scene *scene; /* borrowed */
     struct patch *patches;     /* [count] */

@@ -65,11 +65,6 @@ void cluster_tree_destroy(struct cluster_tree *tree);
 void cluster_tree_pack(const struct cluster_tree *tree, struct pack *pack);
 struct cluster_tree *cluster_tree_view(struct pack *pack);
 
-static inline bool node_is_cluster(int32_t node)
-{
-    return node < 0;
-}
-
 /* Area of a root or a cluster, square scene units. */
 static inline double cluster_node_area(const struct cluster_tree *tree,
                                        const struct scene *scene, int32_t node)
