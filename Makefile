@@ -1,18 +1,25 @@
 # phr: parallel hierarchical radiosity.
 #
-#   make                 phr with mpicc              make SERIAL=1   the same without MPI, with cc
+#   make                 phr with mpicc
+#   make SERIAL=1        the same without MPI, with cc
 #   make demo            the Cornell box, 2 ranks    make check      all tests
 #   make room            build/room, a scene generator
-#   make pathtracer      build/pathtracer, what phr's pictures and meshes are compared with
-#   make bench           $(BUILD)/rays and $(BUILD)/hits, benches of visibility and of first hits, beside
+#   make pathtracer      build/pathtracer, what phr's pictures and meshes are compared
+#                        with
+#   make bench           $(BUILD)/rays and $(BUILD)/hits, benches of visibility and of
+#                        first hits, beside
 #                        Embree where it is installed;
 #                        $(BUILD)/parsing, a bench of reading OBJ
-#   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path tracer
-#   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against error
-#   make growth          docs/growth.csv, docs/growth.svg: rooms of 6,348 to a million triangles
+#   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path
+#                        tracer
+#   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against
+#                        error
+#   make growth          docs/growth.csv, docs/growth.svg: rooms of 6,348 to a million
+#                        triangles
 #   make scaling         docs/ranks.md: seconds on 1, 32 and 1,024 ranks, line by line;
 #                        docs/tables.md: Tables 1 and 2 of the paper
-#   make prove           what takes longer: errors over six fourfold steps of epsilon; pictures beside the
+#   make prove           what takes longer: errors over six fourfold steps of epsilon;
+#                        pictures beside the
 #                        path tracer's; kills at forty moments
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
@@ -20,7 +27,8 @@
 #   make install         to $(DESTDIR)$(prefix)      make uninstall  make clean
 #
 # Knobs: MPICC, CC, MPIEXEC, CFLAGS, CPPFLAGS, LDFLAGS, prefix, DESTDIR.
-# Other builds side by side: BUILD is where objects go, PHR and IMGDIFF the programs made of them.
+# Other builds side by side: BUILD is where objects go, PHR and IMGDIFF the programs made
+# of them.
 
 SHELL = /bin/sh
 .SUFFIXES:
@@ -35,8 +43,9 @@ mandir = $(prefix)/share/man
 PHR ?= phr
 IMGDIFF ?= build/imgdiff
 
-# What the results depend on: C99 without extensions, no fused multiply-add. (That nobody reads errno
-# after sqrt or llrint changes no result; it makes instructions of these calls.)
+# What the results depend on: C99 without extensions, no fused multiply-add. (That nobody
+# reads errno after sqrt or llrint changes no result; it makes instructions of these
+# calls.)
 STRICT = -std=c99 -ffp-contract=off -fno-math-errno
 WARN = -pedantic -Wall -Wextra -Wshadow -Wconversion
 
@@ -65,10 +74,12 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 # Unit tests, bottom up; the last four are run with several ranks. Their sources lie in
 # folders, the programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
 TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree bundles \
-        bicgstab sequence id flux patch compact formfactor patch_exchange link patch_link linking method \
+        bicgstab sequence id flux patch compact formfactor patch_exchange link \
+        patch_link linking method \
         cluster node oracle error_oracle pushpull caps \
         final_gather checksum paths plan balance assign spotcheck \
-        text obj ply output store tone image camera viewpoint shading render options progress contour \
+        text obj ply output store tone image camera viewpoint shading render options \
+        progress contour \
         stop norms cie whole stability gaps leaks exchange conjugate exact converge
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
 vpath %.c tests/tools tests/whole
@@ -82,7 +93,8 @@ TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%) $(REPLAYS)
 
 all: $(PHR) $(IMGDIFF)
 
-# Linked beside the objects and copied, so that `make` after `make SERIAL=1` changes phr again.
+# Linked beside the objects and copied, so that `make` after `make SERIAL=1` changes phr
+# again.
 $(PHR): $(BUILD)/phr FORCE
 	@cmp -s $(BUILD)/phr $@ || cp $(BUILD)/phr $@
 
@@ -102,7 +114,8 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
 # What is true, for the tests and benches that compare phr with it.
 TRUTH = $(BUILD)/tests/truth.o $(BUILD)/tests/deviation.o
 
-$(BUILD)/tests/norms $(BUILD)/tests/gaps $(BUILD)/tests/converge: $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TRUTH) \
+$(BUILD)/tests/norms $(BUILD)/tests/gaps $(BUILD)/tests/converge: $(BUILD)/tests/%: \
+    $(BUILD)/tests/%.o $(TRUTH) \
         $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
@@ -113,7 +126,8 @@ pathtracer: $(BUILD)/pathtracer
 	@mkdir -p build
 	@cmp -s $(BUILD)/pathtracer build/pathtracer || cp $(BUILD)/pathtracer build/pathtracer
 
-$(REPLAYS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/corpus.o $(BUILD)/libphr.a
+$(REPLAYS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/corpus.o \
+    $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 $(BUILD)/libphr.a: $(OBJECTS) $(BUILD)/tests/phr.o
@@ -135,8 +149,10 @@ $(BUILD)/tests/phr.o: phr.c Makefile
 	@mkdir -p $(@D)
 	$(COMPILED) -Dmain=phr_main
 
--include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/tests/phr.d $(PROGRAMS:%=$(BUILD)/%.d) $(TESTS:%=$(BUILD)/tests/%.d) \
-    $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) $(BENCHES:%=$(BUILD)/tests/bench/%.d) \
+-include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/tests/phr.d \
+    $(PROGRAMS:%=$(BUILD)/%.d) $(TESTS:%=$(BUILD)/tests/%.d) \
+    $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) \
+    $(BENCHES:%=$(BUILD)/tests/bench/%.d) \
     $(BUILD)/tests/bench/parsing.d
 
 demo: $(PHR)
@@ -156,8 +172,10 @@ EMBREE ?= $(wildcard /usr/include/embree3/rtcore.h /usr/local/include/embree3/rt
 
 bench: $(BUILD)/rays $(BUILD)/hits $(BUILD)/parsing build/room
 
-$(BUILD)/rays $(BUILD)/hits: $(BUILD)/%: tests/bench/%.c tests/bench/embree.h $(OBJECTS) Makefile
-	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) $(CFLAGS) -o $@ \
+$(BUILD)/rays $(BUILD)/hits: $(BUILD)/%: tests/bench/%.c tests/bench/embree.h \
+    $(OBJECTS) Makefile
+	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) \
+	    $(CFLAGS) -o $@ \
 	    $< $(OBJECTS) $(if $(EMBREE),-lembree3) -lm
 
 $(BUILD)/parsing: $(BUILD)/tests/bench/parsing.o $(BUILD)/libphr.a
@@ -168,7 +186,8 @@ errors: $(BUILD)/reference $(BUILD)/measure
 $(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
-# About an hour and a half on two cores, half an hour of it for references that are kept in
+# About an hour and a half on two cores, half an hour of it for references that are kept
+# in
 # $(BUILD)/chart.
 chart: $(BENCHES:%=$(BUILD)/%) $(BUILD)/hits build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/chart.sh
@@ -202,7 +221,8 @@ prove: errors $(PHR) $(IMGDIFF) pathtracer build/room check-long
 	BUILD="$(BUILD)" sh tests/prove.sh
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/pictures.sh
 
-# To be run as build/fuzz/fuzz-obj NEW tests/fuzz/corpus/obj, say: finds go to the folder NEW.
+# To be run as build/fuzz/fuzz-obj NEW tests/fuzz/corpus/obj, say: finds go to the folder
+# NEW.
 fuzz:
 	$(MAKE) SERIAL=1 CC=clang BUILD=build/fuzz $(FUZZERS:%=build/fuzz/fuzz-%) \
 	    CFLAGS="-g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all"
@@ -225,5 +245,6 @@ clean:
 
 FORCE:
 
-.PHONY: all demo tests room pathtracer bench errors chart growth scaling check check-long prove golden portability fuzz install \
+.PHONY: all demo tests room pathtracer bench errors chart growth scaling check \
+    check-long prove golden portability fuzz install \
         uninstall clean FORCE

@@ -1,8 +1,9 @@
 /* phr: parallel hierarchical radiosity.
  *
  * compute_light() is the algorithm: the eight steps of the paper's Sec. 3.2, and step 9,
- * which is phr's own. Each is in the file of its name under mpi/. Before it stand the parts
- * of steps that are about files and signals; what a run reads, says and shows is in tools/. */
+ * which is phr's own. Each is in the file of its name under mpi/. Before it stand the
+ * parts of steps that are about files and signals; what a run reads, says and shows is in
+ * tools/. */
 #include "phr.h"
 
 #include <math.h>
@@ -164,7 +165,7 @@ bool compute_light(struct run *run)
             progress_begin(solver->progress, "solving", -1, 0);
             run->first_bound = HUGE_VAL;
             do {
-                solver_gather(solver);           /* 5: light, and flux of proxies goes home */
+                solver_gather(solver); /* 5: light, and flux of proxies goes home */
                 solver_push_pull(solver);        /* 6: on the own roots */
                 solver_scatter(solver);          /* 7: proxies are renewed */
                 run->vote = solver_vote(solver); /* 8: is there another iteration? */
@@ -189,7 +190,8 @@ static void release(struct run *run)
     options_free(&run->options);
 }
 
-/* Collective. True if all ranks have the arguments of rank 0: they decide alike from here on. */
+/* Collective. True if all ranks have the arguments of rank 0: they decide alike from here
+ * on. */
 static bool check_arguments(struct run *run, int argc, char **argv)
 {
     uint64_t own = HASH_START, first;

@@ -1,9 +1,9 @@
 /* The paper's way of dealing links.
  *
- * "Sender processors distribute their interactions in a round-robin fashion to the receiver
- * processors": in turn to the rank itself and to the receivers of its transfers, for
- * neighbours in the list tend to be predicted wrong alike. A receiver gets a link as long
- * as at least half of its cost still fits into the planned load; the others stay. */
+ * "Sender processors distribute their interactions in a round-robin fashion to the
+ * receiver processors": in turn to the rank itself and to the receivers of its transfers,
+ * for neighbours in the list tend to be predicted wrong alike. A receiver gets a link as
+ * long as at least half of its cost still fits into the planned load; the others stay. */
 #include "mpi/balance.h"
 
 #include "geom/alloc.h"

@@ -1,5 +1,5 @@
-/* Who gets which links before a level of refinement. A dealing is one pure function, so all
- * ranks know what each does, and tests need no MPI. */
+/* Who gets which links before a level of refinement. A dealing is one pure function, so
+ * all ranks know what each does, and tests need no MPI. */
 #ifndef MPI_BALANCE_H
 #define MPI_BALANCE_H
 

@@ -6,12 +6,14 @@
  * there is one per node where that pays (mpi/node.c). Ranks of a run share one machine
  * architecture: plain bytes.
  *
- * The memory of rank 0 holds both twice for a moment. A rank that is alone keeps what it has. */
+ * The memory of rank 0 holds both twice for a moment. A rank that is alone keeps what it
+ * has. */
 #include "mpi/broadcast.h"
 
 #include "geom/alloc.h"
 
-static void pack_both(const struct scene *scene, const struct octree *octree, struct pack *pack)
+static void pack_both(const struct scene *scene, const struct octree *octree,
+                      struct pack *pack)
 {
     scene_pack(scene, pack);
     if (octree)
@@ -26,7 +28,8 @@ struct node_block scene_broadcast(const struct comm *comm, struct node_policy po
     struct pack count = {0};
     double start = comm_seconds();
     if (comm->rank == 0 && octree)
-        built = octree_create((*scene)->triangles, (*scene)->planes, (*scene)->input_count);
+        built =
+            octree_create((*scene)->triangles, (*scene)->planes, (*scene)->input_count);
     double seconds = comm_seconds() - start;
     if (comm->size == 1) {
         if (octree)

@@ -6,9 +6,9 @@
 #include "mpi/node.h"
 #include "octree/octree.h"
 
-/* Collective. `*scene` is rank 0's prepared scene, NULL on the others, and becomes the scene on every
- * rank; `*octree`, unless NULL is given for it, becomes the octree over it. Both look into the block that
- * is returned, which is to be destroyed after them. */
+/* Collective. `*scene` is rank 0's prepared scene, NULL on the others, and becomes the
+ * scene on every rank; `*octree`, unless NULL is given for it, becomes the octree over
+ * it. Both look into the block that is returned, which is to be destroyed after them. */
 struct node_block scene_broadcast(const struct comm *comm, struct node_policy policy,
                                   struct scene **scene, struct octree **octree);
 

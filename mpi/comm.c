@@ -1,14 +1,15 @@
 /* The ranks.
  *
- * MPICH and Open MPI wait by polling without pause. With fewer cores than ranks a blocking
- * collective then holds the core that the rank it waits for needs, and an 8-byte reduction
- * takes tens of milliseconds. So every collective here is the non-blocking one, tested in a
- * loop that soon yields the processor and later sleeps: where each rank has a core of its own
- * the first tests succeed and nothing is lost.
+ * MPICH and Open MPI wait by polling without pause. With fewer cores than ranks a
+ * blocking collective then holds the core that the rank it waits for needs, and an 8-byte
+ * reduction takes tens of milliseconds. So every collective here is the non-blocking one,
+ * tested in a loop that soon yields the processor and later sleeps: where each rank has a
+ * core of its own the first tests succeed and nothing is lost.
  *
- * Yielding alone is not enough with many ranks: the scheduler may hand the core to another
- * waiting rank, again and again. Hence the sleep, short beside a refinement level, and longer
- * the longer a rank has waited: while rank 0 writes, the others are not to wake all the time. */
+ * Yielding alone is not enough with many ranks: the scheduler may hand the core to
+ * another waiting rank, again and again. Hence the sleep, short beside a refinement
+ * level, and longer the longer a rank has waited: while rank 0 writes, the others are not
+ * to wake all the time. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _POSIX_C_SOURCE 200112L
 #include <sched.h>
@@ -32,9 +33,12 @@ enum {
     SLEEP_GROWTH = 4 /* microseconds for each test in vain */
 };
 
-enum { EXCHANGE = 7 }; /* tag of comm_exchange(); messages of one pair never overtake each other */
+enum {
+    EXCHANGE = 7
+}; /* tag of comm_exchange(); messages of one pair never overtake each other */
 
-static MPI_Comm failing_comm; /* for the handler of exhausted memory, which has no argument */
+static MPI_Comm
+    failing_comm; /* for the handler of exhausted memory, which has no argument */
 
 static int all_ranks; /* size of the first communicator */
 static int64_t exchanges, messages;
@@ -74,7 +78,8 @@ static void leave_processor(int tests)
 #ifdef HAVE_YIELD
     if (tests > TESTS_BEFORE_SLEEP) {
         long sleep = SHORTEST_SLEEP + (long)SLEEP_GROWTH * (tests - TESTS_BEFORE_SLEEP);
-        struct timespec pause = {0, 1000 * (sleep < LONGEST_SLEEP ? sleep : LONGEST_SLEEP)};
+        struct timespec pause = {0,
+                                 1000 * (sleep < LONGEST_SLEEP ? sleep : LONGEST_SLEEP)};
         nanosleep(&pause, NULL);
     } else if (tests > TESTS_BEFORE_YIELD) {
         sched_yield();
@@ -119,16 +124,16 @@ void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes)
 void comm_add_bytes(const struct comm *comm, uint8_t *bytes, int64_t count)
 {
     MPI_Request request;
-    MPI_Iallreduce(MPI_IN_PLACE, bytes, comm_count(comm, count), MPI_UINT8_T, MPI_SUM, comm->handle,
-                   &request);
+    MPI_Iallreduce(MPI_IN_PLACE, bytes, comm_count(comm, count), MPI_UINT8_T, MPI_SUM,
+                   comm->handle, &request);
     comm_wait(&request);
 }
 
 void comm_add(const struct comm *comm, int64_t *numbers, int64_t count)
 {
     MPI_Request request;
-    MPI_Iallreduce(MPI_IN_PLACE, numbers, comm_count(comm, count), MPI_INT64_T, MPI_SUM, comm->handle,
-                   &request);
+    MPI_Iallreduce(MPI_IN_PLACE, numbers, comm_count(comm, count), MPI_INT64_T, MPI_SUM,
+                   comm->handle, &request);
     comm_wait(&request);
 }
 
@@ -164,8 +169,10 @@ bool comm_agree(const struct comm *comm, struct error *error)
 int comm_count(const struct comm *comm, int64_t count)
 {
     if (count > INT_MAX) {
-        fprintf(stderr, "phr: a message of %lld items is more than MPI can count; a larger "
-                        "epsilon makes it smaller\n", (long long)count);
+        fprintf(stderr,
+                "phr: a message of %lld items is more than MPI can count; a larger "
+                "epsilon makes it smaller\n",
+                (long long)count);
         MPI_Abort(comm->handle, EXIT_FAILED);
     }
     return (int)count;
@@ -202,28 +209,30 @@ static int64_t pieces_of(const struct comm *comm, int count)
     return ((int64_t)count + piece_of(comm) - 1) / piece_of(comm);
 }
 
-/* Receives `count` records from another rank, or sends them to it, piece by piece: one of `in` and
- * `out` is NULL. Returns how many pieces. */
-static int64_t pass(const struct comm *comm, char *in, const char *out, int64_t count, size_t bytes,
-                    MPI_Datatype record, int other, MPI_Request *requests)
+/* Receives `count` records from another rank, or sends them to it, piece by piece: one of
+ * `in` and `out` is NULL. Returns how many pieces. */
+static int64_t pass(const struct comm *comm, char *in, const char *out, int64_t count,
+                    size_t bytes, MPI_Datatype record, int other, MPI_Request *requests)
 {
     int64_t pieces = 0;
     for (int64_t at = 0; at < count; at += piece_of(comm)) {
         int now = (int)(count - at < piece_of(comm) ? count - at : piece_of(comm));
         size_t skip = (size_t)at * bytes;
         if (in)
-            MPI_Irecv(in + skip, now, record, other, EXCHANGE, comm->handle, &requests[pieces++]);
+            MPI_Irecv(in + skip, now, record, other, EXCHANGE, comm->handle,
+                      &requests[pieces++]);
         else
-            MPI_Isend(out + skip, now, record, other, EXCHANGE, comm->handle, &requests[pieces++]);
+            MPI_Isend(out + skip, now, record, other, EXCHANGE, comm->handle,
+                      &requests[pieces++]);
     }
     return pieces;
 }
 
-/* One message to each rank that gets something, in pieces where it is long: no count is ever too large
- * for MPI, and those who have nothing for each other need not meet. What a rank has for itself is
- * copied. */
-static void exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
-                     void *arrived, const int *receive)
+/* One message to each rank that gets something, in pieces where it is long: no count is
+ * ever too large for MPI, and those who have nothing for each other need not meet. What a
+ * rank has for itself is copied. */
+static void exchange(const struct comm *comm, const void *records, const int *counts,
+                     size_t bytes, void *arrived, const int *receive)
 {
     const char *out = records, *own_out = NULL;
     char *in = arrived, *own_in = NULL;
@@ -254,8 +263,8 @@ static void exchange(const struct comm *comm, const void *records, const int *co
     alloc_free(requests);
 }
 
-void *comm_exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
-                    int64_t *arriving)
+void *comm_exchange(const struct comm *comm, const void *records, const int *counts,
+                    size_t bytes, int64_t *arriving)
 {
     int *receive = alloc_array((size_t)comm->size, sizeof *receive);
     MPI_Request request;
@@ -270,8 +279,8 @@ void *comm_exchange(const struct comm *comm, const void *records, const int *cou
     return arrived;
 }
 
-void comm_add_home(const struct comm *comm, const int64_t *values, const int *counts, int width,
-                   int64_t *own)
+void comm_add_home(const struct comm *comm, const int64_t *values, const int *counts,
+                   int width, int64_t *own)
 {
     int *numbers = alloc_array((size_t)comm->size, sizeof *numbers);
     int64_t sum = 0; /* what libraries add up as int */
@@ -282,7 +291,8 @@ void comm_add_home(const struct comm *comm, const int64_t *values, const int *co
         numbers[r] = (int)number;
     }
     MPI_Request request;
-    MPI_Ireduce_scatter(values, own, numbers, MPI_INT64_T, MPI_SUM, comm->handle, &request);
+    MPI_Ireduce_scatter(values, own, numbers, MPI_INT64_T, MPI_SUM, comm->handle,
+                        &request);
     comm_wait(&request);
     alloc_free(numbers);
 }
@@ -305,7 +315,8 @@ uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes
     MPI_Request request;
     at[comm->size] = comm_count(comm, comm_displacements(comm, sizes, at));
     uint8_t *all = alloc_array((size_t)at[comm->size], 1);
-    MPI_Iallgatherv(own, size, MPI_BYTE, all, sizes, at, MPI_BYTE, comm->handle, &request);
+    MPI_Iallgatherv(own, size, MPI_BYTE, all, sizes, at, MPI_BYTE, comm->handle,
+                    &request);
     comm_wait(&request);
     alloc_free(sizes);
     return all;

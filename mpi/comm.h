@@ -14,7 +14,8 @@ struct comm {
     int limit;       /* records in a message at most; 0: what MPI can count. For tests. */
 };
 
-/* Initialises MPI; from here on, running out of memory ends all ranks with exit code 1. */
+/* Initialises MPI; from here on, running out of memory ends all ranks with exit code 1.
+ */
 void comm_start(struct comm *comm, int *argc, char ***argv);
 
 /* Collective. Waits for all ranks and finalises MPI. */
@@ -26,7 +27,8 @@ void comm_wait(MPI_Request *request);
 /* Collective. Rank 0's bytes go to all; any size. */
 void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes);
 
-/* Collective. Each of `count` bytes becomes its sum over all ranks; sums stay below 256. */
+/* Collective. Each of `count` bytes becomes its sum over all ranks; sums stay below 256.
+ */
 void comm_add_bytes(const struct comm *comm, uint8_t *bytes, int64_t count);
 
 /* Collective. Each of `count` numbers becomes its sum over all ranks. */
@@ -35,44 +37,49 @@ void comm_add(const struct comm *comm, int64_t *numbers, int64_t count);
 /* Collective. The largest value over all ranks. */
 double comm_largest(const struct comm *comm, double value);
 
-/* Collective. All ranks end with the error of the lowest rank that has one. True if none has. */
+/* Collective. All ranks end with the error of the lowest rank that has one. True if none
+ * has. */
 bool comm_agree(const struct comm *comm, struct error *error);
 
 /* A count as the int that MPI wants. A count that does not fit is fatal: exit code 1. */
 int comm_count(const struct comm *comm, int64_t count);
 
 /* displacements[r] = counts[0] + ... + counts[r - 1]. Returns the sum of all counts. */
-int64_t comm_displacements(const struct comm *comm, const int *counts, int *displacements);
+int64_t comm_displacements(const struct comm *comm, const int *counts,
+                           int *displacements);
 
 /* Collective. Total exchange of records of `bytes` bytes without padding: `records` holds
- * counts[0] for rank 0, then counts[1] for rank 1, and so on. Returns what arrives, in the order
- * of the ranks, and its number; to be freed with alloc_free(). */
-void *comm_exchange(const struct comm *comm, const void *records, const int *counts, size_t bytes,
-                    int64_t *arriving);
+ * counts[0] for rank 0, then counts[1] for rank 1, and so on. Returns what arrives, in
+ * the order of the ranks, and its number; to be freed with alloc_free(). */
+void *comm_exchange(const struct comm *comm, const void *records, const int *counts,
+                    size_t bytes, int64_t *arriving);
 
-/* Collective. Every rank gets sums over all ranks: `values` holds counts[0] groups of `width` for rank 0,
- * then counts[1] for rank 1, and so on; `own` receives the sums of those for this rank. */
-void comm_add_home(const struct comm *comm, const int64_t *values, const int *counts, int width,
-                   int64_t *own);
+/* Collective. Every rank gets sums over all ranks: `values` holds counts[0] groups of
+ * `width` for rank 0, then counts[1] for rank 1, and so on; `own` receives the sums of
+ * those for this rank. */
+void comm_add_home(const struct comm *comm, const int64_t *values, const int *counts,
+                   int width, int64_t *own);
 
-/* Collective. All ranks get the records of all: counts[r] of rank r begin at[r] records behind `records`;
- * each rank's own are in place. */
+/* Collective. All ranks get the records of all: counts[r] of rank r begin at[r] records
+ * behind `records`; each rank's own are in place. */
 void comm_share(const struct comm *comm, void *records, const int *counts, const int *at,
                 size_t bytes);
 
-/* Collective. The records of all ranks, one of `bytes` bytes of each, on all ranks. To be freed with
- * alloc_free(). */
+/* Collective. The records of all ranks, one of `bytes` bytes of each, on all ranks. To be
+ * freed with alloc_free(). */
 void *comm_gather_each(const struct comm *comm, const void *own, size_t bytes);
 
-/* Collective. The bytes of all ranks, in the order of the ranks, on all ranks. at[r] is where those
- * of rank r begin, at[size] their number; at holds size + 1 ints. To be freed with alloc_free(). */
-uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes, int *at);
+/* Collective. The bytes of all ranks, in the order of the ranks, on all ranks. at[r] is
+ * where those of rank r begin, at[size] their number; at holds size + 1 ints. To be freed
+ * with alloc_free(). */
+uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes,
+                         int *at);
 
 /* "MPI", or "serial" where mpi/serial/mpi.h takes its place. */
 const char *comm_build(void);
 
-/* Collectives that this rank has waited for; messages, log P for a collective of P ranks, and those that
- * this one has sent or received in comm_exchange(). */
+/* Collectives that this rank has waited for; messages, log P for a collective of P ranks,
+ * and those that this one has sent or received in comm_exchange(). */
 int64_t comm_exchanges(void);
 int64_t comm_messages(void);
 

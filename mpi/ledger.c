@@ -1,6 +1,6 @@
-/* The ledger: the work of all ranks in many phases, told with one exchange. A phase lasts as
- * long as its slowest rank, so the maxima of all phases together are the time of a run, and
- * the sums over ranks are the work that there was to do. */
+/* The ledger: the work of all ranks in many phases, told with one exchange. A phase lasts
+ * as long as its slowest rank, so the maxima of all phases together are the time of a
+ * run, and the sums over ranks are the work that there was to do. */
 #include "mpi/ledger.h"
 
 #include "geom/alloc.h"

@@ -15,9 +15,10 @@ struct memory {
     int64_t clusters; /* above the roots */
 };
 
-/* Collective. The links of all ranks and one copy of patches and clusters may take `limit`
- * bytes; 0: links and a copy for every rank may take most of the memory of the machines of
- * the run, each of which has `machine` bytes (0: unknown, and there is no limit). */
+/* Collective. The links of all ranks and one copy of patches and clusters may take
+ * `limit` bytes; 0: links and a copy for every rank may take most of the memory of the
+ * machines of the run, each of which has `machine` bytes (0: unknown, and there is no
+ * limit). */
 void memory_watch(struct memory *memory, const struct comm *comm, int64_t limit,
                   int64_t machine);
 
@@ -26,8 +27,8 @@ void memory_watch(struct memory *memory, const struct comm *comm, int64_t limit,
 int64_t memory_needed(const struct memory *memory, int copies, int64_t links,
                       int64_t patches);
 
-/* True if there is room for these links, a final gather, and the children of `prolific` of
- * the patches. The same on all ranks. */
+/* True if there is room for these links, a final gather, and the children of `prolific`
+ * of the patches. The same on all ranks. */
 bool memory_has_room(const struct memory *memory, int64_t links, int64_t prolific,
                      int64_t patches);
 

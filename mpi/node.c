@@ -1,24 +1,25 @@
 /* One copy per node.
  *
- * The ranks of a node find each other with MPI_Comm_split_type(), and one of them asks for a window of
- * MPI_Win_allocate_shared() that holds the whole block, since implementations have a limit on the
- * number of windows. It writes; the others begin to look after a barrier. MPI_Win_sync() on
- * either side of it orders the stores and the loads; the epoch that these calls want, lock_all, is
- * open as long as the window is.
+ * The ranks of a node find each other with MPI_Comm_split_type(), and one of them asks
+ * for a window of MPI_Win_allocate_shared() that holds the whole block, since
+ * implementations have a limit on the number of windows. It writes; the others begin to
+ * look after a barrier. MPI_Win_sync() on either side of it orders the stores and the
+ * loads; the epoch that these calls want, lock_all, is open as long as the window is.
  *
- * Splitting a communicator and making a window are blocking calls, there are no others. On fewer
- * cores than ranks MPICH needs a second or two for them (16 ranks on 2 cores; mpi/comm.c says
- * why), so small blocks, which save nothing, are not shared.
+ * Splitting a communicator and making a window are blocking calls, there are no others.
+ * On fewer cores than ranks MPICH needs a second or two for them (16 ranks on 2 cores;
+ * mpi/comm.c says why), so small blocks, which save nothing, are not shared.
  *
- * A window may be refused, and it may be granted and not be there: it is a file in a file system
- * in memory, which in containers is often small, and a page that does not fit is a SIGBUS when it is
- * first touched. So the rank that fills it touches all of it, ready for that signal, before the
- * others hear that there is a window. All ranks of a node have the window or none does, and
- * then each has memory of its own. Nothing remains of a run that is killed: the file has no name
- * by the time that the window is there, with MPICH and Open MPI.
+ * A window may be refused, and it may be granted and not be there: it is a file in a file
+ * system in memory, which in containers is often small, and a page that does not fit is a
+ * SIGBUS when it is first touched. So the rank that fills it touches all of it, ready for
+ * that signal, before the others hear that there is a window. All ranks of a node have
+ * the window or none does, and then each has memory of its own. Nothing remains of a run
+ * that is killed: the file has no name by the time that the window is there, with MPICH
+ * and Open MPI.
  *
- * Patches are not shared, although there are more of them: every rank adds to its forest while it
- * refines, in an order of its own, and local indices are what links hold. */
+ * Patches are not shared, although there are more of them: every rank adds to its forest
+ * while it refines, in an order of its own, and local indices are what links hold. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _POSIX_C_SOURCE 200112L
 #include <setjmp.h>
@@ -64,7 +65,8 @@ static struct comm comm_of(MPI_Comm handle)
 static struct comm find_node(const struct comm *comm, int ranks_max)
 {
     MPI_Comm handle, part;
-    MPI_Comm_split_type(comm->handle, MPI_COMM_TYPE_SHARED, comm->rank, MPI_INFO_NULL, &handle);
+    MPI_Comm_split_type(comm->handle, MPI_COMM_TYPE_SHARED, comm->rank, MPI_INFO_NULL,
+                        &handle);
     struct comm node = comm_of(handle);
     if (ranks_max == INT_MAX)
         return node;
@@ -111,16 +113,16 @@ static void close_window(struct node_block *block)
     MPI_Win_free(&block->window);
 }
 
-/* Collective over the node. False on all of its ranks if there is no window; one that only some have
- * got cannot be freed, and is lost. */
+/* Collective over the node. False on all of its ranks if there is no window; one that
+ * only some have got cannot be freed, and is lost. */
 static bool open_window(struct node_block *block)
 {
     const struct comm *node = &block->node;
     MPI_Aint size = node->rank == 0 ? (MPI_Aint)(block->bytes + PACK_ALIGNMENT) : 0;
     int unit = 1;
     MPI_Comm_set_errhandler(node->handle, MPI_ERRORS_RETURN);
-    int code = MPI_Win_allocate_shared(size, unit, MPI_INFO_NULL, node->handle, &block->data,
-                                       &block->window);
+    int code = MPI_Win_allocate_shared(size, unit, MPI_INFO_NULL, node->handle,
+                                       &block->data, &block->window);
     MPI_Comm_set_errhandler(node->handle, MPI_ERRORS_ARE_FATAL);
     if (!least(node, code == MPI_SUCCESS))
         return false;
@@ -160,8 +162,8 @@ void node_block_create(struct node_block *block, const struct comm *comm, size_t
     block->fills = true;
 }
 
-/* Collective. Ranks that do not fill take part all the same: a communicator without them would
- * be one more blocking call. */
+/* Collective. Ranks that do not fill take part all the same: a communicator without them
+ * would be one more blocking call. */
 static void send_to_fillers(struct node_block *block, const struct comm *comm)
 {
     char *scratch = block->fills ? NULL : alloc_array(SPREAD_CHUNK, 1);

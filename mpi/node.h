@@ -1,5 +1,6 @@
-/* A block of memory that the ranks of a node, a computer with memory of its own, have in common. It is
- * filled once and only looked at from then on. Where ranks cannot share, each has a block to itself. */
+/* A block of memory that the ranks of a node, a computer with memory of its own, have in
+ * common. It is filled once and only looked at from then on. Where ranks cannot share,
+ * each has a block to itself. */
 #ifndef MPI_NODE_H
 #define MPI_NODE_H
 
@@ -14,11 +15,13 @@ struct node_policy {
 };
 
 struct node_block {
-    char *data;       /* [bytes], at a multiple of PACK_ALIGNMENT; read-only for ranks that do not fill */
+    char *data; /* [bytes], at a multiple of PACK_ALIGNMENT; read-only for ranks that do
+                   not fill */
     size_t bytes;
-    bool fills;       /* this rank puts into `data` what is to be there; rank 0 always does */
+    bool fills; /* this rank puts into `data` what is to be there; rank 0 always does */
     bool shared;      /* `data` is in a window; else in `memory` */
-    double seconds;   /* that making what is in it took here; 0 on ranks that only receive */
+    double
+        seconds; /* that making what is in it took here; 0 on ranks that only receive */
     void *memory;     /* owned, NULL if shared */
     MPI_Win window;
     struct comm node; /* the ranks that share the block; only if shared */

@@ -1,5 +1,5 @@
-/* Gathering a picture: rank 0 receives the rows of rank 0, then those of rank 1, and so on, and
- * puts each in its place. */
+/* Gathering a picture: rank 0 receives the rows of rank 0, then those of rank 1, and so
+ * on, and puts each in its place. */
 #include "mpi/picture.h"
 
 #include <string.h>
@@ -9,7 +9,8 @@
 float *picture_gather(const struct comm *comm, const float *rows, size_t row, int height)
 {
     size_t ranks = (size_t)comm->size;
-    int *counts = alloc_array(ranks, sizeof *counts), *at = alloc_array(ranks, sizeof *at);
+    int *counts = alloc_array(ranks, sizeof *counts),
+        *at = alloc_array(ranks, sizeof *at);
     for (int y = 0; y < height; y++)
         counts[y % comm->size]++;
     comm_displacements(comm, counts, at);
@@ -19,14 +20,15 @@ float *picture_gather(const struct comm *comm, const float *rows, size_t row, in
     bool collects = comm->rank == 0;
     float *all = collects ? alloc_array((size_t)height * row, sizeof *all) : NULL;
     MPI_Request request;
-    MPI_Igatherv(rows, counts[comm->rank], record, all, counts, at, record, 0, comm->handle,
-                 &request);
+    MPI_Igatherv(rows, counts[comm->rank], record, all, counts, at, record, 0,
+                 comm->handle, &request);
     comm_wait(&request);
     MPI_Type_free(&record);
     float *picture = collects ? alloc_array((size_t)height * row, sizeof *picture) : NULL;
     for (int y = 0; y < height && collects; y++) {
         int place = at[y % comm->size] + y / comm->size;
-        memcpy(picture + (size_t)y * row, all + (size_t)place * row, row * sizeof *picture);
+        memcpy(picture + (size_t)y * row, all + (size_t)place * row,
+               row * sizeof *picture);
     }
     alloc_free(all);
     alloc_free(at);

@@ -1,17 +1,17 @@
 /* The greedy plan.
  *
- * Senders are the ranks above the mean, in descending order of their loads; each gives its
- * excess away piece by piece, always to the receiver with the smallest load, never more
- * than lifts that receiver to the mean. Ties go to the lower rank, so the plan is unique.
- * Every piece empties a sender or fills a receiver: fewer than 2 P pieces. */
+ * Senders are the ranks above the mean, in descending order of their loads; each gives
+ * its excess away piece by piece, always to the receiver with the smallest load, never
+ * more than lifts that receiver to the mean. Ties go to the lower rank, so the plan is
+ * unique. Every piece empties a sender or fills a receiver: fewer than 2 P pieces. */
 #include "mpi/plan.h"
 
 #include <stddef.h>
 
 #include "geom/alloc.h"
 
-/* The rank with the largest (sign 1) or smallest (sign -1) load among those whose distance
- * to their target has that sign; -1 if there is none. */
+/* The rank with the largest (sign 1) or smallest (sign -1) load among those whose
+ * distance to their target has that sign; -1 if there is none. */
 static int extreme_rank(const int64_t *loads, const int64_t *targets, int ranks, int sign)
 {
     int found = -1;

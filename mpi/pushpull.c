@@ -14,7 +14,8 @@ static int64_t own_new_patches(const struct solver *solver)
 
 void solver_push_pull_jacobi(struct solver *solver)
 {
-    struct push_pull_sums sums = push_pull(&solver->model, solver->flux, solver->homes.own);
+    struct push_pull_sums sums =
+        push_pull(&solver->model, solver->flux, solver->homes.own);
     solver->ballot = (struct ballot){.light = sums.light,
                                      .absorbed = sums.absorbed,
                                      .change = sums.change,

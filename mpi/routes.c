@@ -1,4 +1,5 @@
-/* The routes: since all ranks know the trees and who is home to which, each finds them by itself. */
+/* The routes: since all ranks know the trees and who is home to which, each finds them by
+ * itself. */
 #include "mpi/routes.h"
 
 #include "geom/alloc.h"
@@ -25,8 +26,8 @@ static bool can_receive(const struct solver *solver, int32_t patch)
     return scene_root_area(solver->model.scene, (int32_t)root) > 0.0;
 }
 
-/* What neither reflects nor emits stays 0. (A lamp that does not reflect is 0 too in the steps of conjugate
- * gradients, and E before and after.) */
+/* What neither reflects nor emits stays 0. (A lamp that does not reflect is 0 too in the
+ * steps of conjugate gradients, and E before and after.) */
 static bool is_leaf_that_changes(const struct solver *solver, int32_t patch)
 {
     const struct patch *at = &solver->model.forest->patches[patch];
@@ -34,15 +35,16 @@ static bool is_leaf_that_changes(const struct solver *solver, int32_t patch)
            !material_is_dark(forest_material(solver->model.forest, patch));
 }
 
-/* The patches for which `is_listed` is true, home by home; how many each has, and where they begin. Returns
- * their number too. */
+/* The patches for which `is_listed` is true, home by home; how many each has, and where
+ * they begin. Returns their number too. */
 static int32_t *list_patches(const struct solver *solver,
-                             bool (*is_listed)(const struct solver *, int32_t), int *counts,
-                             int *at, int64_t *count)
+                             bool (*is_listed)(const struct solver *, int32_t),
+                             int *counts, int *at, int64_t *count)
 {
     const struct forest *forest = solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++)
-        counts[solver->homes.owner[forest->patches[p].id.root]] += is_listed(solver, (int32_t)p);
+        counts[solver->homes.owner[forest->patches[p].id.root]] +=
+            is_listed(solver, (int32_t)p);
     *count = comm_displacements(solver->comm, counts, at);
     int32_t *list = alloc_array((size_t)*count, sizeof *list);
     for (int32_t root = 0; root < forest->root_count; root++)

@@ -11,7 +11,8 @@
 
 static struct rgb *ballot_of(const struct solver *solver, int home)
 {
-    return solver->routes.radiosities + solver->routes.record_at[home + 1] - BALLOT_RECORDS;
+    return solver->routes.radiosities + solver->routes.record_at[home + 1] -
+           BALLOT_RECORDS;
 }
 
 /* The radiosities of the own leaves, and the own ballot. */
@@ -36,7 +37,8 @@ static void renew_home(struct solver *solver, int home, struct rgb *vector)
     const struct rgb *records = routes->radiosities + routes->record_at[home];
     for (int i = 0; i < routes->leaf_counts[home]; i++)
         vector[leaves[i]] = records[i];
-    const int32_t *patches = routes->receivers + routes->receiver_at[home]; /* children after parents */
+    const int32_t *patches =
+        routes->receivers + routes->receiver_at[home]; /* children after parents */
     for (int i = routes->receiver_counts[home] - 1; i >= 0; i--)
         patch_average(forest, patches[i], vector);
     solver->account.copied += routes->receiver_counts[home];
@@ -62,7 +64,8 @@ static void share(struct solver *solver)
     for (int home = 0; home < comm->size; home++) {
         counts[home] = routes->leaf_counts[home] + BALLOT_RECORDS;
         if (home != comm->rank)
-            solver->account.bytes_scatter += counts[home] * (int64_t)sizeof *routes->radiosities;
+            solver->account.bytes_scatter +=
+                counts[home] * (int64_t)sizeof *routes->radiosities;
     }
     comm_share(comm, routes->radiosities, counts, routes->record_at,
                sizeof *routes->radiosities);

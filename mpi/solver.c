@@ -19,7 +19,8 @@ const struct steps STEPS_PAPER = {
 };
 
 struct solver *solver_create(const struct comm *comm, const struct scene *scene,
-                             const struct octree *octree, const struct criterion *criterion)
+                             const struct octree *octree,
+                             const struct criterion *criterion)
 {
     struct solver *solver = alloc_array(1, sizeof *solver);
     size_t roots = (size_t)scene_root_count(scene);
@@ -51,7 +52,8 @@ void solver_destroy(struct solver *solver)
 
 void solver_record_iteration(struct solver *solver)
 {
-    int64_t now[] = {solver->account.bytes_gather, solver->account.bytes_scatter, solver->account.copied};
+    int64_t now[] = {solver->account.bytes_gather, solver->account.bytes_scatter,
+                     solver->account.copied};
     int own = solver->routes.receiver_counts[solver->comm->rank];
     struct phase_work phase = {.kind = WORK_TRANSFER, .iteration = solver->turn.iteration,
                                .share.done = solver->links.seen,
@@ -85,7 +87,8 @@ static int64_t peak_memory(void)
 static void report_seconds(const struct solver *solver, struct stats *stats)
 {
     const struct comm *comm = solver->comm;
-    double *all = comm_gather_each(comm, solver->account.seconds, sizeof solver->account.seconds);
+    double *all =
+        comm_gather_each(comm, solver->account.seconds, sizeof solver->account.seconds);
     for (int phase = 0; phase < PHASE_COUNT; phase++) {
         struct spread spread = {all[phase], 0.0, all[phase]};
         for (int r = 0; r < comm->size; r++) {
@@ -104,21 +107,30 @@ enum { COUNT_SUMS = 9 + 4 };
 /* 0: open, 1: seen, 2: partly, 3: unseen. */
 static int kind_of(const struct link *link)
 {
-    return link_is_open(link) ? 0 : link->seen == LINK_ALL_SEEN ? 1 : link->seen > 0 ? 2 : 3;
+    return link_is_open(link)            ? 0
+           : link->seen == LINK_ALL_SEEN ? 1
+           : link->seen > 0              ? 2
+                                         : 3;
 }
 
 static void report_counts(const struct solver *solver, struct stats *stats)
 {
     const struct octree_counts *counts = &solver->model.counts;
-    int64_t own[COUNT_SUMS] = {counts->rays, counts->node_tests, counts->triangle_tests,
-                               solver->account.bytes_migration, solver->account.bytes_gather,
-                               solver->account.bytes_scatter, solver->model.walled_off,
-                               solver->model.rays_spared, peak_memory()};
+    int64_t own[COUNT_SUMS] = {counts->rays,
+                               counts->node_tests,
+                               counts->triangle_tests,
+                               solver->account.bytes_migration,
+                               solver->account.bytes_gather,
+                               solver->account.bytes_scatter,
+                               solver->model.walled_off,
+                               solver->model.rays_spared,
+                               peak_memory()};
     int64_t sum[COUNT_SUMS], largest[2] = {own[8], comm_messages()};
     for (int64_t i = 0; i < solver->links.count; i++)
         own[9 + kind_of(&solver->links.items[i])]++;
     MPI_Request request;
-    MPI_Iallreduce(own, sum, COUNT_SUMS, MPI_INT64_T, MPI_SUM, solver->comm->handle, &request);
+    MPI_Iallreduce(own, sum, COUNT_SUMS, MPI_INT64_T, MPI_SUM, solver->comm->handle,
+                   &request);
     comm_wait(&request);
     stats->rays = sum[0];
     stats->node_tests = sum[1];
@@ -133,7 +145,8 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     stats->links_seen = sum[10];
     stats->links_partly = sum[11];
     stats->links_unseen = sum[12];
-    MPI_Iallreduce(MPI_IN_PLACE, largest, 2, MPI_INT64_T, MPI_MAX, solver->comm->handle, &request);
+    MPI_Iallreduce(MPI_IN_PLACE, largest, 2, MPI_INT64_T, MPI_MAX, solver->comm->handle,
+                   &request);
     comm_wait(&request);
     stats->peak_rss_bytes = largest[0];
     stats->messages = largest[1];

@@ -1,5 +1,5 @@
-/* The distributed algorithm: the state of one rank, and the steps of the paper's Sec. 3.2 that
- * work on it. Every step is collective. */
+/* The distributed algorithm: the state of one rank, and the steps of the paper's Sec. 3.2
+ * that work on it. Every step is collective. */
 #ifndef MPI_SOLVER_H
 #define MPI_SOLVER_H
 
@@ -33,7 +33,9 @@ struct ballot {
 void ballot_add(struct ballot *sum, const struct ballot *ballot);
 
 /* It travels with radiosities, in the place of so many. */
-enum { BALLOT_RECORDS = (sizeof(struct ballot) + sizeof(struct rgb) - 1) / sizeof(struct rgb) };
+enum {
+    BALLOT_RECORDS = (sizeof(struct ballot) + sizeof(struct rgb) - 1) / sizeof(struct rgb)
+};
 
 /* The home of each root, the same on all ranks. */
 struct homes {
@@ -49,7 +51,7 @@ struct turn {
     int64_t shared;     /* patches up to here are the same on all ranks */
     int64_t split_here; /* links that this rank split in this pass */
     bool fresh;         /* links have changed since light went over them */
-    int stop;           /* signal that some rank has got, 0: none; the same on all ranks */
+    int stop; /* signal that some rank has got, 0: none; the same on all ranks */
 };
 
 /* What this rank has done, for the report. */
@@ -71,8 +73,8 @@ struct vote;
 /* After step 9: the light is there; a signal has come; or links want another pass. */
 enum finish { FINISH_DONE, FINISH_STOPPED, FINISH_AGAIN };
 
-/* The parts of steps that there are two ways to do: the paper's, and phr's own. NULL: there
- * is nothing to do. */
+/* The parts of steps that there are two ways to do: the paper's, and phr's own. NULL:
+ * there is nothing to do. */
 struct steps {
     void (*begin)(struct solver *solver);       /* 5: before new links carry light */
     struct rgb *(*vector)(const struct solver *solver); /* 5 and 7; NULL: B */
@@ -110,41 +112,44 @@ struct vote {
     bool again;        /* another transfer over the same links */
     bool settled;      /* nothing was split */
     bool converged;
-    bool unfinished;   /* there would be another transfer, but for the limit of iterations */
+    bool
+        unfinished; /* there would be another transfer, but for the limit of iterations */
     bool diverged;
     int64_t split;     /* links split in this iteration */
     int64_t links;     /* links there are */
-    double remaining;  /* change of energy, or bound on the remaining error, relative to all
-                          light; HUGE_VAL: none */
+    double remaining;  /* change of energy, or bound on the remaining error, relative to
+                          all  light; HUGE_VAL: none */
     double absorbed;   /* W, areas in square scene units */
-    double escaped;    /* the same: what leaves the surfaces less what the links deliver */
+    double escaped; /* the same: what leaves the surfaces less what the links deliver */
 };
 
 /* Collective. The paper's method. Borrows comm, scene and octree. */
 struct solver *solver_create(const struct comm *comm, const struct scene *scene,
-                             const struct octree *octree, const struct criterion *criterion);
+                             const struct octree *octree,
+                             const struct criterion *criterion);
 void solver_destroy(struct solver *solver);
 
 /* Step 2: initial linking, of all pairs of roots, or, with a tree above the roots, of its
- * top with itself. False if a signal (solver->turn.stop) or the memory limit (memory.reached) has ended
- * it: then only the first pairs have links. */
+ * top with itself. False if a signal (solver->turn.stop) or the memory limit
+ * (memory.reached) has ended it: then only the first pairs have links. */
 bool solver_link_roots(struct solver *solver);
 
 /* Step 3: re-assignment. Roots get homes so that the sums of their areas are even, and
  * their links go home. */
 void solver_assign_roots(struct solver *solver);
 
-/* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches were
- * split. Refinement that meets the memory limit ends there, and does not begin again as long as the
- * limit is the same. False if a signal (solver->turn.stop) has ended it: then it counts as not begun, and
- * there is no light over the links there are. */
+/* Step 4: Algorithm 1, level by level with load balancing; all ranks learn which patches
+ * were split. Refinement that meets the memory limit ends there, and does not begin again
+ * as long as the limit is the same. False if a signal (solver->turn.stop) has ended it:
+ * then it counts as not begun, and there is no light over the links there are. */
 bool solver_refine(struct solver *solver);
 
-/* Step 5: light is transferred over the links there are, and flux of proxies goes home. */
+/* Step 5: light is transferred over the links there are, and flux of proxies goes home.
+ */
 void solver_gather(struct solver *solver);
 
-/* The vector over patches, [patches], W/m^2, that step 5 transfers and step 7 tells to all
- * ranks: B, or that of a solver. */
+/* The vector over patches, [patches], W/m^2, that step 5 transfers and step 7 tells to
+ * all ranks: B, or that of a solver. */
 struct rgb *solver_vector(const struct solver *solver);
 
 /* The transfer alone, of any vector [patches], over links whose routes are known. */
@@ -174,8 +179,8 @@ struct vote vote_make(const struct solver *solver, const struct ballot *sum,
 /* Enters the work of the iteration into the ledger. */
 void solver_record_iteration(struct solver *solver);
 
-/* Fills `stats` but for the row sums: counts and sums over all ranks, and the clocks of all ranks
- * as they stand. Borrows the levels of the solver. */
+/* Fills `stats` but for the row sums: counts and sums over all ranks, and the clocks of
+ * all ranks as they stand. Borrows the levels of the solver. */
 void solver_report(struct solver *solver, const struct vote *vote, struct stats *stats);
 
 #endif

@@ -1,12 +1,13 @@
 /* Step 8: the vote on another iteration.
  *
- * Each rank casts a ballot of integers and maxima, which travels with the radiosities of its leaves, and
- * all add them up, so the outcome is the same on any number of ranks. The iterations end when
- * nothing was split and the energy changes by little, or, with --solver cg, the bound on what is
- * still missing is small (mpi/beyond/descent.c).
+ * Each rank casts a ballot of integers and maxima, which travels with the radiosities of
+ * its leaves, and all add them up, so the outcome is the same on any number of ranks. The
+ * iterations end when nothing was split and the energy changes by little, or, with
+ * --solver cg, the bound on what is still missing is small (mpi/beyond/descent.c).
  *
- * The power that escapes is what leaves the surfaces, emitted or reflected, less what the links
- * delivered: an open scene's real loss plus whatever the form factors lack or have too much. */
+ * The power that escapes is what leaves the surfaces, emitted or reflected, less what the
+ * links delivered: an open scene's real loss plus whatever the form factors lack or have
+ * too much. */
 #include "mpi/solver.h"
 
 #include <math.h>
@@ -30,8 +31,8 @@ void ballot_add(struct ballot *sum, const struct ballot *ballot)
     sum->brightest = fmax(sum->brightest, ballot->brightest);
 }
 
-/* "If the total energy change in the whole scene is above some threshold, the iterations should
- * continue" (Sec. 2.2): relative to all light. */
+/* "If the total energy change in the whole scene is above some threshold, the iterations
+ * should continue" (Sec. 2.2): relative to all light. */
 struct vote solver_vote_jacobi(struct solver *solver, const struct ballot *sum)
 {
     double light = flux_to_watts(solver->model.flux_unit, sum->light);

@@ -3,7 +3,8 @@
  * Each patch is cut into its four children a = 0..3 and b = 0..3. With r the distance of
  * their centroids and theta the angles to the normals, the exchange area is
  *
- *     G = sum over a, b of  v_ab  A_a A_b cos theta_a cos theta_b / (pi r^2 + max(A_a, A_b)),
+ *     G = sum over a, b of  v_ab  A_a A_b cos theta_a cos theta_b / (pi r^2 + max(A_a,
+ * A_b)),
  *
  * v_ab = 1 if the segment between the centroids is free: Eq. 2 for each of the 16 rays
  * of Fig. 2.

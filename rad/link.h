@@ -82,9 +82,9 @@ int link_split(struct model *model, const struct link *link, int32_t patch,
                struct link *children);
 
 /* Adds G x of either side of each link to the flux of the other, x a vector over patches,
- * W/m^2, of any sign. Pre: the largest |x| times the area of the scene is below FLUX_LIMIT
- * units; then no flux can overflow, since the links of a patch lead to
- * patches that do not overlap, and G is at most the area of each. */
+ * W/m^2, of any sign. Pre: the largest |x| times the area of the scene is below
+ * FLUX_LIMIT units; then no flux can overflow, since the links of a patch lead to patches
+ * that do not overlap, and G is at most the area of each. */
 void links_transfer(const struct link_list *list, const struct model *model,
                     const struct rgb *vector, struct flux_unit unit);
 

@@ -61,8 +61,8 @@ void linking_add(struct linking *linking)
     int32_t i = linking->i, j = linking->j;
     struct link link;
     if (linking->model->method.make_link(linking->model, linking->roots[i],
-                                         &linking->facets[i],
-                                         linking->roots[j], &linking->facets[j], NULL, &link))
+                                         &linking->facets[i], linking->roots[j],
+                                         &linking->facets[j], NULL, &link))
         link_list_append(linking->links, link);
     step(linking, linking->ranks);
 }

@@ -20,8 +20,8 @@ struct model;
 enum { METHOD_CHILDREN_MAX = 10 };
 
 struct method {
-    /* The ID of a node of the trees, and the node with an ID; a patch that is not there yet
-     * is made. */
+    /* The ID of a node of the trees, and the node with an ID; a patch that is not there
+     * yet is made. */
     struct patch_id (*node_id)(const struct model *model, int32_t node);
     int32_t (*node_reach)(const struct model *model, struct patch_id id);
 

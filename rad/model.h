@@ -13,7 +13,10 @@
 
 /* What is named by options; read by method_of() alone, but for the last two. */
 enum oracle { ORACLE_BF, ORACLE_ERROR };   /* rad/oracle.h, rad/beyond/error_oracle.h */
-enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON }; /* rad/beyond/patch_exchange.h */
+enum form_factor {
+    FORM_FACTOR_DISK,
+    FORM_FACTOR_POLYGON
+}; /* rad/beyond/patch_exchange.h */
 enum linking_kind { LINKING_PAIRS, LINKING_TREE };
 enum solver_kind { SOLVER_JACOBI, SOLVER_CG };
 enum balance { BALANCE_NONE, BALANCE_GREEDY, BALANCE_DEFAULT }; /* mpi/balance.h */

@@ -1,10 +1,10 @@
 /* Push-pull.
  *
- * Push: irradiance goes down, H(child) = H(parent) + Phi(child) / A(child). Since only leaves
- * reflect, each leaf adds up its own line of ancestors, at most 16 terms, from the root down.
- * Pull: B goes up; children have equal areas, so a parent's B is their plain mean. A child is
- * always created after its parent, so one loop over the local numbers downwards meets children
- * before parents, and no recursion is needed. */
+ * Push: irradiance goes down, H(child) = H(parent) + Phi(child) / A(child). Since only
+ * leaves reflect, each leaf adds up its own line of ancestors, at most 16 terms, from the
+ * root down. Pull: B goes up; children have equal areas, so a parent's B is their plain
+ * mean. A child is always created after its parent, so one loop over the local numbers
+ * downwards meets children before parents, and no recursion is needed. */
 #include "rad/pushpull.h"
 
 #include <math.h>
@@ -12,7 +12,8 @@
 
 #include "geom/alloc.h"
 
-struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flux_unit unit)
+struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf,
+                           struct flux_unit unit)
 {
     int32_t line[ID_MAX_LEVEL + 1];
     int length = 0;
@@ -50,8 +51,10 @@ static void update_leaf(const struct model *model, struct flux_unit flux, int32_
         radiosity->band[c] = b;
     }
     sums->light = flux_add(sums->light, flux_from_watts(model->flux_unit, light));
-    sums->arriving = flux_add(sums->arriving, flux_from_watts(model->flux_unit, arriving));
-    sums->absorbed = flux_add(sums->absorbed, flux_from_watts(model->flux_unit, absorbed));
+    sums->arriving =
+        flux_add(sums->arriving, flux_from_watts(model->flux_unit, arriving));
+    sums->absorbed =
+        flux_add(sums->absorbed, flux_from_watts(model->flux_unit, absorbed));
     sums->change = flux_add(sums->change, flux_from_watts(model->flux_unit, change));
 }
 

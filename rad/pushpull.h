@@ -1,4 +1,5 @@
-/* Push-pull: bringing a tree with flux at all levels into a consistent state (paper Sec. 2.2). */
+/* Push-pull: bringing a tree with flux at all levels into a consistent state (paper
+ * Sec. 2.2). */
 #ifndef RAD_PUSHPULL_H
 #define RAD_PUSHPULL_H
 
@@ -7,8 +8,8 @@
 
 #include "rad/model.h"
 
-/* What one push-pull did to this rank's own roots. Powers in units of model.flux_unit, summed
- * over bands, so that ranks can add them. */
+/* What one push-pull did to this rank's own roots. Powers in units of model.flux_unit,
+ * summed over bands, so that ranks can add them. */
 struct push_pull_sums {
     int64_t light;    /* sum over leaves of A B */
     int64_t absorbed; /* sum over leaves of A (1 - rho) H */
@@ -16,16 +17,18 @@ struct push_pull_sums {
     int64_t change;   /* sum over leaves of A |B - B of the iteration before| */
 };
 
-/* Irradiance H of a leaf, W/m^2: the flux of the leaf and of all above it, each over its area. */
-struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf, struct flux_unit unit);
+/* Irradiance H of a leaf, W/m^2: the flux of the leaf and of all above it, each over its
+ * area. */
+struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf,
+                           struct flux_unit unit);
 
-/* Push and pull on the roots with own[root] set: leaves get B = E + rho H, inner patches the
- * mean of their children. `flux`: unit of the flux. */
+/* Push and pull on the roots with own[root] set: leaves get B = E + rho H, inner patches
+ * the mean of their children. `flux`: unit of the flux. */
 struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux,
                                 const bool *own);
 
-/* The pull alone, of one patch in a vector [forest->count]: an inner patch gets the mean of
- * its children. */
+/* The pull alone, of one patch in a vector [forest->count]: an inner patch gets the mean
+ * of its children. */
 void patch_average(const struct forest *forest, int32_t patch, struct rgb *vector);
 
 /* The pull of all radiosities. */

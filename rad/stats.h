@@ -102,7 +102,7 @@ struct stats {
     int64_t ranks, triangles, roots, patches, leaves, links, passes, iterations;
     bool converged;
     int64_t clusters;      /* of the tree above the roots, 0: there is none */
-    int64_t counted_bytes;     /* of links, patches and clusters, as --memory counts them */
+    int64_t counted_bytes; /* of links, patches and clusters, as --memory counts them */
     bool memory_limited;       /* linking or refinement ended there */
     double epsilon;            /* relative to the emitted power */
     double error_estimate;     /* of the leaves, relative RMS; 0: there is none */
@@ -126,7 +126,7 @@ struct stats {
     struct spread seconds[PHASE_COUNT];
     struct level_balance *levels; /* [level_count], borrowed from the solver */
     int64_t level_count;
-    int64_t *proxies;        /* [ranks] borrowed: patches of other homes in a rank's links */
+    int64_t *proxies; /* [ranks] borrowed: patches of other homes in a rank's links */
     int64_t bytes_migration; /* of links that moved, all ranks */
     int64_t bytes_gather;    /* sent in step 5 */
     int64_t bytes_scatter;   /* got in step 7, and at the end of step 4 */

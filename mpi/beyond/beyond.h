@@ -68,8 +68,8 @@ void caps_begin(struct solver *solver);
 /* Collective. Writes the row sums of the links into `stats`, after the last iteration. */
 void solver_measure_row_sums(struct solver *solver, struct stats *stats);
 
-/* Steps 5 to 8 by conjugate gradients: B is transferred first, then rho z. When there is no
- * other iteration all ranks learn B. */
+/* Steps 5 to 8 by conjugate gradients: B is transferred first, then rho z. When there is
+ * no other iteration all ranks learn B. */
 struct rgb *descent_vector(const struct solver *solver);
 void descent_push_pull(struct solver *solver);
 struct vote descent_vote(struct solver *solver, const struct ballot *sum);

@@ -18,7 +18,7 @@
 #include <math.h>
 
 #include "geom/alloc.h"
-#include "mpi/funnel.h"
+#include "mpi/beyond/funnel.h"
 
 enum { BLOCK = 4096 };
 

@@ -21,7 +21,13 @@ typedef ptrdiff_t MPI_Aint;
 
 enum { MPI_SUCCESS = 0, MPI_COMM_WORLD = 0, MPI_COMM_SELF = 1, MPI_REQUEST_NULL = 0 };
 enum { MPI_SUM, MPI_MAX, MPI_MIN };
-enum { MPI_INFO_NULL, MPI_ERRORS_RETURN, MPI_ERRORS_ARE_FATAL, MPI_COMM_TYPE_SHARED, MPI_MODE_NOCHECK };
+enum {
+    MPI_INFO_NULL,
+    MPI_ERRORS_RETURN,
+    MPI_ERRORS_ARE_FATAL,
+    MPI_COMM_TYPE_SHARED,
+    MPI_MODE_NOCHECK
+};
 
 #define MPI_STATUS_IGNORE NULL
 #define MPI_IN_PLACE ((void *)-1)
@@ -66,7 +72,8 @@ static inline int MPI_Get_processor_name(char *name, int *length)
 
 static inline double MPI_Wtime(void)
 {
-    return (double)clock() / (double)CLOCKS_PER_SEC; /* C99 has no better: processor time */
+    return (double)clock() /
+           (double)CLOCKS_PER_SEC; /* C99 has no better: processor time */
 }
 
 static inline int MPI_Comm_idup(MPI_Comm comm, MPI_Comm *copy, MPI_Request *request)
@@ -152,8 +159,8 @@ static inline int MPI_Ibarrier(MPI_Comm comm, MPI_Request *request)
 }
 
 /* One process has nobody to send to. */
-static inline int MPI_Isend(const void *buffer, int count, MPI_Datatype type, int to, int tag,
-                            MPI_Comm comm, MPI_Request *request)
+static inline int MPI_Isend(const void *buffer, int count, MPI_Datatype type, int to,
+                            int tag, MPI_Comm comm, MPI_Request *request)
 {
     (void)buffer;
     (void)count;
@@ -171,8 +178,8 @@ static inline int MPI_Irecv(void *buffer, int count, MPI_Datatype type, int from
 }
 
 /* Nor anybody to share memory with. */
-static inline int MPI_Win_allocate_shared(MPI_Aint size, int unit, MPI_Info info, MPI_Comm comm,
-                                          void *base, MPI_Win *window)
+static inline int MPI_Win_allocate_shared(MPI_Aint size, int unit, MPI_Info info,
+                                          MPI_Comm comm, void *base, MPI_Win *window)
 {
     (void)size;
     (void)unit;
@@ -182,11 +189,12 @@ static inline int MPI_Win_allocate_shared(MPI_Aint size, int unit, MPI_Info info
     return MPI_Abort(comm, 1);
 }
 
-static inline int MPI_Win_shared_query(MPI_Win window, int rank, MPI_Aint *size, int *unit,
-                                       void *base)
+static inline int MPI_Win_shared_query(MPI_Win window, int rank, MPI_Aint *size,
+                                       int *unit, void *base)
 {
     (void)rank;
-    return MPI_Win_allocate_shared(*size, *unit, MPI_INFO_NULL, MPI_COMM_WORLD, base, &window);
+    return MPI_Win_allocate_shared(*size, *unit, MPI_INFO_NULL, MPI_COMM_WORLD, base,
+                                   &window);
 }
 
 static inline int MPI_Win_lock_all(int mode, MPI_Win window)
@@ -211,8 +219,8 @@ static inline int MPI_Win_free(MPI_Win *window)
     return MPI_Win_lock_all(0, *window);
 }
 
-static inline int MPI_Ibcast(void *buffer, int count, MPI_Datatype type, int root, MPI_Comm comm,
-                             MPI_Request *request)
+static inline int MPI_Ibcast(void *buffer, int count, MPI_Datatype type, int root,
+                             MPI_Comm comm, MPI_Request *request)
 {
     (void)buffer;
     (void)count;
@@ -221,8 +229,9 @@ static inline int MPI_Ibcast(void *buffer, int count, MPI_Datatype type, int roo
     return MPI_Ibarrier(comm, request);
 }
 
-static inline int MPI_Iallreduce(const void *send, void *receive, int count, MPI_Datatype type,
-                                 MPI_Op op, MPI_Comm comm, MPI_Request *request)
+static inline int MPI_Iallreduce(const void *send, void *receive, int count,
+                                 MPI_Datatype type, MPI_Op op, MPI_Comm comm,
+                                 MPI_Request *request)
 {
     (void)op;
     serial_copy(send, receive, count, type);
@@ -236,8 +245,9 @@ static inline int MPI_Ireduce_scatter(const void *send, void *receive, const int
     return MPI_Iallreduce(send, receive, counts[0], type, op, comm, request);
 }
 
-static inline int MPI_Iallgather(const void *send, int count, MPI_Datatype type, void *receive,
-                                 int receive_count, MPI_Datatype receive_type, MPI_Comm comm,
+static inline int MPI_Iallgather(const void *send, int count, MPI_Datatype type,
+                                 void *receive, int receive_count,
+                                 MPI_Datatype receive_type, MPI_Comm comm,
                                  MPI_Request *request)
 {
     (void)receive_count;
@@ -246,9 +256,10 @@ static inline int MPI_Iallgather(const void *send, int count, MPI_Datatype type,
     return MPI_Ibarrier(comm, request);
 }
 
-static inline int MPI_Iallgatherv(const void *send, int count, MPI_Datatype type, void *receive,
-                                  const int *counts, const int *displacements,
-                                  MPI_Datatype receive_type, MPI_Comm comm, MPI_Request *request)
+static inline int MPI_Iallgatherv(const void *send, int count, MPI_Datatype type,
+                                  void *receive, const int *counts,
+                                  const int *displacements, MPI_Datatype receive_type,
+                                  MPI_Comm comm, MPI_Request *request)
 {
     (void)counts;
     (void)displacements;
@@ -257,21 +268,23 @@ static inline int MPI_Iallgatherv(const void *send, int count, MPI_Datatype type
     return MPI_Ibarrier(comm, request);
 }
 
-static inline int MPI_Igatherv(const void *send, int count, MPI_Datatype type, void *receive,
-                               const int *counts, const int *displacements,
+static inline int MPI_Igatherv(const void *send, int count, MPI_Datatype type,
+                               void *receive, const int *counts, const int *displacements,
                                MPI_Datatype receive_type, int root, MPI_Comm comm,
                                MPI_Request *request)
 {
     (void)root;
-    return MPI_Iallgatherv(send, count, type, receive, counts, displacements, receive_type, comm,
-                           request);
+    return MPI_Iallgatherv(send, count, type, receive, counts, displacements,
+                           receive_type, comm, request);
 }
 
-static inline int MPI_Ialltoall(const void *send, int count, MPI_Datatype type, void *receive,
-                                int receive_count, MPI_Datatype receive_type, MPI_Comm comm,
+static inline int MPI_Ialltoall(const void *send, int count, MPI_Datatype type,
+                                void *receive, int receive_count,
+                                MPI_Datatype receive_type, MPI_Comm comm,
                                 MPI_Request *request)
 {
-    return MPI_Iallgather(send, count, type, receive, receive_count, receive_type, comm, request);
+    return MPI_Iallgather(send, count, type, receive, receive_count, receive_type, comm,
+                          request);
 }
 
 #endif

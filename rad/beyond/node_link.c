@@ -339,7 +339,8 @@ static const struct rgb *take(const struct model *model, int32_t node,
     for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
         double part = part_of(cluster, parts, k);
         int32_t child = cluster->child[k];
-        const struct rgb *b = node_is_cluster(child) ? &light->sent[~child] : &vector[child];
+        const struct rgb *b =
+            node_is_cluster(child) ? &light->sent[~child] : &vector[child];
         for (int c = 0; c < BANDS; c++)
             sum->band[c] += part * b->band[c];
     }

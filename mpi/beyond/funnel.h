@@ -1,7 +1,7 @@
-/* Records from all ranks to rank 0, which takes them one by one from the rank it likes, while no more
- * than a piece of each other rank's is in its memory. */
-#ifndef MPI_FUNNEL_H
-#define MPI_FUNNEL_H
+/* Records from all ranks to rank 0, which takes them one by one from the rank it likes,
+ * while no more than a piece of each other rank's is in its memory. */
+#ifndef MPI_BEYOND_FUNNEL_H
+#define MPI_BEYOND_FUNNEL_H
 
 #include "mpi/comm.h"
 
@@ -19,13 +19,13 @@ struct funnel {
     struct spout *spouts;    /* [ranks], owned; NULL but on rank 0 */
 };
 
-/* Collective. `count` records of `bytes` bytes without padding on each rank; on rank 0 they stay
- * borrowed until the end. Other ranks return when theirs have been taken. */
+/* Collective. `count` records of `bytes` bytes without padding on each rank; on rank 0
+ * they stay borrowed until the end. Other ranks return when theirs have been taken. */
 void funnel_start(struct funnel *funnel, const struct comm *comm, const void *records,
                   int64_t count, size_t bytes);
 
-/* Rank 0 only: the next record of a rank, in the order in which it holds them, or NULL after the
- * last. Good until the next funnel_drop() of that rank, which goes past it. */
+/* Rank 0 only: the next record of a rank, in the order in which it holds them, or NULL
+ * after the last. Good until the next funnel_drop() of that rank, which goes past it. */
 const void *funnel_next(struct funnel *funnel, int rank);
 void funnel_drop(struct funnel *funnel, int rank);
 

@@ -1,22 +1,24 @@
 /* Records from all ranks to rank 0.
  *
- * Each rank sends its records in pieces, one after the other, and goes on when rank 0 has received
- * the last. Rank 0 asks for the next piece of a rank only when it has taken all of the one before; so
- * it can merge sorted streams of any length in little memory. Rejected: one MPI_Gatherv, which
- * needs room for everything on rank 0 and counts that fit an int. */
-#include "mpi/funnel.h"
+ * Each rank sends its records in pieces, one after the other, and goes on when rank 0 has
+ * received the last. Rank 0 asks for the next piece of a rank only when it has taken all
+ * of the one before; so it can merge sorted streams of any length in little memory.
+ * Rejected: one MPI_Gatherv, which needs room for everything on rank 0 and counts that
+ * fit an int. */
+#include "mpi/beyond/funnel.h"
 
 #include "geom/alloc.h"
 
 enum { PIECE = 4096, TAG = 1 };
 
-static void send_all(const struct comm *comm, const char *records, int64_t count, size_t bytes)
+static void send_all(const struct comm *comm, const char *records, int64_t count,
+                     size_t bytes)
 {
     for (int64_t at = 0; at < count; at += PIECE) {
         int64_t now = count - at < PIECE ? count - at : PIECE;
         MPI_Request request;
-        MPI_Isend(records + (size_t)at * bytes, (int)((size_t)now * bytes), MPI_BYTE, 0, TAG,
-                  comm->handle, &request);
+        MPI_Isend(records + (size_t)at * bytes, (int)((size_t)now * bytes), MPI_BYTE, 0,
+                  TAG, comm->handle, &request);
         comm_wait(&request);
     }
 }
@@ -50,8 +52,8 @@ const void *funnel_next(struct funnel *funnel, int rank)
         spout->count = spout->left < PIECE ? spout->left : PIECE;
         spout->left -= spout->count;
         MPI_Request request;
-        MPI_Irecv(spout->piece, (int)((size_t)spout->count * funnel->bytes), MPI_BYTE, rank, TAG,
-                  funnel->comm->handle, &request);
+        MPI_Irecv(spout->piece, (int)((size_t)spout->count * funnel->bytes), MPI_BYTE,
+                  rank, TAG, funnel->comm->handle, &request);
         comm_wait(&request);
     }
     return spout->records + (size_t)spout->at * funnel->bytes;
