@@ -1,7 +1,7 @@
-/* Step 3: roots in descending order of weight, each to the rank with the smallest sum so
- * far (Graham's rule: no sum is above 4/3 of the best possible maximum). The paper's root
- * processor decides and informs the others; here all have the weights and decide alike.
- */
+/* Step 3: roots in descending order of weight, each to the rank with the smallest sum
+ * so far (Graham's rule: no sum is above 4/3 of the best possible maximum). The paper's
+ * root processor decides and informs the others; here all have the weights and decide
+ * alike. */
 #include "mpi/assign.h"
 
 #include <stdbool.h>

@@ -5,8 +5,8 @@
 #include <stdint.h>
 
 /* Deals the roots to `ranks` ranks so that the sums of their weights are even:
- * owner[root] is the home of a root. A pure function, so all ranks get the same answer.
- */
+ * owner[root] is the home of a root. A pure function, so all ranks get the same
+ * answer. */
 void roots_assign(const int64_t *weights, int32_t roots, int ranks, int *owner);
 
 #endif

@@ -14,8 +14,8 @@ struct comm {
     int limit;       /* records in a message at most; 0: what MPI can count. For tests. */
 };
 
-/* Initialises MPI; from here on, running out of memory ends all ranks with exit code 1.
- */
+/* Initialises MPI; from here on, running out of memory ends all ranks with exit code
+ * 1. */
 void comm_start(struct comm *comm, int *argc, char ***argv);
 
 /* Collective. Waits for all ranks and finalises MPI. */
@@ -27,8 +27,8 @@ void comm_wait(MPI_Request *request);
 /* Collective. Rank 0's bytes go to all; any size. */
 void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes);
 
-/* Collective. Each of `count` bytes becomes its sum over all ranks; sums stay below 256.
- */
+/* Collective. Each of `count` bytes becomes its sum over all ranks; sums stay below
+ * 256. */
 void comm_add_bytes(const struct comm *comm, uint8_t *bytes, int64_t count);
 
 /* Collective. Each of `count` numbers becomes its sum over all ranks. */

@@ -1,6 +1,5 @@
 /* The work of each rank, phase by phase, in counts: they do not depend on a noisy
- * machine.
- */
+ * machine. */
 #ifndef MPI_LEDGER_H
 #define MPI_LEDGER_H
 

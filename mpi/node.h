@@ -11,17 +11,16 @@
 /* When blocks are shared. The tests vary it; phr takes node_policy(). */
 struct node_policy {
     size_t least_bytes; /* smaller blocks are not shared */
-    int ranks_max;      /* so many ranks share a block at most; 1: none do */
+    int ranks_max;      /* most ranks that share a block; 1: none do */
 };
 
 struct node_block {
-    char *data; /* [bytes], at a multiple of PACK_ALIGNMENT; read-only for ranks that do
-                   not fill */
+    char *data;       /* [bytes], at a multiple of PACK_ALIGNMENT; read-only unless this
+                         rank fills it */
     size_t bytes;
-    bool fills; /* this rank puts into `data` what is to be there; rank 0 always does */
+    bool fills;       /* this rank fills `data`; rank 0 always does */
     bool shared;      /* `data` is in a window; else in `memory` */
-    double
-        seconds; /* that making what is in it took here; 0 on ranks that only receive */
+    double seconds;   /* that its contents took to make; 0 on ranks that only receive */
     void *memory;     /* owned, NULL if shared */
     MPI_Win window;
     struct comm node; /* the ranks that share the block; only if shared */

@@ -1,6 +1,6 @@
 /* The greedy plan of Sec. 3.3.2: how much load goes from which rank to which. A pure
- * function of the loads, so every rank computes the same plan, and none has to be sent.
- */
+ * function of the loads, so every rank computes the same plan, and none has to be
+ * sent. */
 #ifndef MPI_PLAN_H
 #define MPI_PLAN_H
 

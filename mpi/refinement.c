@@ -132,8 +132,8 @@ static bool has_room(const struct solver *solver, const struct level_counts *lev
 }
 
 /* Collective. True if the memory limit lets the level be split. Ranks may have made the
- * same patches: only where there is no room for all of them are they shared and counted.
- */
+ * same patches: only where there is no room for all of them are they shared and
+ * counted. */
 static bool level_fits(struct solver *solver, const struct level_counts *level)
 {
     if (has_room(solver, level, solver->turn.shared + level->made))

@@ -17,22 +17,22 @@
 #include "rad/pushpull.h"
 #include "rad/stats.h"
 
-/* What a rank says about an iteration; 128 bytes, no padding. */
+/* The report of a rank on an iteration; 128 bytes, no padding. */
 struct ballot {
     int64_t light, absorbed, change, arriving; /* flux units */
     int64_t split, links;
     int64_t divided;                           /* own patches that are new */
     int64_t stop;                              /* the signal that it has got */
-    int64_t square[BANDS];                     /* --solver cg: <z, z>, */
-    int64_t negative, bulk, missing;           /* and see conjugate_sum(), flux units */
+    int64_t square[BANDS];                     /* --solver cg: <z, z> */
+    int64_t negative, bulk, missing;           /* see conjugate_sum(), flux units */
     double largest;                            /* --solver cg: |z| */
-    double brightest;                          /* what leaves send, W/m^2 and band */
+    double brightest;                          /* the most that a leaf sends, W/m^2 */
 };
 
 /* Adds a ballot to a sum of ballots, in any order. */
 void ballot_add(struct ballot *sum, const struct ballot *ballot);
 
-/* It travels with radiosities, in the place of so many. */
+/* Records of radiosities that a ballot takes: it travels with them. */
 enum {
     BALLOT_RECORDS = (sizeof(struct ballot) + sizeof(struct rgb) - 1) / sizeof(struct rgb)
 };
@@ -51,14 +51,14 @@ struct turn {
     int64_t shared;     /* patches up to here are the same on all ranks */
     int64_t split_here; /* links that this rank split in this pass */
     bool fresh;         /* links have changed since light went over them */
-    int stop; /* signal that some rank has got, 0: none; the same on all ranks */
+    int stop;           /* signal that some rank has got, 0: none; the same on all */
 };
 
-/* What this rank has done, for the report. */
+/* The accounts of this rank, for the report. */
 struct account {
     double seconds[PHASE_COUNT];
     int64_t bytes_migration; /* sent to other ranks */
-    int64_t bytes_gather;    /* the same */
+    int64_t bytes_gather;    /* sent to other ranks */
     int64_t bytes_scatter;   /* got from other ranks */
     int64_t copied;          /* patch records packed or unpacked */
     int64_t recorded[3];     /* of the last three, in the ledger */
@@ -73,13 +73,13 @@ struct vote;
 /* After step 9: the light is there; a signal has come; or links want another pass. */
 enum finish { FINISH_DONE, FINISH_STOPPED, FINISH_AGAIN };
 
-/* The parts of steps that there are two ways to do: the paper's, and phr's own. NULL:
- * there is nothing to do. */
+/* The parts of steps that can be done in two ways: the paper's, and phr's own. NULL: an
+ * empty part. */
 struct steps {
     void (*begin)(struct solver *solver);       /* 5: before new links carry light */
     struct rgb *(*vector)(const struct solver *solver); /* 5 and 7; NULL: B */
-    void (*transfer)(struct solver *solver, const struct rgb *vector); /* 5: flux over the
-                                                   links that live here */
+    /* 5: adds flux over the links that live here */
+    void (*transfer)(struct solver *solver, const struct rgb *vector);
     void (*collect)(struct solver *solver);     /* 5: flux of all ranks above the roots */
     void (*push_pull)(struct solver *solver);   /* 6: own leaves, and the ballot */
     struct vote (*vote)(struct solver *solver, const struct ballot *sum); /* 8 */
@@ -112,15 +112,14 @@ struct vote {
     bool again;        /* another transfer over the same links */
     bool settled;      /* nothing was split */
     bool converged;
-    bool
-        unfinished; /* there would be another transfer, but for the limit of iterations */
+    bool unfinished;   /* the limit of iterations is what ends the transfers */
     bool diverged;
-    int64_t split;     /* links split in this iteration */
+    int64_t split;     /* links split in this pass */
     int64_t links;     /* links there are */
     double remaining;  /* change of energy, or bound on the remaining error, relative to
-                          all  light; HUGE_VAL: none */
+                          all light; HUGE_VAL: none */
     double absorbed;   /* W, areas in square scene units */
-    double escaped; /* the same: what leaves the surfaces less what the links deliver */
+    double escaped;    /* W: light that leaves surfaces, less light that links deliver */
 };
 
 /* Collective. The paper's method. Borrows comm, scene and octree. */
@@ -144,8 +143,8 @@ void solver_assign_roots(struct solver *solver);
  * then it counts as not begun, and there is no light over the links there are. */
 bool solver_refine(struct solver *solver);
 
-/* Step 5: light is transferred over the links there are, and flux of proxies goes home.
- */
+/* Step 5: light is transferred over the links there are, and flux of proxies goes
+ * home. */
 void solver_gather(struct solver *solver);
 
 /* The vector over patches, [patches], W/m^2, that step 5 transfers and step 7 tells to

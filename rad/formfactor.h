@@ -1,8 +1,8 @@
 /* Form factors of pairs of patches, with visibility (paper Eq. 2 and Fig. 2).
  *
- * What is computed is the exchange area G = A_p F_pq = A_q F_qp, square scene units: one
- * number for both directions, so reciprocity is exact. 0 <= G <= min(A_p, A_q), always.
- */
+ * What is computed is the exchange area G = A_p F_pq = A_q F_qp, square scene units:
+ * one number for both directions, so reciprocity is exact. 0 <= G <= min(A_p, A_q),
+ * always. */
 #ifndef RAD_FORMFACTOR_H
 #define RAD_FORMFACTOR_H
 

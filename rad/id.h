@@ -44,8 +44,8 @@ int id_level(struct patch_id id);
  * Pre: 0 <= step < id_level(id). */
 int id_step(struct patch_id id, int step);
 
-/* Negative, 0 or positive. Order: by root, then level by level, each from left to right.
- */
+/* Negative, 0 or positive. Order: by root, then level by level, each from left to
+ * right. */
 int id_compare(struct patch_id a, struct patch_id b);
 
 /* True for what can be the ID of a patch: a sentinel in one of the 16 places that it may

@@ -51,8 +51,8 @@ struct method {
     int (*split_link)(struct model *model, const struct link *link, int32_t side,
                       struct link *children);
 
-    /* A link is not split: it is new, or was there before. NULL: nothing is to be done.
-     */
+    /* A link is not split: it is new, or was there before. NULL: nothing is to be
+     * done. */
     void (*keep_link)(struct model *model, struct link *link, bool is_new);
 
     /* Transfers light over all links: adds G x of either side to the flux of the other.

@@ -67,8 +67,8 @@ int32_t forest_reach(struct forest *forest, struct patch_id id);
 /* Corners, recomputed from the root. Scene units. */
 struct triangle forest_triangle(const struct forest *forest, int32_t patch);
 
-/* Area, square scene units: the root's times 4^-level, so that children add up exactly.
- */
+/* Area, square scene units: the root's times 4^-level, so that children add up
+ * exactly. */
 double forest_area(const struct forest *forest, int32_t patch);
 
 static inline const struct material *forest_material(const struct forest *forest,

@@ -40,8 +40,7 @@ static inline struct criterion criterion_parse(const char *words)
 struct painted {
     struct soup soup;
     struct material materials[64];
-    int64_t
-        ends[64]; /* [count] the triangles before this have a material up to this one */
+    int64_t ends[64]; /* [count] triangles before it have materials up to this one */
     int count;
 };
 

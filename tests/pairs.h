@@ -1,5 +1,4 @@
-/* Pairs of triangles that face each other, for tests of blockers between two patches.
- */
+/* Pairs of triangles that face each other, for tests of blockers between two patches. */
 #ifndef TESTS_PAIRS_H
 #define TESTS_PAIRS_H
 

@@ -18,14 +18,12 @@ enum { TRUTH_HALVES = 2, TRUTH_MAX_LEVEL = 10 };
 struct element {
     struct patch_id id;
     double weight[3]; /* barycentric coordinates of the point in its root */
-    struct rgb
-        mean[TRUTH_HALVES]; /* over the element, W/m^2; two independent estimates */
+    struct rgb mean[TRUTH_HALVES];    /* over the element, W/m^2; two estimates */
     struct rgb point[TRUTH_HALVES];   /* at the point, W/m^2; two independent estimates */
 };
 
 struct truth {
-    struct element
-        *items; /* [count], roots in order, those of a root in the order of IDs */
+    struct element *items; /* [count], in the order of roots, then of IDs */
     int64_t count;
     int32_t root_count;    /* of the scene */
     double area;           /* of the scene, square scene units: tells scenes apart */

@@ -9,8 +9,8 @@
 void above_create(struct solver *solver);
 void above_free(struct solver *solver);
 
-/* Step 5, before a transfer: computes the radiosity of clusters, and clears their flux.
- */
+/* Step 5, before a transfer: computes the radiosity of clusters, and clears their
+ * flux. */
 void above_begin(struct solver *solver, const struct rgb *vector);
 
 /* Step 5, after a transfer: sums the flux of clusters over all ranks and pushes it down

@@ -294,9 +294,9 @@ static void variances_by_mesh(struct gathering *g, struct rgb *variance)
     share_rows(g, variance);
 }
 
-/* Collective. Variance of H that comes from the choice of rays: the variance by chance,
- * times the ratio of the sequence's variance to it, estimated over all leaves together.
- */
+/* Collective. Variance of H that comes from the choice of rays: the variance by
+ * chance, times the ratio of the sequence's variance to it, estimated over all leaves
+ * together. */
 static void variances_by_rays(struct gathering *g, struct rgb *variance)
 {
     struct rgb *own = g->all + g->at[g->solver->comm->rank];

@@ -1,5 +1,5 @@
-/* Systems of linear equations that are not symmetric, for the three bands side by side.
- */
+/* Systems of linear equations that are not symmetric, for the three bands side by
+ * side. */
 #ifndef RAD_BEYOND_BICGSTAB_H
 #define RAD_BEYOND_BICGSTAB_H
 

@@ -17,9 +17,9 @@
  * number.
  *
  * Rejected: one tree for each class of orientation (a tenth more links at the same
- * error); places alone (half more error: the other side of a thing receives other light);
- * harmonics of order 2 in place of one mean B (no less error for 27 numbers a cluster).
- */
+ * error); places alone (half more error: the other side of a thing receives other
+ * light); harmonics of order 2 in place of one mean B (no less error for 27 numbers a
+ * cluster). */
 #include "rad/beyond/cluster.h"
 
 #include <stdlib.h>

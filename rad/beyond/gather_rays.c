@@ -31,8 +31,8 @@ static const double NEAR = 0.2;
  * leaf's area. */
 static const double NARROW = 0.04;
 
-/* Two surfaces face each other across a gap if the cosine between their normals is less.
- */
+/* Two surfaces face each other across a gap if the cosine between their normals is
+ * less. */
 static const double OPPOSITE = -0.7;
 
 /* A lamp is wide if its factor from the leaf, unoccluded, is more than this. */
@@ -156,8 +156,8 @@ struct volley {
     int count[2];     /* segments */
 };
 
-/* The half that segment `i` of `count` to a group belongs to; a single one, the smaller.
- */
+/* The half that segment `i` of `count` to a group belongs to; a single one, the
+ * smaller. */
 static int half_of(const struct volley *volley, int i, int count)
 {
     return count > 1 ? 2 * i >= count : volley->count[0] > volley->count[1];

@@ -31,8 +31,8 @@ struct lamp {
     double share; /* power of all lamps of its group over its own, 1 */
 };
 
-/* Borrows the model, which has clusters. A lamp emits more than `least`, over all bands.
- */
+/* Borrows the model, which has clusters. A lamp emits more than `least`, over all
+ * bands. */
 struct lamps lamps_create(const struct model *model, double least);
 void lamps_free(struct lamps *lamps);
 

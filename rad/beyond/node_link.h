@@ -2,8 +2,8 @@
  * cluster with itself, for the light that its own parts exchange. Links of two patches
  * are left to rad/beyond/patch_link.h and rad/beyond/error_oracle.h.
  *
- * A link of a cluster with itself has half of its G, since transfer takes it both ways.
- */
+ * A link of a cluster with itself has half of its G, since transfer takes it both
+ * ways. */
 #ifndef RAD_BEYOND_NODE_LINK_H
 #define RAD_BEYOND_NODE_LINK_H
 

@@ -58,8 +58,8 @@ double exchange_guess(const struct facet *p, const struct facet *q);
 bool facets_are_walled_off(const struct facet *p, const struct facet *q,
                            const struct octree *octree, struct octree_counts *counts);
 
-/* True if it is proved that all of one facet sees all of the other, as far as they face.
- */
+/* True if it is proved that all of one facet sees all of the other, as far as they
+ * face. */
 bool facets_are_open(const struct facet *p, const struct facet *q,
                      const struct octree *octree, struct octree_counts *counts);
 

@@ -23,8 +23,8 @@ static void test_disk(void)
            "nothing behind either plane");
 }
 
-/* Random pairs among random blockers: the same by the other kernel, as phr looks at all.
- */
+/* Random pairs among random blockers: the same by the other kernel, as phr looks at
+ * all. */
 static void test_pairs(void)
 {
     struct random random = random_seed(3);

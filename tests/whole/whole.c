@@ -39,8 +39,7 @@ static const struct errors CRATER = {4e-3, 5e-3, 1.5e-2};
 /* An answer for one surface: by an equation, by root, or the same everywhere. */
 struct truth {
     const struct equation *equation;
-    const double
-        *root; /* [roots] B of facets that are lit by facets; see light_of_facets() */
+    const double *root; /* [roots] B of facets lit by facets: light_of_facets() */
     double value;
     int surface;      /* of the equation */
     double low, high; /* roots are looked at whose centroids have y between these */
@@ -228,8 +227,8 @@ static void test_isothermal(const struct comm *comm, const struct shape *shape,
 static const double NEXT_TO = 1e-5;
 
 /* At an edge B1 = (E1 + rho1 c E2) / (1 - rho1 rho2 c^2), c = (1 + cos a) / 2: so the
- * equation says, near it, of a groove of which one wall shines; and phr is held to that.
- */
+ * equation says, near it, of a groove of which one wall shines; and phr is held to
+ * that. */
 static void test_edge(const struct comm *comm, double angle, double rho)
 {
     const double emission[2] = {1.0, 0.0}, both[2] = {rho, rho},

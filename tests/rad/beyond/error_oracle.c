@@ -151,8 +151,7 @@ static void test_error_doubt(void)
 }
 
 /* A side that may not be split leaves it to the other, if that causes enough of the
- * error.
- */
+ * error. */
 static void test_error_limits(void)
 {
     struct world world = make_grey(2.0);

@@ -120,8 +120,8 @@ static double form_factor(const struct soup *soup, int level_p, int level_q)
 }
 
 /* A small area is a point, and the disk has a wrong shape and its area in the
- * denominator: both errors fall with the square of the size, so 4 times with each level.
- */
+ * denominator: both errors fall with the square of the size, so 4 times with each
+ * level. */
 static void check_convergence(const struct soup *soup, double exact,
                               const double bound[4],
                               double ratio, const char *name)

@@ -52,8 +52,8 @@ static void test_integral(void)
         all += sum / 100.0;
     }
     tap_ok(sqrt(square) < 1e-3, "a product of four: off by %.1e, RMS", sqrt(square));
-    /* Independent seeds: the mean of 100 is ten times nearer, three deviations allowed.
-     */
+    /* Independent seeds: the mean of 100 is ten times nearer, three deviations
+     * allowed. */
     tap_ok(fabs(all - 0.0625) < 0.3 * sqrt(square), "the mean over seeds by %.1e",
            fabs(all - 0.0625));
 }
