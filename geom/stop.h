@@ -1,5 +1,5 @@
 /* Being asked to stop, as the long loops of all layers see it. Who asks, and how, is the
- * business of the caller of stop_when() (mpi/signals.h). */
+ * business of the caller of stop_when() (geom/signals.h). */
 #ifndef GEOM_STOP_H
 #define GEOM_STOP_H
 

@@ -33,13 +33,6 @@ void cluster_light_destroy(struct cluster_light *light)
     alloc_free(light);
 }
 
-const struct rgb *cluster_light_radiosity(const struct cluster_light *light,
-                                          const struct forest *forest, int32_t node)
-{
-    return node_is_cluster(node) ? &light->radiosity[~node]
-                                 : &forest->radiosity[node];
-}
-
 /* Means over clusters, of a vector over patches. */
 static void average(const struct cluster_light *light, const struct forest *forest,
                     const struct rgb *of_patches, struct rgb *of_clusters)
@@ -83,7 +76,9 @@ void cluster_light_bound(struct cluster_light *light, const struct forest *fores
             int32_t node = cluster->child[k];
             double area = cluster_node_area(light->tree, forest->scene, node);
             double share = area / cluster->area;
-            double off = rgb_sum(*cluster_light_radiosity(light, forest, node)) - mean;
+            struct rgb child = node_is_cluster(node) ? light->radiosity[~node]
+                                                     : forest->radiosity[node];
+            double off = rgb_sum(child) - mean;
             if (node_is_cluster(node)) {
                 within += share * variance[~node];
             } else {

@@ -20,10 +20,6 @@ struct cluster_light {
 struct cluster_light *cluster_light_create(const struct cluster_tree *tree);
 void cluster_light_destroy(struct cluster_light *light);
 
-/* B of a patch or a cluster. */
-const struct rgb *cluster_light_radiosity(const struct cluster_light *light,
-                                          const struct forest *forest, int32_t node);
-
 /* The pull: means of the children, from the roots up; of B, into `radiosity`, and of a
  * vector [patches], into `sent`. */
 void cluster_light_pull(struct cluster_light *light, const struct forest *forest);

@@ -149,7 +149,8 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     return slope;
 }
 
-void receiver_add(struct receiver *r, int32_t patch, const struct rgb *weight)
+/* Adds `weight` times the radiosity of a patch as a whole. */
+static void add_term(struct receiver *r, int32_t patch, const struct rgb *weight)
 {
     struct final_gather *g = r->gather;
     struct rgb b = g->model->forest->radiosity[patch];
@@ -168,13 +169,13 @@ void receiver_add(struct receiver *r, int32_t patch, const struct rgb *weight)
 void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
                         const struct rgb *weight)
 {
-    receiver_add(r, patch, weight);
+    add_term(r, patch, weight);
     struct gather_slope slope = gather_slope(r->gather, patch);
     for (int k = 0; k < 3 && slope.rise != 0.0; k++) {
         struct rgb part;
         for (int c = 0; c < BANDS; c++)
             part.band[c] = weight->band[c] * slope.rise * (at[k] - 1.0 / 3.0);
-        receiver_add(r, slope.first + k, &part);
+        add_term(r, slope.first + k, &part);
     }
 }
 

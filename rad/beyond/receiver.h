@@ -23,9 +23,6 @@ struct receiver {
     struct rgb sum, squares, half[2]; /* sums over all rays of H, H^2, H by halves */
 };
 
-/* Adds `weight` times the radiosity of a patch as a whole. */
-void receiver_add(struct receiver *r, int32_t patch, const struct rgb *weight);
-
 /* Adds `weight` times the radiosity that a patch has at a point of it, which has the
  * barycentric coordinates `at`: see gather_slope(). */
 void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],

@@ -16,8 +16,10 @@ struct vec3 triangle_sample(const struct triangle *t, uint64_t seed)
     return vec3_add(t->corner[0], along);
 }
 
-struct vec3 direction_above(const struct triangle *t, struct vec3 normal, double u,
-                            double v, double sine2)
+/* The direction with this square of the sine to the triangle's unit normal, turned about
+ * that by an angle that depends on u and v in 0..1. */
+static struct vec3 direction_above(const struct triangle *t, struct vec3 normal, double u,
+                                   double v, double sine2)
 {
     struct vec3 x = vec3_sub(t->corner[1], t->corner[0]);
     x = vec3_scale(x, 1.0 / vec3_length(x));

@@ -21,11 +21,6 @@ static inline struct vec3 point_above(struct vec3 point, struct vec3 normal)
     return vec3_add(point, vec3_scale(normal, 1024.0 * GEOM_ROUNDING));
 }
 
-/* The direction with this square of the sine to the triangle's unit normal, turned about
- * that by an angle that depends on u and v in 0..1. */
-struct vec3 direction_above(const struct triangle *t, struct vec3 normal, double u,
-                            double v, double sine2);
-
 /* A ray from a point of the triangle's front, distributed as the cosine to its unit
  * normal, in ring `ring` of `rings` equally probable ones from the normal outwards.
  * Uses seed to seed + 4. */
