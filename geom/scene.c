@@ -19,10 +19,10 @@ static const char DEFAULT_GROUP[] = "default";
 
 void scene_set_groups(struct scene *scene, int32_t count, int64_t bytes)
 {
-    alloc_free(scene->group_names);
-    scene->group_count = count;
-    scene->group_bytes = bytes;
-    scene->group_names = alloc_array((size_t)bytes, 1);
+    alloc_free(scene->groups.names);
+    scene->groups.count = count;
+    scene->groups.bytes = bytes;
+    scene->groups.names = alloc_array((size_t)bytes, 1);
 }
 
 struct scene *scene_create(int32_t input_count, int32_t material_count)
@@ -35,9 +35,9 @@ struct scene *scene_create(int32_t input_count, int32_t material_count)
     scene->areas = alloc_array((size_t)input_count, sizeof *scene->areas);
     scene->material_of = alloc_array((size_t)input_count, sizeof *scene->material_of);
     scene->materials = alloc_array((size_t)material_count, sizeof *scene->materials);
-    scene->group_of = alloc_array((size_t)input_count, sizeof *scene->group_of);
+    scene->groups.of = alloc_array((size_t)input_count, sizeof *scene->groups.of);
     scene_set_groups(scene, 1, sizeof DEFAULT_GROUP);
-    memcpy(scene->group_names, DEFAULT_GROUP, sizeof DEFAULT_GROUP);
+    memcpy(scene->groups.names, DEFAULT_GROUP, sizeof DEFAULT_GROUP);
     return scene;
 }
 
@@ -56,8 +56,8 @@ void scene_destroy(struct scene *scene)
         alloc_free(scene->material_of);
         alloc_free(scene->materials);
         alloc_free(scene->normals);
-        alloc_free(scene->group_of);
-        alloc_free(scene->group_names);
+        alloc_free(scene->groups.of);
+        alloc_free(scene->groups.names);
     }
     alloc_free(scene);
 }
@@ -73,8 +73,8 @@ static void pack_arrays(struct scene *scene, struct pack *pack)
         pack_array(pack, scene->material_of, count * sizeof *scene->material_of);
     scene->materials =
         pack_array(pack, scene->materials, materials * sizeof *scene->materials);
-    scene->group_of = pack_array(pack, scene->group_of, count * sizeof *scene->group_of);
-    scene->group_names = pack_array(pack, scene->group_names, (size_t)scene->group_bytes);
+    scene->groups.of = pack_array(pack, scene->groups.of, count * sizeof *scene->groups.of);
+    scene->groups.names = pack_array(pack, scene->groups.names, (size_t)scene->groups.bytes);
     if (scene->normals)
         scene->normals =
             pack_array(pack, scene->normals, 3 * count * sizeof *scene->normals);

@@ -37,6 +37,14 @@ struct scene_repairs {
     int64_t clamped;    /* materials with a reflectance of 1 or more, set to 0.999 */
 };
 
+/* Groups of faces, named in the file. */
+struct scene_groups {
+    int32_t *of;   /* [input_count], number of the group of each face */
+    char *names;   /* [bytes], each with its zero */
+    int32_t count; /* at least 1 */
+    int64_t bytes;
+};
+
 struct scene {
     struct triangle *triangles; /* [input_count], scene units after scene_prepare() */
     struct plane *planes;       /* [input_count]; zero for a dropped triangle */
@@ -45,12 +53,9 @@ struct scene {
     struct material *materials; /* [material_count] */
     struct vec3 *normals;       /* [3 * input_count] or NULL, of corner k of triangle i at
                                  * [3 i + k], for smooth shading: of length 1, or 0 */
-    int32_t *group_of;          /* [input_count], index of the group of each face */
-    char *group_names;          /* [group_bytes], each with its zero */
+    struct scene_groups groups;
     int32_t input_count;        /* triangles read from the file, dropped ones included */
     int32_t material_count;
-    int32_t group_count;        /* at least 1 */
-    int64_t group_bytes;
     bool two_sided;             /* triangles have twins: of i, root i + input_count */
     bool two_sided_lamps;       /* if two_sided: those that emit have twins, too */
     struct vec3 centre;         /* of the input's bounding box, input units */

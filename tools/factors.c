@@ -9,7 +9,7 @@ void factors_tabulate(struct run *run)
 {
     const struct criterion *criterion = &run->options.criterion;
     run_say(run, "%s: %lld triangles in %lld groups", run->options.scene,
-            (long long)run->scene->input_count, (long long)run->scene->group_count);
+            (long long)run->scene->input_count, (long long)run->scene->groups.count);
     struct viewfactors *factors = viewfactors_create(
         run->scene, run->octree, criterion->epsilon, criterion->max_level);
     progress_begin(&run->progress.progress, "form factors", -1, 0);

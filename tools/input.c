@@ -75,9 +75,9 @@ static bool check_emission(const struct run *run, struct error *error)
 
 static bool check_groups(const struct run *run, struct error *error)
 {
-    if (run->scene->group_count > VIEWFACTOR_GROUPS_MAX)
+    if (run->scene->groups.count > VIEWFACTOR_GROUPS_MAX)
         return error_set(error, EXIT_USAGE, "%s: %lld groups are more than %d",
-                         run->options.scene, (long long)run->scene->group_count,
+                         run->options.scene, (long long)run->scene->groups.count,
                          VIEWFACTOR_GROUPS_MAX);
     return true;
 }

@@ -42,7 +42,7 @@ void table_print(const struct viewfactors *factors, FILE *file)
 {
     double unit = scene_area_unit(factors->scene);
     const char **names = alloc_array((size_t)factors->count, sizeof *names);
-    const char *name = factors->scene->group_names;
+    const char *name = factors->scene->groups.names;
     for (int32_t i = 0; i < factors->count; i++, name += strlen(name) + 1)
         names[i] = name;
     fputs("from,to,area_from,F\n", file);

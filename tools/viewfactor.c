@@ -69,13 +69,13 @@ struct viewfactors *viewfactors_create(const struct scene *scene,
     factors->octree = octree;
     factors->epsilon = epsilon;
     factors->max_level = max_level;
-    factors->count = scene->group_count;
+    factors->count = scene->groups.count;
     factors->pairs = (int64_t)factors->count * (factors->count + 1) / 2;
     factors->areas = alloc_array((size_t)factors->count, sizeof *factors->areas);
     factors->roots = alloc_array((size_t)factors->count, sizeof *factors->roots);
     factors->sums = alloc_array((size_t)factors->pairs, sizeof *factors->sums);
     for (int32_t root = 0; root < scene_root_count(scene); root++) {
-        int32_t group = scene->group_of[scene_input_of(scene, root)];
+        int32_t group = scene->groups.of[scene_input_of(scene, root)];
         factors->areas[group] += scene_root_area(scene, root);
         factors->roots[group] += scene_root_area(scene, root) > 0.0;
     }
@@ -235,8 +235,8 @@ static struct flux_unit unit_of(const struct viewfactors *factors, int32_t i, in
 void viewfactors_add(struct viewfactors *factors, int32_t p, const struct facet *fp,
                      int32_t q, const struct facet *fq)
 {
-    int32_t i = factors->scene->group_of[fp->input],
-            j = factors->scene->group_of[fq->input];
+    int32_t i = factors->scene->groups.of[fp->input],
+            j = factors->scene->groups.of[fq->input];
     struct root_pair pair = {
         .factors = factors,
         .threshold = factors->epsilon * fmin(factors->areas[i], factors->areas[j]),

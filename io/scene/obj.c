@@ -336,10 +336,10 @@ static void make_groups(const struct obj_reader *reader, struct scene *scene)
             number[group] = count;
             bytes += strlen(reader->groups.name[group]) + 1;
         }
-        scene->group_of[i] = number[group] - 1;
+        scene->groups.of[i] = number[group] - 1;
     }
     scene_set_groups(scene, count, (int64_t)bytes);
-    char *to = scene->group_names;
+    char *to = scene->groups.names;
     for (int32_t i = 0; i < count; i++) {
         size_t length = strlen(reader->groups.name[order[i]]) + 1;
         memcpy(to, reader->groups.name[order[i]], length);

@@ -62,7 +62,7 @@ static bool is_square(const struct scene *scene)
     return scene && scene->input_count == 2 && corner_is(scene, 0, 0, 0, 0, 0) &&
            corner_is(scene, 0, 1, 1, 0, 0) && corner_is(scene, 0, 2, 1, 1, 0) &&
            corner_is(scene, 1, 0, 0, 0, 0) && corner_is(scene, 1, 1, 1, 1, 0) &&
-           corner_is(scene, 1, 2, 0, 1, 0) && scene->group_count == 1;
+           corner_is(scene, 1, 2, 0, 1, 0) && scene->groups.count == 1;
 }
 
 static void check_square(const char *name, const char *text)

@@ -343,7 +343,7 @@ static void test_broadcast(const struct comm *comm, struct node_policy policy,
     struct node_block block = scene_broadcast(comm, policy, &scene, &octree);
     bool right = scene->input_count == 12 && scene->two_sided && scene->two_sided_lamps &&
                  scene->areas[11] > 0.0 && scene->materials[5].emission.band[1] == 2.0 &&
-                 strcmp(scene->group_names, "default") == 0 &&
+                 strcmp(scene->groups.names, "default") == 0 &&
                  !scene->normals == !normals;
     for (int i = 0; i < 3 * 12 && right && normals; i++)
         right = scene->normals[i].x == i && scene->normals[i].z == -i;
