@@ -1,5 +1,5 @@
-# Draws the errors of docs/chart.csv against seconds: OUT-leaf.svg and OUT-shown.svg, one panel
-# for each scene.
+# Draws the errors of docs/chart.csv against seconds: OUT-leaf.svg and OUT-shown.svg, one
+# panel for each scene.
 #
 #   gnuplot -e "csv='docs/chart.csv'; out='docs/chart'" tests/bench/chart.gp
 
@@ -9,7 +9,8 @@ PANELS = words(SCENES)
 COLUMNS = PANELS < 3 ? PANELS : 3
 ROWS = (PANELS + COLUMNS - 1) / COLUMNS
 VARIANTS = "paper links paths gather"
-NAMES = "'the paper, all pairs' 'links alone' 'path tracer, %s' 'phr: links and final gather'"
+NAMES = "'the paper, all pairs' 'links alone' 'path tracer, %s' ". \
+    "'phr: links and final gather'"
 
 thousands(n) = n < 1000 ? sprintf("%d", n) : sprintf("%d,%03d", n / 1000, n % 1000)
 title_of(scene) = scene eq "cornell" ? "Cornell box, 38 triangles" : \
@@ -57,7 +58,8 @@ do for [chart in "leaf shown"] {
         set bmargin at screen 1 - (y + HIGH) / HEIGHT
         set title title_of(scene) offset 0,-0.6
         set xlabel "seconds, one core" offset 0,0.4
-        if (place == 0) { set ylabel chart." error, % (RMS)" offset 0.8,0 } else { unset ylabel }
+        unset ylabel
+        if (place == 0) { set ylabel chart." error, % (RMS)" offset 0.8,0 }
         plot for [k = 1:words(VARIANTS)] csv every ::1 using \
             (only(scene, word(VARIANTS, k), $4)): \
             (only(scene, word(VARIANTS, k), 100 * column(from))) with linespoints ls k
@@ -68,8 +70,8 @@ do for [chart in "leaf shown"] {
     set tmargin at screen KEY / HEIGHT
     set bmargin at screen 0.0
     unset title; unset xlabel; unset ylabel; unset tics; unset border; unset grid
-    set key at screen 0.5, screen 0.5 * KEY / HEIGHT center center maxrows KEY_ROWS reverse Left \
-        samplen 3 width -7
+    set key at screen 0.5, screen 0.5 * KEY / HEIGHT center center maxrows KEY_ROWS \
+        reverse Left samplen 3 width -7
     set xrange [1:10]
     set yrange [1:10]
     plot for [k = words(VARIANTS):1:-1] NaN with linespoints ls k title \

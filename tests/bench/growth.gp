@@ -16,11 +16,11 @@ set grid
 set xrange [5500:1200000]
 at(epsilon, n) = stringcolumn(1) eq "room" && column(2) == epsilon ? column(n) : NaN
 plot 300*sqrt(x) with lines lt 0 lw 2 title "as the square root of k", \
-     "docs/growth.csv" using 3:(at(1e-3, 5)) skip 1 with linespoints pt 9 lw 2 lc "black" \
-         title "links, epsilon 1e-3", \
-     "" using 3:(at(1e-4, 5)) skip 1 with linespoints pt 8 lw 2 lc "gray40" \
-         title "links, epsilon 1e-4", \
-     "" using 3:(at(1e-3, 12)) skip 1 axes x1y2 with linespoints pt 7 lw 2 lc "black" dt 2 \
-         title "seconds, epsilon 1e-3", \
-     "" using 3:(at(1e-4, 12)) skip 1 axes x1y2 with linespoints pt 6 lw 2 lc "gray40" dt 2 \
-         title "seconds, epsilon 1e-4"
+     "docs/growth.csv" using 3:(at(1e-3, 5)) skip 1 \
+         with linespoints pt 9 lw 2 lc "black" title "links, epsilon 1e-3", \
+     "" using 3:(at(1e-4, 5)) skip 1 \
+         with linespoints pt 8 lw 2 lc "gray40" title "links, epsilon 1e-4", \
+     "" using 3:(at(1e-3, 12)) skip 1 axes x1y2 \
+         with linespoints pt 7 lw 2 lc "black" dt 2 title "seconds, epsilon 1e-3", \
+     "" using 3:(at(1e-4, 12)) skip 1 axes x1y2 \
+         with linespoints pt 6 lw 2 lc "gray40" dt 2 title "seconds, epsilon 1e-4"
