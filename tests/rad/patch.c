@@ -204,7 +204,7 @@ static bool comes_before(struct patch_id a, struct patch_id b)
 static bool is_below(struct patch_id a, struct patch_id top)
 {
     while (id_level(a) > id_level(top))
-        a = id_parent(a);
+        a.hierarchy >>= 2;
     return same_id(a, top);
 }
 
