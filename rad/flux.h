@@ -5,7 +5,11 @@
  * Each transfer has its own k, chosen so that no flux can overflow (rad/link.h); k of a
  * run, for powers that ranks add, is chosen once. flux_add() stops at FLUX_LIMIT; the
  * sum of non-negative numbers that stops at a limit is the same in any order too, so "it
- * diverged" is seen by all ranks alike. */
+ * diverged" is seen by all ranks alike.
+ *
+ * Rejected: sums in double (their last bits depend on the order, and one bit is enough
+ * to split a patch on 3 ranks that is whole on 2), and reproducible floating-point sums
+ * (six words an accumulator where one integer does). */
 #ifndef RAD_FLUX_H
 #define RAD_FLUX_H
 
@@ -24,12 +28,14 @@ struct flux_unit {
 
 /* The unit in which sums up to `largest` watts stay below FLUX_LIMIT: a power of two.
  * Below 2^-960 it is that of 2^-960. Pre: 0 <= largest. */
-struct flux_unit flux_unit_for(double largest);
-
-/* Chooses k from the emitted power and the largest reflectance rho: the light in a
- * closed scene adds up to at most power / (1 - rho), and 2^-62 of 16 times that is the
- * unit. 16 leaves room for form factors whose rows sum to more than 1. */
-struct flux_unit flux_unit_choose(const struct scene *scene);
+static inline struct flux_unit flux_unit_for(double largest)
+{
+    int exponent;
+    frexp(largest, &exponent); /* largest < 2^exponent */
+    if (exponent < -960)
+        exponent = -960; /* 2^(62 + 960) is finite, its inverse exact */
+    return (struct flux_unit){ldexp(1.0, 62 - exponent), ldexp(1.0, exponent - 62)};
+}
 
 /* Watts in integer units, between -FLUX_LIMIT and FLUX_LIMIT, which NaN counts as. */
 static inline int64_t flux_from_watts(struct flux_unit unit, double watts)

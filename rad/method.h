@@ -61,7 +61,7 @@ struct method {
                      const struct rgb *vector, struct flux_unit unit);
 };
 
-extern const struct method PAPER;   /* rad/paper.c */
+extern const struct method PAPER;   /* rad/model.c */
 extern const struct method DEFAULT; /* rad/beyond/default.c */
 
 /* PAPER, DEFAULT or an ablation, as the criterion names them (rad/beyond/default.c). */
