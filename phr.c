@@ -28,12 +28,15 @@
 /* Step 1: rank 0 reads, all agree on errors, all receive the scene. */
 static bool broadcast_scene(struct run *run)
 {
+    run->camera_count = run->options.view_count > 0 ? run->options.view_count : 1;
+    run->cameras = alloc_array((size_t)run->camera_count, sizeof *run->cameras);
     if (run->comm.rank == 0)
         input_read(run);
     if (!run_agree(run))
         return false;
     run->block = scene_broadcast(&run->comm, node_policy(), &run->scene, &run->octree);
-    comm_broadcast(&run->comm, &run->camera, sizeof run->camera);
+    comm_broadcast(&run->comm, run->cameras,
+                   (size_t)run->camera_count * sizeof *run->cameras);
     if (run->block.shared && run->options.verbose)
         run_say(run, "one copy of scene and octree for %d ranks, %.1f MB",
                 run->block.node.size, 1e-6 * (double)run->block.bytes);
@@ -185,6 +188,7 @@ static void release(struct run *run)
     solver_destroy(run->solver);
     octree_destroy(run->octree);
     scene_destroy(run->scene);
+    alloc_free(run->cameras);
     if (run->block.data)
         node_block_destroy(&run->block);
     options_free(&run->options);

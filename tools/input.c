@@ -102,16 +102,19 @@ static bool read_scene(struct run *run)
                                      : check_emission(run, error);
 }
 
-/* Reads the view file, if there is one; --size overrides its size. */
-static bool read_camera(struct run *run)
+/* Reads the view files; --size overrides their sizes. */
+static bool read_cameras(struct run *run)
 {
     const struct options *options = &run->options;
-    if (options->view && !camera_read(options->view, &run->camera, &run->error))
-        return false;
-    if (options->width > 0 || !options->view) {
-        run->camera.width = options->width > 0 ? options->width : CAMERA_SIZE;
-        run->camera.height = options->width > 0 ? options->height : CAMERA_SIZE;
-    }
+    for (int i = 0; i < options->view_count; i++)
+        if (!camera_read(options->views[i], &run->cameras[i], &run->error))
+            return false;
+    for (int i = 0; i < run->camera_count; i++)
+        if (options->width > 0 || options->view_count == 0) {
+            struct camera *camera = &run->cameras[i];
+            camera->width = options->width > 0 ? options->width : CAMERA_SIZE;
+            camera->height = options->width > 0 ? options->height : CAMERA_SIZE;
+        }
     return true;
 }
 
@@ -131,7 +134,7 @@ static bool probe_outputs(struct run *run)
 void input_read(struct run *run)
 {
     signals_end_calls(true);
-    if (read_scene(run) && read_camera(run))
+    if (read_scene(run) && read_cameras(run))
         probe_outputs(run);
     signals_end_calls(false);
 }

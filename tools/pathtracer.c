@@ -77,20 +77,17 @@ static int take_own(struct tracing *run, int argc, char **argv)
     return kept;
 }
 
-static bool is_mesh(const char *path)
-{
-    return output_format_of(path) == FORMAT_PLY;
-}
-
 /* Checks the outputs: there has to be one, and meshes need --leaves and it needs a
  * mesh. */
 static bool check_outputs(struct tracing *run)
 {
     bool meshes = false;
     for (int i = 0; i < run->options.output_count; i++)
-        meshes = meshes || is_mesh(run->options.outputs[i]);
+        meshes = meshes || !output_is_picture(run->options.outputs[i]);
     if (run->options.output_count == 0 || !run->options.scene)
         return error_set(&run->error, EXIT_USAGE, "%s", USAGE);
+    if (run->options.view_count > 1)
+        return error_set(&run->error, EXIT_USAGE, "one view at a time");
     if (meshes != (run->leaves != NULL))
         return error_set(&run->error, EXIT_USAGE, "-o FILE.ply and --leaves go together");
     return true;
@@ -135,9 +132,9 @@ static bool read_camera(struct tracing *run)
     const struct options *options = &run->options;
     int width = options->width > 0 ? options->width : CAMERA_SIZE;
     int height = options->width > 0 ? options->height : CAMERA_SIZE;
-    if (!options->view)
+    if (options->view_count == 0)
         run->camera = viewpoint_choose(run->scene, run->octree, NULL, width, height);
-    else if (!camera_read(options->view, &run->camera, &run->error))
+    else if (!camera_read(options->views[0], &run->camera, &run->error))
         return false;
     if (options->width > 0) {
         run->camera.width = width;
@@ -338,17 +335,17 @@ static void trace_and_write(struct tracing *run)
     int64_t pixels = 0, leaves = run->solution.count;
     float *picture = NULL, *halves = run->leaves ? trace_leaves(run) : NULL;
     for (int i = 0; i < run->options.output_count; i++)
-        if (!is_mesh(run->options.outputs[i]))
+        if (output_is_picture(run->options.outputs[i]))
             pixels = (int64_t)run->camera.width * run->camera.height;
     if (pixels > 0)
         picture = trace_picture(run);
     report(run, (pixels + leaves) * run->samples, comm_seconds() - start);
     for (int i = 0; i < run->options.output_count && run->comm.rank == 0; i++) {
         const char *path = run->options.outputs[i];
-        if (is_mesh(path))
-            write_leaves(run, halves, path);
-        else
+        if (output_is_picture(path))
             write_picture(run, picture, path);
+        else
+            write_leaves(run, halves, path);
     }
     if (halves && run->comm.rank == 0 && !run->options.quiet)
         print_norms(run, halves);

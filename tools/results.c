@@ -1,4 +1,7 @@
-/* Pictures and meshes of the solution. */
+/* Pictures and meshes of the solution. An output depends on the solution and on its own
+ * options alone: the colours of a mesh have the exposure of its leaves, also where there
+ * are pictures. Pictures are written view by view, so that many views take no more memory
+ * than one. */
 #include "tools/results.h"
 
 #include "geom/alloc.h"
@@ -9,47 +12,46 @@
 #include "io/run/output.h"
 #include "mpi/picture.h"
 
-/* Returns the tone of 8-bit colours: --exposure, or chosen from the picture or the
- * leaves. */
-static struct tone choose_tone(const struct run *run, const float *picture)
+/* Returns the tone of 8-bit colours: --exposure, or chosen from `count` pixels. */
+static struct tone choose_tone(const struct run *run, const float *rgb, int64_t count)
 {
-    int64_t pixels = (int64_t)run->camera.width * run->camera.height;
-    if (run->options.exposure > 0.0)
-        return tone_make(run->options.exposure);
-    if (picture)
-        return tone_make(tone_automatic(picture, pixels));
-    int64_t count;
-    float *colours = mesh_colours(run->solver->model.forest, &count);
-    struct tone tone = tone_make(tone_automatic(colours, count));
-    alloc_free(colours);
-    return tone;
+    double exposure = run->options.exposure;
+    return tone_make(exposure > 0.0 ? exposure : tone_automatic(rgb, count));
 }
 
-/* Writes the outputs. On rank 0 alone. */
-static void write_outputs(struct run *run, const struct shading *shading, float *picture)
+/* Writes the pictures of a view. On rank 0 alone. */
+static void write_pictures(struct run *run, int view, float *picture)
 {
-    struct tone tone = choose_tone(run, picture);
-    struct image image = {run->camera.width, run->camera.height, picture};
-    for (int i = 0; i < run->options.output_count; i++) {
-        const char *path = run->options.outputs[i];
+    const struct options *options = &run->options;
+    const struct camera *camera = &run->cameras[view];
+    struct image image = {camera->width, camera->height, picture};
+    struct tone tone =
+        choose_tone(run, picture, (int64_t)camera->width * camera->height);
+    for (int i = 0; i < options->output_count; i++) {
+        const char *path = options->outputs[i];
+        if (options->view_of[i] != view)
+            continue;
         switch (output_format_of(path)) {
         case FORMAT_PPM: ppm_write(&image, &tone, path, &run->error); break;
         case FORMAT_PFM: pfm_write(&image, path, &run->error); break;
-        case FORMAT_PLY:
-            mesh_write(shading, &tone, beyond_answer(run->solver)->error, path,
-                       &run->error);
-            break;
+        case FORMAT_PLY: break;
         }
     }
 }
 
-/* True if a mesh, or else a picture, is among the outputs. */
-static bool wants(const struct options *options, bool mesh)
+/* Writes the meshes. On rank 0 alone. */
+static void write_meshes(struct run *run, const struct shading *shading)
 {
-    for (int i = 0; i < options->output_count; i++)
-        if ((output_format_of(options->outputs[i]) == FORMAT_PLY) == mesh)
-            return true;
-    return false;
+    int64_t count;
+    float *colours = mesh_colours(run->solver->model.forest, &count);
+    struct tone tone = choose_tone(run, colours, count);
+    for (int i = 0; i < run->options.output_count; i++) {
+        const char *path = run->options.outputs[i];
+        if (!output_is_picture(path))
+            mesh_write(shading, &tone, beyond_answer(run->solver)->error, path,
+                       &run->error);
+    }
+    alloc_free(colours);
 }
 
 /* Collective. Returns the open quarters of all leaves, of which each rank examines some;
@@ -75,25 +77,61 @@ static struct shading *shade_leaves(struct run *run, const struct rgb *less,
     return shading;
 }
 
+/* All ranks choose alike. */
 static void place_camera(struct run *run)
 {
-    struct camera *camera = &run->camera;
+    struct camera *camera = run->cameras;
     double start = comm_seconds();
-    if (!run->options.view) /* all ranks choose alike */
-        *camera = viewpoint_choose(run->scene, run->octree, run->solver->model.forest,
-                                   camera->width, camera->height);
+    *camera = viewpoint_choose(run->scene, run->octree, run->solver->model.forest,
+                               camera->width, camera->height);
     run->solver->account.seconds[PHASE_VIEWPOINT] = comm_seconds() - start;
 }
 
-/* Collective. Returns the picture of the camera on rank 0, NULL on the others. Its rays
- * are not counted among the solution's. */
-static float *make_picture(struct run *run, const uint8_t *open)
+/* Collective. Returns the picture of a camera on rank 0, NULL on the others. */
+static float *make_picture(struct run *run, const struct renderer *renderer,
+                           const struct camera *camera)
 {
     const struct comm *comm = &run->comm;
+    progress_begin(&run->progress.progress, "rendering", -1, 0);
+    float *scanlines = render_scanlines(renderer, camera, run->options.samples,
+                                        comm->rank, comm->size, &run->progress.progress);
+    float *picture = picture_gather(comm, scanlines, 3 * (size_t)camera->width,
+                                    camera->height);
+    alloc_free(scanlines);
+    return picture;
+}
+
+/* Collective. Renders and writes the pictures of all views. False on an error or a
+ * signal, on all ranks. */
+static bool show_views(struct run *run, const struct renderer *renderer)
+{
+    double *seconds = run->solver->account.seconds;
+    for (int view = 0; view < run->camera_count; view++) {
+        double start = comm_seconds();
+        float *picture = make_picture(run, renderer, &run->cameras[view]);
+        bool good = run_goes_on(run);
+        double made = comm_seconds();
+        seconds[PHASE_RENDER] += made - start;
+        if (good && run->comm.rank == 0)
+            write_pictures(run, view, picture);
+        alloc_free(picture);
+        seconds[PHASE_WRITE] += comm_seconds() - made;
+        if (!run_agree(run))
+            return false;
+    }
+    return true;
+}
+
+/* Collective. Prepares the light of pictures, and shows all views. Their rays are not
+ * counted among the solution's. */
+static bool show_pictures(struct run *run, const uint8_t *open)
+{
     struct model *model = &run->solver->model;
     struct octree_counts counts = model->counts;
     int64_t estimating = model->estimating;
-    place_camera(run);
+    double start = comm_seconds();
+    if (run->options.view_count == 0)
+        place_camera(run);
     struct answer *answer = run->solver->beyond ? &run->solver->beyond->answer : NULL;
     bool gathers = answer && answer->straight && !run->options.flat;
     struct shading *shading = NULL;
@@ -103,39 +141,44 @@ static float *make_picture(struct run *run, const uint8_t *open)
         renderer_make(run->octree, shading, gathers ? &answer->gather : NULL);
     if (gathers)
         answer->gather.counts = (struct gather_counts){.rays = 0};
-    progress_begin(&run->progress.progress, "rendering", -1, 0);
-    float *scanlines = render_scanlines(&renderer, &run->camera, run->options.samples,
-                                        comm->rank, comm->size, &run->progress.progress);
-    float *picture = picture_gather(comm, scanlines, 3 * (size_t)run->camera.width,
-                                    run->camera.height);
+    run->solver->account.seconds[PHASE_RENDER] += comm_seconds() - start;
+    bool good = show_views(run, &renderer);
     if (gathers) {
         answer->counts.pixels =
             answer->gather.counts.rays + answer->gather.counts.segments;
-        comm_add(comm, &answer->counts.pixels, 1);
+        comm_add(&run->comm, &answer->counts.pixels, 1);
     }
     model->counts = counts;
     model->estimating = estimating;
     shading_destroy(shading);
-    alloc_free(scanlines);
-    return picture;
+    return good;
+}
+
+/* Collective. */
+static bool show_meshes(struct run *run, const uint8_t *open)
+{
+    double start = comm_seconds();
+    struct shading *shading = shade_leaves(run, NULL, open);
+    if (run_goes_on(run) && run->comm.rank == 0)
+        write_meshes(run, shading);
+    shading_destroy(shading);
+    run->solver->account.seconds[PHASE_WRITE] += comm_seconds() - start;
+    return run_agree(run);
 }
 
 bool results_show(struct run *run)
 {
-    double start = comm_seconds();
-    if (run->options.output_count == 0)
+    const struct options *options = &run->options;
+    bool pictures = options_show(options, 0), meshes = false;
+    for (int i = 0; i < options->output_count; i++)
+        meshes = meshes || !output_is_picture(options->outputs[i]);
+    if (!pictures && !meshes)
         return true;
+    double start = comm_seconds();
     uint8_t *open = survey_leaves(run);
-    float *picture = wants(&run->options, false) ? make_picture(run, open) : NULL;
-    struct shading *shading =
-        wants(&run->options, true) ? shade_leaves(run, NULL, open) : NULL;
     run->solver->account.seconds[PHASE_RENDER] = comm_seconds() - start;
-    start = comm_seconds();
-    if (run_goes_on(run) && run->comm.rank == 0)
-        write_outputs(run, shading, picture);
-    alloc_free(picture);
+    bool good = (!meshes || show_meshes(run, open)) &&
+                (!pictures || show_pictures(run, open));
     alloc_free(open);
-    shading_destroy(shading);
-    run->solver->account.seconds[PHASE_WRITE] += comm_seconds() - start;
-    return run_agree(run);
+    return good;
 }

@@ -13,7 +13,8 @@ struct run {
     struct comm comm;
     struct options options;
     struct scene *scene;
-    struct camera camera;
+    struct camera *cameras;        /* [camera_count] of the views; or one, chosen */
+    int camera_count;
     struct octree *octree;
     struct node_block block;       /* memory of scene and octree */
     struct solver *solver;

@@ -13,8 +13,8 @@
 #include "io/scene/camera.h"
 #include "io/scene/text.h"
 
-enum kind { KIND_FLAG, KIND_TEXT, KIND_REAL, KIND_INTEGER, KIND_OUTPUT, KIND_SIZE,
-            KIND_CHOICE, KIND_FRACTION, KIND_BYTES, KIND_GATHER, KIND_PAPER };
+enum kind { KIND_FLAG, KIND_TEXT, KIND_REAL, KIND_INTEGER, KIND_OUTPUT, KIND_VIEW,
+            KIND_SIZE, KIND_CHOICE, KIND_FRACTION, KIND_BYTES, KIND_GATHER, KIND_PAPER };
 
 struct option {
     const char *name;
@@ -28,7 +28,7 @@ struct option {
 
 static const struct option OPTIONS[] = {
     {"-o", KIND_OUTPUT, 0, 0, 0, NULL},
-    {"--view", KIND_TEXT, FIELD(view), 0, 0, NULL},
+    {"--view", KIND_VIEW, 0, 0, 0, NULL},
     {"--size", KIND_SIZE, 0, 0, 0, NULL},
     {"--samples", KIND_INTEGER, FIELD(samples), 1, 64, NULL},
     {"--exposure", KIND_REAL, FIELD(exposure), 1e-30, 1e30, NULL},
@@ -80,12 +80,28 @@ enum output_format output_format_of(const char *path)
     return text_ends_with(path, ".ply") ? FORMAT_PLY : FORMAT_PPM;
 }
 
+bool output_is_picture(const char *path)
+{
+    return output_format_of(path) != FORMAT_PLY;
+}
+
+bool options_show(const struct options *options, int view)
+{
+    for (int i = 0; i < options->output_count; i++)
+        if (options->view_of[i] == view && output_is_picture(options->outputs[i]))
+            return true;
+    return false;
+}
+
+/* A picture before all views belongs to the first. */
 static bool add_output(struct options *options, const char *path, struct error *error)
 {
     if (!text_ends_with(path, ".ppm") && !text_ends_with(path, ".pfm") &&
         !text_ends_with(path, ".ply"))
         return error_set(error, EXIT_USAGE,
                          "-o %s: the name must end in .ppm, .pfm or .ply", path);
+    int view = options->view_count - 1;
+    options->view_of[options->output_count] = view > 0 ? view : 0;
     options->outputs[options->output_count++] = path;
     return true;
 }
@@ -233,6 +249,9 @@ static bool set_value(struct options *options, const struct option *option,
     switch (option->kind) {
     case KIND_OUTPUT:
         return add_output(options, value, error);
+    case KIND_VIEW:
+        options->views[options->view_count++] = value;
+        return true;
     case KIND_SIZE:
         return set_size(options, value, error);
     case KIND_INTEGER:
@@ -277,8 +296,7 @@ static const char *written_path(const struct options *options, int i, int *count
  * checkpoint may renew it. */
 static bool check_paths(const struct options *options, struct error *error)
 {
-    const char *read[] = {options->scene, options->view, options->load_links,
-                          options->resume};
+    const char *read[] = {options->scene, options->load_links, options->resume};
     int count = 1;
     for (int i = 0; i < count; i++) {
         const char *path = written_path(options, i, &count);
@@ -287,6 +305,8 @@ static bool check_paths(const struct options *options, struct error *error)
             clash =
                 clash || (path && read[j] && strcmp(path, read[j]) == 0 &&
                           !(path == options->checkpoint && read[j] == options->resume));
+        for (int j = 0; j < options->view_count; j++)
+            clash = clash || (path && strcmp(path, options->views[j]) == 0);
         for (int j = 0; j < i; j++) {
             const char *other = written_path(options, j, &count);
             clash = clash || (path && other && strcmp(path, other) == 0);
@@ -294,6 +314,17 @@ static bool check_paths(const struct options *options, struct error *error)
         if (clash)
             return error_set(error, EXIT_USAGE, "%s is named twice", path);
     }
+    return true;
+}
+
+/* Refuses a view that no picture belongs to. */
+static bool check_views(const struct options *options, struct error *error)
+{
+    for (int view = 0; view < options->view_count; view++)
+        if (!options_show(options, view))
+            return error_set(error, EXIT_USAGE,
+                             "--view %s: no picture (-o) follows it",
+                             options->views[view]);
     return true;
 }
 
@@ -321,7 +352,7 @@ static bool check_restart(const struct options *options, struct error *error)
 static bool check_table(const struct options *options, struct error *error)
 {
     const char *other = options->output_count > 0 ? "-o"
-                        : options->view           ? "--view"
+                        : options->view_count > 0 ? "--view"
                         : options->stats          ? "--stats"
                         : options->save_links     ? "--save-links"
                         : options->load_links     ? "--load-links"
@@ -383,6 +414,8 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
                       .final_gather = -1},
     };
     options->outputs = alloc_array((size_t)argc, sizeof *options->outputs);
+    options->view_of = alloc_array((size_t)argc, sizeof *options->view_of);
+    options->views = alloc_array((size_t)argc, sizeof *options->views);
     for (int i = 1; i < argc; i++) {
         const char *argument = argv[i];
         if (argument[0] != '-' || argument[1] == '\0') {
@@ -412,8 +445,9 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         return false;
     if (!options->scene && !options->help && !options->version && !options->validate)
         return error_set(error, EXIT_USAGE, "no scene given; see --help");
-    if (options->scene && !(check_table(options, error) &&
-                            check_restart(options, error) && check_paths(options, error)))
+    if (options->scene &&
+        !(check_table(options, error) && check_views(options, error) &&
+          check_restart(options, error) && check_paths(options, error)))
         return false;
     options->every = options->every > 0 ? options->every : 1;
     return true;
@@ -477,14 +511,17 @@ const char *options_run_settings(const struct options *options)
 void options_free(struct options *options)
 {
     alloc_free((void *)options->outputs);
-    options->outputs = NULL;
+    alloc_free(options->view_of);
+    alloc_free((void *)options->views);
+    options->outputs = options->views = NULL;
+    options->view_of = NULL;
 }
 
 static const char HELP[] =
     "usage: phr [options] SCENE         or  mpiexec -n P phr [options] SCENE\n"
     "Computes the light in a diffuse scene, OBJ or PLY. Defaults in brackets.\n"
     "  -o FILE          .ppm picture, .pfm linear picture, .ply mesh; repeatable\n"
-    "  --view FILE      eye x y z, at x y z, up x y z, fov deg, size w h (chosen)\n"
+    "  --view FILE      of the -o behind it: eye x y z, at, up, fov, size (chosen)\n"
     "  --size WxH       pixels (512x512)       --samples N   N x N rays a pixel (3)\n"
     "  --exposure X     factor (automatic)     --flat        no interpolation\n"
     "  --epsilon E      error of a link (1e-4) --accuracy A  refine to this error\n"

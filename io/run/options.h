@@ -17,7 +17,10 @@ struct options {
     const char *scene;        /* path of the scene, NULL with help, version or validate */
     const char **outputs;     /* [output_count] paths of -o, borrowed; owned array */
     int output_count;
-    const char *view;         /* path of the view file, or NULL */
+    int *view_of;             /* [output_count] the view of a picture, 0 if there is no
+                                 view; owned */
+    const char **views;       /* [view_count] paths of --view, borrowed; owned array */
+    int view_count;
     const char *stats;        /* path of the JSON file, or NULL */
     const char *save_links;   /* path of the link cache to write, or NULL */
     const char *load_links;   /* path of the link cache to read, or NULL */
@@ -50,6 +53,13 @@ const char *options_run_settings(const struct options *options);
 
 /* Returns the format of an output by its suffix. Pre: options_parse() has accepted it. */
 enum output_format output_format_of(const char *path);
+
+/* True if an output is a picture, and no mesh. */
+bool output_is_picture(const char *path);
+
+/* True if a picture of the view is asked for; without --view, view 0 is the automatic
+ * one. */
+bool options_show(const struct options *options, int view);
 
 /* Prints the text of --help. */
 void options_print_help(FILE *file);

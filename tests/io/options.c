@@ -42,7 +42,7 @@ static void test_defaults(void)
     struct options options;
     tap_ok(parse("room.obj", &options) && error.code == EXIT_DONE &&
                is_same(options.scene, "room.obj") && options.output_count == 0 &&
-               !options.view && !options.stats && options.width == 0 &&
+               options.view_count == 0 && !options.stats && options.width == 0 &&
                options.height == 0 && options.exposure == 0.0,
            "a scene alone");
     tap_ok(!options.flat && !options.two_sided && !options.two_sided_lamps &&
@@ -54,13 +54,13 @@ static void test_defaults(void)
 static void test_texts(void)
 {
     struct options options;
-    tap_ok(parse("--view a.view room.obj --stats b.json", &options) &&
-               is_same(options.view, "a.view") && is_same(options.stats, "b.json") &&
+    tap_ok(parse("--resume a room.obj --stats b.json", &options) &&
+               is_same(options.resume, "a") && is_same(options.stats, "b.json") &&
                is_same(options.scene, "room.obj"),
-           "--view and --stats, before and behind the scene");
+           "--resume and --stats, before and behind the scene");
     options_free(&options);
-    tap_ok(parse("room.obj --view --flat", &options) && is_same(options.view, "--flat") &&
-               !options.flat,
+    tap_ok(parse("room.obj --stats --flat", &options) &&
+               is_same(options.stats, "--flat") && !options.flat,
            "the word behind an option is its value");
     options_free(&options);
     tap_ok(parse("-", &options) && is_same(options.scene, "-"), "a lone - is a name");
@@ -81,6 +81,29 @@ static void test_outputs(void)
                output_format_of("a.ppm.pfm") == FORMAT_PFM &&
                output_format_of("d.ppm/a.ply") == FORMAT_PLY,
            "the suffix is the format");
+}
+
+/* True if these arguments are taken, and the outputs belong to these views. */
+static bool belong(const char *arguments, int views, const int *view_of)
+{
+    struct options options;
+    bool good = parse(arguments, &options) && options.view_count == views;
+    for (int i = 0; good && i < options.output_count; i++)
+        good = options.view_of[i] == view_of[i];
+    options_free(&options);
+    return good;
+}
+
+static void test_views(void)
+{
+    tap_ok(belong("a.obj -o a.ppm -o b.pfm", 0, (const int[]){0, 0}), "no view");
+    tap_ok(belong("a.obj --view a -o a.ppm --view b -o b.pfm -o c.ppm", 2,
+                  (const int[]){0, 1, 1}),
+           "each picture belongs to the last view before it");
+    tap_ok(belong("-o a.ppm a.obj --view a", 1, (const int[]){0}) &&
+               belong("-o a.ppm --view a --view b -o b.ppm a.obj", 2,
+                      (const int[]){0, 1}),
+           "those before all views to the first");
 }
 
 static void test_switches(void)
@@ -377,6 +400,10 @@ static void test_errors(void)
     check_refused("a.obj --epsilon ten", "--epsilon: 'ten' is not a number");
     check_refused("a.obj --epsilon _", "--epsilon: '' is not a number");
     check_refused("a.obj --max-level 16", "--max-level: 16 is not between 0 and 15");
+    check_refused("a.obj --view a -o m.ply --view b -o b.ppm",
+                  "--view a: no picture (-o) follows it");
+    check_refused("a.obj --view a -o a.ppm --view b.ppm -o b.ppm",
+                  "b.ppm is named twice");
     check_refused("--flat --fast --help", "unknown option --fast; see --help");
 }
 
@@ -646,6 +673,7 @@ int main(void)
     test_defaults();
     test_texts();
     test_outputs();
+    test_views();
     test_switches();
     test_choices();
     test_enums();
