@@ -123,7 +123,7 @@ static bool probe_outputs(struct run *run)
     const struct options *options = &run->options;
     const char *others[] = {options->stats, options->save_links, options->checkpoint};
     for (int i = 0; i < options->output_count; i++)
-        if (!output_probe(options->outputs[i], &run->error))
+        if (!output_probe(options->outputs[i].path, &run->error))
             return false;
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
         if (others[i] && !output_probe(others[i], &run->error))

@@ -83,7 +83,7 @@ static bool check_outputs(struct tracing *run)
 {
     bool meshes = false;
     for (int i = 0; i < run->options.output_count; i++)
-        meshes = meshes || !output_is_picture(run->options.outputs[i]);
+        meshes = meshes || format_is_mesh(run->options.outputs[i].format);
     if (run->options.output_count == 0 || !run->options.scene)
         return error_set(&run->error, EXIT_USAGE, "%s", USAGE);
     if (run->options.view_count > 1)
@@ -153,7 +153,7 @@ static bool read_all(struct tracing *run)
     }
     for (int i = 0; i < run->options.output_count && run->comm.rank == 0; i++)
         if (run->error.code == EXIT_DONE)
-            output_probe(run->options.outputs[i], &run->error);
+            output_probe(run->options.outputs[i].path, &run->error);
     return comm_agree(&run->comm, &run->error);
 }
 
@@ -303,17 +303,18 @@ static void write_leaves(struct tracing *run, const float *halves, const char *p
     alloc_free(map);
 }
 
-static void write_picture(struct tracing *run, float *picture, const char *path)
+static void write_picture(struct tracing *run, float *picture,
+                          const struct target *target)
 {
     struct image image = {run->camera.width, run->camera.height, picture};
     double exposure = run->options.exposure;
     if (!(exposure > 0.0))
         exposure = tone_automatic(picture, (int64_t)image.width * image.height);
     struct tone tone = tone_make(exposure);
-    if (output_format_of(path) == FORMAT_PFM)
-        pfm_write(&image, path, &run->error);
+    if (target->format == FORMAT_PFM)
+        pfm_write(&image, target->path, &run->error);
     else
-        ppm_write(&image, &tone, path, &run->error);
+        ppm_write(&image, &tone, target->path, &run->error);
 }
 
 /* Collective. Prints the rays of all ranks, and the seconds of the slowest. */
@@ -335,17 +336,17 @@ static void trace_and_write(struct tracing *run)
     int64_t pixels = 0, leaves = run->solution.count;
     float *picture = NULL, *halves = run->leaves ? trace_leaves(run) : NULL;
     for (int i = 0; i < run->options.output_count; i++)
-        if (output_is_picture(run->options.outputs[i]))
+        if (!format_is_mesh(run->options.outputs[i].format))
             pixels = (int64_t)run->camera.width * run->camera.height;
     if (pixels > 0)
         picture = trace_picture(run);
     report(run, (pixels + leaves) * run->samples, comm_seconds() - start);
     for (int i = 0; i < run->options.output_count && run->comm.rank == 0; i++) {
-        const char *path = run->options.outputs[i];
-        if (output_is_picture(path))
-            write_picture(run, picture, path);
+        const struct target *target = &run->options.outputs[i];
+        if (format_is_mesh(target->format))
+            write_leaves(run, halves, target->path);
         else
-            write_leaves(run, halves, path);
+            write_picture(run, picture, target);
     }
     if (halves && run->comm.rank == 0 && !run->options.quiet)
         print_norms(run, halves);

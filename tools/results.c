@@ -28,10 +28,11 @@ static void write_pictures(struct run *run, int view, float *picture)
     struct tone tone =
         choose_tone(run, picture, (int64_t)camera->width * camera->height);
     for (int i = 0; i < options->output_count; i++) {
-        const char *path = options->outputs[i];
-        if (options->view_of[i] != view)
+        const struct target *target = &options->outputs[i];
+        const char *path = target->path;
+        if (target->view != view)
             continue;
-        switch (output_format_of(path)) {
+        switch (target->format) {
         case FORMAT_PPM: ppm_write(&image, &tone, path, &run->error); break;
         case FORMAT_PFM: pfm_write(&image, path, &run->error); break;
         case FORMAT_PLY: break;
@@ -46,9 +47,9 @@ static void write_meshes(struct run *run, const struct shading *shading)
     float *colours = mesh_colours(run->solver->model.forest, &count);
     struct tone tone = choose_tone(run, colours, count);
     for (int i = 0; i < run->options.output_count; i++) {
-        const char *path = run->options.outputs[i];
-        if (!output_is_picture(path))
-            mesh_write(shading, &tone, beyond_answer(run->solver)->error, path,
+        const struct target *target = &run->options.outputs[i];
+        if (format_is_mesh(target->format))
+            mesh_write(shading, &tone, beyond_answer(run->solver)->error, target->path,
                        &run->error);
     }
     alloc_free(colours);
@@ -171,7 +172,7 @@ bool results_show(struct run *run)
     const struct options *options = &run->options;
     bool pictures = options_show(options, 0), meshes = false;
     for (int i = 0; i < options->output_count; i++)
-        meshes = meshes || !output_is_picture(options->outputs[i]);
+        meshes = meshes || format_is_mesh(options->outputs[i].format);
     if (!pictures && !meshes)
         return true;
     double start = comm_seconds();

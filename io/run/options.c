@@ -5,6 +5,7 @@
  * tests/io/options.c compares the two, tests/52-words.sh the man page. */
 #include "io/run/options.h"
 
+#include <ctype.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
@@ -73,37 +74,87 @@ static const struct option *find_option(const char *name)
     return NULL;
 }
 
-enum output_format output_format_of(const char *path)
+/* A format of outputs: its name is a prefix and a suffix, too. */
+struct format {
+    const char *name;
+    bool is_mesh;
+};
+
+static const struct format FORMATS[] = {
+    [FORMAT_PPM] = {"ppm", false},
+    [FORMAT_PFM] = {"pfm", false},
+    [FORMAT_PLY] = {"ply", true},
+};
+enum { FORMAT_COUNT = sizeof FORMATS / sizeof FORMATS[0] };
+
+bool format_is_mesh(enum output_format format)
 {
-    if (text_ends_with(path, ".pfm"))
-        return FORMAT_PFM;
-    return text_ends_with(path, ".ply") ? FORMAT_PLY : FORMAT_PPM;
+    return FORMATS[format].is_mesh;
 }
 
-bool output_is_picture(const char *path)
+/* Returns the length of "FORMAT:" at the start of an argument, or 0. */
+static size_t prefix_length(const char *argument, const char *format)
 {
-    return output_format_of(path) != FORMAT_PLY;
+    size_t i = 0;
+    while (format[i] && tolower((unsigned char)argument[i]) == format[i])
+        i++;
+    return !format[i] && argument[i] == ':' ? i + 1 : 0;
+}
+
+bool target_parse(struct target *target, const char *argument)
+{
+    char suffix[16];
+    for (int i = 0; i < FORMAT_COUNT; i++) {
+        size_t prefix = prefix_length(argument, FORMATS[i].name);
+        *target = (struct target){argument + prefix, (enum output_format)i, 0};
+        if (prefix > 0)
+            return argument[prefix] != '\0';
+    }
+    for (int i = 0; i < FORMAT_COUNT; i++) {
+        snprintf(suffix, sizeof suffix, ".%s", FORMATS[i].name);
+        *target = (struct target){argument, (enum output_format)i, 0};
+        if (text_ends_with(argument, suffix))
+            return true;
+    }
+    return false;
+}
+
+/* Writes ".ppm, .pfm or .ply". */
+static void list_suffixes(char *text, size_t room)
+{
+    size_t at = 0;
+    for (int i = 0; i < FORMAT_COUNT; i++)
+        at += (size_t)snprintf(text + at, room - at, "%s.%s",
+                               i == 0                  ? ""
+                               : i == FORMAT_COUNT - 1 ? " or "
+                                                       : ", ",
+                               FORMATS[i].name);
 }
 
 bool options_show(const struct options *options, int view)
 {
     for (int i = 0; i < options->output_count; i++)
-        if (options->view_of[i] == view && output_is_picture(options->outputs[i]))
+        if (options->outputs[i].view == view &&
+            !format_is_mesh(options->outputs[i].format))
             return true;
     return false;
 }
 
 /* A picture before all views belongs to the first. */
-static bool add_output(struct options *options, const char *path, struct error *error)
+static bool add_output(struct options *options, const char *argument,
+                       struct error *error)
 {
-    if (!text_ends_with(path, ".ppm") && !text_ends_with(path, ".pfm") &&
-        !text_ends_with(path, ".ply"))
-        return error_set(error, EXIT_USAGE,
-                         "-o %s: the name must end in .ppm, .pfm or .ply", path);
-    int view = options->view_count - 1;
-    options->view_of[options->output_count] = view > 0 ? view : 0;
-    options->outputs[options->output_count++] = path;
-    return true;
+    char suffixes[8 * FORMAT_COUNT];
+    struct target *target = &options->outputs[options->output_count];
+    if (target_parse(target, argument)) {
+        target->view = options->view_count > 0 ? options->view_count - 1 : 0;
+        options->output_count++;
+        return true;
+    }
+    list_suffixes(suffixes, sizeof suffixes);
+    return error_set(error, EXIT_USAGE,
+                     "-o %s: the name must end in %s, or be FORMAT:FILE, as in ppm:FILE",
+                     argument, suffixes);
 }
 
 static bool parse_number(const struct option *option, const char *value, double *number,
@@ -288,7 +339,7 @@ static const char *written_path(const struct options *options, int i, int *count
     const char *others[] = {options->stats, options->save_links, options->checkpoint};
     int last = (int)(sizeof others / sizeof others[0]);
     *count = options->output_count + last;
-    return i < options->output_count ? options->outputs[i]
+    return i < options->output_count ? options->outputs[i].path
                                      : others[i - options->output_count];
 }
 
@@ -414,7 +465,6 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
                       .final_gather = -1},
     };
     options->outputs = alloc_array((size_t)argc, sizeof *options->outputs);
-    options->view_of = alloc_array((size_t)argc, sizeof *options->view_of);
     options->views = alloc_array((size_t)argc, sizeof *options->views);
     for (int i = 1; i < argc; i++) {
         const char *argument = argv[i];
@@ -510,17 +560,16 @@ const char *options_run_settings(const struct options *options)
 
 void options_free(struct options *options)
 {
-    alloc_free((void *)options->outputs);
-    alloc_free(options->view_of);
+    alloc_free(options->outputs);
     alloc_free((void *)options->views);
-    options->outputs = options->views = NULL;
-    options->view_of = NULL;
+    options->outputs = NULL;
+    options->views = NULL;
 }
 
 static const char HELP[] =
     "usage: phr [options] SCENE         or  mpiexec -n P phr [options] SCENE\n"
     "Computes the light in a diffuse scene, OBJ or PLY. Defaults in brackets.\n"
-    "  -o FILE          .ppm picture, .pfm linear picture, .ply mesh; repeatable\n"
+    "  -o [FORMAT:]FILE .ppm picture, .pfm linear picture, .ply mesh; repeatable\n"
     "  --view FILE      of the -o behind it: eye x y z, at, up, fov, size (chosen)\n"
     "  --size WxH       pixels (512x512)       --samples N   N x N rays a pixel (3)\n"
     "  --exposure X     factor (automatic)     --flat        no interpolation\n"

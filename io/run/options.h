@@ -11,14 +11,20 @@
 
 #define PHR_VERSION "0.3"
 
+/* Formats of outputs, in the order of the table in io/run/options.c. */
 enum output_format { FORMAT_PPM, FORMAT_PFM, FORMAT_PLY };
+
+/* An output of -o. */
+struct target {
+    const char *path;         /* borrowed */
+    enum output_format format;
+    int view;                 /* of a picture, 0 if there is no view */
+};
 
 struct options {
     const char *scene;        /* path of the scene, NULL with help, version or validate */
-    const char **outputs;     /* [output_count] paths of -o, borrowed; owned array */
+    struct target *outputs;   /* [output_count] owned */
     int output_count;
-    int *view_of;             /* [output_count] the view of a picture, 0 if there is no
-                                 view; owned */
     const char **views;       /* [view_count] paths of --view, borrowed; owned array */
     int view_count;
     const char *stats;        /* path of the JSON file, or NULL */
@@ -51,11 +57,12 @@ void options_free(struct options *options);
 const char *options_link_settings(const struct options *options);
 const char *options_run_settings(const struct options *options);
 
-/* Returns the format of an output by its suffix. Pre: options_parse() has accepted it. */
-enum output_format output_format_of(const char *path);
+/* True if the format is a mesh, false if it is a picture. */
+bool format_is_mesh(enum output_format format);
 
-/* True if an output is a picture, and no mesh. */
-bool output_is_picture(const char *path);
+/* Reads FORMAT:FILE, or a file whose suffix is a format; its view is 0. False if it is
+ * neither. */
+bool target_parse(struct target *target, const char *argument);
 
 /* True if a picture of the view is asked for; without --view, view 0 is the automatic
  * one. */

@@ -71,16 +71,33 @@ static void test_outputs(void)
 {
     struct options options;
     tap_ok(parse("-o a.ppm room.obj -o b.ply -o d/c.pfm", &options) &&
-               options.output_count == 3 && is_same(options.outputs[0], "a.ppm") &&
-               is_same(options.outputs[1], "b.ply") &&
-               is_same(options.outputs[2], "d/c.pfm"),
+               options.output_count == 3 && is_same(options.outputs[0].path, "a.ppm") &&
+               is_same(options.outputs[1].path, "b.ply") &&
+               is_same(options.outputs[2].path, "d/c.pfm"),
            "-o, three times");
     options_free(&options);
     tap_ok(!options.outputs, "options_free() forgets the outputs");
-    tap_ok(output_format_of("a.PPM") == FORMAT_PPM &&
-               output_format_of("a.ppm.pfm") == FORMAT_PFM &&
-               output_format_of("d.ppm/a.ply") == FORMAT_PLY,
-           "the suffix is the format");
+    static const struct {
+        const char *argument, *path;
+        enum output_format format;
+    } TARGETS[] = {
+        {"a.PPM", "a.PPM", FORMAT_PPM},
+        {"a.ppm.pfm", "a.ppm.pfm", FORMAT_PFM},
+        {"d.ppm/a.ply", "d.ppm/a.ply", FORMAT_PLY},
+        {"ppm:a", "a", FORMAT_PPM},
+        {"PLY:a.ppm", "a.ppm", FORMAT_PLY},
+        {"pfm:/dev/stdout", "/dev/stdout", FORMAT_PFM},
+        {"pfm:ppm:a", "ppm:a", FORMAT_PFM},
+        {"./ppm:a.ply", "./ppm:a.ply", FORMAT_PLY},
+        {"ppm1:a.ply", "ppm1:a.ply", FORMAT_PLY},
+    };
+    for (size_t i = 0; i < sizeof TARGETS / sizeof TARGETS[0]; i++) {
+        struct target target;
+        tap_ok(target_parse(&target, TARGETS[i].argument) &&
+                   is_same(target.path, TARGETS[i].path) &&
+                   target.format == TARGETS[i].format,
+               "a prefix or the suffix is the format: %s", TARGETS[i].argument);
+    }
 }
 
 /* True if these arguments are taken, and the outputs belong to these views. */
@@ -89,7 +106,7 @@ static bool belong(const char *arguments, int views, const int *view_of)
     struct options options;
     bool good = parse(arguments, &options) && options.view_count == views;
     for (int i = 0; good && i < options.output_count; i++)
-        good = options.view_of[i] == view_of[i];
+        good = options.outputs[i].view == view_of[i];
     options_free(&options);
     return good;
 }
@@ -528,12 +545,13 @@ static void test_settings(void)
 static void test_bad_suffixes(void)
 {
     static const char *const names[] = {"a", "a.png", "a.ppm.gz", ".ppm", "ppm",
-                                        "a.ppm/"};
-    char line[50], message[100];
+                                        "a.ppm/", "ppm:"};
+    char line[50], message[150];
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         snprintf(line, sizeof line, "a.obj -o %s", names[i]);
         snprintf(message, sizeof message,
-                 "-o %s: the name must end in .ppm, .pfm or .ply", names[i]);
+                 "-o %s: the name must end in .ppm, .pfm or .ply, "
+                 "or be FORMAT:FILE, as in ppm:FILE", names[i]);
         check_refused(line, message);
     }
 }
