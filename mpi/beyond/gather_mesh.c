@@ -80,24 +80,65 @@ static int rank_of_next(int64_t *dealt, int ranks)
 
 /* --- open roots --- */
 
+struct root_area {
+    double area; /* square scene units */
+    int32_t root;
+};
+
+/* Largest first. */
+static int compare_areas(const void *left, const void *right)
+{
+    const struct root_area *a = left, *b = right;
+    int order = (a->area < b->area) - (a->area > b->area);
+    return order != 0 ? order : (a->root > b->root) - (a->root < b->root);
+}
+
+/* Returns all roots, largest first. */
+static struct root_area *sort_roots(const struct scene *scene, int32_t roots)
+{
+    struct root_area *sorted = alloc_array((size_t)roots, sizeof *sorted);
+    for (int32_t root = 0; root < roots; root++)
+        sorted[root] = (struct root_area){scene_root_area(scene, root), root};
+    qsort(sorted, (size_t)roots, sizeof *sorted, compare_areas);
+    return sorted;
+}
+
+/* Collective. Proves roots [begin, end) of `sorted` open or not; each rank does some. */
+static void prove_roots(struct looking *l, const struct root_area *sorted, int32_t begin,
+                        int32_t end, uint8_t *open)
+{
+    const struct comm *comm = l->solver->comm;
+    int64_t dealt = 0;
+    for (int32_t i = begin; i < end && !stop_is_asked(); i++)
+        if (rank_of_next(&dealt, comm->size) == comm->rank)
+            open[i] = final_gather_root_is_open(&l->gather, sorted[i].root);
+    comm_add_bytes(comm, open + begin, end - begin);
+}
+
 /* Collective. Finds the open roots. Exact rows are dear, and their mesh is that of the
  * links, which is good where nothing casts shadows: there are exact rows only if half of
- * the scene's area is open. */
+ * the scene's area is open. Large roots are examined first, those of about the same area
+ * together, until that is out of reach. */
 static void find_open_roots(struct looking *l)
 {
-    const struct solver *solver = l->solver;
-    const struct scene *scene = solver->model.scene;
-    int32_t roots = scene_root_count(scene);
-    double area = 0.0;
+    const struct model *model = &l->solver->model;
+    int32_t roots = scene_root_count(model->scene), end;
+    struct root_area *sorted = sort_roots(model->scene, roots);
+    uint8_t *open = alloc_array((size_t)roots, sizeof *open);
+    double blocked = 0.0;
     l->open = alloc_array((size_t)roots, sizeof *l->open);
-    for (int32_t root = solver->comm->rank; root < roots && !stop_is_asked();
-         root += solver->comm->size)
-        l->open[root] = final_gather_root_is_open(&l->gather, root);
-    comm_add_bytes(solver->comm, l->open, roots);
-    for (int32_t root = 0; root < roots; root++)
-        area += l->open[root] ? scene_root_area(scene, root) : 0.0;
-    if (!(2.0 * area >= solver->model.area))
-        memset(l->open, 0, (size_t)roots);
+    for (int32_t begin = 0; begin < roots && 2.0 * blocked <= model->area; begin = end) {
+        for (end = begin; end < roots && 2.0 * sorted[end].area >= sorted[begin].area;)
+            end++;
+        prove_roots(l, sorted, begin, end, open);
+        for (int32_t i = begin; i < end; i++)
+            blocked += open[i] ? 0.0 : sorted[i].area;
+    }
+    if (2.0 * blocked <= model->area)
+        for (int32_t i = 0; i < roots; i++)
+            l->open[sorted[i].root] = open[i];
+    alloc_free(open);
+    alloc_free(sorted);
 }
 
 /* --- looks --- */
