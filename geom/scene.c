@@ -165,6 +165,21 @@ static int64_t clamp_reflectances(struct scene *scene)
     return clamped;
 }
 
+/* Computes areas and planes. Returns the number of triangles without area. */
+static int64_t measure_triangles(struct scene *scene)
+{
+    int64_t degenerate = 0;
+    for (int32_t i = 0; i < scene->input_count; i++) {
+        if (triangle_is_degenerate(&scene->triangles[i])) {
+            degenerate++;
+            continue;
+        }
+        scene->areas[i] = triangle_area(&scene->triangles[i]);
+        scene->planes[i] = triangle_plane(&scene->triangles[i]);
+    }
+    return degenerate;
+}
+
 bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
                    struct error *error)
 {
@@ -173,18 +188,24 @@ bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
     if (!normalise(scene, error))
         return false;
     repairs->clamped = clamp_reflectances(scene);
-    repairs->degenerate = 0;
-    for (int32_t i = 0; i < scene->input_count; i++) {
-        if (triangle_is_degenerate(&scene->triangles[i])) {
-            repairs->degenerate++;
-            continue;
-        }
-        scene->areas[i] = triangle_area(&scene->triangles[i]);
-        scene->planes[i] = triangle_plane(&scene->triangles[i]);
-    }
+    repairs->degenerate = measure_triangles(scene);
     if (repairs->degenerate == scene->input_count)
         return error_set(error, EXIT_USAGE, "all faces of the scene are degenerate");
     return true;
+}
+
+void scene_restore(struct scene *scene, struct vec3 centre, int32_t exponent)
+{
+    scene->centre = centre;
+    scene->exponent = exponent;
+    find_bounds(scene);
+    measure_triangles(scene);
+}
+
+void scene_drop(struct scene *scene, int32_t input)
+{
+    scene->areas[input] = 0.0;
+    scene->planes[input] = (struct plane){{0.0, 0.0, 0.0}, 0.0};
 }
 
 int32_t scene_root_count(const struct scene *scene)

@@ -85,6 +85,13 @@ void scene_set_groups(struct scene *scene, int32_t count, int64_t bytes);
 bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
                    struct error *error);
 
+/* Prepares, in place of scene_prepare(), a scene whose positions are in scene units, with
+ * the centre and the exponent that they have come by. */
+void scene_restore(struct scene *scene, struct vec3 centre, int32_t exponent);
+
+/* Drops a triangle from a prepared scene. */
+void scene_drop(struct scene *scene, int32_t input);
+
 /* Number of roots, twins and dropped ones included: IDs run from 0 to this. Where a
  * triangle has no twin, the twin's root is absent: its area is 0, and so is its plane. */
 int32_t scene_root_count(const struct scene *scene);

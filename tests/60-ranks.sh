@@ -91,11 +91,25 @@ power() {
     stat_of "$work/$1/s.json" emitted_power
 }
 
-# roots NAME: the roots of the leaves in the mesh, as ranges "FIRST-LAST ". A face has 37
-# bytes.
+# faces FILE: "FIRST COUNT SIZE" of the faces of a mesh: the place of the first byte, and
+# bytes of a face.
+faces() {
+    LC_ALL=C sed '/^end_header/q' "$1" | awk '
+        BEGIN { size["uchar"] = 1; size["int"] = size["uint"] = size["float"] = 4 }
+        { first += length($0) + 1 }
+        $1 == "element" { element = $2; count[element] = $3 }
+        $2 == "list" { bytes[element] += 1 + 3 * 4 }
+        $1 == "property" { bytes[element] += size[$2] }
+        END { print first + count["vertex"] * bytes["vertex"] + 1, count["face"],
+                  bytes["face"] }'
+}
+
+# roots NAME: the roots of the leaves in the mesh, as ranges "FIRST-LAST ".
 roots() {
-    faces=$(LC_ALL=C sed -n 's/^element face //p; /^end_header/q' "$work/$1/a.ply")
-    tail -c $((37 * faces)) "$work/$1/a.ply" | od -An -v -w37 -t u1 | awk '
+    faces "$work/$1/a.ply" >"$work/faces"
+    read -r first count size <"$work/faces"
+    tail -c +"$first" "$work/$1/a.ply" | head -c $((count * size)) |
+        od -An -v -w"$size" -t u1 | awk '
         { root = $26 + 256 * $27 }
         NR == 1 { first = root }
         NR > 1 && root > last + 1 { printf "%d-%d ", first, last; first = root }

@@ -16,7 +16,6 @@
 
 #include "geom/alloc.h"
 #include "io/picture/mesh.h"
-#include "io/scene/plyfile.h"
 
 static double ratio(double a, double b)
 {
@@ -126,146 +125,7 @@ struct difference compare_images(const struct image *a, const struct image *b, i
 
 /* --- solutions --- */
 
-static const int64_t ROOT_UNITS = (int64_t)1 << 2 * ID_MAX_LEVEL;
-
-struct solution_reader {
-    struct ply_file file;
-    struct vec3 *vertices;
-    int64_t vertex_count;
-    struct error *error;
-};
-
-static bool read_vertices(struct solution_reader *reader,
-                          const struct ply_element *element)
-{
-    const double *value = reader->file.value;
-    reader->vertices = alloc_array((size_t)element->count, sizeof *reader->vertices);
-    for (int64_t i = 0; i < element->count; i++) {
-        if (!ply_file_record(&reader->file, element, i, reader->error))
-            return false;
-        reader->vertices[i] = (struct vec3){value[PLY_X], value[PLY_Y], value[PLY_Z]};
-    }
-    reader->vertex_count = element->count;
-    return true;
-}
-
-/* Takes the leaf of the current record. */
-static bool take_leaf(const struct solution_reader *reader, struct solution_leaf *leaf)
-{
-    const struct ply_file *file = &reader->file;
-    const double *value = file->value;
-    bool good = file->corner_count == 3 && value[PLY_ROOT] >= 0.0 &&
-                value[PLY_ROOT] <= UINT32_MAX && value[PLY_HIERARCHY] >= 1.0 &&
-                value[PLY_HIERARCHY] <= UINT32_MAX;
-    for (int k = 0; good && k < 3; k++)
-        good = file->corners[k] < reader->vertex_count;
-    struct patch_id id = {0, 0};
-    if (good)
-        id = (struct patch_id){(uint32_t)value[PLY_ROOT], (uint32_t)value[PLY_HIERARCHY]};
-    if (!good || !id_is_valid(id))
-        return ply_fail(file, reader->error, "not a leaf of a solution");
-    int level = id_level(id), below = 2 * (ID_MAX_LEVEL - level);
-    int64_t path = (int64_t)id.hierarchy - ((int64_t)1 << 2 * level);
-    *leaf = (struct solution_leaf){
-        .id = id, .start = path << below, .end = (path + 1) << below};
-    for (int k = 0; k < 3; k++)
-        leaf->triangle.corner[k] = reader->vertices[file->corners[k]];
-    for (int c = 0; c < BANDS; c++)
-        leaf->radiosity.band[c] = value[PLY_RADIOSITY_R + c];
-    leaf->area = triangle_area(&leaf->triangle);
-    return true;
-}
-
-/* True if `leaf` begins at the end of `before`, or both are at the ends of roots. */
-static bool is_in_order(const struct solution_leaf *before,
-                        const struct solution_leaf *leaf)
-{
-    if (before && before->end < ROOT_UNITS)
-        return leaf->id.root == before->id.root && leaf->start == before->end;
-    return leaf->start == 0 && (!before || leaf->id.root > before->id.root);
-}
-
-static bool read_leaves(struct solution_reader *reader, const struct ply_element *element,
-                        struct solution *solution)
-{
-    solution->leaves = alloc_array((size_t)element->count, sizeof *solution->leaves);
-    for (int64_t i = 0; i < element->count; i++) {
-        if (!ply_file_record(&reader->file, element, i, reader->error) ||
-            !take_leaf(reader, &solution->leaves[i]))
-            return false;
-        if (!is_in_order(i > 0 ? &solution->leaves[i - 1] : NULL, &solution->leaves[i]))
-            return ply_fail(&reader->file, reader->error,
-                            "the leaves are not those of whole roots");
-    }
-    solution->count = element->count;
-    if (solution->leaves[solution->count - 1].end < ROOT_UNITS)
-        return ply_fail(&reader->file, reader->error, "the last root is not whole");
-    return true;
-}
-
-/* True if the file has vertices and, after them, the faces of a solution. */
-static bool is_solution(const struct ply_file *file)
-{
-    const struct ply_element *vertex = ply_file_find(file, PLY_VERTEX);
-    const struct ply_element *face = ply_file_find(file, PLY_FACE);
-    if (!vertex || !face || vertex > face || face->count == 0)
-        return false;
-    for (int field = PLY_X; field <= PLY_Z; field++)
-        if (vertex->type_of[field] == PLY_NONE)
-            return false;
-    for (int field = PLY_RADIOSITY_R; field <= PLY_CORNERS; field++)
-        if (face->type_of[field] == PLY_NONE)
-            return false;
-    return true;
-}
-
-static bool read_solution(struct solution_reader *reader, struct solution *solution)
-{
-    struct ply_file *file = &reader->file;
-    if (!is_solution(file))
-        return error_set(reader->error, EXIT_USAGE,
-                         "%s: a mesh, but not a solution of phr", file->binary.path);
-    bool good = true;
-    for (int64_t i = 0; good && i < file->header.element_count; i++) {
-        const struct ply_element *element = &file->header.elements[i];
-        switch (element->kind) {
-        case PLY_VERTEX: good = read_vertices(reader, element); break;
-        case PLY_FACE: good = read_leaves(reader, element, solution); break;
-        case PLY_OTHER: good = ply_file_skip(file, element, reader->error); break;
-        }
-    }
-    return good && ply_file_end(file, reader->error);
-}
-
-bool solution_of_binary(struct solution *solution, const struct binary *binary,
-                        struct error *error)
-{
-    struct solution_reader reader = {.error = error};
-    *solution = (struct solution){0};
-    bool good =
-        ply_file_open(&reader.file, binary, error) && read_solution(&reader, solution);
-    ply_file_close(&reader.file);
-    alloc_free(reader.vertices);
-    if (!good)
-        solution_free(solution);
-    return good;
-}
-
-bool solution_read(struct solution *solution, const char *path, struct error *error)
-{
-    struct binary binary;
-    *solution = (struct solution){0};
-    return ply_file_load(&binary, path, error) &&
-           solution_of_binary(solution, &binary, error);
-}
-
-void solution_free(struct solution *solution)
-{
-    alloc_free(solution->leaves);
-    *solution = (struct solution){0};
-}
-
-bool compare_solutions(const struct solution *a, const struct solution *b,
+bool compare_solutions(const struct solution_mesh *a, const struct solution_mesh *b,
                        struct difference *difference, struct rgb *map,
                        struct error *error)
 {
@@ -297,14 +157,15 @@ static float as_float(double x)
     return x < (double)FLT_MAX ? (float)x : FLT_MAX;
 }
 
-bool solution_write(const struct solution *solution, const struct rgb *map, double white,
+bool solution_write(const struct solution_mesh *solution, const struct rgb *map, double white,
                     const char *path, struct error *error)
 {
     struct tone tone = tone_make(white > 0.0 ? 1.0 / white : 1.0);
     struct output output;
     if (!output_open(&output, path, error))
         return false;
-    mesh_write_header(&output, 3 * solution->count, solution->count, false);
+    mesh_write_header(&output, 3 * solution->count, solution->count);
+    solution_write_header(&output, solution->scene, false);
     for (int64_t i = 0; i < 3 * solution->count; i++) {
         struct vec3 x = solution->leaves[i / 3].triangle.corner[i % 3];
         for (int axis = 0; axis < 3; axis++)
@@ -321,5 +182,7 @@ bool solution_write(const struct solution *solution, const struct rgb *map, doub
         output_uint32(&output, solution->leaves[i].id.root);
         output_uint32(&output, solution->leaves[i].id.hierarchy);
     }
+    solution_write_scene(&output, solution->scene,
+                         &(struct solution_lamps){.known = false});
     return output_close(&output, error);
 }

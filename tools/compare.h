@@ -8,7 +8,7 @@
 #include "geom/error.h"
 #include "geom/triangle.h"
 #include "io/picture/image.h"
-#include "rad/id.h"
+#include "io/picture/solution.h"
 
 /* Sums over all bands of all pixels or blocks of pixels, or of all leaves weighted by
  * area. Samples that are not finite on either side are counted and left out of the
@@ -40,36 +40,11 @@ double difference_psnr(const struct difference *difference, double peak);
 struct difference compare_images(const struct image *a, const struct image *b, int side,
                                  double most, struct image *map);
 
-struct solution_leaf {
-    struct patch_id id;
-    struct triangle triangle; /* input units */
-    int64_t start, end;       /* interval of the root, in 4^15ths of its area */
-    double area;              /* square input units */
-    struct rgb radiosity;     /* W/m^2 */
-};
-
-/* A solution mesh of phr: its leaves, in their order. */
-struct solution {
-    struct solution_leaf *leaves; /* [count] */
-    int64_t count;
-};
-
-/* Reads a mesh. To be freed with solution_free().
- * Errors: those of ply_read(); a property of io/picture/mesh.h is missing; the leaves of
- * a root leave gaps or overlap. EXIT_USAGE. */
-bool solution_read(struct solution *solution, const char *path, struct error *error);
-
-/* Does the same with a file in memory, which it frees. */
-bool solution_of_binary(struct solution *solution, const struct binary *binary,
-                        struct error *error);
-
-void solution_free(struct solution *solution);
-
 /* Compares solution a with b, the expected one, by area and band. Where one is divided
  * more finely, the leaf of the other is compared with each of the leaves in it. `map`,
  * [a->count], receives the mean of |a - b| over each leaf of a.
  * Errors: their roots differ (EXIT_USAGE). */
-bool compare_solutions(const struct solution *a, const struct solution *b,
+bool compare_solutions(const struct solution_mesh *a, const struct solution_mesh *b,
                        struct difference *difference, struct rgb *map,
                        struct error *error);
 
@@ -77,7 +52,7 @@ bool compare_solutions(const struct solution *a, const struct solution *b,
  * as a mesh of the same format, flat; the value `white` becomes full white in its
  * colours.
  * Errors: as output_close(). */
-bool solution_write(const struct solution *solution, const struct rgb *map, double white,
+bool solution_write(const struct solution_mesh *solution, const struct rgb *map, double white,
                     const char *path, struct error *error);
 
 #endif

@@ -197,10 +197,10 @@ static bool diff_images(const struct request *request, struct difference *differ
 static bool diff_solutions(const struct request *request, struct difference *difference,
                            struct error *error)
 {
-    struct solution a = {0}, b = {0};
+    struct solution_mesh a = {0}, b = {0};
     struct rgb *map = NULL;
-    bool good = solution_read(&a, request->paths[0], error) &&
-                solution_read(&b, request->paths[1], error);
+    bool good = solution_mesh_read(&a, request->paths[0], error) &&
+                solution_mesh_read(&b, request->paths[1], error);
     if (good) {
         map = alloc_array((size_t)a.count, sizeof *map);
         good = compare_solutions(&a, &b, difference, map, error);
@@ -211,8 +211,8 @@ static bool diff_solutions(const struct request *request, struct difference *dif
             good = solution_write(&a, map, difference->largest, request->output, error);
     }
     alloc_free(map);
-    solution_free(&a);
-    solution_free(&b);
+    solution_mesh_free(&a);
+    solution_mesh_free(&b);
     return good;
 }
 

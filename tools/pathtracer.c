@@ -48,7 +48,7 @@ struct tracing {
     struct scene *scene;
     struct octree *octree;
     struct camera camera;
-    struct solution solution; /* of --leaves */
+    struct solution_mesh solution; /* of --leaves */
     struct pathtracer pathtracer;
     struct error error;
 };
@@ -115,7 +115,7 @@ static bool read_leaves(struct tracing *run)
 {
     if (!run->leaves)
         return true;
-    if (!solution_read(&run->solution, run->leaves, &run->error))
+    if (!solution_mesh_read(&run->solution, run->leaves, &run->error))
         return false;
     for (int64_t i = 0; i < run->solution.count; i++) {
         uint32_t root = run->solution.leaves[i].id.root;
@@ -259,7 +259,7 @@ static double over(double a, double b)
 /* Prints the norms over all leaves that reflect. */
 static void print_norms(const struct tracing *run, const float *halves)
 {
-    const struct solution *solution = &run->solution;
+    const struct solution_mesh *solution = &run->solution;
     struct norms norms = {.count = 0};
     norms.offs = alloc_array((size_t)solution->count, sizeof *norms.offs);
     for (int64_t i = 0; i < solution->count; i++) {
@@ -357,7 +357,7 @@ static void trace_and_write(struct tracing *run)
 static void release(struct tracing *run)
 {
     pathtracer_free(&run->pathtracer);
-    solution_free(&run->solution);
+    solution_mesh_free(&run->solution);
     octree_destroy(run->octree);
     scene_destroy(run->scene);
     options_free(&run->options);

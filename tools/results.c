@@ -46,11 +46,14 @@ static void write_meshes(struct run *run, const struct shading *shading)
     int64_t count;
     float *colours = mesh_colours(run->solver->model.forest, &count);
     struct tone tone = choose_tone(run, colours, count);
+    const struct answer *answer = beyond_answer(run->solver);
+    struct mesh_answer solved = {
+        answer->error, answer->straight,
+        {answer->straight, answer->gather.lamps.least, answer->gather.mean}};
     for (int i = 0; i < run->options.output_count; i++) {
         const struct target *target = &run->options.outputs[i];
         if (format_is_mesh(target->format))
-            mesh_write(shading, &tone, beyond_answer(run->solver)->error, target->path,
-                       &run->error);
+            mesh_write(shading, &tone, &solved, target->path, &run->error);
     }
     alloc_free(colours);
 }

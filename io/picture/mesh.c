@@ -25,8 +25,7 @@ static int32_t next_leaf(const struct forest *forest, int32_t p)
     }
 }
 
-void mesh_write_header(struct output *output, int64_t vertices, int64_t faces,
-                       bool errors)
+void mesh_write_header(struct output *output, int64_t vertices, int64_t faces)
 {
     fprintf(output->file,
             "ply\nformat binary_little_endian 1.0\n"
@@ -38,9 +37,8 @@ void mesh_write_header(struct output *output, int64_t vertices, int64_t faces,
             "property list uchar int vertex_indices\n"
             "property float radiosity_r\nproperty float radiosity_g\n"
             "property float radiosity_b\n"
-            "property uint root\nproperty uint hierarchy\n%send_header\n",
-            (long long)vertices, (long long)faces,
-            errors ? "property float error\n" : "");
+            "property uint root\nproperty uint hierarchy\n",
+            (long long)vertices, (long long)faces);
 }
 
 static void write_vertices(struct output *output, const struct shading *shading,
@@ -56,7 +54,8 @@ static void write_vertices(struct output *output, const struct shading *shading,
     }
 }
 
-static void write_face(struct output *output, const struct shading *shading, int32_t leaf)
+static void write_face(struct output *output, const struct shading *shading,
+                       const struct mesh_answer *answer, int32_t leaf)
 {
     const struct patch *patch = &shading->forest->patches[leaf];
     putc(3, output->file);
@@ -66,24 +65,30 @@ static void write_face(struct output *output, const struct shading *shading, int
         output_float(output, (float)shading->forest->radiosity[leaf].band[c]);
     output_uint32(output, patch->id.root);
     output_uint32(output, patch->id.hierarchy);
+    if (answer->error)
+        output_float(output, answer->error[leaf]);
+    for (int c = 0; c < BANDS && answer->straight; c++)
+        output_float(output, (float)answer->straight[leaf].band[c]);
 }
 
 bool mesh_write(const struct shading *shading, const struct tone *tone,
-                const float *errors, const char *path, struct error *error)
+                const struct mesh_answer *answer, const char *path, struct error *error)
 {
     const struct forest *forest = shading->forest;
     struct output output;
     if (!output_open(&output, path, error))
         return false;
-    mesh_write_header(&output, shading->vertex_count, forest_leaf_count(forest),
-                      errors != NULL);
+    mesh_write_header(&output, shading->vertex_count, forest_leaf_count(forest));
+    fprintf(output.file, "%s%s", answer->error ? "property float error\n" : "",
+            answer->straight ? "property float straight_r\nproperty float straight_g\n"
+                               "property float straight_b\n"
+                             : "");
+    solution_write_header(&output, forest->scene, answer->lamps.known);
     write_vertices(&output, shading, tone);
     int32_t leaf = next_leaf(forest, -1);
-    for (; leaf >= 0 && stop_check(error); leaf = next_leaf(forest, leaf)) {
-        write_face(&output, shading, leaf);
-        if (errors)
-            output_float(&output, errors[leaf]);
-    }
+    for (; leaf >= 0 && stop_check(error); leaf = next_leaf(forest, leaf))
+        write_face(&output, shading, answer, leaf);
+    solution_write_scene(&output, forest->scene, &answer->lamps);
     return output_close(&output, error);
 }
 

@@ -5,21 +5,30 @@
 #include <stdbool.h>
 
 #include "io/picture/shading.h"
+#include "io/picture/solution.h"
 #include "io/picture/tone.h"
 #include "io/run/output.h"
+
+/* The answer of a final gather, for pictures of the solution in later runs. */
+struct mesh_answer {
+    const float *error;          /* [patches] of the leaves, W/m^2; or NULL */
+    const struct rgb *straight;  /* [patches] light straight from lamps that a leaf
+                                    reflects, W/m^2; NULL: there is no answer */
+    struct solution_lamps lamps; /* known: there is `straight` */
+};
 
 /* Writes binary little-endian PLY: vertices with float x y z (input units) and uchar red
  * green blue (sRGB of the vertex radiosity); faces with `list uchar int vertex_indices`,
  * float radiosity_r radiosity_g radiosity_b (of the leaf, W/m^2), uint root and uint
- * hierarchy: one face per leaf, roots in order, depth first. `errors`: [patches] errors
- * of the leaves, W/m^2, written as float error; or NULL.
+ * hierarchy: one face per leaf, roots in order, depth first. After a final gather, float
+ * error and float straight_r straight_g straight_b follow. Then come the roots, as
+ * io/picture/solution.h has them.
  * Errors: as output_close(). */
 bool mesh_write(const struct shading *shading, const struct tone *tone,
-                const float *errors, const char *path, struct error *error);
+                const struct mesh_answer *answer, const char *path, struct error *error);
 
-/* Writes the header of such a mesh, with errors or without. */
-void mesh_write_header(struct output *output, int64_t vertices, int64_t faces,
-                       bool errors);
+/* Writes the header of such a mesh up to the hierarchy of its faces. */
+void mesh_write_header(struct output *output, int64_t vertices, int64_t faces);
 
 /* Returns the radiosities of all leaves as linear RGB pixels, for tone_automatic()
  * without a picture, and sets `*count` to their number. To be freed with alloc_free(). */

@@ -33,7 +33,7 @@ struct face {
 };
 
 struct reader {
-    struct ply_file file;
+    struct ply_file *file;
     struct vec3 *vertices;
     struct rgb *colours;   /* of the vertices; NULL if faces have colours */
     int64_t vertex_count;  /* as the header declares */
@@ -68,9 +68,9 @@ static bool take_rgb(struct reader *reader, const struct ply_element *element,
                      enum ply_field first, bool scaled, struct rgb *colour)
 {
     for (int c = 0; c < BANDS; c++) {
-        double value = reader->file.value[(int)first + c];
+        double value = reader->file->value[(int)first + c];
         if (value < 0.0)
-            return ply_fail(&reader->file, reader->error,
+            return ply_fail(reader->file, reader->error,
                             "a negative colour or emission");
         colour->band[c] =
             scaled ? value / unit_of(element->type_of[(int)first + c]) : value;
@@ -80,13 +80,13 @@ static bool take_rgb(struct reader *reader, const struct ply_element *element,
 
 static bool read_vertices(struct reader *reader, const struct ply_element *element)
 {
-    const double *value = reader->file.value;
+    const double *value = reader->file->value;
     reader->vertices = alloc_array((size_t)element->count, sizeof *reader->vertices);
     if (has_three(element, PLY_RED) &&
-        !has_three(ply_file_find(&reader->file, PLY_FACE), PLY_RED))
+        !has_three(ply_file_find(reader->file, PLY_FACE), PLY_RED))
         reader->colours = alloc_array((size_t)element->count, sizeof *reader->colours);
     for (int64_t i = 0; i < element->count; i++) {
-        if (!ply_file_record(&reader->file, element, i, reader->error))
+        if (!ply_file_record(reader->file, element, i, reader->error))
             return false;
         reader->vertices[i] = (struct vec3){value[PLY_X], value[PLY_Y], value[PLY_Z]};
         if (reader->colours &&
@@ -98,7 +98,7 @@ static bool read_vertices(struct reader *reader, const struct ply_element *eleme
 
 static bool check_corners(const struct reader *reader)
 {
-    const struct ply_file *file = &reader->file;
+    const struct ply_file *file = reader->file;
     char text[100] = "";
     if (file->corner_count < 3 || file->corner_count > CORNER_MAX)
         snprintf(text, sizeof text, "%lld corners instead of 3 to %d",
@@ -113,7 +113,7 @@ static bool check_corners(const struct reader *reader)
 static bool add_face(struct reader *reader, const struct ply_element *element,
                      struct face *face)
 {
-    const struct ply_file *file = &reader->file;
+    const struct ply_file *file = reader->file;
     struct material material = NEUTRAL;
     if (!check_corners(reader) ||
         (has_three(element, PLY_RED) &&
@@ -139,7 +139,7 @@ static bool read_faces(struct reader *reader, const struct ply_element *element)
     reader->faces = alloc_array((size_t)element->count, sizeof *reader->faces);
     reader->face_count = element->count;
     for (int64_t i = 0; i < element->count; i++)
-        if (!ply_file_record(&reader->file, element, i, reader->error) ||
+        if (!ply_file_record(reader->file, element, i, reader->error) ||
             !add_face(reader, element, &reader->faces[i]))
             return false;
     return true;
@@ -147,9 +147,9 @@ static bool read_faces(struct reader *reader, const struct ply_element *element)
 
 static bool check_header(struct reader *reader)
 {
-    const struct ply_element *vertex = ply_file_find(&reader->file, PLY_VERTEX);
-    const struct ply_element *face = ply_file_find(&reader->file, PLY_FACE);
-    const char *path = reader->file.binary.path;
+    const struct ply_element *vertex = ply_file_find(reader->file, PLY_VERTEX);
+    const struct ply_element *face = ply_file_find(reader->file, PLY_FACE);
+    const char *path = reader->file->binary.path;
     if (!has_three(vertex, PLY_X))
         return error_set(reader->error, EXIT_USAGE, "%s: no vertices with x, y and z",
                          path);
@@ -163,16 +163,16 @@ static bool check_header(struct reader *reader)
     return true;
 }
 
-static bool read_file(struct reader *reader, const struct binary *binary)
+static bool read_file(struct reader *reader)
 {
-    struct ply_file *file = &reader->file;
-    bool good = ply_file_open(file, binary, reader->error) && check_header(reader);
+    struct ply_file *file = reader->file;
+    bool good = check_header(reader);
     for (int64_t i = 0; good && i < file->header.element_count; i++) {
         const struct ply_element *element = &file->header.elements[i];
         switch (element->kind) {
         case PLY_VERTEX: good = read_vertices(reader, element); break;
         case PLY_FACE: good = read_faces(reader, element); break;
-        case PLY_OTHER: good = ply_file_skip(file, element, reader->error); break;
+        default: good = ply_file_skip(file, element, reader->error); break;
         }
     }
     return good && ply_file_end(file, reader->error);
@@ -237,19 +237,27 @@ static struct scene *make_scene(const struct reader *reader)
     return scene;
 }
 
-struct scene *ply_of_binary(const struct binary *binary, struct error *error)
+struct scene *ply_of_file(struct ply_file *file, struct error *error)
 {
-    struct reader reader = {.error = error};
-    bool good = read_file(&reader, binary);
+    struct reader reader = {.file = file, .error = error};
+    bool good = read_file(&reader);
     if (good && reader.colours)
         mix_colours(&reader);
-    ply_file_close(&reader.file);
     struct scene *scene = good ? make_scene(&reader) : NULL;
     alloc_free(reader.vertices);
     alloc_free(reader.colours);
     alloc_free(reader.faces);
     alloc_free(reader.corners);
     palette_free(&reader.palette);
+    return scene;
+}
+
+struct scene *ply_of_binary(const struct binary *binary, struct error *error)
+{
+    struct ply_file file;
+    struct scene *scene =
+        ply_file_open(&file, binary, error) ? ply_of_file(&file, error) : NULL;
+    ply_file_close(&file);
     return scene;
 }
 

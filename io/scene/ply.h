@@ -14,7 +14,7 @@
 
 #include "geom/error.h"
 #include "geom/scene.h"
-#include "io/scene/binary.h"
+#include "io/scene/plyfile.h"
 
 /* True if a scene is to be read as PLY: its name ends in .ply; or it does not end in
  * .obj, and the file is not a pipe and begins as a PLY file does. */
@@ -28,7 +28,9 @@ bool ply_is_meant(const char *path);
  * corners, a corner out of range, a negative colour or emission. */
 struct scene *ply_read(const char *path, struct error *error);
 
-/* Does the same with a file in memory, which it frees. */
+/* Do the same with a file in memory, which they free, and with one whose header is read,
+ * which they do not close. */
 struct scene *ply_of_binary(const struct binary *binary, struct error *error);
+struct scene *ply_of_file(struct ply_file *file, struct error *error);
 
 #endif

@@ -51,9 +51,36 @@ static const struct {
               {PLY_FACE, "radiosity_g", PLY_RADIOSITY_G},
               {PLY_FACE, "radiosity_b", PLY_RADIOSITY_B},
               {PLY_FACE, "root", PLY_ROOT},
-              {PLY_FACE, "hierarchy", PLY_HIERARCHY}};
+              {PLY_FACE, "hierarchy", PLY_HIERARCHY},
+              {PLY_FACE, "error", PLY_ERROR},
+              {PLY_FACE, "straight_r", PLY_STRAIGHT_R},
+              {PLY_FACE, "straight_g", PLY_STRAIGHT_G},
+              {PLY_FACE, "straight_b", PLY_STRAIGHT_B},
+              {PLY_MATERIAL, "reflectance_r", PLY_REFLECTANCE_R},
+              {PLY_MATERIAL, "reflectance_g", PLY_REFLECTANCE_G},
+              {PLY_MATERIAL, "reflectance_b", PLY_REFLECTANCE_B},
+              {PLY_MATERIAL, "emission_r", PLY_EMISSION_R},
+              {PLY_MATERIAL, "emission_g", PLY_EMISSION_G},
+              {PLY_MATERIAL, "emission_b", PLY_EMISSION_B},
+              {PLY_ROOT_CORNER, "x", PLY_X},
+              {PLY_ROOT_CORNER, "y", PLY_Y},
+              {PLY_ROOT_CORNER, "z", PLY_Z},
+              {PLY_ROOT_CORNER, "material", PLY_MATERIAL_NUMBER},
+              {PLY_ROOT_CORNER, "nx", PLY_NX},
+              {PLY_ROOT_CORNER, "ny", PLY_NY},
+              {PLY_ROOT_CORNER, "nz", PLY_NZ},
+              {PLY_SOLUTION, "x", PLY_X},
+              {PLY_SOLUTION, "y", PLY_Y},
+              {PLY_SOLUTION, "z", PLY_Z},
+              {PLY_SOLUTION, "exponent", PLY_EXPONENT},
+              {PLY_SOLUTION, "two_sided", PLY_TWO_SIDED},
+              {PLY_SOLUTION, "two_sided_lamps", PLY_TWO_SIDED_LAMPS},
+              {PLY_SOLUTION, "lamp_least", PLY_LAMP_LEAST},
+              {PLY_SOLUTION, "mean", PLY_MEAN}};
 
-static const char *const RECORD_NAMES[] = {"vertex", "face", "row"};
+/* Names of elements, and of their records in messages. */
+static const char *const KIND_NAMES[] = {
+    "vertex", "face", "material", "root_corner", "solution", "row"};
 
 /* --- the header --- */
 
@@ -106,10 +133,9 @@ static bool read_element(struct ply_file *file, char *rest, struct error *error)
                                   .line = file->line};
     for (int field = 0; field < PLY_FIELDS; field++)
         element.type_of[field] = PLY_NONE;
-    if (name && strcmp(name, "vertex") == 0)
-        element.kind = PLY_VERTEX;
-    else if (name && strcmp(name, "face") == 0)
-        element.kind = PLY_FACE;
+    for (int kind = 0; name && kind < PLY_OTHER; kind++)
+        if (strcmp(name, KIND_NAMES[kind]) == 0)
+            element.kind = (enum ply_kind)kind;
     const char *digits = count;
     if (!count || !text_integer(&digits, &element.count) || *digits || element.count < 0)
         return fail_word(file, error, "bad number of elements", count);
@@ -237,7 +263,7 @@ bool ply_file_load(struct binary *binary, const char *path, struct error *error)
 bool ply_file_open(struct ply_file *file, const struct binary *binary,
                    struct error *error)
 {
-    *file = (struct ply_file){.binary = *binary, .record_name = RECORD_NAMES[PLY_OTHER]};
+    *file = (struct ply_file){.binary = *binary, .record_name = KIND_NAMES[PLY_OTHER]};
     char end = binary->data[3];
     if (end != '\n' && end != '\r')
         return error_set(error, EXIT_USAGE, "%s: not a PLY file", binary->path);
@@ -393,7 +419,7 @@ bool ply_file_record(struct ply_file *file, const struct ply_element *element,
                      int64_t record, struct error *error)
 {
     file->record = record;
-    file->record_name = RECORD_NAMES[element->kind];
+    file->record_name = KIND_NAMES[element->kind];
     if (!stop_check(error) || (file->ascii && !find_record(file, error)))
         return false;
     for (int64_t i = 0; i < element->property_count; i++)
@@ -410,7 +436,7 @@ bool ply_file_skip(struct ply_file *file, const struct ply_element *element,
     if (element->property_count == 0)
         return true;
     if (!file->ascii && !element->has_list) {
-        file->record_name = RECORD_NAMES[element->kind];
+        file->record_name = KIND_NAMES[element->kind];
         file->record = binary_left(&file->binary) / element->record_size;
         if (element->count > file->record)
             return fail_short(file, error);

@@ -15,15 +15,20 @@
 #include "geom/error.h"
 #include "io/scene/binary.h"
 
-enum ply_kind { PLY_VERTEX, PLY_FACE, PLY_OTHER };
+enum ply_kind { PLY_VERTEX, PLY_FACE, PLY_MATERIAL, PLY_ROOT_CORNER, PLY_SOLUTION,
+                PLY_OTHER };
 
-/* Properties that are read: of vertices, of faces, or of both. */
+/* Properties that are read, of one kind of elements or of several. */
 enum ply_field {
     PLY_X, PLY_Y, PLY_Z,
     PLY_RED, PLY_GREEN, PLY_BLUE,
     PLY_EMISSION_R, PLY_EMISSION_G, PLY_EMISSION_B,
     PLY_RADIOSITY_R, PLY_RADIOSITY_G, PLY_RADIOSITY_B,
     PLY_ROOT, PLY_HIERARCHY,
+    PLY_ERROR, PLY_STRAIGHT_R, PLY_STRAIGHT_G, PLY_STRAIGHT_B,
+    PLY_NX, PLY_NY, PLY_NZ, PLY_MATERIAL_NUMBER,
+    PLY_REFLECTANCE_R, PLY_REFLECTANCE_G, PLY_REFLECTANCE_B,
+    PLY_EXPONENT, PLY_TWO_SIDED, PLY_TWO_SIDED_LAMPS, PLY_LAMP_LEAST, PLY_MEAN,
     PLY_CORNERS, /* the list vertex_indices or vertex_index */
     PLY_FIELDS
 };
@@ -64,7 +69,7 @@ struct ply_file {
     int32_t *corners;                /* [corner_count] of the current record, each >= 0 */
     int64_t corner_count, corner_capacity;
     int64_t record;                     /* number of the current record, from 0 */
-    const char *record_name;            /* "vertex", "face" or "row", for messages */
+    const char *record_name;         /* the name of the element, or "row", for messages */
     long line;                       /* number of the current text line */
     char *rest;                      /* unread part of the current text line */
 };

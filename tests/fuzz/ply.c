@@ -34,17 +34,23 @@ static void read_solution(const uint8_t *data, size_t size)
 {
     struct error error = {0}, different = {0};
     struct binary binary;
-    struct solution solution = {0};
+    struct solution_mesh solution = {0};
     struct difference difference = {0};
     struct rgb *map = NULL;
     bool good = load(&binary, data, size, &error) &&
-                solution_of_binary(&solution, &binary, &error);
+                solution_mesh_of_binary(&solution, &binary, &error);
     map = alloc_array((size_t)solution.count, sizeof *map);
     FUZZ_PROMISE(!good ||
                  compare_solutions(&solution, &solution, &difference, map, &different));
     FUZZ_PROMISE(difference.largest == 0.0 && difference.broken == 0);
+    if (solution.scene) {
+        struct forest *forest = forest_create(solution.scene);
+        solution_mesh_restore(&solution, forest);
+        FUZZ_PROMISE(forest_leaf_count(forest) == solution.count);
+        forest_destroy(forest);
+    }
     alloc_free(map);
-    solution_free(&solution);
+    solution_mesh_free(&solution);
     fuzz_verdict(good, &error);
 }
 

@@ -213,7 +213,7 @@ static int64_t write_mesh(void)
 {
     struct tone tone = tone_make(1.0);
     write_old();
-    return look_at_output(mesh_write(shading, &tone, NULL, WRITTEN, &error));
+    return look_at_output(mesh_write(shading, &tone, &(struct mesh_answer){NULL}, WRITTEN, &error));
 }
 
 static const struct phase {
@@ -326,7 +326,7 @@ static void write_scenes(void)
     }
     fclose(obj);
     fclose(ply);
-    mesh_write(shading, &tone, NULL, MESH_PLY, &error);
+    mesh_write(shading, &tone, &(struct mesh_answer){NULL}, MESH_PLY, &error);
 }
 
 int main(void)
