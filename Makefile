@@ -78,8 +78,8 @@ TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree
         patch_link linking method \
         cluster node oracle error_oracle pushpull caps \
         final_gather checksum paths plan balance assign spotcheck \
-        text obj ply output store tone image camera viewpoint shading render options \
-        progress contour \
+        text obj ply output store tone image png hdr camera viewpoint shading render \
+        options progress contour \
         stop norms cie whole stability gaps leaks exchange conjugate exact converge
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
 vpath %.c tests/tools tests/whole
@@ -157,7 +157,7 @@ $(BUILD)/tests/phr.o: phr.c Makefile
 
 demo: $(PHR)
 	$(MPIEXEC) -n 2 ./$(PHR) scenes/cornell.obj --view scenes/cornell.view \
-	    -o cornell.ppm -o cornell.pfm -o cornell.ply
+	    -o cornell.png -o cornell.pfm -o cornell.ply
 
 tests: $(TEST_PROGRAMS)
 
@@ -241,7 +241,7 @@ uninstall:
 	rm -f $(DESTDIR)$(mandir)/man1/phr.1 $(DESTDIR)$(mandir)/man1/imgdiff.1
 
 clean:
-	rm -rf build phr cornell.ppm cornell.pfm cornell.ply
+	rm -rf build phr cornell.png cornell.pfm cornell.ply
 
 FORCE:
 

@@ -65,6 +65,15 @@ ends 1 "NaN never passes" --tolerance 1e30 "$work/nan.pfm" "$work/one.pfm"
 ends 1 "not against itself" --tolerance 1e30 "$work/nan.pfm" "$work/nan.pfm"
 check "and is counted" says 'not finite  3 samples'
 
+hdr='#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X'
+printf "$hdr 1\n\200\200\200\201" >"$work/one.hdr"
+printf "$hdr 2\n\231\314\0\200\0\0\0\0" >"$work/b.hdr"
+ends 0 "linear, of two formats" "$work/one.hdr" "$work/big.pfm"
+ends 2 "HDR and codes" "$work/b.hdr" "$work/b.ppm"
+printf '\211PNG\r\n\032\n' >"$work/a.png"
+ends 2 "PNG is not read" "$work/a.png" "$work/b.ppm"
+check "and it says so" grep -q 'PNG is not read; compare .ppm, .pfm or .hdr' "$err"
+
 # --- blocks: 3 x 2 grey pixels, of 64; the third column is a block of its own ---
 
 printf 'P3 3 2 64 16 16 16 32 32 32 32 32 32  48 48 48 32 32 32 16 16 16' \
@@ -96,6 +105,11 @@ check "-o: |A - B| as PFM" cmp "$work/map.pfm" "$work/map.expected"
 diff_of "$work/off.ppm" "$work/b.ppm" -o "$work/map.ppm"
 printf 'P6\n2 1\n255\n\0\0\0\0\0\377' >"$work/map.expected"
 check "-o: the largest is white as PPM" cmp "$work/map.ppm" "$work/map.expected"
+diff_of "$work/off.ppm" "$work/b.ppm" -o "$work/map.hdr"
+check "-o: |A - B| as HDR: 0.3 is 153.6 / 256 of 2^-1" \
+    [ "$(tail -c 2 "$work/map.hdr" | od -An -tx1)" = ' 9a 7f' ]
+diff_of "$work/off.ppm" "$work/b.ppm" -o "png:$work/map"
+check "-o: as PNG" [ "$(head -c 4 "$work/map" | tail -c 3)" = PNG ]
 ends 1 "-o into a missing folder" "$work/off.ppm" "$work/b.ppm" -o "$work/absent/map.ppm"
 
 # --- bad usage and input ---
@@ -106,7 +120,7 @@ ends 2 "three files" "$work/b.ppm" "$work/b.ppm" "$work/b.ppm"
 ends 2 "unknown option" "$work/b.ppm" "$work/b.ppm" --fast
 ends 2 "no value" "$work/b.ppm" "$work/b.ppm" --tolerance
 ends 2 "bad tolerance" "$work/b.ppm" "$work/b.ppm" --tolerance -1
-ends 2 "bad name of the map" "$work/b.ppm" "$work/b.ppm" -o "$work/map.png"
+ends 2 "bad name of the map" "$work/b.ppm" "$work/b.ppm" -o "$work/map.gif"
 ends 2 "missing file" "$work/b.ppm" "$work/absent.ppm"
 ends 2 "cut off" "$work/cut.ppm" "$work/b.ppm"
 ends 2 "another size" "$work/small.ppm" "$work/b.ppm"

@@ -12,7 +12,7 @@
 
 #include "geom/alloc.h"
 #include "io/scene/camera.h"
-#include "io/picture/image.h"
+#include "io/picture/imagefile.h"
 #include "io/run/options.h"
 #include "io/scene/ply.h"
 #include "io/scene/text.h"
@@ -21,16 +21,16 @@
 static const char HELP[] =
     "usage: imgdiff [options] A B\n"
     "\n"
-    "Compares A with B, the expected one: two pictures (both .pfm or both .ppm) of the\n"
-    "same size, or two solution meshes of phr (.ply) of the same scene, by area.\n"
+    "Compares A with B, the expected one: two pictures of the same size (both .ppm, or\n"
+    "each .pfm or .hdr), or two solution meshes of phr (.ply) of one scene, by area.\n"
     "\n"
     "  --tolerance T  pass if no sample is off by more than T (0)\n"
     "  --rms T        pass if the RMS error is at most T; --tolerance then only if "
     "given\n"
     "  --blocks N     compare means over blocks of N by N pixels (1)\n"
     "  --below X      leave out blocks where a sample of B is above X, such as lamps\n"
-    "  -o FILE        write |A - B|: as it is (.pfm), or scaled so that the largest\n"
-    "                 difference is white (.ppm); of meshes as a mesh (.ply)\n"
+    "  -o FILE        write |A - B|: as it is (.pfm .hdr), or scaled so that the\n"
+    "                 largest is white (.png .ppm); of meshes as a mesh (.ply)\n"
     "  --help  --version\n"
     "\n"
     "T is relative to the root mean square of B's samples. Samples of a .ppm are its "
@@ -42,7 +42,7 @@ static const char HELP[] =
 
 struct request {
     const char *paths[2]; /* A and B */
-    const char *output;
+    struct target output;  /* of -o; without it, no path */
     double tolerance, rms; /* negative: not given */
     double blocks;         /* pixels along a side of a block; an integer */
     double below;          /* blocks with a sample of B above it are left out */
@@ -70,13 +70,11 @@ static bool set_option(struct request *request, const char *name, const char *va
         return error_set(error, EXIT_USAGE, "unknown option %s; see --help", name);
     if (!value)
         return error_set(error, EXIT_USAGE, "%s needs a value", name);
-    if (output && !text_ends_with(value, ".pfm") && !text_ends_with(value, ".ppm") &&
-        !text_ends_with(value, ".ply"))
+    if (output && !target_parse(&request->output, value))
         return error_set(error, EXIT_USAGE,
-                         "-o %s: the name must end in .pfm, .ppm or .ply", value);
-    if (output)
-        request->output = value;
-    else if (!text_is_number(value, number) || *number < 0.0)
+                         "-o %s: the name must end in .ppm, .pfm, .png, .hdr or .ply",
+                         value);
+    if (number && (!text_is_number(value, number) || *number < 0.0))
         return error_set(error, EXIT_USAGE, "%s: '%s' is not a number of at least 0",
                          name, value);
     if (number == &request->blocks && !(*number >= 1.0 && *number <= IMAGE_SIZE_MAX &&
@@ -142,19 +140,17 @@ static bool passes(const struct request *request, const struct difference *diffe
 static bool write_map(const struct request *request, const struct image *map,
                       double largest, struct error *error)
 {
-    if (text_ends_with(request->output, ".pfm"))
-        return pfm_write(map, request->output, error);
     struct tone tone = tone_make(largest > 0.0 ? 1.0 / largest : 1.0);
-    return ppm_write(map, &tone, request->output, error);
+    return image_write(map, &tone, &request->output, error);
 }
 
 /* Refuses -o with the name of a mesh for pictures, or of a picture for meshes; and
  * options of pixels for meshes. */
 static bool check_output(const struct request *request, bool meshes, struct error *error)
 {
-    if (request->output && text_ends_with(request->output, ".ply") != meshes)
-        return error_set(error, EXIT_USAGE, "-o %s: the difference of %s",
-                         request->output,
+    const struct target *output = &request->output;
+    if (output->path && format_is_mesh(output->format) != meshes)
+        return error_set(error, EXIT_USAGE, "-o %s: the difference of %s", output->path,
                          meshes ? "meshes is a mesh (.ply)" : "pictures is a picture");
     if (meshes && (request->blocks > 1.0 || request->below < HUGE_VAL))
         return error_set(error, EXIT_USAGE, "--blocks and --below are for pictures");
@@ -170,7 +166,7 @@ static bool diff_images(const struct request *request, struct difference *differ
                 image_read(&b, &kind_b, request->paths[1], error);
     if (good && kind_a != kind_b)
         good = error_set(error, EXIT_USAGE,
-                         "%s and %s: one is linear (PFM), the other not (PPM)",
+                         "%s and %s: one is linear (PFM, HDR), the other not (PPM)",
                          request->paths[0], request->paths[1]);
     if (good && (a.width != b.width || a.height != b.height))
         good = error_set(error, EXIT_USAGE, "%s is %dx%d, %s is %dx%d", request->paths[0],
@@ -184,8 +180,8 @@ static bool diff_images(const struct request *request, struct difference *differ
                              request->paths[1], request->below);
     }
     if (good) {
-        report(difference, kind_a == IMAGE_PPM ? 1.0 : difference->peak);
-        if (request->output)
+        report(difference, kind_a == IMAGE_CODES ? 1.0 : difference->peak);
+        if (request->output.path)
             good = write_map(request, &map, difference->largest, error);
     }
     alloc_free(a.rgb);
@@ -207,8 +203,9 @@ static bool diff_solutions(const struct request *request, struct difference *dif
     }
     if (good) {
         report(difference, difference->peak);
-        if (request->output)
-            good = solution_write(&a, map, difference->largest, request->output, error);
+        if (request->output.path)
+            good = solution_write(&a, map, difference->largest, request->output.path,
+                                  error);
     }
     alloc_free(map);
     solution_mesh_free(&a);

@@ -24,7 +24,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "io/picture/image.h"
+#include "io/picture/imagefile.h"
 #include "io/picture/viewpoint.h"
 #include "io/run/options.h"
 #include "io/run/output.h"
@@ -311,10 +311,7 @@ static void write_picture(struct tracing *run, float *picture,
     if (!(exposure > 0.0))
         exposure = tone_automatic(picture, (int64_t)image.width * image.height);
     struct tone tone = tone_make(exposure);
-    if (target->format == FORMAT_PFM)
-        pfm_write(&image, target->path, &run->error);
-    else
-        ppm_write(&image, &tone, target->path, &run->error);
+    image_write(&image, &tone, target, &run->error);
 }
 
 /* Collective. Prints the rays of all ranks, and the seconds of the slowest. */

@@ -5,7 +5,7 @@
 #include "tools/results.h"
 
 #include "geom/alloc.h"
-#include "io/picture/image.h"
+#include "io/picture/imagefile.h"
 #include "io/picture/mesh.h"
 #include "io/picture/render.h"
 #include "io/picture/viewpoint.h"
@@ -29,14 +29,8 @@ static void write_pictures(struct run *run, int view, float *picture)
         choose_tone(run, picture, (int64_t)camera->width * camera->height);
     for (int i = 0; i < options->output_count; i++) {
         const struct target *target = &options->outputs[i];
-        const char *path = target->path;
-        if (target->view != view)
-            continue;
-        switch (target->format) {
-        case FORMAT_PPM: ppm_write(&image, &tone, path, &run->error); break;
-        case FORMAT_PFM: pfm_write(&image, path, &run->error); break;
-        case FORMAT_PLY: break;
-        }
+        if (target->view == view && !format_is_mesh(target->format))
+            image_write(&image, &tone, target, &run->error);
     }
 }
 

@@ -83,6 +83,8 @@ struct format {
 static const struct format FORMATS[] = {
     [FORMAT_PPM] = {"ppm", false},
     [FORMAT_PFM] = {"pfm", false},
+    [FORMAT_PNG] = {"png", false},
+    [FORMAT_HDR] = {"hdr", false},
     [FORMAT_PLY] = {"ply", true},
 };
 enum { FORMAT_COUNT = sizeof FORMATS / sizeof FORMATS[0] };
@@ -569,7 +571,7 @@ void options_free(struct options *options)
 static const char HELP[] =
     "usage: phr [options] SCENE         or  mpiexec -n P phr [options] SCENE\n"
     "Computes the light in a diffuse scene, OBJ or PLY. Defaults in brackets.\n"
-    "  -o [FORMAT:]FILE .ppm picture, .pfm linear picture, .ply mesh; repeatable\n"
+    "  -o [FORMAT:]FILE picture .png .ppm, linear .pfm .hdr; mesh .ply; repeatable\n"
     "  --view FILE      of the -o behind it: eye x y z, at, up, fov, size (chosen)\n"
     "  --size WxH       pixels (512x512)       --samples N   N x N rays a pixel (3)\n"
     "  --exposure X     factor (automatic)     --flat        no interpolation\n"
@@ -589,7 +591,7 @@ static const char HELP[] =
     "  --balance default|greedy|none           --quiet       print nothing\n"
     "  --help           print this             --version     and licence\n"
     "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
-    "  phr room.obj -o room.ppm\n"
+    "  phr room.obj -o room.png\n"
     "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n";
 
 void options_print_help(FILE *file)

@@ -159,6 +159,12 @@ void output_uint32(struct output *output, uint32_t value)
         putc((int)(value >> (8 * k) & 255u), output->file);
 }
 
+void output_uint32_big(struct output *output, uint32_t value)
+{
+    for (int k = 3; k >= 0; k--)
+        putc((int)(value >> (8 * k) & 255u), output->file);
+}
+
 void output_float(struct output *output, float value)
 {
     uint32_t bits;

@@ -2,7 +2,7 @@
  *
  * The file is read in chunks to its end and kept in memory. So the counts of a header can
  * be checked against the size before anything is allocated for them, and pipes work. The
- * first chunk has to begin with the magic of the format: reading /dev/zero ends there.
+ * first chunk has to begin with a magic of the format: reading /dev/zero ends there.
  * Numbers are put together byte by byte, so the byte order of the machine does not
  * matter. */
 #include "io/scene/binary.h"
@@ -25,9 +25,13 @@ static bool fail_to_read(const char *path, struct error *error)
 static bool has_magic(const struct binary *binary, const char *magic, const char *kind,
                       struct error *error)
 {
-    if (strncmp(binary->data, magic, strlen(magic)) != 0)
-        return error_set(error, EXIT_USAGE, "%s: not %s", binary->path, kind);
-    return true;
+    for (; *magic; magic += *magic == ' ') {
+        size_t length = strcspn(magic, " ");
+        if (strncmp(binary->data, magic, length) == 0)
+            return true;
+        magic += length;
+    }
+    return error_set(error, EXIT_USAGE, "%s: not %s", binary->path, kind);
 }
 
 static bool read_chunks(struct binary *binary, FILE *file, const char *magic,

@@ -1,5 +1,5 @@
-/* Fuzzing PFM and PPM. */
-#include "io/picture/image.h"
+/* Fuzzing PFM, PPM and HDR. */
+#include "io/picture/imagefile.h"
 
 #include "tests/fuzz/fuzz.h"
 
@@ -9,13 +9,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct binary binary;
     struct image image = {0};
     enum image_kind kind;
-    bool good = binary_of_bytes(&binary, "fuzz", data, size, "P", "a picture", &error) &&
+    bool good = binary_of_bytes(&binary, "fuzz", data, size, IMAGE_MAGIC, "a picture",
+                                &error) &&
                 image_of_binary(&image, &kind, &binary, &error);
     FUZZ_PROMISE(good == (image.rgb != NULL));
     FUZZ_PROMISE(!good || (image.width > 0 && image.height > 0 &&
-                           (size_t)image.width * (size_t)image.height <= size));
+                           (size_t)image.width * (size_t)image.height <= 16 * size));
     for (int64_t i = 0; good && i < 3 * (int64_t)image.width * image.height; i++)
-        FUZZ_PROMISE(kind == IMAGE_PFM || (image.rgb[i] >= 0.0f && image.rgb[i] <= 1.0f));
+        FUZZ_PROMISE(kind == IMAGE_LINEAR ||
+                     (image.rgb[i] >= 0.0f && image.rgb[i] <= 1.0f));
     alloc_free(image.rgb);
     fuzz_verdict(good, &error);
     return 0;

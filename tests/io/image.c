@@ -1,15 +1,16 @@
-/* Tests of io/picture/image.h: one picture of 2 x 3 pixels, byte for byte as the two
- * formats say; the reader on pictures of other programs, and on bad ones.
+/* Tests of io/picture/pnm.h and imagefile.h: one picture of 2 x 3 pixels, byte for byte
+ * as the two formats say; the reader on pictures of other programs, and on bad ones.
  *
  *      top    -> 1, 2, 4          0.5, 0.25, 0
  *      middle -> 0, 0, 0          -1, 100, 0.125
  *      bottom -> 8, 16, 32        0.0625, 1, 0        W/m^2 */
-#include "io/picture/image.h"
+#include "io/picture/pnm.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "io/picture/imagefile.h"
 #include "tests/tap.h"
 
 #define PFM "build/image_test.pfm"
@@ -90,8 +91,8 @@ static bool read_bytes(const char *bytes, size_t size)
 {
     struct binary binary;
     reading = (struct error){EXIT_DONE, ""};
-    return binary_of_bytes(&binary, "p", bytes, size, "P", "a picture (PFM or PPM)",
-                           &reading) &&
+    return binary_of_bytes(&binary, "p", bytes, size, IMAGE_MAGIC,
+                           "a picture (PFM, PPM or HDR)", &reading) &&
            image_of_binary(&found, &kind, &binary, &reading);
 }
 
@@ -113,14 +114,14 @@ static void test_back(void)
 {
     struct error error = {EXIT_DONE, ""};
     bool right = pfm_write(&picture, PFM, &error) &&
-                 image_read(&found, &kind, PFM, &error) && kind == IMAGE_PFM &&
+                 image_read(&found, &kind, PFM, &error) && kind == IMAGE_LINEAR &&
                  found.width == 2 && found.height == 3 &&
                  memcmp(found.rgb, pixels, sizeof pixels) == 0;
     tap_ok(right, "a picture written as PFM reads back");
     alloc_free(found.rgb);
     struct tone tone = tone_make(1.0);
     right = ppm_write(&picture, &tone, PPM, &error) &&
-            image_read(&found, &kind, PPM, &error) && kind == IMAGE_PPM &&
+            image_read(&found, &kind, PPM, &error) && kind == IMAGE_CODES &&
             found.rgb[3] == (float)(188 / 255.0) && found.rgb[0] == 1.0f;
     tap_ok(right, "a picture written as PPM reads back, in codes");
     alloc_free(found.rgb);
@@ -136,25 +137,25 @@ static void test_reading(void)
     CHECK_READ("big endian, the bottom row first",
                "PF\n1 2\n1\n" "\x3F\x80\0\0" "\x40\0\0\0" "\0\0\0\0"
                "\xC0\0\0\0" "\x3F\0\0\0" "\x3F\x80\0\0",
-               IMAGE_PFM, 1, 2, -2, 0.5f, 1, 1, 2, 0);
+               IMAGE_LINEAR, 1, 2, -2, 0.5f, 1, 1, 2, 0);
     CHECK_READ("grey, a scale",
                "Pf 2 1 -2.5 " "\0\0\x80\x3F" "\0\0\0\xC0",
-               IMAGE_PFM, 2, 1, 2.5f, 2.5f, 2.5f, -5, -5, -5);
+               IMAGE_LINEAR, 2, 1, 2.5f, 2.5f, 2.5f, -5, -5, -5);
     CHECK_READ("CR LF behind the scale",
                "Pf\r\n1 1\r\n-1\r\n" "\0\0\x80\x3F",
-               IMAGE_PFM, 1, 1, 1, 1, 1);
+               IMAGE_LINEAR, 1, 1, 1, 1, 1);
     CHECK_READ("CR alone, a sample that begins with LF", "Pf\r1 1\r-1\r" "\n\0\x80\x3F",
-               IMAGE_PFM, 1, 1, 1.00000119f, 1.00000119f, 1.00000119f);
+               IMAGE_LINEAR, 1, 1, 1.00000119f, 1.00000119f, 1.00000119f);
     CHECK_READ("beyond the largest float",
                "Pf 1 1 -1e30 " "\0\0\x80\x7E",
-               IMAGE_PFM, 1, 1, 3.40282347e38f, 3.40282347e38f, 3.40282347e38f);
+               IMAGE_LINEAR, 1, 1, 3.40282347e38f, 3.40282347e38f, 3.40282347e38f);
     CHECK_READ("plain, comments", "P3 # 1 2\n2#\r1\n8 # eight\n0 2 4\n6 8 #\n0",
-               IMAGE_PPM, 2, 1, 0, 0.25f, 0.5f, 0.75f, 1, 0);
-    CHECK_READ("raw, 255, a sample like a blank", "P6\n1 1 255\n\n\0\xFF", IMAGE_PPM, 1,
+               IMAGE_CODES, 2, 1, 0, 0.25f, 0.5f, 0.75f, 1, 0);
+    CHECK_READ("raw, 255, a sample like a blank", "P6\n1 1 255\n\n\0\xFF", IMAGE_CODES, 1,
                1, 10 / 255.0f, 0, 1);
     CHECK_READ("raw, two bytes, most significant first",
                "P6 1 1 65535\n" "\xFF\xFF" "\x01\0" "\0\x01",
-               IMAGE_PPM, 1, 1, 1, 256 / 65535.0f, 1 / 65535.0f);
+               IMAGE_CODES, 1, 1, 1, 256 / 65535.0f, 1 / 65535.0f);
     bool right = read_bytes("Pf 1 1 -1 \0\0\xC0\x7F", 14) && isnan(found.rgb[0]);
     tap_ok(right, "NaN is a sample");
     alloc_free(found.rgb);
@@ -174,10 +175,10 @@ static void check_refused(const char *bytes, size_t size, const char *message)
 
 static void test_refusing(void)
 {
-    REFUSED("", "not a picture (PFM or PPM)");
-    REFUSED("P", "not a picture (PFM or PPM)");
-    REFUSED("P5\n1 1 255\n\1", "not a picture (PFM or PPM)");
-    REFUSED("P6", "not a picture (PFM or PPM)");
+    REFUSED("", "not a picture (PFM, PPM or HDR)");
+    REFUSED("P", "not a picture (PFM, PPM or HDR)");
+    REFUSED("P5\n1 1 255\n\1", "not a picture (PFM, PPM or HDR)");
+    REFUSED("P6", "not a picture (PFM, PPM or HDR)");
     REFUSED("PF\n0 1\n-1\n", "bad width or height of the picture");
     REFUSED("PF\n1 -1\n-1\n", "bad width or height of the picture");
     REFUSED("PF\n1\n", "bad width or height of the picture");

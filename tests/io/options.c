@@ -544,13 +544,13 @@ static void test_settings(void)
 
 static void test_bad_suffixes(void)
 {
-    static const char *const names[] = {"a", "a.png", "a.ppm.gz", ".ppm", "ppm",
+    static const char *const names[] = {"a", "a.gif", "a.ppm.gz", ".ppm", "ppm",
                                         "a.ppm/", "ppm:"};
     char line[50], message[150];
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         snprintf(line, sizeof line, "a.obj -o %s", names[i]);
         snprintf(message, sizeof message,
-                 "-o %s: the name must end in .ppm, .pfm or .ply, "
+                 "-o %s: the name must end in .ppm, .pfm, .png, .hdr or .ply, "
                  "or be FORMAT:FILE, as in ppm:FILE", names[i]);
         check_refused(line, message);
     }

@@ -10,7 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/picture/image.h"
+#include "io/picture/hdr.h"
+#include "io/picture/png.h"
+#include "io/picture/pnm.h"
 #include "io/picture/mesh.h"
 #include "io/picture/render.h"
 #include "io/picture/viewpoint.h"
@@ -209,6 +211,21 @@ static int64_t write_pfm(void)
     return look_at_output(pfm_write(&image, WRITTEN, &error));
 }
 
+static int64_t write_png(void)
+{
+    struct tone tone = tone_make(1.0);
+    struct image image = {SIZE, SIZE, picture};
+    write_old();
+    return look_at_output(png_write(&image, &tone, WRITTEN, &error));
+}
+
+static int64_t write_hdr(void)
+{
+    struct image image = {SIZE, SIZE, picture};
+    write_old();
+    return look_at_output(hdr_write(&image, WRITTEN, &error));
+}
+
 static int64_t write_mesh(void)
 {
     struct tone tone = tone_make(1.0);
@@ -236,6 +253,8 @@ static const struct phase {
     {"rendering", render, false, 0, 256},
     {"writing PPM", write_ppm, true, 0, 768},
     {"writing PFM", write_pfm, true, 0, 16},
+    {"writing PNG", write_png, true, 0, 16},
+    {"writing HDR", write_hdr, true, 0, 16},
     {"writing a mesh", write_mesh, true, 4, 0},
 };
 

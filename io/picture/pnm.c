@@ -1,11 +1,11 @@
-/* Writing and reading pictures. Both formats are a short header of text and then the
+/* Writing and reading PFM and PPM. Both formats are a short header of text and then the
  * samples; PFM begins with the bottom scanline, PPM with the top one.
  *
  * The reader accepts the variants of other programs: any blanks between words of the
  * header, comments in PPM, grey PFM, a scale other than 1 (samples are multiplied by it,
  * as in Debevec's description and most readers). It is strict about the size: missing or
  * extra samples mean that the header belongs to another picture. */
-#include "io/picture/image.h"
+#include "io/picture/pnm.h"
 
 #include <float.h>
 #include <math.h>
@@ -16,8 +16,6 @@
 #include "geom/stop.h"
 #include "io/run/output.h"
 #include "io/scene/text.h"
-
-enum { SIZE_MOST = 1 << 24 }; /* pixels on a side */
 
 static const double SCALE_LEAST = 1e-30, SCALE_MOST = 1e30; /* of a PFM, magnitude */
 
@@ -99,8 +97,9 @@ static bool next_integer(struct image_reader *reader, bool comments, int64_t mos
 static bool read_size(struct image_reader *reader, bool comments)
 {
     int64_t width, height;
-    if (!next_integer(reader, comments, SIZE_MOST, &width) ||
-        !next_integer(reader, comments, SIZE_MOST, &height) || width == 0 || height == 0)
+    if (!next_integer(reader, comments, IMAGE_SIDE_MOST, &width) ||
+        !next_integer(reader, comments, IMAGE_SIDE_MOST, &height) || width == 0 ||
+        height == 0)
         return refuse(reader, "bad width or height of the picture");
     reader->image->width = (int)width;
     reader->image->height = (int)height;
@@ -199,7 +198,7 @@ static void read_floats(struct image_reader *reader)
     }
 }
 
-static bool read_samples(struct image_reader *reader, enum image_kind kind)
+static bool read_samples(struct image_reader *reader, bool floats)
 {
     int64_t pixels = (int64_t)reader->image->width * reader->image->height;
     int64_t count = pixels * (reader->grey ? 1 : 3);
@@ -207,7 +206,7 @@ static bool read_samples(struct image_reader *reader, enum image_kind kind)
     if (!find_samples(reader, bytes))
         return false;
     reader->image->rgb = alloc_array((size_t)pixels, 3 * sizeof *reader->image->rgb);
-    if (kind == IMAGE_PFM)
+    if (floats)
         read_floats(reader);
     else if (!(reader->plain ? read_plain(reader, count) : read_raw(reader, count)))
         return false;
@@ -215,38 +214,16 @@ static bool read_samples(struct image_reader *reader, enum image_kind kind)
            refuse(reader, "bytes are left behind the picture");
 }
 
-static bool read_image(struct image_reader *reader, enum image_kind *kind)
+bool pnm_read(struct image *image, enum image_kind *kind, struct binary *binary,
+              struct error *error)
 {
-    const char *data = reader->binary->data;
-    if (!is_blank(data[0] && data[1] ? data[2] : '\0') || !strchr("Ff36", data[1]))
-        return refuse(reader, "not a picture (PFM or PPM)");
-    reader->binary->position = 2;
-    *kind = data[1] == 'F' || data[1] == 'f' ? IMAGE_PFM : IMAGE_PPM;
-    return (*kind == IMAGE_PFM ? read_pfm_header(reader) : read_ppm_header(reader)) &&
-           read_samples(reader, *kind);
-}
-
-bool image_of_binary(struct image *image, enum image_kind *kind, struct binary *binary,
-                     struct error *error)
-{
-    *image = (struct image){0};
     struct image_reader reader = {.binary = binary, .image = image, .error = error};
-    bool good = read_image(&reader, kind);
-    binary_free(binary);
-    if (!good) {
-        alloc_free(image->rgb);
-        image->rgb = NULL;
-    }
-    return good;
-}
-
-
-
-bool image_read(struct image *image, enum image_kind *kind, const char *path,
-                struct error *error)
-{
-    struct binary binary;
-    *image = (struct image){0};
-    return binary_read(&binary, path, "P", "a picture (PFM or PPM)", error) &&
-           image_of_binary(image, kind, &binary, error);
+    const char *data = binary->data;
+    if (!is_blank(data[0] && data[1] ? data[2] : '\0') || !strchr("Ff36", data[1]))
+        return refuse(&reader, "not a picture (PFM, PPM or HDR)");
+    binary->position = 2;
+    bool floats = data[1] == 'F' || data[1] == 'f';
+    *kind = floats ? IMAGE_LINEAR : IMAGE_CODES;
+    return (floats ? read_pfm_header(&reader) : read_ppm_header(&reader)) &&
+           read_samples(&reader, floats);
 }

@@ -1,0 +1,33 @@
+/* Pictures in files of all formats. */
+#ifndef IO_PICTURE_IMAGEFILE_H
+#define IO_PICTURE_IMAGEFILE_H
+
+#include <stdbool.h>
+
+#include "geom/error.h"
+#include "io/picture/image.h"
+#include "io/picture/tone.h"
+#include "io/run/options.h"
+#include "io/scene/binary.h"
+
+/* Writes the format of the target: PFM and HDR, linear; or PPM and PNG, the 8-bit codes
+ * of `tone`. Pre: it is no mesh. Errors: as output_close(). */
+bool image_write(const struct image *image, const struct tone *tone,
+                 const struct target *target, struct error *error);
+
+/* How the files that are read begin, for binary_of_bytes(); PNG is known to be
+ * refused. */
+#define IMAGE_MAGIC "P #? \x89PNG"
+
+/* Reads PFM, PPM or HDR, as pnm_read() and hdr_read(). `rgb` is to be freed with
+ * alloc_free().
+ * Errors: "PATH: REASON", EXIT_USAGE: not such a picture, bytes missing or left over, a
+ * sample above the greatest value. */
+bool image_read(struct image *image, enum image_kind *kind, const char *path,
+                struct error *error);
+
+/* Does the same with a file in memory, which it frees. */
+bool image_of_binary(struct image *image, enum image_kind *kind, struct binary *binary,
+                     struct error *error);
+
+#endif
