@@ -33,15 +33,14 @@ enum {
     SLEEP_GROWTH = 4 /* microseconds for each test in vain */
 };
 
-enum {
-    EXCHANGE = 7
-}; /* tag of comm_exchange(); messages of one pair never overtake each other */
+/* The tag of comm_exchange(); messages of one pair never overtake each other. */
+enum { EXCHANGE = 7 };
 
-static MPI_Comm
-    failing_comm; /* for the handler of exhausted memory, which has no argument */
+/* For the handler of exhausted memory, which has no argument. */
+static MPI_Comm failing_comm;
 
 static int all_ranks; /* size of the first communicator */
-static int64_t exchanges, messages;
+static struct comm_counts counted;
 
 static void out_of_memory(size_t bytes)
 {
@@ -57,7 +56,6 @@ void comm_start(struct comm *comm, int *argc, char ***argv)
     comm_wait(&request);
     MPI_Comm_rank(comm->handle, &comm->rank);
     MPI_Comm_size(comm->handle, &comm->size);
-    comm->limit = 0;
     all_ranks = comm->size;
     failing_comm = comm->handle;
     alloc_on_failure(out_of_memory);
@@ -101,9 +99,9 @@ static void wait_for(MPI_Request *request)
 
 void comm_wait(MPI_Request *request)
 {
-    exchanges++;
+    counted.collectives++;
     for (int reached = 1; reached < all_ranks; reached *= 2)
-        messages++;
+        counted.messages++;
     wait_for(request);
 }
 
@@ -197,72 +195,9 @@ static MPI_Datatype record_of(size_t bytes)
     return record;
 }
 
-/* Records of a message at most. */
-static int piece_of(const struct comm *comm)
-{
-    return comm->limit > 0 ? comm->limit : INT_MAX;
-}
-
-/* Pieces that records for one rank, or from one, take. */
-static int64_t pieces_of(const struct comm *comm, int count)
-{
-    return ((int64_t)count + piece_of(comm) - 1) / piece_of(comm);
-}
-
-/* Receives `count` records from another rank, or sends them to it, piece by piece: one of
- * `in` and `out` is NULL. Returns how many pieces. */
-static int64_t pass(const struct comm *comm, char *in, const char *out, int64_t count,
-                    size_t bytes, MPI_Datatype record, int other, MPI_Request *requests)
-{
-    int64_t pieces = 0;
-    for (int64_t at = 0; at < count; at += piece_of(comm)) {
-        int now = (int)(count - at < piece_of(comm) ? count - at : piece_of(comm));
-        size_t skip = (size_t)at * bytes;
-        if (in)
-            MPI_Irecv(in + skip, now, record, other, EXCHANGE, comm->handle,
-                      &requests[pieces++]);
-        else
-            MPI_Isend(out + skip, now, record, other, EXCHANGE, comm->handle,
-                      &requests[pieces++]);
-    }
-    return pieces;
-}
-
-/* One message to each rank that gets something, in pieces where it is long: no count is
- * ever too large for MPI, and those who have nothing for each other need not meet. What a
- * rank has for itself is copied. */
-static void exchange(const struct comm *comm, const void *records, const int *counts,
-                     size_t bytes, void *arrived, const int *receive)
-{
-    const char *out = records, *own_out = NULL;
-    char *in = arrived, *own_in = NULL;
-    int64_t count = 0;
-    for (int r = 0; r < comm->size; r++)
-        count += pieces_of(comm, counts[r]) + pieces_of(comm, receive[r]);
-    MPI_Request *requests = alloc_array((size_t)count, sizeof *requests);
-    MPI_Datatype record = record_of(bytes);
-    count = 0;
-    for (int r = 0; r < comm->size; in += (size_t)receive[r++] * bytes) {
-        if (r == comm->rank)
-            own_in = in;
-        else
-            count += pass(comm, in, NULL, receive[r], bytes, record, r, requests + count);
-    }
-    for (int r = 0; r < comm->size; out += (size_t)counts[r++] * bytes) {
-        if (r == comm->rank)
-            own_out = out;
-        else
-            count += pass(comm, NULL, out, counts[r], bytes, record, r, requests + count);
-    }
-    if (counts[comm->rank] > 0)
-        memcpy(own_in, own_out, (size_t)counts[comm->rank] * bytes);
-    messages += count;
-    for (int64_t i = 0; i < count; i++)
-        wait_for(&requests[i]);
-    MPI_Type_free(&record);
-    alloc_free(requests);
-}
-
+/* One message to each rank that gets something: no count is too large for MPI, and those
+ * who have nothing for each other need not meet. The records of a rank for itself are
+ * copied. */
 void *comm_exchange(const struct comm *comm, const void *records, const int *counts,
                     size_t bytes, int64_t *arriving)
 {
@@ -273,8 +208,29 @@ void *comm_exchange(const struct comm *comm, const void *records, const int *cou
     *arriving = 0;
     for (int r = 0; r < comm->size; r++)
         *arriving += receive[r];
-    void *arrived = alloc_array((size_t)*arriving, bytes);
-    exchange(comm, records, counts, bytes, arrived, receive);
+    char *arrived = alloc_array((size_t)*arriving, bytes), *in = arrived;
+    const char *out = records;
+    MPI_Datatype record = record_of(bytes);
+    MPI_Request *requests = alloc_array(2 * (size_t)comm->size, sizeof *requests);
+    int messages = 0;
+    for (int r = 0; r < comm->size; r++) {
+        bool is_other = r != comm->rank;
+        if (!is_other && counts[r] > 0)
+            memcpy(in, out, (size_t)counts[r] * bytes);
+        if (is_other && receive[r] > 0)
+            MPI_Irecv(in, receive[r], record, r, EXCHANGE, comm->handle,
+                      &requests[messages++]);
+        if (is_other && counts[r] > 0)
+            MPI_Isend(out, counts[r], record, r, EXCHANGE, comm->handle,
+                      &requests[messages++]);
+        in += (size_t)receive[r] * bytes;
+        out += (size_t)counts[r] * bytes;
+    }
+    counted.messages += messages;
+    for (int i = 0; i < messages; i++)
+        wait_for(&requests[i]);
+    MPI_Type_free(&record);
+    alloc_free(requests);
     alloc_free(receive);
     return arrived;
 }
@@ -331,14 +287,9 @@ const char *comm_build(void)
 #endif
 }
 
-int64_t comm_exchanges(void)
+struct comm_counts comm_counts(void)
 {
-    return exchanges;
-}
-
-int64_t comm_messages(void)
-{
-    return messages;
+    return counted;
 }
 
 double comm_seconds(void)

@@ -11,7 +11,6 @@
 struct comm {
     MPI_Comm handle; /* a duplicate of MPI_COMM_WORLD */
     int rank, size;
-    int limit;       /* records in a message at most; 0: what MPI can count. For tests. */
 };
 
 /* Initialises MPI; from here on, running out of memory ends all ranks with exit code
@@ -78,10 +77,14 @@ uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes
 /* "MPI", or "serial" where mpi/serial/mpi.h takes its place. */
 const char *comm_build(void);
 
-/* Collectives that this rank has waited for; messages, log P for a collective of P ranks,
- * and those that this one has sent or received in comm_exchange(). */
-int64_t comm_exchanges(void);
-int64_t comm_messages(void);
+/* What this rank has waited for. */
+struct comm_counts {
+    int64_t collectives;
+    int64_t messages; /* log P for a collective of P ranks, and those that this one has
+                         sent or received in comm_exchange() */
+};
+
+struct comm_counts comm_counts(void);
 
 /* Seconds since some moment in the past. */
 double comm_seconds(void);

@@ -125,7 +125,7 @@ static void report_counts(const struct solver *solver, struct stats *stats)
                                solver->model.walled_off,
                                solver->model.rays_spared,
                                peak_memory()};
-    int64_t sum[COUNT_SUMS], largest[2] = {own[8], comm_messages()};
+    int64_t sum[COUNT_SUMS], largest[2] = {own[8], comm_counts().messages};
     for (int64_t i = 0; i < solver->links.count; i++)
         own[9 + kind_of(&solver->links.items[i])]++;
     MPI_Request request;
@@ -207,7 +207,7 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->levels = solver->account.ledger.levels;
     stats->level_count = solver->account.ledger.level_count;
     memcpy(stats->work, solver->account.ledger.sums, sizeof stats->work);
-    stats->exchanges = comm_exchanges();
+    stats->exchanges = comm_counts().collectives;
     report_proxies(solver, stats);
     report_counts(solver, stats);
     report_seconds(solver, stats);

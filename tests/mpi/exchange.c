@@ -21,6 +21,7 @@
 #include <string.h>
 
 #include "tests/random.h"
+#include "tests/ranks.h"
 #include "tests/solve.h"
 #include "tests/tap.h"
 
@@ -112,22 +113,6 @@ static struct vote iterate(struct solver *solver, int round)
     solver_push_pull(solver);
     solver_scatter(solver);
     return solver_vote(solver);
-}
-
-/* True on all ranks if it is on all of them. */
-static bool on_all(const struct comm *comm, bool here)
-{
-    struct error error = {0};
-    if (!here)
-        error_set(&error, EXIT_FAILED, "rank %d", comm->rank);
-    return comm_agree(comm, &error);
-}
-
-static void report(const struct comm *comm, bool here, const char *name)
-{
-    bool all = on_all(comm, here);
-    if (comm->rank == 0)
-        tap_ok(all, "%s", name);
 }
 
 static void test_rounds(struct solver *parallel, struct solver *alone)
@@ -456,37 +441,31 @@ static void test_picture(const struct comm *comm)
     alloc_free(picture);
 }
 
-/* Records in pieces of any size arrive as they do in one: from rank s to rank r go (7 s +
- * 3 r) mod 11. */
-static void test_pieces(struct comm *comm)
+/* From rank s to rank r go (7 s + 3 r) mod 11 records. */
+static void test_exchange(const struct comm *comm)
 {
     enum { MOST = 11 };
     struct note {
         int32_t from, to, number;
     };
-    for (int limit = 0; limit <= 4; limit++) {
-        int *counts = alloc_array((size_t)comm->size, sizeof *counts);
-        struct note *notes = alloc_array((size_t)comm->size * MOST, sizeof *notes);
-        int64_t sent = 0, arriving, expected = 0;
-        for (int r = 0; r < comm->size; r++) {
-            counts[r] = (7 * comm->rank + 3 * r) % MOST;
-            for (int i = 0; i < counts[r]; i++)
-                notes[sent++] = (struct note){comm->rank, r, i};
-        }
-        comm->limit = limit;
-        struct note *in = comm_exchange(comm, notes, counts, sizeof *notes, &arriving);
-        comm->limit = 0;
-        bool right = true;
-        for (int s = 0; s < comm->size; s++)
-            for (int i = 0; i < (7 * s + 3 * comm->rank) % MOST; i++, expected++)
-                right = right && expected < arriving && in[expected].from == s &&
-                        in[expected].to == comm->rank && in[expected].number == i;
-        report(comm, right && arriving == expected,
-               limit == 0 ? "records arrive in order" : "also a few at a time");
-        alloc_free(in);
-        alloc_free(notes);
-        alloc_free(counts);
+    int *counts = alloc_array((size_t)comm->size, sizeof *counts);
+    struct note *notes = alloc_array((size_t)comm->size * MOST, sizeof *notes);
+    int64_t sent = 0, arriving, expected = 0;
+    for (int r = 0; r < comm->size; r++) {
+        counts[r] = (7 * comm->rank + 3 * r) % MOST;
+        for (int i = 0; i < counts[r]; i++)
+            notes[sent++] = (struct note){comm->rank, r, i};
     }
+    struct note *in = comm_exchange(comm, notes, counts, sizeof *notes, &arriving);
+    bool right = true;
+    for (int s = 0; s < comm->size; s++)
+        for (int i = 0; i < (7 * s + 3 * comm->rank) % MOST; i++, expected++)
+            right = right && expected < arriving && in[expected].from == s &&
+                    in[expected].to == comm->rank && in[expected].number == i;
+    report(comm, right && arriving == expected, "records arrive in order");
+    alloc_free(in);
+    alloc_free(notes);
+    alloc_free(counts);
 }
 
 int main(int argc, char **argv)
@@ -502,7 +481,7 @@ int main(int argc, char **argv)
     solver_destroy(alone);
     test_picture(&comm);
     test_gather_all(&comm);
-    test_pieces(&comm);
+    test_exchange(&comm);
     test_sums(&comm);
     test_broadcasts(&comm);
     struct criterion criterion = criterion_of(3e-4, 10, 1e-3);
