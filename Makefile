@@ -71,16 +71,15 @@ BRUTE =
 MODULES = $(filter-out $(PROGRAMS),$(sort $(SOURCES:%.c=%))) $(BRUTE:%=tests/%)
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
-# Unit tests, bottom up; the last four are run with several ranks. Their sources lie in
+# Unit tests, bottom up; the last five are run with several ranks. Their sources lie in
 # folders, the programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
 TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree bundles \
         bicgstab sequence id flux patch compact formfactor patch_exchange link \
-        patch_link linking method \
-        cluster node oracle error_oracle pushpull caps \
+        patch_link method cluster node oracle error_oracle pushpull caps \
         final_gather checksum paths plan balance assign spotcheck \
         text obj ply output store tone image png hdr camera viewpoint shading render \
-        options progress contour \
-        stop norms cie whole stability gaps leaks exchange conjugate exact converge
+        options progress contour stop norms cie whole stability gaps leaks \
+        linking exchange conjugate exact converge
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
 vpath %.c tests/tools tests/whole
 

@@ -1,19 +1,24 @@
-/* Step 3: roots in descending order of weight, each to the rank with the smallest sum
- * so far (Graham's rule: no sum is above 4/3 of the best possible maximum). The paper's
- * root processor decides and informs the others; here all have the weights and decide
- * alike. */
+/* Step 3: re-assignment. Roots in descending order of area, each to the rank with the
+ * smallest sum so far (Graham's rule: no sum is above 4/3 of the best possible maximum).
+ * The paper's root processor decides and informs the others; here all have the areas and
+ * decide alike.
+ *
+ * Then each link goes to the home of one of its two roots, i or j by the parity of
+ * i + j. */
 #include "mpi/assign.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 
 #include "geom/alloc.h"
+#include "mpi/migrate.h"
+
+/* --- homes of roots --- */
 
 /* A heap of ranks, the smallest load on top. */
 struct heap {
     int *ranks; /* [count] */
     int count;
-    const int64_t *loads;
+    int64_t *loads; /* [count] of each rank */
 };
 
 static bool goes_before(const struct heap *heap, int a, int b)
@@ -37,26 +42,6 @@ static void sink(struct heap *heap, int at)
     }
 }
 
-static void deal_items(const int64_t *costs, int64_t count, int64_t *loads, int ranks,
-                int *owner)
-{
-    struct heap heap = {.ranks = alloc_array((size_t)ranks, sizeof *heap.ranks),
-                        .count = ranks,
-                        .loads = loads};
-    for (int r = 0; r < ranks; r++)
-        heap.ranks[r] = r;
-    for (int at = ranks / 2; at >= 0; at--)
-        sink(&heap, at);
-    for (int64_t i = 0; i < count; i++) {
-        owner[i] = heap.ranks[0];
-        loads[owner[i]] += costs[i];
-        sink(&heap, 0);
-    }
-    alloc_free(heap.ranks);
-}
-
-/* --- roots --- */
-
 struct candidate {
     int64_t weight;
     int32_t root;
@@ -73,19 +58,53 @@ static int compare_candidates(const void *left, const void *right)
 void roots_assign(const int64_t *weights, int32_t roots, int ranks, int *owner)
 {
     struct candidate *candidates = alloc_array((size_t)roots, sizeof *candidates);
-    int64_t *sorted = alloc_array((size_t)roots, sizeof *sorted);
-    int64_t *sums = alloc_array((size_t)ranks, sizeof *sums);
-    int *homes = alloc_array((size_t)roots, sizeof *homes);
     for (int32_t root = 0; root < roots; root++)
         candidates[root] = (struct candidate){weights[root], root};
     qsort(candidates, (size_t)roots, sizeof *candidates, compare_candidates);
-    for (int32_t i = 0; i < roots; i++)
-        sorted[i] = candidates[i].weight;
-    deal_items(sorted, roots, sums, ranks, homes);
-    for (int32_t i = 0; i < roots; i++)
-        owner[candidates[i].root] = homes[i];
-    alloc_free(homes);
-    alloc_free(sums);
-    alloc_free(sorted);
+    struct heap heap = {.count = ranks};
+    heap.ranks = alloc_array((size_t)ranks, sizeof *heap.ranks);
+    heap.loads = alloc_array((size_t)ranks, sizeof *heap.loads);
+    for (int r = 0; r < ranks; r++)
+        heap.ranks[r] = r; /* a heap, as all loads are 0 */
+    for (int32_t i = 0; i < roots; i++) {
+        owner[candidates[i].root] = heap.ranks[0];
+        heap.loads[heap.ranks[0]] += candidates[i].weight;
+        sink(&heap, 0);
+    }
+    alloc_free(heap.loads);
+    alloc_free(heap.ranks);
     alloc_free(candidates);
+}
+
+/* --- step 3 --- */
+
+static void send_home(struct solver *solver)
+{
+    const struct patch *patches = solver->model.forest->patches;
+    int *destination = alloc_array((size_t)solver->links.count, sizeof *destination);
+    for (int64_t i = 0; i < solver->links.count; i++) {
+        const struct link *link = &solver->links.items[i];
+        uint32_t a = patches[link->p].id.root, b = patches[link->q].id.root;
+        destination[i] = solver->homes.owner[(a ^ b) % 2 == 0 ? a : b];
+    }
+    links_migrate(solver, &solver->links, destination);
+    alloc_free(destination);
+}
+
+void solver_assign_roots(struct solver *solver)
+{
+    double start = comm_seconds();
+    const struct model *model = &solver->model;
+    int32_t roots = model->forest->root_count;
+    int64_t *weights = alloc_array((size_t)roots, sizeof *weights);
+    for (int32_t root = 0; root < roots; root++) /* areas, in parts of 2^-40 of all */
+        weights[root] =
+            (int64_t)(scene_root_area(model->scene, root) / model->area * 0x1p40);
+    roots_assign(weights, roots, solver->comm->size, solver->homes.owner);
+    alloc_free(weights);
+    for (int32_t root = 0; root < roots; root++)
+        solver->homes.own[root] = solver->homes.owner[root] == solver->comm->rank;
+    if (!solver->memory.clusters) /* clusters have no home */
+        send_home(solver);
+    solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
 }

@@ -50,6 +50,7 @@ run_on_ranks() {
 for test in "$@"; do
     case $test in
     exchange) run_on_ranks "$test" 1 2 3 4 6 7 8 ;;
+    linking) run_on_ranks "$test" 1 3 7 ;;
     conjugate) run_on_ranks "$test" 1 3 6 ;;
     exact) run_on_ranks "$test" 1 3 ;;
     converge)
