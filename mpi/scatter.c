@@ -7,79 +7,58 @@
 
 #include <string.h>
 
-#include "geom/alloc.h"
-
-static struct rgb *ballot_of(const struct solver *solver, int home)
+/* The place of a home's ballot in `radiosities`. */
+static struct rgb *ballot_of(const struct routes *routes, int home)
 {
-    return solver->routes.radiosities + solver->routes.record_at[home + 1] -
-           BALLOT_RECORDS;
+    return routes->radiosities + routes->records.at[home + 1] - BALLOT_RECORDS;
 }
 
-/* The radiosities of the own leaves, and the own ballot. */
+/* Packs the radiosities of the own leaves, and the own ballot. */
 static void pack(struct solver *solver, const struct rgb *vector)
 {
     const struct routes *routes = &solver->routes;
-    int rank = solver->comm->rank;
-    const int32_t *leaves = routes->leaves + routes->leaf_at[rank];
-    struct rgb *records = routes->radiosities + routes->record_at[rank];
-    for (int i = 0; i < routes->leaf_counts[rank]; i++)
+    int rank = solver->comm->rank, count = routes->leaves.counts[rank];
+    const int32_t *leaves = routes->leaves.patches + routes->leaves.at[rank];
+    struct rgb *records = routes->radiosities + routes->records.at[rank];
+    for (int i = 0; i < count; i++)
         records[i] = vector[leaves[i]];
-    memcpy(ballot_of(solver, rank), &solver->ballot, sizeof solver->ballot);
-    solver->account.copied += routes->leaf_counts[rank];
+    memcpy(ballot_of(routes, rank), &solver->ballot, sizeof solver->ballot);
+    solver->account.copied += count;
 }
 
-/* Gives the leaves of a home what it has sent. */
+/* Gives the leaves of a home the radiosities that it has sent, and its inner patches
+ * their means. */
 static void renew_home(struct solver *solver, int home, struct rgb *vector)
 {
     const struct routes *routes = &solver->routes;
-    const struct forest *forest = solver->model.forest;
-    const int32_t *leaves = routes->leaves + routes->leaf_at[home];
-    const struct rgb *records = routes->radiosities + routes->record_at[home];
-    for (int i = 0; i < routes->leaf_counts[home]; i++)
+    const int32_t *leaves = routes->leaves.patches + routes->leaves.at[home];
+    const struct rgb *records = routes->radiosities + routes->records.at[home];
+    for (int i = 0; i < routes->leaves.counts[home]; i++)
         vector[leaves[i]] = records[i];
-    const int32_t *patches =
-        routes->receivers + routes->receiver_at[home]; /* children after parents */
-    for (int i = routes->receiver_counts[home] - 1; i >= 0; i--)
-        patch_average(forest, patches[i], vector);
-    solver->account.copied += routes->receiver_counts[home];
-}
-
-/* The sum of the ballots of all homes takes the place of this rank's. */
-static void add_ballots(struct solver *solver)
-{
-    struct ballot sum = {0}, ballot;
-    for (int home = 0; home < solver->comm->size; home++) {
-        memcpy(&ballot, ballot_of(solver, home), sizeof ballot);
-        ballot_add(&sum, &ballot);
-    }
-    solver->ballot = sum;
-}
-
-/* The homes share their records. */
-static void share(struct solver *solver)
-{
-    const struct routes *routes = &solver->routes;
-    const struct comm *comm = solver->comm;
-    int *counts = alloc_array((size_t)comm->size, sizeof *counts);
-    for (int home = 0; home < comm->size; home++) {
-        counts[home] = routes->leaf_counts[home] + BALLOT_RECORDS;
-        if (home != comm->rank)
-            solver->account.bytes_scatter +=
-                counts[home] * (int64_t)sizeof *routes->radiosities;
-    }
-    comm_share(comm, routes->radiosities, counts, routes->record_at,
-               sizeof *routes->radiosities);
-    alloc_free(counts);
+    const struct route *all = &routes->receivers; /* children after parents */
+    for (int i = all->at[home + 1] - 1; i >= all->at[home]; i--)
+        patch_average(solver->model.forest, all->patches[i], vector);
+    solver->account.copied += all->counts[home];
 }
 
 void solver_scatter(struct solver *solver)
 {
     double start = comm_seconds();
+    const struct comm *comm = solver->comm;
+    const struct routes *routes = &solver->routes;
+    const struct route *records = &routes->records;
+    size_t bytes = sizeof *routes->radiosities;
     struct rgb *vector = solver_vector(solver);
+    struct ballot sum = {0}, ballot;
     pack(solver, vector);
-    share(solver);
-    add_ballots(solver);
-    for (int home = 0; home < solver->comm->size; home++)
+    comm_share(comm, routes->radiosities, records->counts, records->at, bytes);
+    for (int home = 0; home < comm->size; home++) {
         renew_home(solver, home, vector);
+        memcpy(&ballot, ballot_of(routes, home), sizeof ballot);
+        ballot_add(&sum, &ballot);
+    }
+    solver->ballot = sum;
+    solver->account.bytes_scatter +=
+        (int64_t)bytes * (records->at[comm->size] - records->counts[comm->rank]);
     solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
 }

@@ -54,7 +54,7 @@ void solver_record_iteration(struct solver *solver)
 {
     int64_t now[] = {solver->account.bytes_gather, solver->account.bytes_scatter,
                      solver->account.copied};
-    int own = solver->routes.receiver_counts[solver->comm->rank];
+    int own = solver->routes.receivers.counts[solver->comm->rank];
     struct phase_work phase = {.kind = WORK_TRANSFER, .iteration = solver->turn.iteration,
                                .share.done = solver->links.seen,
                                .bytes = now[0] - solver->account.recorded[0]};

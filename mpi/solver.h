@@ -11,7 +11,6 @@
 #include "mpi/ledger.h"
 #include "mpi/memory.h"
 #include "mpi/node.h"
-#include "mpi/routes.h"
 #include "rad/link.h"
 #include "rad/model.h"
 #include "rad/pushpull.h"
@@ -41,6 +40,26 @@ enum {
 struct homes {
     int *owner; /* [roots] its rank */
     bool *own;  /* [roots] owner[root] == rank */
+};
+
+/* Patches that travel, home by home; of each home roots in order, depth first: the same
+ * on all ranks. */
+struct route {
+    int32_t *patches; /* [at[ranks]] local numbers; of records NULL */
+    int *counts;      /* [ranks] of each home */
+    int *at;          /* [ranks + 1] where those of each home begin */
+};
+
+/* All that travels in every transfer of light over the same trees: flux to the homes of
+ * patches, and radiosities back. Found once, so that the transfers need no IDs, no counts
+ * and no searching. */
+struct routes {
+    struct route receivers;  /* patches that can receive light */
+    struct route leaves;     /* leaves whose B can change */
+    struct route records;    /* of these leaves, and the ballot of their home behind them */
+    int64_t *flux;           /* [BANDS * receivers] room for flux sent home */
+    int64_t *own_flux;       /* [BANDS * receivers of this rank] room for its sums */
+    struct rgb *radiosities; /* [records] room for all leaves and ballots */
 };
 
 /* Where the run is. */
@@ -142,6 +161,11 @@ void solver_assign_roots(struct solver *solver);
  * as long as the limit is the same. False if a signal (solver->turn.stop) has ended it:
  * then it counts as not begun, and there is no light over the links there are. */
 bool solver_refine(struct solver *solver);
+
+/* Local. Renews the routes, and sorts the links, once links have changed. Pre: all ranks
+ * have the same trees. */
+void routes_renew(struct solver *solver);
+void routes_free(struct routes *routes);
 
 /* Step 5: light is transferred over the links there are, and flux of proxies goes
  * home. */
