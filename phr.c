@@ -43,11 +43,21 @@ static bool broadcast_scene(struct run *run)
     return run_goes_on(run);
 }
 
+/* True if the paper's method alone is asked for: nothing of beyond/ is called. */
+static bool is_paper(const struct criterion *criterion)
+{
+    return criterion->oracle == ORACLE_BF && criterion->form_factor == FORM_FACTOR_DISK &&
+           criterion->linking == LINKING_PAIRS && criterion->solver == SOLVER_JACOBI;
+}
+
 static void create_solver(struct run *run)
 {
+    const struct criterion *criterion = &run->options.criterion;
     report_forecast(run);
-    struct solver *solver = beyond_create(&run->comm, run->scene, run->octree,
-                                          &run->options.criterion);
+    struct solver *solver =
+        is_paper(criterion)
+            ? solver_create(&run->comm, run->scene, run->octree, criterion, PAPER)
+            : beyond_create(&run->comm, run->scene, run->octree, criterion);
     run->solver = solver;
     memory_watch(&solver->memory, &run->comm, run->options.memory, machine_memory());
     solver->account.seconds[PHASE_READ] = comm_seconds() - run->start;

@@ -73,8 +73,9 @@ static void pack_arrays(struct scene *scene, struct pack *pack)
         pack_array(pack, scene->material_of, count * sizeof *scene->material_of);
     scene->materials =
         pack_array(pack, scene->materials, materials * sizeof *scene->materials);
-    scene->groups.of = pack_array(pack, scene->groups.of, count * sizeof *scene->groups.of);
-    scene->groups.names = pack_array(pack, scene->groups.names, (size_t)scene->groups.bytes);
+    struct scene_groups *groups = &scene->groups;
+    groups->of = pack_array(pack, groups->of, count * sizeof *groups->of);
+    groups->names = pack_array(pack, groups->names, (size_t)groups->bytes);
     if (scene->normals)
         scene->normals =
             pack_array(pack, scene->normals, 3 * count * sizeof *scene->normals);

@@ -152,6 +152,16 @@ void solver_carry(struct solver *solver, const struct rgb *vector)
         solver->steps.collect(solver);
 }
 
+void solver_carry_ones(struct solver *solver)
+{
+    size_t count = (size_t)solver->model.forest->count;
+    struct rgb *ones = alloc_array(count, sizeof *ones);
+    for (size_t p = 0; p < count; p++)
+        ones[p] = (struct rgb){{1.0, 0.0, 0.0}};
+    solver_carry(solver, ones);
+    alloc_free(ones);
+}
+
 void solver_gather(struct solver *solver)
 {
     if (solver->turn.fresh) {

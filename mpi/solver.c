@@ -20,12 +20,12 @@ const struct steps STEPS_PAPER = {
 
 struct solver *solver_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree,
-                             const struct criterion *criterion)
+                             const struct criterion *criterion, struct method method)
 {
     struct solver *solver = alloc_array(1, sizeof *solver);
     size_t roots = (size_t)scene_root_count(scene);
     solver->comm = comm;
-    solver->model = model_make(scene, octree, forest_create(scene), criterion);
+    solver->model = model_make(scene, octree, forest_create(scene), criterion, method);
     solver->steps = STEPS_PAPER;
     solver->memory.rays = criterion->final_gather;
     solver->turn.fresh = true;
@@ -177,6 +177,44 @@ static void report_proxies(struct solver *solver, struct stats *stats)
     alloc_free(solver->account.proxies);
     solver->account.proxies = comm_gather_each(solver->comm, &own, sizeof own);
     stats->proxies = solver->account.proxies;
+}
+
+/* Transfers 1 and leaves no trace in the accounts: it is not of the method. */
+static void carry_ones_unseen(struct solver *solver)
+{
+    int64_t bytes = solver->account.bytes_gather, copied = solver->account.copied;
+    double seconds[PHASE_COUNT];
+    memcpy(seconds, solver->account.seconds, sizeof seconds);
+    routes_renew(solver); /* a finished run that was resumed has none */
+    solver_carry_ones(solver);
+    solver->account.bytes_gather = bytes;
+    solver->account.copied = copied;
+    memcpy(solver->account.seconds, seconds, sizeof seconds);
+}
+
+void solver_measure_row_sums(struct solver *solver, struct stats *stats)
+{
+    const struct comm *comm = solver->comm;
+    double start = comm_seconds();
+    carry_ones_unseen(solver);
+    struct row_sums own =
+        row_sums_measure(solver->model.forest, solver->homes.own, solver->flux);
+    struct row_sums *all = comm_gather_each(comm, &own, sizeof own);
+    struct row_sums sum = {.min = HUGE_VAL, .max = -HUGE_VAL};
+    for (int r = 0; r < comm->size; r++) {
+        sum.min = fmin(sum.min, all[r].min);
+        sum.max = fmax(sum.max, all[r].max);
+        sum.area = flux_add(sum.area, all[r].area);
+        sum.rows = flux_add(sum.rows, all[r].rows);
+        sum.squares = flux_add(sum.squares, all[r].squares);
+    }
+    alloc_free(all);
+    double area = sum.area > 0 ? (double)sum.area : 1.0; /* 0: too small to count */
+    stats->row_sum_min = sum.min;
+    stats->row_sum_max = sum.max;
+    stats->row_sum_mean = (double)sum.rows / area;
+    stats->row_sum_rms = sqrt((double)sum.squares / area);
+    solver->account.seconds[PHASE_ROW_SUMS] += comm_seconds() - start;
 }
 
 void solver_report(struct solver *solver, const struct vote *vote, struct stats *stats)

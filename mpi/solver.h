@@ -56,7 +56,7 @@ struct route {
 struct routes {
     struct route receivers;  /* patches that can receive light */
     struct route leaves;     /* leaves whose B can change */
-    struct route records;    /* of these leaves, and the ballot of their home behind them */
+    struct route records;    /* of these leaves, behind them the ballot of their home */
     int64_t *flux;           /* [BANDS * receivers] room for flux sent home */
     int64_t *own_flux;       /* [BANDS * receivers of this rank] room for its sums */
     struct rgb *radiosities; /* [records] room for all leaves and ballots */
@@ -141,10 +141,10 @@ struct vote {
     double escaped;    /* W: light that leaves surfaces, less light that links deliver */
 };
 
-/* Collective. The paper's method. Borrows comm, scene and octree. */
+/* The paper's steps, with links of this method. Borrows comm, scene and octree. */
 struct solver *solver_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree,
-                             const struct criterion *criterion);
+                             const struct criterion *criterion, struct method method);
 void solver_destroy(struct solver *solver);
 
 /* Step 2: initial linking, of all pairs of roots, or, with a tree above the roots, of its
@@ -178,6 +178,9 @@ struct rgb *solver_vector(const struct solver *solver);
 /* The transfer alone, of any vector [patches], over links whose routes are known. */
 void solver_carry(struct solver *solver, const struct rgb *vector);
 
+/* The transfer of 1 from all patches in the first band: what arrives are row sums. */
+void solver_carry_ones(struct solver *solver);
+
 /* The largest magnitude of a vector [patches] over patches and bands. */
 double solver_largest(const struct solver *solver, const struct rgb *vector);
 
@@ -201,6 +204,9 @@ struct vote vote_make(const struct solver *solver, const struct ballot *sum,
 
 /* Enters the work of the iteration into the ledger. */
 void solver_record_iteration(struct solver *solver);
+
+/* Writes the row sums of the links into `stats`, after the last iteration. */
+void solver_measure_row_sums(struct solver *solver, struct stats *stats);
 
 /* Fills `stats` but for the row sums: counts and sums over all ranks, and the clocks of
  * all ranks as they stand. Borrows the levels of the solver. */

@@ -25,7 +25,8 @@ struct method {
     struct patch_id (*node_id)(const struct model *model, int32_t node);
     int32_t (*node_reach)(const struct model *model, struct patch_id id);
 
-    /* Power that epsilon is relative to, W, areas in square scene units. */
+    /* Power that epsilon is relative to, W, areas in square scene units. NULL: the
+     * emitted power. */
     double (*light_power)(struct model *model);
 
     /* The link that there is at first. NULL: all pairs of roots are linked. */
@@ -61,7 +62,7 @@ struct method {
                      const struct rgb *vector, struct flux_unit unit);
 };
 
-extern const struct method PAPER;   /* rad/model.c */
+extern const struct method PAPER;   /* rad/paper.c */
 extern const struct method DEFAULT; /* rad/beyond/default.c */
 
 /* PAPER, DEFAULT or an ablation, as the criterion names them (rad/beyond/default.c). */

@@ -1,40 +1,10 @@
-/* The model of a run, and the paper's method: every pair of roots is linked, by disks and
- * 16 rays; a link is split if it carries too much energy; light goes over the link to
- * the patches themselves.
+/* Thresholds in the units of the run; see rad/model.h.
  *
  * Energy is compared as the sum over the three bands, on both sides, so one epsilon
  * serves every colour of light. */
 #include "rad/model.h"
 
 #include <math.h>
-
-#include "rad/link.h"
-#include "rad/oracle.h"
-
-static double emitted_power(struct model *model)
-{
-    return model->emitted_power;
-}
-
-static struct patch_id patch_id_of(const struct model *model, int32_t patch)
-{
-    return model->forest->patches[patch].id;
-}
-
-static int32_t reach_patch(const struct model *model, struct patch_id id)
-{
-    return forest_reach(model->forest, id);
-}
-
-const struct method PAPER = {
-    .node_id = patch_id_of,
-    .node_reach = reach_patch,
-    .light_power = emitted_power,
-    .make_link = link_make,
-    .side_to_split = oracle_side_to_split,
-    .split_link = link_split,
-    .transfer = links_transfer,
-};
 
 /* A unit for powers that ranks add: from the emitted power and the largest reflectance
  * rho, since the light in a closed scene adds up to at most power / (1 - rho). 16 times
@@ -50,14 +20,15 @@ static struct flux_unit choose_flux_unit(const struct scene *scene)
 }
 
 struct model model_make(const struct scene *scene, const struct octree *octree,
-                        struct forest *forest, const struct criterion *criterion)
+                        struct forest *forest, const struct criterion *criterion,
+                        struct method method)
 {
     struct model model = {
         .scene = scene,
         .octree = octree,
         .forest = forest,
         .criterion = *criterion,
-        .method = method_of(criterion),
+        .method = method,
         .flux_unit = choose_flux_unit(scene),
         .area = scene_area(scene),
         .emitted_power = scene_emitted_power(scene),
@@ -69,6 +40,9 @@ struct model model_make(const struct scene *scene, const struct octree *octree,
 
 void model_set_epsilon(struct model *model, double epsilon)
 {
+    double light = model->emitted_power;
+    if (model->method.light_power)
+        light = model->method.light_power(model);
     model->criterion.epsilon = epsilon;
-    model->link_threshold = epsilon * model->method.light_power(model);
+    model->link_threshold = epsilon * light;
 }

@@ -76,10 +76,10 @@ static inline int64_t model_work(const struct model *model)
     return model->counts.node_tests + model->counts.triangle_tests + model->estimating;
 }
 
-/* Fills a model with the method that the criterion names; borrows scene, octree and
- * forest. */
+/* Fills a model; borrows scene, octree and forest. */
 struct model model_make(const struct scene *scene, const struct octree *octree,
-                          struct forest *forest, const struct criterion *criterion);
+                        struct forest *forest, const struct criterion *criterion,
+                        struct method method);
 
 /* Changes epsilon of the criterion, and the threshold with it. */
 void model_set_epsilon(struct model *model, double epsilon);

@@ -90,3 +90,25 @@ struct push_pull_sums push_pull(const struct model *model, struct flux_unit flux
             patch_average(forest, (int32_t)p, forest->radiosity);
     return sums;
 }
+
+struct row_sums row_sums_measure(const struct forest *forest, const bool *own,
+                                    struct flux_unit unit)
+{
+    struct row_sums sums = {.min = HUGE_VAL, .max = -HUGE_VAL};
+    struct flux_unit coarse = {unit.per_watt / ROW_SUMS_ROOM, unit.watt * ROW_SUMS_ROOM};
+    for (int64_t p = 0; p < forest->count; p++) {
+        const struct patch *patch = &forest->patches[p];
+        double area = forest_area(forest, (int32_t)p);
+        if (!own[patch->id.root] || !patch_is_leaf(patch) || area <= 0.0 ||
+            material_is_dark(forest_material(forest, (int32_t)p)))
+            continue;
+        double sum = leaf_irradiance(forest, (int32_t)p, unit).band[0];
+        double square = area * (sum - 1.0) * (sum - 1.0);
+        sums.min = fmin(sums.min, sum);
+        sums.max = fmax(sums.max, sum);
+        sums.area = flux_add(sums.area, flux_from_watts(coarse, area));
+        sums.rows = flux_add(sums.rows, flux_from_watts(coarse, area * sum));
+        sums.squares = flux_add(sums.squares, flux_from_watts(coarse, square));
+    }
+    return sums;
+}

@@ -34,4 +34,22 @@ void patch_average(const struct forest *forest, int32_t patch, struct rgb *vecto
 /* The pull of all radiosities. */
 void forest_average(struct forest *forest);
 
+enum { ROW_SUMS_ROOM = 16 };
+
+/* Row sums of the leaves of own roots. The row sum R of a leaf is its irradiance, over
+ * its links and those of its ancestors, when B = 1 everywhere. Sums are integers of
+ * ROW_SUMS_ROOM of the units given to row_sums_measure(): a unit with room for the area
+ * of the scene may have none for sums above 1. */
+struct row_sums {
+    double min, max; /* +-HUGE_VAL if there is no leaf */
+    int64_t area;    /* of the leaves counted */
+    int64_t rows;    /* sum of A R */
+    int64_t squares; /* sum of A (R - 1)^2 */
+};
+
+/* Measures row sums, after a transfer of B = 1 with the unit. Leaves of patches that
+ * neither reflect nor emit are left out: they are not linked with each other. */
+struct row_sums row_sums_measure(const struct forest *forest, const bool *own,
+                                 struct flux_unit unit);
+
 #endif

@@ -191,7 +191,8 @@ static inline struct world world_make(struct scene *scene)
     scene_prepare_or_exit(scene);
     struct world world = {.scene = scene};
     world.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
-    world.model = model_make(scene, world.octree, forest_create(scene), &criterion);
+    world.model =
+        model_make(scene, world.octree, forest_create(scene), &criterion, PAPER);
     return world;
 }
 

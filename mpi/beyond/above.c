@@ -1,12 +1,11 @@
 /* The tree above the roots on all ranks: rank 0 builds it, and it travels like the octree
  * (mpi/broadcast.c). Clusters have no home: each rank gets the sums of their flux. */
-#include "mpi/beyond/above.h"
+#include "mpi/beyond/beyond.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "mpi/beyond/beyond.h"
 
 /* --- building --- */
 

@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "geom/alloc.h"
-#include "mpi/beyond/above.h"
 
 /* Transfers a vector in a unit that fits its largest value: B, which all ranks know, or
  * rho z, the largest of which the ballots have brought. */
@@ -67,7 +66,8 @@ struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
                              const struct octree *octree,
                              const struct criterion *criterion)
 {
-    struct solver *solver = solver_create(comm, scene, octree, criterion);
+    struct solver *solver =
+        solver_create(comm, scene, octree, criterion, method_of(criterion));
     bool conjugate = criterion->solver == SOLVER_CG;
     bool tree = criterion->linking == LINKING_TREE;
     if (!conjugate && !tree)

@@ -62,11 +62,19 @@ struct beyond *beyond_attach(struct solver *solver);
 /* The answer of the final gather; an empty one where there is none. */
 const struct answer *beyond_answer(const struct solver *solver);
 
+/* The tree above the roots, and light over it, on all ranks; collective. Builds
+ * solver->beyond->tree, and the light and the arrays that a tree needs. */
+void above_create(struct solver *solver);
+void above_free(struct solver *solver);
+
+/* Collective. Step 5, before a transfer: computes the radiosity of clusters, and clears
+ * their flux; after it: sums the flux of clusters over all ranks and pushes it down to
+ * the roots. */
+void above_begin(struct solver *solver, const struct rgb *vector);
+void above_collect(struct solver *solver);
+
 /* Collective. Step 5, when links have changed: measures row sums and caps them. */
 void caps_begin(struct solver *solver);
-
-/* Collective. Writes the row sums of the links into `stats`, after the last iteration. */
-void solver_measure_row_sums(struct solver *solver, struct stats *stats);
 
 /* Steps 5 to 8 by conjugate gradients: B is transferred first, then rho z. When there is
  * no other iteration all ranks learn B. */

@@ -17,7 +17,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     for (int32_t i = 0; scene && i < scene->input_count; i++) {
         FUZZ_PROMISE(scene->material_of[i] >= 0 &&
                      scene->material_of[i] < scene->material_count);
-        FUZZ_PROMISE(scene->groups.of[i] >= 0 && scene->groups.of[i] < scene->groups.count);
+        FUZZ_PROMISE(scene->groups.of[i] >= 0 &&
+                     scene->groups.of[i] < scene->groups.count);
     }
     scene_destroy(scene);
     fuzz_verdict(good, &error);

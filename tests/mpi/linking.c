@@ -23,7 +23,8 @@ static struct world world_of(struct soup *soup, enum oracle oracle)
     struct criterion criterion = world.model.criterion;
     criterion.oracle = oracle;
     criterion.form_factor = oracle == ORACLE_BF ? FORM_FACTOR_DISK : FORM_FACTOR_POLYGON;
-    world.model = model_make(scene, world.octree, world.model.forest, &criterion);
+    world.model = model_make(scene, world.octree, world.model.forest, &criterion,
+                             method_of(&criterion));
     return world;
 }
 

@@ -121,7 +121,7 @@ static struct flux_unit unit_of(const struct scene *scene)
 {
     struct criterion criterion = {.epsilon = 1.0};
     struct forest *forest = forest_create(scene);
-    struct flux_unit unit = model_make(scene, NULL, forest, &criterion).flux_unit;
+    struct flux_unit unit = model_make(scene, NULL, forest, &criterion, PAPER).flux_unit;
     forest_destroy(forest);
     return unit;
 }

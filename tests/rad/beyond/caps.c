@@ -1,6 +1,7 @@
-/* Tests of rad/beyond/caps.h: row sums, and the factors that cap them. (On all ranks, and
+/* Tests of row sums (rad/pushpull.h) and of the factors that cap them. (On all ranks, and
  * their effect on the light: tests/mpi/conjugate.c.) */
 #include "rad/beyond/caps.h"
+#include "rad/pushpull.h"
 
 #include <string.h>
 

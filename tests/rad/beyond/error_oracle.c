@@ -259,7 +259,8 @@ static int decide(double scale, uint64_t seed, int32_t decisions[DECISIONS])
     criterion.form_factor = FORM_FACTOR_POLYGON;
     criterion.epsilon = 1e-4;
     criterion.max_level = 3;
-    *model = model_make(scene, world.octree, model->forest, &criterion);
+    *model = model_make(scene, world.octree, model->forest, &criterion,
+                        method_of(&criterion));
     struct link_list list = {0};
     for (int32_t p = 0; p < 12; p++)
         for (int32_t q = p + 1; q < 12; q++) {

@@ -1,0 +1,24 @@
+/* The paper's method: every pair of roots is linked, by disks and 16 rays; a link is
+ * split if it carries too much energy; light goes over the link to the patches
+ * themselves. */
+#include "rad/link.h"
+#include "rad/oracle.h"
+
+static struct patch_id patch_id_of(const struct model *model, int32_t patch)
+{
+    return model->forest->patches[patch].id;
+}
+
+static int32_t reach_patch(const struct model *model, struct patch_id id)
+{
+    return forest_reach(model->forest, id);
+}
+
+const struct method PAPER = {
+    .node_id = patch_id_of,
+    .node_reach = reach_patch,
+    .make_link = link_make,
+    .side_to_split = oracle_side_to_split,
+    .split_link = link_split,
+    .transfer = links_transfer,
+};
