@@ -167,14 +167,18 @@ void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 
     camera->eye = scene_to_input(scene, vec3_add(middle, vec3_scale(back, distance)));
 }
 
+struct camera_basis camera_basis_of(const struct camera *camera)
+{
+    struct camera_basis basis = {.forward = unit(vec3_sub(camera->at, camera->eye)),
+                                 .middle = {0.5 * camera->width, 0.5 * camera->height}};
+    basis.right = unit(vec3_cross(basis.forward, unit(camera->up)));
+    basis.above = vec3_cross(basis.right, basis.forward);
+    basis.pixel = 2.0 * tangent(camera->fov * PI / 360.0) / camera->height;
+    return basis;
+}
+
 struct vec3 camera_ray(const struct camera *camera, double x, double y)
 {
-    struct vec3 forward = unit(vec3_sub(camera->at, camera->eye));
-    struct vec3 right = unit(vec3_cross(forward, unit(camera->up)));
-    struct vec3 above = vec3_cross(right, forward);
-    double half = tangent(camera->fov * PI / 360.0);
-    double pixel = 2.0 * half / camera->height;
-    double across = (x - 0.5 * camera->width) * pixel,
-           up = (0.5 * camera->height - y) * pixel;
-    return vec3_add(forward, vec3_add(vec3_scale(right, across), vec3_scale(above, up)));
+    struct camera_basis basis = camera_basis_of(camera);
+    return camera_basis_ray(&basis, x, y);
 }

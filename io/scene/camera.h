@@ -33,8 +33,26 @@ bool camera_of_text(struct camera *camera, struct text *text, struct error *erro
  * whole box. Reads up, fov and size; writes eye and at. */
 void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 towards);
 
+/* The axes of a camera, for many rays. */
+struct camera_basis {
+    struct vec3 forward, right, above; /* of length 1 */
+    double pixel;                      /* its side at distance 1 */
+    double middle[2];                  /* of the picture, pixels from the top left */
+};
+
+struct camera_basis camera_basis_of(const struct camera *camera);
+
 /* Returns the direction, not of length 1, of the ray through the point (x, y) of the
  * picture, in pixels from the top left corner. */
+static inline struct vec3 camera_basis_ray(const struct camera_basis *basis, double x,
+                                           double y)
+{
+    struct vec3 across = vec3_scale(basis->right, (x - basis->middle[0]) * basis->pixel);
+    struct vec3 up = vec3_scale(basis->above, (basis->middle[1] - y) * basis->pixel);
+    return vec3_add(basis->forward, vec3_add(across, up));
+}
+
+/* The same, for a few rays. */
 struct vec3 camera_ray(const struct camera *camera, double x, double y);
 
 #endif
