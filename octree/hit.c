@@ -74,24 +74,6 @@ INLINE bool search_leaf(void *at, const struct record *records, int32_t count,
     return false;
 }
 
-/* Cuts the ray to a segment that ends behind the scene and begins no further from it than
- * its own size, so that a camera far away keeps its digits. False if it misses. */
-static bool clip_to_scene(const struct octree *octree, struct vec3 *origin,
-                          struct vec3 direction, struct vec3 *end)
-{
-    double radius = octree->radius;
-    struct vec3 d = vec3_scale(direction, 1.0 / vec3_length(direction));
-    double along = vec3_dot(vec3_sub(octree->middle, *origin), d), begin = along - radius;
-    if (along + radius <= 0.0)
-        return false;
-    *end = vec3_add(*origin, vec3_scale(d, along + radius));
-    if (begin > 0.0)
-        *origin = vec3_add(*origin, vec3_scale(d, begin));
-    struct vec3 nearest = vec3_add(*origin, vec3_scale(d, begin > 0.0 ? radius : along));
-    struct vec3 aside = vec3_sub(nearest, octree->middle);
-    return vec3_dot(aside, aside) <= radius * radius;
-}
-
 bool octree_first_hit(const struct octree *octree, struct vec3 origin,
                       struct vec3 direction, bool fronts_only, struct octree_hit *hit,
                       struct octree_counts *counts)
@@ -102,8 +84,8 @@ bool octree_first_hit(const struct octree *octree, struct vec3 origin,
     search.octree = octree;
     search.fronts_only = fronts_only;
     search.nearest = 2.0;
-    search.hit.triangle = -1;
-    if (!clip_to_scene(octree, &origin, direction, &end))
+    search.hit.triangle = hit->triangle = -1;
+    if (!ray_clip(octree, &origin, direction, &end))
         return false;
     ray_set(&search.ray, origin, end);
     ray_walk(&octree->inside, &search.ray, search_leaf, &search, counts);

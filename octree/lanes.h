@@ -49,6 +49,11 @@ typedef int32_t lanes_mask __attribute__((vector_size(32))); /* -1: true, 0: fal
              (~lanes_above(b, a) & (lanes_mask)(b))))
 #define mask_and(a, b) ((a) & (b))
 #define mask_or(a, b) ((a) | (b))
+#define mask_all(x) ((lanes_mask){(x), (x), (x), (x), (x), (x), (x), (x)})
+/* a where the mask is true, else b */
+#define mask_choose(mask, a, b) (((mask) & (a)) | (~(mask) & (b)))
+/* a where the mask is false, else 0 */
+#define lanes_unless(mask, a) ((lanes)(~(mask) & (lanes_mask)(a)))
 
 /* Eight floats at any address, read as one vector (by parts, it would wait for the
  * store). */
@@ -170,6 +175,24 @@ FOUR_INLINE lanes_mask mask_and(lanes_mask a, lanes_mask b)
 FOUR_INLINE lanes_mask mask_or(lanes_mask a, lanes_mask b)
 {
     return (lanes_mask){a.low | b.low, a.high | b.high};
+}
+
+FOUR_INLINE lanes_mask mask_all(int32_t x)
+{
+    four_mask v = {x, x, x, x};
+    return (lanes_mask){v, v};
+}
+
+FOUR_INLINE lanes_mask mask_choose(lanes_mask mask, lanes_mask a, lanes_mask b)
+{
+    return (lanes_mask){(mask.low & a.low) | (~mask.low & b.low),
+                        (mask.high & a.high) | (~mask.high & b.high)};
+}
+
+FOUR_INLINE lanes lanes_unless(lanes_mask mask, lanes a)
+{
+    return (lanes){(four)(~mask.low & (four_mask)a.low),
+                   (four)(~mask.high & (four_mask)a.high)};
 }
 
 typedef float four_in_memory __attribute__((vector_size(16), aligned(4), may_alias));
@@ -302,6 +325,28 @@ static inline lanes_mask mask_or(lanes_mask a, lanes_mask b)
 {
     for (int k = 0; k < LANES; k++)
         a.lane[k] |= b.lane[k];
+    return a;
+}
+
+static inline lanes_mask mask_all(int32_t x)
+{
+    lanes_mask r;
+    for (int k = 0; k < LANES; k++)
+        r.lane[k] = x;
+    return r;
+}
+
+static inline lanes_mask mask_choose(lanes_mask mask, lanes_mask a, lanes_mask b)
+{
+    for (int k = 0; k < LANES; k++)
+        a.lane[k] = mask.lane[k] ? a.lane[k] : b.lane[k];
+    return a;
+}
+
+static inline lanes lanes_unless(lanes_mask mask, lanes a)
+{
+    for (int k = 0; k < LANES; k++)
+        a.lane[k] = mask.lane[k] ? 0.0f : a.lane[k];
     return a;
 }
 

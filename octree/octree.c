@@ -14,9 +14,10 @@
  * costs about as much as one box.
  *
  * One walk (octree/walk.h) answers all questions. Rays go down for first hits
- * (octree/hit.c), single segments and walls (octree/segment.c); shafts for bundles of 16
- * segments (octree/bundle.c) and for empty shafts (octree/shaft.c); a half space for the
- * hull, below.
+ * (octree/hit.c), single segments and walls (octree/segment.c); packets of rays for the
+ * first hits of a picture (octree/packet.c); shafts for bundles of 16 segments
+ * (octree/bundle.c) and for empty shafts (octree/shaft.c); a half space for the hull,
+ * below.
  *
  * Triangles that have the whole scene on one side, the walls of a room, can block nothing
  * between two of its points. They are the hull: a tree of their own that only first hits

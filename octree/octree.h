@@ -19,7 +19,8 @@ struct octree;
 
 enum {
     BUNDLE_ENDS = 4,                       /* points on either side of a bundle */
-    BUNDLE_RAYS = BUNDLE_ENDS * BUNDLE_ENDS /* segments of a bundle */
+    BUNDLE_RAYS = BUNDLE_ENDS * BUNDLE_ENDS, /* segments of a bundle */
+    PACKET_RAYS = 64                         /* rays of a packet, at most */
 };
 
 /* The 16 segments between four points and four others. Segment 4 a + b runs from from[a]
@@ -87,5 +88,12 @@ bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p
 bool octree_first_hit(const struct octree *octree, struct vec3 origin,
                       struct vec3 direction, bool fronts_only, struct octree_hit *hit,
                       struct octree_counts *counts);
+
+/* octree_first_hit() of 1 to PACKET_RAYS rays from one point; the triangle of a ray that
+ * meets nothing becomes -1. Answers are the same to the bit, and come sooner if the rays
+ * go to almost the same place, as those of neighbouring pixels do. */
+void octree_first_hits(const struct octree *octree, struct vec3 origin,
+                       const struct vec3 *directions, int count, bool fronts_only,
+                       struct octree_hit *hits, struct octree_counts *counts);
 
 #endif

@@ -54,6 +54,24 @@ INLINE void ray_set(struct ray *ray, struct vec3 from, struct vec3 to)
     mask_set_weights(&ray->weights, ray->near);
 }
 
+/* Cuts the ray to a segment that ends behind the scene and begins no further from it than
+ * its own size, so that a camera far away keeps its digits. False if it misses. */
+INLINE bool ray_clip(const struct octree *octree, struct vec3 *origin,
+                     struct vec3 direction, struct vec3 *end)
+{
+    double radius = octree->radius;
+    struct vec3 d = vec3_scale(direction, 1.0 / vec3_length(direction));
+    double along = vec3_dot(vec3_sub(octree->middle, *origin), d), begin = along - radius;
+    if (along + radius <= 0.0)
+        return false;
+    *end = vec3_add(*origin, vec3_scale(d, along + radius));
+    if (begin > 0.0)
+        *origin = vec3_add(*origin, vec3_scale(d, begin));
+    struct vec3 nearest = vec3_add(*origin, vec3_scale(d, begin > 0.0 ? radius : along));
+    struct vec3 aside = vec3_sub(nearest, octree->middle);
+    return vec3_dot(aside, aside) <= radius * radius;
+}
+
 /* --- boxes --- */
 
 /* t at a side of the boxes' slabs across an axis. */

@@ -145,3 +145,11 @@ bool octree_first_hit(const struct octree *octree, struct vec3 origin,
     }
     return hit->triangle >= 0;
 }
+
+void octree_first_hits(const struct octree *octree, struct vec3 origin,
+                       const struct vec3 *directions, int count, bool fronts_only,
+                       struct octree_hit *hits, struct octree_counts *counts)
+{
+    for (int i = 0; i < count; i++)
+        octree_first_hit(octree, origin, directions[i], fronts_only, &hits[i], counts);
+}

@@ -197,42 +197,81 @@ struct rgb render_point(const struct renderer *renderer, int32_t root,
 
 /* --- pixels --- */
 
-/* Adds the root that the ray through the point (x, y) of the picture meets to the
- * view. */
-static void look(const struct renderer *renderer, const struct scene *scene,
-                 const struct camera *camera, double x, double y,
-                 struct pixel_roots *view)
+/* Neighbouring pixels of a scanline, whose rays go down the octree in packets. */
+struct strip {
+    const struct renderer *renderer;
+    const struct scene *scene;
+    const struct camera *camera;
+    struct camera_basis basis;
+    struct vec3 eye;         /* of the camera, scene units */
+    int samples, rays;       /* along the side of a pixel; in it */
+    int pixels;              /* at most */
+    struct octree_hit *hits; /* [pixels rays] */
+    struct pixel_roots view; /* room for the rays of a pixel */
+};
+
+/* Finds the first hits of the rays of `pixels` pixels from (px, py). */
+static void look(struct strip *strip, int px, int py, int pixels)
 {
     struct octree_counts counts = {0};
-    struct octree_hit hit;
-    if (!octree_first_hit(renderer->octree, scene_from_input(scene, camera->eye),
-                          camera_ray(camera, x, y), camera->fronts_only, &hit, &counts))
-        return;
-    int32_t root = scene_root_on(scene, hit.triangle, hit.front);
-    if (root < 0)
-        return;
-    const double *w = hit.weight;
-    view->roots[view->count] = root;
-    view->weights[view->count++] = hit.front ? (struct vec3){w[0], w[1], w[2]}
-                                             : (struct vec3){w[0], w[2], w[1]};
+    struct vec3 directions[PACKET_RAYS];
+    int samples = strip->samples, rays = pixels * strip->rays, filled = 0;
+    for (int i = 0; i < rays; i++) {
+        int k = i % strip->rays;
+        double x = px + i / strip->rays + (k % samples + 0.5) / samples;
+        double y = py + (k / samples + 0.5) / samples;
+        directions[filled++] = camera_basis_ray(&strip->basis, x, y);
+        if (filled < PACKET_RAYS && i + 1 < rays)
+            continue;
+        octree_first_hits(strip->renderer->octree, strip->eye, directions, filled,
+                          strip->camera->fronts_only, &strip->hits[i + 1 - filled],
+                          &counts);
+        filled = 0;
+    }
 }
 
-static void render_pixel(const struct renderer *renderer, const struct scene *scene,
-                         const struct camera *camera, int samples, int px, int py,
-                         struct pixel_roots *view, float *rgb)
+/* The roots that the rays of a pixel meet. */
+static void collect_roots(const struct strip *strip, const struct octree_hit *hits,
+                          struct pixel_roots *view)
 {
-    int parts = samples * samples;
-    uint64_t seed = (uint64_t)py * (uint64_t)camera->width + (uint64_t)px;
     view->count = 0;
-    for (int i = 0; i < parts; i++)
-        look(renderer, scene, camera, px + (i % samples + 0.5) / samples,
-             py + (i / samples + 0.5) / samples, view);
-    struct pixel_light pixel = show(renderer, view, seed, renderer->rays);
+    for (const struct octree_hit *hit = hits; hit < hits + strip->rays; hit++) {
+        if (hit->triangle < 0)
+            continue;
+        int32_t root = scene_root_on(strip->scene, hit->triangle, hit->front);
+        if (root < 0)
+            continue;
+        const double *w = hit->weight;
+        view->roots[view->count] = root;
+        view->weights[view->count++] = hit->front ? (struct vec3){w[0], w[1], w[2]}
+                                                  : (struct vec3){w[0], w[2], w[1]};
+    }
+}
+
+static void render_pixel(struct strip *strip, const struct octree_hit *hits, int px,
+                         int py, float *rgb)
+{
+    const struct renderer *renderer = strip->renderer;
+    uint64_t seed = (uint64_t)py * (uint64_t)strip->camera->width + (uint64_t)px;
+    collect_roots(strip, hits, &strip->view);
+    struct pixel_light pixel = show(renderer, &strip->view, seed, renderer->rays);
     double most = NOISE * rgb_sum(pixel.sum);
     if (renderer->shading && pixel.variance > most * most)
-        pixel = show(renderer, view, seed, MORE * renderer->rays);
+        pixel = show(renderer, &strip->view, seed, MORE * renderer->rays);
     for (int c = 0; c < BANDS; c++)
-        rgb[c] = (float)(pixel.sum.band[c] / parts);
+        rgb[c] = (float)(pixel.sum.band[c] / strip->rays);
+}
+
+static void render_scanline(struct strip *strip, int py, float *rgb)
+{
+    int width = strip->camera->width;
+    for (int x = 0; x < width && !stop_is_asked(); x += strip->pixels) {
+        int pixels = width - x < strip->pixels ? width - x : strip->pixels;
+        look(strip, x, py, pixels);
+        for (int k = 0; k < pixels && !stop_is_asked(); k++)
+            render_pixel(strip, &strip->hits[k * strip->rays], x + k, py,
+                         rgb + 3 * (x + k));
+    }
 }
 
 float *render_scanlines(const struct renderer *renderer, const struct camera *camera,
@@ -240,20 +279,25 @@ float *render_scanlines(const struct renderer *renderer, const struct camera *ca
 {
     const struct scene *scene = renderer->gather ? renderer->gather->model->scene
                                                  : renderer->shading->forest->scene;
-    size_t length = 3 * (size_t)camera->width, parts = (size_t)samples * (size_t)samples;
+    size_t length = 3 * (size_t)camera->width, rays = (size_t)(samples * samples);
     int scanlines = first < camera->height ? (camera->height - first - 1) / step + 1 : 0;
     float *rgb = alloc_array((size_t)scanlines * length, sizeof *rgb);
-    struct pixel_roots view = {.roots = alloc_array(parts, sizeof *view.roots),
-                               .weights = alloc_array(parts, sizeof *view.weights),
-                               .at = alloc_array(parts, sizeof *view.at)};
+    struct strip strip = {
+        .renderer = renderer, .scene = scene, .camera = camera,
+        .basis = camera_basis_of(camera), .eye = scene_from_input(scene, camera->eye),
+        .samples = samples, .rays = (int)rays,
+        .pixels = rays < PACKET_RAYS ? PACKET_RAYS / (int)rays : 1,
+        .view = {.roots = alloc_array(rays, sizeof *strip.view.roots),
+                 .weights = alloc_array(rays, sizeof *strip.view.weights),
+                 .at = alloc_array(rays, sizeof *strip.view.at)}};
+    strip.hits = alloc_array((size_t)strip.pixels * rays, sizeof *strip.hits);
     for (int i = 0; i < scanlines; i++) {
         progress_tick(progress, (double)i / scanlines);
-        for (int x = 0; x < camera->width && !stop_is_asked(); x++)
-            render_pixel(renderer, scene, camera, samples, x, first + i * step, &view,
-                         rgb + (size_t)i * length + 3 * (size_t)x);
+        render_scanline(&strip, first + i * step, rgb + (size_t)i * length);
     }
-    alloc_free(view.roots);
-    alloc_free(view.weights);
-    alloc_free(view.at);
+    alloc_free(strip.hits);
+    alloc_free(strip.view.roots);
+    alloc_free(strip.view.weights);
+    alloc_free(strip.view.at);
     return rgb;
 }

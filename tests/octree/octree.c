@@ -40,7 +40,7 @@ static int32_t octree_blocker(const struct octree *octree, struct vec3 from,
     return octree_blocks_segment(octree, from, to, own, &guess, counts) ? guess : -1;
 }
 
-enum { SEGMENTS = 100000, RAYS = 8000, CROSSINGS = 20000, WALLS = 20000 };
+enum { SEGMENTS = 100000, RAYS = 8000, CROSSINGS = 20000, PACKETS = 1000, WALLS = 20000 };
 
 /* --- scenes --- */
 
@@ -306,6 +306,64 @@ static void test_first_hits(const struct world *world, const char *name, bool fr
     tap_ok(counts.rays == RAYS, "%s: a ray counts once", name);
 }
 
+/* From the eye of random_ray(), or in the plane of a triangle, to places in a spot that
+ * is from a millionth to half of the scene; the last goes to a corner. Returns their
+ * number. */
+static int random_packet(struct random *random, const struct scene *scene, int number,
+                         struct vec3 *eye, struct vec3 directions[PACKET_RAYS])
+{
+    int32_t target = random_below(random, scene->input_count);
+    const struct triangle *t = &scene->triangles[target];
+    int count = 1 + random_below(random, PACKET_RAYS);
+    double spot = 0.5;
+    for (int k = random_below(random, 7); k > 0; k--)
+        spot *= 0.1;
+    struct vec3 direction;
+    random_ray(random, scene, number, eye, &direction);
+    for (int k = 1; k < 3 && number % 8 == 3; k++) {
+        struct vec3 edge = vec3_sub(t->corner[k], t->corner[0]);
+        struct vec3 from = k == 1 ? t->corner[0] : *eye;
+        *eye = vec3_add(from, vec3_scale(edge, random_between(random, -2, 3)));
+    }
+    struct vec3 to = vec3_sub(random_point_on(random, t), *eye);
+    to = number % 3 == 0 ? direction : to;
+    for (int k = 0; k < count; k++)
+        directions[k] = vec3_add(to, random_point(random, spot));
+    directions[count - 1] = vec3_sub(t->corner[number % 3], *eye);
+    return count;
+}
+
+/* Packets answer as their rays do one by one, to the bit. */
+static void test_packets(const struct world *world, const char *name, bool fronts_only)
+{
+    struct random random = random_seed(21);
+    struct octree_counts counts = {0}, single = {0};
+    int wrong = 0, hits = 0;
+    for (int i = 0; i < PACKETS; i++) {
+        struct vec3 eye, directions[PACKET_RAYS];
+        struct octree_hit together[PACKET_RAYS];
+        int count = random_packet(&random, world->scene, i, &eye, directions);
+        octree_first_hits(world->octree, eye, directions, count, fronts_only, together,
+                          &counts);
+        for (int k = 0; k < count; k++) {
+            struct octree_hit hit;
+            bool found = octree_first_hit(world->octree, eye, directions[k], fronts_only,
+                                          &hit, &single);
+            hits += found;
+            wrong += together[k].triangle != (found ? hit.triangle : -1) ||
+                     (found && (together[k].front != hit.front ||
+                                memcmp(together[k].weight, hit.weight,
+                                       sizeof hit.weight) != 0));
+        }
+    }
+    tap_ok(wrong == 0 && hits > PACKETS && counts.rays == single.rays,
+           "%s%s: packets of rays as one by one (%d hits)", name,
+           fronts_only ? ", fronts only" : "", hits);
+    tap_ok(counts.node_tests < single.node_tests,
+           "%s: and look at fewer nodes (%d, %d)", name, (int)counts.node_tests,
+           (int)single.node_tests);
+}
+
 /* A random triangle, or a box at a corner of it. Returns the number of corners. */
 static int random_corners(struct random *random, const struct scene *scene,
                           struct vec3 corners[8])
@@ -388,6 +446,8 @@ static void test_scene(void (*make)(struct soup *), bool packed, const char *nam
     test_counters(&world, name);
     test_first_hits(&world, name, false);
     test_first_hits(&world, name, true);
+    test_packets(&world, name, false);
+    test_packets(&world, name, true);
     test_walls(&world, name);
     world_free(&world);
     alloc_free(block);
