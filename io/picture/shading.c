@@ -14,10 +14,10 @@
  * Where a box stands on the floor, leaves are covered in part. The covered part is dark
  * and invisible, and must not darken the rest. It is found with the four points where the
  * rays of the leaf's links begin: a point is covered if four rays from it, up and far
- * aside, all meet a back first: it lies inside a solid, not merely below a shelf. The
- * light of the leaf then belongs to its open part: the shown irradiance is that of the
- * leaf over the fraction that is open. A vertex with only covered leaves around it takes
- * their mean.
+ * aside, all meet a back first: it lies inside a solid, not merely below a shelf; or in a
+ * gap that is narrow for the leaf, as behind a picture on a wall. The light of the leaf
+ * then belongs to its open part: the shown irradiance is that of the leaf over the
+ * fraction that is open. A vertex with only covered leaves around it takes their mean.
  *
  * Between its vertices a leaf interpolates linearly. At a T-vertex, a vertex of a fine
  * leaf in the middle of a coarse leaf's edge, the two sides would differ. Such a vertex
@@ -51,6 +51,10 @@ static void for_each_leaf(const struct forest *forest, int level,
     }
 }
 
+/* A gap is narrow for a leaf if it is less than this part of the distance from the middle
+ * to a corner of its quarter. */
+static const double NARROW = 0.1;
+
 struct survey {
     const struct forest *forest;
     const struct octree *octree;
@@ -59,27 +63,38 @@ struct survey {
     uint8_t *open;       /* [count]; NULL: leaves are only counted */
 };
 
-static bool meets_back(const struct survey *survey, struct vec3 start,
-                       struct vec3 direction)
+/* True if the ray from a point of the plane meets a back, or a front less than `gap` above
+ * the plane. */
+static bool is_shut(const struct survey *survey, const struct plane *plane,
+                    struct vec3 start, struct vec3 direction, double gap)
 {
+    const struct scene *scene = survey->forest->scene;
     struct octree_counts counts = {0};
     struct octree_hit hit;
-    return octree_first_hit(survey->octree, start, direction, false, &hit, &counts) &&
-           scene_root_on(survey->forest->scene, hit.triangle, hit.front) < 0;
+    if (!octree_first_hit(survey->octree, start, direction, false, &hit, &counts))
+        return false;
+    if (scene_root_on(scene, hit.triangle, hit.front) < 0)
+        return true;
+    const struct triangle *t = &scene->triangles[hit.triangle];
+    double height = 0.0;
+    for (int k = 0; k < 3; k++)
+        height += hit.weight[k] * plane_distance(plane, t->corner[k]);
+    return height < gap;
 }
 
 /* True if the point is covered. `aside`: a triangle around it, whose corners give three
  * directions along the surface. */
-static bool is_covered(const struct survey *survey, struct vec3 point, struct vec3 normal,
-                       const struct triangle *aside)
+static bool is_covered(const struct survey *survey, struct vec3 point,
+                       const struct plane *plane, const struct triangle *aside)
 {
-    struct vec3 start = vec3_add(point, vec3_scale(normal, 1024.0 * GEOM_ROUNDING));
-    if (!meets_back(survey, start, normal))
+    struct vec3 start = vec3_add(point, vec3_scale(plane->normal, 1024.0 * GEOM_ROUNDING));
+    double gap = NARROW * vec3_length(vec3_sub(aside->corner[0], point));
+    if (!is_shut(survey, plane, start, plane->normal, gap))
         return false;
     for (int k = 0; k < 3; k++) {
         struct vec3 along = vec3_sub(aside->corner[k], point);
-        struct vec3 up = vec3_scale(normal, 0.25 * vec3_length(along));
-        if (!meets_back(survey, start, vec3_add(along, up)))
+        struct vec3 up = vec3_scale(plane->normal, 0.25 * vec3_length(along));
+        if (!is_shut(survey, plane, start, vec3_add(along, up), gap))
             return false;
     }
     return true;
@@ -97,7 +112,7 @@ static void survey_leaf(void *context, int32_t leaf)
         scene_root_plane(forest->scene, (int32_t)forest->patches[leaf].id.root);
     for (int k = 0; k < 4; k++) {
         struct triangle child = triangle_child(&t, k);
-        if (!is_covered(survey, triangle_centroid(&child), plane.normal, &child))
+        if (!is_covered(survey, triangle_centroid(&child), &plane, &child))
             survey->open[number]++;
     }
 }

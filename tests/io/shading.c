@@ -707,9 +707,11 @@ static void test_two_sided(void)
 
 /* --- covered leaves --- */
 
+static const double ROOMY = 1.5, NARROW = 0.01; /* heights above the floor */
+
 /* A floor of 8 x 8 with a box without bottom on (2..4) x (2..6), or with a plate in the
  * place of the box's top that shows the floor its front. */
-static struct scene *floor_scene(bool box)
+static struct scene *floor_scene(bool box, double height)
 {
     const double low[2] = {2.0, 2.0}, high[2] = {4.0, 6.0};
     struct scene *scene = scene_create(box ? 12 : 4, 1);
@@ -717,7 +719,7 @@ static struct scene *floor_scene(bool box)
     for (int i = 0; i < 4; i++) { /* counter-clockwise seen from above */
         double x = i == 0 || i == 3 ? low[0] : high[0], y = i < 2 ? low[1] : high[1];
         base[i] = (struct vec3){x, y, 0.0};
-        top[i] = (struct vec3){x, y, 1.5};
+        top[i] = (struct vec3){x, y, height};
     }
     put_square(scene, 0, (struct vec3){0.0, 0.0, 0.0}, (struct vec3){8.0, 0.0, 0.0},
                (struct vec3){8.0, 8.0, 0.0}, (struct vec3){0.0, 8.0, 0.0});
@@ -773,24 +775,28 @@ static void shade_floor(struct stage *stage, double *low, double *high, double *
 static void test_covered(void)
 {
     double low, high, inside;
-    struct stage stage = stage_of(floor_scene(true));
+    struct stage stage = stage_of(floor_scene(true, ROOMY));
     shade_floor(&stage, &low, &high, &inside);
     tap_ok(low > 1.0 - 1e-10 && high <= 1.0 + 1e-15,
            "under a box: no darkness outside (1 - %.1e)", 1.0 - low);
     tap_ok(inside == 0.25, "and none of the light inside");
     dismantle(&stage);
-    stage = stage_of(floor_scene(false));
+    stage = stage_of(floor_scene(false, ROOMY));
     shade_floor(&stage, &low, &high, &inside);
     tap_ok(low < 0.9, "under a lamp's front the floor is open: shadows blend (%.2f)",
            low);
     dismantle(&stage);
-    struct scene *scene = floor_scene(true);
+    stage = stage_of(floor_scene(false, NARROW));
+    shade_floor(&stage, &low, &high, &inside);
+    tap_ok(low > 1.0 - 1e-10, "but under a plate that is hung close to it");
+    dismantle(&stage);
+    struct scene *scene = floor_scene(true, ROOMY);
     scene->two_sided = true;
     stage = stage_of(scene);
     shade_floor(&stage, &low, &high, &inside);
     tap_ok(low < 0.9, "two-sided, nothing is covered (%.2f)", low);
     dismantle(&stage);
-    scene = floor_scene(true);
+    scene = floor_scene(true, ROOMY);
     scene->two_sided = true;
     scene->materials[0].emission = (struct rgb){{1.0, 1.0, 1.0}};
     stage = stage_of(scene);
@@ -817,7 +823,7 @@ static double open_share(const struct stage *stage, int32_t leaf)
 static void test_partly_covered(void)
 {
     static const double emission[BANDS] = {0.0, 0.5, 0.25};
-    struct stage stage = stage_of(floor_scene(true));
+    struct stage stage = stage_of(floor_scene(true, ROOMY));
     double least = 1.0, largest = 0.0;
     split_regularly(stage.forest, 1);
     for (int c = 0; c < BANDS; c++) {
