@@ -18,6 +18,9 @@
 #                        triangles
 #   make scaling         docs/ranks.md: seconds on 1, 32 and 1,024 ranks, line by line;
 #                        docs/tables.md: Tables 1 and 2 of the paper
+#   make course          the programs, outputs and figures of docs/course/
+#   make exercise N=1    tests answers to the exercises of a chapter
+#   make answers         scenes/answers.csv: the light of the scenes for lectures, by paths
 #   make prove           what takes longer: errors over six fourfold steps of epsilon;
 #                        pictures beside the
 #                        path tracer's; kills at forty moments
@@ -200,7 +203,27 @@ scaling: $(PHR) $(BUILD)/replay build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/tables.sh
 
-check: $(PHR) $(IMGDIFF) pathtracer tests build/room
+# The programs of docs/course/.
+COURSE = $(patsubst docs/course/%.c,build/course/%,$(wildcard docs/course/*.c))
+
+build/course/%: docs/course/%.c $(BUILD)/libphr.a
+	@mkdir -p $(@D)
+	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
+
+# Half a minute on two cores, from nothing.
+course: $(PHR) $(COURSE) build/room
+	MPIEXEC="$(MPIEXEC)" sh docs/course/run.sh
+	sh docs/course/figures.sh
+
+exercise: $(BUILD)/libphr.a
+	CC="$(COMPILE)" BUILD="$(BUILD)" sh docs/course/exercise.sh $(N)
+
+# About five minutes on two cores.
+answers: $(PHR) pathtracer build/room build/course/leaves
+	MPIEXEC="$(MPIEXEC)" sh scenes/answers.sh >build/answers.csv
+	mv build/answers.csv scenes/answers.csv
+
+check: $(PHR) $(IMGDIFF) pathtracer tests build/room $(COURSE)
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
 
@@ -245,5 +268,6 @@ clean:
 FORCE:
 
 .PHONY: all demo tests room pathtracer bench errors chart growth scaling check \
+    course exercise answers \
     check-long prove golden portability fuzz install \
         uninstall clean FORCE

@@ -1,0 +1,21 @@
+/* Solutions to the exercises of chapter 2. */
+
+/* F of two squares of this area, m^2, that face each other at this distance, m, by Eq. 2 from
+ * centre to centre. */
+double disk_factor(double area, double distance)
+{
+    return area / (3.14159265358979323846 * distance * distance + area);
+}
+
+/* F_ji, given F_ij and both areas, m^2. */
+double other_way(double f_ij, double area_i, double area_j)
+{
+    return f_ij * area_i / area_j;
+}
+
+/* F from the floor of a cube to one of its four walls, given that from the floor to the
+ * ceiling. */
+double floor_to_wall(double floor_to_ceiling)
+{
+    return (1.0 - floor_to_ceiling) / 4.0; /* the row of the floor sums to 1 */
+}

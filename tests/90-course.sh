@@ -1,0 +1,123 @@
+# The course: commands print what the chapters show, exercises fail until they are solved,
+# the text names what is there, radiosity.c stands alone and agrees with phr, and the scenes
+# for lectures have the light of scenes/answers.csv.
+
+. tests/tap.sh
+
+course=docs/course
+grep -q 'MPI build' <<END && is_parallel=yes || is_parallel=
+$(./phr --version)
+END
+
+# --- chapters ---
+
+for chapter in $course/[0-9]*.md; do
+    name=$(basename "$chapter" .md)
+    if [ -z "$is_parallel" ] && grep -q mpiexec "$chapter"; then
+        tap 0 "$name: commands # SKIP without MPI"
+        continue
+    fi
+    sh $course/run.sh "$chapter" >"$work/$name" 2>&1
+    status=$?
+    sed 's/^/# /' "$work/$name"
+    tap $status "$name: its commands print what it shows"
+done
+[ -e "$chapter" ] || tap 1 "there are chapters"
+
+# --- exercises ---
+
+# lines PATTERN FILE: how many there are.
+lines() {
+    grep -c "$1" "$2"
+}
+
+for test in $course/exercises/*-test.c; do
+    number=$(basename "$test" -test.c)
+    BUILD=$BUILD CC=$MPICC sh $course/exercise.sh "$number" solutions >"$work/solved" 2>&1
+    check "exercises $number: the solutions are right" [ $? -eq 0 ]
+    asked=$(sed '1,/^## Exercises/d' $course/"$number"-*.md | grep -c '^[0-9]\. ')
+    check "exercises $number: each of the $asked in the text has a test" \
+        [ "$asked" -eq "$(lines '^ok' "$work/solved")" ]
+    # A reader's own answers are no failure.
+    if ! git diff --quiet -- "$course/exercises/$number.c" 2>/dev/null; then
+        tap 0 "exercises $number # SKIP they are being worked on"
+        continue
+    fi
+    BUILD=$BUILD CC=$MPICC sh $course/exercise.sh "$number" >"$work/open" 2>&1
+    check "exercises $number: all fail until they are solved" \
+        [ "$(lines '^not ok' "$work/open")" -eq "$asked" ]
+done
+
+# --- names ---
+
+# Names in backquotes that match PATTERN, of the course.
+quoted() {
+    grep -ohE "\`$1\`" $course/*.md | tr -d '\`' | sort -u
+}
+gone=$(quoted '[a-zA-Z0-9_]+[a-zA-Z0-9_./-]*/[a-zA-Z0-9_.-]+\.[a-z0-9]+' | grep -v '^build/' |
+    while read -r file; do [ -e "$file" ] || echo "$file"; done)
+check "the files that the course names are there: $gone" [ -z "$gone" ]
+gone=$(quoted '[a-z0-9_]+\(\)' | while read -r name; do
+    grep -qE "^[a-z].*\b${name%()}\(" phr.c ./*/*.[ch] ./*/beyond/*.[ch] io/*/*.[ch] \
+        $course/*.c $course/exercises/*.c || echo "$name"; done)
+check "and the functions: $gone" [ -z "$gone" ]
+gone=$(quoted '\-\-[a-z-]+' | while read -r option; do
+    grep -qF -e "$option" io/run/options.c || echo "$option"; done)
+check "and the options: $gone" [ -z "$gone" ]
+missing=$(ls -d $course/* | while read -r file; do
+    name=$(basename "$file")
+    grep -qF "\`$name" $course/README.md || [ "$name" = README.md ] ||
+        [ "${name%.svg}" != "$name" ] || echo "$name"; done)
+check "the README of the course has every file: $missing" [ -z "$missing" ]
+unseen=$(for figure in $course/*.svg; do
+    grep -qF "($(basename "$figure"))" $course/*.md || echo "$figure"; done)
+check "each figure is shown: $unseen" [ -z "$unseen" ]
+
+# --- radiosity.c ---
+
+check "radiosity.c has at most 300 lines" [ "$(wc -l <$course/radiosity.c)" -le 300 ]
+check "and includes nothing but the standard library" \
+    [ "$(lines '^#include' $course/radiosity.c)" -eq \
+    "$(lines '^#include <[a-z]*\.h>' $course/radiosity.c)" ]
+
+# agree FILE FILE PART: the numbers behind equal names are alike within this part.
+agree() {
+    awk -v part="$3" 'NR == FNR { value[$1] = $2; next }
+        { d = $2 - value[$1]; seen++
+          if (d < 0) d = -d
+          if (!(d <= part * value[$1])) { print "# " $1, $2, value[$1]; exit bad = 1 } }
+        END { exit bad || seen == 0 }' "$1" "$2"
+}
+
+# objects SCENE: the means of phr's solution in $work/SCENE.
+objects() {
+    ./phr --quiet scenes/"$1".obj -o "$work/$1.ply"
+    build/course/leaves "$work/$1.ply" |
+        awk -f $course/objects.awk scenes/"$1".obj - >"$work/$1"
+}
+
+# The patches of size 0.18 are the finest that take a second or two.
+for scene in squares corner box; do
+    objects $scene
+    build/course/radiosity scenes/$scene.obj 0.18 | sed 1d >"$work/plain"
+    check "$scene: phr agrees with radiosity.c within 1.5 %" \
+        agree "$work/plain" "$work/$scene" 0.015
+done
+
+# --- scenes for lectures (2.5 %: behind the door, by reflections alone) ---
+
+objects doorway
+objects corridor
+for scene in squares corner box doorway corridor; do
+    awk -F, -v scene=$scene '$1 == scene { print $2, $3 }' scenes/answers.csv \
+        >"$work/answers"
+    check "$scene: phr is within 3 % of the converged answer" \
+        agree "$work/answers" "$work/$scene" 0.03
+    check "$scene: there are both of each object" \
+        [ "$(wc -l <"$work/answers")" -eq "$(wc -l <"$work/$scene")" ]
+    check "$scene: it has a view" \
+        ./phr --quiet --max-level 0 --final-gather 0 --size 8x8 scenes/$scene.obj \
+        --view scenes/$scene.view -o "$work/view.ppm"
+done
+
+tap_done
