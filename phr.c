@@ -28,15 +28,14 @@
 /* Step 1: rank 0 reads, all agree on errors, all receive the scene. */
 static bool broadcast_scene(struct run *run)
 {
-    run->camera_count = run->options.view_count > 0 ? run->options.view_count : 1;
-    run->cameras = alloc_array((size_t)run->camera_count, sizeof *run->cameras);
+    size_t cameras = (size_t)run_camera_count(run);
+    run->cameras = alloc_array(cameras, sizeof *run->cameras);
     if (run->comm.rank == 0)
         input_read(run);
     if (!run_agree(run))
         return false;
     run->block = scene_broadcast(&run->comm, node_policy(), &run->scene, &run->octree);
-    comm_broadcast(&run->comm, run->cameras,
-                   (size_t)run->camera_count * sizeof *run->cameras);
+    comm_broadcast(&run->comm, run->cameras, cameras * sizeof *run->cameras);
     if (run->block.shared && run->options.verbose)
         run_say(run, "one copy of scene and octree for %d ranks, %.1f MB",
                 run->block.node.size, 1e-6 * (double)run->block.bytes);
@@ -163,6 +162,8 @@ bool compute_light(struct run *run)
     enum finish finish;
     if (!run->scene && !broadcast_scene(run))    /* 1: all get the scene */
         return false;
+    if (stored_light(run))                       /* the scene has its light with it */
+        return true;
     create_solver(run);
     struct solver *solver = run->solver;
     if (!link_roots(run))                        /* 2: initial linking */
@@ -198,6 +199,9 @@ static void release(struct run *run)
     solver_destroy(run->solver);
     octree_destroy(run->octree);
     scene_destroy(run->scene);
+    if (run->stored)
+        solution_mesh_free(run->stored);
+    alloc_free(run->stored);
     alloc_free(run->cameras);
     if (run->block.data)
         node_block_destroy(&run->block);
@@ -240,7 +244,7 @@ int main(int argc, char **argv)
         if (broadcast_scene(&run))
             factors_tabulate(&run);
     } else if (parsed && compute_light(&run)) {
-        if (!run.options.quiet || run.options.stats)
+        if (!run.stored && (!run.options.quiet || run.options.stats))
             solver_measure_row_sums(run.solver, &run.stats);
         if (results_show(&run))
             report_summary(&run);

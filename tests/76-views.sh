@@ -1,4 +1,5 @@
-# Several views in one run, and outputs that do not depend on each other.
+# Several views in one run, outputs that do not depend on each other, and pictures of
+# stored solutions.
 
 . tests/tap.sh
 
@@ -39,5 +40,100 @@ done
 check "--size overrides all views" \
     [ "$(head -c 6 "$work/size-front.ppm")$(head -c 6 "$work/size-above.ppm")" = \
         "$(printf 'P6\n9 7P6\n9 7')" ]
+
+# --- stored solutions ---
+
+same_picture() {
+    build/imgdiff "$1" "$2" --tolerance 1e-4 >"$work/log"
+}
+
+# shows NAME SCENE OPTIONS...: on 1 and 4 ranks, a stored solution gives the picture of
+# the run that made it, and its mesh to the byte. OPTIONS behind -- are those of both
+# runs.
+shows() {
+    name=$1
+    scene=$2
+    shift 2
+    once=
+    while [ "$1" != -- ]; do
+        once="$once $1"
+        shift
+    done
+    shift
+    mesh=$work/$name.ply
+    ./phr "$scene" --quiet $once "$@" -o "$work/$name.pfm" -o "$mesh"
+    for ranks in 1 4; do
+        $MPIEXEC -n $ranks ./phr "$mesh" --quiet "$@" -o "$work/again.pfm" \
+            -o "$work/again.ply"
+        check "stored, $name, on $ranks ranks: the picture of the run" \
+            same_picture "$work/again.pfm" "$work/$name.pfm"
+        check "and its mesh" cmp "$work/again.ply" "$mesh"
+        rm -f "$work/again.pfm" "$work/again.ply"
+    done
+}
+
+small="--size 48x36 --samples 2"
+shows plain scenes/cornell.obj --epsilon 1e-2 -- $small $front
+shows flat scenes/cornell.obj --epsilon 1e-2 -- $small --flat
+shows twins scenes/cornell.obj --epsilon 1e-2 --two-sided -- $small $above
+shows paper scenes/cornell.obj --epsilon 1e-2 --paper -- $small
+shows normals tests/golden/spheres.obj --epsilon 1e-2 -- $small \
+    --view tests/golden/spheres.view
+shows pixels tests/golden/spheres.obj --epsilon 1e-2 -- --size 24x18 --samples 2 \
+    --view tests/golden/spheres.view --final-gather 16,pixels
+
+# In a shadow on a leaf that the sun lights, all light is a millionth of the leaf's.
+printf 'newmtl %s\nKd %s\nKe %s\n' floor "0.5 0.5 0.5" "0 0 0" dark \
+    "1e-5 1e-5 1e-5" "0 0 0" sun "0 0 0" "1e6 1e6 1e6" >"$work/sun.mtl"
+cat >"$work/sun.obj" <<END
+mtllib sun.mtl
+v -10 0 -10
+v -10 0 10
+v 10 0 10
+v 10 0 -10
+v -2 1 -2
+v -2 1 2
+v 2 1 2
+v 2 1 -2
+v -1 100 -1
+v 1 100 -1
+v 1 100 1
+v -1 100 1
+usemtl floor
+f 1 2 3 4
+usemtl dark
+f 5 8 7 6
+f 5 6 7 8
+usemtl sun
+f 9 10 11 12
+END
+printf 'eye 0 0.5 0.1\nat 0 0 0\nup 0 0 1\nfov 60\n' >"$work/sun.view"
+shows sun "$work/sun.obj" --epsilon 1e-2 --max-level 1 -- $small --view "$work/sun.view"
+
+# says STATUS WORDS ARGUMENTS...: phr ends so, with these words.
+says() {
+    status=$1
+    words=$2
+    shift 2
+    $MPIEXEC -n 2 ./phr "$@" >"$work/out" 2>"$work/log"
+    [ $? -eq "$status" ] && grep -qF -e "$words" "$work/out" "$work/log" && return
+    sed 's/^/# /' "$work/log"
+    return 1
+}
+
+check "options of the computation are said" says 0 \
+    "is a stored solution: no use is made of --epsilon, --two-sided" \
+    "$work/plain.ply" --two-sided --epsilon 1
+check "files of the computation are refused" says 2 \
+    "is a stored solution: nothing is computed for --stats, --checkpoint" \
+    "$work/plain.ply" --stats "$work/new.json" --checkpoint "$work/new"
+check "and not written" [ ! -e "$work/new.json" -a ! -e "$work/new" ]
+check "a solution without roots is refused" says 2 "a solution without its roots" \
+    tests/fuzz/corpus/ply/solution.ply -o "$work/new.pfm"
+build/imgdiff "$work/plain.ply" "$work/plain.ply" -o "$work/error.ply" >"$work/log"
+check "imgdiff's difference of solutions is one, too" says 0 "stored " \
+    "$work/error.ply" $small -o "$work/error.pfm"
+check "--form-factors take a solution as a scene" says 0 "from,to,area_from,F" \
+    "$work/sun.ply" --form-factors --epsilon 1
 
 tap_done

@@ -157,8 +157,8 @@ static float as_float(double x)
     return x < (double)FLT_MAX ? (float)x : FLT_MAX;
 }
 
-bool solution_write(const struct solution_mesh *solution, const struct rgb *map, double white,
-                    const char *path, struct error *error)
+bool solution_write(const struct solution_mesh *solution, const struct rgb *map,
+                    double white, const char *path, struct error *error)
 {
     struct tone tone = tone_make(white > 0.0 ? 1.0 / white : 1.0);
     struct output output;

@@ -52,7 +52,7 @@ bool compare_solutions(const struct solution_mesh *a, const struct solution_mesh
  * as a mesh of the same format, flat; the value `white` becomes full white in its
  * colours.
  * Errors: as output_close(). */
-bool solution_write(const struct solution_mesh *solution, const struct rgb *map, double white,
-                    const char *path, struct error *error);
+bool solution_write(const struct solution_mesh *solution, const struct rgb *map,
+                    double white, const char *path, struct error *error);
 
 #endif

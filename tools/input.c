@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "geom/alloc.h"
 #include "geom/stop.h"
 #include "io/run/output.h"
 #include "io/scene/obj.h"
@@ -82,16 +83,80 @@ static bool check_groups(const struct run *run, struct error *error)
     return true;
 }
 
+/* Refuses options that ask for files of a computation; warns of others that say how light
+ * is computed. */
+static bool check_stored(struct run *run)
+{
+    static const char *const FILES[] = {"--stats",      "--save-links", "--load-links",
+                                        "--checkpoint", "--resume",     NULL};
+    static const char *const IDLE[] = {
+        "--epsilon", "--accuracy", "--max-level", "--min-area", "--oracle", "--linking",
+        "--form-factor", "--solver", "--balance", "--paper", "--alpha", "--tolerance",
+        "--max-iterations", "--two-sided", "--two-sided-lamps", "--memory", NULL};
+    static const char *const RAYS[] = {"--final-gather", NULL};
+    const char *path = run->options.scene, *given = options_given(&run->options, FILES);
+    if (*given)
+        return error_set(&run->error, EXIT_USAGE,
+                         "%s is a stored solution: nothing is computed for %s", path,
+                         given);
+    given = options_given(&run->options, IDLE);
+    if (*given)
+        run_say(run, "warning: %s is a stored solution: no use is made of %s", path,
+                given);
+    if (*options_given(&run->options, RAYS) && !run->options.pixels)
+        run_say(run,
+                "warning: %s is a stored solution: "
+                "--final-gather is of use with pixels only",
+                path);
+    return true;
+}
+
+/* Takes the scene of a stored solution. */
+static bool take_stored(struct run *run, struct ply_file *file)
+{
+    run->stored = alloc_array(1, sizeof *run->stored);
+    if (!solution_mesh_of_file(run->stored, file, &run->error))
+        return false;
+    run->scene = run->stored->scene;
+    run->stored->scene = NULL;
+    if (!run->scene)
+        return error_set(&run->error, EXIT_USAGE,
+                         "%s: a solution without its roots (element root_corner), "
+                         "which cannot be shown: make it anew from its scene",
+                         run->options.scene);
+    return check_stored(run);
+}
+
+/* Reads a scene, or a stored solution. */
+static bool read_ply(struct run *run)
+{
+    struct binary binary;
+    struct ply_file file;
+    if (!ply_file_load(&binary, run->options.scene, &run->error))
+        return false;
+    bool good = ply_file_open(&file, &binary, &run->error);
+    if (good && solution_is_stored(&file) && !run->options.form_factors)
+        good = take_stored(run, &file);
+    else if (good)
+        run->scene = ply_of_file(&file, &run->error);
+    ply_file_close(&file);
+    return good && run->scene;
+}
+
 static bool read_scene(struct run *run)
 {
     struct error *error = &run->error;
     struct obj_repairs read = {0};
     struct scene_repairs prepared = {0};
     const char *path = run->options.scene;
-    run->scene =
-        ply_is_meant(path) ? ply_read(path, error) : obj_read(path, &read, error);
+    if (!ply_is_meant(path))
+        run->scene = obj_read(path, &read, error);
+    else if (!read_ply(run))
+        return false;
     if (!run->scene || !stop_check(error))
         return false;
+    if (run->stored)
+        return true;
     run->scene->two_sided = run->options.two_sided;
     run->scene->two_sided_lamps = run->options.two_sided_lamps;
     struct error wrong = {0};
@@ -109,7 +174,7 @@ static bool read_cameras(struct run *run)
     for (int i = 0; i < options->view_count; i++)
         if (!camera_read(options->views[i], &run->cameras[i], &run->error))
             return false;
-    for (int i = 0; i < run->camera_count; i++)
+    for (int i = 0; i < run_camera_count(run); i++)
         if (options->width > 0 || options->view_count == 0) {
             struct camera *camera = &run->cameras[i];
             camera->width = options->width > 0 ? options->width : CAMERA_SIZE;

@@ -115,8 +115,24 @@ static const char *const HOLDS[] = {
     "leaves cannot have more rays", "a smaller epsilon no longer helps",
     "too many rounds", "paths do not tell it well enough"};
 
+/* Of a stored solution, which has no links, powers or times. */
+static void print_stored(struct run *run)
+{
+    const struct forest *forest = run->solver->model.forest;
+    progress_view_clear(&run->progress);
+    if (run->comm.rank == 0 && !run->options.quiet)
+        printf("stored      %lld patches (%lld leaves) of %lld triangles\n",
+               (long long)forest_patch_count(forest),
+               (long long)forest_leaf_count(forest),
+               (long long)run->scene->input_count);
+}
+
 bool report_summary(struct run *run)
 {
+    if (run->stored) {
+        print_stored(run);
+        return true;
+    }
     run->solver->account.seconds[PHASE_TOTAL] = comm_seconds() - run->start;
     solver_report(run->solver, &run->vote, &run->stats);
     run->stats.bytes_broadcast += (int64_t)run->block.bytes;

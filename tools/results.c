@@ -104,7 +104,7 @@ static float *make_picture(struct run *run, const struct renderer *renderer,
 static bool show_views(struct run *run, const struct renderer *renderer)
 {
     double *seconds = run->solver->account.seconds;
-    for (int view = 0; view < run->camera_count; view++) {
+    for (int view = 0; view < run_camera_count(run); view++) {
         double start = comm_seconds();
         float *picture = make_picture(run, renderer, &run->cameras[view]);
         bool good = run_goes_on(run);
@@ -131,7 +131,8 @@ static bool show_pictures(struct run *run, const uint8_t *open)
     if (run->options.view_count == 0)
         place_camera(run);
     struct answer *answer = run->solver->beyond ? &run->solver->beyond->answer : NULL;
-    bool gathers = answer && answer->straight && !run->options.flat;
+    bool gathers = answer && (answer->straight || run->options.pixels) &&
+                   !run->options.flat;
     struct shading *shading = NULL;
     if (!run->options.pixels)
         shading = shade_leaves(run, gathers ? answer->straight : NULL, open);

@@ -3,6 +3,7 @@
 #ifndef TOOLS_RUN_H
 #define TOOLS_RUN_H
 
+#include "io/picture/solution.h"
 #include "io/run/options.h"
 #include "io/run/progress.h"
 #include "io/scene/camera.h"
@@ -13,9 +14,9 @@ struct run {
     struct comm comm;
     struct options options;
     struct scene *scene;
-    struct camera *cameras;        /* [camera_count] of the views; or one, chosen */
-    int camera_count;
+    struct camera *cameras;        /* [run_camera_count()] */
     struct octree *octree;
+    struct solution_mesh *stored;  /* the scene's file is a stored solution; else NULL */
     struct node_block block;       /* memory of scene and octree */
     struct solver *solver;
     bool half_linked;              /* linking ended at the memory limit */
@@ -27,6 +28,12 @@ struct run {
     double start;                  /* comm_seconds() at the beginning */
     double first_bound;            /* vote.remaining of the first iteration of a pass */
 };
+
+/* Returns the number of cameras: those of the views, or one that is chosen. */
+static inline int run_camera_count(const struct run *run)
+{
+    return run->options.view_count > 0 ? run->options.view_count : 1;
+}
 
 /* Prints a line on stderr, from rank 0, unless --quiet. */
 #ifdef __GNUC__

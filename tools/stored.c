@@ -1,4 +1,5 @@
-/* Link caches and checkpoints: the state of a run in a file (io/run/store.h). */
+/* Link caches and checkpoints: the state of a run in a file (io/run/store.h). Stored
+ * solutions: light without links (io/picture/solution.h). */
 #include "tools/stored.h"
 
 #include "geom/alloc.h"
@@ -84,4 +85,59 @@ bool stored_load(struct run *run, enum store_kind kind, const char *path)
     store_close(&reader);
     run->solver->account.seconds[PHASE_LINKING] += comm_seconds() - start;
     return good;
+}
+
+/* Collective. All ranks get the solution of rank 0. */
+static void share_solution(struct run *run)
+{
+    bool first = run->comm.rank == 0;
+    if (!first)
+        run->stored = alloc_array(1, sizeof *run->stored);
+    struct solution_mesh *solution = run->stored;
+    struct solution_leaf *leaves = solution->leaves;
+    comm_broadcast(&run->comm, solution, sizeof *solution);
+    size_t count = (size_t)solution->count;
+    solution->leaves = first ? leaves : alloc_array(count, sizeof *leaves);
+    comm_broadcast(&run->comm, solution->leaves, count * sizeof *leaves);
+}
+
+/* The answer of the final gather, as it is stored, for light at any point. */
+static void restore_answer(struct solver *solver, const struct solution_mesh *solution)
+{
+    struct forest *forest = solver->model.forest;
+    struct answer *answer = &solver->beyond->answer;
+    size_t count = (size_t)forest->count;
+    answer->gather =
+        final_gather_create(&solver->model, solver->model.criterion.final_gather);
+    if (solution->lamps.known) {
+        lamps_free(&answer->gather.lamps);
+        answer->gather.lamps = lamps_create(&solver->model, solution->lamps.lamp_least);
+        answer->gather.mean = solution->lamps.mean;
+        answer->straight = alloc_array(count, sizeof *answer->straight);
+    }
+    if (solution->has_error)
+        answer->error = alloc_array(count, sizeof *answer->error);
+    for (int64_t i = 0; i < solution->count; i++) {
+        int32_t leaf = forest_reach(forest, solution->leaves[i].id);
+        const struct solution_leaf *from = &solution->leaves[i];
+        for (int c = 0; c < BANDS && answer->straight; c++)
+            answer->straight[leaf].band[c] = from->radiosity.band[c] - from->rest.band[c];
+        if (answer->error)
+            answer->error[leaf] = (float)from->error;
+    }
+}
+
+bool stored_light(struct run *run)
+{
+    bool stored = run->stored != NULL;
+    comm_broadcast(&run->comm, &stored, sizeof stored);
+    if (!stored)
+        return false;
+    share_solution(run);
+    struct criterion criterion = run->options.criterion;
+    criterion.linking = LINKING_TREE; /* which groups lamps */
+    run->solver = beyond_create(&run->comm, run->scene, run->octree, &criterion);
+    solution_mesh_restore(run->stored, run->solver->model.forest);
+    restore_answer(run->solver, run->stored);
+    return true;
 }

@@ -12,4 +12,8 @@ bool stored_save(struct run *run, enum store_kind kind, const char *path);
  * ranks. */
 bool stored_load(struct run *run, enum store_kind kind, const char *path);
 
+/* Collective. If the scene is a stored solution, makes run->solver with its light, and
+ * returns true. */
+bool stored_light(struct run *run);
+
 #endif

@@ -68,7 +68,8 @@ static void write_face(struct output *output, const struct shading *shading,
     if (answer->error)
         output_float(output, answer->error[leaf]);
     for (int c = 0; c < BANDS && answer->straight; c++)
-        output_float(output, (float)answer->straight[leaf].band[c]);
+        output_float(output, (float)(shading->forest->radiosity[leaf].band[c] -
+                                     answer->straight[leaf].band[c]));
 }
 
 bool mesh_write(const struct shading *shading, const struct tone *tone,
@@ -80,8 +81,8 @@ bool mesh_write(const struct shading *shading, const struct tone *tone,
         return false;
     mesh_write_header(&output, shading->vertex_count, forest_leaf_count(forest));
     fprintf(output.file, "%s%s", answer->error ? "property float error\n" : "",
-            answer->straight ? "property float straight_r\nproperty float straight_g\n"
-                               "property float straight_b\n"
+            answer->straight ? "property float rest_r\nproperty float rest_g\n"
+                               "property float rest_b\n"
                              : "");
     solution_write_header(&output, forest->scene, answer->lamps.known);
     write_vertices(&output, shading, tone);

@@ -21,8 +21,9 @@ struct mesh_answer {
  * green blue (sRGB of the vertex radiosity); faces with `list uchar int vertex_indices`,
  * float radiosity_r radiosity_g radiosity_b (of the leaf, W/m^2), uint root and uint
  * hierarchy: one face per leaf, roots in order, depth first. After a final gather, float
- * error and float straight_r straight_g straight_b follow. Then come the roots, as
- * io/picture/solution.h has them.
+ * error and float rest_r rest_g rest_b follow, the radiosity less what comes straight
+ * from lamps: where that is most of it, both as floats would lose the rest. Then come the
+ * roots, as io/picture/solution.h has them.
  * Errors: as output_close(). */
 bool mesh_write(const struct shading *shading, const struct tone *tone,
                 const struct mesh_answer *answer, const char *path, struct error *error);

@@ -77,7 +77,7 @@ static bool take_leaf(const struct solution_reader *reader, struct solution_leaf
     for (int k = 0; k < 3; k++)
         leaf->triangle.corner[k] = reader->vertices[file->corners[k]];
     leaf->radiosity = take_colour(file, PLY_RADIOSITY_R);
-    leaf->straight = take_colour(file, PLY_STRAIGHT_R);
+    leaf->rest = take_colour(file, PLY_REST_R);
     leaf->error = value[PLY_ERROR];
     leaf->area = triangle_area(&leaf->triangle);
     return true;

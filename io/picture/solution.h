@@ -29,7 +29,7 @@ struct solution_leaf {
     int64_t start, end;       /* interval of the root, in 4^15ths of its area */
     double area;              /* square input units */
     struct rgb radiosity;     /* W/m^2 */
-    struct rgb straight;      /* part of it that comes straight from lamps, W/m^2 */
+    struct rgb rest;          /* radiosity less what comes straight from lamps, W/m^2 */
     double error;             /* W/m^2 */
 };
 
@@ -45,7 +45,7 @@ struct solution_mesh {
     struct solution_leaf *leaves; /* [count] */
     int64_t count;
     bool has_error;
-    struct solution_lamps lamps;  /* known: leaves have `straight` */
+    struct solution_lamps lamps;  /* known: leaves have `rest` */
     struct scene *scene;          /* prepared, owned; NULL: the file lacks the roots */
 };
 

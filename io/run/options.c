@@ -479,6 +479,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         if (!option)
             return error_set(error, EXIT_USAGE, "unknown option %s; see --help",
                              argument);
+        options->given |= UINT64_C(1) << (option - OPTIONS);
         if (option->kind == KIND_PAPER) {
             set_paper(&options->criterion);
             continue;
@@ -538,6 +539,18 @@ static const char *describe_all(const struct options *options, const char *const
     text[0] = '\0';
     for (; *names; names++)
         describe(options, *names, text, sizeof text);
+    return text;
+}
+
+const char *options_given(const struct options *options, const char *const *names)
+{
+    static char text[1000];
+    size_t at = 0;
+    text[0] = '\0';
+    for (; *names; names++)
+        if (options->given >> (find_option(*names) - OPTIONS) & 1u)
+            at += (size_t)snprintf(text + at, sizeof text - at, "%s%s",
+                                   at > 0 ? ", " : "", *names);
     return text;
 }
 

@@ -42,6 +42,7 @@ struct options {
     bool two_sided_lamps;     /* backs of lamps, too; only with two_sided */
     bool flat, quiet, verbose, help, version, validate, form_factors;
     struct criterion criterion;
+    uint64_t given;           /* bit i: the i-th option of the parser's table */
 };
 
 /* Reads the arguments; the strings stay those of argv. Release with options_free(), also
@@ -67,6 +68,10 @@ bool target_parse(struct target *target, const char *argument);
 /* True if a picture of the view is asked for; without --view, view 0 is the automatic
  * one. */
 bool options_show(const struct options *options, int view);
+
+/* Returns those of `names`, with a NULL behind the last, that the command line has,
+ * joined by commas; an empty text if there are none. Overwritten by the next call. */
+const char *options_given(const struct options *options, const char *const *names);
 
 /* Prints the text of --help. */
 void options_print_help(FILE *file);

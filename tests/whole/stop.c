@@ -230,7 +230,8 @@ static int64_t write_mesh(void)
 {
     struct tone tone = tone_make(1.0);
     write_old();
-    return look_at_output(mesh_write(shading, &tone, &(struct mesh_answer){NULL}, WRITTEN, &error));
+    struct mesh_answer none = {.error = NULL};
+    return look_at_output(mesh_write(shading, &tone, &none, WRITTEN, &error));
 }
 
 static const struct phase {
