@@ -80,8 +80,8 @@ TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree
         bicgstab sequence id flux patch compact formfactor patch_exchange link \
         patch_link method cluster node oracle error_oracle pushpull caps \
         final_gather checksum paths plan balance assign spotcheck \
-        text obj ply output store tone image png hdr camera viewpoint shading render \
-        options progress contour stop norms cie whole stability gaps leaks \
+        text obj ply output store tone image png hdr camera viewpoint shading mesh \
+        render options progress contour stop norms cie whole stability gaps leaks \
         linking exchange conjugate exact converge
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
 vpath %.c tests/tools tests/whole

@@ -20,20 +20,21 @@ build() {
     fi
 }
 
-# produce DIRECTORY COMMAND...: the three outputs and the stats of a run, and the table of
+# produce DIRECTORY COMMAND...: the outputs and the stats of a run, and the table of
 # --validate, which shows the last bits of the exact form factors.
 produce() {
     directory=$work/$1
     shift
     mkdir -p "$directory"
     "$@" $quiet -o "$directory/a.pfm" -o "$directory/a.ppm" -o "$directory/a.ply" \
+        -o "$directory/a.png" -o "$directory/a.hdr" -o "$directory/a.vtk" \
         --stats "$directory/s.json"
     "$@" --validate >"$directory/table"
 }
 
 # same A B: equal files and equal counts.
 same() {
-    for file in a.pfm a.ppm a.ply table; do
+    for file in a.pfm a.ppm a.ply a.png a.hdr a.vtk table; do
         cmp "$work/$1/$file" "$work/$2/$file" || return 1
     done
     for run in "$1" "$2"; do

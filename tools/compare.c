@@ -172,6 +172,8 @@ bool solution_write(const struct solution_mesh *solution, const struct rgb *map,
             output_float(&output, (float)vec3_axis(x, axis));
         for (int c = 0; c < BANDS; c++)
             putc(tone_encode(&tone, map[i / 3].band[c]), output.file);
+        for (int c = 0; c < BANDS; c++)
+            output_float(&output, as_float(map[i / 3].band[c]));
     }
     for (int64_t i = 0; i < solution->count; i++) {
         putc(3, output.file);

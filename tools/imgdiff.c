@@ -149,7 +149,8 @@ static bool write_map(const struct request *request, const struct image *map,
 static bool check_output(const struct request *request, bool meshes, struct error *error)
 {
     const struct target *output = &request->output;
-    if (output->path && format_is_mesh(output->format) != meshes)
+    if (output->path &&
+        (meshes ? output->format != FORMAT_PLY : format_is_mesh(output->format)))
         return error_set(error, EXIT_USAGE, "-o %s: the difference of %s", output->path,
                          meshes ? "meshes is a mesh (.ply)" : "pictures is a picture");
     if (meshes && (request->blocks > 1.0 || request->below < HUGE_VAL))

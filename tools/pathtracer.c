@@ -82,8 +82,13 @@ static int take_own(struct tracing *run, int argc, char **argv)
 static bool check_outputs(struct tracing *run)
 {
     bool meshes = false;
-    for (int i = 0; i < run->options.output_count; i++)
-        meshes = meshes || format_is_mesh(run->options.outputs[i].format);
+    for (int i = 0; i < run->options.output_count; i++) {
+        const struct target *target = &run->options.outputs[i];
+        meshes = meshes || format_is_mesh(target->format);
+        if (target->format == FORMAT_VTK)
+            return error_set(&run->error, EXIT_USAGE, "%s: meshes are PLY here",
+                             target->path);
+    }
     if (run->options.output_count == 0 || !run->options.scene)
         return error_set(&run->error, EXIT_USAGE, "%s", USAGE);
     if (run->options.view_count > 1)

@@ -9,6 +9,7 @@
 #include "io/picture/mesh.h"
 #include "io/picture/render.h"
 #include "io/picture/viewpoint.h"
+#include "io/picture/vtk.h"
 #include "io/run/output.h"
 #include "mpi/picture.h"
 
@@ -46,7 +47,9 @@ static void write_meshes(struct run *run, const struct shading *shading)
         {answer->straight, answer->gather.lamps.least, answer->gather.mean}};
     for (int i = 0; i < run->options.output_count; i++) {
         const struct target *target = &run->options.outputs[i];
-        if (format_is_mesh(target->format))
+        if (target->format == FORMAT_VTK)
+            vtk_write(shading, answer->error, target->path, &run->error);
+        else if (target->format == FORMAT_PLY)
             mesh_write(shading, &tone, &solved, target->path, &run->error);
     }
     alloc_free(colours);

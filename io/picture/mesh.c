@@ -5,8 +5,7 @@
 #include "geom/alloc.h"
 #include "geom/stop.h"
 
-/* Returns the leaf after `p` (-1: the first one) in canonical order, or -1. */
-static int32_t next_leaf(const struct forest *forest, int32_t p)
+int32_t mesh_next_leaf(const struct forest *forest, int32_t p)
 {
     int32_t root = p < 0 ? -1 : (int32_t)forest->patches[p].id.root;
     if (p >= 0)
@@ -33,6 +32,8 @@ void mesh_write_header(struct output *output, int64_t vertices, int64_t faces)
             "element vertex %lld\n"
             "property float x\nproperty float y\nproperty float z\n"
             "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+            "property float radiosity_r\nproperty float radiosity_g\n"
+            "property float radiosity_b\n"
             "element face %lld\n"
             "property list uchar int vertex_indices\n"
             "property float radiosity_r\nproperty float radiosity_g\n"
@@ -51,6 +52,8 @@ static void write_vertices(struct output *output, const struct shading *shading,
         output_float(output, (float)x.z);
         for (int c = 0; c < BANDS; c++)
             putc(tone_encode(tone, shading->values[v].band[c]), output->file);
+        for (int c = 0; c < BANDS; c++)
+            output_float(output, (float)shading->values[v].band[c]);
     }
 }
 
@@ -86,8 +89,8 @@ bool mesh_write(const struct shading *shading, const struct tone *tone,
                              : "");
     solution_write_header(&output, forest->scene, answer->lamps.known);
     write_vertices(&output, shading, tone);
-    int32_t leaf = next_leaf(forest, -1);
-    for (; leaf >= 0 && stop_check(error); leaf = next_leaf(forest, leaf))
+    int32_t leaf = mesh_next_leaf(forest, -1);
+    for (; leaf >= 0 && stop_check(error); leaf = mesh_next_leaf(forest, leaf))
         write_face(&output, shading, answer, leaf);
     solution_write_scene(&output, forest->scene, &answer->lamps);
     return output_close(&output, error);
@@ -97,7 +100,8 @@ float *mesh_colours(const struct forest *forest, int64_t *count)
 {
     float *rgb = alloc_array((size_t)forest_leaf_count(forest) * 3, sizeof *rgb);
     int64_t at = 0;
-    for (int32_t leaf = next_leaf(forest, -1); leaf >= 0; leaf = next_leaf(forest, leaf))
+    int32_t leaf = mesh_next_leaf(forest, -1);
+    for (; leaf >= 0; leaf = mesh_next_leaf(forest, leaf))
         for (int c = 0; c < BANDS; c++)
             rgb[at++] = (float)forest->radiosity[leaf].band[c];
     *count = at / 3;

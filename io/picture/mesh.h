@@ -17,8 +17,13 @@ struct mesh_answer {
     struct solution_lamps lamps; /* known: there is `straight` */
 };
 
-/* Writes binary little-endian PLY: vertices with float x y z (input units) and uchar red
- * green blue (sRGB of the vertex radiosity); faces with `list uchar int vertex_indices`,
+/* Returns the leaf after `leaf` (-1: the first one) in canonical order: roots in order,
+ * depth first; or -1. */
+int32_t mesh_next_leaf(const struct forest *forest, int32_t leaf);
+
+/* Writes binary little-endian PLY: vertices with float x y z (input units), uchar red
+ * green blue (sRGB of their radiosity) and float radiosity_r radiosity_g radiosity_b (of
+ * the smooth shading, W/m^2); faces with `list uchar int vertex_indices`,
  * float radiosity_r radiosity_g radiosity_b (of the leaf, W/m^2), uint root and uint
  * hierarchy: one face per leaf, roots in order, depth first. After a final gather, float
  * error and float rest_r rest_g rest_b follow, the radiosity less what comes straight

@@ -86,6 +86,7 @@ static const struct format FORMATS[] = {
     [FORMAT_PNG] = {"png", false},
     [FORMAT_HDR] = {"hdr", false},
     [FORMAT_PLY] = {"ply", true},
+    [FORMAT_VTK] = {"vtk", true},
 };
 enum { FORMAT_COUNT = sizeof FORMATS / sizeof FORMATS[0] };
 
@@ -584,7 +585,7 @@ void options_free(struct options *options)
 static const char HELP[] =
     "usage: phr [options] SCENE         or  mpiexec -n P phr [options] SCENE\n"
     "Computes the light in a diffuse scene, OBJ or PLY. Defaults in brackets.\n"
-    "  -o [FORMAT:]FILE picture .png .ppm, linear .pfm .hdr; mesh .ply; repeatable\n"
+    "  -o [FORMAT:]FILE picture .png .ppm, linear .hdr .pfm; mesh .ply .vtk\n"
     "  --view FILE      of the -o behind it: eye x y z, at, up, fov, size (chosen)\n"
     "  --size WxH       pixels (512x512)       --samples N   N x N rays a pixel (3)\n"
     "  --exposure X     factor (automatic)     --flat        no interpolation\n"

@@ -12,7 +12,8 @@
 #define PHR_VERSION "0.3"
 
 /* Formats of outputs, in the order of the table in io/run/options.c. */
-enum output_format { FORMAT_PPM, FORMAT_PFM, FORMAT_PNG, FORMAT_HDR, FORMAT_PLY };
+enum output_format { FORMAT_PPM, FORMAT_PFM, FORMAT_PNG, FORMAT_HDR, FORMAT_PLY,
+                     FORMAT_VTK };
 
 /* An output of -o. */
 struct target {

@@ -171,3 +171,10 @@ void output_float(struct output *output, float value)
     memcpy(&bits, &value, sizeof bits);
     output_uint32(output, bits);
 }
+
+void output_float_big(struct output *output, float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    output_uint32_big(output, bits);
+}

@@ -36,7 +36,8 @@ void output_sync(struct output *output, struct error *error);
 void output_uint32(struct output *output, uint32_t value);
 void output_float(struct output *output, float value);
 
-/* Writes a number, most significant byte first. */
+/* Write them most significant byte first. */
 void output_uint32_big(struct output *output, uint32_t value);
+void output_float_big(struct output *output, float value);
 
 #endif

@@ -550,7 +550,7 @@ static void test_bad_suffixes(void)
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         snprintf(line, sizeof line, "a.obj -o %s", names[i]);
         snprintf(message, sizeof message,
-                 "-o %s: the name must end in .ppm, .pfm, .png, .hdr or .ply, "
+                 "-o %s: the name must end in .ppm, .pfm, .png, .hdr, .ply or .vtk, "
                  "or be FORMAT:FILE, as in ppm:FILE", names[i]);
         check_refused(line, message);
     }

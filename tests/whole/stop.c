@@ -13,6 +13,7 @@
 #include "io/picture/hdr.h"
 #include "io/picture/png.h"
 #include "io/picture/pnm.h"
+#include "io/picture/vtk.h"
 #include "io/picture/mesh.h"
 #include "io/picture/render.h"
 #include "io/picture/viewpoint.h"
@@ -234,6 +235,12 @@ static int64_t write_mesh(void)
     return look_at_output(mesh_write(shading, &tone, &none, WRITTEN, &error));
 }
 
+static int64_t write_vtk(void)
+{
+    write_old();
+    return look_at_output(vtk_write(shading, NULL, WRITTEN, &error));
+}
+
 static const struct phase {
     const char *name;
     int64_t (*run)(void);
@@ -257,6 +264,7 @@ static const struct phase {
     {"writing PNG", write_png, true, 0, 16},
     {"writing HDR", write_hdr, true, 0, 16},
     {"writing a mesh", write_mesh, true, 4, 0},
+    {"writing VTK", write_vtk, true, 4, 0},
 };
 
 /* --- stopping them --- */

@@ -1,0 +1,95 @@
+/* Writing VTK's legacy format: lines of text that announce arrays, and the arrays, most
+ * significant bytes first. ParaView and VTK drop the properties that PLY faces have; here
+ * all numbers arrive. Arrays are columns, so the leaves are walked once for each. */
+#include "io/picture/vtk.h"
+
+#include "geom/stop.h"
+#include "io/picture/mesh.h"
+#include "io/run/output.h"
+
+enum column { CORNERS, RADIOSITY, ROOT, HIERARCHY, LEVEL, ERROR };
+
+static void write_rgb(struct output *output, const struct rgb *rgb)
+{
+    for (int c = 0; c < BANDS; c++)
+        output_float_big(output, (float)rgb->band[c]);
+}
+
+static void write_cell(struct output *output, const struct shading *shading,
+                       const float *errors, int32_t leaf, enum column column)
+{
+    struct patch_id id = shading->forest->patches[leaf].id;
+    switch (column) {
+    case CORNERS:
+        output_uint32_big(output, 3);
+        for (int k = 0; k < 3; k++)
+            output_uint32_big(output, (uint32_t)shading->corners[3 * (int64_t)leaf + k]);
+        break;
+    case RADIOSITY: write_rgb(output, &shading->forest->radiosity[leaf]); break;
+    case ROOT: output_uint32_big(output, id.root); break;
+    case HIERARCHY: output_uint32_big(output, id.hierarchy); break;
+    case LEVEL: putc(id_level(id), output->file); break;
+    case ERROR: output_float_big(output, errors[leaf]); break;
+    }
+}
+
+static void write_column(struct output *output, const struct shading *shading,
+                         const float *errors, enum column column, struct error *error)
+{
+    const struct forest *forest = shading->forest;
+    int32_t leaf = mesh_next_leaf(forest, -1);
+    for (; leaf >= 0 && stop_check(error); leaf = mesh_next_leaf(forest, leaf))
+        write_cell(output, shading, errors, leaf, column);
+    putc('\n', output->file);
+}
+
+static void write_points(struct output *output, const struct shading *shading,
+                         struct error *error)
+{
+    fprintf(output->file, "POINTS %lld float\n", (long long)shading->vertex_count);
+    for (int64_t v = 0; v < shading->vertex_count && stop_check(error); v++) {
+        struct vec3 x = scene_to_input(shading->forest->scene, shading->positions[v]);
+        for (int axis = 0; axis < 3; axis++)
+            output_float_big(output, (float)vec3_axis(x, axis));
+    }
+    putc('\n', output->file);
+}
+
+static void write_point_data(struct output *output, const struct shading *shading,
+                             struct error *error)
+{
+    long long count = shading->vertex_count;
+    fprintf(output->file, "POINT_DATA %lld\nFIELD points 1\nradiosity 3 %lld float\n",
+            count, count);
+    for (int64_t v = 0; v < count && stop_check(error); v++)
+        write_rgb(output, &shading->values[v]);
+    putc('\n', output->file);
+}
+
+bool vtk_write(const struct shading *shading, const float *errors, const char *path,
+               struct error *error)
+{
+    static const char *const ARRAYS[] = {
+        [RADIOSITY] = "radiosity 3", [ROOT] = "root 1", [HIERARCHY] = "hierarchy 1",
+        [LEVEL] = "level 1", [ERROR] = "error 1"};
+    static const char *const TYPES[] = {
+        [RADIOSITY] = "float", [ROOT] = "unsigned_int", [HIERARCHY] = "unsigned_int",
+        [LEVEL] = "unsigned_char", [ERROR] = "float"};
+    long long cells = forest_leaf_count(shading->forest);
+    int last = errors ? ERROR : LEVEL; /* of as many columns beside the corners */
+    struct output output;
+    if (!output_open(&output, path, error))
+        return false;
+    fprintf(output.file, "# vtk DataFile Version 3.0\nradiosity in W/m^2, made by phr\n"
+                         "BINARY\nDATASET POLYDATA\n");
+    write_points(&output, shading, error);
+    fprintf(output.file, "POLYGONS %lld %lld\n", cells, 4 * cells);
+    write_column(&output, shading, errors, CORNERS, error);
+    fprintf(output.file, "CELL_DATA %lld\nFIELD cells %d\n", cells, last);
+    for (int column = RADIOSITY; column <= last; column++) {
+        fprintf(output.file, "%s %lld %s\n", ARRAYS[column], cells, TYPES[column]);
+        write_column(&output, shading, errors, (enum column)column, error);
+    }
+    write_point_data(&output, shading, error);
+    return output_close(&output, error);
+}
