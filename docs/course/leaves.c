@@ -42,19 +42,35 @@ static float read_float(FILE *file)
 /* What the header of a solution tells. */
 struct header {
     long vertices, faces;
-    int errors; /* there is an error behind each leaf */
+    int behind_vertex, behind_face; /* bytes after x y z, and after the hierarchy */
 };
+
+/* The bytes of a number, by the name of its type. */
+static int size_of(const char *type)
+{
+    return strcmp(type, "double") == 0 ? 8 : strstr(type, "char") ? 1 : 4;
+}
 
 static struct header read_header(FILE *file)
 {
-    struct header header = {0, 0, 0};
-    char line[256];
+    struct header header = {0, 0, 0, 0};
+    char line[256], element[64] = "", type[64], name[64];
+    int *behind = NULL; /* grows with each property; NULL: those have been counted */
     do {
         if (!fgets(line, sizeof line, file))
             fail("this is no solution of phr");
+        if (sscanf(line, "element %63s", element) == 1)
+            behind = NULL;
         sscanf(line, "element vertex %ld", &header.vertices);
         sscanf(line, "element face %ld", &header.faces);
-        header.errors |= strcmp(line, "property float error\n") == 0;
+        if (sscanf(line, "property %63s %63s", type, name) != 2)
+            continue;
+        if (behind)
+            *behind += size_of(type);
+        if (strcmp(element, "vertex") == 0 && strcmp(name, "z") == 0)
+            behind = &header.behind_vertex;
+        if (strcmp(element, "face") == 0 && strcmp(name, "hierarchy") == 0)
+            behind = &header.behind_face;
     } while (strcmp(line, "end_header\n") != 0);
     return header;
 }
@@ -90,8 +106,8 @@ static void print_leaf(FILE *file, const struct header *header, float (*vertices
         printf(" %.4f %.4f %.4f", (double)v[0], (double)v[1], (double)v[2]);
     }
     printf("\n");
-    if (header->errors)
-        read_float(file);
+    for (int k = 0; k < header->behind_face; k++)
+        read_bytes(file, 1);
 }
 
 int main(int argc, char **argv)
@@ -106,7 +122,8 @@ int main(int argc, char **argv)
     for (long v = 0; v < header.vertices; v++) {
         for (int k = 0; k < 3; k++)
             vertices[v][k] = read_float(file);
-        read_bytes(file, 3); /* the colour */
+        for (int k = 0; k < header.behind_vertex; k++)
+            read_bytes(file, 1);
     }
     for (long f = 0; f < header.faces; f++)
         print_leaf(file, &header, vertices);
