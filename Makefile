@@ -66,7 +66,7 @@ endif
 
 # All sources of these folders but the programs.
 OCTREE = $(wildcard octree/*.c)
-PROGRAMS = tools/imgdiff tools/pathtracer
+PROGRAMS = tools/imgdiff tools/pathtracer tools/id
 FOLDERS = geom rad rad/beyond mpi mpi/beyond io/scene io/run io/picture tools
 SOURCES = $(wildcard $(FOLDERS:%=%/*.c)) $(OCTREE)
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
@@ -93,7 +93,7 @@ FUZZERS = obj mtl ply image view links checkpoint clusters
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)
 TEST_PROGRAMS = $(TESTS:%=$(BUILD)/tests/%) $(REPLAYS)
 
-all: $(PHR) $(IMGDIFF)
+all: $(PHR) $(IMGDIFF) build/id
 
 # Linked beside the objects and copied, so that `make` after `make SERIAL=1` changes phr
 # again.
@@ -104,11 +104,14 @@ $(IMGDIFF): $(BUILD)/imgdiff FORCE
 	@mkdir -p $(@D)
 	@cmp -s $(BUILD)/imgdiff $@ || cp $(BUILD)/imgdiff $@
 
+build/id: $(BUILD)/id FORCE
+	@cmp -s $(BUILD)/id $@ || cp $(BUILD)/id $@
+
 $(BUILD)/phr: $(BUILD)/phr.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/phr.o $(BUILD)/libphr.a -lm
 
-$(BUILD)/imgdiff: $(BUILD)/tools/imgdiff.o $(BUILD)/libphr.a
-	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $(BUILD)/tools/imgdiff.o $(BUILD)/libphr.a -lm
+$(BUILD)/imgdiff $(BUILD)/id: $(BUILD)/%: $(BUILD)/tools/%.o $(BUILD)/libphr.a
+	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(BUILD)/libphr.a -lm

@@ -154,7 +154,7 @@ bool report_summary(struct run *run)
                     100.0 * run->stats.error_estimate, 100.0 * run->stats.accuracy,
                     HOLDS[run->stats.hold]);
         warn_balance(run);
-        if (!run->options.quiet)
+        if (!run->options.quiet && !run->options.dump)
             stats_print(&run->stats, stdout);
         if (run->options.stats)
             stats_write(&run->stats, run->options.stats, &run->error);

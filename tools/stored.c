@@ -17,8 +17,10 @@ static struct store_terms terms_of(const struct run *run, enum store_kind kind)
     };
 }
 
-static void put_links(void *context, const struct link *links, int64_t count)
+static void put_links(void *context, const struct link *links, const int *owners,
+                      int64_t count)
 {
+    (void)owners;
     store_put_links(context, links, count);
 }
 

@@ -58,6 +58,7 @@ static const struct option OPTIONS[] = {
     {"--resume", KIND_TEXT, FIELD(resume), 0, 0, NULL},
     {"--memory", KIND_BYTES, FIELD(memory), 0, 0, NULL},
     {"--stats", KIND_TEXT, FIELD(stats), 0, 0, NULL},
+    {"--dump", KIND_CHOICE, FIELD(dump), 0, 0, "nothing|patches|links"},
     {"--quiet", KIND_FLAG, FIELD(quiet), 0, 0, NULL},
     {"--verbose", KIND_FLAG, FIELD(verbose), 0, 0, NULL},
     {"--validate", KIND_FLAG, FIELD(validate), 0, 0, NULL},
@@ -410,6 +411,7 @@ static bool check_table(const struct options *options, struct error *error)
                         : options->stats          ? "--stats"
                         : options->save_links     ? "--save-links"
                         : options->load_links     ? "--load-links"
+                        : options->dump           ? "--dump"
                         : options->checkpoint     ? "--checkpoint"
                         : options->resume         ? "--resume"
                                                   : NULL;
@@ -594,7 +596,7 @@ static const char HELP[] =
     "  --tolerance T    of the solution (1e-5) --max-iterations N   at most (1000)\n"
     "  --oracle error|bf   what splits a link  --form-factor polygon|disk\n"
     "  --linking tree|pairs  where links begin --final-gather N[,pixels]  rays (256)\n"
-    "  --solver cg|jacobi                      of the light over the links (cg)\n"
+    "  --solver cg|jacobi  over the links      --balance default|greedy|none\n"
     "  --paper          the paper's of these   --alpha A     inherited cost (0.5)\n"
     "  --two-sided      backs reflect, too     --two-sided-lamps  those of lamps\n"
     "  --save-links F   those of all pairs     --load-links F  in their place\n"
@@ -602,7 +604,7 @@ static const char HELP[] =
     "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
     "  --form-factors   print them, as CSV     --validate    check form factors\n"
     "  --stats FILE     report as JSON         --verbose     levels of refinement\n"
-    "  --balance default|greedy|none           --quiet       print nothing\n"
+    "  --dump patches|links  print these       --quiet       print nothing\n"
     "  --help           print this             --version     and licence\n"
     "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
     "  phr room.obj -o room.png\n"

@@ -22,6 +22,9 @@ struct target {
     int view;                 /* of a picture, 0 if there is no view */
 };
 
+/* What --dump prints. */
+enum dump { DUMP_NOTHING, DUMP_PATCHES, DUMP_LINKS };
+
 struct options {
     const char *scene;        /* path of the scene, NULL with help, version or validate */
     struct target *outputs;   /* [output_count] owned */
@@ -38,6 +41,7 @@ struct options {
     int width, height;        /* of --size; 0: those of the view */
     int samples;              /* samples x samples rays a pixel */
     bool pixels;              /* the final gather is done at each pixel, too */
+    enum dump dump;
     double exposure;          /* 0: chosen from the picture */
     bool two_sided;           /* backs reflect */
     bool two_sided_lamps;     /* backs of lamps, too; only with two_sided */

@@ -173,6 +173,7 @@ static void sort_links(struct link *links, int64_t count)
 static void merge(struct funnel *funnel, link_sink *sink, void *context)
 {
     struct link *block = alloc_array(BLOCK, sizeof *block);
+    int *owners = alloc_array(BLOCK, sizeof *owners);
     int64_t count = 0;
     for (;;) {
         int first = -1;
@@ -185,16 +186,18 @@ static void merge(struct funnel *funnel, link_sink *sink, void *context)
             }
         }
         if (least) {
+            owners[count] = first;
             block[count++] = *least;
             funnel_drop(funnel, first);
         }
         if (count == BLOCK || !least) {
-            sink(context, block, count);
+            sink(context, block, owners, count);
             count = 0;
         }
         if (!least)
             break;
     }
+    alloc_free(owners);
     alloc_free(block);
 }
 

@@ -11,8 +11,9 @@ void snapshot_collect(struct solver *solver, const struct vote *vote,
                       struct snapshot *snapshot);
 
 /* Receives links with patch numbers of the snapshot in place of local ones (clusters keep
- * theirs), in ascending order. */
-typedef void link_sink(void *context, const struct link *links, int64_t count);
+ * theirs), in ascending order, and the ranks where they live. */
+typedef void link_sink(void *context, const struct link *links, const int *owners,
+                       int64_t count);
 
 /* Collective. Hands all links to the sink of rank 0, each once; the sinks of the other
  * ranks are not called. The order of the links here changes. */

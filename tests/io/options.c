@@ -197,6 +197,8 @@ static const struct choice CHOICES[] = {
     {"--solver", FIELD(criterion.solver), 2, {"jacobi", "cg", NULL}, "jacobi|cg"},
     {"--balance", FIELD(criterion.balance), 3, {"none", "greedy", "default", NULL},
      "none|greedy|default"},
+    {"--dump", FIELD(dump), 3, {"nothing", "patches", "links", NULL},
+     "nothing|patches|links"},
 };
 enum { CHOICE_COUNT = sizeof CHOICES / sizeof CHOICES[0] };
 
@@ -331,7 +333,7 @@ static const char *const OTHERS[][2] = {
     {"--oracle", " bf"}, {"--flat", ""}, {"--two-sided", ""}, {"--quiet", ""},
     {"--two-sided-lamps", ""}, {"--verbose", ""}, {"--validate", ""}, {"--help", ""},
     {"--version", ""}, {"--linking", " pairs"}, {"--form-factor", " disk"},
-    {"--solver", " cg"}, {"--balance", " greedy"}, {"--paper", ""},
+    {"--solver", " cg"}, {"--balance", " greedy"}, {"--dump", " links"}, {"--paper", ""},
     {"--form-factors", ""}, {"--save-links", " a"}, {"--load-links", " a"},
     {"--resume", " a"}, {"--checkpoint", " a"}, {"--memory", " 1G"}};
 enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };

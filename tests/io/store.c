@@ -20,8 +20,9 @@ static struct octree *octree;
 
 /* --- a file --- */
 
-static void put(void *writer, const struct link *links, int64_t count)
+static void put(void *writer, const struct link *links, const int *owners, int64_t count)
 {
+    (void)owners;
     store_put_links(writer, links, count);
 }
 
