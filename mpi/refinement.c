@@ -123,23 +123,18 @@ static void share_splits(struct solver *solver)
 /* A link that is being split and its four children. */
 enum { LINKS_PER_SPLIT = 5 };
 
-/* True if there is room for splitting a level, beside this number of patches. */
-static bool has_room(const struct solver *solver, const struct level_counts *level,
-                     int64_t patches)
-{
-    int64_t links = level->kept + LINKS_PER_SPLIT * level->prolific;
-    return memory_has_room(&solver->memory, links, level->of_patches, patches);
-}
-
 /* Collective. True if the memory limit lets the level be split. Ranks may have made the
  * same patches: only where there is no room for all of them are they shared and
  * counted. */
 static bool level_fits(struct solver *solver, const struct level_counts *level)
 {
-    if (has_room(solver, level, solver->turn.shared + level->made))
+    const struct memory *memory = &solver->memory;
+    int64_t links = level->kept + LINKS_PER_SPLIT * level->prolific;
+    int64_t split = level->of_patches, patches = solver->turn.shared + level->made;
+    if (memory_has_room(memory, links, split, patches))
         return true;
     share_splits(solver);
-    return has_room(solver, level, solver->turn.shared);
+    return memory_has_room(memory, links, split, solver->turn.shared);
 }
 
 /* Collective. True if there is another level: a rank has a link that is to be split. A
@@ -225,15 +220,6 @@ static bool goes_on(struct solver *solver, const struct link_list *prolific, int
     return signals_seen() == 0;
 }
 
-/* Splits a link. Returns the number of children. */
-static int split_link(struct solver *solver, const struct link *link,
-                      struct link children[METHOD_CHILDREN_MAX])
-{
-    struct model *model = &solver->model;
-    int32_t side = model->method.side_to_split(model, link);
-    return model->method.split_link(model, link, side, children);
-}
-
 /* Lets a new link that is not to be split join those that carry light. */
 static void keep_link(struct solver *solver, struct link *link)
 {
@@ -291,6 +277,7 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
  * `prolific` prolificInteractions, `next` newInteractions. */
 static void refine(struct solver *solver, struct link_list *prolific, struct level *level)
 {
+    struct model *model = &solver->model;
     struct link children[METHOD_CHILDREN_MAX];
     struct link_list next = {0};
     /* for all interaction in allInteractions do
@@ -307,7 +294,9 @@ static void refine(struct solver *solver, struct link_list *prolific, struct lev
         /* for all interaction in prolificInteractions do */
         for (int64_t i = 0; goes_on(solver, prolific, i); i++) {
             /* Subdivide interaction and its associated patches */
-            int count = split_link(solver, &prolific->items[i], children);
+            const struct link *link = &prolific->items[i];
+            int32_t side = model->method.side_to_split(model, link);
+            int count = model->method.split_link(model, link, side, children);
             /* for all newInteraction in children of interaction do */
             for (int k = 0; k < count; k++) {
                 /* Evaluate newInteraction

@@ -171,14 +171,6 @@ static int64_t count_proxies(const struct solver *solver)
     return count;
 }
 
-static void report_proxies(struct solver *solver, struct stats *stats)
-{
-    int64_t own = count_proxies(solver);
-    alloc_free(solver->account.proxies);
-    solver->account.proxies = comm_gather_each(solver->comm, &own, sizeof own);
-    stats->proxies = solver->account.proxies;
-}
-
 /* Transfers 1 and leaves no trace in the accounts: it is not of the method. */
 static void carry_ones_unseen(struct solver *solver)
 {
@@ -226,8 +218,9 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->roots = 0;
     for (int32_t root = 0; root < scene_root_count(scene); root++)
         stats->roots += scene_root_area(scene, root) > 0.0;
-    stats->patches = forest_patch_count(solver->model.forest);
-    stats->leaves = forest_leaf_count(solver->model.forest);
+    struct forest_counts counts = forest_count(solver->model.forest);
+    stats->patches = counts.patches;
+    stats->leaves = counts.leaves;
     stats->links = vote->links;
     stats->passes = solver->turn.pass;
     stats->iterations = solver->turn.iteration;
@@ -246,7 +239,10 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->level_count = solver->account.ledger.level_count;
     memcpy(stats->work, solver->account.ledger.sums, sizeof stats->work);
     stats->exchanges = comm_counts().collectives;
-    report_proxies(solver, stats);
+    int64_t proxies = count_proxies(solver);
+    alloc_free(solver->account.proxies);
+    solver->account.proxies = comm_gather_each(solver->comm, &proxies, sizeof proxies);
+    stats->proxies = solver->account.proxies;
     report_counts(solver, stats);
     report_seconds(solver, stats);
     if (solver->steps.report)

@@ -88,25 +88,16 @@ double forest_area(const struct forest *forest, int32_t patch)
     return scene_root_area(forest->scene, (int32_t)id.root) * share;
 }
 
-static int64_t count_patches(const struct forest *forest, bool leaves_only)
+struct forest_counts forest_count(const struct forest *forest)
 {
-    int64_t count = 0;
+    struct forest_counts counts = {0};
     for (int64_t p = 0; p < forest->count; p++) {
         const struct patch *patch = &forest->patches[p];
         bool has_area = scene_root_area(forest->scene, (int32_t)patch->id.root) > 0.0;
-        count += has_area && (!leaves_only || patch_is_leaf(patch));
+        counts.patches += has_area;
+        counts.leaves += has_area && patch_is_leaf(patch);
     }
-    return count;
-}
-
-int64_t forest_leaf_count(const struct forest *forest)
-{
-    return count_patches(forest, true);
-}
-
-int64_t forest_patch_count(const struct forest *forest)
-{
-    return count_patches(forest, false);
+    return counts;
 }
 
 int32_t forest_next(const struct forest *forest, int32_t patch, bool descend)

@@ -77,11 +77,12 @@ static inline const struct material *forest_material(const struct forest *forest
     return scene_root_material(forest->scene, (int32_t)forest->patches[patch].id.root);
 }
 
-/* Number of leaves under all roots that have an area. */
-int64_t forest_leaf_count(const struct forest *forest);
+/* Numbers under all roots that have an area. */
+struct forest_counts {
+    int64_t patches, leaves;
+};
 
-/* Number of patches under all roots that have an area. */
-int64_t forest_patch_count(const struct forest *forest);
+struct forest_counts forest_count(const struct forest *forest);
 
 /* The local numbers of all patches, roots in order and each tree depth first: as a
  * sequence of IDs the same on all ranks that have the same trees. [count], to be freed

@@ -122,8 +122,8 @@ static void print_stored(struct run *run)
     progress_view_clear(&run->progress);
     if (run->comm.rank == 0 && !run->options.quiet)
         printf("stored      %lld patches (%lld leaves) of %lld triangles\n",
-               (long long)forest_patch_count(forest),
-               (long long)forest_leaf_count(forest),
+               (long long)forest_count(forest).patches,
+               (long long)forest_count(forest).leaves,
                (long long)run->scene->input_count);
 }
 

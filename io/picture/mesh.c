@@ -82,7 +82,7 @@ bool mesh_write(const struct shading *shading, const struct tone *tone,
     struct output output;
     if (!output_open(&output, path, error))
         return false;
-    mesh_write_header(&output, shading->vertex_count, forest_leaf_count(forest));
+    mesh_write_header(&output, shading->vertex_count, forest_count(forest).leaves);
     fprintf(output.file, "%s%s", answer->error ? "property float error\n" : "",
             answer->straight ? "property float rest_r\nproperty float rest_g\n"
                                "property float rest_b\n"
@@ -98,7 +98,7 @@ bool mesh_write(const struct shading *shading, const struct tone *tone,
 
 float *mesh_colours(const struct forest *forest, int64_t *count)
 {
-    float *rgb = alloc_array((size_t)forest_leaf_count(forest) * 3, sizeof *rgb);
+    float *rgb = alloc_array((size_t)forest_count(forest).leaves * 3, sizeof *rgb);
     int64_t at = 0;
     int32_t leaf = mesh_next_leaf(forest, -1);
     for (; leaf >= 0; leaf = mesh_next_leaf(forest, leaf))

@@ -75,7 +75,7 @@ bool vtk_write(const struct shading *shading, const float *errors, const char *p
     static const char *const TYPES[] = {
         [RADIOSITY] = "float", [ROOT] = "unsigned_int", [HIERARCHY] = "unsigned_int",
         [LEVEL] = "unsigned_char", [ERROR] = "float"};
-    long long cells = forest_leaf_count(shading->forest);
+    long long cells = forest_count(shading->forest).leaves;
     int last = errors ? ERROR : LEVEL; /* of as many columns beside the corners */
     struct output output;
     if (!output_open(&output, path, error))

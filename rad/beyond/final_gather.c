@@ -17,7 +17,7 @@
  * Rejected: B interpolated between corners that neighbours share. It needs to know over
  * which edges light goes on smoothly, and at shadows, where interpolation matters, it
  * does not. */
-#include "rad/beyond/receiver.h"
+#include "rad/beyond/final_gather.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -25,6 +25,7 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "rad/beyond/range.h"
+#include "rad/beyond/receiver.h"
 #include "rad/beyond/sequence.h"
 #include "rad/pushpull.h"
 
@@ -73,7 +74,7 @@ struct final_gather final_gather_create(struct model *model, int rays)
     struct forest *forest = model->forest;
     struct final_gather gather = {.model = model, .view = {.root = -1}};
     forest_bound(forest);
-    gather.rays = rays_for(rays, forest_leaf_count(forest));
+    gather.rays = rays_for(rays, forest_count(forest).leaves);
     gather.mean = mean_radiosity(model);
     gather.lamps = lamps_create(model, LAMP * mean_reflected(model));
     gather.order = forest_order(forest);

@@ -9,6 +9,7 @@
  *
  * Rejected: exact factors to whatever a leaf sees openly and rays for the rest. Proofs
  * for all pairs cost more than the rays that they save. */
+#include "rad/beyond/final_gather.h"
 #include "rad/beyond/receiver.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #ifndef RAD_BEYOND_RECEIVER_H
 #define RAD_BEYOND_RECEIVER_H
 
-#include "rad/beyond/final_gather.h"
+#include "rad/beyond/rows.h"
 #include "rad/beyond/sequence.h"
 
 struct receiver {

@@ -46,7 +46,7 @@ static void read_solution(const uint8_t *data, size_t size)
     if (solution.scene) {
         struct forest *forest = forest_create(solution.scene);
         solution_mesh_restore(&solution, forest);
-        FUZZ_PROMISE(forest_leaf_count(forest) == solution.count);
+        FUZZ_PROMISE(forest_count(forest).leaves == solution.count);
         forest_destroy(forest);
     }
     alloc_free(map);

@@ -500,7 +500,7 @@ static void test_flat(void)
     set_randomly(stage.forest, &random);
     shade(&stage, true);
     tap_ok(is_flat(&stage), "flat: each leaf shows its constant");
-    tap_ok(stage.shading->vertex_count == 3 * forest_leaf_count(stage.forest),
+    tap_ok(stage.shading->vertex_count == 3 * forest_count(stage.forest).leaves,
            "flat: no vertex is shared");
     dismantle(&stage);
 }

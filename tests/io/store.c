@@ -108,8 +108,8 @@ static void test_round_trip(void)
                other->beyond->accuracy.rounds == 3 &&
                other->beyond->accuracy.coarse == 0.5 &&
                other->beyond->accuracy.coarse_epsilon == 0.25 &&
-               forest_patch_count(other->model.forest) ==
-                   forest_patch_count(solver->model.forest),
+               forest_count(other->model.forest).patches ==
+                   forest_count(solver->model.forest).patches,
            "the restored state is the same");
     tap_ok(save(other, &vote, STORE_CHECKPOINT, AGAIN), "it is written again");
     size_t size = load(PATH, bytes);

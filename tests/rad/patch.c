@@ -55,8 +55,8 @@ static void test_creation(struct scene *scene)
                 forest_material(forest, r) == &scene->materials[r == 1];
     }
     tap_ok(right, "roots have their emission as radiosity");
-    tap_ok(forest_leaf_count(forest) == ROOTS - 1 &&
-               forest_patch_count(forest) == ROOTS - 1,
+    tap_ok(forest_count(forest).leaves == ROOTS - 1 &&
+               forest_count(forest).patches == ROOTS - 1,
            "roots without an area are not counted");
     forest_destroy(forest);
     forest_destroy(NULL);
@@ -83,12 +83,12 @@ static void test_split(struct scene *scene)
     forest_split(forest, 2);
     tap_ok(forest->count == ROOTS + 4 && forest->patches[2].children == first,
            "an inner patch is not split again");
-    tap_ok(forest_leaf_count(forest) == ROOTS + 2 &&
-               forest_patch_count(forest) == ROOTS + 3,
+    tap_ok(forest_count(forest).leaves == ROOTS + 2 &&
+               forest_count(forest).patches == ROOTS + 3,
            "leaves and patches are counted");
     forest_split(forest, 4);
-    tap_ok(forest_leaf_count(forest) == ROOTS + 2 &&
-               forest_patch_count(forest) == ROOTS + 3,
+    tap_ok(forest_count(forest).leaves == ROOTS + 2 &&
+               forest_count(forest).patches == ROOTS + 3,
            "but not those without an area");
     forest_destroy(forest);
 }

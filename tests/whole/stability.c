@@ -211,9 +211,9 @@ static void test_termination(void)
         bool grows = true;
         struct vote vote;
         do {
-            int64_t before = forest_leaf_count(forest), split = 0;
+            int64_t before = forest_count(forest).leaves, split = 0;
             solver_refine(solver);
-            split = forest_leaf_count(forest) - before;
+            split = forest_count(forest).leaves - before;
             grows = grows && split >= 0;
             vote = solve_links(solver);
             grows =

@@ -343,7 +343,7 @@ static void test_mesh(double epsilon)
            largest, goal);
     tap_ok(least >= 0.5 * goal && least < 1.0,
            "leaves were split over which %.1e varied at least", least);
-    double rays = (double)gathered->rays / (double)forest_leaf_count(forest);
+    double rays = (double)gathered->rays / (double)forest_count(forest).leaves;
     tap_ok(rays > 180.0 && rays <= 256.0, "%.0f rays for each leaf in the mean", rays);
     solution_free(&s);
 }

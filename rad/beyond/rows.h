@@ -1,0 +1,76 @@
+/* Rows of the final gather, and all that they are made of.
+ *
+ * The irradiance of a leaf is H = source + sum of weight B over its terms, band by band:
+ * the row of the leaf. */
+#ifndef RAD_BEYOND_ROWS_H
+#define RAD_BEYOND_ROWS_H
+
+#include "rad/beyond/lamps.h"
+
+/* The form factor from a leaf to a patch, 1, band by band. Local numbers of patches
+ * differ from rank to rank, so a patch is named by its place in forest_order(), here as
+ * in all arrays of the final gather. */
+struct gather_term {
+    int32_t place; /* of the patch */
+    float weight[BANDS];
+};
+
+/* The form factors from a leaf to all that it sees. */
+struct gather_row {
+    int32_t leaf;
+    int64_t end;       /* of its terms; they begin at the end of the row before */
+    struct rgb source; /* irradiance that comes from lamps, W/m^2 */
+    struct rgb lamps;  /* irradiance straight from lamps, W/m^2 */
+    double chance[BANDS]; /* variance of H if rays and segments were chosen by chance,
+                             (W/m^2)^2, for the solution's radiosities */
+    double halves[BANDS]; /* squared difference of the first and second half of the
+                             rays: a sample of the variance by the sequence */
+    float bare;        /* share of the leaf's area that nothing lies or stands on, 1 */
+};
+
+/* Work of this rank. */
+struct gather_counts {
+    int64_t rays;           /* fired for first hits */
+    int64_t segments;       /* tested for blockers */
+    int64_t escaped;        /* rays out of the scene or to backs, from leaves that see any
+                               front, and exact rows that do not sum to 1 */
+    int64_t exact;          /* rows made without rays */
+};
+
+/* A root and the roots that it faces. */
+struct gather_view {
+    int32_t root;      /* -1: none yet */
+    bool open;         /* proved: nothing stands between the root and any of `faced` */
+    int32_t *faced;    /* [count], roots */
+    int64_t count, capacity;
+    struct octree_counts counts; /* of all proofs, which each rank makes that has a leaf
+                                    of the root */
+};
+
+/* The rows of this rank, and their scene. */
+struct final_gather {
+    struct model *model; /* borrowed; rays are counted there */
+    int rays;              /* from a leaf, in the mean */
+    double mean;           /* radiosity, over bands and all surface, W/m^2 */
+    struct lamps lamps;
+    struct lamp_groups groups; /* of the leaf at hand */
+    struct gather_view view;   /* of the root of the leaf at hand */
+    int32_t *order; /* [forest->count] patches as in forest_order() */
+    int32_t *place; /* [forest->count] the place of each patch in `order` */
+    struct gather_row *rows;   /* [count] */
+    struct gather_term *terms; /* [term_count] */
+    int64_t count, term_count, row_capacity, term_capacity;
+    struct gather_counts counts;
+};
+
+/* Points of one surface, near each other, as in a pixel. */
+struct gather_points {
+    const struct vec3 *at; /* [count] */
+    int count;
+    struct vec3 middle;
+    struct plane plane; /* of the surface, at the middle */
+    int32_t input;      /* triangle of the points */
+    bool above;         /* they lie a little above it, so that it may hide lamps */
+};
+
+#endif
