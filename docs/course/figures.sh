@@ -31,3 +31,15 @@ $work/factors | awk '/right/ { exit }
     chart factors "Unit squares that face each other" "distance h [m]" "error of F" -v logx=1
 $work/radiosity scenes/box.obj 0.3 $work/box.txt >/dev/null
 patches box -v from="3 -4 2.6" -v white=60 <$work/box.txt
+
+awk 'NR > 1 { print "brute_force", $1, $1; print "phr", $1, $5 }' $work/visibility.txt |
+    chart visibility "Tests for each segment" triangles tests -v logx=1 -v logy=1
+./phr --quiet --paper --epsilon 2e-3 scenes/squares.obj -o $work/names.ply
+$work/leaves $work/names.ply | grep '^[01]/' |
+    patches quadtree -v from="0 0 1" -v names=1
+for epsilon in 1e-2 1e-3; do
+    ./phr --quiet --paper --epsilon $epsilon scenes/box.obj -o $work/mesh.ply
+    $work/leaves $work/mesh.ply >$work/mesh-$epsilon
+done
+patches mesh-coarse -v from="3 -4 2.6" -v white=60 <$work/mesh-1e-2
+patches mesh-fine -v from="3 -4 2.6" -v white=60 <$work/mesh-1e-3

@@ -76,7 +76,8 @@ END {
         if (names)
             label[i] = sprintf("<text x=\"%.1f\" y=\"%.1f\" font-size=\"%.1f\">%s</text>",
                 (p[3] + p[5] + p[7]) / 3, (p[4] + p[6] + p[8]) / 3 + 3,
-                3 + sqrt((p[3] - p[5]) ^ 2 + (p[4] - p[6]) ^ 2) / 20, p[1])
+                sqrt((p[7] - p[3]) * (p[6] - p[4]) - (p[5] - p[3]) * (p[8] - p[4])) / 9 + 2,
+                p[1])
     }
     close(sorted " | cut -d ' ' -f 2-")
     print "</g>"
