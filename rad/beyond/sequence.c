@@ -1,6 +1,6 @@
 /* Sobol's sequence with Owen's scrambling, and maps of the square.
  *
- * Sobol's points are built bit by bit. Owen's scrambling permutes the halves of the unit
+ * Sobol's points are built bit by bit, all four coordinates at once. Owen's scrambling permutes the halves of the unit
  * interval, the halves of each half and so on, each time by a coin that depends on all
  * bits before; a multiplication carries upwards only, so on reversed bits it does that
  * (Laine and Karras, "Stratified sampling for stochastic transparency", 2011). The same
@@ -24,15 +24,14 @@ static uint32_t reverse_bits(uint32_t x)
     return x >> 16 | x << 16;
 }
 
-static uint32_t scramble(uint32_t x, uint32_t seed)
+/* Permutes by multiplications that carry upwards. */
+static uint32_t permute(uint32_t x, uint32_t seed)
 {
-    x = reverse_bits(x);
     x ^= x * 0x3d20adeau;
     x += seed;
     x *= seed >> 16 | 1u;
     x ^= x * 0x05526c56u;
-    x ^= x * 0x53a22864u;
-    return reverse_bits(x);
+    return x ^ x * 0x53a22864u;
 }
 
 struct sequence sequence_start(uint64_t seed)
@@ -43,27 +42,28 @@ struct sequence sequence_start(uint64_t seed)
     return sequence;
 }
 
-/* Bit b of the index changes these bits of a coordinate: Sobol's direction numbers of the
- * first four dimensions, the upper 16 bits. */
-static const uint16_t SOBOL[SEQUENCE_DIMENSIONS][16] = {
-    {0x8000, 0x4000, 0x2000, 0x1000, 0x0800, 0x0400, 0x0200, 0x0100, 0x0080, 0x0040,
-     0x0020, 0x0010, 0x0008, 0x0004, 0x0002, 0x0001},
-    {0x8000, 0xc000, 0xa000, 0xf000, 0x8800, 0xcc00, 0xaa00, 0xff00, 0x8080, 0xc0c0,
-     0xa0a0, 0xf0f0, 0x8888, 0xcccc, 0xaaaa, 0xffff},
-    {0x8000, 0xc000, 0x6000, 0x9000, 0xe800, 0x5c00, 0x8e00, 0xc500, 0x6880, 0x9cc0,
-     0xee60, 0x5590, 0x8068, 0xc09c, 0x60ee, 0x9055},
-    {0x8000, 0xc000, 0x2000, 0x5000, 0xf800, 0x7400, 0xa200, 0x9300, 0xd880, 0x2540,
-     0x59e0, 0xe6d0, 0x7808, 0xb40c, 0x8202, 0xc305}};
+/* Bit b of the index changes these bits of the coordinates: Sobol's direction numbers of
+ * the first four dimensions, the upper 16 bits of each, reversed; the first dimension in
+ * the lowest bits. */
+static const uint64_t SOBOL[16] = {
+    UINT64_C(0x0001000100010001), UINT64_C(0x0003000300030002), UINT64_C(0x0004000600050004),
+    UINT64_C(0x000a0009000f0008), UINT64_C(0x001f001700110010), UINT64_C(0x002e003a00330020),
+    UINT64_C(0x0045007100550040), UINT64_C(0x00c900a300ff0080), UINT64_C(0x011b011601010100),
+    UINT64_C(0x02a4033903030200), UINT64_C(0x079a067705050400), UINT64_C(0x0b6709aa0f0f0800),
+    UINT64_C(0x101e160111111000), UINT64_C(0x302d390333332000), UINT64_C(0x4041770655554000),
+    UINT64_C(0xa0c3aa09ffff8000)};
 
 void sequence_point(const struct sequence *sequence, uint32_t index,
                     double u[SEQUENCE_DIMENSIONS])
 {
-    uint32_t place = scramble(index, sequence->scramble[0]);
+    uint32_t place = reverse_bits(permute(reverse_bits(index), sequence->scramble[0]));
+    uint64_t bits = 0;
+    for (int b = 0; b < 16; b++)
+        bits ^= SOBOL[b] & (UINT64_C(0) - (place >> b & 1u));
     for (int d = 0; d < SEQUENCE_DIMENSIONS; d++) {
-        uint32_t bits = 0;
-        for (int b = 0; b < 16; b++)
-            bits ^= SOBOL[d][b] & (0u - (place >> b & 1u));
-        u[d] = 0x1p-32 * (double)scramble(bits << 16, sequence->scramble[1 + d]);
+        uint32_t reversed = (uint32_t)(bits >> 16 * d) & 0xffffu;
+        u[d] = 0x1p-32 *
+               (double)reverse_bits(permute(reversed, sequence->scramble[1 + d]));
     }
 }
 
