@@ -175,7 +175,8 @@ static void test_ply(void)
                    "property uchar red\nproperty uchar green\nproperty uchar blue\n",
                    0, 0) && head;
     head = text_is("property float radiosity_r\nproperty float radiosity_g\n"
-                   "property float radiosity_b\nelement face %d\n", leaf_count, 0) && head;
+                   "property float radiosity_b\nelement face %d\n",
+                   leaf_count, 0) && head;
     tap_ok(written && head, "PLY: the lines about vertices");
     while (at < size && !text_is("end_header\n", 0, 0))
         at -= strlen("end_header\n") - 1;
