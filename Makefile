@@ -76,8 +76,8 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last five are run with several ranks. Their sources lie in
 # folders, the programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
-TESTS = alloc elementary triangle lambert outlook hull scene polygon wall octree bundles \
-        bicgstab sequence id flux patch compact formfactor patch_exchange link \
+TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wall octree \
+        bundles bicgstab sequence id flux patch compact formfactor patch_exchange link \
         patch_link method cluster node oracle error_oracle pushpull caps \
         final_gather checksum paths plan balance assign spotcheck \
         text obj ply output store tone image png hdr camera viewpoint shading mesh \

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "geom/doubles.h"
 #include "geom/hash.h"
 #include "geom/little.h"
 
@@ -34,6 +35,8 @@ struct scene *scene_create(int32_t input_count, int32_t material_count)
     scene->planes = alloc_array((size_t)input_count, sizeof *scene->planes);
     scene->areas = alloc_array((size_t)input_count, sizeof *scene->areas);
     scene->material_of = alloc_array((size_t)input_count, sizeof *scene->material_of);
+    scene->groups.goes_on = alloc_array((size_t)input_count, sizeof(bool));
+    scene->opposed = alloc_array((size_t)input_count, sizeof *scene->opposed);
     scene->materials = alloc_array((size_t)material_count, sizeof *scene->materials);
     scene->groups.of = alloc_array((size_t)input_count, sizeof *scene->groups.of);
     scene_set_groups(scene, 1, sizeof DEFAULT_GROUP);
@@ -54,6 +57,8 @@ void scene_destroy(struct scene *scene)
         alloc_free(scene->planes);
         alloc_free(scene->areas);
         alloc_free(scene->material_of);
+        alloc_free(scene->groups.goes_on);
+        alloc_free(scene->opposed);
         alloc_free(scene->materials);
         alloc_free(scene->normals);
         alloc_free(scene->groups.of);
@@ -71,6 +76,7 @@ static void pack_arrays(struct scene *scene, struct pack *pack)
     scene->areas = pack_array(pack, scene->areas, count * sizeof *scene->areas);
     scene->material_of =
         pack_array(pack, scene->material_of, count * sizeof *scene->material_of);
+    scene->opposed = pack_array(pack, scene->opposed, count * sizeof *scene->opposed);
     scene->materials =
         pack_array(pack, scene->materials, materials * sizeof *scene->materials);
     struct scene_groups *groups = &scene->groups;
@@ -141,8 +147,8 @@ static bool normalise(struct scene *scene, struct error *error)
     if (exponent < -500)
         return error_set(error, EXIT_USAGE, "the scene's extent %g is out of range",
                          extent);
-    scene->exponent = exponent;
-    scene->centre = vec3_add(scene->low, vec3_scale(size, 0.5));
+    scene->place.exponent = exponent;
+    scene->place.centre = vec3_add(scene->low, vec3_scale(size, 0.5));
     for (int32_t i = 0; i < scene->input_count; i++)
         for (int k = 0; k < 3; k++)
             scene->triangles[i].corner[k] =
@@ -166,19 +172,117 @@ static int64_t clamp_reflectances(struct scene *scene)
     return clamped;
 }
 
-/* Computes areas and planes. Returns the number of triangles without area. */
+/* Computes area and plane, unless they are 0. True if they are not. */
+static bool measure_triangle(struct scene *scene, int32_t i)
+{
+    if (triangle_is_degenerate(&scene->triangles[i]))
+        return false;
+    scene->areas[i] = triangle_area(&scene->triangles[i]);
+    scene->planes[i] = triangle_plane(&scene->triangles[i]);
+    return true;
+}
+
+/* Returns the number of triangles without area. */
 static int64_t measure_triangles(struct scene *scene)
 {
     int64_t degenerate = 0;
-    for (int32_t i = 0; i < scene->input_count; i++) {
-        if (triangle_is_degenerate(&scene->triangles[i])) {
-            degenerate++;
-            continue;
-        }
-        scene->areas[i] = triangle_area(&scene->triangles[i]);
-        scene->planes[i] = triangle_plane(&scene->triangles[i]);
-    }
+    for (int32_t i = 0; i < scene->input_count; i++)
+        degenerate += !measure_triangle(scene, i);
     return degenerate;
+}
+
+/* Returns the normal that one of a face's triangles has at a corner in this place. */
+static struct vec3 normal_at(const struct triangle *face, const struct vec3 *normals,
+                             int32_t count, struct vec3 place)
+{
+    for (int32_t i = 0; i < 3 * count; i++) {
+        struct vec3 apart = vec3_sub(face[i / 3].corner[i % 3], place);
+        if (vec3_dot(apart, apart) == 0.0)
+            return normals[i];
+    }
+    return (struct vec3){0.0, 0.0, 0.0};
+}
+
+/* Cuts a polygon like the one whose back it is, whose first triangle is `other`: were a
+ * bent quad cut along the other diagonal, its black back would stick out. */
+static void cut_alike(struct scene *scene, int32_t begin, int32_t count, int32_t other)
+{
+    struct triangle *before = alloc_array((size_t)count, sizeof *before);
+    struct vec3 *normals = alloc_array(3 * (size_t)count, sizeof *normals);
+    memcpy(before, &scene->triangles[begin], (size_t)count * sizeof *before);
+    if (scene->normals)
+        memcpy(normals, &scene->normals[3 * (int64_t)begin],
+               3 * (size_t)count * sizeof *normals);
+    for (int32_t i = begin; i < begin + count; i++) {
+        struct triangle *t = &scene->triangles[i];
+        *t = triangle_turned(&scene->triangles[other + i - begin]);
+        for (int k = 0; k < 3 && scene->normals; k++)
+            scene->normals[3 * (int64_t)i + k] =
+                normal_at(before, normals, count, t->corner[k]);
+        scene_drop(scene, i);
+        measure_triangle(scene, i);
+    }
+    alloc_free(normals);
+    alloc_free(before);
+}
+
+static int32_t face_end(const struct scene *scene, int32_t i)
+{
+    do
+        i++;
+    while (i < scene->input_count && scene->groups.goes_on[i]);
+    return i;
+}
+
+/* Returns the first triangle of an earlier polygon whose back the polygon from `begin` on
+ * is, or -1. */
+static int32_t front_of(const struct scene *scene, int32_t begin, int32_t end,
+                        const int32_t *opposite)
+{
+    int32_t other = opposite[begin], count = end - begin;
+    if (other < 0 || other > begin || scene->groups.goes_on[other] ||
+        face_end(scene, other) != other + count)
+        return -1;
+    for (int32_t k = 1; k < count; k++)
+        if (opposite[begin + k] != other + k)
+            return -1;
+    return other;
+}
+
+/* Finds doubles and backs, with arrays as doubles_find() has them. */
+static void find_doubles(struct scene *scene, int32_t **first, int32_t **opposite)
+{
+    struct faces faces = {scene->triangles, scene->areas, scene->groups.goes_on,
+                          scene->input_count};
+    *first = alloc_array((size_t)scene->input_count, sizeof **first);
+    *opposite = alloc_array((size_t)scene->input_count, sizeof **opposite);
+    doubles_find(&faces, *first, *opposite);
+    for (int32_t i = 0; i < scene->input_count; i++)
+        scene->opposed[i] = (*opposite)[i] >= 0;
+}
+
+static void handle_doubles(struct scene *scene, struct scene_repairs *repairs)
+{
+    int32_t *first, *opposite;
+    find_doubles(scene, &first, &opposite);
+    for (int32_t i = 0, end; i < scene->input_count; i = end) {
+        end = face_end(scene, i);
+        int32_t front = end > i + 1 ? front_of(scene, i, end, opposite) : -1;
+        if (front >= 0)
+            cut_alike(scene, i, end - i, front);
+    }
+    for (int32_t i = 0; i < scene->input_count; i++) {
+        if (first[i] == i || !(scene->areas[i] > 0.0))
+            continue;
+        repairs->doubles++;
+        repairs->unlike += !material_is_same(scene_root_material(scene, i),
+                                             scene_root_material(scene, first[i]));
+        scene_drop(scene, i);
+    }
+    alloc_free(opposite);
+    alloc_free(first);
+    alloc_free(scene->groups.goes_on);
+    scene->groups.goes_on = NULL;
 }
 
 bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
@@ -188,19 +292,27 @@ bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
         return error_set(error, EXIT_USAGE, "the scene has no faces");
     if (!normalise(scene, error))
         return false;
-    repairs->clamped = clamp_reflectances(scene);
+    *repairs = (struct scene_repairs){.clamped = clamp_reflectances(scene)};
     repairs->degenerate = measure_triangles(scene);
     if (repairs->degenerate == scene->input_count)
         return error_set(error, EXIT_USAGE, "all faces of the scene are degenerate");
+    handle_doubles(scene, repairs);
     return true;
 }
 
 void scene_restore(struct scene *scene, struct vec3 centre, int32_t exponent)
 {
-    scene->centre = centre;
-    scene->exponent = exponent;
+    scene->place = (struct scene_place){centre, exponent};
     find_bounds(scene);
     measure_triangles(scene);
+}
+
+void scene_find_backs(struct scene *scene)
+{
+    int32_t *first, *opposite;
+    find_doubles(scene, &first, &opposite);
+    alloc_free(opposite);
+    alloc_free(first);
 }
 
 void scene_drop(struct scene *scene, int32_t input)
@@ -216,7 +328,7 @@ int32_t scene_root_count(const struct scene *scene)
 
 bool scene_has_twin(const struct scene *scene, int32_t input)
 {
-    return scene->two_sided &&
+    return scene->two_sided && !scene->opposed[input] &&
            (scene->two_sided_lamps || !material_emits(scene_root_material(scene, input)));
 }
 
@@ -229,13 +341,8 @@ int32_t scene_root_on(const struct scene *scene, int32_t input, bool front)
 
 struct triangle scene_root_triangle(const struct scene *scene, int32_t root)
 {
-    struct triangle t = scene->triangles[scene_input_of(scene, root)];
-    if (root >= scene->input_count) {
-        struct vec3 swap = t.corner[1];
-        t.corner[1] = t.corner[2];
-        t.corner[2] = swap;
-    }
-    return t;
+    const struct triangle *t = &scene->triangles[scene_input_of(scene, root)];
+    return root >= scene->input_count ? triangle_turned(t) : *t;
 }
 
 struct plane scene_root_plane(const struct scene *scene, int32_t root)
@@ -280,7 +387,7 @@ double scene_emitted_power(const struct scene *scene)
 
 double scene_area_unit(const struct scene *scene)
 {
-    return ldexp(1.0, 2 * scene->exponent);
+    return ldexp(1.0, 2 * scene->place.exponent);
 }
 
 static uint64_t hash_doubles(uint64_t hash, const double *values, int count)
@@ -304,16 +411,20 @@ uint64_t scene_hash(const struct scene *scene)
         }
         hash = hash_doubles(hash, material->reflectance.band, BANDS);
         hash = hash_doubles(hash, material->emission.band, BANDS);
+        if (scene->opposed[i] || !(scene->areas[i] > 0.0)) /* roots may be missing */
+            hash = hash_doubles(hash, &scene->areas[i], 1);
     }
     return hash;
 }
 
 struct vec3 scene_to_input(const struct scene *scene, struct vec3 x)
 {
-    return vec3_add(scene->centre, vec3_scale(x, ldexp(1.0, scene->exponent)));
+    const struct scene_place *place = &scene->place;
+    return vec3_add(place->centre, vec3_scale(x, ldexp(1.0, place->exponent)));
 }
 
 struct vec3 scene_from_input(const struct scene *scene, struct vec3 x)
 {
-    return vec3_scale(vec3_sub(x, scene->centre), ldexp(1.0, -scene->exponent));
+    const struct scene_place *place = &scene->place;
+    return vec3_scale(vec3_sub(x, place->centre), ldexp(1.0, -place->exponent));
 }

@@ -2,7 +2,7 @@
  *
  * Positions are moved and scaled on preparation: the centre of the bounding box goes to
  * the origin, and a power of two brings the longest side into [1/2, 1). Lengths in the
- * program are such "scene units"; one scene unit is 2^scene.exponent input units (called
+ * program are such "scene units"; one scene unit is 2^place.exponent input units (called
  * metres). */
 #ifndef GEOM_SCENE_H
 #define GEOM_SCENE_H
@@ -25,6 +25,15 @@ static inline bool material_is_dark(const struct material *material)
     return rgb_sum(material->reflectance) == 0.0 && rgb_sum(material->emission) == 0.0;
 }
 
+static inline bool material_is_same(const struct material *a, const struct material *b)
+{
+    bool same = true;
+    for (int c = 0; c < BANDS; c++)
+        same = same && a->reflectance.band[c] == b->reflectance.band[c] &&
+               a->emission.band[c] == b->emission.band[c];
+    return same;
+}
+
 /* True for a lamp. */
 static inline bool material_emits(const struct material *material)
 {
@@ -34,15 +43,26 @@ static inline bool material_emits(const struct material *material)
 /* Repairs of an input, for one warning per kind. */
 struct scene_repairs {
     int64_t degenerate; /* triangles without area, dropped (their numbers stay) */
+    int64_t doubles;    /* triangles that lie on earlier ones and face the same way,
+                         * dropped alike */
+    int64_t unlike;     /* of these, those of another material than the one that stays */
     int64_t clamped;    /* materials with a reflectance of 1 or more, set to 0.999 */
 };
 
-/* Groups of faces, named in the file. */
+/* Faces of the file, which triangles are cut from, and its groups of faces. */
 struct scene_groups {
-    int32_t *of;   /* [input_count], number of the group of each face */
+    int32_t *of;   /* [input_count], number of the group of each triangle */
+    bool *goes_on; /* [input_count], it is of the face of the triangle before it; NULL
+                    * after scene_prepare() */
     char *names;   /* [bytes], each with its zero */
     int32_t count; /* at least 1 */
     int64_t bytes;
+};
+
+/* Where the scene lies in the file's coordinates. */
+struct scene_place {
+    struct vec3 centre; /* of the input's bounding box, input units */
+    int32_t exponent;   /* a scene unit is 2^exponent input units */
 };
 
 struct scene {
@@ -50,6 +70,8 @@ struct scene {
     struct plane *planes;       /* [input_count]; zero for a dropped triangle */
     double *areas;              /* [input_count], square scene units; 0: dropped */
     int32_t *material_of;       /* [input_count], index into materials */
+    bool *opposed;              /* [input_count], another triangle, that faces the other
+                                 * way, lies on it, and has the place of its twin */
     struct material *materials; /* [material_count] */
     struct vec3 *normals;       /* [3 * input_count] or NULL, of corner k of triangle i at
                                  * [3 i + k], for smooth shading: of length 1, or 0 */
@@ -58,8 +80,7 @@ struct scene {
     int32_t material_count;
     bool two_sided;             /* triangles have twins: of i, root i + input_count */
     bool two_sided_lamps;       /* if two_sided: those that emit have twins, too */
-    struct vec3 centre;         /* of the input's bounding box, input units */
-    int32_t exponent;           /* a scene unit is 2^exponent input units */
+    struct scene_place place;
     struct vec3 low, high;      /* bounding box, scene units */
     bool is_view;               /* the arrays lie in memory of others */
 };
@@ -79,9 +100,10 @@ void scene_add_normals(struct scene *scene);
 /* Makes room for the names of `count` groups, of `bytes` bytes with their zeros. */
 void scene_set_groups(struct scene *scene, int32_t count, int64_t bytes);
 
-/* Moves and scales the positions, clamps reflectances, finds degenerate triangles,
- * computes planes and areas. To be called once, on positions in input units. Errors: no
- * triangle with an area; a coordinate or extent out of the range of the numbers. */
+/* Moves and scales the positions, clamps reflectances, drops degenerate triangles and
+ * doubles, computes planes and areas. To be called once, on positions in input units.
+ * Errors: no triangle with an area; a coordinate or extent out of the range of the
+ * numbers. */
 bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
                    struct error *error);
 
@@ -89,11 +111,16 @@ bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
  * the centre and the exponent that they have come by. */
 void scene_restore(struct scene *scene, struct vec3 centre, int32_t exponent);
 
+/* Finds the faces of a restored scene that are modelled from both sides; of those that
+ * have an area. */
+void scene_find_backs(struct scene *scene);
+
 /* Drops a triangle from a prepared scene. */
 void scene_drop(struct scene *scene, int32_t input);
 
 /* Number of roots, twins and dropped ones included: IDs run from 0 to this. Where a
- * triangle has no twin, the twin's root is absent: its area is 0, and so is its plane. */
+ * triangle has no twin, the twin's root is absent: its area is 0, and so is its plane. A
+ * face that is modelled from both sides has no twins: each side has the other's place. */
 int32_t scene_root_count(const struct scene *scene);
 
 /* The input triangle behind a root: itself, or the one whose twin it is. */

@@ -33,6 +33,12 @@ double triangle_area(const struct triangle *t);         /* m^2 in scene units */
 struct vec3 triangle_centroid(const struct triangle *t);
 double triangle_radius(const struct triangle *t); /* largest, corner to centroid */
 
+/* The triangle with the corners (a, c, b), which faces the other way. */
+static inline struct triangle triangle_turned(const struct triangle *t)
+{
+    return (struct triangle){{t->corner[0], t->corner[2], t->corner[1]}};
+}
+
 /* Pre: the area is not zero. */
 struct plane triangle_plane(const struct triangle *t);
 

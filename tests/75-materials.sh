@@ -92,20 +92,4 @@ are_the_notes() {
 }
 check "statements without effect are noted once for each kind" are_the_notes
 
-# warnings COMMAND...: number of warnings about the balance of light.
-warnings() {
-    "$@" 2>&1 >"$work/stdout" | grep -c 'absorbed than emitted\|off its balance'
-}
-awk '{ print } /^f / { print }' scenes/cornell.obj >"$work/twice.obj"
-cp scenes/cornell.mtl "$work"
-check "faces that are there twice absorb too much, which is said" \
-    [ "$(warnings ./phr "$work/twice.obj" --epsilon 1e-2 --final-gather 0)" = 1 ]
-check "those of the Cornell box do not" \
-    [ "$(warnings ./phr scenes/cornell.obj --epsilon 1e-2 --final-gather 0)" = 0 ]
-check "a closed room that was off its balance is said to be" \
-    [ "$(warnings ./phr tests/golden/corridor.obj --epsilon 1 --final-gather 4)" = 1 ]
-check "it is not with more rays" \
-    [ "$(warnings ./phr tests/golden/corridor.obj --epsilon 1e-3 \
-        --final-gather 256)" = 0 ]
-
 tap_done

@@ -50,6 +50,16 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
     if (prepared->degenerate > 0)
         run_say(run, "%s: warning: %lld face(s) without area dropped", path,
                 (long long)prepared->degenerate);
+    if (prepared->doubles > 0 && prepared->unlike == 0)
+        run_say(run,
+                "%s: warning: %lld triangle(s) are there twice, facing the same way: "
+                "the first of each stays",
+                path, (long long)prepared->doubles);
+    else if (prepared->doubles > 0)
+        run_say(run,
+                "%s: warning: %lld triangle(s) are there twice, facing the same way: "
+                "the first of each stays, also where the materials differ (%lld)",
+                path, (long long)prepared->doubles, (long long)prepared->unlike);
 }
 
 /* Emissions beyond these would leave the range of the float outputs. */

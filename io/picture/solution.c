@@ -252,34 +252,26 @@ static bool read_elements(struct solution_reader *reader)
     return good && ply_file_end(file, reader->error);
 }
 
-/* Drops the triangles among roots from `first` to before `end`, which have no leaves.
- * False if they have a twin that should have some. */
-static bool pass_roots(struct scene *scene, int32_t first, int32_t end)
-{
-    for (int32_t root = first; root < end; root++) {
-        if (root < scene->input_count)
-            scene_drop(scene, root);
-        if (scene_root_area(scene, root) > 0.0)
-            return false;
-    }
-    return true;
-}
-
-/* Fits the scene to the leaves. False if these are not the leaves of all its roots. */
+/* Fits the scene to the leaves: drops the triangles that have none. False if these are
+ * not the leaves of all its roots. */
 static bool fit_scene(const struct solution_mesh *solution)
 {
     struct scene *scene = solution->scene;
-    int32_t roots = scene_root_count(scene), next = 0;
-    bool good = true;
+    int32_t roots = scene_root_count(scene);
+    bool *has = alloc_array((size_t)roots, sizeof *has), good = true;
     for (int64_t i = 0; good && i < solution->count; i++) {
-        int32_t root = (int32_t)solution->leaves[i].id.root;
-        if (solution->leaves[i].start > 0)
-            continue;
-        good = root < roots && pass_roots(scene, next, root) &&
-               scene_root_area(scene, root) > 0.0;
-        next = root + 1;
+        good = solution->leaves[i].id.root < (uint32_t)roots;
+        if (good)
+            has[solution->leaves[i].id.root] = true;
     }
-    return good && pass_roots(scene, next, roots);
+    for (int32_t input = 0; input < scene->input_count; input++)
+        if (!has[input])
+            scene_drop(scene, input);
+    scene_find_backs(scene);
+    for (int32_t root = 0; good && root < roots; root++)
+        good = has[root] == (scene_root_area(scene, root) > 0.0);
+    alloc_free(has);
+    return good;
 }
 
 bool solution_mesh_of_file(struct solution_mesh *solution, struct ply_file *file,
@@ -393,8 +385,8 @@ void solution_write_scene(struct output *output, const struct scene *scene,
         if (scene->normals)
             put_point(output, scene->normals[i]);
     }
-    put_point(output, scene->centre);
-    output_uint32(output, (uint32_t)scene->exponent);
+    put_point(output, scene->place.centre);
+    output_uint32(output, (uint32_t)scene->place.exponent);
     putc(scene->two_sided, output->file);
     putc(scene->two_sided_lamps, output->file);
     if (lamps->known)

@@ -40,6 +40,7 @@ struct obj_triangle {
     struct obj_corner corner[3];
     int32_t material; /* number in the material table */
     int32_t group;    /* number of the group's name */
+    bool goes_on;     /* of the same face as the one before */
 };
 
 /* The vectors of all v lines, or of all vn lines. */
@@ -207,12 +208,13 @@ static bool read_corners(struct obj_reader *reader, char *rest)
     return true;
 }
 
-static void add_triangle(struct obj_reader *reader, int32_t a, int32_t b, int32_t c)
+/* Adds the triangle between three corners of the face; `cut` are their numbers. */
+static void add_triangle(struct obj_reader *reader, const int32_t cut[3], bool goes_on)
 {
     const struct obj_corner *corners = reader->corners;
     reader->triangles.at[reader->triangles.count++] =
-        (struct obj_triangle){{corners[a], corners[b], corners[c]}, reader->material,
-                              reader->group};
+        (struct obj_triangle){{corners[cut[0]], corners[cut[1]], corners[cut[2]]},
+                              reader->material, reader->group, goes_on};
 }
 
 static void add_polygon(struct obj_reader *reader)
@@ -224,7 +226,7 @@ static void add_polygon(struct obj_reader *reader)
         positions[i] = reader->vertices.at[reader->corners[i].vertex];
     polygon_triangulate(positions, count, cut);
     for (int32_t i = 0; i < count - 2; i++)
-        add_triangle(reader, cut[3 * i], cut[3 * i + 1], cut[3 * i + 2]);
+        add_triangle(reader, &cut[3 * i], i > 0);
     alloc_free(positions);
     alloc_free(cut);
 }
@@ -242,7 +244,7 @@ static bool read_face(struct obj_reader *reader, char *rest)
                                   sizeof *triangles->at);
     reader->materials.entries[reader->material].used = true;
     if (reader->corner_count == 3)
-        add_triangle(reader, 0, 1, 2);
+        add_triangle(reader, (const int32_t[]){0, 1, 2}, false);
     else
         add_polygon(reader);
     return true;
@@ -375,6 +377,7 @@ static struct scene *make_scene(const struct obj_reader *reader)
             scene->triangles[i].corner[k] =
                 reader->vertices.at[triangle->corner[k].vertex];
         scene->material_of[i] = number[triangle->material];
+        scene->groups.goes_on[i] = triangle->goes_on;
     }
     make_groups(reader, scene);
     if (reader->has_normals)

@@ -6,15 +6,6 @@
 
 #include "geom/alloc.h"
 
-static bool is_same(const struct material *a, const struct material *b)
-{
-    for (int c = 0; c < BANDS; c++)
-        if (a->reflectance.band[c] != b->reflectance.band[c] ||
-            a->emission.band[c] != b->emission.band[c])
-            return false;
-    return true;
-}
-
 static uint64_t mix(uint64_t sum, double value)
 {
     uint64_t bits;
@@ -32,7 +23,7 @@ static int32_t *find_slot(const struct palette *palette, const struct material *
         at = mix(mix(at, material->reflectance.band[c]), material->emission.band[c]);
     at &= mask;
     while (palette->slots[at] &&
-           !is_same(&palette->materials[palette->slots[at] - 1], material))
+           !material_is_same(&palette->materials[palette->slots[at] - 1], material))
         at = (at + 1) & mask;
     return &palette->slots[at];
 }

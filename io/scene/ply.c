@@ -212,6 +212,7 @@ static void cut_face(const struct reader *reader, const struct face *face,
     for (int32_t k = 0; k < 3 * (face->count - 2); k++) {
         scene->triangles[at + k / 3].corner[k % 3] = positions[cut[k]];
         scene->material_of[at + k / 3] = face->material;
+        scene->groups.goes_on[at + k / 3] = k > 2;
     }
     alloc_free(positions);
     if (cut != triangle)

@@ -1,5 +1,5 @@
 /* Tests of geom/scene.h: the same bits at every power of two, stability far from the
- * origin, twins, repairs and their counts, areas and powers, and the errors. */
+ * origin, twins, repairs and their counts, doubles, areas and powers, and the errors. */
 #include "geom/scene.h"
 
 #include <string.h>
@@ -49,7 +49,7 @@ static void test_scaling(void)
     for (int k = -400; k <= 400; k += 25) {
         struct scene *scaled = prepared(&soup, ldexp(1.0, k), 0.0);
         right = right && same_geometry(plain, scaled) &&
-                scaled->exponent == plain->exponent + k;
+                scaled->place.exponent == plain->place.exponent + k;
         scene_destroy(scaled);
     }
     tap_ok(right, "a scene scaled by 2^k has the same bits in scene units");
@@ -79,7 +79,7 @@ static void test_offset(void)
     double difference = largest_difference(plain, far);
     /* Numbers near 5e6 are 2^-30 = 9.3e-10 apart. A corner rounds by half of that, the
      * centre by as much again from rounded bounds; three axes; a scene unit is 8 here. */
-    tap_ok(plain->exponent == 3 && difference < 9.3e-10 * 1.7321 / 8.0,
+    tap_ok(plain->place.exponent == 3 && difference < 9.3e-10 * 1.7321 / 8.0,
            "a scene 1e6 sizes from the origin moves by its rounding alone");
     for (int64_t i = 0; i < 3 * soup.count; i++) {
         struct vec3 *x = &soup.items[i / 3].corner[i % 3];
@@ -254,7 +254,7 @@ static void test_power(void)
     scene->material_of[1] = 1;
     scene->materials[0] = (struct material){{{0, 0, 0}}, {{1, 2, 4}}};
     scene_prepare_or_exit(scene);
-    tap_ok(scene->exponent == 3 && scene_area_unit(scene) == 64.0,
+    tap_ok(scene->place.exponent == 3 && scene_area_unit(scene) == 64.0,
            "a size of 6 has the unit 8");
     /* Dyadic corners: all of this is exact. */
     tap_ok(scene_area(scene) * scene_area_unit(scene) == 18.0, "the area in input units");
@@ -300,7 +300,7 @@ static void test_degenerate(void)
         t->corner[2] = i % 2 ? t->corner[0] : vec3_middle(t->corner[0], t->corner[1]);
     }
     struct scene *scene = scene_of_soup(&soup, 1);
-    struct scene_repairs repairs = {-1, -1};
+    struct scene_repairs repairs = {.degenerate = -1};
     struct error error = {0};
     bool done = scene_prepare(scene, &repairs, &error);
     tap_ok(done && repairs.degenerate == expected && repairs.clamped == 0,
@@ -321,6 +321,65 @@ static void test_degenerate(void)
     scene_destroy(scene);
     scene_destroy(plain);
     soup_free(&soup);
+}
+
+/* A bent quad, that is there again as another material from its second corner on, and
+ * from behind; and a triangle. */
+static struct scene *doubled(struct scene_repairs *repairs)
+{
+    const struct vec3 c[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}, {0, 0, 2}};
+    const int corner[][3] = {{0, 1, 2}, {0, 2, 3}, {1, 2, 3}, {1, 3, 0},
+                             {3, 2, 1}, {3, 1, 0}, {0, 1, 4}};
+    struct scene *scene = scene_create(7, 3);
+    struct error error = {0};
+    scene->materials[0] = material_grey(0.5, 1.0);
+    scene->materials[1] = scene->materials[0];
+    scene->materials[2] = material_grey(0.25, 0.0);
+    scene_add_normals(scene);
+    for (int32_t i = 0; i < 7; i++) {
+        for (int k = 0; k < 3; k++) {
+            scene->triangles[i].corner[k] = c[corner[i][k]];
+            scene->normals[3 * i + k] = (struct vec3){1.0 + corner[i][k], 0, 0};
+        }
+        scene->groups.goes_on[i] = i % 2 == 1;
+        scene->material_of[i] = i == 2 ? 1 : i == 3 ? 2 : 0;
+    }
+    tap_ok(scene_prepare(scene, repairs, &error), "a scene of doubles is prepared");
+    return scene;
+}
+
+static void test_doubles(void)
+{
+    struct scene_repairs repairs;
+    struct scene *scene = doubled(&repairs);
+    const double *areas = scene->areas;
+    tap_ok(repairs.doubles == 2 && repairs.unlike == 1 && repairs.degenerate == 0 &&
+               areas[2] == 0.0 && areas[3] == 0.0 && areas[0] > 0.0 && areas[1] > 0.0 &&
+               vec3_length(scene->planes[2].normal) == 0.0 && areas[6] > 0.0,
+           "of doubles the first is kept; those of another material are counted");
+    bool alike = true, placed = true;
+    for (int32_t i = 4; i < 6; i++)
+        for (int k = 0; k < 3; k++) {
+            struct vec3 x = scene->triangles[i].corner[k];
+            struct vec3 front = scene->triangles[i - 4].corner[(3 - k) % 3];
+            alike = alike && memcmp(&x, &front, sizeof x) == 0;
+            placed = placed && scene->normals[3 * i + k].x ==
+                                   scene->normals[3 * (i - 4) + (3 - k) % 3].x;
+        }
+    tap_ok(alike && scene->planes[4].normal.x == -scene->planes[0].normal.x &&
+               areas[4] == areas[0],
+           "the back of a bent quad is cut like its front");
+    tap_ok(placed, "and its normals stay at their corners");
+    double once = scene_area(scene);
+    scene->two_sided = scene->two_sided_lamps = true;
+    tap_ok(!scene_has_twin(scene, 0) && !scene_has_twin(scene, 5) &&
+               scene_root_on(scene, 1, false) == -1 && scene_has_twin(scene, 6) &&
+               scene_area(scene) == once + areas[6],
+           "a face that is modelled from both sides has no twins");
+    uint64_t hash = scene_hash(scene);
+    scene->areas[2] = scene->areas[3] = 1.0;
+    tap_ok(scene_hash(scene) != hash, "doubles that are kept make another scene");
+    scene_destroy(scene);
 }
 
 /* --- errors --- */
@@ -376,6 +435,7 @@ int main(void)
     test_power();
     test_clamping();
     test_degenerate();
+    test_doubles();
     test_errors();
     return tap_done();
 }

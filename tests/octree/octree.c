@@ -13,10 +13,14 @@
 #include "tests/tap.h"
 
 /* Puts specks into the eight corners of space, far outside the world, so that its own
- * triangles are not the hull and segments that leave it can be asked about. */
+ * triangles are not the hull and segments that leave it can be asked about; and doubles
+ * back, which a scene drops. */
 static void surround(struct world *world)
 {
     struct scene *scene = world->scene;
+    for (int32_t i = 0; i < scene->input_count; i++)
+        if (!triangle_is_degenerate(&scene->triangles[i]))
+            scene->planes[i] = triangle_plane(&scene->triangles[i]);
     size_t count = (size_t)scene->input_count + 8;
     scene->triangles = alloc_resize(scene->triangles, count, sizeof *scene->triangles);
     scene->planes = alloc_resize(scene->planes, count, sizeof *scene->planes);

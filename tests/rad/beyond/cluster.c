@@ -30,7 +30,12 @@ static struct scene *coincident(int count)
     struct soup soup = {0};
     for (int i = 0; i < count; i++)
         soup_add(&soup, (struct triangle){{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.5}}});
-    return prepared(&soup, 1);
+    struct scene *scene = prepared(&soup, 1);
+    for (int32_t i = 1; i < count; i++) { /* doubles, which are dropped, come back */
+        scene->areas[i] = scene->areas[0];
+        scene->planes[i] = scene->planes[0];
+    }
+    return scene;
 }
 
 static struct scene *one_plane(int count)

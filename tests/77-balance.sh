@@ -1,0 +1,113 @@
+# Faces that are there twice, and powers that cannot be true: doubles are dropped, faces
+# that are modelled from both sides give light once, and where more light is absorbed
+# than emitted, or light is lost, a warning says so.
+
+. tests/tap.sh
+
+cp scenes/cornell.mtl "$work"
+
+# copied NAME ORDER [MATERIAL]: the Cornell box with a copy of each face, as
+# $work/NAME.obj. The copies have vertices of their own; ORDER of their corners, which are
+# 4; MATERIAL for all of them.
+copied() {
+    awk -v order="$2" -v material="${3:-}" '
+        { print }
+        /^v / { v[++count] = $0 }
+        /^usemtl / { of = $2 }
+        /^f / { faces++; used[faces] = material ? material : of; face[faces] = $0 }
+        END {
+            for (i = 1; i <= count; i++)
+                print v[i]
+            split(order, turn, " ")
+            for (i = 1; i <= faces; i++) {
+                split(face[i], word, " ")
+                print "usemtl", used[i]
+                printf "f"
+                for (k = 1; k <= 4; k++)
+                    printf " %d", word[turn[k] + 1] + count
+                print ""
+            }
+        }' scenes/cornell.obj >"$work/$1.obj"
+}
+copied twice "2 3 4 1"
+copied red "1 2 3 4" red
+copied behind "4 3 2 1"
+
+# run RANKS SCENE OPTIONS...: runs phr; leaves its words in $work/log, its exit status in
+# $status, the powers in $emitted, $absorbed and $escaped.
+run() {
+    ranks=$1
+    shift
+    $MPIEXEC -n "$ranks" ./phr --epsilon 1e-2 --final-gather 0 "$@" \
+        >"$work/out" 2>"$work/log"
+    status=$?
+    powers='s/^power *\(.*\) W emitted, \(.*\) W absorbed, \(.*\) W escaped/\1 \2 \3/p'
+    read -r emitted absorbed escaped <<END
+$(sed -n "$powers" "$work/out")
+END
+}
+
+# says WORDS: there is one warning, and it has these words; none: there is no warning.
+says() {
+    if [ "$1" = none ]; then
+        ! grep warning "$work/log" | sed 's/^/# /' | grep .
+    else
+        [ "$(grep -c warning "$work/log")" -eq 1 ] && grep -qF "$1" "$work/log" &&
+            return
+        grep warning "$work/log" | sed 's/^/# /'
+        return 1
+    fi
+}
+
+# is_as WORDS: the powers are those kept in $once, up to 0.2 % (roots have other numbers,
+# so other links are refined), and the warning is as says() has it.
+is_as() {
+    [ "$status" -eq 0 ] && says "$1" && holds "$(echo "$emitted $absorbed $once" |
+        awk '{ print $1 " == " $3 " && (" $2 " / " $4 " - 1) ^ 2 < 4e-6" }')" && return
+    echo "# exit status $status, $emitted and $absorbed W, not $once"
+    return 1
+}
+
+dropped="warning: 38 triangle(s) are there twice, facing the same way: the first"
+for ranks in 1 4; do
+    run $ranks scenes/cornell.obj
+    once="$emitted $absorbed"
+    run $ranks "$work/twice.obj"
+    check "the Cornell box twice is the box, on $ranks" is_as "$dropped of each stays"
+    run $ranks "$work/red.obj"
+    check "of another material, too, on $ranks" \
+        is_as "$dropped of each stays, also where the materials differ (36)"
+    run $ranks scenes/cornell.obj --two-sided-lamps
+    once="$emitted $absorbed"
+    run $ranks "$work/twice.obj" --two-sided-lamps
+    check "with twins, too, on $ranks" is_as "$dropped"
+    run $ranks "$work/behind.obj"
+    check "modelled from both sides it is the box with twins, on $ranks" is_as none
+    run $ranks "$work/behind.obj" --two-sided-lamps
+    check "and gets no twins more, on $ranks" is_as none
+done
+./phr "$work/twice.obj" --form-factors --epsilon 1e-2 --quiet >"$work/twice.csv"
+./phr scenes/cornell.obj --form-factors --epsilon 1e-2 --quiet >"$work/once.csv"
+check "form factors of doubles are those of one" cmp "$work/twice.csv" "$work/once.csv"
+# faces FILE: the line of a mesh that counts its faces.
+faces() {
+    sed -n '/^element face/{p;q;}' "$1"
+}
+run 1 "$work/twice.obj" --paper -o "$work/twice.ply"
+run 1 scenes/cornell.obj --paper -o "$work/once.ply"
+check "the solution has no faces of doubles" \
+    [ "$(faces "$work/twice.ply")" = "$(faces "$work/once.ply")" ]
+
+# warnings COMMAND...: number of warnings about the balance of light.
+warnings() {
+    "$@" 2>&1 >"$work/stdout" | grep -c 'absorbed than emitted\|off its balance'
+}
+check "those of the Cornell box do not" \
+    [ "$(warnings ./phr scenes/cornell.obj --epsilon 1e-2 --final-gather 0)" = 0 ]
+check "a closed room that was off its balance is said to be" \
+    [ "$(warnings ./phr tests/golden/corridor.obj --epsilon 1 --final-gather 4)" = 1 ]
+check "it is not with more rays" \
+    [ "$(warnings ./phr tests/golden/corridor.obj --epsilon 1e-3 \
+        --final-gather 256)" = 0 ]
+
+tap_done
