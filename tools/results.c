@@ -12,6 +12,7 @@
 #include "io/picture/vtk.h"
 #include "io/run/output.h"
 #include "mpi/picture.h"
+#include "tools/show.h"
 
 /* Returns the tone of 8-bit colours: --exposure, or chosen from `count` pixels. */
 static struct tone choose_tone(const struct run *run, const float *rgb, int64_t count)
@@ -110,7 +111,8 @@ static bool show_views(struct run *run, const struct renderer *renderer)
     for (int view = 0; view < run_camera_count(run); view++) {
         double start = comm_seconds();
         float *picture = make_picture(run, renderer, &run->cameras[view]);
-        bool good = run_goes_on(run);
+        bool good = run_goes_on(run) &&
+                    show_overlay(run, &run->cameras[view], picture);
         double made = comm_seconds();
         seconds[PHASE_RENDER] += made - start;
         if (good && run->comm.rank == 0)
@@ -134,10 +136,13 @@ static bool show_pictures(struct run *run, const uint8_t *open)
     if (run->options.view_count == 0)
         place_camera(run);
     struct answer *answer = run->solver->beyond ? &run->solver->beyond->answer : NULL;
+    struct rgb *colours = show_colours(run);
     bool gathers = answer && (answer->straight || run->options.pixels) &&
-                   !run->options.flat;
+                   !run->options.flat && !colours;
     struct shading *shading = NULL;
-    if (!run->options.pixels)
+    if (colours)
+        shading = show_shading(run, colours);
+    else if (!run->options.pixels)
         shading = shade_leaves(run, gathers ? answer->straight : NULL, open);
     struct renderer renderer =
         renderer_make(run->octree, shading, gathers ? &answer->gather : NULL);
@@ -153,6 +158,7 @@ static bool show_pictures(struct run *run, const uint8_t *open)
     model->counts = counts;
     model->estimating = estimating;
     shading_destroy(shading);
+    alloc_free(colours);
     return good;
 }
 
@@ -176,6 +182,8 @@ bool results_show(struct run *run)
         meshes = meshes || format_is_mesh(options->outputs[i].format);
     if (!pictures && !meshes)
         return true;
+    if (!show_check(run))
+        return false;
     double start = comm_seconds();
     uint8_t *open = survey_leaves(run);
     run->solver->account.seconds[PHASE_RENDER] = comm_seconds() - start;

@@ -460,9 +460,9 @@ struct rgb shading_at(const struct shading *shading, int32_t root, const double 
     int32_t leaf = root;
     while (!patch_is_leaf(&forest->patches[leaf]))
         leaf = forest->patches[leaf].children + descend(w);
-    if (shading->flat)
-        return forest->radiosity[leaf];
     const int32_t *corner = &shading->corners[3 * (int64_t)leaf];
+    if (shading->flat)
+        return shading->values[corner[0]];
     struct rgb sum = {{0.0, 0.0, 0.0}};
     for (int k = 0; k < 3; k++)
         for (int c = 0; c < BANDS; c++)

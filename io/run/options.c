@@ -15,7 +15,8 @@
 #include "io/scene/text.h"
 
 enum kind { KIND_FLAG, KIND_TEXT, KIND_REAL, KIND_INTEGER, KIND_OUTPUT, KIND_VIEW,
-            KIND_SIZE, KIND_CHOICE, KIND_FRACTION, KIND_BYTES, KIND_GATHER, KIND_PAPER };
+            KIND_SIZE, KIND_CHOICE, KIND_FRACTION, KIND_BYTES, KIND_GATHER, KIND_SHOW,
+            KIND_PAPER };
 
 struct option {
     const char *name;
@@ -59,6 +60,7 @@ static const struct option OPTIONS[] = {
     {"--memory", KIND_BYTES, FIELD(memory), 0, 0, NULL},
     {"--stats", KIND_TEXT, FIELD(stats), 0, 0, NULL},
     {"--dump", KIND_CHOICE, FIELD(dump), 0, 0, "nothing|patches|links"},
+    {"--show", KIND_SHOW, FIELD(show), 0, 0, "light|mesh|owner|level|error|links"},
     {"--quiet", KIND_FLAG, FIELD(quiet), 0, 0, NULL},
     {"--verbose", KIND_FLAG, FIELD(verbose), 0, 0, NULL},
     {"--validate", KIND_FLAG, FIELD(validate), 0, 0, NULL},
@@ -288,6 +290,27 @@ static bool set_gather(struct options *options, const struct option *option,
     return set_integer(options, option, number, error);
 }
 
+/* Sets what pictures show: a choice, with links the patch behind a colon. */
+static bool set_show(struct options *options, const struct option *option,
+                     const char *value, struct error *error)
+{
+    static const char LINKS[] = "links:";
+    if (strncmp(value, LINKS, sizeof LINKS - 1) == 0) {
+        options->show = SHOW_LINKS;
+        options->show_patch = value + sizeof LINKS - 1;
+        return true;
+    }
+    if (strcmp(value, "links") == 0)
+        return error_set(error, EXIT_USAGE,
+                         "%s links: of which patch? As in links:5/023 or links:X,Y",
+                         option->name);
+    int show;
+    bool good = set_choice(option, value, &show, error);
+    if (good)
+        options->show = (enum show)show;
+    return good;
+}
+
 static void set_paper(struct criterion *criterion)
 {
     criterion->oracle = ORACLE_BF;
@@ -311,6 +334,8 @@ static bool set_value(struct options *options, const struct option *option,
         return set_size(options, value, error);
     case KIND_INTEGER:
         return set_integer(options, option, value, error);
+    case KIND_SHOW:
+        return set_show(options, option, value, error);
     case KIND_GATHER:
         return set_gather(options, option, value, error);
     case KIND_REAL:
@@ -605,7 +630,7 @@ static const char HELP[] =
     "  --form-factors   print them, as CSV     --validate    check form factors\n"
     "  --stats FILE     report as JSON         --verbose     levels of refinement\n"
     "  --dump patches|links  print these       --quiet       print nothing\n"
-    "  --help           print this             --version     and licence\n"
+    "  --show light|mesh|owner|level|error|links:PATCH       --help, --version\n"
     "Exit status: 0 done; 1 failed or stopped; 2 bad usage or input. Examples:\n"
     "  phr room.obj -o room.png\n"
     "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n";

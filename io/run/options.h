@@ -22,6 +22,9 @@ struct target {
     int view;                 /* of a picture, 0 if there is no view */
 };
 
+/* The contents of pictures, in the order of --show. */
+enum show { SHOW_LIGHT, SHOW_MESH, SHOW_OWNER, SHOW_LEVEL, SHOW_ERROR, SHOW_LINKS };
+
 /* What --dump prints. */
 enum dump { DUMP_NOTHING, DUMP_PATCHES, DUMP_LINKS };
 
@@ -42,6 +45,8 @@ struct options {
     int samples;              /* samples x samples rays a pixel */
     bool pixels;              /* the final gather is done at each pixel, too */
     enum dump dump;
+    enum show show;
+    const char *show_patch;   /* of SHOW_LINKS: ROOT/PATH or X,Y; else NULL */
     double exposure;          /* 0: chosen from the picture */
     bool two_sided;           /* backs reflect */
     bool two_sided_lamps;     /* backs of lamps, too; only with two_sided */

@@ -333,7 +333,8 @@ static const char *const OTHERS[][2] = {
     {"--oracle", " bf"}, {"--flat", ""}, {"--two-sided", ""}, {"--quiet", ""},
     {"--two-sided-lamps", ""}, {"--verbose", ""}, {"--validate", ""}, {"--help", ""},
     {"--version", ""}, {"--linking", " pairs"}, {"--form-factor", " disk"},
-    {"--solver", " cg"}, {"--balance", " greedy"}, {"--dump", " links"}, {"--paper", ""},
+    {"--solver", " cg"}, {"--balance", " greedy"}, {"--dump", " links"},
+    {"--show", " links:5/023"}, {"--paper", ""},
     {"--form-factors", ""}, {"--save-links", " a"}, {"--load-links", " a"},
     {"--resume", " a"}, {"--checkpoint", " a"}, {"--memory", " 1G"}};
 enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };

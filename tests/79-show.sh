@@ -1,0 +1,64 @@
+# --show: pictures of the algorithm.
+. tests/tap.sh
+
+: "${PHR:=./phr}"
+case $PHR in */*) ;; *) PHR=./$PHR ;; esac
+
+# show RANKS WHAT OPTIONS...: $work/RANKS.WHAT.ppm, and its messages
+show() {
+    ranks=$1 what=$2
+    shift 2
+    $MPIEXEC -n "$ranks" "$PHR" scenes/cornell.obj --view scenes/cornell.view \
+        --epsilon 1e-3 --size 64x64 --samples 1 --final-gather 16 --show "$what" "$@" \
+        -o "$work/$ranks.${what%%:*}.ppm" >/dev/null 2>"$work/err"
+}
+
+# colours FILE: the number of different ones
+colours() {
+    tail -c $((3 * 64 * 64)) "$1" | od -An -v -tu1 -w3 | sort -u | wc -l
+}
+
+for what in light mesh level error links:30,40; do
+    name=${what%%:*}
+    show 1 "$what"
+    show 4 "$what"
+    check "$name: the same picture on 4 ranks" \
+        cmp "$work/1.$name.ppm" "$work/4.$name.ppm"
+    [ "$name" = light ] ||
+        check "and not that of the light" [ "$(cmp -l "$work/1.light.ppm" \
+            "$work/1.$name.ppm" | wc -l)" -gt 500 ]
+done
+
+# Undivided roots: for each rank a colour and its outlines, and the black background.
+for ranks in 1 4; do
+    show $ranks owner --max-level 0 --final-gather 0
+    check "owners: $ranks colours on $ranks ranks" \
+        [ "$(colours "$work/$ranks.owner.ppm")" -eq $((2 * ranks + 1)) ]
+done
+show 1 level --max-level 0 --final-gather 0
+check "levels: one colour where nothing is divided" \
+    [ "$(colours "$work/1.level.ppm")" -eq 3 ]
+show 1 error
+check "errors come with their scale" \
+    grep -q 'error: black is 0, red .*, yellow .*, white .* W/m^2 or more' "$work/err"
+
+show 2 links:2/1 --paper --final-gather 0
+said=$(sed -n 's/.*patch 2\/1: \([0-9]*\) links.*/\1/p' "$work/err")
+"$PHR" scenes/cornell.obj --quiet --paper --epsilon 1e-3 --dump links >"$work/links"
+check "links of a patch and of those above it: all ($said)" [ "$said" -gt 10 -a \
+    "$said" = "$(grep -cE '^(2/1?|[^ ]* 2/1?) ' "$work/links")" ]
+
+# refused WHAT REASON OPTIONS...
+refused() {
+    what=$1 reason=$2
+    shift 2
+    show 2 "$what" "$@"
+    [ $? -eq 2 ] && grep -q "$reason" "$work/err"
+}
+check "no such patch" refused links:12/33333 'there is no such patch'
+check "no such root" refused links:99/ 'there is no such patch'
+check "no such pixel" refused links:64,0 'there is no such patch'
+check "no patch named" refused links 'of which patch'
+check "no error without a final gather" refused error 'no error without' --final-gather 0
+check "no such picture" refused leaves 'is not one of light|mesh'
+tap_done

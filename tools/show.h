@@ -1,0 +1,23 @@
+/* --show: pictures of the algorithm in place of, or over, the light. */
+#ifndef TOOLS_SHOW_H
+#define TOOLS_SHOW_H
+
+#include "io/picture/shading.h"
+#include "tools/run.h"
+
+/* True unless what --show names is not there: errors without a final gather, owners and
+ * links of a stored solution. Sets the error then. The same on all ranks. */
+bool show_check(struct run *run);
+
+/* Colours of leaves by --show owner, level or error, [patches], linear, to be freed with
+ * alloc_free(); NULL: their light is shown. Sets an exposure of 1 unless one is given. */
+struct rgb *show_colours(struct run *run);
+
+/* The flat shading of these colours, in place of the radiosities of the leaves. */
+struct shading *show_shading(struct run *run, struct rgb *colours);
+
+/* Collective. Draws over a picture, which rank 0 has: outlines of the leaves (--show mesh,
+ * owner, level), or the links of a patch. False on an error, on all ranks. */
+bool show_overlay(struct run *run, const struct camera *camera, float *picture);
+
+#endif
