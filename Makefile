@@ -80,7 +80,7 @@ TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wal
         bundles bicgstab sequence id flux patch compact formfactor patch_exchange link \
         patch_link method cluster node oracle error_oracle pushpull caps \
         final_gather checksum paths plan balance assign spotcheck \
-        text obj ply output store tone image png hdr camera viewpoint shading mesh \
+        text obj ply output files store tone image png hdr camera viewpoint shading mesh \
         render options progress contour stop norms cie whole stability gaps leaks \
         linking exchange conjugate exact converge
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io

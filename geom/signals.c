@@ -74,6 +74,9 @@ void signals_catch(void)
 #ifdef SIGXFSZ
     signal(SIGXFSZ, SIG_IGN);
 #endif
+#ifdef SIGPIPE
+    signal(SIGPIPE, SIG_IGN);
+#endif
 }
 
 void signals_end_calls(bool ends)

@@ -6,7 +6,8 @@
 
 /* From here on the first SIGTERM or SIGINT is remembered and stops loops that ask
  * stop_is_asked(); a second one has its usual effect; a write beyond the limit of a
- * file's size (SIGXFSZ) is an error like a full disk. */
+ * file's size (SIGXFSZ) or to a pipe that nobody reads any more (SIGPIPE) is an error
+ * like a full disk. */
 void signals_catch(void);
 
 /* Whether a signal ends a system call that waits, such as for a pipe, with an error. At

@@ -209,8 +209,8 @@ refuse 2 "--epsilon needs a value" "a missing value" "$scene" -o "$old" --epsilo
 refuse 2 "--samples: 'x' is not a number" "a bad value" "$scene" -o "$old" --samples x
 refuse 2 "no scene given" "no scene" -o "$old"
 refuse 2 "one scene at a time" "two scenes" "$scene" "$scene" -o "$old"
-refuse 2 "-o $work/new.png: the name must" "an unknown format" "$scene" -o "$old" \
-    -o "$work/new.png"
+refuse 2 "-o $work/new.gif: the name must" "an unknown format" "$scene" -o "$old" \
+    -o "$work/new.gif"
 
 # --- outputs ---
 
@@ -221,6 +221,24 @@ refuse 1 "$work/folder.ppm: cannot write: " "a folder as output" "$scene" -o "$o
     -o "$work/folder.ppm" -o "$work/new.ppm"
 refuse 1 "$work/absent/new.json: cannot write: " "a report in a missing folder" \
     "$scene" -o "$old" -o "$work/new.ppm" --stats "$work/absent/new.json"
+
+# Over files that are read, and over each other, however they are spelt.
+printf 'eye 0 0 5\nat 0 0 0\n' >"$work/good.view"
+ln -s good.view "$work/link.view"
+cp "$scene" "$work/kept.obj"
+cp "$work/lamp.mtl" "$work/kept.mtl"
+over="which is read: no output goes over it"
+refuse 2 "$work/./good.obj is $scene, $over" "a report over the scene" \
+    "$scene" -o "$old" --stats "$work/./good.obj"
+refuse 2 "$work/../$(basename "$work")/lamp.mtl is $work/lamp.mtl, $over" \
+    "a report over the library" \
+    "$scene" -o "$old" --stats "$work/../$(basename "$work")/lamp.mtl"
+refuse 2 "$work/link.view is $work/good.view, $over" "a checkpoint over the view" \
+    "$scene" --view "$work/good.view" -o "$old" --checkpoint "$work/link.view"
+refuse 2 "$old and $work/./old.ppm are the same file" "an output over another" \
+    "$scene" -o "$old" -o "$work/./old.ppm"
+check "the scene and its library are untouched" \
+    cmp "$scene" "$work/kept.obj" && cmp "$work/lamp.mtl" "$work/kept.mtl"
 
 if [ -c /dev/full ]; then
     ln -s /dev/full "$work/full.ppm"

@@ -14,6 +14,7 @@
 #include "io/scene/camera.h"
 #include "io/picture/imagefile.h"
 #include "io/run/options.h"
+#include "io/run/place.h"
 #include "io/scene/ply.h"
 #include "io/scene/text.h"
 #include "tools/compare.h"
@@ -70,7 +71,9 @@ static bool set_option(struct request *request, const char *name, const char *va
         return error_set(error, EXIT_USAGE, "unknown option %s; see --help", name);
     if (!value)
         return error_set(error, EXIT_USAGE, "%s needs a value", name);
-    if (output && !target_parse(&request->output, value))
+    if (output)
+        request->output = target_parse(value);
+    if (output && !request->output.has_format)
         return error_set(error, EXIT_USAGE,
                          "-o %s: the name must end in .ppm, .pfm, .png, .hdr or .ply",
                          value);
@@ -153,6 +156,10 @@ static bool check_output(const struct request *request, bool meshes, struct erro
         (meshes ? output->format != FORMAT_PLY : format_is_mesh(output->format)))
         return error_set(error, EXIT_USAGE, "-o %s: the difference of %s", output->path,
                          meshes ? "meshes is a mesh (.ply)" : "pictures is a picture");
+    for (int i = 0; i < 2; i++)
+        if (output->path && place_is_read(output->path, request->paths[i]))
+            return error_set(error, EXIT_USAGE, "%s is read: no output goes over it",
+                             request->paths[i]);
     if (meshes && (request->blocks > 1.0 || request->below < HUGE_VAL))
         return error_set(error, EXIT_USAGE, "--blocks and --below are for pictures");
     return true;

@@ -5,7 +5,7 @@
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
-#include "io/run/output.h"
+#include "io/run/files.h"
 #include "io/scene/obj.h"
 #include "io/scene/ply.h"
 #include "geom/signals.h"
@@ -153,17 +153,30 @@ static bool read_ply(struct run *run)
     return good && run->scene;
 }
 
+/* Reads the scene and its libraries, over which no output goes. */
+static bool read_file(struct run *run, struct obj_repairs *repairs)
+{
+    struct text_names libraries = {0};
+    const char *path = run->options.scene;
+    repairs->files = &libraries;
+    bool good;
+    if (ply_is_meant(path))
+        good = read_ply(run);
+    else
+        good = (run->scene = obj_read(path, repairs, &run->error)) != NULL;
+    for (int32_t i = 0; i < libraries.count && good; i++)
+        good = files_check_input(&run->options, libraries.name[i], &run->error);
+    repairs->files = NULL;
+    text_names_free(&libraries);
+    return good;
+}
+
 static bool read_scene(struct run *run)
 {
     struct error *error = &run->error;
     struct obj_repairs read = {0};
     struct scene_repairs prepared = {0};
-    const char *path = run->options.scene;
-    if (!ply_is_meant(path))
-        run->scene = obj_read(path, &read, error);
-    else if (!read_ply(run))
-        return false;
-    if (!run->scene || !stop_check(error))
+    if (!read_file(run, &read) || !stop_check(error))
         return false;
     if (run->stored)
         return true;
@@ -193,23 +206,11 @@ static bool read_cameras(struct run *run)
     return true;
 }
 
-static bool probe_outputs(struct run *run)
-{
-    const struct options *options = &run->options;
-    const char *others[] = {options->stats, options->save_links, options->checkpoint};
-    for (int i = 0; i < options->output_count; i++)
-        if (!output_probe(options->outputs[i].path, &run->error))
-            return false;
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
-        if (others[i] && !output_probe(others[i], &run->error))
-            return false;
-    return true;
-}
-
 void input_read(struct run *run)
 {
     signals_end_calls(true);
-    if (read_scene(run) && read_cameras(run))
-        probe_outputs(run);
+    if (files_check(&run->options, &run->error) &&
+        files_probe(&run->options, &run->error) && read_scene(run))
+        read_cameras(run);
     signals_end_calls(false);
 }

@@ -27,7 +27,7 @@
 #include "io/picture/imagefile.h"
 #include "io/picture/viewpoint.h"
 #include "io/run/options.h"
-#include "io/run/output.h"
+#include "io/run/files.h"
 #include "io/scene/obj.h"
 #include "io/scene/ply.h"
 #include "io/scene/text.h"
@@ -156,9 +156,9 @@ static bool read_all(struct tracing *run)
                                     run->scene->input_count);
         read_camera(run);
     }
-    for (int i = 0; i < run->options.output_count && run->comm.rank == 0; i++)
-        if (run->error.code == EXIT_DONE)
-            output_probe(run->options.outputs[i].path, &run->error);
+    if (run->comm.rank == 0 && run->error.code == EXIT_DONE &&
+        files_check(&run->options, &run->error))
+        files_probe(&run->options, &run->error);
     return comm_agree(&run->comm, &run->error);
 }
 

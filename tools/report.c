@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "io/run/files.h"
 #include "io/run/stats.h"
 #include "mpi/memory.h"
 
@@ -155,9 +156,10 @@ bool report_summary(struct run *run)
                     HOLDS[run->stats.hold]);
         warn_balance(run);
         if (!run->options.quiet && !run->options.dump)
-            stats_print(&run->stats, stdout);
+            stats_print(&run->stats,
+                        files_take_stdout(&run->options) ? stderr : stdout);
         if (run->options.stats)
             stats_write(&run->stats, run->options.stats, &run->error);
     }
-    return comm_agree(&run->comm, &run->error);
+    return run_agree(run);
 }

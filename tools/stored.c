@@ -40,7 +40,7 @@ bool stored_save(struct run *run, enum store_kind kind, const char *path)
     if (run->comm.rank == 0)
         store_finish(&writer, &run->error);
     run->solver->account.seconds[PHASE_WRITE] += comm_seconds() - start;
-    bool good = comm_agree(&run->comm, &run->error);
+    bool good = run_agree(run);
     if (good && kind == STORE_CHECKPOINT)
         run->kept = path;
     return good;

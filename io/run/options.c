@@ -107,22 +107,20 @@ static size_t prefix_length(const char *argument, const char *format)
     return !format[i] && argument[i] == ':' ? i + 1 : 0;
 }
 
-bool target_parse(struct target *target, const char *argument)
+struct target target_parse(const char *argument)
 {
     char suffix[16];
     for (int i = 0; i < FORMAT_COUNT; i++) {
         size_t prefix = prefix_length(argument, FORMATS[i].name);
-        *target = (struct target){argument + prefix, (enum output_format)i, 0};
         if (prefix > 0)
-            return argument[prefix] != '\0';
+            return (struct target){argument + prefix, (enum output_format)i, true, 0};
     }
     for (int i = 0; i < FORMAT_COUNT; i++) {
         snprintf(suffix, sizeof suffix, ".%s", FORMATS[i].name);
-        *target = (struct target){argument, (enum output_format)i, 0};
         if (text_ends_with(argument, suffix))
-            return true;
+            return (struct target){argument, (enum output_format)i, true, 0};
     }
-    return false;
+    return (struct target){argument, FORMAT_PPM, false, 0};
 }
 
 /* Writes ".ppm, .pfm or .ply". */
@@ -146,21 +144,22 @@ bool options_show(const struct options *options, int view)
     return false;
 }
 
-/* A picture before all views belongs to the first. */
-static bool add_output(struct options *options, const char *argument,
-                       struct error *error)
+bool target_refuse(const char *argument, struct error *error)
 {
     char suffixes[8 * FORMAT_COUNT];
-    struct target *target = &options->outputs[options->output_count];
-    if (target_parse(target, argument)) {
-        target->view = options->view_count > 0 ? options->view_count - 1 : 0;
-        options->output_count++;
-        return true;
-    }
     list_suffixes(suffixes, sizeof suffixes);
     return error_set(error, EXIT_USAGE,
                      "-o %s: the name must end in %s, or be FORMAT:FILE, as in ppm:FILE",
                      argument, suffixes);
+}
+
+/* A picture before all views belongs to the first. */
+static bool add_output(struct options *options, const char *argument, struct error *error)
+{
+    struct target target = target_parse(argument);
+    target.view = options->view_count > 0 ? options->view_count - 1 : 0;
+    options->outputs[options->output_count++] = target;
+    return *target.path || target_refuse(argument, error);
 }
 
 static bool parse_number(const struct option *option, const char *value, double *number,
@@ -361,42 +360,6 @@ static bool add_scene(struct options *options, const char *path, struct error *e
     return true;
 }
 
-/* Returns the i-th path to write, or NULL if it is not given. Sets `*count` to the number
- * of such paths. */
-static const char *written_path(const struct options *options, int i, int *count)
-{
-    const char *others[] = {options->stats, options->save_links, options->checkpoint};
-    int last = (int)(sizeof others / sizeof others[0]);
-    *count = options->output_count + last;
-    return i < options->output_count ? options->outputs[i].path
-                                     : others[i - options->output_count];
-}
-
-/* Refuses to write a file twice, or over an input file; but a run resumed from a
- * checkpoint may renew it. */
-static bool check_paths(const struct options *options, struct error *error)
-{
-    const char *read[] = {options->scene, options->load_links, options->resume};
-    int count = 1;
-    for (int i = 0; i < count; i++) {
-        const char *path = written_path(options, i, &count);
-        bool clash = false;
-        for (size_t j = 0; j < sizeof read / sizeof read[0]; j++)
-            clash =
-                clash || (path && read[j] && strcmp(path, read[j]) == 0 &&
-                          !(path == options->checkpoint && read[j] == options->resume));
-        for (int j = 0; j < options->view_count; j++)
-            clash = clash || (path && strcmp(path, options->views[j]) == 0);
-        for (int j = 0; j < i; j++) {
-            const char *other = written_path(options, j, &count);
-            clash = clash || (path && other && strcmp(path, other) == 0);
-        }
-        if (clash)
-            return error_set(error, EXIT_USAGE, "%s is named twice", path);
-    }
-    return true;
-}
-
 /* Refuses a view that no picture belongs to. */
 static bool check_views(const struct options *options, struct error *error)
 {
@@ -528,7 +491,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         return error_set(error, EXIT_USAGE, "no scene given; see --help");
     if (options->scene &&
         !(check_table(options, error) && check_views(options, error) &&
-          check_restart(options, error) && check_paths(options, error)))
+          check_restart(options, error)))
         return false;
     options->every = options->every > 0 ? options->every : 1;
     return true;

@@ -19,6 +19,7 @@ enum output_format { FORMAT_PPM, FORMAT_PFM, FORMAT_PNG, FORMAT_HDR, FORMAT_PLY,
 struct target {
     const char *path;         /* borrowed */
     enum output_format format;
+    bool has_format;          /* false: a device or pipe, which gets a picture (PPM) */
     int view;                 /* of a picture, 0 if there is no view */
 };
 
@@ -71,9 +72,11 @@ const char *options_run_settings(const struct options *options);
 /* True if the format is a mesh, false if it is a picture. */
 bool format_is_mesh(enum output_format format);
 
-/* Reads FORMAT:FILE, or a file whose suffix is a format; its view is 0. False if it is
- * neither. */
-bool target_parse(struct target *target, const char *argument);
+/* Reads FORMAT:FILE, or a file whose suffix may be a format; its view is 0. */
+struct target target_parse(const char *argument);
+
+/* Refuses an output without a format. */
+bool target_refuse(const char *argument, struct error *error);
 
 /* True if a picture of the view is asked for; without --view, view 0 is the automatic
  * one. */

@@ -11,26 +11,31 @@
 struct output {
     FILE *file;
     char *shown;     /* the path as given, for messages; owned */
-    char *path;      /* the path with symbolic links resolved; owned */
-    char *temporary; /* path of the new file; owned; NULL: written in place */
+    char *path;      /* the path behind symbolic links; owned */
+    char *temporary; /* path of the new file; owned; NULL: a stream, whose bytes wait */
+    char *bytes;     /* [size] of a stream, once they are flushed; owned by the system */
+    size_t size;
 };
 
+/* True if the path leads to a device, a pipe or an open descriptor: "-" and /dev/stdout,
+ * the standard output; /dev/stderr; /dev/fd/N. */
+bool output_is_stream(const char *path);
+
 /* True if the file can be written: creates and removes the temporary file, so that a
- * wrong path is reported before the computation and not after it.
+ * wrong path is reported before the computation and not after it. A stream is not opened.
  * Errors: "PATH: cannot write: REASON", EXIT_FAILED. */
 bool output_probe(const char *path, struct error *error);
 
-/* Opens a new file PATH.N.tmp, or PATH itself if it is a device or a pipe. Symbolic links
- * are followed. */
+/* Opens a new file FILE.N.tmp, or phr.N.tmp where that name is too long, beside the file
+ * that the path leads to, or memory for the bytes of a stream. Errors: as above. */
 bool output_open(struct output *output, const char *path, struct error *error);
 
-/* Closes and renames. On any write error so far, or if `error` is already set, the new
- * file is removed and PATH stays as it was. Returns true if PATH has the new content. */
+/* Puts the new file in the place of the old one, whose mode it has, and brings both to
+ * the disk; or opens a stream, a named pipe when it has a reader, and writes to it. On
+ * any write error so far, or if `error` is already set, the new file is removed, and the
+ * old one or the stream stays as it was. Returns true if PATH has the new content.
+ * A request to stop ends writing to a stream with an error. */
 bool output_close(struct output *output, struct error *error);
-
-/* Waits until all bytes written so far are on the disk: for files that have to outlive a
- * crash. */
-void output_sync(struct output *output, struct error *error);
 
 /* Write binary numbers, least significant byte first. */
 void output_uint32(struct output *output, uint32_t value);

@@ -112,7 +112,6 @@ bool store_finish(struct store_writer *writer, struct error *error)
     if (!writer->output.file)
         return false;
     put64(writer, (int64_t)writer->hash);
-    output_sync(&writer->output, error);
     return output_close(&writer->output, error);
 }
 

@@ -19,22 +19,10 @@ enum { LIBRARY_MAX = 1000 }; /* names in mtllib lines */
 
 struct lookup {
     struct mtl_table *table;
-    struct text_names *tried;
+    struct text_names *tried, *files;
     const struct text *obj;
     struct error *error;
 };
-
-/* Returns the path of a file that the OBJ file names, relative to its folder. To be
- * freed. */
-static char *path_beside(const char *path, const char *name)
-{
-    const char *slash = strrchr(path, '/');
-    size_t folder = slash && name[0] != '/' ? (size_t)(slash - path) + 1 : 0;
-    char *joined = alloc_array(folder + strlen(name) + 1, 1);
-    memcpy(joined, path, folder);
-    strcpy(joined + folder, name);
-    return joined;
-}
 
 /* The part of a path behind its last slash or backslash; may be empty. */
 static const char *last_part(const char *name)
@@ -48,8 +36,10 @@ static const char *last_part(const char *name)
 
 static bool read_file(const struct lookup *lookup, const char *name, bool *found)
 {
-    char *path = path_beside(lookup->obj->path, name);
+    char *path = text_path_beside(lookup->obj->path, name);
     bool good = mtl_read(lookup->table, path, found, lookup->error);
+    if (*found && lookup->files)
+        text_names_add(lookup->files, path);
     alloc_free(path);
     return good;
 }
@@ -93,9 +83,9 @@ static char *next_name(char **rest)
 
 bool library_read(struct mtl_table *table, struct text_names *tried,
                   const struct text *obj, char *rest, struct text_missing *lost,
-                  struct error *error)
+                  struct text_names *files, struct error *error)
 {
-    struct lookup lookup = {table, tried, obj, error};
+    struct lookup lookup = {table, tried, files, obj, error};
     char *whole = text_trim(rest);
     bool missing;
     if (!*whole)

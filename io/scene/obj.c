@@ -283,7 +283,8 @@ static bool read_line(struct obj_reader *reader, char *line)
         return read_face(reader, line);
     if (strcmp(keyword, "mtllib") == 0)
         return library_read(&reader->materials, &reader->libraries, &reader->text, line,
-                            &reader->repairs->libraries, reader->error);
+                            &reader->repairs->libraries, reader->repairs->files,
+                            reader->error);
     if (strcmp(keyword, "o") == 0 || strcmp(keyword, "g") == 0)
         return read_group(reader, line);
     if (strcmp(keyword, "usemtl") == 0)
@@ -389,7 +390,7 @@ static struct scene *make_scene(const struct obj_reader *reader)
 struct scene *obj_of_text(struct text *text, struct obj_repairs *repairs,
                           struct error *error)
 {
-    *repairs = (struct obj_repairs){0};
+    *repairs = (struct obj_repairs){.files = repairs->files};
     struct obj_reader reader = {.text = *text, .repairs = repairs, .error = error};
     bool good = read_lines(&reader);
     text_free(&reader.text);

@@ -19,8 +19,9 @@
 #include "geom/scene.h"
 #include "io/scene/text.h"
 
-/* Counts of repairs, for one warning per kind. */
+/* Counts of repairs, for one warning per kind. Starts as {0}, or with `files`. */
 struct obj_repairs {
+    struct text_names *files;      /* where paths of the libraries go, or NULL */
     struct text_missing materials; /* names without a definition: neutral grey instead */
     struct text_missing libraries; /* mtllib files that could not be opened */
     int64_t bad_normals;           /* corners whose vn is absent or 0: without a normal */

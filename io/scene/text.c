@@ -302,6 +302,16 @@ bool text_ends_with(const char *path, const char *suffix)
     return length > tail && *end == '\0';
 }
 
+char *text_path_beside(const char *path, const char *name)
+{
+    const char *slash = strrchr(path, '/');
+    size_t folder = slash && name[0] != '/' ? (size_t)(slash - path) + 1 : 0;
+    char *joined = alloc_array(folder + strlen(name) + 1, 1);
+    memcpy(joined, path, folder);
+    strcpy(joined + folder, name);
+    return joined;
+}
+
 /* Returns the slot of a name, or the empty slot where it belongs. */
 static int32_t *find_slot(const struct text_names *names, const char *name)
 {

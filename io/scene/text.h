@@ -66,6 +66,10 @@ bool text_integer(const char **cursor, int64_t *value);
  * letters of either case, and is longer than the suffix. */
 bool text_ends_with(const char *path, const char *suffix);
 
+/* Returns the path of a file that the file `path` names, relative to its folder. To be
+ * freed with alloc_free(). */
+char *text_path_beside(const char *path, const char *name);
+
 /* Names that were not found. Starts as {0}. */
 struct text_missing {
     int64_t count;

@@ -47,7 +47,7 @@ static double best_of_scenes(const char *path, int runs, long *triangles)
     double best = 1e30;
     for (int i = 0; i < runs; i++) {
         struct error error = {0};
-        struct obj_repairs repairs;
+        struct obj_repairs repairs = {0};
         double start = seconds();
         struct scene *scene = obj_read(path, &repairs, &error);
         double taken = seconds() - start;

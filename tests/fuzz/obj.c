@@ -6,7 +6,7 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct error error = {0};
-    struct obj_repairs read;
+    struct obj_repairs read = {0};
     struct scene_repairs prepared;
     struct text text;
     struct scene *scene = NULL;

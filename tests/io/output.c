@@ -1,11 +1,15 @@
 /* Tests of io/run/output.h. Proved are: a file appears whole or not at all; after an
  * error the old file has its old bytes and nothing lies beside it; a probe tells a file
- * that cannot be written, with a line that says why; and numbers have one byte order. */
+ * that cannot be written, with a line that says why, and opens no pipe; modes and links
+ * stay; a name may be as long as the system allows; and numbers have one byte order. */
+#define _XOPEN_SOURCE 700
 #include "io/run/output.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "tests/tap.h"
 
@@ -184,6 +188,81 @@ static void test_full_device(void)
     tap_ok(path_is_free("/dev/full.0.tmp") && is_full(path), "the device stays");
 }
 
+/* Writes a byte; true if it arrives, and nothing lies beside. */
+static bool writes(const char *path)
+{
+    struct output output;
+    if (!start(&output, path))
+        return false;
+    putc('x', output.file);
+    return output_close(&output, &error) && file_is(path, "x", 1);
+}
+
+static void test_modes(void)
+{
+    static const mode_t MODES[] = {0640, 0600, 0755, 0666};
+    struct stat status;
+    for (size_t i = 0; i < sizeof MODES / sizeof MODES[0]; i++) {
+        write_old("old");
+        bool kept = chmod(PATH, MODES[i]) == 0 && writes(PATH) &&
+                    stat(PATH, &status) == 0 && (status.st_mode & 0777) == MODES[i];
+        tap_ok(kept, "a new file has the mode of the old one, %o", (unsigned)MODES[i]);
+    }
+}
+
+static bool is_link(const char *path)
+{
+    struct stat status;
+    return lstat(path, &status) == 0 && S_ISLNK(status.st_mode);
+}
+
+static void test_links(void)
+{
+    static const char link[] = "build/output_test.link", two[] = "build/output_test.two";
+    remove(link);
+    remove(two);
+    remove(PATH);
+    bool made = symlink("output_test.bin", link) == 0 &&
+                symlink("../build/output_test.link", two) == 0;
+    tap_ok(made && writes(link) && file_is(PATH, "x", 1) && is_link(link),
+           "a link that leads to no file leads to one then");
+    write_old("old");
+    tap_ok(writes(two) && file_is(PATH, "x", 1) && is_link(two) && is_link(link),
+           "a link to a link stays, and so does that");
+    remove(link);
+    tap_ok(symlink("output_test.two", link) == 0 && !writes(link) &&
+               error.code == EXIT_FAILED && is_link(link),
+           "links in a circle are refused: %s", error.text);
+    remove(link);
+    remove(two);
+}
+
+static void test_long_names(void)
+{
+    for (int length = 240; length <= 255; length += 3) {
+        char path[300] = "build/";
+        memset(path + 6, 'n', (size_t)length);
+        tap_ok(writes(path), "a name of %d bytes: %s", length, error.text);
+        remove(path);
+    }
+}
+
+/* A pipe that nobody reads: opening it for writing would wait, or fail. */
+static void test_pipe(void)
+{
+    static const char path[] = "build/output_test.pipe";
+    remove(path);
+    tap_ok(mkfifo(path, 0600) == 0 && output_is_stream(path), "a pipe is a stream");
+    error = (struct error){EXIT_DONE, ""};
+    alarm(10);
+    tap_ok(output_probe(path, &error), "probing a pipe does not open it");
+    alarm(0);
+    remove(path);
+    tap_ok(output_is_stream("-") && output_is_stream("/dev/null") &&
+               !output_is_stream("build") && !output_is_stream(PATH),
+           "devices and the standard output are streams, files and folders are not");
+}
+
 static void test_numbers(void)
 {
     static const unsigned char expected[] = {
@@ -218,6 +297,10 @@ int main(void)
     test_write_error();
     test_probe();
     test_full_device();
+    test_modes();
+    test_links();
+    test_long_names();
+    test_pipe();
     test_numbers();
     remove(PATH);
     return tap_done();

@@ -59,7 +59,7 @@ static int64_t count_triangles(struct scene *scene)
 
 static int64_t read_obj(void)
 {
-    struct obj_repairs repairs;
+    struct obj_repairs repairs = {0};
     return count_triangles(obj_read(OBJ, &repairs, &error));
 }
 

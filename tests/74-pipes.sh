@@ -1,0 +1,90 @@
+# Outputs on pipes and on the standard output: the bytes of a file, and nothing else; a
+# pipe is opened once; a run that waits for its reader ends at the first SIGTERM; one
+# whose reader goes away ends with an error. On 1 and on 4 ranks.
+. tests/tap.sh
+
+: "${PHR:=./phr}"
+case $PHR in */*) ;; *) PHR=./$PHR ;; esac
+scene="scenes/cornell.obj --max-level 1 --samples 1 --size 300x200"
+view="--view scenes/cornell.view"
+pipe=$work/f.fifo
+mkfifo "$pipe" "$work/p.pfm"
+$PHR $scene $view --quiet -o "$work/a.ppm" -o "$work/a.pfm" -o "$work/a.ply"
+
+# bounded COMMAND...: within 20 seconds, which are the limit of a hang.
+bounded() { timeout -s KILL 20 "$@"; }
+
+# waits RANKS: it has no reader, and ends soon after one SIGTERM, with one line. (A
+# launcher that was sent a signal may end with 0 whatever its ranks end with.)
+waits() {
+    : >"$work/err"
+    $MPIEXEC -n "$1" sh -c 'exec 2>>"$0"; exec "$@"' "$work/err" "$PHR" $scene $view \
+        -o "$pipe" >/dev/null 2>&1 &
+    launched=$!
+    ticks=400
+    until grep -q '(0 split)' "$work/err" || [ $ticks -eq 0 ]; do
+        ticks=$((ticks - 1))
+        sleep 0.05
+    done
+    sleep 0.5
+    kill -TERM $launched
+    ticks=100
+    while kill -0 $launched 2>/dev/null && [ $ticks -gt 0 ]; do
+        ticks=$((ticks - 1))
+        sleep 0.05
+    done
+    kill -KILL $launched 2>/dev/null && echo "# it hangs"
+    wait $launched 2>/dev/null
+    [ $ticks -gt 0 ] && [ "$(tail -n 1 "$work/err")" = "phr: stopped by SIGTERM" ]
+}
+
+# sends RANKS FORMAT ARGUMENTS...: an output goes to stdout, alone.
+sends() {
+    on=$1 format=$2
+    shift 2
+    bounded $MPIEXEC -n "$on" "$PHR" $scene "$@" 2>"$work/err" | cat >"$work/got"
+    cmp "$work/got" "$work/a.$format" && grep -q '^checksum ' "$work/err"
+}
+
+# fills RANKS FORMAT PIPE ARGUMENTS...: a reader gets the whole output.
+fills() {
+    on=$1 format=$2 fifo=$3
+    shift 3
+    bounded cat "$fifo" >"$work/got" &
+    reader=$!
+    bounded $MPIEXEC -n "$on" "$PHR" $scene --quiet "$@" 2>"$work/err"
+    status=$?
+    wait $reader
+    cmp "$work/got" "$work/a.$format" && [ $status -eq 0 ]
+}
+
+for ranks in 1 4; do
+    for name in - ppm:- /dev/stdout ppm:/dev/stdout; do
+        check "-o $name on $ranks" sends $ranks ppm $view -o $name
+    done
+    check "-o pfm:- on $ranks" sends $ranks pfm $view -o pfm:-
+    check "-o ply:- on $ranks" sends $ranks ply -o ply:-
+    check "a pipe without a suffix, on $ranks" fills $ranks ppm "$pipe" $view -o "$pipe"
+    check "a pipe with one, on $ranks" fills $ranks pfm "$work/p.pfm" $view \
+        -o "$work/p.pfm"
+    check "a pipe with a prefix, on $ranks" fills $ranks ply "$pipe" -o "ply:$pipe"
+    check "a run without a reader ends at SIGTERM, on $ranks" waits $ranks
+    # A launcher that has lost its standard output may end all ranks before phr can speak.
+    { bounded $MPIEXEC -n $ranks "$PHR" $scene $view --quiet -o pfm:- 2>"$work/err"
+        echo $? >"$work/status"; } | head -c 10 >"$work/got"
+    check "a reader that goes away: not 0 ($(cat "$work/status")), on $ranks" \
+        [ "$(cat "$work/status")" -ne 0 -a "$(cat "$work/status")" -ne 137 ]
+done
+{ "$PHR" $scene $view --quiet -o pfm:- 2>"$work/err"; echo $? >"$work/status"; } |
+    head -c 10 >"$work/got"
+check "alone, status 1" [ "$(cat "$work/status")" = 1 ]
+check "and a line that says why" \
+    [ "$(cat "$work/err")" = "phr: standard output: cannot write: Broken pipe" ]
+echo old >"$work/log"
+"$PHR" $scene $view --quiet -o - >>"$work/log"
+{ echo old; cat "$work/a.ppm"; } >"$work/got"
+check "a file that is appended to keeps its bytes" cmp "$work/log" "$work/got"
+check "--stats - is the report alone" \
+    [ "$("$PHR" $scene --stats - 2>/dev/null | sed -n '1p;$p' | tr -d '\n')" = "{}" ]
+
+tap_done
