@@ -1,24 +1,27 @@
 /* Bundles: which of 16 segments are blocked?
  *
  * A bundle goes down as a whole, as the shaft of its eight end points (octree/shaft.h). A
- * triangle sees it as 4 + 4 points, which are eight lanes: the signed distances w to its
- * plane, and if they are not all on one side, its barycentric coordinates u and v. If all
- * eight points are on the far side of an edge no segment meets it. Only then are the 16
- * pairs looked at, in two vectors: from w, u at one end and w', u' at the other, the
- * crossing point has u = (u w' - u' w) / (w' - w), and only signs matter.
+ * triangle sees it as 4 + 4 points, which are eight lanes: their signed distances w to
+ * its plane, and their barycentric coordinates u and v. From these follow the 16 pairs,
+ * in two vectors: if w and w' differ in sign, the crossing point has u = (u |w'| + u'
+ * |w|) / (|w| + |w'|), and only signs matter.
  *
- * All of this is float, and every comparison keeps a margin for its rounding. A pair for
- * which the signs are not certain, near an edge or where an end point lies in the plane,
- * is decided by segment_is_blocked_by() in double. So float decides nothing that double
- * would decide otherwise, and the answers are the watertight ones of geom/triangle.c to
- * the bit.
+ * All of this is float, and every comparison keeps a margin for its rounding. With errors
+ * eu, ev and ew of the maps, u |w'| + u' |w| is off by at most eu (|w| + |w'|) + ew (|u|
+ * + |u'|), and v likewise: a part for either point, so margins are computed for eight
+ * points and added for 16 pairs. A pair for which the signs are not certain, near an edge
+ * or where an end point lies in the plane, is decided by segment_is_blocked_by() in
+ * double. So float decides nothing that double would decide otherwise, and the answers
+ * are the watertight ones of geom/triangle.c to the bit.
  *
  * Made faster, most of all first (tests/bench/rays.c, beside Embree's packets of 16): a
  * link starts with the last blocker of the one that it comes from; tests inlined, masks
- * folded in whole words; the six slabs of a node written out instead of looped over;
- * numbers of the shaft spread over the lanes once, not for each node. Eight-lane vectors
- * where registers have four lanes had 0.4 of the speed of twice four. Remembering two to
- * six blockers instead of one and fetching the next node ahead gained nothing. */
+ * folded in whole words; the six slabs of a node written out instead of looped over; one
+ * fold of masks for a triangle; numbers of the shaft spread over the lanes once, not for
+ * each node. Eight-lane vectors where registers have four lanes had 0.4 of the speed of
+ * twice four. Nothing was gained by a look at the eight points first (three in four
+ * triangles pass it), by remembering two to six blockers instead of one, by smaller
+ * leaves, and by fetching the next node ahead. */
 #include "octree/octree.h"
 #include "octree/shaft.h"
 
@@ -30,86 +33,70 @@
                         lanes_mul(lanes_all((r)[1]), (p)[1])), \
               lanes_add(lanes_mul(lanes_all((r)[2]), (p)[2]), lanes_all((r)[3])))
 
-/* The pairs of a triangle that float is sure of. */
-struct verdict {
-    unsigned hit, miss; /* bits of the pairs for which it is certain */
+/* Points and a triangle; lanes are eight points, or one of the points of eight pairs. */
+struct relation {
+    lanes u, v;
+    lanes w;      /* distance to the plane; 0 where its sign is not certain */
+    lanes size;   /* of the distance */
+    lanes margin; /* the point's part of that of u, v and their third */
 };
 
-/* Eight pairs. With s = w' - w, the crossing point has u = U / s, v = V / s; it is inside
- * if U, V and s - U - V have the sign of s. The margins follow from the errors of the
- * maps. */
-INLINE struct verdict judge_half(const struct record *r, const lanes *u0, const lanes *u1,
-                                 const lanes *v0, const lanes *v1, const lanes *w0,
-                                 const lanes *w1)
+/* Eight pairs whose points are on opposite sides: with the sizes of the distances, the
+ * crossing point has u = (u0 w1 + u1 w0) / (w0 + w1), and likewise v; it is inside if
+ * both and their third are positive. Adds the bits of hits and misses that are
+ * certain. */
+INLINE void judge_half(const struct relation *p, const struct relation *q,
+                       const lanes_mask bits[2], lanes_mask *verdict)
 {
-    lanes eu = lanes_all(r->error_u), ev = lanes_all(r->error_v),
-          ew = lanes_all(r->error_w);
-    lanes zero = lanes_all(0.0f);
-    lanes s = lanes_sub(*w1, *w0), size = lanes_abs(s);
-    lanes u = lanes_flip(lanes_sub(lanes_mul(*u0, *w1), lanes_mul(*u1, *w0)), s);
-    lanes v = lanes_flip(lanes_sub(lanes_mul(*v0, *w1), lanes_mul(*v1, *w0)), s);
-    lanes third = lanes_sub(size, lanes_add(u, v));
-    lanes far = lanes_add(lanes_abs(*w0), lanes_abs(*w1));
-    lanes mu = lanes_add(lanes_mul(eu, far),
-                         lanes_mul(ew, lanes_add(lanes_abs(*u0), lanes_abs(*u1))));
-    lanes mv = lanes_add(lanes_mul(ev, far),
-                         lanes_mul(ew, lanes_add(lanes_abs(*v0), lanes_abs(*v1))));
-    lanes ms = lanes_add(lanes_add(mu, mv), lanes_mul(lanes_all(3.0f), ew));
-    lanes nw = lanes_sub(zero, ew);
-    lanes_mask up = mask_and(lanes_above(*w0, ew), lanes_above(nw, *w1));
-    lanes_mask down = mask_and(lanes_above(*w1, ew), lanes_above(nw, *w0));
-    lanes_mask above = mask_and(lanes_above(*w0, ew), lanes_above(*w1, ew));
-    lanes_mask below = mask_and(lanes_above(nw, *w0), lanes_above(nw, *w1));
-    lanes_mask inside = mask_and(mask_and(lanes_above(u, mu), lanes_above(v, mv)),
-                                 lanes_above(third, ms));
-    lanes_mask outside = mask_or(mask_or(lanes_above(lanes_sub(zero, mu), u),
-                                         lanes_above(lanes_sub(zero, mv), v)),
-                                 lanes_above(lanes_sub(zero, ms), third));
-    lanes_mask sure = lanes_above(size, lanes_mul(lanes_all(3.0f), ew));
-    lanes_mask hit = mask_and(mask_or(up, down), inside);
-    lanes_mask miss = mask_or(mask_or(above, below), mask_and(outside, sure));
-    return (struct verdict){mask_bits(&hit), mask_bits(&miss)};
+    lanes zero = lanes_all(0.0f), product = lanes_mul(p->w, q->w);
+    lanes u = lanes_add(lanes_mul(p->u, q->size), lanes_mul(q->u, p->size));
+    lanes v = lanes_add(lanes_mul(p->v, q->size), lanes_mul(q->v, p->size));
+    lanes third = lanes_sub(lanes_add(p->size, q->size), lanes_add(u, v));
+    lanes uv = lanes_min(u, v), least = lanes_min(uv, third);
+    lanes margin = lanes_add(p->margin, q->margin);
+    lanes_mask inside = lanes_above(least, margin);
+    lanes_mask outside = lanes_above(zero, lanes_add(least, margin));
+    lanes_mask hit = mask_and(lanes_above(zero, product), inside);
+    lanes_mask miss = mask_or(lanes_above(product, zero), outside);
+    *verdict = mask_or(*verdict,
+                       mask_or(mask_and(hit, bits[0]), mask_and(miss, bits[1])));
 }
 
-/* 1 if a > b in all lanes. Results are joined by | and not ||: one branch that is hard to
- * guess costs more than a few operations. */
-INLINE int all_above(const lanes *a, const lanes *b)
-{
-    lanes_mask mask = lanes_above(*a, *b);
-    return mask_is_full(&mask);
-}
+/* Bits of a verdict: a hit of pair k is bit k, a miss bit 16 + k. */
+#define EIGHT_BITS(k) \
+    {1u << (k), 2u << (k), 4u << (k), 8u << (k), 16u << (k), 32u << (k), 64u << (k), \
+     128u << (k)}
+static const uint32_t VERDICT_BITS[2][2][LANES] = {{EIGHT_BITS(0), EIGHT_BITS(16)},
+                                                   {EIGHT_BITS(8), EIGHT_BITS(24)}};
 
-/* Looks at the eight points, then at the 16 pairs. Pairs in neither set have to be
- * decided in double. */
-INLINE struct verdict judge(const struct record *r, const struct shaft *shaft,
-                            unsigned wanted)
+/* Looks at the eight points, then at the 16 pairs. Returns the verdict of float; pairs
+ * without a bit have to be decided in double. */
+INLINE unsigned judge(const struct record *r, const struct shaft *shaft)
 {
-    const struct verdict none = {0, 0xffffu};
     const lanes *p = shaft->points;
-    lanes zero = lanes_all(0.0f);
     struct vec3 n = r->plane.normal;
     const float distance[4] = {(float)n.x, (float)n.y, (float)n.z,
                                -(float)r->plane.offset};
-    lanes w = MAP(distance, p), ew = lanes_all(r->error_w), nw = lanes_sub(zero, ew);
-    if (all_above(&w, &ew) | all_above(&nw, &w))
-        return none;
-    lanes u = MAP(r->u, p), v = MAP(r->v, p), sum = lanes_add(u, v);
-    lanes nu = lanes_all(-r->error_u), nv = lanes_all(-r->error_v);
-    lanes one = lanes_all(1.0f + 2.0f * (r->error_u + r->error_v));
-    if (all_above(&nu, &u) | all_above(&nv, &v) | all_above(&sum, &one))
-        return none;
-    lanes us = lanes_twice_high(u), vs = lanes_twice_high(v), ws = lanes_twice_high(w);
-    lanes u0 = lanes_spread_01(u), v0 = lanes_spread_01(v), w0 = lanes_spread_01(w);
-    struct verdict a = {0, 0xffu}, b = {0, 0xffu};
-    if (wanted & 0xffu)
-        a = judge_half(r, &u0, &us, &v0, &vs, &w0, &ws);
-    if (wanted & 0xff00u) {
-        u0 = lanes_spread_23(u);
-        v0 = lanes_spread_23(v);
-        w0 = lanes_spread_23(w);
-        b = judge_half(r, &u0, &us, &v0, &vs, &w0, &ws);
-    }
-    return (struct verdict){a.hit | b.hit << LANES, a.miss | b.miss << LANES};
+    lanes u = MAP(r->u, p), v = MAP(r->v, p), w = MAP(distance, p), size = lanes_abs(w);
+    lanes_mask near = lanes_above(lanes_all(2.0f * r->error_w), size);
+    lanes far = lanes_mul(lanes_all(r->error_u + r->error_v), size);
+    lanes reach = lanes_add(lanes_add(lanes_abs(u), lanes_abs(v)), lanes_all(2.0f));
+    reach = lanes_mul(reach, lanes_all(3.0f * r->error_w));
+    lanes margin = lanes_add(far, reach), sure = lanes_unless(near, w);
+    struct relation to = {lanes_twice_high(u), lanes_twice_high(v),
+                          lanes_twice_high(sure), lanes_twice_high(size),
+                          lanes_twice_high(margin)};
+    struct relation first = {lanes_spread_01(u), lanes_spread_01(v),
+                             lanes_spread_01(sure), lanes_spread_01(size),
+                             lanes_spread_01(margin)};
+    struct relation second = {lanes_spread_23(u), lanes_spread_23(v),
+                              lanes_spread_23(sure), lanes_spread_23(size),
+                              lanes_spread_23(margin)};
+    lanes_mask verdict = mask_all(0), all = mask_all(-1), bits[2][2];
+    memcpy(bits, VERDICT_BITS, sizeof bits);
+    judge_half(&first, &to, bits[0], &verdict);
+    judge_half(&second, &to, bits[1], &verdict);
+    return mask_select(&verdict, &all);
 }
 
 /* The pairs among `wanted` that the triangle blocks. */
@@ -117,8 +104,8 @@ INLINE unsigned pairs_blocked(const struct octree *octree, const struct bundle *
                               const struct shaft *shaft, const struct record *r,
                               unsigned wanted)
 {
-    struct verdict verdict = judge(r, shaft, wanted);
-    unsigned blocked = verdict.hit & wanted, open = wanted & ~verdict.hit & ~verdict.miss;
+    unsigned verdict = judge(r, shaft), blocked = verdict & wanted;
+    unsigned open = wanted & ~(verdict | verdict >> BUNDLE_RAYS);
     for (int k = 0; open != 0; k++, open >>= 1) {
         if (!(open & 1u))
             continue;

@@ -88,8 +88,9 @@ bool octree_first_hit(const struct octree *octree, struct vec3 origin,
     if (!ray_clip(octree, &origin, direction, &end))
         return false;
     ray_set(&search.ray, origin, end);
-    ray_walk(&octree->inside, &search.ray, search_leaf, &search, counts);
-    ray_walk(&octree->hull, &search.ray, search_leaf, &search, counts);
+    const float *reach = &search.ray.reach;
+    ray_walk(&octree->inside, &search.ray, reach, search_leaf, &search, counts);
+    ray_walk(&octree->hull, &search.ray, reach, search_leaf, &search, counts);
     *hit = search.hit;
     if (hit->triangle < 0)
         return false;

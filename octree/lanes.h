@@ -65,22 +65,29 @@ typedef float lanes_in_memory __attribute__((vector_size(32), aligned(4), may_al
 #define lanes_spread_23(a) __builtin_shufflevector((a), (a), 2, 2, 2, 2, 3, 3, 3, 3)
 #define lanes_twice_high(a) __builtin_shufflevector((a), (a), 4, 5, 6, 7, 4, 5, 6, 7)
 
+typedef int32_t four_mask __attribute__((vector_size(16)));
+
+#define MASK_LOW(mask) __builtin_shufflevector((mask), (mask), 0, 1, 2, 3)
+#define MASK_HIGH(mask) __builtin_shufflevector((mask), (mask), 4, 5, 6, 7)
+
 /* The bits of those lanes of `bit` in which the mask is true. */
 static inline unsigned mask_select(const lanes_mask *mask, const lanes_mask *bit)
 {
     lanes_mask selected = *mask & *bit;
-    uint64_t word[4];
-    memcpy(word, &selected, sizeof word);
-    uint64_t all = (word[0] | word[1]) | (word[2] | word[3]);
-    return (unsigned)(all | all >> 32) & 0xffu;
+    four_mask half = MASK_LOW(selected) | MASK_HIGH(selected);
+    uint64_t word[2];
+    memcpy(word, &half, sizeof word);
+    uint64_t all = word[0] | word[1];
+    return (unsigned)(all | all >> 32);
 }
 
 /* True if all lanes are. */
 static inline int mask_is_full(const lanes_mask *mask)
 {
-    uint64_t word[4];
-    memcpy(word, mask, sizeof word);
-    return ((word[0] & word[1]) & (word[2] & word[3])) == UINT64_MAX;
+    four_mask half = MASK_LOW(*mask) & MASK_HIGH(*mask);
+    uint64_t word[2];
+    memcpy(word, &half, sizeof word);
+    return (word[0] & word[1]) == UINT64_MAX;
 }
 
 #elif defined(__GNUC__) && !defined(PHR_PLAIN_LANES)
@@ -228,7 +235,7 @@ FOUR_INLINE unsigned mask_select(const lanes_mask *mask, const lanes_mask *bit)
     uint64_t word[2];
     memcpy(word, &selected, sizeof word);
     uint64_t all = word[0] | word[1];
-    return (unsigned)(all | all >> 32) & 0xffu;
+    return (unsigned)(all | all >> 32);
 }
 
 FOUR_INLINE int mask_is_full(const lanes_mask *mask)

@@ -73,7 +73,7 @@ INLINE unsigned packet_enters(const void *beam, const struct node *node,
         last = lanes_min(last, f0);
     }
     lanes_mask out = lanes_above(first, last);
-    memcpy(enter, &first, LANES * sizeof *enter);
+    memcpy(enter, &first, LANES * sizeof *enter); /* the walk has a reach */
     return ~mask_select(&out, &packet->weights) & 0xffu;
 }
 

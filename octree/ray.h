@@ -92,16 +92,17 @@ INLINE unsigned ray_enters(const void *beam, const struct node *node, float ente
     lanes near01 = lanes_max(n0, n1), far01 = lanes_min(f0, f1);
     lanes first = lanes_max(near01, near2), last = lanes_min(far01, far2);
     lanes_mask out = lanes_above(first, last);
-    memcpy(enter, &first, LANES * sizeof *enter);
+    if (enter)
+        memcpy(enter, &first, LANES * sizeof *enter);
     return ~mask_select(&out, &ray->weights) & 0xffu;
 }
 
-/* Goes down along the ray, to the nearest box first. A visit may shorten the ray's
- * reach. */
-INLINE bool ray_walk(const struct tree *tree, const struct ray *ray, leaf_visit *visit,
-                     void *query, struct octree_counts *counts)
+/* Goes down along the ray, to the nearest box first. Visits may shorten `*reach`, which
+ * is that of the ray; NULL: they do not. */
+INLINE bool ray_walk(const struct tree *tree, const struct ray *ray, const float *reach,
+                     leaf_visit *visit, void *query, struct octree_counts *counts)
 {
-    return tree_walk(tree, ray_enters, ray, ray->near, &ray->reach, visit, query, counts);
+    return tree_walk(tree, ray_enters, ray, ray->near, reach, visit, query, counts);
 }
 
 /* --- triangles --- */

@@ -68,7 +68,7 @@ bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct
     ray_set(&query.ray, from, to);
     if (place >= 0 && find_blocker(&query, &tree->records[place], 1, counts))
         return true;
-    if (!ray_walk(tree, &query.ray, find_blocker, &query, counts))
+    if (!ray_walk(tree, &query.ray, NULL, find_blocker, &query, counts))
         return false;
     *guess = query.blocker;
     return true;
@@ -113,5 +113,5 @@ bool octree_has_wall(const struct octree *octree, const struct vec3 *p, int coun
     struct wall_query query = {.middle = {.octree = octree},
                                .p = p, .q = q, .count_p = count_p, .count_q = count_q};
     ray_set(&query.middle.ray, mean_of(p, count_p), mean_of(q, count_q));
-    return ray_walk(&octree->inside, &query.middle.ray, find_wall, &query, counts);
+    return ray_walk(&octree->inside, &query.middle.ray, NULL, find_wall, &query, counts);
 }

@@ -7,6 +7,8 @@
 #ifndef OCTREE_WALK_H
 #define OCTREE_WALK_H
 
+#include <stddef.h>
+
 #include "octree/counts.h"
 #include "octree/tree.h"
 
@@ -17,8 +19,8 @@ struct waiting {
     float enter[LANES]; /* where a ray enters each child's box, by octant */
 };
 
-/* Returns the children of a node that are met, the one in octant k ^ near as bit k. Where
- * the walk has a reach, it also says for each octant how far away its box is. */
+/* Returns the children of a node that are met, the one in octant k ^ near as bit k. If
+ * `enter` is not NULL, it also says for each octant how far away its box is. */
 typedef unsigned node_enter(const void *beam, const struct node *node,
                             float enter[LANES]);
 
@@ -59,7 +61,7 @@ INLINE bool tree_walk(const struct tree *tree, node_enter *enter, const void *be
         while (child >= 0) {
             struct waiting *top = &stack[height];
             const struct node *node = &tree->nodes[child];
-            unsigned met = enter(beam, node, top->enter);
+            unsigned met = enter(beam, node, reach ? top->enter : NULL);
             counts->node_tests++;
             if (met == 0)
                 break;
