@@ -12,13 +12,11 @@ mkdir -p "$logs"
 passed=0
 failed=0
 
-# run NAME COMMAND...: runs one test and adds its lines to the counts.
-run() {
+# judge NAME STATUS: shows the verdict on a test from its log, and adds it to the counts.
+judge() {
     name=$1
-    shift
+    status=$2
     log=$logs/$name.tap
-    timeout -k 10 600 "$@" >"$log" 2>&1
-    status=$?
     good=$(grep -c '^ok ' "$log")
     bad=$(grep -c '^not ok ' "$log")
     grep -q '^1\.\.[0-9]' "$log" ||
@@ -38,6 +36,25 @@ run() {
     fi
 }
 
+# run NAME COMMAND...: runs one test.
+run() {
+    name=$1
+    shift
+    timeout -k 10 600 "$@" >"$logs/$name.tap" 2>&1
+    judge "$name" $?
+}
+
+# run_together NAME...: unit tests of one process, as many at a time as there are cores.
+run_together() {
+    printf '%s\n' "$@" | LOGS=$logs PROGRAMS=$BUILD/tests \
+        xargs -P "$(getconf _NPROCESSORS_ONLN || echo 1)" -I NAME sh -c \
+        'timeout -k 10 600 "$PROGRAMS/NAME" >"$LOGS/NAME.tap" 2>&1
+        echo $? >"$LOGS/NAME.status"'
+    for name in "$@"; do
+        judge "$name" "$(cat "$logs/$name.status")"
+    done
+}
+
 # run_on_ranks NAME P...: the unit test NAME with mpiexec, once for each number of ranks.
 run_on_ranks() {
     program=$1
@@ -47,18 +64,27 @@ run_on_ranks() {
     done
 }
 
+alone=
 for test in "$@"; do
     case $test in
-    exchange) run_on_ranks "$test" 1 2 3 4 6 7 8 ;;
+    linking | exchange | conjugate | exact | converge) ;;
+    *) alone="$alone $test" ;;
+    esac
+done
+run_together $alone
+for test in "$@"; do
+    case $test in
     linking) run_on_ranks "$test" 1 3 7 ;;
+    exchange) run_on_ranks "$test" 1 2 3 4 6 7 8 ;;
     conjugate) run_on_ranks "$test" 1 3 6 ;;
     exact) run_on_ranks "$test" 1 3 ;;
     converge)
         cp scenes/room.mtl "$BUILD/tests"
         build/room 1000 1 >"$BUILD/tests/room.obj"
-        run "$test" $MPIEXEC -n 2 "$BUILD/tests/$test" "$BUILD/tests/room.obj"
+        "$BUILD/direct" scenes/shadow.obj "$BUILD/tests/shadow.ref" 10000
+        run "$test" $MPIEXEC -n 2 "$BUILD/tests/$test" "$BUILD/tests/room.obj" \
+            "$BUILD/tests/shadow.ref"
         ;;
-    *) run "$test" "$BUILD/tests/$test" ;;
     esac
 done
 for harness in tests/fuzz/*.c; do
