@@ -226,7 +226,7 @@ answers: $(PHR) pathtracer build/room build/course/leaves
 	MPIEXEC="$(MPIEXEC)" sh scenes/answers.sh >build/answers.csv
 	mv build/answers.csv scenes/answers.csv
 
-check: $(PHR) $(IMGDIFF) pathtracer tests build/room $(COURSE)
+check: $(PHR) $(IMGDIFF) pathtracer tests build/room $(BUILD)/direct $(COURSE)
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
 
