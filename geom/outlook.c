@@ -71,14 +71,15 @@ static void cut_piece(struct outlook *outlook, int i, const struct vec3 normal[3
     }
 }
 
-void outlook_hide(struct outlook *outlook, const struct triangle *behind)
+bool outlook_hide(struct outlook *outlook, const struct triangle *behind)
 {
+    bool whole = true;
     struct vec3 to[3], normal[3];
     for (int k = 0; k < 3; k++)
         to[k] = vec3_sub(behind->corner[k], outlook->from);
     double volume = vec3_dot(to[0], vec3_cross(to[1], to[2]));
     if (volume == 0.0)
-        return;
+        return true;
     for (int k = 0; k < 3; k++) {
         struct vec3 across = vec3_cross(to[k], to[(k + 1) % 3]);
         double length = vec3_length(across);
@@ -86,8 +87,12 @@ void outlook_hide(struct outlook *outlook, const struct triangle *behind)
     }
     for (int i = outlook->count - 1; i >= 0; i--) {
         const struct outlook_piece *piece = &outlook->piece[i];
-        if (outlook->count + 2 <= OUTLOOK_PIECES && piece->count + 3 <= OUTLOOK_CORNERS &&
-            !is_outside(piece, outlook->from, normal))
+        if (is_outside(piece, outlook->from, normal))
+            continue;
+        if (outlook->count + 2 <= OUTLOOK_PIECES && piece->count + 3 <= OUTLOOK_CORNERS)
             cut_piece(outlook, i, normal);
+        else
+            whole = false;
     }
+    return whole;
 }

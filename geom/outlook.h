@@ -25,8 +25,8 @@ struct outlook {
 void outlook_start(struct outlook *outlook, struct vec3 from, const struct triangle *t);
 
 /* Takes away the part that is hidden behind another triangle, which has to lie in front
- * of the first one's plane, as the point does. Does nothing where pieces or corners would
- * be too many. */
-void outlook_hide(struct outlook *outlook, const struct triangle *behind);
+ * of the first one's plane, as the point does. Leaves a piece whole where pieces or
+ * corners would be too many, and returns false then. */
+bool outlook_hide(struct outlook *outlook, const struct triangle *behind);
 
 #endif

@@ -81,6 +81,14 @@ bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p
                            const struct plane *plane_q, const int32_t own[2],
                            struct octree_counts *counts);
 
+/* Finds the triangles that reach into that shaft: all that can block there. Writes at
+ * most `most` of them into `entrants`, in an order of the tree. Returns their number;
+ * most + 1 if there are more. */
+int32_t octree_list_shaft(const struct octree *octree, const struct triangle *p,
+                          const struct plane *plane_p, const struct triangle *q,
+                          const struct plane *plane_q, const int32_t own[2],
+                          int32_t *entrants, int32_t most, struct octree_counts *counts);
+
 /* The triangle that the ray from `origin` along `direction` (of any length but 0) meets
  * first. Of triangles met in the same place a front counts before a back, then the
  * largest number: decals come after the surface that they lie on. `fronts_only` looks

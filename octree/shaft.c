@@ -57,37 +57,43 @@ void shaft_set_slabs(struct shaft *shaft)
     }
 }
 
-/* --- empty shafts --- */
+/* --- what is in a shaft --- */
 
 struct shaft_query {
     const struct triangle *triangles;
     const int32_t *own; /* [2] */
     struct hull hull;
+    int32_t *entrants;  /* [most] triangles that reach into the hull */
+    int32_t most, count;
 };
 
-/* Visits a leaf: does any of its triangles reach into the hull? */
-INLINE bool find_entrant(void *at, const struct record *records, int32_t count,
-                         struct octree_counts *counts)
+/* Visits a leaf: which of its triangles reach into the hull? The walk ends at the first
+ * for which there is no room. */
+INLINE bool find_entrants(void *at, const struct record *records, int32_t count,
+                          struct octree_counts *counts)
 {
-    const struct shaft_query *query = at;
+    struct shaft_query *query = at;
     for (int32_t i = 0; i < count; i++) {
         int32_t t = records[i].triangle;
         if (t == query->own[0] || t == query->own[1])
             continue;
         counts->triangle_tests++;
-        if (hull_is_entered(&query->hull, &query->triangles[t]))
+        if (!hull_is_entered(&query->hull, &query->triangles[t]))
+            continue;
+        if (query->count++ == query->most)
             return true;
+        query->entrants[query->count - 1] = t;
     }
     return false;
 }
 
-bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p,
-                           const struct plane *plane_p, const struct triangle *q,
-                           const struct plane *plane_q, const int32_t own[2],
-                           struct octree_counts *counts)
+int32_t octree_list_shaft(const struct octree *octree, const struct triangle *p,
+                          const struct plane *plane_p, const struct triangle *q,
+                          const struct plane *plane_q, const int32_t own[2],
+                          int32_t *entrants, int32_t most, struct octree_counts *counts)
 {
     struct shaft_query query = {octree->triangles, own,
-                                hull_of_pair(p, plane_p, q, plane_q)};
+                                hull_of_pair(p, plane_p, q, plane_q), entrants, most, 0};
     struct vec3 from[SHAFT_ENDS], to[SHAFT_ENDS];
     struct shaft shaft;
     for (int k = 0; k < SHAFT_ENDS; k++) {
@@ -96,5 +102,14 @@ bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p
     }
     shaft_set_points(&shaft, from, to);
     shaft_set_slabs(&shaft);
-    return !shaft_walk(&octree->inside, &shaft, find_entrant, &query, counts);
+    shaft_walk(&octree->inside, &shaft, find_entrants, &query, counts);
+    return query.count;
+}
+
+bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p,
+                           const struct plane *plane_p, const struct triangle *q,
+                           const struct plane *plane_q, const int32_t own[2],
+                           struct octree_counts *counts)
+{
+    return octree_list_shaft(octree, p, plane_p, q, plane_q, own, NULL, 0, counts) == 0;
 }
