@@ -171,6 +171,16 @@ check "form factors have begun" wait_for 1 " groups"
 sleep 0.3
 stopped_early "while form factors are computed"
 
+start 3 "$work/room.obj" --form-factors --epsilon 1e-6
+wait_for 1 " groups"
+sleep 0.5
+begun=$(date +%s)
+kill -TERM "$(tail -n 1 "$work/ranks")"
+finish
+check "SIGTERM to one rank while form factors are computed: exit status 1 ($status)" \
+    [ "$status" -eq 1 ]
+check "within 3 s of the signal" [ $(($(date +%s) - begun)) -le 3 ]
+
 # Linking of all pairs takes longer than the three seconds that are allowed.
 build/room 16000 1 >"$work/room.obj"
 cp scenes/room.mtl "$work"

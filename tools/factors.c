@@ -1,9 +1,48 @@
-/* --form-factors: exchanges between groups in place of light. */
+/* --form-factors: exchanges between groups in place of light.
+ *
+ * With --accuracy, pairs of groups that are not good enough are done again with a smaller
+ * epsilon, at most ROUNDS times: each round costs several times the one before, so that
+ * those before cost little. */
 #include "tools/factors.h"
 
 #include "geom/stop.h"
 #include "tools/pairs.h"
 #include "tools/table.h"
+
+enum { ROUNDS = 12 };
+
+/* An error that falls by less than this part in a round no longer falls. */
+static const double STUCK = 0.95;
+
+/* Adds all pairs, in rounds. Returns the largest error of F; stops at a signal. */
+static double add_in_rounds(struct run *run, struct viewfactors *factors)
+{
+    double accuracy = run->options.criterion.accuracy, error = 0.0, last;
+    for (int round = 1;; round++) {
+        last = error;
+        progress_begin(&run->progress.progress, "form factors", -1, 0);
+        pairs_add(&run->comm, factors, &run->progress.progress);
+        progress_view_clear(&run->progress);
+        if (!run_goes_on(run))
+            return 0.0;
+        error = viewfactors_error(factors);
+        bool stuck = round > 1 && error > STUCK * last;
+        if (!(accuracy > 0.0) || error <= accuracy || stuck || round == ROUNDS)
+            return error;
+        viewfactors_refine(factors, accuracy);
+    }
+}
+
+static void report(struct run *run, double error)
+{
+    double accuracy = run->options.criterion.accuracy;
+    if (accuracy > 0.0 && error > accuracy)
+        run_say(run,
+                "warning: the largest error of F is %.2g, not the %.3g of --accuracy: "
+                "a smaller epsilon no longer helps, or --max-level is in the way",
+                error, accuracy);
+    run_say(run, "%.1f s; largest error of F: %.2g", comm_seconds() - run->start, error);
+}
 
 void factors_tabulate(struct run *run)
 {
@@ -12,14 +51,12 @@ void factors_tabulate(struct run *run)
             (long long)run->scene->input_count, (long long)run->scene->groups.count);
     struct viewfactors *factors = viewfactors_create(
         run->scene, run->octree, criterion->epsilon, criterion->max_level);
-    progress_begin(&run->progress.progress, "form factors", -1, 0);
-    pairs_add(&run->comm, factors, &run->progress.progress);
-    progress_view_clear(&run->progress);
-    if (run_goes_on(run) && run->comm.rank == 0) {
+    double error = add_in_rounds(run, factors);
+    if (run->error.code == EXIT_DONE && run->comm.rank == 0) {
         table_print(factors, stdout);
         stop_check(&run->error);
     }
     if (run_agree(run))
-        run_say(run, "%.1f s", comm_seconds() - run->start);
+        report(run, error);
     viewfactors_destroy(factors);
 }

@@ -5,11 +5,22 @@
  * expensive pairs, and a scene of a dozen triangles is divided as evenly as a large one.
  * To count, every rank goes through all pairs, a thousandth of the work. Sums are
  * integers, so they do not depend on the ranks that add. They are sent in pieces that MPI
- * can count. */
+ * can count. After each TURN pairs of every rank all learn whether one of them has got a
+ * signal: the deal is the same on all ranks, so they meet there. */
 #include "tools/pairs.h"
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
+
+enum { TURN = 16 };
+
+/* True if a rank is asked to stop. */
+static bool some_stop(const struct comm *comm)
+{
+    int64_t stopped = stop_is_asked();
+    comm_add(comm, &stopped, 1);
+    return stopped > 0;
+}
 
 static void add_own_pairs(const struct comm *comm, struct viewfactors *factors,
                           struct progress *progress)
@@ -21,13 +32,18 @@ static void add_own_pairs(const struct comm *comm, struct viewfactors *factors,
         facets[i] =
             (struct facet){scene_root_triangle(scene, i), scene_root_plane(scene, i),
                            scene_root_area(scene, i), scene_input_of(scene, i)};
-    int64_t dealt = 0;
-    for (int32_t i = 0; i < roots && !stop_is_asked(); i++) {
+    int64_t dealt = 0, turn = (int64_t)TURN * comm->size;
+    bool stopped = false;
+    for (int32_t i = 0; i < roots && !stopped; i++) {
         progress_tick_pairs(progress, i, roots);
-        for (int32_t j = i + 1; j < roots; j++)
-            if (facets[i].area > 0.0 && facets[j].area > 0.0 &&
-                facets_face(&facets[i], &facets[j]) && dealt++ % comm->size == comm->rank)
+        for (int32_t j = i + 1; j < roots && !stopped; j++) {
+            if (!(facets[i].area > 0.0) || !(facets[j].area > 0.0) ||
+                !facets_face(&facets[i], &facets[j]))
+                continue;
+            if (dealt % comm->size == comm->rank)
                 viewfactors_add(factors, i, &facets[i], j, &facets[j]);
+            stopped = ++dealt % turn == 0 && some_stop(comm);
+        }
     }
     alloc_free(facets);
 }
@@ -36,9 +52,12 @@ void pairs_add(const struct comm *comm, struct viewfactors *factors,
                struct progress *progress)
 {
     const int64_t most = 1 << 20;
+    for (int64_t k = 0; k < factors->pairs && comm->rank > 0; k++)
+        factors->sums[k] = factors->errors[k] = 0; /* those of rank 0 are enough */
     add_own_pairs(comm, factors, progress);
     for (int64_t done = 0; done < factors->pairs; done += most) {
         int64_t left = factors->pairs - done;
         comm_add(comm, factors->sums + done, left < most ? left : most);
+        comm_add(comm, factors->errors + done, left < most ? left : most);
     }
 }

@@ -1,33 +1,32 @@
-/* View factors by facets, quadtrees, proofs of visibility and 16 segments, as in solving.
+/* View factors by facets, quadtrees, exact parts past few blockers, and 16 segments.
  *
- * For a pair of patches, with G their exact exchange without blockers (tools/contour.h):
+ * For a pair of patches, with G their exact exchange without blockers (tools/contour.h)
+ * and T a threshold:
  *
- *   - an empty shaft is proved open, and the exchange is G, for patches of any size;
- *   - one triangle that stops all nine segments between the corners proves that it is 0;
- *   - else the pair is in doubt: if G is at most the threshold, the exchange is G times
- *     the visible fraction of 16 segments, weighted by the light that they would carry;
- *     if not, the sum over the four children of the larger patch.
+ *   - if G is at most T, the exchange is G times the visible fraction of 16 segments,
+ *     weighted by the light that they would carry;
+ *   - if not, the triangles in the shaft between the two are listed. None: the exchange
+ *     is G, for patches of any size. Few: it is found from points of the smaller patch,
+ *     each of which knows exactly what it sees past them (tools/screened.h), within a
+ *     tenth of T for each part of the patch. More, or points of a strong pair that all
+ *     see nothing, or all, without a proof: it is the sum over the four children of the
+ *     larger patch. One wall between all corners proves that it is 0.
  *
- * So scenes without blockers are exact at any epsilon, and patches shrink along the edges
- * of shadows only.
+ * So scenes without blockers are exact at any epsilon, a file of a few polygons takes
+ * milliseconds, and patches shrink only where much stands between them.
  *
- * The threshold T: each pair in doubt has an error of some part of G <= T, independent of
- * the others, since each has its own random ends of segments. A sum D of exchange in
- * doubt has about D / T such pairs, so that the error goes with sqrt(T D), and the cost
- * with D / T. Let T be epsilon times the area A of the smaller group. D is a part,
- * smaller the finer the patches are, of F A, with F the factor from the smaller group
- * without blockers. Then the error of the factor is at most c sqrt(epsilon F) (measured
- * in the 17 cases of tests/57-viewfactors.sh, each with several sets of ends, epsilon
- * from 1e-3 to 1e-6: c = 0.03 RMS and 0.13 at worst), and the cost F / epsilon for each
- * pair of groups: as the factors of a row have a bounded sum, they cost about 1 / epsilon
- * for each group and not for each pair. The relative error of a factor goes with 1 /
- * sqrt(F), which suits heat balances: small factors count little there. Rejected: T
- * relative to the power in the scene, as for the light, where small groups would be lost;
- * T relative to G itself, where each faint pair costs as much as a strong one.
+ * The threshold is epsilon times the area of the smaller group: as the factors of a row
+ * have a bounded sum, they cost about 1 / epsilon for each group and not for each pair,
+ * and small factors count little in heat balances. Rejected: T relative to the power in
+ * the scene, as for the light, where small groups would be lost; T relative to G itself,
+ * where each faint pair costs as much as a strong one.
  *
- * Pairs whose segments agree are split like those whose segments differ: to stop earlier
- * at fractions of 0 or 1 would bias the mean. With twice the threshold for them the time
- * falls by a fifth and the errors are three times as large.
+ * The error of a factor. Each sampled pair has random ends of its own, so variances add:
+ * that of a fraction is told by the spread of its four ends on either side, which is more
+ * than stratified ends deserve; where all segments agree, it is a twentieth squared. What
+ * points know exactly has an upper limit (tools/screened.c), which counts as three
+ * standard errors. The largest of N errors is sqrt(4 + 2 ln N) times its standard error
+ * at most: 2 for one factor, 5.5 for half a million.
  *
  * The ends of the segments are random (hashed from the IDs of the patches, so always the
  * same): walls at halves and quarters of each other cast shadows exactly through the
@@ -40,10 +39,25 @@
 #include <math.h>
 
 #include "geom/alloc.h"
+#include "geom/elementary.h"
 #include "geom/hash.h"
 #include "geom/stop.h"
 #include "rad/id.h"
 #include "tools/contour.h"
+#include "tools/screened.h"
+
+/* Part of the threshold that a part of a patch may be off past few blockers. */
+static const double FINER = 0.1;
+
+/* Standard error of a visible fraction of 0 or 1 on which 16 segments agree, and of one
+ * on which points agree that know exactly what they see. */
+static const double ERROR_AGREED = 0.05, ERROR_SEEN = 0.02;
+
+/* Standard errors in a limit. */
+static const double LIMIT = 3.0;
+
+/* No error but 0 is stated below this one: there, differences of sums tell little. */
+static const double LEAST = 1e-5;
 
 /* A patch of a pair. */
 struct piece {
@@ -57,7 +71,15 @@ struct root_pair {
     double threshold;       /* of an exchange in doubt, square scene units */
     struct flux_unit unit;  /* of the sum */
     int64_t sum;            /* exchange of the parts added so far */
+    double variance;        /* of those sampled, square scene units squared */
+    double error;           /* limit of those past screens, square scene units */
     int32_t blocker;        /* the last triangle that stopped a segment */
+};
+
+/* The visible part of an exchange as 16 segments find it. */
+struct visible {
+    double fraction; /* 0 to 1, and exactly 0 or 1 if all agree */
+    double variance; /* of the fraction, of which it is a random sample */
 };
 
 struct viewfactors *viewfactors_create(const struct scene *scene,
@@ -74,6 +96,8 @@ struct viewfactors *viewfactors_create(const struct scene *scene,
     factors->areas = alloc_array((size_t)factors->count, sizeof *factors->areas);
     factors->roots = alloc_array((size_t)factors->count, sizeof *factors->roots);
     factors->sums = alloc_array((size_t)factors->pairs, sizeof *factors->sums);
+    factors->errors = alloc_array((size_t)factors->pairs, sizeof *factors->errors);
+    factors->done = alloc_array((size_t)factors->pairs, sizeof *factors->done);
     for (int32_t root = 0; root < scene_root_count(scene); root++) {
         int32_t group = scene->groups.of[scene_input_of(scene, root)];
         factors->areas[group] += scene_root_area(scene, root);
@@ -89,10 +113,17 @@ void viewfactors_destroy(struct viewfactors *factors)
     alloc_free(factors->areas);
     alloc_free(factors->roots);
     alloc_free(factors->sums);
+    alloc_free(factors->errors);
+    alloc_free(factors->done);
     alloc_free(factors);
 }
 
 /* --- one pair of roots --- */
+
+static double square(double x)
+{
+    return x * x;
+}
 
 /* Returns a random point of the triangle, uniformly distributed, never on its edges. */
 static struct vec3 point_of(const struct triangle *t, uint64_t bits)
@@ -134,17 +165,30 @@ static double weight_of(const struct piece *p, const struct piece *q, struct vec
     return rise_p * rise_q / r2 / (PI * r2 + 0.25 * fmax(p->facet.area, q->facet.area));
 }
 
-/* Returns the visible fraction of 16 segments, 0 to 1, and exactly 0 or 1 if all agree;
- * `otherwise` if none of them faces both patches. */
-static double fraction_seen(struct root_pair *pair, const struct piece *p,
-                         const struct piece *q, double otherwise)
+/* Returns the sum of squares by which the light seen from each of the ends on one side is
+ * off the fraction, for the variance of their mean. */
+static double spread_of(const double *seen, const double *all, double fraction)
+{
+    double sum = 0.0;
+    for (int k = 0; k < BUNDLE_ENDS; k++)
+        sum += square(seen[k] - fraction * all[k]);
+    return sum * BUNDLE_ENDS / (BUNDLE_ENDS - 1);
+}
+
+/* Returns the visible fraction of 16 segments; `otherwise` if none of them faces both
+ * patches. The segments of one end have it in common, so that there are 4 and 4
+ * independent numbers, not 16. */
+static struct visible sample_pair(struct root_pair *pair, const struct piece *p,
+                                 const struct piece *q, struct visible otherwise)
 {
     struct bundle bundle = {.own = {p->facet.input, q->facet.input}};
     uint64_t seed =
         hash_finish(hash_mix(id_number(p->id)) + 3 * hash_mix(id_number(q->id)));
     points_of(p, seed, bundle.from);
     points_of(q, ~seed, bundle.to);
-    double weights[BUNDLE_RAYS], all = 0.0, seen = 0.0;
+    double weights[BUNDLE_RAYS], all_p[BUNDLE_ENDS] = {0.0}, all_q[BUNDLE_ENDS] = {0.0};
+    double seen_p[BUNDLE_ENDS] = {0.0}, seen_q[BUNDLE_ENDS] = {0.0};
+    double all = 0.0, seen = 0.0;
     for (int ray = 0; ray < BUNDLE_RAYS; ray++) {
         weights[ray] = weight_of(p, q, bundle.from[ray / BUNDLE_ENDS],
                                  bundle.to[ray % BUNDLE_ENDS]);
@@ -155,10 +199,19 @@ static double fraction_seen(struct root_pair *pair, const struct piece *p,
     unsigned blocked = octree_block(pair->factors->octree, &bundle, &pair->blocker,
                                     &pair->factors->counts);
     for (int ray = 0; ray < BUNDLE_RAYS; ray++) {
-        all += weights[ray];
-        seen += blocked >> ray & 1u ? 0.0 : weights[ray];
+        double w = weights[ray], s = blocked >> ray & 1u ? 0.0 : w;
+        all += w;
+        seen += s;
+        all_p[ray / BUNDLE_ENDS] += w;
+        all_q[ray % BUNDLE_ENDS] += w;
+        seen_p[ray / BUNDLE_ENDS] += s;
+        seen_q[ray % BUNDLE_ENDS] += s;
     }
-    return seen / all;
+    struct visible visible = {seen / all, square(ERROR_AGREED)};
+    if (visible.fraction > 0.0 && visible.fraction < 1.0)
+        visible.variance = (spread_of(seen_p, all_p, visible.fraction) +
+                           spread_of(seen_q, all_q, visible.fraction)) / square(all);
+    return visible;
 }
 
 static struct piece piece_child(const struct piece *piece, int child)
@@ -181,36 +234,65 @@ static int side_to_split(const struct root_pair *pair, const struct piece *p,
     return may_p && (p_first || !may_q) ? 0 : may_q ? 1 : -1;
 }
 
-static bool is_settled(struct root_pair *pair, const struct piece *p,
-                       const struct piece *q, double fraction)
+static void add_exchange(struct root_pair *pair, double exchange)
 {
-    const struct octree *octree = pair->factors->octree;
-    struct octree_counts *counts = &pair->factors->counts;
-    return fraction == 0.0   ? facets_are_walled_off(&p->facet, &q->facet, octree, counts)
-           : fraction == 1.0 ? facets_are_open(&p->facet, &q->facet, octree, counts)
-                          : false;
+    pair->sum += flux_from_watts(pair->unit, exchange);
+    pair->factors->links++;
 }
 
-/* Adds the exchange of p and q. `otherwise`: the visible fraction of their parents'
- * pair. */
+/* Adds the exchange of p and q, G without blockers, if few triangles stand between them.
+ * False if not. */
+static bool add_past_few(struct root_pair *pair, const struct piece *p,
+                         const struct piece *q, double open)
+{
+    const struct octree *octree = pair->factors->octree;
+    bool p_views = p->facet.area <= (1.0 + 1e-6) * q->facet.area;
+    const struct facet *viewer = p_views ? &p->facet : &q->facet,
+                       *target = p_views ? &q->facet : &p->facet;
+    const int32_t own[2] = {viewer->input, target->input};
+    int32_t blockers[SCREENS_MAX];
+    struct screened past = {open, 0.0, false};
+    double tolerance = FINER * pair->threshold;
+    int32_t count = octree_list_shaft(octree, &viewer->triangle, &viewer->plane,
+                                      &target->triangle, &target->plane, own, blockers,
+                                      SCREENS_MAX, &pair->factors->counts);
+    if (count > SCREENS_MAX ||
+        (count > 0 && !screened_exchange(viewer, target, pair->factors->scene->triangles,
+                                         blockers, count, open, tolerance, &past)))
+        return false;
+    double doubt = past.agreed ? ERROR_SEEN * open : 0.0;
+    if (doubt > tolerance)
+        return false;
+    add_exchange(pair, past.exchange);
+    pair->error += past.error;
+    pair->variance += square(doubt);
+    return true;
+}
+
+/* Adds the exchange of p and q. `parents`: what is visible of their parents' pair. */
 static void add_pair(struct root_pair *pair, const struct piece *p, const struct piece *q,
-                     double otherwise)
+                     struct visible parents)
 {
     if (stop_is_asked() || !facets_face(&p->facet, &q->facet))
         return;
-    double exchange = triangle_exchange(&p->facet.triangle, &q->facet.triangle);
-    if (!(exchange > 0.0))
+    double open = triangle_exchange(&p->facet.triangle, &q->facet.triangle);
+    bool small = open <= pair->threshold;
+    if (!(open > 0.0) || (!small && add_past_few(pair, p, q, open)))
         return;
-    double fraction = fraction_seen(pair, p, q, otherwise);
-    int side = exchange <= pair->threshold ? -1 : side_to_split(pair, p, q);
-    if (side < 0 || is_settled(pair, p, q, fraction)) {
-        pair->sum += flux_from_watts(pair->unit, fraction * exchange);
-        pair->factors->links++;
+    struct visible visible = sample_pair(pair, p, q, parents);
+    int side = small ? -1 : side_to_split(pair, p, q);
+    if (side >= 0 && visible.fraction == 0.0 &&
+        facets_are_walled_off(&p->facet, &q->facet, pair->factors->octree,
+                              &pair->factors->counts))
+        return;
+    if (side < 0) {
+        add_exchange(pair, visible.fraction * open);
+        pair->variance += visible.variance * square(open);
         return;
     }
     for (int k = 0; k < 4; k++) {
         struct piece part = piece_child(side == 0 ? p : q, k);
-        add_pair(pair, side == 0 ? &part : p, side == 0 ? q : &part, fraction);
+        add_pair(pair, side == 0 ? &part : p, side == 0 ? q : &part, visible);
     }
 }
 
@@ -232,11 +314,21 @@ static struct flux_unit unit_of(const struct viewfactors *factors, int32_t i, in
     return flux_unit_for(2.0 * fmin(of_i, of_j));
 }
 
+/* Returns the unit of the variance of G_ij: no error is larger than the bound of G_ij. */
+static struct flux_unit error_unit_of(const struct viewfactors *factors, int32_t i,
+                                      int32_t j)
+{
+    return flux_unit_for(square(unit_of(factors, i, j).watt * (double)FLUX_LIMIT));
+}
+
 void viewfactors_add(struct viewfactors *factors, int32_t p, const struct facet *fp,
                      int32_t q, const struct facet *fq)
 {
     int32_t i = factors->scene->groups.of[fp->input],
             j = factors->scene->groups.of[fq->input];
+    int64_t place = place_of(factors, i, j);
+    if (factors->done[place])
+        return;
     struct root_pair pair = {
         .factors = factors,
         .threshold = factors->epsilon * fmin(factors->areas[i], factors->areas[j]),
@@ -245,10 +337,11 @@ void viewfactors_add(struct viewfactors *factors, int32_t p, const struct facet 
     };
     struct piece piece_p = {*fp, id_of_root((uint32_t)p)},
                  piece_q = {*fq, id_of_root((uint32_t)q)};
-    add_pair(&pair, &piece_p, &piece_q, 1.0);
-    factors->sums[place_of(factors, i, j)] += pair.sum;
+    add_pair(&pair, &piece_p, &piece_q, (struct visible){1.0, square(ERROR_AGREED)});
+    factors->sums[place] += pair.sum;
+    factors->errors[place] += flux_from_watts(
+        error_unit_of(factors, i, j), pair.variance + square(pair.error / LIMIT));
 }
-
 /* Returns G_ij by the pairs added so far, square scene units. */
 static double exchange_between(const struct viewfactors *factors, int32_t i, int32_t j)
 {
@@ -261,4 +354,45 @@ double viewfactors_factor(const struct viewfactors *factors, int32_t i, int32_t 
 {
     return factors->areas[i] > 0.0 ? exchange_between(factors, i, j) / factors->areas[i]
                                    : 0.0;
+}
+
+/* Returns the standard error of F_ij or F_ji, whichever is larger. */
+static double error_between(const struct viewfactors *factors, int32_t i, int32_t j)
+{
+    double area = fmin(factors->areas[i], factors->areas[j]);
+    double variance = flux_to_watts(error_unit_of(factors, i, j),
+                                    factors->errors[place_of(factors, i, j)]);
+    return area > 0.0 ? (i == j ? 2.0 : 1.0) * sqrt(variance) / area : 0.0;
+}
+
+/* Returns how many standard errors the largest of all errors is at most. */
+static double largest_of_all(const struct viewfactors *factors)
+{
+    int64_t uncertain = 0;
+    for (int64_t k = 0; k < factors->pairs; k++)
+        uncertain += factors->errors[k] > 0;
+    return sqrt(4.0 + 2.0 * logarithm(fmax(1.0, (double)uncertain)));
+}
+
+double viewfactors_error(const struct viewfactors *factors)
+{
+    double largest = 0.0;
+    for (int32_t i = 0; i < factors->count; i++)
+        for (int32_t j = i; j < factors->count; j++)
+            largest = fmax(largest, error_between(factors, i, j));
+    return largest > 0.0 ? fmax(LEAST, largest_of_all(factors) * largest) : 0.0;
+}
+
+void viewfactors_refine(struct viewfactors *factors, double accuracy)
+{
+    double most = accuracy / largest_of_all(factors);
+    double ratio = 0.5 * accuracy / viewfactors_error(factors);
+    for (int32_t i = 0; i < factors->count; i++)
+        for (int32_t j = i; j < factors->count; j++) {
+            int64_t place = place_of(factors, i, j);
+            factors->done[place] = error_between(factors, i, j) <= most;
+            if (!factors->done[place])
+                factors->sums[place] = factors->errors[place] = 0;
+        }
+    factors->epsilon *= fmax(1.0 / 16.0, fmin(0.25, ratio));
 }

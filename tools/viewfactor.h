@@ -12,7 +12,7 @@
 #include "octree/octree.h"
 #include "rad/beyond/patch_exchange.h"
 
-enum { VIEWFACTOR_GROUPS_MAX = 8192 }; /* half a matrix: a quarter of a GiB */
+enum { VIEWFACTOR_GROUPS_MAX = 8192 }; /* half a matrix: half a GiB, and more */
 
 struct viewfactors {
     const struct scene *scene;   /* borrowed */
@@ -23,6 +23,8 @@ struct viewfactors {
     double *areas;               /* [count] of the roots, square scene units */
     int32_t *roots;              /* [count] number of roots with an area */
     int64_t *sums;               /* [pairs] G_ij of i <= j, row by row, each in a unit */
+    int64_t *errors;             /* [pairs] variances of G_ij, each in a unit */
+    bool *done;                  /* [pairs] G_ij is good enough: nothing is added */
     int64_t pairs;               /* count (count + 1) / 2 */
     int64_t links;               /* parts added so far */
     struct octree_counts counts; /* work so far */
@@ -36,13 +38,23 @@ struct viewfactors *viewfactors_create(const struct scene *scene,
 void viewfactors_destroy(struct viewfactors *factors);
 
 /* Adds the exchange of the roots p < q to that of their groups. It is exact where
- * visibility is proved. Elsewhere it is refined until the exchange of two patches in
- * doubt is at most epsilon times the area of the smaller group, or max_level is reached.
+ * visibility is proved, and all but exact past few triangles. Elsewhere it is refined
+ * until the exchange of two patches in doubt is at most epsilon times the area of the
+ * smaller group, or max_level is reached.
  * Pre: facets_face(fp, fq). */
 void viewfactors_add(struct viewfactors *factors, int32_t p, const struct facet *fp,
                      int32_t q, const struct facet *fq);
 
 /* Returns F_ij by the pairs added so far; 0 for a group without area. */
 double viewfactors_factor(const struct viewfactors *factors, int32_t i, int32_t j);
+
+/* Returns the largest error of all F, as far as the pairs added so far tell; 0 if all are
+ * exact. */
+double viewfactors_error(const struct viewfactors *factors);
+
+/* Makes epsilon smaller and takes back all pairs of groups whose error makes that of all
+ * F larger than `accuracy`, so that they can be added again; the others are done, and
+ * adding to them does nothing. Pre: viewfactors_error() > accuracy > 0. */
+void viewfactors_refine(struct viewfactors *factors, double accuracy);
 
 #endif

@@ -412,6 +412,9 @@ static bool check_table(const struct options *options, struct error *error)
 /* Defaults of --epsilon and --final-gather: without --accuracy, and with it, as its
  * start. */
 static const double EPSILON = 1e-4, COARSE = 1e-3;
+
+/* That of --epsilon for form factors. */
+static const double EPSILON_FACTORS = 1e-2;
 enum { GATHER_RAYS = 256, FEW_RAYS = 64 };
 
 /* Checks the final gather: its rows find lamps in the tree, and --accuracy measures the
@@ -430,7 +433,9 @@ static bool check_gather(struct options *options, struct error *error)
     if (criterion->final_gather < 0) /* not given */
         criterion->final_gather = !tree ? 0 : accurate ? FEW_RAYS : GATHER_RAYS;
     if (criterion->epsilon < 0.0)
-        criterion->epsilon = accurate ? COARSE : EPSILON;
+        criterion->epsilon = options->form_factors ? EPSILON_FACTORS
+                             : accurate            ? COARSE
+                                                   : EPSILON;
     if (options->pixels && criterion->final_gather == 0)
         return error_set(error, EXIT_USAGE,
                          "--final-gather pixels needs rays, and a tree");
@@ -590,7 +595,7 @@ static const char HELP[] =
     "  --save-links F   those of all pairs     --load-links F  in their place\n"
     "  --checkpoint F   after each pass        --every N     only each N-th pass (1)\n"
     "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"
-    "  --form-factors   print them, as CSV     --validate    check form factors\n"
+    "  --form-factors   CSV of F, epsilon 1e-2 --validate    check form factors\n"
     "  --stats FILE     report as JSON         --verbose     levels of refinement\n"
     "  --dump patches|links  print these       --quiet       print nothing\n"
     "  --show light|mesh|owner|level|error|links:PATCH       --help, --version\n"
