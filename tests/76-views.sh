@@ -16,12 +16,14 @@ above="--view $work/above.view"
 ./phr $box $front -o "$work/front.pfm"
 ./phr $box $above -o "$work/above.ppm"
 ./phr $box -o "$work/mesh.ply"
+./phr $box -o "$work/mesh.vtk"
 for ranks in 1 4; do
     all=$work/all-$ranks
     $MPIEXEC -n $ranks ./phr $box -o "$all-first.ppm" $front -o "$all-front.ppm" \
         -o "$all-front.pfm" -o "$all-mesh.ply" $above -o "$all-above.ppm" \
+        -o "$all-mesh.vtk" \
         --stats "$all.json"
-    for output in front.ppm front.pfm above.ppm mesh.ply; do
+    for output in front.ppm front.pfm above.ppm mesh.ply mesh.vtk; do
         check "$output, with all others on $ranks ranks: as alone" \
             cmp "$all-$output" "$work/$output"
     done
@@ -43,12 +45,13 @@ check "--size overrides all views" \
 
 # --- stored solutions ---
 
-same_picture() {
-    build/imgdiff "$1" "$2" --tolerance 1e-4 >"$work/log"
+# same A B TOLERANCE: the pictures or solutions are the same.
+same() {
+    build/imgdiff "$1" "$2" --tolerance "$3" >"$work/log"
 }
 
 # shows NAME SCENE OPTIONS...: on 1 and 4 ranks, a stored solution gives the picture of
-# the run that made it, and its mesh to the byte. OPTIONS behind -- are those of both
+# the run that made it, and its leaves to the bit. OPTIONS behind -- are those of both
 # runs.
 shows() {
     name=$1
@@ -66,8 +69,8 @@ shows() {
         $MPIEXEC -n $ranks ./phr "$mesh" --quiet "$@" -o "$work/again.pfm" \
             -o "$work/again.ply"
         check "stored, $name, on $ranks ranks: the picture of the run" \
-            same_picture "$work/again.pfm" "$work/$name.pfm"
-        check "and its mesh" cmp "$work/again.ply" "$mesh"
+            same "$work/again.pfm" "$work/$name.pfm" 1e-4
+        check "and its leaves" same "$work/again.ply" "$mesh" 0
         rm -f "$work/again.pfm" "$work/again.ply"
     done
 }
@@ -128,6 +131,8 @@ check "files of the computation are refused" says 2 \
     "is a stored solution: nothing is computed for --stats, --checkpoint" \
     "$work/plain.ply" --stats "$work/new.json" --checkpoint "$work/new"
 check "and not written" [ ! -e "$work/new.json" -a ! -e "$work/new" ]
+check "so are links, which it does not have" says 2 \
+    "is a stored solution: it has no links" "$work/plain.ply" --dump links
 check "a solution without roots is refused" says 2 "a solution without its roots" \
     tests/fuzz/corpus/ply/solution.ply -o "$work/new.pfm"
 build/imgdiff "$work/plain.ply" "$work/plain.ply" -o "$work/error.ply" >"$work/log"

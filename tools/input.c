@@ -109,6 +109,9 @@ static bool check_stored(struct run *run)
         return error_set(&run->error, EXIT_USAGE,
                          "%s is a stored solution: nothing is computed for %s", path,
                          given);
+    if (run->options.dump == DUMP_LINKS)
+        return error_set(&run->error, EXIT_USAGE,
+                         "%s is a stored solution: it has no links", path);
     given = options_given(&run->options, IDLE);
     if (*given)
         run_say(run, "warning: %s is a stored solution: no use is made of %s", path,
