@@ -1,4 +1,4 @@
-# --show: pictures of the algorithm.
+# Pictures of the algorithm: --show, and the timeline of tools/timeline.awk.
 . tests/tap.sh
 
 : "${PHR:=./phr}"
@@ -61,4 +61,18 @@ check "no such pixel" refused links:64,0 'there is no such patch'
 check "no patch named" refused links 'of which patch'
 check "no error without a final gather" refused error 'no error without' --final-gather 0
 check "no such picture" refused leaves 'is not one of light|mesh'
+
+# The timeline: as much work as the slowest ranks of all levels do one after another.
+$MPIEXEC -n 3 "$PHR" scenes/cornell.obj --quiet --paper --epsilon 1e-3 \
+    --stats "$work/run.json"
+awk -f tools/timeline.awk "$work/run.json" >"$work/run.svg"
+sum=$(sed -n 's/.*"iteration": [1-9].*"work_max": \([0-9]*\).*/\1/p' "$work/run.json" |
+    awk '{ sum += $1 } END { print sum }')
+check "the timeline is as long as the levels' most work ($sum)" \
+    grep -q ">run: $sum tests" "$work/run.svg"
+check "and has a row for each of 3 ranks" \
+    [ "$(grep -c 'text-anchor="end">[0-2]<' "$work/run.svg")" -eq 3 ]
+echo >"$work/none.json"
+awk -f tools/timeline.awk "$work/none.json" >"$work/none.svg" 2>"$work/err"
+check "a file without levels is refused" grep -q 'no levels' "$work/err"
 tap_done
