@@ -43,3 +43,33 @@ for epsilon in 1e-2 1e-3; do
 done
 patches mesh-coarse -v from="3 -4 2.6" -v white=60 <$work/mesh-1e-2
 patches mesh-fine -v from="3 -4 2.6" -v white=60 <$work/mesh-1e-3
+# Corners of the patches of pushpull.c, from their paths.
+$work/pushpull | awk '
+    function half(i, j) { return (i + j) / 2 }
+    $3 ~ /[0-9]/ && $1 != "patch" {
+        path = substr($1, 3)
+        ax = ay = by = cx = 0
+        bx = cy = 1
+        for (s = 1; s <= length(path); s++) {
+            px = half(ax, bx); py = half(ay, by); qx = half(bx, cx); qy = half(by, cy)
+            rx = half(cx, ax); ry = half(cy, ay)
+            k = substr(path, s, 1)
+            if (k == 0) { bx = px; by = py; cx = rx; cy = ry }
+            if (k == 1) { ax = px; ay = py; cx = qx; cy = qy }
+            if (k == 2) { ax = rx; ay = ry; bx = qx; by = qy }
+            if (k == 3) { ax = qx; ay = qy; bx = rx; by = ry; cx = px; cy = py }
+        }
+        print $4, 0, ax, ay, 0, bx, by, 0, cx, cy, 0
+    }' | patches push-pull -v from="0 0 1" -v names=1
+for balance in none greedy default; do
+    awk -v name=$balance '/"level": .*"work_mean"/ {
+        gsub(/[",:{}]/, " ")
+        for (i = 1; i < NF; i++)
+            value[$i] = $(i + 1)
+        if (value["iteration"] > 0 && value["work_mean"] >= 100)
+            print name, ++n, value["work_max"] / value["work_mean"] }' \
+        $work/balance-$balance.json
+done | chart balance "Most work of a rank, in means" "level (of more than 100 tests a rank)" \
+    "work / mean"
+awk 'NR > 1 { print $1, $3, $4 / 100 }' $work/errors.txt |
+    chart errors "Two rooms and a doorway" links "RMS error of objects" -v logx=1 -v logy=1
