@@ -207,7 +207,7 @@ scaling: $(PHR) $(BUILD)/replay build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/tables.sh
 
 # The programs of docs/course/.
-COURSE = $(patsubst docs/course/%.c,build/course/%,$(wildcard docs/course/*.c))
+COURSE = build/id $(patsubst docs/course/%.c,build/course/%,$(wildcard docs/course/*.c))
 
 build/course/%: docs/course/%.c $(BUILD)/libphr.a
 	@mkdir -p $(@D)

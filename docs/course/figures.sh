@@ -66,10 +66,10 @@ for balance in none greedy default; do
         gsub(/[",:{}]/, " ")
         for (i = 1; i < NF; i++)
             value[$i] = $(i + 1)
-        if (value["iteration"] > 0 && value["work_mean"] >= 100)
+        if (value["iteration"] > 0 && value["work_mean"] >= 50)
             print name, ++n, value["work_max"] / value["work_mean"] }' \
         $work/balance-$balance.json
-done | chart balance "Most work of a rank, in means" "level (of more than 100 tests a rank)" \
+done | chart balance "Most work of a rank of 8, in means" "level (of more than 50 tests a rank)" \
     "work / mean"
 awk 'NR > 1 { print $1, $3, $4 / 100 }' $work/errors.txt |
     chart errors "Two rooms and a doorway" links "RMS error of objects" -v logx=1 -v logy=1
