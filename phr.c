@@ -16,6 +16,7 @@
 #include "mpi/broadcast.h"
 #include "mpi/memory.h"
 #include "geom/signals.h"
+#include "tools/balance.h"
 #include "tools/dump.h"
 #include "tools/factors.h"
 #include "tools/input.h"
@@ -247,7 +248,7 @@ int main(int argc, char **argv)
     } else if (parsed && compute_light(&run)) {
         if (!run.stored && (!run.options.quiet || run.options.stats))
             solver_measure_row_sums(run.solver, &run.stats);
-        if (results_show(&run) && dump_print(&run))
+        if (balance_is_absurd(&run) || (results_show(&run) && dump_print(&run)))
             report_summary(&run);
     }
     if (run.comm.rank == 0 && (fflush(stdout) != 0 || ferror(stdout)))

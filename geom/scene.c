@@ -172,6 +172,13 @@ static int64_t clamp_reflectances(struct scene *scene)
     return clamped;
 }
 
+void scene_take_radiances(struct scene *scene)
+{
+    for (int32_t m = 0; m < scene->material_count; m++)
+        for (int c = 0; c < BANDS; c++)
+            scene->materials[m].emission.band[c] *= PI;
+}
+
 /* Computes area and plane, unless they are 0. True if they are not. */
 static bool measure_triangle(struct scene *scene, int32_t i)
 {

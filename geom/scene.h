@@ -100,6 +100,9 @@ void scene_add_normals(struct scene *scene);
 /* Makes room for the names of `count` groups, of `bytes` bytes with their zeros. */
 void scene_set_groups(struct scene *scene, int32_t count, int64_t bytes);
 
+/* Takes the emissions for radiances, W/m^2/sr, of which radiosities are made. */
+void scene_take_radiances(struct scene *scene);
+
 /* Moves and scales the positions, clamps reflectances, drops degenerate triangles and
  * doubles, computes planes and areas. To be called once, on positions in input units.
  * Errors: no triangle with an area; a coordinate or extent out of the range of the

@@ -92,4 +92,39 @@ are_the_notes() {
 }
 check "statements without effect are noted once for each kind" are_the_notes
 
+# emitted FILE OPTIONS...: the emitted power, W.
+emitted() {
+    ./phr --epsilon 1e-2 --final-gather 0 "$@" 2>/dev/null |
+        sed -n 's/^power *\([^ ]*\) W emitted.*/\1/p'
+}
+cat >"$work/lamp.ply" <<END
+ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+element face 1
+property list uchar int vertex_indices
+property float emission_r
+property float emission_g
+property float emission_b
+end_header
+0 0 0
+1 0 0
+0 1 0
+3 0 1 2 1 1 1
+END
+try "0.5 0.5 0.5" "1 1 1"
+for lamp in scene.obj lamp.ply; do
+    radiosity=$(emitted "$work/$lamp" --ke radiosity)
+    radiance=$(emitted "$work/$lamp" --ke radiance)
+    check "$lamp: $radiosity W by radiosity, $radiance by radiance" \
+        holds "$radiosity == 1.5 && ($radiance / 1.5 - 3.14159265) ^ 2 < 1e-10"
+done
+./phr "$work/scene.obj" --quiet --ke radiance --checkpoint "$work/of-radiance"
+said=$(./phr "$work/scene.obj" --quiet --resume "$work/of-radiance" 2>&1)
+check "a checkpoint of radiances does not go on with radiosities" \
+    [ "$said" = "phr: $work/of-radiance: made with --ke radiance, this run has --ke radiosity" ]
+
 tap_done

@@ -183,6 +183,8 @@ static bool read_scene(struct run *run)
         return false;
     if (run->stored)
         return true;
+    if (run->options.ke == KE_RADIANCE)
+        scene_take_radiances(run->scene);
     run->scene->two_sided = run->options.two_sided;
     run->scene->two_sided_lamps = run->options.two_sided_lamps;
     struct error wrong = {0};

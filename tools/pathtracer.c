@@ -107,6 +107,8 @@ static bool read_scene(struct tracing *run)
                                     : obj_read(path, &read, &run->error);
     if (!run->scene)
         return false;
+    if (run->options.ke == KE_RADIANCE)
+        scene_take_radiances(run->scene);
     run->scene->two_sided = run->options.two_sided;
     run->scene->two_sided_lamps = run->options.two_sided_lamps;
     if (!scene_prepare(run->scene, &prepared, &run->error))

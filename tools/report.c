@@ -7,6 +7,7 @@
 #include "io/run/files.h"
 #include "io/run/stats.h"
 #include "mpi/memory.h"
+#include "tools/balance.h"
 
 /* Prints the share of a rank in a level. */
 static void report_share(struct run *run, int rank, const struct level_share *share)
@@ -87,28 +88,6 @@ void report_forecast(struct run *run)
                 1e-6 * (double)memory_needed(&memory, 1, 0, roots));
 }
 
-/* Least excess of absorbed over emitted power, and least correction of a closed scene's
- * balance, that are warned of; relative to the power. */
-static const double ABSORBED_TOO_MUCH = 0.01, OFF_BALANCE = 0.05;
-
-static void warn_balance(struct run *run)
-{
-    const struct stats *stats = &run->stats;
-    double much = stats->absorbed_power / stats->emitted_power - 1.0;
-    if (much > ABSORBED_TOO_MUCH)
-        run_say(run,
-                "warning: %.3g %% more light is absorbed than emitted: "
-                "faces may lie on each other or be there twice, "
-                "or --epsilon is too large",
-                100.0 * much);
-    else if (stats->gathered.closing > OFF_BALANCE)
-        run_say(run,
-                "warning: light of this closed scene was off its balance by %.3g %%, "
-                "which is made up for: --epsilon is too large, rays are too few, "
-                "or faces lie on each other",
-                100.0 * stats->gathered.closing);
-}
-
 /* Reasons why --accuracy was not reached, in the order of enum hold. */
 static const char *const HOLDS[] = {
     "", "--max-level is in the way", "--min-area is in the way",
@@ -154,7 +133,7 @@ bool report_summary(struct run *run)
                     "warning: the error is %.2g %%, not the %.3g %% of --accuracy: %s",
                     100.0 * run->stats.error_estimate, 100.0 * run->stats.accuracy,
                     HOLDS[run->stats.hold]);
-        warn_balance(run);
+        balance_judge(run);
         if (!run->options.quiet && !run->options.dump)
             stats_print(&run->stats,
                         files_take_stdout(&run->options) ? stderr : stdout);

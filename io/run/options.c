@@ -50,6 +50,7 @@ static const struct option OPTIONS[] = {
     {"--alpha", KIND_REAL, FIELD(criterion.alpha), 0, 1, NULL},
     {"--tolerance", KIND_REAL, FIELD(criterion.tolerance), 0, 1, NULL},
     {"--max-iterations", KIND_INTEGER, FIELD(criterion.max_iterations), 1, 1e9, NULL},
+    {"--ke", KIND_CHOICE, FIELD(ke), 0, 0, "radiosity|radiance"},
     {"--two-sided", KIND_FLAG, FIELD(two_sided), 0, 0, NULL},
     {"--two-sided-lamps", KIND_FLAG, FIELD(two_sided_lamps), 0, 0, NULL},
     {"--save-links", KIND_TEXT, FIELD(save_links), 0, 0, NULL},
@@ -553,10 +554,10 @@ const char *options_given(const struct options *options, const char *const *name
 const char *options_link_settings(const struct options *options)
 {
     static const char *const BY_ENERGY[] = {
-        "--two-sided", "--two-sided-lamps", "--oracle", "--form-factor", NULL};
+        "--two-sided", "--two-sided-lamps", "--ke", "--oracle", "--form-factor", NULL};
     static const char *const BY_ERROR[] = { /* visibility is refined by --epsilon, too */
-        "--two-sided", "--two-sided-lamps", "--oracle", "--form-factor", "--epsilon",
-        NULL};
+        "--two-sided", "--two-sided-lamps", "--ke", "--oracle", "--form-factor",
+        "--epsilon", NULL};
     bool by_error = options->criterion.oracle == ORACLE_ERROR;
     return describe_all(options, by_error ? BY_ERROR : BY_ENERGY);
 }
@@ -564,7 +565,8 @@ const char *options_link_settings(const struct options *options)
 const char *options_run_settings(const struct options *options)
 {
     static const char *const NAMES[] = {
-        "--two-sided", "--two-sided-lamps", "--oracle", "--linking", "--form-factor",
+        "--two-sided", "--two-sided-lamps", "--ke", "--oracle", "--linking",
+        "--form-factor",
         "--solver", "--epsilon", "--accuracy", "--max-level", "--min-area", NULL};
     return describe_all(options, NAMES);
 }
@@ -591,7 +593,7 @@ static const char HELP[] =
     "  --linking tree|pairs  where links begin --final-gather N[,pixels]  rays (256)\n"
     "  --solver cg|jacobi  over the links      --balance default|greedy|none\n"
     "  --paper          the paper's of these   --alpha A     inherited cost (0.5)\n"
-    "  --two-sided      backs reflect, too     --two-sided-lamps  those of lamps\n"
+    "  --two-sided, and --two-sided-lamps      --ke radiosity|radiance  unit of Ke\n"
     "  --save-links F   those of all pairs     --load-links F  in their place\n"
     "  --checkpoint F   after each pass        --every N     only each N-th pass (1)\n"
     "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"

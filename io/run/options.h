@@ -29,6 +29,9 @@ enum show { SHOW_LIGHT, SHOW_MESH, SHOW_OWNER, SHOW_LEVEL, SHOW_ERROR, SHOW_LINK
 /* What --dump prints. */
 enum dump { DUMP_NOTHING, DUMP_PATCHES, DUMP_LINKS };
 
+/* How a scene states the light of its lamps. */
+enum ke { KE_RADIOSITY, KE_RADIANCE };
+
 struct options {
     const char *scene;        /* path of the scene, NULL with help, version or validate */
     struct target *outputs;   /* [output_count] owned */
@@ -49,6 +52,7 @@ struct options {
     enum show show;
     const char *show_patch;   /* of SHOW_LINKS: ROOT/PATH or X,Y; else NULL */
     double exposure;          /* 0: chosen from the picture */
+    enum ke ke;               /* of Ke, and of the emissions of a PLY file */
     bool two_sided;           /* backs reflect */
     bool two_sided_lamps;     /* backs of lamps, too; only with two_sided */
     bool flat, quiet, verbose, help, version, validate, form_factors;

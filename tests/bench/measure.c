@@ -256,6 +256,8 @@ static struct scene *read_all(struct measure *measure)
     struct scene *scene = NULL;
     if (measure->comm.rank == 0 &&
         (scene = obj_read(measure->options.scene, &read, error))) {
+        if (measure->options.ke == KE_RADIANCE)
+            scene_take_radiances(scene);
         scene->two_sided = measure->options.two_sided;
         scene->two_sided_lamps = measure->options.two_sided_lamps;
         if (scene_prepare(scene, &prepared, error))

@@ -337,7 +337,7 @@ enum { NUMBER_COUNT = sizeof NUMBERS / sizeof NUMBERS[0] };
 static const char *const OTHERS[][2] = {
     {"-o", " a.ppm"}, {"--view", " a"}, {"--size", " 2x3"}, {"--stats", " a"},
     {"--oracle", " bf"}, {"--flat", ""}, {"--two-sided", ""}, {"--quiet", ""},
-    {"--two-sided-lamps", ""}, {"--verbose", ""}, {"--validate", ""}, {"--help", ""},
+    {"--two-sided-lamps", ""}, {"--ke", "radiance"}, {"--verbose", ""}, {"--validate", ""}, {"--help", ""},
     {"--version", ""}, {"--linking", " pairs"}, {"--form-factor", " disk"},
     {"--solver", " cg"}, {"--balance", " greedy"}, {"--dump", " links"},
     {"--show", " links:5/023"}, {"--paper", ""},
@@ -525,11 +525,13 @@ static void test_settings(void)
     struct options options;
     parse("a.obj", &options);
     tap_ok(is_same(options_link_settings(&options),
-                   "--two-sided off\n--two-sided-lamps off\n--oracle error\n"
+                   "--two-sided off\n--two-sided-lamps off\n--ke radiosity\n"
+                   "--oracle error\n"
                    "--form-factor polygon\n--epsilon 0.0001\n"),
            "the options that links are bound to");
     tap_ok(is_same(options_run_settings(&options),
-                   "--two-sided off\n--two-sided-lamps off\n--oracle error\n"
+                   "--two-sided off\n--two-sided-lamps off\n--ke radiosity\n"
+                   "--oracle error\n"
                    "--linking tree\n--form-factor polygon\n--solver cg\n"
                    "--epsilon 0.0001\n--accuracy 0\n--max-level 10\n"
                    "--min-area 9.9999999999999995e-08\n"),
@@ -537,8 +539,8 @@ static void test_settings(void)
     options_free(&options);
     parse("a.obj --paper --two-sided --epsilon 0.5", &options);
     tap_ok(is_same(options_link_settings(&options),
-                   "--two-sided on\n--two-sided-lamps off\n--oracle bf\n"
-                   "--form-factor disk\n"),
+                   "--two-sided on\n--two-sided-lamps off\n--ke radiosity\n"
+                   "--oracle bf\n--form-factor disk\n"),
            "by energy, epsilon does not matter to links");
     options_free(&options);
     parse("a.obj --two-sided-lamps", &options);
@@ -547,6 +549,13 @@ static void test_settings(void)
                strncmp(options_run_settings(&options), BOTH, strlen(BOTH)) == 0,
            "twins of lamps do");
     options_free(&options);
+    parse("a.obj --ke radiance", &options);
+    tap_ok(options.ke == KE_RADIANCE &&
+               strstr(options_link_settings(&options), "--ke radiance\n") &&
+               strstr(options_run_settings(&options), "--ke radiance\n"),
+           "and what Ke is");
+    options_free(&options);
+    check_refused("a.obj --ke watts", "--ke: 'watts' is not one of radiosity|radiance");
 }
 
 static void test_bad_sizes(void)

@@ -1,0 +1,113 @@
+/* The balance of powers: absorbed + escaped = emitted.
+ *
+ * The sums tell of faces that lie on each other in one plane, but are not the same: light
+ * comes to both. They are not dropped, for a lamp in its ceiling or a picture on a wall
+ * are such faces, too, and do no harm.
+ *
+ * Light that escapes from a closed scene is lost. A scene counts as closed if hardly any
+ * ray in a random direction from the fronts that have light leaves it (those of a house,
+ * outside, are dark); of an open one, the first few do. Light that falls on black backs
+ * is lost, too. */
+#include "tools/balance.h"
+
+#include <math.h>
+
+#include "geom/hash.h"
+
+/* Parts of the emitted power that are warned of, absorbed beyond it or lost; the
+ * correction of a closed scene's balance that is; and the ratio of absorbed to emitted
+ * power above which a run has failed. */
+static const double OFF = 0.01, OFF_BALANCE = 0.05, ABSURD = 1.5;
+
+static const double ABOVE = 1024.0 * GEOM_ROUNDING; /* start of a ray, scene units */
+
+enum { RAYS = 100000, CRACKS = 1 }; /* rays that may leave a closed scene */
+
+bool balance_is_absurd(const struct run *run)
+{
+    return run->vote.absorbed > ABSURD * scene_emitted_power(run->scene);
+}
+
+/* A number in -1 .. 1. */
+static double random_between(uint64_t seed)
+{
+    return 2.0 * hash_unit(seed) - 1.0;
+}
+
+/* True if a ray from a random point of the root, in a random direction, leaves. */
+static bool leaves(const struct run *run, int32_t root, uint64_t seed)
+{
+    struct triangle t = scene_root_triangle(run->scene, root);
+    struct vec3 normal = scene_root_plane(run->scene, root).normal;
+    double u = hash_unit(seed), v = hash_unit(seed + 1);
+    if (u + v > 1.0) {
+        u = 1.0 - u;
+        v = 1.0 - v;
+    }
+    struct vec3 along = vec3_add(vec3_scale(vec3_sub(t.corner[1], t.corner[0]), u),
+                                 vec3_scale(vec3_sub(t.corner[2], t.corner[0]), v));
+    struct vec3 x = vec3_add(vec3_add(t.corner[0], along), vec3_scale(normal, ABOVE));
+    struct vec3 d = {random_between(seed + 2), random_between(seed + 3),
+                     random_between(seed + 4)};
+    double rise = vec3_dot(d, normal);
+    struct octree_counts counts = {0};
+    struct octree_hit hit;
+    return rise != 0.0 && !octree_first_hit(run->octree, x,
+                                            rise > 0.0 ? d : vec3_scale(d, -1.0), false,
+                                            &hit, &counts);
+}
+
+/* The area of a root that has light. */
+static double lit_area(const struct run *run, int32_t root)
+{
+    const struct forest *forest = run->solver->model.forest;
+    return rgb_sum(forest->radiosity[root]) > 0.0 ? scene_root_area(run->scene, root)
+                                                  : 0.0;
+}
+
+/* Fires rays from all roots that have light, evenly by area. */
+static bool is_closed(const struct run *run)
+{
+    int32_t roots = scene_root_count(run->scene);
+    double all = 0.0, sum = 0.0;
+    int64_t ray = 0;
+    int lost = 0;
+    for (int32_t root = 0; root < roots; root++)
+        all += lit_area(run, root);
+    for (int32_t root = 0; root < roots && lost <= CRACKS; root++) {
+        sum += lit_area(run, root);
+        for (; (double)ray < sum / all * RAYS && lost <= CRACKS; ray++)
+            lost += leaves(run, root, hash_mix((uint64_t)ray));
+    }
+    return lost <= CRACKS;
+}
+
+void balance_judge(struct run *run)
+{
+    static const char CAUSE[] = "faces may lie on each other, or --epsilon is too large";
+    const struct stats *stats = &run->stats;
+    double absorbed = stats->absorbed_power / stats->emitted_power;
+    double escaped = stats->escaped_power / stats->emitted_power;
+    if (balance_is_absurd(run))
+        error_set(&run->error, EXIT_FAILED,
+                  "%.3g times as much light is absorbed as emitted: %s", absorbed, CAUSE);
+    else if (absorbed > 1.0 + OFF)
+        run_say(run, "warning: %.3g %% more light is absorbed than emitted: %s",
+                100.0 * (absorbed - 1.0), CAUSE);
+    else if (escaped < -OFF)
+        run_say(run, "warning: %.3g %% more light arrives than leaves: %s",
+                -100.0 * escaped, CAUSE);
+    else if (stats->gathered.closing > OFF_BALANCE)
+        run_say(run,
+                "warning: light of this closed scene was off its balance by %.3g %%, "
+                "which is made up for: --epsilon is too large, rays are too few, "
+                "or faces lie on each other",
+                100.0 * stats->gathered.closing);
+    else if (escaped > OFF && is_closed(run))
+        run_say(run,
+                "warning: %.3g %% of the light of this closed scene is lost: "
+                "%sit falls on black backs (see --two-sided), faces lie on each other, "
+                "or --epsilon is too large",
+                100.0 * escaped,
+                run->vote.converged ? "" : "there are too few iterations, ");
+}

@@ -1,0 +1,16 @@
+/* Whether the powers of a run can be true. */
+#ifndef TOOLS_BALANCE_H
+#define TOOLS_BALANCE_H
+
+#include "tools/run.h"
+
+/* True, on all ranks alike, if so much more light is absorbed than emitted that the
+ * answer is worth nothing. Pre: compute_light() has succeeded. */
+bool balance_is_absurd(const struct run *run);
+
+/* On rank 0. Warns if more light is absorbed than emitted, or arrives than leaves, or is
+ * lost in a closed scene; if it is absurd, sets run->error (EXIT_FAILED). Pre: run->stats
+ * is filled. */
+void balance_judge(struct run *run);
+
+#endif
