@@ -77,7 +77,8 @@ enum hold {
     HOLD_RAYS,    /* no leaf can have more */
     HOLD_EPSILON, /* it is as small as can be, or helps no more */
     HOLD_ROUNDS,  /* there were as many as there may be */
-    HOLD_DOUBT    /* paths do not tell the error well enough */
+    HOLD_DOUBT,   /* paths do not tell the error well enough */
+    HOLD_NOTHING  /* no surface reflects light: there is nothing to measure */
 };
 
 /* The last final gather of all ranks. */

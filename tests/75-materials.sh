@@ -57,6 +57,8 @@ Kd 0.5 0.5 0.5
 d 0.25
 newmtl painted
 map_Kd wood.png
+newmtl
+Kd 0.5 0.5 0.5
 END
 cat >"$work/notes.obj" <<END
 mtllib notes.mtl
@@ -81,6 +83,7 @@ said=$(./phr "$work/notes.obj" 2>&1 >"$work/stdout" | grep warning)
 notes="phr: $work/notes.obj: warning:"
 expected="$notes 1 material file(s) missing (first: absent.mtl)
 $notes 1 material(s) without a definition, taken as grey (first: nothing)
+$notes 1 newmtl without a name: taken as the material of usemtl without one
 $notes 1 transparent material(s) (d or Tr), taken as opaque
 $notes 1 material(s) with a texture, which is not read: Kd counts, or grey
 $notes 2 corner(s) with a vn that is no direction, or not there: ignored
@@ -122,9 +125,20 @@ for lamp in scene.obj lamp.ply; do
     check "$lamp: $radiosity W by radiosity, $radiance by radiance" \
         holds "$radiosity == 1.5 && ($radiance / 1.5 - 3.14159265) ^ 2 < 1e-10"
 done
+sed 's/^1 0 0$/& 7/' "$work/lamp.ply" >"$work/long.ply"
+said=$(./phr "$work/long.ply" 2>&1 >"$work/stdout" | grep warning)
+long="1 line(s) with more values than the header says, passed over (first: line 14)"
+check "values that the header does not have are passed over, which is said" \
+    [ "$said" = "phr: $work/long.ply: warning: $long" ]
 ./phr "$work/scene.obj" --quiet --ke radiance --checkpoint "$work/of-radiance"
 said=$(./phr "$work/scene.obj" --quiet --resume "$work/of-radiance" 2>&1)
 check "a checkpoint of radiances does not go on with radiosities" \
     [ "$said" = "phr: $work/of-radiance: made with --ke radiance, this run has --ke radiosity" ]
+
+try "0 0 0" "1 1 1"
+./phr "$work/scene.obj" --accuracy 1% >"$work/stdout" 2>"$work/said"
+check "--accuracy does not converge where no surface reflects" \
+    [ -n "$(grep '^iterations .*(not converged)' "$work/stdout")" -a \
+        "$(grep -c 'warning: --accuracy has nothing to measure' "$work/said")" = 1 ]
 
 tap_done

@@ -23,6 +23,11 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
                 "%s: warning: %lld material(s) without a definition, "
                 "taken as grey (first: %s)",
                 path, (long long)read->materials.count, read->materials.first);
+    if (read->nameless > 0)
+        run_say(run,
+                "%s: warning: %lld newmtl without a name: "
+                "taken as the material of usemtl without one",
+                path, (long long)read->nameless);
     if (read->transparent > 0)
         run_say(run,
                 "%s: warning: %lld transparent material(s) (d or Tr), taken as opaque",
@@ -152,6 +157,11 @@ static bool read_ply(struct run *run)
         good = take_stored(run, &file);
     else if (good)
         run->scene = ply_of_file(&file, &run->error);
+    if (good && file.long_lines > 0)
+        run_say(run,
+                "%s: warning: %lld line(s) with more values than the header says, "
+                "passed over (first: line %ld)",
+                run->options.scene, (long long)file.long_lines, file.first_long);
     ply_file_close(&file);
     return good && run->scene;
 }

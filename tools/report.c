@@ -93,7 +93,7 @@ static const char *const HOLDS[] = {
     "", "--max-level is in the way", "--min-area is in the way",
     "the memory limit is in the way", "--max-iterations is in the way",
     "leaves cannot have more rays", "a smaller epsilon no longer helps",
-    "too many rounds", "paths do not tell it well enough"};
+    "too many rounds", "paths do not tell it well enough", ""};
 
 /* Of a stored solution, which has no links, powers or times. */
 static void print_stored(struct run *run)
@@ -128,7 +128,10 @@ bool report_summary(struct run *run)
         else if (!run->vote.converged)
             run_say(run, "warning: not converged after %lld iterations",
                     (long long)run->stats.iterations);
-        if (run->stats.hold != HOLD_NONE)
+        if (run->stats.hold == HOLD_NOTHING)
+            run_say(run, "warning: --accuracy has nothing to measure: "
+                         "no surface reflects light");
+        else if (run->stats.hold != HOLD_NONE)
             run_say(run,
                     "warning: the error is %.2g %%, not the %.3g %% of --accuracy: %s",
                     100.0 * run->stats.error_estimate, 100.0 * run->stats.accuracy,

@@ -17,7 +17,8 @@ static const char *const PHASE_NAMES[PHASE_COUNT] = {
 /* In the order of enum hold. */
 static const char *const HOLD_NAMES[] = {"none",    "level",      "area",
                                          "memory",  "iterations", "rays",
-                                         "epsilon", "rounds",     "doubt"};
+                                         "epsilon", "rounds",     "doubt",
+                                         "nothing"};
 
 static const char *const WORK_NAMES[WORK_COUNT] = {
     "linking", "looks", "splitting", "transfer", "own", "patches", "final_gather"};

@@ -78,17 +78,15 @@ static bool read_colour(const struct text *text, const char *keyword, char *rest
     return true;
 }
 
-static bool start_material(struct mtl_table *table, const struct text *text, char *rest,
-                           int32_t *current, struct error *error)
+/* Returns the number of the material that a newmtl line begins. */
+static int32_t start_material(struct mtl_table *table, char *rest)
 {
     const char *name = text_trim(rest);
-    if (!*name)
-        return error_set(error, EXIT_USAGE, "%s:%ld: newmtl without a name", text->path,
-                         text->line);
-    *current = mtl_find(table, name);
-    bool used = table->entries[*current].used;
-    table->entries[*current] = (struct mtl_entry){.defined = true, .used = used};
-    return true;
+    int32_t number = mtl_find(table, name);
+    bool used = table->entries[number].used;
+    table->entries[number] = (struct mtl_entry){.defined = true, .used = used};
+    table->nameless += *name == '\0';
+    return number;
 }
 
 /* Notes d or Tr for a warning: surfaces are opaque. A malformed value is no error. */
@@ -118,8 +116,10 @@ static bool read_line(struct mtl_table *table, const struct text *text, char *li
     const char *keyword = text_word(&line);
     if (!keyword)
         return true;
-    if (is_keyword(keyword, "newmtl"))
-        return start_material(table, text, line, current, error);
+    if (is_keyword(keyword, "newmtl")) {
+        *current = start_material(table, line);
+        return true;
+    }
     bool is_kd = is_keyword(keyword, "kd");
     bool is_colour = is_kd || is_keyword(keyword, "ke");
     if (*current < 0 && is_colour)

@@ -29,6 +29,7 @@ struct mtl_table {
     struct text_names names;   /* material i has the name names.name[i] */
     struct mtl_entry *entries; /* [names.count] */
     int64_t capacity;          /* of entries */
+    int64_t nameless;          /* newmtl lines without a name: their name is "" */
 };
 
 /* Returns the number of the material `name`. A new name is added, not yet defined. */

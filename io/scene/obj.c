@@ -62,7 +62,7 @@ struct obj_reader {
     struct obj_triangles triangles;
     struct obj_corner *corners;    /* of the current face */
     int64_t corner_count, corner_capacity;
-    struct mtl_table materials;    /* number 0: for faces without a material */
+    struct mtl_table materials;    /* NO_MATERIAL, NAMELESS, those with names */
     int32_t material;              /* of the next face */
     struct text_names libraries;   /* names tried by library_read() */
     struct text_names groups;      /* names of groups, also of those without a face */
@@ -75,6 +75,10 @@ struct obj_reader {
 static const double DIRECTION_MIN = 1e-100;
 
 static const char DEFAULT_GROUP[] = "default";
+
+/* The first materials: of faces before any usemtl, and behind one without a name. If no
+ * newmtl lacks its name, the second is the first. */
+enum { NO_MATERIAL, NAMELESS };
 
 static void vectors_add(struct obj_vectors *vectors, struct vec3 vector)
 {
@@ -296,8 +300,9 @@ static bool read_line(struct obj_reader *reader, char *line)
 
 static bool read_lines(struct obj_reader *reader)
 {
-    reader->material = mtl_find(&reader->materials, "");
-    reader->materials.entries[reader->material].defined = true;
+    reader->material = mtl_find(&reader->materials, "\n"); /* no line has this name */
+    reader->materials.entries[NO_MATERIAL].defined = true;
+    mtl_find(&reader->materials, "");
     reader->group = text_names_add(&reader->groups, DEFAULT_GROUP);
     for (char *line; (line = text_line(&reader->text)) != NULL;)
         if (!stop_check(reader->error) || !read_line(reader, line))
@@ -311,9 +316,15 @@ static bool read_lines(struct obj_reader *reader)
 static int32_t number_materials(const struct obj_reader *reader, int32_t *number)
 {
     struct obj_repairs *repairs = reader->repairs;
+    struct mtl_entry *entries = reader->materials.entries;
     int32_t count = 0;
+    repairs->nameless = reader->materials.nameless;
+    if (!entries[NAMELESS].defined) {
+        entries[NO_MATERIAL].used = entries[NO_MATERIAL].used || entries[NAMELESS].used;
+        entries[NAMELESS].used = false;
+    }
     for (int32_t i = 0; i < reader->materials.names.count; i++) {
-        const struct mtl_entry *entry = &reader->materials.entries[i];
+        const struct mtl_entry *entry = &entries[i];
         number[i] = count;
         count += entry->used;
         if (entry->used && !entry->defined)
@@ -321,6 +332,8 @@ static int32_t number_materials(const struct obj_reader *reader, int32_t *number
         repairs->transparent += entry->used && entry->transparent;
         repairs->textured += entry->used && entry->textured;
     }
+    if (!entries[NAMELESS].defined)
+        number[NAMELESS] = number[NO_MATERIAL];
     return count;
 }
 

@@ -5,10 +5,10 @@
  * as text, two characters for each value. So a file of a hundred bytes cannot ask for a
  * billion vertices. The count of a list is checked in the same way.
  *
- * A record of a text file is a line, as the format's description has it. Readers that
- * ignore line ends forgive broken lines, but one value too many then shifts all later
- * ones and gives a wrong scene without a message. For the same reason only blanks may
- * follow the last record.
+ * A record of a text file is a line, as the format's description has it. Values behind
+ * its last are passed over and counted: to a reader that ignores line ends one value too
+ * many shifts all later ones, and gives a wrong scene without a message. For the same
+ * reason only blanks may follow the last record.
  *
  * Values of properties that are not read may be NaN; all others have to be finite. The
  * types of the header hold for binary files only: a text file may write 300 for a
@@ -425,8 +425,8 @@ bool ply_file_record(struct ply_file *file, const struct ply_element *element,
     for (int64_t i = 0; i < element->property_count; i++)
         if (!take_property(file, &file->header.properties[element->property + i], error))
             return false;
-    if (file->ascii && *text_trim(file->rest))
-        return ply_fail(file, error, "more values than the header says");
+    if (file->ascii && *text_trim(file->rest) && file->long_lines++ == 0)
+        file->first_long = file->line;
     return true;
 }
 

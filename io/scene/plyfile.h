@@ -72,6 +72,8 @@ struct ply_file {
     const char *record_name;         /* the name of the element, or "row", for messages */
     long line;                       /* number of the current text line */
     char *rest;                      /* unread part of the current text line */
+    int64_t long_lines;              /* with more values than the header says, so far */
+    long first_long;                 /* number of the first of them */
 };
 
 /* Reads the file. Errors: "PATH: not a PLY file" among those of binary_read(). */

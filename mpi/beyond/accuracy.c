@@ -203,6 +203,10 @@ static bool wants_more(struct solver *solver, int64_t links, bool *lowered)
 {
     struct accuracy *accuracy = &solver->beyond->accuracy;
     accuracy->rounds++;
+    if (solver->beyond->answer.counts.checked == 0) {
+        accuracy->hold = HOLD_NOTHING;
+        return false;
+    }
     if (solver->beyond->answer.counts.error <= solver->model.criterion.accuracy)
         return false;
     if (accuracy->rounds == ROUNDS_MOST) {

@@ -448,9 +448,25 @@ static void test_bad_libraries(void)
     check_library_refused("newmtl a\nke #\n",
                           MTL ":2: ke has 0 numbers instead of 1 or 3");
     check_library_refused("newmtl a\nKd red\n", MTL ":2: bad number 'red'");
-    check_library_refused("newmtl  \n", MTL ":1: newmtl without a name");
     check_library_refused("Ka 1\nKd 1 1 1\n", MTL ":2: Kd before newmtl");
     check_library_refused("newmtl a\n\x01\n", MTL ": not a text file");
+}
+
+/* A material without a name is that of usemtl without one, and of no other face. */
+static void test_nameless(void)
+{
+    write_file(MTL, "newmtl  \nKd 0.25 0.25 0.25\nKe 1 1 1\nnewmtl b\n");
+    struct scene *scene = read_scene("mtllib obj_test.mtl\n" CORNERS
+                                     "f 1 2 3\nusemtl\nf 1 3 4\nusemtl b\nf 1 2 4\n");
+    const double expected[3][2] = {{0.5, 0.0}, {0.25, 1.0}, {0.0, 0.0}};
+    bool right = scene && repairs.nameless == 1 && repairs.materials.count == 0;
+    for (int i = 0; right && i < 3; i++) {
+        const struct material *m = &scene->materials[scene->material_of[i]];
+        right = m->reflectance.band[0] == expected[i][0] &&
+                m->emission.band[0] == expected[i][1];
+    }
+    tap_ok(right, "a material without a name: %s", error.text);
+    scene_destroy(scene);
 }
 
 static void test_bad_files(void)
@@ -519,6 +535,7 @@ int main(void)
     test_libraries();
     test_many_names();
     test_bad_libraries();
+    test_nameless();
     test_bad_files();
     test_random_bytes();
     remove(OBJ);

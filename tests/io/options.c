@@ -337,7 +337,8 @@ enum { NUMBER_COUNT = sizeof NUMBERS / sizeof NUMBERS[0] };
 static const char *const OTHERS[][2] = {
     {"-o", " a.ppm"}, {"--view", " a"}, {"--size", " 2x3"}, {"--stats", " a"},
     {"--oracle", " bf"}, {"--flat", ""}, {"--two-sided", ""}, {"--quiet", ""},
-    {"--two-sided-lamps", ""}, {"--ke", "radiance"}, {"--verbose", ""}, {"--validate", ""}, {"--help", ""},
+    {"--two-sided-lamps", ""}, {"--ke", "radiance"}, {"--verbose", ""},
+    {"--validate", ""}, {"--help", ""},
     {"--version", ""}, {"--linking", " pairs"}, {"--form-factor", " disk"},
     {"--solver", " cg"}, {"--balance", " greedy"}, {"--dump", " links"},
     {"--show", " links:5/023"}, {"--paper", ""},

@@ -207,8 +207,8 @@ static void test_two_sided(void)
     check_room("two-sided faces", shoot(scene, 512, 512), 0.2, true);
 }
 
-/* A two-sided room, higher than wide: nothing but a lamp at the top tells which way is
- * up. One with a black back does, one that shines both ways does not. */
+/* A two-sided room, higher than wide: nothing but the front of a lamp at the top tells
+ * which way is up, whether its back shines, too, or not. */
 static void test_two_sided_lamps(void)
 {
     for (int both = 0; both < 2; both++) {
@@ -224,7 +224,33 @@ static void test_two_sided_lamps(void)
         scene->two_sided = true;
         scene->two_sided_lamps = both;
         check_room(both ? "a lamp that shines both ways" : "a lamp in a two-sided room",
-                   shoot(scene, 512, 512), 0.2, !both);
+                   shoot(scene, 512, 512), 0.2, true);
+    }
+}
+
+/* A tower along y, whose shortest side is along z: with twins it is a room from within,
+ * and the lamps on its ceilings, or its floors, say that y is up. */
+static void test_tower(void)
+{
+    for (int lamps = 0; lamps < 3; lamps++) {
+        struct soup soup = {0};
+        soup_add_box(&soup, ZERO, (struct vec3){4.0, 20.0, 3.0}, 1, false);
+        for (int storey = 1; storey < 20; storey++)
+            soup_add_quad(&soup, (struct vec3){0.5, 1.0 * storey, 0.5},
+                          (struct vec3){0.0, 0.0, 2.5}, (struct vec3){3.5, 0.0, 0.0}, 1);
+        int32_t first = (int32_t)soup.count;
+        soup_add_quad(&soup, (struct vec3){1.0, 9.9, 1.0}, (struct vec3){1.0, 0.0, 0.0},
+                      (struct vec3){0.0, 0.0, 1.0}, 1);
+        struct scene *scene = scene_of_soup(&soup, 2);
+        soup_free(&soup);
+        scene->materials[0] = material_grey(0.5, lamps == 2 ? 1.0 : 0.0);
+        scene->materials[1] = material_grey(0.5, 1.0);
+        scene->material_of[first] = scene->material_of[first + 1] = 1;
+        scene->two_sided = true;
+        scene->two_sided_lamps = lamps > 0;
+        static const char *const NAMES[] = {"a two-sided tower", "with two-sided lamps",
+                                            "that glows all over"};
+        check_room(NAMES[lamps], shoot(scene, 512, 512), 0.01, false);
     }
 }
 
@@ -332,6 +358,7 @@ int main(void)
     test_generated();
     test_two_sided();
     test_two_sided_lamps();
+    test_tower();
     test_dark_room();
     test_objects();
     test_lamp_from_below();
