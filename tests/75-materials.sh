@@ -132,8 +132,9 @@ check "values that the header does not have are passed over, which is said" \
     [ "$said" = "phr: $work/long.ply: warning: $long" ]
 ./phr "$work/scene.obj" --quiet --ke radiance --checkpoint "$work/of-radiance"
 said=$(./phr "$work/scene.obj" --quiet --resume "$work/of-radiance" 2>&1)
+made="made with --ke radiance, this run has --ke radiosity"
 check "a checkpoint of radiances does not go on with radiosities" \
-    [ "$said" = "phr: $work/of-radiance: made with --ke radiance, this run has --ke radiosity" ]
+    [ "$said" = "phr: $work/of-radiance: $made" ]
 
 try "0 0 0" "1 1 1"
 ./phr "$work/scene.obj" --accuracy 1% >"$work/stdout" 2>"$work/said"

@@ -2,7 +2,8 @@
  *
  * The sums tell of faces that lie on each other in one plane, but are not the same: light
  * comes to both. They are not dropped, for a lamp in its ceiling or a picture on a wall
- * are such faces, too, and do no harm.
+ * are such faces, too, and do no harm. Of lamps that lie on each other the sums tell
+ * nothing, since both emit; rays do that fall on lamps from close above.
  *
  * Light that escapes from a closed scene is lost. A scene counts as closed if hardly any
  * ray in a random direction from the fronts that have light leaves it (those of a house,
@@ -19,9 +20,14 @@
  * power above which a run has failed. */
 static const double OFF = 0.01, OFF_BALANCE = 0.05, ABSURD = 1.5;
 
-static const double ABOVE = 1024.0 * GEOM_ROUNDING; /* start of a ray, scene units */
+/* Starts of rays over a surface, and over all others in its plane, scene units. */
+static const double ABOVE = 1024.0 * GEOM_ROUNDING, HEIGHT = 0x1p-20;
 
-enum { RAYS = 100000, CRACKS = 1 }; /* rays that may leave a closed scene */
+enum {
+    LAMP_RAYS = 10000, /* onto all lamps */
+    RAYS = 100000,     /* from all fronts that have light */
+    CRACKS = 1         /* of these, so many may leave a closed scene */
+};
 
 bool balance_is_absurd(const struct run *run)
 {
@@ -34,8 +40,9 @@ static double random_between(uint64_t seed)
     return 2.0 * hash_unit(seed) - 1.0;
 }
 
-/* True if a ray from a random point of the root, in a random direction, leaves. */
-static bool leaves(const struct run *run, int32_t root, uint64_t seed)
+/* A random point above the root. */
+static struct vec3 point_over(const struct run *run, int32_t root, double height,
+                              uint64_t seed)
 {
     struct triangle t = scene_root_triangle(run->scene, root);
     struct vec3 normal = scene_root_plane(run->scene, root).normal;
@@ -46,7 +53,14 @@ static bool leaves(const struct run *run, int32_t root, uint64_t seed)
     }
     struct vec3 along = vec3_add(vec3_scale(vec3_sub(t.corner[1], t.corner[0]), u),
                                  vec3_scale(vec3_sub(t.corner[2], t.corner[0]), v));
-    struct vec3 x = vec3_add(vec3_add(t.corner[0], along), vec3_scale(normal, ABOVE));
+    return vec3_add(vec3_add(t.corner[0], along), vec3_scale(normal, height));
+}
+
+/* True if a ray from a random point of the root, in a random direction, leaves. */
+static bool leaves(const struct run *run, int32_t root, uint64_t seed)
+{
+    struct vec3 normal = scene_root_plane(run->scene, root).normal;
+    struct vec3 x = point_over(run, root, ABOVE, seed);
     struct vec3 d = {random_between(seed + 2), random_between(seed + 3),
                      random_between(seed + 4)};
     double rise = vec3_dot(d, normal);
@@ -55,6 +69,35 @@ static bool leaves(const struct run *run, int32_t root, uint64_t seed)
     return rise != 0.0 && !octree_first_hit(run->octree, x,
                                             rise > 0.0 ? d : vec3_scale(d, -1.0), false,
                                             &hit, &counts);
+}
+
+/* True if a lamp lies over a random point of the root, in its plane. */
+static bool is_under_lamp(const struct run *run, int32_t root, uint64_t seed)
+{
+    struct vec3 normal = scene_root_plane(run->scene, root).normal;
+    struct octree_counts counts = {0};
+    struct octree_hit hit;
+    if (!octree_first_hit(run->octree, point_over(run, root, HEIGHT, seed),
+                          vec3_scale(normal, -1.0), false, &hit, &counts))
+        return false;
+    int32_t over = scene_root_on(run->scene, hit.triangle, hit.front);
+    return over >= 0 && hit.triangle != scene_input_of(run->scene, root) &&
+           material_emits(scene_root_material(run->scene, over));
+}
+
+/* The share of the emitted power that comes from lamps under others. */
+static double share_under_lamps(const struct run *run)
+{
+    const struct scene *scene = run->scene;
+    double all = scene_emitted_power(scene), sum = 0.0;
+    int64_t ray = 0, under = 0;
+    for (int32_t root = 0; root < scene_root_count(scene); root++) {
+        sum += scene_root_area(scene, root) *
+               rgb_sum(scene_root_material(scene, root)->emission);
+        for (; (double)ray < sum / all * LAMP_RAYS; ray++)
+            under += is_under_lamp(run, root, hash_mix((uint64_t)ray));
+    }
+    return (double)under / LAMP_RAYS;
 }
 
 /* The area of a root that has light. */
@@ -88,9 +131,15 @@ void balance_judge(struct run *run)
     const struct stats *stats = &run->stats;
     double absorbed = stats->absorbed_power / stats->emitted_power;
     double escaped = stats->escaped_power / stats->emitted_power;
+    double under = share_under_lamps(run);
     if (balance_is_absurd(run))
         error_set(&run->error, EXIT_FAILED,
                   "%.3g times as much light is absorbed as emitted: %s", absorbed, CAUSE);
+    else if (under > OFF)
+        run_say(run,
+                "warning: %.3g %% of the light is emitted under other lamps "
+                "in the same plane, and is there twice",
+                100.0 * under);
     else if (absorbed > 1.0 + OFF)
         run_say(run, "warning: %.3g %% more light is absorbed than emitted: %s",
                 100.0 * (absorbed - 1.0), CAUSE);
@@ -106,8 +155,8 @@ void balance_judge(struct run *run)
     else if (escaped > OFF && is_closed(run))
         run_say(run,
                 "warning: %.3g %% of the light of this closed scene is lost: "
-                "%sit falls on black backs (see --two-sided), faces lie on each other, "
-                "or --epsilon is too large",
+                "%sit may fall on black backs (see --two-sided), "
+                "faces may lie on each other, or --epsilon is too large",
                 100.0 * escaped,
                 run->vote.converged ? "" : "there are too few iterations, ");
 }

@@ -9,8 +9,8 @@
 bool balance_is_absurd(const struct run *run);
 
 /* On rank 0. Warns if more light is absorbed than emitted, or arrives than leaves, or is
- * lost in a closed scene; if it is absurd, sets run->error (EXIT_FAILED). Pre: run->stats
- * is filled. */
+ * lost in a closed scene, or if lamps lie on each other; if it is absurd, sets run->error
+ * (EXIT_FAILED). Pre: run->stats is filled. */
 void balance_judge(struct run *run);
 
 #endif

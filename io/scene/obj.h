@@ -26,7 +26,7 @@ struct obj_repairs {
     struct text_missing libraries; /* mtllib files that could not be opened */
     int64_t bad_normals;           /* corners whose vn is absent or 0: without a normal */
     int64_t transparent;           /* used materials with d or Tr: opaque instead */
-    int64_t nameless;              /* newmtl lines without a name: meant by usemtl without */
+    int64_t nameless;              /* newmtl lines without a name, as of usemtl */
     int64_t textured;              /* used materials with map_Kd: of one colour instead */
     int64_t unknown_lines;         /* lines with unknown keywords: skipped */
     long first_unknown;            /* number of the first such line */

@@ -245,7 +245,7 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
             absorbed += g->bare[i] * (1.0 - rho) * h[i].band[c];
             arriving += g->bare[i] * h[i].band[c];
             leaving += g->bare[i] * (b[i].band[c] - m->emission.band[c]) +
-                       shining_area(g, i) * m->emission.band[c];
+                       g->areas[i] * m->emission.band[c]; /* what is covered, is lost */
             brightest = fmax(brightest, rho);
         }
     }
