@@ -19,6 +19,7 @@
 #include "tools/balance.h"
 #include "tools/dump.h"
 #include "tools/factors.h"
+#include "tools/idle.h"
 #include "tools/input.h"
 #include "tools/report.h"
 #include "tools/results.h"
@@ -234,7 +235,10 @@ int main(int argc, char **argv)
                   options_parse(&run.options, argc, argv, &run.error);
     if (run.comm.rank == 0 && !run.options.quiet)
         progress_view_open(&run.progress, comm_seconds);
-    if (parsed && (run.options.help || run.options.version)) {
+    bool words = run.options.help || run.options.version;
+    if (parsed && !words)
+        idle_warn(&run);
+    if (parsed && words) {
         if (run.comm.rank == 0 && run.options.help)
             options_print_help(stdout);
         else if (run.comm.rank == 0)

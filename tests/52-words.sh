@@ -50,6 +50,40 @@ esac
 number=$(echo "$version" | sed 's/^phr \([0-9.]*\).*/\1/')
 check "the man page is of this version" grep -q "^\.TH PHR 1 .*\"phr $number\"" phr.1
 
+# --- options that do nothing ---
+
+# idle RANKS NAMES ARGUMENTS...: one warning names these, or none if there are none.
+idle() {
+    on=$1 names=$2
+    shift 2
+    $MPIEXEC -n "$on" ./phr "$@" 2>"$work/log" >"$work/out"
+    said=$(sed -n 's/^phr: warning: no use is made of //p' "$work/log")
+    [ "$said" = "$names" ] && return
+    echo "# expected '$names', got '$said'"
+    return 1
+}
+
+box="scenes/cornell.obj --max-level 0 --final-gather 16"
+mesh="$work/idle.ply"
+for ranks in 1 4; do
+    check "without a picture, on $ranks" idle $ranks "--size, --samples" \
+        $box --size 9x9 --samples 2 --flat -o "$mesh"
+    check "without an output, on $ranks" \
+        idle $ranks "--size, --exposure, --final-gather pixels" $box --size 9x9 \
+        --exposure 2 --final-gather 16,pixels
+    check "with --form-factors, on $ranks" idle $ranks "--samples, --solver, --memory" \
+        scenes/squares.obj --form-factors --samples 2 --solver cg --memory 1G --epsilon 1
+done
+check "without 8-bit colours" idle 1 "--exposure" $box --size 9x9 --exposure 2 \
+    -o "$work/idle.pfm"
+check "with --validate" idle 1 "--epsilon, -o, scenes/cornell.obj" scenes/cornell.obj \
+    --validate --epsilon 1 -o "$mesh"
+check "overruled by --paper" idle 1 "--solver: --paper follows" scenes/squares.obj \
+    --solver cg --oracle error --paper --oracle error
+check "none, where all do something" idle 1 "" $box --size 9x9 --samples 2 --exposure 2 \
+    --flat -o "$work/idle.ppm"
+check "nor with --quiet" idle 1 "" $box --quiet --size 9x9
+
 # --- progress ---
 
 run="./phr scenes/cornell.obj --max-level 3 --samples 8 --size 128x128"

@@ -225,6 +225,18 @@ check "to the end" [ "$(stat_of "$work/grown.json" converged)" = true ]
 run still 3 $fine --memory 2M --resume "$work/small-4.check" >/dev/null
 check "and not where there is not" same still small-1
 
+# The limit ends a pass that is not the first: from the checkpoint of the pass before, it
+# ends there again.
+later="scenes/cornell.obj --epsilon 3e-6 --linking pairs --size 20x20 --memory 12M"
+run later 2 $later >/dev/null
+check "a limit in the second pass" grep -q '(1547 split)' "$work/later.err"
+for ranks in 1 4; do
+    $MPIEXEC -n $ranks "$PHR" $later --quiet --max-iterations 5 \
+        --checkpoint "$work/later.check"
+    run later-$ranks $((5 - ranks)) $later --resume "$work/later.check" >/dev/null
+    check "comes again, from a checkpoint of $ranks" same later-$ranks later
+done
+
 # Limits that hold --accuracy back: said in words, with the error that was reached.
 # held NAME HOLD WORDS OPTIONS...
 held() {

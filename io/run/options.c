@@ -8,6 +8,7 @@
 #include <ctype.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
@@ -58,7 +59,7 @@ static const struct option OPTIONS[] = {
     {"--checkpoint", KIND_TEXT, FIELD(checkpoint), 0, 0, NULL},
     {"--every", KIND_INTEGER, FIELD(every), 1, 1e9, NULL},
     {"--resume", KIND_TEXT, FIELD(resume), 0, 0, NULL},
-    {"--memory", KIND_BYTES, FIELD(memory), 0, 0, NULL},
+    {"--memory", KIND_BYTES, FIELD(memory), 1, 1e18, NULL},
     {"--stats", KIND_TEXT, FIELD(stats), 0, 0, NULL},
     {"--dump", KIND_CHOICE, FIELD(dump), 0, 0, "nothing|patches|links"},
     {"--show", KIND_SHOW, FIELD(show), 0, 0, "light|mesh|owner|level|error|links"},
@@ -252,21 +253,21 @@ static bool set_bytes(const struct option *option, const char *value, int64_t *f
 {
     static const char UNITS[] = "KMGT";
     const char *at = value;
-    int64_t number;
-    if (text_integer(&at, &number) && number >= 1) {
-        const char *unit = *at ? strchr(UNITS, *at) : NULL;
-        double bytes = (double)number;
-        for (const char *u = UNITS; unit && u <= unit; u++)
-            bytes *= 1024.0;
-        at += unit ? 1 : 0;
-        if (*at == '\0' && bytes <= 1e18) {
-            *field = (int64_t)bytes;
-            return true;
-        }
-    }
-    return error_set(error, EXIT_USAGE,
-                     "%s: '%s' is not a number of bytes, such as 512M or 2G",
-                     option->name, value);
+    int64_t digits; /* at most 18 of them */
+    bool number = text_integer(&at, &digits);
+    const char *unit = number && *at ? strchr(UNITS, *at) : NULL;
+    if (!number || at[unit != NULL] != '\0')
+        return error_set(error, EXIT_USAGE,
+                         "%s: '%s' is not a number of bytes, such as 512M or 2G",
+                         option->name, value);
+    double bytes = strtod(value, NULL);
+    for (const char *u = UNITS; unit && u <= unit; u++)
+        bytes *= 1024.0;
+    if (!(bytes >= option->low && bytes <= option->high))
+        return error_set(error, EXIT_USAGE, "%s: %s is not between %g and %g bytes",
+                         option->name, value, option->low, option->high);
+    *field = (int64_t)bytes;
+    return true;
 }
 
 /* Sets rays and pixels: N, "pixels", or both as "N,pixels". */
@@ -311,6 +312,17 @@ static bool set_show(struct options *options, const struct option *option,
     return good;
 }
 
+/* Sets the path of a file, of which there is one. */
+static bool set_text(const struct option *option, const char *value, const char **field,
+                     struct error *error)
+{
+    if (*field)
+        return error_set(error, EXIT_USAGE, "%s is given twice: %s and %s", option->name,
+                         *field, value);
+    *field = value;
+    return true;
+}
+
 static void set_paper(struct criterion *criterion)
 {
     criterion->oracle = ORACLE_BF;
@@ -347,8 +359,7 @@ static bool set_value(struct options *options, const struct option *option,
     case KIND_CHOICE:
         return set_choice(option, value, (int *)(void *)field, error);
     default:
-        *(const char **)(void *)field = value;
-        return true;
+        return set_text(option, value, (const char **)(void *)field, error);
     }
 }
 
@@ -477,8 +488,10 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
             return error_set(error, EXIT_USAGE, "unknown option %s; see --help",
                              argument);
         options->given |= UINT64_C(1) << (option - OPTIONS);
+        options->overruled &= ~(UINT64_C(1) << (option - OPTIONS));
         if (option->kind == KIND_PAPER) {
             set_paper(&options->criterion);
+            options->overruled = options->given;
             continue;
         }
         if (option->kind == KIND_FLAG) {

@@ -58,6 +58,7 @@ struct options {
     bool flat, quiet, verbose, help, version, validate, form_factors;
     struct criterion criterion;
     uint64_t given;           /* bit i: the i-th option of the parser's table */
+    uint64_t overruled;       /* the same: given before --paper, and not behind it */
 };
 
 /* Reads the arguments; the strings stay those of argv. Release with options_free(), also

@@ -457,10 +457,24 @@ static void test_memory(void)
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
         snprintf(line, sizeof line, "a.obj --memory %s", BAD[i][0] ? BAD[i] : "_");
         tap_ok(!parse(line, &options) && error.code == EXIT_USAGE &&
-                   strstr(error.text, "--memory: '") == error.text,
+                   strstr(error.text, "--memory: ") == error.text,
                "--memory '%s' is refused", BAD[i]);
         options_free(&options);
     }
+}
+
+static void test_range_of_memory(void)
+{
+    check_refused("a.obj --memory 99999999999999999999",
+                  "--memory: 99999999999999999999 is not between 1 and 1e+18 bytes");
+    check_refused("a.obj --memory 9999999T",
+                  "--memory: 9999999T is not between 1 and 1e+18 bytes");
+    check_refused("a.obj --memory 0", "--memory: 0 is not between 1 and 1e+18 bytes");
+    check_refused("a.obj --memory -1G", "--memory: -1G is not between 1 and 1e+18 bytes");
+    check_refused("a.obj --memory 1e9",
+                  "--memory: '1e9' is not a number of bytes, such as 512M or 2G");
+    check_refused("a.obj --stats a.json --stats b.json",
+                  "--stats is given twice: a.json and b.json");
 }
 
 static void test_restart(void)
@@ -705,6 +719,7 @@ int main(void)
     test_bad_sizes();
     test_missing_values();
     test_memory();
+    test_range_of_memory();
     test_restart();
     test_settings();
     test_help();

@@ -1,0 +1,98 @@
+/* Options that do nothing in the chosen mode. A list names the options that one purpose
+ * alone makes use of; the options that bound a computation are in no list, since every
+ * computation heeds them. What is of no use to a stored solution is known when it is read
+ * (tools/input.c). */
+#include "tools/idle.h"
+
+enum { NAMES_MOST = 64 };
+
+/* Names of options; the last is NULL. */
+struct names {
+    const char *name[NAMES_MOST];
+    int count;
+};
+
+static const char *const PICTURE[] = {"--size", "--samples", "--show", NULL};
+static const char *const COLOUR[] = {"--exposure", NULL};
+static const char *const OUTPUT[] = {"--flat", NULL};
+static const char *const LIGHT[] = {
+    "--min-area", "--oracle", "--linking", "--form-factor", "--solver", "--balance",
+    "--final-gather", "--paper", "--alpha", "--tolerance", "--max-iterations", "--memory",
+    NULL};
+static const char *const FACTORS[] = {"--epsilon", "--accuracy", "--max-level",
+                                      "--two-sided", "--two-sided-lamps", NULL};
+static const char *const FILES[] = {"-o", "--view", "--stats", "--dump", "--save-links",
+                                    "--load-links", "--checkpoint", "--every",
+                                    "--resume", "--form-factors", "--verbose", NULL};
+static const char *const METHOD[] = {"--oracle", "--linking", "--form-factor",
+                                     "--solver", "--balance", NULL};
+
+static void add(struct names *names, const char *const *list)
+{
+    for (; *list; list++)
+        names->name[names->count++] = *list;
+}
+
+/* True if the pictures show light, a mesh or links: patches that are drawn over light. */
+static bool shows_light(const struct options *options)
+{
+    return options->show == SHOW_LIGHT || options->show == SHOW_MESH ||
+           options->show == SHOW_LINKS;
+}
+
+/* Adds the options that are of no use to the outputs. Returns true if pixels that gather
+ * are among them. */
+static bool add_idle(const struct options *options, struct names *names)
+{
+    bool pictures = false, colours = false, light = false;
+    for (int i = 0; i < options->output_count; i++) {
+        enum output_format format = options->outputs[i].format;
+        bool picture = !format_is_mesh(format);
+        pictures = pictures || picture;
+        colours = colours || format == FORMAT_PPM || format == FORMAT_PNG ||
+                  format == FORMAT_PLY;
+        light = light || !picture || shows_light(options);
+    }
+    if (!pictures)
+        add(names, PICTURE);
+    if (!colours)
+        add(names, COLOUR);
+    if (!light)
+        add(names, OUTPUT);
+    return options->pixels && !(pictures && shows_light(options));
+}
+
+static void warn_overruled(struct run *run)
+{
+    struct options before = run->options;
+    before.given = run->options.overruled;
+    const char *given = options_given(&before, METHOD);
+    if (*given)
+        run_say(run, "warning: no use is made of %s: --paper follows", given);
+}
+
+void idle_warn(struct run *run)
+{
+    const struct options *options = &run->options;
+    struct names names = {.count = 0};
+    bool pixels = false;
+    if (options->validate || options->form_factors) {
+        add(&names, PICTURE);
+        add(&names, COLOUR);
+        add(&names, OUTPUT);
+        add(&names, LIGHT);
+    } else {
+        warn_overruled(run);
+        pixels = add_idle(options, &names);
+    }
+    if (options->validate) {
+        add(&names, FACTORS);
+        add(&names, FILES);
+    }
+    const char *given = options_given(options, names.name);
+    bool scene = options->validate && options->scene;
+    if (*given || pixels || scene)
+        run_say(run, "warning: no use is made of %s%s%s%s", given,
+                *given && (pixels || scene) ? ", " : "", scene ? options->scene : "",
+                pixels ? "--final-gather pixels" : "");
+}

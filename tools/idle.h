@@ -1,0 +1,11 @@
+/* Options that do nothing in the chosen mode. */
+#ifndef TOOLS_IDLE_H
+#define TOOLS_IDLE_H
+
+#include "tools/run.h"
+
+/* Warns once of the options given that do nothing for --validate, --form-factors, or
+ * the outputs asked for; and of those that --paper behind them overrules. */
+void idle_warn(struct run *run);
+
+#endif
