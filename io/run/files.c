@@ -73,6 +73,9 @@ bool files_check(const struct options *options, struct error *error)
     for (int i = 0; i < options->view_count; i++)
         if (!files_check_input(options, options->views[i], error))
             return false;
+    if (options->dump && files_take_stdout(options))
+        return error_set(error, EXIT_USAGE,
+                         "--dump and an output to the standard output do not go together");
     return check_formats(options, error) && check_outputs(options, error);
 }
 

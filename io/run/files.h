@@ -6,8 +6,9 @@
 #include "io/run/options.h"
 
 /* Refuses outputs without a format that are neither device nor pipe, and outputs that
- * lead to a file that is read, or to that of another output, however they are spelt; but
- * a run may renew the checkpoint that it was resumed from. EXIT_USAGE. */
+ * lead to a file that is read, or to that of another output, however they are spelt, or
+ * to the standard output beside --dump; but a run may renew the checkpoint that it was
+ * resumed from. EXIT_USAGE. */
 bool files_check(const struct options *options, struct error *error);
 
 /* The same for one more file that is read. */

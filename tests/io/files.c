@@ -107,6 +107,9 @@ static void test_outputs(void)
     check_refused("m.ply --paper --save-links d/l --checkpoint e/../d/l",
                   "d/l and e/../d/l are the same file");
     check_refused("m.ply -o ppm:pipe -o pfm:./pipe", "pipe and ./pipe are the same file");
+    check_refused("m.ply -o pfm:- --dump links",
+                  "--dump and an output to the standard output do not go together");
+    check_taken("m.ply -o a.pfm --dump links", "a dump and a file");
     check_taken("m.ply -o a.ppm -o d/a.ppm", "two folders");
     check_taken("m.ply -o old.ppm -o hard.ppm", "two names of one file");
     check_taken("m.ply -o ppm:/dev/null --stats /dev/null", "a device twice");
