@@ -105,6 +105,16 @@ static bool read_header(struct binary *binary, double *exposure, struct error *e
            refuse(binary, error, line ? "bad exposure of the picture" : ENDS);
 }
 
+/* Passes the text and a number behind it. False if they are not there. */
+static bool pass_number(const char **at, const char *text, int64_t *value)
+{
+    size_t length = strlen(text);
+    if (strncmp(*at, text, length) != 0)
+        return false;
+    *at += length;
+    return text_integer(at, value);
+}
+
 /* Reads "-Y HEIGHT +X WIDTH". */
 static bool read_size(struct binary *binary, struct image *image, struct error *error)
 {
@@ -112,8 +122,7 @@ static bool read_size(struct binary *binary, struct image *image, struct error *
     const char *line = next_line(binary);
     if (!line)
         return refuse(binary, error, ENDS);
-    if (strncmp(line, "-Y ", 3) != 0 || (line += 3, !text_integer(&line, &height)) ||
-        strncmp(line, " +X ", 4) != 0 || (line += 4, !text_integer(&line, &width)) ||
+    if (!pass_number(&line, "-Y ", &height) || !pass_number(&line, " +X ", &width) ||
         *line)
         return refuse(binary, error, "the size of the picture is not '-Y N +X N'");
     if (height < 1 || width < 1 || height > IMAGE_SIDE_MOST || width > IMAGE_SIDE_MOST)

@@ -6,7 +6,7 @@
  * has one prefix code that is good for such bytes: 1 bit for 0, 3 bits for 1 and -1, and
  * two bits more for each doubling. It needs no counts of bytes and no tree, and the file
  * is a quarter of the PPM (Cornell box; a room of 1,000: a third), where zlib -9 comes to
- * a seventh. Blocks without a code ("stored") would save 40 lines here. */
+ * a seventh. Blocks without a code ("stored") would save 50 lines here. */
 #include "io/picture/png.h"
 
 #include <stdint.h>
