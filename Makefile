@@ -20,7 +20,8 @@
 #                        docs/tables.md: Tables 1 and 2 of the paper
 #   make course          the programs, outputs and figures of docs/course/
 #   make exercise N=1    tests answers to the exercises of a chapter
-#   make answers         scenes/answers.csv: the light of the scenes for lectures, by paths
+#   make answers         scenes/answers.csv: the light of the scenes for lectures, by
+#                        paths
 #   make prove           what takes longer: errors over six fourfold steps of epsilon;
 #                        pictures beside the
 #                        path tracer's; kills at forty moments

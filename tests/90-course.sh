@@ -1,6 +1,6 @@
 # The course: commands print what the chapters show, exercises fail until they are solved,
-# the text names what is there, radiosity.c stands alone and agrees with phr, and the scenes
-# for lectures have the light of scenes/answers.csv.
+# the text names what is there, radiosity.c stands alone and agrees with phr, and the
+# scenes for lectures have the light of scenes/answers.csv.
 
 . tests/tap.sh
 
@@ -54,8 +54,8 @@ done
 quoted() {
     grep -ohE "\`$1\`" $course/*.md | tr -d '\`' | sort -u
 }
-gone=$(quoted '[a-zA-Z0-9_]+[a-zA-Z0-9_./-]*/[a-zA-Z0-9_.-]+\.[a-z0-9]+' | grep -v '^build/' |
-    while read -r file; do [ -e "$file" ] || echo "$file"; done)
+gone=$(quoted '[a-zA-Z0-9_]+[a-zA-Z0-9_./-]*/[a-zA-Z0-9_.-]+\.[a-z0-9]+' |
+    grep -v '^build/' | while read -r file; do [ -e "$file" ] || echo "$file"; done)
 check "the files that the course names are there: $gone" [ -z "$gone" ]
 gone=$(quoted '[a-z0-9_]+\(\)' | while read -r name; do
     grep -qE "^[a-z].*\b${name%()}\(" phr.c ./*/*.[ch] ./*/beyond/*.[ch] io/*/*.[ch] \

@@ -21,8 +21,8 @@ static void print_patch(const struct run *run, double unit, int32_t p)
     char name[LABEL_SIZE], above[LABEL_SIZE] = "-";
     if (parent >= 0)
         label_write(forest->patches[parent].id, above);
-    printf("%s %d %s %.9g %.9g %.9g %.9g %d\n", label_write(id, name), id_level(id), above,
-           unit * forest_area(forest, p), b.band[0], b.band[1], b.band[2],
+    printf("%s %d %s %.9g %.9g %.9g %.9g %d\n", label_write(id, name), id_level(id),
+           above, unit * forest_area(forest, p), b.band[0], b.band[1], b.band[2],
            run->solver->homes.owner[id.root]);
 }
 

@@ -43,9 +43,9 @@ static void print_id(struct patch_id id)
     for (int step = 0; step < level; step++)
         printf(" %d", id_step(id, step));
     printf(level ? "\n" : " (the root itself)\n");
+    struct patch_id parent = {id.root, id.hierarchy >> 2};
     if (level)
-        printf("parent     %s\n", label_write((struct patch_id){id.root, id.hierarchy >> 2},
-                                              name));
+        printf("parent     %s\n", label_write(parent, name));
     if (level < ID_MAX_LEVEL)
         printf("child 0    %s\n", label_write(id_child(id, 0), name));
 }
@@ -54,7 +54,8 @@ int main(int argc, char **argv)
 {
     struct patch_id id;
     if (argc != 2 || !(read_number(argv[1], &id) || label_read(argv[1], &id))) {
-        fprintf(stderr, "usage: id NUMBER | ROOT/PATH   such as 0x1B, 27, 5/023, top/1\n");
+        fprintf(stderr,
+                "usage: id NUMBER | ROOT/PATH   such as 0x1B, 27, 5/023, top/1\n");
         return 2;
     }
     if (!id_is_valid(id)) {

@@ -1,5 +1,5 @@
-/* Names of nodes in texts: ROOT/PATH for a patch, top/PATH for a cluster, a digit for each
- * step down. 5/ is root 5, 5/02 child 2 of its child 0, top/ the whole scene. */
+/* Names of nodes in texts: ROOT/PATH for a patch, top/PATH for a cluster, a digit for
+ * each step down. 5/ is root 5, 5/02 child 2 of its child 0, top/ the whole scene. */
 #ifndef TOOLS_LABEL_H
 #define TOOLS_LABEL_H
 

@@ -41,7 +41,8 @@ static struct rgb heat(double x)
 
 /* Hues of neighbouring ranks, a golden section apart, and of neighbouring levels, from
  * blue over green and yellow to red. */
-static const double HUE_OF_RANK = 0.6180339887498949, HUE_OF_LEVEL = 0.08, BLUE = 1.0 / 3.0;
+static const double HUE_OF_RANK = 0.6180339887498949, HUE_OF_LEVEL = 0.08;
+static const double BLUE = 1.0 / 3.0;
 
 /* A colour of the circle, which has length 1. */
 static struct rgb hue(double turn)
@@ -366,7 +367,8 @@ static bool overlay_links(struct run *run, const struct camera *camera,
                           const int32_t *leaves, float *picture)
 {
     int32_t *order = forest_order(run->solver->model.forest);
-    struct found_links found = {.model = &run->solver->model, .order = order, .patch = -1};
+    struct found_links found = {
+        .model = &run->solver->model, .order = order, .patch = -1};
     if (run->comm.rank == 0)
         found.patch = named_patch(run, camera, leaves);
     bool good = run_agree(run);

@@ -16,8 +16,8 @@ struct rgb *show_colours(struct run *run);
 /* The flat shading of these colours, in place of the radiosities of the leaves. */
 struct shading *show_shading(struct run *run, struct rgb *colours);
 
-/* Collective. Draws over a picture, which rank 0 has: outlines of the leaves (--show mesh,
- * owner, level), or the links of a patch. False on an error, on all ranks. */
+/* Collective. Draws over a picture, which rank 0 has: outlines of the leaves (--show
+ * mesh, owner, level), or the links of a patch. False on an error, on all ranks. */
 bool show_overlay(struct run *run, const struct camera *camera, float *picture);
 
 #endif

@@ -63,8 +63,8 @@ struct survey {
     uint8_t *open;       /* [count]; NULL: leaves are only counted */
 };
 
-/* True if the ray from a point of the plane meets a back, or a front less than `gap` above
- * the plane. */
+/* True if the ray from a point of the plane meets a back, or a front less than `gap`
+ * above the plane. */
 static bool is_shut(const struct survey *survey, const struct plane *plane,
                     struct vec3 start, struct vec3 direction, double gap)
 {
@@ -87,7 +87,8 @@ static bool is_shut(const struct survey *survey, const struct plane *plane,
 static bool is_covered(const struct survey *survey, struct vec3 point,
                        const struct plane *plane, const struct triangle *aside)
 {
-    struct vec3 start = vec3_add(point, vec3_scale(plane->normal, 1024.0 * GEOM_ROUNDING));
+    struct vec3 rise = vec3_scale(plane->normal, 1024.0 * GEOM_ROUNDING);
+    struct vec3 start = vec3_add(point, rise);
     double gap = NARROW * vec3_length(vec3_sub(aside->corner[0], point));
     if (!is_shut(survey, plane, start, plane->normal, gap))
         return false;

@@ -1,10 +1,11 @@
 /* Sobol's sequence with Owen's scrambling, and maps of the square.
  *
- * Sobol's points are built bit by bit, all four coordinates at once. Owen's scrambling permutes the halves of the unit
- * interval, the halves of each half and so on, each time by a coin that depends on all
- * bits before; a multiplication carries upwards only, so on reversed bits it does that
- * (Laine and Karras, "Stratified sampling for stochastic transparency", 2011). The same
- * permutation of the indices makes sequences of different seeds independent.
+ * Sobol's points are built bit by bit, all four coordinates at once. Owen's scrambling
+ * permutes the halves of the unit interval, the halves of each half and so on, each time
+ * by a coin that depends on all bits before; a multiplication carries upwards only, so on
+ * reversed bits it does that (Laine and Karras, "Stratified sampling for stochastic
+ * transparency", 2011). The same permutation of the indices makes sequences of different
+ * seeds independent.
  *
  * Squares go to triangles by (1 - sqrt u, v), and to the disk by concentric squares
  * (Shirley and Chiu, 1997), which keep near points near; a point of the disk is the foot
@@ -46,12 +47,14 @@ struct sequence sequence_start(uint64_t seed)
  * the first four dimensions, the upper 16 bits of each, reversed; the first dimension in
  * the lowest bits. */
 static const uint64_t SOBOL[16] = {
-    UINT64_C(0x0001000100010001), UINT64_C(0x0003000300030002), UINT64_C(0x0004000600050004),
-    UINT64_C(0x000a0009000f0008), UINT64_C(0x001f001700110010), UINT64_C(0x002e003a00330020),
-    UINT64_C(0x0045007100550040), UINT64_C(0x00c900a300ff0080), UINT64_C(0x011b011601010100),
-    UINT64_C(0x02a4033903030200), UINT64_C(0x079a067705050400), UINT64_C(0x0b6709aa0f0f0800),
-    UINT64_C(0x101e160111111000), UINT64_C(0x302d390333332000), UINT64_C(0x4041770655554000),
-    UINT64_C(0xa0c3aa09ffff8000)};
+    UINT64_C(0x0001000100010001), UINT64_C(0x0003000300030002),
+    UINT64_C(0x0004000600050004), UINT64_C(0x000a0009000f0008),
+    UINT64_C(0x001f001700110010), UINT64_C(0x002e003a00330020),
+    UINT64_C(0x0045007100550040), UINT64_C(0x00c900a300ff0080),
+    UINT64_C(0x011b011601010100), UINT64_C(0x02a4033903030200),
+    UINT64_C(0x079a067705050400), UINT64_C(0x0b6709aa0f0f0800),
+    UINT64_C(0x101e160111111000), UINT64_C(0x302d390333332000),
+    UINT64_C(0x4041770655554000), UINT64_C(0xa0c3aa09ffff8000)};
 
 void sequence_point(const struct sequence *sequence, uint32_t index,
                     double u[SEQUENCE_DIMENSIONS])
