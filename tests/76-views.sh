@@ -135,6 +135,10 @@ check "so are links, which it does not have" says 2 \
     "is a stored solution: it has no links" "$work/plain.ply" --dump links
 check "a solution without roots is refused" says 2 "a solution without its roots" \
     tests/fuzz/corpus/ply/solution.ply -o "$work/new.pfm"
+LC_ALL=C sed 's/^property float rest_g$/property float next_g/' "$work/plain.ply" \
+    >"$work/lacking.ply"
+check "so is one that lacks a part of its light" says 2 "not a solution of phr" \
+    "$work/lacking.ply" -o "$work/new.pfm"
 build/imgdiff "$work/plain.ply" "$work/plain.ply" -o "$work/error.ply" >"$work/log"
 check "imgdiff's difference of solutions is one, too" says 0 "stored " \
     "$work/error.ply" $small -o "$work/error.pfm"

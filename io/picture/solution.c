@@ -30,6 +30,15 @@ struct solution_reader {
     struct error *error;
 };
 
+/* True if the element has all properties from `first` to `last`. */
+static bool has_all(const struct ply_element *element, int first, int last)
+{
+    bool all = element != NULL;
+    for (int field = first; all && field <= last; field++)
+        all = element->type_of[field] != PLY_NONE;
+    return all;
+}
+
 static struct vec3 take_point(const struct ply_file *file, enum ply_field first)
 {
     const double *value = &file->value[first];
@@ -144,7 +153,7 @@ static bool read_root_corners(struct solution_reader *reader,
         return ply_fail(file, reader->error, "roots have three corners each");
     struct scene *scene = reader->solution->scene =
         scene_create((int32_t)(element->count / 3), (int32_t)reader->material_count);
-    if (element->type_of[PLY_NX] != PLY_NONE)
+    if (has_all(element, PLY_NX, PLY_NZ))
         scene_add_normals(scene);
     for (int64_t i = 0; i < element->count; i++) {
         if (!ply_file_record(reader->file, element, i, reader->error))
@@ -182,18 +191,9 @@ static bool read_whole(struct solution_reader *reader, const struct ply_element 
     scene->two_sided_lamps = value[PLY_TWO_SIDED_LAMPS] != 0.0;
     scene_restore(scene, take_point(file, PLY_X), (int32_t)exponent);
     reader->solution->lamps =
-        (struct solution_lamps){element->type_of[PLY_LAMP_LEAST] != PLY_NONE,
+        (struct solution_lamps){has_all(element, PLY_LAMP_LEAST, PLY_MEAN),
                                 value[PLY_LAMP_LEAST], value[PLY_MEAN]};
     return true;
-}
-
-/* True if the element has all properties from `first` to `last`. */
-static bool has_all(const struct ply_element *element, int first, int last)
-{
-    bool all = element != NULL;
-    for (int field = first; all && field <= last; field++)
-        all = element->type_of[field] != PLY_NONE;
-    return all;
 }
 
 bool solution_is_stored(const struct ply_file *file)
@@ -219,8 +219,11 @@ static bool has_whole_scene(const struct ply_file *file)
     const struct ply_element *material = ply_file_find(file, PLY_MATERIAL);
     const struct ply_element *corner = ply_file_find(file, PLY_ROOT_CORNER);
     const struct ply_element *whole = ply_file_find(file, PLY_SOLUTION);
+    const struct ply_element *face = ply_file_find(file, PLY_FACE);
     if (!corner && !whole)
         return true;
+    if (has_all(face, PLY_REST_R, PLY_REST_B) != has_all(whole, PLY_LAMP_LEAST, PLY_MEAN))
+        return false; /* one is of no use without the other */
     return has_all(material, PLY_REFLECTANCE_R, PLY_REFLECTANCE_B) &&
            has_all(material, PLY_EMISSION_R, PLY_EMISSION_B) &&
            has_all(corner, PLY_X, PLY_Z) &&
