@@ -352,8 +352,8 @@ refused() {
         esac
 }
 
-awk 'BEGIN { print "v 0 0 0\nv 1 0 0\nv 0 1 0"; for (i = 0; i < 8193; i++)
-    print "g " i "\nf 1 2 3" }' \
+awk 'BEGIN { print "v 0 0 0\nv 1 0 0"; for (i = 0; i < 8193; i++)
+    print "v 0 1 " i "\ng " i "\nf 1 2 -1" }' \
     >"$work/many.obj"
 check "no scene" refused "no scene given"
 check "a scene that is not there" \
