@@ -23,7 +23,8 @@
  *
  * The error of a factor. Each sampled pair has random ends of its own, so variances add:
  * that of a fraction is told by the spread of its four ends on either side, which is more
- * than stratified ends deserve; where all segments agree, it is a twentieth squared. What
+ * than stratified ends deserve, and not less than the square of a tenth and of the factor
+ * between the two patches: a few segments carry most of the light of near ones. What
  * points know exactly has an upper limit (tools/screened.c), which counts as three
  * standard errors. The largest of N errors is sqrt(4 + 2 ln N) times its standard error
  * at most: 2 for one factor, 5.5 for half a million.
@@ -51,7 +52,7 @@ static const double FINER = 0.1;
 
 /* Standard error of a visible fraction of 0 or 1 on which 16 segments agree, and of one
  * on which points agree that know exactly what they see. */
-static const double ERROR_AGREED = 0.05, ERROR_SEEN = 0.02;
+static const double ERROR_AGREED = 0.1, ERROR_SEEN = 0.02;
 
 /* Standard errors in a limit. */
 static const double LIMIT = 3.0;
@@ -287,7 +288,8 @@ static void add_pair(struct root_pair *pair, const struct piece *p, const struct
         return;
     if (side < 0) {
         add_exchange(pair, visible.fraction * open);
-        pair->variance += visible.variance * square(open);
+        double near = ERROR_AGREED + open / fmin(p->facet.area, q->facet.area);
+        pair->variance += fmax(visible.variance, square(fmin(near, 0.5))) * square(open);
         return;
     }
     for (int k = 0; k < 4; k++) {
