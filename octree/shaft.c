@@ -6,13 +6,25 @@
 #include "geom/hull.h"
 #include "octree/octree.h"
 
-static struct slab slab_of(const float values[LANES])
+static float float_min(float a, float b)
 {
-    float low = values[0], high = values[0];
-    for (int k = 1; k < LANES; k++) {
-        low = values[k] < low ? values[k] : low;
-        high = values[k] > high ? values[k] : high;
-    }
+    return a < b ? a : b;
+}
+
+static float float_max(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+/* Pairs at a time: one after the other, each would wait for the one before. */
+static struct slab slab_of(const lanes *values)
+{
+    float v[LANES];
+    memcpy(v, values, sizeof v);
+    float low = float_min(float_min(float_min(v[0], v[1]), float_min(v[2], v[3])),
+                          float_min(float_min(v[4], v[5]), float_min(v[6], v[7])));
+    float high = float_max(float_max(float_max(v[0], v[1]), float_max(v[2], v[3])),
+                           float_max(float_max(v[4], v[5]), float_max(v[6], v[7])));
     return (struct slab){lanes_all(low - BOX_MARGIN), lanes_all(high + BOX_MARGIN)};
 }
 
@@ -46,14 +58,15 @@ void shaft_set_slabs(struct shaft *shaft)
     mask_set_weights(&shaft->weights, shaft->near);
     for (int axis = 0; axis < 3; axis++)
         direction[axis] /= largest;
+    for (int axis = 0; axis < 3; axis++)
+        shaft->direction[axis] = lanes_all(direction[axis]);
     for (int axis = 0; axis < 3; axis++) {
         int i = (axis + 1) % 3, j = (axis + 2) % 3;
-        float across[LANES];
-        for (int k = 0; k < LANES; k++)
-            across[k] = direction[j] * points[i][k] - direction[i] * points[j][k];
-        shaft->own[axis] = slab_of(points[axis]);
-        shaft->cross[axis] = slab_of(across);
-        shaft->direction[axis] = lanes_all(direction[axis]);
+        lanes x = lanes_mul(shaft->direction[j], shaft->points[i]);
+        lanes y = lanes_mul(shaft->direction[i], shaft->points[j]);
+        lanes across = lanes_sub(x, y);
+        shaft->own[axis] = slab_of(&shaft->points[axis]);
+        shaft->cross[axis] = slab_of(&across);
     }
 }
 
