@@ -20,8 +20,7 @@
  * OBJ does not define the axis that is up. Lamps shine mostly down: if they shine along
  * -y, y is up, along -z, z. Twins do not count, with which all of them would shine both
  * ways. Else (tubes, windows, globes) a room is assumed wider than high: z is up if it is
- * the shortest side of the box and the most area faces along it; that of a tall house of
- * many storeys does not. In all other cases y is up, as in most files.
+ * the shortest side of the box. In all other cases y is up, as in most files.
  *
  * Rejected: a fixed corner of the bounding box, which is in a wall or a cupboard as often
  * as not; the brightest picture, which has to wait for the light and changes with
@@ -147,19 +146,16 @@ static bool find_room(const struct site *site, bool free[GRID * GRID * GRID])
 static bool find_up(const struct scene *scene, bool is_room)
 {
     struct vec3 side = vec3_sub(scene->high, scene->low), shine = {0.0, 0.0, 0.0};
-    double power = 0.0, along_y = 0.0, along_z = 0.0;
+    double power = 0.0;
     for (int32_t i = 0; i < scene->input_count; i++) {
         double emitted =
             scene->areas[i] * rgb_sum(scene_root_material(scene, i)->emission);
         shine = vec3_add(shine, vec3_scale(scene->planes[i].normal, emitted));
         power += emitted;
-        along_y += scene->areas[i] * fabs(scene->planes[i].normal.y);
-        along_z += scene->areas[i] * fabs(scene->planes[i].normal.z);
     }
     if (-shine.y > 0.5 * power)
         return false;
-    return -shine.z > 0.5 * power || (is_room && side.z < side.x && side.z < side.y &&
-                                      along_z >= along_y);
+    return -shine.z > 0.5 * power || (is_room && side.z < side.x && side.z < side.y);
 }
 
 /* --- inside --- */

@@ -229,10 +229,10 @@ static void test_two_sided_lamps(void)
 }
 
 /* A tower along y, whose shortest side is along z: with twins it is a room from within,
- * and the lamps on its ceilings, or its floors, say that y is up. */
+ * and the lamp on its ceiling says that y is up. */
 static void test_tower(void)
 {
-    for (int lamps = 0; lamps < 3; lamps++) {
+    for (int lamps = 0; lamps < 2; lamps++) {
         struct soup soup = {0};
         soup_add_box(&soup, ZERO, (struct vec3){4.0, 20.0, 3.0}, 1, false);
         for (int storey = 1; storey < 20; storey++)
@@ -243,14 +243,13 @@ static void test_tower(void)
                       (struct vec3){0.0, 0.0, 1.0}, 1);
         struct scene *scene = scene_of_soup(&soup, 2);
         soup_free(&soup);
-        scene->materials[0] = material_grey(0.5, lamps == 2 ? 1.0 : 0.0);
+        scene->materials[0] = material_grey(0.5, 0.0);
         scene->materials[1] = material_grey(0.5, 1.0);
         scene->material_of[first] = scene->material_of[first + 1] = 1;
         scene->two_sided = true;
         scene->two_sided_lamps = lamps > 0;
-        static const char *const NAMES[] = {"a two-sided tower", "with two-sided lamps",
-                                            "that glows all over"};
-        check_room(NAMES[lamps], shoot(scene, 512, 512), 0.01, false);
+        check_room(lamps ? "with two-sided lamps" : "a two-sided tower",
+                   shoot(scene, 512, 512), 0.01, false);
     }
 }
 
