@@ -75,7 +75,8 @@ bool files_check(const struct options *options, struct error *error)
             return false;
     if (options->dump && files_take_stdout(options))
         return error_set(error, EXIT_USAGE,
-                         "--dump and an output to the standard output do not go together");
+                         "--dump and an output to the standard output "
+                         "do not go together");
     return check_formats(options, error) && check_outputs(options, error);
 }
 
