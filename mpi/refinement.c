@@ -39,17 +39,12 @@ struct level {
     int64_t work;            /* of this rank before that, tests */
 };
 
-/* Predicted work of splitting a link, in tests: its cost (Sec. 3.3.1). */
-static int64_t load_of(const struct link *link)
-{
-    return (int64_t)link_cost(link);
-}
-
+/* Predicted work of splitting links, in tests: their costs (Sec. 3.3.1). */
 static int64_t load_of_all(const struct link_list *list)
 {
     int64_t load = 0;
     for (int64_t i = 0; i < list->count; i++)
-        load += load_of(&list->items[i]);
+        load += (int64_t)link_cost(&list->items[i]);
     return load;
 }
 
@@ -164,7 +159,7 @@ static int *deal_links(const struct solver *solver, const struct link_list *prol
     int64_t *costs = alloc_array(count, sizeof *costs);
     int *destination = alloc_array(count, sizeof *destination);
     for (size_t i = 0; i < count; i++)
-        costs[i] = load_of(&prolific->items[i]);
+        costs[i] = (int64_t)link_cost(&prolific->items[i]);
     DEALINGS[solver->model.criterion.balance](
         (struct loads){loads, solver->comm->size, solver->comm->rank}, costs,
         prolific->count, destination);
