@@ -22,9 +22,11 @@ line='^P01 opposed unit squares, distance 1 +0\.199825 +0\.707 +'
 line=$line'\(\+15\.89 %\) +\(\+2\.08 %\) +-3e-04'
 check "a line to be trusted" grep -qE "$line" "$work/table"
 
-# No scene is read, and further options do not matter.
-"$PHR" --validate "$work/absent.obj" >"$work/again" 2>&1
+# No scene is read.
+"$PHR" --validate "$work/absent.obj" >"$work/again" 2>"$work/log"
 check "the same table with a scene" cmp -s "$work/table" "$work/again"
+check "and a word that no use is made of it" \
+    grep -q "no use is made of .*absent.obj" "$work/log"
 
 # Each rank writes into one file: only one of them may print.
 $MPIEXEC -n 3 "$PHR" --validate >"$work/three" 2>&1
