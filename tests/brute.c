@@ -106,19 +106,32 @@ bool octree_has_wall(const struct octree *octree, const struct vec3 *p, int coun
     return false;
 }
 
+int32_t octree_list_shaft(const struct octree *octree, const struct triangle *p,
+                          const struct plane *plane_p, const struct triangle *q,
+                          const struct plane *plane_q, const int32_t own[2],
+                          int32_t *entrants, int32_t most, struct octree_counts *counts)
+{
+    struct hull hull = hull_of_pair(p, plane_p, q, plane_q);
+    int32_t count = 0;
+    (void)counts;
+    for (int32_t t = 0; t < octree->count && count <= most; t++) {
+        if (t == own[0] || t == own[1] ||
+            !(vec3_dot(octree->planes[t].normal, octree->planes[t].normal) > 0.0) ||
+            !hull_is_entered(&hull, &octree->triangles[t]))
+            continue;
+        if (count < most)
+            entrants[count] = t;
+        count++;
+    }
+    return count;
+}
+
 bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p,
                            const struct plane *plane_p, const struct triangle *q,
                            const struct plane *plane_q, const int32_t own[2],
                            struct octree_counts *counts)
 {
-    struct hull hull = hull_of_pair(p, plane_p, q, plane_q);
-    (void)counts;
-    for (int32_t t = 0; t < octree->count; t++)
-        if (t != own[0] && t != own[1] && vec3_dot(octree->planes[t].normal,
-                                                   octree->planes[t].normal) > 0.0 &&
-            hull_is_entered(&hull, &octree->triangles[t]))
-            return false;
-    return true;
+    return octree_list_shaft(octree, p, plane_p, q, plane_q, own, NULL, 0, counts) == 0;
 }
 
 bool octree_first_hit(const struct octree *octree, struct vec3 origin,

@@ -40,6 +40,7 @@ static bool is_time(void)
 }
 
 static struct error error;
+static struct comm comm;
 static struct world world; /* that the phases look at */
 static struct shading *shading;
 static float picture[3 * SIZE * SIZE];
@@ -95,10 +96,8 @@ static int64_t build_octree(void)
 
 static struct viewfactors *make_factors(void)
 {
-    struct comm alone = {.size = 1};
     struct viewfactors *factors = viewfactors_create(world.scene, world.octree, 1e-3, 4);
-    factors->pairs = 0; /* there is nothing to exchange */
-    pairs_add(&alone, factors, NULL);
+    pairs_add(&comm, factors, NULL);
     return factors;
 }
 
@@ -357,8 +356,9 @@ static void write_scenes(void)
     mesh_write(shading, &tone, &(struct mesh_answer){NULL}, MESH_PLY, &error);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    comm_start(&comm, &argc, &argv);
     world = world_make(make_room(2));
     struct forest *forest = world.model.forest;
     for (int64_t p = 0; p < forest->count; p++)
@@ -371,5 +371,6 @@ int main(void)
     stop_when(NULL);
     shading_destroy(shading);
     world_free(&world);
+    comm_stop(&comm);
     return tap_done();
 }
