@@ -82,7 +82,7 @@ bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p
                            struct octree_counts *counts);
 
 /* Finds the triangles that reach into that shaft: all that can block there. Writes at
- * most `most` of them into `entrants`, in an order of the tree. Returns their number;
+ * most `most` of them into `entrants`, in ascending order. Returns their number;
  * most + 1 if there are more. */
 int32_t octree_list_shaft(const struct octree *octree, const struct triangle *p,
                           const struct plane *plane_p, const struct triangle *q,

@@ -95,7 +95,10 @@ INLINE bool find_entrants(void *at, const struct record *records, int32_t count,
             continue;
         if (query->count++ == query->most)
             return true;
-        query->entrants[query->count - 1] = t;
+        int32_t place = query->count - 1; /* in ascending order */
+        for (; place > 0 && query->entrants[place - 1] > t; place--)
+            query->entrants[place] = query->entrants[place - 1];
+        query->entrants[place] = t;
     }
     return false;
 }

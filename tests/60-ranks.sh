@@ -265,6 +265,10 @@ check "brute force builds without warnings" build brute SERIAL=1 OCTREE= BRUTE=b
 produce brute "$work/brute/phr" $cornell
 counts="checksum links patches leaves passes iterations rays"
 check "brute force gives the same bytes" same brute serial
+for caster in brute serial; do
+    "$work/$caster/phr" scenes/cornell.obj --quiet --form-factors >"$work/$caster.csv"
+done
+check "and the same form factors" cmp "$work/brute.csv" "$work/serial.csv"
 
 # The comparison notices one changed byte.
 cp -r "$work/ranks-1" "$work/planted"
