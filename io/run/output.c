@@ -252,7 +252,7 @@ bool output_close(struct output *output, struct error *error)
     if (!output->file)
         return false;
     errno = 0;
-    bool written = !ferror(output->file) && flush(output);
+    bool written = flush(output) && !ferror(output->file); /* tells why, once more */
     int reason = errno;
     if (fclose(output->file) != 0 && written) {
         written = false;
