@@ -20,6 +20,8 @@
 #                        docs/tables.md: Tables 1 and 2 of the paper
 #   make course          the programs, outputs and figures of docs/course/
 #   make exercise N=1    tests answers to the exercises of a chapter
+#   make film            build/film/, a solution growing, frame by frame; with
+#                        ImageMagick docs/film.gif
 #   make answers         scenes/answers.csv: the light of the scenes for lectures, by
 #                        paths
 #   make prove           what takes longer: errors over six fourfold steps of epsilon;
@@ -222,6 +224,11 @@ course: $(PHR) $(COURSE) build/room
 exercise: $(BUILD)/libphr.a
 	CC="$(COMPILE)" BUILD="$(BUILD)" sh docs/course/exercise.sh $(N)
 
+# Half a minute on two cores.
+film: $(PHR)
+	MPIEXEC="$(MPIEXEC)" FILM=build/film sh tools/film.sh
+	[ ! -e build/film/film.gif ] || cp build/film/film.gif docs/film.gif
+
 # About five minutes on two cores.
 answers: $(PHR) pathtracer build/room build/course/leaves
 	MPIEXEC="$(MPIEXEC)" sh scenes/answers.sh >build/answers.csv
@@ -272,6 +279,6 @@ clean:
 FORCE:
 
 .PHONY: all demo tests room pathtracer bench errors chart growth scaling check \
-    course exercise answers \
+    course exercise film answers \
     check-long prove golden portability fuzz install \
         uninstall clean FORCE

@@ -75,4 +75,20 @@ check "and has a row for each of 3 ranks" \
 echo >"$work/none.json"
 awk -f tools/timeline.awk "$work/none.json" >"$work/none.svg" 2>"$work/err"
 check "a file without levels is refused" grep -q 'no levels' "$work/err"
+
+# The film: frames of two levels of the first pass, then pass by pass to the end.
+film=$work/film
+FILM=$film RANKS=2 SCENE=scenes/squares EPSILON=1e-2 EXPOSURE=0.008 \
+    LEVELS="0 10" SIZE=16x16 sh tools/film.sh >"$work/film.out"
+last=$(sed -n 's/ frames.*//p' "$work/film.out")
+"$PHR" scenes/squares.obj --quiet --paper --epsilon 1e-2 --tolerance 1e-3 \
+    --view scenes/squares.view --size 16x16 --exposure 0.008 -o "$work/whole.png" \
+    --stats "$work/whole.json"
+passes=$(stat_of "$work/whole.json" iterations)
+check "the film has a frame for each level and pass ($last)" \
+    [ "$last" -eq $((passes + 1)) -a "$(ls "$film"/owner-*.png | wc -l)" -eq "$last" ]
+check "it ends with the picture of a run that was never interrupted" \
+    cmp "$film/light-0$last.png" "$work/whole.png"
+check "and no two frames are alike" [ "$last" -eq \
+    "$(for light in "$film"/light-*.png; do cksum <"$light"; done | sort -u | wc -l)" ]
 tap_done
