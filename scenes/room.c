@@ -2,27 +2,27 @@
  *
  *     room 6350 1 > room.obj        room --materials > room.mtl
  *
- * A room is a grid of cells, each a work place: desk, chair, monitor and small things, with
- * bookcases at the side. There are about (N/1500)^(5/8) of them, so a place grows too, from
- * some 800 triangles to some 18 000.
+ * A room is a grid of cells, each a work place: desk, chair, monitor and small things,
+ * with bookcases at the side. There are about (N/1500)^(5/8) of them, so a place grows
+ * too, from some 800 triangles to some 18 000.
  *
- * How N is met. The shell comes first, then the places in turn, each with an equal share of
- * what is still to be made. A place tries furniture of ever more detail (rounder things, more
- * things) and keeps the richest that takes at most two thirds of its share. The rest is
- * books, 12 triangles each, or more with a round spine; a bookcase shares among its boards as
- * the room among its places. Every surplus or lack is handed on, so the room ends within a
- * book of N.
+ * How N is met. The shell comes first, then the places in turn, each with an equal share
+ * of what is still to be made. A place tries furniture of ever more detail (rounder
+ * things, more things) and keeps the richest that takes at most two thirds of its share.
+ * The rest is books, 12 triangles each, or more with a round spine; a bookcase shares
+ * among its boards as the room among its places. Every surplus or lack is handed on, so
+ * the room ends within a book of N.
  *
- * Three solids make all there is: a box; a relief, which is a slab with a grid of fields sunk
- * (shelves, screens, panes, lights in the ceiling) or raised (drawers, keys); and a turned
- * body, whose outline follows a profile (cups, castors, cushions, leaves). Each is a closed
- * surface that shares no vertex with another and stands GAP off whatever carries it, as on
- * felt pads: no two faces lie in one plane, so no ray starts inside the face of another
- * thing.
+ * Three solids make all there is: a box; a relief, which is a slab with a grid of fields
+ * sunk (shelves, screens, panes, lights in the ceiling) or raised (drawers, keys); and a
+ * turned body, whose outline follows a profile (cups, castors, cushions, leaves). Each is
+ * a closed surface that shares no vertex with another and stands GAP off whatever carries
+ * it, as on felt pads: no two faces lie in one plane, so no ray starts inside the face of
+ * another thing.
  *
  * Coordinates are metres with z up and the floor's corner as origin. They are kept as
- * integers, 1/100 mm, and sine and cosine are our own: nothing but + - * / sqrt floor, so a
- * seed gives the same file everywhere (with contraction off). */
+ * integers, 1/100 mm, and sine and cosine are our own: nothing but + - * / sqrt floor, so
+ * a seed gives the same file everywhere (with contraction off). */
 #include <errno.h>
 #include <math.h>
 #include <stdint.h>
@@ -37,8 +37,8 @@ enum { UNITS_PER_METRE = 100000, TRIANGLES_MIN = 1000, TRIANGLES_MAX = 1000000 }
 /* --- materials --- */
 
 enum material {
-    WALL, FLOOR, CEILING, LIGHT, SKY, DOOR, WHITE, LAMINATE, WOOD, METAL, BLACK, SCREEN, PAPER,
-    CLAY, SOIL, LEAF,
+    WALL, FLOOR, CEILING, LIGHT, SKY, DOOR, WHITE, LAMINATE, WOOD, METAL, BLACK, SCREEN,
+    PAPER, CLAY, SOIL, LEAF,
     FABRIC, /* the first of FABRICS */
     COVER = FABRIC + 3, /* the first of COVERS */
     MATERIALS = COVER + 8,
@@ -86,7 +86,8 @@ static void print_materials(void)
          "# Ke is radiosity, W/m^2.");
     for (int i = 0; i < MATERIALS; i++) {
         const double *kd = materials[i].reflectance, *ke = materials[i].emission;
-        printf("\nnewmtl %s\nKd %.2f %.2f %.2f\n", materials[i].name, kd[0], kd[1], kd[2]);
+        printf("\nnewmtl %s\nKd %.2f %.2f %.2f\n", materials[i].name, kd[0], kd[1],
+               kd[2]);
         if (ke[0] > 0.0)
             printf("Ke %.1f %.1f %.1f\n", ke[0], ke[1], ke[2]);
     }
@@ -108,7 +109,8 @@ static uint64_t random_bits(struct random *random)
 
 static double random_between(struct random *random, double low, double high)
 {
-    return low + (high - low) * ((double)(random_bits(random) >> 11) / 9007199254740992.0);
+    return low +
+           (high - low) * ((double)(random_bits(random) >> 11) / 9007199254740992.0);
 }
 
 /* In 0 .. count - 1. */
@@ -158,7 +160,8 @@ static void circle_point(double turn, double *x, double *y)
 }
 
 /* At (x, y, z) of the frame, turned about its z axis. */
-static struct frame frame_at(struct frame frame, double x, double y, double z, double turn)
+static struct frame frame_at(struct frame frame, double x, double y, double z,
+                             double turn)
 {
     const struct vec none = {0, 0, 0};
     double c, s;
@@ -168,7 +171,8 @@ static struct frame frame_at(struct frame frame, double x, double y, double z, d
                           along(along(none, -s, frame.x), c, frame.y), frame.z};
 }
 
-/* There, with the plane of x and y stood up: x stays, y is up, z comes out to the front. */
+/* There, with the plane of x and y stood up: x stays, y is up, z comes out to the
+ * front. */
 static struct frame frame_upright(struct frame frame, double x, double y, double z)
 {
     const struct vec none = {0, 0, 0};
@@ -248,8 +252,9 @@ static void box(struct mesh *mesh, struct frame frame, struct vec low, struct ve
                                     {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     int32_t v[8];
     for (int i = 0; i < 8; i++)
-        v[i] = add_vertex(mesh, frame_point(frame, i & 1 ? high.x : low.x,
-                                            i & 2 ? high.y : low.y, i & 4 ? high.z : low.z));
+        v[i] = add_vertex(mesh,
+                          frame_point(frame, i & 1 ? high.x : low.x,
+                                      i & 2 ? high.y : low.y, i & 4 ? high.z : low.z));
     for (int i = 0; i < 6; i++) {
         const int *s = sides[i];
         add_quad(mesh, v[s[0]], v[s[1]], v[s[2]], v[s[3]], material);
@@ -258,13 +263,13 @@ static void box(struct mesh *mesh, struct frame frame, struct vec low, struct ve
 
 /* --- solid 2: the relief ---
  *
- *     y  +--+------+--+------+--+      Cuts in x and y make a grid of cells. Those that are
- *     ^  |  |      |  |      |  |      odd in both directions are the fields, at z = level;
- *     |  +--+------+--+------+--+      the others are at z = 0. Fields never touch, so each
- *     |  |  |field |  |field |  |      has four corners and four walls of its own.
- *     |  +--+------+--+------+--+      The back is at z = -thickness, two triangles, and the
- *     |  |  |      |  |      |  |      sides are fans between it and the cuts of the front.
- *     |  +--+------+--+------+--+
+ *     y  +--+------+--+------+--+      Cuts in x and y make a grid of cells. Those that
+ *     ^  |  |      |  |      |  |      are odd in both directions are the fields, at z =
+ *     |  +--+------+--+------+--+      level; the others are at z = 0. Fields never
+ *     |  |  |field |  |field |  |      touch, so each has four corners and four walls of
+ *     |  +--+------+--+------+--+      its own. The back is at z = -thickness, two
+ *     |  |  |      |  |      |  |      triangles, and the sides are fans between it and
+ *     |  +--+------+--+------+--+      the cuts of the front.
  *     +-----------> x */
 
 enum { CUT_MAX = 64 };
@@ -290,8 +295,8 @@ struct relief {
     enum material base, field;
 };
 
-static void relief_field(struct mesh *mesh, struct frame frame, const struct relief *relief,
-                         int i, int j, const int32_t q[4])
+static void relief_field(struct mesh *mesh, struct frame frame,
+                         const struct relief *relief, int i, int j, const int32_t q[4])
 {
     const double *x = relief->x.at + i, *y = relief->y.at + j;
     enum material wall = relief->level < 0.0 ? relief->base : relief->field;
@@ -305,7 +310,8 @@ static void relief_field(struct mesh *mesh, struct frame frame, const struct rel
 }
 
 /* Returns the first of the vertices at z = 0, which run along x, then y. */
-static int32_t relief_front(struct mesh *mesh, struct frame frame, const struct relief *relief)
+static int32_t relief_front(struct mesh *mesh, struct frame frame,
+                            const struct relief *relief)
 {
     const struct cuts *x = &relief->x, *y = &relief->y;
     int32_t first = mesh->vertex_count, row = x->cells + 1;
@@ -325,9 +331,9 @@ static int32_t relief_front(struct mesh *mesh, struct frame frame, const struct 
     return first;
 }
 
-/* The side between the corners a and b of the back and count + 1 vertices of the front. */
-static void relief_side(struct mesh *mesh, int32_t first, int32_t step, int count, int32_t a,
-                        int32_t b, enum material material)
+/* The side between corners a and b of the back and count + 1 vertices of the front. */
+static void relief_side(struct mesh *mesh, int32_t first, int32_t step, int count,
+                        int32_t a, int32_t b, enum material material)
 {
     for (int i = 0; i < count; i++) {
         int32_t v = first + i * step;
@@ -342,9 +348,9 @@ static void relief(struct mesh *mesh, struct frame frame, const struct relief *r
     int32_t first = relief_front(mesh, frame, relief), row = nx + 1, b[4];
     int32_t last = first + row * (ny + 1) - 1;
     for (int k = 0; k < 4; k++)
-        b[k] = add_vertex(mesh, frame_point(frame, k == 1 || k == 2 ? relief->x.at[nx] : 0.0,
-                                            k / 2 ? relief->y.at[ny] : 0.0,
-                                            -relief->thickness));
+        b[k] = add_vertex(
+            mesh, frame_point(frame, k == 1 || k == 2 ? relief->x.at[nx] : 0.0,
+                              k / 2 ? relief->y.at[ny] : 0.0, -relief->thickness));
     relief_side(mesh, first, 1, nx, b[0], b[1], relief->base);
     relief_side(mesh, first + nx, row, ny, b[1], b[2], relief->base);
     relief_side(mesh, last, -1, nx, b[2], b[3], relief->base);
@@ -354,8 +360,9 @@ static void relief(struct mesh *mesh, struct frame frame, const struct relief *r
 
 /* --- solid 3: the turned body ---
  *
- * Point j of the outline is core + radius * out, with a radius for each ring of the profile.
- * A circle has no core; a rounded rectangle has the centres of its corners as core. */
+ * Point j of the outline is core + radius * out, with a radius for each ring of the
+ * profile. A circle has no core; a rounded rectangle has the centres of its corners as
+ * core. */
 
 enum { OUTLINE_MAX = 64, RING_MAX = 32 };
 
@@ -404,7 +411,8 @@ static void turned(struct mesh *mesh, struct frame frame, const struct outline *
                                          outline->core[j][1]
                                              + rings[i].radius * outline->out[j][1],
                                          rings[i].height));
-    int32_t low = add_vertex(mesh, frame_point(frame, rings[0].shift, 0.0, rings[0].height));
+    int32_t low = add_vertex(mesh,
+                             frame_point(frame, rings[0].shift, 0.0, rings[0].height));
     int32_t high = add_vertex(mesh, frame_point(frame, rings[count - 1].shift, 0.0,
                                                 rings[count - 1].height));
     for (int j = 0; j < n; j++) {
@@ -515,12 +523,12 @@ static void drawers(struct mesh *mesh, struct frame frame, struct vec size, int 
 {
     struct frame front = frame_upright(frame, 0.0, 0.0, GAP);
     double pitch = (size.z - 0.01) / count;
-    struct relief chest = {cuts_even(1, size.x, 0.01), cuts_even(count, size.z, 0.01), size.y,
-                           0.015, material, material};
+    struct relief chest = {cuts_even(1, size.x, 0.01), cuts_even(count, size.z, 0.01),
+                           size.y, 0.015, material, material};
     relief(mesh, front, &chest);
     for (int i = 0; i < count && detail > 0; i++) {
-        struct frame handle = frame_at(front, 0.5 * size.x, (i + 0.75) * pitch, 0.015 + GAP,
-                                       0.0);
+        struct frame handle = frame_at(front, 0.5 * size.x, (i + 0.75) * pitch,
+                                       0.015 + GAP, 0.0);
         cushion(mesh, handle, (struct vec){0.12, 0.018, 0.014}, 0.007, 0.004,
                 corners(detail / 4), METAL);
     }
@@ -540,52 +548,57 @@ static void desk(struct mesh *mesh, struct frame frame, struct random *random, i
             (struct vec){DESK_X, DESK_Y, top}, 0.04, 0.01, corners(detail / 3), LAMINATE);
     drawers(mesh, frame_at(frame, chest, -y, 0.0, 0.0),
             (struct vec){width, 2.0 * y, under - GAP}, 3, WOOD, detail);
-    box(mesh, frame, (struct vec){panel, -y, GAP}, (struct vec){panel + top, y, under}, WOOD);
-    box(mesh, frame, (struct vec){left, y - 0.04, 0.25}, (struct vec){right, y - 0.02, under},
+    box(mesh, frame, (struct vec){panel, -y, GAP}, (struct vec){panel + top, y, under},
         WOOD);
+    box(mesh, frame, (struct vec){left, y - 0.04, 0.25},
+        (struct vec){right, y - 0.02, under}, WOOD);
 }
 
 static void chair_base(struct mesh *mesh, struct frame frame, int detail)
 {
     struct outline circle = outline_circle(around(detail));
     double castor = detail >= 3 ? 0.05 : GAP; /* m; the height of the legs */
-    const struct ring post[4] = {{0.032, castor, 0.0}, {0.032, 0.2, 0.0}, {0.02, 0.21, 0.0},
-                                 {0.02, 0.40 - GAP, 0.0}};
+    const struct ring post[4] = {{0.032, castor, 0.0}, {0.032, 0.2, 0.0},
+                                 {0.02, 0.21, 0.0}, {0.02, 0.40 - GAP, 0.0}};
     turned(mesh, frame, &circle, post, 4, METAL);
     for (int i = 0; i < 5; i++) {
         struct frame leg = frame_at(frame, 0.0, 0.0, castor, 0.2 * i);
-        box(mesh, leg, (struct vec){0.032 + GAP, -0.018, 0.0}, (struct vec){0.30, 0.018, 0.03},
-            BLACK);
+        box(mesh, leg, (struct vec){0.032 + GAP, -0.018, 0.0},
+            (struct vec){0.30, 0.018, 0.03}, BLACK);
         if (detail < 3)
             continue;
         struct ring rings[RING_MAX];
         int count = profile_slab(rings, 0.024, 0.03, 0.006, 1 + detail / 8);
-        turned(mesh, frame_upright(leg, 0.27, 0.015, -0.025), &circle, rings, count, BLACK);
+        turned(mesh, frame_upright(leg, 0.27, 0.015, -0.025), &circle, rings, count,
+               BLACK);
     }
 }
 
-static void chair(struct mesh *mesh, struct frame frame, struct random *random, int detail)
+static void chair(struct mesh *mesh, struct frame frame, struct random *random,
+                  int detail)
 {
     enum material fabric = FABRIC + (enum material)random_below(random, FABRICS);
-    chair_base(mesh, frame_at(frame, 0.0, 0.0, 0.0, random_between(random, 0.0, 1.0)), detail);
-    box(mesh, frame, (struct vec){-0.09, -0.26, 0.40}, (struct vec){0.09, 0.12, 0.42}, METAL);
-    box(mesh, frame, (struct vec){-0.035, -0.28, 0.40}, (struct vec){0.035, -0.26 - GAP, 0.84},
+    chair_base(mesh, frame_at(frame, 0.0, 0.0, 0.0, random_between(random, 0.0, 1.0)),
+               detail);
+    box(mesh, frame, (struct vec){-0.09, -0.26, 0.40}, (struct vec){0.09, 0.12, 0.42},
         METAL);
-    cushion(mesh, frame_at(frame, 0.0, 0.015, 0.42 + GAP, 0.0), (struct vec){0.46, 0.46, 0.07},
-            0.09, 0.03, corners(detail), fabric);
-    cushion(mesh, frame_upright(frame, 0.0, -0.20, 0.78), (struct vec){0.42, 0.38, 0.06}, 0.09,
-            0.027, corners(detail), fabric);
+    box(mesh, frame, (struct vec){-0.035, -0.28, 0.40},
+        (struct vec){0.035, -0.26 - GAP, 0.84}, METAL);
+    cushion(mesh, frame_at(frame, 0.0, 0.015, 0.42 + GAP, 0.0),
+            (struct vec){0.46, 0.46, 0.07}, 0.09, 0.03, corners(detail), fabric);
+    cushion(mesh, frame_upright(frame, 0.0, -0.20, 0.78), (struct vec){0.42, 0.38, 0.06},
+            0.09, 0.027, corners(detail), fabric);
 }
 
 /* Origin at the middle of the foot. */
 static void monitor(struct mesh *mesh, struct frame frame, int detail)
 {
-    const struct relief panel = {cuts_even(1, 0.56, 0.012), cuts_even(1, 0.34, 0.012), 0.03,
-                                 -0.004, BLACK, SCREEN};
-    cushion(mesh, frame, (struct vec){0.24, 0.17, 0.012}, 0.05, 0.005, corners(detail / 2),
-            BLACK);
-    box(mesh, frame, (struct vec){-0.03, 0.0, 0.012 + GAP}, (struct vec){0.03, 0.02, 0.32},
-        BLACK);
+    const struct relief panel = {cuts_even(1, 0.56, 0.012), cuts_even(1, 0.34, 0.012),
+                                 0.03, -0.004, BLACK, SCREEN};
+    cushion(mesh, frame, (struct vec){0.24, 0.17, 0.012}, 0.05, 0.005,
+            corners(detail / 2), BLACK);
+    box(mesh, frame, (struct vec){-0.03, 0.0, 0.012 + GAP},
+        (struct vec){0.03, 0.02, 0.32}, BLACK);
     relief(mesh, frame_upright(frame, -0.28, -0.03 - GAP, 0.10), &panel);
 }
 
@@ -593,8 +606,8 @@ static void monitor(struct mesh *mesh, struct frame frame, int detail)
 static void keyboard(struct mesh *mesh, struct frame frame, int detail)
 {
     const double x = 0.44, y = 0.15;
-    const struct relief keys = {cuts_even(15, x, 0.005), cuts_even(5, y, 0.005), 0.014, 0.006,
-                                BLACK, METAL};
+    const struct relief keys = {cuts_even(15, x, 0.005), cuts_even(5, y, 0.005), 0.014,
+                                0.006, BLACK, METAL};
     if (detail < 5)
         cushion(mesh, frame, (struct vec){x, y, 0.018}, 0.01, 0.004, corners(detail / 2),
                 METAL);
@@ -605,8 +618,9 @@ static void keyboard(struct mesh *mesh, struct frame frame, int detail)
 /* Foot and stem in one, the glowing disc, and the hood above it. */
 static void lamp(struct mesh *mesh, struct frame frame, struct random *random, int detail)
 {
-    const struct ring stem[6] = {{0.085, 0.0, 0.0},   {0.085, 0.012, 0.0}, {0.03, 0.022, 0.0},
-                                 {0.008, 0.035, 0.0}, {0.008, 0.30, 0.0},  {0.03, 0.31, 0.0}};
+    const struct ring stem[6] = {{0.085, 0.0, 0.0},  {0.085, 0.012, 0.0},
+                                 {0.03, 0.022, 0.0}, {0.008, 0.035, 0.0},
+                                 {0.008, 0.30, 0.0}, {0.03, 0.31, 0.0}};
     struct outline circle = outline_circle(around(detail));
     struct ring hood[RING_MAX];
     int count = 2 + steps(detail);
@@ -615,13 +629,14 @@ static void lamp(struct mesh *mesh, struct frame frame, struct random *random, i
         hood[i] = (struct ring){0.12 - 0.08 * t * t, 0.10 * t, 0.0};
     }
     turned(mesh, frame, &circle, stem, 6, METAL);
-    disc(mesh, frame_at(frame, 0.0, 0.0, 0.31 + GAP, 0.0), around(detail), 0.09, 0.09, 0.004,
-         LIGHT);
+    disc(mesh, frame_at(frame, 0.0, 0.0, 0.31 + GAP, 0.0), around(detail), 0.09, 0.09,
+         0.004, LIGHT);
     turned(mesh, frame_at(frame, 0.0, 0.0, 0.315 + GAP, 0.0), &circle, hood, count,
            random_cover(random));
 }
 
-static void pencils(struct mesh *mesh, struct frame frame, struct random *random, int detail)
+static void pencils(struct mesh *mesh, struct frame frame, struct random *random,
+                    int detail)
 {
     const struct vessel cup = {0.034, 0.036, 0.0, 0.10, 0.003, 0.004, BLACK};
     struct outline hexagon = outline_circle(6);
@@ -635,7 +650,8 @@ static void pencils(struct mesh *mesh, struct frame frame, struct random *random
     }
 }
 
-static void plant(struct mesh *mesh, struct frame frame, struct random *random, int detail)
+static void plant(struct mesh *mesh, struct frame frame, struct random *random,
+                  int detail)
 {
     const struct vessel pot = {0.11, 0.16, 0.01, 0.30, 0.012, 0.26, CLAY};
     int leaves = 7 + random_below(random, 4), rings = 3 + detail / 2;
@@ -643,8 +659,8 @@ static void plant(struct mesh *mesh, struct frame frame, struct random *random, 
     for (int j = 0; j < section.count; j++)
         section.out[j][0] *= 0.2;
     vessel(mesh, frame, pot, around(detail), steps(detail));
-    disc(mesh, frame_at(frame, 0.0, 0.0, 0.26 + GAP, 0.0), around(detail), 0.13, 0.13, 0.01,
-         SOIL);
+    disc(mesh, frame_at(frame, 0.0, 0.0, 0.26 + GAP, 0.0), around(detail), 0.13, 0.13,
+         0.01, SOIL);
     for (int i = 0; i < leaves; i++) {
         struct frame foot = frame_at(frame, 0.0, 0.0, 0.272, (double)i / leaves);
         double length = random_between(random, 0.4, 0.7);
@@ -667,8 +683,8 @@ static void pile(struct mesh *mesh, struct frame frame, struct random *random, i
         double x = random_between(random, 0.17, 0.23);
         double height = random_between(random, 0.012, 0.04);
         double turn = random_between(random, -0.03, 0.03);
-        cushion(mesh, frame_at(frame, 0.0, 0.0, z, turn), (struct vec){x, 0.65 * x, height},
-                0.0, 0.0, 0, random_cover(random));
+        cushion(mesh, frame_at(frame, 0.0, 0.0, z, turn),
+                (struct vec){x, 0.65 * x, height}, 0.0, 0.0, 0, random_cover(random));
         z += height + GAP;
     }
 }
@@ -677,20 +693,22 @@ static void pile(struct mesh *mesh, struct frame frame, struct random *random, i
 static void desk_things(struct mesh *mesh, struct frame frame, struct random *random,
                         int detail)
 {
-    const struct vessel cup = {0.030, 0.040, 0.004, 0.09, 0.004, 0.006, random_cover(random)};
+    const struct vessel cup = {0.030, 0.040, 0.004, 0.09, 0.004, 0.006,
+                               random_cover(random)};
     struct frame top = frame_at(frame, 0.0, 0.0, DESK_HEIGHT + GAP, 0.0);
     double aside = random_between(random, -0.03, 0.03);
-    monitor(mesh, frame_at(top, 0.0, 0.21, 0.0, random_between(random, -0.02, 0.02)), detail);
+    monitor(mesh, frame_at(top, 0.0, 0.21, 0.0, random_between(random, -0.02, 0.02)),
+            detail);
     keyboard(mesh, frame_at(top, 0.0, -0.17, 0.0, 0.2 * aside), detail);
-    vessel(mesh, frame_at(top, -0.42 + aside, -0.1 - aside, 0.0, 0.0), cup, around(detail),
-           steps(detail));
+    vessel(mesh, frame_at(top, -0.42 + aside, -0.1 - aside, 0.0, 0.0), cup,
+           around(detail), steps(detail));
     if (detail >= 1) {
         cushion(mesh, frame_at(top, 0.32, -0.17 + aside, 0.0, aside),
                 (struct vec){0.06, 0.10, 0.03}, 0.025, 0.013, corners(detail), BLACK);
         pile(mesh, frame_at(top, 0.56, 0.2 + aside, 0.0, 0.0), random,
              1 + random_below(random, 5));
-        cushion(mesh, frame_at(top, 0.57, -0.17, 0.0, aside), (struct vec){0.21, 0.297, 0.008},
-                0.0, 0.0, 0, PAPER);
+        cushion(mesh, frame_at(top, 0.57, -0.17, 0.0, aside),
+                (struct vec){0.21, 0.297, 0.008}, 0.0, 0.0, 0, PAPER);
     }
     if (detail >= 1)
         lamp(mesh, frame_at(top, -0.6 + aside, 0.22, 0.0, 0.0), random, detail);
@@ -699,23 +717,27 @@ static void desk_things(struct mesh *mesh, struct frame frame, struct random *ra
 }
 
 /* All of a place but the bookcases; the frame is the middle of the cell. */
-static void furnish(struct mesh *mesh, struct frame frame, struct random *random, int detail)
+static void furnish(struct mesh *mesh, struct frame frame, struct random *random,
+                    int detail)
 {
     const struct vessel bin = {0.11, 0.14, 0.0, 0.32, 0.004, 0.006, BLACK};
     struct frame middle = frame_at(frame, -0.55, 0.7, 0.0, 0.0);
-    double x = random_between(random, -0.08, 0.08), y = random_between(random, -0.9, -0.8);
+    double x = random_between(random, -0.08, 0.08);
+    double y = random_between(random, -0.9, -0.8);
     double turn = random_between(random, -0.1, 0.1);
     desk(mesh, middle, random, detail);
     desk_things(mesh, middle, random, detail);
     chair(mesh, frame_at(middle, x, y, 0.0, turn), random, detail);
-    vessel(mesh, frame_at(frame, 0.5, 0.5 + x, GAP, 0.0), bin, around(detail), steps(detail));
+    vessel(mesh, frame_at(frame, 0.5, 0.5 + x, GAP, 0.0), bin, around(detail),
+           steps(detail));
     if (detail >= 2)
         plant(mesh, frame_at(frame, 0.65, 1.35, GAP, turn), random, detail);
 }
 
 /* --- bookcases --- */
 
-static const double CASE_X = 0.9, CASE_Y = 0.31, CASE_BAR = 0.02, CASE_PITCH = 0.33; /* m */
+/* m */
+static const double CASE_X = 0.9, CASE_Y = 0.31, CASE_BAR = 0.02, CASE_PITCH = 0.33;
 
 /* Standing, its back to the front; the origin is the lower left corner of the back. */
 static void book(struct mesh *mesh, struct frame frame, struct vec size, int triangles,
@@ -740,8 +762,8 @@ static void book(struct mesh *mesh, struct frame frame, struct vec size, int tri
     turned(mesh, frame_at(frame, half, y, 0.0, 0.0), &outline, rings, 2, material);
 }
 
-/* Books on one board, from left to right, until the mesh has `target` triangles or the board
- * is full. The frame is at the left end of the board's front edge, on the board. */
+/* Books on one board, from left to right, until the mesh has `target` triangles or the
+ * board is full. The frame is at the left end of the board's front edge, on the board. */
 static void fill_board(struct mesh *mesh, struct frame frame, struct random *random,
                        int32_t target)
 {
@@ -765,16 +787,18 @@ static void fill_board(struct mesh *mesh, struct frame frame, struct random *ran
 }
 
 /* The origin is the lower left corner of the front. */
-static void bookcase(struct mesh *mesh, struct frame frame, struct random *random, int boards,
-                     int32_t target)
+static void bookcase(struct mesh *mesh, struct frame frame, struct random *random,
+                     int boards, int32_t target)
 {
+    double height = boards * CASE_PITCH + CASE_BAR;
     const struct relief corpus = {cuts_even(1, CASE_X, CASE_BAR),
-                                  cuts_even(boards, boards * CASE_PITCH + CASE_BAR, CASE_BAR),
-                                  CASE_Y, CASE_BAR - CASE_Y, WOOD, WOOD};
+                                  cuts_even(boards, height, CASE_BAR), CASE_Y,
+                                  CASE_BAR - CASE_Y, WOOD, WOOD};
     relief(mesh, frame_upright(frame, 0.0, 0.0, GAP), &corpus);
     for (int i = 0; i < boards; i++) {
         int32_t share = (target - mesh->face_count) / (boards - i);
-        fill_board(mesh, frame_at(frame, CASE_BAR, 0.0, GAP + CASE_BAR + i * CASE_PITCH, 0.0),
+        fill_board(mesh,
+                   frame_at(frame, CASE_BAR, 0.0, GAP + CASE_BAR + i * CASE_PITCH, 0.0),
                    random, mesh->face_count + share);
     }
 }
@@ -800,7 +824,8 @@ static int detail_within(struct mesh *mesh, struct frame frame, struct random ra
 }
 
 /* A cell is filled until the mesh has `target` triangles; the frame is in its middle. */
-static void place(struct mesh *mesh, struct frame frame, struct random *random, int32_t target)
+static void place(struct mesh *mesh, struct frame frame, struct random *random,
+                  int32_t target)
 {
     int32_t share = target - mesh->face_count;
     int cases = share < 1600 ? 1 : share < 4500 ? 2 : 3;
@@ -808,12 +833,12 @@ static void place(struct mesh *mesh, struct frame frame, struct random *random, 
     int detail = detail_within(mesh, frame, *random, (share - 150 * cases) * 2 / 3);
     furnish(mesh, frame, random, detail);
     if (cases == 2)
-        drawers(mesh, frame_at(frame, 1.0, -0.4, 0.0, 0.75), (struct vec){0.46, 0.55, 1.25}, 4,
-                METAL, detail);
+        drawers(mesh, frame_at(frame, 1.0, -0.4, 0.0, 0.75),
+                (struct vec){0.46, 0.55, 1.25}, 4, METAL, detail);
     for (int i = 0; i < cases; i++) {
         int32_t part = (target - mesh->face_count) / (cases - i);
-        bookcase(mesh, frame_at(frame, 1.25, 1.65 - i * (CASE_X + 0.03), 0.0, 0.75), random,
-                 boards, mesh->face_count + part);
+        bookcase(mesh, frame_at(frame, 1.25, 1.65 - i * (CASE_X + 0.03), 0.0, 0.75),
+                 random, boards, mesh->face_count + part);
     }
 }
 
@@ -851,8 +876,8 @@ static struct cuts cuts_lights(int places, double pitch, double margin, double s
     return cuts;
 }
 
-/* A wall between count + 1 vertices of the ceiling, from `first` on, and those of the floor,
- * whose numbers are `below` more. */
+/* A wall between count + 1 vertices of the ceiling, from `first` on, and those of the
+ * floor, whose numbers are `below` more. */
 static void shell_wall(struct mesh *mesh, int32_t first, int32_t step, int count,
                        int32_t below)
 {
@@ -866,8 +891,8 @@ static void shell_wall(struct mesh *mesh, int32_t first, int32_t step, int count
 static void shell(struct mesh *mesh, const struct plan *plan)
 {
     const struct relief lights = {cuts_lights(plan->columns, PLACE_X, 0.0, 1.2),
-                                  cuts_lights(plan->rows, PLACE_Y, MARGIN_Y, 0.6), 0.0, -0.05,
-                                  CEILING, LIGHT};
+                                  cuts_lights(plan->rows, PLACE_Y, MARGIN_Y, 0.6),
+                                  0.0, -0.05, CEILING, LIGHT};
     struct frame back = frame_upright(WORLD, 0.0, plan->y, plan->z);
     struct frame down = frame_upright(back, 0.0, 0.0, 0.0);
     int nx = lights.x.cells, ny = lights.y.cells;
@@ -887,7 +912,8 @@ static void shell(struct mesh *mesh, const struct plan *plan)
 }
 
 /* Hangs it on a wall; the frame is on the floor at the wall, which faces -y. */
-static void hang(struct mesh *mesh, struct frame frame, double z, const struct relief *thing)
+static void hang(struct mesh *mesh, struct frame frame, double z,
+                 const struct relief *thing)
 {
     double x = -0.5 * thing->x.at[thing->x.cells];
     relief(mesh, frame_upright(frame, x, -thing->thickness - GAP, z), thing);
@@ -939,9 +965,10 @@ static void print_mesh(const struct mesh *mesh)
 {
     const int32_t unit = UNITS_PER_METRE;
     for (int32_t i = 0; i < mesh->vertex_count; i++) {
-        const int32_t *v = mesh->vertices[i]; /* never negative: the floor's corner is 0 */
+        const int32_t *v = mesh->vertices[i]; /* none negative: the floor's corner is 0 */
         printf("v %d.%05d %d.%05d %d.%05d\n", (int)(v[0] / unit), (int)(v[0] % unit),
-               (int)(v[1] / unit), (int)(v[1] % unit), (int)(v[2] / unit), (int)(v[2] % unit));
+               (int)(v[1] / unit), (int)(v[1] % unit), (int)(v[2] / unit),
+               (int)(v[2] % unit));
     }
     enum material material = MATERIALS;
     for (int32_t i = 0; i < mesh->face_count; i++) {
@@ -981,7 +1008,8 @@ int main(int argc, char **argv)
     unsigned long triangles, seed;
     if (argc == 2 && strcmp(argv[1], "--materials") == 0)
         print_materials();
-    else if (argc == 3 && number_is_read(argv[1], TRIANGLES_MIN, TRIANGLES_MAX, &triangles)
+    else if (argc == 3
+             && number_is_read(argv[1], TRIANGLES_MIN, TRIANGLES_MAX, &triangles)
              && number_is_read(argv[2], 0, UINT32_MAX, &seed))
         print_room((int32_t)triangles, (uint32_t)seed);
     else {

@@ -52,7 +52,9 @@ judge includes_of_beyond "$(cat rad/*.[ch] mpi/*.[ch] | grep -c '#include ".*bey
 judge ground_floor_lines "$(ls phr.c rad/*.[ch] mpi/*.[ch] | lines_of)"
 judge source_lines "$(source_files | lines_of)"
 judge test_lines "$(test_files | lines_of)"
-judge long_lines "$( (source_files; test_files; ls tools/*.[ch] Makefile) | xargs cat |
+judge long_lines "$( (source_files; test_files
+    ls Makefile tools/*.[ch] tools/*.sh tools/*.awk scenes/*.c scenes/*.sh
+    ls docs/course/*.c docs/course/*.sh docs/course/*.awk docs/course/*/*.[ch]) | xargs cat |
     grep -cE '^.{91}')"
 awk -f tests/storeys.awk $(source_files) tools/*.[ch] >"$work/figures"
 while read -r name figure details; do

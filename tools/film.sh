@@ -4,8 +4,8 @@
 #
 # The method is the paper's, whose passes each refine the links and let light go on by one
 # bounce. The first frames are the first pass, with roots divided at most 0, 1, ... times;
-# then each frame is a pass more, up to the last. A frame is a run that ends early: it goes
-# on from the checkpoint of the frame before, and three runs make pictures of its own.
+# then each frame is a pass more, up to the last. A frame is a run that ends early: it
+# goes on from the checkpoint of the frame before, and three runs draw its own.
 set -eu
 : "${MPIEXEC:=mpiexec}" "${RANKS:=4}" "${FILM:=build/film}" "${SCENE:=scenes/cornell}"
 : "${EPSILON:=1e-4}" "${LEVELS:=0 1 2 3 4 10}" "${SIZE:=200x200}" "${EXPOSURE:=0.8}"
@@ -14,8 +14,8 @@ mkdir -p "$FILM"
 rm -f "$FILM"/*-[0-9][0-9].png "$FILM/film.gif"
 
 run() {
-    $MPIEXEC -n "$RANKS" ./phr "$SCENE.obj" --quiet --paper --epsilon "$EPSILON" --tolerance 1e-3 \
-        --max-level "$level" --max-iterations "$pass" "$@"
+    $MPIEXEC -n "$RANKS" ./phr "$SCENE.obj" --quiet --paper --epsilon "$EPSILON" \
+        --tolerance 1e-3 --max-level "$level" --max-iterations "$pass" "$@"
 }
 
 # frame OPTIONS...: the pictures of a run with these.

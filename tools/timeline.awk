@@ -22,7 +22,8 @@ function value(line, key) {
 }
 
 function text(x, y, anchor, words) {
-    printf "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%s</text>\n", x, y, anchor, words
+    printf "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%s</text>\n", x, y, anchor,
+        words
 }
 
 function bar(x, y, width, height, colour) {
@@ -108,7 +109,7 @@ END {
         panel(p, top)
         top += HEAD + ROW * ranks[p] + GAP
     }
-    text(LEFT, top + 12, "start", "blue: work done, pass by pass; orange: as predicted; " \
-        "white: idle; a row is a rank")
+    text(LEFT, top + 12, "start", "blue: work done, pass by pass; orange: as " \
+        "predicted; white: idle; a row is a rank")
     print "</svg>"
 }

@@ -21,7 +21,8 @@ int main(void)
         b[0] = lamp;
         b[1] = floor;
     }
-    double lamp = (emission[0] + rho[0] * f * emission[1]) / (1.0 - rho[0] * rho[1] * f * f);
+    double lamp = (emission[0] + rho[0] * f * emission[1]) /
+                  (1.0 - rho[0] * rho[1] * f * f);
     printf("answer %9.4f %9.4f\n", lamp, emission[1] + rho[1] * f * lamp);
     return 0;
 }

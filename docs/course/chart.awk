@@ -1,7 +1,8 @@
-# A chart as SVG, of lines "series x y": a line with marks for each series. An underscore in
-# a name shows as a space.
+# A chart as SVG, of lines "series x y": a line with marks for each series. An underscore
+# in a name shows as a space.
 #
-#     awk -v title=T -v xlabel=X -v ylabel=Y [-v logx=1] [-v logy=1] -f docs/course/chart.awk
+#     awk -v title=T -v xlabel=X -v ylabel=Y [-v logx=1] [-v logy=1] \
+#         -f docs/course/chart.awk
 
 function place(value, is_log) {
     return is_log ? log(value) / log(10) : value
@@ -23,8 +24,8 @@ function tick_name(at, is_log) {
 
 function text(x, y, anchor, words, more) {
     gsub(/&/, "\\&amp;", words)
-    printf "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\"%s>%s</text>\n", x, y, anchor, more,
-        words
+    printf "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\"%s>%s</text>\n", x, y,
+        anchor, more, words
 }
 
 function line(x1, y1, x2, y2, colour) {

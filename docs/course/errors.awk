@@ -1,5 +1,5 @@
-# The errors of means of objects of doorway.obj: RMS of the relative ones, all but the lamp,
-# and that of the far floor.
+# The errors of means of objects of doorway.obj: RMS of the relative ones, all but the
+# lamp, and that of the far floor.
 #
 #     ... | awk -v run="NAME EPSILON LINKS" -f docs/course/errors.awk scenes/answers.csv -
 

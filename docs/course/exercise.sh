@@ -3,8 +3,8 @@
 #
 #   sh docs/course/exercise.sh N [solutions]
 #
-# Answers are in exercises/N.c, or in the folder named; exercises/N-test.c includes them and
-# prints a line for each exercise. Exit status 0: all are right.
+# Answers are in exercises/N.c, or in the folder named; exercises/N-test.c includes them
+# and prints a line for each exercise. Exit status 0: all are right.
 : "${CC:=mpicc}" "${BUILD:=build/mpi}"
 cd "$(dirname "$0")/../.." || exit 2
 number=$(printf %02d "${1#0}") || exit 2

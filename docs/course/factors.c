@@ -25,13 +25,14 @@ static struct vec3 point(const struct square *s, double i, double j)
 {
     struct vec3 u = vec3_sub(s->corner[1], s->corner[0]);
     struct vec3 v = vec3_sub(s->corner[3], s->corner[0]);
-    return vec3_add(s->corner[0], vec3_add(vec3_scale(u, i / 2.0), vec3_scale(v, j / 2.0)));
+    return vec3_add(s->corner[0],
+                    vec3_add(vec3_scale(u, i / 2.0), vec3_scale(v, j / 2.0)));
 }
 
 static double one_disk(const struct square *p, const struct square *q)
 {
-    return disk_exchange(point(p, 1.0, 1.0), p->normal, 1.0, point(q, 1.0, 1.0), q->normal,
-                         1.0);
+    return disk_exchange(point(p, 1.0, 1.0), p->normal, 1.0, point(q, 1.0, 1.0),
+                         q->normal, 1.0);
 }
 
 static double sixteen_disks(const struct square *p, const struct square *q)
@@ -58,7 +59,8 @@ int main(void)
 {
     const double distances[] = {4.0, 2.0, 1.0, 0.5, 0.25, 0.125};
     const struct square floor = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {0, 0, 1}};
-    printf("%6s  %8s%20s%20s%20s\nfacing\n", "h", "exact", "one disk", "16 disks", "a point");
+    printf("%6s  %8s%20s%20s%20s\nfacing\n", "h", "exact", "one disk", "16 disks",
+           "a point");
     for (int k = 0; k < 6; k++) {
         double h = distances[k];
         struct square lamp = {{{0, 0, h}, {0, 1, h}, {1, 1, h}, {1, 0, h}}, {0, 0, -1}};
@@ -67,7 +69,8 @@ int main(void)
     printf("at right angles\n");
     for (int k = 0; k < 6; k++) {
         double h = distances[k] - 0.125;
-        struct square wall = {{{-h, 0, 0}, {-h, 1, 0}, {-h, 1, 1}, {-h, 0, 1}}, {1, 0, 0}};
+        struct square wall = {{{-h, 0, 0}, {-h, 1, 0}, {-h, 1, 1}, {-h, 0, 1}},
+                              {1, 0, 0}};
         print_row(h, &floor, &wall);
     }
     return 0;

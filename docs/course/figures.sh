@@ -9,8 +9,8 @@ work=build/course
 chart() {
     name=$1 title=$2 xlabel=$3 ylabel=$4
     shift 4
-    awk -v title="$title" -v xlabel="$xlabel" -v ylabel="$ylabel" "$@" -f $here/chart.awk \
-        >$here/$name.svg
+    awk -v title="$title" -v xlabel="$xlabel" -v ylabel="$ylabel" "$@" \
+        -f $here/chart.awk >$here/$name.svg
 }
 
 # patches NAME OPTIONS OF AWK: of lines as leaves prints them.
@@ -28,7 +28,8 @@ $work/bounces | awk '$1 ~ /^[0-9]+$/ {
 $work/factors | awk '/right/ { exit }
         $1 > 0 { print "one_disk", $1, $3 / $2 - 1; print "16_disks", $1, $6 / $2 - 1
                  print "a_point", $1, $9 / $2 - 1 }' |
-    chart factors "Unit squares that face each other" "distance h [m]" "error of F" -v logx=1
+    chart factors "Unit squares that face each other" "distance h [m]" "error of F" \
+        -v logx=1
 $work/radiosity scenes/box.obj 0.3 $work/box.txt >/dev/null
 patches box -v from="3 -4 2.6" -v white=60 <$work/box.txt
 
@@ -69,7 +70,8 @@ for balance in none greedy default; do
         if (value["iteration"] > 0 && value["work_mean"] >= 50)
             print name, ++n, value["work_max"] / value["work_mean"] }' \
         $work/balance-$balance.json
-done | chart balance "Most work of a rank of 8, in means" "level (of more than 50 tests a rank)" \
-    "work / mean"
+done | chart balance "Most work of a rank of 8, in means" \
+    "level (of more than 50 tests a rank)" "work / mean"
 awk 'NR > 1 { print $1, $3, $4 / 100 }' $work/errors.txt |
-    chart errors "Two rooms and a doorway" links "RMS error of objects" -v logx=1 -v logy=1
+    chart errors "Two rooms and a doorway" links "RMS error of objects" \
+        -v logx=1 -v logy=1

@@ -4,9 +4,9 @@
  *     leaves SOLUTION.ply
  *
  * prints a line for each leaf: root/path, the mean of B over the three bands [W/m^2], and
- * the nine coordinates of its corners. The path is the hierarchy part of the patch ID, read
- * from the root down: 7/203 is child 3 of child 0 of child 2 of root 7. A root that is
- * a leaf itself is 7/. */
+ * the nine coordinates of its corners. The path is the hierarchy part of the patch ID,
+ * read from the root down: 7/203 is child 3 of child 0 of child 2 of root 7. A root that
+ * is a leaf itself is 7/. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-# The mean radiosity of each object of a scene: an object is what "o" names or, where there is
-# none, what "usemtl" names.
+# The mean radiosity of each object of a scene: an object is what "o" names or, where
+# there is none, what "usemtl" names.
 #
 #     leaves SOLUTION.ply | awk -f docs/course/objects.awk SCENE.obj -
 #

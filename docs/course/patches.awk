@@ -2,7 +2,8 @@
 # that one looks into a room through its walls. Lines are "ID B" and nine coordinates, as
 # leaves and radiosity write them.
 #
-#     awk -v from="2 -3 2" -v white=W [-v names=1] [-v owners=1] -f docs/course/patches.awk
+#     awk -v from="2 -3 2" -v white=W [-v names=1] [-v owners=1] \
+#         -f docs/course/patches.awk
 #
 # `white` is the radiosity that is shown as white; with `names` each patch has its ID and
 # nothing else, with `owners` a colour for each B, which is a rank.
@@ -50,8 +51,8 @@ BEGIN {
         high_y = y[k] > high_y ? y[k] : high_y
     }
     sum = z[0] + z[1] + z[2]
-    line[n] = sprintf("%s %s %.5f %.5f %.5f %.5f %.5f %.5f", $1, $2, x[0], y[0], x[1], y[1],
-        x[2], y[2])
+    line[n] = sprintf("%s %s %.5f %.5f %.5f %.5f %.5f %.5f", $1, $2, x[0], y[0],
+        x[1], y[1], x[2], y[2])
     depth[n++] = sum
 }
 
@@ -71,12 +72,14 @@ END {
             p[k] = 10 + scale * (p[k] - low_x)
             p[k + 1] = 10 + scale * (p[k + 1] - low_y)
         }
-        printf "%.5f <path d=\"M%.1f %.1fL%.1f %.1fL%.1f %.1fZ\" fill=\"%s\"/>\n", depth[i],
-            p[3], p[4], p[5], p[6], p[7], p[8], shade(p[2]) | (sorted " | cut -d ' ' -f 2-")
+        printf "%.5f <path d=\"M%.1f %.1fL%.1f %.1fL%.1f %.1fZ\" fill=\"%s\"/>\n",
+            depth[i], p[3], p[4], p[5], p[6], p[7], p[8], shade(p[2]) | \
+            (sorted " | cut -d ' ' -f 2-")
         if (names)
             label[i] = sprintf("<text x=\"%.1f\" y=\"%.1f\" font-size=\"%.1f\">%s</text>",
                 (p[3] + p[5] + p[7]) / 3, (p[4] + p[6] + p[8]) / 3 + 3,
-                sqrt((p[7] - p[3]) * (p[6] - p[4]) - (p[5] - p[3]) * (p[8] - p[4])) / 9 + 2,
+                sqrt((p[7] - p[3]) * (p[6] - p[4]) - \
+                    (p[5] - p[3]) * (p[8] - p[4])) / 9 + 2,
                 p[1])
     }
     close(sorted " | cut -d ' ' -f 2-")

@@ -1,8 +1,9 @@
 /* Push and pull over one quadtree: chapter 7 of the course.
  *
- * The root is a patch of 1 m^2 with rho = 0.5 that emits nothing. Three links have brought
- * flux: 2 W to the root, 1 W to its child 3, 0.1 W to child 2 of that. Printed is each
- * patch, its flux, and after push-pull its irradiance H (of leaves) and radiosity B. */
+ * The root is a patch of 1 m^2 with rho = 0.5 that emits nothing. Three links have
+ * brought flux: 2 W to the root, 1 W to its child 3, 0.1 W to child 2 of that. Printed
+ * is each patch, its flux, and after push-pull its irradiance H (of leaves) and
+ * radiosity B. */
 #include <stdio.h>
 
 enum { PATCHES = 9 };

@@ -22,7 +22,12 @@ take_blocks() {
     awk -v work=$work '
         /^```/ && inside { close(inside); inside = ""; next }
         /^```sh$/ { inside = work "/" ++n ".sh"; shown = n; next }
-        /^```$/ && shown { inside = work "/" shown ".out"; printf "" >inside; shown = 0; next }
+        /^```$/ && shown {
+            inside = work "/" shown ".out"
+            printf "" >inside
+            shown = 0
+            next
+        }
         /^```/ { inside = "/dev/null"; shown = 0; next }
         inside { print >inside; next }
         /[^ ]/ { shown = 0 }' "$1"

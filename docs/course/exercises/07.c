@@ -1,13 +1,15 @@
 /* Exercises of chapter 7. */
 
-/* H of a leaf, W/m^2. Its line of ancestors has `count` patches, from the root to the leaf
- * itself: flux[i] is what links have brought to each, W, and area[i] its area, m^2. */
+/* H of a leaf, W/m^2. Its line of ancestors has `count` patches, from the root to the
+ * leaf itself: flux[i] is what links have brought to each, W, and area[i] its area,
+ * m^2. */
 double irradiance_of(int count, const double *flux, const double *area)
 {
     return 0.0;
 }
 
-/* The mean radiosity of a patch with `count` children of these radiosities b and areas. */
+/* The mean radiosity of a patch with `count` children of these radiosities b and
+ * areas. */
 double pull(int count, const double *b, const double *area)
 {
     return 0.0;

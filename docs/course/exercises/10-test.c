@@ -5,7 +5,8 @@
 
 int main(void)
 {
-    report(is_near(still_missing(0.1, 0.5), 0.1) && is_near(still_missing(0.1, 0.95), 1.9),
+    report(is_near(still_missing(0.1, 0.5), 0.1) &&
+               is_near(still_missing(0.1, 0.95), 1.9),
            "still_missing()");
     report(is_near(relative_rms(2, (double[]){1.1, 1.8}, (double[]){1.0, 2.0}), 0.1),
            "relative_rms()");

@@ -1,7 +1,7 @@
 /* Solutions to the exercises of chapter 2. */
 
-/* F of two squares of this area, m^2, that face each other at this distance, m, by Eq. 2 from
- * centre to centre. */
+/* F of two squares of this area, m^2, that face each other at this distance, m, by Eq. 2
+ * from centre to centre. */
 double disk_factor(double area, double distance)
 {
     return area / (3.14159265358979323846 * distance * distance + area);

@@ -1,8 +1,8 @@
 /* Solutions to the exercises of chapter 3. */
 
 /* One bounce: next[i] = e[i] + rho[i] * sum over j of f[i * n + j] * b[j]. */
-void jacobi_step(int n, const double *e, const double *rho, const double *f, const double *b,
-                 double *next)
+void jacobi_step(int n, const double *e, const double *rho, const double *f,
+                 const double *b, double *next)
 {
     for (int i = 0; i < n; i++) {
         double irradiance = 0.0;
@@ -13,7 +13,8 @@ void jacobi_step(int n, const double *e, const double *rho, const double *f, con
 }
 
 /* The same in place: each new b[i] is used at once for those that follow. */
-void gauss_seidel_step(int n, const double *e, const double *rho, const double *f, double *b)
+void gauss_seidel_step(int n, const double *e, const double *rho, const double *f,
+                       double *b)
 {
     for (int i = 0; i < n; i++) {
         double irradiance = 0.0;
@@ -23,8 +24,8 @@ void gauss_seidel_step(int n, const double *e, const double *rho, const double *
     }
 }
 
-/* The power, W, that n patches absorb, by their radiosities b, emissions e, reflectances rho
- * (none is 0) and areas, m^2. */
+/* The power, W, that n patches absorb, by their radiosities b, emissions e, reflectances
+ * rho (none is 0) and areas, m^2. */
 double absorbed_power(int n, const double *e, const double *rho, const double *area,
                       const double *b)
 {

@@ -2,8 +2,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* True if the triangle t stands between the points x and y. (Points and corners are arrays of
- * three coordinates.) */
+/* True if the triangle t stands between the points x and y. (Points and corners are
+ * arrays of three coordinates.) */
 bool is_blocked(double t[3][3], const double x[3], const double y[3])
 {
     double d[3], e[3], g[3], s[3], p[3], q[3];

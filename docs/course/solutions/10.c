@@ -19,8 +19,8 @@ double relative_rms(int count, const double *values, const double *answers)
     return sqrt(squares / count);
 }
 
-/* The number of bounces after which that bound is at most `tolerance`, if the first bounce
- * changes B by 1, and each changes it by q times what the one before did. */
+/* The number of bounces after which that bound is at most `tolerance`, if the first
+ * bounce changes B by 1, and each changes it by q times what the one before did. */
 int bounces_for(double q, double tolerance)
 {
     int bounces = 1;
