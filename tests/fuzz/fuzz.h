@@ -17,6 +17,7 @@
 
 #include "geom/alloc.h"
 #include "geom/error.h"
+#include "mpi/comm.h"
 
 /* Reads the bytes as a file of the format. Returns 0. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -35,6 +36,23 @@ static inline void fuzz_verdict(bool good, const struct error *error)
     FUZZ_PROMISE(good == (error->text[0] == '\0'));
     FUZZ_PROMISE(!strchr(error->text, '\n'));
     FUZZ_PROMISE(alloc_balance() == 0);
+}
+
+static struct comm fuzz_comm;
+
+static inline void fuzz_stop(void)
+{
+    comm_stop(&fuzz_comm);
+}
+
+/* The process as the only rank, for harnesses that run more than a reader. */
+static inline struct comm *fuzz_alone(void)
+{
+    if (fuzz_comm.size == 0) {
+        comm_start(&fuzz_comm, NULL, NULL);
+        atexit(fuzz_stop);
+    }
+    return &fuzz_comm;
 }
 
 #endif

@@ -1,8 +1,11 @@
-/* Fuzzing PLY: reading and preparing a scene; reading a solution. */
+/* Fuzzing PLY: reading and preparing a scene; reading a solution, and showing it as phr
+ * does. */
 #include "io/scene/ply.h"
 
 #include "tests/fuzz/fuzz.h"
 #include "tools/compare.h"
+#include "tools/results.h"
+#include "tools/stored.h"
 
 static bool load(struct binary *binary, const uint8_t *data, size_t size,
                  struct error *error)
@@ -30,6 +33,24 @@ static void read_scene(const uint8_t *data, size_t size)
     fuzz_verdict(good, &error);
 }
 
+/* A solution that is read is one that pictures and meshes can be made of. */
+static void show_solution(struct solution_mesh *solution)
+{
+    char *arguments[] = {"phr", "fuzz.ply", "-o", "pfm:/dev/null", "-o", "ply:/dev/null"};
+    struct run run = {
+        .comm = *fuzz_alone(), .scene = solution->scene, .stored = solution};
+    struct camera camera = {.width = 3, .height = 2};
+    run.cameras = &camera;
+    options_parse(&run.options, sizeof arguments / sizeof *arguments, arguments,
+                  &run.error);
+    run.octree = octree_create(run.scene->triangles, run.scene->planes,
+                               run.scene->input_count);
+    FUZZ_PROMISE(run.error.code == EXIT_DONE && stored_light(&run) && results_show(&run));
+    solver_destroy(run.solver);
+    octree_destroy(run.octree);
+    options_free(&run.options);
+}
+
 static void read_solution(const uint8_t *data, size_t size)
 {
     struct error error = {0}, different = {0};
@@ -48,6 +69,7 @@ static void read_solution(const uint8_t *data, size_t size)
         solution_mesh_restore(&solution, forest);
         FUZZ_PROMISE(forest_count(forest).leaves == solution.count);
         forest_destroy(forest);
+        show_solution(&solution);
     }
     alloc_free(map);
     solution_mesh_free(&solution);

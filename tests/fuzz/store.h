@@ -80,21 +80,10 @@ static inline bool store_continue(struct store_reader *reader, struct solver *so
     return error->code == EXIT_DONE;
 }
 
-static struct comm store_comm;
-
-static inline void store_stop(void)
-{
-    comm_stop(&store_comm);
-}
-
 static inline void store_try(enum store_kind kind, enum linking_kind linking,
                              const uint8_t *data, size_t size)
 {
     struct error error = {0};
-    if (store_comm.size == 0) {
-        comm_start(&store_comm, NULL, NULL);
-        atexit(store_stop);
-    }
     uint8_t *copy = malloc(size + !size);
     memcpy(copy, data, size);
     if (size >= 8)
@@ -105,7 +94,7 @@ static inline void store_try(enum store_kind kind, enum linking_kind linking,
     struct scene *scene = pairs ? store_scene() : store_box();
     struct octree *octree =
         octree_create(scene->triangles, scene->planes, scene->input_count);
-    struct solver *solver = beyond_create(&store_comm, scene, octree, &criterion);
+    struct solver *solver = beyond_create(fuzz_alone(), scene, octree, &criterion);
     struct store_terms terms = {kind, STORE_SETTINGS, scene, solver->beyond->tree};
     struct store_reader reader;
     bool good = store_open_file(&reader, file, "fuzz", &terms, &error) &&
