@@ -17,7 +17,7 @@ void ledger_add(struct ledger *ledger, struct phase_work phase)
 static void add_level(struct ledger *ledger, const struct phase_work *phases,
                       int64_t stride, int ranks)
 {
-    struct level_balance level = {.iteration = phases->iteration, .level = phases->level};
+    struct level_balance level = {.pass = phases->pass, .level = phases->level};
     level.shares = alloc_array((size_t)ranks, sizeof *level.shares);
     for (int r = 0; r < ranks; r++) {
         const struct level_share *share = &phases[r * stride].share;

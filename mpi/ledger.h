@@ -11,7 +11,7 @@
 struct phase_work {
     int32_t kind;             /* enum work */
     int32_t level;            /* of refinement, or 0 */
-    int64_t iteration;        /* or pass, of refinement */
+    int64_t pass;             /* of refinement, or 0 */
     struct level_share share; /* `done`: its work; the rest is of refinement, linking */
     int64_t bytes;            /* that the rank sent for it */
 };

@@ -145,7 +145,7 @@ static bool begin_level(struct solver *solver, const struct link_list *prolific,
         return false;
     }
     level->phase = (struct phase_work){.kind = WORK_SPLITTING,
-                                       .iteration = solver->turn.pass,
+                                       .pass = solver->turn.pass,
                                        .level = level->phase.level + 1};
     progress_begin(solver->progress, "refining", level->phase.level, level->all.prolific);
     return true;
@@ -250,8 +250,7 @@ static void select_prolific(struct solver *solver, struct link_list *prolific)
     struct model *model = &solver->model;
     int64_t kept = 0;
     double start = comm_seconds();
-    struct phase_work looks = {.kind = WORK_LOOKS, .iteration = solver->turn.pass,
-                               .share.done = solver->links.count};
+    struct phase_work looks = {.kind = WORK_LOOKS, .share.done = solver->links.count};
     for (int64_t i = 0; i < solver->links.count; i++) {
         struct link link = solver->links.items[i];
         if (is_prolific(solver, &link)) {

@@ -42,9 +42,9 @@ struct level_share {
 };
 
 /* A level of refinement, on all ranks. Linking of all pairs, of which nothing is
- * predicted, is level 0 of iteration 0. */
+ * predicted, is level 0 of pass 0. */
 struct level_balance {
-    int64_t iteration, level;
+    int64_t pass, level;
     int64_t links; /* that were split; of all pairs, that were made */
     double predicted_max, predicted_mean; /* over ranks */
     double work_max, work_mean;           /* over ranks */

@@ -66,7 +66,7 @@ check "no such picture" refused leaves 'is not one of light|mesh'
 $MPIEXEC -n 3 "$PHR" scenes/cornell.obj --quiet --paper --epsilon 1e-3 \
     --stats "$work/run.json"
 awk -f tools/timeline.awk "$work/run.json" >"$work/run.svg"
-sum=$(sed -n 's/.*"iteration": [1-9].*"work_max": \([0-9]*\).*/\1/p' "$work/run.json" |
+sum=$(sed -n 's/.*"pass": [1-9].*"work_max": \([0-9]*\).*/\1/p' "$work/run.json" |
     awk '{ sum += $1 } END { print sum }')
 check "the timeline is as long as the levels' most work ($sum)" \
     grep -q ">run: $sum tests" "$work/run.svg"

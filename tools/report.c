@@ -29,8 +29,8 @@ void report_levels(struct run *run, int64_t first)
     for (int64_t i = first; i < ledger->level_count; i++) {
         const struct level_balance *level = &ledger->levels[i];
         run_say(run, "pass %lld, level %lld: %lld links %s, most work %.3f of the mean",
-                (long long)level->iteration, (long long)level->level,
-                (long long)level->links, level->iteration == 0 ? "made" : "split",
+                (long long)level->pass, (long long)level->level,
+                (long long)level->links, level->pass == 0 ? "made" : "split",
                 level->work_mean > 0.0 ? level->work_max / level->work_mean : 1.0);
         for (int r = 0; r < run->comm.size && run->comm.size > 1; r++)
             report_share(run, r, &level->shares[r]);

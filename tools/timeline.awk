@@ -6,7 +6,7 @@
 # in box and triangle tests, the unit of work; all ranks begin a level together. In a row
 # the upper bar is the work done, one shade a pass, the lower one the work that was
 # predicted, scaled so that all of it is as much as all work done. What stays white up to
-# the next level is idle. Linking of all pairs (iteration 0), which is even, is left out.
+# the next level is idle. Linking of all pairs (pass 0), which is even, is left out.
 
 # The numbers of "key": [1, 2, 3], into list[1..]; returns how many.
 function numbers(line, list) {
@@ -38,8 +38,8 @@ FNR == 1 {
     sub(/.*\//, "", name[panels])
     sub(/\.json$/, "", name[panels])
 }
-/^    \{"iteration": / {
-    number = value($0, "iteration")
+/^    \{"pass": / {
+    number = value($0, "pass")
     if (number > 0)
         pass[panels, level = ++levels[panels]] = number
 }

@@ -67,7 +67,7 @@ for balance in none greedy default; do
         gsub(/[",:{}]/, " ")
         for (i = 1; i < NF; i++)
             value[$i] = $(i + 1)
-        if (value["iteration"] > 0 && value["work_mean"] >= 50)
+        if (value["pass"] > 0 && value["work_mean"] >= 50)
             print name, ++n, value["work_max"] / value["work_mean"] }' \
         $work/balance-$balance.json
 done | chart balance "Most work of a rank of 8, in means" \

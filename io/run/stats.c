@@ -147,11 +147,11 @@ static void write_balance(FILE *file, const struct stats *stats)
     for (int64_t i = 0; i < stats->level_count; i++) {
         const struct level_balance *level = &stats->levels[i];
         fprintf(file,
-                "%s\n    {\"iteration\": %" PRId64 ", \"level\": %" PRId64
+                "%s\n    {\"pass\": %" PRId64 ", \"level\": %" PRId64
                 ", \"links\": %" PRId64
                 ", \"predicted_max\": %.17g, \"predicted_mean\": %.17g"
                 ", \"work_max\": %.17g, \"work_mean\": %.17g",
-                i ? "," : "", level->iteration, level->level, level->links,
+                i ? "," : "", level->pass, level->level, level->links,
                 level->predicted_max, level->predicted_mean, level->work_max,
                 level->work_mean);
         for (size_t field = 0; field < sizeof SHARE_NAMES / sizeof *SHARE_NAMES; field++)

@@ -112,7 +112,6 @@ static bool make_rows(struct gathering *g)
     const struct octree_counts *proofs = &g->gather.view.counts;
     ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .iteration = solver->turn.iteration,
                                    .share.done = model_work(&solver->model) - before +
                                            proofs->node_tests + proofs->triangle_tests});
     const struct gather_counts *counts = &g->gather.counts;
@@ -431,7 +430,6 @@ bool solver_final_gather(struct solver *solver, struct vote *vote)
         solve_rows(&g, vote);
     ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .iteration = solver->turn.iteration,
                                    .bytes = g.shares * g.count * (int64_t)sizeof *g.all});
     gathering_end(&g);
     solver->account.seconds[PHASE_FINAL_GATHER] += comm_seconds() - start;

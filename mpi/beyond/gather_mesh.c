@@ -468,7 +468,6 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     const struct octree_counts *proofs = &l.gather.view.counts;
     ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .iteration = solver->turn.iteration,
                                    .share.done = model_work(model) - before +
                                            proofs->node_tests + proofs->triangle_tests});
     int64_t stopped = stop_is_asked();

@@ -264,7 +264,6 @@ struct spotcheck spotcheck_run(struct solver *solver, double goal)
     const struct octree_counts *counts = c.pathtracer.counts;
     ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .iteration = solver->turn.iteration,
                                    .share.done =
                                        counts->node_tests + counts->triangle_tests});
     alloc_free(c.leaves);

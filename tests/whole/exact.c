@@ -318,7 +318,7 @@ static void test_balance(const struct comm *comm)
         adds_up = adds_up && sum.links == level->links && sum.sent == sum.received &&
                   sum.load == sum.predicted;
         sent += sum.sent;
-        if (level->iteration == 0 || level->links < 100 * comm->size)
+        if (level->pass == 0 || level->links < 100 * comm->size)
             continue;
         large++;
         worst = fmax(worst, level->predicted_max / level->predicted_mean);
