@@ -3,6 +3,7 @@
 #define TESTS_TRANSFERS_H
 
 #include "tests/pairs.h"
+#include "tests/tap.h"
 
 enum { LINKS = 5000, ROOTS = 20 };
 
@@ -33,6 +34,20 @@ static inline uint64_t flux_hash(const struct forest *forest)
             hash =
                 (hash ^ (uint64_t)forest->patches[p].flux[c]) * UINT64_C(1099511628211);
     return hash;
+}
+
+/* `sent`, W: over LINKS links that round `numbers` times each. */
+static inline void check_received(const struct forest *forest, struct flux_unit unit,
+                                  int numbers, double sent)
+{
+    int64_t received = 0;
+    for (int64_t p = 0; p < forest->count; p++)
+        for (int c = 0; c < BANDS; c++)
+            received += forest->patches[p].flux[c];
+    /* Half a unit for each number, and a sum of 5,000 in double. */
+    double slack = 0.5 * numbers * LINKS * unit.watt + 1e-12 * sent;
+    tap_ok(received > 0 && fabs(flux_to_watts(unit, received) - sent) <= slack,
+           "what is received is what is sent");
 }
 
 static const struct link PLAIN = {.p = 3, .q = 7, .area = 0.25f, .parts_p = {64, 64, 64},

@@ -9,6 +9,7 @@
 
 #include "io/picture/imagefile.h"
 #include "tests/random.h"
+#include "tests/load.h"
 #include "tests/tap.h"
 
 #define HDR "build/hdr_test.hdr"
@@ -41,10 +42,7 @@ static void test_bytes(void)
     unsigned char got[200];
     error = (struct error){EXIT_DONE, ""};
     bool written = hdr_write(&image, HDR, &error);
-    FILE *file = fopen(HDR, "rb");
-    size_t size = file ? fread(got, 1, sizeof got, file) : 0;
-    if (file)
-        fclose(file);
+    size_t size = load(HDR, got, sizeof got);
     tap_ok(written && size == sizeof head - 1 + sizeof bytes &&
                memcmp(got, head, sizeof head - 1) == 0,
            "the header: top row first");

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "io/picture/imagefile.h"
+#include "tests/load.h"
 #include "tests/tap.h"
 
 #define PFM "build/image_test.pfm"
@@ -26,12 +27,8 @@ static bool file_is(const char *path, const char *header, const unsigned char *b
 {
     unsigned char found[200];
     size_t length = strlen(header);
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return false;
-    size_t got = fread(found, 1, sizeof found, file);
-    fclose(file);
-    return got == length + count && memcmp(found, header, length) == 0 &&
+    return load(path, found, sizeof found) == length + count &&
+           memcmp(found, header, length) == 0 &&
            memcmp(found + length, bytes, count) == 0;
 }
 

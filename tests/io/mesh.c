@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "io/picture/vtk.h"
+#include "tests/load.h"
 #include "tests/random.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
@@ -60,15 +61,6 @@ static void make_world(void)
         find_leaves(root);
 }
 
-static void load(void)
-{
-    FILE *in = fopen(PATH, "rb");
-    size = in ? fread(file, 1, SIZE_MOST, in) : 0;
-    at = 0;
-    if (in)
-        fclose(in);
-}
-
 /* True if this text comes next, which is passed. */
 static bool text_is(const char *format, int number, int other)
 {
@@ -120,7 +112,8 @@ static void test_vtk(bool with_errors)
     int points = (int)shading->vertex_count, n = leaf_count;
     bool right[8] = {vtk_write(shading, with_errors ? errors : NULL, PATH, &error),
                      true, true, true, true, true, true, true};
-    load();
+    size = load(PATH, file, SIZE_MOST);
+    at = 0;
     bool texts = text_is("# vtk DataFile Version 3.0\nradiosity in W/m^2, made by phr\n"
                          "BINARY\nDATASET POLYDATA\nPOINTS %d float\n", points, 0);
     for (int v = 0; v < points; v++)
@@ -167,7 +160,8 @@ static void test_ply(void)
     int points = (int)shading->vertex_count;
     struct mesh_answer answer = {.error = errors};
     bool written = mesh_write(shading, &tone, &answer, PATH, &error);
-    load();
+    size = load(PATH, file, SIZE_MOST);
+    at = 0;
     bool head = text_is("ply\nformat binary_little_endian 1.0\n"
                         "comment radiosity in W/m^2, made by phr\nelement vertex %d\n",
                         points, 0);

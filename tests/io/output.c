@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "tests/load.h"
 #include "tests/tap.h"
 
 #define PATH "build/output_test.bin"
@@ -31,12 +32,7 @@ static void write_old(const char *bytes)
 static bool file_is(const char *path, const char *bytes, size_t count)
 {
     char found[200];
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return false;
-    size_t got = fread(found, 1, sizeof found, file);
-    fclose(file);
-    return got == count && memcmp(found, bytes, count) == 0;
+    return load(path, found, sizeof found) == count && memcmp(found, bytes, count) == 0;
 }
 
 static bool path_is_free(const char *path)

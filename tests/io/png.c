@@ -4,10 +4,10 @@
 #include "io/picture/png.h"
 
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "io/picture/pnm.h"
+#include "tests/load.h"
 #include "tests/random.h"
 #include "tests/tap.h"
 
@@ -17,15 +17,6 @@
 enum { SIZE_MOST = 1 << 20 };
 
 static uint8_t file[SIZE_MOST], stream[SIZE_MOST], rows[SIZE_MOST], expected[SIZE_MOST];
-
-static size_t load(const char *path, uint8_t *bytes)
-{
-    FILE *in = fopen(path, "rb");
-    size_t size = in ? fread(bytes, 1, SIZE_MOST, in) : 0;
-    if (in)
-        fclose(in);
-    return size;
-}
 
 static uint32_t number(const uint8_t *at)
 {
@@ -185,7 +176,7 @@ static void check_picture(int width, int height, bool smooth)
                             : (float)random_unit(&random);
     bool written = png_write(&image, &tone, PNG, &error) &&
                    ppm_write(&image, &tone, PPM, &error);
-    size_t size = load(PNG, file), all = load(PPM, expected);
+    size_t size = load(PNG, file, SIZE_MOST), all = load(PPM, expected, SIZE_MOST);
     struct found found = read_chunks(size);
     tap_ok(written && found.right && strcmp(found.types, "IHDRsRGBIDATIEND") == 0 &&
                found.width == w && found.height == h,

@@ -7,6 +7,7 @@
 #include "mpi/beyond/beyond.h"
 #include "tests/fuzz/store.h"
 
+#include "tests/load.h"
 #include "tests/tap.h"
 
 #define PATH "build/store_test.bin"
@@ -39,15 +40,6 @@ static bool save(struct solver *solver, const struct vote *vote, enum store_kind
     snapshot_free(&snapshot);
     links_collect(solver, put, &writer);
     return good && store_finish(&writer, &error);
-}
-
-static size_t load(const char *path, uint8_t *bytes)
-{
-    FILE *file = fopen(path, "rb");
-    size_t size = file ? fread(bytes, 1, ROOM, file) : 0;
-    if (file)
-        fclose(file);
-    return size;
 }
 
 /* A run that has two passes behind it. State that only other methods change, --accuracy
@@ -112,8 +104,9 @@ static void test_round_trip(void)
                    forest_count(solver->model.forest).patches,
            "the restored state is the same");
     tap_ok(save(other, &vote, STORE_CHECKPOINT, AGAIN), "it is written again");
-    size_t size = load(PATH, bytes);
-    tap_ok(size > 0 && size == load(AGAIN, again) && memcmp(bytes, again, size) == 0,
+    size_t size = load(PATH, bytes, ROOM);
+    tap_ok(size > 0 && size == load(AGAIN, again, ROOM) &&
+               memcmp(bytes, again, size) == 0,
            "and is the same file");
     alloc_free(order);
     alloc_free(links);
@@ -338,7 +331,7 @@ static void test_clusters(void)
     for (int64_t i = 0; i < solver->links.count; i++)
         clusters += node_is_cluster(solver->links.items[i].p);
     bool saved = save(solver, &vote, STORE_CHECKPOINT, PATH);
-    size_t size = load(PATH, bytes);
+    size_t size = load(PATH, bytes, ROOM);
     tap_ok(saved && solver->beyond->tree->count < 99 && clusters > 0 &&
                takes(bytes, size, &terms, &error),
            "a checkpoint with links of clusters: %lld of %lld", (long long)clusters,
@@ -359,7 +352,7 @@ int main(int argc, char **argv)
     scene = store_scene();
     octree = octree_create(scene->triangles, scene->planes, scene->input_count);
     test_round_trip();
-    size_t size = load(PATH, bytes);
+    size_t size = load(PATH, bytes, ROOM);
     test_refusals(bytes, size);
     test_damage(bytes, size);
     test_lies(bytes, size);

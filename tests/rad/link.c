@@ -199,14 +199,7 @@ static void test_transfer(void)
     for (int64_t i = 0; i < list.count; i++)
         link_list_append(&turned, list.items[list.count - 1 - i]);
     links_transfer(&list, &world.model, forest->radiosity, unit);
-    int64_t received = 0;
-    for (int64_t p = 0; p < forest->count; p++)
-        for (int c = 0; c < BANDS; c++)
-            received += forest->patches[p].flux[c];
-    /* Half a unit for each of 6 numbers a link, and a sum of 5,000 in double. */
-    double slack = 0.5 * 6 * LINKS * unit.watt + 1e-12 * sent;
-    tap_ok(received > 0 && fabs(flux_to_watts(unit, received) - sent) <= slack,
-           "what is received is what is sent");
+    check_received(forest, unit, 6, sent);
     uint64_t hash = flux_hash(forest);
     clear_flux(forest);
     links_transfer(&turned, &world.model, forest->radiosity, unit);

@@ -5,28 +5,10 @@
 
 #include <string.h>
 
-#include "tests/scenes.h"
+#include "tests/dozen.h"
 #include "tests/tap.h"
 
-enum { ROOTS = 12, SPLITS = 200, NO_AREA = 5 };
-
-/* Random triangles, number 5 without an area. Materials: two that reflect, the first
- * emits, and a black one for number 7. */
-static struct world make_world(void)
-{
-    struct soup soup = {0};
-    struct random random = random_seed(1);
-    for (int i = 0; i < ROOTS; i++)
-        soup_add(&soup, random_triangle(&random, 0.5, 0.3));
-    soup.items[NO_AREA].corner[2] = soup.items[NO_AREA].corner[0];
-    struct scene *scene = scene_of_soup(&soup, 3);
-    for (int32_t i = 0; i < ROOTS; i++)
-        scene->material_of[i] = i == 7 ? 2 : i % 2;
-    scene->materials[0] = (struct material){{{0.5, 0.25, 0.75}}, {{1.0, 2.0, 0.5}}};
-    scene->materials[1] = (struct material){{{0.9, 0.0, 0.1}}, {{0.0, 0.0, 0.0}}};
-    soup_free(&soup);
-    return world_make(scene);
-}
+enum { SPLITS = 200 };
 
 /* Splits random patches below level 9; roots 0 and 1 stay whole. */
 static void grow(struct forest *forest, uint64_t seed)

@@ -5,38 +5,18 @@
 
 #include <string.h>
 
-#include "tests/scenes.h"
+#include "tests/dozen.h"
 #include "tests/tap.h"
 
-enum { ROOTS = 12, NO_AREA = 5 };
-
-/* Random triangles, number 5 without an area. Materials: two that reflect, the first
- * emits, and a black one for number 7. */
-static struct world make_world(void)
-{
-    struct soup soup = {0};
-    struct random random = random_seed(1);
-    for (int i = 0; i < ROOTS; i++)
-        soup_add(&soup, random_triangle(&random, 0.5, 0.3));
-    soup.items[NO_AREA].corner[2] = soup.items[NO_AREA].corner[0];
-    struct scene *scene = scene_of_soup(&soup, 3);
-    for (int32_t i = 0; i < ROOTS; i++)
-        scene->material_of[i] = i == 7 ? 2 : i % 2;
-    scene->materials[0] = (struct material){{{0.5, 0.25, 0.75}}, {{1.0, 2.0, 0.5}}};
-    scene->materials[1] = (struct material){{{0.98, 0.0, 0.1}}, {{0.0, 0.0, 0.0}}};
-    soup_free(&soup);
-    return world_make(scene);
-}
-
-/* Root 0 gets 1.25 of its area, root 1 half of it, in two of its children 0.4 more; root
- * 7 is dark and root 3 another's. */
+/* Root 0 gets 1.25 of its area, root 1 half of it, in two of its children 0.4 more; the
+ * black one does not count, and root 3 is another's. */
 static void test_rows(void)
 {
     struct world world = make_world();
     struct forest *forest = world.model.forest;
     struct flux_unit unit = flux_unit_for(2.0 * scene_area(world.scene));
     bool own[ROOTS] = {true, true};
-    own[7] = own[NO_AREA] = true;
+    own[BLACK] = own[NO_AREA] = true;
     forest_split(forest, 1);
     double a = forest_area(forest, 0), b = forest_area(forest, 1);
     int32_t child = forest->patches[1].children;
@@ -47,7 +27,7 @@ static void test_rows(void)
     forest->patches[child].flux[0] = flux_from_watts(unit, 0.4 * b / 4.0);
     forest->patches[child + 3].flux[0] = flux_from_watts(unit, 0.4 * b / 4.0);
     forest->patches[3].flux[0] = flux_from_watts(unit, 9.0);
-    forest->patches[7].flux[0] = flux_from_watts(unit, 9.0);
+    forest->patches[BLACK].flux[0] = flux_from_watts(unit, 9.0);
     struct row_sums sums = row_sums_measure(forest, own, unit);
     /* All numbers are of size 1 and rounded a few times. */
     tap_ok(fabs(sums.min - 0.5) < 1e-13 && fabs(sums.max - 1.25) < 1e-13,
@@ -67,7 +47,7 @@ static void test_rows(void)
     int tried = 0, right = 0;
     for (int32_t root = 0; root < ROOTS; root++) {
         double area = forest_area(forest, root);
-        if (root == NO_AREA || root == 7)
+        if (root == NO_AREA || root == BLACK)
             continue;
         unit = flux_unit_for(area);
         memset(none, 0, sizeof none);
@@ -88,15 +68,15 @@ static void test_rows(void)
     world_free(&world);
 }
 
-/* The largest reflectance counts: 0.75 of root 0, 0.98 of root 1, 0 of root 7. Light may
- * grow by 0.95, or by the mean of 1 and the reflectance where that is more. */
+/* The largest reflectance counts: 0.75 of root 0, 0.98 of root 1, 0 of the black one.
+ * Light may grow by 0.95, or by the mean of 1 and the reflectance where that is more. */
 static void test_caps(void)
 {
     static const struct {
         int32_t root;
         double row, factor;
     } CASES[] = {{0, 0.0, 1.0},  {0, 1.0, 1.0},  {0, 1.26, 1.0}, {0, 2.0, 0.95 / 1.5},
-                 {1, 1.01, 1.0}, {1, 2.0, 0.99 / 1.96}, {7, 9.0, 1.0}};
+                 {1, 1.01, 1.0}, {1, 2.0, 0.99 / 1.96}, {BLACK, 9.0, 1.0}};
     struct world world = make_world();
     struct caps caps = {0};
     caps_extend(&caps, world.model.forest);

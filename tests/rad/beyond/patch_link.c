@@ -234,7 +234,6 @@ static void test_transfer(void)
     make_links(forest, &list);
     link_list_sort(&list);
     node_links_transfer(&list, &world.model, forest->radiosity, unit);
-    int64_t received = 0;
     double sent = 0.0;
     for (int64_t i = 0; i < list.count; i++) {
         const struct link *link = &list.items[i];
@@ -242,13 +241,7 @@ static void test_transfer(void)
                                    rgb_sum(sent_by(forest, link->q, link->parts_q)));
         link_list_append(&turned, list.items[list.count - 1 - i]);
     }
-    for (int64_t p = 0; p < forest->count; p++)
-        for (int c = 0; c < BANDS; c++)
-            received += forest->patches[p].flux[c];
-    /* Half a unit for each of up to 24 numbers a link, and a sum of 5,000 in double. */
-    double slack = 0.5 * 24 * LINKS * unit.watt + 1e-12 * sent;
-    tap_ok(received > 0 && fabs(flux_to_watts(unit, received) - sent) <= slack,
-           "what is received is what is sent");
+    check_received(forest, unit, 24, sent);
     uint64_t hash = flux_hash(forest);
     clear_flux(forest);
     for (int64_t i = 0; i < turned.count; i += 2) { /* and the sides of half of them
