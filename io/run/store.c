@@ -17,10 +17,10 @@
 #include "geom/little.h"
 #include "geom/stop.h"
 
-enum { MAGIC_BYTES = 8, HEADER_BYTES = 40, LEAF_BYTES = 56, LINK_BYTES = 24,
+enum { MAGIC_BYTES = 8, HEADER_BYTES = 40, LEAF_BYTES = 48, LINK_BYTES = 24,
        CHUNK = 4096, SETTINGS_MAX = 4096 };
 
-static const char *const MAGIC[] = {"PHRLINK3", "PHRCHKP3"};
+static const char *const MAGIC[] = {"PHRLINK4", "PHRCHKP4"};
 static const char *const NAMES[] = {"link cache", "checkpoint"};
 
 /* --- writing --- */
@@ -68,7 +68,6 @@ static void put_snapshot(struct store_writer *writer, const struct snapshot *sna
     for (int64_t i = 0; i < snapshot_leaf_count(snapshot); i++) {
         put_rgb(writer, snapshot->leaves[i].radiosity);
         put_rgb(writer, snapshot->leaves[i].irradiance);
-        put_double(writer, snapshot->leaves[i].factor);
     }
 }
 
@@ -271,8 +270,7 @@ static bool get_snapshot(struct store_reader *reader, struct error *error)
     for (int64_t i = 0; i < snapshot_leaf_count(snapshot) && good; i++) {
         struct leaf_state *leaf = &snapshot->leaves[i];
         good = get_doubles(reader, leaf->radiosity.band, BANDS, error) &&
-               get_doubles(reader, leaf->irradiance.band, BANDS, error) &&
-               get_doubles(reader, &leaf->factor, 1, error);
+               get_doubles(reader, leaf->irradiance.band, BANDS, error);
     }
     return good;
 }

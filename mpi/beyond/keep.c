@@ -24,12 +24,6 @@ enum { BLOCK = 4096 };
 
 /* --- collecting --- */
 
-/* The values that only the home of a leaf knows; no padding. */
-struct home_state {
-    struct rgb irradiance;
-    double factor; /* the cap */
-};
-
 static void collect_trees(const struct solver *solver, const int32_t *order,
                           struct snapshot *snapshot)
 {
@@ -43,8 +37,8 @@ static void collect_trees(const struct solver *solver, const int32_t *order,
     }
 }
 
-/* Rank 0: takes the values that come from the homes, leaf by leaf. */
-static void place_home_states(const struct solver *solver, const int32_t *order,
+/* Rank 0: takes the irradiances, which only the homes of leaves know, leaf by leaf. */
+static void place_irradiances(const struct solver *solver, const int32_t *order,
                               struct funnel *funnel, struct snapshot *snapshot)
 {
     int64_t leaf = 0;
@@ -53,18 +47,17 @@ static void place_home_states(const struct solver *solver, const int32_t *order,
         if (!patch_is_leaf(patch))
             continue;
         int home = solver->homes.owner[patch->id.root];
-        const struct home_state *state = funnel_next(funnel, home);
-        snapshot->leaves[leaf].irradiance = state->irradiance;
-        snapshot->leaves[leaf++].factor = state->factor;
+        const struct rgb *irradiance = funnel_next(funnel, home);
+        snapshot->leaves[leaf++].irradiance = *irradiance;
         funnel_drop(funnel, home);
     }
 }
 
-static void collect_home_states(struct solver *solver, const int32_t *order,
+static void collect_irradiances(struct solver *solver, const int32_t *order,
                                 struct snapshot *snapshot)
 {
     const struct forest *forest = solver->model.forest;
-    struct home_state *own = NULL;
+    struct rgb *own = NULL;
     int64_t count = 0, capacity = 0;
     for (int64_t i = 0; i < forest->count; i++) {
         int32_t p = order[i];
@@ -72,13 +65,12 @@ static void collect_home_states(struct solver *solver, const int32_t *order,
             solver->homes.owner[forest->patches[p].id.root] != solver->comm->rank)
             continue;
         own = alloc_reserve(own, &capacity, count + 1, sizeof *own);
-        own[count++] = (struct home_state){solver->beyond->descent.vectors.irradiance[p],
-                                           solver->beyond->caps.factor[p]};
+        own[count++] = solver->beyond->descent.vectors.irradiance[p];
     }
     struct funnel funnel;
     funnel_start(&funnel, solver->comm, own, count, sizeof *own);
     if (solver->comm->rank == 0)
-        place_home_states(solver, order, &funnel, snapshot);
+        place_irradiances(solver, order, &funnel, snapshot);
     funnel_end(&funnel);
     alloc_free(own);
 }
@@ -110,7 +102,6 @@ static void collect_numbers(const struct solver *solver, const struct vote *vote
     snapshot->value[SNAPSHOT_EPSILON] = model->criterion.epsilon;
     snapshot->value[SNAPSHOT_COARSE] = solver->beyond->accuracy.coarse;
     snapshot->value[SNAPSHOT_COARSE_EPSILON] = solver->beyond->accuracy.coarse_epsilon;
-    snapshot->value[SNAPSHOT_UNUSED] = 1.0;
 }
 
 void snapshot_collect(struct solver *solver, const struct vote *vote,
@@ -119,7 +110,6 @@ void snapshot_collect(struct solver *solver, const struct vote *vote,
     struct forest *forest = solver->model.forest;
     bool collects = solver->comm->rank == 0;
     beyond_attach(solver);
-    caps_extend(&solver->beyond->caps, forest); /* the patches that are new */
     conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
     int32_t *order = forest_order(forest);
     *snapshot = (struct snapshot){
@@ -129,7 +119,7 @@ void snapshot_collect(struct solver *solver, const struct vote *vote,
     collect_numbers(solver, vote, snapshot);
     if (collects)
         collect_trees(solver, order, snapshot);
-    collect_home_states(solver, order, snapshot);
+    collect_irradiances(solver, order, snapshot);
     alloc_free(order);
 }
 
@@ -269,7 +259,6 @@ static void restore_leaves(struct solver *solver, const struct snapshot *snapsho
         const struct leaf_state *state = &snapshot->leaves[leaf++];
         forest->radiosity[p] = state->radiosity;
         solver->beyond->descent.vectors.irradiance[p] = state->irradiance;
-        solver->beyond->caps.factor[p] = state->factor;
     }
     forest_average(forest);
 }
@@ -319,7 +308,6 @@ int32_t *snapshot_restore(struct solver *solver, struct vote *vote,
     broadcast_snapshot(solver->comm, snapshot);
     restore_trees(forest, snapshot);
     beyond_attach(solver);
-    caps_extend(&solver->beyond->caps, forest);
     conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
     int32_t *order = forest_order(forest);
     restore_leaves(solver, snapshot, order);

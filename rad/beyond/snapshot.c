@@ -64,7 +64,7 @@ static bool trees_are_whole(const struct snapshot *snapshot)
 
 /* No run exceeds these: they leave room for sums, and for radiosities as floats. */
 static const int64_t MOST_COUNTED = INT64_C(1) << 60;
-static const double MOST_LIGHT = 1e37, MOST_POWER = 1e60, MOST_FACTOR = 1e15;
+static const double MOST_LIGHT = 1e37, MOST_POWER = 1e60;
 
 static bool light_is_sane(struct rgb light)
 {
@@ -92,16 +92,14 @@ static bool numbers_are_sane(const struct snapshot *snapshot)
            fabs(value[SNAPSHOT_ABSORBED]) <= MOST_POWER &&
            fabs(value[SNAPSHOT_ESCAPED]) <= MOST_POWER &&
            is_within(value[SNAPSHOT_EPSILON]) && is_within(value[SNAPSHOT_COARSE]) &&
-           is_within(value[SNAPSHOT_COARSE_EPSILON]) &&
-           fabs(value[SNAPSHOT_UNUSED]) <= MOST_LIGHT;
+           is_within(value[SNAPSHOT_COARSE_EPSILON]);
 }
 
 static bool leaves_are_sane(const struct snapshot *snapshot)
 {
     for (int64_t i = 0; i < snapshot_leaf_count(snapshot); i++) {
         const struct leaf_state *leaf = &snapshot->leaves[i];
-        if (!light_is_sane(leaf->radiosity) || !light_is_sane(leaf->irradiance) ||
-            !(leaf->factor >= 1.0 / MOST_FACTOR && leaf->factor <= MOST_FACTOR))
+        if (!light_is_sane(leaf->radiosity) || !light_is_sane(leaf->irradiance))
             return false;
     }
     return true;

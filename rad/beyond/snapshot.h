@@ -34,14 +34,12 @@ enum snapshot_value {
     SNAPSHOT_ABSORBED, SNAPSHOT_ESCAPED, /* W, areas in square scene units */
     SNAPSHOT_EPSILON,        /* as --accuracy has lowered it */
     SNAPSHOT_COARSE, SNAPSHOT_COARSE_EPSILON, /* see struct accuracy */
-    SNAPSHOT_UNUSED,         /* written as 1 */
     SNAPSHOT_VALUES
 };
 
 struct leaf_state {
     struct rgb radiosity;  /* B, W/m^2 */
     struct rgb irradiance; /* H, W/m^2, of conjugate gradients */
-    double factor;         /* the cap on its irradiance, 1 */
 };
 
 struct snapshot {
