@@ -54,8 +54,8 @@ judge source_lines "$(source_files | lines_of)"
 judge test_lines "$(test_files | lines_of)"
 judge long_lines "$( (source_files; test_files
     ls Makefile tools/*.[ch] tools/*.sh tools/*.awk scenes/*.c scenes/*.sh
-    ls docs/course/*.c docs/course/*.sh docs/course/*.awk docs/course/*/*.[ch]) | xargs cat |
-    grep -cE '^.{91}')"
+    ls docs/course/*.c docs/course/*.sh docs/course/*.awk docs/course/*/*.[ch]) |
+    xargs cat | grep -cE '^.{91}')"
 awk -f tests/storeys.awk $(source_files) tools/*.[ch] >"$work/figures"
 while read -r name figure details; do
     judge "$name" "$figure" "$details"
