@@ -217,9 +217,9 @@ build/course/%: docs/course/%.c $(BUILD)/libphr.a
 	$(COMPILE) $(STRICT) $(WARN) -I. $(MPI_INCLUDE) $(CFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
 
 # Half a minute on two cores, from nothing.
-course: $(PHR) $(COURSE) build/room
-	MPIEXEC="$(MPIEXEC)" sh docs/course/run.sh
-	sh docs/course/figures.sh
+course: $(PHR) $(IMGDIFF) $(COURSE) build/room
+	MPIEXEC="$(MPIEXEC)" CC="$(COMPILE)" BUILD="$(BUILD)" sh docs/course/run.sh
+	MPIEXEC="$(MPIEXEC)" sh docs/course/figures.sh
 
 exercise: $(BUILD)/libphr.a
 	CC="$(COMPILE)" BUILD="$(BUILD)" sh docs/course/exercise.sh $(N)

@@ -17,12 +17,35 @@ for chapter in $course/[0-9]*.md; do
         tap 0 "$name: commands # SKIP without MPI"
         continue
     fi
-    sh $course/run.sh "$chapter" >"$work/$name" 2>&1
+    BUILD=$BUILD CC=$MPICC sh $course/run.sh "$chapter" >"$work/$name" 2>&1
     status=$?
     sed 's/^/# /' "$work/$name"
     tap $status "$name: its commands print what it shows"
 done
 [ -e "$chapter" ] || tap 1 "there are chapters"
+
+# --- ten tasks of a student, by commands that were run above ---
+
+# task CHAPTER WORDS NAME: commands of the chapter have these words.
+task() {
+    tasks=$((tasks + 1))
+    sed -n '/^```sh$/,/^```$/p' $course/"$1"-*.md | grep -qF -e "$2"
+    tap $? "task $tasks: $3"
+}
+tasks=0
+task 06 '--show links:128,150' "the leaf under a pixel"
+task 06 'mine/by_factor.c side_by_factor' "splits by F only"
+task 09 'mine/in_blocks.c deal_in_blocks' "a balancing plan of one's own"
+task 08 'keys="proxies"' "proxies of each rank"
+task 09 'for ranks in 1 2 4 8' "Table 1 of the Cornell box"
+task 02 'form-factors scenes/squares.obj' "F of two parallel squares"
+task 04 'form-factors scenes/shadow.obj' "a form factor with a blocker"
+task 09 'compare "split by F"' "a golden that fails"
+task 08 'cmp build/course/ranks-1.ply build/course/ranks-3.ply' "the same bytes"
+task 10 '"paper 1e-5 --paper"' "the paper's method at equal error"
+check "and the README has as many" \
+    [ "$(sed -n '/^## Ten/,/^## Prog/p' $course/README.md |
+        grep -c '| chapter')" -eq $tasks ]
 
 # --- exercises ---
 
@@ -67,9 +90,10 @@ check "and the options: $gone" [ -z "$gone" ]
 missing=$(ls -d $course/* | while read -r file; do
     name=$(basename "$file")
     grep -qF "\`$name" $course/README.md || [ "$name" = README.md ] ||
-        [ "${name%.svg}" != "$name" ] || echo "$name"; done)
+        [ "${name%.svg}" != "$name" ] || [ "${name%.png}" != "$name" ] ||
+        echo "$name"; done)
 check "the README of the course has every file: $missing" [ -z "$missing" ]
-unseen=$(for figure in $course/*.svg; do
+unseen=$(for figure in $course/*.svg $course/*.png; do
     grep -qF "($(basename "$figure"))" $course/*.md || echo "$figure"; done)
 check "each figure is shown: $unseen" [ -z "$unseen" ]
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Draws the figures of the course: docs/course/*.svg. Called by `make course`.
+# Draws the figures of the course: docs/course/*.svg and *.png. Called by `make course`.
 set -eu
 cd "$(dirname "$0")/../.."
 here=docs/course
@@ -69,9 +69,15 @@ for balance in none greedy default; do
             value[$i] = $(i + 1)
         if (value["pass"] > 0 && value["work_mean"] >= 50)
             print name, ++n, value["work_max"] / value["work_mean"] }' \
-        $work/balance-$balance.json
+        $work/$balance-8.json
 done | chart balance "Most work of a rank of 8, in means" \
     "level (of more than 50 tests a rank)" "work / mean"
+awk -f tools/timeline.awk $work/none-4.json $work/greedy-4.json >$here/timeline.svg
+cp $work/links.png $here
+${MPIEXEC:-mpiexec} -n 4 ./phr --quiet --paper --epsilon 1e-3 scenes/doorway.obj \
+    --show owner --view scenes/doorway.view --size 200x150 --samples 1 -o $here/owner.png
+$work/leaves $work/by-factor-0.1.ply |
+    patches mesh-factor -v from="3 -4 2.6" -v white=60
 awk 'NR > 1 { print $1, $3, $4 / 100 }' $work/errors.txt |
     chart errors "Two rooms and a doorway" links "RMS error of objects" \
         -v logx=1 -v logy=1
