@@ -18,6 +18,8 @@
 #                        triangles
 #   make scaling         docs/ranks.md: seconds on 1, 32 and 1,024 ranks, line by line;
 #                        docs/tables.md: Tables 1 and 2 of the paper
+#   make pages           docs/ablation.md, docs/stability.md: each idea off and on; what
+#                        breaks radiosity programs (make ablation, make stability)
 #   make course          the programs, outputs and figures of docs/course/
 #   make exercise N=1    tests answers to the exercises of a chapter
 #   make film            build/film/, a solution growing, frame by frame; with
@@ -209,6 +211,16 @@ scaling: $(PHR) $(BUILD)/replay build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/tables.sh
 
+pages: ablation stability
+
+# About three minutes on two cores.
+ablation: $(PHR) $(BENCHES:%=$(BUILD)/%) build/room
+	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/ablation.sh
+
+# About two minutes on two cores.
+stability: $(PHR)
+	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/stability.sh
+
 # The programs of docs/course/.
 COURSE = build/id $(patsubst docs/course/%.c,build/course/%,$(wildcard docs/course/*.c))
 
@@ -279,6 +291,6 @@ clean:
 FORCE:
 
 .PHONY: all demo tests room pathtracer bench errors chart growth scaling check \
-    course exercise film answers \
+    pages ablation stability course exercise film answers \
     check-long prove golden portability fuzz install \
         uninstall clean FORCE
