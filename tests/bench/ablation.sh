@@ -185,10 +185,10 @@ Made by `make ablation` (`tests/bench/ablation.sh`). In each scene, every varian
 epsilon until the RMS error at its leaves, relative to the reflected light, is that of
 the headline; a line gives its links, rays and seconds over those of *links alone*,
 which is phr without the final gather (`--final-gather 0`). Above 1, the idea that is
-off was worth having; *at best* is the least error of a variant within its two seconds a
-run, *not for good* if finer runs were worse. Seconds are of linking, iterating and the
-final gather on one core, once, on a busy machine: below a quarter they mean little.
-Counts are always the same.
+off was worth having; so is the final gather, which is added, below 1. *At best* is the
+least error of a variant within its two seconds a run, *not for good* if finer runs were
+worse. Seconds are of linking, iterating and the final gather on one core, once, on a
+busy machine: differences of less than a half mean little. Counts are always the same.
 
 The options: `--linking pairs`, `--oracle bf`, `--form-factor disk`, `--solver jacobi`,
 or all of them (`--paper`), each with `--final-gather 0`; in the last two lines epsilon
