@@ -71,8 +71,9 @@ for ranks in 1 4; do
     check "without an output, on $ranks" \
         idle $ranks "--size, --exposure, --final-gather pixels" $box --size 9x9 \
         --exposure 2 --final-gather 16,pixels
-    check "with --form-factors, on $ranks" idle $ranks "--samples, --solver, --memory" \
-        scenes/squares.obj --form-factors --samples 2 --solver cg --memory 1G --epsilon 1
+    check "with --form-factors, on $ranks" idle $ranks \
+        "--samples, --solver, --ke, --memory" scenes/squares.obj --form-factors \
+        --samples 2 --solver cg --ke radiance --memory 1G --epsilon 1
 done
 check "without 8-bit colours" idle 1 "--exposure" $box --size 9x9 --exposure 2 \
     -o "$work/idle.pfm"

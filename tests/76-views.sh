@@ -125,8 +125,8 @@ says() {
 }
 
 check "options of the computation are said" says 0 \
-    "is a stored solution: no use is made of --epsilon, --two-sided" \
-    "$work/plain.ply" --two-sided --epsilon 1
+    "stored solution: no use is made of --epsilon, --two-sided, --ke, --final-gather" \
+    "$work/plain.ply" --two-sided --epsilon 1 --ke radiance --final-gather 9
 check "files of the computation are refused" says 2 \
     "is a stored solution: nothing is computed for --stats, --checkpoint" \
     "$work/plain.ply" --stats "$work/new.json" --checkpoint "$work/new"

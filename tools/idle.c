@@ -1,7 +1,6 @@
 /* Options that do nothing in the chosen mode. A list names the options that one purpose
  * alone makes use of; the options that bound a computation are in no list, since every
- * computation heeds them. What is of no use to a stored solution is known when it is read
- * (tools/input.c). */
+ * computation heeds them. */
 #include "tools/idle.h"
 
 enum { NAMES_MOST = 64 };
@@ -17,8 +16,8 @@ static const char *const COLOUR[] = {"--exposure", NULL};
 static const char *const OUTPUT[] = {"--flat", NULL};
 static const char *const LIGHT[] = {
     "--min-area", "--oracle", "--linking", "--form-factor", "--solver", "--balance",
-    "--final-gather", "--paper", "--alpha", "--tolerance", "--max-iterations", "--memory",
-    NULL};
+    "--paper", "--alpha", "--tolerance", "--max-iterations", "--ke", "--memory", NULL};
+static const char *const GATHER[] = {"--final-gather", NULL};
 static const char *const FACTORS[] = {"--epsilon", "--accuracy", "--max-level",
                                       "--two-sided", "--two-sided-lamps", NULL};
 static const char *const FILES[] = {"-o", "--view", "--stats", "--dump", "--save-links",
@@ -81,6 +80,7 @@ void idle_warn(struct run *run)
         add(&names, COLOUR);
         add(&names, OUTPUT);
         add(&names, LIGHT);
+        add(&names, GATHER);
     } else {
         warn_overruled(run);
         pixels = add_idle(options, &names);
@@ -95,4 +95,17 @@ void idle_warn(struct run *run)
         run_say(run, "warning: no use is made of %s%s%s%s", given,
                 *given && (pixels || scene) ? ", " : "", scene ? options->scene : "",
                 pixels ? "--final-gather pixels" : "");
+}
+
+void idle_warn_stored(struct run *run)
+{
+    struct names names = {.count = 0};
+    add(&names, FACTORS);
+    add(&names, LIGHT);
+    if (!run->options.pixels)
+        add(&names, GATHER);
+    const char *given = options_given(&run->options, names.name);
+    if (*given)
+        run_say(run, "warning: %s is a stored solution: no use is made of %s",
+                run->options.scene, given);
 }

@@ -9,6 +9,7 @@
 #include "io/scene/obj.h"
 #include "io/scene/ply.h"
 #include "geom/signals.h"
+#include "tools/idle.h"
 #include "tools/viewfactor.h"
 
 static void warn_repairs(struct run *run, const struct obj_repairs *read,
@@ -98,17 +99,11 @@ static bool check_groups(const struct run *run, struct error *error)
     return true;
 }
 
-/* Refuses options that ask for files of a computation; warns of others that say how light
- * is computed. */
+/* Refuses options that ask for files of a computation, or for links. */
 static bool check_stored(struct run *run)
 {
     static const char *const FILES[] = {"--stats",      "--save-links", "--load-links",
                                         "--checkpoint", "--resume",     NULL};
-    static const char *const IDLE[] = {
-        "--epsilon", "--accuracy", "--max-level", "--min-area", "--oracle", "--linking",
-        "--form-factor", "--solver", "--balance", "--paper", "--alpha", "--tolerance",
-        "--max-iterations", "--two-sided", "--two-sided-lamps", "--memory", NULL};
-    static const char *const RAYS[] = {"--final-gather", NULL};
     const char *path = run->options.scene, *given = options_given(&run->options, FILES);
     if (*given)
         return error_set(&run->error, EXIT_USAGE,
@@ -117,15 +112,7 @@ static bool check_stored(struct run *run)
     if (run->options.dump == DUMP_LINKS)
         return error_set(&run->error, EXIT_USAGE,
                          "%s is a stored solution: it has no links", path);
-    given = options_given(&run->options, IDLE);
-    if (*given)
-        run_say(run, "warning: %s is a stored solution: no use is made of %s", path,
-                given);
-    if (*options_given(&run->options, RAYS) && !run->options.pixels)
-        run_say(run,
-                "warning: %s is a stored solution: "
-                "--final-gather is of use with pixels only",
-                path);
+    idle_warn_stored(run);
     return true;
 }
 
