@@ -109,6 +109,10 @@ check "-o: |A - B| as HDR: 0.3 is 153.6 / 256 of 2^-1" \
     [ "$(tail -c 2 "$work/map.hdr" | od -An -tx1)" = ' 9a 7f' ]
 diff_of "$work/off.ppm" "$work/b.ppm" -o "png:$work/map"
 check "-o: as PNG" [ "$(head -c 4 "$work/map" | tail -c 3)" = PNG ]
+cp "$work/map.ppm" "$work/map.expected"
+diff_of "$work/off.ppm" "$work/b.ppm" -o ppm:-
+check "-o to the standard output: the map alone" cmp "$out" "$work/map.expected"
+check "and the report on stderr" grep -qx 'max         0.3' "$err"
 ends 1 "-o into a missing folder" "$work/off.ppm" "$work/b.ppm" -o "$work/absent/map.ppm"
 
 # --- bad usage and input ---

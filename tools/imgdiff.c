@@ -113,22 +113,26 @@ static bool parse(struct request *request, int argc, char **argv, struct error *
     return true;
 }
 
-static void report(const struct difference *difference, double peak)
+/* Prints the report; on stderr if the map goes to the standard output. */
+static void report(const struct request *request, const struct difference *difference,
+                   double peak)
 {
     double rms = difference_rms(difference);
+    const char *map = request->output.path;
+    FILE *file = map && place_is_stdout(map) ? stderr : stdout;
     if (difference->broken > 0)
-        printf("not finite  %lld samples\n", (long long)difference->broken);
-    printf("max         %.6g\n", difference->largest);
-    printf("mean        %.6g\n", difference_mean(difference));
-    printf("rms         %.6g\n", rms);
-    printf("relative    %.6g max, %.6g rms\n",
-           difference_relative(difference, difference->largest),
-           difference_relative(difference, rms));
+        fprintf(file, "not finite  %lld samples\n", (long long)difference->broken);
+    fprintf(file, "max         %.6g\n", difference->largest);
+    fprintf(file, "mean        %.6g\n", difference_mean(difference));
+    fprintf(file, "rms         %.6g\n", rms);
+    fprintf(file, "relative    %.6g max, %.6g rms\n",
+            difference_relative(difference, difference->largest),
+            difference_relative(difference, rms));
     if (rms > 0.0)
-        printf("psnr        %.2f dB (peak %.6g)\n", difference_psnr(difference, peak),
-               peak);
+        fprintf(file, "psnr        %.2f dB (peak %.6g)\n",
+                difference_psnr(difference, peak), peak);
     else
-        printf("psnr        infinite\n");
+        fprintf(file, "psnr        infinite\n");
 }
 
 static bool passes(const struct request *request, const struct difference *difference)
@@ -188,7 +192,7 @@ static bool diff_images(const struct request *request, struct difference *differ
                              request->paths[1], request->below);
     }
     if (good) {
-        report(difference, kind_a == IMAGE_CODES ? 1.0 : difference->peak);
+        report(request, difference, kind_a == IMAGE_CODES ? 1.0 : difference->peak);
         if (request->output.path)
             good = write_map(request, &map, difference->largest, error);
     }
@@ -210,7 +214,7 @@ static bool diff_solutions(const struct request *request, struct difference *dif
         good = compare_solutions(&a, &b, difference, map, error);
     }
     if (good) {
-        report(difference, difference->peak);
+        report(request, difference, difference->peak);
         if (request->output.path)
             good = solution_write(&a, map, difference->largest, request->output.path,
                                   error);

@@ -97,9 +97,7 @@ bool files_take_stdout(const struct options *options)
     bool take = false;
     for (int i = 0; i < count; i++) {
         const char *path = written_path(options, i, &count);
-        char *place = path ? place_follow(path) : NULL;
-        take = take || (place && place_descriptor(place) == 1);
-        alloc_free(place);
+        take = take || (path && place_is_stdout(path));
     }
     return take;
 }

@@ -29,6 +29,14 @@ char *place_folder(const char *path)
     return folder;
 }
 
+bool place_is_stdout(const char *path)
+{
+    char *place = place_follow(path);
+    bool is_stdout = place && place_descriptor(place) == 1;
+    alloc_free(place);
+    return is_stdout;
+}
+
 #ifdef HAVE_POSIX
 
 int place_descriptor(const char *path)

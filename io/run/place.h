@@ -8,6 +8,9 @@
  * /dev/stderr, /dev/fd/N, /proc/self/fd/N), or -1. */
 int place_descriptor(const char *path);
 
+/* True if an output to the path goes to the standard output. */
+bool place_is_stdout(const char *path);
+
 /* Returns the path behind all symbolic links, whether there is a file or not; NULL, and
  * errno, if they go in a circle. To be freed with alloc_free(). */
 char *place_follow(const char *path);
