@@ -102,9 +102,15 @@ done <"$work/cases"
 claimed() {
     claimed_name=$1
     shift
-    $MPIEXEC -n 1 "$PHR" --form-factors "$work/$claimed_name.obj" "$@" \
+    $MPIEXEC -n 1 "$PHR" --form-factors "$work/$claimed_name.obj" "$@" </dev/null \
         >"$work/$claimed_name.csv" 2>"$work/log"
     claim=$(sed -n 's/.*largest error of F: //p' "$work/log")
+}
+
+# is_kept ACCURACY: the error that is told is within it, or a warning says that it is not.
+is_kept() {
+    holds "$claim <= $1" ||
+        grep -q "warning: the largest error of F is $claim, not" "$work/log"
 }
 
 while read -r id exact; do
@@ -114,7 +120,8 @@ while read -r id exact; do
             near "$(value "$id" p1 p2)" "$exact" 0 "$(echo "${claim:-x}" |
                 awk '{ print 1.5 * $1 + 1e-11 }')"
         case $wanted in
-        *accuracy*) check "which is what was asked for" holds "$claim <= ${wanted#* }" ;;
+        *accuracy*) check "which is what was asked for, or said to be more" \
+            is_kept "${wanted#* }" ;;
         esac
     done
 done <"$work/cases"
@@ -150,6 +157,39 @@ table bare --accuracy 1e-4
 check "without blockers all is exact" near "$(value bare a b)" 1 0.1 0
 claimed bare
 check "and said to be" [ "$claim" = 0 ]
+
+# A wall that stands in most part below the horizon of a small triangle, and in part behind
+# 26 triangles, which hide nothing but wall: ends of segments on a patch of the wall may
+# all lie below the horizon, or all but one.
+while read -r height hidden half; do
+    awk -v h="$height" 'BEGIN {
+        print "v 0 0 0\nv 0.01 0 0\nv 0 0.01 0\ng a\nf 1 2 3"
+        print "v 1 -2 -9\nv 1 -2", h, "\nv 1 2", h, "\nv 1 2 -9\ng b\nf 4 5 6 7"
+        }' >"$work/bare.obj"
+    { cat "$work/bare.obj"; awk -v h="$hidden" -v half="$half" 'BEGIN {
+        print "g screen"
+        for (k = -6.5; k < 6.5; k++) {
+            y = k * half / 6.5; z = (k + 1) * half / 6.5
+            print "v 0.5", y, 0; print "v 0.5", y, h
+            print "v 0.5", z, h; print "v 0.5", z, 0
+            print "f -4 -3 -2 -1"
+        } }'; } >"$work/horizon.obj"
+    table bare
+    for epsilon in 0.1 0.03 0.01; do
+        claimed horizon --epsilon $epsilon
+        check "a wall up to $height, at epsilon $epsilon: within 1.5 times $claim" \
+            near "$(value horizon a b)" \
+            "$(echo "$(value bare a b)" "$(value horizon a screen)" |
+                awk '{ printf "%.15g", $1 - $2 }')" 0 "$(echo "${claim:-x}" |
+                awk '{ print 1.5 * $1 }')"
+    done
+done <<END
+0.15 0.05 0.9
+0.4 0.1 0.2
+0.5 0.1 0.5
+0.8 0.2 0.8
+1 0.3 0.5
+END
 
 # --- the unit of length, and which way the scene looks ---
 

@@ -24,7 +24,8 @@
  * The error of a factor. Each sampled pair has random ends of its own, so variances add:
  * that of a fraction is told by the spread of its four ends on either side, which is more
  * than stratified ends deserve, and not less than the square of a tenth and of the factor
- * between the two patches: a few segments carry most of the light of near ones. What
+ * between the two patches: a few segments carry most of the light of near ones. Where a
+ * patch is in part behind the other's plane, few segments count, or none. What
  * points know exactly has an upper limit (tools/screened.c), which counts as three
  * standard errors. The largest of N errors is sqrt(4 + 2 ln N) times its standard error
  * at most: 2 for one factor, 5.5 for half a million.
@@ -50,9 +51,10 @@
 /* Part of the threshold that a part of a patch may be off past few blockers. */
 static const double FINER = 0.1;
 
-/* Standard error of a visible fraction of 0 or 1 on which 16 segments agree, and of one
- * on which points agree that know exactly what they see. */
-static const double ERROR_AGREED = 0.1, ERROR_SEEN = 0.02;
+/* Standard error of a visible fraction of 0 or 1 on which 16 segments agree that carry the
+ * same light, of one on which points agree that know exactly what they see, and of one of
+ * which no segment tells. */
+static const double ERROR_AGREED = 0.1, ERROR_SEEN = 0.02, ERROR_UNKNOWN = 0.5;
 
 /* Standard errors in a limit. */
 static const double LIMIT = 3.0;
@@ -176,11 +178,19 @@ static double spread_of(const double *seen, const double *all, double fraction)
     return sum * BUNDLE_ENDS / (BUNDLE_ENDS - 1);
 }
 
+static double squares_of(const double *numbers)
+{
+    double sum = 0.0;
+    for (int k = 0; k < BUNDLE_ENDS; k++)
+        sum += square(numbers[k]);
+    return sum;
+}
+
 /* Returns the visible fraction of 16 segments; `otherwise` if none of them faces both
  * patches. The segments of one end have it in common, so that there are 4 and 4
- * independent numbers, not 16. */
+ * independent numbers, not 16; fewer, where some ends carry most of the light. */
 static struct visible sample_pair(struct root_pair *pair, const struct piece *p,
-                                 const struct piece *q, struct visible otherwise)
+                                  const struct piece *q, double otherwise)
 {
     struct bundle bundle = {.own = {p->facet.input, q->facet.input}};
     uint64_t seed =
@@ -196,7 +206,7 @@ static struct visible sample_pair(struct root_pair *pair, const struct piece *p,
         bundle.asked |= (unsigned)(weights[ray] > 0.0) << ray;
     }
     if (bundle.asked == 0)
-        return otherwise;
+        return (struct visible){otherwise, square(ERROR_UNKNOWN)};
     unsigned blocked = octree_block(pair->factors->octree, &bundle, &pair->blocker,
                                     &pair->factors->counts);
     for (int ray = 0; ray < BUNDLE_RAYS; ray++) {
@@ -208,7 +218,8 @@ static struct visible sample_pair(struct root_pair *pair, const struct piece *p,
         seen_p[ray / BUNDLE_ENDS] += s;
         seen_q[ray % BUNDLE_ENDS] += s;
     }
-    struct visible visible = {seen / all, square(ERROR_AGREED)};
+    double few = BUNDLE_ENDS * fmax(squares_of(all_p), squares_of(all_q)) / square(all);
+    struct visible visible = {seen / all, square(ERROR_AGREED * few)};
     if (visible.fraction > 0.0 && visible.fraction < 1.0)
         visible.variance = (spread_of(seen_p, all_p, visible.fraction) +
                            spread_of(seen_q, all_q, visible.fraction)) / square(all);
@@ -270,9 +281,10 @@ static bool add_past_few(struct root_pair *pair, const struct piece *p,
     return true;
 }
 
-/* Adds the exchange of p and q. `parents`: what is visible of their parents' pair. */
+/* Adds the exchange of p and q. `parents`: the visible fraction of their parents'
+ * pair. */
 static void add_pair(struct root_pair *pair, const struct piece *p, const struct piece *q,
-                     struct visible parents)
+                     double parents)
 {
     if (stop_is_asked() || !facets_face(&p->facet, &q->facet))
         return;
@@ -289,12 +301,13 @@ static void add_pair(struct root_pair *pair, const struct piece *p, const struct
     if (side < 0) {
         add_exchange(pair, visible.fraction * open);
         double near = ERROR_AGREED + open / fmin(p->facet.area, q->facet.area);
-        pair->variance += fmax(visible.variance, square(fmin(near, 0.5))) * square(open);
+        pair->variance += fmax(visible.variance, square(fmin(near, ERROR_UNKNOWN))) *
+                          square(open);
         return;
     }
     for (int k = 0; k < 4; k++) {
         struct piece part = piece_child(side == 0 ? p : q, k);
-        add_pair(pair, side == 0 ? &part : p, side == 0 ? q : &part, visible);
+        add_pair(pair, side == 0 ? &part : p, side == 0 ? q : &part, visible.fraction);
     }
 }
 
@@ -339,7 +352,7 @@ void viewfactors_add(struct viewfactors *factors, int32_t p, const struct facet 
     };
     struct piece piece_p = {*fp, id_of_root((uint32_t)p)},
                  piece_q = {*fq, id_of_root((uint32_t)q)};
-    add_pair(&pair, &piece_p, &piece_q, (struct visible){1.0, square(ERROR_AGREED)});
+    add_pair(&pair, &piece_p, &piece_q, 1.0);
     factors->sums[place] += pair.sum;
     factors->errors[place] += flux_from_watts(
         error_unit_of(factors, i, j), pair.variance + square(pair.error / LIMIT));
