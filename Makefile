@@ -29,6 +29,7 @@
 #   make prove           what takes longer: errors over six fourfold steps of epsilon;
 #                        pictures beside the
 #                        path tracer's; kills at forty moments
+#   make cycles          pictures beside those of Blender's Cycles, where it is installed
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
 #   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
@@ -266,6 +267,10 @@ prove: errors $(PHR) $(IMGDIFF) pathtracer build/room check-long
 	BUILD="$(BUILD)" sh tests/prove.sh
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/pictures.sh
 
+# About ten minutes, nearly all for Blender's pictures, which are kept in $(BUILD)/cycles.
+cycles: $(PHR) $(IMGDIFF) build/room
+	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/cycles.sh
+
 # To be run as build/fuzz/fuzz-obj NEW tests/fuzz/corpus/obj, say: finds go to the folder
 # NEW.
 fuzz:
@@ -292,5 +297,5 @@ FORCE:
 
 .PHONY: all demo tests room pathtracer bench errors chart growth scaling check \
     pages ablation stability course exercise film answers \
-    check-long prove golden portability fuzz install \
+    check-long prove cycles golden portability fuzz install \
         uninstall clean FORCE
