@@ -158,9 +158,9 @@ check "without blockers all is exact" near "$(value bare a b)" 1 0.1 0
 claimed bare
 check "and said to be" [ "$claim" = 0 ]
 
-# A wall that stands in most part below the horizon of a small triangle, and in part behind
-# 26 triangles, which hide nothing but wall: ends of segments on a patch of the wall may
-# all lie below the horizon, or all but one.
+# A wall, in most part below the horizon of a small triangle, and in part behind 26
+# triangles, which hide nothing but wall: ends of segments on a patch of the wall may all
+# lie below the horizon, or all but one.
 while read -r height hidden half; do
     awk -v h="$height" 'BEGIN {
         print "v 0 0 0\nv 0.01 0 0\nv 0 0.01 0\ng a\nf 1 2 3"

@@ -51,9 +51,9 @@
 /* Part of the threshold that a part of a patch may be off past few blockers. */
 static const double FINER = 0.1;
 
-/* Standard error of a visible fraction of 0 or 1 on which 16 segments agree that carry the
- * same light, of one on which points agree that know exactly what they see, and of one of
- * which no segment tells. */
+/* Standard error of a visible fraction of 0 or 1 on which 16 segments agree that carry
+ * the same light, of one on which points agree that know exactly what they see, and of
+ * one of which no segment tells. */
 static const double ERROR_AGREED = 0.1, ERROR_SEEN = 0.02, ERROR_UNKNOWN = 0.5;
 
 /* Standard errors in a limit. */
