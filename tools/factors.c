@@ -9,15 +9,17 @@
 #include "tools/pairs.h"
 #include "tools/table.h"
 
-enum { ROUNDS = 12 };
+enum { ROUNDS = 12, STUCK_MOST = 2 };
 
-/* An error that falls by less than this part in a round no longer falls. */
+/* An error that is not below this part of the last round's, in STUCK_MOST rounds one after
+ * another, no longer falls. */
 static const double STUCK = 0.95;
 
 /* Adds all pairs, in rounds. Returns the largest error of F; stops at a signal. */
 static double add_in_rounds(struct run *run, struct viewfactors *factors)
 {
     double accuracy = run->options.criterion.accuracy, error = 0.0, last;
+    int stuck = 0; /* rounds in a row */
     for (int round = 1;; round++) {
         last = error;
         progress_begin(&run->progress.progress, "form factors", -1, 0);
@@ -26,8 +28,9 @@ static double add_in_rounds(struct run *run, struct viewfactors *factors)
         if (!run_goes_on(run))
             return 0.0;
         error = viewfactors_error(factors);
-        bool stuck = round > 1 && error > STUCK * last;
-        if (!(accuracy > 0.0) || error <= accuracy || stuck || round == ROUNDS)
+        stuck = round > 1 && error > STUCK * last ? stuck + 1 : 0;
+        if (!(accuracy > 0.0) || error <= accuracy || stuck == STUCK_MOST ||
+            round == ROUNDS)
             return error;
         viewfactors_refine(factors, accuracy);
     }
