@@ -146,7 +146,7 @@ void conjugate_finish(const struct conjugate *cg, struct model *model)
         for (int c = 0; c < BANDS; c++)
             model->forest->radiosity[p].band[c] =
                 material->emission.band[c] +
-                material->reflectance.band[c] * cg->irradiance[p].band[c];
+                material->reflectance.band[c] * fmax(0.0, cg->irradiance[p].band[c]);
     }
 }
 
