@@ -91,4 +91,10 @@ check "it ends with the picture of a run that was never interrupted" \
     cmp "$film/light-0$last.png" "$work/whole.png"
 check "and no two frames are alike" [ "$last" -eq \
     "$(for light in "$film"/light-*.png; do cksum <"$light"; done | sort -u | wc -l)" ]
+if [ -e "$film/film.gif" ]; then # bytes 6 and 7 are the width
+    check "the animation has light, mesh and owners side by side" \
+        [ "$(od -An -tu1 -j6 -N2 "$film/film.gif" | tr -d ' ')" = 480 ]
+else
+    tap 0 "the animation # SKIP there is no ImageMagick"
+fi
 tap_done

@@ -44,7 +44,7 @@ echo "$frames frames, $pass passes: $FILM/light-01.png and so on"
 magick=$(command -v magick || command -v convert) || exit 0
 for light in "$FILM"/light-*.png; do
     number=${light##*-}
-    $magick "$light" "$FILM/mesh-$number" "$FILM/owner-$number" +append \
+    $magick "$light" "$FILM/mesh-$number" "$FILM/owner-$number" +append +repage \
         "$FILM/frame-$number"
 done
 $magick -delay 60 "$FILM"/frame-*.png -delay 300 "$FILM/frame-$number" -loop 0 \
