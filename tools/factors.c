@@ -11,8 +11,8 @@
 
 enum { ROUNDS = 12, STUCK_MOST = 2 };
 
-/* An error that is not below this part of the last round's, in STUCK_MOST rounds one after
- * another, no longer falls. */
+/* An error that is not below this part of the last round's, in STUCK_MOST rounds one
+ * after another, no longer falls. */
 static const double STUCK = 0.95;
 
 /* Adds all pairs, in rounds. Returns the largest error of F; stops at a signal. */
