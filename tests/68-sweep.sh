@@ -101,20 +101,24 @@ sums() {
     emitted=$(stat_of stats emitted_power) absorbed=$(stat_of stats absorbed_power)
     escaped=$(stat_of stats escaped_power) tolerance=${options##*--tolerance }
     [ "$tolerance" != "$options" ] || tolerance=0
+    tolerance=${tolerance%% *}
     converged=$(grep -c '"converged": true' stats)
     warned=$(grep -cE 'warning: .*(emitted|lost|balance|escape|memory|converged)' log)
     awk "BEGIN {
         e = $emitted; a = $absorbed; s = $escaped
         if (!(e > 0) || a < 0) exit 1
-        if ($converged && (a + s - e)^2 > ((2e-3 + ${tolerance%% *}) * e)^2) exit 1
+        if ($converged && (a + s - e)^2 > ((2e-3 + $tolerance) * e)^2) exit 1
         if ((a > 1.01 * e || s < -0.01 * e) && !$warned) exit 1
         if (a > 1.5 * e && $status == 0) exit 1
     }"
 }
 
-# leaves: no radiosity is negative in the patches that are printed.
+# leaves: no radiosity is negative in the patches that are printed, by more than the
+# iterations' tolerance of light that is about 1.
 leaves() {
-    awk '/^[0-9]+\// { count++; wrong += !($5 >= 0 && $6 >= 0 && $7 >= 0) }
+    awk -v least="-$tolerance" '
+        /^[0-9]+\// { count++; wrong += !($5 >= least - 1e-5 && $6 >= least - 1e-5 &&
+                                          $7 >= least - 1e-5) }
          END { exit wrong || !count }' patches
 }
 

@@ -143,11 +143,10 @@ void conjugate_finish(const struct conjugate *cg, struct model *model)
     for (int64_t i = 0; i < cg->leaf_count; i++) {
         int32_t p = cg->leaves[i];
         const struct material *material = forest_material(model->forest, p);
-        for (int c = 0; c < BANDS; c++) {
-            double h = fmax(0.0, cg->irradiance[p].band[c]);
+        for (int c = 0; c < BANDS; c++)
             model->forest->radiosity[p].band[c] =
-                material->emission.band[c] + material->reflectance.band[c] * h;
-        }
+                material->emission.band[c] +
+                material->reflectance.band[c] * cg->irradiance[p].band[c];
     }
 }
 

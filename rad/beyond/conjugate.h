@@ -62,8 +62,7 @@ void conjugate_apply(struct conjugate *cg, const struct model *model,
 void conjugate_advance(struct conjugate *cg, const struct model *model,
                        const double turn[BANDS], const double step[BANDS]);
 
-/* Puts rho z of the own leaves into `sent`; and their B into the radiosities. An H below
- * 0, which steps may leave in the dark within the tolerance, counts as 0 there. */
+/* Puts rho z of the own leaves into `sent`; and their B into the radiosities. */
 void conjugate_send(struct conjugate *cg, const struct model *model);
 void conjugate_finish(const struct conjugate *cg, struct model *model);
 
