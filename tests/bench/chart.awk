@@ -88,8 +88,9 @@ function ratio(a, b) {
 
 function row(scene, wanted,    gather, paths) {
     gather = needed(scene SUBSEP "gather", wanted); paths = traced(scene, wanted)
-    printf "| %s | %g %% | %s | %s | %s | %s | %s |\n", scene, 100 * wanted,
+    printf "| %s | %g %% | %s | %s | %s | %s | %s | %s |\n", scene, 100 * wanted,
         show(needed(scene SUBSEP "paper", wanted)),
+        show(needed(scene SUBSEP "mended", wanted)),
         show(needed(scene SUBSEP "links", wanted)),
         show(gather), show(paths), ratio(paths, gather)
 }
@@ -110,9 +111,9 @@ function second_row(scene,    paths, octree, embree) {
 }
 
 END {
-    print "| scene | leaf error | s, paper | s, links alone | s, phr |" \
+    print "| scene | leaf error | s, paper | s, mended | s, links alone | s, phr |" \
         " s, path tracer | ratio |"
-    print "|---|---|---|---|---|---|---|"
+    print "|---|---|---|---|---|---|---|---|"
     for (i = 1; i <= scene_count; i++) {
         row(scenes[i], 0.05)
         row(scenes[i], 0.02)

@@ -8,8 +8,8 @@ SCENES = system("awk -F, 'NR > 1 && !known[$1]++ { print $1 }' ".csv)
 PANELS = words(SCENES)
 COLUMNS = PANELS < 3 ? PANELS : 3
 ROWS = (PANELS + COLUMNS - 1) / COLUMNS
-VARIANTS = "paper links paths gather"
-NAMES = "'the paper, all pairs' 'links alone' 'path tracer, %s' ". \
+VARIANTS = "paper mended links paths gather"
+NAMES = "'the paper' 'the paper, mended' 'links alone' 'path tracer, %s' ". \
     "'phr: links and final gather'"
 
 thousands(n) = n < 1000 ? sprintf("%d", n) : sprintf("%d,%03d", n / 1000, n % 1000)
@@ -18,9 +18,10 @@ title_of(scene) = scene eq "cornell" ? "Cornell box, 38 triangles" : \
     scene[1:4] eq "room" ? "room, ".thousands(int(scene[5:*]))." triangles" : scene
 
 set style line 1 lc rgb "#a00000" lw 1.6 dt (7,3) pt 5 ps 0.5
-set style line 2 lc rgb "#0062a0" lw 1.6 dt (4,2) pt 9 ps 0.65
-set style line 3 lc rgb "#777777" lw 1.8 dt (1,2) pt 13 ps 0.75
-set style line 4 lc rgb "black" lw 2.4 dt 1 pt 7 ps 0.55
+set style line 2 lc rgb "#d07800" lw 1.6 dt (9,3,2,3) pt 4 ps 0.6
+set style line 3 lc rgb "#0062a0" lw 1.6 dt (4,2) pt 9 ps 0.65
+set style line 4 lc rgb "#777777" lw 1.8 dt (1,2) pt 13 ps 0.75
+set style line 5 lc rgb "black" lw 2.4 dt 1 pt 7 ps 0.55
 
 set logscale xy
 set grid lc rgb "#dddddd" lt 1 lw 0.6
@@ -34,7 +35,7 @@ unset key
 
 # Pixels.
 LEFT = 62.0; WIDE = 262.0; GAP = 44.0; TOP = 30.0; HIGH = 240.0; BELOW = 62.0
-KEY_ROWS = COLUMNS < 3 ? 2 : 1
+KEY_ROWS = word("5 3 2", COLUMNS) + 0
 KEY = 14 + 20.0 * KEY_ROWS
 WIDTH = LEFT + COLUMNS * WIDE + (COLUMNS - 1) * GAP + 16
 HEIGHT = ROWS * (TOP + HIGH + BELOW) + KEY

@@ -1,24 +1,29 @@
 #!/bin/sh
-# Speed against error: docs/chart.csv, the tables of docs/accuracy.md on stdout and, where
-# gnuplot is installed, docs/chart-leaf.svg and docs/chart-shown.svg.
+# Speed against error: docs/chart.csv, its tables on stdout and in docs/accuracy.md and,
+# where gnuplot is installed, docs/chart-leaf.svg and docs/chart-shown.svg.
 #
 #   make chart
 #       all scenes: an hour and a half on two cores, half an hour of it for references
+#   SECONDS_MOST=8 EPSILONS="1e-2 1e-3 1e-4 1e-5 1e-6" make chart
+#       shorter lines: a quarter of an hour where the references are there
 #   SCENES="cornell shadow" CSV=build/chart.csv make chart
-#       two scenes, drawn beside the CSV
+#       two scenes, drawn beside the CSV; docs/accuracy.md stays
 #   SCENES=/data/rpk_office3.obj OPTIONS=--two-sided CSV=build/office3.csv make chart
 #       a scene of one's own, which is a path with a slash in it; its OPTIONS are
 #       --two-sided, --two-sided-lamps, or none
 #
 # A point is a run on one rank. The variants:
-#   paper   --paper: all pairs of triangles
+#   paper   --paper, nothing else: all pairs of triangles
+#   mended  the same loop over all pairs, with phr's form factors, visibility and
+#           criterion (--paper --oracle error --form-factor polygon)
 #   links   the defaults without the final gather
 #   gather  the defaults: --epsilon and --final-gather move together, as in PAIRS
 #   paths   the path tracer at the leaves of the gather with the same setting, for about
 #           as many seconds (tests/bench/measure.c, --trace); samples are its paths
 #   octree, embree   100,000 rays that wander (tests/bench/hits.c)
 # A line ends with the first run of more than SECONDS_MOST, or before one that is broken
-# off: after a minute, or after five where the path tracer follows. Lines take turns, so
+# off: after four times as long by the clock, or after five minutes where the path tracer
+# follows. Lines take turns, so
 # that a disturbance of the machine hits all of them; runs below two seconds are made
 # three times, and the least time for the error counts. References are made when they are
 # missing and kept under $BUILD/chart. Their noise (columns leaf_noise and shown_noise) is
@@ -26,6 +31,11 @@
 
 cd "$(dirname "$0")/../.." || exit 2
 : "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${CSV:=docs/chart.csv}" "${OPTIONS:=}"
+# The command that this is, for the page.
+command=$(for knob in SCENES SECONDS_MOST EPSILONS PAIRS; do
+    eval "value=\${$knob:-}"
+    [ -z "$value" ] || printf '%s="%s" ' "$knob" "$value"
+done)"make chart"
 : "${SCENES:=cornell shadow room1004 room6348 room18512 room31936}"
 : "${SECONDS_MOST:=30}"
 : "${EPSILONS:=1e-2 1e-3 3e-4 1e-4 3e-5 1e-5 3e-6 1e-6 3e-7}"
@@ -34,7 +44,7 @@ export LC_ALL=C
 folder=$BUILD/chart
 mkdir -p "$folder"
 
-VARIANTS="paper links gather"
+VARIANTS="paper mended links gather"
 
 # settings_of VARIANT
 settings_of() {
@@ -48,6 +58,7 @@ settings_of() {
 options_of() {
     case $1 in
     paper) echo "--paper --epsilon $2" ;;
+    mended) echo "--paper --oracle error --form-factor polygon --epsilon $2" ;;
     links) echo "--final-gather 0 --epsilon $2" ;;
     gather) echo "--trace --epsilon ${2%/*} --final-gather ${2#*/}" ;;
     esac
@@ -112,7 +123,7 @@ exceeds() {
 # measured SCENE VARIANT SETTING: a line of the CSV, or two with the path tracer's; none
 # if the light diverges, or the run is broken off.
 measured() {
-    limit=60
+    limit=$((4 * SECONDS_MOST))
     [ "$2" != gather ] || limit=300
     {
         # Unquoted: one word for each option.
@@ -181,6 +192,19 @@ sweep() {
     hits "$1"
 }
 
+# Puts the tables in the place of those of docs/accuracy.md, and the command into its line
+# that begins with "Made by".
+renew_page() {
+    awk -v made="Made by \`$command\`." '
+        NR == FNR && /^$/ { tables++ }
+        NR == FNR { if (/^\|/) table[tables + 0] = table[tables + 0] $0 "\n"; next }
+        /^Made by / { print made; next }
+        /^\| scene / { printf "%s", table[shown++]; in_table = 1 }
+        !/^\|/ { in_table = 0 }
+        !in_table' "$folder/tables" docs/accuracy.md >"$folder/page" &&
+        cp "$folder/page" docs/accuracy.md
+}
+
 for scene in $SCENES; do
     make_reference "$scene"
 done
@@ -194,7 +218,8 @@ done
 } >"$folder/chart.csv"
 mv "$folder/chart.csv" "$CSV"
 rm -f "$folder/lines" "$folder/runs" "$folder"/ended.*
-awk -f tests/bench/chart.awk "$CSV"
+awk -f tests/bench/chart.awk "$CSV" | tee "$folder/tables"
+[ "$CSV" != docs/chart.csv ] || renew_page
 if command -v gnuplot >/dev/null; then
     gnuplot -e "csv='$CSV'; out='${CSV%.csv}'" tests/bench/chart.gp &&
         echo "${CSV%.csv}-leaf.svg and ${CSV%.csv}-shown.svg are drawn"
