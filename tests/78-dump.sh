@@ -54,6 +54,16 @@ for options in "" --paper; do
         END { exit wrong || links < 100 }' "$work/1.patches" "$work/1.links"
 done
 
+# Steps end with 41 patches below 0, within the tolerance.
+for ranks in 1 4; do
+    dump $ranks patches --epsilon 1e-4 --final-gather 0 --form-factor disk \
+        --tolerance 0.1
+    check "no radiosity is below 0, on $ranks" awk '
+        /^#/ { next }
+        { count++; wrong += $5 < 0 || $6 < 0 || $7 < 0 }
+        END { exit wrong || count < 100 }' "$work/$ranks.patches"
+done
+
 build/id 0x1B >"$work/id"
 check "0x1B is child 3 of child 2 of root 0" \
     grep -qx 'bits  *0\{27\} \[1\] 10 11' "$work/id"

@@ -12,6 +12,7 @@
 #include "io/picture/vtk.h"
 #include "io/run/output.h"
 #include "mpi/picture.h"
+#include "rad/pushpull.h"
 #include "tools/show.h"
 
 /* Returns the tone of 8-bit colours: --exposure, or chosen from `count` pixels. */
@@ -174,8 +175,25 @@ static bool show_meshes(struct run *run, const uint8_t *open)
     return run_agree(run);
 }
 
+/* Sets radiosities of leaves below 0, which conjugate gradients may leave in the dark
+ * within their tolerance, to 0. Without any nothing changes. (Where the steps go on from
+ * these, as between passes, the same would be an error that they cannot see.) */
+static void clamp_radiosities(struct forest *forest)
+{
+    bool below = false;
+    for (int64_t p = 0; p < forest->count; p++)
+        for (int c = 0; c < BANDS && patch_is_leaf(&forest->patches[p]); c++)
+            if (forest->radiosity[p].band[c] < 0.0) {
+                forest->radiosity[p].band[c] = 0.0;
+                below = true;
+            }
+    if (below)
+        forest_average(forest);
+}
+
 bool results_show(struct run *run)
 {
+    clamp_radiosities(run->solver->model.forest);
     const struct options *options = &run->options;
     bool pictures = options_show(options, 0), meshes = false;
     for (int i = 0; i < options->output_count; i++)

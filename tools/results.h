@@ -5,7 +5,7 @@
 #include "tools/run.h"
 
 /* Collective. Renders and writes the outputs that the options name. False on an error, on
- * all ranks. */
+ * all ranks. From then on no radiosity is below 0. */
 bool results_show(struct run *run);
 
 #endif
