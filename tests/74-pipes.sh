@@ -1,6 +1,7 @@
 # Outputs on pipes and on the standard output: the bytes of a file, and nothing else; a
 # pipe is opened once; a run that waits for its reader ends at the first SIGTERM; one
-# whose reader goes away ends with an error. On 1 and on 4 ranks.
+# whose reader goes away ends with an error. Scenes and solutions on pipes, of whatever
+# name: known by their first bytes. On 1 and on 4 ranks.
 . tests/tap.sh
 
 : "${PHR:=./phr}"
@@ -58,7 +59,59 @@ fills() {
     cmp "$work/got" "$work/a.$format" && [ $status -eq 0 ]
 }
 
+# takes RANKS FILE PATH ARGUMENTS...: a scene or solution that comes through the pipe, or
+# on the standard input, gives the picture of its file.
+takes() {
+    on=$1 file=$2 from=$3
+    shift 3
+    "$PHR" "$file" "$@" --quiet -o "$work/expected.pfm" 2>"$work/err"
+    rm -f "$work/got.pfm"
+    if [ -p "$from" ]; then
+        timeout 20 cat "$file" >"$from" &
+        bounded $MPIEXEC -n "$on" "$PHR" "$from" "$@" --quiet -o "$work/got.pfm"
+    else
+        cat "$file" | bounded $MPIEXEC -n "$on" "$PHR" "$from" "$@" --quiet \
+            -o "$work/got.pfm"
+    fi 2>>"$work/err"
+    cmp "$work/got.pfm" "$work/expected.pfm"
+}
+
+cat >"$work/scene.ply" <<END
+ply
+format ascii 1.0
+element vertex 6
+property float x
+property float y
+property float z
+element face 2
+property list uchar int vertex_indices
+property float emission_r
+property float emission_g
+property float emission_b
+end_header
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+0 1 1
+1 0 1
+3 0 1 2 0 0 0
+3 3 4 5 1 2 3
+END
+# Its library is below the folder of the pipe, and below the current one.
+sed "s,mtllib ,&scenes/," scenes/box.obj >"$work/scene"
+mkdir "$work/scenes"
+cp scenes/course.mtl "$work/scenes"
+
 for ranks in 1 4; do
+    for from in "$pipe" /dev/stdin; do
+        check "PLY from ${from##*/}, on $ranks" \
+            takes $ranks "$work/scene.ply" "$from" --size 40x30
+        check "a solution from ${from##*/}, on $ranks" \
+            takes $ranks "$work/a.ply" "$from" $view
+        check "OBJ from ${from##*/}, on $ranks" \
+            takes $ranks "$work/scene" "$from" --size 40x30
+    done
     for name in - ppm:- /dev/stdout ppm:/dev/stdout; do
         check "-o $name on $ranks" sends $ranks ppm $view -o $name
     done

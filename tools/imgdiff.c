@@ -169,13 +169,13 @@ static bool check_output(const struct request *request, bool meshes, struct erro
     return true;
 }
 
-static bool diff_images(const struct request *request, struct difference *difference,
-                        struct error *error)
+static bool diff_images(const struct request *request, struct source sources[2],
+                        struct difference *difference, struct error *error)
 {
     struct image a = {0}, b = {0}, map = {0};
     enum image_kind kind_a, kind_b;
-    bool good = image_read(&a, &kind_a, request->paths[0], error) &&
-                image_read(&b, &kind_b, request->paths[1], error);
+    bool good = image_read(&a, &kind_a, &sources[0], error) &&
+                image_read(&b, &kind_b, &sources[1], error);
     if (good && kind_a != kind_b)
         good = error_set(error, EXIT_USAGE,
                          "%s and %s: one is linear (PFM, HDR), the other not (PPM)",
@@ -202,13 +202,13 @@ static bool diff_images(const struct request *request, struct difference *differ
     return good;
 }
 
-static bool diff_solutions(const struct request *request, struct difference *difference,
-                           struct error *error)
+static bool diff_solutions(const struct request *request, struct source sources[2],
+                           struct difference *difference, struct error *error)
 {
     struct solution_mesh a = {0}, b = {0};
     struct rgb *map = NULL;
-    bool good = solution_mesh_read(&a, request->paths[0], error) &&
-                solution_mesh_read(&b, request->paths[1], error);
+    bool good = solution_mesh_read(&a, &sources[0], error) &&
+                solution_mesh_read(&b, &sources[1], error);
     if (good) {
         map = alloc_array((size_t)a.count, sizeof *map);
         good = compare_solutions(&a, &b, difference, map, error);
@@ -225,20 +225,29 @@ static bool diff_solutions(const struct request *request, struct difference *dif
     return good;
 }
 
+static bool diff_sources(const struct request *request, struct source sources[2],
+                         struct difference *difference, struct error *error)
+{
+    bool meshes = ply_is_meant(&sources[0]);
+    if (meshes != ply_is_meant(&sources[1]))
+        return error_set(error, EXIT_USAGE, "%s and %s: a picture and a mesh",
+                         request->paths[0], request->paths[1]);
+    return check_output(request, meshes, error) &&
+           (meshes ? diff_solutions(request, sources, difference, error)
+                   : diff_images(request, sources, difference, error));
+}
+
 /* Returns the exit status. */
 static int diff(const struct request *request, struct error *error)
 {
     struct difference difference = {0};
-    bool meshes = ply_is_meant(request->paths[0]);
-    if (meshes != ply_is_meant(request->paths[1]))
-        error_set(error, EXIT_USAGE, "%s and %s: a picture and a mesh", request->paths[0],
-                  request->paths[1]);
-    else if (!check_output(request, meshes, error))
-        return error->code;
-    else if (meshes ? diff_solutions(request, &difference, error)
-                    : diff_images(request, &difference, error))
-        return passes(request, &difference) ? EXIT_DONE : EXIT_FAILED;
-    return error->code;
+    struct source sources[2] = {{0}, {0}};
+    bool good = source_open(&sources[0], request->paths[0], error) &&
+                source_open(&sources[1], request->paths[1], error) &&
+                diff_sources(request, sources, &difference, error);
+    source_close(&sources[0]);
+    source_close(&sources[1]);
+    return !good ? error->code : passes(request, &difference) ? EXIT_DONE : EXIT_FAILED;
 }
 
 int main(int argc, char **argv)

@@ -133,11 +133,11 @@ static bool take_stored(struct run *run, struct ply_file *file)
 }
 
 /* Reads a scene, or a stored solution. */
-static bool read_ply(struct run *run)
+static bool read_ply(struct run *run, struct source *source)
 {
     struct binary binary;
     struct ply_file file;
-    if (!ply_file_load(&binary, run->options.scene, &run->error))
+    if (!ply_file_load(&binary, source, &run->error))
         return false;
     bool good = ply_file_open(&file, &binary, &run->error);
     if (good && solution_is_stored(&file) && !run->options.form_factors)
@@ -157,13 +157,14 @@ static bool read_ply(struct run *run)
 static bool read_file(struct run *run, struct obj_repairs *repairs)
 {
     struct text_names libraries = {0};
-    const char *path = run->options.scene;
+    struct source source;
     repairs->files = &libraries;
-    bool good;
-    if (ply_is_meant(path))
-        good = read_ply(run);
-    else
-        good = (run->scene = obj_read(path, repairs, &run->error)) != NULL;
+    bool good = source_open(&source, run->options.scene, &run->error);
+    if (good && ply_is_meant(&source))
+        good = read_ply(run, &source);
+    else if (good)
+        good = (run->scene = obj_of_source(&source, repairs, &run->error)) != NULL;
+    source_close(&source);
     for (int32_t i = 0; i < libraries.count && good; i++)
         good = files_check_input(&run->options, libraries.name[i], &run->error);
     repairs->files = NULL;

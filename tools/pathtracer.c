@@ -103,8 +103,11 @@ static bool read_scene(struct tracing *run)
     struct obj_repairs read = {0};
     struct scene_repairs prepared = {0};
     const char *path = run->options.scene;
-    run->scene = ply_is_meant(path) ? ply_read(path, &run->error)
-                                    : obj_read(path, &read, &run->error);
+    struct source source;
+    if (source_open(&source, path, &run->error))
+        run->scene = ply_is_meant(&source) ? ply_read(&source, &run->error)
+                                           : obj_of_source(&source, &read, &run->error);
+    source_close(&source);
     if (!run->scene)
         return false;
     if (run->options.ke == KE_RADIANCE)
@@ -122,7 +125,11 @@ static bool read_leaves(struct tracing *run)
 {
     if (!run->leaves)
         return true;
-    if (!solution_mesh_read(&run->solution, run->leaves, &run->error))
+    struct source source;
+    bool good = source_open(&source, run->leaves, &run->error) &&
+                solution_mesh_read(&run->solution, &source, &run->error);
+    source_close(&source);
+    if (!good)
         return false;
     for (int64_t i = 0; i < run->solution.count; i++) {
         uint32_t root = run->solution.leaves[i].id.root;

@@ -41,11 +41,11 @@ bool image_of_binary(struct image *image, enum image_kind *kind, struct binary *
     return good;
 }
 
-bool image_read(struct image *image, enum image_kind *kind, const char *path,
+bool image_read(struct image *image, enum image_kind *kind, struct source *source,
                 struct error *error)
 {
     struct binary binary;
     *image = (struct image){0};
-    return binary_read(&binary, path, IMAGE_MAGIC, KIND, error) &&
+    return binary_read(&binary, source, IMAGE_MAGIC, KIND, error) &&
            image_of_binary(image, kind, &binary, error);
 }

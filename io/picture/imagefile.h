@@ -19,11 +19,11 @@ bool image_write(const struct image *image, const struct tone *tone,
  * refused. */
 #define IMAGE_MAGIC "P #? \x89PNG"
 
-/* Reads PFM, PPM or HDR, as pnm_read() and hdr_read(). `rgb` is to be freed with
- * alloc_free().
+/* Reads PFM, PPM or HDR from an open file, as pnm_read() and hdr_read(). `rgb` is to be
+ * freed with alloc_free().
  * Errors: "PATH: REASON", EXIT_USAGE: not such a picture, bytes missing or left over, a
  * sample above the greatest value. */
-bool image_read(struct image *image, enum image_kind *kind, const char *path,
+bool image_read(struct image *image, enum image_kind *kind, struct source *source,
                 struct error *error);
 
 /* Does the same with a file in memory, which it frees. */

@@ -309,12 +309,12 @@ bool solution_mesh_of_binary(struct solution_mesh *solution, const struct binary
     return good;
 }
 
-bool solution_mesh_read(struct solution_mesh *solution, const char *path,
+bool solution_mesh_read(struct solution_mesh *solution, struct source *source,
                         struct error *error)
 {
     struct binary binary;
     *solution = (struct solution_mesh){0};
-    return ply_file_load(&binary, path, error) &&
+    return ply_file_load(&binary, source, error) &&
            solution_mesh_of_binary(solution, &binary, error);
 }
 

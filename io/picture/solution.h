@@ -52,10 +52,10 @@ struct solution_mesh {
 /* True if the faces have radiosity_r and hierarchy. */
 bool solution_is_stored(const struct ply_file *file);
 
-/* Reads a mesh. To be freed with solution_mesh_free().
+/* Reads a mesh from an open file. To be freed with solution_mesh_free().
  * Errors: those of ply_read(); a property of io/picture/mesh.h is missing; the leaves of
  * a root leave gaps or overlap, or are not those of the scene. EXIT_USAGE. */
-bool solution_mesh_read(struct solution_mesh *solution, const char *path,
+bool solution_mesh_read(struct solution_mesh *solution, struct source *source,
                         struct error *error);
 
 /* Do the same with a file in memory, which they free, and with one whose header is read,

@@ -1,26 +1,15 @@
 /* Reading binary files.
  *
  * The file is read in chunks to its end and kept in memory. So the counts of a header can
- * be checked against the size before anything is allocated for them, and pipes work. The
- * first chunk has to begin with a magic of the format: reading /dev/zero ends there.
+ * be checked against the size before anything is allocated for them. The first chunk has
+ * to begin with a magic of the format: reading /dev/zero ends there.
  * Numbers are put together byte by byte, so the byte order of the machine does not
  * matter. */
 #include "io/scene/binary.h"
 
-#include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "geom/stop.h"
-
-enum { CHUNK = 65536 };
-
-static bool fail_to_read(const char *path, struct error *error)
-{
-    return error_set(error, EXIT_USAGE, "%s: cannot read: %s", path,
-                     errno ? strerror(errno) : "unknown reason");
-}
 
 static bool has_magic(const struct binary *binary, const char *magic, const char *kind,
                       struct error *error)
@@ -34,37 +23,29 @@ static bool has_magic(const struct binary *binary, const char *magic, const char
     return error_set(error, EXIT_USAGE, "%s: not %s", binary->path, kind);
 }
 
-static bool read_chunks(struct binary *binary, FILE *file, const char *magic,
+static bool read_chunks(struct binary *binary, struct source *source, const char *magic,
                         const char *kind, struct error *error)
 {
     int64_t capacity = 0;
     size_t got;
     do {
         binary->data =
-            alloc_reserve(binary->data, &capacity, binary->size + CHUNK + 1, 1);
-        got = fread(binary->data + binary->size, 1, CHUNK, file);
-        if (!stop_check(error))
+            alloc_reserve(binary->data, &capacity, binary->size + SOURCE_CHUNK + 1, 1);
+        if (!source_read(source, binary->data + binary->size, &got, error))
             return false;
-        if (ferror(file))
-            return fail_to_read(binary->path, error);
         binary->size += (int64_t)got;
         binary->data[binary->size] = '\0';
         if (!has_magic(binary, magic, kind, error))
             return false;
-    } while (got == CHUNK);
+    } while (got == SOURCE_CHUNK);
     return true;
 }
 
-bool binary_read(struct binary *binary, const char *path, const char *magic,
+bool binary_read(struct binary *binary, struct source *source, const char *magic,
                  const char *kind, struct error *error)
 {
-    *binary = (struct binary){.path = path, .line = 1};
-    errno = 0;
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return fail_to_read(path, error);
-    bool good = read_chunks(binary, file, magic, kind, error);
-    fclose(file);
+    *binary = (struct binary){.path = source->path, .line = 1};
+    bool good = read_chunks(binary, source, magic, kind, error);
     if (!good)
         binary_free(binary);
     return good;

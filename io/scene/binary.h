@@ -8,19 +8,20 @@
 #include <stdint.h>
 
 #include "geom/error.h"
+#include "io/scene/source.h"
 
 struct binary {
-    const char *path;   /* borrowed from the caller of binary_read() */
+    const char *path;   /* borrowed from its source */
     char *data;         /* [size], and a zero behind */
     int64_t size;       /* bytes */
     int64_t position;   /* of the next byte to read */
     long line;          /* number of the text line at `position`, from 1 */
 };
 
-/* Reads the file `path`, which has to begin with one of the words of `magic`. Owned by
- * the caller until binary_free(), which is allowed (not needed) after a failure.
+/* Reads an open file, which has to begin with one of the words of `magic`. Owned by the
+ * caller until binary_free(), which is allowed (not needed) after a failure.
  * Errors: "PATH: cannot read: REASON"; "PATH: not KIND". Both ask for EXIT_USAGE. */
-bool binary_read(struct binary *binary, const char *path, const char *magic,
+bool binary_read(struct binary *binary, struct source *source, const char *magic,
                  const char *kind, struct error *error);
 
 /* Does the same with a copy of `size` bytes in memory, as if they were the file

@@ -34,9 +34,16 @@ static const char *last_part(const char *name)
     return part;
 }
 
+/* A descriptor that is open already has no folder but the current one. */
+static bool is_descriptor(const char *path)
+{
+    return strcmp(path, "/dev/stdin") == 0 || strncmp(path, "/dev/fd/", 8) == 0;
+}
+
 static bool read_file(const struct lookup *lookup, const char *name, bool *found)
 {
-    char *path = text_path_beside(lookup->obj->path, name);
+    const char *beside = lookup->obj->path;
+    char *path = text_path_beside(is_descriptor(beside) ? "" : beside, name);
     bool good = mtl_read(lookup->table, path, found, lookup->error);
     if (*found && lookup->files)
         text_names_add(lookup->files, path);

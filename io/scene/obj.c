@@ -418,8 +418,19 @@ struct scene *obj_of_text(struct text *text, struct obj_repairs *repairs,
     return scene;
 }
 
-struct scene *obj_read(const char *path, struct obj_repairs *repairs, struct error *error)
+struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
+                            struct error *error)
 {
     struct text text;
-    return text_read(&text, path, error) ? obj_of_text(&text, repairs, error) : NULL;
+    return text_of_source(&text, source, error) ? obj_of_text(&text, repairs, error)
+                                                : NULL;
+}
+
+struct scene *obj_read(const char *path, struct obj_repairs *repairs, struct error *error)
+{
+    struct source source;
+    struct scene *scene = source_open(&source, path, error)
+                              ? obj_of_source(&source, repairs, error) : NULL;
+    source_close(&source);
+    return scene;
 }

@@ -262,21 +262,16 @@ struct scene *ply_of_binary(const struct binary *binary, struct error *error)
     return scene;
 }
 
-struct scene *ply_read(const char *path, struct error *error)
+struct scene *ply_read(struct source *source, struct error *error)
 {
     struct binary binary;
-    return ply_file_load(&binary, path, error) ? ply_of_binary(&binary, error) : NULL;
+    return ply_file_load(&binary, source, error) ? ply_of_binary(&binary, error) : NULL;
 }
 
-bool ply_is_meant(const char *path)
+bool ply_is_meant(const struct source *source)
 {
+    const char *path = source->path, *start = source->start;
     if (text_ends_with(path, ".ply") || text_ends_with(path, ".obj"))
         return text_ends_with(path, ".ply");
-    char start[5] = "";
-    FILE *file = fopen(path, "rb");
-    bool seen = file && fseek(file, 0, SEEK_SET) == 0 && fread(start, 1, 4, file) == 4;
-    if (file)
-        fclose(file);
-    return seen && strncmp(start, "ply", 3) == 0 &&
-           (start[3] == '\n' || start[3] == '\r');
+    return strcmp(start, "ply\n") == 0 || strcmp(start, "ply\r") == 0;
 }

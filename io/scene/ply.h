@@ -16,17 +16,17 @@
 #include "geom/scene.h"
 #include "io/scene/plyfile.h"
 
-/* True if a scene is to be read as PLY: its name ends in .ply; or it does not end in
- * .obj, and the file is not a pipe and begins as a PLY file does. */
-bool ply_is_meant(const char *path);
+/* True if an open file is to be read as PLY: its name ends in .ply; or it does not end in
+ * .obj, and the file begins as a PLY file does. */
+bool ply_is_meant(const struct source *source);
 
-/* Reads `path`. Returns a scene before scene_prepare() (positions in input units), of one
- * group, with one material for each different pair of reflectance and emission; or NULL
- * with `error` set (EXIT_USAGE): "FILE:LINE: REASON" for text and headers, else "FILE:
- * face 3: REASON", counted from 0.
+/* Reads an open file. Returns a scene before scene_prepare() (positions in input units),
+ * of one group, with one material for each different pair of reflectance and emission; or
+ * NULL with `error` set (EXIT_USAGE): "FILE:LINE: REASON" for text and headers, else
+ * "FILE: face 3: REASON", counted from 0.
  * Errors: those of io/scene/plyfile.h; no x y z, no faces, a face with fewer than three
  * corners, a corner out of range, a negative colour or emission. */
-struct scene *ply_read(const char *path, struct error *error);
+struct scene *ply_read(struct source *source, struct error *error);
 
 /* Do the same with a file in memory, which they free, and with one whose header is read,
  * which they do not close. */

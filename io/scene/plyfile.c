@@ -255,9 +255,9 @@ static bool read_header(struct ply_file *file, struct error *error)
                              file->binary.path, file->line);
 }
 
-bool ply_file_load(struct binary *binary, const char *path, struct error *error)
+bool ply_file_load(struct binary *binary, struct source *source, struct error *error)
 {
-    return binary_read(binary, path, "ply", "a PLY file", error);
+    return binary_read(binary, source, "ply", "a PLY file", error);
 }
 
 bool ply_file_open(struct ply_file *file, const struct binary *binary,

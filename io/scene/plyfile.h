@@ -76,8 +76,8 @@ struct ply_file {
     long first_long;                 /* number of the first of them */
 };
 
-/* Reads the file. Errors: "PATH: not a PLY file" among those of binary_read(). */
-bool ply_file_load(struct binary *binary, const char *path, struct error *error);
+/* Reads an open file. Errors: "PATH: not a PLY file" among those of binary_read(). */
+bool ply_file_load(struct binary *binary, struct source *source, struct error *error);
 
 /* Reads the header of a file in memory, which it takes over. To be closed also after an
  * error.

@@ -1,10 +1,10 @@
 /* Reading text.
  *
- * The file is read in chunks to its end, so pipes work and no size has to be known. Each
- * chunk is searched for control characters before the next one is read: a mesh in a
- * binary format, UTF-16 or /dev/zero ends there and not in a thousand messages about bad
- * lines. Lines and words are then cut out in place: the characters of a continuation
- * become blanks, the blank behind a word becomes a zero. So lines may have any length.
+ * The file is read in chunks to its end, so no size has to be known. Each chunk is
+ * searched for control characters before the next one is read: a mesh in a binary format,
+ * UTF-16 or /dev/zero ends there and not in a thousand messages about bad lines. Lines
+ * and words are then cut out in place: the characters of a continuation become blanks,
+ * the blank behind a word becomes a zero. So lines may have any length.
  *
  * Numbers are rounded correctly. Almost all numbers in files are an integer below 2^53
  * times or over a power of ten up to 10^22; a double holds both exactly, so one operation
@@ -18,7 +18,6 @@
 #include "io/scene/text.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -28,8 +27,6 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "geom/stop.h"
-
-enum { CHUNK = 65536 };
 
 static bool is_blank(char c)
 {
@@ -83,40 +80,38 @@ static void start(struct text *text)
     text->position = strncmp(text->bytes, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
 }
 
-static bool fail_to_read(struct text *text, struct error *error)
-{
-    text->unreadable = true;
-    return error_set(error, EXIT_USAGE, "%s: cannot read: %s", text->path,
-                     errno ? strerror(errno) : "unknown reason");
-}
-
-static bool read_chunks(struct text *text, FILE *file, struct error *error)
+static bool read_chunks(struct text *text, struct source *source, struct error *error)
 {
     int64_t capacity = 0;
     size_t got;
     do {
-        text->bytes = alloc_reserve(text->bytes, &capacity, text->size + CHUNK + 1, 1);
-        got = fread(text->bytes + text->size, 1, CHUNK, file);
-        if (!stop_check(error) ||
-            !check_bytes(text, text->bytes + text->size, got, error))
+        text->bytes =
+            alloc_reserve(text->bytes, &capacity, text->size + SOURCE_CHUNK + 1, 1);
+        text->unreadable = !source_read(source, text->bytes + text->size, &got, error);
+        if (text->unreadable || !check_bytes(text, text->bytes + text->size, got, error))
             return false;
         text->size += (int64_t)got;
-    } while (got == CHUNK);
+    } while (got == SOURCE_CHUNK);
     start(text);
-    return ferror(file) ? fail_to_read(text, error) : true;
+    return true;
+}
+
+bool text_of_source(struct text *text, struct source *source, struct error *error)
+{
+    *text = (struct text){.path = source->path, .next_line = 1};
+    bool good = read_chunks(text, source, error);
+    if (!good)
+        text_free(text);
+    return good;
 }
 
 bool text_read(struct text *text, const char *path, struct error *error)
 {
-    *text = (struct text){.path = path, .next_line = 1};
-    errno = 0;
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return fail_to_read(text, error);
-    bool good = read_chunks(text, file, error);
-    fclose(file);
-    if (!good)
-        text_free(text);
+    struct source source;
+    *text = (struct text){.path = path, .unreadable = true};
+    bool good =
+        source_open(&source, path, error) && text_of_source(text, &source, error);
+    source_close(&source);
     return good;
 }
 

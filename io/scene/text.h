@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "geom/error.h"
+#include "io/scene/source.h"
 
 /* The largest magnitude of an input number: squares and products of three of them do not
  * overflow. */
@@ -30,6 +31,9 @@ struct text {
  * UTF-8". All ask for EXIT_USAGE. */
 bool text_read(struct text *text, const char *path, struct error *error);
 void text_free(struct text *text);
+
+/* Does the same with an open file, which it does not close. */
+bool text_of_source(struct text *text, struct source *source, struct error *error);
 
 /* Does the same with a copy of `size` bytes in memory, which errors call `path`. */
 bool text_of_bytes(struct text *text, const char *path, const void *bytes, size_t size,

@@ -107,18 +107,28 @@ static void check_read(const char *name, const char *bytes, size_t size,
     found.rgb = NULL;
 }
 
+/* Reads `path` into `found` and `kind`. */
+static bool read_back(const char *path, struct error *error)
+{
+    struct source source;
+    bool good = source_open(&source, path, error) &&
+                image_read(&found, &kind, &source, error);
+    source_close(&source);
+    return good;
+}
+
 static void test_back(void)
 {
     struct error error = {EXIT_DONE, ""};
     bool right = pfm_write(&picture, PFM, &error) &&
-                 image_read(&found, &kind, PFM, &error) && kind == IMAGE_LINEAR &&
+                 read_back(PFM, &error) && kind == IMAGE_LINEAR &&
                  found.width == 2 && found.height == 3 &&
                  memcmp(found.rgb, pixels, sizeof pixels) == 0;
     tap_ok(right, "a picture written as PFM reads back");
     alloc_free(found.rgb);
     struct tone tone = tone_make(1.0);
     right = ppm_write(&picture, &tone, PPM, &error) &&
-            image_read(&found, &kind, PPM, &error) && kind == IMAGE_CODES &&
+            read_back(PPM, &error) && kind == IMAGE_CODES &&
             found.rgb[3] == (float)(188 / 255.0) && found.rgb[0] == 1.0f;
     tap_ok(right, "a picture written as PPM reads back, in codes");
     alloc_free(found.rgb);
@@ -199,7 +209,7 @@ static void test_refusing(void)
             "a sample is missing or not a number up to the greatest value");
     REFUSED("P3\n1 1 9\n1 2 3 4", "bytes are left behind the picture");
     reading = (struct error){EXIT_DONE, ""};
-    tap_ok(!image_read(&found, &kind, "build/image_test_absent", &reading) &&
+    tap_ok(!read_back("build/image_test_absent", &reading) &&
                reading.code == EXIT_USAGE,
            "a missing file: %s", reading.text);
 }

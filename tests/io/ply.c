@@ -405,23 +405,40 @@ static void write_file(const char *path, const char *text)
     }
 }
 
+/* Reads a file if it is to be read as PLY, and tells that in `is_ply`. */
+static struct scene *read_source(const char *path, bool *is_ply)
+{
+    struct source source;
+    error = (struct error){EXIT_DONE, ""};
+    *is_ply = source_open(&source, path, &error) && ply_is_meant(&source);
+    struct scene *scene = *is_ply ? ply_read(&source, &error) : NULL;
+    source_close(&source);
+    return scene;
+}
+
 static void test_choice(void)
 {
     static const char text[] = ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n";
     write_file(PLY, text);
-    error = (struct error){EXIT_DONE, ""};
-    struct scene *scene = ply_read(PLY, &error);
-    tap_ok(is_square(scene), "from a file%s", error.text);
+    bool is_ply;
+    struct scene *scene = read_source(PLY, &is_ply);
+    tap_ok(is_ply && is_square(scene), "from a file%s", error.text);
     scene_destroy(scene);
-    tap_ok(ply_is_meant(PLY) && ply_is_meant("absent.PLY"), "the name ends in .ply");
-    tap_ok(!ply_is_meant("absent.obj") && !ply_is_meant("absent") && !ply_is_meant("ply"),
-           "other names");
     write_file("build/ply_test.mesh", text);
-    tap_ok(ply_is_meant("build/ply_test.mesh"), "another name, the content of PLY");
-    write_file("build/ply_test.mesh", "v 0 0 0\n");
-    tap_ok(!ply_is_meant("build/ply_test.mesh"), "another name, other content");
-    error = (struct error){EXIT_DONE, ""};
-    tap_ok(!ply_read("build/ply_test_absent.ply", &error) && error.code == EXIT_USAGE,
+    scene = read_source("build/ply_test.mesh", &is_ply);
+    tap_ok(is_ply && is_square(scene), "another name, the content of PLY: read whole");
+    scene_destroy(scene);
+    static const char *const OTHERS[] = {"v 0 0 0\n", "ply", "plyx", "", "PLY\n"};
+    for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++) {
+        write_file("build/ply_test.mesh", OTHERS[i]);
+        read_source("build/ply_test.mesh", &is_ply);
+        tap_ok(!is_ply, "another name, other content: %s", OTHERS[i]);
+    }
+    const struct source meant = {.path = "a.PLY", .start = "v 0"},
+                        other = {.path = "a.obj", .start = "ply\n"};
+    tap_ok(ply_is_meant(&meant) && !ply_is_meant(&other), "names come before contents");
+    tap_ok(!read_source("build/ply_test_absent.ply", &is_ply) && !is_ply &&
+               error.code == EXIT_USAGE,
            "a missing file: %s", error.text);
     remove(PLY);
     remove("build/ply_test.mesh");

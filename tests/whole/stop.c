@@ -64,14 +64,23 @@ static int64_t read_obj(void)
     return count_triangles(obj_read(OBJ, &repairs, &error));
 }
 
+static int64_t read_ply(const char *path)
+{
+    struct source source;
+    struct scene *scene = source_open(&source, path, &error) ? ply_read(&source, &error)
+                                                             : NULL;
+    source_close(&source);
+    return count_triangles(scene);
+}
+
 static int64_t read_text_ply(void)
 {
-    return count_triangles(ply_read(TEXT_PLY, &error));
+    return read_ply(TEXT_PLY);
 }
 
 static int64_t read_mesh_ply(void)
 {
-    return count_triangles(ply_read(MESH_PLY, &error));
+    return read_ply(MESH_PLY);
 }
 
 static int64_t find_neighbours(void)

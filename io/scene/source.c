@@ -1,0 +1,50 @@
+/* Reading files once.
+ *
+ * A pipe gives its bytes to whoever opens it first, and ends when that one closes it. So
+ * the first bytes, by which a format is recognised, are kept for the reader of that
+ * format. Rejected: ungetc(), for which C promises one byte. */
+#include "io/scene/source.h"
+
+#include <errno.h>
+#include <string.h>
+
+#include "geom/stop.h"
+
+static bool fail_to_read(const struct source *source, struct error *error)
+{
+    return error_set(error, EXIT_USAGE, "%s: cannot read: %s", source->path,
+                     errno ? strerror(errno) : "unknown reason");
+}
+
+/* True if the last call of fread() was neither stopped nor failed. */
+static bool is_good(const struct source *source, struct error *error)
+{
+    return stop_check(error) && (!ferror(source->file) || fail_to_read(source, error));
+}
+
+bool source_open(struct source *source, const char *path, struct error *error)
+{
+    *source = (struct source){.path = path};
+    errno = 0;
+    source->file = fopen(path, "rb");
+    if (!source->file)
+        return fail_to_read(source, error);
+    source->start_count = fread(source->start, 1, SOURCE_START, source->file);
+    return is_good(source, error);
+}
+
+void source_close(struct source *source)
+{
+    if (source->file)
+        fclose(source->file);
+    source->file = NULL;
+}
+
+bool source_read(struct source *source, char *bytes, size_t *got, struct error *error)
+{
+    *got = source->start_count - source->taken;
+    memcpy(bytes, source->start + source->taken, *got);
+    source->taken = source->start_count;
+    *got += fread(bytes + *got, 1, SOURCE_CHUNK - *got, source->file);
+    return is_good(source, error);
+}
