@@ -195,8 +195,8 @@ static MPI_Datatype record_of(size_t bytes)
     return record;
 }
 
-/* One message to each rank that gets something: no count is too large for MPI, and those
- * who have nothing for each other need not meet. The records of a rank for itself are
+/* One message to each rank that gets something: no count is too large for MPI, and ranks
+ * that have nothing for each other need not meet. The records of a rank for itself are
  * copied. */
 void *comm_exchange(const struct comm *comm, const void *records, const int *counts,
                     size_t bytes, int64_t *arriving)
@@ -239,7 +239,7 @@ void comm_add_home(const struct comm *comm, const int64_t *values, const int *co
                    int width, int64_t *own)
 {
     int *numbers = alloc_array((size_t)comm->size, sizeof *numbers);
-    int64_t sum = 0; /* what libraries add up as int */
+    int64_t sum = 0; /* libraries add these numbers up as int */
     for (int r = 0; r < comm->size; r++) {
         int64_t number = (int64_t)counts[r] * width;
         sum += number;

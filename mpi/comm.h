@@ -77,7 +77,7 @@ uint8_t *comm_gather_all(const struct comm *comm, const void *own, int64_t bytes
 /* "MPI", or "serial" where mpi/serial/mpi.h takes its place. */
 const char *comm_build(void);
 
-/* What this rank has waited for. */
+/* Operations that this rank has waited for. */
 struct comm_counts {
     int64_t collectives;
     int64_t messages; /* log P for a collective of P ranks, and those that this one has

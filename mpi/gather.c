@@ -1,4 +1,5 @@
 /* Step 5: light is transferred over the links, and flux that proxies received goes home.
+ * A proxy is the copy of a patch on a rank that is not its home.
  *
  * A rank's links add flux to patches of nearly all homes. One reduction adds up the flux
  * of all ranks, and each home gets the sums of its patches: integers, so in any order.

@@ -26,7 +26,7 @@ struct ledger {
 
 void ledger_add(struct ledger *ledger, struct phase_work phase);
 
-/* Collective. All ranks learn the sums and maxima of what was added since. */
+/* Collective. All ranks learn the sums and maxima of phases added since the last call. */
 void ledger_share(struct ledger *ledger, const struct comm *comm);
 
 void ledger_free(struct ledger *ledger);

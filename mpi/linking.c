@@ -15,9 +15,9 @@
  *       2          (7)  8
  *       3               9
  *
- * Each rank has the same number of pairs, but for one, and a part of the dear and of the
- * cheap ones of each row. Rejected: rows in turn (of 32 rows the first has 31 pairs more
- * than the last, and a large root makes its whole row dear).
+ * Ranks have the same number of pairs, but for one, and each a part of the costly and of
+ * the cheap pairs of each line. Rejected: whole lines in turn (of 32 lines the first has
+ * 31 pairs more than the last, and a large root makes its whole line costly).
  *
  * Pairs are linked in rounds. Before each all ranks agree whether there is a next one:
  * not if any of them has got a signal, nor if, with a link for each of its pairs, the
@@ -102,7 +102,7 @@ bool solver_link_roots(struct solver *solver)
     struct model *model = &solver->model;
     double start = comm_seconds();
     if (model->method.first_link) {
-        if (solver->comm->rank == 0) /* the first levels deal what it becomes */
+        if (solver->comm->rank == 0) /* the first levels deal its children */
             link_list_append(&solver->links, model->method.first_link());
         return true;
     }

@@ -1,9 +1,9 @@
 /* The memory limit.
  *
  * Links and patches grow; clusters are there from the beginning. Before a level is split,
- * the number of links after it is known within a factor:
- * each of the prolific ones becomes four at most (of a cluster with itself, ten), and is
- * there itself until the end; a patch can get four children only once. Whether that fits
+ * the number of links after it is known within a factor: each link that is to be split
+ * becomes four at most (of a cluster with itself, ten), and is there itself until the end
+ * of the level; a patch can get four children only once. Whether that fits
  * into the limit is decided from counts over all ranks, so all decide alike, and a limit
  * that the user gives means the same on any number of ranks: for that it is held against
  * one copy of the patches and clusters, though each rank has its own patches. The default
@@ -29,10 +29,10 @@ enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 380, BYTES_PER_CLUSTER = 290 };
  * terms are as many as what is seen openly, may take twice as much. */
 enum { BYTES_PER_RAY = 12 };
 
-/* Of what the machines have, for links, patches and clusters. */
+/* The part of the machines' memory that links, patches and clusters may take. */
 static const double SHARE = 0.8;
 
-/* What a rank says of the machine that it runs on; no padding. */
+/* The machine that a rank runs on, as told to the others; no padding. */
 struct machine {
     uint64_t name; /* hash */
     int64_t bytes;

@@ -10,8 +10,8 @@
 struct memory {
     int64_t limit;    /* bytes, 0: none */
     int64_t reached;  /* the limit that has ended linking or refinement, 0: none has */
-    int copies;       /* of patches and clusters, that count */
-    int rays;         /* of the final gather */
+    int copies;       /* of patches and clusters that count against the limit */
+    int rays;         /* of the final gather from a leaf of middling size */
     int64_t clusters; /* above the roots */
 };
 

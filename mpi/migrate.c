@@ -44,8 +44,8 @@ static struct link unpack(const struct model *model, const struct wire_link *wir
     return link;
 }
 
-/* Packs what leaves, destination by destination, and closes the gaps in `list`. `at` is
- * where each destination's records begin, and is used up. */
+/* Packs the links that leave, destination by destination, and closes the gaps in `list`.
+ * `at` is where each destination's records begin, and is used up. */
 static struct wire_link *pack_leaving(const struct solver *solver, struct link_list *list,
                                       const int *destination, int *at, int64_t total)
 {

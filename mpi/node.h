@@ -20,7 +20,7 @@ struct node_block {
     size_t bytes;
     bool fills;       /* this rank fills `data`; rank 0 always does */
     bool shared;      /* `data` is in a window; else in `memory` */
-    double seconds;   /* that its contents took to make; 0 on ranks that only receive */
+    double seconds;   /* spent on making the contents; 0 on ranks that only receive */
     void *memory;     /* owned, NULL if shared */
     MPI_Win window;
     struct comm node; /* the ranks that share the block; only if shared */
@@ -35,7 +35,7 @@ static inline struct node_policy node_policy(void)
 void node_block_create(struct node_block *block, const struct comm *comm, size_t bytes,
                        struct node_policy policy);
 
-/* Collective. What rank 0 has put into its block comes to all. */
+/* Collective. The contents of rank 0's block come to all. */
 void node_block_spread(struct node_block *block, const struct comm *comm);
 
 /* Collective over the ranks that share it. A block that is all zero is none. */

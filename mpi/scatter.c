@@ -1,4 +1,4 @@
-/* Step 7: the homes tell all ranks the radiosities of their leaves, and what they vote.
+/* Step 7: the homes tell all ranks the radiosities of their leaves, and their ballots.
  *
  * All ranks know the trees since the end of refinement, and which leaves each is home to:
  * so 24 bytes a leaf are sent, in the order of the routes, the ballot of the home behind

@@ -16,7 +16,7 @@
 #include "rad/pushpull.h"
 #include "rad/stats.h"
 
-/* The report of a rank on an iteration; 128 bytes, no padding. */
+/* The report of a rank on an iteration, its part of the vote; 128 bytes, no padding. */
 struct ballot {
     int64_t light, absorbed, change, arriving; /* flux units */
     int64_t split, links;

@@ -5,9 +5,9 @@
  * iterations end when nothing was split and the energy changes by little, or, with
  * --solver cg, the bound on what is still missing is small (mpi/beyond/descent.c).
  *
- * The power that escapes is what leaves the surfaces, emitted or reflected, less what the
- * links delivered: an open scene's real loss plus whatever the form factors lack or have
- * too much. */
+ * The power that escapes is the power that leaves surfaces, emitted or reflected, less
+ * the power that links delivered: an open scene's real loss, plus the power that form
+ * factors lack or have too much. */
 #include "mpi/solver.h"
 
 #include <math.h>

@@ -3,8 +3,8 @@
  * Each patch is cut into its four children a = 0..3 and b = 0..3. With r the distance of
  * their centroids and theta the angles to the normals, the exchange area is
  *
- *     G = sum over a, b of  v_ab  A_a A_b cos theta_a cos theta_b / (pi r^2 + max(A_a,
- * A_b)),
+ *     G = sum over a, b of
+ *         v_ab A_a A_b cos theta_a cos theta_b / (pi r^2 + max(A_a, A_b)),
  *
  * v_ab = 1 if the segment between the centroids is free: Eq. 2 for each of the 16 rays
  * of Fig. 2.
@@ -38,7 +38,7 @@ double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x, struct 
                      struct vec3 normal_y, double area_y)
 {
     struct vec3 d = vec3_sub(y, x);
-    /* r cos theta */
+    /* r cos theta at either end */
     double rise_x = vec3_dot(normal_x, d), rise_y = -vec3_dot(normal_y, d);
     if (rise_x <= 0.0 || rise_y <= 0.0)
         return 0.0;

@@ -1,8 +1,7 @@
 /* Form factors of pairs of patches, with visibility (paper Eq. 2 and Fig. 2).
  *
- * What is computed is the exchange area G = A_p F_pq = A_q F_qp, square scene units:
- * one number for both directions, so reciprocity is exact. 0 <= G <= min(A_p, A_q),
- * always. */
+ * The exchange area G = A_p F_pq = A_q F_qp, square scene units, is computed: one number
+ * for both directions, so reciprocity is exact. 0 <= G <= min(A_p, A_q), always. */
 #ifndef RAD_FORMFACTOR_H
 #define RAD_FORMFACTOR_H
 
@@ -38,8 +37,8 @@ struct facet_pair facet_pair_make(const struct facet *p, const struct facet *q);
 double disk_exchange(struct vec3 x, struct vec3 normal_x, double area_x, struct vec3 y,
                      struct vec3 normal_y, double area_y);
 
-/* G of a pair by Eq. 2 and 16 rays. `*blocker` as *guess of octree_block(); `*seen`
- * receives the share of the rays that arrives, 1. */
+/* G of a pair by Eq. 2 and 16 rays. `*blocker` is the guess of octree_block(); `*seen`
+ * becomes the share of the rays that arrive, 0 to 1. */
 double exchange_area(const struct facet *p, const struct facet *q,
                      const struct octree *octree,
                      int32_t *blocker, double *seen, struct octree_counts *counts);

@@ -23,13 +23,13 @@ struct link {
                             cluster: see rad/beyond/node_link.c */
     uint8_t parts_p[3], parts_q[3]; /* see rad/beyond/patch_link.h */
     uint8_t seen;        /* share of the segments' weight that arrives, in 252nds; 0
-                            only if none does; or one of the two below */
+                            only if none does; or a proof, see below */
     uint8_t cost;        /* predicted cost of splitting it, in box and triangle tests,
                             >= 1; short form of rad/compact.h */
 };
 
-/* It is proved that nothing can stand between p and q: and they are far enough apart for
- * their size to trust the form factor from points, or not. */
+/* Values of `seen`: all segments arrive; or it is proved that they do, p and q being too
+ * near for their size to trust the form factor from points, or far enough apart. */
 enum { LINK_ALL_SEEN = 252, LINK_OPEN_NEAR = 253, LINK_OPEN = 254 };
 
 static inline bool link_is_open(const struct link *link)
@@ -57,10 +57,10 @@ static inline double link_cost(const struct link *link)
 struct link_list {
     struct link *items; /* [count] */
     int64_t count, capacity;
-    int64_t seen; /* as of the last link_list_sort(): only the first ones carry light */
+    int64_t seen; /* links at the front that carry light, by the last link_list_sort() */
 };
 
-/* Brings those of which something is seen to the front. */
+/* Moves the links that carry light to the front, and counts them. */
 void link_list_sort(struct link_list *list);
 
 void link_list_append(struct link_list *list, struct link link);
@@ -76,8 +76,8 @@ double link_predict_cost(const struct model *model, const struct octree_counts *
                          const struct link *parent);
 
 /* Splits `patch` (p or q of the link) unless it is split already and makes the links of
- * its children with the other side, by the kernel of the method. Returns how many there
- * are, 0..4. */
+ * its children with the other side, by the kernel of the method. Returns their number,
+ * 0..4. */
 int link_split(struct model *model, const struct link *link, int32_t patch,
                struct link *children);
 

@@ -1,5 +1,5 @@
-/* What links work on and how: the one argument that links, refinement and push-pull
- * share. Identical on all ranks but for the counters. */
+/* The scene with its patches, the method and its thresholds: the one argument that links,
+ * refinement and push-pull share. Identical on all ranks but for the counters. */
 #ifndef RAD_MODEL_H
 #define RAD_MODEL_H
 
@@ -11,12 +11,10 @@
 #include "rad/method.h"
 #include "rad/patch.h"
 
-/* What is named by options; read by method_of() alone, but for the last two. */
-enum oracle { ORACLE_BF, ORACLE_ERROR };   /* rad/oracle.h, rad/beyond/error_oracle.h */
-enum form_factor {
-    FORM_FACTOR_DISK,
-    FORM_FACTOR_POLYGON
-}; /* rad/beyond/patch_exchange.h */
+/* Values of options. method_of() makes a method of the first three. */
+enum oracle { ORACLE_BF, ORACLE_ERROR }; /* rad/oracle.h, rad/beyond/error_oracle.h */
+/* rad/formfactor.h, rad/beyond/patch_exchange.h */
+enum form_factor { FORM_FACTOR_DISK, FORM_FACTOR_POLYGON };
 enum linking_kind { LINKING_PAIRS, LINKING_TREE };
 enum solver_kind { SOLVER_JACOBI, SOLVER_CG };
 enum balance { BALANCE_NONE, BALANCE_GREEDY, BALANCE_DEFAULT }; /* mpi/balance.h */
@@ -44,8 +42,7 @@ struct criterion {
 };
 
 enum { GATHER_RAYS_MOST = 16384 };   /* of criterion.final_gather */
-enum { TESTS_PER_FORM_FACTOR = 8 }; /* a form factor takes about as long as so many
-                                       tests */
+enum { TESTS_PER_FORM_FACTOR = 8 };  /* tests that take about as long as one */
 
 struct cluster_light;
 
@@ -64,10 +61,10 @@ struct model {
                                answer */
     struct octree_counts counts; /* work of this rank so far */
     int64_t estimating;     /* work of this rank so far on form factors, in tests */
-    int64_t rays_spared;    /* of 16 for each pair that this rank has looked at, those
-                               not fired */
-    int64_t walled_off;     /* links that ended here since they are proved to be
-                               blocked */
+    int64_t rays_spared;    /* rays not fired, of 16 for each pair that this rank has
+                               looked at */
+    int64_t walled_off;     /* links that ended on this rank because a proof says that
+                               they are blocked */
 };
 
 /* Work of this rank so far, in tests of the octree. */

@@ -1,8 +1,9 @@
 /* Patches: one quadtree over each root triangle.
  *
- * Every rank holds the whole forest (paper Sec. 3.1). Patch number r < root_count is
- * root r; other numbers are given in the order of creation, which differs from rank to
- * rank: they are local and never leave a rank. What travels is the ID. */
+ * Every rank holds the whole forest (paper Sec. 3.1); copies of patches on ranks that are
+ * not home to their root are the paper's proxies. Patch number r < root_count is root r;
+ * other numbers follow the order of creation, which differs from rank to rank: they never
+ * leave a rank. IDs travel. */
 #ifndef RAD_PATCH_H
 #define RAD_PATCH_H
 
@@ -60,7 +61,7 @@ static inline bool patch_is_leaf(const struct patch *patch)
  * patch. May move `patches`. Pre: its level is below ID_MAX_LEVEL. */
 void forest_split(struct forest *forest, int32_t patch);
 
-/* Local number of the patch with this ID; what lacks on the way is created.
+/* Local number of the patch with this ID; missing ones on the way to it are created.
  * Pre: id_is_valid(id) and id.root < root_count. */
 int32_t forest_reach(struct forest *forest, struct patch_id id);
 

@@ -65,10 +65,10 @@ enum work {
 
 /* Of all phases of one kind. */
 struct work_sums {
-    int64_t phases;  /* how many */
-    int64_t all;     /* sum over ranks */
-    int64_t slowest; /* sum over phases of the rank that had most */
-    int64_t bytes;   /* sum over phases of the bytes that the rank sent that sent most */
+    int64_t phases;  /* their number */
+    int64_t all;     /* work of all ranks */
+    int64_t slowest; /* work of the busiest rank, summed over phases */
+    int64_t bytes;   /* bytes of the busiest sender, summed over phases */
 };
 
 /* What keeps --accuracy from being reached. */
@@ -76,7 +76,7 @@ enum hold {
     HOLD_NONE, HOLD_LEVEL, HOLD_AREA, HOLD_MEMORY, HOLD_ITERATIONS,
     HOLD_RAYS,    /* no leaf can have more */
     HOLD_EPSILON, /* it is as small as can be, or helps no more */
-    HOLD_ROUNDS,  /* there were as many as there may be */
+    HOLD_ROUNDS,  /* the most rounds allowed were made */
     HOLD_DOUBT,   /* paths do not tell the error well enough */
     HOLD_NOTHING  /* no surface reflects light: there is nothing to measure */
 };
@@ -85,7 +85,7 @@ enum hold {
 struct gathered {
     int64_t rays, segments; /* fired; asked whether they are blocked */
     int64_t exact;          /* rows made without rays */
-    int64_t terms;          /* kept of all rows */
+    int64_t terms;          /* of all rows, as kept */
     int64_t looks;          /* rays and segments fired before there were rows */
     int64_t split;          /* leaves that the gathered light was seen to vary over */
     int64_t pixels;         /* rays and segments fired for the picture */
@@ -115,13 +115,13 @@ struct stats {
     double escaped_power;
     uint64_t checksum;
     int64_t rays, node_tests, triangle_tests;                      /* of form factors */
-    int64_t links_open;    /* links proved to be open, */
-    int64_t links_seen;    /* all of whose segments arrived, */
-    int64_t links_partly;  /* some, */
-    int64_t links_unseen;  /* or none; these four are all links */
-    int64_t walled_off;    /* links that ended since they were proved to be blocked */
+    int64_t links_open;    /* links proved to be open; with the next three, all links */
+    int64_t links_seen;    /* links without proof whose segments all arrived */
+    int64_t links_partly;  /* links some of whose segments arrived */
+    int64_t links_unseen;  /* links none of whose segments arrived */
+    int64_t walled_off;    /* links that ended because a proof says they are blocked */
     struct gathered gathered;
-    int64_t rays_spared;   /* of 16 for each link ever made, those that were not fired */
+    int64_t rays_spared;   /* rays not fired, of 16 for each link ever made */
     double row_sum_min, row_sum_mean, row_sum_max; /* row sums R */
     double row_sum_rms;                            /* of R - 1 */
     struct spread seconds[PHASE_COUNT];
@@ -133,10 +133,10 @@ struct stats {
     int64_t bytes_scatter;   /* got in step 7, and at the end of step 4 */
     struct work_sums work[WORK_COUNT];
     int64_t exchanges; /* collective operations */
-    int64_t messages;  /* log P for each, and those with links; the most of any rank */
+    int64_t messages;  /* log P an exchange, and those with links; the most of any rank */
     int64_t bytes_broadcast;    /* scene, octree and tree, one copy */
     int64_t peak_rss_bytes;     /* largest over ranks; 0 if unknown */
-    int64_t peak_rss_bytes_sum; /* sum over ranks; what they share counts for each */
+    int64_t peak_rss_bytes_sum; /* sum over ranks; shared memory counts for each */
 };
 
 #endif

@@ -66,6 +66,12 @@ gone=$(quoted '[a-z0-9_]+\(\)' | while read -r name; do
     grep -qE "^[a-z].*\b${name%()}\(" phr.c $house mpi/*.c mpi/beyond/*.c ||
         echo "$name"; done)
 check "and the functions: $gone" [ -z "$gone" ]
+# Stops of the README's reading order: FILE FUNCTION, pair by pair.
+gone=$(sed -n '/^## Reading order/,/^## The house/p' README.md |
+    grep -oE '`[a-z_/]+\.c`: `[a-z_]+\(\)' | tr -d '`:()' |
+    while read -r file name; do
+        grep -qE "^[a-z].*\b$name\(" "$file" || echo "$file $name"; done)
+check "each function of the reading order is in its file: $gone" [ -z "$gone" ]
 
 $MPIEXEC -n 2 ./phr scenes/cornell.obj >"$work/summary" 2>/dev/null
 missing=$(while IFS= read -r line; do
