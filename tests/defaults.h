@@ -1,5 +1,5 @@
-/* Whole runs as phr makes them: its default options, scenes of painted triangles, and
- * radiosity at a point as pictures show it. For tests on one rank. */
+/* Whole runs as phr makes them, with its default options, and radiosity at a point as
+ * pictures show it. For tests on one rank. */
 #ifndef TESTS_DEFAULTS_H
 #define TESTS_DEFAULTS_H
 
@@ -32,38 +32,6 @@ static inline struct criterion criterion_parse(const char *words)
     struct criterion criterion = options.criterion;
     options_free(&options);
     return criterion;
-}
-
-/* --- scenes --- */
-
-/* Triangles, each with the material that was given next after it. */
-struct painted {
-    struct soup soup;
-    struct material materials[64];
-    int64_t ends[64]; /* [count] triangles before it have materials up to this one */
-    int count;
-};
-
-/* Gives all triangles that have none yet this material. */
-static inline void paint(struct painted *painted, double reflectance, double emission)
-{
-    painted->materials[painted->count] = material_grey(reflectance, emission);
-    painted->ends[painted->count++] = painted->soup.count;
-}
-
-/* The scene in input units, not prepared; frees the triangles. */
-static inline struct scene *scene_of_painted(struct painted *painted)
-{
-    struct scene *scene = scene_of_soup(&painted->soup, painted->count);
-    int32_t i = 0;
-    for (int m = 0; m < painted->count; m++) {
-        scene->materials[m] = painted->materials[m];
-        for (; i < painted->ends[m]; i++)
-            scene->material_of[i] = m;
-    }
-    soup_free(&painted->soup);
-    *painted = (struct painted){0};
-    return scene;
 }
 
 /* Prepares and solves a scene on the only rank, and takes it over. */
@@ -121,11 +89,6 @@ static inline double shown_at(const struct solution *s, const struct shading *sh
     for (int k = 0; k < 3; k++)
         best[k] = fmax(best[k], 0.0);
     return shading_at(shading, root, best).band[0];
-}
-
-static inline struct vec3 point(double x, double y, double z)
-{
-    return (struct vec3){x, y, z};
 }
 
 #endif

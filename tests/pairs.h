@@ -6,11 +6,6 @@
 
 #include "tests/scenes.h"
 
-static inline struct vec3 point(double x, double y, double z)
-{
-    return (struct vec3){x, y, z};
-}
-
 /* A right triangle in the plane z, its right angle at x, facing up or down. */
 static inline struct triangle tile(double x, double z, double size, bool up)
 {
@@ -27,24 +22,22 @@ static inline bool make(struct world *world, int32_t p, int32_t q, struct link *
                                          link);
 }
 
-/* Floor 0 (material 0) and ceiling `size` times as large (material 1), then `more`. */
+/* Floor 0 (material 0) and ceiling `size` times as large (material 1), then `more`, which
+ * is emptied. */
 static inline struct world make_pair(double size, struct material floor,
-                                     struct material ceiling,
-                                     const struct soup *more)
+                                     struct material ceiling, struct soup *more)
 {
     struct soup soup = {0};
     soup_add(&soup, tile(0, 0, 1, true));
+    paint_with(&soup, floor);
     soup_add(&soup, tile(0, 1, size, false));
+    paint_with(&soup, ceiling);
     for (int64_t i = 0; more && i < more->count; i++)
         soup_add(&soup, more->items[i]);
-    struct scene *scene = scene_of_soup(&soup, 3);
-    scene->material_of[1] = 1;
-    for (int64_t i = 2; i < soup.count; i++)
-        scene->material_of[i] = 2;
-    scene->materials[0] = floor;
-    scene->materials[1] = ceiling;
-    soup_free(&soup);
-    return world_make(scene);
+    paint(&soup, 0.0, 0.0);
+    if (more)
+        soup_free(more);
+    return world_make(scene_of_soup(&soup));
 }
 
 static inline int64_t tests_done(const struct world *world)

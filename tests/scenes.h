@@ -12,7 +12,12 @@
 #include "rad/model.h"
 #include "tests/random.h"
 
-/* --- random numbers and points --- */
+/* --- points, at random, too --- */
+
+static inline struct vec3 point(double x, double y, double z)
+{
+    return (struct vec3){x, y, z};
+}
 
 static inline double random_between(struct random *random, double low, double high)
 {
@@ -30,7 +35,7 @@ static inline struct vec3 random_point(struct random *random, double half)
 {
     double x = random_between(random, -half, half);
     double y = random_between(random, -half, half);
-    return (struct vec3){x, y, random_between(random, -half, half)};
+    return point(x, y, random_between(random, -half, half));
 }
 
 /* Inside the triangle, evenly spread. */
@@ -57,11 +62,21 @@ static inline struct triangle random_triangle(struct random *random, double half
     return t;
 }
 
+/* The triangle with its front where its back was. */
+static inline struct triangle reversed(struct triangle t)
+{
+    return (struct triangle){{t.corner[0], t.corner[2], t.corner[1]}};
+}
+
 /* --- lists of triangles --- */
 
+/* Triangles, each with the material that was given next after it. */
 struct soup {
     struct triangle *items; /* [count] */
     int64_t count, capacity;
+    struct material materials[64];
+    int64_t ends[64]; /* [painted] triangles before it have materials up to this one */
+    int painted;
 };
 
 static inline void soup_add(struct soup *soup, struct triangle triangle)
@@ -75,6 +90,13 @@ static inline void soup_free(struct soup *soup)
 {
     alloc_free(soup->items);
     *soup = (struct soup){0};
+}
+
+static inline void soup_add_random(struct soup *soup, struct random *random, int count,
+                                   double half, double size)
+{
+    for (int i = 0; i < count; i++)
+        soup_add(soup, random_triangle(random, half, size));
 }
 
 /* The parallelogram origin, origin + u, origin + u + v, origin + v in n x n cells of two
@@ -142,27 +164,45 @@ static inline void soup_add_sphere(struct soup *soup, double radius, int level)
     for (int octant = 0; octant < 8; octant++) {
         double x = octant & 1 ? -1 : 1, y = octant & 2 ? -1 : 1, z = octant & 4 ? -1 : 1;
         struct triangle t = {{{x, 0, 0}, {0, y, 0}, {0, 0, z}}};
-        if (x * y * z < 0.0)
-            t = (struct triangle){{t.corner[0], t.corner[2], t.corner[1]}};
-        soup_add_sphere_part(soup, t, radius, level);
+        soup_add_sphere_part(soup, x * y * z < 0.0 ? reversed(t) : t, radius, level);
     }
 }
 
 /* --- scenes --- */
 
-/* An unprepared scene of these triangles, all of material 0. */
-static inline struct scene *scene_of_soup(const struct soup *soup, int32_t material_count)
-{
-    struct scene *scene = scene_create((int32_t)soup->count, material_count);
-    for (int32_t i = 0; i < scene->input_count; i++)
-        scene->triangles[i] = soup->items[i];
-    return scene;
-}
-
 static inline struct material material_grey(double reflectance, double emission)
 {
     return (struct material){{{reflectance, reflectance, reflectance}},
                              {{emission, emission, emission}}};
+}
+
+/* Gives all triangles that have none yet this material. */
+static inline void paint_with(struct soup *soup, struct material material)
+{
+    soup->materials[soup->painted] = material;
+    soup->ends[soup->painted++] = soup->count;
+}
+
+static inline void paint(struct soup *soup, double reflectance, double emission)
+{
+    paint_with(soup, material_grey(reflectance, emission));
+}
+
+/* The scene of these triangles in input units, not prepared. Those without a material
+ * have the first one, which is black if there is none. Empties the soup. */
+static inline struct scene *scene_of_soup(struct soup *soup)
+{
+    int materials = soup->painted > 0 ? soup->painted : 1;
+    struct scene *scene = scene_create((int32_t)soup->count, materials);
+    for (int32_t i = 0; i < scene->input_count; i++)
+        scene->triangles[i] = soup->items[i];
+    for (int32_t m = 0, i = 0; m < soup->painted; m++) {
+        scene->materials[m] = soup->materials[m];
+        for (; i < soup->ends[m]; i++)
+            scene->material_of[i] = m;
+    }
+    soup_free(soup);
+    return scene;
 }
 
 /* scene_prepare() for a scene that is known to be right. */
@@ -174,6 +214,11 @@ static inline void scene_prepare_or_exit(struct scene *scene)
         printf("Bail out! %s\n", error.text);
         exit(1);
     }
+}
+
+static inline struct octree *octree_of(const struct scene *scene)
+{
+    return octree_create(scene->triangles, scene->planes, scene->input_count);
 }
 
 struct world {
@@ -190,7 +235,7 @@ static inline struct world world_make(struct scene *scene)
                                                .tolerance = 1e-3, .max_iterations = 1};
     scene_prepare_or_exit(scene);
     struct world world = {.scene = scene};
-    world.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    world.octree = octree_of(scene);
     world.model =
         model_make(scene, world.octree, forest_create(scene), &criterion, PAPER);
     return world;

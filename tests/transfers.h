@@ -11,12 +11,9 @@ static inline struct world make_many(void)
 {
     struct soup soup = {0};
     struct random random = random_seed(1);
-    for (int i = 0; i < ROOTS; i++)
-        soup_add(&soup, random_triangle(&random, 0.5, 0.2));
-    struct scene *scene = scene_of_soup(&soup, 1);
-    scene->materials[0] = material_grey(0.5, 1);
-    soup_free(&soup);
-    struct world world = world_make(scene);
+    soup_add_random(&soup, &random, ROOTS, 0.5, 0.2);
+    paint(&soup, 0.5, 1);
+    struct world world = world_make(scene_of_soup(&soup));
     for (int32_t r = 0; r < ROOTS; r += 2)
         forest_split(world.model.forest, r);
     for (int64_t p = 0; p < world.model.forest->count; p++)

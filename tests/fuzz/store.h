@@ -38,13 +38,12 @@ static inline struct scene *store_scene(void)
 static inline struct scene *store_box(void)
 {
     struct soup soup = {0};
-    soup_add_box(&soup, (struct vec3){0, 0, 0}, (struct vec3){1, 1, 1}, 1, true);
-    struct scene *scene = scene_of_soup(&soup, 2);
-    scene->materials[0] = material_grey(0.5, 0.0);
-    scene->materials[1] = material_grey(0.0, 10.0);
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    paint(&soup, 0.5, 0.0);
+    paint(&soup, 0.0, 10.0);
+    struct scene *scene = scene_of_soup(&soup);
     scene->material_of[0] = scene->material_of[1] = 1;
     scene_prepare_or_exit(scene);
-    soup_free(&soup);
     return scene;
 }
 
@@ -92,8 +91,7 @@ static inline void store_try(enum store_kind kind, enum linking_kind linking,
     bool pairs = linking == LINKING_PAIRS;
     struct criterion criterion = pairs ? STORE_CRITERION : store_criterion_tree();
     struct scene *scene = pairs ? store_scene() : store_box();
-    struct octree *octree =
-        octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *octree = octree_of(scene);
     struct solver *solver = beyond_create(fuzz_alone(), scene, octree, &criterion);
     struct store_terms terms = {kind, STORE_SETTINGS, scene, solver->beyond->tree};
     struct store_reader reader;

@@ -101,9 +101,8 @@ static void test_octree(void)
     int differ = 0, empty = 0, full = 0;
     for (int n = 0; n < SCENES; n++) {
         struct soup soup = {0};
-        for (int i = 0; i < TRIANGLES; i++)
-            soup_add(&soup, random_triangle(&random, 0.4, 0.15));
-        struct world world = world_make(scene_of_soup(&soup, 1));
+        soup_add_random(&soup, &random, TRIANGLES, 0.4, 0.15);
+        struct world world = world_make(scene_of_soup(&soup));
         const struct scene *scene = world.scene;
         for (int32_t a = 0; a < 10; a++) {
             int32_t own[2] = {a, a + 10};
@@ -126,7 +125,6 @@ static void test_octree(void)
             full += !free;
         }
         world_free(&world);
-        soup_free(&soup);
     }
     tap_ok(differ == 0 && empty > 100 && full > 100,
            "the octree agrees with brute force: %d empty shafts, %d others", empty,

@@ -9,11 +9,6 @@
 /* Some ten terms of order 1, each with an error of two units in the last place. */
 static const double ROUNDING = 2e-15;
 
-static struct vec3 point(double x, double y, double z)
-{
-    return (struct vec3){x, y, z};
-}
-
 /* The rectangle o, o + u, o + u + v, o + v. */
 static void make_rectangle(struct vec3 o, struct vec3 u, struct vec3 v,
                            struct vec3 corners[4])
@@ -94,11 +89,6 @@ static void test_cie(void)
 }
 
 /* --- laws of all triangles --- */
-
-static struct triangle reversed(struct triangle t)
-{
-    return (struct triangle){{t.corner[0], t.corner[2], t.corner[1]}};
-}
 
 static struct triangle turned_towards(struct triangle t, struct vec3 x)
 {

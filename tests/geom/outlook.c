@@ -21,7 +21,7 @@ static double factor_left(const struct outlook *outlook)
 
 static struct vec3 at(double x, double y, double z)
 {
-    return (struct vec3){x, y, z};
+    return point(x, y, z);
 }
 
 /* A screen of eight triangles with a hole of 2 cm by 10 cm, halfway to a lamp of 9 m: the

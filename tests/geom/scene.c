@@ -9,23 +9,34 @@
 
 enum { COUNT = 200 };
 
-static void make_soup(struct soup *soup)
+static struct soup make_soup(void)
 {
+    struct soup soup = {0};
     struct random random = random_seed(1);
-    for (int i = 0; i < COUNT; i++)
-        soup_add(soup, random_triangle(&random, 2.0, 0.5));
+    soup_add_random(&soup, &random, COUNT, 2.0, 0.5);
+    return soup;
 }
 
-/* The prepared scene of the soup, each corner scaled and then moved. */
-static struct scene *prepared(const struct soup *soup, double scale, double offset)
+/* The same with corners that are whole numbers. */
+static struct soup make_grid(void)
 {
-    struct scene *scene = scene_of_soup(soup, 1);
-    struct vec3 move = {offset, -offset, offset};
-    for (int64_t i = 0; i < 3 * soup->count; i++) {
-        struct vec3 *x = &scene->triangles[i / 3].corner[i % 3];
-        *x = vec3_add(vec3_scale(*x, scale), move);
+    struct soup soup = make_soup();
+    for (int64_t i = 0; i < 3 * soup.count; i++) {
+        struct vec3 *x = &soup.items[i / 3].corner[i % 3];
+        *x = point(rint(1024.0 * x->x), rint(1024.0 * x->y), rint(1024.0 * x->z));
     }
-    scene->materials[0] = material_grey(0.5, 1.0);
+    return soup;
+}
+
+/* The prepared scene of the soup, each corner scaled and then moved. Empties the soup. */
+static struct scene *prepared(struct soup soup, double scale, double offset)
+{
+    for (int64_t i = 0; i < 3 * soup.count; i++) {
+        struct vec3 *x = &soup.items[i / 3].corner[i % 3];
+        *x = vec3_add(vec3_scale(*x, scale), point(offset, -offset, offset));
+    }
+    paint(&soup, 0.5, 1.0);
+    struct scene *scene = scene_of_soup(&soup);
     scene_prepare_or_exit(scene);
     return scene;
 }
@@ -42,22 +53,19 @@ static bool same_geometry(const struct scene *a, const struct scene *b)
 
 static void test_scaling(void)
 {
-    struct soup soup = {0};
-    make_soup(&soup);
-    struct scene *plain = prepared(&soup, 1.0, 0.0);
+    struct scene *plain = prepared(make_soup(), 1.0, 0.0);
     bool right = true;
     for (int k = -400; k <= 400; k += 25) {
-        struct scene *scaled = prepared(&soup, ldexp(1.0, k), 0.0);
+        struct scene *scaled = prepared(make_soup(), ldexp(1.0, k), 0.0);
         right = right && same_geometry(plain, scaled) &&
                 scaled->place.exponent == plain->place.exponent + k;
         scene_destroy(scaled);
     }
     tap_ok(right, "a scene scaled by 2^k has the same bits in scene units");
-    struct scene *thrice = prepared(&soup, 3.0, 0.0);
+    struct scene *thrice = prepared(make_soup(), 3.0, 0.0);
     tap_ok(!same_geometry(plain, thrice), "a scene scaled by 3 has not");
     scene_destroy(thrice);
     scene_destroy(plain);
-    soup_free(&soup);
 }
 
 static double largest_difference(const struct scene *a, const struct scene *b)
@@ -73,34 +81,28 @@ static double largest_difference(const struct scene *a, const struct scene *b)
 
 static void test_offset(void)
 {
-    struct soup soup = {0};
-    make_soup(&soup);
-    struct scene *plain = prepared(&soup, 1.0, 0.0), *far = prepared(&soup, 1.0, 5e6);
+    struct scene *plain = prepared(make_soup(), 1.0, 0.0);
+    struct scene *far = prepared(make_soup(), 1.0, 5e6);
     double difference = largest_difference(plain, far);
     /* Numbers near 5e6 are 2^-30 = 9.3e-10 apart. A corner rounds by half of that, the
      * centre by as much again from rounded bounds; three axes; a scene unit is 8 here. */
     tap_ok(plain->place.exponent == 3 && difference < 9.3e-10 * 1.7321 / 8.0,
            "a scene 1e6 sizes from the origin moves by its rounding alone");
-    for (int64_t i = 0; i < 3 * soup.count; i++) {
-        struct vec3 *x = &soup.items[i / 3].corner[i % 3];
-        *x = (struct vec3){rint(1024.0 * x->x), rint(1024.0 * x->y), rint(1024.0 * x->z)};
-    }
-    struct scene *grid = prepared(&soup, 1.0, 0.0), *far_grid = prepared(&soup, 1.0, 5e9);
+    struct scene *grid = prepared(make_grid(), 1.0, 0.0);
+    struct scene *far_grid = prepared(make_grid(), 1.0, 5e9);
     tap_ok(same_geometry(grid, far_grid), "corners on a grid keep their bits there");
     scene_destroy(plain);
     scene_destroy(far);
     scene_destroy(grid);
     scene_destroy(far_grid);
-    soup_free(&soup);
 }
 
 static void test_box(void)
 {
-    struct soup soup = {0};
-    make_soup(&soup);
+    struct soup soup = make_soup();
     bool fits = true, back = true;
     for (double scale = 0.37; scale < 3.0; scale += 0.01) {
-        struct scene *scene = prepared(&soup, scale, 100.0);
+        struct scene *scene = prepared(make_soup(), scale, 100.0);
         struct vec3 size = vec3_sub(scene->high, scene->low);
         double extent = fmax(size.x, fmax(size.y, size.z));
         /* Rounding moves a bound by a unit in the last place of 100. */
@@ -109,7 +111,7 @@ static void test_box(void)
                fabs(scene->low.z + scene->high.z) < 1e-13;
         struct vec3 x = scene_to_input(scene, scene->triangles[7].corner[1]);
         struct vec3 y = vec3_scale(soup.items[7].corner[1], scale);
-        struct vec3 moved = vec3_add(y, (struct vec3){100.0, -100.0, 100.0});
+        struct vec3 moved = vec3_add(y, point(100, -100, 100));
         struct vec3 again = scene_from_input(scene, x);
         back = back && vec3_length(vec3_sub(x, moved)) < 1e-13 &&
                vec3_length(vec3_sub(again, scene->triangles[7].corner[1])) < 1e-13;
@@ -123,9 +125,7 @@ static void test_box(void)
 /* The normals of the file, each turned to the front of the root. */
 static void test_normals(void)
 {
-    struct soup soup = {0};
-    make_soup(&soup);
-    struct scene *scene = prepared(&soup, 1.0, 0.0);
+    struct scene *scene = prepared(make_soup(), 1.0, 0.0);
     scene->two_sided = scene->two_sided_lamps = true;
     struct vec3 none = scene_root_normal(scene, COUNT - 1, 2);
     tap_ok(vec3_length(none) == 0.0, "no normals, no normal");
@@ -148,14 +148,11 @@ static void test_normals(void)
     }
     tap_ok(right, "normals are turned to the front, those of twins to the other");
     scene_destroy(scene);
-    soup_free(&soup);
 }
 
 static void test_twins(void)
 {
-    struct soup soup = {0};
-    make_soup(&soup);
-    struct scene *scene = prepared(&soup, 1.0, 0.0);
+    struct scene *scene = prepared(make_soup(), 1.0, 0.0);
     double area = scene_area(scene), power = scene_emitted_power(scene);
     tap_ok(scene_root_count(scene) == COUNT, "a root for each triangle");
     scene->two_sided = scene->two_sided_lamps = true;
@@ -186,7 +183,6 @@ static void test_twins(void)
                fabs(scene_emitted_power(scene) / power - 2.0) < 1e-13,
            "twice the area and twice the power");
     scene_destroy(scene);
-    soup_free(&soup);
 }
 
 /* True if lamps have black backs, without a root, and other backs are fronts of
@@ -212,12 +208,11 @@ static bool lamps_are_single(const struct scene *scene)
 /* Every third triangle is a lamp, of one band alone. */
 static void test_lamps(void)
 {
-    struct soup soup = {0};
-    make_soup(&soup);
-    struct scene *scene = scene_of_soup(&soup, 2);
-    soup_free(&soup);
+    struct soup soup = make_soup();
+    paint(&soup, 0.0, 0.0);
+    paint_with(&soup, (struct material){.emission = {{0.0, 0.0, 3.0}}});
+    struct scene *scene = scene_of_soup(&soup);
     double area = 0.0;
-    scene->materials[1].emission.band[2] = 3.0;
     for (int32_t i = 0; i < COUNT; i += 3)
         scene->material_of[i] = 1;
     scene_prepare_or_exit(scene);
@@ -248,11 +243,11 @@ static void test_lamps(void)
 static void test_power(void)
 {
     struct soup soup = {0};
-    soup_add_quad(&soup, (struct vec3){0, 0, 0}, (struct vec3){6, 0, 0},
-                  (struct vec3){0, 3, 0}, 1);
-    struct scene *scene = scene_of_soup(&soup, 2);
+    soup_add_quad(&soup, point(0, 0, 0), point(6, 0, 0), point(0, 3, 0), 1);
+    paint_with(&soup, (struct material){.emission = {{1, 2, 4}}});
+    paint(&soup, 0.0, 0.0);
+    struct scene *scene = scene_of_soup(&soup);
     scene->material_of[1] = 1;
-    scene->materials[0] = (struct material){{{0, 0, 0}}, {{1, 2, 4}}};
     scene_prepare_or_exit(scene);
     tap_ok(scene->place.exponent == 3 && scene_area_unit(scene) == 64.0,
            "a size of 6 has the unit 8");
@@ -264,17 +259,16 @@ static void test_power(void)
                material_is_dark(&scene->materials[1]),
            "dark roots neither reflect nor emit");
     scene_destroy(scene);
-    soup_free(&soup);
 }
 
 static void test_clamping(void)
 {
-    struct soup soup = {0};
-    make_soup(&soup);
-    struct scene *scene = scene_of_soup(&soup, 4);
-    scene->materials[0].reflectance = (struct rgb){{1.0, 0.5, 7.0}};
-    scene->materials[1].reflectance = (struct rgb){{0.9995, 0.0, 0.5}};
-    scene->materials[2].reflectance = (struct rgb){{0.0, 0.0, 1.0}};
+    struct soup soup = make_soup();
+    paint_with(&soup, (struct material){.reflectance = {{1.0, 0.5, 7.0}}});
+    paint_with(&soup, (struct material){.reflectance = {{0.9995, 0.0, 0.5}}});
+    paint_with(&soup, (struct material){.reflectance = {{0.0, 0.0, 1.0}}});
+    paint(&soup, 0.0, 0.0);
+    struct scene *scene = scene_of_soup(&soup);
     struct scene_repairs repairs;
     struct error error = {0};
     bool done = scene_prepare(scene, &repairs, &error);
@@ -286,20 +280,18 @@ static void test_clamping(void)
     tap_ok(scene->materials[1].reflectance.band[0] == 0.9995,
            "a reflectance below 1 stays");
     scene_destroy(scene);
-    soup_free(&soup);
 }
 
 static void test_degenerate(void)
 {
-    struct soup soup = {0};
-    make_soup(&soup);
-    struct scene *plain = prepared(&soup, 1.0, 0.0);
+    struct soup soup = make_soup();
+    struct scene *plain = prepared(make_soup(), 1.0, 0.0);
     int32_t expected = 0;
     for (int32_t i = 0; i < COUNT; i += 9, expected++) {
         struct triangle *t = &soup.items[i];
         t->corner[2] = i % 2 ? t->corner[0] : vec3_middle(t->corner[0], t->corner[1]);
     }
-    struct scene *scene = scene_of_soup(&soup, 1);
+    struct scene *scene = scene_of_soup(&soup);
     struct scene_repairs repairs = {.degenerate = -1};
     struct error error = {0};
     bool done = scene_prepare(scene, &repairs, &error);
@@ -320,7 +312,6 @@ static void test_degenerate(void)
     tap_ok(kept, "the others keep their numbers");
     scene_destroy(scene);
     scene_destroy(plain);
-    soup_free(&soup);
 }
 
 /* A bent quad, that is there again as another material from its second corner on, and
@@ -339,7 +330,7 @@ static struct scene *doubled(struct scene_repairs *repairs)
     for (int32_t i = 0; i < 7; i++) {
         for (int k = 0; k < 3; k++) {
             scene->triangles[i].corner[k] = c[corner[i][k]];
-            scene->normals[3 * i + k] = (struct vec3){1.0 + corner[i][k], 0, 0};
+            scene->normals[3 * i + k] = point(1.0 + corner[i][k], 0, 0);
         }
         scene->groups.goes_on[i] = i % 2 == 1;
         scene->material_of[i] = i == 2 ? 1 : i == 3 ? 2 : 0;
@@ -410,17 +401,16 @@ static void test_errors(void)
     tap_ok(!is_refused(o, x, y), "one triangle is a scene");
     tap_ok(is_refused(p, p, p), "a single point");
     tap_ok(is_refused(o, x, x), "only degenerate faces");
-    tap_ok(is_refused(o, x, (struct vec3){0, HUGE_VAL, 0}) &&
-               is_refused(o, x, (struct vec3){0, -HUGE_VAL, 0}) &&
-               is_refused((struct vec3){HUGE_VAL, 0, 0}, x, y),
+    tap_ok(is_refused(o, x, point(0, HUGE_VAL, 0)) &&
+               is_refused(o, x, point(0, -HUGE_VAL, 0)) &&
+               is_refused(point(HUGE_VAL, 0, 0), x, y),
            "infinite coordinates");
-    tap_ok(is_refused(o, x, (struct vec3){0, 1e200, 0}) &&
-               is_refused(o, (struct vec3){1e-200, 0, 0}, (struct vec3){0, 1e-200, 0}),
+    tap_ok(is_refused(o, x, point(0, 1e200, 0)) &&
+               is_refused(o, point(1e-200, 0, 0), point(0, 1e-200, 0)),
            "extents that leave the range of the numbers");
     double nan = HUGE_VAL - HUGE_VAL;
-    tap_ok(is_refused((struct vec3){nan, 0, 0}, x, y) &&
-               is_refused(o, (struct vec3){1, nan, 0}, y) &&
-               is_refused(o, x, (struct vec3){0, 1, nan}),
+    tap_ok(is_refused(point(nan, 0, 0), x, y) && is_refused(o, point(1, nan, 0), y) &&
+               is_refused(o, x, point(0, 1, nan)),
            "coordinates that are not numbers");
 }
 

@@ -11,11 +11,6 @@
 
 enum { TRIANGLES = 10000, SEGMENTS = 30000 };
 
-static struct vec3 point(double x, double y, double z)
-{
-    return (struct vec3){x, y, z};
-}
-
 static bool same_bits(struct vec3 a, struct vec3 b)
 {
     return memcmp(&a, &b, sizeof a) == 0;

@@ -38,11 +38,10 @@ static void make_world(void)
 {
     struct soup soup = {0};
     struct random random = random_seed(1);
-    soup_add_box(&soup, (struct vec3){1, 2, 3}, (struct vec3){2, 4, 7}, 1, true);
-    struct scene *scene = scene_of_soup(&soup, 1);
-    scene->materials[0] = material_grey(0.5, 0.0);
+    soup_add_box(&soup, point(1, 2, 3), point(2, 4, 7), 1, true);
+    paint(&soup, 0.5, 0.0);
+    struct scene *scene = scene_of_soup(&soup);
     world = world_make(scene);
-    soup_free(&soup);
     forest = world.model.forest;
     for (int32_t root = 0; root < scene->input_count; root += 3)
         forest_split(forest, root);

@@ -54,17 +54,15 @@ static double factor_to_lamp(struct vec3 x, double from, double to)
  * hides some: the shadow has its edges where they are, although no leaf knows of them. */
 static void test_shadow(bool all)
 {
-    struct painted painted = {0};
-    soup_add_quad(&painted.soup, point(-1, -1, 0), point(2, 0, 0), point(0, 2, 0), 1);
-    paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(-0.1, -0.1, 1), point(0, 0.2, 0), point(0.2, 0, 0),
-                  1);
-    paint(&painted, 0.0, 100.0);
-    soup_add_quad(&painted.soup, point(-0.2, -0.2, 0.5), point(0.4, 0, 0),
-                  point(0, 0.4, 0), 1);
-    paint(&painted, 0.0, 0.0);
-    struct solution s = solve_scene(world_comm, scene_of_painted(&painted),
-                                    "--max-level 0 --final-gather 64");
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(-1, -1, 0), point(2, 0, 0), point(0, 2, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(-0.1, -0.1, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    paint(&soup, 0.0, 100.0);
+    soup_add_quad(&soup, point(-0.2, -0.2, 0.5), point(0.4, 0, 0), point(0, 0.4, 0), 1);
+    paint(&soup, 0.0, 0.0);
+    struct solution s =
+        solve_scene(world_comm, scene_of_soup(&soup), "--max-level 0 --final-gather 64");
     struct shading *shading = all ? NULL : shade_rest(&s);
     double lit = 0.0, dark = 0.0, half = 0.0;
     for (int i = 0; i <= 10; i++) {
@@ -90,12 +88,11 @@ static void test_shadow(bool all)
 /* Everything shines as it absorbs: B = 1 at every point, in corners and gaps too. */
 static void test_furnace(void)
 {
-    struct painted painted = {0};
-    soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, true);
-    soup_add_box(&painted.soup, point(0.3, 0.3, 0.01), point(0.7, 0.6, 0.5), 1, false);
-    paint(&painted, 0.5, 0.5);
-    struct solution s =
-        solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 1e-2");
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    soup_add_box(&soup, point(0.3, 0.3, 0.01), point(0.7, 0.6, 0.5), 1, false);
+    paint(&soup, 0.5, 0.5);
+    struct solution s = solve_scene(world_comm, scene_of_soup(&soup), "--epsilon 1e-2");
     struct renderer renderer =
         renderer_make(s.octree, NULL, &s.solver->beyond->answer.gather);
     double worst = 0.0;
@@ -119,20 +116,19 @@ static void test_furnace(void)
 static void test_column(void)
 {
     static const double FAR = 40.0, TURN = 0.17453292519943295; /* 10 degrees */
-    struct painted painted = {0};
+    struct soup soup = {0};
     struct vec3 rim[8];
     for (int i = 0; i < 8; i++) {
         double angle = TURN * (3.0 + 4.5 * i);
         rim[i] = point(cos(angle), sin(angle), 0);
     }
     for (int i = 0; i < 8; i++)
-        soup_add_quad(&painted.soup, rim[i], vec3_sub(rim[(i + 1) % 8], rim[i]),
-                      point(0, 0, 1), 1);
-    paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(FAR, -0.2, 0.3), point(0, 0, 0.4),
-                  point(0, 0.4, 0), 1);
-    paint(&painted, 0.0, 1e4);
-    struct scene *scene = scene_of_painted(&painted);
+        soup_add_quad(&soup, rim[i], vec3_sub(rim[(i + 1) % 8], rim[i]), point(0, 0, 1),
+                      1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(FAR, -0.2, 0.3), point(0, 0, 0.4), point(0, 0.4, 0), 1);
+    paint(&soup, 0.0, 1e4);
+    struct scene *scene = scene_of_soup(&soup);
     scene_add_normals(scene);
     for (int i = 0; i < 16; i++)
         for (int k = 0; k < 3; k++) {
@@ -166,13 +162,12 @@ static void test_column(void)
  * tangent planes are open to the lamp, but it is in the way itself. */
 static void test_bowl(void)
 {
-    struct painted painted = {0};
-    soup_add_quad(&painted.soup, point(0, 0, 0), point(0, 1, 0), point(0, 0, 1), 1);
-    paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(-0.6, 3, 0.4), point(0.2, 0, 0), point(0, 0, 0.2),
-                  1);
-    paint(&painted, 0.0, 1e3);
-    struct scene *scene = scene_of_painted(&painted);
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(0, 1, 0), point(0, 0, 1), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(-0.6, 3, 0.4), point(0.2, 0, 0), point(0, 0, 0.2), 1);
+    paint(&soup, 0.0, 1e3);
+    struct scene *scene = scene_of_soup(&soup);
     scene_add_normals(scene);
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < 3; k++) {
@@ -195,15 +190,14 @@ static void test_bowl(void)
  * above it keeps the light of a lamp off. */
 static void test_smoothed_box(void)
 {
-    struct painted painted = {0};
-    soup_add_box(&painted.soup, point(-0.5, -0.5, -0.5), point(0.5, 0.5, 0.5), 1, false);
-    paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(-1, -1, 0.7), point(2, 0, 0), point(0, 2, 0), 1);
-    paint(&painted, 0.0, 0.0);
-    soup_add_quad(&painted.soup, point(-0.2, -0.2, 2), point(0, 0.4, 0), point(0.4, 0, 0),
-                  1);
-    paint(&painted, 0.0, 100.0);
-    struct scene *scene = scene_of_painted(&painted);
+    struct soup soup = {0};
+    soup_add_box(&soup, point(-0.5, -0.5, -0.5), point(0.5, 0.5, 0.5), 1, false);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(-1, -1, 0.7), point(2, 0, 0), point(0, 2, 0), 1);
+    paint(&soup, 0.0, 0.0);
+    soup_add_quad(&soup, point(-0.2, -0.2, 2), point(0, 0.4, 0), point(0.4, 0, 0), 1);
+    paint(&soup, 0.0, 100.0);
+    struct scene *scene = scene_of_soup(&soup);
     scene_add_normals(scene);
     for (int i = 0; i < 12; i++)
         for (int k = 0; k < 3; k++)

@@ -19,9 +19,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "geom/alloc.h"
-#include "octree/octree.h"
-#include "tests/random.h"
+#include "rad/beyond/paths.h"
+#include "tests/scenes.h"
 #include "tests/tap.h"
 
 static const double CONTINUOUS = 1e-12;
@@ -37,46 +36,28 @@ struct stage {
 
 /* --- scenes --- */
 
-static void put_triangle(struct scene *scene, int32_t number, struct vec3 a,
-                         struct vec3 b, struct vec3 c)
+/* The quadrilateral abcd as the roots (a, b, c) and (a, c, d). */
+static void add_face(struct soup *soup, struct vec3 a, struct vec3 b, struct vec3 c,
+                     struct vec3 d)
 {
-    scene->triangles[number] = (struct triangle){{a, b, c}};
-}
-
-/* The quadrilateral abcd: root `number` is (a, b, c), `number` + 1 is (a, c, d). */
-static void put_square(struct scene *scene, int32_t number, struct vec3 a, struct vec3 b,
-                       struct vec3 c, struct vec3 d)
-{
-    put_triangle(scene, number, a, b, c);
-    put_triangle(scene, number + 1, a, c, d);
+    soup_add(soup, (struct triangle){{a, b, c}});
+    soup_add(soup, (struct triangle){{a, c, d}});
 }
 
 static struct stage stage_of(struct scene *scene)
 {
-    struct scene_repairs repairs = {0};
-    struct error error = {EXIT_DONE, ""};
-    if (!scene_prepare(scene, &repairs, &error)) {
-        printf("Bail out! %s\n", error.text);
-        exit(1);
-    }
-    struct octree *octree =
-        octree_create(scene->triangles, scene->planes, scene->input_count);
-    return (struct stage){scene, octree, forest_create(scene), NULL};
+    struct world world = world_make(scene);
+    return (struct stage){scene, world.octree, world.model.forest, NULL};
 }
 
-/* The square with its corner 3 lifted by `lift`. */
+/* The square with its corner 3 lifted by `lift`; a second material is there. */
 static struct scene *folded_square(double lift)
 {
-    struct scene *scene = scene_create(2, 2);
-    put_square(scene, 0, (struct vec3){0.0, 0.0, 0.0}, (struct vec3){1.0, 0.0, 0.0},
-               (struct vec3){1.0, 1.0, 0.0}, (struct vec3){0.0, 1.0, lift});
-    return scene;
-}
-
-static struct vec3 unit_or_zero(struct vec3 x)
-{
-    double length = vec3_length(x);
-    return length > 0.0 ? vec3_scale(x, 1.0 / length) : x;
+    struct soup soup = {0};
+    add_face(&soup, point(0, 0, 0), point(1, 0, 0), point(1, 1, 0), point(0, 1, lift));
+    paint(&soup, 0.0, 0.0);
+    paint(&soup, 0.0, 0.0);
+    return scene_of_soup(&soup);
 }
 
 /* The square folded by 45 degrees about its diagonal, with the same normal at all corners
@@ -86,11 +67,11 @@ static struct scene *curved_square(struct vec3 normal, struct vec3 other)
 {
     struct scene *scene = folded_square(0.0);
     double half = sqrt(0.125); /* cos 45 / 2, sin 45 / 2 */
-    scene->triangles[1].corner[2] = (struct vec3){0.5 - half, 0.5 + half, 0.5};
+    scene->triangles[1].corner[2] = point(0.5 - half, 0.5 + half, 0.5);
     scene_add_normals(scene);
     for (int i = 0; i < 6; i++)
-        scene->normals[i] = unit_or_zero(normal);
-    scene->normals[3 + 1] = unit_or_zero(other);
+        scene->normals[i] = vec3_unit(normal);
+    scene->normals[3 + 1] = vec3_length(other) > 0.0 ? vec3_unit(other) : other;
     return scene;
 }
 
@@ -171,14 +152,8 @@ static double difference(struct rgb a, struct rgb b)
     return largest;
 }
 
-/* The corners of a leaf as barycentric coordinates of its root. */
-static struct triangle weights_of(struct patch_id id)
-{
-    struct triangle t = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
-    for (int step = 0; step < id_level(id); step++)
-        t = triangle_child(&t, id_step(id, step));
-    return t;
-}
+/* A root in its own barycentric coordinates. */
+static const struct triangle WHOLE = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
 static struct rgb value_at(const struct stage *stage, int32_t root, struct vec3 w)
 {
@@ -202,8 +177,8 @@ static bool cross_diagonal(struct crossing *crossing, struct vec3 on_edge)
     if ((from_first ? on_edge.y : on_edge.z) != 0.0)
         return false;
     crossing->root[1] = 1 - crossing->root[0];
-    crossing->weight[1] = from_first ? (struct vec3){on_edge.x - tiny, on_edge.z, tiny}
-                                     : (struct vec3){on_edge.x - tiny, tiny, on_edge.y};
+    crossing->weight[1] = from_first ? point(on_edge.x - tiny, on_edge.z, tiny)
+                                     : point(on_edge.x - tiny, tiny, on_edge.y);
     return true;
 }
 
@@ -212,7 +187,7 @@ static bool make_crossing(const struct stage *stage, int32_t leaf, int k, double
                           struct crossing *crossing)
 {
     struct patch_id id = stage->forest->patches[leaf].id;
-    struct triangle w = weights_of(id);
+    struct triangle w = pathtracer_part(id);
     struct vec3 a = w.corner[k], b = w.corner[(k + 1) % 3], c = w.corner[(k + 2) % 3];
     struct vec3 on_edge = vec3_add(vec3_scale(a, 1.0 - t), vec3_scale(b, t));
     struct vec3 step = vec3_scale(vec3_sub(c, a), ldexp(1.0, id_level(id) - 50));
@@ -313,16 +288,6 @@ static void test_jumps_are_seen(void)
 
 /* --- fields that are known --- */
 
-static struct vec3 random_weights(struct random *random)
-{
-    double a = random_unit(random), b = random_unit(random);
-    if (a + b > 1.0) {
-        a = 1.0 - a;
-        b = 1.0 - b;
-    }
-    return (struct vec3){1.0 - a - b, a, b};
-}
-
 /* Some ten roundings of 1.1e-16, in the mean and the interpolation: 1e-15 relative. */
 static void test_constant(void)
 {
@@ -334,7 +299,7 @@ static void test_constant(void)
     set_constant(stage.forest, 0.7);
     shade(&stage, false);
     for (int i = 0; i < 20000; i++) {
-        struct vec3 w = random_weights(&random);
+        struct vec3 w = random_point_on(&random, &WHOLE);
         struct rgb value = value_at(&stage, i % 2, w);
         /* weights that add up to 1 only within rounding are not the shading's fault */
         for (int c = 0; c < BANDS; c++)
@@ -413,11 +378,9 @@ static double edge_error(struct stage *stage, bool flat, double *mean, double *l
     *least = HUGE_VAL;
     shade(stage, flat);
     for (int i = 0; i < 100000; i++) {
-        struct vec3 w = random_weights(&random);
+        struct vec3 w = random_point_on(&random, &WHOLE);
         struct triangle t = scene_root_triangle(stage->scene, i % 2);
-        struct vec3 x =
-            vec3_add(vec3_add(vec3_scale(t.corner[0], w.x), vec3_scale(t.corner[1], w.y)),
-                     vec3_scale(t.corner[2], w.z));
+        struct vec3 x = triangle_point(&t, w);
         double shown = value_at(stage, i % 2, w).band[0],
                off = shown - edge_field(stage, x);
         square += off * off / 100000.0;
@@ -477,7 +440,7 @@ static bool is_flat(const struct stage *stage)
         const struct patch *patch = &forest->patches[p];
         if (!patch_is_leaf(patch))
             continue;
-        struct triangle w = weights_of(patch->id), t = forest_triangle(forest, p);
+        struct triangle w = pathtracer_part(patch->id), t = forest_triangle(forest, p);
         struct rgb value =
             value_at(stage, (int32_t)patch->id.root, triangle_centroid(&w));
         flat = flat && difference(value, forest->radiosity[p]) == 0.0;
@@ -608,8 +571,8 @@ static double jump_of(struct stage *stage)
     stage->forest->radiosity[1] = (struct rgb){{0.0, 0.0, 0.0}};
     split_regularly(stage->forest, 2);
     shade(stage, false);
-    return difference(value_at(stage, 0, (struct vec3){0.5, 0.0, 0.5}),
-                      value_at(stage, 1, (struct vec3){0.5, 0.5, 0.0}));
+    return difference(value_at(stage, 0, point(0.5, 0, 0.5)),
+                      value_at(stage, 1, point(0.5, 0.5, 0)));
 }
 
 static void check_jump(const char *name, struct scene *scene, double expected)
@@ -635,10 +598,8 @@ static void test_materials_and_sides(void)
     scene->material_of[1] = 1;
     check_jump("two materials", scene, 1.0);
     scene = folded_square(0.0);
-    struct triangle *t =
-        &scene->triangles[1]; /* corners 0, 3, 2: root 1 faces away, and the */
-    put_triangle(scene, 1, t->corner[0], t->corner[2],
-                 t->corner[1]); /* edge is (w0, 0, w2) */
+    /* corners 0, 3, 2: root 1 faces away, and the edge is (w0, 0, w2) */
+    scene->triangles[1] = reversed(scene->triangles[1]);
     struct stage stage = stage_of(scene);
     jump_of(&stage);
     struct vec3 middle = {0.5, 0.0, 0.5};
@@ -654,13 +615,12 @@ static void test_curved_edges(void)
 {
     check_jump("a fold of 45 degrees, normals agree", curved_square(UP, UP), 0.0);
     check_jump("normals agree within 2 degrees",
-               curved_square(UP, (struct vec3){tan(0.0349), 0.0, 1.0}), 0.0);
+               curved_square(UP, point(tan(0.0349), 0.0, 1.0)), 0.0);
     check_jump("normals are 3 degrees apart at one end",
-               curved_square(UP, (struct vec3){tan(0.0524), 0.0, 1.0}), 1.0);
-    check_jump("no normal at one end",
-               curved_square(UP, (struct vec3){0.0, 0.0, 0.0}), 1.0);
+               curved_square(UP, point(tan(0.0524), 0.0, 1.0)), 1.0);
+    check_jump("no normal at one end", curved_square(UP, point(0, 0, 0)), 1.0);
     check_jump("normals on the back agree like those on the front",
-               curved_square(UP, (struct vec3){0.0, 0.0, -1.0}), 0.0);
+               curved_square(UP, point(0, 0, -1)), 0.0);
     struct scene *scene = curved_square(UP, UP);
     scene->material_of[1] = 1;
     check_jump("normals agree, materials do not", scene, 1.0);
@@ -672,7 +632,7 @@ static void test_normals_on_a_plane(void)
     struct stage plain = square_stage(), with = square_stage();
     scene_add_normals(with.scene);
     for (int i = 0; i < 6; i++)
-        with.scene->normals[i] = i == 4 ? (struct vec3){0.6, 0.0, 0.8} : UP;
+        with.scene->normals[i] = i == 4 ? point(0.6, 0, 0.8) : UP;
     struct random random = random_seed(5), again = random;
     split_randomly(plain.forest, &random, 0.5);
     split_randomly(with.forest, &again, 0.5);
@@ -696,9 +656,8 @@ static void test_two_sided(void)
         stage.forest->radiosity[root] = (struct rgb){{root, root / 2, root % 2}};
     split_regularly(stage.forest, 3);
     shade(&stage, false);
-    struct rgb front = value_at(&stage, 0, (struct vec3){0.5, 0.0, 0.5});
-    struct rgb back =
-        value_at(&stage, 2, (struct vec3){0.5, 0.5, 0.0}); /* corners 0, 2, 1 */
+    struct rgb front = value_at(&stage, 0, point(0.5, 0, 0.5));
+    struct rgb back = value_at(&stage, 2, point(0.5, 0.5, 0)); /* corners 0, 2, 1 */
     tap_ok(difference(front, (struct rgb){{0.5, 0.0, 0.5}}) < 1e-14 &&
                difference(back, (struct rgb){{2.5, 1.0, 0.5}}) < 1e-14,
            "two-sided: sides do not blend, neighbours do");
@@ -713,24 +672,18 @@ static const double ROOMY = 1.5, NARROW = 0.01; /* heights above the floor */
  * place of the box's top that shows the floor its front. */
 static struct scene *floor_scene(bool box, double height)
 {
-    const double low[2] = {2.0, 2.0}, high[2] = {4.0, 6.0};
-    struct scene *scene = scene_create(box ? 12 : 4, 1);
-    struct vec3 base[4], top[4];
-    for (int i = 0; i < 4; i++) { /* counter-clockwise seen from above */
-        double x = i == 0 || i == 3 ? low[0] : high[0], y = i < 2 ? low[1] : high[1];
-        base[i] = (struct vec3){x, y, 0.0};
-        top[i] = (struct vec3){x, y, height};
-    }
-    put_square(scene, 0, (struct vec3){0.0, 0.0, 0.0}, (struct vec3){8.0, 0.0, 0.0},
-               (struct vec3){8.0, 8.0, 0.0}, (struct vec3){0.0, 8.0, 0.0});
+    struct soup soup = {0};
+    struct vec3 base[4] = {{2, 2, 0}, {4, 2, 0}, {4, 6, 0}, {2, 6, 0}}, top[4];
+    for (int i = 0; i < 4; i++) /* counter-clockwise seen from above */
+        top[i] = point(base[i].x, base[i].y, height);
+    add_face(&soup, point(0, 0, 0), point(8, 0, 0), point(8, 8, 0), point(0, 8, 0));
     if (box)
-        put_square(scene, 2, top[0], top[1], top[2], top[3]);
+        add_face(&soup, top[0], top[1], top[2], top[3]);
     else
-        put_square(scene, 2, top[3], top[2], top[1], top[0]);
+        add_face(&soup, top[3], top[2], top[1], top[0]);
     for (int i = 0; i < 4 && box; i++)
-        put_square(scene, 4 + 2 * i, base[i], base[(i + 1) % 4], top[(i + 1) % 4],
-                   top[i]);
-    return scene;
+        add_face(&soup, base[i], base[(i + 1) % 4], top[(i + 1) % 4], top[i]);
+    return scene_of_soup(&soup);
 }
 
 static bool is_under(struct vec3 x)
@@ -758,9 +711,8 @@ static void shade_floor(struct stage *stage, double *low, double *high, double *
         for (int j = 0; j <= 16;
              j++) { /* (0, 0), (8, 0), (8, 8): x = 8 (b + c), y = 8 c */
             double b = (i - j) / 16.0, c = j / 16.0;
-            struct rgb value =
-                i >= j ? value_at(stage, 0, (struct vec3){1.0 - b - c, b, c})
-                       : value_at(stage, 1, (struct vec3){1.0 - c, i / 16.0, -b});
+            struct rgb value = i >= j ? value_at(stage, 0, point(1.0 - b - c, b, c))
+                                      : value_at(stage, 1, point(1.0 - c, i / 16.0, -b));
             if (i > 4 && i < 8 && j > 4 && j < 12) {
                 *inside = fmax(*inside, value.band[0]);
                 continue;
@@ -771,37 +723,20 @@ static void shade_floor(struct stage *stage, double *low, double *high, double *
     }
 }
 
-/* A covered leaf weighs 1e-12 of an open one; up to five lie around a vertex. */
-static void test_covered(void)
+/* A covered leaf weighs 1e-12 of an open one; up to five lie around a vertex. Where the
+ * floor counts as open the shadow blends into the light around it. */
+static void test_covered(const char *name, bool box, double height, bool two_sided,
+                         double emission, bool covered)
 {
     double low, high, inside;
-    struct stage stage = stage_of(floor_scene(true, ROOMY));
+    struct scene *scene = floor_scene(box, height);
+    scene->two_sided = two_sided;
+    scene->materials[0] = material_grey(0.0, emission);
+    struct stage stage = stage_of(scene);
     shade_floor(&stage, &low, &high, &inside);
-    tap_ok(low > 1.0 - 1e-10 && high <= 1.0 + 1e-15,
-           "under a box: no darkness outside (1 - %.1e)", 1.0 - low);
-    tap_ok(inside == 0.25, "and none of the light inside");
-    dismantle(&stage);
-    stage = stage_of(floor_scene(false, ROOMY));
-    shade_floor(&stage, &low, &high, &inside);
-    tap_ok(low < 0.9, "under a lamp's front the floor is open: shadows blend (%.2f)",
-           low);
-    dismantle(&stage);
-    stage = stage_of(floor_scene(false, NARROW));
-    shade_floor(&stage, &low, &high, &inside);
-    tap_ok(low > 1.0 - 1e-10, "but under a plate that is hung close to it");
-    dismantle(&stage);
-    struct scene *scene = floor_scene(true, ROOMY);
-    scene->two_sided = true;
-    stage = stage_of(scene);
-    shade_floor(&stage, &low, &high, &inside);
-    tap_ok(low < 0.9, "two-sided, nothing is covered (%.2f)", low);
-    dismantle(&stage);
-    scene = floor_scene(true, ROOMY);
-    scene->two_sided = true;
-    scene->materials[0].emission = (struct rgb){{1.0, 1.0, 1.0}};
-    stage = stage_of(scene);
-    shade_floor(&stage, &low, &high, &inside);
-    tap_ok(low > 1.0 - 1e-10, "but by a box of lamps, whose backs are black");
+    tap_ok(covered ? low > 1.0 - 1e-10 : low < 0.9, "%s (1 - %.1e)", name, 1.0 - low);
+    if (covered && !two_sided)
+        tap_ok(high <= 1.0 + 1e-15 && inside == 0.25, "and none of the light inside");
     dismantle(&stage);
 }
 
@@ -835,7 +770,7 @@ static void test_partly_covered(void)
     shade(&stage, false);
     for (int32_t p = 0; p < stage.forest->count; p++) {
         struct patch_id id = stage.forest->patches[p].id;
-        struct triangle w = weights_of(id);
+        struct triangle w = pathtracer_part(id);
         if (id.root >= 2 || !patch_is_leaf(&stage.forest->patches[p]))
             continue;
         least = fmin(least, open_share(&stage, p));
@@ -852,17 +787,16 @@ static void test_partly_covered(void)
 /* A triangle without area keeps its number, has no vertices and no neighbours. */
 static void test_dropped_triangle(void)
 {
-    struct scene *scene = scene_create(3, 1);
-    struct vec3 a = {0.0, 0.0, 0.0}, b = {1.0, 0.0, 0.0}, c = {1.0, 1.0, 0.0},
-                d = {0.0, 1.0, 0.0};
-    put_triangle(scene, 0, a, b, c);
-    put_triangle(scene, 1, a, c, c);
-    put_triangle(scene, 2, a, c, d);
-    struct stage stage = stage_of(scene);
+    struct soup soup = {0};
+    struct vec3 a = {0, 0, 0}, b = {1, 0, 0}, c = {1, 1, 0}, d = {0, 1, 0};
+    soup_add(&soup, (struct triangle){{a, b, c}});
+    soup_add(&soup, (struct triangle){{a, c, c}});
+    soup_add(&soup, (struct triangle){{a, c, d}});
+    struct stage stage = stage_of(scene_of_soup(&soup));
     set_constant(stage.forest, 1.0);
     shade(&stage, false);
     tap_ok(stage.shading->vertex_count == 4 &&
-               difference(value_at(&stage, 2, (struct vec3){0.25, 0.25, 0.5}),
+               difference(value_at(&stage, 2, point(0.25, 0.25, 0.5)),
                           (struct rgb){{1.0, 2.0, 0.0}}) < 1e-15,
            "a dropped triangle has no vertices");
     dismantle(&stage);
@@ -886,7 +820,14 @@ int main(void)
     test_curved_edges();
     test_normals_on_a_plane();
     test_two_sided();
-    test_covered();
+    test_covered("under a box: no darkness outside", true, ROOMY, false, 0.0, true);
+    test_covered("under a lamp's front the floor is open", false, ROOMY, false, 0.0,
+                 false);
+    test_covered("but not under a plate that is hung close to it", false, NARROW, false,
+                 0.0, true);
+    test_covered("two-sided, nothing is covered", true, ROOMY, true, 0.0, false);
+    test_covered("but by a box of lamps, whose backs are black", true, ROOMY, true, 1.0,
+                 true);
     test_partly_covered();
     test_dropped_triangle();
     return tap_done();

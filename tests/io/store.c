@@ -320,7 +320,7 @@ static void test_clusters(void)
 {
     static uint8_t bytes[ROOM];
     struct scene *box = store_box();
-    struct octree *over = octree_create(box->triangles, box->planes, box->input_count);
+    struct octree *over = octree_of(box);
     struct vote vote;
     struct solver *solver = run_with_clusters(box, over, &vote);
     struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, box,
@@ -349,7 +349,7 @@ int main(int argc, char **argv)
     static uint8_t bytes[ROOM];
     comm_start(&comm, &argc, &argv);
     scene = store_scene();
-    octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    octree = octree_of(scene);
     test_round_trip();
     size_t size = load(PATH, bytes, ROOM);
     test_refusals(bytes, size);

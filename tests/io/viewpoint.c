@@ -70,7 +70,7 @@ static struct shot shoot(struct scene *scene, int width, int height)
 {
     scene_prepare_or_exit(scene);
     struct shot shot = {.scene = scene};
-    shot.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    shot.octree = octree_of(scene);
     shot.camera = viewpoint_choose(scene, shot.octree, NULL, width, height);
     shot.sight = look(scene, shot.octree, &shot.camera);
     return shot;
@@ -85,12 +85,11 @@ static void shot_free(struct shot *shot)
 /* `lamp`: the triangle from which on material 1 shines, or -1. */
 static struct shot shoot_soup(struct soup *soup, int64_t lamp, int width, int height)
 {
-    struct scene *scene = scene_of_soup(soup, 2);
-    scene->materials[0] = material_grey(0.5, 0.0);
-    scene->materials[1] = material_grey(0.5, 1.0);
+    paint(soup, 0.5, 0.0);
+    paint(soup, 0.5, 1.0);
+    struct scene *scene = scene_of_soup(soup);
     for (int32_t i = 0; i < scene->input_count; i++)
         scene->material_of[i] = lamp >= 0 && i >= lamp;
-    soup_free(soup);
     return shoot(scene, width, height);
 }
 
@@ -122,14 +121,13 @@ static const struct vec3 ZERO = {0.0, 0.0, 0.0};
 static void test_cube(void)
 {
     struct soup soup = {0};
-    soup_add_box(&soup, ZERO, (struct vec3){1.0, 1.0, 1.0}, 2, true);
+    soup_add_box(&soup, ZERO, point(1, 1, 1), 2, true);
     check_room("a cube that glows", shoot_soup(&soup, 0, 512, 512), 0.4, false);
-    soup_add_box(&soup, ZERO, (struct vec3){1.0, 1.0, 1.0}, 2, true);
+    soup_add_box(&soup, ZERO, point(1, 1, 1), 2, true);
     check_room("the same, in a tall picture", shoot_soup(&soup, 0, 200, 700), 0.3, false);
-    soup_add_box(&soup, ZERO, (struct vec3){1.0, 1.0, 1.0}, 2, true);
+    soup_add_box(&soup, ZERO, point(1, 1, 1), 2, true);
     check_room("in a wide one", shoot_soup(&soup, 0, 1600, 400), 0.3, false);
-    soup_add_box(&soup, (struct vec3){1e6, 1e6, 1e6},
-                 (struct vec3){1e6 + 5, 1e6 + 4, 1e6 + 3}, 2, true);
+    soup_add_box(&soup, point(1e6, 1e6, 1e6), point(1e6 + 5, 1e6 + 4, 1e6 + 3), 2, true);
     check_room("a room far from the origin", shoot_soup(&soup, 0, 99, 99), 0.3, true);
 }
 
@@ -137,7 +135,7 @@ static void test_cube(void)
 static void test_corridor(void)
 {
     struct soup soup = {0};
-    soup_add_box(&soup, ZERO, (struct vec3){10.0, 1.0, 1.0}, 1, true);
+    soup_add_box(&soup, ZERO, point(10, 1, 1), 1, true);
     struct shot shot = shoot_soup(&soup, 0, 512, 512);
     struct vec3 to = vec3_sub(shot.camera.at, shot.camera.eye);
     tap_ok(fabs(to.x) > 4.0 * fabs(to.z) &&
@@ -149,18 +147,15 @@ static void test_corridor(void)
 static struct soup furnished(bool z_up, int64_t *lamp)
 {
     struct soup soup = {0};
-    soup_add_box(&soup, ZERO, (struct vec3){4.0, 5.0, 2.5}, 1, true);
-    soup_add_box(&soup, (struct vec3){0.01, 0.01, 0.01}, (struct vec3){1.2, 1.5, 2.49}, 1,
-                 false);
-    soup_add_box(&soup, (struct vec3){2.0, 2.0, 0.7}, (struct vec3){3.0, 3.5, 0.75}, 1,
-                 false);
+    soup_add_box(&soup, ZERO, point(4, 5, 2.5), 1, true);
+    soup_add_box(&soup, point(0.01, 0.01, 0.01), point(1.2, 1.5, 2.49), 1, false);
+    soup_add_box(&soup, point(2, 2, 0.7), point(3, 3.5, 0.75), 1, false);
     *lamp = soup.count;
-    soup_add_quad(&soup, (struct vec3){1.5, 2.0, 2.45}, (struct vec3){0.0, 1.0, 0.0},
-                  (struct vec3){1.0, 0.0, 0.0}, 1);
+    soup_add_quad(&soup, point(1.5, 2, 2.45), point(0, 1, 0), point(1, 0, 0), 1);
     for (int64_t i = 0; i < soup.count && !z_up; i++)
         for (int k = 0; k < 3; k++) { /* (x, y, z) to (x, z, -y) */
             struct vec3 *x = &soup.items[i].corner[k];
-            *x = (struct vec3){x->x, x->z, -x->y};
+            *x = point(x->x, x->z, -x->y);
         }
     return soup;
 }
@@ -200,9 +195,8 @@ static void test_two_sided(void)
 {
     int64_t lamp;
     struct soup soup = furnished(true, &lamp);
-    struct scene *scene = scene_of_soup(&soup, 1);
-    soup_free(&soup);
-    scene->materials[0] = material_grey(0.5, 1.0);
+    paint(&soup, 0.5, 1.0);
+    struct scene *scene = scene_of_soup(&soup);
     scene->two_sided = scene->two_sided_lamps = true;
     check_room("two-sided faces", shoot(scene, 512, 512), 0.2, true);
 }
@@ -213,14 +207,12 @@ static void test_two_sided_lamps(void)
 {
     for (int both = 0; both < 2; both++) {
         struct soup soup = {0};
-        soup_add_box(&soup, ZERO, (struct vec3){2.0, 2.0, 3.0}, 1, true);
-        soup_add_quad(&soup, (struct vec3){0.5, 0.5, 2.95}, (struct vec3){0.0, 1.0, 0.0},
-                      (struct vec3){1.0, 0.0, 0.0}, 1);
-        struct scene *scene = scene_of_soup(&soup, 2);
-        soup_free(&soup);
+        soup_add_box(&soup, ZERO, point(2, 2, 3), 1, true);
+        soup_add_quad(&soup, point(0.5, 0.5, 2.95), point(0, 1, 0), point(1, 0, 0), 1);
+        paint(&soup, 0.5, 0.0);
+        paint(&soup, 0.5, 1.0);
+        struct scene *scene = scene_of_soup(&soup);
         scene->material_of[12] = scene->material_of[13] = 1;
-        scene->materials[0] = material_grey(0.5, 0.0);
-        scene->materials[1] = material_grey(0.5, 1.0);
         scene->two_sided = true;
         scene->two_sided_lamps = both;
         check_room(both ? "a lamp that shines both ways" : "a lamp in a two-sided room",
@@ -234,17 +226,15 @@ static void test_tower(void)
 {
     for (int lamps = 0; lamps < 2; lamps++) {
         struct soup soup = {0};
-        soup_add_box(&soup, ZERO, (struct vec3){4.0, 20.0, 3.0}, 1, false);
+        soup_add_box(&soup, ZERO, point(4, 20, 3), 1, false);
         for (int storey = 1; storey < 20; storey++)
-            soup_add_quad(&soup, (struct vec3){0.5, 1.0 * storey, 0.5},
-                          (struct vec3){0.0, 0.0, 2.5}, (struct vec3){3.5, 0.0, 0.0}, 1);
+            soup_add_quad(&soup, point(0.5, 1.0 * storey, 0.5), point(0, 0, 2.5),
+                          point(3.5, 0, 0), 1);
         int32_t first = (int32_t)soup.count;
-        soup_add_quad(&soup, (struct vec3){1.0, 9.9, 1.0}, (struct vec3){1.0, 0.0, 0.0},
-                      (struct vec3){0.0, 0.0, 1.0}, 1);
-        struct scene *scene = scene_of_soup(&soup, 2);
-        soup_free(&soup);
-        scene->materials[0] = material_grey(0.5, 0.0);
-        scene->materials[1] = material_grey(0.5, 1.0);
+        soup_add_quad(&soup, point(1, 9.9, 1), point(1, 0, 0), point(0, 0, 1), 1);
+        paint(&soup, 0.5, 0.0);
+        paint(&soup, 0.5, 1.0);
+        struct scene *scene = scene_of_soup(&soup);
         scene->material_of[first] = scene->material_of[first + 1] = 1;
         scene->two_sided = true;
         scene->two_sided_lamps = lamps > 0;
@@ -257,12 +247,10 @@ static void test_tower(void)
 static void test_dark_room(void)
 {
     struct soup soup = {0};
-    soup_add_box(&soup, ZERO, (struct vec3){8.0, 3.0, 6.0}, 1, true);
+    soup_add_box(&soup, ZERO, point(8, 3, 6), 1, true);
     int32_t lit = (int32_t)soup.count;
-    soup_add_box(&soup, (struct vec3){8.1, 0.0, 0.0}, (struct vec3){11.0, 3.0, 6.0}, 1,
-                 true);
-    struct world world = world_make(scene_of_soup(&soup, 1));
-    soup_free(&soup);
+    soup_add_box(&soup, point(8.1, 0, 0), point(11, 3, 6), 1, true);
+    struct world world = world_make(scene_of_soup(&soup));
     const struct octree *octree = world.octree;
     struct camera any = viewpoint_choose(world.scene, octree, NULL, 512, 512);
     for (int32_t i = lit; i < world.scene->input_count; i++)
@@ -292,16 +280,13 @@ static void test_objects(void)
     struct soup soup = {0};
     soup_add_sphere(&soup, 3.0, 3);
     check_open("a sphere", shoot_soup(&soup, 0, 512, 512), 0.2, false);
-    soup_add_box(&soup, ZERO, (struct vec3){2.0, 3.0, 1.0}, 1, false);
+    soup_add_box(&soup, ZERO, point(2, 3, 1), 1, false);
     check_open("a box", shoot_soup(&soup, 0, 300, 200), 0.1, false);
-    soup_add_quad(&soup, ZERO, (struct vec3){0.0, 0.0, 1.0}, (struct vec3){1.0, 0.0, 0.0},
-                  1);
+    soup_add_quad(&soup, ZERO, point(0, 0, 1), point(1, 0, 0), 1);
     check_open("a floor", shoot_soup(&soup, 0, 512, 512), 0.05, false);
-    soup_add_quad(&soup, ZERO, (struct vec3){1.0, 0.0, 0.0}, (struct vec3){0.0, 0.0, 1.0},
-                  1);
+    soup_add_quad(&soup, ZERO, point(1, 0, 0), point(0, 0, 1), 1);
     check_open("a ceiling", shoot_soup(&soup, -1, 512, 512), 0.05, false);
-    soup_add_quad(&soup, ZERO, (struct vec3){0.0, 1.0, 0.0}, (struct vec3){0.0, 0.0, 1.0},
-                  1);
+    soup_add_quad(&soup, ZERO, point(0, 1, 0), point(0, 0, 1), 1);
     check_open("a wall", shoot_soup(&soup, 0, 512, 512), 0.1, false);
 }
 
@@ -309,11 +294,9 @@ static void test_objects(void)
 static void test_lamp_from_below(void)
 {
     struct soup soup = {0};
-    soup_add_quad(&soup, ZERO, (struct vec3){1.0, 0.0, 0.0}, (struct vec3){0.0, 0.0, 1.0},
-                  1);
-    struct scene *scene = scene_of_soup(&soup, 1);
-    soup_free(&soup);
-    scene->materials[0] = material_grey(0.5, 1.0);
+    soup_add_quad(&soup, ZERO, point(1, 0, 0), point(0, 0, 1), 1);
+    paint(&soup, 0.5, 1.0);
+    struct scene *scene = scene_of_soup(&soup);
     scene->two_sided = true;
     check_open("a lamp with a black back", shoot(scene, 512, 512), 0.05, false);
 }
@@ -322,10 +305,8 @@ static void test_lamp_from_below(void)
 static void test_lamp_above(void)
 {
     struct soup soup = {0};
-    soup_add_quad(&soup, ZERO, (struct vec3){9.0, 0.0, 0.0}, (struct vec3){0.0, 9.0, 0.0},
-                  1);
-    soup_add_quad(&soup, (struct vec3){4.0, 4.0, 9.0}, (struct vec3){0.0, 0.1, 0.0},
-                  (struct vec3){0.1, 0.0, 0.0}, 1);
+    soup_add_quad(&soup, ZERO, point(9, 0, 0), point(0, 9, 0), 1);
+    soup_add_quad(&soup, point(4, 4, 9), point(0, 0.1, 0), point(0.1, 0, 0), 1);
     struct shot shot = shoot_soup(&soup, 2, 512, 512);
     tap_ok(shot.camera.up.z == 1.0 && shot.camera.fronts_only &&
                shot.sight.fronts > 0.1 && shot.camera.eye.z > 0.0,

@@ -12,13 +12,12 @@
 /* Two-sided; frees the triangles. Every third is black, the others are lamps. */
 static struct world world_of(struct soup *soup, enum oracle oracle)
 {
-    struct scene *scene = scene_of_soup(soup, 2);
-    for (int64_t i = 0; i < soup->count; i += 3)
+    paint(soup, 0.5, 1.0);
+    paint(soup, 0.0, 0.0);
+    struct scene *scene = scene_of_soup(soup);
+    for (int32_t i = 0; i < scene->input_count; i += 3)
         scene->material_of[i] = 1;
-    scene->materials[0] = material_grey(0.5, 1.0);
-    scene->materials[1] = material_grey(0.0, 0.0);
     scene->two_sided = scene->two_sided_lamps = true;
-    soup_free(soup);
     struct world world = world_make(scene);
     struct criterion criterion = world.model.criterion;
     criterion.oracle = oracle;
@@ -38,8 +37,7 @@ static struct world furnished(enum oracle oracle)
     soup_add_box(&soup, point(-0.4, -0.3, -0.5), point(-0.1, 0.2, -0.1), 1, false);
     soup_add(&soup, (struct triangle){{x, x, x}});
     soup_add_box(&soup, point(0.1, -0.4, -0.5), point(0.2, 0.4, 0.1), 1, false);
-    for (int k = 0; k < 3; k++)
-        soup_add(&soup, random_triangle(&random, 0.4, 0.1));
+    soup_add_random(&soup, &random, 3, 0.4, 0.1);
     return world_of(&soup, oracle);
 }
 
@@ -90,9 +88,8 @@ static void test_few(const struct comm *comm)
         struct soup soup = {0};
         for (int k = 0; k < n; k++)
             soup_add(&soup, tile(1.2 * k, k > 0, 1.0, k == 0));
-        struct scene *scene = scene_of_soup(&soup, 1);
-        soup_free(&soup);
-        scene->materials[0] = material_grey(0.5, 1.0);
+        paint(&soup, 0.5, 1.0);
+        struct scene *scene = scene_of_soup(&soup);
         int64_t pairs = test_pairs(comm, world_make(scene), "hardly any roots");
         report(comm, pairs == n * (n - 1) / 2, "and no pair too many");
     }

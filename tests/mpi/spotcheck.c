@@ -14,10 +14,10 @@ static const double GOAL = 0.02;
 
 static struct solution furnace(const struct comm *comm)
 {
-    struct painted painted = {0};
-    soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, true);
-    paint(&painted, 0.5, 1.0);
-    return solve_scene(comm, scene_of_painted(&painted), "--max-level 2 --epsilon 1e-3");
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    paint(&soup, 0.5, 1.0);
+    return solve_scene(comm, scene_of_soup(&soup), "--max-level 2 --epsilon 1e-3");
 }
 
 /* Scales the reflected light of the leaves of some roots. */

@@ -17,7 +17,7 @@ static void make_soup(struct soup *soup)
 
 static void make_room(struct soup *soup)
 {
-    soup_add_box(soup, (struct vec3){0, 0, 0}, (struct vec3){4, 3, 2.5}, 6, true);
+    soup_add_box(soup, point(0, 0, 0), point(4, 3, 2.5), 6, true);
     for (int i = 0; i < 8; i++) {
         struct vec3 low = {0.2 + 0.45 * i, 0.3 + 0.2 * (i % 3), 0.0};
         struct vec3 high = {low.x + 0.4, low.y + 0.9, 0.4 + 0.2 * (i % 4)};
@@ -38,10 +38,8 @@ static void make_star(struct soup *soup)
 static void make_planes(struct soup *soup)
 {
     struct random random = random_seed(13);
-    soup_add_quad(soup, (struct vec3){0, 0, 0}, (struct vec3){1, 0, 0},
-                  (struct vec3){0, 1, 0}, 12);
-    soup_add_quad(soup, (struct vec3){0, 0, 0.3}, (struct vec3){1, 0, 0.2},
-                  (struct vec3){0, 1, 0}, 12);
+    soup_add_quad(soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 12);
+    soup_add_quad(soup, point(0, 0, 0.3), point(1, 0, 0.2), point(0, 1, 0), 12);
     for (int i = 0; i < 200; i++)
         soup_add(soup, soup->items[2 * i]);
     for (int i = 0; i < 100; i++) {
@@ -113,7 +111,7 @@ static void test_scene(void (*make)(struct soup *), const char *name)
 {
     struct soup soup = {0};
     make(&soup);
-    struct world world = world_make(scene_of_soup(&soup, 1));
+    struct world world = world_make(scene_of_soup(&soup));
     struct random random = random_seed(14);
     struct octree_counts counts = {0}, alone = {0};
     int wrong = 0, wrong_alone = 0, blocked = 0;
@@ -134,7 +132,6 @@ static void test_scene(void (*make)(struct soup *), const char *name)
            wrong_alone);
     tap_ok(blocked > BUNDLES / 20, "%s: %d bundles meet something", name, blocked);
     world_free(&world);
-    soup_free(&soup);
 }
 
 int main(void)

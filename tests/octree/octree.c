@@ -66,12 +66,10 @@ static void make_soup(struct soup *soup)
 
 static void make_room(struct soup *soup)
 {
-    soup_add_box(soup, (struct vec3){0, 0, 0}, (struct vec3){4, 3, 2.5}, 10, true);
-    soup_add_box(soup, (struct vec3){0.5, 0.5, 0}, (struct vec3){1.5, 1.25, 1}, 4, false);
-    soup_add_box(soup, (struct vec3){2.1, 1.2, 0}, (struct vec3){3.3, 2.2, 0.7}, 4,
-                 false);
-    soup_add_box(soup, (struct vec3){2.3, 1.3, 0.7}, (struct vec3){2.9, 1.9, 1.9}, 4,
-                 false);
+    soup_add_box(soup, point(0, 0, 0), point(4, 3, 2.5), 10, true);
+    soup_add_box(soup, point(0.5, 0.5, 0), point(1.5, 1.25, 1), 4, false);
+    soup_add_box(soup, point(2.1, 1.2, 0), point(3.3, 2.2, 0.7), 4, false);
+    soup_add_box(soup, point(2.3, 1.3, 0.7), point(2.9, 1.9, 1.9), 4, false);
 }
 
 static void make_sphere(struct soup *soup)
@@ -377,8 +375,8 @@ static int random_corners(struct random *random, const struct scene *scene,
     bool is_box = random_below(random, 2) == 0;
     struct vec3 low = t->corner[0], high = vec3_add(low, random_point(random, 0.1));
     for (int k = 0; k < 8; k++)
-        corners[k] = (struct vec3){k & 1 ? high.x : low.x, k & 2 ? high.y : low.y,
-                                   k & 4 ? high.z : low.z};
+        corners[k] =
+            point(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z);
     for (int k = 0; k < 3 && !is_box; k++)
         corners[k] = t->corner[k];
     return is_box ? 8 : 3;
@@ -443,7 +441,7 @@ static void test_scene(void (*make)(struct soup *), bool packed, const char *nam
 {
     struct soup soup = {0};
     make(&soup);
-    struct world world = world_make(scene_of_soup(&soup, 1));
+    struct world world = world_make(scene_of_soup(&soup));
     surround(&world);
     char *block = packed ? repack(&world) : NULL;
     test_blockers(&world, name);
@@ -455,7 +453,6 @@ static void test_scene(void (*make)(struct soup *), bool packed, const char *nam
     test_walls(&world, name);
     world_free(&world);
     alloc_free(block);
-    soup_free(&soup);
 }
 
 /* --- closed meshes --- */
@@ -488,8 +485,8 @@ static void test_closed(bool is_sphere, const char *name)
     if (is_sphere)
         soup_add_sphere(&soup, 0.9, 3);
     else
-        soup_add_box(&soup, (struct vec3){0, 0, 0}, (struct vec3){4, 3, 2.5}, 10, true);
-    struct world world = world_make(scene_of_soup(&soup, 1));
+        soup_add_box(&soup, point(0, 0, 0), point(4, 3, 2.5), 10, true);
+    struct world world = world_make(scene_of_soup(&soup));
     surround(&world);
     int escapes[3] = {0, 0, 0};
     count_escapes(&world, escapes);
@@ -497,7 +494,6 @@ static void test_closed(bool is_sphere, const char *name)
     tap_ok(escapes[1] == 0, "%s: nothing leaves through edges", name);
     tap_ok(escapes[2] == 0, "%s: rays from inside always hit", name);
     world_free(&world);
-    soup_free(&soup);
 }
 
 /* --- special cases --- */
@@ -509,7 +505,7 @@ static void test_coincident(void)
     struct triangle t = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.5}}};
     for (int i = 0; i < COUNT; i++)
         soup_add(&soup, t);
-    struct world world = world_make(scene_of_soup(&soup, 1));
+    struct world world = world_make(scene_of_soup(&soup));
     surround(&world);
     const struct triangle *first = &world.scene->triangles[0];
     struct plane plane = world.scene->planes[0];
@@ -532,7 +528,6 @@ static void test_coincident(void)
     }
     tap_ok(right, "ten thousand coincident triangles: they block, the last is met first");
     world_free(&world);
-    soup_free(&soup);
 }
 
 /* A floor of tiles under, or over, one triangle in their plane that covers them all and
@@ -547,7 +542,7 @@ static void test_overlay(bool large_first)
     soup_add_quad(&soup, corner, u, v, 9);
     if (!large_first)
         soup_add(&soup, large);
-    struct world world = world_make(scene_of_soup(&soup, 1));
+    struct world world = world_make(scene_of_soup(&soup));
     surround(&world);
     const struct scene *scene = world.scene;
     struct random random = random_seed(8);
@@ -571,7 +566,6 @@ static void test_overlay(bool large_first)
            large_first ? "tiles that come after the floor are met instead of it"
                        : "a cover that comes after the tiles is met instead of them");
     world_free(&world);
-    soup_free(&soup);
 }
 
 static void test_nothing(void)
@@ -617,8 +611,8 @@ static void test_layers(void)
     tap_ok(octree_first_hit(octree, above, down, false, &hit, &counts) &&
                hit.triangle == 0 && hit.front,
            "but a front before a back");
-    tap_ok(octree_first_hit(octree, (struct vec3){0.01, 0.02, -0.1},
-                            (struct vec3){0, 0, 1}, false, &hit, &counts) &&
+    tap_ok(octree_first_hit(octree, point(0.01, 0.02, -0.1), point(0, 0, 1), false, &hit,
+                            &counts) &&
                hit.triangle == 1 && hit.front,
            "from the other side the other one");
     tap_ok(octree_first_hit(octree, aside, down, false, &hit, &counts) &&

@@ -13,13 +13,11 @@ static struct scene *make_scene(void)
 {
     struct soup soup = {0};
     struct random random = random_seed(1);
-    for (int i = 0; i < ROOTS; i++)
-        soup_add(&soup, random_triangle(&random, 0.5, 0.3));
+    soup_add_random(&soup, &random, ROOTS, 0.5, 0.3);
     soup.items[3].corner[0] = soup.items[3].corner[1]; /* dropped; it has a tree all
                                                           the same */
-    struct scene *scene = scene_of_soup(&soup, 1);
+    struct scene *scene = scene_of_soup(&soup);
     scene_prepare_or_exit(scene);
-    soup_free(&soup);
     return scene;
 }
 

@@ -126,21 +126,27 @@ static struct flux_unit unit_of(const struct scene *scene)
     return unit;
 }
 
+/* Half a square that emits, and half that reflects, less in one band. */
+static struct scene *make_square(double rho, double emission)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.0, emission);
+    paint_with(&soup, (struct material){.reflectance = {{0.0, rho, 0.1 * rho}}});
+    struct scene *scene = scene_of_soup(&soup);
+    scene->material_of[1] = 1;
+    scene_prepare_or_exit(scene);
+    return scene;
+}
+
 /* The room of a scene's unit: all light of a closed scene of the largest reflectance
  * fits 16 times over, and that 64 times over has diverged. */
 static void test_choice(void)
 {
-    struct soup soup = {0};
-    soup_add_quad(&soup, (struct vec3){0, 0, 0}, (struct vec3){1, 0, 0},
-                  (struct vec3){0, 1, 0}, 1);
     static const double rho[4] = {0.0, 0.5, 0.97, 0.999};
     bool fits = true, power_of_two = true;
     for (int k = 0; k < 4; k++) {
-        struct scene *scene = scene_of_soup(&soup, 2);
-        scene->material_of[1] = 1;
-        scene->materials[0] = material_grey(0.0, 7.3);
-        scene->materials[1].reflectance = (struct rgb){{0.0, rho[k], 0.1 * rho[k]}};
-        scene_prepare_or_exit(scene);
+        struct scene *scene = make_square(rho[k], 7.3);
         struct flux_unit unit = unit_of(scene);
         double light = scene_emitted_power(scene) / (1.0 - rho[k]);
         fits = fits && flux_from_watts(unit, 16.0 * light) < FLUX_LIMIT &&
@@ -152,13 +158,11 @@ static void test_choice(void)
     }
     tap_ok(fits, "the unit of a scene has room for its light, 16 times over");
     tap_ok(power_of_two, "and is a power of two");
-    struct scene *dark = scene_of_soup(&soup, 1);
-    scene_prepare_or_exit(dark);
+    struct scene *dark = make_square(0.0, 0.0);
     struct flux_unit unit = unit_of(dark);
     tap_ok(is_power_of_two(unit.per_watt) && flux_from_watts(unit, 0.0) == 0,
            "a scene without light has a unit too");
     scene_destroy(dark);
-    soup_free(&soup);
 }
 
 int main(void)

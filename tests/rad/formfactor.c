@@ -31,10 +31,8 @@ static void test_pairs(void)
     int pairs = 0, partly = 0, off = 0, beyond = 0;
     for (int i = 0; i < 400; i++) {
         struct soup soup = {0};
-        for (int k = 0; k < 6; k++)
-            soup_add(&soup, random_triangle(&random, 0.4, 0.4));
-        struct world world = world_make(scene_of_soup(&soup, 1));
-        soup_free(&soup);
+        soup_add_random(&soup, &random, 6, 0.4, 0.4);
+        struct world world = world_make(scene_of_soup(&soup));
         struct facet p = facet_make(world.model.forest, 0);
         struct facet q = facet_make(world.model.forest, 1);
         struct octree_counts counts = {0}, others = {0};

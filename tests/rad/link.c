@@ -33,7 +33,6 @@ static void test_making(void)
     tap_ok(tests_done(&world) > 0 && link.cost == compact8((double)tests_done(&world)),
            "and is its cost");
     world_free(&world);
-    soup_free(&more);
 }
 
 static void test_dropping(void)
@@ -51,7 +50,6 @@ static void test_dropping(void)
     tap_ok(dropped && world.model.counts.rays == 0,
            "patches that do not face are not linked");
     world_free(&world);
-    more.count = 0;
     soup_add_quad(&more, point(-1, -1, 0.5), point(3, 0, 0), point(0, 3, 0), 1);
     struct world covered = make_pair(1.0, white, white, &more);
     tap_ok(!make(&covered, 0, 1,
@@ -59,7 +57,6 @@ static void test_dropping(void)
                link.blocker <= 3,
            "nor are two between which no ray passes; their blocker is known");
     world_free(&covered);
-    soup_free(&more);
 }
 
 /* --- cost --- */
@@ -93,7 +90,6 @@ static void test_cost(void)
     link_split(&world.model, &link, 0, children);
     tap_ok(children[0].cost == 255, "costs end at four thousand million");
     world_free(&world);
-    soup_free(&more);
 }
 
 /* --- splitting --- */
@@ -139,9 +135,8 @@ static void test_dropped_children(void)
     struct soup soup = {0};
     soup_add(&soup, (struct triangle){{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
     soup_add(&soup, (struct triangle){{{1, 0, -1}, {1, 0, 1}, {1, 1, -1}}});
-    struct scene *scene = scene_of_soup(&soup, 1);
-    scene->materials[0] = material_grey(0.5, 1);
-    struct world world = world_make(scene);
+    paint(&soup, 0.5, 1);
+    struct world world = world_make(scene_of_soup(&soup));
     struct link link, children[4];
     bool made = make(&world, 0, 1, &link);
     int count = made ? link_split(&world.model, &link, 1, children) : 0;
@@ -150,7 +145,6 @@ static void test_dropped_children(void)
     tap_ok(count == 1 && children[0].q == upper,
            "children below the horizon are dropped");
     world_free(&world);
-    soup_free(&soup);
 }
 
 /* --- transfer --- */

@@ -15,14 +15,14 @@ static struct scene *make_scene(void)
 {
     struct soup soup = {0};
     struct random random = random_seed(1);
-    for (int i = 0; i < ROOTS; i++)
-        soup_add(&soup, random_triangle(&random, 0.5, 0.3));
+    soup_add_random(&soup, &random, ROOTS, 0.5, 0.3);
     soup.items[4].corner[1] = soup.items[4].corner[0];
-    struct scene *scene = scene_of_soup(&soup, 2);
+    paint(&soup, 0, 0);
+    paint(&soup, 0, 0);
+    struct scene *scene = scene_of_soup(&soup);
     scene->material_of[1] = 1;
     scene->materials[1].emission = (struct rgb){{1.0, 2.0, 3.0}};
     scene_prepare_or_exit(scene);
-    soup_free(&soup);
     return scene;
 }
 
@@ -283,7 +283,7 @@ static void split_all(struct forest *forest)
 static void test_neighbours(void)
 {
     enum { LEVEL = 4, FACES = 4, ON_EDGE = (1 << LEVEL) + 1 };
-    struct soup soup = {0}, leaves[2 * FACES] = {{0, 0, 0}};
+    struct soup soup = {0}, leaves[2 * FACES] = {{.count = 0}};
     struct random random = random_seed(5);
     struct vec3 corner[4];
     for (int k = 0; k < 4; k++)
@@ -291,7 +291,7 @@ static void test_neighbours(void)
     for (int k = 0; k < FACES; k++)
         soup_add(&soup, (struct triangle){{corner[(k + 1) % 4], corner[(k + 3) % 4],
                                            corner[(k + 2) % 4]}});
-    struct scene *scene = scene_of_soup(&soup, 1);
+    struct scene *scene = scene_of_soup(&soup);
     scene->two_sided = true;
     scene_prepare_or_exit(scene);
     struct forest *forest = forest_create(scene);
@@ -309,7 +309,6 @@ static void test_neighbours(void)
         soup_free(&leaves[r]);
     forest_destroy(forest);
     scene_destroy(scene);
-    soup_free(&soup);
 }
 
 int main(void)

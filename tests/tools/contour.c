@@ -25,11 +25,6 @@ struct polygon {
     struct vec3 corner[CORNERS];
 };
 
-static struct vec3 point(double x, double y, double z)
-{
-    return (struct vec3){x, y, z};
-}
-
 static double exchange_of(const struct polygon *a, const struct polygon *b)
 {
     return polygon_exchange(a->corner, a->count, b->corner, b->count);

@@ -28,23 +28,21 @@ struct sample {
 /* Wall y = 0, floor z = 0, ceiling z = 3, wall y = 4, each in two triangles, fronts
  * inwards, with these materials: the receiver reflects, the source emits, all else is
  * black. */
-static void add_planes(struct painted *painted, enum plane_name receiver,
+static void add_planes(struct soup *soup, enum plane_name receiver,
                        enum plane_name source)
 {
-    soup_add_quad(&painted->soup, point(0, 0, 0), point(0, 0, 3), point(4, 0, 0), 1);
-    paint(painted, receiver == WALL ? REFLECTANCE : 0.0, 0.0);
-    soup_add_quad(&painted->soup, point(0, 0, 0), point(4, 0, 0), point(0, 4, 0), 1);
-    paint(painted, receiver == FLOOR ? REFLECTANCE : 0.0, source == FLOOR ? 1.0 : 0.0);
+    soup_add_quad(soup, point(0, 0, 0), point(0, 0, 3), point(4, 0, 0), 1);
+    paint(soup, receiver == WALL ? REFLECTANCE : 0.0, 0.0);
+    soup_add_quad(soup, point(0, 0, 0), point(4, 0, 0), point(0, 4, 0), 1);
+    paint(soup, receiver == FLOOR ? REFLECTANCE : 0.0, source == FLOOR ? 1.0 : 0.0);
     if (source ==
         CEILING) /* 1 x 1 in the middle; black around it is as good as nothing */
-        soup_add_quad(&painted->soup, point(1.5, 1.5, 3), point(0, 1, 0), point(1, 0, 0),
-                      1);
+        soup_add_quad(soup, point(1.5, 1.5, 3), point(0, 1, 0), point(1, 0, 0), 1);
     else
-        soup_add_quad(&painted->soup, point(0, 0, 3), point(0, 4, 0), point(4, 0, 0), 1);
-    paint(painted, receiver == CEILING ? REFLECTANCE : 0.0,
-          source == CEILING ? 1.0 : 0.0);
-    soup_add_quad(&painted->soup, point(0, 4, 0), point(4, 0, 0), point(0, 0, 3), 1);
-    paint(painted, 0.0, source == OPPOSITE ? 1.0 : 0.0);
+        soup_add_quad(soup, point(0, 0, 3), point(0, 4, 0), point(4, 0, 0), 1);
+    paint(soup, receiver == CEILING ? REFLECTANCE : 0.0, source == CEILING ? 1.0 : 0.0);
+    soup_add_quad(soup, point(0, 4, 0), point(4, 0, 0), point(0, 0, 3), 1);
+    paint(soup, 0.0, source == OPPOSITE ? 1.0 : 0.0);
 }
 
 static struct vec3 place_of(enum plane_name plane, double at)
@@ -53,11 +51,11 @@ static struct vec3 place_of(enum plane_name plane, double at)
 }
 
 /* Compares the samples on one receiver. Tolerance: LIMIT of the value, and the slack. */
-static void test_samples(const struct comm *comm, const char *name,
-                         struct painted *painted, enum plane_name receiver,
-                         const char *words, const struct sample *samples, int count)
+static void test_samples(const struct comm *comm, const char *name, struct soup *soup,
+                         enum plane_name receiver, const char *words,
+                         const struct sample *samples, int count)
 {
-    struct solution s = solve_scene(comm, scene_of_painted(painted), words);
+    struct solution s = solve_scene(comm, scene_of_soup(soup), words);
     struct shading *shading = shade(&s);
     double worst = 0.0;
     bool right = s.vote.converged;
@@ -96,13 +94,13 @@ static void test_area_source(const struct comm *comm)
         wall[i] = (struct sample){lux_wall[i].at, lux_wall[i].percent * PERCENT, 0.0};
     for (int i = 0; i < COUNT(lux_floor); i++)
         ground[i] = (struct sample){lux_floor[i].at, lux_floor[i].percent * PERCENT, 0.0};
-    struct painted painted = {0};
-    add_planes(&painted, WALL, CEILING);
-    test_samples(comm, "5.3 area source, wall", &painted, WALL, "--epsilon 1e-6", wall,
+    struct soup soup = {0};
+    add_planes(&soup, WALL, CEILING);
+    test_samples(comm, "5.3 area source, wall", &soup, WALL, "--epsilon 1e-6", wall,
                  COUNT(wall));
-    add_planes(&painted, FLOOR, CEILING);
-    test_samples(comm, "5.3 area source, floor", &painted, FLOOR, "--epsilon 1e-6",
-                 ground, COUNT(ground));
+    add_planes(&soup, FLOOR, CEILING);
+    test_samples(comm, "5.3 area source, floor", &soup, FLOOR, "--epsilon 1e-6", ground,
+                 COUNT(ground));
 }
 
 static void test_bright_floor(const struct comm *comm)
@@ -113,12 +111,12 @@ static void test_bright_floor(const struct comm *comm)
                                             {1.25, 33.975719, 0}, {1.75, 35.566592, 0},
                                             {2.25, 35.566592, 0}, {2.75, 33.975719, 0},
                                             {3.25, 30.938711, 0}, {3.75, 26.795188, 0}};
-    struct painted painted = {0};
-    add_planes(&painted, WALL, FLOOR);
-    test_samples(comm, "5.6 bright floor, wall", &painted, WALL, "--epsilon 1e-6", wall,
+    struct soup soup = {0};
+    add_planes(&soup, WALL, FLOOR);
+    test_samples(comm, "5.6 bright floor, wall", &soup, WALL, "--epsilon 1e-6", wall,
                  COUNT(wall));
-    add_planes(&painted, CEILING, FLOOR);
-    test_samples(comm, "5.6 bright floor, ceiling", &painted, CEILING, "--epsilon 1e-6",
+    add_planes(&soup, CEILING, FLOOR);
+    test_samples(comm, "5.6 bright floor, ceiling", &soup, CEILING, "--epsilon 1e-6",
                  ceiling, COUNT(ceiling));
 }
 
@@ -130,33 +128,33 @@ static void test_slab(const struct comm *comm)
                                          {0.75, 10.316924, 0}, {0.25, 7.078969, 0}};
     static const struct sample ground[] = {{0.25, 3.382335, 0}, {0.75, 3.628986, 0},
         {1.25, 3.012951, 0}, {1.75, 0.0, 0.1}, {2.25, 0.0, 100.0 * 1e-9}};
-    struct painted painted = {0};
-    add_planes(&painted, WALL, OPPOSITE);
-    soup_add_box(&painted.soup, point(0, 2.5, 0), point(4, 2.7, 1), 1, false);
-    paint(&painted, 0.0, 0.0);
-    test_samples(comm, "5.7 slab, wall", &painted, WALL,
-                 "--epsilon 1e-8 --final-gather 0", wall, COUNT(wall));
-    add_planes(&painted, FLOOR, OPPOSITE);
-    soup_add_box(&painted.soup, point(0, 2.5, 0), point(4, 2.7, 1), 1, false);
-    paint(&painted, 0.0, 0.0);
-    test_samples(comm, "5.7 slab, floor", &painted, FLOOR,
-                 "--epsilon 1e-9 --final-gather 0", ground, COUNT(ground));
+    struct soup soup = {0};
+    add_planes(&soup, WALL, OPPOSITE);
+    soup_add_box(&soup, point(0, 2.5, 0), point(4, 2.7, 1), 1, false);
+    paint(&soup, 0.0, 0.0);
+    test_samples(comm, "5.7 slab, wall", &soup, WALL, "--epsilon 1e-8 --final-gather 0",
+                 wall, COUNT(wall));
+    add_planes(&soup, FLOOR, OPPOSITE);
+    soup_add_box(&soup, point(0, 2.5, 0), point(4, 2.7, 1), 1, false);
+    paint(&soup, 0.0, 0.0);
+    test_samples(comm, "5.7 slab, floor", &soup, FLOOR, "--epsilon 1e-9 --final-gather 0",
+                 ground, COUNT(ground));
 }
 
 /* A cube of 4 m, sides of 4 x 4 squares of 1 m; one of them is a source of 10000 lm. */
 static struct scene *glowing_square(double reflectance)
 {
-    struct painted painted = {0};
-    soup_add_box(&painted.soup, point(0, 0, 0), point(4, 4, 4), 4, true);
-    struct triangle first = painted.soup.items[0], second = painted.soup.items[1];
-    painted.soup.items[0] = painted.soup.items[painted.soup.count - 2];
-    painted.soup.items[1] = painted.soup.items[painted.soup.count - 1];
-    painted.soup.count -= 2;
-    paint(&painted, reflectance, 0.0);
-    soup_add(&painted.soup, first);
-    soup_add(&painted.soup, second);
-    paint(&painted, reflectance, 10000.0);
-    return scene_of_painted(&painted);
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(4, 4, 4), 4, true);
+    struct triangle first = soup.items[0], second = soup.items[1];
+    soup.items[0] = soup.items[soup.count - 2];
+    soup.items[1] = soup.items[soup.count - 1];
+    soup.count -= 2;
+    paint(&soup, reflectance, 0.0);
+    soup_add(&soup, first);
+    soup_add(&soup, second);
+    paint(&soup, reflectance, 10000.0);
+    return scene_of_soup(&soup);
 }
 
 /* 5.8: the mean light that arrives after one reflection or more is rho Phi / (96 (1 -

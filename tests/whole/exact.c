@@ -363,14 +363,13 @@ static void test_none(const struct comm *comm)
 static struct scene *room_with_box(void)
 {
     struct soup soup = {0};
-    soup_add_box(&soup, (struct vec3){0, 0, 0}, (struct vec3){3, 2, 3}, 1, true);
-    soup_add_box(&soup, (struct vec3){1, 0.5, 1}, (struct vec3){2, 1, 2}, 1, false);
-    struct scene *scene = scene_of_soup(&soup, 2);
-    scene->materials[0] = material_grey(0.5, 0.0);
-    scene->materials[1] = material_grey(0.5, 10.0);
+    soup_add_box(&soup, point(0, 0, 0), point(3, 2, 3), 1, true);
+    soup_add_box(&soup, point(1, 0.5, 1), point(2, 1, 2), 1, false);
+    paint(&soup, 0.5, 0.0);
+    paint(&soup, 0.5, 10.0);
+    struct scene *scene = scene_of_soup(&soup);
     scene->material_of[6] = scene->material_of[7] = 1;
     scene_prepare_or_exit(scene);
-    soup_free(&soup);
     return scene;
 }
 
@@ -380,8 +379,7 @@ static struct scene *room_with_box(void)
 static void test_stopped(const struct comm *comm, enum linking_kind linking)
 {
     struct scene *scene = room_with_box();
-    struct octree *octree =
-        octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *octree = octree_of(scene);
     struct criterion criterion = criterion_best(1e-3, 10, 1e-3);
     criterion.linking = linking;
     struct solver *solver = beyond_create(comm, scene, octree, &criterion);

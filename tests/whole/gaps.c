@@ -69,7 +69,7 @@ static void add_shell(struct soup *soup)
 }
 
 /* Lamps that fill the recesses but for a gap; they shine downwards. */
-static void add_lamps(struct painted *painted)
+static void add_lamps(struct soup *soup)
 {
     for (int part = 0; part < 2; part++) {
         for (int i = 0; i < 25; i++) {
@@ -79,18 +79,18 @@ static void add_lamps(struct painted *painted)
             struct vec3 low = point(x[0] + GAP, y[0] + GAP, HIGH + 0.01);
             struct vec3 high = point(x[1] - GAP, y[1] - GAP, HIGH + 0.05 - GAP);
             if (part == 0)
-                add_rectangle(&painted->soup, low, point(high.x, high.y, low.z), 2, true);
+                add_rectangle(soup, low, point(high.x, high.y, low.z), 2, true);
             else
-                add_cap(&painted->soup, low, high, false);
+                add_cap(soup, low, high, false);
         }
-        paint(painted, 0.5, part == 0 ? 20.0 : 0.0);
+        paint(soup, 0.5, part == 0 ? 20.0 : 0.0);
     }
 }
 
 /* Pictures and cupboards on the walls, a table with a sheet of paper, a rug. */
-static void add_things(struct painted *painted)
+static void add_things(struct soup *soup)
 {
-    struct soup *soup = &painted->soup;
+
     add_box(soup, 0.5, GAP, 1.3, 0.8, 0.02, 0.6);
     add_box(soup, 1.6, GAP, 1.4, 0.4, 0.02, 0.3);
     add_box(soup, GAP, 1.0, 1.2, 0.02, 1.2, 0.8);
@@ -102,36 +102,36 @@ static void add_things(struct painted *painted)
         add_box(soup, k % 2 ? 2.53 : 1.22, k / 2 ? 2.13 : 1.42, GAP, 0.05, 0.05,
                 0.72 - 2.0 * GAP);
     add_box(soup, 1.5, 1.5, 0.75 + GAP, 0.21, 0.3, 0.001);
-    paint(painted, 0.4, 0.0);
+    paint(soup, 0.4, 0.0);
     add_box(soup, 0.8, 1.0, GAP, 2.2, 1.6, 0.008);
-    paint(painted, 0.3, 0.0);
+    paint(soup, 0.3, 0.0);
 }
 
 /* Sixteen of them on one of two boards at the wall. */
-static void add_books(struct painted *painted)
+static void add_books(struct soup *soup)
 {
     struct random random = random_seed(1);
     double x = 1.0;
     for (int k = 0; k < 2; k++)
-        add_box(&painted->soup, 1.0, 3.7 - GAP, 1.0 + 0.3 * k, 1.0, 0.3, 0.02);
+        add_box(soup, 1.0, 3.7 - GAP, 1.0 + 0.3 * k, 1.0, 0.3, 0.02);
     for (int i = 0; i < 16; i++) {
         double thick = random_between(&random, 0.02, 0.05);
-        add_box(&painted->soup, x, 3.75, 1.02 + GAP, thick, 0.25 - 2.0 * GAP,
+        add_box(soup, x, 3.75, 1.02 + GAP, thick, 0.25 - 2.0 * GAP,
                 random_between(&random, 0.2, 0.27));
         x += thick + GAP;
     }
-    paint(painted, 0.3, 0.0);
+    paint(soup, 0.3, 0.0);
 }
 
 static struct scene *room(void)
 {
-    struct painted painted = {0};
-    add_shell(&painted.soup);
-    paint(&painted, 0.7, 0.0);
-    add_lamps(&painted);
-    add_things(&painted);
-    add_books(&painted);
-    return scene_of_painted(&painted);
+    struct soup soup = {0};
+    add_shell(&soup);
+    paint(&soup, 0.7, 0.0);
+    add_lamps(&soup);
+    add_things(&soup);
+    add_books(&soup);
+    return scene_of_soup(&soup);
 }
 
 /* The final gather sees the light of a leaf if it is at least this part of the mean: of

@@ -46,17 +46,16 @@ static void add_boxes(struct soup *soup, struct random *random, double first)
     }
 }
 
-static void paint_grey(struct painted *painted)
+static void paint_grey(struct soup *soup)
 {
-    paint(painted, REFLECTANCE, 0.0);
+    paint(soup, REFLECTANCE, 0.0);
 }
 
 /* Faces down. */
-static void add_lamp(struct painted *painted, double z)
+static void add_lamp(struct soup *soup, double z)
 {
-    soup_add_quad(&painted->soup, point(1.8, 2.4, z), point(0.4, 0, 0), point(0, 0, 0.4),
-                  1);
-    paint(painted, 0.0, 100.0);
+    soup_add_quad(soup, point(1.8, 2.4, z), point(0.4, 0, 0), point(0, 0, 0.4), 1);
+    paint(soup, 0.0, 100.0);
 }
 
 /* Two furnished rooms with a wall of 1 cm between them, the lamp in the first. Open:
@@ -64,18 +63,18 @@ static void add_lamp(struct painted *painted, double z)
 static struct scene *rooms(bool open)
 {
     enum { CELL = 2 };
-    struct painted painted = {0};
+    struct soup soup = {0};
     struct random random = random_seed(1);
-    add_boxes(&painted.soup, &random, -4.0);
-    add_room(&painted.soup, -4.0, -0.005);
-    painted.soup.count -= open ? CELL : 0;
-    paint_grey(&painted);
-    add_boxes(&painted.soup, &random, 0.2);
-    add_room(&painted.soup, 4.0, 0.005);
-    painted.soup.count -= open ? CELL : 0;
-    paint_grey(&painted);
-    add_lamp(&painted, -2.2);
-    return scene_of_painted(&painted);
+    add_boxes(&soup, &random, -4.0);
+    add_room(&soup, -4.0, -0.005);
+    soup.count -= open ? CELL : 0;
+    paint_grey(&soup);
+    add_boxes(&soup, &random, 0.2);
+    add_room(&soup, 4.0, 0.005);
+    soup.count -= open ? CELL : 0;
+    paint_grey(&soup);
+    add_lamp(&soup, -2.2);
+    return scene_of_soup(&soup);
 }
 
 /* A furnished room and a cupboard in it, of panels without thickness, with boxes on
@@ -84,28 +83,27 @@ static struct scene *cupboard(bool open)
 {
     enum { CELLS = 3, DOOR = 2 * CELLS * CELLS };
     const struct vec3 low = point(1.2, 0.1, 0.02), high = point(2.4, 2.1, 0.62);
-    struct painted painted = {0};
+    struct soup soup = {0};
     struct random random = random_seed(1);
-    add_room(&painted.soup, 4.7, 0.0);
-    add_boxes(&painted.soup, &random, 0.9);
-    soup_add_box(&painted.soup, low, high, CELLS, false);
-    painted.soup.count -= open ? DOOR : 0;
-    paint_grey(&painted);
+    add_room(&soup, 4.7, 0.0);
+    add_boxes(&soup, &random, 0.9);
+    soup_add_box(&soup, low, high, CELLS, false);
+    soup.count -= open ? DOOR : 0;
+    paint_grey(&soup);
     for (int shelf = 0; shelf < 3; shelf++) {
         double y = 0.6 + 0.5 * shelf;
-        soup_add_box(&painted.soup, point(1.21, y, 0.03), point(2.39, y + 0.02, 0.6), 2,
-                     false);
+        soup_add_box(&soup, point(1.21, y, 0.03), point(2.39, y + 0.02, 0.6), 2, false);
         for (int i = 0; i < 4; i++) {
             struct vec3 at = point(1.25 + 0.28 * i, y + 0.03, 0.1);
             struct vec3 size = point(0.22, random_between(&random, 0.1, 0.4), 0.4);
-            soup_add_box(&painted.soup, at, vec3_add(at, size), 1, false);
+            soup_add_box(&soup, at, vec3_add(at, size), 1, false);
         }
     }
-    soup_add_box(&painted.soup, low, high, CELLS, true);
-    painted.soup.count -= open ? DOOR : 0;
-    paint_grey(&painted);
-    add_lamp(&painted, 2.4);
-    return scene_of_painted(&painted);
+    soup_add_box(&soup, low, high, CELLS, true);
+    soup.count -= open ? DOOR : 0;
+    paint_grey(&soup);
+    add_lamp(&soup, 2.4);
+    return scene_of_soup(&soup);
 }
 
 enum { BOOKS = 24, COVER = 8, BOOK = 6 * COVER }; /* triangles of a cover and of a book */
@@ -128,19 +126,18 @@ static double add_books(struct soup *soup, double x, double wider)
  * DARK. Open: the gaps are 20 times as wide. */
 static struct scene *books(bool open)
 {
-    struct painted painted = {0};
-    struct soup *soup = &painted.soup;
-    paint_grey(&painted); /* LIT and DARK, for triangles that are chosen below */
-    paint_grey(&painted);
-    add_lamp(&painted, 2.0);
-    int64_t first = soup->count;
-    double end = 0.1 + add_books(soup, 1.0, open ? 20.0 : 1.0);
-    soup_add_box(soup, point(0.9, 0.98, 0.1), point(end, 1.0, 0.3), 2, false);
-    soup_add_box(soup, point(0.9, 1.252, 0.1), point(end, 1.272, 0.3), 2, false);
-    soup_add_box(soup, point(0.9, 0.98, 0.07), point(end, 1.272, 0.099), 2, false);
-    add_room(soup, 4.0, 0.0);
-    paint_grey(&painted);
-    struct scene *scene = scene_of_painted(&painted);
+    struct soup soup = {0};
+    paint_grey(&soup); /* LIT and DARK, for triangles that are chosen below */
+    paint_grey(&soup);
+    add_lamp(&soup, 2.0);
+    int64_t first = soup.count;
+    double end = 0.1 + add_books(&soup, 1.0, open ? 20.0 : 1.0);
+    soup_add_box(&soup, point(0.9, 0.98, 0.1), point(end, 1.0, 0.3), 2, false);
+    soup_add_box(&soup, point(0.9, 1.252, 0.1), point(end, 1.272, 0.3), 2, false);
+    soup_add_box(&soup, point(0.9, 0.98, 0.07), point(end, 1.272, 0.099), 2, false);
+    add_room(&soup, 4.0, 0.0);
+    paint_grey(&soup);
+    struct scene *scene = scene_of_soup(&soup);
     /* Without the covers at the two ends of the row, which look into no gap. */
     for (int64_t i = first + COVER; i < first + BOOK * (BOOKS - 1) + COVER; i++) {
         double z = triangle_centroid(&scene->triangles[i]).z;

@@ -107,10 +107,8 @@ static struct world two_roots(void)
     struct soup soup = {0};
     soup_add(&soup, (struct triangle){{{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}}});
     soup_add(&soup, (struct triangle){{{2, -1, 0}, {6, -1, 0}, {2, 1, 0}}});
-    struct scene *scene = scene_of_soup(&soup, 1);
-    scene->materials[0] = material_grey(0.5, 0.5);
-    soup_free(&soup);
-    return world_make(scene);
+    paint(&soup, 0.5, 0.5);
+    return world_make(scene_of_soup(&soup));
 }
 
 /* Truth of root 0: 3 and 5 in turn, swapped in the other half, so 4 without noise over
@@ -164,13 +162,12 @@ static struct world floor_and_light(void)
 {
     struct soup soup = {0};
     struct vec3 x = {2, 0, 0}, y = {0, 2, 0};
-    soup_add_quad(&soup, (struct vec3){-1, -1, 0}, x, y, 1);
-    soup_add_quad(&soup, (struct vec3){-1, -1, 1}, y, x, 1);
-    struct scene *scene = scene_of_soup(&soup, 2);
-    scene->materials[0] = material_grey(0.5, 0.0);
-    scene->materials[1] = material_grey(0.0, 1.0);
+    soup_add_quad(&soup, point(-1, -1, 0), x, y, 1);
+    soup_add_quad(&soup, point(-1, -1, 1), y, x, 1);
+    paint(&soup, 0.5, 0.0);
+    paint(&soup, 0.0, 1.0);
+    struct scene *scene = scene_of_soup(&soup);
     scene->material_of[2] = scene->material_of[3] = 1;
-    soup_free(&soup);
     return world_make(scene);
 }
 

@@ -37,9 +37,9 @@
 
 static const struct comm *world_comm;
 
-static struct solution run(struct painted *painted, const char *words)
+static struct solution run(struct soup *soup, const char *words)
 {
-    return solve_scene(world_comm, scene_of_painted(painted), words);
+    return solve_scene(world_comm, scene_of_soup(soup), words);
 }
 
 static double radiosity(const struct solution *s, int64_t patch)
@@ -107,23 +107,22 @@ static int deepest_level(const struct solution *s)
     return level;
 }
 
-static void add_room(struct painted *painted, int n)
+static void add_room(struct soup *soup, int n)
 {
-    soup_add_box(&painted->soup, point(0, 0, 0), point(1, 1, 1), n, true);
+    soup_add_box(soup, point(0, 0, 0), point(1, 1, 1), n, true);
 }
 
 /* A room of rho 0.5 with a box that floats in it and a square lamp below its ceiling. */
 static struct scene *furnished(double lamp, double box)
 {
-    struct painted painted = {0};
-    add_room(&painted, 1);
-    paint(&painted, 0.5, 0.0);
-    soup_add_box(&painted.soup, point(0.3, 0.2, 0.1), point(0.7, 0.5, 0.4), 1, false);
-    paint(&painted, 0.3, box);
-    soup_add_quad(&painted.soup, point(0.4, 0.4, 0.95), point(0, 0.2, 0),
-                  point(0.2, 0, 0), 1);
-    paint(&painted, 0.0, lamp);
-    return scene_of_painted(&painted);
+    struct soup soup = {0};
+    add_room(&soup, 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_box(&soup, point(0.3, 0.2, 0.1), point(0.7, 0.5, 0.4), 1, false);
+    paint(&soup, 0.3, box);
+    soup_add_quad(&soup, point(0.4, 0.4, 0.95), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    paint(&soup, 0.0, lamp);
+    return scene_of_soup(&soup);
 }
 
 /* --- form factors and solver --- */
@@ -131,11 +130,11 @@ static struct scene *furnished(double lamp, double box)
 /* A unit square 0.1 below a larger one: nearly all that leaves it arrives there. */
 static void test_bounds(const char *words)
 {
-    struct painted painted = {0};
-    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    soup_add_quad(&painted.soup, point(-1, -1, 0.1), point(0, 3, 0), point(3, 0, 0), 1);
-    paint(&painted, 0.5, 1.0);
-    struct solution s = run(&painted, words);
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    soup_add_quad(&soup, point(-1, -1, 0.1), point(0, 3, 0), point(3, 0, 0), 1);
+    paint(&soup, 0.5, 1.0);
+    struct solution s = run(&soup, words);
     const struct forest *forest = s.solver->model.forest;
     double largest = 0.0, f = 0.0, exact = 0.0;
     for (int64_t i = 0; i < s.solver->links.count; i++) {
@@ -169,16 +168,16 @@ static void test_false_convergence(void)
         struct solution s[2];
         for (int exact = 0; exact < 2; exact++) {
             char words[128];
-            struct painted painted = {0};
-            soup_add_box(&painted.soup, point(0, 0, 0), point(10, 1, 1), 1, true);
-            paint(&painted, 0.99, 0.0);
-            painted.ends[0] -= 2;
-            paint(&painted, 0.99, 1.0);
+            struct soup soup = {0};
+            soup_add_box(&soup, point(0, 0, 0), point(10, 1, 1), 1, true);
+            paint(&soup, 0.99, 0.0);
+            soup.ends[0] -= 2;
+            paint(&soup, 0.99, 1.0);
             snprintf(words, sizeof words,
                      "--epsilon 1e30 --final-gather 0 --tolerance %s "
                      "--max-iterations 100000 --solver %s",
                      exact ? "1e-12" : "1e-6", solvers[k]);
-            s[exact] = run(&painted, words);
+            s[exact] = run(&soup, words);
         }
         double mean = mean_radiosity(&s[0], 0, 12), truth = mean_radiosity(&s[1], 0, 12);
         tap_ok(s[0].vote.converged && s[1].vote.converged &&
@@ -201,8 +200,7 @@ static void test_termination(void)
         struct scene *scene = furnished(1.0, 0.0);
         scene_prepare_or_exit(scene);
         struct criterion criterion = criterion_parse(words[k]);
-        struct octree *octree =
-            octree_create(scene->triangles, scene->planes, scene->input_count);
+        struct octree *octree = octree_of(scene);
         struct solver *solver = beyond_create(world_comm, scene, octree, &criterion);
         solver_link_roots(solver);
         solver_assign_roots(solver);
@@ -233,13 +231,13 @@ static void test_termination(void)
 /* Two rooms with coincident wall planes: the walls as two triangle pairs in one plane. */
 static void test_leak(void)
 {
-    struct painted painted = {0};
-    soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, true);
-    paint(&painted, 0.9, 1.0);
-    soup_add_box(&painted.soup, point(1, 0, 0), point(2, 1, 1), 1, true);
-    soup_add_box(&painted.soup, point(0, 1, 0), point(1.5, 2, 1), 1, true);
-    paint(&painted, 0.9, 0.0);
-    struct solution s = run(&painted, "--epsilon 1e-4");
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    paint(&soup, 0.9, 1.0);
+    soup_add_box(&soup, point(1, 0, 0), point(2, 1, 1), 1, true);
+    soup_add_box(&soup, point(0, 1, 0), point(1.5, 2, 1), 1, true);
+    paint(&soup, 0.9, 0.0);
+    struct solution s = run(&soup, "--epsilon 1e-4");
     tap_ok(s.vote.converged && within(&s, 12, 24, 0.0),
            "rooms beside a lit one are dark, exactly (%lld links)",
            (long long)s.stats.links);
@@ -254,16 +252,14 @@ static void test_leak(void)
  * to 1.10 of the room alone. */
 static void test_coplanar(void)
 {
-    struct painted painted = {0};
-    add_room(&painted, 1);
-    paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0), point(0.2, 0, 0),
-                  1);
-    paint(&painted, 0.5, 1.0);
-    soup_add_quad(&painted.soup, point(0, 0.25, 0.25), point(0, 0.5, 0), point(0, 0, 0.5),
-                  1);
-    paint(&painted, 0.5, 0.0);
-    struct solution s = run(&painted, "--tolerance 1e-6");
+    struct soup soup = {0};
+    add_room(&soup, 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0.4, 0.4, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    paint(&soup, 0.5, 1.0);
+    soup_add_quad(&soup, point(0, 0.25, 0.25), point(0, 0.5, 0), point(0, 0, 0.5), 1);
+    paint(&soup, 0.5, 0.0);
+    struct solution s = run(&soup, "--tolerance 1e-6");
     double exact = 0.04 * 0.5 / (1.0 - 0.5) / 6.0, mean = mean_radiosity(&s, 0, 12);
     tap_ok(s.vote.converged && everywhere_within(&s, 1.1) &&
                mean_radiosity(&s, 14, 2) > 0.5 * exact && mean >= 0.99 * exact &&
@@ -279,11 +275,11 @@ static void test_coplanar(void)
  * the row sum is 0.95 at most. */
 static void test_duplicates(double rho, const char *words, double exact, double limit)
 {
-    struct painted painted = {0};
-    add_room(&painted, 1);
-    add_room(&painted, 2);
-    paint(&painted, rho, 1.0);
-    struct solution s = run(&painted, words);
+    struct soup soup = {0};
+    add_room(&soup, 1);
+    add_room(&soup, 2);
+    paint(&soup, rho, 1.0);
+    struct solution s = run(&soup, words);
     double mean = mean_radiosity(&s, 0, 12 + 48);
     if (exact > 0.0)
         tap_ok(s.vote.converged && fabs(mean / exact - 1.0) <= limit,
@@ -302,12 +298,12 @@ static void test_duplicates(double rho, const char *words, double exact, double 
  * R 10 = 13. Some leaves lie inside the boxes, where the row sum is 0. */
 static void test_covered(const char *words)
 {
-    struct painted painted = {0};
-    add_room(&painted, 1);
-    soup_add_box(&painted.soup, point(0.2, 0.2, 0), point(0.6, 0.6, 0.3), 1, false);
-    soup_add_box(&painted.soup, point(0.5, 0.5, -0.2), point(0.9, 0.8, 0.2), 1, false);
-    paint(&painted, 0.9, 1.0);
-    struct solution s = run(&painted, words);
+    struct soup soup = {0};
+    add_room(&soup, 1);
+    soup_add_box(&soup, point(0.2, 0.2, 0), point(0.6, 0.6, 0.3), 1, false);
+    soup_add_box(&soup, point(0.5, 0.5, -0.2), point(0.9, 0.8, 0.2), 1, false);
+    paint(&soup, 0.9, 1.0);
+    struct solution s = run(&soup, words);
     const struct forest *forest = s.solver->model.forest;
     double most = 0.0;
     bool numbers = true;
@@ -321,25 +317,24 @@ static void test_covered(const char *words)
 }
 
 /* A flat triangle, `width` times as wide as long, with a twin of opposite winding. */
-static void add_sliver(struct painted *painted, struct vec3 from, struct vec3 to,
-                       double width)
+static void add_sliver(struct soup *soup, struct vec3 from, struct vec3 to, double width)
 {
     struct vec3 side =
         vec3_add(to, point(0.0, 0.0, width * vec3_length(vec3_sub(to, from))));
-    soup_add(&painted->soup, (struct triangle){{from, to, side}});
-    soup_add(&painted->soup, (struct triangle){{from, side, to}});
+    soup_add(soup, (struct triangle){{from, to, side}});
+    soup_add(soup, (struct triangle){{from, side, to}});
 }
 
 /* A furnace with slivers to 1 : 1e6 in it: B = E / (1 - rho) everywhere. */
 static void test_slivers(void)
 {
-    struct painted painted = {0};
-    add_room(&painted, 1);
+    struct soup soup = {0};
+    add_room(&soup, 1);
     for (int i = 0; i < 5; i++)
-        add_sliver(&painted, point(0.03 + 0.011 * i, 0.05 + 0.007 * i, 0.5),
+        add_sliver(&soup, point(0.03 + 0.011 * i, 0.05 + 0.007 * i, 0.5),
                    point(0.93 + 0.003 * i, 0.96, 0.5 + 0.01 * i), pow(10.0, -2 - i));
-    paint(&painted, 0.99, 1.0);
-    struct solution s = run(&painted, "--epsilon 1e-2 --tolerance 1e-8");
+    paint(&soup, 0.99, 1.0);
+    struct solution s = run(&soup, "--epsilon 1e-2 --tolerance 1e-8");
     double worst = 0.0;
     for (int64_t p = 0; p < s.solver->model.forest->count; p++)
         if (forest_area(s.solver->model.forest, (int32_t)p) > 0.0)
@@ -384,7 +379,7 @@ static struct scene *tetrahedron(double scale, double offset)
     const struct vec3 v[4] = {point(0, 0, 0), point(1, 0.1, 0), point(0.2, 0.8, 0.1),
                               point(0.3, 0.2, 0.7)};
     static const int sides[4][3] = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
-    struct painted painted = {0};
+    struct soup soup = {0};
     for (int side = 0; side < 4; side++) {
         struct triangle t;
         for (int k = 0; k < 3; k++)
@@ -392,11 +387,11 @@ static struct scene *tetrahedron(double scale, double offset)
                                    point(offset, offset, offset));
         for (int k = 0; k < 16; k++) {
             struct triangle quarter = triangle_child(&t, k / 4);
-            soup_add(&painted.soup, triangle_child(&quarter, k % 4));
+            soup_add(&soup, triangle_child(&quarter, k % 4));
         }
-        paint(&painted, 0.4 + 0.1 * side, side == 0);
+        paint(&soup, 0.4 + 0.1 * side, side == 0);
     }
-    return scene_of_painted(&painted);
+    return scene_of_soup(&soup);
 }
 
 /* Largest relative difference; root i of one is (i times + plus) % count of two. */
@@ -506,13 +501,12 @@ static void test_tiny_light(const char *words)
 {
     enum { GRID = 41 };
     const double size = 1e-4, b = 1e8;
-    struct painted painted = {0};
-    soup_add_quad(&painted.soup, point(-0.5, -0.5, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(0, 0, 0.5), point(0, size, 0), point(size, 0, 0),
-                  1);
-    paint(&painted, 0.0, b);
-    struct solution s = run(&painted, words);
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(-0.5, -0.5, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0, 0, 0.5), point(0, size, 0), point(size, 0, 0), 1);
+    paint(&soup, 0.0, b);
+    struct solution s = run(&soup, words);
     struct shading *shading = shade(&s);
     double worst = 0.0, squares = 0.0;
     for (int i = 0; i < GRID * GRID; i++) {
@@ -538,14 +532,13 @@ static void test_tiny_light(const char *words)
  * %: what epsilon leaves, a third of which is measured. */
 static void test_fifteen_levels(void)
 {
-    struct painted painted = {0};
-    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(0.3, 0.4, 1e-5), point(0, 4e-5, 0),
-                  point(4e-5, 0, 0), 1);
-    paint(&painted, 0.0, 1.0);
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0.3, 0.4, 1e-5), point(0, 4e-5, 0), point(4e-5, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
     struct solution s =
-        run(&painted, "--epsilon 1e-3 --max-level 15 --min-area 0 --tolerance 1e-6");
+        run(&soup, "--epsilon 1e-3 --max-level 15 --min-area 0 --tolerance 1e-6");
     int level = deepest_level(&s);
     double area = 2.0 * forest_area(s.solver->model.forest, 0);
     double exact = 0.0, arrived = area * mean_radiosity(&s, 0, 2) / 0.5;
@@ -588,28 +581,26 @@ static double mean_shown(struct solution *s)
  * for the mesh alone. */
 static void test_hole(const char *name, double width, double height)
 {
-    struct painted painted = {0};
+    struct soup soup = {0};
     struct vec3 low = point(-0.5 * width, -0.5 * height, 0.25);
-    soup_add_quad(&painted.soup, point(-0.25, -0.25, 0), point(0.5, 0, 0),
-                  point(0, 0.5, 0), 1);
-    paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(-2, -2, 0.5), point(0, 4, 0), point(4, 0, 0), 1);
-    paint(&painted, 0.0, 1.0);
-    soup_add_quad(&painted.soup, point(-3, -3, 0.25), point(6, 0, 0),
-                  point(0, 3 + low.y, 0), 1);
-    soup_add_quad(&painted.soup, point(-3, -low.y, 0.25), point(6, 0, 0),
-                  point(0, 3 + low.y, 0), 1);
-    soup_add_quad(&painted.soup, point(-3, low.y, 0.25), point(3 + low.x, 0, 0),
+    soup_add_quad(&soup, point(-0.25, -0.25, 0), point(0.5, 0, 0), point(0, 0.5, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(-2, -2, 0.5), point(0, 4, 0), point(4, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    soup_add_quad(&soup, point(-3, -3, 0.25), point(6, 0, 0), point(0, 3 + low.y, 0), 1);
+    soup_add_quad(&soup, point(-3, -low.y, 0.25), point(6, 0, 0), point(0, 3 + low.y, 0),
+                  1);
+    soup_add_quad(&soup, point(-3, low.y, 0.25), point(3 + low.x, 0, 0),
                   point(0, height, 0), 1);
-    soup_add_quad(&painted.soup, point(-low.x, low.y, 0.25), point(3 + low.x, 0, 0),
+    soup_add_quad(&soup, point(-low.x, low.y, 0.25), point(3 + low.x, 0, 0),
                   point(0, height, 0), 1);
-    paint(&painted, 0.0, 0.0);
+    paint(&soup, 0.0, 0.0);
     struct vec3 hole[4] = {low, point(low.x, -low.y, 0.25), point(-low.x, -low.y, 0.25),
                            point(-low.x, low.y, 0.25)};
     struct vec3 floor[4] = {point(-0.25, -0.25, 0), point(0.25, -0.25, 0),
                             point(0.25, 0.25, 0), point(-0.25, 0.25, 0)};
     double exact = 0.5 * polygon_exchange(hole, 4, floor, 4) / polygon_area(floor, 4);
-    struct solution s = run(&painted, "");
+    struct solution s = run(&soup, "");
     double leaves = mean_radiosity(&s, 0, 2), shown = mean_shown(&s);
     tap_ok(s.vote.converged && fabs(leaves / exact - 1.0) <= 0.03,
            "light through a %s, %.6f of the lamp's: leaves are off by %+.2f %% (%lld of "
@@ -625,20 +616,19 @@ static void test_hole(const char *name, double width, double height)
  * their rows sum to above 1, up to 0.2. */
 static void test_flipped(void)
 {
-    struct painted painted = {0};
-    soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, false);
-    paint(&painted, 0.5, 1.0);
-    struct solution s = run(&painted, "");
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, false);
+    paint(&soup, 0.5, 1.0);
+    struct solution s = run(&soup, "");
     tap_ok(s.vote.converged && s.stats.escaped_power == s.stats.emitted_power &&
                s.stats.absorbed_power == 0.0 && s.stats.row_sum_max == 0.0 &&
                everywhere_within(&s, 1.0),
            "a furnace inside out: all that is emitted escapes");
     solution_free(&s);
-    add_room(&painted, 1);
-    struct triangle *t = &painted.soup.items[5];
-    *t = (struct triangle){{t->corner[0], t->corner[2], t->corner[1]}};
-    paint(&painted, 0.5, 1.0);
-    s = run(&painted, "--epsilon 1e-3");
+    add_room(&soup, 1);
+    soup.items[5] = reversed(soup.items[5]);
+    paint(&soup, 0.5, 1.0);
+    s = run(&soup, "--epsilon 1e-3");
     tap_ok(s.vote.converged && s.stats.escaped_power > 0.05 * s.stats.emitted_power &&
                everywhere_within(&s, 2.4),
            "one of 12 faces flipped: %.1f %% escape, none is made up",

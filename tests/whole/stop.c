@@ -97,7 +97,7 @@ static int64_t find_neighbours(void)
 static int64_t build_octree(void)
 {
     const struct scene *s = world.scene;
-    struct octree *octree = octree_create(s->triangles, s->planes, s->input_count);
+    struct octree *octree = octree_of(s);
     int64_t bytes = octree_bytes(octree);
     octree_destroy(octree);
     return bytes;
@@ -324,13 +324,11 @@ static void test_questions(void)
 static struct scene *make_room(int n)
 {
     struct soup soup = {0};
-    soup_add_box(&soup, (struct vec3){0, 0, 0}, (struct vec3){1, 1, 1}, n, true);
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), n, true);
     struct vec3 low = {0.4, 0.4, 0}, high = {0.6, 0.6, 0.5};
     soup_add_box(&soup, low, high, n, false);
-    struct scene *scene = scene_of_soup(&soup, 1);
-    scene->materials[0] = material_grey(0.5, 1.0);
-    soup_free(&soup);
-    return scene;
+    paint(&soup, 0.5, 1.0);
+    return scene_of_soup(&soup);
 }
 
 static FILE *open_or_exit(const char *path)

@@ -138,43 +138,42 @@ static void judge(const struct solution *s, const char *name, int material,
 
 /* A strip in unit squares along y, from `across` on; the front is to the right of its
  * walk. */
-static void add_strip(struct painted *painted, struct vec3 origin, struct vec3 across,
+static void add_strip(struct soup *soup, struct vec3 origin, struct vec3 across,
                       int length, bool turned)
 {
     for (int k = 0; k < length; k++) {
         struct vec3 at = vec3_add(origin, point(0, k, 0)), along = point(0, 1, 0);
-        soup_add_quad(&painted->soup, at, turned ? along : across,
-                      turned ? across : along, 1);
+        soup_add_quad(soup, at, turned ? along : across, turned ? across : along, 1);
     }
 }
 
 /* A black triangle between unit squares, too small to matter, so that nothing is proved
  * to be open and rays decide; and a wide black square behind all, so that whatever emits
  * is a lamp. */
-static void add_speck(struct painted *painted)
+static void add_speck(struct soup *soup)
 {
     struct vec3 at = point(0.5, 0.5, 0.5);
-    soup_add(&painted->soup, (struct triangle){{at, vec3_add(at, point(0.001, 0, 0)),
-                                                vec3_add(at, point(0, 0.001, 0))}});
-    soup_add_quad(&painted->soup, point(-5, -5, -1), point(0, 10, 0), point(10, 0, 0), 1);
-    paint(painted, 0.0, 0.0);
+    soup_add(soup, (struct triangle){{at, vec3_add(at, point(0.001, 0, 0)),
+                                      vec3_add(at, point(0, 0.001, 0))}});
+    soup_add_quad(soup, point(-5, -5, -1), point(0, 10, 0), point(10, 0, 0), 1);
+    paint(soup, 0.0, 0.0);
 }
 
 /* Two strips as surfaces of an equation. */
 static struct solution solve_strips(const struct comm *comm, const struct equation *e,
                                     int length, bool speck, const char *words)
 {
-    struct painted painted = {0};
+    struct soup soup = {0};
     bool groove = e->shape == &GROOVE;
-    add_strip(&painted, point(0, 0, 0), point(1, 0, 0), length, false);
-    paint(&painted, e->rho[0], e->emission[0]);
-    add_strip(&painted, point(0, 0, groove ? 0.0 : e->size),
+    add_strip(&soup, point(0, 0, 0), point(1, 0, 0), length, false);
+    paint(&soup, e->rho[0], e->emission[0]);
+    add_strip(&soup, point(0, 0, groove ? 0.0 : e->size),
               groove ? point(cos(e->size), 0, sin(e->size)) : point(1, 0, 0), length,
               true);
-    paint(&painted, e->rho[1], e->emission[1]);
+    paint(&soup, e->rho[1], e->emission[1]);
     if (speck)
-        add_speck(&painted);
-    return solve_scene(comm, scene_of_painted(&painted), words);
+        add_speck(&soup);
+    return solve_scene(comm, scene_of_soup(&soup), words);
 }
 
 /* The ends are 18 widths and more from the part looked at, and take less than 1e-4 of
@@ -269,18 +268,18 @@ static struct vec3 rim(int k, double z)
     return point(radius * cos(at), radius * sin(at), z);
 }
 
-static void add_disc(struct painted *painted, double z, bool down)
+static void add_disc(struct soup *soup, double z, bool down)
 {
     for (int k = 0; k < SIDES; k++)
-        soup_add(&painted->soup, (struct triangle){{point(0, 0, z), rim(k + down, z),
-                                                    rim(k + !down, z)}});
+        soup_add(soup, (struct triangle){
+                           {point(0, 0, z), rim(k + down, z), rim(k + !down, z)}});
 }
 
 /* The front is inside. */
-static void add_wall(struct painted *painted, double length)
+static void add_wall(struct soup *soup, double length)
 {
     for (int k = 0; k < SIDES; k++)
-        soup_add_quad(&painted->soup, rim(k, 0.0), point(0, 0, length),
+        soup_add_quad(soup, rim(k, 0.0), point(0, 0, length),
                       vec3_sub(rim(k + 1, 0.0), rim(k, 0.0)), 1);
 }
 
@@ -288,17 +287,17 @@ static void test_round(const struct comm *comm, const char *name,
                        const struct shape *shape, double size, const double emission[2],
                        const double rho[2], const double mean[2], struct errors limit)
 {
-    struct painted painted = {0};
+    struct soup soup = {0};
     struct equation *e = equation_make(shape, size, emission, rho);
     check_equation(e, name, mean);
     if (shape == &DISCS)
-        add_disc(&painted, 0.0, false);
+        add_disc(&soup, 0.0, false);
     else
-        add_wall(&painted, size);
-    paint(&painted, rho[0], emission[0]);
-    add_disc(&painted, shape == &DISCS ? size : 0.0, shape == &DISCS);
-    paint(&painted, shape == &PIPE ? 0.0 : rho[1], shape == &PIPE ? 1.0 : emission[1]);
-    struct solution s = solve_scene(comm, scene_of_painted(&painted), options);
+        add_wall(&soup, size);
+    paint(&soup, rho[0], emission[0]);
+    add_disc(&soup, shape == &DISCS ? size : 0.0, shape == &DISCS);
+    paint(&soup, shape == &PIPE ? 0.0 : rho[1], shape == &PIPE ? 1.0 : emission[1]);
+    struct solution s = solve_scene(comm, scene_of_soup(&soup), options);
     double cost = cost_of_sides(e, SIDES);
     for (int k = 0; k < (shape == &PIPE ? 1 : 2); k++)
         judge(&s, name, k, &(struct truth){e, .surface = k}, limit, cost);
@@ -356,23 +355,20 @@ struct zone {
 
 static struct scene *sphere_of_zones(const struct zone *zones, int count, int level)
 {
-    struct painted sphere = {0}, painted = {0};
-    soup_add_sphere(&sphere.soup, 1.0, level);
+    struct soup sphere = {0}, soup = {0};
+    soup_add_sphere(&sphere, 1.0, level);
     double low = -2.0;
     for (int z = 0; z < count; low = zones[z++].height) {
-        for (int64_t i = 0; i < sphere.soup.count; i++) {
-            struct triangle t = sphere.soup.items[i];
-            double height = triangle_centroid(&t).z;
+        for (int64_t i = 0; i < sphere.count; i++) {
+            double height = triangle_centroid(&sphere.items[i]).z;
             if (height >= low && height < zones[z].height &&
                 !material_is_dark(&zones[z].material))
-                soup_add(&painted.soup,
-                         (struct triangle){{t.corner[0], t.corner[2], t.corner[1]}});
+                soup_add(&soup, reversed(sphere.items[i]));
         }
-        paint(&painted, zones[z].material.reflectance.band[0],
-              zones[z].material.emission.band[0]);
+        paint_with(&soup, zones[z].material);
     }
-    soup_free(&sphere.soup);
-    return scene_of_painted(&painted);
+    soup_free(&sphere);
+    return scene_of_soup(&soup);
 }
 
 /* H = sum f E / (1 - sum f rho), f being the shares of 4 pi that zones have: in a sphere;
@@ -416,13 +412,13 @@ static void test_sphere(const struct comm *comm, const char *name,
 
 enum room { CUBE, CORRIDOR, FURNISHED };
 
-static void add_room(struct painted *painted, enum room room)
+static void add_room(struct soup *soup, enum room room)
 {
-    soup_add_box(&painted->soup, point(0, 0, 0),
+    soup_add_box(soup, point(0, 0, 0),
                  room == CORRIDOR ? point(100, 1, 1) : point(1, 1, 1), 1, true);
     for (int k = 0; k < 3 && room == FURNISHED; k++) {
         struct vec3 low = point(0.1 + 0.28 * k, 0.15 + 0.25 * k, 0.6 - 0.2 * k);
-        soup_add_box(&painted->soup, low, vec3_add(low, point(0.2, 0.2, 0.25)), 1, false);
+        soup_add_box(soup, low, vec3_add(low, point(0.2, 0.2, 0.25)), 1, false);
     }
 }
 
@@ -436,12 +432,12 @@ static void test_furnace(const struct comm *comm, enum room room, double rho, bo
     static const char *const names[] = {"cube", "corridor 1:100", "furnished room"};
     static const struct errors limit = {1e-6, 1e-6, 1e-6};
     char name[64];
-    struct painted painted = {0};
-    add_room(&painted, room);
-    paint(&painted, rho, 1.0 - rho);
+    struct soup soup = {0};
+    add_room(&soup, room);
+    paint(&soup, rho, 1.0 - rho);
     if (mixed)
-        paint(&painted, 0.5 * rho, 1.0 - 0.5 * rho);
-    struct scene *scene = scene_of_painted(&painted);
+        paint(&soup, 0.5 * rho, 1.0 - 0.5 * rho);
+    struct scene *scene = scene_of_soup(&soup);
     for (int32_t i = 0; i < scene->input_count && mixed; i++)
         scene->material_of[i] = i & 1;
     struct solution s = solve_scene(comm, scene, *options ? options : words);
@@ -456,14 +452,13 @@ static void test_furnace(const struct comm *comm, enum room room, double rho, bo
  * is exactly the power over A (1 - rho), and nothing escapes: the balance is closed. */
 static void test_light_is_kept(const struct comm *comm, double rho, const char *words)
 {
-    struct painted painted = {0};
-    add_room(&painted, FURNISHED);
-    paint(&painted, rho, 0.0);
-    soup_add_box(&painted.soup, point(0.45, 0.85, 0.45), point(0.55, 0.86, 0.55), 1,
-                 false);
-    paint(&painted, rho, 100.0);
+    struct soup soup = {0};
+    add_room(&soup, FURNISHED);
+    paint(&soup, rho, 0.0);
+    soup_add_box(&soup, point(0.45, 0.85, 0.45), point(0.55, 0.86, 0.55), 1, false);
+    paint(&soup, rho, 100.0);
     struct solution s =
-        solve_scene(comm, scene_of_painted(&painted), *options ? options : words);
+        solve_scene(comm, scene_of_soup(&soup), *options ? options : words);
     double sum = 0.0, area = 0.0, power = s.stats.emitted_power / BANDS;
     for (int32_t r = 0; r < scene_root_count(s.scene); r++) {
         double a = s.scene->areas[r] * scene_area_unit(s.scene);
@@ -491,17 +486,15 @@ static void test_concentric(const struct comm *comm, double radius, int level)
                  ratio = rho * q / (1.0 - rho * (1.0 - q));
     const double inner = 1.0 / (1.0 - 0.5 * ratio), outer = ratio * inner;
     const double noise = rho * (inner / outer - 1.0) * sqrt(q * (1.0 - q) / 256.0);
-    struct painted painted = {0};
-    soup_add_sphere(&painted.soup, radius, level);
-    paint(&painted, 0.5, 1.0);
-    int64_t first = painted.soup.count;
-    soup_add_sphere(&painted.soup, 1.0, level);
-    for (int64_t i = first; i < painted.soup.count; i++) {
-        struct triangle *t = &painted.soup.items[i];
-        *t = (struct triangle){{t->corner[0], t->corner[2], t->corner[1]}};
-    }
-    paint(&painted, rho, 0.0);
-    struct solution s = solve_scene(comm, scene_of_painted(&painted), options);
+    struct soup soup = {0};
+    soup_add_sphere(&soup, radius, level);
+    paint(&soup, 0.5, 1.0);
+    int64_t first = soup.count;
+    soup_add_sphere(&soup, 1.0, level);
+    for (int64_t i = first; i < soup.count; i++)
+        soup.items[i] = reversed(soup.items[i]);
+    paint(&soup, rho, 0.0);
+    struct solution s = solve_scene(comm, scene_of_soup(&soup), options);
     judge(&s, "concentric spheres, inner", 0, &(struct truth){.value = inner}, BARS, 0.0);
     judge(&s, "concentric spheres, outer", 1, &(struct truth){.value = outer},
           (struct errors){BARS.mean, 0.5 * noise, 4.0 * noise}, 0.0);

@@ -15,13 +15,12 @@ enum { MANY = 100000 };
 
 static struct scene *prepared(struct soup *soup, int materials)
 {
-    struct scene *scene = scene_of_soup(soup, materials);
     for (int m = 0; m < materials; m++)
-        scene->materials[m] = material_grey(0.1 * m, m == materials - 1 ? 1.0 : 0.0);
+        paint(soup, 0.1 * m, m == materials - 1 ? 1.0 : 0.0);
+    struct scene *scene = scene_of_soup(soup);
     for (int32_t i = 0; i < scene->input_count; i++)
         scene->material_of[i] = i % materials;
     scene_prepare_or_exit(scene);
-    soup_free(soup);
     return scene;
 }
 
@@ -80,15 +79,13 @@ static struct scene *twins(int count)
 {
     struct soup soup = {0};
     struct random random = random_seed(5);
-    for (int i = 0; i < count; i++)
-        soup_add(&soup, random_triangle(&random, 1.0, 0.2));
-    struct scene *scene = scene_of_soup(&soup, 2);
-    scene->materials[0] = material_grey(0.5, 0.0);
-    scene->materials[1] = material_grey(0.0, 2.0);
+    soup_add_random(&soup, &random, count, 1.0, 0.2);
+    paint(&soup, 0.5, 0.0);
+    paint(&soup, 0.0, 2.0);
+    struct scene *scene = scene_of_soup(&soup);
     scene->material_of[0] = 1;
     scene->two_sided = true;
     scene_prepare_or_exit(scene);
-    soup_free(&soup);
     return scene;
 }
 
@@ -101,8 +98,8 @@ static bool same_point(struct vec3 a, struct vec3 b)
 
 static void extend(struct vec3 *low, struct vec3 *high, struct vec3 by)
 {
-    *low = (struct vec3){fmin(low->x, by.x), fmin(low->y, by.y), fmin(low->z, by.z)};
-    *high = (struct vec3){fmax(high->x, by.x), fmax(high->y, by.y), fmax(high->z, by.z)};
+    *low = point(fmin(low->x, by.x), fmin(low->y, by.y), fmin(low->z, by.z));
+    *high = point(fmax(high->x, by.x), fmax(high->y, by.y), fmax(high->z, by.z));
 }
 
 /* A cluster has the sums of its roots. Sums may be off by their rounding, 1e-16 a
@@ -217,7 +214,7 @@ static void test_scene(struct scene *scene, const char *name, int most)
 {
     struct octree *octree = NULL;
     if (scene->input_count < MANY) /* of as many in one place it takes too long */
-        octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+        octree = octree_of(scene);
     struct cluster_tree *tree = tree_create(scene, octree);
     int depth;
     bool right = check_tree(tree, scene, &depth);
@@ -383,11 +380,9 @@ static void test_spaces(void)
     add_cube(&soup, 0.7, false);
     int32_t inside = (int32_t)soup.count;
     add_cube(&soup, 0.6, true);
-    struct scene *scene = scene_of_soup(&soup, 1);
+    struct scene *scene = scene_of_soup(&soup);
     scene_prepare_or_exit(scene);
-    soup_free(&soup);
-    struct octree *octree = octree_create(scene->triangles, scene->planes,
-                                          scene->input_count);
+    struct octree *octree = octree_of(scene);
     struct cluster_tree *blind = tree_create(scene, NULL);
     struct cluster_tree *tree = tree_create(scene, octree);
     int depth;
@@ -406,14 +401,13 @@ static void test_lamps(void)
     struct soup soup = {0};
     struct random random = random_seed(6);
     const int32_t others = 300;
-    for (int i = 0; i < 320; i++)
-        soup_add(&soup, random_triangle(&random, 1.0, 0.1));
-    struct scene *scene = scene_of_soup(&soup, 2);
-    scene->materials[1] = material_grey(0.5, 1.0);
+    soup_add_random(&soup, &random, 320, 1.0, 0.1);
+    paint(&soup, 0, 0);
+    paint(&soup, 0.5, 1.0);
+    struct scene *scene = scene_of_soup(&soup);
     for (int32_t i = others; i < scene->input_count; i++)
         scene->material_of[i] = 1;
     scene_prepare_or_exit(scene);
-    soup_free(&soup);
     struct cluster_tree *tree = tree_create(scene, NULL);
     tap_ok(parts_at(tree, others),
            "lamps are in other clusters than the surfaces they light");

@@ -246,12 +246,11 @@ static int decide(double scale, uint64_t seed, int32_t decisions[DECISIONS])
             t.corner[k] = vec3_scale(t.corner[k], scale);
         soup_add(&soup, t);
     }
-    struct scene *scene = scene_of_soup(&soup, 2);
+    paint(&soup, 0.5, 0.0);
+    paint(&soup, 0.2, scale);
+    struct scene *scene = scene_of_soup(&soup);
     for (int i = 0; i < 12; i++)
         scene->material_of[i] = i % 3 == 0;
-    scene->materials[0] = material_grey(0.5, 0.0);
-    scene->materials[1] = material_grey(0.2, scale);
-    soup_free(&soup);
     struct world world = world_make(scene);
     struct model *model = &world.model;
     struct criterion criterion = model->criterion;

@@ -17,11 +17,11 @@ struct trial {
     struct rgb *radiosity; /* by place */
 };
 
-static struct trial gather_scene(struct painted *painted, const char *words, int rays)
+static struct trial gather_scene(struct soup *soup, const char *words, int rays)
 {
     char all[200];
     snprintf(all, sizeof all, "%s --final-gather 0", words);
-    struct trial g = {.s = solve_scene(world_comm, scene_of_painted(painted), all)};
+    struct trial g = {.s = solve_scene(world_comm, scene_of_soup(soup), all)};
     struct forest *forest = g.s.solver->model.forest;
     g.gather = final_gather_create(&g.s.solver->model, rays);
     g.radiosity = alloc_array((size_t)forest->count, sizeof *g.radiosity);
@@ -87,14 +87,14 @@ static void test_mean_factor(void)
  * gaps; in single precision. */
 static void test_furnished(void)
 {
-    struct painted painted = {0};
-    soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 2, true);
-    paint(&painted, 0.7, 0.3);
-    soup_add_box(&painted.soup, point(0.2, 0.2, 0), point(0.5, 0.6, 0.4), 1, false);
-    paint(&painted, 0.2, 0.8);
-    soup_add_box(&painted.soup, point(0.6, 0.2, 0.001), point(0.9, 0.6, 0.2), 1, false);
-    paint(&painted, 0.0, 1.0);
-    struct trial g = gather_scene(&painted, "--epsilon 1e-3", 64);
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 2, true);
+    paint(&soup, 0.7, 0.3);
+    soup_add_box(&soup, point(0.2, 0.2, 0), point(0.5, 0.6, 0.4), 1, false);
+    paint(&soup, 0.2, 0.8);
+    soup_add_box(&soup, point(0.6, 0.2, 0.001), point(0.9, 0.6, 0.2), 1, false);
+    paint(&soup, 0.0, 1.0);
+    struct trial g = gather_scene(&soup, "--epsilon 1e-3", 64);
     double worst = 0.0;
     for (int64_t k = 0; k < g.s.solver->model.forest->count; k++)
         g.radiosity[k] = (struct rgb){{1.0, 1.0, 1.0}};
@@ -116,12 +116,12 @@ static void test_furnished(void)
  * triangles: 0.05 %. */
 static void test_open(void)
 {
-    struct painted painted = {0};
-    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 2);
-    paint(&painted, 0.5, 1.0);
-    soup_add_quad(&painted.soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 2);
-    paint(&painted, 0.0, 0.0);
-    struct trial g = gather_scene(&painted, "", 64);
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 2);
+    paint(&soup, 0.5, 1.0);
+    soup_add_quad(&soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 2);
+    paint(&soup, 0.0, 0.0);
+    struct trial g = gather_scene(&soup, "", 64);
     double h = mean_of_roots(&g, 8, 8), exact = 0.199824895698;
     tap_ok(g.gather.counts.rays == 0 && g.gather.counts.exact == g.gather.count,
            "open plates have exact rows only");
@@ -134,16 +134,14 @@ static void test_open(void)
  * which its underside does not face, bring nothing. */
 static void test_given_up(void)
 {
-    struct painted painted = {0};
-    soup_add_quad(&painted.soup, point(0.4, 0.4, 1e-3), point(0, 0.2, 0),
-                  point(0.2, 0, 0), 1);
-    paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0), point(0.2, 0, 0),
-                  1);
-    paint(&painted, 0.0, 100.0);
-    struct trial g = gather_scene(&painted, "--max-level 0", 64);
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0.4, 0.4, 1e-3), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0.4, 0.4, 1), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    paint(&soup, 0.0, 100.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", 64);
     const struct forest *forest = g.s.solver->model.forest;
     double lamps = 0.0, rays = 0.0;
     for (int64_t i = 0; i < g.gather.count; i++) {
@@ -166,18 +164,16 @@ static void test_given_up(void)
  * lamp's direct light is all there is: the floor is black. */
 static double lit_floor(int lamps, bool screened, double *exact, int64_t *groups)
 {
-    struct painted painted = {0};
-    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 4);
-    paint(&painted, 0.0, 0.0);
-    soup_add_quad(&painted.soup, point(0.45, 0.45, 1), point(0, 0.1, 0), point(0.1, 0, 0),
-                  lamps);
-    paint(&painted, 0.0, 1.0);
-    soup_add_box(&painted.soup, point(0, 0, 0.1), point(0.05, 0.05, 0.2), 1, false);
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 4);
+    paint(&soup, 0.0, 0.0);
+    soup_add_quad(&soup, point(0.45, 0.45, 1), point(0, 0.1, 0), point(0.1, 0, 0), lamps);
+    paint(&soup, 0.0, 1.0);
+    soup_add_box(&soup, point(0, 0, 0.1), point(0.05, 0.05, 0.2), 1, false);
     if (screened) /* right below the lamp, upwards and downwards */
-        soup_add_box(&painted.soup, point(0.44, 0.44, 0.998), point(0.5, 0.56, 0.999), 1,
-                     false);
-    paint(&painted, 0.0, 0.0);
-    struct trial g = gather_scene(&painted, "", 64);
+        soup_add_box(&soup, point(0.44, 0.44, 0.998), point(0.5, 0.56, 0.999), 1, false);
+    paint(&soup, 0.0, 0.0);
+    struct trial g = gather_scene(&soup, "", 64);
     struct scene *scene = g.s.scene;
     *exact = 0.0;
     for (int32_t i = 0; i < 32; i++)
@@ -217,19 +213,15 @@ static void test_lamps(void)
  * less than a hundredth. */
 static void test_gap(void)
 {
-    struct painted painted = {0};
-    soup_add_box(&painted.soup, point(-2, -2, 0), point(2, 2, 2), 1, true);
-    paint(&painted, 0.5, 0.0);
-    soup_add_quad(&painted.soup, point(-0.2, -0.2, 2), point(0, 0.4, 0), point(0.4, 0, 0),
-                  1);
-    paint(&painted, 0.0, 10.0);
-    soup_add_quad(&painted.soup, point(-0.3, -0.2, 0.001), point(0, 0.3, 0),
-                  point(0.3, 0, 0), 1);
-    soup_add_quad(&painted.soup, point(-0.3, -0.2, 0.001), point(0.3, 0, 0),
-                  point(0, 0.3, 0), 1);
-    paint(&painted, 0.5, 0.0);
-    struct solution s =
-        solve_scene(world_comm, scene_of_painted(&painted), "--max-level 0");
+    struct soup soup = {0};
+    soup_add_box(&soup, point(-2, -2, 0), point(2, 2, 2), 1, true);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(-0.2, -0.2, 2), point(0, 0.4, 0), point(0.4, 0, 0), 1);
+    paint(&soup, 0.0, 10.0);
+    soup_add_quad(&soup, point(-0.3, -0.2, 0.001), point(0, 0.3, 0), point(0.3, 0, 0), 1);
+    soup_add_quad(&soup, point(-0.3, -0.2, 0.001), point(0.3, 0, 0), point(0, 0.3, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    struct solution s = solve_scene(world_comm, scene_of_soup(&soup), "--max-level 0");
     const struct rgb *radiosity = s.solver->model.forest->radiosity;
     double below = radiosity[14].band[0] + radiosity[15].band[0];
     double above = radiosity[16].band[0] + radiosity[17].band[0];
@@ -241,13 +233,12 @@ static void test_gap(void)
 /* A picture in the plane of a wall, of a quarter of its area. */
 static void test_covered(void)
 {
-    struct painted painted = {0};
-    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 8);
-    soup_add_quad(&painted.soup, point(0.25, 0.25, 0), point(0.5, 0, 0), point(0, 0.5, 0),
-                  1);
-    soup_add_quad(&painted.soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 1);
-    paint(&painted, 0.5, 1.0);
-    struct trial g = gather_scene(&painted, "--max-level 0", 16);
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 8);
+    soup_add_quad(&soup, point(0.25, 0.25, 0), point(0.5, 0, 0), point(0, 0.5, 0), 1);
+    soup_add_quad(&soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 1);
+    paint(&soup, 0.5, 1.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", 16);
     double bare = 0.0;
     for (int64_t i = 0; i < 128; i++)
         bare += (double)g.gather.rows[i].bare / 128.0;
@@ -262,19 +253,18 @@ static void test_flush_lamp(void)
 {
     double mean[2];
     for (int first = 0; first < 2; first++) {
-        struct painted painted = {0};
+        struct soup soup = {0};
         for (int part = 0; part < 2; part++)
             if (part == first) {
-                soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, true);
-                soup_add_box(&painted.soup, point(0.6, 0.6, 0), point(0.8, 0.8, 0.5), 1,
-                             false);
-                paint(&painted, 0.5, 0.0);
+                soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+                soup_add_box(&soup, point(0.6, 0.6, 0), point(0.8, 0.8, 0.5), 1, false);
+                paint(&soup, 0.5, 0.0);
             } else {
-                soup_add_quad(&painted.soup, point(0.4, 0.4, 1), point(0, 0.2, 0),
+                soup_add_quad(&soup, point(0.4, 0.4, 1), point(0, 0.2, 0),
                               point(0.2, 0, 0), 1);
-                paint(&painted, 0.0, 10.0);
+                paint(&soup, 0.0, 10.0);
             }
-        struct solution s = solve_scene(world_comm, scene_of_painted(&painted), "");
+        struct solution s = solve_scene(world_comm, scene_of_soup(&soup), "");
         int32_t floor = (first == 0 ? 0 : 2) + 8; /* z = 0 */
         mean[first] = s.solver->model.forest->radiosity[floor].band[0];
         solution_free(&s);
@@ -301,16 +291,15 @@ static double lit(const struct scene *scene, struct vec3 x, int32_t floor)
 static void test_mesh(double epsilon)
 {
     char words[32];
-    struct painted painted = {0};
-    soup_add_quad(&painted.soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    paint(&painted, 1.0 - 1e-3, 0.0);
-    soup_add_quad(&painted.soup, point(0.45, 0.45, 0.3), point(0, 0.1, 0),
-                  point(0.1, 0, 0), 1);
-    paint(&painted, 0.0, 1.0);
-    soup_add_box(&painted.soup, point(0.3, 0.3, 0.15), point(0.31, 0.31, 0.16), 1, false);
-    paint(&painted, 0.0, 0.0);
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 1.0 - 1e-3, 0.0);
+    soup_add_quad(&soup, point(0.45, 0.45, 0.3), point(0, 0.1, 0), point(0.1, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    soup_add_box(&soup, point(0.3, 0.3, 0.15), point(0.31, 0.31, 0.16), 1, false);
+    paint(&soup, 0.0, 0.0);
     snprintf(words, sizeof words, "--epsilon %g", epsilon);
-    struct solution s = solve_scene(world_comm, scene_of_painted(&painted), words);
+    struct solution s = solve_scene(world_comm, scene_of_soup(&soup), words);
     const struct forest *forest = s.solver->model.forest;
     const struct gathered *gathered = &s.solver->beyond->answer.counts;
     double squares = 0.0, largest = 0.0, least = HUGE_VAL, goal = 0.01 * epsilon;
@@ -351,12 +340,11 @@ static void test_mesh(double epsilon)
 /* Where all is as bright as all else, nothing is split. */
 static void test_even(void)
 {
-    struct painted painted = {0};
-    soup_add_box(&painted.soup, point(0, 0, 0), point(1, 1, 1), 1, true);
-    soup_add_box(&painted.soup, point(0.6, 0.6, 0.1), point(0.8, 0.8, 0.5), 1, false);
-    paint(&painted, 0.5, 1.0);
-    struct solution s =
-        solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 1e-2");
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    soup_add_box(&soup, point(0.6, 0.6, 0.1), point(0.8, 0.8, 0.5), 1, false);
+    paint(&soup, 0.5, 1.0);
+    struct solution s = solve_scene(world_comm, scene_of_soup(&soup), "--epsilon 1e-2");
     tap_ok(s.solver->beyond->answer.counts.split == 0 &&
                s.solver->beyond->answer.counts.looks > 0,
            "in a furnace nothing is split, by %lld rays",
@@ -391,15 +379,14 @@ static void add_cells(struct soup *soup, int odd)
 static void test_chance(void)
 {
     enum { CUBE = 12, WALLS = 1200, MEAN = 256 };
-    struct painted painted = {0};
+    struct soup soup = {0};
     for (int odd = 0; odd < 2; odd++) {
-        add_cells(&painted.soup, odd);
-        paint(&painted, 0.0, odd ? 1.0 : 0.0);
+        add_cells(&soup, odd);
+        paint(&soup, 0.0, odd ? 1.0 : 0.0);
     }
-    soup_add_box(&painted.soup, point(-0.1, -0.1, -0.1), point(0.1, 0.1, 0.1), 1, false);
-    paint(&painted, 0.5, 0.0);
-    struct solution s =
-        solve_scene(world_comm, scene_of_painted(&painted), "--epsilon 0.1");
+    soup_add_box(&soup, point(-0.1, -0.1, -0.1), point(0.1, 0.1, 0.1), 1, false);
+    paint(&soup, 0.5, 0.0);
+    struct solution s = solve_scene(world_comm, scene_of_soup(&soup), "--epsilon 0.1");
     const struct gathered *gathered = &s.solver->beyond->answer.counts;
     int64_t cube = s.stats.leaves - WALLS;
     tap_ok(4 * gathered->split <= CUBE && cube == CUBE + 3 * gathered->split,

@@ -18,7 +18,7 @@ static const struct comm *world_comm;
 
 /* --- scenes --- */
 
-enum { LAMP = 1 };
+enum { LAMP = 0 };
 
 /* A room of 3 m by 2.5 m by 3 m with `boxes` boxes, each face of a room in cells^2 cells.
  * With a second room behind a wall of 1 cm, if `two`. */
@@ -26,9 +26,8 @@ static struct scene *room(int cells, int boxes, bool two)
 {
     struct soup soup = {0};
     struct random random = random_seed(7);
-    soup_add_quad(&soup, (struct vec3){1.2, 2.4, 1.2}, (struct vec3){0.6, 0, 0},
-                  (struct vec3){0, 0, 0.6}, 1);
-    int32_t lamps = (int32_t)soup.count;
+    soup_add_quad(&soup, point(1.2, 2.4, 1.2), point(0.6, 0, 0), point(0, 0, 0.6), 1);
+    paint(&soup, 0.0, 100.0);
     for (int i = 0; i < boxes; i++) {
         double x = 0.1 + 0.95 * (i % 3), z = 0.1 + 0.95 * (i / 3 % 3);
         struct vec3 at = {x, 0.02, z};
@@ -37,17 +36,11 @@ static struct scene *room(int cells, int boxes, bool two)
                             random_between(&random, 0.3, 0.8)};
         soup_add_box(&soup, at, vec3_add(at, size), 2, false);
     }
-    soup_add_box(&soup, (struct vec3){0, 0, 0}, (struct vec3){3, 2.5, 3}, cells, true);
-    const struct vec3 low = {3.01, 0, 0}, high = {6, 2.5, 3};
+    soup_add_box(&soup, point(0, 0, 0), point(3, 2.5, 3), cells, true);
     if (two)
-        soup_add_box(&soup, low, high, cells, true);
-    struct scene *scene = scene_of_soup(&soup, 2);
-    scene->materials[0] = material_grey(0.5, 0.0);
-    scene->materials[LAMP] = material_grey(0.0, 100.0);
-    for (int32_t i = 0; i < lamps; i++)
-        scene->material_of[i] = LAMP;
-    soup_free(&soup);
-    return scene;
+        soup_add_box(&soup, point(3.01, 0, 0), point(6, 2.5, 3), cells, true);
+    paint(&soup, 0.5, 0.0);
+    return scene_of_soup(&soup);
 }
 
 /* A scene with clusters above it. */
@@ -163,10 +156,8 @@ static struct scene *triangles_at_random(void)
     struct random random = random_seed(9);
     for (int i = 0; i < 300; i++)
         soup_add(&soup, random_triangle(&random, 1.0, i % 4 == 0 ? 0.5 : 0.1));
-    struct scene *scene = scene_of_soup(&soup, 1);
-    scene->materials[0] = material_grey(0.5, 1.0);
-    soup_free(&soup);
-    return scene;
+    paint(&soup, 0.5, 1.0);
+    return scene_of_soup(&soup);
 }
 
 /* --- estimates --- */

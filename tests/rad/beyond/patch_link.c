@@ -13,7 +13,7 @@
 #include "tests/transfers.h"
 
 static struct world make_default_pair(double size, struct material floor,
-                                      struct material ceiling, const struct soup *more)
+                                      struct material ceiling, struct soup *more)
 {
     struct world world = make_pair(size, floor, ceiling, more);
     world.model.method = DEFAULT;
@@ -47,7 +47,6 @@ static void test_dropping(void)
                patch_is_leaf(&covered.model.forest->patches[0]),
            "a link that is proved blocked ends when it is to be split");
     world_free(&covered);
-    soup_free(&more);
 }
 
 /* A cover of two parts stops all rays and proves nothing. */
@@ -62,7 +61,6 @@ static void test_doubt(void)
                link_unoccluded(&link) > 0.0,
            "a link that no ray passes but that is not proved blocked is kept");
     world_free(&world);
-    soup_free(&more);
 }
 
 static void test_cost(void)
@@ -71,15 +69,13 @@ static void test_cost(void)
     struct soup soup = {0};
     soup_add(&soup, (struct triangle){{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
     soup_add(&soup, (struct triangle){{{1, 0, -1}, {1, 0, 0.05}, {1, 1, -1}}});
-    struct scene *scene = scene_of_soup(&soup, 1);
-    scene->materials[0] = material_grey(0.5, 1);
-    struct world horizon = world_make(scene);
+    paint(&soup, 0.5, 1);
+    struct world horizon = world_make(scene_of_soup(&soup));
     horizon.model.method = DEFAULT;
     tap_ok(make(&horizon, 0, 1,
                 &link) && tests_done(&horizon) == 0 && link_cost(&link) == 1.0,
            "a link without any test costs 1");
     world_free(&horizon);
-    soup_free(&soup);
 }
 
 /* --- transfer --- */
@@ -267,11 +263,9 @@ static void test_parts(void)
     int made = 0, uneven = 0, off = 0, blocked = 0;
     for (int i = 0; i < 300; i++) {
         struct soup soup = {0};
-        for (int k = 0; k < 6; k++)
-            soup_add(&soup, random_triangle(&random, 0.4, 0.4));
-        struct scene *scene = scene_of_soup(&soup, 1);
-        scene->materials[0] = material_grey(0.5, 1);
-        soup_free(&soup);
+        soup_add_random(&soup, &random, 6, 0.4, 0.4);
+        paint(&soup, 0.5, 1);
+        struct scene *scene = scene_of_soup(&soup);
         struct world world = world_make(scene);
         struct facet p = facet_make(world.model.forest, 0);
         struct facet q = facet_make(world.model.forest, 1);
@@ -322,14 +316,12 @@ static void test_inheriting(void)
         open = open && link_is_open(&children[k]);
     tap_ok(open, "children of an open link are open and cost no ray");
     world_free(&world);
-    soup_free(&more);
     soup_add_quad(&more, point(-1, -1, 0.5), point(3, 0, 0), point(0, 3, 0), 1);
     world = make_default_pair(1.0, material_grey(0.5, 0), material_grey(0, 1), &more);
     bool made = make(&world, 0, 1, &link);
     tap_ok(made && link.seen == 0 && link.blocker >= 2 && link.blocker <= 3,
            "a link knows its blocker");
     world_free(&world);
-    soup_free(&more);
 }
 
 /* --- looking --- */

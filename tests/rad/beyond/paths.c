@@ -20,20 +20,34 @@ struct outcome {
     double mean, sigma; /* of the mean */
 };
 
-static struct outcome trace(const struct world *world, int32_t root,
-                            const struct triangle *part, int band)
+/* Of the sum and the sum of squares of RUNS answers. */
+static struct outcome outcome_of(double sum, double squares)
+{
+    double mean = sum / RUNS, variance = fmax(squares / RUNS - mean * mean, 0.0);
+    return (struct outcome){mean, sqrt(variance / (RUNS - 1))};
+}
+
+/* rho H over a part of a root; with a camera, B of the middle of its 3 x 3 pixels. */
+static struct outcome trace_by(const struct world *world, const struct camera *camera,
+                               int32_t root, const struct triangle *part, int band)
 {
     struct pathtracer pathtracer = pathtracer_make(world->scene, world->octree);
     double sum = 0.0, squares = 0.0;
-    for (int run = 0; run < RUNS; run++) {
-        struct rgb h =
-            pathtracer_reflected(&pathtracer, root, part, SAMPLES, (uint64_t)run);
-        sum += h.band[band];
-        squares += h.band[band] * h.band[band];
+    for (uint64_t run = 0; run < RUNS; run++) {
+        struct rgb b = camera
+                           ? pathtracer_pixel(&pathtracer, camera, 1, 1, SAMPLES, run)
+                           : pathtracer_reflected(&pathtracer, root, part, SAMPLES, run);
+        sum += b.band[band];
+        squares += b.band[band] * b.band[band];
     }
     pathtracer_free(&pathtracer);
-    double mean = sum / RUNS, variance = fmax(squares / RUNS - mean * mean, 0.0);
-    return (struct outcome){mean, sqrt(variance / (RUNS - 1))};
+    return outcome_of(sum, squares);
+}
+
+static struct outcome trace(const struct world *world, int32_t root,
+                            const struct triangle *part, int band)
+{
+    return trace_by(world, NULL, root, part, band);
 }
 
 /* `precise`: the largest standard deviation that is small enough, relative to the answer.
@@ -51,11 +65,10 @@ static void expect(struct outcome outcome, double exact, double precise, const c
 static struct world furnace(bool two_sided)
 {
     struct soup soup = {0};
-    soup_add_box(&soup, (struct vec3){-1, -1, -1}, (struct vec3){1, 2, 1}, 1, !two_sided);
-    struct scene *scene = scene_of_soup(&soup, 1);
-    scene->materials[0] = (struct material){{{0.5, 0.8, 0.0}}, {{1.0, 2.0, 3.0}}};
+    soup_add_box(&soup, point(-1, -1, -1), point(1, 2, 1), 1, !two_sided);
+    paint_with(&soup, (struct material){{{0.5, 0.8, 0.0}}, {{1.0, 2.0, 3.0}}});
+    struct scene *scene = scene_of_soup(&soup);
     scene->two_sided = scene->two_sided_lamps = two_sided;
-    soup_free(&soup);
     return world_make(scene);
 }
 
@@ -70,23 +83,12 @@ static void test_furnace(void)
     world_free(&room);
 }
 
-/* The same as trace() of a pixel in the middle of a picture that looks from the middle of
- * the room into a corner. */
+/* From the middle of the room into a corner. */
 static struct outcome trace_pixel(const struct world *world, int band)
 {
     struct camera camera = {.eye = {0, 0.5, 0}, .at = {1, 2, 1}, .up = {0, 1, 0},
                             .fov = 90.0, .width = 3, .height = 3};
-    struct pathtracer pathtracer = pathtracer_make(world->scene, world->octree);
-    double sum = 0.0, squares = 0.0;
-    for (int run = 0; run < RUNS; run++) {
-        struct rgb b =
-            pathtracer_pixel(&pathtracer, &camera, 1, 1, SAMPLES, (uint64_t)run);
-        sum += b.band[band];
-        squares += b.band[band] * b.band[band];
-    }
-    pathtracer_free(&pathtracer);
-    double mean = sum / RUNS, variance = fmax(squares / RUNS - mean * mean, 0.0);
-    return (struct outcome){mean, sqrt(variance / (RUNS - 1))};
+    return trace_by(world, &camera, 0, NULL, band);
 }
 
 static void test_pixel(void)
@@ -104,12 +106,11 @@ static void test_pixel(void)
 static void test_row(void)
 {
     struct soup soup = {0};
-    soup_add_box(&soup, (struct vec3){-1, -1, -1}, (struct vec3){1, 2, 1}, 1, true);
-    struct scene *scene = scene_of_soup(&soup, 2);
-    scene->materials[0] = material_grey(0.0, 2.0);
-    scene->materials[1] = material_grey(0.25, 2.0);
+    soup_add_box(&soup, point(-1, -1, -1), point(1, 2, 1), 1, true);
+    paint(&soup, 0.0, 2.0);
+    paint(&soup, 0.25, 2.0);
+    struct scene *scene = scene_of_soup(&soup);
     scene->material_of[5] = 1;
-    soup_free(&soup);
     struct world room = world_make(scene);
     expect(trace(&room, 5, &WHOLE, 0), 0.5, 0.004,
            "a black room with E 2: rho H, rho 0.25");
@@ -146,72 +147,63 @@ static double lambert(const struct vec3 *corners, int count, struct vec3 x,
     return fabs(sum) / (2.0 * PI);
 }
 
-enum { FLOOR, LIGHT, BLOCKER, MATERIALS };
-
 /* A floor that reflects 0.5, a black light of side 1 with E = 4 at height 1 that faces
  * down, and on request a black screen halfway up. Under the centre of root 0, which is
- * (1, 0, 0), the screen hides the half of the light with y below 1/2. */
-static struct scene *lamp_scene(bool with_screen, double *seen)
+ * (1, 0, 0), the screen hides the half of the light with y below 1/2. Of the light `seen`
+ * is left, as a form factor. */
+static struct soup lamp(bool with_screen, double *seen)
 {
     struct soup soup = {0};
     struct vec3 x = {1, 0, 0}, y = {0, 1, 0};
-    soup_add_quad(&soup, (struct vec3){-2, -2, 0}, vec3_scale(x, 4), vec3_scale(y, 4), 1);
-    soup_add_quad(&soup, (struct vec3){0, 0, 1}, y, x, 1);
+    soup_add_quad(&soup, point(-2, -2, 0), vec3_scale(x, 4), vec3_scale(y, 4), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0, 0, 1), y, x, 1);
+    paint(&soup, 0.0, 4.0);
     if (with_screen)
-        soup_add_quad(&soup, (struct vec3){0.25, -0.5, 0.5}, x, vec3_scale(y, 0.75), 1);
-    struct scene *scene = scene_of_soup(&soup, MATERIALS);
-    for (int32_t i = 0; i < scene->input_count; i++)
-        scene->material_of[i] = i / 2;
-    scene->materials[FLOOR] = material_grey(0.5, 0.0);
-    scene->materials[LIGHT] = material_grey(0.0, 4.0);
+        soup_add_quad(&soup, point(0.25, -0.5, 0.5), x, vec3_scale(y, 0.75), 1);
+    paint(&soup, 0.0, 0.0);
     double low = with_screen ? 0.5 : 0.0;
     struct vec3 light[4] = {{0, low, 1}, {1, low, 1}, {1, 1, 1}, {0, 1, 1}};
-    *seen = lambert(light, 4, x, (struct vec3){0, 0, 1});
-    soup_free(&soup);
-    return scene;
+    *seen = lambert(light, 4, x, point(0, 0, 1));
+    return soup;
 }
 
-static struct world lamp(bool with_screen, double *seen)
+/* rho H under the centre of root 0 is this share of E = 4. Frees the triangles. */
+static void expect_share(struct soup *soup, bool two_sided, bool two_sided_lamps,
+                         double share, const char *what)
 {
-    return world_make(lamp_scene(with_screen, seen));
-}
-
-/* The same, upside down: the light shows the floor its back, black without a twin. */
-static struct world lamp_turned(bool two_sided_lamps, double *seen)
-{
-    struct scene *scene = lamp_scene(false, seen);
-    for (int32_t i = 2; i < 4; i++) {
-        struct vec3 *corner = scene->triangles[i].corner, swap = corner[1];
-        corner[1] = corner[2];
-        corner[2] = swap;
-    }
-    scene->two_sided = true;
+    struct scene *scene = scene_of_soup(soup);
+    scene->two_sided = two_sided;
     scene->two_sided_lamps = two_sided_lamps;
-    return world_make(scene);
+    struct world world = world_make(scene);
+    expect(trace(&world, 0, &CENTRE, 0), 0.5 * 4.0 * share, 0.004, what);
+    world_free(&world);
 }
 
+/* The light upside down shows the floor its back, black without a twin. */
 static void test_turned(void)
 {
-    double seen;
-    struct world black = lamp_turned(false, &seen), both = lamp_turned(true, &seen);
-    expect(trace(&black, 0, &CENTRE, 0), 0.0, 0.0, "under the back of a light: rho H");
-    world_free(&black);
-    expect(trace(&both, 0, &CENTRE, 0), 0.5 * 4.0 * seen, 0.004, "under its twin: rho H");
-    world_free(&both);
+    for (int both = 0; both < 2; both++) {
+        double seen;
+        struct soup soup = lamp(false, &seen);
+        for (int i = 2; i < 4; i++)
+            soup.items[i] = reversed(soup.items[i]);
+        expect_share(&soup, true, both, both ? seen : 0.0,
+                     both ? "under its twin: rho H" : "under the back of a light: rho H");
+    }
 }
 
 static void test_direct(void)
 {
     double seen;
-    struct world open = lamp(false, &seen), screened;
-    expect(trace(&open, 0, &CENTRE, 0), 0.5 * 4.0 * seen, 0.004,
-           "under a square light: rho H");
+    struct soup soup = lamp(false, &seen);
+    expect_share(&soup, false, false, seen, "under a square light: rho H");
+    soup = lamp(true, &seen);
+    expect_share(&soup, false, false, seen, "with half of it screened");
+    soup = lamp(false, &seen);
+    struct world open = world_make(scene_of_soup(&soup));
     expect(trace(&open, 2, &CENTRE, 0), 0.0, 0.0, "the light, which is black: rho H");
     world_free(&open);
-    screened = lamp(true, &seen);
-    expect(trace(&screened, 0, &CENTRE, 0), 0.5 * 4.0 * seen, 0.004,
-           "with half of it screened");
-    world_free(&screened);
 }
 
 /* A black ceiling in the plane of the light, behind it in the file: all points of the
@@ -219,23 +211,11 @@ static void test_direct(void)
 static void test_flush(void)
 {
     double seen;
-    struct soup soup = {0};
-    struct scene *plain = lamp_scene(false, &seen);
-    for (int32_t i = 0; i < plain->input_count; i++)
-        soup_add(&soup, plain->triangles[i]);
-    soup_add_quad(&soup, (struct vec3){-2, -2, 1}, (struct vec3){0, 4, 0},
-                  (struct vec3){4, 0, 0}, 1);
-    struct scene *scene = scene_of_soup(&soup, MATERIALS);
-    for (int32_t i = 0; i < scene->input_count; i++)
-        scene->material_of[i] = i / 2;
-    scene->materials[FLOOR] = plain->materials[FLOOR];
-    scene->materials[LIGHT] = plain->materials[LIGHT];
-    soup_free(&soup);
-    scene_destroy(plain);
-    struct world flush = world_make(scene);
-    expect(trace(&flush, 0, &CENTRE, 0), 0.5 * 4.0 * seen, 0.004,
-           "under a light that its ceiling hides: rho H");
-    world_free(&flush);
+    struct soup soup = lamp(false, &seen);
+    soup_add_quad(&soup, point(-2, -2, 1), point(0, 4, 0), point(4, 0, 0), 1);
+    paint(&soup, 0.0, 0.0);
+    expect_share(&soup, false, false, seen,
+                 "under a light that its ceiling hides: rho H");
 }
 
 /* --- light paths, against exact answers and against the other way --- */
@@ -279,11 +259,8 @@ static void shine(const struct world *world, int32_t root, int band,
         }
     }
     pathtracer_free(&pathtracer);
-    for (int k = 0; k < 4; k++) {
-        double mean = sum[k] / RUNS;
-        double variance = fmax(squares[k] / RUNS - mean * mean, 0.0);
-        child[k] = (struct outcome){mean, sqrt(variance / (RUNS - 1))};
-    }
+    for (int k = 0; k < 4; k++)
+        child[k] = outcome_of(sum[k], squares[k]);
 }
 
 /* Both ways have the same answer on every child of a root. Where corners were mistaken
@@ -306,18 +283,17 @@ static void test_light_paths(void)
 {
     double seen;
     struct outcome child[4];
-    struct world room = furnace(false), screened = lamp(true, &seen);
+    struct soup soup = lamp(true, &seen);
+    struct world room = furnace(false), screened = world_make(scene_of_soup(&soup));
     shine(&room, 3, 1, child);
     expect(child[1], 8.0, 0.02, "light paths in the furnace, rho 0.8, E 2: rho H");
     expect_alike(&screened, 0, "under a screened light");
     world_free(&room);
     world_free(&screened);
-    struct scene *scene = lamp_scene(false, &seen);
-    for (int32_t i = 0; i < 2; i++) {
-        struct vec3 *corner = scene->triangles[i].corner, swap = corner[1];
-        corner[1] = corner[2];
-        corner[2] = swap;
-    }
+    soup = lamp(false, &seen);
+    for (int i = 0; i < 2; i++)
+        soup.items[i] = reversed(soup.items[i]);
+    struct scene *scene = scene_of_soup(&soup);
     scene->two_sided = true;
     struct world turned = world_make(scene);
     expect_alike(&turned, scene->input_count, "on a twin, the front of a floor below");
