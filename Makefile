@@ -82,15 +82,15 @@ OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
 # Unit tests, bottom up; the last five are run with several ranks. Their sources lie in
 # folders, the programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
-TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wall octree \
-        bundles bicgstab sequence id flux patch compact formfactor patch_exchange link \
-        patch_link method cluster node oracle error_oracle pushpull caps \
-        final_gather checksum paths plan balance assign spotcheck \
+TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wall \
+        contour octree bundles bicgstab sequence id flux patch compact formfactor \
+        patch_exchange link patch_link method cluster node oracle error_oracle pushpull \
+        caps final_gather checksum paths plan balance assign spotcheck \
         text obj ply output files store tone image png hdr camera viewpoint shading mesh \
-        render options progress contour stop norms cie whole stability gaps leaks \
+        render options progress stop norms cie whole stability gaps leaks \
         linking exchange conjugate exact converge
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
-vpath %.c tests/tools tests/whole
+vpath %.c tests/whole
 
 # Programs that compare phr with what is true.
 BENCHES = reference measure direct replay

@@ -12,7 +12,7 @@
 
 #include "geom/alloc.h"
 #include "geom/triangle.h"
-#include "tools/gauss.h"
+#include "geom/gauss.h"
 
 enum { NODES_MAX = 1024, BOUNCES_MAX = 10000 };
 

@@ -6,7 +6,7 @@
  *     disk 16    the same between 4 x 4 sub-areas, by rad/formfactor.c
  *     polygon    Lambert's formula from the centroids of the 4 children of the smaller
  *                patch to the larger one; from 12 points if they are near
- *     exact      the contour integral of tools/contour.c
+ *     exact      the contour integral of geom/contour.c
  *
  * The first three work on triangles: a quadrilateral is two of them, and pairs add. Their
  * error depends on the distance of the centres in sums of the radii, so each states its
@@ -23,7 +23,7 @@
 #include "geom/lambert.h"
 #include "rad/beyond/patch_exchange.h"
 #include "tools/cases.h"
-#include "tools/contour.h"
+#include "geom/contour.h"
 
 /* --- a case, prepared --- */
 
@@ -140,7 +140,7 @@ struct estimate {
 };
 
 /* Measured errors and up to a quarter more; that of `exact` is stated in
- * tools/contour.h. */
+ * geom/contour.h. */
 static const struct estimate ESTIMATES[METHODS] = {
     {"disk 1", by_one_disk, 2, {{1.0, 0.3, 1.0}, {3.0, 0.02, 1.0}}},
     {"disk 16", by_disks, 2, {{1.0, 0.08, 1.0}, {3.0, 0.005, 1.0}}},

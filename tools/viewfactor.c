@@ -1,6 +1,6 @@
 /* View factors by facets, quadtrees, exact parts past few blockers, and 16 segments.
  *
- * For a pair of patches, with G their exact exchange without blockers (tools/contour.h)
+ * For a pair of patches, with G their exact exchange without blockers (geom/contour.h)
  * and T a threshold:
  *
  *   - if G is at most T, the exchange is G times the visible fraction of 16 segments,
@@ -45,7 +45,7 @@
 #include "geom/hash.h"
 #include "geom/stop.h"
 #include "rad/id.h"
-#include "tools/contour.h"
+#include "geom/contour.h"
 #include "tools/screened.h"
 
 /* Part of the threshold that a part of a patch may be off past few blockers. */

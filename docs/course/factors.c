@@ -6,14 +6,14 @@
  *     one disk     Eq. 2 of the paper, from centre to centre,
  *     16 disks     Eq. 2 between the quarters, the mean of 4 x 4, as the paper's Fig. 2,
  *     a point      Lambert's formula, from the centre of one square to the whole other,
- *     exact        phr's own contour integral (tools/contour.h),
+ *     exact        phr's own contour integral (geom/contour.h),
  *
  * and how wrong the first three are. Nothing stands between the squares. */
 #include <stdio.h>
 
 #include "geom/lambert.h"
 #include "rad/formfactor.h"
-#include "tools/contour.h"
+#include "geom/contour.h"
 
 struct square {
     struct vec3 corner[4]; /* m; counter-clockwise as seen from the front */

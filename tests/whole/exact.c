@@ -21,7 +21,7 @@
 #include "tests/scenes.h"
 #include "tests/solve.h"
 #include "tests/tap.h"
-#include "tools/contour.h"
+#include "geom/contour.h"
 
 static const double REFLECTANCE = 0.5;
 

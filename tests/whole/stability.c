@@ -31,7 +31,7 @@
 #include "io/picture/render.h"
 #include "tests/defaults.h"
 #include "tests/tap.h"
-#include "tools/contour.h"
+#include "geom/contour.h"
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof(array)[0]))
 

@@ -14,7 +14,7 @@
 #include "tests/defaults.h"
 #include "tests/equation.h"
 #include "tests/tap.h"
-#include "tools/contour.h"
+#include "geom/contour.h"
 
 static const char *options = ""; /* of all runs but those of the convergence */
 

@@ -12,7 +12,7 @@
 #include "tests/solve.h"
 #include "tests/tap.h"
 #include "tests/trees.h"
-#include "tools/contour.h"
+#include "geom/contour.h"
 
 static const struct comm *world_comm;
 

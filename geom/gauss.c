@@ -4,10 +4,10 @@
  * and half axes of sum r (in units of half the interval) is integrated by n points with
  * an error of order r^(-2n) (Trefethen, Approximation Theory and Approximation Practice,
  * Theorem 19.3). So 4, 6, 10 and 16 points give 12 digits for r = 32, 10, 4 and 2.4;
- * tools/contour.c chooses by r.
+ * geom/contour.c chooses by r.
  *
  * Rejected: nodes found by iteration at start, which needs a cosine to begin with. */
-#include "tools/gauss.h"
+#include "geom/gauss.h"
 
 static const struct gauss_pair GAUSS4[] = {
     {0.33998104358485626, 0.65214515486254614},

@@ -35,7 +35,7 @@
  * needs the dilogarithm of complex numbers and care with its branches, and cancels for
  * far pairs, too; adaptive panels by comparing rules, which cost more than panels of
  * known width. */
-#include "tools/contour.h"
+#include "geom/contour.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -44,7 +44,7 @@
 #include "geom/elementary.h"
 #include "geom/lambert.h"
 #include "geom/polygon.h"
-#include "tools/gauss.h"
+#include "geom/gauss.h"
 
 enum { CORNERS_MAX = 12 }; /* of a shape; polygons with more are cut into triangles */
 

@@ -12,8 +12,8 @@
  *
  * Pre: polygons are simple and planar, convex or not, of at least 3 corners each.
  * Cost: 6 to 30 microseconds for triangles apart, 50 to 80 where they touch. */
-#ifndef TOOLS_CONTOUR_H
-#define TOOLS_CONTOUR_H
+#ifndef GEOM_CONTOUR_H
+#define GEOM_CONTOUR_H
 
 #include <stdint.h>
 

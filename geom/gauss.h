@@ -1,7 +1,7 @@
 /* Gauss-Legendre quadrature: n points that are exact for polynomials of degree 2 n -
  * 1. */
-#ifndef TOOLS_GAUSS_H
-#define TOOLS_GAUSS_H
+#ifndef GEOM_GAUSS_H
+#define GEOM_GAUSS_H
 
 /* One point and its mirror image in the interval [-1, 1]. */
 struct gauss_pair {
