@@ -4,16 +4,15 @@
 #   make SERIAL=1        the same without MPI, with cc
 #   make demo            the Cornell box, 2 ranks    make check      all tests
 #   make room            build/room, a scene generator
-#   make pathtracer      build/pathtracer, what phr's pictures and meshes are compared
+#   make pathtracer      build/pathtracer, which phr's pictures and meshes are compared
 #                        with
 #   make bench           $(BUILD)/rays and $(BUILD)/hits, benches of visibility and of
-#                        first hits, beside
-#                        Embree where it is installed;
+#                        first hits, beside Embree where it is installed;
 #                        $(BUILD)/parsing, a bench of reading OBJ
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path
 #                        tracer
-#   make chart           docs/chart.csv and, with gnuplot, docs/chart-*.svg: speed against
-#                        error
+#   make chart           docs/chart.csv, docs/accuracy.md and, with gnuplot,
+#                        docs/chart-*.svg: speed against error
 #   make growth          docs/growth.csv, docs/growth.svg: rooms of 6,348 to a million
 #                        triangles
 #   make scaling         docs/ranks.md: seconds on 1, 32 and 1,024 ranks, line by line;
@@ -26,9 +25,8 @@
 #                        ImageMagick docs/film.gif
 #   make answers         scenes/answers.csv: the light of the scenes for lectures, by
 #                        paths
-#   make prove           what takes longer: errors over six fourfold steps of epsilon;
-#                        pictures beside the
-#                        path tracer's; kills at forty moments
+#   make prove           long tests: errors over six fourfold steps of epsilon; pictures
+#                        beside the path tracer's; kills at forty moments
 #   make cycles          pictures beside those of Blender's Cycles, where it is installed
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
@@ -52,9 +50,8 @@ mandir = $(prefix)/share/man
 PHR ?= phr
 IMGDIFF ?= build/imgdiff
 
-# What the results depend on: C99 without extensions, no fused multiply-add. (That nobody
-# reads errno after sqrt or llrint changes no result; it makes instructions of these
-# calls.)
+# The results depend on these: C99 without extensions, no fused multiply-add. (Without
+# errno no result changes, and sqrt and llrint become instructions.)
 STRICT = -std=c99 -ffp-contract=off -fno-math-errno
 WARN = -pedantic -Wall -Wextra -Wshadow -Wconversion
 
@@ -122,7 +119,7 @@ $(BUILD)/imgdiff $(BUILD)/id: $(BUILD)/%: $(BUILD)/tools/%.o $(BUILD)/libphr.a
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $< $(BUILD)/libphr.a -lm
 
-# What is true, for the tests and benches that compare phr with it.
+# The truth, for the tests and benches that compare phr with it.
 TRUTH = $(BUILD)/tests/truth.o $(BUILD)/tests/deviation.o
 
 $(BUILD)/tests/norms $(BUILD)/tests/gaps $(BUILD)/tests/converge: $(BUILD)/tests/%: \
@@ -198,8 +195,7 @@ $(BENCHES:%=$(BUILD)/%): $(BUILD)/%: $(BUILD)/tests/bench/%.o $(TRUTH) $(BUILD)/
 	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 # About an hour and a half on two cores, half an hour of it for references that are kept
-# in
-# $(BUILD)/chart.
+# in $(BUILD)/chart.
 chart: $(BENCHES:%=$(BUILD)/%) $(BUILD)/hits build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/chart.sh
 

@@ -1,10 +1,9 @@
 /* Arctangent and logarithm that are the same bits on every machine.
  *
  * C leaves the last bit of atan2() and log() to the library, and libraries differ. These
- * two use
- * + - * / and exact scaling only, so their results are as reproducible as those of
- * geom/vec.h.
- * Both are right within 4.5e-16 of the result, relative: two units in the last place. */
+ * two use + - * / and exact scaling only, so their results are as reproducible as those
+ * of geom/vec.h. Both are right within 4.5e-16 of the result, relative: two units in the
+ * last place. */
 #ifndef GEOM_ELEMENTARY_H
 #define GEOM_ELEMENTARY_H
 

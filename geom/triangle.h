@@ -29,7 +29,7 @@ struct segment {
 };
 
 struct vec3 triangle_cross(const struct triangle *t);   /* normal times twice the area */
-double triangle_area(const struct triangle *t);         /* m^2 in scene units */
+double triangle_area(const struct triangle *t);         /* square scene units */
 struct vec3 triangle_centroid(const struct triangle *t);
 double triangle_radius(const struct triangle *t); /* largest, corner to centroid */
 

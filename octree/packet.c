@@ -40,8 +40,8 @@ struct packet {
     struct vec3 eye;
     bool fronts_only;
     lanes direction[GROUPS][3];   /* of length 1 */
-    lanes low[GROUPS];            /* the hit so far has at least this nearness, */
-    lanes high[GROUPS];           /* and no triangle so far has more */
+    lanes low[GROUPS];            /* least nearness that the hit so far can have */
+    lanes high[GROUPS];           /* most nearness that a triangle so far can have */
     lanes_mask triangle[GROUPS];  /* the hit so far; NONE or DOUBT */
     float least[3], most[3];      /* of the directions */
     lanes start[3];               /* the eye */
@@ -229,7 +229,7 @@ static bool set_bounds(struct packet *packet, float direction[3][PACKET_RAYS])
     return true;
 }
 
-/* Sets the rays; the last one stands for those that lack. Returns false if they go down
+/* Sets the rays; the last one fills the places left over. Returns false if they go down
  * one by one. */
 static bool set_packet(struct packet *packet, const struct vec3 *directions, int count)
 {

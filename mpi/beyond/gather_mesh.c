@@ -115,7 +115,7 @@ static void prove_roots(struct looking *l, const struct root_area *sorted, int32
     comm_add_bytes(comm, open + begin, end - begin);
 }
 
-/* Collective. Finds the open roots. Exact rows are dear, and their mesh is that of the
+/* Collective. Finds the open roots. Exact rows cost much, and their mesh is that of the
  * links, which is good where nothing casts shadows: there are exact rows only if half of
  * the scene's area is open. Large roots are examined first, those of about the same area
  * together, until that is out of reach. */

@@ -15,7 +15,7 @@
  * is the mean square error, without bias; how much it scatters from draw to draw tells
  * the deviation of that mean. A third of q goes by area, one by area times the square of
  * the reflected radiosity, one by area times the square of the error that the gather
- * itself has estimated: leaves that are large, bright or held for bad are drawn often,
+ * itself has estimated: leaves that are large, bright or seem bad are drawn often,
  * and errors of the estimate are found. Draws are spread evenly over the leaves in the
  * order of forest_order(), so over the scene; BATCH at a time, each batch between those
  * before (multiples of the golden ratio).
@@ -131,7 +131,7 @@ static void list_leaves(struct checking *c)
     alloc_free(order);
 }
 
-/* The leaf up to and with which the probability exceeds this share of all. */
+/* The first leaf with which the sum of the probabilities exceeds this share of all. */
 static int32_t leaf_at(const struct checking *c, double share)
 {
     int64_t low = 0, high = c->count - 1;

@@ -7,7 +7,7 @@
  *
  * with dG_p the spread of G over the sub-areas of p (shadows that begin or end on p are
  * in it) and dB_q the range of radiosity over the leaves of q; likewise from p to q. The
- * link itself tells the four children of p apart (rad/link.h). So the spread over p is
+ * link itself tells the four children of p apart (patch_link.h). So the spread over p is
  * first of all a reason to give p children, which costs no ray; then the spread within
  * each child is left, about half as large, and the range within each child of q. A
  * sampled link may have missed a shadow or a gap: a part of the unoccluded G is in doubt,

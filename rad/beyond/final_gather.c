@@ -10,9 +10,9 @@
  * with the barycentric coordinates w of x in the leaf and the means b_0, b_1, b_2 of its
  * parent's outer children: the linear function that has these means. (Over the parent
  * itself s is 2.) It is linear in the radiosities, so the row has terms for the sisters,
- * which sum to 0.
- * Constants move light outwards at each reflection where leaves are as wide as the gap
- * between them. Where the linear function is below 0 somewhere, its slope is made less.
+ * which sum to 0. Constants move light outwards at each reflection where leaves are as
+ * wide as the gap between them. Where the linear function is below 0 somewhere, its slope
+ * is made less.
  *
  * Rejected: B interpolated between corners that neighbours share. It needs to know over
  * which edges light goes on smoothly, and at shadows, where interpolation matters, it

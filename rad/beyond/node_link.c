@@ -25,8 +25,7 @@
  * in the place of the blocker, which a link with a cluster in it has none of:
  *
  *     0eeeeeeeemmmmmmm  ssss  pppppp  qqqqqq
- *     G as a float      seen  spread  spread
- * */
+ *     G as a float      seen  spread  spread */
 struct judgement {
     double unoccluded;         /* G without blockers */
     double seen;               /* the share of it that arrives, in 15ths */

@@ -49,7 +49,7 @@ uint8_t link_seen(double share);
 
 /* Returns the entry of a vector [patches] that a link takes from a patch: its own, or the
  * sum, in `*sum`, of those of its children weighted by the parts. (A pointer: a transfer
- * with copies of colours took half as long again.) */
+ * with copies of colours took 1.5 times as long.) */
 const struct rgb *link_take(const struct forest *forest, int32_t patch,
                             const uint8_t parts[3], const struct rgb *vector,
                             struct rgb *sum);

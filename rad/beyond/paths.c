@@ -171,7 +171,7 @@ double pathtracer_power(const struct pathtracer *pathtracer)
     return pathtracer->power[scene_root_count(pathtracer->scene) - 1];
 }
 
-/* The first root up to and with which more than this power is emitted. */
+/* The first root r so that roots 0 .. r together emit more than this power. */
 static int32_t emitter_at(const struct pathtracer *pathtracer, double power)
 {
     int32_t low = 0, high = scene_root_count(pathtracer->scene) - 1;

@@ -1,8 +1,8 @@
-/* Tests of io/run/store.h, rad/beyond/snapshot.h and mpi/keep.h on one rank. Proved are:
- * a state restored from a file makes the same file again; a file of another kind,
- * version, scene or setting is refused with the reason; so is one that is cut off or
- * changed at any byte; and numbers that no run could have are refused though the checksum
- * is right. Several ranks: tests/67-restart.sh. */
+/* Tests of io/run/store.h, rad/beyond/snapshot.h and mpi/beyond/keep.h on one rank.
+ * Proved are: a state restored from a file makes the same file again; a file of another
+ * kind, version, scene or setting is refused with the reason; so is one that is cut off
+ * or changed at any byte; and numbers that no run could have are refused though the
+ * checksum is right. Several ranks: tests/67-restart.sh. */
 #define _POSIX_C_SOURCE 200809L /* fmemopen() */
 #include "mpi/beyond/beyond.h"
 #include "tests/fuzz/store.h"

@@ -1,6 +1,6 @@
-/* Tests of mpi/spotcheck.h: errors that are planted in an exact answer are found, and no
- * others. In a furnace, a closed cube whose faces emit E = 1 W/m^2 and reflect half of
- * the arriving light, B - E, is 1 everywhere; the final gather finds that within
+/* Tests of mpi/beyond/spotcheck.h: errors that are planted in an exact answer are found,
+ * and no others. In a furnace, a closed cube whose faces emit E = 1 W/m^2 and reflect
+ * half of the arriving light, B - E, is 1 everywhere; the final gather finds that within
  * rounding. */
 #include "mpi/beyond/beyond.h"
 #include "mpi/beyond/spotcheck.h"
