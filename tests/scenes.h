@@ -51,6 +51,15 @@ static inline struct vec3 random_point_on(struct random *random, const struct tr
     return vec3_add(t->corner[0], vec3_add(along, across));
 }
 
+/* A patch of one of the roots 0 .. roots - 1, at any level up to this one. */
+static inline struct patch_id random_id(struct random *random, int roots, int max_level)
+{
+    struct patch_id id = id_of_root((uint32_t)random_below(random, roots));
+    for (int level = random_below(random, max_level + 1); level > 0; level--)
+        id = id_child(id, random_below(random, 4));
+    return id;
+}
+
 /* Three points around a random centre, none further away than `size` along an axis. */
 static inline struct triangle random_triangle(struct random *random, double half,
                                               double size)
@@ -60,6 +69,15 @@ static inline struct triangle random_triangle(struct random *random, double half
     for (int k = 0; k < 3; k++)
         t.corner[k] = vec3_add(centre, random_point(random, size));
     return t;
+}
+
+/* Turned by the quaternion (a, b, c, d), which need not be normalised. */
+static inline struct vec3 turned(struct vec3 v, const double q[4])
+{
+    struct vec3 axis = {q[1], q[2], q[3]};
+    double norm = q[0] * q[0] + vec3_dot(axis, axis);
+    struct vec3 t = vec3_scale(vec3_cross(axis, v), 2.0 / norm);
+    return vec3_add(v, vec3_add(vec3_scale(t, q[0]), vec3_cross(axis, t)));
 }
 
 /* The triangle with its front where its back was. */

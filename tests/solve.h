@@ -7,6 +7,8 @@
 #include "mpi/beyond/beyond.h"
 #include "phr.h"
 
+#include "tests/scenes.h"
+
 struct solution {
     struct scene *scene; /* owned */
     struct octree *octree;
@@ -70,7 +72,7 @@ static inline struct solution solve(const struct comm *comm, struct scene *scene
     struct run run = {.comm = *comm, .scene = scene};
     run.options.quiet = true;
     run.options.criterion = criterion;
-    run.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
+    run.octree = octree_of(scene);
     compute_light(&run);
     s.octree = run.octree;
     s.solver = run.solver;
@@ -103,15 +105,13 @@ static inline struct scene *cube_create(void)
         struct vec3 v[4];
         for (int k = 0; k < 4; k++) {
             int bits = quads[face][k]; /* x = bit 0, y = bit 1, z = bit 2 */
-            v[k] = (struct vec3){bits & 1, bits >> 1 & 1, bits >> 2};
+            v[k] = point(bits & 1, bits >> 1 & 1, bits >> 2);
         }
         scene->triangles[2 * face] = (struct triangle){{v[0], v[1], v[2]}};
         scene->triangles[2 * face + 1] = (struct triangle){{v[0], v[2], v[3]}};
         scene->material_of[2 * face] = scene->material_of[2 * face + 1] = face;
     }
-    struct scene_repairs repairs;
-    struct error error = {0};
-    scene_prepare(scene, &repairs, &error);
+    scene_prepare_or_exit(scene);
     return scene;
 }
 

@@ -199,8 +199,7 @@ static void trace(const struct measure *measure, struct solution *s, double seco
     const struct scene *scene = s->scene;
     struct forest *forest = s->solver->model.forest;
     double start = seconds_of_work(&measure->comm), spent, paths = 1.0, growth;
-    struct octree *octree =
-        octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *octree = octree_of(scene);
     struct pathtracer pathtracer = pathtracer_make(scene, octree);
     double building = seconds_of_work(&measure->comm) - start;
     struct measured answer = {.stats.patches = s->stats.patches};

@@ -78,8 +78,7 @@ static void keep_and_note(struct model *model, struct link *link, bool is_new)
 static void record_run(const struct comm *comm, const struct scene *scene,
                        const struct criterion *criterion, struct record *record)
 {
-    struct octree *octree =
-        octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *octree = octree_of(scene);
     struct solver *solver = beyond_create(comm, scene, octree, criterion);
     struct vote vote;
     recorded = solver->model.method;

@@ -446,14 +446,6 @@ static void test_plane(void)
 
 /* --- order, place, size --- */
 
-static struct vec3 turned(struct vec3 v, const double q[4])
-{
-    struct vec3 axis = {q[1], q[2], q[3]};
-    double norm = q[0] * q[0] + vec3_dot(axis, axis);
-    struct vec3 t = vec3_scale(vec3_cross(axis, v), 2.0 / norm);
-    return vec3_add(v, vec3_add(vec3_scale(t, q[0]), vec3_cross(axis, t)));
-}
-
 static struct triangle scaled(struct triangle t, double scale)
 {
     for (int k = 0; k < 3; k++)

@@ -1,6 +1,6 @@
-/* Tests of geom/lambert.h: closed forms for rectangles, the illuminance of a room from
- * the CIE's test cases, and laws of all polygons: those around a point cover 1, parts
- * add up, the horizon cuts, moving, turning and scaling change nothing. */
+/* Tests of geom/lambert.h: closed forms for rectangles, and laws of all polygons: those
+ * around a point cover 1, parts add up, the horizon cuts, moving, turning and scaling
+ * change nothing. (Rooms of the CIE's test cases: tests/55-validate.sh.) */
 #include "geom/lambert.h"
 
 #include "tests/scenes.h"
@@ -62,30 +62,6 @@ static void test_closed_forms(void)
     /* The bound of lambert.h; the closed form of the wall cancels as well, to 1e-16. */
     tap_ok(worst[0] <= 1e-9, "343 rectangles above a corner: off by %.1e", worst[0]);
     tap_ok(worst[1] <= 1e-9, "343 walls ahead: off by %.1e", worst[1]);
-}
-
-/* CIE 171:2006, 5.3: a room 4 x 4 x 3 m, in the middle of its ceiling a light of 1 x 1 m
- * and 1000 cd/m^2. Illuminances in lx to eight digits, hence the tolerance. */
-static void test_cie(void)
-{
-    static const double wall[6][2] = {{2.75, 32.676898}, {2.25, 75.193925},
-                                      {1.75, 81.323172}, {1.25, 69.060627},
-                                      {0.75, 53.403531}, {0.25, 40.001852}};
-    static const double floor[4][2] = {{0.25, 61.424099},
-                                       {0.75, 79.255157},
-                                       {1.25, 95.667276},
-                                       {1.75, 105.778242}};
-    struct vec3 o = {1.5, 1.5, 3.0}, u = {0, 1, 0}, v = {1, 0, 0};
-    double worst = 0.0;
-    for (int i = 0; i < 6; i++) {
-        double f = rectangle_factor(point(2, 0, wall[i][0]), point(0, 1, 0), o, u, v);
-        worst = fmax(worst, fabs(1000.0 * PI * f - wall[i][1]));
-    }
-    for (int i = 0; i < 4; i++) {
-        double f = rectangle_factor(point(2, floor[i][0], 0), point(0, 0, 1), o, u, v);
-        worst = fmax(worst, fabs(1000.0 * PI * f - floor[i][1]));
-    }
-    tap_ok(worst < 6e-7, "CIE 171 5.3, ten illuminances: off by %.1e lx", worst);
 }
 
 /* --- laws of all triangles --- */
@@ -286,15 +262,6 @@ static void test_tilted_plane(void)
 
 /* --- moving, turning, scaling --- */
 
-/* Turns by the quaternion (a, b, c, d), which need not be normalised. */
-static struct vec3 turned(struct vec3 v, const double q[4])
-{
-    struct vec3 axis = {q[1], q[2], q[3]};
-    double norm = q[0] * q[0] + vec3_dot(axis, axis);
-    struct vec3 t = vec3_scale(vec3_cross(axis, v), 2.0 / norm);
-    return vec3_add(v, vec3_add(vec3_scale(t, q[0]), vec3_cross(axis, t)));
-}
-
 static void test_motions(void)
 {
     struct random random = random_seed(4);
@@ -391,7 +358,6 @@ static void test_polygons(void)
 int main(void)
 {
     test_closed_forms();
-    test_cie();
     test_closure();
     test_additivity();
     test_far();

@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "tests/load.h"
 #include "tests/tap.h"
 
 #define FOLDER "build/files_test"
@@ -46,20 +47,11 @@ static void check_taken(const char *line, const char *name)
     tap_ok(check(line), "%s: %s%s", name, line, error.text);
 }
 
-static void write_file(const char *path)
-{
-    FILE *file = fopen(path, "wb");
-    if (!file || fputs("old", file) < 0 || fclose(file) != 0) {
-        printf("Bail out! cannot write %s\n", path);
-        exit(1);
-    }
-}
-
 static void make_files(void)
 {
     static const char *const FILES[] = {"m.ply", "room.mtl", "a.view", "c", "old.ppm"};
     for (size_t i = 0; i < sizeof FILES / sizeof FILES[0]; i++)
-        write_file(FILES[i]);
+        write_text(FILES[i], "old");
     bool made = mkdir("d", 0777) == 0 && symlink("m.ply", "link.ply") == 0 &&
                 symlink("../m.ply", "d/two.ply") == 0 && link("m.ply", "hard.ply") == 0 &&
                 symlink("absent.ppm", "dangling.ppm") == 0 &&

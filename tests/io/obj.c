@@ -9,6 +9,7 @@
 
 #include "geom/alloc.h"
 #include "io/scene/text.h"
+#include "tests/load.h"
 #include "tests/tap.h"
 
 #define OBJ "build/obj_test.obj"
@@ -19,24 +20,10 @@
 static struct obj_repairs repairs;
 static struct error error;
 
-static void write_bytes(const char *path, const char *bytes, size_t count)
-{
-    FILE *file = fopen(path, "wb");
-    if (!file || fwrite(bytes, 1, count, file) != count || fclose(file) != 0) {
-        printf("Bail out! cannot write %s (is there a folder build?)\n", path);
-        exit(1);
-    }
-}
-
-static void write_file(const char *path, const char *text)
-{
-    write_bytes(path, text, strlen(text));
-}
-
 static struct scene *read_scene(const char *text)
 {
     error = (struct error){EXIT_DONE, ""};
-    write_file(OBJ, text);
+    write_text(OBJ, text);
     return obj_read(OBJ, &repairs, &error);
 }
 
@@ -59,7 +46,7 @@ static void check_refused(const char *text, const char *message)
 /* A library is refused with this line by an OBJ file that is right. */
 static void check_library_refused(const char *library, const char *message)
 {
-    write_file(MTL, library);
+    write_text(MTL, library);
     check_refused("mtllib obj_test.mtl\n" CORNERS "f 1 2 3\n", message);
 }
 
@@ -286,7 +273,7 @@ static void test_many_corners(void)
 
 static void test_materials(void)
 {
-    write_file(MTL,
+    write_text(MTL,
                "# library\nnewmtl red brick \r\nKa 1 1 1\nKd .8 .1 0\nKs 1 1 1\n"
                "map_Kd a b.png\nnewmtl lamp\nkd 0.25\nKE 17 12 4 1\nillum 2\n"
                "newmtl bright\nKd 1.5 1 1\n"
@@ -329,7 +316,7 @@ static void test_materials(void)
 
 static void test_notes(void)
 {
-    write_file(MTL,
+    write_text(MTL,
                "newmtl opaque\nKd 1 1 1\nd 1.0\nTr 1.0\nnewmtl also opaque\nTr 1\nd 1\n"
                "newmtl clear\nd 0.5\nnewmtl glass\nTr 0.25\nnewmtl halo\nd -halo 0.5\n"
                "newmtl words\nd\nTr none\nnewmtl painted\nmap_Kd a b.png\n"
@@ -388,8 +375,8 @@ static void check_libraries(const char *name, const char *line, int64_t missing)
 
 static void test_libraries(void)
 {
-    write_file(MTL, "newmtl one\nKd 0.125\n");
-    write_file(OTHER, "\xEF\xBB\xBFnewmtl two\nKd 0.25");
+    write_text(MTL, "newmtl one\nKd 0.125\n");
+    write_text(OTHER, "\xEF\xBB\xBFnewmtl two\nKd 0.25");
     check_libraries("two libraries", "mtllib  obj_test.mtl \nmtllib obj test two.mtl", 0);
     check_libraries("two in one line", "mtllib obj_test.mtl obj\\ test\\ two.mtl", 0);
     check_libraries("two of four",
@@ -425,7 +412,7 @@ static void test_many_names(void)
         library_end +=
             sprintf(library_end, "newmtl m%d\nKd %d\n", NAMES - 1 - i, NAMES - 1 - i);
     }
-    write_file(MTL, library);
+    write_text(MTL, library);
     struct scene *scene = read_scene(text);
     bool right = scene && scene->input_count == NAMES && scene->material_count == NAMES;
     for (int i = 0; i < NAMES && right; i++)
@@ -455,7 +442,7 @@ static void test_bad_libraries(void)
 /* A material without a name is that of usemtl without one, and of no other face. */
 static void test_nameless(void)
 {
-    write_file(MTL, "newmtl  \nKd 0.25 0.25 0.25\nKe 1 1 1\nnewmtl b\n");
+    write_text(MTL, "newmtl  \nKd 0.25 0.25 0.25\nKe 1 1 1\nnewmtl b\n");
     struct scene *scene = read_scene("mtllib obj_test.mtl\n" CORNERS
                                      "f 1 2 3\nusemtl\nf 1 3 4\nusemtl b\nf 1 2 4\n");
     const double expected[3][2] = {{0.5, 0.0}, {0.25, 1.0}, {0.0, 0.0}};

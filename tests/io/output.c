@@ -19,15 +19,6 @@
 
 static struct error error;
 
-static void write_old(const char *bytes)
-{
-    FILE *file = fopen(PATH, "wb");
-    if (!file || fputs(bytes, file) < 0 || fclose(file) != 0) {
-        printf("Bail out! cannot write %s (is there a folder build?)\n", PATH);
-        exit(1);
-    }
-}
-
 /* True if the file holds exactly these bytes. */
 static bool file_is(const char *path, const char *bytes, size_t count)
 {
@@ -75,7 +66,7 @@ static void test_whole_file(void)
 static void test_error_elsewhere(void)
 {
     struct output output;
-    write_old("old");
+    write_text(PATH, "old");
     start(&output, PATH);
     fputs("new", output.file);
     error_set(&error, EXIT_USAGE, "elsewhere");
@@ -96,7 +87,7 @@ static void test_write_error(void)
 {
     static const char line[] = PATH ": cannot write: ";
     struct output output;
-    write_old("old");
+    write_text(PATH, "old");
     start(&output, PATH);
     output.file = freopen(BESIDE, "rb", output.file);
     bool refused = output.file && putc('x', output.file) == EOF;
@@ -135,7 +126,7 @@ static void test_probe(void)
     remove(PATH);
     tap_ok(output_probe(PATH, &error) && path_is_free(PATH) && path_is_free(BESIDE),
            "probing a new file leaves nothing");
-    write_old("old");
+    write_text(PATH, "old");
     tap_ok(output_probe(PATH, &error) && file_is(PATH, "old", 3) &&
                path_is_free(BESIDE) && error.code == EXIT_DONE,
            "probing an old file leaves it");
@@ -199,7 +190,7 @@ static void test_modes(void)
     static const mode_t MODES[] = {0640, 0600, 0755, 0666};
     struct stat status;
     for (size_t i = 0; i < sizeof MODES / sizeof MODES[0]; i++) {
-        write_old("old");
+        write_text(PATH, "old");
         bool kept = chmod(PATH, MODES[i]) == 0 && writes(PATH) &&
                     stat(PATH, &status) == 0 && (status.st_mode & 0777) == MODES[i];
         tap_ok(kept, "a new file has the mode of the old one, %o", (unsigned)MODES[i]);
@@ -222,7 +213,7 @@ static void test_links(void)
                 symlink("../build/output_test.link", two) == 0;
     tap_ok(made && writes(link) && file_is(PATH, "x", 1) && is_link(link),
            "a link that leads to no file leads to one then");
-    write_old("old");
+    write_text(PATH, "old");
     tap_ok(writes(two) && file_is(PATH, "x", 1) && is_link(two) && is_link(link),
            "a link to a link stays, and so does that");
     remove(link);

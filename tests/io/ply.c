@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "io/scene/palette.h"
+#include "tests/load.h"
 #include "tests/tap.h"
 
 #define PLY "build/ply_test.ply"
@@ -396,15 +397,6 @@ static void test_row_errors(void)
                   ":17: a negative colour or emission");
 }
 
-static void write_file(const char *path, const char *text)
-{
-    FILE *file = fopen(path, "wb");
-    if (!file || fputs(text, file) < 0 || fclose(file) != 0) {
-        printf("Bail out! cannot write %s (is there a folder build?)\n", path);
-        exit(1);
-    }
-}
-
 /* Reads a file if it is to be read as PLY, and tells that in `is_ply`. */
 static struct scene *read_source(const char *path, bool *is_ply)
 {
@@ -419,18 +411,18 @@ static struct scene *read_source(const char *path, bool *is_ply)
 static void test_choice(void)
 {
     static const char text[] = ASCII SQUARE FACE(1) "end_header\n" CORNERS "4 0 1 2 3\n";
-    write_file(PLY, text);
+    write_text(PLY, text);
     bool is_ply;
     struct scene *scene = read_source(PLY, &is_ply);
     tap_ok(is_ply && is_square(scene), "from a file%s", error.text);
     scene_destroy(scene);
-    write_file("build/ply_test.mesh", text);
+    write_text("build/ply_test.mesh", text);
     scene = read_source("build/ply_test.mesh", &is_ply);
     tap_ok(is_ply && is_square(scene), "another name, the content of PLY: read whole");
     scene_destroy(scene);
     static const char *const OTHERS[] = {"v 0 0 0\n", "ply", "plyx", "", "PLY\n"};
     for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++) {
-        write_file("build/ply_test.mesh", OTHERS[i]);
+        write_text("build/ply_test.mesh", OTHERS[i]);
         read_source("build/ply_test.mesh", &is_ply);
         tap_ok(!is_ply, "another name, other content: %s", OTHERS[i]);
     }

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "geom/alloc.h"
+#include "tests/load.h"
 #include "tests/random.h"
 #include "tests/tap.h"
 
@@ -21,19 +22,10 @@ enum { BLOCK = 65536 }; /* the reader's block: sizes around it are the doubtful 
 
 static struct error error;
 
-static void write_bytes(const char *bytes, size_t count)
-{
-    FILE *file = fopen(FILE_NAME, "wb");
-    if (!file || fwrite(bytes, 1, count, file) != count || fclose(file) != 0) {
-        printf("Bail out! cannot write %s (is there a folder build?)\n", FILE_NAME);
-        exit(1);
-    }
-}
-
 static bool read_bytes(struct text *text, const char *bytes, size_t count)
 {
     error = (struct error){EXIT_DONE, ""};
-    write_bytes(bytes, count);
+    write_bytes(FILE_NAME, bytes, count);
     return text_read(text, FILE_NAME, &error);
 }
 

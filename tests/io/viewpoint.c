@@ -82,15 +82,28 @@ static void shot_free(struct shot *shot)
     scene_destroy(shot->scene);
 }
 
-/* `lamp`: the triangle from which on material 1 shines, or -1. */
-static struct shot shoot_soup(struct soup *soup, int64_t lamp, int width, int height)
+static struct shot shoot_soup(struct soup *soup, int width, int height)
 {
-    paint(soup, 0.5, 0.0);
-    paint(soup, 0.5, 1.0);
-    struct scene *scene = scene_of_soup(soup);
-    for (int32_t i = 0; i < scene->input_count; i++)
-        scene->material_of[i] = lamp >= 0 && i >= lamp;
-    return shoot(scene, width, height);
+    return shoot(scene_of_soup(soup), width, height);
+}
+
+/* A box that glows, each side of n x n cells. */
+static struct shot shoot_box(struct vec3 low, struct vec3 high, int n, bool inwards,
+                             int width, int height)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, low, high, n, inwards);
+    paint(&soup, 0.5, 1.0);
+    return shoot_soup(&soup, width, height);
+}
+
+/* A square with this radiosity. */
+static struct shot shoot_square(struct vec3 u, struct vec3 v, double emission)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), u, v, 1);
+    paint(&soup, 0.5, emission);
+    return shoot_soup(&soup, 512, 512);
 }
 
 static void describe(const struct shot *shot)
@@ -120,23 +133,19 @@ static const struct vec3 ZERO = {0.0, 0.0, 0.0};
 
 static void test_cube(void)
 {
-    struct soup soup = {0};
-    soup_add_box(&soup, ZERO, point(1, 1, 1), 2, true);
-    check_room("a cube that glows", shoot_soup(&soup, 0, 512, 512), 0.4, false);
-    soup_add_box(&soup, ZERO, point(1, 1, 1), 2, true);
-    check_room("the same, in a tall picture", shoot_soup(&soup, 0, 200, 700), 0.3, false);
-    soup_add_box(&soup, ZERO, point(1, 1, 1), 2, true);
-    check_room("in a wide one", shoot_soup(&soup, 0, 1600, 400), 0.3, false);
-    soup_add_box(&soup, point(1e6, 1e6, 1e6), point(1e6 + 5, 1e6 + 4, 1e6 + 3), 2, true);
-    check_room("a room far from the origin", shoot_soup(&soup, 0, 99, 99), 0.3, true);
+    struct vec3 one = {1, 1, 1}, far = {1e6, 1e6, 1e6};
+    check_room("a cube that glows", shoot_box(ZERO, one, 2, true, 512, 512), 0.4, false);
+    check_room("the same, in a tall picture", shoot_box(ZERO, one, 2, true, 200, 700),
+               0.3, false);
+    check_room("in a wide one", shoot_box(ZERO, one, 2, true, 1600, 400), 0.3, false);
+    check_room("a room far from the origin",
+               shoot_box(far, vec3_add(far, point(5, 4, 3)), 2, true, 99, 99), 0.3, true);
 }
 
 /* Along a corridor the picture must show its length. */
 static void test_corridor(void)
 {
-    struct soup soup = {0};
-    soup_add_box(&soup, ZERO, point(10, 1, 1), 1, true);
-    struct shot shot = shoot_soup(&soup, 0, 512, 512);
+    struct shot shot = shoot_box(ZERO, point(10, 1, 1), 1, true, 512, 512);
     struct vec3 to = vec3_sub(shot.camera.at, shot.camera.eye);
     tap_ok(fabs(to.x) > 4.0 * fabs(to.z) &&
                (to.x > 0.0) == (shot.camera.eye.x < 5.0), "down the corridor");
@@ -144,14 +153,15 @@ static void test_corridor(void)
 }
 
 /* A ceiling lamp along `up`, a table, a cupboard in a corner up to the ceiling. */
-static struct soup furnished(bool z_up, int64_t *lamp)
+static struct soup furnished(bool z_up)
 {
     struct soup soup = {0};
     soup_add_box(&soup, ZERO, point(4, 5, 2.5), 1, true);
     soup_add_box(&soup, point(0.01, 0.01, 0.01), point(1.2, 1.5, 2.49), 1, false);
     soup_add_box(&soup, point(2, 2, 0.7), point(3, 3.5, 0.75), 1, false);
-    *lamp = soup.count;
+    paint(&soup, 0.5, 0.0);
     soup_add_quad(&soup, point(1.5, 2, 2.45), point(0, 1, 0), point(1, 0, 0), 1);
+    paint(&soup, 0.5, 1.0);
     for (int64_t i = 0; i < soup.count && !z_up; i++)
         for (int k = 0; k < 3; k++) { /* (x, y, z) to (x, z, -y) */
             struct vec3 *x = &soup.items[i].corner[k];
@@ -162,11 +172,10 @@ static struct soup furnished(bool z_up, int64_t *lamp)
 
 static void test_furniture(void)
 {
-    int64_t lamp;
     for (int z_up = 0; z_up < 2; z_up++) {
-        struct soup soup = furnished(z_up, &lamp);
+        struct soup soup = furnished(z_up);
         check_room(z_up ? "furniture, z up" : "furniture, y up",
-                   shoot_soup(&soup, lamp, 400, 300), 0.2, z_up);
+                   shoot_soup(&soup, 400, 300), 0.2, z_up);
     }
 }
 
@@ -193,10 +202,9 @@ static void test_generated(void)
  * lamps shine nowhere more than elsewhere. */
 static void test_two_sided(void)
 {
-    int64_t lamp;
-    struct soup soup = furnished(true, &lamp);
-    paint(&soup, 0.5, 1.0);
+    struct soup soup = furnished(true);
     struct scene *scene = scene_of_soup(&soup);
+    scene->materials[0] = scene->materials[1];
     scene->two_sided = scene->two_sided_lamps = true;
     check_room("two-sided faces", shoot(scene, 512, 512), 0.2, true);
 }
@@ -208,11 +216,10 @@ static void test_two_sided_lamps(void)
     for (int both = 0; both < 2; both++) {
         struct soup soup = {0};
         soup_add_box(&soup, ZERO, point(2, 2, 3), 1, true);
-        soup_add_quad(&soup, point(0.5, 0.5, 2.95), point(0, 1, 0), point(1, 0, 0), 1);
         paint(&soup, 0.5, 0.0);
+        soup_add_quad(&soup, point(0.5, 0.5, 2.95), point(0, 1, 0), point(1, 0, 0), 1);
         paint(&soup, 0.5, 1.0);
         struct scene *scene = scene_of_soup(&soup);
-        scene->material_of[12] = scene->material_of[13] = 1;
         scene->two_sided = true;
         scene->two_sided_lamps = both;
         check_room(both ? "a lamp that shines both ways" : "a lamp in a two-sided room",
@@ -230,12 +237,10 @@ static void test_tower(void)
         for (int storey = 1; storey < 20; storey++)
             soup_add_quad(&soup, point(0.5, 1.0 * storey, 0.5), point(0, 0, 2.5),
                           point(3.5, 0, 0), 1);
-        int32_t first = (int32_t)soup.count;
-        soup_add_quad(&soup, point(1, 9.9, 1), point(1, 0, 0), point(0, 0, 1), 1);
         paint(&soup, 0.5, 0.0);
+        soup_add_quad(&soup, point(1, 9.9, 1), point(1, 0, 0), point(0, 0, 1), 1);
         paint(&soup, 0.5, 1.0);
         struct scene *scene = scene_of_soup(&soup);
-        scene->material_of[first] = scene->material_of[first + 1] = 1;
         scene->two_sided = true;
         scene->two_sided_lamps = lamps > 0;
         check_room(lamps ? "with two-sided lamps" : "a two-sided tower",
@@ -277,17 +282,15 @@ static void check_open(const char *name, struct shot shot, double share, bool z_
 
 static void test_objects(void)
 {
+    struct vec3 x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1};
     struct soup soup = {0};
     soup_add_sphere(&soup, 3.0, 3);
-    check_open("a sphere", shoot_soup(&soup, 0, 512, 512), 0.2, false);
-    soup_add_box(&soup, ZERO, point(2, 3, 1), 1, false);
-    check_open("a box", shoot_soup(&soup, 0, 300, 200), 0.1, false);
-    soup_add_quad(&soup, ZERO, point(0, 0, 1), point(1, 0, 0), 1);
-    check_open("a floor", shoot_soup(&soup, 0, 512, 512), 0.05, false);
-    soup_add_quad(&soup, ZERO, point(1, 0, 0), point(0, 0, 1), 1);
-    check_open("a ceiling", shoot_soup(&soup, -1, 512, 512), 0.05, false);
-    soup_add_quad(&soup, ZERO, point(0, 1, 0), point(0, 0, 1), 1);
-    check_open("a wall", shoot_soup(&soup, 0, 512, 512), 0.1, false);
+    paint(&soup, 0.5, 1.0);
+    check_open("a sphere", shoot_soup(&soup, 512, 512), 0.2, false);
+    check_open("a box", shoot_box(ZERO, point(2, 3, 1), 1, false, 300, 200), 0.1, false);
+    check_open("a floor", shoot_square(z, x, 1.0), 0.05, false);
+    check_open("a ceiling", shoot_square(x, z, 0.0), 0.05, false);
+    check_open("a wall", shoot_square(y, z, 1.0), 0.1, false);
 }
 
 /* A lamp at the ceiling is seen from below, also where other things are two-sided. */
@@ -306,8 +309,10 @@ static void test_lamp_above(void)
 {
     struct soup soup = {0};
     soup_add_quad(&soup, ZERO, point(9, 0, 0), point(0, 9, 0), 1);
+    paint(&soup, 0.5, 0.0);
     soup_add_quad(&soup, point(4, 4, 9), point(0, 0.1, 0), point(0.1, 0, 0), 1);
-    struct shot shot = shoot_soup(&soup, 2, 512, 512);
+    paint(&soup, 0.5, 1.0);
+    struct shot shot = shoot_soup(&soup, 512, 512);
     tap_ok(shot.camera.up.z == 1.0 && shot.camera.fronts_only &&
                shot.sight.fronts > 0.1 && shot.camera.eye.z > 0.0,
            "a floor with a lamp above it along z, seen from above");

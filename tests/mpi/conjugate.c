@@ -9,6 +9,7 @@
 #include "rad/beyond/patch_link.h"
 #include "tests/scenes.h"
 #include "tests/solve.h"
+#include "tests/ranks.h"
 #include "tests/tap.h"
 
 enum { ROOTS = 9, BLACK = 4, LEAVES_MAX = 200 };
@@ -64,6 +65,15 @@ static void add_links(struct solver *solver, double strength)
                 number++ % solver->comm->size == solver->comm->rank)
                 link_list_append(&solver->links, link);
         }
+}
+
+static struct criterion criterion_to(double tolerance, int max_iterations)
+{
+    return (struct criterion){.oracle = ORACLE_ERROR,
+                              .solver = SOLVER_CG,
+                              .tolerance = tolerance,
+                              .max_level = 15,
+                              .max_iterations = max_iterations};
 }
 
 /* `splits` roots are split, and a child of each of them. */
@@ -253,9 +263,7 @@ static void share_factors(const struct problem *problem)
 static void test_dense(const struct comm *comm, double strength, double rho, int splits)
 {
     static double f[LEAVES_MAX][LEAVES_MAX];
-    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
-                                  .tolerance = 1e-12, .max_level = 15,
-                                  .max_iterations = 1000};
+    struct criterion criterion = criterion_to(1e-12, 1000);
     struct problem problem = problem_make(comm, strength, rho, splits, &criterion);
     struct vote vote = solve_links(problem.solver);
     share_factors(&problem);
@@ -288,9 +296,7 @@ static void test_dense(const struct comm *comm, double strength, double rho, int
 /* A start from the last answer is good enough at once; its factors are found again. */
 static void test_restart(const struct comm *comm)
 {
-    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
-                                  .tolerance = 1e-6, .max_level = 15,
-                                  .max_iterations = 1000};
+    struct criterion criterion = criterion_to(1e-6, 1000);
     struct problem problem = problem_make(comm, STRONG, 0.9, 4, &criterion);
     solve_links(problem.solver);
     int64_t before = problem.solver->turn.iteration;
@@ -322,9 +328,7 @@ static double difference(const struct problem *a, const struct problem *b)
 /* The bound on the missing light holds after each step, and is not much too large. */
 static void test_bound(const struct comm *comm, double strength)
 {
-    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
-                                  .tolerance = 1e-12, .max_level = 15,
-                                  .max_iterations = 1000};
+    struct criterion criterion = criterion_to(1e-12, 1000);
     struct problem exact = problem_make(comm, strength, 0.8, 3, &criterion);
     double first = 0.0, last = 0.0, closest = 0.0, furthest = 1.0;
     bool counted = true;
@@ -354,9 +358,7 @@ static void test_bound(const struct comm *comm, double strength)
 static void test_bound_is_sharp(const struct comm *comm)
 {
     const double rho = 0.6, area = 0.1;
-    struct criterion criterion = {.oracle = ORACLE_ERROR, .solver = SOLVER_CG,
-                                  .tolerance = 1e-12, .max_level = 15,
-                                  .max_iterations = 1};
+    struct criterion criterion = criterion_to(1e-12, 1);
     struct scene *scene = make_scene(0.0);
     for (int32_t i = 0; i < ROOTS; i++) {
         scene->areas[i] = area;
@@ -404,10 +406,7 @@ static void test_ranks(const struct comm *comm, const struct comm *self, double 
         same = same && memcmp(&parallel.solver->model.forest->radiosity[p],
                               &alone.solver->model.forest->radiosity[p],
                               sizeof(struct rgb)) == 0;
-    struct error error = {0};
-    if (!same)
-        error_set(&error, EXIT_FAILED, "rank %d", comm->rank);
-    same = comm_agree(comm, &error);
+    same = on_all(comm, same);
     if (comm->rank == 0)
         tap_ok(same, "links times %g: on %d ranks as on one, to the bit", strength,
                comm->size);

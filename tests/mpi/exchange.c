@@ -20,8 +20,8 @@
 
 #include <string.h>
 
-#include "tests/random.h"
 #include "tests/ranks.h"
+#include "tests/scenes.h"
 #include "tests/solve.h"
 #include "tests/tap.h"
 
@@ -42,21 +42,13 @@ static struct scene *make_scene(void)
     return scene;
 }
 
-static struct patch_id random_id(struct random *random)
-{
-    struct patch_id id = id_of_root((uint32_t)(random_bits(random) % ROOTS));
-    int level = (int)(random_bits(random) % 5);
-    for (int k = 0; k < level; k++)
-        id = id_child(id, (int)(random_bits(random) % 4));
-    return id;
-}
-
 /* A fifth of the links are not dealt in the first round: their patches come later. */
 static void add_links(struct solver *solver, int round)
 {
     struct random random = random_seed(99);
     for (int i = 0; i < LINKS; i++) {
-        struct patch_id p = random_id(&random), q = random_id(&random);
+        struct patch_id p = random_id(&random, ROOTS, 4),
+                        q = random_id(&random, ROOTS, 4);
         double area = 1e-5 * random_unit(&random);
         uint64_t dealt = random_bits(&random);
         if ((i % 5 == 0) != (round == 1) || dealt % (uint64_t)solver->comm->size !=
@@ -273,7 +265,7 @@ static struct scene *full_scene(const struct comm *comm, bool normals)
     if (scene && normals) {
         scene_add_normals(scene);
         for (int i = 0; i < 3 * scene->input_count; i++)
-            scene->normals[i] = (struct vec3){i, 0.5, -i};
+            scene->normals[i] = point(i, 0.5, -i);
     }
     if (scene) {
         scene->two_sided = scene->two_sided_lamps = true;
@@ -285,8 +277,7 @@ static struct scene *full_scene(const struct comm *comm, bool normals)
 /* Rays through the cube meet the same as with an octree that this rank builds. */
 static bool sees_alike(const struct octree *octree, const struct scene *scene)
 {
-    struct octree *own =
-        octree_create(scene->triangles, scene->planes, scene->input_count);
+    struct octree *own = octree_of(scene);
     struct random random = random_seed(5);
     bool alike = true;
     for (int i = 0; i < 200; i++) {
@@ -379,8 +370,7 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
     for (int face = 0; face < 6; face++)
         cube->materials[face] = (struct material){{{0.3 + 0.1 * face, 0.5, 0.2}},
                                                   {{face == 1, face == 1, face == 2}}};
-    struct octree *octree =
-        octree_create(cube->triangles, cube->planes, cube->input_count);
+    struct octree *octree = octree_of(cube);
     for (int k = 0; k < 2; k++) {
         solvers[k] = beyond_create(comms[k], cube, octree, criterion);
         solver_link_roots(solvers[k]);

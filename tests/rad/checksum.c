@@ -24,11 +24,8 @@ static struct scene *make_scene(void)
 static void random_ids(uint64_t seed, struct patch_id ids[PATHS])
 {
     struct random random = random_seed(seed);
-    for (int i = 0; i < PATHS; i++) {
-        ids[i] = id_of_root((uint32_t)random_below(&random, ROOTS));
-        for (int k = random_below(&random, i == 0 ? ID_MAX_LEVEL + 1 : 6); k > 0; k--)
-            ids[i] = id_child(ids[i], random_below(&random, 4));
-    }
+    for (int i = 0; i < PATHS; i++)
+        ids[i] = random_id(&random, ROOTS, i == 0 ? ID_MAX_LEVEL : 5);
 }
 
 /* Any bits but those of NaN, which a machine may change in a copy; every other one is

@@ -26,15 +26,6 @@ static struct scene *make_scene(void)
     return scene;
 }
 
-static struct patch_id random_id(struct random *random, int max_level)
-{
-    struct patch_id id = id_of_root((uint32_t)random_below(random, ROOTS));
-    int level = random_below(random, max_level + 1);
-    for (int k = 0; k < level; k++)
-        id = id_child(id, random_below(random, 4));
-    return id;
-}
-
 static bool same_id(struct patch_id a, struct patch_id b)
 {
     return a.root == b.root && a.hierarchy == b.hierarchy;
@@ -102,7 +93,7 @@ static void test_areas(struct scene *scene)
     struct forest *forest = forest_create(scene);
     struct random random = random_seed(2);
     for (int i = 0; i < PATHS; i++)
-        forest_reach(forest, random_id(&random, ID_MAX_LEVEL));
+        forest_reach(forest, random_id(&random, ROOTS, ID_MAX_LEVEL));
     bool exact = true;
     double worst = 0.0;
     for (int32_t p = 0; p < forest->count; p++) {
@@ -164,7 +155,7 @@ static void test_reach(struct scene *scene)
     static struct patch_id ids[PATHS];
     struct random random = random_seed(3);
     for (int i = 0; i < PATHS; i++)
-        ids[i] = random_id(&random, 8);
+        ids[i] = random_id(&random, ROOTS, 8);
     struct forest *first = forest_create(scene);
     bool found = true, same = true, numbers_differ = false;
     for (int i = 0; i < PATHS; i++)
@@ -213,7 +204,7 @@ static void test_walk(struct scene *scene)
     struct forest *forest = forest_create(scene);
     struct random random = random_seed(4);
     for (int i = 0; i < PATHS; i++)
-        forest_reach(forest, random_id(&random, 6));
+        forest_reach(forest, random_id(&random, ROOTS, 6));
     int64_t seen = 0;
     bool ordered = true, skipped = true;
     for (int32_t root = 0; root < ROOTS; root++) {

@@ -78,22 +78,22 @@ static void test_samples(const struct comm *comm, const char *name, struct soup 
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof(array)[0]))
 
-/* 5.3: E = pi 1000 F lx there, F here. */
+/* 5.3: in lux, E = pi 1000 F there. */
+static const double PERCENT = 100.0 / (PI * 1000.0);
+
 static void test_area_source(const struct comm *comm)
 {
-    static const double PERCENT = 100.0 / (PI * 1000.0); /* of a lux */
-    static const struct sample lux_wall[] = {{2.75, 32.676898, 0}, {2.25, 75.193925, 0},
-                                             {1.75, 81.323172, 0}, {1.25, 69.060627, 0},
-                                             {0.75, 53.403531, 0}, {0.25, 40.001852, 0}};
-    static const struct sample lux_floor[] = {
-        {0.25, 61.424099, 0}, {0.75, 79.255157, 0}, {1.25, 95.667276, 0},
-        {1.75, 105.778242, 0}, {2.25, 105.778242, 0}, {2.75, 95.667276, 0},
-        {3.25, 79.255157, 0}, {3.75, 61.424099, 0}};
-    struct sample wall[COUNT(lux_wall)], ground[COUNT(lux_floor)];
-    for (int i = 0; i < COUNT(lux_wall); i++)
-        wall[i] = (struct sample){lux_wall[i].at, lux_wall[i].percent * PERCENT, 0.0};
-    for (int i = 0; i < COUNT(lux_floor); i++)
-        ground[i] = (struct sample){lux_floor[i].at, lux_floor[i].percent * PERCENT, 0.0};
+    struct sample wall[] = {{2.75, 32.676898, 0}, {2.25, 75.193925, 0},
+                            {1.75, 81.323172, 0}, {1.25, 69.060627, 0},
+                            {0.75, 53.403531, 0}, {0.25, 40.001852, 0}};
+    struct sample ground[] = {{0.25, 61.424099, 0},  {0.75, 79.255157, 0},
+                              {1.25, 95.667276, 0},  {1.75, 105.778242, 0},
+                              {2.25, 105.778242, 0}, {2.75, 95.667276, 0},
+                              {3.25, 79.255157, 0},  {3.75, 61.424099, 0}};
+    for (int i = 0; i < COUNT(wall); i++)
+        wall[i].percent *= PERCENT;
+    for (int i = 0; i < COUNT(ground); i++)
+        ground[i].percent *= PERCENT;
     struct soup soup = {0};
     add_planes(&soup, WALL, CEILING);
     test_samples(comm, "5.3 area source, wall", &soup, WALL, "--epsilon 1e-6", wall,

@@ -190,8 +190,7 @@ static bool trace_truth(const struct comm *comm, const char *path, int paths,
     struct node_block block;
     struct scene *scene = read_scene(comm, path, &block);
     if (scene) {
-        struct octree *octree =
-            octree_create(scene->triangles, scene->planes, scene->input_count);
+        struct octree *octree = octree_of(scene);
         *truth = truth_trace(comm, scene, octree, TRUTH, paths);
         octree_destroy(octree);
     } else if (comm->rank == 0) {

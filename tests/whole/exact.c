@@ -29,10 +29,7 @@ static struct scene *furnace_of(double reflectance)
 {
     struct scene *cube = cube_create();
     for (int face = 0; face < 6; face++)
-        for (int c = 0; c < BANDS; c++) {
-            cube->materials[face].reflectance.band[c] = reflectance;
-            cube->materials[face].emission.band[c] = 1.0;
-        }
+        cube->materials[face] = material_grey(reflectance, 1.0);
     return cube;
 }
 
@@ -82,11 +79,7 @@ static void test_furnace(const struct comm *comm, double epsilon, double largest
  * with the factor q = rho R of one iteration: the paper's stop leaves so much of it. */
 static void test_iteration_stop(const struct comm *comm, double rho, double tolerance)
 {
-    struct scene *cube = furnace_create();
-    for (int face = 0; face < 6; face++)
-        for (int c = 0; c < BANDS; c++)
-            cube->materials[face].reflectance.band[c] = rho;
-    struct solution rough = solve(comm, cube, criterion_of(1.0, 0, tolerance));
+    struct solution rough = solve(comm, furnace_of(rho), criterion_of(1.0, 0, tolerance));
     double row = rough.stats.row_sum_mean; /* all rows are the same here */
     double exact = 1.0 / (1.0 - rho * row);
     double b = rough.solver->model.forest->radiosity[0].band[0];
@@ -133,10 +126,7 @@ static void test_glowing_cube(const struct comm *comm, double rho, double allowe
 {
     struct scene *cube = cube_create();
     for (int face = 0; face < 6; face++)
-        for (int c = 0; c < BANDS; c++) {
-            cube->materials[face].reflectance.band[c] = rho;
-            cube->materials[face].emission.band[c] = face == 0;
-        }
+        cube->materials[face] = material_grey(rho, face == 0);
     struct solution s = solve(comm, cube, *criterion);
     double exact[ROOTS], error = 0.0;
     glowing_cube_exact(s.scene, rho, exact);
