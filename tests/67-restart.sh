@@ -165,26 +165,36 @@ check "one with a changed byte" \
 
 # --- stopped at ten moments ---
 
-# A run that is stopped N ms after it began, and goes on elsewhere: on 1, 2 or 4 ranks.
-# One that has no checkpoint yet says nothing of it; then there is nothing to go on from,
-# and one too late to be stopped goes on as well.
+# A run that is stopped some time after it began, and goes on elsewhere: on 1, 2 or 4
+# ranks. One that has no checkpoint yet says nothing of it; then there is nothing to go on
+# from, and one too late to be stopped goes on as well. At even moments, counted from the
+# end of the first pass, the pass that is broken off is one that the memory limit ends.
 fine="scenes/cornell.obj --epsilon 3e-6 --size 40x40"
-run straight 2 $fine --quiet
+later="scenes/cornell.obj --epsilon 3e-6 --linking pairs --size 20x20 --memory 12M"
+run fine 2 $fine --quiet
+run later 2 $later >/dev/null
+check "a limit in the second pass" grep -q '(1547 split)' "$work/later.err"
 begun=0
 for moment in 1 2 3 4 5 6 7 8 9 10; do
     rm -f "$work/stopped"
-    $MPIEXEC -n 3 "$PHR" $fine --checkpoint "$work/stopped" \
+    straight=fine settings=$fine pause=0.15
+    [ $((moment % 2)) -eq 1 ] || straight=later settings=$later pause=0.005
+    $MPIEXEC -n 3 "$PHR" $settings --checkpoint "$work/stopped" \
         >/dev/null 2>"$work/stopped.err" &
     launched=$!
-    sleep "$(awk "BEGIN { print 0.15 * $moment }")"
+    while [ $straight = later ] && [ ! -e "$work/stopped" ] && kill -0 $launched; do
+        sleep 0.01
+    done
+    sleep "$(awk "BEGIN { print $pause * $moment }")"
     kill -TERM $launched 2>/dev/null
     asked=$(date +%s)
     wait $launched
     check "stopped at moment $moment, within 3 s" [ $(($(date +%s) - asked)) -le 3 ]
     if [ -e "$work/stopped" ]; then
         begun=$((begun + 1))
-        run stopped $((1 << moment % 3)) $fine --quiet --resume "$work/stopped"
-        check "and goes on to the same bytes" same stopped straight
+        run stopped $((1 << moment % 3)) $settings --quiet --resume "$work/stopped" \
+            >/dev/null
+        check "and goes on to the same bytes" same stopped $straight
     else
         check "which does not say how to go on" \
             [ "$(grep -c -- --resume "$work/stopped.err")" -eq 0 ]
@@ -227,9 +237,6 @@ check "and not where there is not" same still small-1
 
 # The limit ends a pass that is not the first: from the checkpoint of the pass before, it
 # ends there again.
-later="scenes/cornell.obj --epsilon 3e-6 --linking pairs --size 20x20 --memory 12M"
-run later 2 $later >/dev/null
-check "a limit in the second pass" grep -q '(1547 split)' "$work/later.err"
 for ranks in 1 4; do
     $MPIEXEC -n $ranks "$PHR" $later --quiet --max-iterations 5 \
         --checkpoint "$work/later.check"
