@@ -8,6 +8,7 @@
 
 #include <string.h>
 
+#include "geom/hull.h"
 #include "geom/wall.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
@@ -44,7 +45,8 @@ static int32_t octree_blocker(const struct octree *octree, struct vec3 from,
     return octree_blocks_segment(octree, from, to, own, &guess, counts) ? guess : -1;
 }
 
-enum { SEGMENTS = 100000, RAYS = 8000, CROSSINGS = 20000, PACKETS = 1000, WALLS = 20000 };
+enum { SEGMENTS = 100000, RAYS = 8000, CROSSINGS = 20000, PACKETS = 1000, WALLS = 20000,
+       SHAFTS = 3000, ENTRANTS = 24 };
 
 /* --- scenes --- */
 
@@ -419,6 +421,75 @@ static void test_walls(const struct world *world, const char *name)
            found, wrong);
 }
 
+/* --- shafts --- */
+
+/* A triangle of the scene, or a part of one. */
+static struct triangle random_part(struct random *random, const struct scene *scene,
+                                   int32_t *number)
+{
+    do {
+        *number = random_below(random, scene->input_count);
+    } while (!(scene->areas[*number] > 0.0));
+    struct triangle part = scene->triangles[*number];
+    for (int level = random_below(random, 4); level > 0; level--)
+        part = triangle_child(&part, random_below(random, 4));
+    return part;
+}
+
+static bool has_corner_in_front(const struct triangle *t, const struct plane *plane)
+{
+    double highest = plane_distance(plane, t->corner[0]);
+    for (int k = 1; k < 3; k++)
+        highest = real_max(highest, plane_distance(plane, t->corner[k]));
+    return highest > GEOM_ROUNDING;
+}
+
+/* What reaches into the space between two triangles is listed, as by looking at all;
+ * nothing else stops a segment between their fronts. */
+static void test_shafts(const struct world *world, const char *name)
+{
+    const struct scene *scene = world->scene;
+    struct random random = random_seed(15);
+    struct octree_counts counts = {0};
+    int listed = 0, overfull = 0, wrong = 0, stopped = 0, missed = 0;
+    for (int i = 0; i < SHAFTS; i++) {
+        int32_t own[2], entrants[ENTRANTS], count = 0, most = i % 3 * (ENTRANTS / 2);
+        struct triangle p = random_part(&random, scene, &own[0]);
+        struct triangle q = random_part(&random, scene, &own[1]);
+        const struct plane *plane_p = &scene->planes[own[0]],
+                           *plane_q = &scene->planes[own[1]];
+        if (!has_corner_in_front(&p, plane_q) || !has_corner_in_front(&q, plane_p))
+            continue;
+        int32_t found = octree_list_shaft(world->octree, &p, plane_p, &q, plane_q, own,
+                                          entrants, most, &counts);
+        struct hull hull = hull_of_pair(&p, plane_p, &q, plane_q);
+        struct vec3 from = random_point_on(&random, &p);
+        struct vec3 to = random_point_on(&random, &q);
+        struct question segment = {from, to, {own[0], own[1]}};
+        bool faces = plane_distance(plane_p, to) > 0.0 &&
+                     plane_distance(plane_q, from) > 0.0;
+        for (int32_t t = 0; t < scene->input_count; t++) {
+            bool enters = t != own[0] && t != own[1] &&
+                          vec3_length(scene->planes[t].normal) > 0.0 &&
+                          hull_is_entered(&hull, &scene->triangles[t]);
+            bool stops = faces && is_blocker(scene, &segment, t);
+            wrong += enters && count < found && found <= most && entrants[count] != t;
+            count += enters;
+            stopped += stops;
+            missed += stops && !enters;
+        }
+        wrong += found != (count > most ? most + 1 : count);
+        listed += found <= most ? found : 0;
+        overfull += found > most;
+    }
+    tap_ok(listed > 0 && overfull > 0 && wrong == 0,
+           "%s: shafts list %d triangles, and %d have more; %d answers are wrong", name,
+           listed, overfull, wrong);
+    tap_ok(stopped > 0 && missed == 0,
+           "%s: of %d triangles that stop a segment there %d reach into no shaft", name,
+           stopped, missed);
+}
+
 /* The octree becomes a view of its own packed bytes, moved from where they were packed.
  * Returns their block. */
 static char *repack(struct world *world)
@@ -451,6 +522,7 @@ static void test_scene(void (*make)(struct soup *), bool packed, const char *nam
     test_packets(&world, name, false);
     test_packets(&world, name, true);
     test_walls(&world, name);
+    test_shafts(&world, name);
     world_free(&world);
     alloc_free(block);
 }
