@@ -14,15 +14,9 @@ functions_run           149   150
 files_run                20    20
 calls_to_form_factor      6     7
 includes_of_beyond        0     0
-<<<<<<< HEAD
 ground_floor_lines     4255  4500
 source_lines          26586 16000
-test_lines            29796 16000
-=======
-ground_floor_lines     4257  4500
-source_lines          26586 16000
-test_lines            29796 16000
->>>>>>> b776fa9 (Test exact shadows of few blockers, and lists of shafts)
+test_lines            29785 16000
 long_lines                0     0
 what_per_1000_words     1.2     2
 large_structs             0     0

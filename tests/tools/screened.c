@@ -15,11 +15,6 @@ static const double TOLERANCES[] = {1e-3, 1e-4, 1e-5};
 /* Smaller errors of F are not told (tools/viewfactor.c). */
 static const double LEAST = 1e-5;
 
-static struct vec3 point(double x, double y, double z)
-{
-    return (struct vec3){x, y, z};
-}
-
 static struct facet facet_of(struct triangle t)
 {
     return (struct facet){t, triangle_plane(&t), triangle_area(&t), -1};
