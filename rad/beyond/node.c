@@ -38,7 +38,8 @@ struct end end_of(const struct model *model, int32_t node)
                       .id = model->forest->patches[node].id,
                       .reflectance = material->reflectance,
                       .radiosity = model->forest->radiosity[node],
-                      .is_dark = material_is_dark(material)};
+                      .is_dark = material_is_dark(material),
+                      .emits = material_emits(material)};
     const struct vec3 *corner = end.facet.triangle.corner;
     end.low = vec3_least(corner[0], vec3_least(corner[1], corner[2]));
     end.high = vec3_most(corner[0], vec3_most(corner[1], corner[2]));

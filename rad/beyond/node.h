@@ -15,7 +15,8 @@ struct end {
     struct vec3 normal_low, normal_high; /* box around its unit normals */
     double area, radius;
     struct rgb reflectance, radiosity;
-    bool is_dark;
+    bool is_dark; /* neither reflects nor emits */
+    bool emits;   /* a patch of a lamp */
 };
 
 struct end end_of(const struct model *model, int32_t node);

@@ -219,11 +219,24 @@ static bool may_split(const struct model *model, const struct end *end)
     return end->cluster || patch_may_split(model, end->node);
 }
 
-/* The larger one; of equal ones that with the lower ID. */
+/* A patch that only reflects is split before a cluster if it is four times as wide: its
+ * parts would have to be linked with each part of the cluster afterwards. (Office3 at
+ * epsilon 1e-4: 30 % fewer links than by width alone and an eighth less error, Cornell
+ * box at 1e-3 a fifth fewer. With lamps put off, too, things of 2 cm beside them are lost
+ * in their clusters: a room of 18,512 triangles has half more error.) */
+static const double PUT_OFF = 0.25;
+
+static double width_of(const struct end *end)
+{
+    return end->cluster || end->emits ? end->radius : PUT_OFF * end->radius;
+}
+
+/* The wider one; of equal ones that with the lower ID. */
 static bool p_is_wider(const struct meeting *m)
 {
-    if (m->p.radius != m->q.radius)
-        return m->p.radius > m->q.radius;
+    double width_p = width_of(&m->p), width_q = width_of(&m->q);
+    if (width_p != width_q)
+        return width_p > width_q;
     return id_compare(m->p.id, m->q.id) <= 0;
 }
 
