@@ -22,12 +22,12 @@
 #           as many seconds (tests/bench/measure.c, --trace); samples are its paths
 #   octree, embree   100,000 rays that wander (tests/bench/hits.c)
 # A line ends with the first run of more than SECONDS_MOST, or before one that is broken
-# off: after four times as long by the clock, or after five minutes where the path tracer
-# follows. Lines take turns, so
-# that a disturbance of the machine hits all of them; runs below two seconds are made
-# three times, and the least time for the error counts. References are made when they are
-# missing and kept under $BUILD/chart. Their noise (columns leaf_noise and shown_noise) is
-# to be a third of the errors at most: L1 and median contain it, RMS does not.
+# off: after four times as long by the clock (ulimit -t makes seconds of the processor
+# coarse), or after five minutes where the path tracer follows. Lines take turns, so that
+# a disturbance of the machine hits all; runs below two seconds are made three times, and
+# the least time for the error counts. References are made when they are missing and kept
+# under $BUILD/chart. Their noise (columns leaf_noise and shown_noise) is to be a third of
+# the errors at most: L1 and median contain it, RMS does not.
 
 cd "$(dirname "$0")/../.." || exit 2
 : "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${CSV:=docs/chart.csv}" "${OPTIONS:=}"
