@@ -50,7 +50,7 @@ static inline struct shading *shade(const struct solution *s)
     const struct forest *forest = s->solver->model.forest;
     int64_t count;
     uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
-    struct shading *shading = shading_create(forest, NULL, open);
+    struct shading *shading = shading_create(forest, NULL, NULL, open);
     alloc_free(open);
     return shading;
 }

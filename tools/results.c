@@ -70,12 +70,15 @@ static uint8_t *survey_leaves(struct run *run)
     return open;
 }
 
-/* Prepares the shading of all leaves, less the radiosities `less`, which may be NULL. */
-static struct shading *shade_leaves(struct run *run, const struct rgb *less,
+/* Prepares the shading of all leaves, without the light that comes straight from lamps if
+ * there is an answer. */
+static struct shading *shade_leaves(struct run *run, const struct answer *answer,
                                     const uint8_t *open)
 {
     double start = comm_seconds();
-    struct shading *shading = shading_create(run->solver->model.forest, less, open);
+    struct shading *shading =
+        shading_create(run->solver->model.forest, answer ? answer->straight : NULL,
+                       answer ? answer->error : NULL, open);
     run->solver->account.seconds[PHASE_SHADING] += comm_seconds() - start;
     return shading;
 }
@@ -144,7 +147,7 @@ static bool show_pictures(struct run *run, const uint8_t *open)
     if (colours)
         shading = show_shading(run, colours);
     else if (!run->options.pixels)
-        shading = shade_leaves(run, gathers ? answer->straight : NULL, open);
+        shading = shade_leaves(run, gathers ? answer : NULL, open);
     struct renderer renderer =
         renderer_make(run->octree, shading, gathers ? &answer->gather : NULL);
     if (gathers)

@@ -27,10 +27,12 @@ uint8_t *shading_open_quarters(const struct forest *forest, const struct octree 
 
 /* Prepares the shading of a solution. `open`: the open quarters of all leaves. NULL gives
  * flat shading: each leaf has three vertices of its own with its constant. `less`:
- * [patches] radiosity to subtract, W/m^2, or NULL. Vertices are numbered in the canonical
- * order of leaves: the same on every rank. */
+ * [patches] radiosity to subtract, W/m^2: that by the light of lamps, with its shadows;
+ * or NULL. `error`: [patches] two standard deviations of the radiosity of leaves, W/m^2,
+ * or NULL; heeded only if there is `less`. Vertices are numbered in the canonical order
+ * of leaves: the same on every rank. */
 struct shading *shading_create(const struct forest *forest, const struct rgb *less,
-                               const uint8_t *open);
+                               const float *error, const uint8_t *open);
 void shading_destroy(struct shading *shading);
 
 /* Returns the radiosity at the point of a root with these barycentric coordinates,

@@ -62,13 +62,14 @@ static struct shading *shade(const struct measure *measure, const struct solutio
     if (measure->options.pixels)
         return NULL;
     if (measure->options.flat)
-        return shading_create(forest, NULL, NULL);
+        return shading_create(forest, NULL, NULL, NULL);
     int64_t leaves;
     uint8_t *open = shading_open_quarters(forest, s->octree, measure->comm.rank,
                                           measure->comm.size, &leaves);
     comm_add_bytes(&measure->comm, open, leaves);
+    const struct answer *answer = &s->solver->beyond->answer;
     struct shading *shading =
-        shading_create(forest, s->solver->beyond->answer.straight, open);
+        shading_create(forest, answer->straight, answer->error, open);
     alloc_free(open);
     return shading;
 }

@@ -54,7 +54,7 @@ static void make_world(void)
     }
     int64_t count;
     uint8_t *open = shading_open_quarters(forest, world.octree, 0, 1, &count);
-    shading = shading_create(forest, NULL, open);
+    shading = shading_create(forest, NULL, NULL, open);
     alloc_free(open);
     for (int32_t root = 0; root < scene->input_count; root++)
         find_leaves(root);

@@ -32,8 +32,9 @@ static struct shading *shade_rest(const struct solution *s)
     int64_t count;
     const struct forest *forest = s->solver->model.forest;
     uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
+    const struct answer *answer = &s->solver->beyond->answer;
     struct shading *shading =
-        shading_create(forest, s->solver->beyond->answer.straight, open);
+        shading_create(forest, answer->straight, answer->error, open);
     alloc_free(open);
     return shading;
 }

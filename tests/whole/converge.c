@@ -66,8 +66,9 @@ static struct result run(const struct comm *comm, const char *path,
         const struct forest *forest = s.solver->model.forest;
         int64_t leaves;
         uint8_t *open = shading_open_quarters(forest, s.octree, 0, 1, &leaves);
+        const struct answer *answer = &s.solver->beyond->answer;
         struct shading *shading =
-            shading_create(forest, s.solver->beyond->answer.straight, open);
+            shading_create(forest, answer->straight, answer->error, open);
         struct renderer renderer = renderer_make(s.octree, shading,
                                                  s.solver->beyond->answer.straight
                                                      ? &s.solver->beyond->answer.gather

@@ -154,7 +154,7 @@ static int64_t survey_leaves(void)
 
 static int64_t count_vertices(const uint8_t *open)
 {
-    struct shading *made = shading_create(world.model.forest, NULL, open);
+    struct shading *made = shading_create(world.model.forest, NULL, NULL, open);
     int64_t count = made->vertex_count;
     shading_destroy(made);
     return count;
@@ -352,7 +352,7 @@ int main(int argc, char **argv)
     struct forest *forest = world.model.forest;
     for (int64_t p = 0; p < forest->count; p++)
         forest->radiosity[p] = (struct rgb){{1.0, 1.0, 1.0}};
-    shading = shading_create(forest, NULL, NULL);
+    shading = shading_create(forest, NULL, NULL, NULL);
     write_scenes();
     test_questions();
     for (size_t i = 0; i < sizeof PHASES / sizeof PHASES[0]; i++)
