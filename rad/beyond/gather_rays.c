@@ -504,6 +504,8 @@ float receiver_bare_share(const struct receiver *r)
     struct vec3 normal = r->facet.plane.normal;
     double u[SEQUENCE_DIMENSIONS];
     int covered = 0;
+    if (r->row.end == r->first_term && !(rgb_sum(r->row.source) > 0.0))
+        return 0.0f;
     for (uint32_t i = 0; i < BARE_POINTS; i++) {
         sequence_point(&sequence, i, u);
         struct vec3 x = triangle_of_square(&r->facet.triangle, u[0], u[1]);

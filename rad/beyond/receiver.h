@@ -56,7 +56,8 @@ struct receiver_share receiver_share_of_wide(struct receiver *r,
 
 /* The share of a leaf's area that is bare: not covered by another face in its plane (a
  * picture on a wall, a lamp in the ceiling), nor, as its rays have shown, inside of a
- * thing that stands on it. */
+ * thing that stands on it. None of a leaf that sees nothing, as the underside of that
+ * thing. */
 float receiver_bare_share(const struct receiver *r);
 
 /* Makes the row of a leaf from exact factors. False if its root is not open, or the row
