@@ -3,9 +3,6 @@
 
 . tests/tap.sh
 
-: "${PHR:=./phr}"
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
-
 "$PHR" --validate >"$work/table" 2>"$work/errors"
 check "--validate succeeds" [ $? -eq 0 ]
 check "silently" [ ! -s "$work/errors" ]

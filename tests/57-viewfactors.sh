@@ -5,9 +5,6 @@
 
 . tests/tap.sh
 
-: "${PHR:=./phr}"
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
-
 # table FILE ARGUMENTS...: the table of $work/FILE.obj goes to $work/FILE.csv.
 table() {
     table_name=$1

@@ -4,8 +4,6 @@
 # with the reason.
 . tests/tap.sh
 
-: "${PHR:=./phr}"
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
 cornell="scenes/cornell.obj --epsilon 1e-4 --size 40x40 --quiet"
 counts="checksum links patches passes iterations rays node_tests converged memory_limited
         absorbed_power error_estimate"

@@ -3,7 +3,7 @@
 
 . tests/tap.sh
 
-: "${PHR:=./phr}" "${RUNS:=200}" "${SEED:=1}"
+: "${RUNS:=200}" "${SEED:=1}"
 case $PHR in /*) ;; *) PHR=$PWD/$PHR ;; esac
 mkdir "$work/scenes"
 

@@ -5,8 +5,6 @@
 # Ranks write down their process numbers, and only those are sent signals.
 . tests/tap.sh
 
-: "${PHR:=./phr}"
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
 scene="scenes/cornell.obj --epsilon 1e-6 --flat --size 20x20"
 patience=60 # seconds that nothing here may take
 
@@ -148,6 +146,15 @@ stopped_early() {
     check "all ranks are gone" ranks_are_gone
 }
 
+# stopped_by_one WHILE: one rank is sent SIGTERM, which ends all.
+stopped_by_one() {
+    begun=$(date +%s)
+    kill -TERM "$(tail -n 1 "$work/ranks")"
+    finish
+    check "SIGTERM to one rank $1: exit status 1 ($status)" [ "$status" -eq 1 ]
+    check "within 3 s" [ $(($(date +%s) - begun)) -le 3 ]
+}
+
 # Opening a pipe waits for phr, writing to it for phr to read.
 cp scenes/room.mtl "$work"
 mkfifo "$work/pipe.obj"
@@ -174,12 +181,7 @@ stopped_early "while form factors are computed"
 start 3 "$work/room.obj" --form-factors --epsilon 1e-6
 wait_for 1 " groups"
 sleep 0.5
-begun=$(date +%s)
-kill -TERM "$(tail -n 1 "$work/ranks")"
-finish
-check "SIGTERM to one rank while form factors are computed: exit status 1 ($status)" \
-    [ "$status" -eq 1 ]
-check "within 3 s of the signal" [ $(($(date +%s) - begun)) -le 3 ]
+stopped_by_one "while form factors are computed"
 
 # Linking of all pairs takes longer than the three seconds that are allowed.
 build/room 16000 1 >"$work/room.obj"
@@ -187,12 +189,7 @@ cp scenes/room.mtl "$work"
 start 3 "$work/room.obj" --paper -o "$work/new.ppm" --checkpoint "$work/early"
 wait_for 1 "; linking"
 sleep 0.5
-begun=$(date +%s)
-kill -TERM "$(tail -n 1 "$work/ranks")"
-finish
-check "SIGTERM to one rank while roots are linked ends it: exit status 1 ($status)" \
-    [ "$status" -eq 1 ]
-check "within 3 s" [ $(($(date +%s) - begun)) -le 3 ]
+stopped_by_one "while roots are linked"
 check "before roots are linked" [ "$(grep -c 'roots are linked' "$work/err")" -eq 0 ]
 check "it does not say how to go on" grep -q '^phr: stopped by SIGTERM$' "$work/err"
 check "for there is nothing" [ ! -e "$work/early" -a ! -e "$work/new.ppm" ]

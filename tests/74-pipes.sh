@@ -4,8 +4,6 @@
 # name: known by their first bytes. On 1 and on 4 ranks.
 . tests/tap.sh
 
-: "${PHR:=./phr}"
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
 scene="scenes/cornell.obj --max-level 1 --samples 1 --size 300x200"
 view="--view scenes/cornell.view"
 pipe=$work/f.fifo

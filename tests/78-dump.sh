@@ -1,9 +1,6 @@
 # --dump: patches and links as text, and the program that takes IDs apart.
 . tests/tap.sh
 
-: "${PHR:=./phr}"
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
-
 # dump RANKS WHAT OPTIONS...: $work/RANKS.WHAT
 dump() {
     ranks=$1 what=$2

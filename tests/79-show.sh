@@ -1,9 +1,6 @@
 # Pictures of the algorithm: --show, and the timeline of tools/timeline.awk.
 . tests/tap.sh
 
-: "${PHR:=./phr}"
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
-
 # show RANKS WHAT OPTIONS...: $work/RANKS.WHAT.ppm, and its messages
 show() {
     ranks=$1 what=$2

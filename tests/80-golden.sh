@@ -4,8 +4,6 @@
 # golden` renews the expected ones.
 . tests/tap.sh
 
-: "${PHR:=./phr}" "${IMGDIFF:=build/imgdiff}"
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
 made=$BUILD/golden
 rm -rf "$made"
 

@@ -2,8 +2,6 @@
 # files. Solutions of phr against themselves and against a finer one.
 . tests/tap.sh
 
-: "${PHR:=./phr}" "${IMGDIFF:=build/imgdiff}"
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
 out=$work/stdout
 err=$work/stderr
 

@@ -7,8 +7,7 @@
 # and this must be seen.
 . tests/tap.sh
 
-: "${PHR:=./phr}" "${IMGDIFF:=build/imgdiff}" "${PATHTRACER:=build/pathtracer}"
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
+: "${PATHTRACER:=build/pathtracer}"
 
 # box RHO: a room of 40 x 30 x 25, fronts inside, that reflects RHO and emits 1.
 box() {

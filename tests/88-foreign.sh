@@ -3,7 +3,6 @@
 # packages netpbm, imagemagick, openimageio-tools, python3-vtk9 and blender.
 . tests/tap.sh
 
-: "${IMGDIFF:=build/imgdiff}"
 ./phr scenes/cornell.obj --view scenes/cornell.view --size 96x64 --samples 1 \
     --epsilon 1e-2 --final-gather 64 --quiet -o "$work/a.ply" -o "$work/a.vtk" \
     -o "$work/a.pfm" -o "$work/a.ppm" -o "$work/a.hdr" -o "$work/a.png"

@@ -9,10 +9,8 @@
 # $BUILD/cycles. In the room the noise is then 1.3 %.
 . tests/tap.sh
 
-: "${PHR:=./phr}" "${IMGDIFF:=build/imgdiff}"
 : "${SAMPLES:=256}" "${SIZE:=256}" "${LAMP:=2}" "${LENGTH:=1}"
 export LENGTH
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
 folder=$BUILD/cycles
 mkdir -p "$folder"
 cp scenes/room.mtl "$folder"

@@ -3,8 +3,6 @@
 # whole (or there is none yet), and a run from it equals an uninterrupted one.
 . tests/tap.sh
 
-: "${PHR:=./phr}"
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
 scene="scenes/cornell.obj --epsilon 2e-6 --flat --size 20x20 --quiet"
 moments=40
 patience=60 # seconds

@@ -11,9 +11,8 @@
 # are there too, as .ppm.
 . tests/tap.sh
 
-: "${PHR:=./phr}" "${IMGDIFF:=build/imgdiff}" "${PATHTRACER:=build/pathtracer}"
+: "${PATHTRACER:=build/pathtracer}"
 : "${SAMPLES:=2048}" "${RANKS:=2}" "${LAMP:=10}" "${EXPOSURE:=0.8}"
-case $PHR in */*) ;; *) PHR=./$PHR ;; esac
 folder=$BUILD/prove
 mkdir -p "$folder"
 cp scenes/room.mtl "$folder"

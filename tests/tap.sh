@@ -3,7 +3,8 @@
 # own.
 
 : "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${MPICC:=mpicc}" "${CC:=cc}" \
-    "${MAKE:=make}"
+    "${MAKE:=make}" "${PHR:=./phr}" "${IMGDIFF:=build/imgdiff}"
+case $PHR in */*) ;; *) PHR=./$PHR ;; esac
 tap_count=0
 tap_failed=0
 work=$BUILD/tests/$(basename "$0" .sh).work
