@@ -34,15 +34,36 @@ static inline struct criterion criterion_parse(const char *words)
     return criterion;
 }
 
-/* Prepares and solves a scene on the only rank, and takes it over. */
-static inline struct solution solve_scene(const struct comm *comm, struct scene *scene,
-                                          const char *words)
+static struct comm world_comm; /* that main() starts; of the only rank */
+
+/* Prepares and solves a scene, and takes it over. */
+static inline struct solution solve_scene(struct scene *scene, const char *words)
 {
     scene_prepare_or_exit(scene);
-    return solve(comm, scene, criterion_parse(words));
+    return solve(&world_comm, scene, criterion_parse(words));
+}
+
+/* The same for a list of triangles, which is emptied. */
+static inline struct solution solve_soup(struct soup *soup, const char *words)
+{
+    return solve_scene(scene_of_soup(soup), words);
 }
 
 /* --- answers --- */
+
+/* Area times radiosity over area, of the roots first .. first + count - 1. W/m^2, first
+ * band. */
+static inline double mean_radiosity(const struct solution *s, int32_t first,
+                                    int32_t count)
+{
+    const struct forest *forest = s->solver->model.forest;
+    double light = 0.0, area = 0.0;
+    for (int32_t root = first; root < first + count; root++) {
+        light += forest_area(forest, root) * forest->radiosity[root].band[0];
+        area += forest_area(forest, root);
+    }
+    return light / area;
+}
 
 /* Smooth shading, as pictures have it. */
 static inline struct shading *shade(const struct solution *s)

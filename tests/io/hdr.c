@@ -7,24 +7,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "io/picture/imagefile.h"
-#include "tests/random.h"
+#include "tests/images.h"
 #include "tests/load.h"
-#include "tests/tap.h"
+#include "tests/random.h"
 
 #define HDR "build/hdr_test.hdr"
 #define HEAD "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n"
-
-static struct image found;
-static enum image_kind kind;
-static struct error error;
-
-static void forget(void)
-{
-    alloc_free(found.rgb);
-    found = (struct image){0};
-    error = (struct error){EXIT_DONE, ""};
-}
 
 /* 1/2, 1/4 and 1/512 in 256ths of 2^0; 100, 99.7 and 0.1 in those of 2^7; 255.6 of them
  * are 255; and the ends of the range. */
@@ -57,15 +45,6 @@ static void test_bytes(void)
     forget();
 }
 
-static bool read_back(void)
-{
-    struct source source;
-    bool good = source_open(&source, HDR, &error) &&
-                image_read(&found, &kind, &source, &error);
-    source_close(&source);
-    return good;
-}
-
 /* Written and read: each band within 1/256 of the largest of its pixel, from 2^-128 to
  * 2^127. */
 static void test_nearness(void)
@@ -76,7 +55,7 @@ static void test_nearness(void)
     struct random random = random_seed(1);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
         image.rgb[i] = (float)ldexp(random_unit(&random), i / (3 * WIDTH) - 127);
-    bool good = hdr_write(&image, HDR, &error) && read_back();
+    bool good = hdr_write(&image, HDR, &error) && read_back(HDR);
     tap_ok(good && kind == IMAGE_LINEAR && found.width == WIDTH && found.height == HEIGHT,
            "reads back: %s", error.text);
     double worst = 0.0, bias = 0.0;
@@ -95,65 +74,42 @@ static void test_nearness(void)
     forget();
 }
 
-static bool read_bytes(const char *bytes, size_t size)
-{
-    struct binary binary;
-    return binary_of_bytes(&binary, "p", bytes, size, IMAGE_MAGIC, "a picture", &error) &&
-           image_of_binary(&found, &kind, &binary, &error);
-}
-
-static void check_read(const char *name, const char *bytes, size_t size, int width,
-                       int height, const float *samples)
-{
-    bool right = read_bytes(bytes, size) && kind == IMAGE_LINEAR &&
-                 found.width == width && found.height == height;
-    for (int i = 0; right && i < 3 * width * height; i++)
-        right = found.rgb[i] == samples[i];
-    tap_ok(right, "%s%s", name, error.text);
-    forget();
-}
-
-#define CHECK_READ(name, bytes, width, height, ...) \
-    check_read(name, bytes, sizeof(bytes) - 1, width, height, \
-               (const float[]){__VA_ARGS__})
-
 static void test_reading(void)
 {
     CHECK_READ("pixels as they are, rows from the top",
-               HEAD "-Y 2 +X 1\n\x80\x40\1\x81\xFF\0\0\x80", 1, 2, 1, 0.5f, 1 / 128.0f,
-               255 / 256.0f, 0, 0);
+               HEAD "-Y 2 +X 1\n\x80\x40\1\x81\xFF\0\0\x80", IMAGE_LINEAR, 1, 2, 1, 0.5f,
+               1 / 128.0f, 255 / 256.0f, 0, 0);
     CHECK_READ("another magic, comments, CR LF, exposures",
                "#?RGBE\r\n# GAMMA=1\r\nEXPOSURE= 2\r\nEXPOSURE=4.0\r\n\r\n-Y 1 +X 1\r\n"
                "\x80\x40\0\x84",
-               1, 1, 1, 0.5f, 0);
+               IMAGE_LINEAR, 1, 1, 1, 0.5f, 0);
     CHECK_READ("runs and counts, band by band",
-               HEAD "-Y 1 +X 9\n\2\2\0\x09" "\x89\x80" "\3\1\2\3\x86\4"
-               "\x82\0\2\1\2\x85\xFF" "\x85\x80\4\x80\x80\x80\0",
-               9, 1, 0.5f, 1 / 256.0f, 0, 0.5f, 2 / 256.0f, 0, 0.5f, 3 / 256.0f,
-               1 / 256.0f, 0.5f, 4 / 256.0f, 2 / 256.0f, 0.5f, 4 / 256.0f, 255 / 256.0f,
-               0.5f, 4 / 256.0f, 255 / 256.0f, 0.5f, 4 / 256.0f, 255 / 256.0f, 0.5f,
-               4 / 256.0f, 255 / 256.0f, 0, 0, 0);
-    CHECK_READ("beyond the largest float", HEAD "-Y 1 +X 1\n\xFF\x80\0\xFF", 1, 1,
-               ldexpf(255, 119), ldexpf(128, 119), 0);
+               HEAD "-Y 1 +X 9\n\2\2\0\x09"
+                    "\x89\x80"
+                    "\3\1\2\3\x86\4"
+                    "\x82\0\2\1\2\x85\xFF"
+                    "\x85\x80\4\x80\x80\x80\0",
+               IMAGE_LINEAR, 9, 1, 0.5f, 1 / 256.0f, 0, 0.5f, 2 / 256.0f, 0, 0.5f,
+               3 / 256.0f, 1 / 256.0f, 0.5f, 4 / 256.0f, 2 / 256.0f, 0.5f, 4 / 256.0f,
+               255 / 256.0f, 0.5f, 4 / 256.0f, 255 / 256.0f, 0.5f, 4 / 256.0f,
+               255 / 256.0f, 0.5f, 4 / 256.0f, 255 / 256.0f, 0, 0, 0);
+    CHECK_READ("beyond the largest float", HEAD "-Y 1 +X 1\n\xFF\x80\0\xFF", IMAGE_LINEAR,
+               1, 1, ldexpf(255, 119), ldexpf(128, 119), 0);
     CHECK_READ("with an exposure, too",
-               "#?RADIANCE\nEXPOSURE=1e-30\n\n-Y 1 +X 1\n\xFF\x80\0\xFF", 1, 1, FLT_MAX,
-               FLT_MAX, 0);
+               "#?RADIANCE\nEXPOSURE=1e-30\n\n-Y 1 +X 1\n\xFF\x80\0\xFF", IMAGE_LINEAR, 1,
+               1, FLT_MAX, FLT_MAX, 0);
     CHECK_READ("2, 2 and 128 begin no runs",
-               HEAD "-Y 1 +X 8\n\2\2\x80\x80" "\0\0\0\0" "\0\0\0\0" "\0\0\0\0"
-               "\0\0\0\0" "\0\0\0\0" "\0\0\0\0" "\0\0\0\0",
-               8, 1, 2 / 256.0f, 2 / 256.0f, 0.5f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-               0, 0, 0, 0, 0, 0, 0, 0);
+               HEAD "-Y 1 +X 8\n\2\2\x80\x80"
+                    "\0\0\0\0"
+                    "\0\0\0\0"
+                    "\0\0\0\0"
+                    "\0\0\0\0"
+                    "\0\0\0\0"
+                    "\0\0\0\0"
+                    "\0\0\0\0",
+               IMAGE_LINEAR, 8, 1, 2 / 256.0f, 2 / 256.0f, 0.5f, 0, 0, 0, 0, 0, 0, 0, 0,
+               0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0);
 }
-
-static void check_refused(const char *bytes, size_t size, const char *message)
-{
-    bool right = !read_bytes(bytes, size) && !found.rgb && error.code == EXIT_USAGE &&
-                 strcmp(error.text, message) == 0;
-    tap_ok(right, "refused as %s", error.text);
-    forget();
-}
-
-#define REFUSED(bytes, message) check_refused(bytes, sizeof(bytes) - 1, "p: " message)
 
 static void test_refusing(void)
 {

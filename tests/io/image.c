@@ -10,9 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "io/picture/imagefile.h"
+#include "tests/images.h"
 #include "tests/load.h"
-#include "tests/tap.h"
 
 #define PFM "build/image_test.pfm"
 #define PPM "build/image_test.ppm"
@@ -25,11 +24,11 @@ static const struct image picture = {2, 3, pixels};
 static bool file_is(const char *path, const char *header, const unsigned char *bytes,
                     size_t count)
 {
-    unsigned char found[200];
+    unsigned char written[200];
     size_t length = strlen(header);
-    return load(path, found, sizeof found) == length + count &&
-           memcmp(found, header, length) == 0 &&
-           memcmp(found + length, bytes, count) == 0;
+    return load(path, written, sizeof written) == length + count &&
+           memcmp(written, header, length) == 0 &&
+           memcmp(written + length, bytes, count) == 0;
 }
 
 /* A power of two 2^k is (k + 127) << 23 as a float: two bytes tell all. Bottom first. */
@@ -43,7 +42,6 @@ static void test_pfm(void)
         0, 0, 0x80, 0x3F, 0, 0, 0x00, 0x40, 0, 0, 0x80, 0x40, /* 1, 2, 4 */
         0, 0, 0x00, 0x3F, 0, 0, 0x80, 0x3E, 0, 0, 0x00, 0x00, /* 1/2, 1/4, 0 */
     };
-    struct error error = {EXIT_DONE, ""};
     tap_ok(pfm_write(&picture, PFM, &error) && error.code == EXIT_DONE &&
                file_is(PFM, "PF\n2 3\n-1.0\n", bytes, sizeof bytes),
            "PFM: little endian, the bottom row first");
@@ -57,7 +55,6 @@ static void test_ppm(void)
     static const unsigned char quarter[] = {137, 188, 255, 99,  71,  0, 0,  0,   0,
                                             0,   255, 49,  255, 255, 255, 34, 137, 0};
     struct tone tone = tone_make(1.0);
-    struct error error = {EXIT_DONE, ""};
     tap_ok(ppm_write(&picture, &tone, PPM, &error) &&
                file_is(PPM, "P6\n2 3\n255\n", plain, sizeof plain),
            "PPM: the top row first");
@@ -70,74 +67,29 @@ static void test_ppm(void)
 static void test_errors(void)
 {
     struct tone tone = tone_make(1.0);
-    struct error error = {EXIT_DONE, ""};
     tap_ok(!pfm_write(&picture, "build/image_test_absent/a.pfm", &error) &&
                error.code == EXIT_FAILED,
            "PFM into a missing folder");
-    error = (struct error){EXIT_DONE, ""};
+    forget();
     tap_ok(!ppm_write(&picture, &tone, "build/image_test_absent/a.ppm", &error) &&
                error.code == EXIT_FAILED,
            "PPM into a missing folder");
 }
 
-static struct image found;
-static enum image_kind kind;
-static struct error reading;
-
-static bool read_bytes(const char *bytes, size_t size)
-{
-    struct binary binary;
-    reading = (struct error){EXIT_DONE, ""};
-    return binary_of_bytes(&binary, "p", bytes, size, IMAGE_MAGIC,
-                           "a picture (PFM, PPM or HDR)", &reading) &&
-           image_of_binary(&found, &kind, &binary, &reading);
-}
-
-/* The bytes are a picture of that size and kind with these samples. */
-static void check_read(const char *name, const char *bytes, size_t size,
-                       enum image_kind expected, int width, int height,
-                       const float *samples)
-{
-    bool right = read_bytes(bytes, size) && kind == expected && found.width == width &&
-                 found.height == height;
-    for (int i = 0; right && i < 3 * width * height; i++)
-        right = found.rgb[i] == samples[i];
-    tap_ok(right, "%s%s", name, reading.text);
-    alloc_free(found.rgb);
-    found.rgb = NULL;
-}
-
-/* Reads `path` into `found` and `kind`. */
-static bool read_back(const char *path, struct error *error)
-{
-    struct source source;
-    bool good = source_open(&source, path, error) &&
-                image_read(&found, &kind, &source, error);
-    source_close(&source);
-    return good;
-}
-
 static void test_back(void)
 {
-    struct error error = {EXIT_DONE, ""};
-    bool right = pfm_write(&picture, PFM, &error) &&
-                 read_back(PFM, &error) && kind == IMAGE_LINEAR &&
-                 found.width == 2 && found.height == 3 &&
+    forget();
+    bool right = pfm_write(&picture, PFM, &error) && read_back(PFM) &&
+                 kind == IMAGE_LINEAR && found.width == 2 && found.height == 3 &&
                  memcmp(found.rgb, pixels, sizeof pixels) == 0;
     tap_ok(right, "a picture written as PFM reads back");
-    alloc_free(found.rgb);
     struct tone tone = tone_make(1.0);
-    right = ppm_write(&picture, &tone, PPM, &error) &&
-            read_back(PPM, &error) && kind == IMAGE_CODES &&
-            found.rgb[3] == (float)(188 / 255.0) && found.rgb[0] == 1.0f;
+    right = ppm_write(&picture, &tone, PPM, &error) && read_back(PPM) &&
+            kind == IMAGE_CODES && found.rgb[3] == (float)(188 / 255.0) &&
+            found.rgb[0] == 1.0f;
     tap_ok(right, "a picture written as PPM reads back, in codes");
-    alloc_free(found.rgb);
-    found.rgb = NULL;
+    forget();
 }
-
-#define CHECK_READ(name, bytes, kind, width, height, ...) \
-    check_read(name, bytes, sizeof(bytes) - 1, kind, width, height, \
-               (const float[]){__VA_ARGS__})
 
 static void test_reading(void)
 {
@@ -165,20 +117,8 @@ static void test_reading(void)
                IMAGE_CODES, 1, 1, 1, 256 / 65535.0f, 1 / 65535.0f);
     bool right = read_bytes("Pf 1 1 -1 \0\0\xC0\x7F", 14) && isnan(found.rgb[0]);
     tap_ok(right, "NaN is a sample");
-    alloc_free(found.rgb);
-    found.rgb = NULL;
+    forget();
 }
-
-static void check_refused(const char *bytes, size_t size, const char *message)
-{
-    bool right = !read_bytes(bytes, size) && !found.rgb && reading.code == EXIT_USAGE &&
-                 strcmp(reading.text, message) == 0;
-    tap_ok(right, "refused as %s", reading.text);
-    alloc_free(found.rgb);
-    found.rgb = NULL;
-}
-
-#define REFUSED(bytes, message) check_refused(bytes, sizeof(bytes) - 1, "p: " message)
 
 static void test_refusing(void)
 {
@@ -208,10 +148,8 @@ static void test_refusing(void)
     REFUSED("P3\n1 1 9\n1 2 -3",
             "a sample is missing or not a number up to the greatest value");
     REFUSED("P3\n1 1 9\n1 2 3 4", "bytes are left behind the picture");
-    reading = (struct error){EXIT_DONE, ""};
-    tap_ok(!read_back("build/image_test_absent", &reading) &&
-               reading.code == EXIT_USAGE,
-           "a missing file: %s", reading.text);
+    tap_ok(!read_back("build/image_test_absent") && error.code == EXIT_USAGE,
+           "a missing file: %s", error.text);
 }
 
 int main(void)

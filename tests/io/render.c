@@ -7,8 +7,6 @@
 #include "tests/defaults.h"
 #include "tests/tap.h"
 
-static const struct comm *world_comm;
-
 /* Radiosity at a point of root `first` or the next, as a picture shows it; `shading`
  * NULL: all light is gathered. */
 static double shown(struct solution *s, const struct shading *shading, int32_t first,
@@ -62,8 +60,7 @@ static void test_shadow(bool all)
     paint(&soup, 0.0, 100.0);
     soup_add_quad(&soup, point(-0.2, -0.2, 0.5), point(0.4, 0, 0), point(0, 0.4, 0), 1);
     paint(&soup, 0.0, 0.0);
-    struct solution s =
-        solve_scene(world_comm, scene_of_soup(&soup), "--max-level 0 --final-gather 64");
+    struct solution s = solve_soup(&soup, "--max-level 0 --final-gather 64");
     struct shading *shading = all ? NULL : shade_rest(&s);
     double lit = 0.0, dark = 0.0, half = 0.0;
     for (int i = 0; i <= 10; i++) {
@@ -93,7 +90,7 @@ static void test_furnace(void)
     soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
     soup_add_box(&soup, point(0.3, 0.3, 0.01), point(0.7, 0.6, 0.5), 1, false);
     paint(&soup, 0.5, 0.5);
-    struct solution s = solve_scene(world_comm, scene_of_soup(&soup), "--epsilon 1e-2");
+    struct solution s = solve_soup(&soup, "--epsilon 1e-2");
     struct renderer renderer =
         renderer_make(s.octree, NULL, &s.solver->beyond->answer.gather);
     double worst = 0.0;
@@ -136,8 +133,7 @@ static void test_column(void)
             struct vec3 corner = scene->triangles[i].corner[k];
             scene->normals[3 * i + k] = point(corner.x, corner.y, 0);
         }
-    struct solution s =
-        solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
+    struct solution s = solve_scene(scene, "--epsilon 1e-2 --final-gather 64");
     struct shading *shading = shade_rest(&s);
     double brightest = 0.5 * 1e4 * 0.16 / (PI * (FAR - 1) * (FAR - 1));
     double worst = 0.0;
@@ -176,8 +172,7 @@ static void test_bowl(void)
             bool left = scene->triangles[i].corner[k].y < middle;
             scene->normals[3 * i + k] = point(0.8, left ? 0.6 : -0.6, 0);
         }
-    struct solution s =
-        solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
+    struct solution s = solve_scene(scene, "--epsilon 1e-2 --final-gather 64");
     struct shading *shading = shade_rest(&s);
     double most = 0.0;
     for (int i = 1; i < 20; i++)
@@ -203,8 +198,7 @@ static void test_smoothed_box(void)
     for (int i = 0; i < 12; i++)
         for (int k = 0; k < 3; k++)
             scene->normals[3 * i + k] = vec3_unit(scene->triangles[i].corner[k]);
-    struct solution s =
-        solve_scene(world_comm, scene, "--epsilon 1e-2 --final-gather 64");
+    struct solution s = solve_scene(scene, "--epsilon 1e-2 --final-gather 64");
     struct shading *shading = shade_rest(&s);
     double most = 0.0;
     for (int32_t root = 0; root < 12; root += 2)
@@ -220,15 +214,13 @@ static void test_smoothed_box(void)
 
 int main(int argc, char **argv)
 {
-    struct comm comm;
-    comm_start(&comm, &argc, &argv);
-    world_comm = &comm;
+    comm_start(&world_comm, &argc, &argv);
     test_shadow(false);
     test_shadow(true);
     test_furnace();
     test_column();
     test_bowl();
     test_smoothed_box();
-    comm_stop(&comm);
+    comm_stop(&world_comm);
     return tap_done();
 }

@@ -12,12 +12,12 @@
 
 static const double GOAL = 0.02;
 
-static struct solution furnace(const struct comm *comm)
+static struct solution furnace(void)
 {
     struct soup soup = {0};
     soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
     paint(&soup, 0.5, 1.0);
-    return solve_scene(comm, scene_of_soup(&soup), "--max-level 2 --epsilon 1e-3");
+    return solve_soup(&soup, "--max-level 2 --epsilon 1e-3");
 }
 
 /* Scales the reflected light of the leaves of some roots. */
@@ -46,9 +46,8 @@ static void expect(struct solution *s, double square, const char *name)
 
 int main(int argc, char **argv)
 {
-    struct comm comm;
-    comm_start(&comm, &argc, &argv);
-    struct solution s = furnace(&comm);
+    comm_start(&world_comm, &argc, &argv);
+    struct solution s = furnace();
     expect(&s, 0.0, "an exact answer");
     spoil(&s, 12, 1.1);
     expect(&s, 0.01 / 1.21, "all leaves too bright by a tenth");
@@ -60,6 +59,6 @@ int main(int argc, char **argv)
             s.solver->model.forest->patches[p].id.root == 0;
     expect(&s, 0.25 / (11.0 + 2.25), "which the estimate knows");
     solution_free(&s);
-    comm_stop(&comm);
+    comm_stop(&world_comm);
     return tap_done();
 }

@@ -654,6 +654,19 @@ static void test_nothing(void)
     octree_destroy(NULL);
 }
 
+/* The ray meets this triangle, on its front or not; -1: none. */
+static void check_hit(const char *name, const struct octree *octree, struct vec3 origin,
+                      struct vec3 direction, bool fronts_only, int32_t triangle,
+                      bool front)
+{
+    struct octree_counts counts = {0};
+    struct octree_hit hit = {.triangle = -1};
+    bool met = octree_first_hit(octree, origin, direction, fronts_only, &hit, &counts);
+    tap_ok(met == (triangle >= 0) && (!met || hit.triangle == triangle) &&
+               (!met || hit.front == front),
+           "%s", name);
+}
+
 /* A floor, a decal in its plane that comes after it, and a lid above both. With the decal
  * turned over, a front is met before a back, whichever comes later. */
 static void test_layers(void)
@@ -666,40 +679,22 @@ static void test_layers(void)
     for (int k = 0; k < 3; k++)
         planes[k] = triangle_plane(&triangles[k]);
     struct octree *octree = octree_create(triangles, planes, 3);
-    struct octree_counts counts = {0};
-    struct octree_hit hit = {0};
-    struct vec3 above = {0.01, 0.02, 0.1}, aside = {0.2, -0.3, 0.1},
-                high = {0.01, 0.02, 4.0};
-    struct vec3 down = {0, 0, -0.1}, up = {0, 0, 0.3};
-    tap_ok(octree_first_hit(octree, above, down, false, &hit, &counts) &&
-               hit.triangle == 1 && hit.front,
-           "of two in one plane the later is met");
-    struct vec3 swap = triangles[1].corner[1];
-    triangles[1].corner[1] = triangles[1].corner[2];
-    triangles[1].corner[2] = swap;
+    const struct vec3 above = {0.01, 0.02, 0.1}, aside = {0.2, -0.3, 0.1},
+                      high = {0.01, 0.02, 4.0}, below = {0.01, 0.02, -0.1},
+                      down = {0, 0, -0.1}, up = {0, 0, 0.3};
+    check_hit("of two in one plane the later is met", octree, above, down, false, 1,
+              true);
+    triangles[1] = reversed(triangles[1]);
     planes[1] = triangle_plane(&triangles[1]);
     octree_destroy(octree);
     octree = octree_create(triangles, planes, 3);
-    tap_ok(octree_first_hit(octree, above, down, false, &hit, &counts) &&
-               hit.triangle == 0 && hit.front,
-           "but a front before a back");
-    tap_ok(octree_first_hit(octree, point(0.01, 0.02, -0.1), point(0, 0, 1), false, &hit,
-                            &counts) &&
-               hit.triangle == 1 && hit.front,
-           "from the other side the other one");
-    tap_ok(octree_first_hit(octree, aside, down, false, &hit, &counts) &&
-               hit.triangle == 0,
-           "beside it the floor is met");
-    tap_ok(octree_first_hit(octree, above, up, true, &hit, &counts) &&
-               hit.triangle == 2 && hit.front,
-           "the lid above it faces down");
-    tap_ok(octree_first_hit(octree, high, down, false, &hit, &counts) &&
-               hit.triangle == 2 && !hit.front &&
-               octree_first_hit(octree, high, down, true, &hit, &counts) &&
-               hit.triangle == 0,
-           "from above it is met, or looked through");
-    tap_ok(!octree_first_hit(octree, high, up, false, &hit, &counts),
-           "nothing lies behind");
+    check_hit("but a front before a back", octree, above, down, false, 0, true);
+    check_hit("from the other side the other one", octree, below, up, false, 1, true);
+    check_hit("beside it the floor is met", octree, aside, down, false, 0, true);
+    check_hit("the lid above it faces down", octree, above, up, true, 2, true);
+    check_hit("from above it is met", octree, high, down, false, 2, false);
+    check_hit("or looked through", octree, high, down, true, 0, true);
+    check_hit("nothing lies behind", octree, high, up, false, -1, false);
     octree_destroy(octree);
 }
 

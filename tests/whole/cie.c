@@ -51,11 +51,10 @@ static struct vec3 place_of(enum plane_name plane, double at)
 }
 
 /* Compares the samples on one receiver. Tolerance: LIMIT of the value, and the slack. */
-static void test_samples(const struct comm *comm, const char *name, struct soup *soup,
-                         enum plane_name receiver, const char *words,
-                         const struct sample *samples, int count)
+static void test_samples(const char *name, struct soup *soup, enum plane_name receiver,
+                         const char *words, const struct sample *samples, int count)
 {
-    struct solution s = solve_scene(comm, scene_of_soup(soup), words);
+    struct solution s = solve_soup(soup, words);
     struct shading *shading = shade(&s);
     double worst = 0.0;
     bool right = s.vote.converged;
@@ -81,7 +80,7 @@ static void test_samples(const struct comm *comm, const char *name, struct soup 
 /* 5.3: in lux, E = pi 1000 F there. */
 static const double PERCENT = 100.0 / (PI * 1000.0);
 
-static void test_area_source(const struct comm *comm)
+static void test_area_source(void)
 {
     struct sample wall[] = {{2.75, 32.676898, 0}, {2.25, 75.193925, 0},
                             {1.75, 81.323172, 0}, {1.25, 69.060627, 0},
@@ -96,14 +95,14 @@ static void test_area_source(const struct comm *comm)
         ground[i].percent *= PERCENT;
     struct soup soup = {0};
     add_planes(&soup, WALL, CEILING);
-    test_samples(comm, "5.3 area source, wall", &soup, WALL, "--epsilon 1e-6", wall,
+    test_samples("5.3 area source, wall", &soup, WALL, "--epsilon 1e-6", wall,
                  COUNT(wall));
     add_planes(&soup, FLOOR, CEILING);
-    test_samples(comm, "5.3 area source, floor", &soup, FLOOR, "--epsilon 1e-6", ground,
+    test_samples("5.3 area source, floor", &soup, FLOOR, "--epsilon 1e-6", ground,
                  COUNT(ground));
 }
 
-static void test_bright_floor(const struct comm *comm)
+static void test_bright_floor(void)
 {
     static const struct sample wall[] = {{0.75, 35.900505, 0}, {1.25, 27.991624, 0},
         {1.75, 21.638511, 0}, {2.25, 16.716315, 0}, {2.75, 12.967372, 0}};
@@ -113,15 +112,15 @@ static void test_bright_floor(const struct comm *comm)
                                             {3.25, 30.938711, 0}, {3.75, 26.795188, 0}};
     struct soup soup = {0};
     add_planes(&soup, WALL, FLOOR);
-    test_samples(comm, "5.6 bright floor, wall", &soup, WALL, "--epsilon 1e-6", wall,
+    test_samples("5.6 bright floor, wall", &soup, WALL, "--epsilon 1e-6", wall,
                  COUNT(wall));
     add_planes(&soup, CEILING, FLOOR);
-    test_samples(comm, "5.6 bright floor, ceiling", &soup, CEILING, "--epsilon 1e-6",
-                 ceiling, COUNT(ceiling));
+    test_samples("5.6 bright floor, ceiling", &soup, CEILING, "--epsilon 1e-6", ceiling,
+                 COUNT(ceiling));
 }
 
 /* The slab stands across the room, 1 m high. */
-static void test_slab(const struct comm *comm)
+static void test_slab(void)
 {
     static const struct sample wall[] = {{2.75, 16.070642, 0}, {2.25, 16.329677, 0},
                                          {1.75, 15.398810, 0}, {1.25, 13.322018, 0},
@@ -132,12 +131,12 @@ static void test_slab(const struct comm *comm)
     add_planes(&soup, WALL, OPPOSITE);
     soup_add_box(&soup, point(0, 2.5, 0), point(4, 2.7, 1), 1, false);
     paint(&soup, 0.0, 0.0);
-    test_samples(comm, "5.7 slab, wall", &soup, WALL, "--epsilon 1e-8 --final-gather 0",
-                 wall, COUNT(wall));
+    test_samples("5.7 slab, wall", &soup, WALL, "--epsilon 1e-8 --final-gather 0", wall,
+                 COUNT(wall));
     add_planes(&soup, FLOOR, OPPOSITE);
     soup_add_box(&soup, point(0, 2.5, 0), point(4, 2.7, 1), 1, false);
     paint(&soup, 0.0, 0.0);
-    test_samples(comm, "5.7 slab, floor", &soup, FLOOR, "--epsilon 1e-9 --final-gather 0",
+    test_samples("5.7 slab, floor", &soup, FLOOR, "--epsilon 1e-9 --final-gather 0",
                  ground, COUNT(ground));
 }
 
@@ -160,15 +159,11 @@ static struct scene *glowing_square(double reflectance)
 /* 5.8: the mean light that arrives after one reflection or more is rho Phi / (96 (1 -
  * rho)), exactly and wherever the source is. From the solution: of all that arrives, (B -
  * E) / rho, the first Phi / 96 comes from the source. */
-static void test_interreflection(const struct comm *comm, double rho, double exact,
-                                 const char *words, double limit)
+static void test_interreflection(double rho, double exact, const char *words,
+                                 double limit)
 {
-    struct solution s = solve_scene(comm, glowing_square(rho), words);
-    const struct forest *forest = s.solver->model.forest;
-    double light = 0.0, unit = scene_area_unit(s.scene);
-    for (int32_t root = 0; root < forest->root_count; root++)
-        light +=
-            unit * forest_area(forest, root) * forest->radiosity[root].band[0];
+    struct solution s = solve_scene(glowing_square(rho), words);
+    double light = 96.0 * mean_radiosity(&s, 0, scene_root_count(s.scene));
     double indirect = ((light - 10000.0) / rho - 10000.0) / 96.0;
     tap_ok(
         s.vote.converged && fabs(indirect / exact - 1.0) <= limit,
@@ -193,20 +188,19 @@ static const struct {
 
 int main(int argc, char **argv)
 {
-    struct comm comm;
-    comm_start(&comm, &argc, &argv);
-    test_area_source(&comm);
-    test_bright_floor(&comm);
-    test_slab(&comm);
+    comm_start(&world_comm, &argc, &argv);
+    test_area_source();
+    test_bright_floor();
+    test_slab();
     for (int i = 0; i < COUNT(INTERREFLECTION); i++) {
         double rho = INTERREFLECTION[i].rho, exact = INTERREFLECTION[i].lux;
         if (rho <= 0.7) /* errors of row sums count rho / (1 - rho) times */
-            test_interreflection(&comm, rho, exact, "--tolerance 1e-4",
+            test_interreflection(rho, exact, "--tolerance 1e-4",
                                  fmax(LIMIT, FIRST * (1.0 - rho) / rho));
         /* All that is sent arrives where the final gather is, so the mean is exact at any
          * epsilon. 1e-6: seven digits of the numbers above. */
-        test_interreflection(&comm, rho, exact, "--epsilon 1e-2 --tolerance 1e-8", 1e-6);
+        test_interreflection(rho, exact, "--epsilon 1e-2 --tolerance 1e-8", 1e-6);
     }
-    comm_stop(&comm);
+    comm_stop(&world_comm);
     return tap_done();
 }

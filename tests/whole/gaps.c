@@ -5,8 +5,6 @@
 #include "tests/tap.h"
 #include "tests/truth.h"
 
-static const struct comm *world_comm;
-
 /* --- rectangles, in metres; z is up --- */
 
 /* Between two corners that have one coordinate in common, that of `axis`; the front looks
@@ -199,7 +197,7 @@ static double mean_reflected(const struct solution *s)
 /* One leaf in 400 may be noisy: in a lamp's housing few rays find the slit of light. */
 static void test_room(void)
 {
-    struct solution s = solve_scene(world_comm, room(), "");
+    struct solution s = solve_scene(room(), "");
     const struct forest *forest = s.solver->model.forest;
     struct pathtracer pathtracer = pathtracer_make(s.scene, s.octree);
     int counts[VERDICTS] = {0};
@@ -236,10 +234,8 @@ static void test_room(void)
 
 int main(int argc, char **argv)
 {
-    struct comm comm;
-    comm_start(&comm, &argc, &argv);
-    world_comm = &comm;
+    comm_start(&world_comm, &argc, &argv);
     test_room();
-    comm_stop(&comm);
+    comm_stop(&world_comm);
     return tap_done();
 }

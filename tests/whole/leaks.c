@@ -22,8 +22,6 @@ enum { LIT, DARK, LAMP, REST };
 static const double REFLECTANCE = 0.5;
 #define MOST 0.005
 
-static const struct comm *world_comm;
-
 /* --- scenes, in metres; y is up --- */
 
 /* A room from the far end to the near one, along z. Its last triangles are those of the
@@ -198,7 +196,7 @@ struct dark_part {
 static double dark_share(const struct dark_part *part, bool open, const char *words,
                          int64_t *links)
 {
-    struct solution s = solve_scene(world_comm, part->make(open), words);
+    struct solution s = solve_scene(part->make(open), words);
     double share = s.vote.converged ? part->share_of(&s) : NAN;
     *links = s.stats.links;
     solution_free(&s);
@@ -243,11 +241,9 @@ static const struct dark_part PARTS[] = {
 
 int main(int argc, char **argv)
 {
-    struct comm comm;
-    comm_start(&comm, &argc, &argv);
-    world_comm = &comm;
+    comm_start(&world_comm, &argc, &argv);
     for (size_t i = 0; i < sizeof PARTS / sizeof PARTS[0]; i++)
         test_dark(&PARTS[i]);
-    comm_stop(&comm);
+    comm_stop(&world_comm);
     return tap_done();
 }

@@ -35,27 +35,9 @@
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof(array)[0]))
 
-static const struct comm *world_comm;
-
-static struct solution run(struct soup *soup, const char *words)
-{
-    return solve_scene(world_comm, scene_of_soup(soup), words);
-}
-
 static double radiosity(const struct solution *s, int64_t patch)
 {
     return s->solver->model.forest->radiosity[patch].band[0];
-}
-
-/* Sum over the roots first .. first + count - 1 of area times radiosity over the area. */
-static double mean_radiosity(const struct solution *s, int32_t first, int32_t count)
-{
-    double light = 0.0, area = 0.0;
-    for (int32_t root = first; root < first + count; root++) {
-        light += forest_area(s->solver->model.forest, root) * radiosity(s, root);
-        area += forest_area(s->solver->model.forest, root);
-    }
-    return light / area;
 }
 
 /* True if all radiosities of the roots are numbers within 0 .. most. */
@@ -134,7 +116,7 @@ static void test_bounds(const char *words)
     soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
     soup_add_quad(&soup, point(-1, -1, 0.1), point(0, 3, 0), point(3, 0, 0), 1);
     paint(&soup, 0.5, 1.0);
-    struct solution s = run(&soup, words);
+    struct solution s = solve_soup(&soup, words);
     const struct forest *forest = s.solver->model.forest;
     double largest = 0.0, f = 0.0, exact = 0.0;
     for (int64_t i = 0; i < s.solver->links.count; i++) {
@@ -177,7 +159,7 @@ static void test_false_convergence(void)
                      "--epsilon 1e30 --final-gather 0 --tolerance %s "
                      "--max-iterations 100000 --solver %s",
                      exact ? "1e-12" : "1e-6", solvers[k]);
-            s[exact] = run(&soup, words);
+            s[exact] = solve_soup(&soup, words);
         }
         double mean = mean_radiosity(&s[0], 0, 12), truth = mean_radiosity(&s[1], 0, 12);
         tap_ok(s[0].vote.converged && s[1].vote.converged &&
@@ -201,7 +183,7 @@ static void test_termination(void)
         scene_prepare_or_exit(scene);
         struct criterion criterion = criterion_parse(words[k]);
         struct octree *octree = octree_of(scene);
-        struct solver *solver = beyond_create(world_comm, scene, octree, &criterion);
+        struct solver *solver = beyond_create(&world_comm, scene, octree, &criterion);
         solver_link_roots(solver);
         solver_assign_roots(solver);
         const struct forest *forest = solver->model.forest;
@@ -237,7 +219,7 @@ static void test_leak(void)
     soup_add_box(&soup, point(1, 0, 0), point(2, 1, 1), 1, true);
     soup_add_box(&soup, point(0, 1, 0), point(1.5, 2, 1), 1, true);
     paint(&soup, 0.9, 0.0);
-    struct solution s = run(&soup, "--epsilon 1e-4");
+    struct solution s = solve_soup(&soup, "--epsilon 1e-4");
     tap_ok(s.vote.converged && within(&s, 12, 24, 0.0),
            "rooms beside a lit one are dark, exactly (%lld links)",
            (long long)s.stats.links);
@@ -259,7 +241,7 @@ static void test_coplanar(void)
     paint(&soup, 0.5, 1.0);
     soup_add_quad(&soup, point(0, 0.25, 0.25), point(0, 0.5, 0), point(0, 0, 0.5), 1);
     paint(&soup, 0.5, 0.0);
-    struct solution s = run(&soup, "--tolerance 1e-6");
+    struct solution s = solve_soup(&soup, "--tolerance 1e-6");
     double exact = 0.04 * 0.5 / (1.0 - 0.5) / 6.0, mean = mean_radiosity(&s, 0, 12);
     tap_ok(s.vote.converged && everywhere_within(&s, 1.1) &&
                mean_radiosity(&s, 14, 2) > 0.5 * exact && mean >= 0.99 * exact &&
@@ -279,7 +261,7 @@ static void test_duplicates(double rho, const char *words, double exact, double 
     add_room(&soup, 1);
     add_room(&soup, 2);
     paint(&soup, rho, 1.0);
-    struct solution s = run(&soup, words);
+    struct solution s = solve_soup(&soup, words);
     double mean = mean_radiosity(&s, 0, 12 + 48);
     if (exact > 0.0)
         tap_ok(s.vote.converged && fabs(mean / exact - 1.0) <= limit,
@@ -303,7 +285,7 @@ static void test_covered(const char *words)
     soup_add_box(&soup, point(0.2, 0.2, 0), point(0.6, 0.6, 0.3), 1, false);
     soup_add_box(&soup, point(0.5, 0.5, -0.2), point(0.9, 0.8, 0.2), 1, false);
     paint(&soup, 0.9, 1.0);
-    struct solution s = run(&soup, words);
+    struct solution s = solve_soup(&soup, words);
     const struct forest *forest = s.solver->model.forest;
     double most = 0.0;
     bool numbers = true;
@@ -334,7 +316,7 @@ static void test_slivers(void)
         add_sliver(&soup, point(0.03 + 0.011 * i, 0.05 + 0.007 * i, 0.5),
                    point(0.93 + 0.003 * i, 0.96, 0.5 + 0.01 * i), pow(10.0, -2 - i));
     paint(&soup, 0.99, 1.0);
-    struct solution s = run(&soup, "--epsilon 1e-2 --tolerance 1e-8");
+    struct solution s = solve_soup(&soup, "--epsilon 1e-2 --tolerance 1e-8");
     double worst = 0.0;
     for (int64_t p = 0; p < s.solver->model.forest->count; p++)
         if (forest_area(s.solver->model.forest, (int32_t)p) > 0.0)
@@ -359,8 +341,8 @@ static void test_degenerate(void)
     spoilt->triangles[plain->input_count + 1] = (struct triangle){{a, a, a}};
     spoilt->triangles[plain->input_count + 2] =
         (struct triangle){{a, b, vec3_middle(a, b)}};
-    struct solution one = solve_scene(world_comm, plain, "--epsilon 1e-4");
-    struct solution two = solve_scene(world_comm, spoilt, "--epsilon 1e-4");
+    struct solution one = solve_scene(plain, "--epsilon 1e-4");
+    struct solution two = solve_scene(spoilt, "--epsilon 1e-4");
     bool same = one.stats.links == two.stats.links;
     for (int32_t root = 0; root < plain->input_count; root++)
         same = same && radiosity(&one, root) == radiosity(&two, root);
@@ -413,8 +395,8 @@ static double roots_differ(const struct solution *one, const struct solution *tw
 static void test_moved(const char *name, double scale, double offset, double limit)
 {
     const char *words = "--epsilon 0 --max-level 0 --tolerance 1e-12 --final-gather 0";
-    struct solution one = solve_scene(world_comm, tetrahedron(1.0, 0.0), words);
-    struct solution two = solve_scene(world_comm, tetrahedron(scale, offset), words);
+    struct solution one = solve_scene(tetrahedron(1.0, 0.0), words);
+    struct solution two = solve_scene(tetrahedron(scale, offset), words);
     double off = roots_differ(&one, &two, 1, 0);
     tap_ok(off <= limit, "%s: radiosities within %.1e, at most %g", name, off, limit);
     solution_free(&one);
@@ -426,11 +408,11 @@ static void test_moved(const char *name, double scale, double offset, double lim
 static void test_emission_scale(void)
 {
     static const int powers[] = {-80, -1, 60};
-    struct solution one = solve_scene(world_comm, furnished(1.0, 0.25), "--epsilon 1e-4");
+    struct solution one = solve_scene(furnished(1.0, 0.25), "--epsilon 1e-4");
     for (int k = 0; k < COUNT(powers); k++) {
         double factor = ldexp(1.0, powers[k]);
-        struct solution two = solve_scene(world_comm, furnished(factor, 0.25 * factor),
-                                          "--epsilon 1e-4");
+        struct solution two =
+            solve_scene(furnished(factor, 0.25 * factor), "--epsilon 1e-4");
         tap_ok(exact_bits(&one, &two, factor),
                "emission times 2^%d: so is the light, to the bit", powers[k]);
         solution_free(&two);
@@ -443,9 +425,9 @@ static void test_emission_scale(void)
 static void test_linearity(void)
 {
     const char *words = "--epsilon 0 --max-level 0 --tolerance 1e-14 --final-gather 0";
-    struct solution one = solve_scene(world_comm, furnished(1.0, 0.0), words);
-    struct solution two = solve_scene(world_comm, furnished(0.0, 0.7), words);
-    struct solution both = solve_scene(world_comm, furnished(1.0, 0.7), words);
+    struct solution one = solve_scene(furnished(1.0, 0.0), words);
+    struct solution two = solve_scene(furnished(0.0, 0.7), words);
+    struct solution both = solve_scene(furnished(1.0, 0.7), words);
     double worst = 0.0;
     for (int32_t i = 0; i < both.scene->input_count; i++)
         worst = fmax(worst, fabs((radiosity(&one, i) + radiosity(&two, i)) /
@@ -474,7 +456,7 @@ static void test_reciprocity(void)
         }
         lit->input_count = 24;
         scene_destroy(scene);
-        struct solution s = solve_scene(world_comm, lit, words);
+        struct solution s = solve_scene(lit, words);
         for (int j = 0; j < 4; j++) {
             b[i][j] = radiosity(&s, lamps[j]);
             area[j] = forest_area(s.solver->model.forest, lamps[j]);
@@ -506,7 +488,7 @@ static void test_tiny_light(const char *words)
     paint(&soup, 0.5, 0.0);
     soup_add_quad(&soup, point(0, 0, 0.5), point(0, size, 0), point(size, 0, 0), 1);
     paint(&soup, 0.0, b);
-    struct solution s = run(&soup, words);
+    struct solution s = solve_soup(&soup, words);
     struct shading *shading = shade(&s);
     double worst = 0.0, squares = 0.0;
     for (int i = 0; i < GRID * GRID; i++) {
@@ -538,7 +520,7 @@ static void test_fifteen_levels(void)
     soup_add_quad(&soup, point(0.3, 0.4, 1e-5), point(0, 4e-5, 0), point(4e-5, 0, 0), 1);
     paint(&soup, 0.0, 1.0);
     struct solution s =
-        run(&soup, "--epsilon 1e-3 --max-level 15 --min-area 0 --tolerance 1e-6");
+        solve_soup(&soup, "--epsilon 1e-3 --max-level 15 --min-area 0 --tolerance 1e-6");
     int level = deepest_level(&s);
     double area = 2.0 * forest_area(s.solver->model.forest, 0);
     double exact = 0.0, arrived = area * mean_radiosity(&s, 0, 2) / 0.5;
@@ -601,7 +583,7 @@ static void test_hole(const char *name, double width, double height)
     struct vec3 floor[4] = {point(-0.25, -0.25, 0), point(0.25, -0.25, 0),
                             point(0.25, 0.25, 0), point(-0.25, 0.25, 0)};
     double exact = 0.5 * polygon_exchange(hole, 4, floor, 4) / polygon_area(floor, 4);
-    struct solution s = run(&soup, "");
+    struct solution s = solve_soup(&soup, "");
     double leaves = mean_radiosity(&s, 0, 2), shown = mean_shown(&s);
     tap_ok(s.vote.converged && fabs(leaves / exact - 1.0) <= 0.03,
            "light through a %s, %.6f of the lamp's: leaves are off by %+.2f %% (%lld of "
@@ -620,7 +602,7 @@ static void test_flipped(void)
     struct soup soup = {0};
     soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, false);
     paint(&soup, 0.5, 1.0);
-    struct solution s = run(&soup, "");
+    struct solution s = solve_soup(&soup, "");
     tap_ok(s.vote.converged && s.stats.escaped_power == s.stats.emitted_power &&
                s.stats.absorbed_power == 0.0 && s.stats.row_sum_max == 0.0 &&
                everywhere_within(&s, 1.0),
@@ -629,7 +611,7 @@ static void test_flipped(void)
     add_room(&soup, 1);
     soup.items[5] = reversed(soup.items[5]);
     paint(&soup, 0.5, 1.0);
-    s = run(&soup, "--epsilon 1e-3");
+    s = solve_soup(&soup, "--epsilon 1e-3");
     tap_ok(s.vote.converged && s.stats.escaped_power > 0.05 * s.stats.emitted_power &&
                everywhere_within(&s, 2.4),
            "one of 12 faces flipped: %.1f %% escape, none is made up",
@@ -640,7 +622,7 @@ static void test_flipped(void)
 /* Pixels of a picture taken inside an unevenly refined furnace. */
 static void test_cracks(void)
 {
-    struct solution s = solve_scene(world_comm, furnished(1.0, 1.0), "--epsilon 1e-4");
+    struct solution s = solve_scene(furnished(1.0, 1.0), "--epsilon 1e-4");
     struct forest *forest = s.solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++)
         forest->radiosity[p] = (struct rgb){{2.0, 2.0, 2.0}};
@@ -685,8 +667,8 @@ static void test_order(void)
             mixed->material_of[to] = again->material_of[i];
         }
         scene_destroy(again);
-        struct solution one = solve_scene(world_comm, tetrahedron(1.0, 0.0), words);
-        struct solution two = solve_scene(world_comm, mixed, words);
+        struct solution one = solve_scene(tetrahedron(1.0, 0.0), words);
+        struct solution two = solve_scene(mixed, words);
         double off = roots_differ(&one, &two, 11, 5);
         tap_ok(off <= 1e-12, "faces in another order%s: the same light within %.1e",
                turn ? " and corners turned" : "", off);
@@ -698,9 +680,7 @@ static void test_order(void)
 
 int main(int argc, char **argv)
 {
-    struct comm comm;
-    comm_start(&comm, &argc, &argv);
-    world_comm = &comm;
+    comm_start(&world_comm, &argc, &argv);
     test_bounds("");
     test_bounds("--linking pairs --epsilon 1e30");
     test_false_convergence();
@@ -729,6 +709,6 @@ int main(int argc, char **argv)
     test_flipped();
     test_cracks();
     test_order();
-    comm_stop(&comm);
+    comm_stop(&world_comm);
     return tap_done();
 }

@@ -160,8 +160,8 @@ static void add_speck(struct soup *soup)
 }
 
 /* Two strips as surfaces of an equation. */
-static struct solution solve_strips(const struct comm *comm, const struct equation *e,
-                                    int length, bool speck, const char *words)
+static struct solution solve_strips(const struct equation *e, int length, bool speck,
+                                    const char *words)
 {
     struct soup soup = {0};
     bool groove = e->shape == &GROOVE;
@@ -173,7 +173,7 @@ static struct solution solve_strips(const struct comm *comm, const struct equati
     paint(&soup, e->rho[1], e->emission[1]);
     if (speck)
         add_speck(&soup);
-    return solve_scene(comm, scene_of_soup(&soup), words);
+    return solve_soup(&soup, words);
 }
 
 /* The ends are 18 widths and more from the part looked at, and take less than 1e-4 of
@@ -192,9 +192,8 @@ static void check_equation(const struct equation *e, const char *name,
     tap_ok(off <= 1e-5, "%s: the equation's means are off by %.1g", name, off);
 }
 
-static void test_strips(const struct comm *comm, const struct shape *shape, double size,
-                        const double emission[2], const double rho[2], int length,
-                        double mean, struct errors limit)
+static void test_strips(const struct shape *shape, double size, const double emission[2],
+                        const double rho[2], int length, double mean, struct errors limit)
 {
     struct equation *e = equation_make(shape, size, emission, rho);
     char name[80];
@@ -203,7 +202,7 @@ static void test_strips(const struct comm *comm, const struct shape *shape, doub
              shape == &GROOVE ? size * 180.0 / PI : size, emission[0], emission[1],
              rho[0]);
     check_equation(e, name, (double[]){mean, mean});
-    struct solution s = solve_strips(comm, e, length, false, options);
+    struct solution s = solve_strips(e, length, false, options);
     for (int k = 0; k < 2; k++) {
         struct truth truth = {
             e, NULL, 0.0, k, 0.5 * (length - MIDDLE), 0.5 * (length + MIDDLE)};
@@ -214,12 +213,11 @@ static void test_strips(const struct comm *comm, const struct shape *shape, doub
     alloc_free(e);
 }
 
-static void test_isothermal(const struct comm *comm, const struct shape *shape,
-                            double size, double eps, int length, double mean,
-                            struct errors limit)
+static void test_isothermal(const struct shape *shape, double size, double eps,
+                            int length, double mean, struct errors limit)
 {
     double emission[2] = {eps, eps}, rho[2] = {1.0 - eps, 1.0 - eps};
-    test_strips(comm, shape, size, emission, rho, length, mean, limit);
+    test_strips(shape, size, emission, rho, length, mean, limit);
 }
 
 /* There the equation has gone to its limit but for (1e-5)^0.6. */
@@ -228,7 +226,7 @@ static const double NEXT_TO = 1e-5;
 /* At an edge B1 = (E1 + rho1 c E2) / (1 - rho1 rho2 c^2), c = (1 + cos a) / 2: so the
  * equation says, near it, of a groove of which one wall shines; and phr is held to
  * that. */
-static void test_edge(const struct comm *comm, double angle, double rho)
+static void test_edge(double angle, double rho)
 {
     const double emission[2] = {1.0, 0.0}, both[2] = {rho, rho},
                  c = 0.5 * (1.0 + cos(angle));
@@ -239,16 +237,15 @@ static void test_edge(const struct comm *comm, double angle, double rho)
     tap_ok(off <= 2e-3, "hinge of %g: at the edge the equation is off by %.1g",
            angle * 180.0 / PI, off);
     alloc_free(e);
-    test_strips(comm, &GROOVE, angle, emission, both, STRIP, 0.0, HINGES);
+    test_strips(&GROOVE, angle, emission, both, STRIP, 0.0, HINGES);
 }
 
-static void test_squares(const struct comm *comm, const double emission[2],
-                         const double rho[2], const double mean[2], bool speck,
-                         struct errors limit)
+static void test_squares(const double emission[2], const double rho[2],
+                         const double mean[2], bool speck, struct errors limit)
 {
     struct equation *e = equation_make(&SQUARES, 1.0, emission, rho);
     check_equation(e, "squares", mean);
-    struct solution s = solve_strips(comm, e, 1, speck, options);
+    struct solution s = solve_strips(e, 1, speck, options);
     for (int k = 0; k < 2; k++)
         judge(&s, k == 0 ? "square, first" : "square, second", k,
               &(struct truth){e, .surface = k}, limit, 0.0);
@@ -283,9 +280,9 @@ static void add_wall(struct soup *soup, double length)
                       vec3_sub(rim(k + 1, 0.0), rim(k, 0.0)), 1);
 }
 
-static void test_round(const struct comm *comm, const char *name,
-                       const struct shape *shape, double size, const double emission[2],
-                       const double rho[2], const double mean[2], struct errors limit)
+static void test_round(const char *name, const struct shape *shape, double size,
+                       const double emission[2], const double rho[2],
+                       const double mean[2], struct errors limit)
 {
     struct soup soup = {0};
     struct equation *e = equation_make(shape, size, emission, rho);
@@ -297,7 +294,7 @@ static void test_round(const struct comm *comm, const char *name,
     paint(&soup, rho[0], emission[0]);
     add_disc(&soup, shape == &DISCS ? size : 0.0, shape == &DISCS);
     paint(&soup, shape == &PIPE ? 0.0 : rho[1], shape == &PIPE ? 1.0 : emission[1]);
-    struct solution s = solve_scene(comm, scene_of_soup(&soup), options);
+    struct solution s = solve_soup(&soup, options);
     double cost = cost_of_sides(e, SIDES);
     for (int k = 0; k < (shape == &PIPE ? 1 : 2); k++)
         judge(&s, name, k, &(struct truth){e, .surface = k}, limit, cost);
@@ -305,12 +302,11 @@ static void test_round(const struct comm *comm, const char *name,
     alloc_free(e);
 }
 
-static void test_cavity(const struct comm *comm, double length, double eps, double wall,
-                        double base)
+static void test_cavity(double length, double eps, double wall, double base)
 {
     char name[64];
     snprintf(name, sizeof name, "cavity, L / R %g, eps %g", length, eps);
-    test_round(comm, name, &CAVITY, length, (double[]){eps, eps},
+    test_round(name, &CAVITY, length, (double[]){eps, eps},
                (double[]){1.0 - eps, 1.0 - eps}, (double[]){wall, base}, BARS);
 }
 
@@ -374,12 +370,11 @@ static struct scene *sphere_of_zones(const struct zone *zones, int count, int le
 /* H = sum f E / (1 - sum f rho), f being the shares of 4 pi that zones have: in a sphere;
  * facets are another sum of shares, and cost as much more or less as facets_solve() has
  * of each. */
-static void test_sphere(const struct comm *comm, const char *name,
-                        const struct zone *zones, int count, int level,
+static void test_sphere(const char *name, const struct zone *zones, int count, int level,
                         struct errors limit)
 {
     struct scene *scene = sphere_of_zones(zones, count, level);
-    struct solution s = solve_scene(comm, scene, options);
+    struct solution s = solve_scene(scene, options);
     double *b = facets_solve(scene), up = 0.0, down = 1.0;
     double area[8] = {0.0}, light[8] = {0.0}, whole = 0.0;
     for (int32_t i = 0; i < scene_root_count(scene); i++) {
@@ -426,8 +421,7 @@ static void add_room(struct soup *soup, enum room room)
  * have rho and half of it in turns, with E = 1 - rho, B = 1. Rows sum to 1, and there is
  * no noise where all is alike; the tolerance bounds the mean error, so less is asked
  * for. */
-static void test_furnace(const struct comm *comm, enum room room, double rho, bool mixed,
-                         const char *words)
+static void test_furnace(enum room room, double rho, bool mixed, const char *words)
 {
     static const char *const names[] = {"cube", "corridor 1:100", "furnished room"};
     static const struct errors limit = {1e-6, 1e-6, 1e-6};
@@ -440,7 +434,7 @@ static void test_furnace(const struct comm *comm, enum room room, double rho, bo
     struct scene *scene = scene_of_soup(&soup);
     for (int32_t i = 0; i < scene->input_count && mixed; i++)
         scene->material_of[i] = i & 1;
-    struct solution s = solve_scene(comm, scene, *options ? options : words);
+    struct solution s = solve_scene(scene, *options ? options : words);
     snprintf(name, sizeof name, "furnace, %s, rho %g%s", names[room], rho,
              mixed ? ", mixed" : "");
     for (int k = 0; k <= mixed; k++)
@@ -450,28 +444,22 @@ static void test_furnace(const struct comm *comm, enum room room, double rho, bo
 
 /* With a lamp of 1 part in 100 of a room whose rho is the same everywhere the mean of H
  * is exactly the power over A (1 - rho), and nothing escapes: the balance is closed. */
-static void test_light_is_kept(const struct comm *comm, double rho, const char *words)
+static void test_light_is_kept(double rho, const char *words)
 {
     struct soup soup = {0};
     add_room(&soup, FURNISHED);
     paint(&soup, rho, 0.0);
     soup_add_box(&soup, point(0.45, 0.85, 0.45), point(0.55, 0.86, 0.55), 1, false);
     paint(&soup, rho, 100.0);
-    struct solution s =
-        solve_scene(comm, scene_of_soup(&soup), *options ? options : words);
-    double sum = 0.0, area = 0.0, power = s.stats.emitted_power / BANDS;
-    for (int32_t r = 0; r < scene_root_count(s.scene); r++) {
-        double a = s.scene->areas[r] * scene_area_unit(s.scene);
-        sum += a * s.solver->model.forest->radiosity[r].band[0];
-        area += a;
-    }
-    double exact = power / (1.0 - rho) / area,
+    struct solution s = solve_soup(&soup, *options ? options : words);
+    double mean = mean_radiosity(&s, 0, scene_root_count(s.scene));
+    double power = s.stats.emitted_power / BANDS;
+    double exact = power / (1.0 - rho) / (scene_area(s.scene) * scene_area_unit(s.scene)),
            escaped = s.stats.escaped_power / BANDS / power;
-    tap_ok(s.vote.converged && fabs(sum / area / exact - 1.0) <= 1e-5 &&
-               fabs(escaped) <= 1e-5,
+    tap_ok(s.vote.converged && fabs(mean / exact - 1.0) <= 1e-5 && fabs(escaped) <= 1e-5,
            "room with a lamp, rho %g: mean B %+.4f %%, escaped %+.4f %% (at most 0.001 "
            "%%; %.1f s)",
-           rho, 100.0 * (sum / area / exact - 1.0), 100.0 * escaped, s.seconds);
+           rho, 100.0 * (mean / exact - 1.0), 100.0 * escaped, s.seconds);
     solution_free(&s);
 }
 
@@ -480,7 +468,7 @@ static void test_light_is_kept(const struct comm *comm, double rho, const char *
  * Bo) sqrt(q (1 - q) / 256). Spread evenly they have half of it at most; the worst leaf
  * of a thousand has four times as much as a random one. A small sphere is a lamp at which
  * segments are aimed; for them that is ample. */
-static void test_concentric(const struct comm *comm, double radius, int level)
+static void test_concentric(double radius, int level)
 {
     const double rho = 0.8, q = radius * radius,
                  ratio = rho * q / (1.0 - rho * (1.0 - q));
@@ -494,7 +482,7 @@ static void test_concentric(const struct comm *comm, double radius, int level)
     for (int64_t i = first; i < soup.count; i++)
         soup.items[i] = reversed(soup.items[i]);
     paint(&soup, rho, 0.0);
-    struct solution s = solve_scene(comm, scene_of_soup(&soup), options);
+    struct solution s = solve_soup(&soup, options);
     judge(&s, "concentric spheres, inner", 0, &(struct truth){.value = inner}, BARS, 0.0);
     judge(&s, "concentric spheres, outer", 1, &(struct truth){.value = outer},
           (struct errors){BARS.mean, 0.5 * noise, 4.0 * noise}, 0.0);
@@ -512,7 +500,7 @@ static double work_of(const struct solution *s)
 /* Eight times the work halves the error at least, and that of the worst leaf falls: RMS
  * like work to the power of -1/3 or less, to both sides of the default and 25 times
  * finer. */
-static void test_convergence(const struct comm *comm)
+static void test_convergence(void)
 {
     static const double half[2] = {0.5, 0.5}, epsilon[] = {1e-3, 1e-4, 2e-5, 4e-6};
     struct equation *e = equation_make(&GROOVE, PI / 3.0, half, half);
@@ -521,7 +509,7 @@ static void test_convergence(const struct comm *comm)
     for (int k = 0; k < 4; k++) {
         char words[64];
         snprintf(words, sizeof words, "--epsilon %g", epsilon[k]);
-        struct solution s = solve_strips(comm, e, STRIP, false, words);
+        struct solution s = solve_strips(e, STRIP, false, words);
         struct errors now = measure(&s, 0, &(struct truth){e, .low = 18.0, .high = 22.0});
         double work = work_of(&s), order = log(before.rms / now.rms) / log(work / done);
         tap_ok(k == 0 || (order >= 1.0 / 3.0 && now.worst < before.worst),
@@ -538,58 +526,57 @@ static void test_convergence(const struct comm *comm)
 
 int main(int argc, char **argv)
 {
-    struct comm comm;
-    comm_start(&comm, &argc, &argv);
+    comm_start(&world_comm, &argc, &argv);
     if (argc > 1)
         options = argv[1];
-    test_squares(&comm, (double[]){1, 0}, (double[]){.5, .5},
+    test_squares((double[]){1, 0}, (double[]){.5, .5},
                  (double[]){1.010218055060, .100947189239}, false, BARS);
-    test_squares(&comm, (double[]){1, 0}, (double[]){.8, .3},
+    test_squares((double[]){1, 0}, (double[]){.8, .3},
                  (double[]){1.009805269080, .060543232833}, false, BARS);
-    test_squares(&comm, (double[]){.1, .1}, (double[]){.9, .9},
+    test_squares((double[]){.1, .1}, (double[]){.9, .9},
                  (double[]){.121991353392, .121991353392}, false, BARS);
-    test_squares(&comm, (double[]){1, 0}, (double[]){.5, .5},
+    test_squares((double[]){1, 0}, (double[]){.5, .5},
                  (double[]){1.010218055060, .100947189239}, true, BARS);
-    test_isothermal(&comm, &PLATES, 1.0, 0.1, STRIP, .159605984267, BARS);
-    test_isothermal(&comm, &PLATES, 1.0, 0.5, STRIP, .630764377100, BARS);
-    test_isothermal(&comm, &PLATES, 0.1, 0.1, SHORT, .601952438427, BARS);
-    test_isothermal(&comm, &PLATES, 0.1, 0.5, SHORT, .920355233642, BARS);
-    test_isothermal(&comm, &GROOVE, PI / 6.0, 0.5, STRIP, .8061670444, BARS);
-    test_isothermal(&comm, &GROOVE, PI / 3.0, 0.5, STRIP, .6729508487, BARS);
-    test_isothermal(&comm, &GROOVE, PI / 3.0, 0.9, STRIP, .9476083454, BARS);
-    test_isothermal(&comm, &GROOVE, PI / 2.0, 0.5, STRIP, .5878526172, BARS);
-    test_edge(&comm, PI / 2.0, 0.5);
-    test_edge(&comm, PI / 3.0, 0.8);
-    test_cavity(&comm, 1.0, 0.5, .7596668, .7382803);
-    test_cavity(&comm, 2.0, 0.5, .8334092, .8580643);
-    test_round(&comm, "light pipe", &PIPE, 1.0, (double[]){0, 1}, (double[]){.9, 0},
+    test_isothermal(&PLATES, 1.0, 0.1, STRIP, .159605984267, BARS);
+    test_isothermal(&PLATES, 1.0, 0.5, STRIP, .630764377100, BARS);
+    test_isothermal(&PLATES, 0.1, 0.1, SHORT, .601952438427, BARS);
+    test_isothermal(&PLATES, 0.1, 0.5, SHORT, .920355233642, BARS);
+    test_isothermal(&GROOVE, PI / 6.0, 0.5, STRIP, .8061670444, BARS);
+    test_isothermal(&GROOVE, PI / 3.0, 0.5, STRIP, .6729508487, BARS);
+    test_isothermal(&GROOVE, PI / 3.0, 0.9, STRIP, .9476083454, BARS);
+    test_isothermal(&GROOVE, PI / 2.0, 0.5, STRIP, .5878526172, BARS);
+    test_edge(PI / 2.0, 0.5);
+    test_edge(PI / 3.0, 0.8);
+    test_cavity(1.0, 0.5, .7596668, .7382803);
+    test_cavity(2.0, 0.5, .8334092, .8580643);
+    test_round("light pipe", &PIPE, 1.0, (double[]){0, 1}, (double[]){.9, 0},
                (double[]){0, 0}, BARS);
-    test_round(&comm, "discs, rho 0.5", &DISCS, 1.0, (double[]){1, 0}, (double[]){.5, .5},
+    test_round("discs, rho 0.5", &DISCS, 1.0, (double[]){1, 0}, (double[]){.5, .5},
                (double[]){1.039054697589, .198684128339}, BARS);
-    test_round(&comm, "discs, rho 0.8", &DISCS, 1.0, (double[]){1, 0}, (double[]){.8, .8},
+    test_round("discs, rho 0.8", &DISCS, 1.0, (double[]){1, 0}, (double[]){.8, .8},
                (double[]){1.106718183515, .339243408032}, BARS);
     const struct zone zones[] = {{-0.9, material_grey(0, 0)},
                                  {0.9, material_grey(.95, 0)},
                                  {2.0, material_grey(.9, 50)}};
-    test_sphere(&comm, "sphere of zones", zones, 3, 2, BARS);
+    test_sphere("sphere of zones", zones, 3, 2, BARS);
     const struct zone crater[] = {{-0.7, material_grey(.8, 1)},
                                   {0.0, material_grey(.8, 0)}};
-    test_sphere(&comm, "crater", crater, 2, 2, CRATER);
-    test_concentric(&comm, 0.5, 2);
-    test_concentric(&comm, 0.2, 2);
-    test_furnace(&comm, CUBE, 0.5, false, "--tolerance 1e-8");
-    test_furnace(&comm, CUBE, 0.9, false, "--tolerance 1e-8");
-    test_furnace(&comm, CUBE, 0.999, false, "--tolerance 1e-8");
-    test_furnace(&comm, CORRIDOR, 0.9, false, "--tolerance 1e-8");
-    test_furnace(&comm, FURNISHED, 0.9, false, "--tolerance 1e-8");
-    test_furnace(&comm, FURNISHED, 0.999, false, "--tolerance 1e-8");
-    test_furnace(&comm, FURNISHED, 0.9, true, "--tolerance 1e-8");
-    test_light_is_kept(&comm, 0.5, "");
-    test_light_is_kept(&comm, 0.9, "--epsilon 1e-3");
-    test_light_is_kept(&comm, 0.99, "--epsilon 1e-3");
-    test_light_is_kept(&comm, 0.999, "");
+    test_sphere("crater", crater, 2, 2, CRATER);
+    test_concentric(0.5, 2);
+    test_concentric(0.2, 2);
+    test_furnace(CUBE, 0.5, false, "--tolerance 1e-8");
+    test_furnace(CUBE, 0.9, false, "--tolerance 1e-8");
+    test_furnace(CUBE, 0.999, false, "--tolerance 1e-8");
+    test_furnace(CORRIDOR, 0.9, false, "--tolerance 1e-8");
+    test_furnace(FURNISHED, 0.9, false, "--tolerance 1e-8");
+    test_furnace(FURNISHED, 0.999, false, "--tolerance 1e-8");
+    test_furnace(FURNISHED, 0.9, true, "--tolerance 1e-8");
+    test_light_is_kept(0.5, "");
+    test_light_is_kept(0.9, "--epsilon 1e-3");
+    test_light_is_kept(0.99, "--epsilon 1e-3");
+    test_light_is_kept(0.999, "");
     if (argc < 2)
-        test_convergence(&comm);
-    comm_stop(&comm);
+        test_convergence();
+    comm_stop(&world_comm);
     return tap_done();
 }

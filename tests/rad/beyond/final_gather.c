@@ -8,8 +8,6 @@
 #include "tests/tap.h"
 #include "geom/contour.h"
 
-static const struct comm *world_comm;
-
 /* A scene that is solved over its links alone, and a gather over all its leaves. */
 struct trial {
     struct solution s;
@@ -21,7 +19,7 @@ static struct trial gather_scene(struct soup *soup, const char *words, int rays)
 {
     char all[200];
     snprintf(all, sizeof all, "%s --final-gather 0", words);
-    struct trial g = {.s = solve_scene(world_comm, scene_of_soup(soup), all)};
+    struct trial g = {.s = solve_soup(soup, all)};
     struct forest *forest = g.s.solver->model.forest;
     g.gather = final_gather_create(&g.s.solver->model, rays);
     g.radiosity = alloc_array((size_t)forest->count, sizeof *g.radiosity);
@@ -224,7 +222,7 @@ static void test_gap(void)
     soup_add_quad(&soup, point(-0.3, -0.2, 0.001), point(0, 0.3, 0), point(0.3, 0, 0), 1);
     soup_add_quad(&soup, point(-0.3, -0.2, 0.001), point(0.3, 0, 0), point(0, 0.3, 0), 1);
     paint(&soup, 0.5, 0.0);
-    struct solution s = solve_scene(world_comm, scene_of_soup(&soup), "--max-level 0");
+    struct solution s = solve_soup(&soup, "--max-level 0");
     const struct rgb *radiosity = s.solver->model.forest->radiosity;
     double below = radiosity[14].band[0] + radiosity[15].band[0];
     double above = radiosity[16].band[0] + radiosity[17].band[0];
@@ -267,7 +265,7 @@ static void test_flush_lamp(void)
                               point(0.2, 0, 0), 1);
                 paint(&soup, 0.0, 10.0);
             }
-        struct solution s = solve_scene(world_comm, scene_of_soup(&soup), "");
+        struct solution s = solve_soup(&soup, "");
         int32_t floor = (first == 0 ? 0 : 2) + 8; /* z = 0 */
         mean[first] = s.solver->model.forest->radiosity[floor].band[0];
         solution_free(&s);
@@ -302,7 +300,7 @@ static void test_mesh(double epsilon)
     soup_add_box(&soup, point(0.3, 0.3, 0.15), point(0.31, 0.31, 0.16), 1, false);
     paint(&soup, 0.0, 0.0);
     snprintf(words, sizeof words, "--epsilon %g", epsilon);
-    struct solution s = solve_scene(world_comm, scene_of_soup(&soup), words);
+    struct solution s = solve_soup(&soup, words);
     const struct forest *forest = s.solver->model.forest;
     const struct gathered *gathered = &s.solver->beyond->answer.counts;
     double squares = 0.0, largest = 0.0, least = HUGE_VAL, goal = 0.01 * epsilon;
@@ -347,7 +345,7 @@ static void test_even(void)
     soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
     soup_add_box(&soup, point(0.6, 0.6, 0.1), point(0.8, 0.8, 0.5), 1, false);
     paint(&soup, 0.5, 1.0);
-    struct solution s = solve_scene(world_comm, scene_of_soup(&soup), "--epsilon 1e-2");
+    struct solution s = solve_soup(&soup, "--epsilon 1e-2");
     tap_ok(s.solver->beyond->answer.counts.split == 0 &&
                s.solver->beyond->answer.counts.looks > 0,
            "in a furnace nothing is split, by %lld rays",
@@ -389,7 +387,7 @@ static void test_chance(void)
     }
     soup_add_box(&soup, point(-0.1, -0.1, -0.1), point(0.1, 0.1, 0.1), 1, false);
     paint(&soup, 0.5, 0.0);
-    struct solution s = solve_scene(world_comm, scene_of_soup(&soup), "--epsilon 0.1");
+    struct solution s = solve_soup(&soup, "--epsilon 0.1");
     const struct gathered *gathered = &s.solver->beyond->answer.counts;
     int64_t cube = s.stats.leaves - WALLS;
     tap_ok(4 * gathered->split <= CUBE && cube == CUBE + 3 * gathered->split,
@@ -403,9 +401,7 @@ static void test_chance(void)
 
 int main(int argc, char **argv)
 {
-    struct comm comm;
-    comm_start(&comm, &argc, &argv);
-    world_comm = &comm;
+    comm_start(&world_comm, &argc, &argv);
     test_mean_factor();
     test_furnished();
     test_open();
@@ -418,6 +414,6 @@ int main(int argc, char **argv)
     test_mesh(0.02);
     test_even();
     test_chance();
-    comm_stop(&comm);
+    comm_stop(&world_comm);
     return tap_done();
 }

@@ -1,0 +1,68 @@
+/* Pictures that a test reads, from bytes and from files, and what it expects of them. */
+#ifndef TESTS_IMAGES_H
+#define TESTS_IMAGES_H
+
+#include <string.h>
+
+#include "io/picture/imagefile.h"
+#include "tests/tap.h"
+
+/* The last one. */
+static struct image found;
+static enum image_kind kind;
+static struct error error;
+
+static inline void forget(void)
+{
+    alloc_free(found.rgb);
+    found = (struct image){0};
+    error = (struct error){EXIT_DONE, ""};
+}
+
+static inline bool read_bytes(const char *bytes, size_t size)
+{
+    struct binary binary;
+    forget();
+    return binary_of_bytes(&binary, "p", bytes, size, IMAGE_MAGIC,
+                           "a picture (PFM, PPM or HDR)", &error) &&
+           image_of_binary(&found, &kind, &binary, &error);
+}
+
+static inline bool read_back(const char *path)
+{
+    struct source source;
+    forget();
+    bool good = source_open(&source, path, &error) &&
+                image_read(&found, &kind, &source, &error);
+    source_close(&source);
+    return good;
+}
+
+/* The bytes are a picture of that size and kind with these samples. */
+static inline void check_read(const char *name, const char *bytes, size_t size,
+                              enum image_kind expected, int width, int height,
+                              const float *samples)
+{
+    bool right = read_bytes(bytes, size) && kind == expected && found.width == width &&
+                 found.height == height;
+    for (int i = 0; right && i < 3 * width * height; i++)
+        right = found.rgb[i] == samples[i];
+    tap_ok(right, "%s%s", name, error.text);
+    forget();
+}
+
+#define CHECK_READ(name, bytes, kind, width, height, ...) \
+    check_read(name, bytes, sizeof(bytes) - 1, kind, width, height, \
+               (const float[]){__VA_ARGS__})
+
+static inline void check_refused(const char *bytes, size_t size, const char *message)
+{
+    bool right = !read_bytes(bytes, size) && !found.rgb && error.code == EXIT_USAGE &&
+                 strcmp(error.text, message) == 0;
+    tap_ok(right, "refused as %s", error.text);
+    forget();
+}
+
+#define REFUSED(bytes, message) check_refused(bytes, sizeof(bytes) - 1, "p: " message)
+
+#endif
