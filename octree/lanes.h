@@ -34,19 +34,13 @@ typedef int32_t lanes_mask __attribute__((vector_size(32))); /* -1: true, 0: fal
 #define lanes_sub(a, b) ((a) - (b))
 #define lanes_mul(a, b) ((a) * (b))
 #define lanes_abs(a) ((lanes)((lanes_mask)(a) & INT32_C(0x7fffffff)))
-/* a with its sign changed where b has its sign bit set */
-#define lanes_flip(a, b) \
-    ((lanes)((lanes_mask)(a) ^ ((lanes_mask)(b) & (INT32_C(-0x7fffffff) - 1))))
 #define lanes_above(a, b) ((lanes_mask)((a) > (b)))
-/* The greater of a and b, which are evaluated twice; b where one is not a number. A loop
- * over the lanes becomes the one instruction that there is for it at -O2, but 48 at -O3
- * (gcc 12). */
-#define lanes_max(a, b)                              \
-    ((lanes)((lanes_above(a, b) & (lanes_mask)(a)) | \
-             (~lanes_above(a, b) & (lanes_mask)(b))))
-#define lanes_min(a, b)                              \
-    ((lanes)((lanes_above(b, a) & (lanes_mask)(a)) | \
-             (~lanes_above(b, a) & (lanes_mask)(b))))
+#define lanes_upto(a, b) ((lanes_mask)((a) <= (b)))
+/* The greater of a and b; b where one is not a number. This is the one instruction that
+ * there is for it: a loop over the lanes becomes that at -O2, but 48 at -O3, and masks
+ * wait where AVX-512 keeps them apart (gcc 12). */
+#define lanes_max(a, b) __builtin_ia32_maxps256((a), (b))
+#define lanes_min(a, b) __builtin_ia32_minps256((a), (b))
 #define mask_and(a, b) ((a) & (b))
 #define mask_or(a, b) ((a) | (b))
 #define mask_all(x) ((lanes_mask){(x), (x), (x), (x), (x), (x), (x), (x)})
@@ -133,16 +127,14 @@ FOUR_INLINE lanes lanes_abs(lanes a)
     return (lanes){(four)((four_mask)a.low & rest), (four)((four_mask)a.high & rest)};
 }
 
-FOUR_INLINE lanes lanes_flip(lanes a, lanes b)
-{
-    const int32_t sign = INT32_C(-0x7fffffff) - 1;
-    return (lanes){(four)((four_mask)a.low ^ ((four_mask)b.low & sign)),
-                   (four)((four_mask)a.high ^ ((four_mask)b.high & sign))};
-}
-
 FOUR_INLINE lanes_mask lanes_above(lanes a, lanes b)
 {
     return (lanes_mask){(four_mask)(a.low > b.low), (four_mask)(a.high > b.high)};
+}
+
+FOUR_INLINE lanes_mask lanes_upto(lanes a, lanes b)
+{
+    return (lanes_mask){(four_mask)(a.low <= b.low), (four_mask)(a.high <= b.high)};
 }
 
 /* The one instruction that there is for it, where it has a name; compilers find it for
@@ -292,18 +284,19 @@ static inline lanes lanes_abs(lanes a)
     return a;
 }
 
-static inline lanes lanes_flip(lanes a, lanes b)
-{
-    for (int k = 0; k < LANES; k++)
-        a.lane[k] = signbit(b.lane[k]) ? -a.lane[k] : a.lane[k];
-    return a;
-}
-
 static inline lanes_mask lanes_above(lanes a, lanes b)
 {
     lanes_mask r;
     for (int k = 0; k < LANES; k++)
         r.lane[k] = a.lane[k] > b.lane[k] ? -1 : 0;
+    return r;
+}
+
+static inline lanes_mask lanes_upto(lanes a, lanes b)
+{
+    lanes_mask r;
+    for (int k = 0; k < LANES; k++)
+        r.lane[k] = a.lane[k] <= b.lane[k] ? -1 : 0;
     return r;
 }
 
@@ -416,14 +409,6 @@ static inline void mask_set_weights(lanes_mask *weights, int flip)
         {16, 32, 64, 128, 1, 2, 4, 8}, {32, 16, 128, 64, 2, 1, 8, 4},
         {64, 128, 16, 32, 4, 8, 1, 2}, {128, 64, 32, 16, 8, 4, 2, 1}};
     memcpy(weights, weight[flip], sizeof *weights);
-}
-
-/* Bit k of the result: lane k of the mask. */
-static inline unsigned mask_bits(const lanes_mask *mask)
-{
-    lanes_mask weights;
-    mask_set_weights(&weights, 0);
-    return mask_select(mask, &weights);
 }
 
 /* Number of bits that are set in the lowest 16. */

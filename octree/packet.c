@@ -72,9 +72,9 @@ INLINE unsigned packet_enters(const void *beam, const struct node *node,
         first = lanes_max(first, n0);
         last = lanes_min(last, f0);
     }
-    lanes_mask out = lanes_above(first, last);
+    lanes_mask in = lanes_upto(first, last);
     memcpy(enter, &first, LANES * sizeof *enter); /* the walk has a reach */
-    return ~mask_select(&out, &packet->weights) & 0xffu;
+    return mask_select(&in, &packet->weights);
 }
 
 /* --- triangles --- */

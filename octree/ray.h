@@ -35,22 +35,28 @@ struct ray {
 static const float STEP_LEAST = 1e-12f;
 static const double CHANGE_LEAST = 1e-8;
 
+/* One axis after the other, without a loop: a choice of components by number is a branch
+ * that costs more than the arithmetic. */
+INLINE void ray_set_axis(struct ray *ray, int axis, double from, double to)
+{
+    float a = (float)from, step = (float)to - a, size = fabsf(step);
+    float inverse = 1.0f / (size > STEP_LEAST ? size : STEP_LEAST);
+    ray->near |= (signbit(step) != 0) << axis;
+    ray->origin[axis] = a;
+    ray->step[axis] = step;
+    ray->start[axis] = lanes_all(a);
+    ray->inverse[axis] = lanes_all(copysignf(inverse, step));
+}
+
 INLINE void ray_set(struct ray *ray, struct vec3 from, struct vec3 to)
 {
     ray->from = from;
     ray->to = to;
     ray->near = 0;
     ray->reach = 1.0f;
-    for (int axis = 0; axis < 3; axis++) {
-        float a = (float)vec3_axis(from, axis), step = (float)vec3_axis(to, axis) - a;
-        float size = fabsf(step),
-              inverse = 1.0f / (size > STEP_LEAST ? size : STEP_LEAST);
-        ray->near |= (signbit(step) != 0) << axis;
-        ray->origin[axis] = a;
-        ray->step[axis] = step;
-        ray->start[axis] = lanes_all(a);
-        ray->inverse[axis] = lanes_all(copysignf(inverse, step));
-    }
+    ray_set_axis(ray, 0, from.x, to.x);
+    ray_set_axis(ray, 1, from.y, to.y);
+    ray_set_axis(ray, 2, from.z, to.z);
     mask_set_weights(&ray->weights, ray->near);
 }
 
@@ -91,10 +97,10 @@ INLINE unsigned ray_enters(const void *beam, const struct node *node, float ente
     lanes near2 = lanes_max(n2, zero), far2 = lanes_min(f2, most);
     lanes near01 = lanes_max(n0, n1), far01 = lanes_min(f0, f1);
     lanes first = lanes_max(near01, near2), last = lanes_min(far01, far2);
-    lanes_mask out = lanes_above(first, last);
+    lanes_mask in = lanes_upto(first, last);
     if (enter)
         memcpy(enter, &first, LANES * sizeof *enter);
-    return ~mask_select(&out, &ray->weights) & 0xffu;
+    return mask_select(&in, &ray->weights);
 }
 
 /* Goes down along the ray, to the nearest box first. Visits may shorten `*reach`, which

@@ -7,7 +7,9 @@
  * apart, and are better off so than with bundles.
  *
  * Rejected: a shaft without width (octree/shaft.h), whose separating axes take twice as
- * many operations a box. */
+ * many operations a box; a walk without branches (8 % slower: a right guess spares the
+ * wait for the node before); the farthest box first, larger leaves, fetching what waits
+ * ahead of time (no gain). */
 #include <stddef.h>
 
 #include "geom/wall.h"

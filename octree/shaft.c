@@ -32,11 +32,13 @@ void shaft_set_points(struct shaft *shaft, const struct vec3 from[SHAFT_ENDS],
                              const struct vec3 to[SHAFT_ENDS])
 {
     float points[3][LANES];
-    for (int k = 0; k < LANES; k++) {
-        struct vec3 x = k < SHAFT_ENDS ? from[k] : to[k - SHAFT_ENDS];
-        points[0][k] = (float)x.x;
-        points[1][k] = (float)x.y;
-        points[2][k] = (float)x.z;
+    for (int k = 0; k < SHAFT_ENDS; k++) {
+        points[0][k] = (float)from[k].x;
+        points[1][k] = (float)from[k].y;
+        points[2][k] = (float)from[k].z;
+        points[0][SHAFT_ENDS + k] = (float)to[k].x;
+        points[1][SHAFT_ENDS + k] = (float)to[k].y;
+        points[2][SHAFT_ENDS + k] = (float)to[k].z;
     }
     for (int axis = 0; axis < 3; axis++)
         shaft->points[axis] = lanes_at(points[axis]);

@@ -30,20 +30,21 @@ void shaft_set_points(struct shaft *shaft, const struct vec3 from[SHAFT_ENDS],
                       const struct vec3 to[SHAFT_ENDS]);
 void shaft_set_slabs(struct shaft *shaft);
 
-/* Boxes beyond the slab of an axis. */
-#define OUT_OF_OWN(axis) \
-    mask_or(lanes_above(lanes_at(node->bound[axis][0]), shaft->own[axis].high), \
-            lanes_above(shaft->own[axis].low, lanes_at(node->bound[axis][1])))
+/* By how much boxes are beyond the slab of an axis, if above 0. Numbers, since AVX-512
+ * keeps masks apart, where to join six takes longer than to compare (gcc 12). */
+#define BEYOND_OWN(axis) \
+    lanes_max(lanes_sub(lanes_at(node->bound[axis][0]), shaft->own[axis].high), \
+              lanes_sub(shaft->own[axis].low, lanes_at(node->bound[axis][1])))
 
 /* direction[j] x_i is largest on one side of a box, and smallest on the other. */
 #define MOST(i, j) lanes_mul(shaft->direction[j], lanes_at(node->bound[i][up##j]))
 #define LEAST(i, j) lanes_mul(shaft->direction[j], lanes_at(node->bound[i][!up##j]))
 
-/* Boxes beyond the slab of an axis's cross product with the direction, which lies across
- * the axes i and j. */
-#define OUT_OF_CROSS(axis, i, j) \
-    mask_or(lanes_above(lanes_sub(LEAST(i, j), MOST(j, i)), shaft->cross[axis].high), \
-            lanes_above(shaft->cross[axis].low, lanes_sub(MOST(i, j), LEAST(j, i))))
+/* By how much boxes are beyond the slab of an axis's cross product with the direction,
+ * which lies across the axes i and j. */
+#define BEYOND_CROSS(axis, i, j) \
+    lanes_max(lanes_sub(lanes_sub(LEAST(i, j), MOST(j, i)), shaft->cross[axis].high), \
+              lanes_sub(shaft->cross[axis].low, lanes_sub(MOST(i, j), LEAST(j, i))))
 
 /* Children whose boxes the shaft may meet. */
 INLINE unsigned shaft_enters(const void *beam, const struct node *node,
@@ -51,12 +52,14 @@ INLINE unsigned shaft_enters(const void *beam, const struct node *node,
 {
     const struct shaft *shaft = beam;
     int up0 = ~shaft->near & 1, up1 = ~shaft->near >> 1 & 1, up2 = ~shaft->near >> 2 & 1;
-    lanes_mask own = mask_or(OUT_OF_OWN(0), mask_or(OUT_OF_OWN(1), OUT_OF_OWN(2)));
-    lanes_mask cross = mask_or(OUT_OF_CROSS(0, 1, 2),
-                               mask_or(OUT_OF_CROSS(1, 2, 0), OUT_OF_CROSS(2, 0, 1)));
-    lanes_mask out = mask_or(own, cross);
+    lanes own0 = BEYOND_OWN(0), own1 = BEYOND_OWN(1), own2 = BEYOND_OWN(2);
+    lanes cross0 = BEYOND_CROSS(0, 1, 2), cross1 = BEYOND_CROSS(1, 2, 0);
+    lanes cross2 = BEYOND_CROSS(2, 0, 1);
+    lanes own = lanes_max(lanes_max(own0, own1), own2);
+    lanes cross = lanes_max(lanes_max(cross0, cross1), cross2);
+    lanes_mask in = lanes_upto(lanes_max(own, cross), lanes_all(0.0f));
     (void)enter; /* a shaft goes on to its end */
-    return ~mask_select(&out, &shaft->weights) & 0xffu;
+    return mask_select(&in, &shaft->weights);
 }
 
 /* Goes down wherever the shaft may be, to the nearest box first. */
