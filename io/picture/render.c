@@ -1,5 +1,7 @@
 /* Rendering. A pixel depends only on its place, so scanlines can be dealt to ranks in any
- * way. A ray that meets the back of a triangle sees its twin, if there is one.
+ * way. A ray that meets the back of a triangle sees its twin, if there is one. The N x N
+ * rays of a pixel are on a grid whose rows and columns are slanted by a part of a cell,
+ * so that no two have the same x or y: across an upright edge there are N x N steps.
  *
  * Direct light of lamps has edges that no mesh follows, so it is gathered at each visible
  * point, by segments; reflected light is smooth and interpolated over the mesh. Or all
@@ -218,8 +220,9 @@ static void look(struct strip *strip, int px, int py, int pixels)
     int samples = strip->samples, rays = pixels * strip->rays, filled = 0;
     for (int i = 0; i < rays; i++) {
         int k = i % strip->rays;
-        double x = px + i / strip->rays + (k % samples + 0.5) / samples;
-        double y = py + (k / samples + 0.5) / samples;
+        int column = k % samples, row = k / samples;
+        double x = px + i / strip->rays + (column + (row + 0.5) / samples) / samples;
+        double y = py + (row + (samples - column - 0.5) / samples) / samples;
         directions[filled++] = camera_basis_ray(&strip->basis, x, y);
         if (filled < PACKET_RAYS && i + 1 < rays)
             continue;

@@ -212,6 +212,35 @@ static void test_smoothed_box(void)
     solution_free(&s);
 }
 
+/* --- pixels --- */
+
+/* A bright square, moved under the pixels by parts of one: of a pixel that an upright or
+ * a level edge cuts, each of the nine rays has a ninth to itself, across the edge. */
+static void test_edges(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(-1, -1, 0), point(2, 0, 0), point(0, 2, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    struct solution s = solve_scene(world_comm, scene_of_soup(&soup), "");
+    struct shading *shading = shading_create(s.solver->model.forest, NULL, NULL, NULL);
+    struct renderer renderer = renderer_make(s.octree, shading, NULL);
+    double worst = 0.0;
+    for (int i = 1; i < 50; i++) {
+        double moved = 0.01 * i, covered = 1.0 - 2.0 * moved; /* pixels are 0.5 wide */
+        struct camera camera = {.eye = point(moved, moved, 4),
+                                .at = point(moved, moved, 0),
+                                .up = point(0, 1, 0), .fov = 53.13010235415598,
+                                .width = 8, .height = 8};
+        float *rgb = render_scanlines(&renderer, &camera, 3, 0, 1, NULL);
+        worst = fmax(worst, fabs((double)rgb[3 * (4 * 8 + 5)] - covered)); /* upright */
+        worst = fmax(worst, fabs((double)rgb[3 * (2 * 8 + 4)] - covered)); /* level */
+        alloc_free(rgb);
+    }
+    tap_ok(worst <= 0.5 / 9.0 + 1e-6, "pixels at edges are off by %.4f at most", worst);
+    shading_destroy(shading);
+    solution_free(&s);
+}
+
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -221,6 +250,7 @@ int main(int argc, char **argv)
     test_column();
     test_bowl();
     test_smoothed_box();
+    test_edges();
     comm_stop(&world_comm);
     return tap_done();
 }
