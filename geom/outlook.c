@@ -21,25 +21,31 @@ static double rise_over(struct vec3 normal, struct vec3 from, struct vec3 corner
     return rise > ROUNDING || rise < -ROUNDING ? rise : 0.0;
 }
 
-/* The part of a piece above a plane through the point; no corners if there is none. */
-static struct outlook_piece part_above(const struct outlook_piece *piece,
-                                       struct vec3 from, struct vec3 normal)
+/* Cuts a piece along a plane through the point: the parts above and below it, without
+ * corners where there is none. */
+static void split_piece(const struct outlook_piece *piece, struct vec3 from,
+                        struct vec3 normal, struct outlook_piece *above,
+                        struct outlook_piece *below)
 {
-    struct outlook_piece part;
-    bool any = false;
-    part.count = 0;
+    double rise[OUTLOOK_CORNERS];
+    bool some_above = false, some_below = false;
     for (int k = 0; k < piece->count; k++) {
-        struct vec3 a = piece->corner[k], b = piece->corner[(k + 1) % piece->count];
-        double rise_a = rise_over(normal, from, a), rise_b = rise_over(normal, from, b);
-        any = any || rise_a > 0.0;
-        if (rise_a >= 0.0)
-            part.corner[part.count++] = a;
-        if ((rise_a > 0.0 && rise_b < 0.0) || (rise_a < 0.0 && rise_b > 0.0))
-            part.corner[part.count++] =
-                vec3_add(a, vec3_scale(vec3_sub(b, a), rise_a / (rise_a - rise_b)));
+        rise[k] = rise_over(normal, from, piece->corner[k]);
+        some_above = some_above || rise[k] > 0.0;
+        some_below = some_below || rise[k] < 0.0;
     }
-    part.count = any ? part.count : 0;
-    return part;
+    above->count = below->count = 0;
+    for (int k = 0; k < piece->count; k++) {
+        int next = (k + 1) % piece->count;
+        struct vec3 a = piece->corner[k], b = piece->corner[next];
+        if (some_above && rise[k] >= 0.0)
+            above->corner[above->count++] = a;
+        if (some_below && rise[k] <= 0.0)
+            below->corner[below->count++] = a;
+        if ((rise[k] > 0.0 && rise[next] < 0.0) || (rise[k] < 0.0 && rise[next] > 0.0))
+            above->corner[above->count++] = below->corner[below->count++] =
+                vec3_add(a, vec3_scale(vec3_sub(b, a), rise[k] / (rise[k] - rise[next])));
+    }
 }
 
 /* True if a piece lies outside of one of the planes: nothing of it is hidden. */
@@ -60,14 +66,14 @@ static bool is_outside(const struct outlook_piece *piece, struct vec3 from,
  * end. */
 static void cut_piece(struct outlook *outlook, int i, const struct vec3 normal[3])
 {
-    struct outlook_piece inside = outlook->piece[i];
+    struct outlook_piece inside[2];
+    inside[0] = outlook->piece[i];
     outlook->piece[i] = outlook->piece[--outlook->count];
-    for (int k = 0; k < 3 && inside.count > 0; k++) {
-        struct vec3 outwards = vec3_scale(normal[k], -1.0);
+    for (int k = 0; k < 3 && inside[k % 2].count > 0; k++) {
         struct outlook_piece *outside = &outlook->piece[outlook->count];
-        *outside = part_above(&inside, outlook->from, outwards);
+        split_piece(&inside[k % 2], outlook->from, normal[k], &inside[(k + 1) % 2],
+                    outside);
         outlook->count += outside->count > 0;
-        inside = part_above(&inside, outlook->from, normal[k]);
     }
 }
 
