@@ -182,7 +182,7 @@ bool compute_light(struct run *run)
             progress_begin(solver->progress, "solving", -1, 0);
             run->first_bound = HUGE_VAL;
             do {
-                solver_gather(solver); /* 5: light, and flux of proxies goes home */
+                solver_gather(solver);           /* 5: light; proxies send flux home */
                 solver_push_pull(solver);        /* 6: on the own roots */
                 solver_scatter(solver);          /* 7: proxies are renewed */
                 run->vote = solver_vote(solver); /* 8: is there another iteration? */
