@@ -221,7 +221,7 @@ static void test_edges(void)
     struct soup soup = {0};
     soup_add_quad(&soup, point(-1, -1, 0), point(2, 0, 0), point(0, 2, 0), 1);
     paint(&soup, 0.0, 1.0);
-    struct solution s = solve_scene(world_comm, scene_of_soup(&soup), "");
+    struct solution s = solve_scene(scene_of_soup(&soup), "");
     struct shading *shading = shading_create(s.solver->model.forest, NULL, NULL, NULL);
     struct renderer renderer = renderer_make(s.octree, shading, NULL);
     double worst = 0.0;
