@@ -308,7 +308,7 @@ static void bench_picture(const struct subject *subject)
     struct forest *forest = forest_create(subject->scene);
     int64_t leaves;
     uint8_t *open = shading_open_quarters(forest, subject->octree, 0, 1, &leaves);
-    struct shading *shading = shading_create(forest, NULL, open);
+    struct shading *shading = shading_create(forest, NULL, NULL, open);
     struct renderer renderer = renderer_make(subject->octree, shading, NULL);
     struct camera camera =
         viewpoint_choose(subject->scene, subject->octree, NULL, WIDTH, HEIGHT);
