@@ -61,7 +61,8 @@ static void create_solver(struct run *run)
             ? solver_create(&run->comm, run->scene, run->octree, criterion, PAPER)
             : beyond_create(&run->comm, run->scene, run->octree, criterion);
     run->solver = solver;
-    memory_watch(&solver->memory, &run->comm, run->options.memory, machine_memory());
+    memory_watch(&solver->memory, &run->comm, solver->model.forest->root_count,
+                 run->options.memory, machine_memory());
     solver->account.seconds[PHASE_READ] = comm_seconds() - run->start;
     solver->account.seconds[PHASE_OCTREE] = run->block.seconds;
     solver->progress = &run->progress.progress;

@@ -3,16 +3,14 @@
  * Links and patches grow; clusters are there from the beginning. Before a level is split,
  * the number of links after it is known within a factor: each link that is to be split
  * becomes four at most (of a cluster with itself, ten), and is there itself until the end
- * of the level; a patch can get four children only once. Whether that fits
- * into the limit is decided from counts over all ranks, so all decide alike, and a limit
- * that the user gives means the same on any number of ranks: for that it is held against
- * one copy of the patches and clusters, though each rank has its own patches. The default
- * limit is not a promise of the same results, but of an end that is not the system's: it
- * counts every copy, over the memory of all machines.
+ * of the level; a patch can get four children only once. Whether that fits is decided
+ * from counts over all ranks, so all decide alike, and a limit that the user gives means
+ * the same on any number of ranks: it is held against one copy of the patches and
+ * clusters, though each rank has its own patches. The default limit promises no equal
+ * results, but an end that is not the system's: it counts every copy, over all machines.
  *
- * Rejected: the memory that processes really hold, which depends on the system, on the
- * ranks and on what was freed; a limit for the links alone, since in small patches half
- * of the memory is. */
+ * Rejected: the memory that processes really hold, which depends on the system and the
+ * ranks; a limit for links alone, since half of the memory is in small patches. */
 #include "mpi/memory.h"
 
 #include <string.h>
@@ -59,22 +57,23 @@ static int64_t machines_together(const struct comm *comm, int64_t bytes)
     return known ? sum : 0;
 }
 
-void memory_watch(struct memory *memory, const struct comm *comm, int64_t limit,
-                  int64_t machine)
-{
-    memory->limit = limit;
-    memory->copies = 1;
-    if (limit > 0)
-        return;
-    memory->limit = (int64_t)(SHARE * (double)machines_together(comm, machine));
-    memory->copies = comm->size;
-}
-
 int64_t memory_needed(const struct memory *memory, int copies, int64_t links,
                       int64_t patches)
 {
     return BYTES_PER_LINK * links + BYTES_PER_RAY * memory->rays * patches +
            copies * (BYTES_PER_PATCH * patches + BYTES_PER_CLUSTER * memory->clusters);
+}
+
+void memory_watch(struct memory *memory, const struct comm *comm, int64_t roots,
+                  int64_t limit, int64_t machine)
+{
+    int64_t least = memory_needed(memory, 1, 0, roots) / 8 * 9;
+    memory->limit = least > limit ? least : limit;
+    memory->copies = 1;
+    if (limit > 0)
+        return;
+    memory->limit = (int64_t)(SHARE * (double)machines_together(comm, machine));
+    memory->copies = comm->size;
 }
 
 bool memory_has_room(const struct memory *memory, int64_t links, int64_t prolific,

@@ -264,6 +264,19 @@ held by-area area "--min-area is in the way" --min-area 0.01
 # Linking ends there too: the roots of a room have six times as many links as fit.
 build/room 1000 1 >"$work/room.obj"
 cp scenes/room.mtl "$work"
+
+# Less than the scene takes before there are links: some are made all the same.
+for ranks in 1 3; do
+    run least-$ranks $ranks "$work/room.obj" --size 40x40 --final-gather 0 --memory 1K \
+        >/dev/null
+done
+check "1 KiB on 3 ranks is 1 KiB on one" same least-3 least-1
+check "there are links" holds "$(stat_of "$work/least-1.json" links) > 100"
+check "and light" holds "$(stat_of "$work/least-1.json" absorbed_power) > \
+    0.5 * $(stat_of "$work/least-1.json" emitted_power)"
+check "the warning says more than 1 KiB" \
+    grep -q "bytes (an eighth more than the scene takes without)" "$work/least-3.err"
+
 room="$work/room.obj --paper --size 40x40"
 for ranks in 1 2 3; do
     run part-$ranks $ranks $room --memory 3M --checkpoint "$work/part.check" >/dev/null

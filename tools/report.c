@@ -120,10 +120,15 @@ bool report_summary(struct run *run)
     if (run->comm.rank == 0) {
         if (run->stats.memory_limited)
             run_say(run,
-                    "warning: %s ended at the memory limit of %lld bytes, "
+                    "warning: %s ended at the memory limit of %lld bytes%s, "
                     "with %lld links%s",
                     run->half_linked ? "linking" : "refinement",
-                    (long long)run->solver->memory.limit, (long long)run->stats.links,
+                    (long long)run->solver->memory.limit,
+                    run->options.memory > 0 &&
+                            run->options.memory < run->solver->memory.limit
+                        ? " (an eighth more than the scene takes without)"
+                        : "",
+                    (long long)run->stats.links,
                     run->half_linked ? ": light is missing" : "");
         else if (!run->vote.converged)
             run_say(run, "warning: not converged after %lld iterations",
