@@ -14,9 +14,12 @@ FNR == 1 { # a run on one rank, the run on many, the replay
     what = FILENAME ~ /\.replay$/ ? "replay" : FILENAME ~ /\.many$/ ? "many" : "one"
     turn += what == "one"
 }
+what == "one" && /^processor/ { processor = $2 }
 what == "one" && /"min".*"mean".*"max"/ && !/closure/ {
     split($0, part, "\"")
     now = value("max")
+    if (part[2] == "total") share = processor / now # the first phase
+    now *= share
     if (turn == 1 || now < seconds[part[2]]) seconds[part[2]] = now
     if (part[2] == "total") rest[turn] = now
     else if (!(part[2] in is_part)) rest[turn] -= now

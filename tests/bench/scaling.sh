@@ -1,6 +1,8 @@
 # make scaling: where the seconds of a run go on 1, 32 and 1,024 ranks, line by line.
 #
-# Runs on one rank tell the seconds of each phase, the least of them counting. A run of 32
+# Runs on one rank tell the seconds of each phase, the least of them counting: those of
+# the clock times the share of a processor that the run had, so that a machine which does
+# other work as well makes the same page. A run of 32
 # processes tells how much of the counted work the slowest rank has in each phase, and the
 # bytes sent; it may share a few cores, since counts do not depend on the clock. For
 # 1,024 ranks, build/.../replay deals the links that a run splits (tests/bench/replay.c);
@@ -15,21 +17,30 @@
 # Knobs: ROOM, size of the room; EPSILON; PAPER_ROOM and PAPER_EPSILON for --paper (0:
 # without); RANKS, of the run; TURNS, runs on one rank; OUT, the file.
 set -eu
-: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${ROOM:=100000}" "${EPSILON:=1e-3}"
+: "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${ROOM:=31933}" "${EPSILON:=1e-3}"
 : "${PAPER_ROOM:=2000}" "${PAPER_EPSILON:=1e-3}" "${RANKS:=32}"
-: "${TURNS:=1 2 3}" "${OUT:=docs/ranks.md}"
+: "${TURNS:=1 2}" "${OUT:=docs/ranks.md}"
 work=$BUILD/scaling
 mkdir -p "$work"
 cp scenes/room.mtl "$work"
 
-# measure NAME SIZE OPTIONS: NAME.one.TURN on one rank, NAME.many on 32, NAME.replay.
+# processor_seconds: of the children that a shell's `times` tells of.
+processor_seconds() {
+    sed 's/[ms]/ /g' | awk 'END { print 60 * $1 + $2 + 60 * $3 + $4 }'
+}
+
+# measure NAME SIZE OPTIONS: NAME.one.TURN on one rank, behind a line with its processor
+# seconds; NAME.many on 32; NAME.replay.
 measure() {
     name=$work/$1 size=$2
     shift 2
     rm -f "$name".one.*
     build/room "$size" 1 >"$name.obj"
     for turn in $TURNS; do
-        ./phr "$name.obj" "$@" --quiet -o "$name.ppm" --stats "$name.one.$turn"
+        sh -c '"$@" && times' times ./phr "$name.obj" "$@" --quiet -o "$name.ppm" \
+            --stats "$name.json" >"$name.times"
+        echo "processor $(processor_seconds <"$name.times")" >"$name.one.$turn"
+        cat "$name.json" >>"$name.one.$turn"
     done
     $MPIEXEC -n "$RANKS" ./phr "$name.obj" "$@" --quiet -o "$name.ppm" \
         --stats "$name.many"
@@ -50,6 +61,7 @@ measure default "$ROOM" --epsilon "$EPSILON"
     echo "# Seconds on 1, $RANKS and 1,024 ranks"
     echo
     echo "Made by \`make scaling\`; \`tests/bench/scaling.sh\` says how."
+    echo "Seconds on one rank are of the processor."
     echo "Each rank has a core of its own, like the one that the run on one rank had;"
     echo "shared memory of ranks is not made use of."
     table default "Room, epsilon $EPSILON; network of today" 2e-6 1e10
