@@ -13,6 +13,13 @@
  * with areas for weights. Rows are dealt to the ranks. All ranks know all vectors, so
  * only W B takes an exchange, and scalar products are the same on all ranks.
  *
+ * Where rays meet a leaf too near, such as the floor under a box, their paths find the
+ * light there (gather_rays.c). It is darker there than in the mean, so the rest of the
+ * leaf, which others see, is brighter than the mean. With the part n of the leaf's light
+ * that goes to near receivers and the mean radiosity L that they have met, far ones are
+ * shown B + n (B - L). (n / (1 - n) would be the whole difference, and noise where hardly
+ * any far ray meets the leaf.)
+ *
  * In a closed scene all emitted light is absorbed, by bare surfaces (on which no other
  * face lies). Noise, and leaves of which a dark part cannot be seen from afar (the table
  * under a sheet of paper), leave that untrue by a percent; one factor for each band, for
@@ -52,6 +59,7 @@ struct gathering {
     bool closed;            /* hardly any ray of any rank escapes */
     struct rgb *radiosity;  /* by place: radiosities to be gathered */
     struct rgb *all;        /* [count] buffer: a value of each row, rank by rank */
+    struct gather_near *near; /* [forest->count] by place, for the rows of all ranks */
     int64_t shares;         /* times that such values were exchanged so far */
     int *rank_of;           /* [count] rank that has the row; borrowed from the mesh */
     int *counts;            /* [ranks] rows of a rank */
@@ -92,6 +100,7 @@ static void gathering_end(struct gathering *g)
     alloc_free(g->areas);
     alloc_free(g->bare);
     alloc_free(g->radiosity);
+    alloc_free(g->near);
     alloc_free(g->all);
     alloc_free(g->counts);
     alloc_free(g->at);
@@ -148,6 +157,41 @@ static void place_radiosities(struct gathering *g, const struct rgb *b)
     final_gather_pull(&g->gather, g->radiosity);
 }
 
+/* Collective. Shares the light of leaves too near that does not depend on radiosities. */
+static void share_near(struct gathering *g)
+{
+    enum { EACH = (int)(sizeof *g->near / sizeof(int64_t)) };
+    int64_t patches = g->solver->model.forest->count;
+    g->near = alloc_array((size_t)patches, sizeof *g->near);
+    memcpy(g->near, g->gather.near.items, (size_t)patches * sizeof *g->near);
+    comm_add(g->solver->comm, &g->near->area, EACH * patches);
+}
+
+/* Collective. Makes the radiosities to be gathered those that far receivers see: see
+ * above. */
+static void see_from_afar(struct gathering *g, const struct rgb *b, bool lamps)
+{
+    const struct final_gather *gather = &g->gather;
+    int64_t patches = g->solver->model.forest->count;
+    int64_t *watts = alloc_array(BANDS * (size_t)patches, sizeof *watts);
+    for (int64_t row = 0; row < gather->count; row++)
+        final_gather_add_near(gather, row, g->radiosity, watts);
+    comm_add(g->solver->comm, watts, BANDS * patches);
+    for (int64_t i = 0; i < g->count; i++) {
+        int32_t place = gather->place[g->leaves[i]];
+        const struct gather_near *near = &g->near[place];
+        double part = (double)near->area * gather->near.unit_area / g->areas[i];
+        double unit = gather->near.unit_watts / (g->areas[i] * fmax(1.0, part));
+        for (int c = 0; c < BANDS; c++) {
+            int64_t sum = watts[BANDS * place + c] + (lamps ? near->watts[c] : 0);
+            g->radiosity[place].band[c] +=
+                fmin(1.0, part) * b[i].band[c] - (double)sum * unit;
+        }
+    }
+    final_gather_pull(gather, g->radiosity);
+    alloc_free(watts);
+}
+
 /* Collective. Irradiances of all leaves, W/m^2, for their radiosities `b`, with the
  * source if `lamps`. */
 static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
@@ -155,6 +199,7 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
 {
     const struct comm *comm = g->solver->comm;
     place_radiosities(g, b);
+    see_from_afar(g, b, lamps);
     struct rgb *own = g->all + g->at[comm->rank];
     for (int64_t row = 0; row < g->gather.count; row++)
         own[row] = final_gather_irradiance(&g->gather, row, g->radiosity, lamps);
@@ -385,6 +430,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     struct rgb *b = alloc_array(count, sizeof *b), *h = alloc_array(count, sizeof *h);
     struct rgb *start = alloc_array(count, sizeof *start);
     double brightest = 0.0;
+    share_near(g);
     irradiances(g, b, true, h); /* of lamps alone */
     set_radiosities(g, h, start);
     for (int64_t i = 0; i < g->count; i++) {

@@ -31,7 +31,7 @@
 #include "mpi/memory.h"
 #include "rad/oracle.h"
 
-static const double MESH = 0.01;
+static const double MESH = 0.005;
 
 /* The variance of the light over a leaf is at most this times its square, which the links
  * tell with an error of this part of the mean square. */

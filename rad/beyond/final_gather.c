@@ -72,11 +72,15 @@ static int rays_for(int rays, int64_t leaves)
 struct final_gather final_gather_create(struct model *model, int rays)
 {
     struct forest *forest = model->forest;
-    struct final_gather gather = {.model = model, .view = {.root = -1}};
+    struct final_gather gather = {.model = model, .view = {.root = -1}, .near.met = -1};
     forest_bound(forest);
     gather.rays = rays_for(rays, forest_count(forest).leaves);
     gather.mean = mean_radiosity(model);
     gather.lamps = lamps_create(model, LAMP * mean_reflected(model));
+    gather.near.unit_area = 0x1p-50 * model->area;
+    gather.near.unit_watts = 0x1p-44 * model->area * gather.mean;
+    gather.near.items =
+        alloc_array((size_t)forest->count, sizeof *gather.near.items);
     gather.order = forest_order(forest);
     gather.place = alloc_array((size_t)forest->count, sizeof *gather.place);
     for (int64_t i = 0; i < forest->count; i++)
@@ -99,6 +103,7 @@ void final_gather_free(struct final_gather *gather)
     lamps_free(&gather->lamps);
     alloc_free(gather->groups.items);
     alloc_free(gather->view.faced);
+    alloc_free(gather->near.items);
     alloc_free(gather->order);
     alloc_free(gather->place);
     final_gather_drop_rows(gather);
@@ -159,7 +164,7 @@ static void add_term(struct receiver *r, int32_t patch, const struct rgb *weight
         r->light.band[c] += weight->band[c] * b.band[c];
     if (!r->keeps)
         return;
-    struct gather_term term = {.place = g->place[patch]};
+    struct gather_term term = {.place = g->place[patch], .near = g->near.met};
     for (int c = 0; c < BANDS; c++)
         term.weight[c] = (float)weight->band[c];
     g->terms =
@@ -180,17 +185,19 @@ void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
     }
 }
 
-/* By place, then by weight: any sorting gives the same order. */
+/* By places, then by weight: any sorting gives the same order. */
 static int compare_terms(const void *left, const void *right)
 {
     const struct gather_term *a = left, *b = right;
     int order = (a->place > b->place) - (a->place < b->place);
+    if (order == 0)
+        order = (a->near > b->near) - (a->near < b->near);
     for (int c = 0; c < BANDS && order == 0; c++)
         order = (a->weight[c] > b->weight[c]) - (a->weight[c] < b->weight[c]);
     return order;
 }
 
-/* Joins the terms of the same patch, in double: a sum of thousands of equal floats, in
+/* Joins the terms of the same places, in double: a sum of thousands of equal floats, in
  * float, is wrong in the sixth digit. */
 static void join_terms(struct receiver *r)
 {
@@ -200,10 +207,13 @@ static void join_terms(struct receiver *r)
           compare_terms);
     for (int64_t i = r->first_term, next; i < r->row.end; i = next) {
         double sum[BANDS] = {0.0};
-        for (next = i; next < r->row.end && terms[next].place == terms[i].place; next++)
+        for (next = i; next < r->row.end && terms[next].place == terms[i].place &&
+                       terms[next].near == terms[i].near;
+             next++)
             for (int c = 0; c < BANDS; c++)
                 sum[c] += (double)terms[next].weight[c];
         terms[to].place = terms[i].place;
+        terms[to].near = terms[i].near;
         for (int c = 0; c < BANDS; c++)
             terms[to].weight[c] = (float)sum[c];
         to++;
@@ -231,8 +241,25 @@ static struct rgb light_of(const struct receiver *r)
 {
     struct rgb h = r->lamps;
     for (int c = 0; c < BANDS; c++)
-        h.band[c] += r->sum.band[c];
+        h.band[c] += r->sums.h.band[c];
     return h;
+}
+
+/* The variance by chance, over bands, that the quarters of a leaf have in common: their
+ * rays have the same directions. `each`, [rays]: rho H by each ray, summed over
+ * quarters. */
+static double variance_in_common(const struct rgb *each, int rays)
+{
+    double variance = 0.0;
+    for (int c = 0; c < BANDS; c++) {
+        double sum = 0.0, squares = 0.0;
+        for (int i = 0; i < rays; i++) {
+            sum += each[i].band[c];
+            squares += each[i].band[c] * each[i].band[c];
+        }
+        variance += 0.0625 * (squares - sum * sum / rays);
+    }
+    return fmax(0.0, variance);
 }
 
 struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays)
@@ -241,14 +268,16 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     struct facet facet = facet_make(forest, leaf);
     struct gather_look look = {.noise = 0.0f};
     const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
+    struct rgb *each = alloc_array((size_t)rays, sizeof *each);
     double variance = 0.0;
     int64_t before = model_work(gather->model), fixed = gather->model->estimating;
     for (int k = 0; k < 4; k++) {
         struct facet quarter = facet;
         quarter.triangle = triangle_child(&facet.triangle, k);
         quarter.area = 0.25 * facet.area;
-        uint64_t seed = hash_mix(seed_of(gather, leaf) + 1 + (uint64_t)k);
-        struct receiver r = receiver_make(gather, quarter, seed, rays);
+        struct receiver r =
+            receiver_make(gather, quarter, hash_mix(seed_of(gather, leaf) + 1), rays);
+        r.sums.each = each;
         receiver_aim(&r);
         receiver_fire(&r);
         struct rgb h = light_of(&r);
@@ -257,12 +286,16 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
             variance += 0.25 * rho->band[c] * rho->band[c] * r.row.chance[c];
         }
     }
+    for (int i = 0; i < rays; i++)
+        for (int c = 0; c < BANDS; c++)
+            each[i].band[c] *= rho->band[c];
     fixed = gather->model->estimating - fixed;
     look.fixed = 0.25f * (float)fixed;
     look.work =
         (float)(model_work(gather->model) - before - fixed) / (4.0f * (float)rays);
-    look.noise = variance;
+    look.noise = fmax(0.0, variance - variance_in_common(each, rays));
     look.variance = variance * rays;
+    alloc_free(each);
     return look;
 }
 
@@ -324,8 +357,29 @@ struct gather_light final_gather_at(struct final_gather *gather,
     if (all)
         receiver_fire(&r);
     light.lamps = r.lamps;
-    light.rest = r.sum;
+    light.rest = r.sums.h;
     return light;
+}
+
+int64_t gather_units(double value, double unit)
+{
+    static const double MOST = 0x1p52;
+    double units = unit > 0.0 ? fmax(-MOST, fmin(MOST, value / unit)) : 0.0;
+    return (int64_t)(units < 0.0 ? units - 0.5 : units + 0.5);
+}
+
+void final_gather_add_near(const struct final_gather *gather, int64_t row,
+                           const struct rgb *radiosity, int64_t *watts)
+{
+    const struct gather_row *at = &gather->rows[row];
+    double area = forest_area(gather->model->forest, at->leaf);
+    for (int64_t i = row > 0 ? at[-1].end : 0; i < at->end; i++) {
+        const struct gather_term *term = &gather->terms[i];
+        for (int c = 0; c < BANDS && term->near >= 0; c++)
+            watts[BANDS * term->near + c] += gather_units(
+                area * (double)term->weight[c] * radiosity[term->place].band[c],
+                gather->near.unit_watts);
+    }
 }
 
 void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity)

@@ -17,10 +17,11 @@ struct gather_light {
     double variance;  /* of `lamps`, by the choice of segments, over bands, (W/m^2)^2 */
 };
 
-/* A look at a leaf: the light of its quarters by a few rays. */
+/* A look at a leaf: the light of its quarters by a few rays, in the same directions. */
 struct gather_look {
     float reflected[4][BANDS]; /* rho H of each quarter, W/m^2 */
-    double noise;              /* variance of rho H of a quarter, by chance */
+    double noise;              /* variance of rho H of a quarter, by chance, from the mean
+                                  of all */
     double variance;           /* of rho H of a ray, over bands, (W/m^2)^2 */
     float fixed;               /* predicted tests of a row, without its rays */
     float work;                /* predicted tests of each ray of a row */
@@ -59,6 +60,14 @@ struct gather_light final_gather_at(struct final_gather *gather,
 void final_gather_drop_rows(struct final_gather *gather);
 
 struct gather_slope gather_slope(const struct final_gather *gather, int32_t patch);
+
+/* The integer of a value in units, bounded. */
+int64_t gather_units(double value, double unit);
+
+/* Adds the light of a row, W in square scene units, that comes by way of leaves too near
+ * to these: `watts`, by place and band, in gather->near.unit_watts. */
+void final_gather_add_near(const struct final_gather *gather, int64_t row,
+                           const struct rgb *radiosity, int64_t *watts);
 
 /* The pull: inner patches get the mean of their leaves. `radiosity`: by place. */
 void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity);

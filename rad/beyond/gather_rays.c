@@ -20,6 +20,7 @@
 
 #include "geom/hash.h"
 #include "geom/lambert.h"
+#include "rad/beyond/final_gather.h"
 #include "rad/beyond/sequence.h"
 #include "rad/beyond/sample.h"
 
@@ -114,9 +115,21 @@ struct vec3 receiver_start(const struct receiver *r, double u, double v)
 
 /* --- lamps --- */
 
+/* Adds light of lamps that a row's ray has found on a leaf too near. */
+static void add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
+                     double factor)
+{
+    struct final_gather *g = r->gather;
+    for (int c = 0; c < BANDS && r->keeps && g->near.met >= 0; c++)
+        g->near.items[g->near.met].watts[c] += gather_units(
+            r->facet.area * weight->band[c] * factor * emission.band[c],
+            g->near.unit_watts);
+}
+
 static void add_source(struct receiver *r, const struct rgb *weight, struct rgb emission,
                        double factor)
 {
+    add_near(r, weight, emission, factor);
     for (int c = 0; c < BANDS; c++) {
         double h = weight->band[c] * factor * emission.band[c];
         r->row.source.band[c] += h;
@@ -420,6 +433,19 @@ static bool goes_on(struct receiver *r, const struct point *point, bool aimed, d
     return u < most;
 }
 
+/* A row's ray begins a path: the leaf that it has met is too near. */
+static void begin_path(struct receiver *r, const struct point *met, bool aimed,
+                       const struct rgb *weight)
+{
+    struct final_gather *g = r->gather;
+    g->near.met = g->place[met->patch];
+    if (r->keeps)
+        g->near.items[g->near.met].area +=
+            gather_units(r->facet.area / r->rays, g->near.unit_area);
+    if (aimed) /* segments bring it, so the path does not count it */
+        add_near(r, weight, forest_material(g->model->forest, met->patch)->emission, 1.0);
+}
+
 /* Follows a path from its first ray on, and adds its light, times `weight`. */
 static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction,
                    struct rgb weight, uint64_t seed)
@@ -444,6 +470,8 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
             add_mesh(r, &point, aimed, &weight);
             return;
         }
+        if (count == 1)
+            begin_path(r, &point, aimed, &weight);
         if (count > 1 && !goes_on(r, &point, aimed, hash_unit(seed + 13), &weight))
             return;
         if (!aimed)
@@ -460,15 +488,18 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
     }
 }
 
-/* Adds the light of a ray's path to the sums, and to the half of the rays that it belongs
+/* Adds the light of ray i's path to the sums, and to the half of the rays that it belongs
  * to. */
-static void count_light(struct receiver *r, int half)
+static void count_light(struct receiver *r, int i)
 {
+    int half = 2 * i / r->rays;
     for (int c = 0; c < BANDS; c++) {
         double h = r->light.band[c];
-        r->sum.band[c] += h;
-        r->squares.band[c] += h * h;
-        r->half[half].band[c] += h;
+        r->sums.h.band[c] += h;
+        r->sums.squares.band[c] += h * h;
+        r->sums.half[half].band[c] += h;
+        if (r->sums.each)
+            r->sums.each[i].band[c] += h;
         r->light.band[c] = 0.0;
     }
 }
@@ -484,12 +515,13 @@ void receiver_fire(struct receiver *r)
                cosine_direction(r->facet.plane.normal, r->along, u[0], u[1]),
                (struct rgb){{share, share, share}},
                hash_mix(r->seed ^ hash_mix((uint64_t)i)));
-        count_light(r, 2 * i / r->rays);
+        r->gather->near.met = -1;
+        count_light(r, i);
     }
     for (int c = 0; c < BANDS; c++) {
-        double mean2 = r->sum.band[c] * r->sum.band[c] / r->rays;
-        double apart = r->half[0].band[c] - r->half[1].band[c];
-        r->row.chance[c] += fmax(0.0, r->squares.band[c] - mean2);
+        double mean2 = r->sums.h.band[c] * r->sums.h.band[c] / r->rays;
+        double apart = r->sums.half[0].band[c] - r->sums.half[1].band[c];
+        r->row.chance[c] += fmax(0.0, r->sums.squares.band[c] - mean2);
         r->row.halves[c] += apart * apart;
     }
     if (r->escaped < r->rays)

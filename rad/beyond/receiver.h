@@ -6,6 +6,12 @@
 #include "rad/beyond/rows.h"
 #include "rad/beyond/sequence.h"
 
+/* Sums over the rays of a receiver. */
+struct ray_sums {
+    struct rgb h, squares, half[2]; /* of H, of H^2, of H by halves */
+    struct rgb *each; /* [rays] H by each ray is added to these; NULL: not wanted */
+};
+
 struct receiver {
     struct final_gather *gather;
     struct facet facet;   /* the leaf; for points, a triangle without extent */
@@ -20,7 +26,7 @@ struct receiver {
     int inside;           /* rays from points inside of things */
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
     struct rgb lamps;     /* H by lamps */
-    struct rgb sum, squares, half[2]; /* sums over all rays of H, H^2, H by halves */
+    struct ray_sums sums;
 };
 
 /* Adds `weight` times the radiosity that a patch has at a point of it, which has the

@@ -12,6 +12,7 @@
  * in all arrays of the final gather. */
 struct gather_term {
     int32_t place; /* of the patch */
+    int32_t near;  /* place of a leaf too near that its ray met first; -1: none */
     float weight[BANDS];
 };
 
@@ -26,6 +27,23 @@ struct gather_row {
     double halves[BANDS]; /* squared difference of the first and second half of the
                              rays: a sample of the variance by the sequence */
     float bare;        /* share of the leaf's area that nothing lies or stands on, 1 */
+};
+
+/* A leaf where rays have met it too near for its mean to hold: their paths went on from
+ * there. */
+struct gather_near {
+    int64_t area;         /* of senders, each times the part of its rays that have met it
+                             so: by reciprocity, that of the leaf times the part of its
+                             light that goes there */
+    int64_t watts[BANDS]; /* that the rays found there, emitted by lamps */
+};
+
+/* Sums of integers, for they are over ranks. */
+struct gather_nears {
+    struct gather_near *items; /* [forest->count] by place, for the rows of this rank */
+    double unit_area;          /* square scene units */
+    double unit_watts;         /* W in square scene units */
+    int32_t met; /* place of the leaf too near that the ray at hand met first; -1: none */
 };
 
 /* Work of this rank. */
@@ -57,6 +75,7 @@ struct final_gather {
     struct gather_view view;   /* of the root of the leaf at hand */
     int32_t *order; /* [forest->count] patches as in forest_order() */
     int32_t *place; /* [forest->count] the place of each patch in `order` */
+    struct gather_nears near;
     struct gather_row *rows;   /* [count] */
     struct gather_term *terms; /* [term_count] */
     int64_t count, term_count, row_capacity, term_capacity;

@@ -287,7 +287,7 @@ static double lit(const struct scene *scene, struct vec3 x, int32_t floor)
 
 /* A floor below a small lamp, and a small black box because of which rays are needed; the
  * links split nothing. Leaves are to be split until A times the variance of their light
- * over quarters is at most 0.01 epsilon of the sum of A B^2 (MESH in mpi/gather_mesh.c),
+ * over quarters is at most 0.005 epsilon of the sum of A B^2 (MESH in gather_mesh.c),
  * and no further. Chance moves the threshold by a factor of two at most. */
 static void test_mesh(double epsilon)
 {
@@ -303,7 +303,7 @@ static void test_mesh(double epsilon)
     struct solution s = solve_soup(&soup, words);
     const struct forest *forest = s.solver->model.forest;
     const struct gathered *gathered = &s.solver->beyond->answer.counts;
-    double squares = 0.0, largest = 0.0, least = HUGE_VAL, goal = 0.01 * epsilon;
+    double squares = 0.0, largest = 0.0, least = HUGE_VAL, goal = 0.005 * epsilon;
     for (int pass = 0; pass < 2; pass++)
         for (int32_t p = 0; p < forest->count; p++) {
             const struct patch *patch = &forest->patches[p];
@@ -335,6 +335,26 @@ static void test_mesh(double epsilon)
            "leaves were split over which %.1e varied at least", least);
     double rays = (double)gathered->rays / (double)forest_count(forest).leaves;
     tap_ok(rays > 180.0 && rays <= 256.0, "%.0f rays for each leaf in the mean", rays);
+    solution_free(&s);
+}
+
+/* A closed room with a table low above its floor, which nothing splits: rays of the table
+ * find the dark of the floor below it, so all others have to see the floor brighter than
+ * its mean. Otherwise light of the floor is lost, and irradiances have to be raised to
+ * close the balance. */
+static void test_near(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    paint(&soup, 0.8, 0.0);
+    soup_add_box(&soup, point(0.3, 0.3, 0.03), point(0.7, 0.7, 0.05), 1, false);
+    paint(&soup, 0.2, 0.0);
+    soup_add_box(&soup, point(0.4, 0.4, 0.7), point(0.6, 0.6, 0.9), 1, false);
+    paint(&soup, 0.0, 1.0);
+    struct solution s = solve_soup(&soup, "--epsilon 0.1 --max-level 0");
+    double closing = s.solver->beyond->answer.counts.closing;
+    tap_ok(closing < 0.02, "irradiances are raised by %.1f %% to close a balance",
+           100.0 * closing);
     solution_free(&s);
 }
 
@@ -399,6 +419,46 @@ static void test_chance(void)
     solution_free(&s);
 }
 
+/* A small bright cube in a room of which every second cell reflects: the light of the
+ * quarters of its faces differs by chance alone, by as much as looks say, and by less
+ * than half of the chance of each quarter, for rays from all of them have the same
+ * directions. */
+static void test_looks(void)
+{
+    enum { WALLS = 1200, RAYS = 16 };
+    struct soup soup = {0};
+    for (int odd = 0; odd < 2; odd++) {
+        add_cells(&soup, odd);
+        paint(&soup, odd ? 0.9 : 0.0, 0.0);
+    }
+    soup_add_box(&soup, point(-0.02, -0.02, -0.02), point(0.02, 0.02, 0.02), 1, false);
+    paint(&soup, 0.5, 1.0);
+    struct solution s = solve_soup(&soup, "--epsilon 0.1");
+    struct model *model = &s.solver->model;
+    struct final_gather gather = final_gather_create(model, RAYS);
+    double spread = 0.0, noise = 0.0, alone = 0.0;
+    for (int32_t p = 0; p < model->forest->count; p++) {
+        const struct patch *patch = &model->forest->patches[p];
+        if (!patch_is_leaf(patch) || patch->id.root < WALLS)
+            continue;
+        struct gather_look look = final_gather_look(&gather, p, RAYS);
+        double sum = 0.0, squares = 0.0;
+        for (int k = 0; k < 4; k++) {
+            double b = (double)look.reflected[k][0];
+            sum += b;
+            squares += b * b;
+        }
+        spread += 0.25 * BANDS * (squares - 0.25 * sum * sum);
+        noise += look.noise;
+        alone += look.variance / RAYS;
+    }
+    tap_ok(spread < 2.0 * noise && spread > 0.5 * noise && noise < 0.5 * alone,
+           "quarters differ by %.1e, %.1e expected, %.1e by rays of their own", spread,
+           noise, alone);
+    final_gather_free(&gather);
+    solution_free(&s);
+}
+
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -412,8 +472,10 @@ int main(int argc, char **argv)
     test_flush_lamp();
     test_mesh(0.1);
     test_mesh(0.02);
+    test_near();
     test_even();
     test_chance();
+    test_looks();
     comm_stop(&world_comm);
     return tap_done();
 }
