@@ -60,7 +60,7 @@ struct gathering {
     struct rgb *radiosity;  /* by place: radiosities to be gathered */
     struct rgb *all;        /* [count] buffer: a value of each row, rank by rank */
     struct gather_near *near; /* [forest->count] by place, for the rows of all ranks */
-    int64_t shares;         /* times that such values were exchanged so far */
+    int64_t bytes;          /* of values that ranks have exchanged so far */
     int *rank_of;           /* [count] rank that has the row; borrowed from the mesh */
     int *counts;            /* [ranks] rows of a rank */
     int *at;                /* [ranks] place of a rank's first row in `all` */
@@ -141,7 +141,7 @@ static void share_rows(struct gathering *g, struct rgb *values)
 {
     const struct comm *comm = g->solver->comm;
     comm_share(comm, g->all, g->counts, g->at, sizeof *g->all);
-    g->shares++;
+    g->bytes += g->count * (int64_t)sizeof *g->all;
     int *next = alloc_array((size_t)comm->size, sizeof *next);
     memcpy(next, g->at, (size_t)comm->size * sizeof *next);
     for (int64_t i = 0; i < g->count; i++)
@@ -157,6 +157,13 @@ static void place_radiosities(struct gathering *g, const struct rgb *b)
     final_gather_pull(&g->gather, g->radiosity);
 }
 
+/* Collective. Adds up integers of all ranks, which go to the sum and back. */
+static void add_up(struct gathering *g, int64_t *values, int64_t count)
+{
+    comm_add(g->solver->comm, values, count);
+    g->bytes += 2 * count * (int64_t)sizeof *values;
+}
+
 /* Collective. Shares the light of leaves too near that does not depend on radiosities. */
 static void share_near(struct gathering *g)
 {
@@ -164,7 +171,7 @@ static void share_near(struct gathering *g)
     int64_t patches = g->solver->model.forest->count;
     g->near = alloc_array((size_t)patches, sizeof *g->near);
     memcpy(g->near, g->gather.near.items, (size_t)patches * sizeof *g->near);
-    comm_add(g->solver->comm, &g->near->area, EACH * patches);
+    add_up(g, &g->near->area, EACH * patches);
 }
 
 /* Collective. Makes the radiosities to be gathered those that far receivers see: see
@@ -176,7 +183,7 @@ static void see_from_afar(struct gathering *g, const struct rgb *b, bool lamps)
     int64_t *watts = alloc_array(BANDS * (size_t)patches, sizeof *watts);
     for (int64_t row = 0; row < gather->count; row++)
         final_gather_add_near(gather, row, g->radiosity, watts);
-    comm_add(g->solver->comm, watts, BANDS * patches);
+    add_up(g, watts, BANDS * patches);
     for (int64_t i = 0; i < g->count; i++) {
         int32_t place = gather->place[g->leaves[i]];
         const struct gather_near *near = &g->near[place];
@@ -475,8 +482,7 @@ bool solver_final_gather(struct solver *solver, struct vote *vote)
     if (done)
         solve_rows(&g, vote);
     ledger_add(&solver->account.ledger,
-               (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .bytes = g.shares * g.count * (int64_t)sizeof *g.all});
+               (struct phase_work){.kind = WORK_FINAL_GATHER, .bytes = g.bytes});
     gathering_end(&g);
     solver->account.seconds[PHASE_FINAL_GATHER] += comm_seconds() - start;
     return done;

@@ -375,7 +375,9 @@ void final_gather_add_near(const struct final_gather *gather, int64_t row,
     double area = forest_area(gather->model->forest, at->leaf);
     for (int64_t i = row > 0 ? at[-1].end : 0; i < at->end; i++) {
         const struct gather_term *term = &gather->terms[i];
-        for (int c = 0; c < BANDS && term->near >= 0; c++)
+        if (term->near < 0)
+            continue;
+        for (int c = 0; c < BANDS; c++)
             watts[BANDS * term->near + c] += gather_units(
                 area * (double)term->weight[c] * radiosity[term->place].band[c],
                 gather->near.unit_watts);
