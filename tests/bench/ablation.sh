@@ -163,7 +163,7 @@ balance() {
     for plan in none greedy default; do
         $MPIEXEC -n 8 ./phr "$(file_of $1)" --final-gather 0 --epsilon 1e-4 --quiet \
             --balance $plan --stats "$work/stats"
-        awk '/"iteration":/ {
+        awk '/"work_max":/ {
                 split($0, part, /"work_max": |, "work_mean": /)
                 most += part[2]; mean += part[3]
             }
