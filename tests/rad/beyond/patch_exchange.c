@@ -7,7 +7,7 @@
 
 #include "tests/scenes.h"
 #include "tests/tap.h"
-#include "tools/contour.h"
+#include "geom/contour.h"
 
 /* Nothing known, everything looked at. */
 static struct exchange estimate(const struct facet *p, const struct facet *q,
