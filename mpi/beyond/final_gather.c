@@ -59,7 +59,6 @@ struct gathering {
     bool closed;            /* hardly any ray of any rank escapes */
     struct rgb *radiosity;  /* by place: radiosities to be gathered */
     struct rgb *all;        /* [count] buffer: a value of each row, rank by rank */
-    struct gather_near *near; /* [forest->count] by place, for the rows of all ranks */
     int64_t bytes;          /* of values that ranks have exchanged so far */
     int *rank_of;           /* [count] rank that has the row; borrowed from the mesh */
     int *counts;            /* [ranks] rows of a rank */
@@ -100,7 +99,6 @@ static void gathering_end(struct gathering *g)
     alloc_free(g->areas);
     alloc_free(g->bare);
     alloc_free(g->radiosity);
-    alloc_free(g->near);
     alloc_free(g->all);
     alloc_free(g->counts);
     alloc_free(g->at);
@@ -164,14 +162,11 @@ static void add_up(struct gathering *g, int64_t *values, int64_t count)
     g->bytes += 2 * count * (int64_t)sizeof *values;
 }
 
-/* Collective. Shares the light of leaves too near that does not depend on radiosities. */
+/* Collective. Adds up the light of leaves too near that does not depend on radiosities. */
 static void share_near(struct gathering *g)
 {
-    enum { EACH = (int)(sizeof *g->near / sizeof(int64_t)) };
-    int64_t patches = g->solver->model.forest->count;
-    g->near = alloc_array((size_t)patches, sizeof *g->near);
-    memcpy(g->near, g->gather.near.items, (size_t)patches * sizeof *g->near);
-    add_up(g, &g->near->area, EACH * patches);
+    enum { EACH = (int)(sizeof *g->gather.near.items / sizeof(int64_t)) };
+    add_up(g, &g->gather.near.items->area, EACH * g->solver->model.forest->count);
 }
 
 /* Collective. Makes the radiosities to be gathered those that far receivers see: see
@@ -186,7 +181,7 @@ static void see_from_afar(struct gathering *g, const struct rgb *b, bool lamps)
     add_up(g, watts, BANDS * patches);
     for (int64_t i = 0; i < g->count; i++) {
         int32_t place = gather->place[g->leaves[i]];
-        const struct gather_near *near = &g->near[place];
+        const struct gather_near *near = &gather->near.items[place];
         double part = (double)near->area * gather->near.unit_area / g->areas[i];
         double unit = gather->near.unit_watts / (g->areas[i] * fmax(1.0, part));
         for (int c = 0; c < BANDS; c++) {

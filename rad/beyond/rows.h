@@ -40,7 +40,8 @@ struct gather_near {
 
 /* Sums of integers, for they are over ranks. */
 struct gather_nears {
-    struct gather_near *items; /* [forest->count] by place, for the rows of this rank */
+    struct gather_near *items; /* [forest->count] by place, for the rows of this rank;
+                                  of all ranks once these are added up */
     double unit_area;          /* square scene units */
     double unit_watts;         /* W in square scene units */
     int32_t met; /* place of the leaf too near that the ray at hand met first; -1: none */
