@@ -162,7 +162,7 @@ static void add_up(struct gathering *g, int64_t *values, int64_t count)
     g->bytes += 2 * count * (int64_t)sizeof *values;
 }
 
-/* Collective. Adds up the light of leaves too near that does not depend on radiosities. */
+/* Collective. Adds up the light of leaves too near that no radiosity changes. */
 static void share_near(struct gathering *g)
 {
     enum { EACH = (int)(sizeof *g->gather.near.items / sizeof(int64_t)) };
