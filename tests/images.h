@@ -2,21 +2,18 @@
 #ifndef TESTS_IMAGES_H
 #define TESTS_IMAGES_H
 
-#include <string.h>
-
 #include "io/picture/imagefile.h"
-#include "tests/tap.h"
+#include "tests/refusal.h"
 
 /* The last one. */
 static struct image found;
 static enum image_kind kind;
-static struct error error;
 
 static inline void forget(void)
 {
     alloc_free(found.rgb);
     found = (struct image){0};
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
 }
 
 static inline bool read_bytes(const char *bytes, size_t size)
@@ -57,9 +54,7 @@ static inline void check_read(const char *name, const char *bytes, size_t size,
 
 static inline void check_refused(const char *bytes, size_t size, const char *message)
 {
-    bool right = !read_bytes(bytes, size) && !found.rgb && error.code == EXIT_USAGE &&
-                 strcmp(error.text, message) == 0;
-    tap_ok(right, "refused as %s", error.text);
+    check_error(read_bytes(bytes, size) || found.rgb, message);
     forget();
 }
 

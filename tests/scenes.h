@@ -227,9 +227,9 @@ static inline struct scene *scene_of_soup(struct soup *soup)
 static inline void scene_prepare_or_exit(struct scene *scene)
 {
     struct scene_repairs repairs;
-    struct error error = {0};
-    if (!scene_prepare(scene, &repairs, &error)) {
-        printf("Bail out! %s\n", error.text);
+    struct error reason = {0};
+    if (!scene_prepare(scene, &repairs, &reason)) {
+        printf("Bail out! %s\n", reason.text);
         exit(1);
     }
 }

@@ -9,17 +9,15 @@
 #include <string.h>
 
 #include "tests/load.h"
+#include "tests/refusal.h"
 #include "tests/scenes.h"
-#include "tests/tap.h"
 
 #define VIEW "build/camera_test.view"
 #define PLACE "eye 0 0 5\nat 0 0 0\n" /* two lines that every view needs */
 
-static struct error error;
-
 static bool read_view(const char *text, struct camera *camera)
 {
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     write_text(VIEW, text);
     return camera_read(VIEW, camera, &error);
 }
@@ -59,9 +57,7 @@ static void test_keywords(void)
 static void check_refused(const char *text, const char *message)
 {
     struct camera camera;
-    bool read = read_view(text, &camera);
-    bool right = !read && error.code == EXIT_USAGE && strcmp(error.text, message) == 0;
-    tap_ok(right, "%s%s%s", message, right ? "" : " is not: ", right ? "" : error.text);
+    check_error(read_view(text, &camera), message);
 }
 
 static void test_bad_lines(void)
@@ -113,10 +109,10 @@ static void test_bad_views(void)
 static void test_missing_view(void)
 {
     struct camera camera;
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     tap_ok(!camera_read("build/camera_test_absent", &camera, &error) &&
-               error.code == EXIT_USAGE &&
-               strncmp(error.text, "build/camera_test_absent: cannot read: ", 39) == 0,
+               error_is_of_system(EXIT_USAGE, "build/camera_test_absent",
+                                  ": cannot read: "),
            "%s", error.text);
 }
 

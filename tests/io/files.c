@@ -12,11 +12,9 @@
 #include <unistd.h>
 
 #include "tests/load.h"
-#include "tests/tap.h"
+#include "tests/refusal.h"
 
 #define FOLDER "build/files_test"
-
-static struct error error;
 
 /* Parses the words of a line, and checks the files that it names. */
 static bool check(const char *line)
@@ -28,7 +26,7 @@ static bool check(const char *line)
     snprintf(words, sizeof words, "phr %s", line);
     for (char *word = strtok(words, " "); word; word = strtok(NULL, " "))
         arguments[count++] = word;
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     bool good = options_parse(&options, count, arguments, &error) &&
                 files_check(&options, &error) &&
                 files_check_input(&options, "room.mtl", &error);
@@ -38,8 +36,7 @@ static bool check(const char *line)
 
 static void check_refused(const char *line, const char *message)
 {
-    bool refused = !check(line) && error.code == EXIT_USAGE;
-    tap_ok(refused && strcmp(error.text, message) == 0, "%s: %s", line, error.text);
+    tap_ok(is_refused_as(check(line), message), "%s: %s", line, error.text);
 }
 
 static void check_taken(const char *line, const char *name)

@@ -10,7 +10,7 @@
 #include "geom/alloc.h"
 #include "io/scene/text.h"
 #include "tests/load.h"
-#include "tests/tap.h"
+#include "tests/refusal.h"
 
 #define OBJ "build/obj_test.obj"
 #define MTL "build/obj_test.mtl"
@@ -18,28 +18,18 @@
 #define CORNERS "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
 static struct obj_repairs repairs;
-static struct error error;
 
 static struct scene *read_scene(const char *text)
 {
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     write_text(OBJ, text);
     return obj_read(OBJ, &repairs, &error);
-}
-
-/* Whether the last reading failed with exactly this line. */
-static bool failed_with(const struct scene *scene, const char *message)
-{
-    bool right = !scene && error.code == EXIT_USAGE && strcmp(error.text, message) == 0;
-    if (!right)
-        printf("# expected '%s', got '%s'\n", message, error.text);
-    return right;
 }
 
 static void check_refused(const char *text, const char *message)
 {
     struct scene *scene = read_scene(text);
-    tap_ok(failed_with(scene, message), "%s", message);
+    check_error(scene, message);
     scene_destroy(scene);
 }
 
@@ -79,26 +69,16 @@ static const struct material *material_at(const struct scene *scene, int32_t tri
     return &scene->materials[scene->material_of[triangle]];
 }
 
+/* Lines, words and numbers themselves: tests/io/text.c. */
 static void test_lines(void)
 {
-    check_triangle("LF", CORNERS "f 1 2 3\n");
     check_triangle("no last newline", CORNERS "f 1 2 3");
-    check_triangle("CRLF", "v 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nf 1 2 3\r\n");
-    check_triangle("CR", "v 0 0 0\rv 1 0 0\rv 1 1 0\rf 1 2 3\r");
-    check_triangle("byte order mark", "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
     check_triangle("blank lines and blanks",
                    "\n \t\n  v\t0 0  0 \nv 1 0 0\t\n\tv 1 1 0\n\n f 1 2 3 \n");
     check_triangle("continuation",
                    "v 0 \\\n0 0\nv\\\r\n1 0 0\nv 1 1\\\n\\\n 0\nf 1\\\r2 3\n");
-    check_triangle("backslash at the end of the file", CORNERS "f 1 2 3\\");
-    check_triangle("continuation at the end of the file", CORNERS "f 1 2 3\\\n");
     check_triangle("comments", "# one\n" CORNERS "  # two\nf 1 2 3 # three\n#");
-    check_triangle("a comment does not go on", CORNERS "f 1 2 3\n# C:\\\nf 1 2 3\n");
-    check_refused("v 1 2 3\\\n\\\n\nv 1 2 z\n", OBJ ":4: bad number 'z'");
     check_refused("v 1 2 3\nv 1 \\\n2 \\\nz\n", OBJ ":2: bad number 'z'");
-    check_refused("v 1 2 3\r\n\r\nv 1 2 z\r\n", OBJ ":3: bad number 'z'");
-    check_refused("v 1 2 3\r\rv 1 2 z\r", OBJ ":3: bad number 'z'");
-    check_refused("# \\\nv 1 2 z", OBJ ":2: bad number 'z'");
 }
 
 static void test_long_file(void)
@@ -135,10 +115,6 @@ static void test_vertices(void)
     check_refused("v\n", OBJ ":1: vertex has 0 coordinates instead of 3");
     check_refused("v 1 2 #3\n", OBJ ":1: vertex has 2 coordinates instead of 3");
     check_refused("v 1 2 3\nv nan 0 0\n", OBJ ":2: bad number 'nan'");
-    check_refused("v 1 2 3\nv 0 -inf 0\n", OBJ ":2: bad number '-inf'");
-    check_refused("v 0 0 0x1p3\n", OBJ ":1: bad number '0x1p3'");
-    check_refused("v 0 0 1e400\n", OBJ ":1: bad number '1e400'");
-    check_refused("v 0 0 -1.1e100\n", OBJ ":1: number '-1.1e100' is out of range");
 }
 
 static void test_corners(void)
@@ -428,13 +404,10 @@ static void test_bad_libraries(void)
     check_library_refused("newmtl a\nKd -0.1 0 0\n", MTL ":2: negative number '-0.1'");
     check_library_refused("newmtl a\n\nKe 0 0 -1\n", MTL ":3: negative number '-1'");
     check_library_refused("newmtl a\nKd 0 nan 0\n", MTL ":2: bad number 'nan'");
-    check_library_refused("newmtl a\nKe 1e200\n",
-                          MTL ":2: number '1e200' is out of range");
     check_library_refused("newmtl a\nKd 1 1\n",
                           MTL ":2: Kd has 2 numbers instead of 1 or 3");
     check_library_refused("newmtl a\nke #\n",
                           MTL ":2: ke has 0 numbers instead of 1 or 3");
-    check_library_refused("newmtl a\nKd red\n", MTL ":2: bad number 'red'");
     check_library_refused("Ka 1\nKd 1 1 1\n", MTL ":2: Kd before newmtl");
     check_library_refused("newmtl a\n\x01\n", MTL ": not a text file");
 }
@@ -463,47 +436,11 @@ static void test_bad_files(void)
     check_refused(CORNERS, OBJ ": no faces");
     check_refused("just some words\n\nand more", OBJ ": no faces");
     check_refused(CORNERS "f 1 2 3\n\x1B\n", OBJ ": not a text file");
-    static const char zeros[] = CORNERS "f 1 2 3\n\0";
-    error = (struct error){EXIT_DONE, ""};
-    write_bytes(OBJ, zeros, sizeof zeros);
-    tap_ok(failed_with(obj_read(OBJ, &repairs, &error), OBJ ": not a text file"),
-           "a zero byte");
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     struct scene *scene = obj_read("build/obj_test_absent.obj", &repairs, &error);
-    tap_ok(!scene && error.code == EXIT_USAGE &&
-               strncmp(error.text, "build/obj_test_absent.obj: cannot read: ", 40) == 0 &&
-               strlen(error.text) > 40,
+    tap_ok(!scene && error_is_of_system(EXIT_USAGE, "build/obj_test_absent.obj",
+                                        ": cannot read: "),
            "%s", error.text);
-    error = (struct error){EXIT_DONE, ""};
-    scene = obj_read("build", &repairs, &error);
-    tap_ok(!scene && error.code == EXIT_USAGE &&
-               strncmp(error.text, "build: cannot read: ", 20) == 0,
-           "%s", error.text);
-}
-
-/* Bytes without sense are refused, or make a scene if they happen to; nothing else. */
-static void test_random_bytes(void)
-{
-    static const char alphabet[] = "vf  \n\n\\/-+.0123456789e#\r\tusemtl o g";
-    uint32_t seed = 7;
-    int refused = 0, read = 0;
-    for (int round = 0; round < 2000; round++) {
-        char text[400] = CORNERS;
-        bool binary = round % 4 == 0;
-        for (size_t i = binary ? 0 : sizeof CORNERS - 1; i < sizeof text; i++) {
-            seed = seed * 1664525u + 1013904223u;
-            text[i] = binary ? (char)(seed >> 24)
-                             : alphabet[(seed >> 8) % (sizeof alphabet - 1)];
-        }
-        error = (struct error){EXIT_DONE, ""};
-        write_bytes(OBJ, text, sizeof text);
-        struct scene *scene = obj_read(OBJ, &repairs, &error);
-        refused +=
-            !scene && error.code == EXIT_USAGE && strncmp(error.text, OBJ ":", 19) == 0;
-        read += scene && error.code == EXIT_DONE && scene->input_count > 0;
-        scene_destroy(scene);
-    }
-    tap_ok(refused + read == 2000 && refused > 500, "2000 random files");
 }
 
 int main(void)
@@ -524,7 +461,6 @@ int main(void)
     test_bad_libraries();
     test_nameless();
     test_bad_files();
-    test_random_bytes();
     remove(OBJ);
     remove(MTL);
     remove(OTHER);

@@ -9,11 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tests/tap.h"
+#include "tests/refusal.h"
 
 enum { ARGUMENTS_MAX = 12, TEXT_MAX = 100000 };
 
-static struct error error;
 static struct options options; /* of the last line */
 
 /* Parses a command line; blanks separate its words ("_" is an empty one). */
@@ -23,7 +22,7 @@ static bool parse(const char *line)
     static char *arguments[ARGUMENTS_MAX + 1];
     int count = 0;
     options_free(&options);
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     snprintf(words, sizeof words, "phr %s", line);
     for (char *word = strtok(words, " "); word && count < ARGUMENTS_MAX;
          word = strtok(NULL, " "))
@@ -347,8 +346,7 @@ static void test_numbers(void)
 
 static void check_refused(const char *line, const char *message)
 {
-    bool right = !parse(line) && error.code == EXIT_USAGE && is_same(error.text, message);
-    tap_ok(right, "%s%s%s", message, right ? "" : " is not: ", right ? "" : error.text);
+    check_error(parse(line), message);
 }
 
 static void test_errors(void)

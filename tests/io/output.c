@@ -12,12 +12,10 @@
 #include <unistd.h>
 
 #include "tests/load.h"
-#include "tests/tap.h"
+#include "tests/refusal.h"
 
 #define PATH "build/output_test.bin"
 #define BESIDE PATH ".0.tmp"
-
-static struct error error;
 
 /* True if the file holds exactly these bytes. */
 static bool file_is(const char *path, const char *bytes, size_t count)
@@ -36,7 +34,7 @@ static bool path_is_free(const char *path)
 
 static bool start(struct output *output, const char *path)
 {
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     return output_open(output, path, &error);
 }
 
@@ -82,35 +80,30 @@ static void test_error_elsewhere(void)
            "and makes no file where there was none");
 }
 
+static bool is_refused(bool good, const char *path)
+{
+    return !good && error_is_of_system(EXIT_FAILED, path, ": cannot write: ");
+}
+
 /* A stream that was reopened for reading refuses every byte: a full disk, anywhere. */
 static void test_write_error(void)
 {
-    static const char line[] = PATH ": cannot write: ";
     struct output output;
     write_text(PATH, "old");
     start(&output, PATH);
     output.file = freopen(BESIDE, "rb", output.file);
     bool refused = output.file && putc('x', output.file) == EOF;
-    tap_ok(refused && !output_close(&output, &error) && error.code == EXIT_FAILED &&
-               strncmp(error.text, line, strlen(line)) == 0 && error.text[strlen(line)],
+    tap_ok(refused && is_refused(output_close(&output, &error), PATH),
            "a write error: %s", error.text);
     tap_ok(file_is(PATH, "old", 3) && path_is_free(BESIDE),
            "leaves the old file and no other");
-}
-
-static bool is_refused(bool good, const char *path)
-{
-    size_t length = strlen(path);
-    return !good && error.code == EXIT_FAILED && strncmp(error.text, path, length) == 0 &&
-           strncmp(error.text + length, ": cannot write: ", 16) == 0 &&
-           error.text[length + 16];
 }
 
 /* A path that both output_probe() and output_open() refuse, for the same reason. */
 static void check_unwritable(const char *path)
 {
     struct output output = {0};
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     bool probed = is_refused(output_probe(path, &error), path);
     struct error first = error;
     bool opened = is_refused(start(&output, path), path);
@@ -122,7 +115,7 @@ static void check_unwritable(const char *path)
 
 static void test_probe(void)
 {
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     remove(PATH);
     tap_ok(output_probe(PATH, &error) && path_is_free(PATH) && path_is_free(BESIDE),
            "probing a new file leaves nothing");
@@ -240,7 +233,7 @@ static void test_pipe(void)
     static const char path[] = "build/output_test.pipe";
     remove(path);
     tap_ok(mkfifo(path, 0600) == 0 && output_is_stream(path), "a pipe is a stream");
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     alarm(10);
     tap_ok(output_probe(path, &error), "probing a pipe does not open it");
     alarm(0);

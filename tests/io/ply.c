@@ -10,7 +10,7 @@
 
 #include "io/scene/palette.h"
 #include "tests/load.h"
-#include "tests/tap.h"
+#include "tests/refusal.h"
 
 #define PLY "build/ply_test.ply"
 #define XYZ "property float x\nproperty float y\nproperty float z\n"
@@ -21,12 +21,10 @@
 #define CORNERS "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
 #define ASCII "ply\nformat ascii 1.0\n"
 
-static struct error error;
-
 static struct scene *read_bytes(const void *bytes, size_t size)
 {
     struct binary binary;
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     return binary_of_bytes(&binary, PLY, bytes, size, "ply", "a PLY file", &error)
                ? ply_of_binary(&binary, &error)
                : NULL;
@@ -37,17 +35,19 @@ static struct scene *read_text(const char *text)
     return read_bytes(text, strlen(text));
 }
 
-/* The text is refused with this line, whose %s is the path. */
+/* The bytes are refused with the path and this message. */
+static void check_bytes_refused(const void *bytes, size_t size, const char *message)
+{
+    char line[200];
+    struct scene *scene = read_bytes(bytes, size);
+    snprintf(line, sizeof line, "%s%s", PLY, message);
+    check_error(scene, line);
+    scene_destroy(scene);
+}
+
 static void check_refused(const char *text, const char *message)
 {
-    struct scene *scene = read_text(text);
-    bool right = !scene && error.code == EXIT_USAGE &&
-                 strncmp(error.text, PLY, strlen(PLY)) == 0 &&
-                 strcmp(error.text + strlen(PLY), message) == 0;
-    if (!right)
-        printf("# expected '%s', got '%s'\n", message, error.text);
-    tap_ok(right, "%s", message);
-    scene_destroy(scene);
+    check_bytes_refused(text, strlen(text), message);
 }
 
 static bool corner_is(const struct scene *scene, int32_t triangle, int k, double x,
@@ -222,11 +222,8 @@ static void test_lengths(void)
     }
     tap_ok(accepted == 0, "cut off at every byte");
     put(&file, 1, 1);
-    struct scene *scene = read_bytes(file.data, file.size);
-    tap_ok(!scene &&
-               strcmp(error.text, PLY ": 1 bytes are left behind the last element") == 0,
-           "a byte too many: %s", error.text);
-    scene_destroy(scene);
+    check_bytes_refused(file.data, file.size,
+                        ": 1 bytes are left behind the last element");
 }
 
 /* A number in the binary square is replaced; the message says which element is wrong. */
@@ -234,10 +231,7 @@ static void check_patched(size_t from_end, unsigned char byte, const char *messa
 {
     struct bytes file = make_binary(false);
     file.data[file.size - from_end] = byte;
-    struct scene *scene = read_bytes(file.data, file.size);
-    bool right = !scene && strcmp(error.text + strlen(PLY), message) == 0;
-    tap_ok(right, "binary%s (%s)", message, error.text);
-    scene_destroy(scene);
+    check_bytes_refused(file.data, file.size, message);
 }
 
 static void test_binary_errors(void)
@@ -350,7 +344,7 @@ static void test_long_lines(void)
                              "3 0 1 2 3\n3 0 2 3\n";
     struct binary binary;
     struct ply_file file;
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     struct scene *scene = NULL;
     if (binary_of_bytes(&binary, PLY, TEXT, sizeof TEXT - 1, "ply", "a PLY file",
                         &error) &&
@@ -401,7 +395,7 @@ static void test_row_errors(void)
 static struct scene *read_source(const char *path, bool *is_ply)
 {
     struct source source;
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     *is_ply = source_open(&source, path, &error) && ply_is_meant(&source);
     struct scene *scene = *is_ply ? ply_read(&source, &error) : NULL;
     source_close(&source);

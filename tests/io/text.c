@@ -14,17 +14,15 @@
 #include "geom/alloc.h"
 #include "tests/load.h"
 #include "tests/random.h"
-#include "tests/tap.h"
+#include "tests/refusal.h"
 
 #define FILE_NAME "build/text_test.txt"
 
 enum { BLOCK = 65536 }; /* the reader's block: sizes around it are the doubtful ones */
 
-static struct error error;
-
 static bool read_bytes(struct text *text, const char *bytes, size_t count)
 {
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     write_bytes(FILE_NAME, bytes, count);
     return text_read(text, FILE_NAME, &error);
 }
@@ -298,34 +296,25 @@ static void test_integers(void)
     }
 }
 
-static void check_binary(const char *name, const char *bytes, size_t count)
+/* Refused, in a file and in memory. */
+static void check_binary(const char *name, const char *bytes, size_t count,
+                         const char *message)
 {
     struct text text;
-    bool good = read_bytes(&text, bytes, count);
-    tap_ok(!good && error.code == EXIT_USAGE && !text.unreadable &&
-               is_same(error.text, FILE_NAME ": not a text file"),
-           "refused: %s", name);
-    text_free(&text);
-}
-
-static void check_utf16(const char *name, const char *bytes, size_t count)
-{
-    struct text text;
-    bool good = read_bytes(&text, bytes, count);
-    tap_ok(!good && error.code == EXIT_USAGE &&
-               is_same(error.text, FILE_NAME ": is UTF-16; save it as UTF-8"),
-           "UTF-16, %s", name);
-    error = (struct error){EXIT_DONE, ""};
-    good = text_of_bytes(&text, "here", bytes, count, &error);
-    tap_ok(!good && is_same(error.text, "here: is UTF-16; save it as UTF-8"),
-           "also in memory");
+    char line[100];
+    snprintf(line, sizeof line, FILE_NAME ": %s", message);
+    tap_ok(is_refused_as(read_bytes(&text, bytes, count) || text.unreadable, line),
+           "%s: %s", name, error.text);
+    forget_error();
+    snprintf(line, sizeof line, "here: %s", message);
+    check_error(text_of_bytes(&text, "here", bytes, count, &error), line);
 }
 
 static void test_bytes(void)
 {
     static const char bytes[] = "\xEF\xBB\xBF" "one\r\ntwo!";
     struct text text;
-    error = (struct error){EXIT_DONE, ""};
+    forget_error();
     bool good = text_of_bytes(&text, "here", bytes, sizeof bytes - 2, &error);
     tap_ok(good && is_same(text_line(&text), "one") && is_same(text_line(&text), "two") &&
                !text_line(&text) && text.line == 2,
@@ -334,42 +323,36 @@ static void test_bytes(void)
     good = text_of_bytes(&text, "here", "", 0, &error);
     tap_ok(good && !text_line(&text), "no bytes");
     text_free(&text);
-    tap_ok(!text_of_bytes(&text, "here", "a\0", 2, &error) &&
-               is_same(error.text, "here: not a text file"),
-           "bytes that are no text");
 }
 
 static void test_binary(void)
 {
-    check_binary("a zero byte", "a\n\0b", 4);
-    check_binary("a zero byte at the end", "a\n", 3);
-    check_utf16("little-endian", "\xFF\xFE" "a\0\n\0", 6);
-    check_utf16("big-endian", "\xFE\xFF\0a\0\n", 6);
-    check_utf16("little-endian without a mark", "v\0 \0" "1\0", 6);
-    check_utf16("big-endian without a mark", "\0v\0 \0" "1", 6);
-    check_utf16("without control characters", "\xFE\xFF\x4E\x2D\x65\x87", 6);
-    check_binary("zero bytes in pairs", "\0\0\0\0", 4);
-    check_binary("a bell", "a\a\n", 3);
-    check_binary("an escape", "\033[0m", 4);
+    static const char BINARY[] = "not a text file";
+    static const char UTF16[] = "is UTF-16; save it as UTF-8";
+    check_binary("a zero byte", "a\n\0b", 4, BINARY);
+    check_binary("a zero byte at the end", "a\n", 3, BINARY);
+    check_binary("little-endian", "\xFF\xFE" "a\0\n\0", 6, UTF16);
+    check_binary("big-endian", "\xFE\xFF\0a\0\n", 6, UTF16);
+    check_binary("little-endian without a mark", "v\0 \0" "1\0", 6, UTF16);
+    check_binary("big-endian without a mark", "\0v\0 \0" "1", 6, UTF16);
+    check_binary("without control characters", "\xFE\xFF\x4E\x2D\x65\x87", 6, UTF16);
+    check_binary("zero bytes in pairs", "\0\0\0\0", 4, BINARY);
+    check_binary("a bell", "a\a\n", 3, BINARY);
+    check_binary("an escape", "\033[0m", 4, BINARY);
     char *bytes = alloc_array(3 * BLOCK, 1);
     memset(bytes, 'x', 3 * BLOCK);
     bytes[3 * BLOCK - 1] = 1;
-    check_binary("a control character in the third block", bytes, 3 * BLOCK);
+    check_binary("a control character in the third block", bytes, 3 * BLOCK, BINARY);
     alloc_free(bytes);
 }
 
 static void check_unreadable(const char *path)
 {
     struct text text;
-    error = (struct error){EXIT_DONE, ""};
-    size_t length = strlen(path);
-    bool good = text_read(&text, path, &error);
-    tap_ok(!good && text.unreadable && error.code == EXIT_USAGE &&
-               strncmp(error.text, path, length) == 0 &&
-               strncmp(error.text + length, ": cannot read: ", 15) == 0 &&
-               error.text[length + 15],
+    forget_error();
+    tap_ok(!text_read(&text, path, &error) && text.unreadable &&
+               error_is_of_system(EXIT_USAGE, path, ": cannot read: "),
            "%s", error.text);
-    text_free(&text);
 }
 
 static void test_names(void)
