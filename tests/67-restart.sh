@@ -1,7 +1,7 @@
 # Link caches, checkpoints and the memory limit: a file is the same whatever the number of
 # ranks that wrote it; a run that goes on from it, on any number of ranks, equals an
 # uninterrupted one; what was made from another scene or with other settings is refused,
-# with the reason.
+# with the reason (every reason there is: tests/io/store.c; settings: tests/io/options.c).
 . tests/tap.sh
 
 cornell="scenes/cornell.obj --epsilon 1e-4 --size 40x40 --quiet"
@@ -73,26 +73,9 @@ sed 's/^Kd 0.7/Kd 0.6/' scenes/cornell.mtl >"$work/cornell.mtl"
 check "another material is another scene" \
     refused "$work/links-1: made from another scene" \
     "$work/moved.obj" --epsilon 1e-4 --linking pairs --load-links "$work/links-1"
-for other in "--epsilon 1e-3" "--oracle bf" "--form-factor disk" "--two-sided"; do
-    case $other in
-    --epsilon*) was=0.0001 ;;
-    --oracle*) was=error ;;
-    *disk) was=polygon ;;
-    *) was=off ;;
-    esac
-    check "made without $other" \
-        refused "$work/links-1: made with ${other%% *} $was" $pairs \
-            --load-links "$work/links-1" $other
-done
-$MPIEXEC -n 2 "$PHR" $pairs --two-sided --save-links "$work/links-two"
-check "made without --two-sided-lamps" \
-    refused "$work/links-two: made with --two-sided-lamps off" $pairs \
-    --load-links "$work/links-two" --two-sided-lamps
-for option in --save-links --load-links; do
-    check "the tree has none: $option" \
-        refused "$option goes with --linking pairs (--paper)" \
-        $cornell $option "$work/links-1"
-done
+check "made without --oracle bf" \
+    refused "$work/links-1: made with --oracle error" $pairs \
+    --load-links "$work/links-1" --oracle bf
 
 # --- checkpoints ---
 
@@ -143,19 +126,9 @@ resumes jacobi 8 --solver jacobi --max-level 3
 check "--solver is bound" \
     refused "$work/check-1: made with --solver cg, this run has --solver jacobi" \
     $cornell --resume "$work/check-1" --solver jacobi
-check "so is --linking" \
-    refused "$work/check-1: made with --linking tree, this run has --linking pairs" \
-    $pairs --resume "$work/check-1"
 check "so are twins of lamps" refused \
     "$work/two-sided.check: made with --two-sided-lamps off" \
     $cornell --max-level 4 --resume "$work/two-sided.check" --two-sided-lamps
-check "a link cache is no checkpoint" \
-    refused "$work/links-1: not a checkpoint but a link cache" \
-    $cornell --resume "$work/links-1"
-check "a missing one" \
-    refused "$work/absent: cannot read: " $cornell --resume "$work/absent"
-head -c 1000 "$work/check-1" >"$work/cut"
-check "one that is cut off" refused "$work/cut: damaged: " $cornell --resume "$work/cut"
 cp "$work/check-1" "$work/flipped"
 printf x | dd of="$work/flipped" bs=1 seek=5000 conv=notrunc 2>/dev/null
 check "one with a changed byte" \

@@ -146,15 +146,7 @@ END
 refuse_scene ": all faces of the scene are degenerate" "only faces without area"
 
 scene corner.ply <<END
-ply
-format ascii 1.0
-element vertex 3
-property float x
-property float y
-property float z
-element face 1
-property list uchar int vertex_indices
-end_header
+$(ply_head 3 1)
 0 0 0
 1 0 0
 1 1 0

@@ -75,18 +75,7 @@ takes() {
 }
 
 cat >"$work/scene.ply" <<END
-ply
-format ascii 1.0
-element vertex 6
-property float x
-property float y
-property float z
-element face 2
-property list uchar int vertex_indices
-property float emission_r
-property float emission_g
-property float emission_b
-end_header
+$(ply_head 6 2 emission_r emission_g emission_b)
 0 0 0
 1 0 0
 0 1 0

@@ -40,6 +40,17 @@ holds() {
     awk "BEGIN { exit !($1) }"
 }
 
+# ply_head VERTICES FACES [PROPERTY...]: the header of a PLY file of text, whose faces
+# have these properties, too.
+ply_head() {
+    printf 'ply\nformat ascii 1.0\nelement vertex %d\n' "$1"
+    printf 'property float %s\n' x y z
+    printf 'element face %d\nproperty list uchar int vertex_indices\n' "$2"
+    shift 2
+    [ $# -eq 0 ] || printf 'property float %s\n' "$@"
+    echo end_header
+}
+
 tap_done() {
     echo "1..$tap_count"
     [ "$tap_failed" -eq 0 ]

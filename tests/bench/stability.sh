@@ -558,7 +558,7 @@ them with the paper's method (`--paper`) and by default, and tells one number of
 - What no single number tells is tested elsewhere: that refinement ends and leaves only
   become more, 16 levels, pictures without cracks (`tests/whole/stability.c`), rays
   through edges and corners (`tests/octree/octree.c`), numbers that are none
-  (`tests/75-materials.sh`), books and cupboards (`tests/whole/gaps.c`,
+  (`tests/io/obj.c`), books and cupboards (`tests/whole/gaps.c`,
   `tests/whole/leaks.c`), overflow of counts (`tests/geom/alloc.c`).
 
 | failure | scene | exact | `--paper` | off | phr | off |

@@ -5,7 +5,7 @@
  *     singular shared edges              contour.c, 55-validate.sh
  *     drift of row sums, rho to 0.999    whole.c
  *     false convergence                  here; exact.c
- *     rho >= 1, negative, NaN, huge Ke   75-materials.sh, scene.c
+ *     rho >= 1, negative, NaN, huge Ke   75-materials.sh, obj.c, scene.c
  *     light leaks                        here
  *     coplanar overlap, duplicates       here
  *     covered patches, interpenetration  here
