@@ -25,7 +25,7 @@ sed 's/\\-/-/g' phr.1 | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.TP
     sed -n 's/^\(\\fB\|\.B \)\(-[a-z-]*\).*/\2/p' | sort -u >"$work/in-man"
 check "the man page has a paragraph for each option of --help, and no other" \
     same_lines "$work/in-help" "$work/in-man"
-sed -n 's/^    {"\(-[a-z-]*\)", KIND_.*/\1/p' io/run/options.c |
+sed -n 's/^    {"\(-[a-z-]*\)", [a-z]*_.*/\1/p' io/run/options.c |
     sort -u >"$work/in-parser"
 check "as has the parser" same_lines "$work/in-help" "$work/in-parser"
 sed 's/\\-/-/g' phr.1 | grep -oE '(^|[^a-zA-Z-])--[a-z][a-z-]+' |

@@ -1,8 +1,8 @@
 /* The command line.
  *
- * Options are a table: name, kind of value, field in struct options, and range. --help is
- * plain text beside it, so that it reads as it prints, and fits a screen of 24 lines;
- * tests/io/options.c compares the two, tests/52-words.sh the man page. */
+ * Options are a table: name, the function that sets it, field in struct options, and
+ * range. --help is plain text beside it, so that it reads as it prints, and fits a screen
+ * of 24 lines; tests/52-words.sh compares the two, and the man page. */
 #include "io/run/options.h"
 
 #include <ctype.h>
@@ -15,69 +15,24 @@
 #include "io/scene/camera.h"
 #include "io/scene/text.h"
 
-enum kind { KIND_FLAG, KIND_TEXT, KIND_REAL, KIND_INTEGER, KIND_OUTPUT, KIND_VIEW,
-            KIND_SIZE, KIND_CHOICE, KIND_FRACTION, KIND_BYTES, KIND_GATHER, KIND_SHOW,
-            KIND_PAPER };
+struct argument;
 
 struct option {
     const char *name;
-    enum kind kind;
+    bool (*set)(const struct argument *argument);
     size_t offset;       /* of the field in struct options */
     double low, high;    /* inclusive range of a number */
     const char *choices; /* names, separated by bars, in the order of the field's enum */
 };
 
-#define FIELD(name) offsetof(struct options, name)
-
-static const struct option OPTIONS[] = {
-    {"-o", KIND_OUTPUT, 0, 0, 0, NULL},
-    {"--view", KIND_VIEW, 0, 0, 0, NULL},
-    {"--size", KIND_SIZE, 0, 0, 0, NULL},
-    {"--samples", KIND_INTEGER, FIELD(samples), 1, 64, NULL},
-    {"--exposure", KIND_REAL, FIELD(exposure), 1e-30, 1e30, NULL},
-    {"--flat", KIND_FLAG, FIELD(flat), 0, 0, NULL},
-    {"--epsilon", KIND_REAL, FIELD(criterion.epsilon), 0, 1e30, NULL},
-    {"--accuracy", KIND_FRACTION, FIELD(criterion.accuracy), 1e-4, 1, NULL},
-    {"--max-level", KIND_INTEGER, FIELD(criterion.max_level), 0, ID_MAX_LEVEL, NULL},
-    {"--min-area", KIND_REAL, FIELD(criterion.min_area), 0, 1, NULL},
-    {"--oracle", KIND_CHOICE, FIELD(criterion.oracle), 0, 0, "bf|error"},
-    {"--linking", KIND_CHOICE, FIELD(criterion.linking), 0, 0, "pairs|tree"},
-    {"--form-factor", KIND_CHOICE, FIELD(criterion.form_factor), 0, 0, "disk|polygon"},
-    {"--solver", KIND_CHOICE, FIELD(criterion.solver), 0, 0, "jacobi|cg"},
-    {"--balance", KIND_CHOICE, FIELD(criterion.balance), 0, 0, "none|greedy|default"},
-    {"--final-gather", KIND_GATHER, FIELD(criterion.final_gather), 0,
-     GATHER_RAYS_MOST, NULL},
-    {"--paper", KIND_PAPER, 0, 0, 0, NULL},
-    {"--alpha", KIND_REAL, FIELD(criterion.alpha), 0, 1, NULL},
-    {"--tolerance", KIND_REAL, FIELD(criterion.tolerance), 0, 1, NULL},
-    {"--max-iterations", KIND_INTEGER, FIELD(criterion.max_iterations), 1, 1e9, NULL},
-    {"--ke", KIND_CHOICE, FIELD(ke), 0, 0, "radiosity|radiance"},
-    {"--two-sided", KIND_FLAG, FIELD(two_sided), 0, 0, NULL},
-    {"--two-sided-lamps", KIND_FLAG, FIELD(two_sided_lamps), 0, 0, NULL},
-    {"--save-links", KIND_TEXT, FIELD(save_links), 0, 0, NULL},
-    {"--load-links", KIND_TEXT, FIELD(load_links), 0, 0, NULL},
-    {"--checkpoint", KIND_TEXT, FIELD(checkpoint), 0, 0, NULL},
-    {"--every", KIND_INTEGER, FIELD(every), 1, 1e9, NULL},
-    {"--resume", KIND_TEXT, FIELD(resume), 0, 0, NULL},
-    {"--memory", KIND_BYTES, FIELD(memory), 1, 1e18, NULL},
-    {"--stats", KIND_TEXT, FIELD(stats), 0, 0, NULL},
-    {"--dump", KIND_CHOICE, FIELD(dump), 0, 0, "nothing|patches|links"},
-    {"--show", KIND_SHOW, FIELD(show), 0, 0, "light|mesh|owner|level|error|links"},
-    {"--quiet", KIND_FLAG, FIELD(quiet), 0, 0, NULL},
-    {"--verbose", KIND_FLAG, FIELD(verbose), 0, 0, NULL},
-    {"--validate", KIND_FLAG, FIELD(validate), 0, 0, NULL},
-    {"--form-factors", KIND_FLAG, FIELD(form_factors), 0, 0, NULL},
-    {"--help", KIND_FLAG, FIELD(help), 0, 0, NULL},
-    {"--version", KIND_FLAG, FIELD(version), 0, 0, NULL},
+/* An option on the command line, on its way to its field. */
+struct argument {
+    const struct option *option;
+    const char *value; /* that of an option that is a flag is not looked at */
+    struct options *options;
+    void *field; /* the option's, of the options */
+    struct error *error;
 };
-
-static const struct option *find_option(const char *name)
-{
-    for (size_t i = 0; i < sizeof OPTIONS / sizeof OPTIONS[0]; i++)
-        if (strcmp(name, OPTIONS[i].name) == 0)
-            return &OPTIONS[i];
-    return NULL;
-}
 
 /* A format of outputs: its name is a prefix and a suffix, too. */
 struct format {
@@ -155,212 +110,258 @@ bool target_refuse(const char *argument, struct error *error)
                      argument, suffixes);
 }
 
+/* --- values --- */
+
 /* A picture before all views belongs to the first. */
-static bool add_output(struct options *options, const char *argument, struct error *error)
+static bool add_output(const struct argument *a)
 {
-    struct target target = target_parse(argument);
+    struct options *options = a->options;
+    struct target target = target_parse(a->value);
     target.view = options->view_count > 0 ? options->view_count - 1 : 0;
     options->outputs[options->output_count++] = target;
-    return *target.path || target_refuse(argument, error);
+    return *target.path || target_refuse(a->value, a->error);
 }
 
-static bool parse_number(const struct option *option, const char *value, double *number,
-                         struct error *error)
+static bool add_view(const struct argument *a)
 {
-    if (!text_is_number(value, number))
-        return error_set(error, EXIT_USAGE, "%s: '%s' is not a number", option->name,
-                         value);
-    if (!(*number >= option->low && *number <= option->high))
-        return error_set(error, EXIT_USAGE, "%s: %s is not between %g and %g",
-                         option->name, value, option->low, option->high);
+    a->options->views[a->options->view_count++] = a->value;
     return true;
 }
 
-static bool set_integer(struct options *options, const struct option *option,
-                        const char *value, struct error *error)
+static bool is_not(const struct argument *a, const char *kind)
+{
+    return error_set(a->error, EXIT_USAGE, "%s: '%s' is not %s", a->option->name,
+                     a->value, kind);
+}
+
+/* Checks the range of a number, which messages tell in these units. */
+static bool check_range(const struct argument *a, double number, double unit,
+                        const char *after_low, const char *after_high)
+{
+    double low = a->option->low, high = a->option->high;
+    if (number >= low && number <= high)
+        return true;
+    return error_set(a->error, EXIT_USAGE, "%s: %s is not between %g%s and %g%s",
+                     a->option->name, a->value, low / unit, after_low, high / unit,
+                     after_high);
+}
+
+static bool set_real(const struct argument *a)
+{
+    double *number = a->field;
+    if (!text_is_number(a->value, number))
+        return is_not(a, "a number");
+    return check_range(a, *number, 1.0, "", "");
+}
+
+static bool set_integer(const struct argument *a)
 {
     double number;
-    if (!parse_number(option, value, &number, error))
+    struct argument real = *a;
+    real.field = &number;
+    if (!set_real(&real))
         return false;
     if (number != (double)(int)number)
-        return error_set(error, EXIT_USAGE, "%s: '%s' is not a whole number",
-                         option->name, value);
-    *(int *)(void *)((char *)options + option->offset) = (int)number;
+        return is_not(a, "a whole number");
+    *(int *)a->field = (int)number;
     return true;
 }
 
-static bool set_size(struct options *options, const char *value, struct error *error)
+static bool set_size(const struct argument *a)
 {
     int64_t width, height;
-    const char *at = value;
+    const char *at = a->value;
     if (text_integer(&at, &width) && (*at == 'x' || *at == 'X')) {
         at++;
         if (text_integer(&at, &height) && *at == '\0' && width >= 1 &&
             width <= IMAGE_SIZE_MAX && height >= 1 && height <= IMAGE_SIZE_MAX) {
-            options->width = (int)width;
-            options->height = (int)height;
+            a->options->width = (int)width;
+            a->options->height = (int)height;
             return true;
         }
     }
-    return error_set(error, EXIT_USAGE,
-                     "--size: '%s' is not WIDTHxHEIGHT, each from 1 to %d", value,
-                     (int)IMAGE_SIZE_MAX);
+    char kind[60];
+    snprintf(kind, sizeof kind, "WIDTHxHEIGHT, each from 1 to %d", (int)IMAGE_SIZE_MAX);
+    return is_not(a, kind);
 }
 
-/* Sets an enum of rad/model.h: an int, with a constant for each choice, counted from
- * 0. */
-static bool set_choice(const struct option *option, const char *value, int *field,
-                       struct error *error)
+/* Sets an enum: an int, with a constant for each choice, counted from 0. */
+static bool set_choice(const struct argument *a)
 {
-    size_t length = strlen(value);
+    size_t length = strlen(a->value);
     int number = 0;
-    for (const char *at = option->choices; at; at = strchr(at, '|'), number++) {
+    for (const char *at = a->option->choices; at; at = strchr(at, '|'), number++) {
         at += *at == '|';
-        if (strcspn(at, "|") == length && strncmp(at, value, length) == 0) {
-            *field = number;
+        if (strcspn(at, "|") == length && strncmp(at, a->value, length) == 0) {
+            *(int *)a->field = number;
             return true;
         }
     }
-    return error_set(error, EXIT_USAGE, "%s: '%s' is not one of %s", option->name, value,
-                     option->choices);
+    char kind[100];
+    snprintf(kind, sizeof kind, "one of %s", a->option->choices);
+    return is_not(a, kind);
 }
 
-/* Sets a fraction: a number, or a percentage. */
-static bool set_fraction(const struct option *option, const char *value, double *field,
-                      struct error *error)
+/* Copies the value without its last characters. False if there is no room. */
+static bool cut_value(const struct argument *a, size_t ending, char digits[64])
 {
-    char digits[64];
-    size_t length = strlen(value);
-    bool percent = length > 1 && length < sizeof digits && value[length - 1] == '%';
-    if (!percent)
-        return parse_number(option, value, field, error);
-    memcpy(digits, value, length - 1);
-    digits[length - 1] = '\0';
-    double number;
-    if (!text_is_number(digits, &number))
-        return error_set(error, EXIT_USAGE, "%s: '%s' is not a number", option->name,
-                         value);
-    *field = number / 100.0;
-    if (!(*field >= option->low && *field <= option->high))
-        return error_set(error, EXIT_USAGE, "%s: %s is not between %g %% and %g %%",
-                         option->name, value, 100.0 * option->low, 100.0 * option->high);
+    size_t length = strlen(a->value) - ending;
+    if (length >= 64)
+        return false;
+    memcpy(digits, a->value, length);
+    digits[length] = '\0';
     return true;
 }
 
+/* Sets a fraction: a number, or a percentage. */
+static bool set_fraction(const struct argument *a)
+{
+    char digits[64];
+    double *field = a->field;
+    size_t length = strlen(a->value);
+    if (length < 2 || a->value[length - 1] != '%' || !cut_value(a, 1, digits))
+        return set_real(a);
+    if (!text_is_number(digits, field))
+        return is_not(a, "a number");
+    *field /= 100.0;
+    return check_range(a, *field, 0.01, " %", " %");
+}
+
 /* Sets a number of bytes, or of K, M, G or T: powers of 1024. */
-static bool set_bytes(const struct option *option, const char *value, int64_t *field,
-                      struct error *error)
+static bool set_bytes(const struct argument *a)
 {
     static const char UNITS[] = "KMGT";
-    const char *at = value;
+    const char *at = a->value;
     int64_t digits; /* at most 18 of them */
     bool number = text_integer(&at, &digits);
     const char *unit = number && *at ? strchr(UNITS, *at) : NULL;
     if (!number || at[unit != NULL] != '\0')
-        return error_set(error, EXIT_USAGE,
-                         "%s: '%s' is not a number of bytes, such as 512M or 2G",
-                         option->name, value);
-    double bytes = strtod(value, NULL);
+        return is_not(a, "a number of bytes, such as 512M or 2G");
+    double bytes = strtod(a->value, NULL);
     for (const char *u = UNITS; unit && u <= unit; u++)
         bytes *= 1024.0;
-    if (!(bytes >= option->low && bytes <= option->high))
-        return error_set(error, EXIT_USAGE, "%s: %s is not between %g and %g bytes",
-                         option->name, value, option->low, option->high);
-    *field = (int64_t)bytes;
+    if (!check_range(a, bytes, 1.0, "", " bytes"))
+        return false;
+    *(int64_t *)a->field = (int64_t)bytes;
     return true;
 }
 
 /* Sets rays and pixels: N, "pixels", or both as "N,pixels". */
-static bool set_gather(struct options *options, const struct option *option,
-                       const char *value, struct error *error)
+static bool set_gather(const struct argument *a)
 {
     static const char PIXELS[] = "pixels";
+    struct argument rays = *a;
     char number[64];
-    size_t length = strlen(value), ending = sizeof PIXELS - 1;
-    options->pixels = length >= ending && strcmp(value + length - ending, PIXELS) == 0;
-    if (!options->pixels)
-        return set_integer(options, option, value, error);
+    size_t length = strlen(a->value), ending = sizeof PIXELS - 1;
+    a->options->pixels =
+        length >= ending && strcmp(a->value + length - ending, PIXELS) == 0;
+    if (!a->options->pixels)
+        return set_integer(a);
     if (length == ending)
         return true;
-    size_t digits = length - ending - 1;
-    if (value[digits] != ',' || digits >= sizeof number)
-        return error_set(error, EXIT_USAGE, "%s: '%s' is not N, pixels or N,pixels",
-                         option->name, value);
-    memcpy(number, value, digits);
-    number[digits] = '\0';
-    return set_integer(options, option, number, error);
+    if (a->value[length - ending - 1] != ',' || !cut_value(a, ending + 1, number))
+        return is_not(a, "N, pixels or N,pixels");
+    rays.value = number;
+    return set_integer(&rays);
 }
 
 /* Sets what pictures show: a choice, with links the patch behind a colon. */
-static bool set_show(struct options *options, const struct option *option,
-                     const char *value, struct error *error)
+static bool set_show(const struct argument *a)
 {
     static const char LINKS[] = "links:";
-    if (strncmp(value, LINKS, sizeof LINKS - 1) == 0) {
-        options->show = SHOW_LINKS;
-        options->show_patch = value + sizeof LINKS - 1;
+    if (strncmp(a->value, LINKS, sizeof LINKS - 1) == 0) {
+        a->options->show = SHOW_LINKS;
+        a->options->show_patch = a->value + sizeof LINKS - 1;
         return true;
     }
-    if (strcmp(value, "links") == 0)
-        return error_set(error, EXIT_USAGE,
+    if (strcmp(a->value, "links") == 0)
+        return error_set(a->error, EXIT_USAGE,
                          "%s links: of which patch? As in links:5/023 or links:X,Y",
-                         option->name);
-    int show;
-    bool good = set_choice(option, value, &show, error);
-    if (good)
-        options->show = (enum show)show;
-    return good;
+                         a->option->name);
+    return set_choice(a);
 }
 
 /* Sets the path of a file, of which there is one. */
-static bool set_text(const struct option *option, const char *value, const char **field,
-                     struct error *error)
+static bool set_text(const struct argument *a)
 {
+    const char **field = a->field;
     if (*field)
-        return error_set(error, EXIT_USAGE, "%s is given twice: %s and %s", option->name,
-                         *field, value);
-    *field = value;
+        return error_set(a->error, EXIT_USAGE, "%s is given twice: %s and %s",
+                         a->option->name, *field, a->value);
+    *field = a->value;
     return true;
 }
 
-static void set_paper(struct criterion *criterion)
+static bool set_flag(const struct argument *a)
 {
+    *(bool *)a->field = true;
+    return true;
+}
+
+static bool set_paper(const struct argument *a)
+{
+    struct criterion *criterion = a->field;
     criterion->oracle = ORACLE_BF;
     criterion->linking = LINKING_PAIRS;
     criterion->form_factor = FORM_FACTOR_DISK;
     criterion->solver = SOLVER_JACOBI;
     criterion->balance = BALANCE_GREEDY;
+    a->options->overruled = a->options->given;
+    return true;
 }
 
-static bool set_value(struct options *options, const struct option *option,
-                      const char *value, struct error *error)
+/* --- the table --- */
+
+#define FIELD(name) offsetof(struct options, name)
+
+static const struct option OPTIONS[] = {
+    {"-o", add_output, 0, 0, 0, NULL},
+    {"--view", add_view, 0, 0, 0, NULL},
+    {"--size", set_size, 0, 0, 0, NULL},
+    {"--samples", set_integer, FIELD(samples), 1, 64, NULL},
+    {"--exposure", set_real, FIELD(exposure), 1e-30, 1e30, NULL},
+    {"--flat", set_flag, FIELD(flat), 0, 0, NULL},
+    {"--epsilon", set_real, FIELD(criterion.epsilon), 0, 1e30, NULL},
+    {"--accuracy", set_fraction, FIELD(criterion.accuracy), 1e-4, 1, NULL},
+    {"--max-level", set_integer, FIELD(criterion.max_level), 0, ID_MAX_LEVEL, NULL},
+    {"--min-area", set_real, FIELD(criterion.min_area), 0, 1, NULL},
+    {"--oracle", set_choice, FIELD(criterion.oracle), 0, 0, "bf|error"},
+    {"--linking", set_choice, FIELD(criterion.linking), 0, 0, "pairs|tree"},
+    {"--form-factor", set_choice, FIELD(criterion.form_factor), 0, 0, "disk|polygon"},
+    {"--solver", set_choice, FIELD(criterion.solver), 0, 0, "jacobi|cg"},
+    {"--balance", set_choice, FIELD(criterion.balance), 0, 0, "none|greedy|default"},
+    {"--final-gather", set_gather, FIELD(criterion.final_gather), 0, GATHER_RAYS_MOST,
+     NULL},
+    {"--paper", set_paper, FIELD(criterion), 0, 0, NULL},
+    {"--alpha", set_real, FIELD(criterion.alpha), 0, 1, NULL},
+    {"--tolerance", set_real, FIELD(criterion.tolerance), 0, 1, NULL},
+    {"--max-iterations", set_integer, FIELD(criterion.max_iterations), 1, 1e9, NULL},
+    {"--ke", set_choice, FIELD(ke), 0, 0, "radiosity|radiance"},
+    {"--two-sided", set_flag, FIELD(two_sided), 0, 0, NULL},
+    {"--two-sided-lamps", set_flag, FIELD(two_sided_lamps), 0, 0, NULL},
+    {"--save-links", set_text, FIELD(save_links), 0, 0, NULL},
+    {"--load-links", set_text, FIELD(load_links), 0, 0, NULL},
+    {"--checkpoint", set_text, FIELD(checkpoint), 0, 0, NULL},
+    {"--every", set_integer, FIELD(every), 1, 1e9, NULL},
+    {"--resume", set_text, FIELD(resume), 0, 0, NULL},
+    {"--memory", set_bytes, FIELD(memory), 1, 1e18, NULL},
+    {"--stats", set_text, FIELD(stats), 0, 0, NULL},
+    {"--dump", set_choice, FIELD(dump), 0, 0, "nothing|patches|links"},
+    {"--show", set_show, FIELD(show), 0, 0, "light|mesh|owner|level|error|links"},
+    {"--quiet", set_flag, FIELD(quiet), 0, 0, NULL},
+    {"--verbose", set_flag, FIELD(verbose), 0, 0, NULL},
+    {"--validate", set_flag, FIELD(validate), 0, 0, NULL},
+    {"--form-factors", set_flag, FIELD(form_factors), 0, 0, NULL},
+    {"--help", set_flag, FIELD(help), 0, 0, NULL},
+    {"--version", set_flag, FIELD(version), 0, 0, NULL},
+};
+
+static const struct option *find_option(const char *name)
 {
-    char *field = (char *)options + option->offset;
-    switch (option->kind) {
-    case KIND_OUTPUT:
-        return add_output(options, value, error);
-    case KIND_VIEW:
-        options->views[options->view_count++] = value;
-        return true;
-    case KIND_SIZE:
-        return set_size(options, value, error);
-    case KIND_INTEGER:
-        return set_integer(options, option, value, error);
-    case KIND_SHOW:
-        return set_show(options, option, value, error);
-    case KIND_GATHER:
-        return set_gather(options, option, value, error);
-    case KIND_REAL:
-        return parse_number(option, value, (double *)(void *)field, error);
-    case KIND_FRACTION:
-        return set_fraction(option, value, (double *)(void *)field, error);
-    case KIND_BYTES:
-        return set_bytes(option, value, (int64_t *)(void *)field, error);
-    case KIND_CHOICE:
-        return set_choice(option, value, (int *)(void *)field, error);
-    default:
-        return set_text(option, value, (const char **)(void *)field, error);
-    }
+    for (size_t i = 0; i < sizeof OPTIONS / sizeof OPTIONS[0]; i++)
+        if (strcmp(name, OPTIONS[i].name) == 0)
+            return &OPTIONS[i];
+    return NULL;
 }
 
 static bool add_scene(struct options *options, const char *path, struct error *error)
@@ -372,55 +373,6 @@ static bool add_scene(struct options *options, const char *path, struct error *e
     return true;
 }
 
-/* Refuses a view that no picture belongs to. */
-static bool check_views(const struct options *options, struct error *error)
-{
-    for (int view = 0; view < options->view_count; view++)
-        if (!options_show(options, view))
-            return error_set(error, EXIT_USAGE,
-                             "--view %s: no picture (-o) follows it",
-                             options->views[view]);
-    return true;
-}
-
-static bool check_restart(const struct options *options, struct error *error)
-{
-    const char *links = options->save_links ? "--save-links" : "--load-links";
-    if (options->resume && (options->save_links || options->load_links))
-        return error_set(error, EXIT_USAGE,
-                         "--resume and %s do not go together: "
-                         "the initial links are long gone",
-                         links);
-    if (options->save_links && options->load_links)
-        return error_set(error, EXIT_USAGE,
-                         "--save-links and --load-links do not go together");
-    if ((options->save_links || options->load_links) &&
-        options->criterion.linking != LINKING_PAIRS)
-        return error_set(error, EXIT_USAGE, "%s goes with --linking pairs (--paper)",
-                         links);
-    if (options->every > 0 && !options->checkpoint)
-        return error_set(error, EXIT_USAGE, "--every needs --checkpoint");
-    return true;
-}
-
-/* Refuses outputs of light with --form-factors, which computes none. */
-static bool check_table(const struct options *options, struct error *error)
-{
-    const char *other = options->output_count > 0 ? "-o"
-                        : options->view_count > 0 ? "--view"
-                        : options->stats          ? "--stats"
-                        : options->save_links     ? "--save-links"
-                        : options->load_links     ? "--load-links"
-                        : options->dump           ? "--dump"
-                        : options->checkpoint     ? "--checkpoint"
-                        : options->resume         ? "--resume"
-                                                  : NULL;
-    if (options->form_factors && other)
-        return error_set(error, EXIT_USAGE, "--form-factors and %s do not go together",
-                         other);
-    return true;
-}
-
 /* Defaults of --epsilon and --final-gather: without --accuracy, and with it, as its
  * start. */
 static const double EPSILON = 1e-4, COARSE = 1e-3;
@@ -429,31 +381,77 @@ static const double EPSILON = 1e-4, COARSE = 1e-3;
 static const double EPSILON_FACTORS = 1e-2;
 enum { GATHER_RAYS = 256, FEW_RAYS = 64 };
 
-/* Checks the final gather: its rows find lamps in the tree, and --accuracy measures the
- * error of these rows. Sets the defaults. */
-static bool check_gather(struct options *options, struct error *error)
+static void set_defaults(struct options *options)
 {
     struct criterion *criterion = &options->criterion;
     bool tree = criterion->linking == LINKING_TREE, accurate = criterion->accuracy > 0.0;
-    if (criterion->final_gather > 0 && !tree)
-        return error_set(error, EXIT_USAGE, "--final-gather goes with --linking tree");
-    if (accurate && !tree)
-        return error_set(error, EXIT_USAGE, "--accuracy goes with --linking tree");
-    if (accurate && criterion->final_gather == 0)
-        return error_set(error, EXIT_USAGE,
-                         "--accuracy and --final-gather 0 do not go together");
     if (criterion->final_gather < 0) /* not given */
         criterion->final_gather = !tree ? 0 : accurate ? FEW_RAYS : GATHER_RAYS;
     if (criterion->epsilon < 0.0)
         criterion->epsilon = options->form_factors ? EPSILON_FACTORS
                              : accurate            ? COARSE
                                                    : EPSILON;
-    if (options->pixels && criterion->final_gather == 0)
-        return error_set(error, EXIT_USAGE,
-                         "--final-gather pixels needs rays, and a tree");
-    if (options->pixels && options->flat)
-        return error_set(error, EXIT_USAGE,
-                         "--flat and --final-gather pixels do not go together");
+    options->two_sided = options->two_sided || options->two_sided_lamps;
+}
+
+/* Returns a view that no picture belongs to, or NULL. */
+static const char *find_idle_view(const struct options *options)
+{
+    for (int view = 0; view < options->view_count; view++)
+        if (!options_show(options, view))
+            return options->views[view];
+    return NULL;
+}
+
+/* Returns an option that asks for light, or NULL. */
+static const char *find_light(const struct options *options)
+{
+    return options->output_count > 0 ? "-o"
+           : options->view_count > 0 ? "--view"
+           : options->stats          ? "--stats"
+           : options->save_links     ? "--save-links"
+           : options->load_links     ? "--load-links"
+           : options->dump           ? "--dump"
+           : options->checkpoint     ? "--checkpoint"
+           : options->resume         ? "--resume"
+                                     : NULL;
+}
+
+/* Checks how options go together: the rows of the final gather find lamps in the tree,
+ * --accuracy measures the error of these rows, and --form-factors computes no light. */
+static bool check_rules(const struct options *o, struct error *error)
+{
+    const struct criterion *criterion = &o->criterion;
+    bool tree = criterion->linking == LINKING_TREE, accurate = criterion->accuracy > 0.0;
+    bool rays = criterion->final_gather > 0, scene = o->scene != NULL;
+    const char *view = find_idle_view(o), *light = find_light(o);
+    const char *links = o->save_links   ? "--save-links"
+                        : o->load_links ? "--load-links"
+                                        : NULL;
+    const struct {
+        bool broken;
+        const char *message, *name; /* the name is that of its %s */
+    } rules[] = {
+        {rays && !tree, "--final-gather goes with --linking tree", ""},
+        {accurate && !tree, "--accuracy goes with --linking tree", ""},
+        {accurate && !rays, "--accuracy and --final-gather 0 do not go together", ""},
+        {o->pixels && !rays, "--final-gather pixels needs rays, and a tree", ""},
+        {o->pixels && o->flat, "--flat and --final-gather pixels do not go together", ""},
+        {!scene && !o->help && !o->version && !o->validate, "no scene given; see --help",
+         ""},
+        {scene && o->form_factors && light, "--form-factors and %s do not go together",
+         light},
+        {scene && view, "--view %s: no picture (-o) follows it", view},
+        {scene && o->resume && links,
+         "--resume and %s do not go together: the initial links are long gone", links},
+        {scene && o->save_links && o->load_links,
+         "--save-links and --load-links do not go together", ""},
+        {scene && links && tree, "%s goes with --linking pairs (--paper)", links},
+        {scene && o->every > 0 && !o->checkpoint, "--every needs --checkpoint", ""},
+    };
+    for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++)
+        if (rules[i].broken)
+            return error_set(error, EXIT_USAGE, rules[i].message, rules[i].name);
     return true;
 }
 
@@ -489,67 +487,49 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
                              argument);
         options->given |= UINT64_C(1) << (option - OPTIONS);
         options->overruled &= ~(UINT64_C(1) << (option - OPTIONS));
-        if (option->kind == KIND_PAPER) {
-            set_paper(&options->criterion);
-            options->overruled = options->given;
-            continue;
-        }
-        if (option->kind == KIND_FLAG) {
-            *(bool *)(void *)((char *)options + option->offset) = true;
-            continue;
-        }
-        if (++i >= argc)
+        bool alone = option->set == set_flag || option->set == set_paper;
+        if (!alone && ++i >= argc)
             return error_set(error, EXIT_USAGE, "%s needs a value", argument);
-        if (!set_value(options, option, argv[i], error))
+        if (!option->set(&(struct argument){option, argv[i], options,
+                                            (char *)options + option->offset, error}))
             return false;
     }
-    options->two_sided = options->two_sided || options->two_sided_lamps;
-    if (!check_gather(options, error))
-        return false;
-    if (!options->scene && !options->help && !options->version && !options->validate)
-        return error_set(error, EXIT_USAGE, "no scene given; see --help");
-    if (options->scene &&
-        !(check_table(options, error) && check_views(options, error) &&
-          check_restart(options, error)))
+    set_defaults(options);
+    if (!check_rules(options, error))
         return false;
     options->every = options->every > 0 ? options->every : 1;
     return true;
 }
 
-/* Appends a line "--option value" to `text`. */
-static void describe(const struct options *options, const char *name, char *text,
-                     size_t room)
+static char settings[1000]; /* of the last call of describe_all() */
+
+/* Appends a line "--option value" to the settings. */
+static void describe(const struct options *options, const char *name)
 {
     const struct option *option = find_option(name);
     const char *field = (const char *)options + option->offset, *choice = option->choices;
-    size_t at = strlen(text);
-    char *line = text + at;
-    room -= at;
-    switch (option->kind) {
-    case KIND_FLAG:
+    size_t at = strlen(settings), room = sizeof settings - at;
+    char *line = settings + at;
+    if (option->set == set_flag)
         snprintf(line, room, "%s %s\n", name,
                  *(const bool *)(const void *)field ? "on" : "off");
-        break;
-    case KIND_INTEGER:
+    else if (option->set == set_integer)
         snprintf(line, room, "%s %d\n", name, *(const int *)(const void *)field);
-        break;
-    case KIND_CHOICE:
+    else if (option->set != set_choice)
+        snprintf(line, room, "%s %.17g\n", name, *(const double *)(const void *)field);
+    else {
         for (int k = *(const int *)(const void *)field; k > 0; k--)
             choice = strchr(choice, '|') + 1;
         snprintf(line, room, "%s %.*s\n", name, (int)strcspn(choice, "|"), choice);
-        break;
-    default:
-        snprintf(line, room, "%s %.17g\n", name, *(const double *)(const void *)field);
     }
 }
 
 static const char *describe_all(const struct options *options, const char *const *names)
 {
-    static char text[1000];
-    text[0] = '\0';
+    settings[0] = '\0';
     for (; *names; names++)
-        describe(options, *names, text, sizeof text);
-    return text;
+        describe(options, *names);
+    return settings;
 }
 
 const char *options_given(const struct options *options, const char *const *names)
@@ -566,13 +546,12 @@ const char *options_given(const struct options *options, const char *const *name
 
 const char *options_link_settings(const struct options *options)
 {
-    static const char *const BY_ENERGY[] = {
+    static const char *const NAMES[] = {
         "--two-sided", "--two-sided-lamps", "--ke", "--oracle", "--form-factor", NULL};
-    static const char *const BY_ERROR[] = { /* visibility is refined by --epsilon, too */
-        "--two-sided", "--two-sided-lamps", "--ke", "--oracle", "--form-factor",
-        "--epsilon", NULL};
-    bool by_error = options->criterion.oracle == ORACLE_ERROR;
-    return describe_all(options, by_error ? BY_ERROR : BY_ENERGY);
+    describe_all(options, NAMES);
+    if (options->criterion.oracle == ORACLE_ERROR) /* visibility is refined by it, too */
+        describe(options, "--epsilon");
+    return settings;
 }
 
 const char *options_run_settings(const struct options *options)
