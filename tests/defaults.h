@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/picture/shading.h"
 #include "io/run/options.h"
 #include "tests/scenes.h"
+#include "tests/shaded.h"
 #include "tests/solve.h"
 
 /* Runs phr with these options, separated by single spaces, behind the scene. */
@@ -65,15 +65,10 @@ static inline double mean_radiosity(const struct solution *s, int32_t first,
     return light / area;
 }
 
-/* Smooth shading, as pictures have it. */
+/* Smooth shading of the light of the links. */
 static inline struct shading *shade(const struct solution *s)
 {
-    const struct forest *forest = s->solver->model.forest;
-    int64_t count;
-    uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
-    struct shading *shading = shading_create(forest, NULL, NULL, open);
-    alloc_free(open);
-    return shading;
+    return shade_forest(s->solver->model.forest, s->octree, NULL, NULL);
 }
 
 /* Barycentric coordinates of a point on the triangle's plane. */

@@ -30,6 +30,7 @@
 #include "octree/tree.h"
 #include "tests/bench/embree.h"
 #include "tests/random.h"
+#include "tests/shaded.h"
 
 enum { TURNS = 9, GATHER = 64, WIDTH = 1920, HEIGHT = 1080, SAMPLES = 3 };
 
@@ -306,9 +307,7 @@ static double trace_picture(const struct subject *subject, const struct camera *
 static void bench_picture(const struct subject *subject)
 {
     struct forest *forest = forest_create(subject->scene);
-    int64_t leaves;
-    uint8_t *open = shading_open_quarters(forest, subject->octree, 0, 1, &leaves);
-    struct shading *shading = shading_create(forest, NULL, NULL, open);
+    struct shading *shading = shade_forest(forest, subject->octree, NULL, NULL);
     struct renderer renderer = renderer_make(subject->octree, shading, NULL);
     struct camera camera =
         viewpoint_choose(subject->scene, subject->octree, NULL, WIDTH, HEIGHT);
@@ -326,7 +325,6 @@ static void bench_picture(const struct subject *subject)
         printf("  Embree: %.2f s; phr takes %.2f of that\n", embree_best,
                best / embree_best);
     shading_destroy(shading);
-    alloc_free(open);
     forest_destroy(forest);
 }
 

@@ -10,6 +10,7 @@
 #include "tests/load.h"
 #include "tests/random.h"
 #include "tests/scenes.h"
+#include "tests/shaded.h"
 #include "tests/tap.h"
 
 #define PATH "build/mesh_test.out"
@@ -52,10 +53,7 @@ static void make_world(void)
         for (int c = 0; c < BANDS; c++)
             forest->radiosity[p].band[c] = 100.0 * random_unit(&random);
     }
-    int64_t count;
-    uint8_t *open = shading_open_quarters(forest, world.octree, 0, 1, &count);
-    shading = shading_create(forest, NULL, NULL, open);
-    alloc_free(open);
+    shading = shade_forest(forest, world.octree, NULL, NULL);
     for (int32_t root = 0; root < scene->input_count; root++)
         find_leaves(root);
 }

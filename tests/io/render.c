@@ -27,14 +27,9 @@ static double shown(struct solution *s, const struct shading *shading, int32_t f
 
 static struct shading *shade_rest(const struct solution *s)
 {
-    int64_t count;
-    const struct forest *forest = s->solver->model.forest;
-    uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
     const struct answer *answer = &s->solver->beyond->answer;
-    struct shading *shading =
-        shading_create(forest, answer->straight, answer->error, open);
-    alloc_free(open);
-    return shading;
+    return shade_forest(s->solver->model.forest, s->octree, answer->straight,
+                        answer->error);
 }
 
 /* --- straight from a lamp --- */

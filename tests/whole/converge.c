@@ -17,6 +17,7 @@
 #include "mpi/broadcast.h"
 
 #include "tests/deviation.h"
+#include "tests/shaded.h"
 #include "tests/solve.h"
 #include "tests/tap.h"
 
@@ -64,23 +65,18 @@ static struct result run(const struct comm *comm, const char *path,
                             .links = s.stats.links};
     if (comm->rank == 0) {
         const struct forest *forest = s.solver->model.forest;
-        int64_t leaves;
-        uint8_t *open = shading_open_quarters(forest, s.octree, 0, 1, &leaves);
-        const struct answer *answer = &s.solver->beyond->answer;
+        struct answer *answer = &s.solver->beyond->answer;
         struct shading *shading =
-            shading_create(forest, answer->straight, answer->error, open);
-        struct renderer renderer = renderer_make(s.octree, shading,
-                                                 s.solver->beyond->answer.straight
-                                                     ? &s.solver->beyond->answer.gather
-                                                     : NULL);
+            shade_forest(forest, s.octree, answer->straight, answer->error);
+        struct renderer renderer =
+            renderer_make(s.octree, shading, answer->straight ? &answer->gather : NULL);
         result.leaf = deviation_of_leaves(forest, truth).rms;
         result.shown = deviation_of_points(&renderer, s.scene, truth).rms;
         if (pixels) {
-            renderer = renderer_make(s.octree, NULL, &s.solver->beyond->answer.gather);
+            renderer = renderer_make(s.octree, NULL, &answer->gather);
             result.pixels = deviation_of_points(&renderer, s.scene, truth).rms;
         }
         shading_destroy(shading);
-        alloc_free(open);
     }
     solution_free(&s);
     node_block_destroy(&block);

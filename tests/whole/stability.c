@@ -537,14 +537,10 @@ static void test_fifteen_levels(void)
 static double mean_shown(struct solution *s)
 {
     enum { GRID = 32 };
-    int64_t count;
-    const struct forest *forest = s->solver->model.forest;
-    uint8_t *open = shading_open_quarters(forest, s->octree, 0, 1, &count);
-    const struct answer *answer = &s->solver->beyond->answer;
-    struct shading *shading =
-        shading_create(forest, answer->straight, answer->error, open);
-    struct renderer renderer =
-        renderer_make(s->octree, shading, &s->solver->beyond->answer.gather);
+    struct answer *answer = &s->solver->beyond->answer;
+    struct shading *shading = shade_forest(s->solver->model.forest, s->octree,
+                                           answer->straight, answer->error);
+    struct renderer renderer = renderer_make(s->octree, shading, &answer->gather);
     double sum = 0.0;
     for (int i = 0; i < 2 * GRID * GRID; i++) {
         double u = (i % GRID + 0.5) / GRID, v = (i / GRID % GRID + 0.5) / GRID;
@@ -554,7 +550,6 @@ static double mean_shown(struct solution *s)
         sum += render_point(&renderer, i / (GRID * GRID), weight, (uint64_t)i).band[0];
     }
     shading_destroy(shading);
-    alloc_free(open);
     return sum / (2 * GRID * GRID);
 }
 
