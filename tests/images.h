@@ -3,6 +3,7 @@
 #define TESTS_IMAGES_H
 
 #include "io/picture/imagefile.h"
+#include "tests/memory.h"
 #include "tests/refusal.h"
 
 /* The last one. */
@@ -16,23 +17,26 @@ static inline void forget(void)
     forget_error();
 }
 
+/* Reads a picture, and closes its source, which was opened well or not. */
+static inline bool read_picture(struct source *source, bool good)
+{
+    good = good && image_read(&found, &kind, source, &error);
+    source_close(source);
+    return good;
+}
+
 static inline bool read_bytes(const char *bytes, size_t size)
 {
-    struct binary binary;
+    struct source source;
     forget();
-    return binary_of_bytes(&binary, "p", bytes, size, IMAGE_MAGIC,
-                           "a picture (PFM, PPM or HDR)", &error) &&
-           image_of_binary(&found, &kind, &binary, &error);
+    return read_picture(&source, source_of_bytes(&source, "p", bytes, size, &error));
 }
 
 static inline bool read_back(const char *path)
 {
     struct source source;
     forget();
-    bool good = source_open(&source, path, &error) &&
-                image_read(&found, &kind, &source, &error);
-    source_close(&source);
-    return good;
+    return read_picture(&source, source_open(&source, path, &error));
 }
 
 /* The bytes are a picture of that size and kind with these samples. */

@@ -135,11 +135,8 @@ static bool take_stored(struct run *run, struct ply_file *file)
 /* Reads a scene, or a stored solution. */
 static bool read_ply(struct run *run, struct source *source)
 {
-    struct binary binary;
     struct ply_file file;
-    if (!ply_file_load(&binary, source, &run->error))
-        return false;
-    bool good = ply_file_open(&file, &binary, &run->error);
+    bool good = ply_file_open(&file, source, &run->error);
     if (good && solution_is_stored(&file) && !run->options.form_factors)
         good = take_stored(run, &file);
     else if (good)

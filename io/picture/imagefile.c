@@ -8,7 +8,8 @@
 #include "io/picture/png.h"
 #include "io/picture/pnm.h"
 
-static const char KIND[] = "a picture (PFM, PPM or HDR)";
+/* How files begin; PNG is known to be refused. */
+static const char MAGIC[] = "P #? \x89PNG", KIND[] = "a picture (PFM, PPM or HDR)";
 
 bool image_write(const struct image *image, const struct tone *tone,
                  const struct target *target, struct error *error)
@@ -21,31 +22,25 @@ bool image_write(const struct image *image, const struct tone *tone,
     }
 }
 
-bool image_of_binary(struct image *image, enum image_kind *kind, struct binary *binary,
-                     struct error *error)
-{
-    *image = (struct image){0};
-    bool good = false;
-    switch (binary->data[0]) {
-    case 'P': good = pnm_read(image, kind, binary, error); break;
-    case '#': good = hdr_read(image, kind, binary, error); break;
-    default:
-        error_set(error, EXIT_USAGE, "%s: PNG is not read; compare .ppm, .pfm or .hdr",
-                  binary->path);
-    }
-    binary_free(binary);
-    if (!good) {
-        alloc_free(image->rgb);
-        image->rgb = NULL;
-    }
-    return good;
-}
-
 bool image_read(struct image *image, enum image_kind *kind, struct source *source,
                 struct error *error)
 {
     struct binary binary;
     *image = (struct image){0};
-    return binary_read(&binary, source, IMAGE_MAGIC, KIND, error) &&
-           image_of_binary(image, kind, &binary, error);
+    if (!binary_read(&binary, source, MAGIC, KIND, error))
+        return false;
+    bool good = false;
+    switch (binary.data[0]) {
+    case 'P': good = pnm_read(image, kind, &binary, error); break;
+    case '#': good = hdr_read(image, kind, &binary, error); break;
+    default:
+        error_set(error, EXIT_USAGE, "%s: PNG is not read; compare .ppm, .pfm or .hdr",
+                  source->path);
+    }
+    binary_free(&binary);
+    if (!good) {
+        alloc_free(image->rgb);
+        image->rgb = NULL;
+    }
+    return good;
 }

@@ -15,19 +15,11 @@
 bool image_write(const struct image *image, const struct tone *tone,
                  const struct target *target, struct error *error);
 
-/* How the files that are read begin, for binary_of_bytes(); PNG is known to be
- * refused. */
-#define IMAGE_MAGIC "P #? \x89PNG"
-
 /* Reads PFM, PPM or HDR from an open file, as pnm_read() and hdr_read(). `rgb` is to be
  * freed with alloc_free().
  * Errors: "PATH: REASON", EXIT_USAGE: not such a picture, bytes missing or left over, a
  * sample above the greatest value. */
 bool image_read(struct image *image, enum image_kind *kind, struct source *source,
                 struct error *error);
-
-/* Does the same with a file in memory, which it frees. */
-bool image_of_binary(struct image *image, enum image_kind *kind, struct binary *binary,
-                     struct error *error);
 
 #endif

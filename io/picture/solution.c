@@ -298,24 +298,15 @@ bool solution_mesh_of_file(struct solution_mesh *solution, struct ply_file *file
     return good;
 }
 
-bool solution_mesh_of_binary(struct solution_mesh *solution, const struct binary *binary,
-                             struct error *error)
-{
-    struct ply_file file;
-    *solution = (struct solution_mesh){0};
-    bool good = ply_file_open(&file, binary, error) &&
-                solution_mesh_of_file(solution, &file, error);
-    ply_file_close(&file);
-    return good;
-}
-
 bool solution_mesh_read(struct solution_mesh *solution, struct source *source,
                         struct error *error)
 {
-    struct binary binary;
+    struct ply_file file;
     *solution = (struct solution_mesh){0};
-    return ply_file_load(&binary, source, error) &&
-           solution_mesh_of_binary(solution, &binary, error);
+    bool good = ply_file_open(&file, source, error) &&
+                solution_mesh_of_file(solution, &file, error);
+    ply_file_close(&file);
+    return good;
 }
 
 void solution_mesh_free(struct solution_mesh *solution)

@@ -58,10 +58,7 @@ bool solution_is_stored(const struct ply_file *file);
 bool solution_mesh_read(struct solution_mesh *solution, struct source *source,
                         struct error *error);
 
-/* Do the same with a file in memory, which they free, and with one whose header is read,
- * which they do not close. */
-bool solution_mesh_of_binary(struct solution_mesh *solution, const struct binary *binary,
-                             struct error *error);
+/* Does the same with a file whose header is read, which it does not close. */
 bool solution_mesh_of_file(struct solution_mesh *solution, struct ply_file *file,
                            struct error *error);
 

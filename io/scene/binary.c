@@ -38,6 +38,7 @@ static bool read_chunks(struct binary *binary, struct source *source, const char
         if (!has_magic(binary, magic, kind, error))
             return false;
     } while (got == SOURCE_CHUNK);
+    binary->data = alloc_resize(binary->data, (size_t)binary->size + 1, 1);
     return true;
 }
 
@@ -49,20 +50,6 @@ bool binary_read(struct binary *binary, struct source *source, const char *magic
     if (!good)
         binary_free(binary);
     return good;
-}
-
-bool binary_of_bytes(struct binary *binary, const char *path, const void *data,
-                     size_t size, const char *magic, const char *kind,
-                     struct error *error)
-{
-    *binary = (struct binary){.path = path, .line = 1, .size = (int64_t)size};
-    binary->data = alloc_array(size + 1, 1);
-    if (size > 0)
-        memcpy(binary->data, data, size);
-    if (has_magic(binary, magic, kind, error))
-        return true;
-    binary_free(binary);
-    return false;
 }
 
 void binary_free(struct binary *binary)

@@ -12,7 +12,7 @@
 
 struct binary {
     const char *path;   /* borrowed from its source */
-    char *data;         /* [size], and a zero behind */
+    char *data;         /* [size + 1] with a zero behind the last byte */
     int64_t size;       /* bytes */
     int64_t position;   /* of the next byte to read */
     long line;          /* number of the text line at `position`, from 1 */
@@ -23,12 +23,6 @@ struct binary {
  * Errors: "PATH: cannot read: REASON"; "PATH: not KIND". Both ask for EXIT_USAGE. */
 bool binary_read(struct binary *binary, struct source *source, const char *magic,
                  const char *kind, struct error *error);
-
-/* Does the same with a copy of `size` bytes in memory, as if they were the file
- * `path`. */
-bool binary_of_bytes(struct binary *binary, const char *path, const void *data,
-                     size_t size, const char *magic, const char *kind,
-                     struct error *error);
 
 void binary_free(struct binary *binary);
 

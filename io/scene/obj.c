@@ -400,12 +400,12 @@ static struct scene *make_scene(const struct obj_reader *reader)
     return scene;
 }
 
-struct scene *obj_of_text(struct text *text, struct obj_repairs *repairs,
-                          struct error *error)
+struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
+                            struct error *error)
 {
     *repairs = (struct obj_repairs){.files = repairs->files};
-    struct obj_reader reader = {.text = *text, .repairs = repairs, .error = error};
-    bool good = read_lines(&reader);
+    struct obj_reader reader = {.repairs = repairs, .error = error};
+    bool good = text_of_source(&reader.text, source, error) && read_lines(&reader);
     text_free(&reader.text);
     struct scene *scene = good ? make_scene(&reader) : NULL;
     alloc_free(reader.vertices.at);
@@ -416,14 +416,6 @@ struct scene *obj_of_text(struct text *text, struct obj_repairs *repairs,
     text_names_free(&reader.libraries);
     text_names_free(&reader.groups);
     return scene;
-}
-
-struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
-                            struct error *error)
-{
-    struct text text;
-    return text_of_source(&text, source, error) ? obj_of_text(&text, repairs, error)
-                                                : NULL;
 }
 
 struct scene *obj_read(const char *path, struct obj_repairs *repairs, struct error *error)

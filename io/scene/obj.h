@@ -41,11 +41,8 @@ struct obj_repairs {
 struct scene *obj_read(const char *path, struct obj_repairs *repairs,
                        struct error *error);
 
-/* Do the same with an open file, which it does not close, and with a text in memory,
- * which it frees. */
+/* Does the same with an open file, which it does not close. */
 struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
                             struct error *error);
-struct scene *obj_of_text(struct text *text, struct obj_repairs *repairs,
-                          struct error *error);
 
 #endif

@@ -253,19 +253,13 @@ struct scene *ply_of_file(struct ply_file *file, struct error *error)
     return scene;
 }
 
-struct scene *ply_of_binary(const struct binary *binary, struct error *error)
+struct scene *ply_read(struct source *source, struct error *error)
 {
     struct ply_file file;
     struct scene *scene =
-        ply_file_open(&file, binary, error) ? ply_of_file(&file, error) : NULL;
+        ply_file_open(&file, source, error) ? ply_of_file(&file, error) : NULL;
     ply_file_close(&file);
     return scene;
-}
-
-struct scene *ply_read(struct source *source, struct error *error)
-{
-    struct binary binary;
-    return ply_file_load(&binary, source, error) ? ply_of_binary(&binary, error) : NULL;
 }
 
 bool ply_is_meant(const struct source *source)

@@ -28,9 +28,7 @@ bool ply_is_meant(const struct source *source);
  * corners, a corner out of range, a negative colour or emission. */
 struct scene *ply_read(struct source *source, struct error *error);
 
-/* Do the same with a file in memory, which they free, and with one whose header is read,
- * which they do not close. */
-struct scene *ply_of_binary(const struct binary *binary, struct error *error);
+/* Does the same with a file whose header is read, which it does not close. */
 struct scene *ply_of_file(struct ply_file *file, struct error *error);
 
 #endif

@@ -255,19 +255,15 @@ static bool read_header(struct ply_file *file, struct error *error)
                              file->binary.path, file->line);
 }
 
-bool ply_file_load(struct binary *binary, struct source *source, struct error *error)
+bool ply_file_open(struct ply_file *file, struct source *source, struct error *error)
 {
-    return binary_read(binary, source, "ply", "a PLY file", error);
-}
-
-bool ply_file_open(struct ply_file *file, const struct binary *binary,
-                   struct error *error)
-{
-    *file = (struct ply_file){.binary = *binary, .record_name = KIND_NAMES[PLY_OTHER]};
-    char end = binary->data[3];
-    if (end != '\n' && end != '\r')
-        return error_set(error, EXIT_USAGE, "%s: not a PLY file", binary->path);
-    file->line_end = end == '\r' && binary->data[4] != '\n' ? '\r' : '\n';
+    *file = (struct ply_file){.record_name = KIND_NAMES[PLY_OTHER]};
+    if (!binary_read(&file->binary, source, "ply", "a PLY file", error))
+        return false;
+    const char *end = file->binary.data + 3;
+    if (*end != '\n' && *end != '\r')
+        return error_set(error, EXIT_USAGE, "%s: not a PLY file", source->path);
+    file->line_end = *end == '\r' && end[1] != '\n' ? '\r' : '\n';
     return read_header(file, error);
 }
 

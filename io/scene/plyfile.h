@@ -76,15 +76,10 @@ struct ply_file {
     long first_long;                 /* number of the first of them */
 };
 
-/* Reads an open file. Errors: "PATH: not a PLY file" among those of binary_read(). */
-bool ply_file_load(struct binary *binary, struct source *source, struct error *error);
-
-/* Reads the header of a file in memory, which it takes over. To be closed also after an
- * error.
- * Errors: "PATH:LINE: REASON"; EXIT_USAGE; also for an element with more records than the
- * file has bytes for. */
-bool ply_file_open(struct ply_file *file, const struct binary *binary,
-                   struct error *error);
+/* Reads an open file and its header. To be closed also after an error.
+ * Errors: those of binary_read(); "PATH:LINE: REASON", EXIT_USAGE; also for an element
+ * with more records than the file has bytes for. */
+bool ply_file_open(struct ply_file *file, struct source *source, struct error *error);
 void ply_file_close(struct ply_file *file);
 
 /* Returns the first element of the kind, or NULL. */

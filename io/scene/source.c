@@ -24,9 +24,14 @@ static bool is_good(const struct source *source, struct error *error)
 
 bool source_open(struct source *source, const char *path, struct error *error)
 {
-    *source = (struct source){.path = path};
     errno = 0;
-    source->file = fopen(path, "rb");
+    return source_of_file(source, path, fopen(path, "rb"), error);
+}
+
+bool source_of_file(struct source *source, const char *path, FILE *file,
+                    struct error *error)
+{
+    *source = (struct source){.path = path, .file = file};
     if (!source->file)
         return fail_to_read(source, error);
     source->start_count = fread(source->start, 1, SOURCE_START, source->file);

@@ -23,6 +23,11 @@ struct source {
 bool source_open(struct source *source, const char *path, struct error *error);
 void source_close(struct source *source);
 
+/* Does the same with an open file, which it takes over; NULL: one that fopen() could not
+ * open. */
+bool source_of_file(struct source *source, const char *path, FILE *file,
+                    struct error *error);
+
 /* Reads up to SOURCE_CHUNK bytes, and puts their number, fewer at the end of the file
  * alone, into `*got`. Errors: as above; a request to stop. */
 bool source_read(struct source *source, char *bytes, size_t *got, struct error *error);

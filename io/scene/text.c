@@ -73,13 +73,6 @@ static bool check_bytes(const struct text *text, const char *bytes, size_t count
     return true;
 }
 
-/* Moves to the first line, behind a byte order mark. */
-static void start(struct text *text)
-{
-    text->bytes[text->size] = '\0';
-    text->position = strncmp(text->bytes, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
-}
-
 static bool read_chunks(struct text *text, struct source *source, struct error *error)
 {
     int64_t capacity = 0;
@@ -92,7 +85,9 @@ static bool read_chunks(struct text *text, struct source *source, struct error *
             return false;
         text->size += (int64_t)got;
     } while (got == SOURCE_CHUNK);
-    start(text);
+    text->bytes = alloc_resize(text->bytes, (size_t)text->size + 1, 1);
+    text->bytes[text->size] = '\0';
+    text->position = strncmp(text->bytes, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
     return true;
 }
 
@@ -113,19 +108,6 @@ bool text_read(struct text *text, const char *path, struct error *error)
         source_open(&source, path, error) && text_of_source(text, &source, error);
     source_close(&source);
     return good;
-}
-
-bool text_of_bytes(struct text *text, const char *path, const void *bytes, size_t size,
-                   struct error *error)
-{
-    *text = (struct text){.path = path, .next_line = 1};
-    if (!check_bytes(text, bytes, size, error))
-        return false;
-    text->size = (int64_t)size;
-    text->bytes = alloc_array(size + 1, 1);
-    memcpy(text->bytes, bytes, size);
-    start(text);
-    return true;
 }
 
 void text_free(struct text *text)

@@ -16,7 +16,7 @@
 
 struct text {
     const char *path;  /* borrowed from the caller of text_read() */
-    char *bytes;       /* [size], and a zero behind; cut in place */
+    char *bytes;       /* [size + 1] with a zero behind the last; cut in place */
     int64_t size;      /* bytes */
     int64_t position;  /* of the start of the next line */
     long line;         /* number of the first physical line of the last logical line */
@@ -34,10 +34,6 @@ void text_free(struct text *text);
 
 /* Does the same with an open file, which it does not close. */
 bool text_of_source(struct text *text, struct source *source, struct error *error);
-
-/* Does the same with a copy of `size` bytes in memory, which errors call `path`. */
-bool text_of_bytes(struct text *text, const char *path, const void *bytes, size_t size,
-                   struct error *error);
 
 /* Returns the next logical line, without its end, or NULL behind the last one. Lines end
  * in LF, CRLF, CR, or with the file. A line that ends in a backslash goes on in the next

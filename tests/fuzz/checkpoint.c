@@ -1,5 +1,4 @@
 /* Fuzzing checkpoints. */
-#define _POSIX_C_SOURCE 200809L /* fmemopen() */
 #include "tests/fuzz/store.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -2,16 +2,17 @@
 #include "io/picture/imagefile.h"
 
 #include "tests/fuzz/fuzz.h"
+#include "tests/memory.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct error error = {0};
-    struct binary binary;
+    struct source source;
     struct image image = {0};
     enum image_kind kind;
-    bool good = binary_of_bytes(&binary, "fuzz", data, size, IMAGE_MAGIC, "a picture",
-                                &error) &&
-                image_of_binary(&image, &kind, &binary, &error);
+    bool good = source_of_bytes(&source, "fuzz", data, size, &error) &&
+                image_read(&image, &kind, &source, &error);
+    source_close(&source);
     FUZZ_PROMISE(good == (image.rgb != NULL));
     FUZZ_PROMISE(!good || (image.width > 0 && image.height > 0 &&
                            (size_t)image.width * (size_t)image.height <= 16 * size));

@@ -2,13 +2,17 @@
 #include "io/scene/mtl.h"
 
 #include "tests/fuzz/fuzz.h"
+#include "tests/memory.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct error error = {0};
     struct mtl_table table = {0};
+    struct source source;
     struct text text;
-    bool good = text_of_bytes(&text, "fuzz.mtl", data, size, &error);
+    bool good = source_of_bytes(&source, "fuzz.mtl", data, size, &error) &&
+                text_of_source(&text, &source, &error);
+    source_close(&source);
     if (good) {
         good = mtl_of_text(&table, &text, &error);
         text_free(&text);

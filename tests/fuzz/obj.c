@@ -2,16 +2,18 @@
 #include "io/scene/obj.h"
 
 #include "tests/fuzz/fuzz.h"
+#include "tests/memory.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct error error = {0};
     struct obj_repairs read = {0};
     struct scene_repairs prepared;
-    struct text text;
+    struct source source;
     struct scene *scene = NULL;
-    if (text_of_bytes(&text, "nowhere/fuzz.obj", data, size, &error))
-        scene = obj_of_text(&text, &read, &error);
+    if (source_of_bytes(&source, "nowhere/fuzz.obj", data, size, &error))
+        scene = obj_of_source(&source, &read, &error);
+    source_close(&source);
     FUZZ_PROMISE(!scene == (error.code != EXIT_DONE));
     bool good = scene && scene_prepare(scene, &prepared, &error);
     for (int32_t i = 0; scene && i < scene->input_count; i++) {

@@ -3,24 +3,20 @@
 #include "io/scene/ply.h"
 
 #include "tests/fuzz/fuzz.h"
+#include "tests/memory.h"
 #include "tools/compare.h"
 #include "tools/results.h"
 #include "tools/stored.h"
-
-static bool load(struct binary *binary, const uint8_t *data, size_t size,
-                 struct error *error)
-{
-    return binary_of_bytes(binary, "fuzz.ply", data, size, "ply", "a PLY file", error);
-}
 
 static void read_scene(const uint8_t *data, size_t size)
 {
     struct error error = {0};
     struct scene_repairs prepared;
-    struct binary binary;
+    struct source source;
     struct scene *scene = NULL;
-    if (load(&binary, data, size, &error))
-        scene = ply_of_binary(&binary, &error);
+    if (source_of_bytes(&source, "fuzz.ply", data, size, &error))
+        scene = ply_read(&source, &error);
+    source_close(&source);
     FUZZ_PROMISE(!scene == (error.code != EXIT_DONE));
     bool good = scene && scene_prepare(scene, &prepared, &error);
     for (int32_t i = 0; scene && i < scene->input_count; i++)
@@ -54,12 +50,13 @@ static void show_solution(struct solution_mesh *solution)
 static void read_solution(const uint8_t *data, size_t size)
 {
     struct error error = {0}, different = {0};
-    struct binary binary;
+    struct source source;
     struct solution_mesh solution = {0};
     struct difference difference = {0};
     struct rgb *map = NULL;
-    bool good = load(&binary, data, size, &error) &&
-                solution_mesh_of_binary(&solution, &binary, &error);
+    bool good = source_of_bytes(&source, "fuzz.ply", data, size, &error) &&
+                solution_mesh_read(&solution, &source, &error);
+    source_close(&source);
     map = alloc_array((size_t)solution.count, sizeof *map);
     FUZZ_PROMISE(!good ||
                  compare_solutions(&solution, &solution, &difference, map, &different));

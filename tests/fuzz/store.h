@@ -15,6 +15,7 @@
 #include "mpi/beyond/keep.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/scenes.h"
+#include "tests/memory.h"
 #include "tests/solve.h"
 
 #define STORE_SETTINGS "--oracle error\n--epsilon 0.01\n"
@@ -87,7 +88,6 @@ static inline void store_try(enum store_kind kind, enum linking_kind linking,
     memcpy(copy, data, size);
     if (size >= 8)
         little_put64(copy + size - 8, hash_bytes(HASH_START, copy, size - 8));
-    FILE *file = size > 0 ? fmemopen(copy, size, "rb") : tmpfile();
     bool pairs = linking == LINKING_PAIRS;
     struct criterion criterion = pairs ? STORE_CRITERION : store_criterion_tree();
     struct scene *scene = pairs ? store_scene() : store_box();
@@ -95,7 +95,8 @@ static inline void store_try(enum store_kind kind, enum linking_kind linking,
     struct solver *solver = beyond_create(fuzz_alone(), scene, octree, &criterion);
     struct store_terms terms = {kind, STORE_SETTINGS, scene, solver->beyond->tree};
     struct store_reader reader;
-    bool good = store_open_file(&reader, file, "fuzz", &terms, &error) &&
+    bool good = store_open_file(&reader, file_of_bytes(copy, size), "fuzz", &terms,
+                                &error) &&
                 store_continue(&reader, solver, &error);
     store_close(&reader);
     solver_destroy(solver);

@@ -4,13 +4,17 @@
 #include <math.h>
 
 #include "tests/fuzz/fuzz.h"
+#include "tests/memory.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct error error = {0};
     struct camera camera;
+    struct source source;
     struct text text;
-    bool good = text_of_bytes(&text, "fuzz.view", data, size, &error);
+    bool good = source_of_bytes(&source, "fuzz.view", data, size, &error) &&
+                text_of_source(&text, &source, &error);
+    source_close(&source);
     if (good) {
         good = camera_of_text(&camera, &text, &error);
         text_free(&text);

@@ -10,6 +10,7 @@
 
 #include "io/scene/palette.h"
 #include "tests/load.h"
+#include "tests/memory.h"
 #include "tests/refusal.h"
 
 #define PLY "build/ply_test.ply"
@@ -23,11 +24,12 @@
 
 static struct scene *read_bytes(const void *bytes, size_t size)
 {
-    struct binary binary;
+    struct source source;
     forget_error();
-    return binary_of_bytes(&binary, PLY, bytes, size, "ply", "a PLY file", &error)
-               ? ply_of_binary(&binary, &error)
-               : NULL;
+    bool good = source_of_bytes(&source, PLY, bytes, size, &error);
+    struct scene *scene = good ? ply_read(&source, &error) : NULL;
+    source_close(&source);
+    return scene;
 }
 
 static struct scene *read_text(const char *text)
@@ -342,14 +344,14 @@ static void test_long_lines(void)
     static const char TEXT[] =
         ASCII SQUARE FACE(2) "end_header\n0 0 0\n1 0 0 7 0.5\n1 1 0\n0 1 0 nan\n"
                              "3 0 1 2 3\n3 0 2 3\n";
-    struct binary binary;
+    struct source source;
     struct ply_file file;
     forget_error();
     struct scene *scene = NULL;
-    if (binary_of_bytes(&binary, PLY, TEXT, sizeof TEXT - 1, "ply", "a PLY file",
-                        &error) &&
-        ply_file_open(&file, &binary, &error))
+    if (source_of_bytes(&source, PLY, TEXT, sizeof TEXT - 1, &error) &&
+        ply_file_open(&file, &source, &error))
         scene = ply_of_file(&file, &error);
+    source_close(&source);
     tap_ok(scene && is_square(scene) && file.long_lines == 3 && file.first_long == 11,
            "three lines with more values than the header says, from line %ld on: %s",
            file.first_long, error.text);

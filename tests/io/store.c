@@ -3,11 +3,11 @@
  * kind, version, scene or setting is refused with the reason; so is one that is cut off
  * or changed at any byte; and numbers that no run could have are refused though the
  * checksum is right. Several ranks: tests/67-restart.sh. */
-#define _POSIX_C_SOURCE 200809L /* fmemopen() */
 #include "mpi/beyond/beyond.h"
 #include "tests/fuzz/store.h"
 
 #include "tests/load.h"
+#include "tests/memory.h"
 #include "tests/tap.h"
 
 #define PATH "build/store_test.bin"
@@ -125,8 +125,8 @@ static bool takes(const uint8_t *bytes, size_t size, const struct store_terms *t
     struct link links[100];
     struct store_reader reader;
     *error = (struct error){0};
-    FILE *file = size > 0 ? fmemopen((void *)(uintptr_t)bytes, size, "rb") : tmpfile();
-    bool good = store_open_file(&reader, file, "F", terms, error);
+    bool good =
+        store_open_file(&reader, file_of_bytes(bytes, size), "F", terms, error);
     while (good && store_get_links(&reader, links, 100, error) > 0) {
     }
     store_close(&reader);

@@ -296,7 +296,6 @@ static void test_integers(void)
     }
 }
 
-/* Refused, in a file and in memory. */
 static void check_binary(const char *name, const char *bytes, size_t count,
                          const char *message)
 {
@@ -305,24 +304,6 @@ static void check_binary(const char *name, const char *bytes, size_t count,
     snprintf(line, sizeof line, FILE_NAME ": %s", message);
     tap_ok(is_refused_as(read_bytes(&text, bytes, count) || text.unreadable, line),
            "%s: %s", name, error.text);
-    forget_error();
-    snprintf(line, sizeof line, "here: %s", message);
-    check_error(text_of_bytes(&text, "here", bytes, count, &error), line);
-}
-
-static void test_bytes(void)
-{
-    static const char bytes[] = "\xEF\xBB\xBF" "one\r\ntwo!";
-    struct text text;
-    forget_error();
-    bool good = text_of_bytes(&text, "here", bytes, sizeof bytes - 2, &error);
-    tap_ok(good && is_same(text_line(&text), "one") && is_same(text_line(&text), "two") &&
-               !text_line(&text) && text.line == 2,
-           "bytes in memory, as many as there are");
-    text_free(&text);
-    good = text_of_bytes(&text, "here", "", 0, &error);
-    tap_ok(good && !text_line(&text), "no bytes");
-    text_free(&text);
 }
 
 static void test_binary(void)
@@ -393,7 +374,6 @@ int main(void)
     test_against_strtod();
     test_number_errors();
     test_integers();
-    test_bytes();
     test_binary();
     check_unreadable("build/text_test_absent.txt");
     check_unreadable("build/text_test_absent/folder.txt");
