@@ -34,4 +34,9 @@ static inline void *pack_array(struct pack *pack, const void *array, size_t byte
     return at;
 }
 
+/* Does so with the `count` elements that the pointer `array` of a head points to, which
+ * then points to their place. */
+#define PACK(pack, array, count) \
+    ((array) = pack_array(pack, array, (size_t)(count) * sizeof *(array)))
+
 #endif

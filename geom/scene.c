@@ -69,22 +69,17 @@ void scene_destroy(struct scene *scene)
 
 static void pack_arrays(struct scene *scene, struct pack *pack)
 {
-    size_t count = (size_t)scene->input_count, materials = (size_t)scene->material_count;
-    scene->triangles =
-        pack_array(pack, scene->triangles, count * sizeof *scene->triangles);
-    scene->planes = pack_array(pack, scene->planes, count * sizeof *scene->planes);
-    scene->areas = pack_array(pack, scene->areas, count * sizeof *scene->areas);
-    scene->material_of =
-        pack_array(pack, scene->material_of, count * sizeof *scene->material_of);
-    scene->opposed = pack_array(pack, scene->opposed, count * sizeof *scene->opposed);
-    scene->materials =
-        pack_array(pack, scene->materials, materials * sizeof *scene->materials);
-    struct scene_groups *groups = &scene->groups;
-    groups->of = pack_array(pack, groups->of, count * sizeof *groups->of);
-    groups->names = pack_array(pack, groups->names, (size_t)groups->bytes);
+    int64_t count = scene->input_count;
+    PACK(pack, scene->triangles, count);
+    PACK(pack, scene->planes, count);
+    PACK(pack, scene->areas, count);
+    PACK(pack, scene->material_of, count);
+    PACK(pack, scene->opposed, count);
+    PACK(pack, scene->materials, scene->material_count);
+    PACK(pack, scene->groups.of, count);
+    PACK(pack, scene->groups.names, scene->groups.bytes);
     if (scene->normals)
-        scene->normals =
-            pack_array(pack, scene->normals, 3 * count * sizeof *scene->normals);
+        PACK(pack, scene->normals, 3 * count);
 }
 
 void scene_pack(const struct scene *scene, struct pack *pack)

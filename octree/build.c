@@ -434,8 +434,6 @@ void tree_free(struct tree *tree)
 void tree_pack_arrays(struct tree *tree, struct pack *pack)
 {
     tree->node_capacity = tree->node_count;
-    tree->nodes =
-        pack_array(pack, tree->nodes, (size_t)tree->node_count * sizeof *tree->nodes);
-    tree->records = pack_array(pack, tree->records,
-                               (size_t)tree->record_count * sizeof *tree->records);
+    PACK(pack, tree->nodes, tree->node_count);
+    PACK(pack, tree->records, tree->record_count);
 }

@@ -173,10 +173,8 @@ static void pack_arrays(struct octree *octree, struct pack *pack)
 {
     tree_pack_arrays(&octree->inside, pack);
     tree_pack_arrays(&octree->hull, pack);
-    octree->place =
-        pack_array(pack, octree->place, (size_t)octree->count * sizeof *octree->place);
-    size_t bytes = 3 * (size_t)octree->count * sizeof *octree->neighbours;
-    octree->neighbours = pack_array(pack, octree->neighbours, bytes);
+    PACK(pack, octree->place, octree->count);
+    PACK(pack, octree->neighbours, 3 * (int64_t)octree->count);
 }
 
 void octree_pack(const struct octree *octree, struct pack *pack)
@@ -196,17 +194,4 @@ struct octree *octree_view(struct pack *pack, const struct triangle *triangles,
     octree->planes = planes;
     pack_arrays(octree, pack);
     return octree;
-}
-
-static int64_t tree_bytes(const struct tree *tree)
-{
-    return tree->node_capacity * (int64_t)sizeof *tree->nodes +
-           tree->record_count * (int64_t)sizeof *tree->records;
-}
-
-int64_t octree_bytes(const struct octree *octree)
-{
-    return tree_bytes(&octree->inside) + tree_bytes(&octree->hull) +
-           octree->count * (int64_t)sizeof *octree->place +
-           3 * octree->count * (int64_t)sizeof *octree->neighbours;
 }

@@ -44,9 +44,6 @@ struct octree *octree_create(const struct triangle *triangles, const struct plan
                              int32_t count);
 void octree_destroy(struct octree *octree);
 
-/* Bytes that the octree itself takes. */
-int64_t octree_bytes(const struct octree *octree);
-
 /* Into a block, and as it is there: read-only, valid as long as the block. The triangles
  * and planes are not packed: the view is given the same ones. */
 void octree_pack(const struct octree *octree, struct pack *pack);

@@ -49,11 +49,6 @@ struct octree *octree_view(struct pack *pack, const struct triangle *triangles,
     return octree;
 }
 
-int64_t octree_bytes(const struct octree *octree)
-{
-    return (int64_t)sizeof *octree;
-}
-
 static bool is_blocked_by(const struct octree *octree, int32_t t, struct vec3 from,
                           struct vec3 to)
 {

@@ -432,13 +432,10 @@ void cluster_tree_destroy(struct cluster_tree *tree)
 
 static void pack_arrays(struct cluster_tree *tree, struct pack *pack)
 {
-    size_t roots = (size_t)tree->root_count, all = (size_t)tree->all_roots;
-    tree->clusters =
-        pack_array(pack, tree->clusters, (size_t)tree->count * sizeof *tree->clusters);
-    tree->roots = pack_array(pack, tree->roots, roots * sizeof *tree->roots);
-    tree->place = pack_array(pack, tree->place, all * sizeof *tree->place);
-    tree->area_before =
-        pack_array(pack, tree->area_before, (roots + 1) * sizeof *tree->area_before);
+    PACK(pack, tree->clusters, tree->count);
+    PACK(pack, tree->roots, tree->root_count);
+    PACK(pack, tree->place, tree->all_roots);
+    PACK(pack, tree->area_before, (int64_t)tree->root_count + 1);
 }
 
 void cluster_tree_pack(const struct cluster_tree *tree, struct pack *pack)

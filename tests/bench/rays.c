@@ -318,9 +318,11 @@ int main(int argc, char **argv)
     double start = comm_seconds();
     struct octree *octree =
         octree_create(scene->triangles, scene->planes, scene->input_count);
+    double built = comm_seconds() - start;
+    struct pack pack = {0};
+    octree_pack(octree, &pack);
     printf("%s: %d triangles, octree built in %.3f s, %.1f bytes per triangle\n", argv[1],
-           (int)scene->input_count, comm_seconds() - start,
-           (double)octree_bytes(octree) / scene->input_count);
+           (int)scene->input_count, built, (double)pack.bytes / scene->input_count);
 #ifdef WITH_EMBREE
     RTCDevice device = rtcNewDevice("threads=1");
     RTCScene embree = embree_create(device, scene, octree->place);

@@ -99,9 +99,10 @@ static int64_t build_octree(void)
 {
     const struct scene *s = world.scene;
     struct octree *octree = octree_of(s);
-    int64_t bytes = octree_bytes(octree);
+    struct pack pack = {0};
+    octree_pack(octree, &pack);
     octree_destroy(octree);
-    return bytes;
+    return (int64_t)pack.bytes;
 }
 
 static struct viewfactors *make_factors(void)
