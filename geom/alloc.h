@@ -23,6 +23,10 @@ void *alloc_resize(void *block, size_t count, size_t size);
  * growth. */
 void *alloc_reserve(void *block, int64_t *capacity, int64_t needed, size_t size);
 
+/* Does so for the elements that the pointer `array` points to. */
+#define RESERVE(array, capacity, needed) \
+    ((array) = alloc_reserve(array, capacity, needed, sizeof *(array)))
+
 /* Copy of a string. */
 char *alloc_string(const char *text);
 

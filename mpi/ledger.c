@@ -8,8 +8,7 @@
 
 void ledger_add(struct ledger *ledger, struct phase_work phase)
 {
-    ledger->items = alloc_reserve(ledger->items, &ledger->capacity, ledger->count + 1,
-                                  sizeof *ledger->items);
+    RESERVE(ledger->items, &ledger->capacity, ledger->count + 1);
     ledger->items[ledger->count++] = phase;
 }
 
@@ -28,8 +27,7 @@ static void add_level(struct ledger *ledger, const struct phase_work *phases,
         level.work_max = real_max(level.work_max, (double)share->done);
         level.work_mean += (double)share->done / ranks;
     }
-    ledger->levels = alloc_reserve(ledger->levels, &ledger->level_capacity,
-                                   ledger->level_count + 1, sizeof *ledger->levels);
+    RESERVE(ledger->levels, &ledger->level_capacity, ledger->level_count + 1);
     ledger->levels[ledger->level_count++] = level;
 }
 

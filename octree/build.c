@@ -284,8 +284,7 @@ static bool split_pays(const struct part *whole, const struct part *parts, int c
 static int32_t append_node(struct builder *builder)
 {
     struct tree *tree = &builder->tree;
-    tree->nodes = alloc_reserve(tree->nodes, &tree->node_capacity, tree->node_count + 1,
-                                sizeof *tree->nodes);
+    RESERVE(tree->nodes, &tree->node_capacity, tree->node_count + 1);
     struct node *node = &tree->nodes[tree->node_count];
     *node = (struct node){.child = {-1, -1, -1, -1, -1, -1, -1, -1}};
     for (int k = 0; k < LANES; k++)
@@ -298,8 +297,7 @@ static int32_t append_node(struct builder *builder)
 
 static void append_cell(struct builder *builder, struct cell cell)
 {
-    builder->queue = alloc_reserve(builder->queue, &builder->queue_capacity,
-                                   builder->queue_count + 1, sizeof *builder->queue);
+    RESERVE(builder->queue, &builder->queue_capacity, builder->queue_count + 1);
     builder->queue[builder->queue_count++] = cell;
 }
 

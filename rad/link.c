@@ -10,8 +10,7 @@
 
 void link_list_append(struct link_list *list, struct link link)
 {
-    list->items = alloc_reserve(list->items, &list->capacity, list->count + 1,
-                                sizeof *list->items);
+    RESERVE(list->items, &list->capacity, list->count + 1);
     list->items[list->count++] = link;
 }
 

@@ -17,11 +17,9 @@ struct forest *forest_create(const struct scene *scene)
     struct forest *forest = alloc_array(1, sizeof *forest);
     forest->scene = scene;
     forest->root_count = scene_root_count(scene);
-    forest->patches = alloc_reserve(NULL, &forest->capacity, forest->root_count,
-                                    sizeof *forest->patches);
+    RESERVE(forest->patches, &forest->capacity, forest->root_count);
     forest->count = forest->root_count;
-    forest->radiosity = alloc_reserve(NULL, &forest->radiosity_capacity, forest->count,
-                                      sizeof *forest->radiosity);
+    RESERVE(forest->radiosity, &forest->radiosity_capacity, forest->count);
     for (int32_t root = 0; root < forest->root_count; root++) {
         forest->patches[root] =
             (struct patch){.id = id_of_root((uint32_t)root), .parent = -1};
@@ -47,10 +45,8 @@ void forest_split(struct forest *forest, int32_t patch)
         return;
     if (forest->count > INT32_MAX - 4)
         alloc_fail(SIZE_MAX); /* local numbers end at 2^31 patches, 128 GiB */
-    forest->patches = alloc_reserve(forest->patches, &forest->capacity, forest->count + 4,
-                                    sizeof *forest->patches);
-    forest->radiosity = alloc_reserve(forest->radiosity, &forest->radiosity_capacity,
-                                      forest->count + 4, sizeof *forest->radiosity);
+    RESERVE(forest->patches, &forest->capacity, forest->count + 4);
+    RESERVE(forest->radiosity, &forest->radiosity_capacity, forest->count + 4);
     struct patch *parent = &forest->patches[patch];
     parent->children = (int32_t)forest->count;
     for (int k = 0; k < 4; k++, forest->count++) {

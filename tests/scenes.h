@@ -99,8 +99,7 @@ struct soup {
 
 static inline void soup_add(struct soup *soup, struct triangle triangle)
 {
-    soup->items = alloc_reserve(soup->items, &soup->capacity, soup->count + 1,
-                                sizeof *soup->items);
+    RESERVE(soup->items, &soup->capacity, soup->count + 1);
     soup->items[soup->count++] = triangle;
 }
 

@@ -71,8 +71,7 @@ struct truth truth_make(const struct scene *scene, int64_t wanted)
     for (int32_t root = 0; root < truth.root_count; root++) {
         int level = level_of(scene, root, truth.area / (double)wanted);
         int64_t parts = reflects(scene, root) ? INT64_C(1) << 2 * level : 0;
-        truth.items = alloc_reserve(truth.items, &capacity, truth.count + parts,
-                                    sizeof *truth.items);
+        RESERVE(truth.items, &capacity, truth.count + parts);
         for (int64_t i = 0; i < parts; i++)
             truth.items[truth.count++] =
                 (struct element){.id = id_of_element(root, level, i)};

@@ -202,8 +202,7 @@ static bool holds(const struct model *model, int32_t node, int32_t patch)
 static void add_link(struct found_links *found, struct link link, int32_t sender)
 {
     link.q = sender;
-    found->links = alloc_reserve(found->links, &found->capacity, found->count + 1,
-                                 sizeof *found->links);
+    RESERVE(found->links, &found->capacity, found->count + 1);
     found->links[found->count++] = link;
 }
 

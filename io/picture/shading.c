@@ -198,8 +198,7 @@ static int32_t append_vertex(struct table *table, struct vec3 x, int32_t surface
         alloc_fail(SIZE_MAX);
     if (needed > table->capacity) {
         int64_t capacity = table->capacity;
-        table->positions = alloc_reserve(table->positions, &capacity, needed,
-                                         sizeof *table->positions);
+        RESERVE(table->positions, &capacity, needed);
         size_t room = (size_t)capacity;
         table->values = alloc_resize(table->values, room, sizeof *table->values);
         table->weights = alloc_resize(table->weights, room, sizeof *table->weights);

@@ -29,8 +29,7 @@ static bool read_chunks(struct binary *binary, struct source *source, const char
     int64_t capacity = 0;
     size_t got;
     do {
-        binary->data =
-            alloc_reserve(binary->data, &capacity, binary->size + SOURCE_CHUNK + 1, 1);
+        RESERVE(binary->data, &capacity, binary->size + SOURCE_CHUNK + 1);
         if (!source_read(source, binary->data + binary->size, &got, error))
             return false;
         binary->size += (int64_t)got;

@@ -27,8 +27,7 @@ int32_t mtl_find(struct mtl_table *table, const char *name)
     int32_t count = table->names.count;
     int32_t number = text_names_add(&table->names, name);
     if (number == count) {
-        table->entries = alloc_reserve(table->entries, &table->capacity,
-                                       (int64_t)count + 1, sizeof *table->entries);
+        RESERVE(table->entries, &table->capacity, (int64_t)count + 1);
         table->entries[number] = (struct mtl_entry){.material = NEUTRAL};
     }
     return number;

@@ -82,8 +82,7 @@ enum { NO_MATERIAL, NAMELESS };
 
 static void vectors_add(struct obj_vectors *vectors, struct vec3 vector)
 {
-    vectors->at = alloc_reserve(vectors->at, &vectors->capacity, vectors->count + 1,
-                                sizeof *vectors->at);
+    RESERVE(vectors->at, &vectors->capacity, vectors->count + 1);
     vectors->at[vectors->count++] = vector;
 }
 
@@ -198,9 +197,7 @@ static bool read_corners(struct obj_reader *reader, char *rest)
             return error_set(reader->error, EXIT_USAGE,
                              "%s:%ld: face of more than %d corners", reader->text.path,
                              reader->text.line, CORNER_MAX);
-        reader->corners =
-            alloc_reserve(reader->corners, &reader->corner_capacity,
-                          reader->corner_count + 1, sizeof *reader->corners);
+        RESERVE(reader->corners, &reader->corner_capacity, reader->corner_count + 1);
         if (!read_corner(reader, word, &reader->corners[reader->corner_count]))
             return false;
         reader->corner_count++;
@@ -244,8 +241,7 @@ static bool read_face(struct obj_reader *reader, char *rest)
         return error_set(reader->error, EXIT_USAGE, "%s:%ld: more than %d triangles",
                          reader->text.path, reader->text.line, COUNT_MAX);
     struct obj_triangles *triangles = &reader->triangles;
-    triangles->at = alloc_reserve(triangles->at, &triangles->capacity, needed,
-                                  sizeof *triangles->at);
+    RESERVE(triangles->at, &triangles->capacity, needed);
     reader->materials.entries[reader->material].used = true;
     if (reader->corner_count == 3)
         add_triangle(reader, (const int32_t[]){0, 1, 2}, false);

@@ -43,9 +43,7 @@ int32_t palette_add(struct palette *palette, const struct material *material)
         make_slots(palette, palette->slot_count ? 2 * palette->slot_count : 16);
     int32_t *slot = find_slot(palette, material);
     if (*slot == 0) {
-        palette->materials = alloc_reserve(palette->materials, &palette->capacity,
-                                           (int64_t)palette->count + 1,
-                                           sizeof *palette->materials);
+        RESERVE(palette->materials, &palette->capacity, (int64_t)palette->count + 1);
         palette->materials[palette->count] = *material;
         *slot = ++palette->count;
     }

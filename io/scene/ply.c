@@ -123,9 +123,8 @@ static bool add_face(struct reader *reader, const struct ply_element *element,
         return false;
     *face = (struct face){reader->corner_count, (int32_t)file->corner_count,
                           palette_add(&reader->palette, &material)};
-    reader->corners = alloc_reserve(reader->corners, &reader->corner_capacity,
-                                    reader->corner_count + file->corner_count,
-                                    sizeof *reader->corners);
+    RESERVE(reader->corners, &reader->corner_capacity,
+            reader->corner_count + file->corner_count);
     memcpy(reader->corners + reader->corner_count, file->corners,
            (size_t)file->corner_count * sizeof *file->corners);
     reader->corner_count += file->corner_count;

@@ -141,8 +141,7 @@ static bool read_element(struct ply_file *file, char *rest, struct error *error)
         return fail_word(file, error, "bad number of elements", count);
     if (element.kind != PLY_OTHER && ply_file_find(file, element.kind))
         return fail_word(file, error, "a second element", name);
-    header->elements = alloc_reserve(header->elements, &header->element_capacity,
-                                     header->element_count + 1, sizeof *header->elements);
+    RESERVE(header->elements, &header->element_capacity, header->element_count + 1);
     header->elements[header->element_count++] = element;
     return true;
 }
@@ -196,9 +195,7 @@ static bool read_property(struct ply_file *file, char *rest, struct error *error
     struct ply_property property = {.type = (uint8_t)type,
                                     .count_type = (uint8_t)count_type,
                                     .field = (uint8_t)find_field(element->kind, name)};
-    header->properties = alloc_reserve(header->properties, &header->property_capacity,
-                                       header->property_count + 1,
-                                       sizeof *header->properties);
+    RESERVE(header->properties, &header->property_capacity, header->property_count + 1);
     header->properties[header->property_count++] = property;
     element->property_count++;
     element->has_list = element->has_list || list;
@@ -365,8 +362,7 @@ static bool take_corners(struct ply_file *file, const struct ply_property *prope
             return false;
         if (!(value >= 0.0 && value <= INT32_MAX) || value != floor(value))
             return ply_fail(file, error, "a corner is not the number of a vertex");
-        file->corners = alloc_reserve(file->corners, &file->corner_capacity,
-                                      file->corner_count + 1, sizeof *file->corners);
+        RESERVE(file->corners, &file->corner_capacity, file->corner_count + 1);
         file->corners[file->corner_count] = (int32_t)value;
     }
     return true;

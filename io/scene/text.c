@@ -78,8 +78,7 @@ static bool read_chunks(struct text *text, struct source *source, struct error *
     int64_t capacity = 0;
     size_t got;
     do {
-        text->bytes =
-            alloc_reserve(text->bytes, &capacity, text->size + SOURCE_CHUNK + 1, 1);
+        RESERVE(text->bytes, &capacity, text->size + SOURCE_CHUNK + 1);
         text->unreadable = !source_read(source, text->bytes + text->size, &got, error);
         if (text->unreadable || !check_bytes(text, text->bytes + text->size, got, error))
             return false;
@@ -314,8 +313,7 @@ int32_t text_names_add(struct text_names *names, const char *name)
         make_slots(names, names->slot_count ? 2 * names->slot_count : 16);
     int32_t *slot = find_slot(names, name);
     if (*slot == 0) {
-        names->name = alloc_reserve(names->name, &names->capacity,
-                                    (int64_t)names->count + 1, sizeof *names->name);
+        RESERVE(names->name, &names->capacity, (int64_t)names->count + 1);
         names->name[names->count] = alloc_string(name);
         *slot = ++names->count;
     }

@@ -224,8 +224,7 @@ static void split_leaf(struct forest *forest, int32_t leaf,
 
 static void keep_known(struct looking *l, int32_t leaf, const struct gather_look *look)
 {
-    l->known = alloc_reserve(l->known, &l->known_capacity, l->solver->model.forest->count,
-                             sizeof *l->known);
+    RESERVE(l->known, &l->known_capacity, l->solver->model.forest->count);
     l->known[leaf] = (struct known){look->variance + spread_of(look), look->fixed,
                                     look->work};
 }
@@ -280,8 +279,7 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
 static void know_nothing(struct looking *l)
 {
     const struct forest *forest = l->solver->model.forest;
-    l->known =
-        alloc_reserve(l->known, &l->known_capacity, forest->count, sizeof *l->known);
+    RESERVE(l->known, &l->known_capacity, forest->count);
     for (int64_t i = 0; i < l->mesh->count; i++) {
         int32_t leaf = l->mesh->leaves[i];
         bool open = l->open[forest->patches[leaf].id.root];

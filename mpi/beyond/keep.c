@@ -64,7 +64,7 @@ static void collect_irradiances(struct solver *solver, const int32_t *order,
         if (!patch_is_leaf(&forest->patches[p]) ||
             solver->homes.owner[forest->patches[p].id.root] != solver->comm->rank)
             continue;
-        own = alloc_reserve(own, &capacity, count + 1, sizeof *own);
+        RESERVE(own, &capacity, count + 1);
         own[count++] = solver->beyond->descent.vectors.irradiance[p];
     }
     struct funnel funnel;

@@ -13,8 +13,7 @@ void caps_free(struct caps *caps)
 
 void caps_extend(struct caps *caps, const struct forest *forest)
 {
-    caps->factor = alloc_reserve(caps->factor, &caps->capacity, forest->count,
-                                    sizeof *caps->factor);
+    RESERVE(caps->factor, &caps->capacity, forest->count);
     for (; caps->count < forest->count; caps->count++)
         caps->factor[caps->count] = 1.0;
 }

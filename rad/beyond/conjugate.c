@@ -44,8 +44,7 @@ void conjugate_extend(struct conjugate *cg, const struct forest *forest, const b
     struct rgb **vectors[6] = {&cg->irradiance, &cg->residual, &cg->work, &cg->direction,
                                &cg->image, &cg->sent};
     for (int i = 0; i < 6; i++)
-        *vectors[i] = alloc_reserve(*vectors[i], &cg->capacity[i], forest->count,
-                                    sizeof **vectors[i]);
+        RESERVE(*vectors[i], &cg->capacity[i], forest->count);
     for (int64_t p = cg->count; p < forest->count; p++) {
         int32_t parent = forest->patches[p].parent;
         cg->irradiance[p] =
@@ -59,8 +58,7 @@ void conjugate_extend(struct conjugate *cg, const struct forest *forest, const b
         if (!own[patch->id.root] || !patch_is_leaf(patch) ||
             scene_root_area(forest->scene, (int32_t)patch->id.root) <= 0.0)
             continue;
-        cg->leaves = alloc_reserve(cg->leaves, &cg->leaf_capacity, cg->leaf_count + 1,
-                                   sizeof *cg->leaves);
+        RESERVE(cg->leaves, &cg->leaf_capacity, cg->leaf_count + 1);
         cg->leaves[cg->leaf_count++] = (int32_t)p;
     }
 }

@@ -167,8 +167,7 @@ static void add_term(struct receiver *r, int32_t patch, const struct rgb *weight
     struct gather_term term = {.place = g->place[patch], .near = g->near.met};
     for (int c = 0; c < BANDS; c++)
         term.weight[c] = (float)weight->band[c];
-    g->terms =
-        alloc_reserve(g->terms, &g->term_capacity, r->row.end + 1, sizeof *g->terms);
+    RESERVE(g->terms, &g->term_capacity, r->row.end + 1);
     g->terms[r->row.end++] = term;
 }
 
@@ -334,8 +333,7 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
     }
     join_terms(&r);
     r.row.bare = receiver_bare_share(&r);
-    gather->rows = alloc_reserve(gather->rows, &gather->row_capacity, gather->count + 1,
-                                 sizeof *gather->rows);
+    RESERVE(gather->rows, &gather->row_capacity, gather->count + 1);
     gather->rows[gather->count++] = r.row;
     gather->term_count = r.row.end;
 }

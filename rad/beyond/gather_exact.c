@@ -51,8 +51,7 @@ static bool view_node(struct final_gather *g, const struct end *root, int32_t no
     }
     if (view->count == FACED_PER_RAY * g->rays)
         return false;
-    view->faced =
-        alloc_reserve(view->faced, &view->capacity, view->count + 1, sizeof *view->faced);
+    RESERVE(view->faced, &view->capacity, view->count + 1);
     view->faced[view->count++] = node;
     return true;
 }

@@ -155,8 +155,7 @@ static double watts_of(const struct lamps *lamps, int32_t node)
 
 static void add_group(struct lamp_groups *groups, struct lamp_group group)
 {
-    groups->items = alloc_reserve(groups->items, &groups->capacity, groups->count + 1,
-                                  sizeof *groups->items);
+    RESERVE(groups->items, &groups->capacity, groups->count + 1);
     groups->items[groups->count++] = group;
     groups->direct += group.direct;
     groups->around += group.around;

@@ -8,8 +8,7 @@
 
 void forest_bound(struct forest *forest)
 {
-    forest->extremes = alloc_reserve(forest->extremes, &forest->extremes_capacity,
-                                     forest->count, sizeof *forest->extremes);
+    RESERVE(forest->extremes, &forest->extremes_capacity, forest->count);
     forest->bounded = forest->count;
     for (int64_t p = forest->count - 1; p >= 0; p--) {
         const struct patch *patch = &forest->patches[p];

@@ -58,8 +58,7 @@ static int split_and_note(struct model *model, const struct link *link, int32_t 
                           .work = model_work(model) - before};
     for (int k = 0; k < count; k++)
         split.children += recorded.side_to_split(model, &children[k]) != NODE_NONE;
-    record->splits = alloc_reserve(record->splits, &record->capacity, record->count + 1,
-                                   sizeof *record->splits);
+    RESERVE(record->splits, &record->capacity, record->count + 1);
     record->splits[record->count++] = split;
     return count;
 }
@@ -113,8 +112,7 @@ static int64_t number_children(struct record *record, int64_t begin, int64_t end
 
 static void put(struct pile *pile, int64_t item)
 {
-    pile->items =
-        alloc_reserve(pile->items, &pile->capacity, pile->count + 1, sizeof *pile->items);
+    RESERVE(pile->items, &pile->capacity, pile->count + 1);
     pile->items[pile->count++] = item;
 }
 

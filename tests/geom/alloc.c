@@ -80,7 +80,7 @@ static void test_reserve(void)
     tap_ok(items && alloc_balance() == 1, "reserving nothing makes a block too");
     for (int64_t i = 0; i < 1000000; i++) {
         int64_t before = capacity;
-        items = alloc_reserve(items, &capacity, i + 1, sizeof *items);
+        RESERVE(items, &capacity, i + 1);
         items[i] = 3 * i;
         growths += capacity != before;
         if (capacity - before - before / 2 > largest_jump)
@@ -94,9 +94,9 @@ static void test_reserve(void)
     tap_ok(growths <= 35, "in %d growths, so at constant cost each", (int)growths);
     tap_ok(largest_jump <= 16, "room for no more than half as much again and 16");
     int64_t before = capacity;
-    items = alloc_reserve(items, &capacity, before, sizeof *items);
+    RESERVE(items, &capacity, before);
     tap_ok(capacity == before, "an array with room does not grow");
-    items = alloc_reserve(items, &capacity, 5 * before, sizeof *items);
+    RESERVE(items, &capacity, 5 * before);
     tap_ok(capacity == 5 * before, "a large need is met exactly");
     alloc_free(items);
 }
