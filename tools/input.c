@@ -12,60 +12,43 @@
 #include "tools/idle.h"
 #include "tools/viewfactor.h"
 
+/* Warns of `count` cases, if there are any; `text` may have a place for `detail`. */
+static void warn(struct run *run, int64_t count, const char *text, const char *detail)
+{
+    char line[300];
+    snprintf(line, sizeof line, text, detail);
+    if (count > 0)
+        run_say(run, "%s: warning: %lld %s", run->options.scene, (long long)count, line);
+}
+
 static void warn_repairs(struct run *run, const struct obj_repairs *read,
                          const struct scene_repairs *prepared)
 {
-    const char *path = run->options.scene;
-    if (read->libraries.count > 0)
-        run_say(run, "%s: warning: %lld material file(s) missing (first: %s)", path,
-                (long long)read->libraries.count, read->libraries.first);
-    if (read->materials.count > 0)
-        run_say(run,
-                "%s: warning: %lld material(s) without a definition, "
-                "taken as grey (first: %s)",
-                path, (long long)read->materials.count, read->materials.first);
-    if (read->nameless > 0)
-        run_say(run,
-                "%s: warning: %lld newmtl without a name: "
-                "taken as the material of usemtl without one",
-                path, (long long)read->nameless);
-    if (read->transparent > 0)
-        run_say(run,
-                "%s: warning: %lld transparent material(s) (d or Tr), taken as opaque",
-                path, (long long)read->transparent);
-    if (read->textured > 0)
-        run_say(run,
-                "%s: warning: %lld material(s) with a texture, "
-                "which is not read: Kd counts, or grey",
-                path, (long long)read->textured);
-    if (read->bad_normals > 0)
-        run_say(run,
-                "%s: warning: %lld corner(s) with a vn that is no direction, "
-                "or not there: ignored",
-                path, (long long)read->bad_normals);
-    if (read->unknown_lines > 0)
-        run_say(run,
-                "%s: warning: %lld line(s) with unknown keywords "
-                "passed over (first: line %ld)",
-                path, (long long)read->unknown_lines, read->first_unknown);
-    if (prepared->clamped > 0)
-        run_say(run,
-                "%s: warning: %lld material(s) with a reflectance of 1 or more, "
-                "set to 0.999",
-                path, (long long)prepared->clamped);
-    if (prepared->degenerate > 0)
-        run_say(run, "%s: warning: %lld face(s) without area dropped", path,
-                (long long)prepared->degenerate);
-    if (prepared->doubles > 0 && prepared->unlike == 0)
-        run_say(run,
-                "%s: warning: %lld triangle(s) are there twice, facing the same way: "
-                "the first of each stays",
-                path, (long long)prepared->doubles);
-    else if (prepared->doubles > 0)
-        run_say(run,
-                "%s: warning: %lld triangle(s) are there twice, facing the same way: "
-                "the first of each stays, also where the materials differ (%lld)",
-                path, (long long)prepared->doubles, (long long)prepared->unlike);
+    char number[64] = "";
+    warn(run, read->libraries.count, "material file(s) missing (first: %s)",
+         read->libraries.first);
+    warn(run, read->materials.count,
+         "material(s) without a definition, taken as grey (first: %s)",
+         read->materials.first);
+    warn(run, read->nameless,
+         "newmtl without a name: taken as the material of usemtl without one", "");
+    warn(run, read->transparent, "transparent material(s) (d or Tr), taken as opaque",
+         "");
+    warn(run, read->textured,
+         "material(s) with a texture, which is not read: Kd counts, or grey", "");
+    warn(run, read->bad_normals,
+         "corner(s) with a vn that is no direction, or not there: ignored", "");
+    snprintf(number, sizeof number, "%ld", read->first_unknown);
+    warn(run, read->unknown_lines,
+         "line(s) with unknown keywords passed over (first: line %s)", number);
+    warn(run, prepared->clamped,
+         "material(s) with a reflectance of 1 or more, set to 0.999", "");
+    warn(run, prepared->degenerate, "face(s) without area dropped", "");
+    snprintf(number, sizeof number, ", also where the materials differ (%lld)",
+             (long long)prepared->unlike);
+    warn(run, prepared->doubles,
+         "triangle(s) are there twice, facing the same way: the first of each stays%s",
+         prepared->unlike > 0 ? number : "");
 }
 
 /* Emissions beyond these would leave the range of the float outputs. */
@@ -136,16 +119,18 @@ static bool take_stored(struct run *run, struct ply_file *file)
 static bool read_ply(struct run *run, struct source *source)
 {
     struct ply_file file;
+    char number[32];
     bool good = ply_file_open(&file, source, &run->error);
     if (good && solution_is_stored(&file) && !run->options.form_factors)
         good = take_stored(run, &file);
     else if (good)
         run->scene = ply_of_file(&file, &run->error);
-    if (good && file.long_lines > 0)
-        run_say(run,
-                "%s: warning: %lld line(s) with more values than the header says, "
-                "passed over (first: line %ld)",
-                run->options.scene, (long long)file.long_lines, file.first_long);
+    snprintf(number, sizeof number, "%ld", file.first_long);
+    if (good)
+        warn(run, file.long_lines,
+             "line(s) with more values than the header says, passed over "
+             "(first: line %s)",
+             number);
     ply_file_close(&file);
     return good && run->scene;
 }
