@@ -38,6 +38,8 @@
 struct above {
     struct plane plane;
     const struct triangle *triangles;
+    struct vec3 corner; /* the last that was looked at */
+    double highest;     /* distance of the highest corner so far */
 };
 
 static const double HULL_MARGIN = 0.5 * GEOM_ROUNDING;
@@ -64,32 +66,73 @@ INLINE unsigned above_enters(const void *beam, const struct node *node,
 INLINE bool find_corner(void *at, const struct record *records, int32_t count,
                         struct octree_counts *counts)
 {
-    const struct above *above = at;
+    struct above *above = at;
     counts->triangle_tests += count;
     for (int32_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) {
-            struct vec3 corner = above->triangles[records[i].triangle].corner[k];
-            if (plane_distance(&above->plane, corner) > HULL_MARGIN)
+            above->corner = above->triangles[records[i].triangle].corner[k];
+            double height = plane_distance(&above->plane, above->corner);
+            above->highest = real_max(above->highest, height);
+            if (height > HULL_MARGIN)
                 return true;
         }
     return false;
 }
 
-static bool reaches_above(const struct tree *all, const struct triangle *triangles,
-                          struct vec3 normal, double offset)
+enum { ROOFS_MAX = 16 };
+
+/* A plane that no corner of the scene is higher above than `most`. */
+struct roof {
+    struct plane plane;
+    double most;
+};
+
+/* Answers so far, which spare a wall of many triangles a walk over the wall for each. */
+struct roofs {
+    const struct tree *all;
+    const struct triangle *triangles;
+    double reach;          /* no corner is farther from the origin */
+    struct vec3 corner;    /* the last that was found above a plane */
+    struct roof last[ROOFS_MAX];
+    int64_t count;         /* of all roofs that were found; the last ones are kept */
+};
+
+/* True if a roof so much alike is known that nothing is above this plane either. */
+static bool is_under_roof(const struct roofs *roofs, const struct plane *plane)
 {
-    struct above above = {{normal, offset}, triangles};
+    for (int64_t i = 0; i < roofs->count && i < ROOFS_MAX; i++) {
+        const struct roof *roof = &roofs->last[i];
+        double tilt = vec3_length(vec3_sub(plane->normal, roof->plane.normal));
+        double shift = fabs(plane->offset - roof->plane.offset);
+        if (roof->most + tilt * roofs->reach + shift <= HULL_MARGIN)
+            return true;
+    }
+    return false;
+}
+
+static bool reaches_above(struct roofs *roofs, struct vec3 normal, double offset)
+{
+    struct above above = {{normal, offset}, roofs->triangles, roofs->corner, -HUGE_VAL};
     struct octree_counts counts = {0};
-    return tree_walk(all, above_enters, &above, 0, NULL, find_corner, &above, &counts);
+    if (plane_distance(&above.plane, roofs->corner) > HULL_MARGIN)
+        return true;
+    if (is_under_roof(roofs, &above.plane))
+        return false;
+    if (tree_walk(roofs->all, above_enters, &above, 0, NULL, find_corner, &above,
+                  &counts)) {
+        roofs->corner = above.corner;
+        return true;
+    }
+    roofs->last[roofs->count++ % ROOFS_MAX] = (struct roof){above.plane, above.highest};
+    return false;
 }
 
 /* True if no corner of the scene is in front of the plane, or none behind it. */
-static bool is_on_hull(const struct tree *all, const struct triangle *triangles,
-                       const struct plane *plane)
+static bool is_on_hull(struct roofs *roofs, const struct plane *plane)
 {
     struct vec3 back = vec3_scale(plane->normal, -1.0);
-    return !reaches_above(all, triangles, plane->normal, plane->offset) ||
-           !reaches_above(all, triangles, back, -plane->offset);
+    return !reaches_above(roofs, plane->normal, plane->offset) ||
+           !reaches_above(roofs, back, -plane->offset);
 }
 
 /* --- building --- */
@@ -118,9 +161,13 @@ static void plant_trees(struct octree *octree, const int32_t *order, int32_t kep
     int32_t *hull = alloc_array((size_t)kept, sizeof *hull);
     int32_t inside_count = 0, hull_count = 0;
     struct tree all = tree_build(octree->triangles, octree->planes, order, kept);
+    struct roofs found = {.all = &all, .triangles = octree->triangles,
+                          .reach = vec3_length(octree->middle) + octree->radius};
+    if (kept > 0)
+        found.corner = octree->triangles[order[0]].corner[0];
     for (int32_t i = 0; i < kept && !stop_is_asked(); i++) {
         int32_t t = order[i];
-        if (is_on_hull(&all, octree->triangles, &octree->planes[t]))
+        if (is_on_hull(&found, &octree->planes[t]))
             hull[hull_count++] = t;
         else
             inside[inside_count++] = t;

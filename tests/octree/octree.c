@@ -3,13 +3,14 @@
  * needles and dropped triangles. Segments are random, run through vertices and edges, lie
  * in axis planes, graze planes, join two triangles of the scene or pass through one that
  * is not to count. Then: closed meshes let nothing out, ten thousand coincident
- * triangles, the rules of the first hit, and the counters. */
+ * triangles, which triangles are hull, the rules of the first hit, and the counters. */
 #include "octree/octree.h"
 
 #include <string.h>
 
 #include "geom/hull.h"
 #include "geom/wall.h"
+#include "octree/tree.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
@@ -568,6 +569,63 @@ static void test_closed(bool is_sphere, const char *name)
     world_free(&world);
 }
 
+/* --- the hull --- */
+
+/* True if no corner of the scene is further above the plane than rounding. */
+static bool is_highest(const struct scene *scene, struct vec3 normal, double offset)
+{
+    const struct plane plane = {normal, offset};
+    for (int32_t i = 0; i < scene->input_count; i++)
+        for (int k = 0; k < 3; k++)
+            if (plane_distance(&plane, scene->triangles[i].corner[k]) >
+                0.5 * GEOM_ROUNDING)
+                return false;
+    return true;
+}
+
+/* Tiles at four heights, apart by rounding and by more, each tilted as little, in a mixed
+ * order: what one of them has shown is no proof for the next. Triangles are hull that
+ * have the whole scene on one side, and no others. */
+static void test_terrace(void)
+{
+    enum { TILES = 30 };
+    struct soup soup = {0};
+    struct random random = random_seed(9);
+    for (int i = 0; i < TILES * TILES; i++) {
+        struct vec3 at = point(i % TILES, i / TILES, 5e-14 * random_below(&random, 4));
+        struct vec3 u = point(1, 0, 1e-14 * random_below(&random, 4));
+        soup_add_quad(&soup, at, u, point(0, 1, 0), 1);
+    }
+    struct world world = world_make(scene_of_soup(&soup));
+    const struct scene *scene = world.scene;
+    int hull = 0, wrong = 0;
+    for (int32_t i = 0; i < scene->input_count; i++) {
+        const struct plane *plane = &scene->planes[i];
+        bool apart = is_highest(scene, plane->normal, plane->offset) ||
+                     is_highest(scene, vec3_scale(plane->normal, -1.0), -plane->offset);
+        hull += apart;
+        wrong += apart != (world.octree->place[i] < 0);
+    }
+    tap_ok(wrong == 0 && hull > 0 && hull < scene->input_count,
+           "of %d tiles apart by hairs %d are hull", (int)scene->input_count, hull);
+    world_free(&world);
+}
+
+/* A floor of so many tiles that to walk over all of them for each would take minutes. */
+static void test_floor(void)
+{
+    enum { TILES = 200 };
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(2, 0, 0), point(0, 1, 0), TILES);
+    soup_add_box(&soup, point(0.5, 0.5, 0), point(0.7, 0.7, 0.1), 1, false);
+    struct world world = world_make(scene_of_soup(&soup));
+    int32_t hull = 0;
+    for (int32_t i = 0; i < 2 * TILES * TILES; i++)
+        hull += world.octree->place[i] < 0;
+    tap_ok(hull == 2 * TILES * TILES, "a floor of %d triangles is hull", hull);
+    world_free(&world);
+}
+
 /* --- special cases --- */
 
 static void test_coincident(void)
@@ -707,6 +765,8 @@ int main(void)
     test_overlay(false);
     test_closed(true, "sphere");
     test_closed(false, "room");
+    test_terrace();
+    test_floor();
     test_scene(make_soup, false, "soup");
     test_scene(make_room, true, "furnished room, packed");
     test_scene(make_sphere, false, "sphere with needles");
