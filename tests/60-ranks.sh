@@ -167,15 +167,6 @@ method bf --oracle bf
 method accuracy --accuracy 1.5% --epsilon 1e-2
 method pixels --final-gather 8,pixels --samples 2
 
-"$work/serial/phr" --form-factors scenes/cornell.obj --epsilon 1e-3 --quiet \
-    >"$work/table-serial"
-for ranks in 2 3 7; do
-    $MPIEXEC -n $ranks "$BUILD/phr" --form-factors scenes/cornell.obj --epsilon 1e-3 \
-        --quiet \
-        >"$work/table-$ranks"
-    check "$ranks ranks: --form-factors" cmp "$work/table-$ranks" "$work/table-serial"
-done
-
 produce levels-serial "$work/serial/phr" scenes/cornell.obj --max-level 3 \
     --min-area 1e-3 \
     --alpha 0 --tolerance 1e-6 --oracle bf --samples 1 --exposure 0.1

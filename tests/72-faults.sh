@@ -1,58 +1,10 @@
 # Faults: a rank killed, SIGTERM, a full disk. Each ends without a hang, with an exit
 # status that is not 0, and with no file half written; the last checkpoint is whole, and a
 # run from it equals an uninterrupted one.
-#
-# Ranks write down their process numbers, and only those are sent signals.
 . tests/tap.sh
+. tests/faults.sh
 
 scene="scenes/cornell.obj --epsilon 1e-6 --flat --size 20x20"
-patience=60 # seconds that nothing here may take
-
-# start RANKS ARGUMENTS...: runs phr behind the script; $launched is the launcher.
-start() {
-    on=$1
-    shift
-    rm -f "$work/ranks" "$work/out" "$work/launcher"
-    : >"$work/err"
-    $MPIEXEC -n "$on" \
-        sh -c 'echo $$ >>"$0/ranks"; exec 2>>"$0/err" >>"$0/out"; exec "$@"' "$work" \
-        "$PHR" "$@" >"$work/launcher" 2>&1 </dev/null &
-    launched=$!
-}
-
-# wait_for N TEXT: until so many lines of stderr of the ranks have it.
-wait_for() {
-    ticks=$((patience * 20))
-    until [ "$(grep -c "$2" "$work/err")" -ge "$1" ]; do
-        ticks=$((ticks - 1))
-        [ $ticks -gt 0 ] && kill -0 "$launched" 2>/dev/null || return 1
-        sleep 0.05
-    done
-}
-
-# finish: waits for the end; $status is the exit status, or "hang".
-finish() {
-    ticks=$((patience * 20))
-    while kill -0 "$launched" 2>/dev/null; do
-        ticks=$((ticks - 1))
-        if [ $ticks -le 0 ]; then
-            kill -9 "$launched" $(cat "$work/ranks") 2>/dev/null
-            wait "$launched" 2>/dev/null
-            status=hang
-            return
-        fi
-        sleep 0.05
-    done
-    wait "$launched" 2>/dev/null
-    status=$?
-}
-
-ranks_are_gone() {
-    for pid in $(cat "$work/ranks"); do
-        kill -0 "$pid" 2>/dev/null && return 1
-    done
-    return 0
-}
 
 # A launcher that was sent a signal may end with 0 whatever its ranks end with: then the
 # message of phr counts.

@@ -22,6 +22,14 @@ static inline bool make(struct world *world, int32_t p, int32_t q, struct link *
                                          link);
 }
 
+/* G = 1/8, even parts, and nothing can stand in between. */
+static inline struct link link_of(int32_t p, int32_t q)
+{
+    return (struct link){.p = p, .q = q, .area = 0.125f, .blocker = -1,
+                         .parts_p = {64, 64, 64},
+                         .parts_q = {64, 64, 64}, .seen = LINK_OPEN, .cost = 0};
+}
+
 /* Floor 0 (material 0) and ceiling `size` times as large (material 1), then `more`, which
  * is emptied. */
 static inline struct world make_pair(double size, struct material floor,

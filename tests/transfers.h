@@ -22,6 +22,16 @@ static inline struct world make_many(void)
     return world;
 }
 
+/* A link between two of the patches, of which all is seen. */
+static inline struct link random_link(struct random *random, const struct forest *forest)
+{
+    int32_t p = random_below(random, (int32_t)forest->count), q = p;
+    while (q == p)
+        q = random_below(random, (int32_t)forest->count);
+    return (struct link){.p = p, .q = q, .area = float_below(1e-6 * random_unit(random)),
+                         .seen = LINK_ALL_SEEN};
+}
+
 /* FNV-like mix of all fluxes: equal sums, bit by bit. */
 static inline uint64_t flux_hash(const struct forest *forest)
 {

@@ -180,15 +180,10 @@ static void test_transfer(void)
     struct link_list list = {0}, turned = {0};
     double sent = 0.0;
     for (int i = 0; i < LINKS; i++) {
-        int32_t p = random_below(&random, (int32_t)forest->count), q = p;
-        while (q == p)
-            q = random_below(&random, (int32_t)forest->count);
-        struct link link = {.p = p, .q = q,
-                            .area = float_below(1e-6 * random_unit(&random)),
-                            .seen = LINK_ALL_SEEN};
+        struct link link = random_link(&random, forest);
         link_list_append(&list, link);
-        sent += link_area(&link) * (rgb_sum(forest->radiosity[p]) +
-                                    rgb_sum(forest->radiosity[q]));
+        sent += link_area(&link) * (rgb_sum(forest->radiosity[link.p]) +
+                                    rgb_sum(forest->radiosity[link.q]));
     }
     for (int64_t i = 0; i < list.count; i++)
         link_list_append(&turned, list.items[list.count - 1 - i]);

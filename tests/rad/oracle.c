@@ -4,14 +4,6 @@
 #include "tests/pairs.h"
 #include "tests/tap.h"
 
-/* G = 1/8, even parts, and nothing can stand in between. */
-static struct link link_of(int32_t p, int32_t q)
-{
-    return (struct link){.p = p, .q = q, .area = 0.125f, .blocker = -1,
-                         .parts_p = {64, 64, 64},
-                         .parts_q = {64, 64, 64}, .seen = LINK_OPEN, .cost = 0};
-}
-
 /* --- by energy --- */
 
 static void test_energy(void)

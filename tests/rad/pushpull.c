@@ -37,11 +37,8 @@ static int64_t pour(struct world *world, uint64_t seed)
     return sum;
 }
 
-static void own_all(bool own[ROOTS])
-{
-    for (int r = 0; r < ROOTS; r++)
-        own[r] = true;
-}
+static const bool ALL[ROOTS] = {true, true, true, true, true, true,
+                                true, true, true, true, true, true};
 
 /* push_pull() of flux in the unit of the model. */
 static struct push_pull_sums pushed(struct world *world, const bool *own)
@@ -129,16 +126,14 @@ static void test_pull(void)
     struct world world = make_world();
     struct forest *forest = world.model.forest;
     struct random random = random_seed(3);
-    bool own[ROOTS];
-    own_all(own);
     grow(forest, 3);
     for (int64_t p = 0; p < forest->count; p++)
         for (int c = 0; c < BANDS; c++)
             forest->radiosity[p].band[c] = random_unit(&random);
-    bool before = inner_are_means(forest, own);
+    bool before = inner_are_means(forest, ALL);
     forest_average(forest);
     forest_bound(forest);
-    tap_ok(!before && inner_are_means(forest, own),
+    tap_ok(!before && inner_are_means(forest, ALL),
            "a pull makes inner patches means of leaves");
     world_free(&world);
 }
@@ -149,11 +144,9 @@ static void test_radiosity(void)
 {
     struct world world = make_world();
     struct forest *forest = world.model.forest;
-    bool own[ROOTS];
-    own_all(own);
     grow(forest, 4);
     pour(&world, 4);
-    pushed(&world, own);
+    pushed(&world, ALL);
     bool right = true;
     for (int32_t p = 0; p < forest->count; p++) {
         const struct patch *patch = &forest->patches[p];
@@ -168,8 +161,8 @@ static void test_radiosity(void)
         }
     }
     tap_ok(right, "leaves get B = E + rho H");
-    tap_ok(inner_are_means(forest, own), "and inner patches the means");
-    tap_ok(pushed(&world, own).change == 0, "the same flux again changes nothing");
+    tap_ok(inner_are_means(forest, ALL), "and inner patches the means");
+    tap_ok(pushed(&world, ALL).change == 0, "the same flux again changes nothing");
     world_free(&world);
 }
 
@@ -232,7 +225,7 @@ static void test_two_ranks(void)
     for (int part = 0; part < 3; part++) {
         struct world world = make_world();
         bool own[ROOTS];
-            for (int32_t r = 0; r < ROOTS; r++)
+        for (int32_t r = 0; r < ROOTS; r++)
             own[r] = part == 2 || own_of(r) == (part == 1);
         grow(world.model.forest, 6);
         pour(&world, 6);
@@ -273,8 +266,6 @@ static void test_units(void)
     struct push_pull_sums sums[2];
     for (int k = 0; k < 2; k++) {
         struct world world = make_world();
-        bool own[ROOTS];
-            own_all(own);
         grow(world.model.forest, 7);
         pour(&world, 7);
         struct flux_unit unit = world.model.flux_unit;
@@ -285,7 +276,7 @@ static void test_units(void)
             unit.watt *= 0.5;
             unit.per_watt *= 2.0;
         }
-        sums[k] = push_pull(&world.model, unit, own);
+        sums[k] = push_pull(&world.model, unit, ALL);
         world_free(&world);
     }
     tap_ok(sums[0].arriving > 0 && memcmp(&sums[0], &sums[1], sizeof sums[0]) == 0,

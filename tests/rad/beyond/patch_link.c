@@ -98,13 +98,8 @@ static void make_links(const struct forest *forest, struct link_list *list)
 {
     struct random random = random_seed(2);
     for (int i = 0; i < LINKS; i++) {
-        int32_t p = random_below(&random, (int32_t)forest->count), q = p;
-        while (q == p)
-            q = random_below(&random, (int32_t)forest->count);
-        struct link link = {.p = p, .q = q,
-                            .area = float_below(1e-6 * random_unit(&random)),
-                            .seen = (uint8_t)(i % 10 == 0 ? 0 : 1 + random_below(&random,
-                                                                                 255))};
+        struct link link = random_link(&random, forest);
+        link.seen = (uint8_t)(i % 10 == 0 ? 0 : 1 + random_below(&random, 255));
         random_parts(&random, link.parts_p);
         random_parts(&random, link.parts_q);
         link_list_append(list, link);
