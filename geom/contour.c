@@ -187,7 +187,7 @@ static double integrate_points(const struct shape *p, const struct shape *q, int
 {
     struct gauss rule = gauss_rule(points);
     struct vec3 normal = area_vector(p->corner, p->count);
-    normal = vec3_scale(normal, 1.0 / vec3_length(normal));
+    normal = vec3_unit(normal);
     double sum = 0.0;
     for (int32_t k = 1; k + 1 < p->count; k += 2) {
         int32_t last = k + 2 < p->count ? k + 2 : k + 1;

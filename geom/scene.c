@@ -101,17 +101,11 @@ struct scene *scene_view(struct pack *pack)
 static void find_bounds(struct scene *scene)
 {
     scene->low = scene->high = scene->triangles[0].corner[0];
-    for (int32_t i = 0; i < scene->input_count; i++) {
+    for (int32_t i = 0; i < scene->input_count; i++)
         for (int k = 0; k < 3; k++) {
-            struct vec3 x = scene->triangles[i].corner[k];
-            scene->low =
-                (struct vec3){real_min(scene->low.x, x.x), real_min(scene->low.y, x.y),
-                              real_min(scene->low.z, x.z)};
-            scene->high =
-                (struct vec3){real_max(scene->high.x, x.x), real_max(scene->high.y, x.y),
-                              real_max(scene->high.z, x.z)};
+            scene->low = vec3_least(scene->low, scene->triangles[i].corner[k]);
+            scene->high = vec3_most(scene->high, scene->triangles[i].corner[k]);
         }
-    }
 }
 
 /* Largest coordinate of the input, far from where squares of lengths would overflow. */

@@ -49,7 +49,7 @@ struct plane triangle_plane(const struct triangle *t)
 {
     struct vec3 cross = triangle_cross(t);
     struct plane plane;
-    plane.normal = vec3_scale(cross, 1.0 / vec3_length(cross));
+    plane.normal = vec3_unit(cross);
     plane.offset = vec3_dot(plane.normal, triangle_centroid(t));
     return plane;
 }

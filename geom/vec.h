@@ -57,6 +57,12 @@ static inline double vec3_length(struct vec3 a)
     return sqrt(vec3_dot(a, a));
 }
 
+/* Pre: a is not 0. */
+static inline struct vec3 vec3_unit(struct vec3 a)
+{
+    return vec3_scale(a, 1.0 / vec3_length(a));
+}
+
 /* Component 0, 1 or 2. */
 static inline double vec3_axis(struct vec3 a, int axis)
 {

@@ -145,10 +145,8 @@ static void set_ball(struct octree *octree, const int32_t *order, int32_t count)
     for (int32_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) {
             struct vec3 x = octree->triangles[order[i]].corner[k];
-            low = (struct vec3){real_min(low.x, x.x), real_min(low.y, x.y),
-                                real_min(low.z, x.z)};
-            high = (struct vec3){real_max(high.x, x.x), real_max(high.y, x.y),
-                                 real_max(high.z, x.z)};
+            low = vec3_least(low, x);
+            high = vec3_most(high, x);
         }
     octree->middle = vec3_middle(low, high);
     octree->radius = 0.5 * vec3_length(vec3_sub(high, low)) * 1.0001 + GEOM_ROUNDING;

@@ -238,7 +238,7 @@ static bool set_packet(struct packet *packet, const struct vec3 *directions, int
         return false;
     for (int i = 0; i < PACKET_RAYS; i++) {
         struct vec3 d = directions[i < count ? i : count - 1];
-        d = vec3_scale(d, 1.0 / vec3_length(d));
+        d = vec3_unit(d);
         direction[0][i] = (float)d.x;
         direction[1][i] = (float)d.y;
         direction[2][i] = (float)d.z;

@@ -66,7 +66,7 @@ INLINE bool ray_clip(const struct octree *octree, struct vec3 *origin,
                      struct vec3 direction, struct vec3 *end)
 {
     double radius = octree->radius;
-    struct vec3 d = vec3_scale(direction, 1.0 / vec3_length(direction));
+    struct vec3 d = vec3_unit(direction);
     double along = vec3_dot(vec3_sub(octree->middle, *origin), d), begin = along - radius;
     if (along + radius <= 0.0)
         return false;

@@ -150,11 +150,6 @@ static inline void soup_add_box(struct soup *soup, struct vec3 low, struct vec3 
     }
 }
 
-static inline struct vec3 vec3_unit(struct vec3 a)
-{
-    return vec3_scale(a, 1.0 / vec3_length(a));
-}
-
 /* Splits a triangle of the unit sphere `level` times and adds the parts. Edges are split
  * at the same bits from both sides. */
 static inline void soup_add_sphere_part(struct soup *soup, struct triangle t,

@@ -7,7 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-
 static const double MARGIN = 1.04; /* around a framed scene */
 
 /* Pre: 0 < x < pi / 2. */
@@ -23,15 +22,10 @@ static double tangent(double x)
     return t;
 }
 
-static struct vec3 unit(struct vec3 v)
-{
-    return vec3_scale(v, 1.0 / vec3_length(v));
-}
-
 /* True also if one of them is 0. */
 static bool are_parallel(struct vec3 a, struct vec3 b)
 {
-    return !(vec3_length(vec3_cross(unit(a), unit(b))) > 1e-9);
+    return !(vec3_length(vec3_cross(vec3_unit(a), vec3_unit(b))) > 1e-9);
 }
 
 /* Reads exactly `count` numbers from the rest of a line. */
@@ -148,7 +142,8 @@ bool camera_read(const char *path, struct camera *camera, struct error *error)
 
 void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 towards)
 {
-    struct vec3 back = unit(towards), right = unit(vec3_cross(camera->up, back));
+    struct vec3 back = vec3_unit(towards);
+    struct vec3 right = vec3_unit(vec3_cross(camera->up, back));
     struct vec3 above = vec3_cross(back, right),
                 middle = vec3_middle(scene->low, scene->high);
     double slope = tangent(camera->fov * PI / 360.0), distance = 0.0;
@@ -169,9 +164,9 @@ void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 
 
 struct camera_basis camera_basis_of(const struct camera *camera)
 {
-    struct camera_basis basis = {.forward = unit(vec3_sub(camera->at, camera->eye)),
+    struct camera_basis basis = {.forward = vec3_unit(vec3_sub(camera->at, camera->eye)),
                                  .middle = {0.5 * camera->width, 0.5 * camera->height}};
-    basis.right = unit(vec3_cross(basis.forward, unit(camera->up)));
+    basis.right = vec3_unit(vec3_cross(basis.forward, vec3_unit(camera->up)));
     basis.above = vec3_cross(basis.right, basis.forward);
     basis.pixel = 2.0 * tangent(camera->fov * PI / 360.0) / camera->height;
     return basis;

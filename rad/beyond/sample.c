@@ -22,7 +22,7 @@ static struct vec3 direction_above(const struct triangle *t, struct vec3 normal,
                                    double v, double sine2)
 {
     struct vec3 x = vec3_sub(t->corner[1], t->corner[0]);
-    x = vec3_scale(x, 1.0 / vec3_length(x));
+    x = vec3_unit(x);
     double a = 2.0 * u - 1.0, b = 2.0 * v - 1.0;
     double scale = sqrt(sine2) / (sqrt(a * a + b * b) + 1e-300);
     struct vec3 along = vec3_add(vec3_scale(x, a * scale),

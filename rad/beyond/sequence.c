@@ -116,5 +116,5 @@ struct vec3 direction_along(struct vec3 normal)
     else
         axis.y = 1.0;
     struct vec3 along = vec3_cross(normal, axis);
-    return vec3_scale(along, 1.0 / vec3_length(along));
+    return vec3_unit(along);
 }
