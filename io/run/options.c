@@ -34,7 +34,8 @@ struct argument {
     struct error *error;
 };
 
-/* A format of outputs: its name is a prefix and a suffix, too. */
+/* A format of outputs: its name is a prefix and a suffix, too. target_refuse() lists
+ * them. */
 struct format {
     const char *name;
     bool is_mesh;
@@ -80,18 +81,6 @@ struct target target_parse(const char *argument)
     return (struct target){argument, FORMAT_PPM, false, 0};
 }
 
-/* Writes ".ppm, .pfm or .ply". */
-static void list_suffixes(char *text, size_t room)
-{
-    size_t at = 0;
-    for (int i = 0; i < FORMAT_COUNT; i++)
-        at += (size_t)snprintf(text + at, room - at, "%s.%s",
-                               i == 0                  ? ""
-                               : i == FORMAT_COUNT - 1 ? " or "
-                                                       : ", ",
-                               FORMATS[i].name);
-}
-
 bool options_show(const struct options *options, int view)
 {
     for (int i = 0; i < options->output_count; i++)
@@ -103,11 +92,10 @@ bool options_show(const struct options *options, int view)
 
 bool target_refuse(const char *argument, struct error *error)
 {
-    char suffixes[8 * FORMAT_COUNT];
-    list_suffixes(suffixes, sizeof suffixes);
     return error_set(error, EXIT_USAGE,
-                     "-o %s: the name must end in %s, or be FORMAT:FILE, as in ppm:FILE",
-                     argument, suffixes);
+                     "-o %s: the name must end in .ppm, .pfm, .png, .hdr, .ply or .vtk, "
+                     "or be FORMAT:FILE, as in ppm:FILE",
+                     argument);
 }
 
 /* --- values --- */

@@ -283,18 +283,16 @@ static const struct number NUMBERS[] = {
 };
 enum { NUMBER_COUNT = sizeof NUMBERS / sizeof NUMBERS[0] };
 
-/* The other options, each with an argument. */
-static const char *const OTHERS[][2] = {
-    {"-o", " a.ppm"}, {"--view", " a"}, {"--size", " 2x3"}, {"--stats", " a"},
-    {"--oracle", " bf"}, {"--flat", ""}, {"--two-sided", ""}, {"--quiet", ""},
-    {"--two-sided-lamps", ""}, {"--ke", "radiance"}, {"--verbose", ""},
-    {"--validate", ""}, {"--help", ""},
-    {"--version", ""}, {"--linking", " pairs"}, {"--form-factor", " disk"},
-    {"--solver", " cg"}, {"--balance", " greedy"}, {"--dump", " links"},
-    {"--show", " links:5/023"}, {"--paper", ""},
-    {"--form-factors", ""}, {"--save-links", " a"}, {"--load-links", " a"},
-    {"--resume", " a"}, {"--checkpoint", " a"}, {"--memory", " 1G"}};
-enum { OTHER_COUNT = sizeof OTHERS / sizeof OTHERS[0] };
+/* The other options: with a value, and without. */
+static const char *const VALUED[] = {
+    "-o", "--view", "--size", "--stats", "--oracle", "--ke", "--linking", "--form-factor",
+    "--solver", "--balance", "--dump", "--show", "--save-links", "--load-links",
+    "--resume", "--checkpoint", "--memory"};
+static const char *const FLAGS[] = {"--flat", "--two-sided", "--two-sided-lamps",
+                                    "--paper", "--quiet", "--verbose", "--validate",
+                                    "--form-factors", "--help", "--version"};
+enum { VALUED_COUNT = sizeof VALUED / sizeof VALUED[0],
+       FLAG_COUNT = sizeof FLAGS / sizeof FLAGS[0] };
 
 static double number_of(const struct number *number)
 {
@@ -311,12 +309,12 @@ static bool takes(const struct number *number, const char *value)
     return parse(line) && number_of(number) == strtod(value, NULL);
 }
 
-/* Whether the value is refused as one out of range. */
-static bool refuses_range(const struct number *number, const char *value)
+/* True if the value is refused as one out of range. */
+static bool refuses_range(const char *name, const char *value)
 {
     char line[100], start[100];
-    snprintf(line, sizeof line, "%s %s a.obj", number->name, value);
-    snprintf(start, sizeof start, "%s: %s is not between ", number->name, value);
+    snprintf(line, sizeof line, "a.obj %s %s", name, value);
+    snprintf(start, sizeof start, "%s: %s is not between ", name, value);
     return !parse(line) && error.code == EXIT_USAGE &&
            strncmp(error.text, start, strlen(start)) == 0;
 }
@@ -328,8 +326,8 @@ static void test_numbers(void)
         const struct number *number = &NUMBERS[i];
         tap_ok(takes(number, number->low) && takes(number, number->high),
                "%s takes %s and %s", number->name, number->low, number->high);
-        tap_ok(refuses_range(number, number->below) &&
-                   refuses_range(number, number->above),
+        tap_ok(refuses_range(number->name, number->below) &&
+                   refuses_range(number->name, number->above),
                "%s refuses %s and %s", number->name, number->below, number->above);
         for (size_t k = 0; k < sizeof WORDS / sizeof WORDS[0]; k++)
             tap_ok(refuses(number->name, WORDS[k], "a number"), "%s refuses %s",
@@ -362,6 +360,7 @@ static void test_errors(void)
                   "or be FORMAT:FILE, as in ppm:FILE");
     check_refused("a.obj --accuracy 101%",
                   "--accuracy: 101% is not between 0.01 % and 100 %");
+    check_refused("a.obj --memory 0", "--memory: 0 is not between 1 and 1e+18 bytes");
     check_refused("a.obj --max-level 16", "--max-level: 16 is not between 0 and 15");
     check_refused("a.obj --view a -o m.ply --view b -o b.ppm",
                   "--view a: no picture (-o) follows it");
@@ -382,18 +381,14 @@ static void test_memory(void)
     static const char *const BEYOND[] = {"0", "-1G", "9999999T", "9999999999T",
                                          "99999999999999999999"};
     static const char *const WORDS[] = {"G", "1.5G", "1g", "1GB", "1e9", "", "x"};
-    char line[100], message[100];
+    char line[100];
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         snprintf(line, sizeof line, "a.obj --memory %s", CASES[i].text);
         tap_ok(parse(line) && options.memory == CASES[i].bytes, "--memory %s",
                CASES[i].text);
     }
-    for (size_t i = 0; i < sizeof BEYOND / sizeof BEYOND[0]; i++) {
-        snprintf(line, sizeof line, "a.obj --memory %s", BEYOND[i]);
-        snprintf(message, sizeof message, "--memory: %s is not between 1 and 1e+18 bytes",
-                 BEYOND[i]);
-        check_refused(line, message);
-    }
+    for (size_t i = 0; i < sizeof BEYOND / sizeof BEYOND[0]; i++)
+        tap_ok(refuses_range("--memory", BEYOND[i]), "--memory refuses %s", BEYOND[i]);
     for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
         tap_ok(refuses("--memory", WORDS[i], "a number of bytes, such as 512M or 2G"),
                "--memory refuses '%s'", WORDS[i]);
@@ -496,11 +491,8 @@ static void test_bad_sizes(void)
 static void test_missing_values(void)
 {
     char line[50], message[100];
-    for (int i = 0; i < NUMBER_COUNT + OTHER_COUNT; i++) {
-        const char *name =
-            i < NUMBER_COUNT ? NUMBERS[i].name : OTHERS[i - NUMBER_COUNT][0];
-        if (i >= NUMBER_COUNT && !*OTHERS[i - NUMBER_COUNT][1])
-            continue;
+    for (int i = 0; i < NUMBER_COUNT + VALUED_COUNT; i++) {
+        const char *name = i < NUMBER_COUNT ? NUMBERS[i].name : VALUED[i - NUMBER_COUNT];
         snprintf(line, sizeof line, "a.obj %s", name);
         snprintf(message, sizeof message, "%s needs a value", name);
         check_refused(line, message);
@@ -539,8 +531,10 @@ static bool is_known(const char *name)
     bool known = false;
     for (int i = 0; i < NUMBER_COUNT; i++)
         known = known || strcmp(NUMBERS[i].name, name) == 0;
-    for (int i = 0; i < OTHER_COUNT; i++)
-        known = known || strcmp(OTHERS[i][0], name) == 0;
+    for (int i = 0; i < VALUED_COUNT; i++)
+        known = known || strcmp(VALUED[i], name) == 0;
+    for (int i = 0; i < FLAG_COUNT; i++)
+        known = known || strcmp(FLAGS[i], name) == 0;
     return known;
 }
 
