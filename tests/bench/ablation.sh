@@ -14,6 +14,7 @@ set -eu
 : "${SCENES:=cornell:5 shadow:2 room1000:8 doorway:10}"
 : "${EPSILONS:=1e-2 3e-3 1e-3 3e-4 1e-4 3e-5 1e-5 3e-6}" "${SECONDS_MOST:=2}"
 : "${PAIRS:=1e-2/16 3e-3/32 1e-3/64 3e-4/128 1e-4/256 3e-5/512}"
+. tests/bench/renew.sh
 export LC_ALL=C
 work=$BUILD/ablation
 mkdir -p "$work"
@@ -177,59 +178,27 @@ balance() {
 for entry in $SCENES; do
     make_reference ${entry%:*}
 done
+[ -f "$OUT" ] || cp docs/ablation.md "$OUT"
 {
-    cat <<'END'
-# Ablation: each idea of phr off and on, at equal error
-
-Made by `make ablation` (`tests/bench/ablation.sh`). In each scene, every variant lowers
-epsilon until the RMS error at its leaves, relative to the reflected light, is that of
-the headline; a line gives its links, rays and seconds over those of *links alone*,
-which is phr without the final gather (`--final-gather 0`). Above 1, the idea that is
-off was worth having; so is the final gather, which is added, below 1. *At best* is the
-least error of a variant within its two seconds a run, *not for good* if finer runs were
-worse. Seconds are of linking, iterating and the final gather on one core, once, on a
-busy machine: differences of less than a half mean little. Counts are always the same.
-
-The options: `--linking pairs`, `--oracle bf`, `--form-factor disk`, `--solver jacobi`,
-or all of them (`--paper`), each with `--final-gather 0`; in the last two lines epsilon
-and the rays of `--final-gather` move together. The truth is that of light paths, in
-`scenes/shadow.obj` a closed form (`tests/bench/reference.c`, `tests/bench/direct.c`);
-`room1000` is `build/room 1000 1`.
-END
     for entry in $SCENES; do
         ideas ${entry%:*} ${entry#*:}
     done
-    cat <<'END'
-
-## Pictures
-
-The error of pictures at points, RMS, at epsilon 1e-3: constant leaves (`--flat`), light
-interpolated and lamps found at each point, the same after a final gather of 64 rays a
-leaf, and with 64 rays for each pixel (`--final-gather 64,pixels`). The last columns are
-rays of the gather at leaves, and those with a picture of 128 x 128 pixels over them.
-
-| scene | flat | interpolated | gather | pixels | rays, gather | rays, pixels |
-|---|---|---|---|---|---|---|
-END
+    echo
+} >"$work/made"
+renew "$OUT" '`room1000` is' "## Pictures" <"$work/made"
+{
+    echo "|---|---|---|---|---|---|---|"
     for entry in $SCENES; do
         pictures ${entry%:*}
     done
-    cat <<'END'
-
-## Balance
-
-Eight ranks at epsilon 1e-4: the mean of their work over that of the slowest rank,
-summed over all levels of refinement, and links sent to other ranks (`--balance none`,
-`greedy`, the paper's Algorithm 1, and the default). All links descend from the one at
-the top of the tree, so without balancing one rank has them all. No result depends on
-the plan.
-
-| scene | none | links sent | greedy | links sent | default | links sent |
-|---|---|---|---|---|---|---|
-END
+    echo
+} >"$work/made"
+renew "$OUT" "| scene | flat |" "## Balance" <"$work/made"
+{
+    echo "|---|---|---|---|---|---|---|"
     for entry in $SCENES; do
         balance ${entry%:*}
     done
-} >"$OUT.new"
-mv "$OUT.new" "$OUT"
+} >"$work/made"
+renew "$OUT" "| scene | none |" <"$work/made"
 cat "$OUT"

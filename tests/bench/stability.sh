@@ -7,6 +7,7 @@
 # Knobs: PHR, the program; OUT, the file.
 set -eu
 : "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${PHR:=./phr}" "${OUT:=docs/stability.md}"
+. tests/bench/renew.sh
 export LC_ALL=C
 work=$BUILD/stability
 mkdir -p "$work"
@@ -540,31 +541,7 @@ rows() {
         furnace mirror
 }
 
-{
-    cat <<'END'
-# Stability: what breaks radiosity programs
-
-Made by `make stability` (`tests/bench/stability.sh`), which writes small scenes, solves
-them with the paper's method (`--paper`) and by default, and tells one number of each.
-
-- *exact* is a closed form, or E / (1 - rho) in a furnace, where all surfaces are alike;
-  for the doorway it is the path tracer's number in `scenes/answers.csv`. *Off* is
-  relative to it.
-- A worst leaf is the leaf that is furthest from the exact number. F is told as the
-  share of a lamp's light that a plate receives.
-- *no end*: the run was ended after 15 seconds of the processor; *diverges*, *fails*: it
-  ended with exit status 1.
-- The scenes are kept: `./phr build/mpi/stability/slit.obj --dump patches`.
-- What no single number tells is tested elsewhere: that refinement ends and leaves only
-  become more, 16 levels, pictures without cracks (`tests/whole/stability.c`), rays
-  through edges and corners (`tests/octree/octree.c`), numbers that are none
-  (`tests/io/obj.c`), books and cupboards (`tests/whole/gaps.c`,
-  `tests/whole/leaks.c`), overflow of counts (`tests/geom/alloc.c`).
-
-| failure | scene | exact | `--paper` | off | phr | off |
-|---|---|---|---|---|---|---|
-END
-    rows
-} >"$OUT.new"
-mv "$OUT.new" "$OUT"
+{ echo "|---|---|---|---|---|---|---|"; rows; } >"$work/made"
+[ -f "$OUT" ] || cp docs/stability.md "$OUT"
+renew "$OUT" "| failure |" <"$work/made"
 cat "$OUT"
