@@ -120,7 +120,7 @@ static void add_near(struct receiver *r, const struct rgb *weight, struct rgb em
                      double factor)
 {
     struct final_gather *g = r->gather;
-    for (int c = 0; c < BANDS && r->keeps && g->near.met >= 0; c++)
+    for (int c = 0; c < BANDS && g->near.met >= 0; c++)
         g->near.items[g->near.met].watts[c] += gather_units(
             r->facet.area * weight->band[c] * factor * emission.band[c],
             g->near.unit_watts);
@@ -438,10 +438,11 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
                        const struct rgb *weight)
 {
     struct final_gather *g = r->gather;
+    if (!r->keeps) /* a look's leaves may have no places yet */
+        return;
     g->near.met = g->place[met->patch];
-    if (r->keeps)
-        g->near.items[g->near.met].area +=
-            gather_units(r->facet.area / r->rays, g->near.unit_area);
+    g->near.items[g->near.met].area +=
+        gather_units(r->facet.area / r->rays, g->near.unit_area);
     if (aimed) /* segments bring it, so the path does not count it */
         add_near(r, weight, forest_material(g->model->forest, met->patch)->emission, 1.0);
 }
