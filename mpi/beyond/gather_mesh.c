@@ -12,6 +12,12 @@
  * could not even then be split, by the light of the links, is not looked at. In a scene
  * of many small triangles few are looked at.
  *
+ * Leaves with exact rows are not looked at: links without blockers tell where B varies,
+ * and over a leaf it is linear (rad/beyond/final_gather.c). What is left is the bend: B
+ * of a leaf less that of the linear function over its parent. Where surfaces reflect
+ * nearly all light its error comes back many times, so less of it is allowed: BENT. The
+ * leaf is split, and B is linear over it.
+ *
  * Looks also tell how noisy the light of a leaf is: rows get rays in proportion to the
  * square root of area times variance, which makes the noise, by area, least for a given
  * number of all rays (Neyman, 1934). A leaf under a lamp housing gets many, a leaf of a
@@ -31,7 +37,7 @@
 #include "mpi/memory.h"
 #include "rad/oracle.h"
 
-static const double MESH = 0.005;
+static const double MESH = 0.005, BENT = 0.001;
 
 /* The variance of the light over a leaf is at most this times its square, which the links
  * tell with an error of this part of the mean square. */
@@ -241,6 +247,13 @@ static double square_of_light(const struct forest *forest, int32_t leaf)
     return square;
 }
 
+static bool may_split(const struct looking *l, int32_t leaf)
+{
+    const struct solver *solver = l->solver;
+    return patch_may_split(&solver->model, leaf) &&
+           memory_has_room(&solver->memory, l->links, 1, solver->model.forest->count);
+}
+
 /* Looks at `leaves` and splits those over which light varies; the children of these take
  * the place of all. Returns their number. */
 static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
@@ -260,8 +273,7 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
         int32_t leaf = (*leaves)[i];
         double error = forest_area(forest, leaf) * spread_of(&looks[i]);
         keep_known(l, leaf, &looks[i]);
-        if (!(error > *threshold) || !patch_may_split(&solver->model, leaf) ||
-            !memory_has_room(&solver->memory, l->links, 1, forest->count))
+        if (!(error > *threshold) || !may_split(l, leaf))
             continue;
         split_leaf(forest, leaf, &looks[i]);
         for (int k = 0; k < 4; k++) {
@@ -273,6 +285,48 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     alloc_free(*leaves);
     *leaves = next;
     return made;
+}
+
+/* The square of B of a leaf less that of the linear function over its parent. */
+static double bend_of(const struct forest *forest, int32_t leaf)
+{
+    if (forest->patches[leaf].parent < 0)
+        return 0.0;
+    struct rgb line = light_by_parent(forest, leaf);
+    double square = 0.0;
+    for (int c = 0; c < BANDS; c++) {
+        double off = forest->radiosity[leaf].band[c] - line.band[c];
+        square += off * off;
+    }
+    return square;
+}
+
+/* Splits leaves with exact rows where light bends. */
+static void split_bent(struct looking *l)
+{
+    struct gather_mesh *mesh = l->mesh;
+    struct forest *forest = l->solver->model.forest;
+    double *bends = alloc_array((size_t)mesh->count, sizeof *bends), sum = 0.0;
+    for (int64_t i = 0; i < mesh->count; i++) {
+        int32_t leaf = mesh->leaves[i];
+        double area = forest_area(forest, leaf);
+        sum += area * square_of_light(forest, leaf);
+        if (l->open[forest->patches[leaf].id.root])
+            bends[i] = area * bend_of(forest, leaf);
+    }
+    for (int64_t i = 0; i < mesh->count; i++) {
+        int32_t leaf = mesh->leaves[i];
+        if (!(bends[i] > BENT * l->solver->model.criterion.epsilon * sum) ||
+            !may_split(l, leaf))
+            continue;
+        forest_split(forest, leaf);
+        mesh->split++;
+        int32_t first = forest->patches[leaf].children;
+        for (int32_t child = first; child < first + 4; child++)
+            forest->radiosity[child] = light_by_parent(forest, child);
+    }
+    alloc_free(bends);
+    list_leaves(mesh, forest);
 }
 
 /* Before there are looks: all leaves that need rays are as noisy as each other. */
@@ -457,6 +511,8 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     l.rays = l.gather.rays / ROWS_PER_LOOK;
     list_leaves(mesh, model->forest);
     find_open_roots(&l);
+    if (l.rays >= FEWEST_LOOKED)
+        split_bent(&l);
     know_nothing(&l);
     if (l.rays >= FEWEST_LOOKED)
         refine(&l);

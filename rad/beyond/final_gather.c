@@ -155,6 +155,26 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     return slope;
 }
 
+struct rgb light_by_parent(const struct forest *forest, int32_t patch)
+{
+    const struct patch *patches = forest->patches;
+    int32_t parent = patches[patch].parent, grandparent = patches[parent].parent;
+    struct rgb light = forest->radiosity[parent];
+    int k = patch - patches[parent].children;
+    if (grandparent < 0 || k == 3)
+        return light;
+    int32_t first = patches[grandparent].children;
+    double s = parent == first + 3 ? -1.0 : 1.0;
+    for (int c = 0; c < BANDS; c++) {
+        for (int j = 0; j < 3; j++) {
+            double w = j == k ? 2.0 / 3.0 : 1.0 / 6.0; /* of the patch's centroid */
+            light.band[c] += s * (w - 1.0 / 3.0) * forest->radiosity[first + j].band[c];
+        }
+        light.band[c] = fmax(0.0, light.band[c]);
+    }
+    return light;
+}
+
 /* Adds `weight` times the radiosity of a patch as a whole. */
 static void add_term(struct receiver *r, int32_t patch, const struct rgb *weight)
 {

@@ -61,6 +61,10 @@ void final_gather_drop_rows(struct final_gather *gather);
 
 struct gather_slope gather_slope(const struct final_gather *gather, int32_t patch);
 
+/* Returns B of a patch as the linear function over its parent has it, W/m^2. Pre: it has
+ * a parent. */
+struct rgb light_by_parent(const struct forest *forest, int32_t patch);
+
 /* The integer of a value in units, bounded. */
 int64_t gather_units(double value, double unit);
 

@@ -21,7 +21,7 @@
 enum { FACED_PER_RAY = 4 };
 
 /* A root is slender if the square of its radius is more than this times its area. */
-static const double SLENDER = 16.0;
+static const double SLENDER = 64.0;
 
 /* A sender is taken as a whole in an exact row if B over it, times its factor and the
  * number of rays, varies by less than this part of the mean: where more rays are asked

@@ -26,10 +26,6 @@ struct errors {
 /* The limits of all scenes: errors that no eye sees, few next to edges. */
 static const struct errors BARS = {1e-3, 2e-3, 1e-2};
 
-/* Beside a bright edge on a dark wall, where B changes most, leaves are off by a little
- * more. Measured 0.052, 0.200, 0.63 %. */
-static const struct errors HINGES = {1e-3, 2.5e-3, 1e-2};
-
 /* In a crater the exact answer takes B to be the same all over each of 60 facets, beside
  * a bright edge: it is as far off as this, for a finer epsilon finds the same. */
 static const struct errors CRATER = {4e-3, 5e-3, 1.5e-2};
@@ -181,19 +177,20 @@ static struct solution solve_strips(const struct equation *e, int length, bool s
  * plates are a tenth as far apart, an eighth of the length is as good. */
 enum { STRIP = 40, SHORT = 8, MIDDLE = 4 };
 
-/* The numbers beside it are from a method of higher order, at two resolutions. 1e-5:
- * in a tube the kernel has a bend where the points are the same. */
+/* The numbers beside it, if any, are from a method of higher order, at two resolutions.
+ * 1e-5: in a tube the kernel has a bend where the points are the same. */
 static void check_equation(const struct equation *e, const char *name,
                            const double mean[2])
 {
     double off = 0.0;
     for (int k = 0; k < 2 && mean[k] > 0.0; k++)
         off = fmax(off, fabs(equation_mean(e, k) / mean[k] - 1.0));
-    tap_ok(off <= 1e-5, "%s: the equation's means are off by %.1g", name, off);
+    if (mean[0] > 0.0)
+        tap_ok(off <= 1e-5, "%s: the equation's means are off by %.1g", name, off);
 }
 
 static void test_strips(const struct shape *shape, double size, const double emission[2],
-                        const double rho[2], int length, double mean, struct errors limit)
+                        const double rho[2], int length, double mean)
 {
     struct equation *e = equation_make(shape, size, emission, rho);
     char name[80];
@@ -207,17 +204,17 @@ static void test_strips(const struct shape *shape, double size, const double emi
         struct truth truth = {
             e, NULL, 0.0, k, 0.5 * (length - MIDDLE), 0.5 * (length + MIDDLE)};
         if (k == 0 || emission[0] != emission[1])
-            judge(&s, name, k, &truth, limit, 0.0);
+            judge(&s, name, k, &truth, BARS, 0.0);
     }
     solution_free(&s);
     alloc_free(e);
 }
 
 static void test_isothermal(const struct shape *shape, double size, double eps,
-                            int length, double mean, struct errors limit)
+                            int length, double mean)
 {
     double emission[2] = {eps, eps}, rho[2] = {1.0 - eps, 1.0 - eps};
-    test_strips(shape, size, emission, rho, length, mean, limit);
+    test_strips(shape, size, emission, rho, length, mean);
 }
 
 /* There the equation has gone to its limit but for (1e-5)^0.6. */
@@ -237,7 +234,7 @@ static void test_edge(double angle, double rho)
     tap_ok(off <= 2e-3, "hinge of %g: at the edge the equation is off by %.1g",
            angle * 180.0 / PI, off);
     alloc_free(e);
-    test_strips(&GROOVE, angle, emission, both, STRIP, 0.0, HINGES);
+    test_strips(&GROOVE, angle, emission, both, STRIP, 0.0);
 }
 
 static void test_squares(const double emission[2], const double rho[2],
@@ -537,18 +534,20 @@ int main(int argc, char **argv)
                  (double[]){.121991353392, .121991353392}, false, BARS);
     test_squares((double[]){1, 0}, (double[]){.5, .5},
                  (double[]){1.010218055060, .100947189239}, true, BARS);
-    test_isothermal(&PLATES, 1.0, 0.1, STRIP, .159605984267, BARS);
-    test_isothermal(&PLATES, 1.0, 0.5, STRIP, .630764377100, BARS);
-    test_isothermal(&PLATES, 0.1, 0.1, SHORT, .601952438427, BARS);
-    test_isothermal(&PLATES, 0.1, 0.5, SHORT, .920355233642, BARS);
-    test_isothermal(&GROOVE, PI / 6.0, 0.5, STRIP, .8061670444, BARS);
-    test_isothermal(&GROOVE, PI / 3.0, 0.5, STRIP, .6729508487, BARS);
-    test_isothermal(&GROOVE, PI / 3.0, 0.9, STRIP, .9476083454, BARS);
-    test_isothermal(&GROOVE, PI / 2.0, 0.5, STRIP, .5878526172, BARS);
+    test_isothermal(&PLATES, 1.0, 0.1, STRIP, .159605984267);
+    test_isothermal(&PLATES, 1.0, 0.5, STRIP, .630764377100);
+    test_isothermal(&PLATES, 0.1, 0.1, SHORT, .601952438427);
+    test_isothermal(&PLATES, 0.1, 0.2, SHORT, 0.0);
+    test_isothermal(&PLATES, 0.1, 0.5, SHORT, .920355233642);
+    test_isothermal(&GROOVE, PI / 6.0, 0.5, STRIP, .8061670444);
+    test_isothermal(&GROOVE, PI / 3.0, 0.5, STRIP, .6729508487);
+    test_isothermal(&GROOVE, PI / 3.0, 0.9, STRIP, .9476083454);
+    test_isothermal(&GROOVE, PI / 2.0, 0.5, STRIP, .5878526172);
     test_edge(PI / 2.0, 0.5);
     test_edge(PI / 3.0, 0.8);
     test_cavity(1.0, 0.5, .7596668, .7382803);
     test_cavity(2.0, 0.5, .8334092, .8580643);
+    test_cavity(4.0, 0.5, 0.0, 0.0);
     test_round("light pipe", &PIPE, 1.0, (double[]){0, 1}, (double[]){.9, 0},
                (double[]){0, 0}, BARS);
     test_round("discs, rho 0.5", &DISCS, 1.0, (double[]){1, 0}, (double[]){.5, .5},
