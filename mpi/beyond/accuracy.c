@@ -233,13 +233,12 @@ static struct rgb *keep_light(const struct forest *forest)
 }
 
 /* Puts the light of the links back. Leaves that the gather has split stay split, and
- * their children get their radiosities. */
+ * B is linear over them. */
 static void restore_light(struct forest *forest, const struct linked *linked)
 {
     for (int64_t p = 0; p < forest->count; p++)
-        forest->radiosity[p] =
-            p < linked->count ? linked->radiosity[p]
-                              : forest->radiosity[forest->patches[p].parent];
+        forest->radiosity[p] = p < linked->count ? linked->radiosity[p]
+                                                 : light_by_parent(forest, (int32_t)p);
 }
 
 /* Collective. The verdict on a gather. */
