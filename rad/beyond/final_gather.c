@@ -104,6 +104,7 @@ void final_gather_free(struct final_gather *gather)
     alloc_free(gather->groups.items);
     alloc_free(gather->view.faced);
     alloc_free(gather->near.items);
+    alloc_free(gather->near.covered);
     alloc_free(gather->order);
     alloc_free(gather->place);
     final_gather_drop_rows(gather);
@@ -356,6 +357,19 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
     RESERVE(gather->rows, &gather->row_capacity, gather->count + 1);
     gather->rows[gather->count++] = r.row;
     gather->term_count = r.row.end;
+}
+
+void final_gather_cover(struct final_gather *gather, const uint8_t *open)
+{
+    const struct forest *forest = gather->model->forest;
+    if (!gather->near.covered)
+        gather->near.covered =
+            alloc_array((size_t)forest->count, sizeof *gather->near.covered);
+    for (int64_t i = 0; i < forest->count; i++) {
+        int32_t p = gather->order[i];
+        if (patch_is_leaf(&forest->patches[p]) && forest_area(forest, p) > 0.0)
+            gather->near.covered[i] = *open++ < 4;
+    }
 }
 
 struct gather_light final_gather_at(struct final_gather *gather,

@@ -11,9 +11,10 @@
  * The mesh is wrong where a ray ends nearer than the leaf there is large: under a
  * sheet of paper on a table the table is dark, but the leaf is not. And it is wrong in
  * a gap that is narrow for the leaf, also far from where the ray began: the leaf may
- * reach into the light. There the ray goes on: the point that it met receives light
- * from a lamp, by one segment, and from one more ray, until a ray ends far enough
- * away. That is a path tracer for near surfaces and radiosity for the rest. */
+ * reach into the light. It is wrong, too, where a box stands on part of a leaf: pictures
+ * know such leaves. There the ray goes on: the point that it met receives light from a
+ * lamp, by one segment, and from one more ray, until a ray ends far enough away. That is
+ * a path tracer for near surfaces and radiosity for the rest. */
 #include "rad/beyond/receiver.h"
 
 #include <math.h>
@@ -390,6 +391,11 @@ static bool is_too_near(const struct forest *forest, const struct point *met,
            (width * width < NARROW * area && vec3_dot(normal, met->normal) < OPPOSITE);
 }
 
+static bool is_covered(const struct final_gather *gather, int32_t leaf)
+{
+    return gather->near.covered && gather->near.covered[gather->place[leaf]];
+}
+
 /* A ray has met a back. Where the floor is covered by a thing that stands on it, a point
  * is inside of that thing, and another ray from there meets a back, too. */
 static void look_inside(struct receiver *r, struct vec3 origin, struct vec3 direction)
@@ -467,7 +473,8 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
         bool aimed = root_is_lamp(&r->gather->lamps, root) &&
                      (count == 1 ||
                       !lamp_is_near(r->gather->model->scene, root, origin));
-        if (count == PATH_MOST || !is_too_near(forest, &point, origin, normal)) {
+        if (count == PATH_MOST || !(is_too_near(forest, &point, origin, normal) ||
+                                    is_covered(r->gather, point.patch))) {
             add_mesh(r, &point, aimed, &weight);
             return;
         }

@@ -38,12 +38,14 @@ struct gather_near {
     int64_t watts[BANDS]; /* that the rays found there, emitted by lamps */
 };
 
-/* Sums of integers, for they are over ranks. */
+/* Sums of integers, for they are over ranks; and the leaves that things stand on. */
 struct gather_nears {
     struct gather_near *items; /* [forest->count] by place, for the rows of this rank;
                                   of all ranks once these are added up */
     double unit_area;          /* square scene units */
     double unit_watts;         /* W in square scene units */
+    uint8_t *covered; /* [forest->count] by place: 1: a thing stands on part of the leaf;
+                         NULL: unknown */
     int32_t met; /* place of the leaf too near that the ray at hand met first; -1: none */
 };
 

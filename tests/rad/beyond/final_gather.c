@@ -248,6 +248,41 @@ static void test_covered(void)
     trial_free(&g);
 }
 
+/* H at a point of the last root of a furnace of B = 1 in which the first two roots, one
+ * side, are dark as if covered; `open`: of final_gather_cover(), or NULL. */
+static double beside_dark_side(struct trial *g, const uint8_t *open)
+{
+    struct forest *forest = g->s.solver->model.forest;
+    const struct scene *scene = forest->scene;
+    int32_t last = scene_root_count(scene) - 1;
+    struct triangle t = scene_root_triangle(scene, last);
+    struct vec3 x = triangle_centroid(&t);
+    struct gather_points points = {.at = &x, .count = 1, .middle = x,
+                                   .plane = scene_root_plane(scene, last),
+                                   .input = scene_input_of(scene, last)};
+    for (int64_t p = 0; p < forest->count; p++) {
+        double b = forest->patches[p].id.root < 2 ? 0.0 : 1.0;
+        forest->radiosity[p] = (struct rgb){{b, b, b}};
+    }
+    if (open)
+        final_gather_cover(&g->gather, open);
+    return final_gather_at(&g->gather, &points, 1, 64, true).rest.band[0];
+}
+
+/* Of a leaf that a thing stands on, a point sees the bright part. */
+static void test_covered_for_points(void)
+{
+    static const uint8_t OPEN[12] = {0, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4};
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    paint(&soup, 0.5, 0.5);
+    struct trial g = gather_scene(&soup, "--max-level 0", 16);
+    double dark = beside_dark_side(&g, NULL), covered = beside_dark_side(&g, OPEN);
+    tap_ok(dark < 0.9, "beside a dark side a point has H = %.3f", dark);
+    tap_ok(fabs(covered - 1.0) <= 1e-6, "beside a covered one it has %.6f", covered);
+    trial_free(&g);
+}
+
 /* A lamp in the plane of the ceiling that comes before it in the file: rays meet the
  * ceiling, segments reach the lamp, and the room is as bright as with the lamp behind. */
 static void test_flush_lamp(void)
@@ -469,6 +504,7 @@ int main(int argc, char **argv)
     test_lamps();
     test_gap();
     test_covered();
+    test_covered_for_points();
     test_flush_lamp();
     test_mesh(0.1);
     test_mesh(0.02);
