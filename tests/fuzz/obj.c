@@ -1,5 +1,7 @@
-/* Fuzzing OBJ: reading, and the preparation of the scene. */
+/* Fuzzing scenes known by their first bytes, OBJ mostly: reading, and the preparation of
+ * the scene. */
 #include "io/scene/obj.h"
+#include "io/scene/ply.h"
 
 #include "tests/fuzz/fuzz.h"
 #include "tests/memory.h"
@@ -11,8 +13,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct scene_repairs prepared;
     struct source source;
     struct scene *scene = NULL;
-    if (source_of_bytes(&source, "nowhere/fuzz.obj", data, size, &error))
-        scene = obj_of_source(&source, &read, &error);
+    if (source_of_bytes(&source, "nowhere/fuzz", data, size, &error))
+        scene = ply_is_meant(&source) ? ply_read(&source, &error)
+                                      : obj_of_source(&source, &read, &error);
     source_close(&source);
     FUZZ_PROMISE(!scene == (error.code != EXIT_DONE));
     bool good = scene && scene_prepare(scene, &prepared, &error);
