@@ -93,7 +93,8 @@ int32_t *walls_find_neighbours(const struct triangle *triangles,
         sides[n] = side_make(&triangles[n / 3], n);
         neighbours[n] = -1;
     }
-    qsort(sides, (size_t)side_count, sizeof *sides, compare_sides);
+    if (!stop_is_asked())
+        qsort(sides, (size_t)side_count, sizeof *sides, compare_sides);
     for (int32_t i = 0; i < side_count && !stop_is_asked(); i++)
         for (int32_t j = i + 1; j < side_count && j - i <= COMPARED_MAX &&
                                 compare_ends(&sides[i], &sides[j]) == 0; j++) {
