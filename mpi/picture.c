@@ -1,13 +1,16 @@
 /* Gathering a picture: rank 0 receives the rows of rank 0, then those of rank 1, and so
- * on, and puts each in its place. */
+ * on, and puts each in its place. Of large pictures there are no more than two copies at
+ * a time, and one where rank 0 is alone. */
 #include "mpi/picture.h"
 
 #include <string.h>
 
 #include "geom/alloc.h"
 
-float *picture_gather(const struct comm *comm, const float *rows, size_t row, int height)
+float *picture_gather(const struct comm *comm, float *rows, size_t row, int height)
 {
+    if (comm->size == 1)
+        return rows;
     size_t ranks = (size_t)comm->size;
     int *counts = alloc_array(ranks, sizeof *counts),
         *at = alloc_array(ranks, sizeof *at);
@@ -24,6 +27,7 @@ float *picture_gather(const struct comm *comm, const float *rows, size_t row, in
                  comm->handle, &request);
     comm_wait(&request);
     MPI_Type_free(&record);
+    alloc_free(rows);
     float *picture = collects ? alloc_array((size_t)height * row, sizeof *picture) : NULL;
     for (int y = 0; y < height && collects; y++) {
         int place = at[y % comm->size] + y / comm->size;

@@ -5,8 +5,8 @@
 #include "mpi/comm.h"
 
 /* Collective. `rows` are this rank's rows rank, rank + size, ... of a picture of `height`
- * rows of `row` floats each. Returns the whole picture, top row first, on rank 0 (to be
- * freed with alloc_free()), NULL on the others. */
-float *picture_gather(const struct comm *comm, const float *rows, size_t row, int height);
+ * rows of `row` floats each. Takes them over. Returns the whole picture, top row first,
+ * on rank 0 (to be freed with alloc_free()), NULL on the others. */
+float *picture_gather(const struct comm *comm, float *rows, size_t row, int height);
 
 #endif

@@ -188,9 +188,7 @@ static float *trace_picture(const struct tracing *run)
             for (int c = 0; c < BANDS; c++)
                 *at++ = (float)b.band[c];
         }
-    float *picture = picture_gather(&run->comm, own, length, height);
-    alloc_free(own);
-    return picture;
+    return picture_gather(&run->comm, own, length, height);
 }
 
 /* Collective. Returns two estimates of rho H for each leaf, HALVES * BANDS floats, on
@@ -211,10 +209,7 @@ static float *trace_leaves(const struct tracing *run)
                 *at++ = (float)h.band[c];
         }
     }
-    float *leaves =
-        picture_gather(&run->comm, own, length, comm_count(&run->comm, count));
-    alloc_free(own);
-    return leaves;
+    return picture_gather(&run->comm, own, length, comm_count(&run->comm, count));
 }
 
 /* --- norms --- */

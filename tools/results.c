@@ -101,10 +101,7 @@ static float *make_picture(struct run *run, const struct renderer *renderer,
     progress_begin(&run->progress.progress, "rendering", -1, 0);
     float *scanlines = render_scanlines(renderer, camera, run->options.samples,
                                         comm->rank, comm->size, &run->progress.progress);
-    float *picture = picture_gather(comm, scanlines, 3 * (size_t)camera->width,
-                                    camera->height);
-    alloc_free(scanlines);
-    return picture;
+    return picture_gather(comm, scanlines, 3 * (size_t)camera->width, camera->height);
 }
 
 /* Collective. Renders and writes the pictures of all views. False on an error or a

@@ -139,7 +139,6 @@ static int32_t *leaves_of_pixels(struct run *run, const struct camera *camera)
     }
     alloc_free(order);
     alloc_free(digits);
-    alloc_free(scanlines);
     shading_destroy(shading);
     alloc_free(numbers);
     return leaves;

@@ -415,7 +415,7 @@ static void test_refinement(const struct comm *comm, const struct comm *self,
 static void test_picture(const struct comm *comm)
 {
     enum { HEIGHT = 5, ROW = 6 };
-    float rows[HEIGHT * ROW] = {0};
+    float *rows = alloc_array(HEIGHT * ROW, sizeof *rows);
     int mine = 0;
     for (int y = comm->rank; y < HEIGHT; y += comm->size)
         for (int x = 0; x < ROW; x++)
