@@ -113,8 +113,10 @@ static void restore_answer(struct solver *solver, const struct solution_mesh *so
         final_gather_create(&solver->model, solver->model.criterion.final_gather);
     if (solution->lamps.known) {
         lamps_free(&answer->gather.lamps);
-        answer->gather.lamps = lamps_create(&solver->model, solution->lamps.lamp_least);
+        answer->gather.lamps =
+            lamps_create(&solver->model, solution->lamps.lamp_least, false);
         answer->gather.mean = solution->lamps.mean;
+        final_gather_find_bright(&answer->gather);
         answer->straight = alloc_array(count, sizeof *answer->straight);
     }
     if (solution->has_error)

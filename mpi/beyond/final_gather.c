@@ -123,7 +123,8 @@ static bool make_rows(struct gathering *g)
                                            proofs->node_tests + proofs->triangle_tests});
     const struct gather_counts *counts = &g->gather.counts;
     int64_t sums[] = {counts->escaped, stop_is_asked(), counts->rays, counts->segments,
-                      counts->exact, g->gather.term_count, g->mesh.traced};
+                      counts->exact, final_gather_terms(&g->gather),
+                      g->mesh.traced};
     comm_add(solver->comm, sums, sizeof sums / sizeof sums[0]);
     g->closed = (double)sums[0] <= CRACKS * (double)(sums[2] + g->count);
     solver->beyond->answer.counts = (struct gathered){
@@ -459,6 +460,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     for (int64_t i = 0; i < g->count; i++)
         forest->radiosity[g->leaves[i]] = b[i];
     forest_average(forest);
+    final_gather_find_bright(&g->gather); /* as a stored solution has them */
     alloc_free(start);
     alloc_free(h);
     alloc_free(b);

@@ -29,8 +29,8 @@
 #include "rad/beyond/sequence.h"
 #include "rad/pushpull.h"
 
-/* A lamp emits more than this times the mean reflected radiosity: where all surfaces are
- * alike, as in a furnace, there is none. */
+/* A lamp emits, and a bright root reflects, more than this times the mean reflected
+ * radiosity: where all surfaces are alike, as in a furnace, there is none. */
 static const double LAMP = 4.0;
 
 /* Radiosity that varies by less than this part of the mean over a leaf is constant. */
@@ -69,6 +69,12 @@ static int rays_for(int rays, int64_t leaves)
     return rays;
 }
 
+void final_gather_find_bright(struct final_gather *gather)
+{
+    lamps_free(&gather->bright);
+    gather->bright = lamps_create(gather->model, gather->lamps.least, true);
+}
+
 struct final_gather final_gather_create(struct model *model, int rays)
 {
     struct forest *forest = model->forest;
@@ -76,13 +82,15 @@ struct final_gather final_gather_create(struct model *model, int rays)
     forest_bound(forest);
     gather.rays = rays_for(rays, forest_count(forest).leaves);
     gather.mean = mean_radiosity(model);
-    gather.lamps = lamps_create(model, LAMP * mean_reflected(model));
+    gather.lamps = lamps_create(model, LAMP * mean_reflected(model), false);
+    final_gather_find_bright(&gather);
     gather.near.unit_area = 0x1p-50 * model->area;
     gather.near.unit_watts = 0x1p-44 * model->area * gather.mean;
     gather.near.items =
         alloc_array((size_t)forest->count, sizeof *gather.near.items);
     gather.order = forest_order(forest);
     gather.place = alloc_array((size_t)forest->count, sizeof *gather.place);
+    gather.sums.latest = alloc_array((size_t)forest->count, sizeof *gather.sums.latest);
     for (int64_t i = 0; i < forest->count; i++)
         gather.place[gather.order[i]] = (int32_t)i;
     return gather;
@@ -95,18 +103,20 @@ void final_gather_drop_rows(struct final_gather *gather)
     gather->rows = NULL;
     gather->terms = NULL;
     gather->count = gather->row_capacity = 0;
-    gather->term_count = gather->term_capacity = 0;
+    gather->term_capacity = 0;
 }
 
 void final_gather_free(struct final_gather *gather)
 {
     lamps_free(&gather->lamps);
-    alloc_free(gather->groups.items);
+    lamps_free(&gather->bright);
     alloc_free(gather->view.faced);
     alloc_free(gather->near.items);
     alloc_free(gather->near.covered);
     alloc_free(gather->order);
     alloc_free(gather->place);
+    alloc_free(gather->sums.items);
+    alloc_free(gather->sums.latest);
     final_gather_drop_rows(gather);
     *gather = (struct final_gather){0};
 }
@@ -176,6 +186,20 @@ struct rgb light_by_parent(const struct forest *forest, int32_t patch)
     return light;
 }
 
+/* The sum of the row at hand for a patch, by way of the leaf that its ray met first. */
+static struct gather_sum *sum_of(struct final_gather *g, int32_t place)
+{
+    struct gather_sums *sums = &g->sums;
+    int32_t at = sums->latest[place];
+    if (at >= sums->first && at < sums->count && sums->items[at].place == place &&
+        sums->items[at].near == g->near.met)
+        return &sums->items[at];
+    RESERVE(sums->items, &sums->capacity, sums->count + 1);
+    sums->latest[place] = (int32_t)sums->count;
+    sums->items[sums->count] = (struct gather_sum){.place = place, .near = g->near.met};
+    return &sums->items[sums->count++];
+}
+
 /* Adds `weight` times the radiosity of a patch as a whole. */
 static void add_term(struct receiver *r, int32_t patch, const struct rgb *weight)
 {
@@ -185,11 +209,9 @@ static void add_term(struct receiver *r, int32_t patch, const struct rgb *weight
         r->light.band[c] += weight->band[c] * b.band[c];
     if (!r->keeps)
         return;
-    struct gather_term term = {.place = g->place[patch], .near = g->near.met};
+    struct gather_sum *sum = sum_of(g, g->place[patch]);
     for (int c = 0; c < BANDS; c++)
-        term.weight[c] = (float)weight->band[c];
-    RESERVE(g->terms, &g->term_capacity, r->row.end + 1);
-    g->terms[r->row.end++] = term;
+        sum->weight[c] += weight->band[c];
 }
 
 void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
@@ -205,40 +227,25 @@ void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
     }
 }
 
-/* By places, then by weight: any sorting gives the same order. */
-static int compare_terms(const void *left, const void *right)
+int64_t final_gather_terms(const struct final_gather *gather)
 {
-    const struct gather_term *a = left, *b = right;
-    int order = (a->place > b->place) - (a->place < b->place);
-    if (order == 0)
-        order = (a->near > b->near) - (a->near < b->near);
-    for (int c = 0; c < BANDS && order == 0; c++)
-        order = (a->weight[c] > b->weight[c]) - (a->weight[c] < b->weight[c]);
-    return order;
+    return gather->count > 0 ? gather->rows[gather->count - 1].end : 0;
 }
 
-/* Joins the terms of the same places, in double: a sum of thousands of equal floats, in
- * float, is wrong in the sixth digit. */
-static void join_terms(struct receiver *r)
+/* Makes the sums the terms of the row. */
+static void keep_terms(struct receiver *r)
 {
-    struct gather_term *terms = r->gather->terms;
-    int64_t to = r->first_term;
-    qsort(terms + r->first_term, (size_t)(r->row.end - r->first_term), sizeof *terms,
-          compare_terms);
-    for (int64_t i = r->first_term, next; i < r->row.end; i = next) {
-        double sum[BANDS] = {0.0};
-        for (next = i; next < r->row.end && terms[next].place == terms[i].place &&
-                       terms[next].near == terms[i].near;
-             next++)
-            for (int c = 0; c < BANDS; c++)
-                sum[c] += (double)terms[next].weight[c];
-        terms[to].place = terms[i].place;
-        terms[to].near = terms[i].near;
+    struct final_gather *g = r->gather;
+    int64_t first = final_gather_terms(g);
+    r->row.end = first + g->sums.count;
+    RESERVE(g->terms, &g->term_capacity, r->row.end);
+    for (int64_t i = 0; i < g->sums.count; i++) {
+        const struct gather_sum *sum = &g->sums.items[i];
+        struct gather_term term = {.place = sum->place, .near = sum->near};
         for (int c = 0; c < BANDS; c++)
-            terms[to].weight[c] = (float)sum[c];
-        to++;
+            term.weight[c] = (float)sum->weight[c];
+        g->terms[first + i] = term;
     }
-    r->row.end = to;
 }
 
 /* --- public --- */
@@ -325,13 +332,13 @@ static struct rgb light_of_lamps(const struct receiver *r)
     const struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     struct rgb light = {{0.0, 0.0, 0.0}};
-    for (int64_t i = r->first_term; i < r->row.end; i++) {
-        int32_t patch = g->order[g->terms[i].place];
+    for (int64_t i = 0; i < g->sums.count; i++) {
+        int32_t patch = g->order[g->sums.items[i].place];
         const struct material *m = forest_material(forest, patch);
         if (!root_is_lamp(&g->lamps, (int32_t)forest->patches[patch].id.root))
             continue;
         for (int c = 0; c < BANDS; c++)
-            light.band[c] += (double)g->terms[i].weight[c] * m->emission.band[c];
+            light.band[c] += g->sums.items[i].weight[c] * m->emission.band[c];
     }
     return light;
 }
@@ -341,22 +348,21 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
     struct receiver r = receiver_make(gather, facet_make(gather->model->forest, leaf),
                                       seed_of(gather, leaf), rays);
     r.keeps = true;
-    r.first_term = gather->term_count;
-    r.row = (struct gather_row){.leaf = leaf, .end = r.first_term};
+    r.row = (struct gather_row){.leaf = leaf};
+    gather->sums.count = gather->sums.first = 0;
     if (exact && receiver_add_exact(&r)) {
         r.row.lamps = light_of_lamps(&r);
     } else {
-        r.row.end = r.first_term; /* without the terms of exact factors */
+        gather->sums.count = 0; /* without those of exact factors */
         r.light = (struct rgb){{0.0, 0.0, 0.0}};
         receiver_aim(&r);
         receiver_fire(&r);
         r.row.lamps = r.lamps;
     }
-    join_terms(&r);
+    keep_terms(&r);
     r.row.bare = receiver_bare_share(&r);
     RESERVE(gather->rows, &gather->row_capacity, gather->count + 1);
     gather->rows[gather->count++] = r.row;
-    gather->term_count = r.row.end;
 }
 
 void final_gather_cover(struct final_gather *gather, const uint8_t *open)

@@ -39,6 +39,9 @@ struct gather_slope {
 struct final_gather final_gather_create(struct model *model, int rays);
 void final_gather_free(struct final_gather *gather);
 
+/* Finds the bright roots anew, by the radiosities of the forest. */
+void final_gather_find_bright(struct final_gather *gather);
+
 /* True if it is proved that nothing stands between a root and the roots that it faces:
  * then its leaves may have exact rows. */
 bool final_gather_root_is_open(struct final_gather *gather, int32_t root);
@@ -59,6 +62,9 @@ void final_gather_cover(struct final_gather *gather, const uint8_t *open);
 struct gather_light final_gather_at(struct final_gather *gather,
                                     const struct gather_points *points, uint64_t seed,
                                     int count, bool all);
+
+/* The number of terms of all rows. */
+int64_t final_gather_terms(const struct final_gather *gather);
 
 /* Forgets all rows. */
 void final_gather_drop_rows(struct final_gather *gather);

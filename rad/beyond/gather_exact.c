@@ -238,17 +238,17 @@ static bool add_sender(struct receiver *r, int32_t patch)
  * One that all but sums to 1 is made to. */
 static bool close_row(struct receiver *r)
 {
-    struct gather_term *terms = r->gather->terms;
+    const struct gather_sums *sums = &r->gather->sums;
     double sum = 0.0;
-    for (int64_t i = r->first_term; i < r->row.end; i++)
-        sum += (double)terms[i].weight[0];
+    for (int64_t i = 0; i < sums->count; i++)
+        sum += sums->items[i].weight[0];
     if (sum > 1.0 + CLOSED)
         return false;
     r->gather->counts.exact++;
     r->gather->counts.escaped += sum > 0.0 && sum < 1.0 - CLOSED;
-    for (int64_t i = r->first_term; i < r->row.end && sum >= 1.0 - CLOSED; i++)
+    for (int64_t i = 0; i < sums->count && sum >= 1.0 - CLOSED; i++)
         for (int c = 0; c < BANDS; c++)
-            terms[i].weight[c] = (float)((double)terms[i].weight[c] / sum);
+            sums->items[i].weight[c] /= sum;
     return true;
 }
 

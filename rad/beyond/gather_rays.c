@@ -8,6 +8,17 @@
  * known from exact factors; rays that meet a lamp count its reflected light and not its
  * emission.
  *
+ * Next come bright roots, those that reflect more than a lamp emits at least: the inside
+ * of a lamp's housing sends a tenth of the light of a furnished room and brings most of
+ * the variance, as one ray in 500 meets it. Rays are aimed at them, too. A ray that was
+ * not, and meets one, is put aside, and the others stand for all directions but those
+ * of bright roots,
+ *
+ *     H = sum over aimed rays of F B  +  (1 - sum of F) * mean of B over the others,
+ *
+ * so rows still sum to 1. Beside a bright root all this does not apply: rays find it
+ * often enough, and factors of a few points of it would vary without bound.
+ *
  * The mesh is wrong where a ray ends nearer than the leaf there is large: under a
  * sheet of paper on a table the table is dark, but the leaf is not. And it is wrong in
  * a gap that is narrow for the leaf, also far from where the ray began: the leaf may
@@ -43,12 +54,19 @@ static const double WIDE = 0.05;
 /* A lamp is near if the square of its distance is less than this times its area. */
 static const double NEAR_LAMP = 4.0;
 
+/* A point is beside a root if the square of its distance is less than this times the
+ * square of the root's radius. */
+static const double BESIDE = 2.0;
+
 /* Most points of a path, most tries for a point of a lamp above the horizon, points of a
  * leaf that are tested for being bare. */
 enum { PATH_MOST = 8, AIMS_MOST = 4, BARE_POINTS = 4 };
 
 /* Fewest segments that are enough to estimate the visible share of lamps. */
 enum { VOLLEY = 4 };
+
+/* Rays in all directions for each that is aimed at a bright root. */
+enum { RAYS_PER_AIMED = 4 };
 
 /* --- points that rays meet --- */
 
@@ -179,7 +197,7 @@ static int half_of(const struct volley *volley, int i, int count)
 
 /* Adds the variance of the volley's light, in the colour of one of its lamps: by its
  * visible share as if by chance, and by the difference of its halves. */
-static void end_volley(struct receiver *r, struct volley *volley, struct rgb emission)
+static void end_volley(struct receiver *r, struct volley *volley, struct rgb light)
 {
     double direct = volley->direct[0] + volley->direct[1];
     int count = volley->count[0] + volley->count[1];
@@ -189,7 +207,7 @@ static void end_volley(struct receiver *r, struct volley *volley, struct rgb emi
         apart = 0.5 * (volley->seen[0] / volley->direct[0] -
                        volley->seen[1] / volley->direct[1]);
     for (int c = 0; c < BANDS && share > 0.0; c++) {
-        double h = direct * emission.band[c] / rgb_sum(emission);
+        double h = direct * light.band[c] / rgb_sum(light);
         r->row.chance[c] += h * h * share * (1.0 - share) / count;
         r->row.halves[c] += h * h * apart * apart;
     }
@@ -249,87 +267,131 @@ static void aim_at_wide_lamp(struct receiver *r, int count, int32_t root, double
     }
 }
 
-/* Fires one segment at a lamp of a far cluster: it stands for `each` of the group's
- * light. */
-static void aim_at_cluster(struct receiver *r, const struct sequence *sequence,
-                           uint32_t index, const struct lamp_group *group, double each)
+/* Adds the mesh's light at a point; `aimed`: without emission. */
+static void add_mesh(struct receiver *r, const struct point *point, bool aimed,
+                     const struct rgb *weight)
+{
+    const struct forest *forest = r->gather->model->forest;
+    receiver_add_point(r, point->patch, point->weight, weight);
+    if (aimed)
+        add_source(r, weight, forest_material(forest, point->patch)->emission, -1.0);
+}
+
+static bool is_beside(const struct scene *scene, int32_t root, struct vec3 x)
+{
+    struct triangle t = scene_root_triangle(scene, root);
+    struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
+    double radius = triangle_radius(&t);
+    return vec3_dot(apart, apart) < BESIDE * radius * radius;
+}
+
+static int32_t root_of(const struct receiver *r, const struct point *point)
+{
+    return (int32_t)r->gather->model->forest->patches[point->patch].id.root;
+}
+
+/* Adds the light of a bright root that has this form factor, where a ray that is aimed at
+ * y meets it. */
+static void aim_at_bright(struct receiver *r, struct vec3 x, struct vec3 y, int32_t root,
+                          double factor)
+{
+    const struct final_gather *g = r->gather;
+    struct vec3 way = vec3_sub(y, x);
+    struct point point;
+    if (is_beside(g->model->scene, root, x) ||
+        trace(r, point_above(x, r->facet.plane.normal),
+              vec3_scale(way, 1.0 / vec3_length(way)), &point) != MET_FRONT ||
+        root_of(r, &point) != root)
+        return;
+    add_mesh(r, &point, root_is_lamp(&g->lamps, root),
+             &(struct rgb){{factor, factor, factor}});
+    r->bright += factor;
+}
+
+/* Fires one segment, or aimed ray, at a lamp of a group: it stands for `each` of the
+ * group's light. */
+static void aim_at_some(struct receiver *r, const struct lamps *lamps,
+                        const struct sequence *sequence, uint32_t index,
+                        const struct lamp_group *group, double each)
 {
     static const struct rgb ALL = {{1.0, 1.0, 1.0}};
-    const struct final_gather *g = r->gather;
-    const struct scene *scene = g->model->scene;
+    const struct scene *scene = r->gather->model->scene;
     double u[SEQUENCE_DIMENSIONS];
     sequence_point(sequence, index, u);
-    struct lamp lamp =
-        lamp_choose(&g->lamps, group->node, hash_unit(r->seed + 17 + index));
+    struct lamp lamp = lamp_choose(lamps, group->node, hash_unit(r->seed + 17 + index));
     struct triangle triangle = scene_root_triangle(scene, lamp.root);
     struct vec3 x = receiver_start(r, u[0], u[1]);
     struct vec3 y = triangle_of_square(&triangle, u[2], u[3]);
-    double light = receiver_kernel(x, r->facet.plane.normal, y,
-                          scene_root_plane(scene, lamp.root).normal);
-    if (light > 0.0 && receiver_blocker(r, x, y, lamp.root) < 0)
-        add_source(r, &ALL, scene_root_material(scene, lamp.root)->emission,
-                   light * scene_root_area(scene, lamp.root) * lamp.share *
-                       (each / group->direct));
+    double factor = receiver_kernel(x, r->facet.plane.normal, y,
+                                    scene_root_plane(scene, lamp.root).normal) *
+                    scene_root_area(scene, lamp.root) * lamp.share *
+                    (each / group->direct);
+    if (!(factor > 0.0))
+        return;
+    if (lamps->reflect)
+        aim_at_bright(r, x, y, lamp.root, factor);
+    else if (receiver_blocker(r, x, y, lamp.root) < 0)
+        add_source(r, &ALL, lamp_light(lamps, lamp.root), factor);
 }
 
-/* Fires `count` segments at a group; unoccluded they bring `direct` all together. */
-static void aim_at_group(struct receiver *r, const struct lamp_group *group, int count,
-                         double direct, struct volley *volley)
+/* Fires `count` of them at a group; unoccluded they bring `direct` all together. */
+static void aim_at_group(struct receiver *r, const struct lamps *lamps,
+                         const struct lamp_group *group, int count, double direct,
+                         struct volley *volley)
 {
     struct sequence sequence = sequence_to(r, group->node);
-    if (!node_is_cluster(group->node))
+    bool single = !node_is_cluster(group->node) && !lamps->reflect;
+    if (single)
         aim_at_lamp(r, &sequence, count, group->node, direct, volley);
-    for (int k = 0; k < count && node_is_cluster(group->node); k++) {
+    for (int k = 0; k < count && !single; k++) {
         int half = half_of(volley, k, count);
         double before = rgb_sum(r->light);
-        aim_at_cluster(r, &sequence, (uint32_t)k, group, direct / count);
+        aim_at_some(r, lamps, &sequence, (uint32_t)k, group, direct / count);
         volley->direct[half] += direct / count;
         volley->seen[half] += rgb_sum(r->light) - before;
         volley->count[half]++;
     }
 }
 
-static bool is_wide(const struct receiver *r, const struct lamp_group *group)
+static bool is_wide(const struct lamps *lamps, const struct lamp_group *group)
 {
-    const struct scene *scene = r->gather->model->scene;
-    return !node_is_cluster(group->node) &&
-           group->direct >
-               WIDE * rgb_sum(scene_root_material(scene, group->node)->emission);
+    return !lamps->reflect && !node_is_cluster(group->node) &&
+           group->direct > WIDE * lamps->sent[group->node];
 }
 
-/* Adds the light of lamps: as many segments as rays, dealt to the groups in proportion to
- * their light. A group that is sure to get a segment counts with its own light, shared
- * among its segments, for their number depends on where dealing starts. */
-static void aim_at_lamps(struct receiver *r)
+/* Adds the light of lamps by as many segments as rays, or of bright roots by fewer rays,
+ * dealt to the groups in proportion to their light. A group that is sure to get a segment
+ * counts with its own light, shared among its segments, for their number depends on where
+ * dealing starts. */
+static void aim_at_lamps(struct receiver *r, struct lamps *lamps)
 {
-    struct final_gather *g = r->gather;
-    lamps_group(&g->lamps, &r->facet, &g->groups, &g->model->estimating);
-    if (!(g->groups.direct > 0.0))
+    lamps_group(lamps, &r->facet, &r->gather->model->estimating);
+    if (!(lamps->groups.direct > 0.0))
         return;
-    double each = g->groups.direct / r->rays, sum = 0.0;
+    int most = lamps->reflect ? (r->rays + RAYS_PER_AIMED - 1) / RAYS_PER_AIMED : r->rays;
+    double each = lamps->groups.direct / most, sum = 0.0;
     double start = hash_unit(r->seed + 16);
     struct volley volley = {.direct = {0.0, 0.0}};
-    struct rgb emission = {{0.0, 0.0, 0.0}};
+    struct rgb light = {{0.0, 0.0, 0.0}};
     int done = 0;
-    for (int64_t i = 0; i < g->groups.count; i++) {
-        const struct lamp_group *group = &g->groups.items[i];
+    for (int64_t i = 0; i < lamps->groups.count; i++) {
+        const struct lamp_group *group = &lamps->groups.items[i];
         sum += group->direct;
-        int now = (int)fmin(r->rays, floor(sum / each + start)), count = now - done;
+        int now = (int)fmin(most, floor(sum / each + start)), count = now - done;
         if (count == 0)
             continue;
         double direct = group->direct >= each ? group->direct : count * each;
         done = now;
-        if (is_wide(r, group)) {
+        if (is_wide(lamps, group)) {
             aim_at_wide_lamp(r, count, group->node, direct);
             continue;
         }
-        aim_at_group(r, group, count, direct, &volley);
-        int32_t lamp = lamp_choose(&g->lamps, group->node, 0.5).root;
-        emission = scene_root_material(g->model->scene, lamp)->emission;
+        aim_at_group(r, lamps, group, count, direct, &volley);
+        light = lamp_light(lamps, lamp_choose(lamps, group->node, 0.5).root);
         if (volley.count[0] + volley.count[1] >= VOLLEY)
-            end_volley(r, &volley, emission);
+            end_volley(r, &volley, light);
     }
-    end_volley(r, &volley, emission);
+    end_volley(r, &volley, light);
 }
 
 /* --- paths --- */
@@ -351,13 +413,13 @@ static void aim_beside(struct receiver *r, const struct point *x,
 {
     const struct final_gather *g = r->gather;
     const struct scene *scene = g->model->scene;
-    double at = hash_unit(seed) * g->groups.around;
+    double at = hash_unit(seed) * g->lamps.groups.around;
     int64_t i = 0;
-    for (; i < g->groups.count - 1 && at >= g->groups.items[i].around; i++)
-        at -= g->groups.items[i].around;
-    if (!(g->groups.around > 0.0) || !(g->groups.items[i].around > 0.0))
+    for (; i < g->lamps.groups.count - 1 && at >= g->lamps.groups.items[i].around; i++)
+        at -= g->lamps.groups.items[i].around;
+    if (!(g->lamps.groups.around > 0.0) || !(g->lamps.groups.items[i].around > 0.0))
         return;
-    const struct lamp_group *group = &g->groups.items[i];
+    const struct lamp_group *group = &g->lamps.groups.items[i];
     struct lamp lamp = lamp_choose(&g->lamps, group->node, hash_unit(seed + 1));
     if (lamp_is_near(scene, lamp.root, x->at))
         return;
@@ -371,7 +433,7 @@ static void aim_beside(struct receiver *r, const struct point *x,
             continue;
         if (blocker_of(r, x->at, x->input, y, lamp.root) < 0)
             add_source(r, weight, scene_root_material(scene, lamp.root)->emission,
-                       factor * lamp.share * (g->groups.around / group->around));
+                       factor * lamp.share * (g->lamps.groups.around / group->around));
         return;
     }
 }
@@ -409,16 +471,6 @@ static void look_inside(struct receiver *r, struct vec3 origin, struct vec3 dire
         r->escaped++;
 }
 
-/* Adds the mesh's light at a point; `aimed`: without emission. */
-static void add_mesh(struct receiver *r, const struct point *point, bool aimed,
-                     const struct rgb *weight)
-{
-    const struct forest *forest = r->gather->model->forest;
-    receiver_add_point(r, point->patch, point->weight, weight);
-    if (aimed)
-        add_source(r, weight, forest_material(forest, point->patch)->emission, -1.0);
-}
-
 /* Russian roulette: the path goes on, for all that would have, with the probability of
  * the largest reflectance. The mesh's light is added in the mean whether it goes on or
  * not, so that rows still sum to 1. */
@@ -453,9 +505,10 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
         add_near(r, weight, forest_material(g->model->forest, met->patch)->emission, 1.0);
 }
 
-/* Follows a path from its first ray on, and adds its light, times `weight`. */
+/* Follows a path from its first ray on, and adds its light, times `weight`. The ray is of
+ * this half. */
 static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction,
-                   struct rgb weight, uint64_t seed)
+                   struct rgb weight, int half, uint64_t seed)
 {
     const struct forest *forest = r->gather->model->forest;
     struct vec3 normal = r->facet.plane.normal; /* at the origin */
@@ -469,10 +522,15 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
         if (met != MET_FRONT)
             return;
         const struct material *material = forest_material(forest, point.patch);
-        int32_t root = (int32_t)forest->patches[point.patch].id.root;
+        int32_t root = root_of(r, &point);
+        const struct scene *scene = r->gather->model->scene;
+        if (count == 1 && root_is_lamp(&r->gather->bright, root) &&
+            !is_beside(scene, root, origin)) {
+            r->sums.aside[half]++;
+            return;
+        }
         bool aimed = root_is_lamp(&r->gather->lamps, root) &&
-                     (count == 1 ||
-                      !lamp_is_near(r->gather->model->scene, root, origin));
+                     (count == 1 || !lamp_is_near(scene, root, origin));
         if (count == PATH_MOST || !(is_too_near(forest, &point, origin, normal) ||
                                     is_covered(r->gather, point.patch))) {
             add_mesh(r, &point, aimed, &weight);
@@ -498,9 +556,8 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
 
 /* Adds the light of ray i's path to the sums, and to the half of the rays that it belongs
  * to. */
-static void count_light(struct receiver *r, int i)
+static void count_light(struct receiver *r, int i, int half)
 {
-    int half = 2 * i / r->rays;
     for (int c = 0; c < BANDS; c++) {
         double h = r->light.band[c];
         r->sums.h.band[c] += h;
@@ -512,26 +569,62 @@ static void count_light(struct receiver *r, int i)
     }
 }
 
+/* Adds the variance by rays other than those that have met bright roots. */
+static void add_variances(struct receiver *r)
+{
+    double count[2] = {(r->rays + 1) / 2 - r->sums.aside[0],
+                       r->rays / 2 - r->sums.aside[1]};
+    double all = count[0] + count[1];
+    for (int c = 0; c < BANDS && all > 0.0; c++) {
+        double mean2 = r->sums.h.band[c] * r->sums.h.band[c] / all, apart = 0.0;
+        if (count[0] > 0.0 && count[1] > 0.0)
+            apart = 0.5 * all * (r->sums.half[0].band[c] / count[0] -
+                                 r->sums.half[1].band[c] / count[1]);
+        r->row.chance[c] += fmax(0.0, r->sums.squares.band[c] - mean2);
+        r->row.halves[c] += apart * apart;
+    }
+}
+
+/* Aims at the bright roots, and makes the light of rays, which have not counted them,
+ * that of all other directions, so that the row still sums to 1. `source`: of the row
+ * before rays were fired. */
+static void add_bright(struct receiver *r, struct rgb source)
+{
+    struct gather_sums *sums = &r->gather->sums;
+    struct rgb after = r->row.source;
+    int aside = r->sums.aside[0] + r->sums.aside[1];
+    sums->first = sums->count;
+    aim_at_lamps(r, &r->gather->bright);
+    double other = fmax(0.0, 1.0 - r->bright) * r->rays;
+    other /= aside < r->rays ? r->rays - aside : r->rays;
+    for (int64_t i = 0; i < sums->first; i++)
+        for (int c = 0; c < BANDS; c++)
+            sums->items[i].weight[c] *= other;
+    for (int c = 0; c < BANDS; c++) {
+        r->row.source.band[c] += (other - 1.0) * (after.band[c] - source.band[c]);
+        r->sums.h.band[c] = other * r->sums.h.band[c] + r->light.band[c];
+        r->light.band[c] = 0.0;
+    }
+}
+
 void receiver_fire(struct receiver *r)
 {
     struct sequence sequence = sequence_start(r->seed);
+    struct rgb source = r->row.source;
     double share = 1.0 / r->rays, u[SEQUENCE_DIMENSIONS];
     for (int i = 0; i < r->rays; i++) {
+        int half = 2 * i / r->rays;
         sequence_point(&sequence, (uint32_t)i, u);
         struct vec3 x = receiver_start(r, u[2], u[3]);
         follow(r, point_above(x, r->facet.plane.normal),
                cosine_direction(r->facet.plane.normal, r->along, u[0], u[1]),
-               (struct rgb){{share, share, share}},
+               (struct rgb){{share, share, share}}, half,
                hash_mix(r->seed ^ hash_mix((uint64_t)i)));
         r->gather->near.met = -1;
-        count_light(r, i);
+        count_light(r, i, half);
     }
-    for (int c = 0; c < BANDS; c++) {
-        double mean2 = r->sums.h.band[c] * r->sums.h.band[c] / r->rays;
-        double apart = r->sums.half[0].band[c] - r->sums.half[1].band[c];
-        r->row.chance[c] += fmax(0.0, r->sums.squares.band[c] - mean2);
-        r->row.halves[c] += apart * apart;
-    }
+    add_variances(r);
+    add_bright(r, source);
     if (r->escaped < r->rays)
         r->gather->counts.escaped += r->escaped;
 }
@@ -544,7 +637,7 @@ float receiver_bare_share(const struct receiver *r)
     struct vec3 normal = r->facet.plane.normal;
     double u[SEQUENCE_DIMENSIONS];
     int covered = 0;
-    if (r->row.end == r->first_term && !(rgb_sum(r->row.source) > 0.0))
+    if (r->gather->sums.count == 0 && !(rgb_sum(r->row.source) > 0.0))
         return 0.0f;
     for (uint32_t i = 0; i < BARE_POINTS; i++) {
         sequence_point(&sequence, i, u);
@@ -572,7 +665,7 @@ double receiver_kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,
 
 void receiver_aim(struct receiver *r)
 {
-    aim_at_lamps(r);
+    aim_at_lamps(r, &r->gather->lamps);
     r->lamps = r->light;
     r->light = (struct rgb){{0.0, 0.0, 0.0}};
 }

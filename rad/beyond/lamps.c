@@ -2,7 +2,9 @@
  *
  * From the top of the tree downwards, a cluster is one group as soon as it is small for
  * its distance; a lamp by itself is a group whose direct light is known from exact
- * factors. So a hall with ten thousand lamps has some dozens of groups for each leaf.
+ * factors. So a hall with ten thousand lamps has some dozens of groups for each leaf. The
+ * direct light of bright roots decides only how often rays are aimed at them: an estimate
+ * is enough.
  *
  * The mean factor is taken at three points with a rule that is exact for polynomials of
  * the second degree. Where the other triangle is nearer than the size of this one, the
@@ -106,32 +108,40 @@ double mean_factor(const struct triangle *from, struct vec3 normal,
 
 /* --- lamps --- */
 
-static double emission_of(const struct lamps *lamps, int32_t root)
-{
-    return rgb_sum(scene_root_material(lamps->model->scene, root)->emission);
-}
-
 bool root_is_lamp(const struct lamps *lamps, int32_t root)
 {
-    return emission_of(lamps, root) > lamps->least;
+    return lamps->sent[root] > 0.0;
 }
 
-struct lamps lamps_create(const struct model *model, double least)
+struct rgb lamp_light(const struct lamps *lamps, int32_t root)
+{
+    struct rgb light = scene_root_material(lamps->model->scene, root)->emission;
+    for (int c = 0; c < BANDS && lamps->reflect; c++)
+        light.band[c] = lamps->model->forest->radiosity[root].band[c] - light.band[c];
+    return light;
+}
+
+struct lamps lamps_create(const struct model *model, double least, bool reflect)
 {
     const struct cluster_tree *tree = model->clusters->tree;
-    struct lamps lamps = {model, least, NULL};
+    struct lamps lamps = {.model = model, .least = least, .reflect = reflect};
+    int32_t roots = scene_root_count(model->scene);
+    lamps.sent = alloc_array((size_t)roots, sizeof *lamps.sent);
     lamps.before = alloc_array((size_t)tree->root_count + 1, sizeof *lamps.before);
     for (int32_t place = 0; place < tree->root_count; place++) {
         int32_t root = tree->roots[place];
-        double watts = scene_root_area(model->scene, root) * emission_of(&lamps, root);
+        double sent = rgb_sum(lamp_light(&lamps, root));
+        lamps.sent[root] = sent > least ? sent : 0.0;
         lamps.before[place + 1] =
-            lamps.before[place] + (root_is_lamp(&lamps, root) ? watts : 0.0);
+            lamps.before[place] + scene_root_area(model->scene, root) * lamps.sent[root];
     }
     return lamps;
 }
 
 void lamps_free(struct lamps *lamps)
 {
+    alloc_free(lamps->groups.items);
+    alloc_free(lamps->sent);
     alloc_free(lamps->before);
 }
 
@@ -168,15 +178,21 @@ struct lit {
     double radius;
 };
 
+/* About the cosine between a plane's normal and the way to a lamp. */
+static double cosine_to(const struct plane *plane, struct vec3 apart, double distance2)
+{
+    return fmax(vec3_dot(apart, plane->normal) / sqrt(distance2), LEAST_COSINE);
+}
+
 static void add_cluster(const struct lit *leaf, int32_t node, struct vec3 apart,
                         double radius, double watts, struct lamp_groups *groups)
 {
     struct lamp_group group = {.node = node};
     double distance2 = vec3_dot(apart, apart);
-    double rise = vec3_dot(apart, leaf->facet->plane.normal);
+    const struct plane *plane = &leaf->facet->plane;
     group.around = watts / (PI * distance2);
-    if (rise + radius + leaf->radius > 0.0)
-        group.direct = fmax(rise / sqrt(distance2), LEAST_COSINE) * group.around;
+    if (vec3_dot(apart, plane->normal) + radius + leaf->radius > 0.0)
+        group.direct = cosine_to(plane, apart, distance2) * group.around;
     add_group(groups, group);
 }
 
@@ -185,14 +201,17 @@ static void add_root(const struct lamps *lamps, const struct lit *leaf, int32_t 
 {
     struct facet lamp = facet_make(lamps->model->forest, root);
     struct vec3 apart = vec3_sub(triangle_centroid(&lamp.triangle), leaf->centroid);
-    double emission = emission_of(lamps, root);
+    double sent = lamps->sent[root];
     double distance2 = fmax(vec3_dot(apart, apart), lamp.area);
     struct lamp_group group = {.node = root};
-    group.around = emission * fmin(1.0, lamp.area / (PI * distance2));
-    if (facets_face(leaf->facet, &lamp))
-        group.direct = emission * mean_factor(&leaf->facet->triangle,
-                                              leaf->facet->plane.normal,
-                                              &lamp.triangle, work);
+    group.around = sent * fmin(1.0, lamp.area / (PI * distance2));
+    if (facets_face(leaf->facet, &lamp) && lamps->reflect)
+        group.direct = group.around * cosine_to(&leaf->facet->plane, apart, distance2) *
+                       cosine_to(&lamp.plane, vec3_scale(apart, -1.0), distance2);
+    else if (facets_face(leaf->facet, &lamp))
+        group.direct = sent * mean_factor(&leaf->facet->triangle,
+                                          leaf->facet->plane.normal, &lamp.triangle,
+                                          work);
     add_group(groups, group);
 }
 
@@ -218,9 +237,9 @@ static void add_node(const struct lamps *lamps, const struct lit *leaf, int32_t 
         add_node(lamps, leaf, cluster->child[k], groups, work);
 }
 
-void lamps_group(const struct lamps *lamps, const struct facet *leaf,
-                 struct lamp_groups *groups, int64_t *work)
+void lamps_group(struct lamps *lamps, const struct facet *leaf, int64_t *work)
 {
+    struct lamp_groups *groups = &lamps->groups;
     struct lit lit = {leaf, triangle_centroid(&leaf->triangle),
                       triangle_radius(&leaf->triangle)};
     groups->count = 0;

@@ -1,16 +1,10 @@
 /* Lamps: roots so much brighter than the rest that rays in all directions would find them
- * too seldom. A final gather aims at them. */
+ * too seldom. A final gather aims at them, and at bright roots, which are lamps by the
+ * light that they reflect. */
 #ifndef RAD_BEYOND_LAMPS_H
 #define RAD_BEYOND_LAMPS_H
 
 #include "rad/beyond/node.h"
-
-struct lamps {
-    const struct model *model; /* borrowed */
-    double least;   /* a lamp emits more than this, summed over bands, W/m^2 */
-    double *before; /* [tree->root_count + 1] power of the lamps before a place in the
-                       tree's order, over all bands, W in square scene units */
-};
 
 /* A node whose lamps count as one, as seen from a leaf. */
 struct lamp_group {
@@ -25,23 +19,35 @@ struct lamp_groups {
     double direct, around;    /* sums */
 };
 
+struct lamps {
+    const struct model *model; /* borrowed */
+    double least;   /* a lamp sends more than this, summed over bands, W/m^2 */
+    bool reflect;   /* bright roots: they send reflected light, and no emission */
+    double *sent;   /* [roots] sent by a lamp, over all bands, W/m^2; by others 0 */
+    double *before; /* [tree->root_count + 1] power of the lamps before a place in the
+                       tree's order, over all bands, W in square scene units */
+    struct lamp_groups groups; /* of the leaf at hand */
+};
+
 /* A lamp that was chosen. */
 struct lamp {
     int32_t root;
     double share; /* power of all lamps of its group over its own, 1 */
 };
 
-/* Borrows the model, which has clusters. A lamp emits more than `least`, over all
- * bands. */
-struct lamps lamps_create(const struct model *model, double least);
+/* Borrows the model, which has clusters, and a solution if `reflect`. A lamp sends more
+ * than `least`, over all bands: emission, or if `reflect`, reflected light. */
+struct lamps lamps_create(const struct model *model, double least, bool reflect);
 void lamps_free(struct lamps *lamps);
+
+/* The light that a lamp sends, W/m^2. */
+struct rgb lamp_light(const struct lamps *lamps, int32_t root);
 
 bool root_is_lamp(const struct lamps *lamps, int32_t root);
 
-/* The groups of lamps that a leaf tells apart, in the tree's order: each is a root, or a
- * cluster that is small for its distance. Adds the tests that it took to `work`. */
-void lamps_group(const struct lamps *lamps, const struct facet *leaf,
-                 struct lamp_groups *groups, int64_t *work);
+/* Finds the groups of lamps that a leaf tells apart, in the tree's order: each is a root,
+ * or a cluster that is small for its distance. Adds the tests that it took to `work`. */
+void lamps_group(struct lamps *lamps, const struct facet *leaf, int64_t *work);
 
 /* A lamp of the group, by the power that it emits; `u` in [0, 1) chooses. */
 struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u);

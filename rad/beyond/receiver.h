@@ -9,6 +9,7 @@
 /* Sums over the rays of a receiver. */
 struct ray_sums {
     struct rgb h, squares, half[2]; /* of H, of H^2, of H by halves */
+    int aside[2];     /* rays that have met bright roots, by halves */
     struct rgb *each; /* [rays] H by each ray is added to these; NULL: not wanted */
 };
 
@@ -16,9 +17,8 @@ struct receiver {
     struct final_gather *gather;
     struct facet facet;   /* the leaf; for points, a triangle without extent */
     const struct gather_points *points; /* NULL: the receiver is a leaf */
-    bool keeps;           /* its terms are kept, as a row */
+    bool keeps;           /* its terms are kept, as a row, in the gather's sums */
     struct gather_row row;
-    int64_t first_term;
     uint64_t seed;        /* made of an ID */
     struct vec3 along;    /* a direction in the plane */
     int rays;             /* to be fired */
@@ -26,6 +26,7 @@ struct receiver {
     int inside;           /* rays from points inside of things */
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
     struct rgb lamps;     /* H by lamps */
+    double bright;        /* form factor of the bright roots, 1 */
     struct ray_sums sums;
 };
 

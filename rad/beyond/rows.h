@@ -16,6 +16,20 @@ struct gather_term {
     float weight[BANDS];
 };
 
+/* The row at hand: sums of what becomes its terms. */
+struct gather_sum {
+    int32_t place, near;  /* as those of a term */
+    double weight[BANDS]; /* a float would lose the sixth digit over thousands of rays */
+};
+
+struct gather_sums {
+    struct gather_sum *items; /* [count] */
+    int64_t count, capacity;
+    int64_t first;   /* those before are not added to */
+    int32_t *latest; /* [forest->count] by place: where the latest sum of that place is,
+                        if there is one */
+};
+
 /* The form factors from a leaf to all that it sees. */
 struct gather_row {
     int32_t leaf;
@@ -74,14 +88,15 @@ struct final_gather {
     int rays;              /* from a leaf, in the mean */
     double mean;           /* radiosity, over bands and all surface, W/m^2 */
     struct lamps lamps;
-    struct lamp_groups groups; /* of the leaf at hand */
+    struct lamps bright;       /* roots that reflect so much that segments bring it */
     struct gather_view view;   /* of the root of the leaf at hand */
     int32_t *order; /* [forest->count] patches as in forest_order() */
     int32_t *place; /* [forest->count] the place of each patch in `order` */
     struct gather_nears near;
+    struct gather_sums sums;
     struct gather_row *rows;   /* [count] */
-    struct gather_term *terms; /* [term_count] */
-    int64_t count, term_count, row_capacity, term_capacity;
+    struct gather_term *terms; /* of all rows, one after the other */
+    int64_t count, row_capacity, term_capacity;
     struct gather_counts counts;
 };
 

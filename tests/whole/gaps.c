@@ -139,7 +139,8 @@ static const double SEEN = 0.1;
 
 enum { PATHS = 16, ROUNDS_LEAST = 8, ROUNDS_MOST = 8192 };
 
-/* NOISY: wrong by a factor of two, but by at most twice the error that is said. */
+/* NOISY: wrong by a factor of two, but by at most 2.5 times the error that is said, five
+ * deviations: of ten thousand leaves with few rays the worst is off by more than four. */
 enum verdict { RIGHT, DIM, NOISY, WRONG, VERDICTS };
 
 /* Light that a leaf reflects, and twice its deviation, W/m^2. */
@@ -173,7 +174,7 @@ static enum verdict judge_leaf(const struct pathtracer *pathtracer, struct patch
         return DIM;
     if (light <= 2.0 * *truth && light >= 0.5 * *truth)
         return RIGHT;
-    return fabs(light - *truth) <= 2.0 * found.error ? NOISY : WRONG;
+    return fabs(light - *truth) <= 2.5 * found.error ? NOISY : WRONG;
 }
 
 static double reflected(const struct solution *s, int32_t patch)
