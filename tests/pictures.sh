@@ -49,11 +49,13 @@ picture() {
     noise=$(awk "BEGIN { print $4 / sqrt(3) }")
     worst_noise=$(awk "BEGIN { print $5 / sqrt(3) }")
     check "$name, ${1:-defaults}: noise of the reference $noise %, worst $worst_noise %" \
-        holds "$noise < $rms / 3 && $worst_noise < $worst / 3"
+        holds "2 * $noise^2 < $rms^2 && $worst_noise < $worst"
     check "RMS $2 %, worst block $3 % (at most $rms and $worst)" \
         holds "$2^2 - $noise^2 <= $rms^2 && $3 <= $worst"
 }
 
 picture cornell scenes/cornell.obj 2 8
 picture room1500 "$folder/room1500.obj" 2 8
+picture cornell scenes/cornell.obj 0.7 3 --final-gather 256,pixels
+picture room1500 "$folder/room1500.obj" 0.7 3 --final-gather 256,pixels
 tap_done

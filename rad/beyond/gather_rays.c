@@ -37,8 +37,8 @@
 #include "rad/beyond/sample.h"
 
 /* A leaf is too near for its size if the square of its distance is less than this part of
- * its area. */
-static const double NEAR = 0.2;
+ * its area. A pixel shows the error at one place, where a receiving leaf has its mean. */
+static const double NEAR = 0.2, NEAR_PIXEL = 1.0;
 
 /* A gap is narrow for a leaf if the square of its width is less than this part of the
  * leaf's area. */
@@ -443,13 +443,15 @@ static void aim_beside(struct receiver *r, const struct point *x,
  * takes the mean of the whole leaf or none of it: a far part alone would be given the
  * mean of the whole. In a gap that is narrow for the leaf all of it is too near, for it
  * may reach from the gap into the light. */
-static bool is_too_near(const struct forest *forest, const struct point *met,
-                        struct vec3 x, struct vec3 normal)
+static bool is_too_near(const struct receiver *r, const struct point *met, struct vec3 x,
+                        struct vec3 normal)
 {
+    const struct forest *forest = r->gather->model->forest;
+    double near = r->points ? NEAR_PIXEL : NEAR;
     struct triangle t = forest_triangle(forest, met->patch);
     struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
     double area = forest_area(forest, met->patch), width = vec3_dot(apart, met->normal);
-    return vec3_dot(apart, apart) < NEAR * area ||
+    return vec3_dot(apart, apart) < near * area ||
            (width * width < NARROW * area && vec3_dot(normal, met->normal) < OPPOSITE);
 }
 
@@ -531,7 +533,7 @@ static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction
         }
         bool aimed = root_is_lamp(&r->gather->lamps, root) &&
                      (count == 1 || !lamp_is_near(scene, root, origin));
-        if (count == PATH_MOST || !(is_too_near(forest, &point, origin, normal) ||
+        if (count == PATH_MOST || !(is_too_near(r, &point, origin, normal) ||
                                     is_covered(r->gather, point.patch))) {
             add_mesh(r, &point, aimed, &weight);
             return;

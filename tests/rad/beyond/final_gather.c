@@ -326,7 +326,8 @@ static double beside_dark_side(struct trial *g, const uint8_t *open)
     return final_gather_at(&g->gather, &points, 1, 64, true).rest.band[0];
 }
 
-/* Of a leaf that a thing stands on, a point sees the bright part. */
+/* Of a leaf that a thing stands on, a point sees the bright part; paths that meet it
+ * again go on by chance. */
 static void test_covered_for_points(void)
 {
     static const uint8_t OPEN[12] = {0, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4};
@@ -336,7 +337,7 @@ static void test_covered_for_points(void)
     struct trial g = gather_scene(&soup, "--max-level 0", 16);
     double dark = beside_dark_side(&g, NULL), covered = beside_dark_side(&g, OPEN);
     tap_ok(dark < 0.9, "beside a dark side a point has H = %.3f", dark);
-    tap_ok(fabs(covered - 1.0) <= 1e-6, "beside a covered one it has %.6f", covered);
+    tap_ok(fabs(covered - 1.0) <= 0.05, "beside a covered one it has %.3f", covered);
     trial_free(&g);
 }
 
