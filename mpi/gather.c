@@ -37,8 +37,7 @@ static bool can_receive(const struct solver *solver, int32_t patch)
     return scene_root_area(solver->model.scene, (int32_t)root) > 0.0;
 }
 
-/* A dark leaf stays at 0. (A lamp that does not reflect is 0 too in the steps of
- * conjugate gradients, and E before and after.) */
+/* A dark leaf stays at 0. */
 static bool is_leaf_that_changes(const struct solver *solver, int32_t patch)
 {
     const struct patch *at = &solver->model.forest->patches[patch];
@@ -93,12 +92,6 @@ void routes_renew(struct solver *solver)
 }
 
 /* --- light over links --- */
-
-struct rgb *solver_vector(const struct solver *solver)
-{
-    return solver->steps.vector ? solver->steps.vector(solver)
-                                : solver->model.forest->radiosity;
-}
 
 double solver_largest(const struct solver *solver, const struct rgb *vector)
 {
@@ -173,5 +166,5 @@ void solver_gather(struct solver *solver)
             solver->steps.begin(solver);
     }
     solver->turn.fresh = false;
-    solver_carry(solver, solver_vector(solver));
+    solver_carry(solver, solver->model.forest->radiosity);
 }

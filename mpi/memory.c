@@ -20,7 +20,7 @@
 
 /* Bytes: a link with its share of the room that lists grow by; a patch with all that runs
  * along with the forest (extremes, vectors of the solver, caps) and the same. */
-enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 464, BYTES_PER_CLUSTER = 290 };
+enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 416, BYTES_PER_CLUSTER = 290 };
 
 /* Of a row of the final gather: rays that end on the same leaf have one term of 20 bytes,
  * three quarters of the patches are leaves, and the list grows by half. Exact rows, whose

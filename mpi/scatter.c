@@ -26,8 +26,8 @@ static void pack(struct solver *solver, const struct rgb *vector)
     solver->account.copied += count;
 }
 
-/* Gives the leaves of a home the radiosities that it has sent, and its inner patches
- * their means. */
+/* Gives the leaves of a home the values that it has sent, and its inner patches their
+ * means. */
 static void renew_home(struct solver *solver, int home, struct rgb *vector)
 {
     const struct routes *routes = &solver->routes;
@@ -41,14 +41,13 @@ static void renew_home(struct solver *solver, int home, struct rgb *vector)
     solver->account.copied += all->counts[home];
 }
 
-void solver_scatter(struct solver *solver)
+void solver_share(struct solver *solver, struct rgb *vector)
 {
     double start = comm_seconds();
     const struct comm *comm = solver->comm;
     const struct routes *routes = &solver->routes;
     const struct route *records = &routes->records;
     size_t bytes = sizeof *routes->radiosities;
-    struct rgb *vector = solver_vector(solver);
     struct ballot sum = {0}, ballot;
     pack(solver, vector);
     comm_share(comm, routes->radiosities, records->counts, records->at, bytes);
@@ -61,4 +60,9 @@ void solver_scatter(struct solver *solver)
     solver->account.bytes_scatter +=
         (int64_t)bytes * (records->at[comm->size] - records->counts[comm->rank]);
     solver->account.seconds[PHASE_SCATTER] += comm_seconds() - start;
+}
+
+void solver_scatter(struct solver *solver)
+{
+    solver_share(solver, solver->model.forest->radiosity);
 }

@@ -16,16 +16,12 @@
 #include "rad/pushpull.h"
 #include "rad/stats.h"
 
-/* The report of a rank on an iteration, its part of the vote; 128 bytes, no padding. */
+/* The report of a rank on an iteration, its part of the vote; 64 bytes, no padding. */
 struct ballot {
     int64_t light, absorbed, change, arriving; /* flux units */
     int64_t split, links;
     int64_t divided;                           /* own patches that are new */
     int64_t stop;                              /* the signal that it has got */
-    int64_t square[BANDS];                     /* --solver cg: <z, z> */
-    int64_t negative, bulk, missing;           /* see conjugate_sum(), flux units */
-    double largest;                            /* --solver cg: |z| */
-    double brightest;                          /* the most that a leaf sends, W/m^2 */
 };
 
 /* Adds a ballot to a sum of ballots, in any order. */
@@ -96,7 +92,6 @@ enum finish { FINISH_DONE, FINISH_STOPPED, FINISH_AGAIN };
  * empty part. */
 struct steps {
     void (*begin)(struct solver *solver);       /* 5: before new links carry light */
-    struct rgb *(*vector)(const struct solver *solver); /* 5 and 7; NULL: B */
     /* 5: adds flux over the links that live here */
     void (*transfer)(struct solver *solver, const struct rgb *vector);
     void (*collect)(struct solver *solver);     /* 5: flux of all ranks above the roots */
@@ -171,10 +166,6 @@ void routes_free(struct routes *routes);
  * home. */
 void solver_gather(struct solver *solver);
 
-/* The vector over patches, [patches], W/m^2, that step 5 transfers and step 7 tells to
- * all ranks: B, or that of a solver. */
-struct rgb *solver_vector(const struct solver *solver);
-
 /* The transfer alone, of any vector [patches], over links whose routes are known. */
 void solver_carry(struct solver *solver, const struct rgb *vector);
 
@@ -189,6 +180,9 @@ void solver_push_pull(struct solver *solver);
 
 /* Step 7: own radiosities and the ballots go to all ranks. */
 void solver_scatter(struct solver *solver);
+
+/* The same with any vector [patches] in place of the radiosities. */
+void solver_share(struct solver *solver, struct rgb *vector);
 
 /* Step 8: the verdict on the sum of all ballots. */
 struct vote solver_vote(struct solver *solver);

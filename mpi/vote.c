@@ -22,13 +22,6 @@ void ballot_add(struct ballot *sum, const struct ballot *ballot)
     sum->links += ballot->links;
     sum->divided += ballot->divided;
     sum->stop = sum->stop > ballot->stop ? sum->stop : ballot->stop;
-    for (int c = 0; c < BANDS; c++)
-        sum->square[c] += ballot->square[c];
-    sum->negative = flux_add(sum->negative, ballot->negative);
-    sum->bulk = flux_add(sum->bulk, ballot->bulk);
-    sum->missing = flux_add(sum->missing, ballot->missing);
-    sum->largest = fmax(sum->largest, ballot->largest);
-    sum->brightest = fmax(sum->brightest, ballot->brightest);
 }
 
 /* "If the total energy change in the whole scene is above some threshold, the iterations
@@ -45,7 +38,7 @@ struct vote vote_make(const struct solver *solver, const struct ballot *sum,
 {
     struct flux_unit unit = solver->model.flux_unit;
     struct vote vote = {
-        .diverged = sum->light >= FLUX_LIMIT || sum->bulk >= FLUX_LIMIT,
+        .diverged = sum->light >= FLUX_LIMIT,
         .settled = sum->split == 0 && sum->divided == 0,
         .split = sum->split,
         .links = sum->links,

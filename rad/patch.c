@@ -36,6 +36,7 @@ void forest_destroy(struct forest *forest)
     alloc_free(forest->radiosity);
     alloc_free(forest->extremes);
     alloc_free(forest->above);
+    alloc_free(forest->caps);
     alloc_free(forest);
 }
 

@@ -44,6 +44,8 @@ struct forest {
                                   none */
     struct rgb *above;         /* [root_count] irradiance that clusters hand down to
                                   each root, W/m^2; NULL: there are none */
+    double *caps;              /* [count] factor of the irradiance of each leaf, 1; NULL:
+                                  there are none; see rad/beyond/conjugate.h */
     int64_t count, capacity, radiosity_capacity, bounded, extremes_capacity;
     int32_t root_count;
 };

@@ -39,10 +39,11 @@ static void update_leaf(const struct model *model, struct flux_unit flux, int32_
     const struct material *material = forest_material(model->forest, leaf);
     struct rgb irradiance = leaf_irradiance(model->forest, leaf, flux);
     double area = forest_area(model->forest, leaf);
+    double cap = model->forest->caps ? model->forest->caps[leaf] : 1.0;
     double light = 0.0, absorbed = 0.0, arriving = 0.0, change = 0.0;
     for (int c = 0; c < BANDS; c++) {
         double rho = material->reflectance.band[c];
-        double h = irradiance.band[c];
+        double h = cap * irradiance.band[c];
         double b = material->emission.band[c] + rho * h;
         light += area * b;
         absorbed += area * ((1.0 - rho) * h);

@@ -38,7 +38,7 @@ static inline struct criterion criterion_of(double epsilon, int max_level,
                               .balance = BALANCE_GREEDY};
 }
 
-/* The error oracle, form factors of polygons, and conjugate gradients. */
+/* The error oracle, form factors of polygons, and conjugate residuals. */
 static inline struct criterion criterion_best(double epsilon, int max_level,
                                               double tolerance)
 {

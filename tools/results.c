@@ -177,7 +177,7 @@ static bool show_meshes(struct run *run, const uint8_t *open)
     return run_agree(run);
 }
 
-/* Sets radiosities of leaves below 0, which conjugate gradients may leave in the dark
+/* Sets radiosities of leaves below 0, which conjugate residuals may leave in the dark
  * within their tolerance, to 0. Without any nothing changes. (Where the steps go on from
  * these, as between passes, the same would be an error that they cannot see.) */
 static void clamp_radiosities(struct forest *forest)

@@ -17,10 +17,10 @@
 #include "geom/little.h"
 #include "geom/stop.h"
 
-enum { MAGIC_BYTES = 8, HEADER_BYTES = 40, LEAF_BYTES = 48, LINK_BYTES = 24,
+enum { MAGIC_BYTES = 8, HEADER_BYTES = 40, LEAF_BYTES = 24, LINK_BYTES = 24,
        CHUNK = 4096, SETTINGS_MAX = 4096 };
 
-static const char *const MAGIC[] = {"PHRLINK4", "PHRCHKP4"};
+static const char *const MAGIC[] = {"PHRLINK5", "PHRCHKP5"};
 static const char *const NAMES[] = {"link cache", "checkpoint"};
 
 /* --- writing --- */
@@ -52,12 +52,6 @@ static void put_double(struct store_writer *writer, double value)
     put(writer, bytes, sizeof bytes);
 }
 
-static void put_rgb(struct store_writer *writer, struct rgb light)
-{
-    for (int c = 0; c < BANDS; c++)
-        put_double(writer, light.band[c]);
-}
-
 static void put_snapshot(struct store_writer *writer, const struct snapshot *snapshot)
 {
     for (int i = 0; i < SNAPSHOT_NUMBERS; i++)
@@ -65,10 +59,9 @@ static void put_snapshot(struct store_writer *writer, const struct snapshot *sna
     for (int i = 0; i < SNAPSHOT_VALUES; i++)
         put_double(writer, snapshot->value[i]);
     put(writer, snapshot->split, (size_t)snapshot->patch_count);
-    for (int64_t i = 0; i < snapshot_leaf_count(snapshot); i++) {
-        put_rgb(writer, snapshot->leaves[i].radiosity);
-        put_rgb(writer, snapshot->leaves[i].irradiance);
-    }
+    for (int64_t i = 0; i < snapshot_leaf_count(snapshot); i++)
+        for (int c = 0; c < BANDS; c++)
+            put_double(writer, snapshot->leaves[i].band[c]);
 }
 
 bool store_create(struct store_writer *writer, const char *path,
@@ -267,11 +260,8 @@ static bool get_snapshot(struct store_reader *reader, struct error *error)
     for (int i = 0; i < SNAPSHOT_VALUES && good; i++)
         good = get_doubles(reader, &snapshot->value[i], 1, error);
     good = good && get(reader, snapshot->split, (size_t)snapshot->patch_count, error);
-    for (int64_t i = 0; i < snapshot_leaf_count(snapshot) && good; i++) {
-        struct leaf_state *leaf = &snapshot->leaves[i];
-        good = get_doubles(reader, leaf->radiosity.band, BANDS, error) &&
-               get_doubles(reader, leaf->irradiance.band, BANDS, error);
-    }
+    for (int64_t i = 0; i < snapshot_leaf_count(snapshot) && good; i++)
+        good = get_doubles(reader, snapshot->leaves[i].band, BANDS, error);
     return good;
 }
 

@@ -7,7 +7,7 @@
  * others IEEE 754. With R roots, N patches, L leaves, M links and T bytes of settings:
  *
  *     bytes    content
- *     8        "PHRLINK4" a link cache, "PHRCHKP4" a checkpoint; the digit is the version
+ *     8        "PHRLINK5" a link cache, "PHRCHKP5" a checkpoint; the digit is the version
  *     8        scene_hash()
  *     4  4     T  R
  *     8  8     N  M
@@ -15,7 +15,7 @@
  *     8 x 11   snapshot.number
  *     8 x 6    snapshot.value
  *     N        snapshot.split, a byte each
- *     48 L     leaves: radiosity (3 doubles), irradiance (3)
+ *     24 L     leaves: radiosity (3 doubles)
  *     24 M     links: p q (4 bytes each; below 0: clusters), area (float), blocker (4),
  *              parts_p parts_q (3 each), seen, cost (1 each); ascending by p, then q
  *     8        hash_bytes() of all bytes before

@@ -5,18 +5,13 @@
 
 #include "geom/alloc.h"
 
-/* Transfers a vector in a unit that fits its largest value: B, which all ranks know, or
- * rho z, the largest of which the ballots have brought. */
+/* Nodes receive by their clusters, too: twice as much fits into the unit. */
 static void transfer(struct solver *solver, const struct rgb *vector)
 {
-    const struct beyond *beyond = solver->beyond;
-    double largest = beyond->descent.fresh ? solver_largest(solver, vector)
-                                           : fmax(solver->ballot.brightest, 1e-250);
-    double room = beyond->tree ? 2.0 : 1.0; /* nodes receive by their clusters, too */
-    if (beyond->tree)
-        above_begin(solver, vector);
+    above_begin(solver, vector);
     double start = comm_seconds();
-    solver->flux = flux_unit_for(room * largest * solver->model.area);
+    double largest = 2.0 * solver_largest(solver, vector);
+    solver->flux = flux_unit_for(largest * solver->model.area);
     solver->model.method.transfer(&solver->links, &solver->model, vector, solver->flux);
     solver->account.seconds[PHASE_SOLVE] += comm_seconds() - start;
 }
@@ -37,8 +32,7 @@ static void end(struct solver *solver)
 {
     struct beyond *beyond = solver->beyond;
     above_free(solver);
-    caps_free(&beyond->caps);
-    conjugate_free(&beyond->descent.vectors);
+    conjugate_free(&beyond->descent);
     alloc_free(beyond->answer.error);
     alloc_free(beyond->answer.straight);
     final_gather_free(&beyond->answer.gather);
@@ -50,7 +44,6 @@ struct beyond *beyond_attach(struct solver *solver)
     if (solver->beyond)
         return solver->beyond;
     struct beyond *beyond = solver->beyond = alloc_array(1, sizeof *beyond);
-    beyond->descent.fresh = true;
     solver->steps.report = report;
     solver->steps.end = end;
     return beyond;
@@ -74,15 +67,13 @@ struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
         return solver;
     struct steps *steps = &solver->steps;
     beyond_attach(solver);
-    steps->transfer = transfer;
     if (conjugate) {
-        steps->vector = descent_vector;
-        steps->begin = caps_begin;
-        steps->push_pull = descent_push_pull;
+        steps->begin = descent_begin;
         steps->vote = descent_vote;
     }
     if (tree) {
         above_create(solver);
+        steps->transfer = transfer;
         steps->collect = above_collect;
         if (criterion->final_gather > 0)
             steps->finish = solver_finish;

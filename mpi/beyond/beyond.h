@@ -6,22 +6,6 @@
 #include "rad/beyond/final_gather.h"
 #include "rad/beyond/conjugate.h"
 
-/* Conjugate gradients (rad/beyond/conjugate.c); the same on all ranks but for vectors. */
-struct descent {
-    struct conjugate vectors;
-    bool fresh;            /* the next transfer is of B, and not of rho z */
-    bool diverged;         /* K is not positive: more is reflected than arrives */
-    double gain;           /* largest row sum with its cap, at least 1 */
-    double shrink;         /* largest row sum with its cap, times reflectance; below 1 */
-    double weight;         /* 1 over the least cap */
-    double share;          /* largest reflectance times cap */
-    double gamma[BANDS];   /* <z, z>, W^2 m^-2 */
-    double gamma_before[BANDS]; /* <z, z> at the step before */
-    double step_before[BANDS];
-    double bound_residual; /* bound on |z| anywhere, W/m^2 */
-    double bound_image;    /* bound on |K p| anywhere */
-};
-
 /* The state of --accuracy; see mpi/beyond/accuracy.c. */
 struct accuracy {
     int64_t rounds;        /* so far */
@@ -45,8 +29,7 @@ struct answer {
 struct beyond {
     struct cluster_tree *tree;    /* above the roots; NULL: none */
     struct node_block tree_block; /* the memory of a tree that is a view */
-    struct caps caps;
-    struct descent descent;
+    struct conjugate descent;
     struct accuracy accuracy;
     struct answer answer;
 };
@@ -73,13 +56,9 @@ void above_free(struct solver *solver);
 void above_begin(struct solver *solver, const struct rgb *vector);
 void above_collect(struct solver *solver);
 
-/* Collective. Step 5, when links have changed: measures row sums and caps them. */
-void caps_begin(struct solver *solver);
-
-/* Steps 5 to 8 by conjugate gradients: B is transferred first, then rho z. When there is
- * no other iteration all ranks learn B. */
-struct rgb *descent_vector(const struct solver *solver);
-void descent_push_pull(struct solver *solver);
+/* Steps 5 and 8 with conjugate residuals: when links have changed; and after each
+ * iteration. */
+void descent_begin(struct solver *solver);
 struct vote descent_vote(struct solver *solver, const struct ballot *sum);
 
 /* Collective. Step 9, phr's own, after the last vote: the final gather. Traces rows for

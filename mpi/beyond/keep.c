@@ -1,11 +1,9 @@
 /* Collecting and restoring a run's snapshot.
  *
- * Between passes all ranks have the same trees with the same radiosities. Only the home
- * of a leaf knows its irradiance and its cap; they go to rank 0 through a funnel, in the
- * order of the leaves. Not kept are the quantities that every pass computes anew: fluxes,
- * bounds on rows, directions of conjugate gradients (each pass starts them afresh), inner
- * radiosities and extremes, and proofs that leaves are open, for which rays are fired
- * again.
+ * Between passes all ranks have the same trees with the same radiosities. Not kept are
+ * the quantities that every pass computes anew: fluxes, directions of conjugate residuals
+ * (each pass starts them afresh), inner radiosities and extremes, and proofs that leaves
+ * are open, for which rays are fired again.
  *
  * Links are renumbered in place (patches depth first, as in forest_order()), sorted,
  * merged on rank 0, and given their local numbers back: no copy of them is made, since a
@@ -32,47 +30,8 @@ static void collect_trees(const struct solver *solver, const int32_t *order,
         const struct patch *patch = &solver->model.forest->patches[order[i]];
         snapshot->split[i] = !patch_is_leaf(patch);
         if (patch_is_leaf(patch))
-            snapshot->leaves[leaf++].radiosity =
-                solver->model.forest->radiosity[order[i]];
+            snapshot->leaves[leaf++] = solver->model.forest->radiosity[order[i]];
     }
-}
-
-/* Rank 0: takes the irradiances, which only the homes of leaves know, leaf by leaf. */
-static void place_irradiances(const struct solver *solver, const int32_t *order,
-                              struct funnel *funnel, struct snapshot *snapshot)
-{
-    int64_t leaf = 0;
-    for (int64_t i = 0; i < snapshot->patch_count; i++) {
-        const struct patch *patch = &solver->model.forest->patches[order[i]];
-        if (!patch_is_leaf(patch))
-            continue;
-        int home = solver->homes.owner[patch->id.root];
-        const struct rgb *irradiance = funnel_next(funnel, home);
-        snapshot->leaves[leaf++].irradiance = *irradiance;
-        funnel_drop(funnel, home);
-    }
-}
-
-static void collect_irradiances(struct solver *solver, const int32_t *order,
-                                struct snapshot *snapshot)
-{
-    const struct forest *forest = solver->model.forest;
-    struct rgb *own = NULL;
-    int64_t count = 0, capacity = 0;
-    for (int64_t i = 0; i < forest->count; i++) {
-        int32_t p = order[i];
-        if (!patch_is_leaf(&forest->patches[p]) ||
-            solver->homes.owner[forest->patches[p].id.root] != solver->comm->rank)
-            continue;
-        RESERVE(own, &capacity, count + 1);
-        own[count++] = solver->beyond->descent.vectors.irradiance[p];
-    }
-    struct funnel funnel;
-    funnel_start(&funnel, solver->comm, own, count, sizeof *own);
-    if (solver->comm->rank == 0)
-        place_irradiances(solver, order, &funnel, snapshot);
-    funnel_end(&funnel);
-    alloc_free(own);
 }
 
 static void collect_numbers(const struct solver *solver, const struct vote *vote,
@@ -110,7 +69,6 @@ void snapshot_collect(struct solver *solver, const struct vote *vote,
     struct forest *forest = solver->model.forest;
     bool collects = solver->comm->rank == 0;
     beyond_attach(solver);
-    conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
     int32_t *order = forest_order(forest);
     *snapshot = (struct snapshot){
         .root_count = forest->root_count,
@@ -119,7 +77,6 @@ void snapshot_collect(struct solver *solver, const struct vote *vote,
     collect_numbers(solver, vote, snapshot);
     if (collects)
         collect_trees(solver, order, snapshot);
-    collect_irradiances(solver, order, snapshot);
     alloc_free(order);
 }
 
@@ -247,18 +204,15 @@ static void restore_trees(struct forest *forest, const struct snapshot *snapshot
                 forest_split(forest, p);
 }
 
-static void restore_leaves(struct solver *solver, const struct snapshot *snapshot,
+static void restore_leaves(struct forest *forest, const struct snapshot *snapshot,
                            const int32_t *order)
 {
-    struct forest *forest = solver->model.forest;
     int64_t leaf = 0;
     for (int64_t i = 0; i < forest->count; i++) {
         int32_t p = order[i];
         if (!patch_is_leaf(&forest->patches[p]))
             continue;
-        const struct leaf_state *state = &snapshot->leaves[leaf++];
-        forest->radiosity[p] = state->radiosity;
-        solver->beyond->descent.vectors.irradiance[p] = state->irradiance;
+        forest->radiosity[p] = snapshot->leaves[leaf++];
     }
     forest_average(forest);
 }
@@ -308,9 +262,8 @@ int32_t *snapshot_restore(struct solver *solver, struct vote *vote,
     broadcast_snapshot(solver->comm, snapshot);
     restore_trees(forest, snapshot);
     beyond_attach(solver);
-    conjugate_extend(&solver->beyond->descent.vectors, forest, solver->homes.own);
     int32_t *order = forest_order(forest);
-    restore_leaves(solver, snapshot, order);
+    restore_leaves(forest, snapshot, order);
     restore_numbers(solver, vote, snapshot);
     return order;
 }

@@ -1,25 +1,30 @@
-/* Conjugate gradients.
+/* Conjugate residuals (Stiefel, 1955).
  *
- * F maps radiosities of leaves to irradiances; A F is symmetric, since links are. With
- * the caps F' = d F, d the factor of a leaf's irradiance, and with the scalar product
+ * An iteration makes G(B) = E + rho d F B of the light B, with d the caps. Its residual
+ * r = G(B) - B is to vanish. K = 1 - rho d F is self-adjoint with the scalar product
  *
- *     <x, y> = sum over leaves of w x y,   w = A rho / d,
+ *     <x, y> = sum over leaves of w x y,   w = A / (rho d),
  *
- * K = 1 - F' rho is self-adjoint, and positive where row sums times rho are below 1: w F'
- * rho = rho (A F) rho. So conjugate gradients apply to K as it stands, without square
- * roots of rho, and surfaces that reflect nothing take no part: their w is 0. The three
- * bands are three systems, solved side by side.
+ * for w rho d F = A F, which is symmetric since links are. So the change of B along all
+ * residuals so far that leaves the least <r, r> is found from the last direction alone:
  *
- * In the form of Chronopoulos and Gear one step costs one transfer of light and two sums
- * of a few numbers over all ranks: with w = K z, gamma = <z, z>, delta = <w, z>,
+ *     p = r + turn p,   K p = K r + turn K p,   turn = - <K r, K p> / <K p, K p>,
+ *     B += step p,      r -= step K p,          step = <r, K p> / <K p, K p>.
  *
- *     turn = gamma / gamma_before,     step = gamma / (delta - turn gamma / step_before),
- *     p = z + turn p,    K p = w + turn K p,    H += step p,    z -= step K p.
+ * K r is told by the next iteration if that is of B + r: G(B + r) - (B + r) = r - K r. So
+ * ranks exchange the light and nothing else, as in the paper's method. Sums run over all
+ * leaves in one order, the same on all ranks. Bands are three systems side by side;
+ * surfaces that reflect nothing have no residual.
  *
- * Products are summed as integers in a unit that is chosen from bounds on their factors,
- * so they are the same on any number of ranks, and so is every bit of the result.
+ * The error e of B solves K e = r, so it is r + rho d F r + (rho d F)^2 r + ... Let |x|
+ * be the sum of w |x| over leaves and bands. A F being symmetric, |rho d F x| is at most
+ * q |x|, with q the largest row sum times rho d. Caps keep q below 1. So |e| is at most
+ * |r| / (1 - q), that of G(B) q times as much, and the light that it lacks at most the
+ * largest rho d times that.
+ *
  * Jacobi's method, the paper's, gains a factor rho per iteration; this one needs some ten
- * iterations for any rho. */
+ * iterations for any rho. Rejected: conjugate gradients of each rank's own leaves, with
+ * sums over ranks. They have to be of integers, in units from bounds on all factors. */
 #include "rad/beyond/conjugate.h"
 
 #include <math.h>
@@ -29,155 +34,140 @@
 
 void conjugate_free(struct conjugate *cg)
 {
-    alloc_free(cg->irradiance);
+    alloc_free(cg->leaves);
+    alloc_free(cg->radiosity);
     alloc_free(cg->residual);
-    alloc_free(cg->work);
     alloc_free(cg->direction);
     alloc_free(cg->image);
-    alloc_free(cg->sent);
-    alloc_free(cg->leaves);
     *cg = (struct conjugate){0};
 }
 
-void conjugate_extend(struct conjugate *cg, const struct forest *forest, const bool *own)
+/* Row sum times reflectance is the factor that light grows by from bounce to bounce. It
+ * is kept at or below this, or half way from rho to 1 where that is more. A lower limit
+ * took light from leaves close to lamps, which have links of many levels; at 0.95 the
+ * errors are those without caps. */
+static const double MOST_REFLECTED = 0.95;
+
+static double cap_of(double reflectance, double row)
 {
-    struct rgb **vectors[6] = {&cg->irradiance, &cg->residual, &cg->work, &cg->direction,
-                               &cg->image, &cg->sent};
-    for (int i = 0; i < 6; i++)
-        RESERVE(*vectors[i], &cg->capacity[i], forest->count);
-    for (int64_t p = cg->count; p < forest->count; p++) {
-        int32_t parent = forest->patches[p].parent;
-        cg->irradiance[p] =
-            parent >= 0 ? cg->irradiance[parent] : (struct rgb){{0.0, 0.0, 0.0}};
-        cg->sent[p] = (struct rgb){{0.0, 0.0, 0.0}};
-    }
-    cg->count = forest->count;
-    cg->leaf_count = 0;
-    for (int64_t p = 0; p < forest->count; p++) {
-        const struct patch *patch = &forest->patches[p];
-        if (!own[patch->id.root] || !patch_is_leaf(patch) ||
-            scene_root_area(forest->scene, (int32_t)patch->id.root) <= 0.0)
-            continue;
-        RESERVE(cg->leaves, &cg->leaf_capacity, cg->leaf_count + 1);
-        cg->leaves[cg->leaf_count++] = (int32_t)p;
-    }
+    double most = real_max(MOST_REFLECTED, 0.5 * (1.0 + reflectance));
+    return fmin(1.0, most / (reflectance * row));
 }
 
-struct flux_unit conjugate_unit(const struct model *model, double a, double b,
-                                double weight)
+/* Chooses the cap of a leaf, and lists it if it reflects. */
+static void add_leaf(struct conjugate *cg, struct forest *forest, int32_t leaf,
+                     double row)
 {
-    return flux_unit_for(fmax(a * b * weight * model->area, 1e-250));
+    struct rgb rho = forest_material(forest, leaf)->reflectance;
+    double largest = fmax(rho.band[0], fmax(rho.band[1], rho.band[2]));
+    double reflected = largest * cap_of(largest, row);
+    forest->caps[leaf] = cap_of(largest, row);
+    if (!(largest > 0.0 && forest_area(forest, leaf) > 0.0))
+        return;
+    cg->growth = fmax(cg->growth, row * reflected);
+    cg->share = fmax(cg->share, reflected);
+    cg->leaves[cg->count++] = leaf;
 }
 
-void conjugate_start(struct conjugate *cg, const struct model *model,
-                     const struct caps *caps, struct flux_unit flux)
+void conjugate_begin(struct conjugate *cg, struct forest *forest, const struct rgb *rows)
 {
-    for (int64_t i = 0; i < cg->leaf_count; i++) {
-        int32_t leaf = cg->leaves[i];
-        const struct material *material = forest_material(model->forest, leaf);
-        struct rgb h = leaf_irradiance(model->forest, leaf, flux);
-        for (int c = 0; c < BANDS; c++) {
-            double now = caps->factor[leaf] * h.band[c];
-            if (material->reflectance.band[c] == 0.0)
-                cg->irradiance[leaf].band[c] = now;
-            cg->residual[leaf].band[c] = now - cg->irradiance[leaf].band[c];
-            cg->direction[leaf].band[c] = cg->image[leaf].band[c] = 0.0;
-        }
-    }
-}
-
-void conjugate_apply(struct conjugate *cg, const struct model *model,
-                     const struct caps *caps, struct flux_unit flux,
-                     struct flux_unit unit, int64_t product[BANDS])
-{
-    for (int64_t i = 0; i < cg->leaf_count; i++) {
-        int32_t leaf = cg->leaves[i];
-        const struct material *material = forest_material(model->forest, leaf);
-        struct rgb h = leaf_irradiance(model->forest, leaf, flux);
-        double weight = forest_area(model->forest, leaf) / caps->factor[leaf];
-        for (int c = 0; c < BANDS; c++) {
-            double z = cg->residual[leaf].band[c];
-            double w = z - caps->factor[leaf] * h.band[c];
-            cg->work[leaf].band[c] = w;
-            double term = weight * material->reflectance.band[c] * (w * z);
-            product[c] = flux_add(product[c], flux_from_watts(unit, term));
-        }
-    }
-}
-
-void conjugate_advance(struct conjugate *cg, const struct model *model,
-                       const double turn[BANDS], const double step[BANDS])
-{
-    for (int64_t i = 0; i < cg->leaf_count; i++) {
+    conjugate_free(cg);
+    alloc_free(forest->caps);
+    forest->caps = alloc_array((size_t)forest->count, sizeof *forest->caps);
+    cg->leaves = forest_order(forest);
+    for (int64_t i = 0; i < forest->count; i++) {
         int32_t p = cg->leaves[i];
-        const struct material *material = forest_material(model->forest, p);
-        for (int c = 0; c < BANDS; c++) {
-            double *direction = &cg->direction[p].band[c], *image = &cg->image[p].band[c];
-            *image = cg->work[p].band[c] + turn[c] * *image;
-            if (material->reflectance.band[c] == 0.0) { /* p = z = 0, H follows */
-                cg->irradiance[p].band[c] -= step[c] * *image;
-                continue;
-            }
-            *direction = cg->residual[p].band[c] + turn[c] * *direction;
-            cg->irradiance[p].band[c] += step[c] * *direction;
-            cg->residual[p].band[c] -= step[c] * *image;
-        }
+        if (patch_is_leaf(&forest->patches[p]))
+            add_leaf(cg, forest, p, rows[p].band[0]);
     }
+    size_t count = (size_t)cg->count;
+    cg->radiosity = alloc_array(count, sizeof *cg->radiosity);
+    cg->residual = alloc_array(count, sizeof *cg->residual);
+    cg->direction = alloc_array(count, sizeof *cg->direction);
+    cg->image = alloc_array(count, sizeof *cg->image);
+    for (int64_t i = 0; i < cg->count; i++)
+        cg->radiosity[i] = forest->radiosity[cg->leaves[i]];
 }
 
-void conjugate_send(struct conjugate *cg, const struct model *model)
+/* The weight w of a leaf. */
+static double weight_of(const struct conjugate *cg, const struct forest *forest,
+                        int64_t i, int c)
 {
-    for (int64_t i = 0; i < cg->leaf_count; i++) {
-        int32_t p = cg->leaves[i];
-        const struct material *material = forest_material(model->forest, p);
+    int32_t leaf = cg->leaves[i];
+    double rho = forest_material(forest, leaf)->reflectance.band[c];
+    return rho > 0.0 ? forest_area(forest, leaf) / (rho * forest->caps[leaf]) : 0.0;
+}
+
+/* The residual of B + r, the light that the iteration was of. */
+static double change(const struct conjugate *cg, const struct forest *forest, int64_t i,
+                     int c)
+{
+    return forest->radiosity[cg->leaves[i]].band[c] -
+           (cg->radiosity[i].band[c] + cg->residual[i].band[c]);
+}
+
+double conjugate_missing(const struct conjugate *cg, const struct forest *forest)
+{
+    double sum = 0.0;
+    for (int64_t i = 0; i < cg->count; i++)
         for (int c = 0; c < BANDS; c++)
-            cg->sent[p].band[c] =
-                material->reflectance.band[c] * cg->residual[p].band[c];
+            sum += weight_of(cg, forest, i, c) * fabs(change(cg, forest, i, c));
+    return cg->share * cg->growth / (1.0 - cg->growth) * sum;
+}
+
+/* <x, y> / <y, y>; 0 if y is 0, as of a system that is solved. */
+static double quotient(double along, double square)
+{
+    return square > 0.0 ? along / square : 0.0;
+}
+
+/* p = r + turn p, K p = K r + turn K p. */
+static void turn(struct conjugate *cg, const struct forest *forest, int c)
+{
+    double along = 0.0, square = 0.0;
+    for (int64_t i = 0; i < cg->count; i++) {
+        double w = weight_of(cg, forest, i, c), image = cg->image[i].band[c];
+        along += w * ((cg->residual[i].band[c] - change(cg, forest, i, c)) * image);
+        square += w * (image * image);
+    }
+    double factor = -quotient(along, square);
+    for (int64_t i = 0; i < cg->count; i++) {
+        double *p = &cg->direction[i].band[c], *image = &cg->image[i].band[c];
+        double r = cg->residual[i].band[c];
+        *p = r + factor * *p;
+        *image = r - change(cg, forest, i, c) + factor * *image;
     }
 }
 
-void conjugate_finish(const struct conjugate *cg, struct model *model)
+/* B += step p, r -= step K p. */
+static void advance(struct conjugate *cg, const struct forest *forest, int c)
 {
-    for (int64_t i = 0; i < cg->leaf_count; i++) {
-        int32_t p = cg->leaves[i];
-        const struct material *material = forest_material(model->forest, p);
-        for (int c = 0; c < BANDS; c++)
-            model->forest->radiosity[p].band[c] =
-                material->emission.band[c] +
-                material->reflectance.band[c] * cg->irradiance[p].band[c];
+    double along = 0.0, square = 0.0;
+    for (int64_t i = 0; i < cg->count; i++) {
+        double w = weight_of(cg, forest, i, c), image = cg->image[i].band[c];
+        along += w * (cg->residual[i].band[c] * image);
+        square += w * (image * image);
+    }
+    double step = quotient(along, square);
+    for (int64_t i = 0; i < cg->count; i++) {
+        cg->radiosity[i].band[c] += step * cg->direction[i].band[c];
+        cg->residual[i].band[c] -= step * cg->image[i].band[c];
     }
 }
 
-struct conjugate_sums conjugate_sum(const struct conjugate *cg, const struct model *model,
-                                    const struct caps *caps, struct flux_unit unit)
+void conjugate_step(struct conjugate *cg, struct forest *forest)
 {
-    struct conjugate_sums sums = {0};
-    struct flux_unit watt = model->flux_unit;
-    for (int64_t i = 0; i < cg->leaf_count; i++) {
-        int32_t leaf = cg->leaves[i];
-        const struct material *material = forest_material(model->forest, leaf);
-        double area = forest_area(model->forest, leaf);
-        double weight = area / caps->factor[leaf];
-        double light = 0.0, absorbed = 0.0, arriving = 0.0, negative = 0.0, missing = 0.0;
+    for (int c = 0; c < BANDS && cg->begun; c++) {
+        turn(cg, forest, c);
+        advance(cg, forest, c);
+    }
+    for (int64_t i = 0; i < cg->count; i++)
         for (int c = 0; c < BANDS; c++) {
-            double rho = material->reflectance.band[c], h = cg->irradiance[leaf].band[c];
-            double z = cg->residual[leaf].band[c];
-            light += area * (material->emission.band[c] + rho * h);
-            absorbed += area * ((1.0 - rho) * h);
-            arriving += area * (h + z);
-            negative += area * (rho * fmax(0.0, -h));
-            missing += weight * fabs(z);
-            sums.square[c] = flux_add(sums.square[c],
-                                      flux_from_watts(unit, weight * rho * (z * z)));
-            sums.largest = fmax(sums.largest, rho > 0.0 ? fabs(z) : 0.0);
+            double *b = &forest->radiosity[cg->leaves[i]].band[c];
+            if (!cg->begun)
+                cg->residual[i].band[c] = *b - cg->radiosity[i].band[c];
+            *b = cg->radiosity[i].band[c] + cg->residual[i].band[c];
         }
-        double most = fmax(fabs(light), fmax(fabs(absorbed), fabs(arriving)));
-        sums.light = flux_add(sums.light, flux_from_watts(watt, light));
-        sums.absorbed = flux_add(sums.absorbed, flux_from_watts(watt, absorbed));
-        sums.arriving = flux_add(sums.arriving, flux_from_watts(watt, arriving));
-        sums.bulk = flux_add(sums.bulk, flux_from_watts(watt, most));
-        sums.negative = flux_add(sums.negative, flux_from_watts(watt, negative));
-        sums.missing = flux_add(sums.missing, flux_from_watts(watt, missing));
-    }
-    return sums;
+    cg->begun = true;
+    forest_average(forest);
 }

@@ -97,11 +97,9 @@ static bool numbers_are_sane(const struct snapshot *snapshot)
 
 static bool leaves_are_sane(const struct snapshot *snapshot)
 {
-    for (int64_t i = 0; i < snapshot_leaf_count(snapshot); i++) {
-        const struct leaf_state *leaf = &snapshot->leaves[i];
-        if (!light_is_sane(leaf->radiosity) || !light_is_sane(leaf->irradiance))
+    for (int64_t i = 0; i < snapshot_leaf_count(snapshot); i++)
+        if (!light_is_sane(snapshot->leaves[i]))
             return false;
-    }
     return true;
 }
 

@@ -37,17 +37,12 @@ enum snapshot_value {
     SNAPSHOT_VALUES
 };
 
-struct leaf_state {
-    struct rgb radiosity;  /* B, W/m^2 */
-    struct rgb irradiance; /* H, W/m^2, of conjugate gradients */
-};
-
 struct snapshot {
     int64_t number[SNAPSHOT_NUMBERS];
     double value[SNAPSHOT_VALUES];
     int64_t root_count, patch_count, link_count;
-    uint8_t *split;            /* [patch_count] 1: it has children, else 0 */
-    struct leaf_state *leaves; /* [snapshot_leaf_count()] */
+    uint8_t *split;     /* [patch_count] 1: it has children, else 0 */
+    struct rgb *leaves; /* [snapshot_leaf_count()] their radiosities, W/m^2 */
 };
 
 /* Allocates the arrays of a snapshot whose three counts are set, all zero. */

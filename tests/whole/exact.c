@@ -143,7 +143,7 @@ static void test_glowing_cube(const struct comm *comm, double rho, double allowe
 }
 
 /* A closed cube with walls that differ, lit from one that is black: the power at which
- * the paper's solver ends with, conjugate gradients end with too, over the same
+ * the paper's solver ends with, conjugate residuals end with too, over the same
  * links. */
 static void test_same_answer(const struct comm *comm)
 {
@@ -176,7 +176,7 @@ static void test_same_answer(const struct comm *comm)
     if (comm->rank == 0) {
         /* Tolerances of 1e-9 of all light, which is below 20 W/m^2 a leaf. */
         tap_ok(s[0].vote.converged && s[1].vote.converged && off <= 1e-7,
-               "Jacobi and conjugate gradients: B differs by %.1e W/m^2 at most", off);
+               "Jacobi and conjugate residuals: B differs by %.1e W/m^2 at most", off);
         tap_ok(absorbed <= 1e-8 && escaped <= 1e-8,
                "and the power absorbed, also by the black face, by %.1e of all, escaped "
                "%.1e",

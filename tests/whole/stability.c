@@ -140,7 +140,7 @@ static void test_bounds(const char *words)
     solution_free(&s);
 }
 
-/* The truth is the end of many more iterations. Conjugate gradients stop by their bound;
+/* The truth is the end of many more iterations. Conjugate residuals stop by their bound;
  * the paper's iterations by the last change of energy: the rest is up to q / (1 - q)
  * times that, where q < 0.99 is the factor of one iteration. */
 static void test_false_convergence(void)

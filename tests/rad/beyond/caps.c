@@ -1,6 +1,6 @@
 /* Tests of row sums (rad/pushpull.h) and of the factors that cap them. (On all ranks, and
  * their effect on the light: tests/mpi/conjugate.c.) */
-#include "rad/beyond/caps.h"
+#include "rad/beyond/conjugate.h"
 #include "rad/pushpull.h"
 
 #include <string.h>
@@ -78,33 +78,17 @@ static void test_caps(void)
     } CASES[] = {{0, 0.0, 1.0},  {0, 1.0, 1.0},  {0, 1.26, 1.0}, {0, 2.0, 0.95 / 1.5},
                  {1, 1.01, 1.0}, {1, 2.0, 0.99 / 1.96}, {BLACK, 9.0, 1.0}};
     struct world world = make_world();
-    struct caps caps = {0};
-    caps_extend(&caps, world.model.forest);
+    struct forest *forest = world.model.forest;
+    struct rgb rows[ROOTS] = {{{0.0}}};
+    struct conjugate cg = {.count = 0};
     double off = 0.0;
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
-        caps_choose(&caps, world.model.forest, CASES[i].root, CASES[i].row);
-        off = fmax(off, fabs(caps.factor[CASES[i].root] - CASES[i].factor));
+        rows[CASES[i].root].band[0] = CASES[i].row;
+        conjugate_begin(&cg, forest, rows);
+        off = fmax(off, fabs(forest->caps[CASES[i].root] - CASES[i].factor));
     }
     tap_ok(off < 1e-15, "rows that make light grow are capped, others are not");
-    caps_free(&caps);
-    world_free(&world);
-}
-
-static void test_extending(void)
-{
-    struct world world = make_world();
-    struct caps caps = {0};
-    struct forest *forest = world.model.forest;
-    caps_extend(&caps, forest);
-    caps.factor[4] = 0.75;
-    forest_split(forest, 4);
-    caps_extend(&caps, forest);
-    bool right = caps.count == forest->count && forest->count == ROOTS + 4;
-    for (int64_t p = 0; p < caps.count; p++)
-        right = right && caps.factor[p] == (p == 4 ? 0.75 : 1.0);
-    tap_ok(right, "new patches have the factor 1, others keep theirs");
-    caps_free(&caps);
-    tap_ok(!caps.factor && caps.count == 0, "caps are freed");
+    conjugate_free(&cg);
     world_free(&world);
 }
 
@@ -112,6 +96,5 @@ int main(void)
 {
     test_rows();
     test_caps();
-    test_extending();
     return tap_done();
 }
