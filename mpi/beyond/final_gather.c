@@ -56,6 +56,8 @@ struct gathering {
     double *areas;          /* [count] square scene units */
     double *bare;           /* [count] bare areas, square scene units */
     int64_t count;
+    int64_t *near;          /* [near_count] leaves too near for some, once numbered */
+    int64_t near_count;
     bool closed;            /* hardly any ray of any rank escapes */
     struct rgb *radiosity;  /* by place: radiosities to be gathered */
     struct rgb *all;        /* [count] buffer: a value of each row, rank by rank */
@@ -80,6 +82,7 @@ static void gathering_start(struct gathering *g, struct solver *solver)
     g->bare = alloc_array((size_t)g->count, sizeof *g->bare);
     for (int64_t i = 0; i < g->count; i++)
         g->areas[i] = forest_area(solver->model.forest, g->leaves[i]);
+    g->near = alloc_array((size_t)g->count, sizeof *g->near);
     g->radiosity = alloc_array(patches, sizeof *g->radiosity);
     g->all = alloc_array((size_t)g->count, sizeof *g->all);
     g->counts = alloc_array((size_t)comm->size, sizeof *g->counts);
@@ -98,6 +101,7 @@ static void gathering_end(struct gathering *g)
     gather_mesh_free(&g->mesh);
     alloc_free(g->areas);
     alloc_free(g->bare);
+    alloc_free(g->near);
     alloc_free(g->radiosity);
     alloc_free(g->all);
     alloc_free(g->counts);
@@ -163,11 +167,28 @@ static void add_up(struct gathering *g, int64_t *values, int64_t count)
     g->bytes += 2 * count * (int64_t)sizeof *values;
 }
 
-/* Collective. Adds up the light of leaves too near that no radiosity changes. */
+/* Collective. Adds up the light of leaves too near that no radiosity changes, and numbers
+ * these leaves, in the order of all. */
 static void share_near(struct gathering *g)
 {
     enum { EACH = (int)(sizeof *g->gather.near.items / sizeof(int64_t)) };
-    add_up(g, &g->gather.near.items->area, EACH * g->solver->model.forest->count);
+    struct final_gather *gather = &g->gather;
+    struct gather_near *items = gather->near.items;
+    size_t patches = (size_t)g->solver->model.forest->count;
+    int32_t *number = alloc_array(patches, sizeof *number);
+    add_up(g, &items->area, EACH * (int64_t)patches);
+    for (int64_t i = 0; i < g->count; i++) {
+        int32_t place = gather->place[g->leaves[i]];
+        if (items[place].area == 0)
+            continue;
+        number[place] = (int32_t)g->near_count;
+        items[g->near_count] = items[place];
+        g->near[g->near_count++] = i;
+    }
+    for (int64_t k = 0; k < final_gather_terms(gather); k++)
+        if (gather->terms[k].near >= 0)
+            gather->terms[k].near = number[gather->terms[k].near];
+    alloc_free(number);
 }
 
 /* Collective. Makes the radiosities to be gathered those that far receivers see: see
@@ -175,18 +196,18 @@ static void share_near(struct gathering *g)
 static void see_from_afar(struct gathering *g, const struct rgb *b, bool lamps)
 {
     const struct final_gather *gather = &g->gather;
-    int64_t patches = g->solver->model.forest->count;
-    int64_t *watts = alloc_array(BANDS * (size_t)patches, sizeof *watts);
+    int64_t *watts = alloc_array(BANDS * (size_t)g->near_count, sizeof *watts);
     for (int64_t row = 0; row < gather->count; row++)
         final_gather_add_near(gather, row, g->radiosity, watts);
-    add_up(g, watts, BANDS * patches);
-    for (int64_t i = 0; i < g->count; i++) {
+    add_up(g, watts, BANDS * g->near_count);
+    for (int64_t k = 0; k < g->near_count; k++) {
+        int64_t i = g->near[k];
         int32_t place = gather->place[g->leaves[i]];
-        const struct gather_near *near = &gather->near.items[place];
+        const struct gather_near *near = &gather->near.items[k];
         double part = (double)near->area * gather->near.unit_area / g->areas[i];
         double unit = gather->near.unit_watts / (g->areas[i] * fmax(1.0, part));
         for (int c = 0; c < BANDS; c++) {
-            int64_t sum = watts[BANDS * place + c] + (lamps ? near->watts[c] : 0);
+            int64_t sum = watts[BANDS * k + c] + (lamps ? near->watts[c] : 0);
             g->radiosity[place].band[c] +=
                 fmin(1.0, part) * b[i].band[c] - (double)sum * unit;
         }

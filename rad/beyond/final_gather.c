@@ -78,7 +78,7 @@ void final_gather_find_bright(struct final_gather *gather)
 struct final_gather final_gather_create(struct model *model, int rays)
 {
     struct forest *forest = model->forest;
-    struct final_gather gather = {.model = model, .view = {.root = -1}, .near.met = -1};
+    struct final_gather gather = {.model = model, .view = {.root = -1}};
     forest_bound(forest);
     gather.rays = rays_for(rays, forest_count(forest).leaves);
     gather.mean = mean_radiosity(model);
@@ -100,8 +100,10 @@ void final_gather_drop_rows(struct final_gather *gather)
 {
     alloc_free(gather->rows);
     alloc_free(gather->terms);
+    alloc_free(gather->near.items);
     gather->rows = NULL;
     gather->terms = NULL;
+    gather->near.items = NULL;
     gather->count = gather->row_capacity = 0;
     gather->term_capacity = 0;
 }
@@ -111,7 +113,6 @@ void final_gather_free(struct final_gather *gather)
     lamps_free(&gather->lamps);
     lamps_free(&gather->bright);
     alloc_free(gather->view.faced);
-    alloc_free(gather->near.items);
     alloc_free(gather->near.covered);
     alloc_free(gather->order);
     alloc_free(gather->place);
@@ -187,16 +188,16 @@ struct rgb light_by_parent(const struct forest *forest, int32_t patch)
 }
 
 /* The sum of the row at hand for a patch, by way of the leaf that its ray met first. */
-static struct gather_sum *sum_of(struct final_gather *g, int32_t place)
+static struct gather_sum *sum_of(struct final_gather *g, int32_t place, int32_t near)
 {
     struct gather_sums *sums = &g->sums;
     int32_t at = sums->latest[place];
     if (at >= sums->first && at < sums->count && sums->items[at].place == place &&
-        sums->items[at].near == g->near.met)
+        sums->items[at].near == near)
         return &sums->items[at];
     RESERVE(sums->items, &sums->capacity, sums->count + 1);
     sums->latest[place] = (int32_t)sums->count;
-    sums->items[sums->count] = (struct gather_sum){.place = place, .near = g->near.met};
+    sums->items[sums->count] = (struct gather_sum){.place = place, .near = near};
     return &sums->items[sums->count++];
 }
 
@@ -209,7 +210,7 @@ static void add_term(struct receiver *r, int32_t patch, const struct rgb *weight
         r->light.band[c] += weight->band[c] * b.band[c];
     if (!r->keeps)
         return;
-    struct gather_sum *sum = sum_of(g, g->place[patch]);
+    struct gather_sum *sum = sum_of(g, g->place[patch], r->near);
     for (int c = 0; c < BANDS; c++)
         sum->weight[c] += weight->band[c];
 }
@@ -254,7 +255,8 @@ static struct receiver receiver_make(struct final_gather *gather, struct facet f
                                      uint64_t seed, int rays)
 {
     return (struct receiver){.gather = gather, .facet = facet, .seed = seed,
-                             .along = direction_along(facet.plane.normal), .rays = rays};
+                             .along = direction_along(facet.plane.normal), .rays = rays,
+                             .near = -1};
 }
 
 static uint64_t seed_of(const struct final_gather *gather, int32_t leaf)

@@ -138,11 +138,11 @@ struct vec3 receiver_start(const struct receiver *r, double u, double v)
 static void add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
                      double factor)
 {
-    struct final_gather *g = r->gather;
-    for (int c = 0; c < BANDS && g->near.met >= 0; c++)
-        g->near.items[g->near.met].watts[c] += gather_units(
+    struct gather_nears *near = &r->gather->near;
+    for (int c = 0; c < BANDS && r->near >= 0; c++)
+        near->items[r->near].watts[c] += gather_units(
             r->facet.area * weight->band[c] * factor * emission.band[c],
-            g->near.unit_watts);
+            near->unit_watts);
 }
 
 static void add_source(struct receiver *r, const struct rgb *weight, struct rgb emission,
@@ -500,8 +500,8 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
     struct final_gather *g = r->gather;
     if (!r->keeps) /* a look's leaves may have no places yet */
         return;
-    g->near.met = g->place[met->patch];
-    g->near.items[g->near.met].area +=
+    r->near = g->place[met->patch];
+    g->near.items[r->near].area +=
         gather_units(r->facet.area / r->rays, g->near.unit_area);
     if (aimed) /* segments bring it, so the path does not count it */
         add_near(r, weight, forest_material(g->model->forest, met->patch)->emission, 1.0);
@@ -622,7 +622,7 @@ void receiver_fire(struct receiver *r)
                cosine_direction(r->facet.plane.normal, r->along, u[0], u[1]),
                (struct rgb){{share, share, share}}, half,
                hash_mix(r->seed ^ hash_mix((uint64_t)i)));
-        r->gather->near.met = -1;
+        r->near = -1;
         count_light(r, i, half);
     }
     add_variances(r);

@@ -24,6 +24,8 @@ struct receiver {
     int rays;             /* to be fired */
     int escaped;          /* rays and paths that have left the scene */
     int inside;           /* rays from points inside of things */
+    int32_t near;         /* place of the leaf too near that the ray at hand met first;
+                             -1: none */
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
     struct rgb lamps;     /* H by lamps */
     double bright;        /* form factor of the bright roots, 1 */

@@ -12,7 +12,8 @@
  * in all arrays of the final gather. */
 struct gather_term {
     int32_t place; /* of the patch */
-    int32_t near;  /* place of a leaf too near that its ray met first; -1: none */
+    int32_t near;  /* the leaf too near that its ray met first: its place, or, once these
+                      are numbered, its number; -1: none */
     float weight[BANDS];
 };
 
@@ -54,13 +55,12 @@ struct gather_near {
 
 /* Sums of integers, for they are over ranks; and the leaves that things stand on. */
 struct gather_nears {
-    struct gather_near *items; /* [forest->count] by place, for the rows of this rank;
-                                  of all ranks once these are added up */
+    struct gather_near *items; /* [forest->count] by place, for the rows of this rank; of
+                                  all ranks, once these are added up, by number */
     double unit_area;          /* square scene units */
     double unit_watts;         /* W in square scene units */
     uint8_t *covered; /* [forest->count] by place: 1: a thing stands on part of the leaf;
                          NULL: unknown */
-    int32_t met; /* place of the leaf too near that the ray at hand met first; -1: none */
 };
 
 /* Work of this rank. */
