@@ -57,8 +57,6 @@ struct model {
     double area, emitted_power; /* of the scene: square scene units, W */
     double link_threshold;  /* W, areas in square scene units: epsilon times the light */
     double patch_threshold; /* square scene units: no patch smaller than this is made */
-    struct rgb typical;     /* a guess at the mean radiosity, W/m^2, before there is an
-                               answer */
     struct octree_counts counts; /* work of this rank so far */
     int64_t estimating;     /* work of this rank so far on form factors, in tests */
     int64_t rays_spared;    /* rays not fired, of 16 for each pair that this rank has

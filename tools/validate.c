@@ -109,7 +109,7 @@ static double by_solver(const struct facet *p, const struct facet *q,
     struct octree_counts counts = {0};
     struct visibility visibility = {.blocker = -1};
     double g =
-        exchange_estimate(p, q, kind, EFFORT_ALL, empty, &visibility, &counts).area;
+        exchange_estimate(p, q, kind, empty, &visibility, &counts).area;
     octree_destroy(empty);
     return g;
 }

@@ -30,18 +30,11 @@ static struct rgb typical_radiosity(const struct scene *scene)
     return emitted;
 }
 
-/* As emitted. Fills model->typical, too. */
-static double emitted_power(struct model *model)
-{
-    model->typical = typical_radiosity(model->scene);
-    return model->emitted_power;
-}
-
 /* As emitted or, where light is reflected for long, LASTING of it spread evenly. */
 static double light_power(struct model *model)
 {
-    double emitted = emitted_power(model);
-    return fmax(emitted, LASTING * (model->area * rgb_sum(model->typical)));
+    struct rgb typical = typical_radiosity(model->scene);
+    return fmax(model->emitted_power, LASTING * (model->area * rgb_sum(typical)));
 }
 
 static void prepare(struct model *model)
@@ -93,7 +86,7 @@ struct method method_of(const struct criterion *criterion)
     if (by_disks)
         method.make_link = patch_link_make_by_disks;
     if (all_pairs) {
-        method.light_power = emitted_power;
+        method.light_power = NULL;
         method.first_link = NULL;
     }
     return method;

@@ -68,24 +68,17 @@ static double spread_of(const struct model *model, const struct end *end,
     return 2.0 * off;
 }
 
-/* A part of a cluster's light is dealt by area, as if four samples of 16 had found it so:
- * one ray into a tiny child would make it far too bright. */
-static const double PRIOR = 4.0 / 16.0;
-
 /* Finds the parts of children that exchange `area` in the proportions of `g`, none more
  * than its own area. Returns the exchange area that this leaves. */
 static double find_parts(const struct model *model, const struct end *end,
                          const double g[4], double area, uint8_t parts[3])
 {
-    double prior = end->cluster ? PRIOR : 0.0, exact[4], sum = 0.0, kept = 0.0;
-    for (int k = 0; k < 4; k++) {
-        double share = end_child_area(model, end, k) / end->area;
-        exact[k] = area > 0.0 ? g[k] + (g[k] > 0.0 ? prior * area * share : 0.0) : share;
-        sum += exact[k];
-    }
+    double exact[4], sum = 0.0, kept = 0.0;
+    for (int k = 0; k < 4; k++)
+        sum += g[k];
     for (int k = 0; k < 4; k++) {
         double most = end_child_area(model, end, k);
-        exact[k] = area > 0.0 ? real_min(exact[k] * (area / sum), most) : exact[k];
+        exact[k] = area > 0.0 ? real_min(g[k] * (area / sum), most) : most / end->area;
         kept += exact[k];
     }
     for (int k = 0; k < 4; k++)

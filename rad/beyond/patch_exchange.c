@@ -14,9 +14,6 @@
 
 enum { SUBAREAS = BUNDLE_ENDS, RAYS = BUNDLE_RAYS, ALL_RAYS = (1 << RAYS) - 1 };
 
-/* Segments from a sub-area to the one of the same number. */
-#define DIAGONAL 0x8421u
-
 /* Largest distance of a corner of `t` in front of `plane`. */
 static double reach_above(const struct plane *plane, const struct triangle *t)
 {
@@ -46,44 +43,14 @@ static double exchange_across_horizon(const struct facet *p, const struct facet 
     return p->area * q->area * cosines / (PI * r2 + fmax(p->area, q->area));
 }
 
-/* Of the four segments from each sub-area of p to one of q, those of `asked` that are
- * blocked, as bits. */
-static unsigned block_diagonal(const struct bundle *bundle, unsigned asked,
-                               const struct octree *octree, int32_t *blocker,
-                               struct octree_counts *counts)
+/* The segments that arrive, as bits. */
+static unsigned pair_look(const struct facet_pair *pair, const struct octree *octree,
+                          struct visibility *visibility, struct octree_counts *counts)
 {
-    unsigned blocked = 0;
-    for (int k = 0; k < SUBAREAS; k++) {
-        unsigned bit = 1u << (SUBAREAS + 1) * k;
-        if ((asked & bit) && octree_blocks_segment(octree, bundle->from[k], bundle->to[k],
-                                                   bundle->own, blocker, counts))
-            blocked |= bit;
-    }
-    return blocked;
-}
-
-/* The segments that arrive, as bits. With four segments that agree, one for each
- * sub-area of p and of q, all others are taken to be like them. */
-static unsigned pair_look(struct facet_pair *pair, enum effort effort,
-                          const struct octree *octree, struct visibility *visibility,
-                          struct octree_counts *counts)
-{
-    unsigned facing = pair->bundle.asked, diagonal = facing & DIAGONAL, blocked = 0;
+    unsigned facing = pair->bundle.asked;
     if (visibility->open || facing == 0)
         return facing;
-    if (effort == EFFORT_FOUR_FIRST && diagonal != 0) {
-        blocked = block_diagonal(&pair->bundle, diagonal, octree, &visibility->blocker,
-                                 counts);
-        if (blocked == 0)
-            return facing;
-        if (blocked == diagonal)
-            return 0;
-        pair->bundle.asked = facing & ~DIAGONAL;
-    }
-    if (pair->bundle.asked)
-        blocked |= octree_block(octree, &pair->bundle, &visibility->blocker, counts);
-    pair->bundle.asked = facing;
-    return facing & ~blocked;
+    return facing & ~octree_block(octree, &pair->bundle, &visibility->blocker, counts);
 }
 
 /* Sums of the kernels of one sub-area of p (`of_p`) or q: all that face, and those that
@@ -168,18 +135,12 @@ static void set_parts(const struct side *side, double parts[SUBAREAS])
         parts[sub] = sum > 0.0 ? side->area[sub] / sum : 0.25;
 }
 
-double exchange_guess(const struct facet *p, const struct facet *q)
-{
-    return disk_exchange(triangle_centroid(&p->triangle), p->plane.normal, p->area,
-                         triangle_centroid(&q->triangle), q->plane.normal, q->area);
-}
-
 /* Distance over the sum of the radii. Nearer, a patch might receive more than all light
  * by one disk. */
 static const double FAR = 1.5;
 
-/* True if patches are far enough apart for their size for one disk to be good enough
- * where little light is at stake (within 15 % or so). */
+/* True if patches are far enough apart for their size to trust the form factor from one
+ * point of each sub-area. */
 static bool is_apart(const struct facet *p, const struct facet *q)
 {
     struct vec3 x = triangle_centroid(&p->triangle), y = triangle_centroid(&q->triangle);
@@ -187,30 +148,13 @@ static bool is_apart(const struct facet *p, const struct facet *q)
     return vec3_length(vec3_sub(y, x)) > FAR * radii;
 }
 
-static struct exchange exchange_by_one(const struct facet *p, const struct facet *q,
-                                       const struct octree *octree,
-                                       struct visibility *visibility,
-                                       struct octree_counts *counts)
-{
-    double unoccluded = exchange_guess(p, q);
-    const int32_t own[2] = {p->input, q->input};
-    struct vec3 x = triangle_centroid(&p->triangle), y = triangle_centroid(&q->triangle);
-    bool seen = visibility->open ||
-                !octree_blocks_segment(octree, x, y, own, &visibility->blocker, counts);
-    return (struct exchange){.area = seen ? unoccluded : 0.0, .unoccluded = unoccluded,
-                             .seen = seen ? 1.0 : 0.0, .apart = true,
-                             .parts_p = {0.25, 0.25, 0.25, 0.25},
-                             .parts_q = {0.25, 0.25, 0.25, 0.25}};
-}
-
-static struct exchange exchange_by_all(const struct facet *p, const struct facet *q,
-                                       enum form_factor kind, enum effort effort,
-                                       const struct octree *octree,
-                                       struct visibility *visibility,
-                                       struct octree_counts *counts)
+struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
+                                  enum form_factor kind, const struct octree *octree,
+                                  struct visibility *visibility,
+                                  struct octree_counts *counts)
 {
     struct facet_pair pair = facet_pair_make(p, q);
-    unsigned visible = pair_look(&pair, effort, octree, visibility, counts);
+    unsigned visible = pair_look(&pair, octree, visibility, counts);
     bool points = kind == FORM_FACTOR_POLYGON, apart = is_apart(p, q);
     struct side side_p = points ? side_by_points(&pair, visible, true, apart)
                                 : side_by_disks(&pair, visible, true);
@@ -225,19 +169,6 @@ static struct exchange exchange_by_all(const struct facet *p, const struct facet
     set_parts(&side_q, exchange.parts_q);
     if (pair.bundle.asked != ALL_RAYS)
         exchange.unoccluded = fmax(exchange.unoccluded, exchange_across_horizon(p, q));
-    return exchange;
-}
-
-struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
-                                  enum form_factor kind, enum effort effort,
-                                  const struct octree *octree,
-                                  struct visibility *visibility,
-                                  struct octree_counts *counts)
-{
-    struct exchange exchange =
-        effort == EFFORT_ONE && is_apart(p, q)
-            ? exchange_by_one(p, q, octree, visibility, counts)
-            : exchange_by_all(p, q, kind, effort, octree, visibility, counts);
     double limit = fmin(p->area, q->area);
     if (exchange.unoccluded > limit) {
         exchange.area = fmin(limit, exchange.area * (limit / exchange.unoccluded));

@@ -32,26 +32,14 @@ struct visibility {
  * facing exchanges no light at all. */
 bool facets_face(const struct facet *p, const struct facet *q);
 
-/* The effort that the estimate of a pair is worth. ONE: if the patches are far apart for
- * their size, one disk and a segment from centroid to centroid. FOUR_FIRST: four
- * segments, one from each sub-area to another, decide if they agree, else all 16 do.
- * ALL: 16 segments. */
-enum effort { EFFORT_ONE, EFFORT_FOUR_FIRST, EFFORT_ALL };
-
 /* The exchange of a pair: visibility from segments between sub-areas that face each
  * other, unless it is known; form factors by the disk or from points to the whole other
  * patch: one for each sub-area, or three where the patches are not apart. Pre:
  * facets_face(p, q). */
 struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
-                                  enum form_factor kind, enum effort effort,
-                                  const struct octree *octree,
+                                  enum form_factor kind, const struct octree *octree,
                                   struct visibility *visibility,
                                   struct octree_counts *counts);
-
-/* The exchange area of the pair without blockers, by one disk from centroid to centroid:
- * quick and rough, for choosing the effort. 0 if the centroids do not face each
- * other. */
-double exchange_guess(const struct facet *p, const struct facet *q);
 
 /* True if it is proved that nothing of one facet sees anything of the other: one wall
  * stops all nine segments between their corners. */

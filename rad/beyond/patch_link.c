@@ -41,40 +41,6 @@ void link_set_parts(uint8_t parts[3], const double exact[4])
     }
 }
 
-/* Powers at stake, relative to the threshold, up to which one segment, and four, are
- * enough for a pair. */
-static const double STAKE_ONE = 0.1, STAKE_FOUR = 1.0;
-
-/* The power that a pair reflects, W per square scene unit of G, both ways together: the
- * radiosity of either times the reflectance of the other. In the first pass little is lit
- * yet, so radiosities count as at least the typical one. */
-static double light_at_stake(const struct model *model, int32_t p, int32_t q)
-{
-    const struct forest *forest = model->forest;
-    struct rgb radiosity_p = forest->radiosity[p];
-    struct rgb radiosity_q = forest->radiosity[q];
-    struct rgb reflectance_p = forest_material(forest, p)->reflectance;
-    struct rgb reflectance_q = forest_material(forest, q)->reflectance;
-    double light = 0.0;
-    for (int c = 0; c < BANDS; c++) {
-        double typical = model->typical.band[c];
-        light += reflectance_q.band[c] * real_max(typical, radiosity_p.band[c]) +
-                 reflectance_p.band[c] * real_max(typical, radiosity_q.band[c]);
-    }
-    return light;
-}
-
-enum effort patch_link_effort(const struct model *model, int32_t p, int32_t q,
-                              double guess)
-{
-    if (!(guess > 0.0))
-        return EFFORT_ALL;
-    double stake = guess * light_at_stake(model, p, q);
-    return stake <= STAKE_ONE * model->link_threshold    ? EFFORT_ONE
-           : stake <= STAKE_FOUR * model->link_threshold ? EFFORT_FOUR_FIRST
-                                                          : EFFORT_ALL;
-}
-
 static bool make(struct model *model, int32_t p, const struct facet *facet_p, int32_t q,
                  const struct facet *facet_q, const struct link *parent,
                  enum form_factor form_factor, struct link *link)
@@ -87,8 +53,7 @@ static bool make(struct model *model, int32_t p, const struct facet *facet_p, in
     struct octree_counts work = {0};
     struct visibility visibility = {.open = parent && link_is_open(parent),
                           .blocker = parent ? parent->blocker : -1};
-    enum effort effort = patch_link_effort(model, p, q, exchange_guess(facet_p, facet_q));
-    struct exchange exchange = exchange_estimate(facet_p, facet_q, form_factor, effort,
+    struct exchange exchange = exchange_estimate(facet_p, facet_q, form_factor,
                                                  model->octree, &visibility, &work);
     octree_counts_add(&model->counts, &work);
     model->rays_spared += BUNDLE_RAYS - work.rays;

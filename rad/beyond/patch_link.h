@@ -1,5 +1,4 @@
-/* Links of two patches that tell children apart, spend the effort that the light at stake
- * is worth, and keep proofs of visibility.
+/* Links of two patches that tell children apart, and keep proofs of visibility.
  *
  * `parts` say which parts of G go to (and come from) the children 0, 1 and 2 of p and
  * those of q, in 256ths; child 3 has the rest. So a link tells the four children of a
@@ -57,10 +56,6 @@ const struct rgb *link_take(const struct forest *forest, int32_t patch,
 /* Adds light, G B, to the flux of a patch, or of its children by the parts. */
 void link_give(struct forest *forest, int32_t patch, const uint8_t parts[3], double area,
                const struct rgb *radiosity, struct flux_unit unit);
-
-/* The effort that a pair is worth. `guess`: its exchange area without blockers. */
-enum effort patch_link_effort(const struct model *model, int32_t p, int32_t q,
-                              double guess);
 
 /* Entries of struct method: make_link, with form factors from points or by disks, and
  * split_link, which ends links of two patches that are proved to be walled off. */

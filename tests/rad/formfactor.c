@@ -39,7 +39,7 @@ static void test_pairs(void)
         struct visibility visibility = {.blocker = -1};
         int32_t blocker = -1;
         double seen, area = exchange_area(&p, &q, world.octree, &blocker, &seen, &counts);
-        struct exchange other = exchange_estimate(&p, &q, FORM_FACTOR_DISK, EFFORT_ALL,
+        struct exchange other = exchange_estimate(&p, &q, FORM_FACTOR_DISK,
                                                   world.octree, &visibility, &others);
         double limit = fmin(p.area, q.area);
         pairs += area > 0.0;

@@ -266,13 +266,11 @@ static void test_parts(void)
         struct facet q = facet_make(world.model.forest, 1);
         struct link link;
         enum form_factor kind = i % 2 ? FORM_FACTOR_POLYGON : FORM_FACTOR_DISK;
-        world.model.link_threshold = 0.0; /* so that all is looked at */
         world.model.method.make_link = i % 2 ? patch_link_make : patch_link_make_by_disks;
         if (make(&world, 0, 1, &link)) {
             struct octree_counts counts = {0};
             struct visibility visibility = {.open = false, .blocker = -1};
-            struct exchange exchange = exchange_estimate(&p, &q, kind, EFFORT_ALL,
-                                                         world.octree,
+            struct exchange exchange = exchange_estimate(&p, &q, kind, world.octree,
                                                          &visibility, &counts);
             made++;
             for (int k = 0; k < 4; k++) {
@@ -319,33 +317,6 @@ static void test_inheriting(void)
     world_free(&world);
 }
 
-/* --- looking --- */
-
-/* The floor sends 1 and 3, the ceiling nothing: the typical B counts as long as there is
- * less. */
-static void test_look(void)
-{
-    struct material grey = material_grey(0.5, 1);
-    struct world world = make_default_pair(1.0, grey, grey, NULL);
-    struct model *model = &world.model;
-    model->typical = (struct rgb){{0.0, 0.0, 0.0}};
-    model->link_threshold = 1.0;
-    /* 3/2 each way: a stake of 3 for a guess of 1. */
-    tap_ok(patch_link_effort(model, 0, 1, 0.0999 / 3.0) == EFFORT_ONE &&
-               patch_link_effort(model, 0, 1, 0.1001 / 3.0) == EFFORT_FOUR_FIRST &&
-               patch_link_effort(model, 0, 1, 0.999 / 3.0) == EFFORT_FOUR_FIRST &&
-               patch_link_effort(model, 0, 1, 1.001 / 3.0) == EFFORT_ALL,
-           "little at stake is looked at less");
-    model->typical = (struct rgb){{3.0, 1.0, 1.0}}; /* 5/2 each way */
-    tap_ok(patch_link_effort(model, 0, 1, 0.0999 / 5.0) == EFFORT_ONE &&
-               patch_link_effort(model, 0, 1, 0.1001 / 5.0) == EFFORT_FOUR_FIRST,
-           "the typical B counts where it is more");
-    tap_ok(patch_link_effort(model, 0, 1, 0.0) == EFFORT_ALL &&
-               patch_link_effort(model, 0, 1, NAN) == EFFORT_ALL,
-           "without a guess all is looked at");
-    world_free(&world);
-}
-
 int main(void)
 {
     test_dropping();
@@ -356,6 +327,5 @@ int main(void)
     test_transfer();
     test_parts();
     test_inheriting();
-    test_look();
     return tap_done();
 }
