@@ -84,7 +84,7 @@ void above_begin(struct solver *solver, const struct rgb *vector)
 {
     struct cluster_light *clusters = solver->model.clusters;
     double start = comm_seconds();
-    cluster_light_send(clusters, solver->model.forest, vector);
+    cluster_light_average(clusters, solver->model.forest, vector, clusters->sent);
     memset(clusters->flux, 0,
            BANDS * (size_t)clusters->tree->count * sizeof *clusters->flux);
     solver->account.seconds[PHASE_SUMS] += comm_seconds() - start;

@@ -33,9 +33,8 @@ void cluster_light_destroy(struct cluster_light *light)
     alloc_free(light);
 }
 
-/* Means over clusters, of a vector over patches. */
-static void average(const struct cluster_light *light, const struct forest *forest,
-                    const struct rgb *of_patches, struct rgb *of_clusters)
+void cluster_light_average(const struct cluster_light *light, const struct forest *forest,
+                           const struct rgb *of_patches, struct rgb *of_clusters)
 {
     for (int32_t i = light->tree->count - 1; i >= 0; i--) {
         const struct cluster *cluster = &light->tree->clusters[i];
@@ -51,17 +50,6 @@ static void average(const struct cluster_light *light, const struct forest *fore
         }
         of_clusters[i] = sum;
     }
-}
-
-void cluster_light_pull(struct cluster_light *light, const struct forest *forest)
-{
-    average(light, forest, forest->radiosity, light->radiosity);
-}
-
-void cluster_light_send(struct cluster_light *light, const struct forest *forest,
-                        const struct rgb *vector)
-{
-    average(light, forest, vector, light->sent);
 }
 
 /* The variance of B in a root is that of its extremes; in a cluster, that within its

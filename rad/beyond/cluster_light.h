@@ -20,11 +20,9 @@ struct cluster_light {
 struct cluster_light *cluster_light_create(const struct cluster_tree *tree);
 void cluster_light_destroy(struct cluster_light *light);
 
-/* The pull: means of the children, from the roots up; of B, into `radiosity`, and of a
- * vector [patches], into `sent`. */
-void cluster_light_pull(struct cluster_light *light, const struct forest *forest);
-void cluster_light_send(struct cluster_light *light, const struct forest *forest,
-                        const struct rgb *vector);
+/* The pull: means of the children, from the roots up, of a vector [patches]. */
+void cluster_light_average(const struct cluster_light *light, const struct forest *forest,
+                           const struct rgb *of_patches, struct rgb *of_clusters);
 
 /* The ranges, after a pull; the extremes of the roots are those of forest_bound(). */
 void cluster_light_bound(struct cluster_light *light, const struct forest *forest);

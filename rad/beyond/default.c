@@ -39,10 +39,12 @@ static double light_power(struct model *model)
 
 static void prepare(struct model *model)
 {
+    struct cluster_light *clusters = model->clusters;
     forest_bound(model->forest);
-    if (model->clusters) {
-        cluster_light_pull(model->clusters, model->forest);
-        cluster_light_bound(model->clusters, model->forest);
+    if (clusters) {
+        cluster_light_average(clusters, model->forest, model->forest->radiosity,
+                              clusters->radiosity);
+        cluster_light_bound(clusters, model->forest);
     }
 }
 

@@ -49,12 +49,6 @@ struct end end_of(const struct model *model, int32_t node)
     return end;
 }
 
-int32_t end_child(const struct model *model, const struct end *end, int k)
-{
-    return end->cluster ? end->cluster->child[k]
-                        : model->forest->patches[end->node].children + k;
-}
-
 double end_child_area(const struct model *model, const struct end *end, int k)
 {
     if (!end->cluster)

@@ -21,8 +21,14 @@ struct end {
 
 struct end end_of(const struct model *model, int32_t node);
 
-/* The node of child k, or NODE_NONE; its area, 0 where there is none. */
-int32_t end_child(const struct model *model, const struct end *end, int k);
+/* Child k of a node that has children, or NODE_NONE. */
+static inline int32_t node_child(const struct model *model, int32_t node, int k)
+{
+    return node_is_cluster(node) ? model->clusters->tree->clusters[~node].child[k]
+                                 : model->forest->patches[node].children + k;
+}
+
+/* The area of child k, 0 where there is none. */
 double end_child_area(const struct model *model, const struct end *end, int k);
 
 /* False if it is certain that nothing of one end faces anything of the other. */

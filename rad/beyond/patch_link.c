@@ -4,12 +4,7 @@
  * and the last blocker, which is tested first. (A quarter of its segments, those
  * that begin or end at its centroid, were already fired for its parent; their answers
  * would take two bytes a link, and a bundle of 12 goes down the octree as one of 16
- * does.)
- *
- * Light that a link brings to a patch with children is dealt to them by the link's
- * parts, and the light that they send is weighted by them: that costs no ray, since the
- * parts come from the very segments that gave G. Where the parts are even it is the same
- * as light to the patch itself. */
+ * does.) */
 #include "rad/beyond/patch_link.h"
 
 #include <math.h>
@@ -101,37 +96,3 @@ int patch_link_split(struct model *model, const struct link *link, int32_t patch
         parent.seen = LINK_OPEN;
     return link_split(model, &parent, patch, children);
 }
-
-const struct rgb *link_take(const struct forest *forest, int32_t patch,
-                            const uint8_t parts[3], const struct rgb *vector,
-                            struct rgb *sum)
-{
-    if (!link_is_divided(forest, patch, parts))
-        return &vector[patch];
-    const struct rgb *child = &vector[forest->patches[patch].children];
-    *sum = (struct rgb){{0.0, 0.0, 0.0}};
-    for (int k = 0; k < 4; k++) {
-        double part = link_part(parts, k);
-        for (int c = 0; c < BANDS; c++)
-            sum->band[c] += part * child[k].band[c];
-    }
-    return sum;
-}
-
-void link_give(struct forest *forest, int32_t patch, const uint8_t parts[3], double area,
-               const struct rgb *radiosity, struct flux_unit unit)
-{
-    struct patch *at = &forest->patches[patch];
-    if (!link_is_divided(forest, patch, parts)) {
-        for (int c = 0; c < BANDS; c++)
-            at->flux[c] += flux_from_watts(unit, area * radiosity->band[c]);
-        return;
-    }
-    struct patch *child = &forest->patches[at->children];
-    for (int k = 0; k < 4; k++) {
-        double part = link_part(parts, k);
-        for (int c = 0; c < BANDS; c++)
-            child[k].flux[c] += flux_from_watts(unit, part * (area * radiosity->band[c]));
-    }
-}
-

@@ -26,36 +26,12 @@ static inline double link_part(const uint8_t parts[3], int k)
                  : (256 - parts[0] - parts[1] - parts[2]) * (1.0 / 256.0);
 }
 
-static inline bool parts_are_even(const uint8_t parts[3])
-{
-    return parts[0] == 64 && parts[1] == 64 && parts[2] == 64;
-}
-
-/* True if light to and from a patch is that of its children, by the parts, and not of
- * the patch itself. */
-static inline bool link_is_divided(const struct forest *forest, int32_t patch,
-                                   const uint8_t parts[3])
-{
-    return !patch_is_leaf(&forest->patches[patch]) && !parts_are_even(parts);
-}
-
 /* Parts in 256ths, rounded from the first to the last so that none is off by more than
  * one. */
 void link_set_parts(uint8_t parts[3], const double exact[4]);
 
 /* The share of the light that arrives, 0..1, in the form of the field `seen`. */
 uint8_t link_seen(double share);
-
-/* Returns the entry of a vector [patches] that a link takes from a patch: its own, or the
- * sum, in `*sum`, of those of its children weighted by the parts. (A pointer: a transfer
- * with copies of colours took 1.5 times as long.) */
-const struct rgb *link_take(const struct forest *forest, int32_t patch,
-                            const uint8_t parts[3], const struct rgb *vector,
-                            struct rgb *sum);
-
-/* Adds light, G B, to the flux of a patch, or of its children by the parts. */
-void link_give(struct forest *forest, int32_t patch, const uint8_t parts[3], double area,
-               const struct rgb *radiosity, struct flux_unit unit);
 
 /* Entries of struct method: make_link, with form factors from points or by disks, and
  * split_link, which ends links of two patches that are proved to be walled off. */

@@ -217,7 +217,8 @@ static double power_of_links(const struct solution *s)
     const struct model *model = &s->solver->model;
     double own = 0.0, sum = 0.0;
     if (model->clusters)
-        cluster_light_pull(model->clusters, model->forest);
+        cluster_light_average(model->clusters, model->forest, model->forest->radiosity,
+                              model->clusters->radiosity);
     for (int64_t i = 0; i < s->solver->links.count; i++) {
         const struct link *link = &s->solver->links.items[i];
         own += link_area(link) * (sent_by(model, link->p, link->parts_p) +

@@ -57,7 +57,8 @@ static struct wood wood_make(struct scene *scene)
     model->link_threshold = 0.0;
     wood.tree = tree_create(scene, wood.world.octree);
     model->clusters = cluster_light_create(wood.tree);
-    cluster_light_pull(model->clusters, model->forest);
+    cluster_light_average(model->clusters, model->forest, model->forest->radiosity,
+                          model->clusters->radiosity);
     cluster_light_bound(model->clusters, model->forest);
     return wood;
 }
@@ -381,7 +382,8 @@ static void set_light(struct model *model, uint64_t seed)
         for (int c = 0; c < BANDS; c++)
             forest->radiosity[p].band[c] =
                 hash_unit(hash_mix(seed) + BANDS * (uint64_t)p + (uint64_t)c);
-    cluster_light_pull(model->clusters, forest);
+    cluster_light_average(model->clusters, forest, forest->radiosity,
+                          model->clusters->radiosity);
 }
 
 /* Sum over all nodes of their radiosity times their flux, W^2/m^2 in flux units. */
@@ -409,7 +411,8 @@ static double product_over(struct model *model, const struct link_list *links,
     memset(clusters->flux, 0,
            BANDS * (size_t)clusters->tree->count * sizeof *clusters->flux);
     set_light(model, from);
-    cluster_light_send(clusters, model->forest, model->forest->radiosity);
+    cluster_light_average(clusters, model->forest, model->forest->radiosity,
+                          clusters->sent);
     node_links_transfer(links, model, model->forest->radiosity,
                         flux_unit_for(model->area));
     set_light(model, to);
