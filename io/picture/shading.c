@@ -16,7 +16,10 @@
  * range. More of them, and leaves that have few rays, would exaggerate differences that
  * are noise, so each deficit d, of a leaf whose radiosity has the standard deviation s,
  * counts 1 - (s/d)^2 times, or not at all: the estimate of a value from one noisy sample
- * (James and Stein, 1961).
+ * (James and Stein, 1961). Leaves that have too much by noise have a larger s than those
+ * that have too little, so light would be lost: .6 % of the picture of a furnished room
+ * (make cycles). The last correction takes deficits whole: as much light is shown as
+ * leaves have.
  *
  * Where a box stands on the floor, leaves are covered in part. The covered part is dark
  * and invisible, and must not darken the rest. It is found with the four points where the
@@ -283,6 +286,7 @@ struct blend {
     const struct rgb *less; /* [patches] radiosity to subtract, W/m^2, or NULL */
     const float *error;     /* [patches] of radiosity, two deviations, W/m^2, or NULL */
     const uint8_t *open;    /* of shading_open_quarters() */
+    bool is_last;           /* of the corrections: it takes deficits as they are */
     int64_t next;           /* number of the next leaf in canonical order */
     int32_t *surface;       /* [roots] of surface_of_roots() */
     struct rgb *lacking;    /* [vertex_count] sum of area times deficit of leaves, W */
@@ -368,7 +372,8 @@ static struct rgb deficit_of(const struct blend *blend, int32_t leaf, struct rgb
             deficit.band[c] -= blend->table.values[corner[k]].band[c] / 3.0;
         largest = fmax(largest, fabs(deficit.band[c]));
     }
-    if (blend->less && blend->error && fraction > 0.0 && largest > 0.0) {
+    if (blend->less && blend->error && !blend->is_last && fraction > 0.0 &&
+        largest > 0.0) {
         double part = 0.5 * (double)blend->error[leaf] / (fraction * largest);
         share = fmax(0.0, 1.0 - part * part);
     }
@@ -434,7 +439,8 @@ static void blend_leaves(struct blend *blend)
     for_each_leaf(forest, -1, add_leaf, blend);
     find_means(&blend->table);
     settle_edges(blend);
-    for (int round = 0; round < (blend->less ? ROUNDS : 1); round++) {
+    for (int round = blend->less ? ROUNDS : 1; round > 0; round--) {
+        blend->is_last = round == 1;
         give_what_lacks(blend);
         settle_edges(blend);
     }

@@ -365,7 +365,7 @@ static double reflected_error(struct stage *stage, double deviation, bool reflec
 
 /* Reflected light goes on up to the border, where it is beyond the means of all leaves:
  * four corrections leave a third of the error that the mean and one have. Noise as large
- * as is said is shown as it is; taken for light, it would be exaggerated. */
+ * as is said is exaggerated by the last correction alone; taken for light, by all. */
 static void test_reflected(void)
 {
     static const double NOISE = 0.05;
@@ -384,7 +384,7 @@ static void test_reflected(void)
                 NOISE * sqrt(12.0) * (random_unit(&random) - 0.5);
     double calm = reflected_error(&stage, NOISE, true);
     double wild = reflected_error(&stage, 0.0, true);
-    tap_ok(calm < 0.7 * wild, "noise that is known: RMS error %.4f, taken for light %.4f",
+    tap_ok(calm < 0.8 * wild, "noise that is known: RMS error %.4f, taken for light %.4f",
            calm, wild);
     dismantle(&stage);
 }
