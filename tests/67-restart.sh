@@ -116,7 +116,7 @@ for limit in 5 24 40; do # in the first round, in the second, and at its end
     resumes accuracy-$limit $limit --accuracy 1.5% --epsilon 1e-2
 done
 check "which takes two rounds and more" \
-    holds "$(stat_of "$work/accuracy-40.json" rounds) >= 2"
+    grep -q '"rounds": [2-9]' "$work/accuracy-40.json"
 # Rays fired again are counted again.
 counts="checksum links patches passes iterations absorbed_power"
 resumes two-sided 8 --two-sided --max-level 4
