@@ -43,8 +43,9 @@ enum { STEPS_MOST = 500 };
 /* A scene is closed if no more than this part of all rays escapes. */
 static const double CRACKS = 1e-5;
 
-/* The light of a root that is not divided varies by about this part. */
-static const double UNDIVIDED = 0.2;
+/* The light of a root that is not divided varies by about the first part, or the second
+ * times its size over its distance: seen from near, it may be lit unlike its mean. */
+static const double UNDIVIDED = 0.2, UNDIVIDED_NEAR = 0.3;
 
 /* Leaves have numbers, in the order of forest_order(), the same on all ranks. Rows of a
  * rank are in the order of its leaves. */
@@ -326,19 +327,26 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
 
 /* --- errors --- */
 
-/* An estimate of how B varies within a leaf: half of its difference from the mean over
- * its parent; of undivided roots, a part of the reflected radiosity. */
-static struct rgb variation_of(const struct gathering *g, int64_t place)
+/* An estimate of how B varies within a leaf as seen from a point: half of its difference
+ * from the mean over its parent; of undivided roots, a part of the reflected
+ * radiosity. */
+static struct rgb variation_of(const struct gathering *g, int64_t place, struct vec3 from)
 {
     const struct forest *forest = g->solver->model.forest;
     int32_t patch = g->gather.order[place], parent = forest->patches[patch].parent;
     const struct rgb *mean = &g->radiosity[parent >= 0 ? g->gather.place[parent] : place];
     struct rgb b = g->radiosity[place], deviation;
     struct rgb e = forest_material(forest, patch)->emission;
+    double part = UNDIVIDED;
+    if (parent < 0) {
+        struct triangle t = forest_triangle(forest, patch);
+        struct vec3 apart = vec3_sub(triangle_centroid(&t), from);
+        double near = sqrt(forest_area(forest, patch) / vec3_dot(apart, apart));
+        part = fmin(1.0, fmax(UNDIVIDED, UNDIVIDED_NEAR * near));
+    }
     for (int c = 0; c < BANDS; c++)
-        deviation.band[c] =
-            parent >= 0 ? 0.5 * (b.band[c] - mean->band[c])
-                        : UNDIVIDED * (b.band[c] - e.band[c]);
+        deviation.band[c] = parent >= 0 ? 0.5 * (b.band[c] - mean->band[c])
+                                        : part * (b.band[c] - e.band[c]);
     return deviation;
 }
 
@@ -350,9 +358,12 @@ static void variances_by_mesh(struct gathering *g, struct rgb *variance)
     const struct final_gather *gather = &g->gather;
     struct rgb *own = g->all + g->at[g->solver->comm->rank];
     for (int64_t row = 0, k = 0; row < gather->count; row++) {
+        struct triangle leaf =
+            forest_triangle(g->solver->model.forest, gather->rows[row].leaf);
+        struct vec3 from = triangle_centroid(&leaf);
         own[row] = (struct rgb){{0.0, 0.0, 0.0}};
         for (; k < gather->rows[row].end; k++) {
-            struct rgb deviation = variation_of(g, gather->terms[k].place);
+            struct rgb deviation = variation_of(g, gather->terms[k].place, from);
             for (int c = 0; c < BANDS; c++) {
                 double h = (double)gather->terms[k].weight[c] * deviation.band[c];
                 own[row].band[c] += h * h;
@@ -360,6 +371,32 @@ static void variances_by_mesh(struct gathering *g, struct rgb *variance)
         }
     }
     share_rows(g, variance);
+}
+
+/* A leaf whose rays have missed a small bright thing that one of its sisters has found is
+ * too dark, and its variance is too small as well: it gets the mean of the sisters', each
+ * that of one ray, where that is more. */
+static void raise_to_sisters(const struct gathering *g, struct rgb *variance)
+{
+    const struct patch *patches = g->solver->model.forest->patches;
+    size_t count = (size_t)g->solver->model.forest->count;
+    struct rgb *sums = alloc_array(count, sizeof *sums);
+    uint8_t *sisters = alloc_array(count, sizeof *sisters);
+    for (int raises = 0; raises < 2; raises++)
+        for (int64_t i = 0; i < g->count; i++) {
+            int32_t parent = patches[g->leaves[i]].parent;
+            if (parent < 0)
+                continue;
+            double rays = g->mesh.rays[i], *v = variance[i].band;
+            sisters[parent] = (uint8_t)(sisters[parent] + !raises);
+            for (int c = 0; c < BANDS; c++)
+                if (raises)
+                    v[c] = fmax(v[c], sums[parent].band[c] / (sisters[parent] * rays));
+                else
+                    sums[parent].band[c] += rays * v[c];
+        }
+    alloc_free(sisters);
+    alloc_free(sums);
 }
 
 /* Collective. Variance of H that comes from the choice of rays: the variance by
@@ -383,6 +420,7 @@ static void variances_by_rays(struct gathering *g, struct rgb *variance)
             by_chance += g->areas[i] * variance[i].band[c];
         }
     double better = by_chance > 0.0 ? fmin(1.0, as_chosen / by_chance) : 1.0;
+    raise_to_sisters(g, variance);
     for (int64_t i = 0; i < g->count; i++)
         for (int c = 0; c < BANDS; c++)
             variance[i].band[c] *= better;

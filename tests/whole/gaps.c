@@ -233,10 +233,56 @@ static void test_room(void)
     solution_free(&s);
 }
 
+/* True if the leaf is off by its error at most: by paths, until their deviation is a
+ * sixth of it. */
+static bool error_holds(const struct pathtracer *pathtracer, struct patch_id id,
+                        struct found found)
+{
+    enum { MOST = 512 };
+    struct triangle part = pathtracer_part(id);
+    double sum = 0.0, squares = 0.0, deviation = HUGE_VAL;
+    int n = 0;
+    while (n < ROUNDS_LEAST || (n < MOST && deviation > found.error / 6.0)) {
+        uint64_t seed = id_number(id) * ROUNDS_MOST + (uint64_t)n++;
+        double b = pathtracer_reflected(pathtracer, (int32_t)id.root, &part, PATHS, seed)
+                       .band[0];
+        sum += b;
+        squares += b * b;
+        deviation = sqrt(fmax(0.0, squares / n - sum / n * (sum / n)) / n);
+    }
+    return fabs(found.light - sum / n) <= found.error;
+}
+
+/* Errors hold for 95 % of leaves of furnished rooms; here, where half of all leaves see
+ * little but the inside of a gap, for 91 %. Without the sisters' noise, and with light
+ * that varies over near roots as over far ones, they hold for 87 %. */
+static void test_errors(void)
+{
+    enum { LOOKED = 300 };
+    struct solution s = solve_scene(room(), "--epsilon 1e-2 --final-gather 64");
+    const struct forest *forest = s.solver->model.forest;
+    struct pathtracer pathtracer = pathtracer_make(s.scene, s.octree);
+    int held = 0, looked = 0;
+    int64_t step = forest->count / LOOKED;
+    for (int64_t p = step / 2; p < forest->count; p += step) {
+        struct found found = {reflected(&s, (int32_t)p),
+                              (double)s.solver->beyond->answer.error[p]};
+        if (!patch_is_leaf(&forest->patches[p]))
+            continue;
+        held += error_holds(&pathtracer, forest->patches[p].id, found);
+        looked++;
+    }
+    tap_ok(held >= 0.89 * looked, "errors hold for %d of %d leaves (%.1f s)", held,
+           looked, s.seconds);
+    pathtracer_free(&pathtracer);
+    solution_free(&s);
+}
+
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
     test_room();
+    test_errors();
     comm_stop(&world_comm);
     return tap_done();
 }
