@@ -120,7 +120,8 @@ static void test_paper(const struct comm *comm, const struct truth *truth)
 
 /* The promise of --accuracy: the true error is at most 1.5 times the claim, which is
  * --accuracy or less, or there is a limit that holds it back. The claim is not to be
- * much more than the error either. */
+ * much more than the error either: at most three times as much, for a check that may take
+ * as many rays as the gather tells little more of an error that is far below the goal. */
 static void test_accuracy(const struct comm *comm, const char *path,
                           const struct truth *truth, double accuracy, int max_level,
                           double min_area, enum hold hold)
@@ -137,7 +138,7 @@ static void test_accuracy(const struct comm *comm, const char *path,
                "%s, --accuracy %.3g, max level %d: a claim of %.2f %%, hold %d", path,
                accuracy, max_level, 100.0 * result.estimate, (int)result.hold);
         tap_ok(result.leaf <= 1.5 * result.estimate &&
-                   result.leaf >= 0.5 * result.estimate,
+                   3.0 * result.leaf >= result.estimate,
                "the true error is %.2f %%", 100.0 * result.leaf);
     }
 }
