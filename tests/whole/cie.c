@@ -53,8 +53,8 @@ static const struct room_case {
      6,
      {{2.75, 16.070642, 0}, {2.25, 16.329677, 0}, {1.75, 15.398810, 0},
       {1.25, 13.322018, 0}, {0.75, 10.316924, 0}, {0.25, 7.078969, 0}}},
-    {"5.7 slab, floor", "--epsilon 1e-9 --final-gather 0", FLOOR, OPPOSITE, true, PERCENT,
-     5,
+    {"5.7 slab, floor", "--epsilon 1e-6 --final-gather 2048", FLOOR, OPPOSITE, true,
+     PERCENT, 5,
      {{0.25, 3.382335, 0}, {0.75, 3.628986, 0}, {1.25, 3.012951, 0}, {1.75, 0, 0.1},
       {2.25, 0, 100.0 * 1e-9}}}};
 
