@@ -453,7 +453,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
                       .solver = SOLVER_CG,
                       .balance = BALANCE_DEFAULT,
                       .epsilon = -1.0,
-                      .min_area = 1e-7,
+                      .min_area = 1e-10,
                       .max_level = 10,
                       .alpha = 0.5,
                       .tolerance = 1e-5,
@@ -567,7 +567,7 @@ static const char HELP[] =
     "  --size WxH       pixels (512x512)       --samples N   N x N rays a pixel (3)\n"
     "  --exposure X     factor (automatic)     --flat        no interpolation\n"
     "  --epsilon E      error of a link (1e-4) --accuracy A  refine to this error\n"
-    "  --max-level N    of subdivision (10)    --min-area A  of a patch (1e-7)\n"
+    "  --max-level N    of subdivision (10)    --min-area A  of a patch (1e-10)\n"
     "  --tolerance T    of the solution (1e-5) --max-iterations N   at most (1000)\n"
     "  --oracle error|bf   what splits a link  --form-factor polygon|disk\n"
     "  --linking tree|pairs  where links begin --final-gather N[,pixels]  rays (256)\n"

@@ -279,19 +279,21 @@ static struct cluster cluster_of_root(const struct scene *scene, int32_t root)
     struct triangle t = scene_root_triangle(scene, root);
     struct vec3 normal = scene_root_plane(scene, root).normal;
     const struct material *material = scene_root_material(scene, root);
+    double area = scene_root_area(scene, root);
     return (struct cluster){
         .low = vec3_least(t.corner[0], vec3_least(t.corner[1], t.corner[2])),
         .high = vec3_most(t.corner[0], vec3_most(t.corner[1], t.corner[2])),
         .normal_low = normal,
         .normal_high = normal,
-        .area = scene_root_area(scene, root),
+        .area = area,
+        .reflecting = rgb_sum(material->reflectance) > 0.0 ? area : 0.0,
         .reflectance = material->reflectance,
         .is_dark = material_is_dark(material),
     };
 }
 
-/* Adds a child to its parent, whose reflectance is a sum over its area until all
- * are added. */
+/* Adds a child to its parent, whose reflectance is a sum over its area until all are
+ * added. */
 static void add_child(struct cluster *parent, const struct cluster *child)
 {
     bool fresh = parent->area == 0.0;
@@ -302,8 +304,9 @@ static void add_child(struct cluster *parent, const struct cluster *child)
     parent->normal_high =
         fresh ? child->normal_high : vec3_most(parent->normal_high, child->normal_high);
     for (int c = 0; c < BANDS; c++)
-        parent->reflectance.band[c] += child->area * child->reflectance.band[c];
+        parent->reflectance.band[c] += child->reflecting * child->reflectance.band[c];
     parent->area += child->area;
+    parent->reflecting += child->reflecting;
     parent->is_dark = (fresh || parent->is_dark) && child->is_dark;
 }
 
@@ -318,8 +321,8 @@ static void sum_up(struct cutter *cutter, struct cluster *cluster)
                                    : cluster_of_root(cutter->scene, node);
         add_child(cluster, &child);
     }
-    for (int c = 0; c < BANDS; c++)
-        cluster->reflectance.band[c] /= cluster->area;
+    for (int c = 0; c < BANDS && cluster->reflecting > 0.0; c++)
+        cluster->reflectance.band[c] /= cluster->reflecting;
 }
 
 /* Where the four parts of a cluster end. `below`: roots that a child can hold at most. */

@@ -30,7 +30,9 @@ struct cluster {
     struct vec3 low, high;               /* box around its roots, scene units */
     struct vec3 normal_low, normal_high; /* box around their unit normals */
     double area;                         /* sum over its roots, square scene units */
-    struct rgb reflectance;              /* mean over its area, 1 */
+    double reflecting;                   /* area that is not black */
+    struct rgb reflectance;              /* mean over that, 1: a wide black ground does
+                                            not make a house on it look black */
     int32_t child[4];                    /* nodes; NODE_NONE where there are fewer */
     int32_t first, end; /* its roots are roots[first] to before roots[end] */
     uint32_t hierarchy;                  /* of its ID */

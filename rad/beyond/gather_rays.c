@@ -633,7 +633,7 @@ void receiver_fire(struct receiver *r)
 
 float receiver_bare_share(const struct receiver *r)
 {
-    static const double ABOVE = 0x1p-20; /* scene units */
+    static const double ABOVE = 0x1p-26; /* scene units */
     struct model *model = r->gather->model;
     struct sequence sequence = sequence_start(r->seed + 24);
     struct vec3 normal = r->facet.plane.normal;

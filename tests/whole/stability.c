@@ -13,6 +13,7 @@
  *     faces without area                 here; scene.c counts them
  *     scale                              here, fixed mesh; 65-invariance.sh, to the bit
  *     offset                             here, fixed mesh; 65-invariance.sh
+ *     a wide ground                      here
  *     scale of the emission              here
  *     a tiny bright light                here
  *     16 levels                          options.c refuses them; 15 here
@@ -403,6 +404,49 @@ static void test_moved(const char *name, double scale, double offset, double lim
     solution_free(&two);
 }
 
+/* A room with a box, a lamp and a sheet half a thousandth in front of a wall, which it
+ * lights, with and without a black ground a thousand times as wide below it, which no
+ * light reaches. Both answers err by chance, of 64 rays a leaf; they are apart by .2 %,
+ * root by root. With leaves limited to 1e-7 of the whole area it is 2.6 %, and if the
+ * ground's black dilutes the room's reflectance, so that one link seems enough for all,
+ * 2.1 %; 44 % of the light is lost if the sheet is taken to cover the wall. */
+static void test_ground(void)
+{
+    struct solution s[2];
+    double off = 0.0, light = 0.0;
+    for (int k = 0; k < 2; k++) {
+        struct soup soup = {0};
+        add_room(&soup, 1);
+        soup_add_quad(&soup, point(5e-4, 0.3, 0.3), point(0, 0.4, 0), point(0, 0, 0.4),
+                      1);
+        soup_add_box(&soup, point(0.3, 0.2, 0.1), point(0.7, 0.5, 0.4), 1, false);
+        paint(&soup, 0.5, 0.0);
+        soup_add_quad(&soup, point(0.4, 0.4, 0.95), point(0, 0.2, 0), point(0.2, 0, 0),
+                      1);
+        paint(&soup, 0.0, 100.0);
+        soup_add_quad(&soup, point(5e-4, 0.3, 0.3), point(0, 0, 0.4), point(0, 0.4, 0),
+                      1);
+        paint(&soup, 0.0, 20.0);
+        if (k > 0)
+            soup_add_quad(&soup, point(-500, -500, -1), point(1000, 0, 0),
+                          point(0, 1000, 0), 1);
+        paint(&soup, 0.0, 0.0);
+        s[k] = solve_soup(&soup, "");
+    }
+    for (int32_t root = 0; root < 12 + 2 + 12; root++) {
+        double b = radiosity(&s[0], root), d = radiosity(&s[1], root) - b;
+        double area = scene_root_area(s[0].scene, root);
+        off += area * d * d;
+        light += area * b * b;
+    }
+    tap_ok(sqrt(off / light) <= 0.005, "a room on a wide ground: apart by %.2f %%",
+           100.0 * sqrt(off / light));
+    off = s[1].stats.absorbed_power / s[0].stats.absorbed_power - 1.0;
+    tap_ok(fabs(off) <= 0.005, "which absorbs as much light: %+.2f %%", 100.0 * off);
+    solution_free(&s[0]);
+    solution_free(&s[1]);
+}
+
 /* --- light --- */
 
 static void test_emission_scale(void)
@@ -694,6 +738,7 @@ int main(int argc, char **argv)
     test_moved("a million times as large", 1e6, 0.0, 1e-7);
     test_moved("a millionth as large", 1e-6, 0.0, 1e-7);
     test_moved("moved by a million sizes", 1.0, 1e6, 1e-6);
+    test_ground();
     test_emission_scale();
     test_linearity();
     test_reciprocity();
