@@ -33,6 +33,9 @@
  * radiosity: where all surfaces are alike, as in a furnace, there is none. */
 static const double LAMP = 4.0;
 
+/* Bright roots are aimed at if they send at least this part of the reflected light. */
+static const double LEAST_BRIGHT = 0.01;
+
 /* Radiosity that varies by less than this part of the mean over a leaf is constant. */
 static const double FLAT = 0.01;
 
@@ -71,8 +74,14 @@ static int rays_for(int rays, int64_t leaves)
 
 void final_gather_find_bright(struct final_gather *gather)
 {
+    const struct model *model = gather->model;
+    double least = LEAST_BRIGHT * mean_reflected(model) * model->area;
     lamps_free(&gather->bright);
-    gather->bright = lamps_create(gather->model, gather->lamps.least, true);
+    gather->bright = lamps_create(model, gather->lamps.least, true);
+    if (lamps_power(&gather->bright) >= least)
+        return;
+    lamps_free(&gather->bright);
+    gather->bright = lamps_create(model, HUGE_VAL, true);
 }
 
 struct final_gather final_gather_create(struct model *model, int rays)

@@ -145,6 +145,11 @@ void lamps_free(struct lamps *lamps)
     alloc_free(lamps->before);
 }
 
+double lamps_power(const struct lamps *lamps)
+{
+    return lamps->before[lamps->model->clusters->tree->root_count];
+}
+
 /* --- groups --- */
 
 /* The roots of a node: places in the tree's order. */

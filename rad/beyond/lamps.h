@@ -43,6 +43,9 @@ void lamps_free(struct lamps *lamps);
 /* The light that a lamp sends, W/m^2. */
 struct rgb lamp_light(const struct lamps *lamps, int32_t root);
 
+/* The power that all lamps send, over all bands, W in square scene units. */
+double lamps_power(const struct lamps *lamps);
+
 bool root_is_lamp(const struct lamps *lamps, int32_t root);
 
 /* Finds the groups of lamps that a leaf tells apart, in the tree's order: each is a root,

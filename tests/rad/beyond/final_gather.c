@@ -239,6 +239,24 @@ static void test_bright(void)
     trial_free(&g);
 }
 
+/* A white grain of 1 mm lies on a dark floor of 1 m, ten times as bright: it sends a
+ * millionth of the light, and no ray is aimed at it. */
+static void test_grain(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.09, 0.0);
+    soup_add_quad(&soup, point(0.5, 0.5, 1), point(0, 0.1, 0), point(0.1, 0, 0), 1);
+    paint(&soup, 0.0, 100.0);
+    soup_add_box(&soup, point(0.5, 0.5, 0), point(0.501, 0.501, 0.001), 1, false);
+    paint(&soup, 0.9, 0.0);
+    struct trial g = gather_scene(&soup, "", 64);
+    double bright = lamps_power(&g.gather.bright), lamps = lamps_power(&g.gather.lamps);
+    tap_ok(bright == 0.0 && lamps > 0.0, "no ray is aimed at a white grain (%g W)",
+           bright);
+    trial_free(&g);
+}
+
 /* In a closed room with a box lit brightly by a lamp beside it, rows still sum to 1. */
 static void test_bright_rows(void)
 {
@@ -564,6 +582,7 @@ int main(int argc, char **argv)
     test_lamps();
     test_bright();
     test_bright_rows();
+    test_grain();
     test_gap();
     test_covered();
     test_covered_for_points();
