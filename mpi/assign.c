@@ -42,38 +42,38 @@ static void sink(struct heap *heap, int at)
     }
 }
 
-struct candidate {
+struct weighted {
     int64_t weight;
-    int32_t root;
+    int32_t number;
 };
 
-static int compare_candidates(const void *left, const void *right)
+static int compare_items(const void *left, const void *right)
 {
-    const struct candidate *a = left, *b = right;
+    const struct weighted *a = left, *b = right;
     if (a->weight != b->weight)
         return a->weight > b->weight ? -1 : 1;
-    return a->root < b->root ? -1 : 1;
+    return a->number < b->number ? -1 : 1;
 }
 
-void roots_assign(const int64_t *weights, int32_t roots, int ranks, int *owner)
+void items_deal(const int64_t *weights, int32_t count, int ranks, int *owner)
 {
-    struct candidate *candidates = alloc_array((size_t)roots, sizeof *candidates);
-    for (int32_t root = 0; root < roots; root++)
-        candidates[root] = (struct candidate){weights[root], root};
-    qsort(candidates, (size_t)roots, sizeof *candidates, compare_candidates);
+    struct weighted *items = alloc_array((size_t)count, sizeof *items);
+    for (int32_t i = 0; i < count; i++)
+        items[i] = (struct weighted){weights[i], i};
+    qsort(items, (size_t)count, sizeof *items, compare_items);
     struct heap heap = {.count = ranks};
     heap.ranks = alloc_array((size_t)ranks, sizeof *heap.ranks);
     heap.loads = alloc_array((size_t)ranks, sizeof *heap.loads);
     for (int r = 0; r < ranks; r++)
         heap.ranks[r] = r; /* a heap, as all loads are 0 */
-    for (int32_t i = 0; i < roots; i++) {
-        owner[candidates[i].root] = heap.ranks[0];
-        heap.loads[heap.ranks[0]] += candidates[i].weight;
+    for (int32_t i = 0; i < count; i++) {
+        owner[items[i].number] = heap.ranks[0];
+        heap.loads[heap.ranks[0]] += items[i].weight;
         sink(&heap, 0);
     }
     alloc_free(heap.loads);
     alloc_free(heap.ranks);
-    alloc_free(candidates);
+    alloc_free(items);
 }
 
 /* --- step 3 --- */
@@ -100,7 +100,7 @@ void solver_assign_roots(struct solver *solver)
     for (int32_t root = 0; root < roots; root++) /* areas, in parts of 2^-40 of all */
         weights[root] =
             (int64_t)(scene_root_area(model->scene, root) / model->area * 0x1p40);
-    roots_assign(weights, roots, solver->comm->size, solver->homes.owner);
+    items_deal(weights, roots, solver->comm->size, solver->homes.owner);
     alloc_free(weights);
     for (int32_t root = 0; root < roots; root++)
         solver->homes.own[root] = solver->homes.owner[root] == solver->comm->rank;

@@ -4,9 +4,8 @@
 
 #include <stdint.h>
 
-/* Deals the roots to `ranks` ranks so that the sums of their weights are even:
- * owner[root] is the home of a root. A pure function, so all ranks get the same
- * answer. */
-void roots_assign(const int64_t *weights, int32_t roots, int ranks, int *owner);
+/* Deals `count` items, such as roots, to `ranks` ranks so that the sums of their weights
+ * are even: item i goes to owner[i]. A pure function: all ranks get the same answer. */
+void items_deal(const int64_t *weights, int32_t count, int ranks, int *owner);
 
 #endif

@@ -24,7 +24,7 @@
  * plain wall few.
  *
  * Looks are dealt in turns. They also measure the work of a ray, and rows are dealt by
- * the work that this predicts: sorted by it, to the ranks up and down. */
+ * the work that this predicts, as roots are by their areas. */
 #include "mpi/beyond/gather_mesh.h"
 
 #include <math.h>
@@ -34,6 +34,7 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "geom/stop.h"
+#include "mpi/assign.h"
 #include "mpi/memory.h"
 #include "rad/oracle.h"
 
@@ -466,40 +467,18 @@ static void share_rays(struct looking *l)
     alloc_free(worth);
 }
 
-/* --- dealing of rows --- */
-
-struct row_work {
-    double work; /* predicted, tests */
-    int64_t index;
-};
-
-/* Most work first. */
-static int compare_work(const void *left, const void *right)
-{
-    const struct row_work *a = left, *b = right;
-    int order = (a->work < b->work) - (a->work > b->work);
-    return order != 0 ? order : (a->index > b->index) - (a->index < b->index);
-}
-
-/* Deals rows to the ranks up and down: 0, 1, 2, 2, 1, 0, 0, 1, ... */
+/* Deals rows so that the predicted sums of their work are even. */
 static void deal_rows(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;
-    int64_t ranks = l->solver->comm->size;
-    struct row_work *rows = alloc_array((size_t)mesh->count, sizeof *rows);
+    int64_t *work = alloc_array((size_t)mesh->count, sizeof *work); /* tests */
     for (int64_t i = 0; i < mesh->count; i++) {
         const struct known *known = &l->known[mesh->leaves[i]];
-        rows[i].work = (double)known->fixed + mesh->rays[i] * (double)known->work;
-        rows[i].index = i;
+        work[i] = (int64_t)((double)known->fixed + mesh->rays[i] * (double)known->work);
     }
-    qsort(rows, (size_t)mesh->count, sizeof *rows, compare_work);
     mesh->rank_of = alloc_array((size_t)mesh->count, sizeof *mesh->rank_of);
-    for (int64_t i = 0; i < mesh->count; i++) {
-        int64_t place = i % (2 * ranks);
-        mesh->rank_of[rows[i].index] =
-            (int)(place < ranks ? place : 2 * ranks - 1 - place);
-    }
-    alloc_free(rows);
+    items_deal(work, (int32_t)mesh->count, l->solver->comm->size, mesh->rank_of);
+    alloc_free(work);
 }
 
 bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *mesh)

@@ -15,7 +15,7 @@ static void test_even_sums(int32_t roots, int ranks)
     int64_t total = 0, biggest = 0, largest = 0;
     for (int32_t i = 0; i < roots; i++)
         weights[i] = (int64_t)(1e6 * random_unit(&random) * random_unit(&random));
-    roots_assign(weights, roots, ranks, owner);
+    items_deal(weights, roots, ranks, owner);
     bool in_range = true;
     for (int32_t i = 0; i < roots; i++) {
         in_range = in_range && owner[i] >= 0 && owner[i] < ranks;
@@ -47,7 +47,7 @@ static void test_rule(int32_t roots, int ranks)
     bool *dealt = alloc_array((size_t)roots, sizeof *dealt), right = true;
     for (int32_t i = 0; i < roots; i++)
         weights[i] = i % 2 ? 50 : (int64_t)(random_bits(&random) % 100);
-    roots_assign(weights, roots, ranks, owner);
+    items_deal(weights, roots, ranks, owner);
     for (int32_t turn = 0; turn < roots; turn++) {
         int32_t heaviest = -1;
         int least = 0;
