@@ -7,8 +7,7 @@
 #   make pathtracer      build/pathtracer, which phr's pictures and meshes are compared
 #                        with
 #   make bench           $(BUILD)/rays and $(BUILD)/hits, benches of visibility and of
-#                        first hits, beside Embree where it is installed;
-#                        $(BUILD)/parsing, a bench of reading OBJ
+#                        first hits, beside Embree where it is installed
 #   make errors          $(BUILD)/reference and $(BUILD)/measure: phr against a path
 #                        tracer
 #   make chart           docs/chart.csv, docs/accuracy.md and, with gnuplot,
@@ -160,8 +159,7 @@ $(BUILD)/tests/phr.o: phr.c Makefile
 -include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/tests/phr.d \
     $(PROGRAMS:%=$(BUILD)/%.d) $(TESTS:%=$(BUILD)/tests/%.d) \
     $(REPLAYS:=.d) $(BUILD)/tests/corpus.d $(TRUTH:.o=.d) \
-    $(BENCHES:%=$(BUILD)/tests/bench/%.d) \
-    $(BUILD)/tests/bench/parsing.d
+    $(BENCHES:%=$(BUILD)/tests/bench/%.d)
 
 demo: $(PHR)
 	$(MPIEXEC) -n 2 ./$(PHR) scenes/cornell.obj --view scenes/cornell.view \
@@ -178,16 +176,13 @@ build/room: scenes/room.c Makefile
 # Set EMBREE= to leave Embree out where its header is found.
 EMBREE ?= $(wildcard /usr/include/embree3/rtcore.h /usr/local/include/embree3/rtcore.h)
 
-bench: $(BUILD)/rays $(BUILD)/hits $(BUILD)/parsing build/room
+bench: $(BUILD)/rays $(BUILD)/hits build/room
 
 $(BUILD)/rays $(BUILD)/hits: $(BUILD)/%: tests/bench/%.c tests/bench/embree.h \
     $(OBJECTS) Makefile
 	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) \
 	    $(CFLAGS) -o $@ \
 	    $< $(OBJECTS) $(if $(EMBREE),-lembree3) -lm
-
-$(BUILD)/parsing: $(BUILD)/tests/bench/parsing.o $(BUILD)/libphr.a
-	$(COMPILE) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 errors: $(BUILD)/reference $(BUILD)/measure
 
