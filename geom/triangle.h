@@ -33,6 +33,15 @@ double triangle_area(const struct triangle *t);         /* square scene units */
 struct vec3 triangle_centroid(const struct triangle *t);
 double triangle_radius(const struct triangle *t); /* largest, corner to centroid */
 
+/* The mean of three corners, or of their normals, with these weights, which are x, y and
+ * z: the point that has them as its barycentric coordinates. */
+static inline struct vec3 corners_mean(const struct vec3 corner[3],
+                                       struct vec3 weight)
+{
+    struct vec3 a = vec3_scale(corner[0], weight.x), b = vec3_scale(corner[1], weight.y);
+    return vec3_add(vec3_add(a, b), vec3_scale(corner[2], weight.z));
+}
+
 /* The triangle with the corners (a, c, b), which faces the other way. */
 static inline struct triangle triangle_turned(const struct triangle *t)
 {

@@ -225,7 +225,7 @@ static void place_point(struct element *element, int64_t number)
     bool beyond = u + v > 1.0;
     u = beyond ? 1.0 - u : u;
     v = beyond ? 1.0 - v : v;
-    struct vec3 x = triangle_point(&part, (struct vec3){1.0 - u - v, u, v});
+    struct vec3 x = corners_mean(part.corner, (struct vec3){1.0 - u - v, u, v});
     for (int axis = 0; axis < 3; axis++)
         element->weight[axis] = vec3_axis(x, axis);
 }

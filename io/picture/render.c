@@ -57,12 +57,6 @@ struct pixel_light {
     double variance; /* of `sum` by the choice of segments, over bands, (W/m^2)^2 */
 };
 
-static struct vec3 corners_mean(const struct vec3 corner[3], struct vec3 weight)
-{
-    struct vec3 a = vec3_scale(corner[0], weight.x), b = vec3_scale(corner[1], weight.y);
-    return vec3_add(vec3_add(a, b), vec3_scale(corner[2], weight.z));
-}
-
 /* Least cosine between the normal at a corner and that of the plane, 45 degrees, for
  * facets of a smooth surface. A box with normals smoothed over its edges is beyond it:
  * lifted towards a sphere, its sides would cover the objects that stand on them. */

@@ -69,10 +69,8 @@ static double look_at(const struct site *site, struct vec3 from, struct vec3 dir
     if (scene_root_on(site->scene, hit.triangle, hit.front) < 0)
         return BACK;
     const struct triangle *t = &site->scene->triangles[hit.triangle];
-    struct vec3 point = {0.0, 0.0, 0.0};
-    for (int k = 0; k < 3; k++)
-        point = vec3_add(point, vec3_scale(t->corner[k], hit.weight[k]));
-    return vec3_length(vec3_sub(point, from));
+    struct vec3 weight = {hit.weight[0], hit.weight[1], hit.weight[2]};
+    return vec3_length(vec3_sub(corners_mean(t->corner, weight), from));
 }
 
 static double look(const struct site *site, struct vec3 from, struct vec3 direction)

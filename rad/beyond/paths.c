@@ -73,13 +73,6 @@ static double draw_next(struct draw *draw)
 
 /* --- points and directions --- */
 
-struct vec3 triangle_point(const struct triangle *t, struct vec3 weight)
-{
-    struct vec3 a = vec3_scale(t->corner[0], weight.x);
-    struct vec3 b = vec3_scale(t->corner[1], weight.y);
-    return vec3_add(vec3_add(a, b), vec3_scale(t->corner[2], weight.z));
-}
-
 static struct vec3 point_on(const struct triangle *t, struct draw *draw)
 {
     double u = draw_next(draw), v = draw_next(draw);
@@ -87,7 +80,7 @@ static struct vec3 point_on(const struct triangle *t, struct draw *draw)
         u = 1.0 - u;
         v = 1.0 - v;
     }
-    return triangle_point(t, (struct vec3){1.0 - u - v, u, v});
+    return corners_mean(t->corner, (struct vec3){1.0 - u - v, u, v});
 }
 
 struct triangle pathtracer_part(struct patch_id id)
@@ -116,7 +109,7 @@ static bool arrive(const struct pathtracer *pathtracer, struct vec3 origin,
                           pathtracer->counts))
         return false;
     q->root = scene_root_on(pathtracer->scene, hit.triangle, hit.front);
-    q->x = triangle_point(&pathtracer->scene->triangles[hit.triangle],
+    q->x = corners_mean(pathtracer->scene->triangles[hit.triangle].corner,
                           (struct vec3){hit.weight[0], hit.weight[1], hit.weight[2]});
     q->weight[0] = hit.weight[0];
     q->weight[1] = hit.weight[hit.front ? 1 : 2]; /* a twin has its corners turned */
@@ -295,7 +288,7 @@ struct rgb pathtracer_reflected(const struct pathtracer *pathtracer, int32_t roo
     for (draw.sample = 0; draw.sample < samples; draw.sample++) {
         draw.used = 0;
         struct arrival start = {.root = root};
-        start.x = triangle_point(&t, point_on(part, &draw));
+        start.x = corners_mean(t.corner, point_on(part, &draw));
         add_light(&sum, rho, 1.0 / samples, irradiance(pathtracer, start, &draw));
     }
     return sum;

@@ -27,9 +27,6 @@ struct pathtracer {
 struct pathtracer pathtracer_make(const struct scene *scene, const struct octree *octree);
 void pathtracer_free(struct pathtracer *pathtracer);
 
-/* Point of a triangle with the given barycentric coordinates, which are x, y and z. */
-struct vec3 triangle_point(const struct triangle *t, struct vec3 weight);
-
 /* Estimate of the mean reflected radiosity rho H, W/m^2, over a part of a root: the
  * triangle whose corners have the given barycentric coordinates. Three equal corners ask
  * for a point. Its expectation is exact. Pre: samples > 0. */

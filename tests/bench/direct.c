@@ -166,7 +166,7 @@ static void find_element(const struct scene *scene, struct element *element, dou
     for (int step = 0; step < id_level(element->id); step++)
         part = triangle_child(&part, id_step(element->id, step));
     struct vec3 weight = {element->weight[0], element->weight[1], element->weight[2]};
-    struct vec3 x = triangle_point(&whole, weight);
+    struct vec3 x = corners_mean(whole.corner, weight);
     struct rgb mean =
         mean_over(scene, root, &part, mean_by_points(scene, root, &part), limit, 0);
     for (int half = 0; half < TRUTH_HALVES; half++) {

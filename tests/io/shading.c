@@ -432,7 +432,7 @@ static double edge_error(struct stage *stage, bool flat, double *mean, double *l
     for (int i = 0; i < 100000; i++) {
         struct vec3 w = random_point_on(&random, &WHOLE);
         struct triangle t = scene_root_triangle(stage->scene, i % 2);
-        struct vec3 x = triangle_point(&t, w);
+        struct vec3 x = corners_mean(t.corner, w);
         double shown = value_at(stage, i % 2, w).band[0],
                off = shown - edge_field(stage, x);
         square += off * off / 100000.0;

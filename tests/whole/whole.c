@@ -71,9 +71,7 @@ static double truth_of_leaf(const struct truth *truth, const struct solution *s,
                 double part = c == k ? 2.0 / 3.0 : 1.0 / 6.0;
                 w[c] = q == 3 ? 0.5 - 0.5 * part : 0.5 * part + (c == q ? 0.5 : 0.0);
             }
-            struct vec3 x = vec3_add(
-                vec3_scale(t.corner[0], w[0]),
-                vec3_add(vec3_scale(t.corner[1], w[1]), vec3_scale(t.corner[2], w[2])));
+            struct vec3 x = corners_mean(t.corner, point(w[0], w[1], w[2]));
             if (truth->root) {
                 sum += light_of_facets(s->scene, truth->root,
                                        (int32_t)forest->patches[leaf].id.root, x) /
