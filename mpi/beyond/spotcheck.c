@@ -131,26 +131,12 @@ static void list_leaves(struct checking *c)
     alloc_free(order);
 }
 
-/* The first leaf with which the sum of the probabilities exceeds this share of all. */
-static int32_t leaf_at(const struct checking *c, double share)
-{
-    int64_t low = 0, high = c->count - 1;
-    while (low < high) {
-        int64_t middle = low + (high - low) / 2;
-        if (c->upto[middle] > share)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return (int32_t)low;
-}
-
 static void draw_leaves(struct checking *c, int batch)
 {
     double moved = (batch + 0.5) * 0.6180339887498949;
     moved -= floor(moved);
     for (int k = 0; k < BATCH; k++)
-        c->drawn[k] = leaf_at(c, (k + moved) / BATCH);
+        c->drawn[k] = (int32_t)sum_place(c->upto, c->count, (k + moved) / BATCH);
 }
 
 static struct finding trace_leaf(const struct checking *c, int32_t leaf, uint64_t draw)

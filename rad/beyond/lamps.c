@@ -18,6 +18,7 @@
 #include "geom/alloc.h"
 #include "geom/contour.h"
 #include "geom/lambert.h"
+#include "rad/beyond/sample.h"
 
 /* A cluster is a group if its radius is at most this part of its distance. */
 static const double SMALL = 0.25;
@@ -259,13 +260,7 @@ struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u)
     places_of(tree, node, &first, &end);
     double all = lamps->before[end] - lamps->before[first];
     double at = lamps->before[first] + u * all;
-    while (end - first > 1) { /* before[first] <= at, and at is below before[end] */
-        int32_t middle = first + (end - first) / 2;
-        if (lamps->before[middle] <= at)
-            first = middle;
-        else
-            end = middle;
-    }
+    first += (int32_t)sum_place(lamps->before + first + 1, end - first, at);
     while (lamps->before[first + 1] == lamps->before[first]) /* no lamp: by rounding */
         first--;
     double own = lamps->before[first + 1] - lamps->before[first];

@@ -49,17 +49,10 @@ struct region {
 static int32_t root_by_area(const struct cluster_tree *tree,
                             const struct cluster *cluster, double u)
 {
-    int32_t low = cluster->first, high = cluster->end - 1;
-    double from = tree->area_before[low], to = tree->area_before[high + 1];
-    double wanted = from + u * (to - from);
-    while (low < high) {
-        int32_t middle = low + (high - low) / 2;
-        if (tree->area_before[middle + 1] > wanted)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return tree->roots[low];
+    const double *after = tree->area_before + cluster->first; /* root by root */
+    int32_t count = cluster->end - cluster->first;
+    double wanted = after[0] + u * (after[count] - after[0]);
+    return tree->roots[cluster->first + sum_place(after + 1, count, wanted)];
 }
 
 /* In child k of an end: a quarter of a patch, or a root of a cluster, chosen by area. */

@@ -164,18 +164,11 @@ double pathtracer_power(const struct pathtracer *pathtracer)
     return pathtracer->power[scene_root_count(pathtracer->scene) - 1];
 }
 
-/* The first root r so that roots 0 .. r together emit more than this power. */
-static int32_t emitter_at(const struct pathtracer *pathtracer, double power)
+/* A root, chosen by the power that it emits. */
+static int32_t choose_light(const struct pathtracer *pathtracer, struct draw *draw)
 {
-    int32_t low = 0, high = scene_root_count(pathtracer->scene) - 1;
-    while (low < high) {
-        int32_t middle = low + (high - low) / 2;
-        if (pathtracer->power[middle] > power)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return low;
+    return (int32_t)sum_place(pathtracer->power, scene_root_count(pathtracer->scene),
+                              pathtracer_power(pathtracer) * draw_next(draw));
 }
 
 /* G, 1 / square scene unit; 0 where one of the two faces away. */
@@ -213,7 +206,7 @@ static void add_chosen_light(const struct pathtracer *pathtracer, const struct a
 {
     const struct scene *scene = pathtracer->scene;
     double power = pathtracer_power(pathtracer);
-    struct arrival light = {.root = emitter_at(pathtracer, power * draw_next(draw))};
+    struct arrival light = {.root = choose_light(pathtracer, draw)};
     struct triangle t = scene_root_triangle(scene, light.root);
     light.x = point_on(&t, draw);
     struct rgb emission = scene_root_material(scene, light.root)->emission;
@@ -300,8 +293,7 @@ void pathtracer_shine(const struct pathtracer *pathtracer, uint64_t seed,
 {
     const struct scene *scene = pathtracer->scene;
     struct draw draw = draw_make(seed);
-    double chosen = pathtracer_power(pathtracer) * draw_next(&draw);
-    struct arrival p = {.root = emitter_at(pathtracer, chosen)}, q;
+    struct arrival p = {.root = choose_light(pathtracer, &draw)}, q;
     struct triangle t = scene_root_triangle(scene, p.root);
     p.x = point_on(&t, &draw);
     struct rgb emission = scene_root_material(scene, p.root)->emission;

@@ -5,6 +5,19 @@
 
 #include "geom/hash.h"
 
+int64_t sum_place(const double *sums, int64_t count, double at)
+{
+    int64_t low = 0, high = count - 1;
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+        if (sums[middle] > at)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
 struct vec3 triangle_sample(const struct triangle *t, uint64_t seed)
 {
     double u = hash_unit(seed), v = hash_unit(seed + 1);

@@ -12,6 +12,10 @@ struct half_line {
     struct vec3 origin, direction; /* of length 1 */
 };
 
+/* The first of `count` places whose sum, which rises from place to place, exceeds `at`:
+ * a choice in proportion to the rises. The last place if none does. */
+int64_t sum_place(const double *sums, int64_t count, double at);
+
 /* A point on the triangle. Uses seed and seed + 1. */
 struct vec3 triangle_sample(const struct triangle *t, uint64_t seed);
 
