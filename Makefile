@@ -178,7 +178,7 @@ EMBREE ?= $(wildcard /usr/include/embree3/rtcore.h /usr/local/include/embree3/rt
 
 bench: $(BUILD)/rays $(BUILD)/hits build/room
 
-$(BUILD)/rays $(BUILD)/hits: $(BUILD)/%: tests/bench/%.c tests/bench/embree.h \
+$(BUILD)/rays $(BUILD)/hits: $(BUILD)/%: tests/bench/%.c tests/bench/subject.h \
     $(OBJECTS) Makefile
 	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) \
 	    $(CFLAGS) -o $@ \

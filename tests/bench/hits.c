@@ -15,21 +15,12 @@
  * Last, a picture of 1920 x 1080 pixels of 3 x 3 rays, without a final gather, from the
  * eye that phr chooses: all of render_scanlines(), beside rtcIntersect1() alone on the
  * same rays, three turns. */
-#include <inttypes.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
-
-#include "geom/alloc.h"
 #include "io/picture/render.h"
 #include "io/picture/viewpoint.h"
-#include "io/scene/obj.h"
-#include "mpi/comm.h"
-#include "octree/octree.h"
-#include "octree/tree.h"
-#include "tests/bench/embree.h"
-#include "tests/random.h"
+#include "rad/beyond/sample.h"
+#include "rad/beyond/sequence.h"
+#include "tests/bench/subject.h"
+#include "tests/scenes.h"
 #include "tests/shaded.h"
 
 enum { TURNS = 9, GATHER = 64, WIDTH = 1920, HEIGHT = 1080, SAMPLES = 3 };
@@ -40,56 +31,17 @@ struct rays {
     int32_t *answers;            /* [count] triangle that is hit, or -1; is it blocked? */
     int count;
     bool are_segments;
+    double *sums; /* [triangles] area of the triangles up to this one */
 };
-
-/* The target of rays. */
-struct subject {
-    const struct scene *scene;
-    struct octree *octree;
-    double *sums; /* [input_count] area of the triangles up to this one */
-#ifdef WITH_EMBREE
-    RTCScene whole, inside; /* all triangles; without those of the hull */
-#endif
-};
-
-/* A direction whose density is the cosine to the normal over pi: that of a point in the
- * unit ball around its tip. */
-static struct vec3 random_direction(struct vec3 normal, struct random *random)
-{
-    struct vec3 x;
-    do {
-        x.x = 2.0 * random_unit(random) - 1.0;
-        x.y = 2.0 * random_unit(random) - 1.0;
-        x.z = 2.0 * random_unit(random) - 1.0;
-    } while (vec3_dot(x, x) > 1.0 || vec3_dot(x, x) < 1e-6);
-    return vec3_add(normal, vec3_scale(x, 0.999 / vec3_length(x)));
-}
-
-/* A triangle, by area: sums[i] is that of the triangles up to i. */
-static int32_t random_by_area(const double *sums, int32_t count, struct random *random)
-{
-    double at = sums[count - 1] * random_unit(random);
-    int32_t low = 0, high = count - 1;
-    while (low < high) {
-        int32_t middle = low + (high - low) / 2;
-        if (sums[middle] > at)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return low;
-}
 
 /* A point of the surfaces, by area. Returns its triangle. */
-static int32_t random_place(const struct subject *subject, struct random *random,
-                            struct vec3 *x)
+static int32_t random_place(const struct subject *subject, const struct rays *rays,
+                            struct random *random, struct vec3 *x)
 {
-    const struct scene *scene = subject->scene;
-    int32_t t = random_by_area(subject->sums, scene->input_count, random);
-    const struct vec3 *corner = scene->triangles[t].corner;
-    double u = sqrt(random_unit(random)), v = u * random_unit(random);
-    *x = vec3_add(vec3_scale(corner[0], 1.0 - u),
-                  vec3_add(vec3_scale(corner[1], u - v), vec3_scale(corner[2], v)));
+    int32_t count = subject->scene->input_count;
+    double at = rays->sums[count - 1] * random_unit(random);
+    int32_t t = (int32_t)sum_place(rays->sums, count, at);
+    *x = random_point_on(random, &subject->scene->triangles[t]);
     return t;
 }
 
@@ -100,13 +52,14 @@ static void fill_leaving(const struct subject *subject, struct rays *rays,
     int32_t t = 0;
     for (int i = 0; i < rays->count; i++) {
         if (i % together == 0) {
-            t = random_place(subject, random, &rays->origins[i]);
-            struct vec3 lift = vec3_scale(planes[t].normal, 1024.0 * GEOM_ROUNDING);
-            rays->origins[i] = vec3_add(rays->origins[i], lift);
+            t = random_place(subject, rays, random, &rays->origins[i]);
+            rays->origins[i] = point_above(rays->origins[i], planes[t].normal);
         } else {
             rays->origins[i] = rays->origins[i - 1];
         }
-        rays->ends[i] = random_direction(planes[t].normal, random);
+        rays->ends[i] =
+            cosine_direction(planes[t].normal, direction_along(planes[t].normal),
+                             random_unit(random), random_unit(random));
     }
 }
 
@@ -133,16 +86,11 @@ static void fill_segments(const struct subject *subject, struct rays *rays,
         int32_t *own = rays->own[i];
         struct vec3 *from = &rays->origins[i], *to = &rays->ends[i];
         do {
-            own[0] = random_place(subject, random, from);
-            own[1] = random_place(subject, random, to);
+            own[0] = random_place(subject, rays, random, from);
+            own[1] = random_place(subject, rays, random, to);
         } while (plane_distance(&planes[own[0]], *to) <= 1e-3 ||
                  plane_distance(&planes[own[1]], *from) <= 1e-3);
     }
-}
-
-static double cpu_seconds(void)
-{
-    return (double)clock() / CLOCKS_PER_SEC;
 }
 
 /* Returns the seconds that it takes. */
@@ -215,16 +163,15 @@ static void bench_rays(const struct subject *subject, struct rays *rays)
     struct octree_counts counts;
     double best = HUGE_VAL;
 #ifdef WITH_EMBREE
-    struct RTCRayHit *embree = alloc_array((size_t)rays->count + 1, sizeof *embree);
-    struct RTCRayHit *aligned =
-        (struct RTCRayHit *)(((uintptr_t)embree + 15) & ~(uintptr_t)15);
+    void *memory;
+    struct RTCRayHit *embree = alloc_aligned(rays->count, sizeof *embree, &memory);
     double embree_best = HUGE_VAL;
     int64_t differ = 0;
 #endif
     for (int turn = 0; turn < TURNS; turn++) {
         best = fmin(best, run_octree(subject->octree, rays, &counts));
 #ifdef WITH_EMBREE
-        embree_best = fmin(embree_best, run_embree(subject, rays, aligned, &differ));
+        embree_best = fmin(embree_best, run_embree(subject, rays, embree, &differ));
 #endif
     }
     printf("  octree: %.3f million/s, per ray %.1f nodes and %.1f triangles\n",
@@ -234,7 +181,7 @@ static void bench_rays(const struct subject *subject, struct rays *rays)
     printf("  Embree: %.3f million/s; octree is %.2f of that; %" PRId64
            " of %d answers differ\n",
            1e-6 * rays->count / embree_best, embree_best / best, differ, rays->count);
-    alloc_free(embree);
+    alloc_free(memory);
 #endif
 }
 
@@ -248,8 +195,12 @@ static void bench_all(const struct subject *subject, int count, uint64_t seed)
                  {"rays from surfaces, 64 from each point", fill_leaving, GATHER},
                  {"rays of a camera", fill_camera, 0},
                  {"segments between points of surfaces", fill_segments, 0}};
+    const struct scene *scene = subject->scene;
+    double *sums = alloc_array((size_t)scene->input_count, sizeof *sums), sum = 0.0;
+    for (int32_t i = 0; i < scene->input_count; i++)
+        sums[i] = sum += scene->areas[i];
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
-        struct rays rays = {.count = count};
+        struct rays rays = {.count = count, .sums = sums};
         struct random random = random_seed(seed);
         rays.origins = alloc_array((size_t)count, sizeof *rays.origins);
         rays.ends = alloc_array((size_t)count, sizeof *rays.ends);
@@ -263,6 +214,7 @@ static void bench_all(const struct subject *subject, int count, uint64_t seed)
         alloc_free(rays.own);
         alloc_free(rays.answers);
     }
+    alloc_free(sums);
 }
 
 /* --- a picture --- */
@@ -278,9 +230,8 @@ static double trace_picture(const struct subject *subject, const struct camera *
     struct rays rays = {.count = count};
     rays.origins = alloc_array((size_t)count, sizeof *rays.origins);
     rays.ends = alloc_array((size_t)count, sizeof *rays.ends);
-    struct RTCRayHit *embree = alloc_array((size_t)count + 1, sizeof *embree);
-    struct RTCRayHit *aligned =
-        (struct RTCRayHit *)(((uintptr_t)embree + 15) & ~(uintptr_t)15);
+    void *memory;
+    struct RTCRayHit *embree = alloc_aligned(count, sizeof *embree, &memory);
     double seconds = 0.0;
     rtcInitIntersectContext(&context);
     for (int y = 0; y < camera->height; y++) {
@@ -290,15 +241,15 @@ static double trace_picture(const struct subject *subject, const struct camera *
             rays.ends[i] = camera_basis_ray(&basis, x + (k % SAMPLES + 0.5) / SAMPLES,
                                             y + (k / SAMPLES + 0.5) / SAMPLES);
         }
-        set_embree(&rays, aligned);
+        set_embree(&rays, embree);
         double start = cpu_seconds();
         for (int i = 0; i < count; i++)
-            rtcIntersect1(subject->whole, &context, &aligned[i]);
+            rtcIntersect1(subject->whole, &context, &embree[i]);
         seconds += cpu_seconds() - start;
     }
     alloc_free(rays.origins);
     alloc_free(rays.ends);
-    alloc_free(embree);
+    alloc_free(memory);
     return seconds;
 }
 
@@ -328,50 +279,13 @@ static void bench_picture(const struct subject *subject)
     forest_destroy(forest);
 }
 
-/* The octree, Embree's scenes and the choice of rays. */
-static void bench_scene(const struct scene *scene, int count, uint64_t seed)
+static void bench_scene(const struct subject *subject, int count, uint64_t seed)
 {
-    struct subject subject = {.scene = scene};
-    double sum = 0.0, start = cpu_seconds();
-    subject.octree = octree_create(scene->triangles, scene->planes, scene->input_count);
-    printf("%d triangles, octree built in %.3f s\n", (int)scene->input_count,
-           cpu_seconds() - start);
-    subject.sums = alloc_array((size_t)scene->input_count, sizeof *subject.sums);
-    for (int32_t i = 0; i < scene->input_count; i++)
-        subject.sums[i] = sum += scene->areas[i];
-#ifdef WITH_EMBREE
-    RTCDevice device = rtcNewDevice("threads=1");
-    subject.whole = embree_create(device, scene, NULL);
-    subject.inside = embree_create(device, scene, subject.octree->place);
-    bench_all(&subject, count, seed);
-    bench_picture(&subject);
-    rtcReleaseScene(subject.whole);
-    rtcReleaseScene(subject.inside);
-    rtcReleaseDevice(device);
-#else
-    bench_all(&subject, count, seed);
-    bench_picture(&subject);
-#endif
-    alloc_free(subject.sums);
-    octree_destroy(subject.octree);
+    bench_all(subject, count, seed);
+    bench_picture(subject);
 }
 
 int main(int argc, char **argv)
 {
-    struct comm comm;
-    struct error error = {0};
-    struct obj_repairs read = {0};
-    struct scene_repairs prepared;
-    comm_start(&comm, &argc, &argv);
-    struct scene *scene = argc > 1 ? obj_read(argv[1], &read, &error) : NULL;
-    if (argc < 2)
-        error_set(&error, EXIT_USAGE, "usage: hits SCENE.obj [RAYS [SEED]]");
-    if (scene && scene_prepare(scene, &prepared, &error))
-        bench_scene(scene, argc > 2 ? atoi(argv[2]) : 100000,
-                    argc > 3 ? (uint64_t)atoi(argv[3]) : 1);
-    if (error.code != EXIT_DONE)
-        fprintf(stderr, "hits: %s\n", error.text);
-    scene_destroy(scene);
-    comm_stop(&comm);
-    return error.code;
+    return subject_bench(argc, argv, "hits SCENE.obj [RAYS [SEED]]", 100000, bench_scene);
 }

@@ -16,21 +16,8 @@
  * processor. Embree's rays are made beforehand, in float, and cut short by 1e-4 at both
  * ends, where it would meet the triangles they lie on; differences are counted and are
  * near edges or in those cuts. */
-#include <inttypes.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
-
-#include "io/scene/obj.h"
-#include "mpi/comm.h"
-#include "octree/octree.h"
-#include "octree/tree.h"
 #include "rad/beyond/patch_exchange.h"
-
-#include "geom/alloc.h"
-#include "tests/bench/embree.h"
-#include "tests/random.h"
+#include "tests/bench/subject.h"
 
 enum { TURNS = 5, TRIES = 100000 };
 
@@ -139,11 +126,6 @@ static void fill_load(const struct scene *scene, struct load *load, struct rando
     load->count = filled;
 }
 
-static double cpu_seconds(void)
-{
-    return (double)clock() / CLOCKS_PER_SEC;
-}
-
 static void run_octree(const struct octree *octree, struct load *load,
                        struct figures *figures)
 {
@@ -219,12 +201,6 @@ struct embree_load {
     void *memory[2];           /* where they lie */
 };
 
-static void *alloc_aligned(int count, size_t size, void **memory)
-{
-    char *bytes = *memory = alloc_array((size_t)count + 1, size);
-    return bytes + (64 - (uintptr_t)bytes % 64) % 64;
-}
-
 static int any_valid(const int *valid)
 {
     int any = 0;
@@ -234,10 +210,9 @@ static int any_valid(const int *valid)
 }
 
 /* Starts with the blocker that the octree has found for the bundle before, as the octree
- * does. The rest goes through Embree's best mode here, 16-wide and coherent, or one by
- * one. */
-static double run_embree(RTCScene embree, const struct scene *scene,
-                         const struct load *load, struct embree_load *ready, bool packet)
+ * does. The rest goes through Embree's best mode here, 16-wide and coherent. */
+static double run_embree(const struct subject *subject, const struct load *load,
+                         struct embree_load *ready)
 {
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -250,24 +225,14 @@ static double run_embree(RTCScene embree, const struct scene *scene,
         int *valid = ready->valid[i];
         int32_t guess = load->start[i] >= 0 ? load->guess[load->start[i]] : -1;
         if (guess >= 0)
-            mask_blocked(scene, guess, rays, valid);
-        if (packet && any_valid(valid))
-            rtcOccluded16(valid, embree, &context, rays);
-        for (int k = 0; k < BUNDLE_RAYS && !packet; k++) {
-            if (!valid[k])
-                continue;
-            struct RTCRay ray = {.org_x = rays->org_x[k], .org_y = rays->org_y[k],
-                                 .org_z = rays->org_z[k], .dir_x = rays->dir_x[k],
-                                 .dir_y = rays->dir_y[k], .dir_z = rays->dir_z[k],
-                                 .tnear = rays->tnear[k], .tfar = rays->tfar[k],
-                                 .mask = 0xffffffffu};
-            rtcOccluded1(embree, &context, &ray);
-        }
+            mask_blocked(subject->scene, guess, rays, valid);
+        if (any_valid(valid))
+            rtcOccluded16(valid, subject->inside, &context, rays);
     }
     return cpu_seconds() - start;
 }
 
-/* Segments that Embree sees otherwise, after a run of packets. */
+/* Segments that Embree sees otherwise, after a run. */
 static int64_t count_different(const struct load *load, const struct embree_load *ready)
 {
     int64_t differ = 0;
@@ -299,82 +264,57 @@ static void print_octree(const struct load *load, const struct figures *figures)
            100.0 * (load->count - open - blocked) / load->count);
 }
 
-int main(int argc, char **argv)
+/* One order of the bundles, the programs in turn. */
+static void bench_load(const struct subject *subject, struct load *load)
 {
-    struct error error = {0};
-    struct obj_repairs read = {0};
-    struct scene_repairs prepared;
-    if (argc < 2) {
-        fprintf(stderr, "usage: rays SCENE.obj [BUNDLES [SEED]]\n");
-        return EXIT_USAGE;
-    }
-    struct comm comm;
-    comm_start(&comm, &argc, &argv);
-    struct scene *scene = obj_read(argv[1], &read, &error);
-    if (!scene || !scene_prepare(scene, &prepared, &error)) {
-        fprintf(stderr, "rays: %s\n", error.text);
-        return EXIT_USAGE;
-    }
-    double start = comm_seconds();
-    struct octree *octree =
-        octree_create(scene->triangles, scene->planes, scene->input_count);
-    double built = comm_seconds() - start;
-    struct pack pack = {0};
-    octree_pack(octree, &pack);
-    printf("%s: %d triangles, octree built in %.3f s, %.1f bytes per triangle\n", argv[1],
-           (int)scene->input_count, built, (double)pack.bytes / scene->input_count);
+    struct figures figures = {0};
 #ifdef WITH_EMBREE
-    RTCDevice device = rtcNewDevice("threads=1");
-    RTCScene embree = embree_create(device, scene, octree->place);
+    struct embree_load ready;
+    ready.rays = alloc_aligned(load->count, sizeof *ready.rays, &ready.memory[0]);
+    ready.valid = alloc_aligned(load->count, sizeof *ready.valid, &ready.memory[1]);
+    double embree = HUGE_VAL;
+    int64_t differ = 0;
 #endif
-    struct load load = {.count = argc > 2 ? atoi(argv[2]) : 100000};
-    load.bundles = alloc_array((size_t)load.count, sizeof *load.bundles);
-    load.blocked = alloc_array((size_t)load.count, sizeof *load.blocked);
-    load.start = alloc_array((size_t)load.count, sizeof *load.start);
-    load.guess = alloc_array((size_t)load.count, sizeof *load.guess);
+    for (int turn = 0; turn < TURNS; turn++) {
+        run_octree(subject->octree, load, &figures);
+#ifdef WITH_EMBREE
+        embree = fmin(embree, run_embree(subject, load, &ready));
+        differ = count_different(load, &ready);
+#endif
+    }
+    print_octree(load, &figures);
+#ifdef WITH_EMBREE
+    alloc_free(ready.memory[0]);
+    alloc_free(ready.memory[1]);
+    printf("  Embree: %.3f million segments/s; octree is %.2f of that; %" PRId64
+           " of %" PRId64 " segments differ\n",
+           1e-6 * (double)figures.counts.rays / embree, embree / figures.seconds, differ,
+           figures.counts.rays);
+#endif
+}
+
+static void bench_bundles(const struct subject *subject, int count, uint64_t seed)
+{
+    struct load load = {.count = count};
+    load.bundles = alloc_array((size_t)count, sizeof *load.bundles);
+    load.blocked = alloc_array((size_t)count, sizeof *load.blocked);
+    load.start = alloc_array((size_t)count, sizeof *load.start);
+    load.guess = alloc_array((size_t)count, sizeof *load.guess);
     for (int order = 0; order < 2; order++) {
-        struct random random = random_seed(argc > 3 ? (uint64_t)atoi(argv[3]) : 1);
-        struct figures figures = {0};
+        struct random random = random_seed(seed);
         load.refinement_order = order == 1;
-        fill_load(scene, &load, &random);
+        fill_load(subject->scene, &load, &random);
         printf(" %s\n", order ? "refinement order" : "random pairs");
-#ifdef WITH_EMBREE
-        struct embree_load ready;
-        ready.rays = alloc_aligned(load.count, sizeof *ready.rays, &ready.memory[0]);
-        ready.valid = alloc_aligned(load.count, sizeof *ready.valid, &ready.memory[1]);
-        double packet = HUGE_VAL, single = HUGE_VAL;
-        int64_t differ = 0;
-        for (int turn = 0; turn < TURNS; turn++) {
-            run_octree(octree, &load, &figures);
-            packet = fmin(packet, run_embree(embree, scene, &load, &ready, true));
-            differ = count_different(&load, &ready);
-            single = fmin(single, run_embree(embree, scene, &load, &ready, false));
-        }
-        alloc_free(ready.memory[0]);
-        alloc_free(ready.memory[1]);
-        print_octree(&load, &figures);
-        printf("  Embree: 16-wide coherent %.3f, one by one %.3f million segments/s; "
-               "octree is %.2f "
-               "and %.2f of that; %" PRId64 " of %" PRId64 " segments differ\n",
-               1e-6 * (double)figures.counts.rays / packet,
-               1e-6 * (double)figures.counts.rays / single, packet / figures.seconds,
-               single / figures.seconds, differ, figures.counts.rays);
-#else
-        for (int turn = 0; turn < TURNS; turn++)
-            run_octree(octree, &load, &figures);
-        print_octree(&load, &figures);
-#endif
+        bench_load(subject, &load);
     }
     alloc_free(load.bundles);
     alloc_free(load.blocked);
     alloc_free(load.start);
     alloc_free(load.guess);
-#ifdef WITH_EMBREE
-    rtcReleaseScene(embree);
-    rtcReleaseDevice(device);
-#endif
-    octree_destroy(octree);
-    scene_destroy(scene);
-    comm_stop(&comm);
-    return EXIT_DONE;
+}
+
+int main(int argc, char **argv)
+{
+    return subject_bench(argc, argv, "rays SCENE.obj [BUNDLES [SEED]]", 100000,
+                         bench_bundles);
 }
