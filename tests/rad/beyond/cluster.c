@@ -96,12 +96,6 @@ static bool same_point(struct vec3 a, struct vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-static void extend(struct vec3 *low, struct vec3 *high, struct vec3 by)
-{
-    *low = point(fmin(low->x, by.x), fmin(low->y, by.y), fmin(low->z, by.z));
-    *high = point(fmax(high->x, by.x), fmax(high->y, by.y), fmax(high->z, by.z));
-}
-
 /* A cluster has the sums of its roots. Sums may be off by their rounding, 1e-16 a
  * root. */
 static bool is_true(const struct cluster_tree *tree, const struct scene *scene,
@@ -110,16 +104,21 @@ static bool is_true(const struct cluster_tree *tree, const struct scene *scene,
     const struct cluster *cluster = &tree->clusters[number];
     const struct vec3 far = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, near = vec3_scale(far, -1.0);
     struct vec3 low = far, high = near, normal_low = far, normal_high = near;
-    double area = 0.0, reflected = 0.0;
+    double area = 0.0, reflecting = 0.0, reflected = 0.0;
     bool dark = true;
     for (int32_t i = cluster->first; i < cluster->end; i++) {
         int32_t root = tree->roots[i];
         struct triangle t = scene_root_triangle(scene, root);
         const struct material *material = scene_root_material(scene, root);
-        for (int k = 0; k < 3; k++)
-            extend(&low, &high, t.corner[k]);
-        extend(&normal_low, &normal_high, scene_root_plane(scene, root).normal);
+        for (int k = 0; k < 3; k++) {
+            low = vec3_least(low, t.corner[k]);
+            high = vec3_most(high, t.corner[k]);
+        }
+        normal_low = vec3_least(normal_low, scene_root_plane(scene, root).normal);
+        normal_high = vec3_most(normal_high, scene_root_plane(scene, root).normal);
         area += scene_root_area(scene, root);
+        if (rgb_sum(material->reflectance) > 0.0)
+            reflecting += scene_root_area(scene, root);
         reflected += scene_root_area(scene, root) * material->reflectance.band[1];
         dark = dark && material_is_dark(material);
     }
@@ -128,7 +127,9 @@ static bool is_true(const struct cluster_tree *tree, const struct scene *scene,
            same_point(normal_low, cluster->normal_low) &&
            same_point(normal_high, cluster->normal_high) &&
            fabs(cluster->area / area - 1.0) < rounding && dark == cluster->is_dark &&
-           fabs(cluster->reflectance.band[1] - reflected / area) < rounding;
+           fabs(cluster->reflecting - reflecting) <= rounding * reflecting &&
+           fabs(cluster->reflectance.band[1] * reflecting - reflected) <=
+               rounding * reflecting;
 }
 
 /* The ID of child k of a cluster leads to `node`. Pre: IDs reach that far. */
@@ -246,7 +247,7 @@ static void test_checks(void)
     struct cluster_tree *tree = tree_create(scene, NULL);
     int depth, seen = 0;
     struct cluster *cluster = &tree->clusters[tree->count / 2], kept = *cluster;
-    for (int error = 0; error < 7; error++) {
+    for (int error = 0; error < 8; error++) {
         int32_t root = tree->roots[3];
         cluster->area *= error == 0 ? 1.0 + 1e-9 : 1.0;
         cluster->high.x += error == 1 ? 1e-15 : 0.0;
@@ -255,11 +256,12 @@ static void test_checks(void)
         cluster->end -= error == 4;
         cluster->hierarchy ^= error == 5;
         tree->place[root] += error == 6;
+        cluster->reflecting *= error == 7 ? 1.0 + 1e-9 : 1.0;
         seen += !check_tree(tree, scene, &depth);
         *cluster = kept;
         tree->place[root] -= error == 6;
     }
-    tap_ok(seen == 7 && check_tree(tree, scene, &depth), "seven planted errors are seen");
+    tap_ok(seen == 8 && check_tree(tree, scene, &depth), "eight planted errors are seen");
     cluster_tree_destroy(tree);
     scene_destroy(scene);
 }
