@@ -39,8 +39,7 @@ static struct comm world_comm; /* that main() starts; of the only rank */
 /* Prepares and solves a scene, and takes it over. */
 static inline struct solution solve_scene(struct scene *scene, const char *words)
 {
-    scene_prepare_or_exit(scene);
-    return solve(&world_comm, scene, criterion_parse(words));
+    return solve(&world_comm, prepared(scene), criterion_parse(words));
 }
 
 /* The same for a list of triangles, which is emptied. */

@@ -217,8 +217,8 @@ static inline struct scene *scene_of_soup(struct soup *soup)
     return scene;
 }
 
-/* scene_prepare() for a scene that is known to be right. */
-static inline void scene_prepare_or_exit(struct scene *scene)
+/* scene_prepare() for a scene that is known to be right. Returns it. */
+static inline struct scene *prepared(struct scene *scene)
 {
     struct scene_repairs repairs;
     struct error reason = {0};
@@ -226,6 +226,7 @@ static inline void scene_prepare_or_exit(struct scene *scene)
         printf("Bail out! %s\n", reason.text);
         exit(1);
     }
+    return scene;
 }
 
 static inline struct octree *octree_of(const struct scene *scene)
@@ -245,8 +246,7 @@ static inline struct world world_make(struct scene *scene)
 {
     static const struct criterion criterion = {.epsilon = 1e-3, .max_level = ID_MAX_LEVEL,
                                                .tolerance = 1e-3, .max_iterations = 1};
-    scene_prepare_or_exit(scene);
-    struct world world = {.scene = scene};
+    struct world world = {.scene = prepared(scene)};
     world.octree = octree_of(scene);
     world.model =
         model_make(scene, world.octree, forest_create(scene), &criterion, PAPER);
@@ -258,6 +258,13 @@ static inline void world_free(struct world *world)
     forest_destroy(world->model.forest);
     octree_destroy(world->octree);
     scene_destroy(world->scene);
+}
+
+static inline void set_randomly(struct forest *forest, struct random *random)
+{
+    for (int64_t p = 0; p < forest->count; p++)
+        for (int c = 0; c < BANDS; c++)
+            forest->radiosity[p].band[c] = random_unit(random);
 }
 
 static inline void clear_flux(struct forest *forest)

@@ -111,8 +111,7 @@ static inline struct scene *cube_create(void)
         scene->triangles[2 * face + 1] = (struct triangle){{v[0], v[2], v[3]}};
         scene->material_of[2 * face] = scene->material_of[2 * face + 1] = face;
     }
-    scene_prepare_or_exit(scene);
-    return scene;
+    return prepared(scene);
 }
 
 #endif

@@ -16,9 +16,7 @@ static inline struct world make_many(void)
     struct world world = world_make(scene_of_soup(&soup));
     for (int32_t r = 0; r < ROOTS; r += 2)
         forest_split(world.model.forest, r);
-    for (int64_t p = 0; p < world.model.forest->count; p++)
-        for (int c = 0; c < BANDS; c++)
-            world.model.forest->radiosity[p].band[c] = random_unit(&random);
+    set_randomly(world.model.forest, &random);
     return world;
 }
 

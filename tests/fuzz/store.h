@@ -32,8 +32,7 @@ static inline struct scene *store_scene(void)
     scene->material_of[1] = 1;
     scene->materials[0] = material_grey(0.0, 1.0);
     scene->materials[1] = material_grey(0.5, 0.0);
-    scene_prepare_or_exit(scene);
-    return scene;
+    return prepared(scene);
 }
 
 static inline struct scene *store_box(void)
@@ -44,8 +43,7 @@ static inline struct scene *store_box(void)
     paint(&soup, 0.0, 10.0);
     struct scene *scene = scene_of_soup(&soup);
     scene->material_of[0] = scene->material_of[1] = 1;
-    scene_prepare_or_exit(scene);
-    return scene;
+    return prepared(scene);
 }
 
 /* The same for runs with links of clusters. */

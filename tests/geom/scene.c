@@ -29,16 +29,14 @@ static struct soup make_grid(void)
 }
 
 /* The prepared scene of the soup, each corner scaled and then moved. Empties the soup. */
-static struct scene *prepared(struct soup soup, double scale, double offset)
+static struct scene *scene_moved(struct soup soup, double scale, double offset)
 {
     for (int64_t i = 0; i < 3 * soup.count; i++) {
         struct vec3 *x = &soup.items[i / 3].corner[i % 3];
         *x = vec3_add(vec3_scale(*x, scale), point(offset, -offset, offset));
     }
     paint(&soup, 0.5, 1.0);
-    struct scene *scene = scene_of_soup(&soup);
-    scene_prepare_or_exit(scene);
-    return scene;
+    return prepared(scene_of_soup(&soup));
 }
 
 static bool same_geometry(const struct scene *a, const struct scene *b)
@@ -53,16 +51,16 @@ static bool same_geometry(const struct scene *a, const struct scene *b)
 
 static void test_scaling(void)
 {
-    struct scene *plain = prepared(make_soup(), 1.0, 0.0);
+    struct scene *plain = scene_moved(make_soup(), 1.0, 0.0);
     bool right = true;
     for (int k = -400; k <= 400; k += 25) {
-        struct scene *scaled = prepared(make_soup(), ldexp(1.0, k), 0.0);
+        struct scene *scaled = scene_moved(make_soup(), ldexp(1.0, k), 0.0);
         right = right && same_geometry(plain, scaled) &&
                 scaled->place.exponent == plain->place.exponent + k;
         scene_destroy(scaled);
     }
     tap_ok(right, "a scene scaled by 2^k has the same bits in scene units");
-    struct scene *thrice = prepared(make_soup(), 3.0, 0.0);
+    struct scene *thrice = scene_moved(make_soup(), 3.0, 0.0);
     tap_ok(!same_geometry(plain, thrice), "a scene scaled by 3 has not");
     scene_destroy(thrice);
     scene_destroy(plain);
@@ -81,15 +79,15 @@ static double largest_difference(const struct scene *a, const struct scene *b)
 
 static void test_offset(void)
 {
-    struct scene *plain = prepared(make_soup(), 1.0, 0.0);
-    struct scene *far = prepared(make_soup(), 1.0, 5e6);
+    struct scene *plain = scene_moved(make_soup(), 1.0, 0.0);
+    struct scene *far = scene_moved(make_soup(), 1.0, 5e6);
     double difference = largest_difference(plain, far);
     /* Numbers near 5e6 are 2^-30 = 9.3e-10 apart. A corner rounds by half of that, the
      * centre by as much again from rounded bounds; three axes; a scene unit is 8 here. */
     tap_ok(plain->place.exponent == 3 && difference < 9.3e-10 * 1.7321 / 8.0,
            "a scene 1e6 sizes from the origin moves by its rounding alone");
-    struct scene *grid = prepared(make_grid(), 1.0, 0.0);
-    struct scene *far_grid = prepared(make_grid(), 1.0, 5e9);
+    struct scene *grid = scene_moved(make_grid(), 1.0, 0.0);
+    struct scene *far_grid = scene_moved(make_grid(), 1.0, 5e9);
     tap_ok(same_geometry(grid, far_grid), "corners on a grid keep their bits there");
     scene_destroy(plain);
     scene_destroy(far);
@@ -102,7 +100,7 @@ static void test_box(void)
     struct soup soup = make_soup();
     bool fits = true, back = true;
     for (double scale = 0.37; scale < 3.0; scale += 0.01) {
-        struct scene *scene = prepared(make_soup(), scale, 100.0);
+        struct scene *scene = scene_moved(make_soup(), scale, 100.0);
         struct vec3 size = vec3_sub(scene->high, scene->low);
         double extent = fmax(size.x, fmax(size.y, size.z));
         /* Rounding moves a bound by a unit in the last place of 100. */
@@ -125,7 +123,7 @@ static void test_box(void)
 /* The normals of the file, each turned to the front of the root. */
 static void test_normals(void)
 {
-    struct scene *scene = prepared(make_soup(), 1.0, 0.0);
+    struct scene *scene = scene_moved(make_soup(), 1.0, 0.0);
     scene->two_sided = scene->two_sided_lamps = true;
     struct vec3 none = scene_root_normal(scene, COUNT - 1, 2);
     tap_ok(vec3_length(none) == 0.0, "no normals, no normal");
@@ -152,7 +150,7 @@ static void test_normals(void)
 
 static void test_twins(void)
 {
-    struct scene *scene = prepared(make_soup(), 1.0, 0.0);
+    struct scene *scene = scene_moved(make_soup(), 1.0, 0.0);
     double area = scene_area(scene), power = scene_emitted_power(scene);
     tap_ok(scene_root_count(scene) == COUNT, "a root for each triangle");
     scene->two_sided = scene->two_sided_lamps = true;
@@ -215,7 +213,7 @@ static void test_lamps(void)
     double area = 0.0;
     for (int32_t i = 0; i < COUNT; i += 3)
         scene->material_of[i] = 1;
-    scene_prepare_or_exit(scene);
+    prepared(scene);
     for (int32_t i = 0; i < COUNT; i++)
         area += scene->material_of[i] == 1 ? scene->areas[i] : 2.0 * scene->areas[i];
     double power = scene_emitted_power(scene);
@@ -248,7 +246,7 @@ static void test_power(void)
     paint(&soup, 0.0, 0.0);
     struct scene *scene = scene_of_soup(&soup);
     scene->material_of[1] = 1;
-    scene_prepare_or_exit(scene);
+    prepared(scene);
     tap_ok(scene->place.exponent == 3 && scene_area_unit(scene) == 64.0,
            "a size of 6 has the unit 8");
     /* Dyadic corners: all of this is exact. */
@@ -285,7 +283,7 @@ static void test_clamping(void)
 static void test_degenerate(void)
 {
     struct soup soup = make_soup();
-    struct scene *plain = prepared(make_soup(), 1.0, 0.0);
+    struct scene *plain = scene_moved(make_soup(), 1.0, 0.0);
     int32_t expected = 0;
     for (int32_t i = 0; i < COUNT; i += 9, expected++) {
         struct triangle *t = &soup.items[i];

@@ -212,9 +212,7 @@ static struct scene *make_scene(struct vec3 low, struct vec3 high)
     struct soup soup = {0};
     struct vec3 b = {high.x, low.y, high.z}, c = {high.x, high.y, low.z};
     soup_add(&soup, (struct triangle){{low, b, c}});
-    struct scene *scene = scene_of_soup(&soup);
-    scene_prepare_or_exit(scene);
-    return scene;
+    return prepared(scene_of_soup(&soup));
 }
 
 /* Whether a camera in the direction `towards` has the whole box in its picture, and one a

@@ -130,13 +130,6 @@ static void set_constant(struct forest *forest, double value)
         forest->radiosity[p] = (struct rgb){{value, 2.0 * value, 0.0}};
 }
 
-static void set_randomly(struct forest *forest, struct random *random)
-{
-    for (int64_t p = 0; p < forest->count; p++)
-        for (int c = 0; c < BANDS; c++)
-            forest->radiosity[p].band[c] = random_unit(random);
-}
-
 static struct rgb linear_field(struct vec3 x)
 {
     return (struct rgb){{1.0 + x.x, 2.0 - x.x + 0.5 * x.y, 1.0 + x.y}};

@@ -68,8 +68,7 @@ struct shot {
 
 static struct shot shoot(struct scene *scene, int width, int height)
 {
-    scene_prepare_or_exit(scene);
-    struct shot shot = {.scene = scene};
+    struct shot shot = {.scene = prepared(scene)};
     shot.octree = octree_of(scene);
     shot.camera = viewpoint_choose(scene, shot.octree, NULL, width, height);
     shot.sight = look(scene, shot.octree, &shot.camera);

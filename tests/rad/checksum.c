@@ -16,9 +16,7 @@ static struct scene *make_scene(void)
     soup_add_random(&soup, &random, ROOTS, 0.5, 0.3);
     soup.items[3].corner[0] = soup.items[3].corner[1]; /* dropped; it has a tree all
                                                           the same */
-    struct scene *scene = scene_of_soup(&soup);
-    scene_prepare_or_exit(scene);
-    return scene;
+    return prepared(scene_of_soup(&soup));
 }
 
 static void random_ids(uint64_t seed, struct patch_id ids[PATHS])

@@ -135,8 +135,7 @@ static struct scene *make_square(double rho, double emission)
     paint_with(&soup, (struct material){.reflectance = {{0.0, rho, 0.1 * rho}}});
     struct scene *scene = scene_of_soup(&soup);
     scene->material_of[1] = 1;
-    scene_prepare_or_exit(scene);
-    return scene;
+    return prepared(scene);
 }
 
 /* The room of a scene's unit: all light of a closed scene of the largest reflectance

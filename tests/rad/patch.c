@@ -22,8 +22,7 @@ static struct scene *make_scene(void)
     struct scene *scene = scene_of_soup(&soup);
     scene->material_of[1] = 1;
     scene->materials[1].emission = (struct rgb){{1.0, 2.0, 3.0}};
-    scene_prepare_or_exit(scene);
-    return scene;
+    return prepared(scene);
 }
 
 static bool same_id(struct patch_id a, struct patch_id b)
@@ -284,7 +283,7 @@ static void test_neighbours(void)
                                            corner[(k + 2) % 4]}});
     struct scene *scene = scene_of_soup(&soup);
     scene->two_sided = true;
-    scene_prepare_or_exit(scene);
+    prepared(scene);
     struct forest *forest = forest_create(scene);
     for (int level = 0; level < LEVEL; level++)
         split_all(forest);

@@ -127,9 +127,7 @@ static void test_pull(void)
     struct forest *forest = world.model.forest;
     struct random random = random_seed(3);
     grow(forest, 3);
-    for (int64_t p = 0; p < forest->count; p++)
-        for (int c = 0; c < BANDS; c++)
-            forest->radiosity[p].band[c] = random_unit(&random);
+    set_randomly(forest, &random);
     bool before = inner_are_means(forest, ALL);
     forest_average(forest);
     forest_bound(forest);

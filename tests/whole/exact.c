@@ -360,8 +360,7 @@ static struct scene *room_with_box(void)
     paint(&soup, 0.5, 10.0);
     struct scene *scene = scene_of_soup(&soup);
     scene->material_of[6] = scene->material_of[7] = 1;
-    scene_prepare_or_exit(scene);
-    return scene;
+    return prepared(scene);
 }
 
 /* A refinement that a signal to the last rank ends counts as not begun on all ranks: its

@@ -180,8 +180,7 @@ static void test_termination(void)
 {
     static const char *const words[] = {"--epsilon 0 --max-level 3", "--epsilon 1e-5"};
     for (int k = 0; k < COUNT(words); k++) {
-        struct scene *scene = furnished(1.0, 0.0);
-        scene_prepare_or_exit(scene);
+        struct scene *scene = prepared(furnished(1.0, 0.0));
         struct criterion criterion = criterion_parse(words[k]);
         struct octree *octree = octree_of(scene);
         struct solver *solver = beyond_create(&world_comm, scene, octree, &criterion);

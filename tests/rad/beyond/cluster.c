@@ -13,15 +13,14 @@ enum { MANY = 100000 };
 
 /* --- scenes --- */
 
-static struct scene *prepared(struct soup *soup, int materials)
+static struct scene *painted_in_turn(struct soup *soup, int materials)
 {
     for (int m = 0; m < materials; m++)
         paint(soup, 0.1 * m, m == materials - 1 ? 1.0 : 0.0);
     struct scene *scene = scene_of_soup(soup);
     for (int32_t i = 0; i < scene->input_count; i++)
         scene->material_of[i] = i % materials;
-    scene_prepare_or_exit(scene);
-    return scene;
+    return prepared(scene);
 }
 
 static struct scene *coincident(int count)
@@ -29,7 +28,7 @@ static struct scene *coincident(int count)
     struct soup soup = {0};
     for (int i = 0; i < count; i++)
         soup_add(&soup, (struct triangle){{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.5}}});
-    struct scene *scene = prepared(&soup, 1);
+    struct scene *scene = painted_in_turn(&soup, 1);
     for (int32_t i = 1; i < count; i++) { /* doubles, which are dropped, come back */
         scene->areas[i] = scene->areas[0];
         scene->planes[i] = scene->planes[0];
@@ -47,7 +46,7 @@ static struct scene *one_plane(int count)
             t.corner[k].z = 0.0;
         soup_add(&soup, t);
     }
-    return prepared(&soup, 3);
+    return painted_in_turn(&soup, 3);
 }
 
 /* The tiny ones lie so close to each other that they fall into one of 64 bins. */
@@ -58,7 +57,7 @@ static struct scene *huge_and_tiny(int count)
     soup_add(&soup, (struct triangle){{{0, 0, 0}, {1e3, 0, 0}, {0, 1e3, 0}}});
     for (int i = 0; i < count; i++)
         soup_add(&soup, random_triangle(&random, 1e-3, 1e-4));
-    return prepared(&soup, 1);
+    return painted_in_turn(&soup, 1);
 }
 
 /* Some have no area. */
@@ -72,7 +71,7 @@ static struct scene *mixture(int count)
         if (i % 10 == 4)
             soup.items[i].corner[1] = soup.items[i].corner[0];
     }
-    return prepared(&soup, 5);
+    return painted_in_turn(&soup, 5);
 }
 
 static struct scene *twins(int count)
@@ -85,8 +84,7 @@ static struct scene *twins(int count)
     struct scene *scene = scene_of_soup(&soup);
     scene->material_of[0] = 1;
     scene->two_sided = true;
-    scene_prepare_or_exit(scene);
-    return scene;
+    return prepared(scene);
 }
 
 /* --- invariants --- */
@@ -382,8 +380,7 @@ static void test_spaces(void)
     add_cube(&soup, 0.7, false);
     int32_t inside = (int32_t)soup.count;
     add_cube(&soup, 0.6, true);
-    struct scene *scene = scene_of_soup(&soup);
-    scene_prepare_or_exit(scene);
+    struct scene *scene = prepared(scene_of_soup(&soup));
     struct octree *octree = octree_of(scene);
     struct cluster_tree *blind = tree_create(scene, NULL);
     struct cluster_tree *tree = tree_create(scene, octree);
@@ -409,7 +406,7 @@ static void test_lamps(void)
     struct scene *scene = scene_of_soup(&soup);
     for (int32_t i = others; i < scene->input_count; i++)
         scene->material_of[i] = 1;
-    scene_prepare_or_exit(scene);
+    prepared(scene);
     struct cluster_tree *tree = tree_create(scene, NULL);
     tap_ok(parts_at(tree, others),
            "lamps are in other clusters than the surfaces they light");

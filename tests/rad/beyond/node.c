@@ -451,8 +451,7 @@ static void test_symmetry(void)
 static struct solution solve_room(double epsilon, int max_level,
                                   enum linking_kind linking)
 {
-    struct scene *scene = room(4, 4, false);
-    scene_prepare_or_exit(scene);
+    struct scene *scene = prepared(room(4, 4, false));
     struct criterion criterion = criterion_best(epsilon, max_level, 1e-7);
     criterion.linking = linking;
     criterion.balance = BALANCE_DEFAULT;
