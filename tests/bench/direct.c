@@ -23,8 +23,7 @@
 #include <stdlib.h>
 
 #include "geom/lambert.h"
-#include "io/scene/obj.h"
-#include "mpi/comm.h"
+#include "tests/reading.h"
 #include "tests/truth.h"
 
 /* A triangle cut by three planes has at most six corners. */
@@ -232,16 +231,14 @@ int main(int argc, char **argv)
 {
     struct comm comm;
     struct error error = {0};
-    struct obj_repairs read = {0};
-    struct scene_repairs prepared;
     long long elements = argc > 3 ? atoll(argv[3]) : ELEMENTS;
     comm_start(&comm, &argc, &argv);
     struct scene *scene = NULL;
     if (argc < 3 || elements < 1)
         error_set(&error, EXIT_USAGE, "usage: direct SCENE.obj OUT.ref [ELEMENTS]");
     else
-        scene = obj_read(argv[1], &read, &error);
-    if (scene && scene_prepare(scene, &prepared, &error) && check_scene(scene, &error)) {
+        scene = scene_read((struct reading){.path = argv[1]}, &error);
+    if (scene && check_scene(scene, &error)) {
         double start = comm_seconds();
         struct truth truth = truth_make(scene, elements);
         make_truth(scene, &truth);

@@ -31,9 +31,8 @@
 #include "geom/alloc.h"
 #include "io/picture/render.h"
 #include "io/run/options.h"
-#include "io/scene/obj.h"
-#include "mpi/broadcast.h"
 #include "tests/deviation.h"
+#include "tests/reading.h"
 #include "tests/solve.h"
 
 static const char *const HEADER =
@@ -250,24 +249,17 @@ static int take_own(struct measure *measure, int argc, char **argv)
  * error. */
 static struct scene *read_all(struct measure *measure)
 {
-    struct obj_repairs read = {0};
-    struct scene_repairs prepared;
-    struct error *error = &measure->error;
-    struct scene *scene = NULL;
-    if (measure->comm.rank == 0 &&
-        (scene = obj_read(measure->options.scene, &read, error))) {
-        if (measure->options.ke == KE_RADIANCE)
-            scene_take_radiances(scene);
-        scene->two_sided = measure->options.two_sided;
-        scene->two_sided_lamps = measure->options.two_sided_lamps;
-        if (scene_prepare(scene, &prepared, error))
-            truth_read(&measure->truth, measure->reference, scene, error);
-    }
-    if (comm_agree(&measure->comm, error)) {
-        measure->block = scene_broadcast(&measure->comm, node_policy(), &scene, NULL);
+    const struct options *options = &measure->options;
+    struct reading reading = {options->scene, options->two_sided,
+                              options->two_sided_lamps, options->ke == KE_RADIANCE};
+    struct scene *scene =
+        scene_read_by_all(&measure->comm, reading, &measure->block, &measure->error);
+    if (scene && measure->comm.rank == 0)
+        truth_read(&measure->truth, measure->reference, scene, &measure->error);
+    if (comm_agree(&measure->comm, &measure->error))
         return scene;
-    }
     scene_destroy(scene);
+    node_block_destroy(&measure->block);
     return NULL;
 }
 

@@ -17,16 +17,14 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "io/scene/obj.h"
-#include "mpi/broadcast.h"
-#include "mpi/comm.h"
 #include "tests/deviation.h"
+#include "tests/reading.h"
 
 enum { ELEMENTS = 20000, SAMPLES = 1000, MOST = 1000000000 };
 
 struct arguments {
-    const char *scene, *out;
-    bool two_sided, two_sided_lamps;
+    struct reading scene;
+    const char *out;
     long long numbers[2]; /* elements, samples */
 };
 
@@ -43,11 +41,11 @@ static bool parse(struct arguments *arguments, int argc, char **argv, struct err
     *arguments = (struct arguments){.numbers = {ELEMENTS, SAMPLES}};
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--two-sided") == 0)
-            arguments->two_sided = true;
+            arguments->scene.two_sided = true;
         else if (strcmp(argv[i], "--two-sided-lamps") == 0)
-            arguments->two_sided = arguments->two_sided_lamps = true;
+            arguments->scene.two_sided = arguments->scene.two_sided_lamps = true;
         else if (paths < 2)
-            *(paths++ == 0 ? &arguments->scene : &arguments->out) = argv[i];
+            *(paths++ == 0 ? &arguments->scene.path : &arguments->out) = argv[i];
         else if (numbers == 2 || !is_count(argv[i], &arguments->numbers[numbers++]))
             return error_set(error, EXIT_USAGE, "what is %s?", argv[i]);
     }
@@ -55,30 +53,6 @@ static bool parse(struct arguments *arguments, int argc, char **argv, struct err
            error_set(error, EXIT_USAGE,
                      "usage: reference SCENE.obj OUT.ref [--two-sided[-lamps]] "
                      "[ELEMENTS [SAMPLES]]");
-}
-
-/* Collective. The prepared scene, or NULL on all ranks. */
-static struct scene *read_scene(const struct comm *comm,
-                                const struct arguments *arguments,
-                                struct node_block *block, struct error *error)
-{
-    struct obj_repairs read = {0};
-    struct scene_repairs prepared;
-    struct scene *scene =
-        comm->rank == 0 ? obj_read(arguments->scene, &read, error) : NULL;
-    if (scene) {
-        scene->two_sided = arguments->two_sided;
-        scene->two_sided_lamps = arguments->two_sided_lamps;
-        scene_prepare(scene, &prepared, error);
-        if (!(scene_emitted_power(scene) > 0.0))
-            error_set(error, EXIT_USAGE, "%s: nothing emits light", arguments->scene);
-    }
-    if (comm_agree(comm, error)) {
-        *block = scene_broadcast(comm, node_policy(), &scene, NULL);
-        return scene;
-    }
-    scene_destroy(scene);
-    return NULL;
 }
 
 static void make_reference(const struct comm *comm, const struct arguments *arguments,
@@ -109,8 +83,10 @@ int main(int argc, char **argv)
     struct scene *scene = NULL;
     struct node_block block = {.data = NULL};
     if (parse(&arguments, argc, argv, &error))
-        scene = read_scene(&comm, &arguments, &block, &error);
-    if (scene)
+        scene = scene_read_by_all(&comm, arguments.scene, &block, &error);
+    if (scene && !(scene_emitted_power(scene) > 0.0))
+        error_set(&error, EXIT_USAGE, "%s: nothing emits light", arguments.scene.path);
+    else if (scene)
         make_reference(&comm, &arguments, scene, &error);
     comm_agree(&comm, &error);
     if (error.code != EXIT_DONE && comm.rank == 0)

@@ -18,7 +18,7 @@
 #include "geom/alloc.h"
 #include "io/run/options.h"
 #include "mpi/balance.h"
-#include "io/scene/obj.h"
+#include "tests/reading.h"
 #include "tests/solve.h"
 
 enum { BYTES_PER_LINK = 32, PASSES_MAX = 1000 };
@@ -214,13 +214,10 @@ int main(int argc, char **argv)
     struct options options = {0};
     struct error error = {0};
     struct record record = {0};
-    struct scene_repairs prepared;
-    struct obj_repairs read = {0};
     comm_start(&comm, &argc, &argv);
     struct scene *scene = NULL;
     if (argc < 3 || !options_parse(&options, argc - 1, argv + 1, &error) ||
-        !(scene = obj_read(options.scene, &read, &error)) ||
-        !scene_prepare(scene, &prepared, &error)) {
+        !(scene = scene_read((struct reading){.path = options.scene}, &error))) {
         fprintf(stderr, "replay RANKS[,RANKS...] SCENE [OPTIONS of phr] %s\n",
                 error.text);
         return EXIT_FAILURE;

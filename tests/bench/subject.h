@@ -10,11 +10,10 @@
 #include <time.h>
 
 #include "geom/alloc.h"
-#include "io/scene/obj.h"
-#include "mpi/comm.h"
 #include "octree/octree.h"
 #include "octree/tree.h"
 #include "tests/random.h"
+#include "tests/reading.h"
 
 #ifdef WITH_EMBREE
 #include <embree3/rtcore.h>
@@ -84,13 +83,13 @@ static inline int subject_bench(int argc, char **argv, const char *usage, int nu
 {
     struct comm comm;
     struct error error = {0};
-    struct obj_repairs read = {0};
-    struct scene_repairs prepared;
+    struct scene *scene = NULL;
     comm_start(&comm, &argc, &argv);
-    struct scene *scene = argc > 1 ? obj_read(argv[1], &read, &error) : NULL;
     if (argc < 2)
         error_set(&error, EXIT_USAGE, "usage: %s", usage);
-    if (scene && scene_prepare(scene, &prepared, &error)) {
+    else
+        scene = scene_read((struct reading){.path = argv[1]}, &error);
+    if (scene) {
         struct subject s = {.scene = scene};
         struct pack pack = {0};
         double start = cpu_seconds();

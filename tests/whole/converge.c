@@ -13,10 +13,9 @@
 #include <math.h>
 
 #include "mpi/beyond/beyond.h"
-#include "io/scene/obj.h"
-#include "mpi/broadcast.h"
 
 #include "tests/deviation.h"
+#include "tests/reading.h"
 #include "tests/shaded.h"
 #include "tests/solve.h"
 #include "tests/tap.h"
@@ -25,23 +24,12 @@ enum { TRUTH = 10000, PATHS = 200, STEPS = 7 };
 
 static const char CORNELL[] = "scenes/cornell.obj";
 
+/* Collective. The prepared scene, or NULL after an error. */
 static struct scene *read_scene(const struct comm *comm, const char *path,
                                 struct node_block *block)
 {
-    struct scene *scene = NULL;
-    *block = (struct node_block){.data = NULL};
     struct error error = {0};
-    struct obj_repairs read = {0};
-    struct scene_repairs prepared;
-    if (comm->rank == 0) {
-        scene = obj_read(path, &read, &error);
-        if (scene)
-            scene_prepare(scene, &prepared, &error);
-    }
-    if (!comm_agree(comm, &error))
-        return NULL;
-    *block = scene_broadcast(comm, node_policy(), &scene, NULL);
-    return scene;
+    return scene_read_by_all(comm, (struct reading){.path = path}, block, &error);
 }
 
 struct result {

@@ -1,0 +1,46 @@
+/* Scenes that tests and benches read from OBJ files. */
+#ifndef TESTS_READING_H
+#define TESTS_READING_H
+
+#include "io/scene/obj.h"
+#include "mpi/broadcast.h"
+
+/* A file, and what is asked of its scene. */
+struct reading {
+    const char *path;
+    bool two_sided, two_sided_lamps, radiances;
+};
+
+/* The prepared scene, or NULL after an error. */
+static inline struct scene *scene_read(struct reading reading, struct error *error)
+{
+    struct obj_repairs read = {0};
+    struct scene_repairs repairs;
+    struct scene *scene = obj_read(reading.path, &read, error);
+    if (!scene)
+        return NULL;
+    if (reading.radiances)
+        scene_take_radiances(scene);
+    scene->two_sided = reading.two_sided;
+    scene->two_sided_lamps = reading.two_sided_lamps;
+    if (scene_prepare(scene, &repairs, error))
+        return scene;
+    scene_destroy(scene);
+    return NULL;
+}
+
+/* Collective. The same on all ranks; rank 0 reads. `block` is to be destroyed after the
+ * scene. */
+static inline struct scene *scene_read_by_all(const struct comm *comm,
+                                              struct reading reading,
+                                              struct node_block *block,
+                                              struct error *error)
+{
+    struct scene *scene = comm->rank == 0 ? scene_read(reading, error) : NULL;
+    *block = (struct node_block){.data = NULL};
+    if (comm_agree(comm, error))
+        *block = scene_broadcast(comm, node_policy(), &scene, NULL);
+    return scene;
+}
+
+#endif
