@@ -40,6 +40,32 @@ void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
 /* Adds the light of lamps, by segments. */
 void receiver_aim(struct receiver *r);
 
+/* Adds the light of lamps by as many segments as rays, or of bright roots by fewer
+ * rays. */
+void receiver_aim_at(struct receiver *r, struct lamps *lamps);
+
+/* Adds `weight` times the light of one lamp at a point x beside the leaf, on the triangle
+ * `input`. */
+void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
+                         int32_t input, const struct rgb *weight, uint64_t seed);
+
+/* True if a lamp is so near, for its size, that rays from a point find it often enough:
+ * on the way of a path they count its emission, and segments do not. */
+bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 x);
+
+/* Adds the light of a bright root that has this form factor, where a ray from x that is
+ * aimed at y meets it. */
+void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t root,
+                      double factor);
+
+/* Adds `weight` times the light of a lamp that has this form factor. */
+void receiver_add_source(struct receiver *r, const struct rgb *weight,
+                         struct rgb emission, double factor);
+
+/* The same to the light of the leaf too near that the ray at hand met first, if any. */
+void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
+                       double factor);
+
 /* Adds the rest of the light, by rays. Pre: receiver_aim() has been called. */
 void receiver_fire(struct receiver *r);
 

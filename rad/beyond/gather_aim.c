@@ -1,0 +1,309 @@
+/* Aiming at lamps and at bright roots, from a receiver of the final gather.
+ *
+ * Rays that leave a receiver in all directions rarely meet a lamp, which is where most of
+ * their noise would come from. Lamps (rad/beyond/lamps.c) are aimed at by segments, in
+ * proportion to the light that they would bring unoccluded, which is known from exact
+ * factors.
+ *
+ * Next come bright roots, those that reflect more than a lamp emits at least: the inside
+ * of a lamp's housing sends a tenth of the light of a furnished room and brings most of
+ * the variance, as one ray in 500 meets it. Rays are aimed at them, too. */
+#include "rad/beyond/receiver.h"
+
+#include <math.h>
+
+#include "geom/hash.h"
+#include "geom/lambert.h"
+#include "rad/beyond/final_gather.h"
+#include "rad/beyond/sample.h"
+#include "rad/beyond/sequence.h"
+
+/* A lamp is wide if its factor from the leaf, unoccluded, is more than this. */
+static const double WIDE = 0.05;
+
+/* A lamp is near if the square of its distance is less than this times its area. */
+static const double NEAR_LAMP = 4.0;
+
+/* Fewest segments that are enough to estimate the visible share of lamps; most tries for
+ * a point of a lamp above the horizon; rays in all directions for each that is aimed at a
+ * bright root. */
+enum { VOLLEY = 4, AIMS_MOST = 4, RAYS_PER_AIMED = 4 };
+
+static const struct rgb ALL = {{1.0, 1.0, 1.0}};
+
+struct vec3 receiver_start(const struct receiver *r, double u, double v)
+{
+    const struct gather_points *points = r->points;
+    return points ? points->at[(int)(u * points->count)]
+                  : triangle_of_square(&r->facet.triangle, u, v);
+}
+
+double receiver_kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,
+                       struct vec3 normal_y)
+{
+    struct vec3 d = vec3_sub(y, x);
+    double d2 = vec3_dot(d, d);
+    double rise = vec3_dot(normal_x, d), fall = -vec3_dot(normal_y, d);
+    return rise > 0.0 && fall > 0.0 ? rise * fall / (PI * d2 * d2) : 0.0;
+}
+
+void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
+                       double factor)
+{
+    struct gather_nears *near = &r->gather->near;
+    for (int c = 0; c < BANDS && r->near >= 0; c++)
+        near->items[r->near].watts[c] += gather_units(
+            r->facet.area * weight->band[c] * factor * emission.band[c],
+            near->unit_watts);
+}
+
+void receiver_add_source(struct receiver *r, const struct rgb *weight,
+                         struct rgb emission, double factor)
+{
+    receiver_add_near(r, weight, emission, factor);
+    for (int c = 0; c < BANDS; c++) {
+        double h = weight->band[c] * factor * emission.band[c];
+        r->row.source.band[c] += h;
+        r->light.band[c] += h;
+    }
+}
+
+/* The triangle that blocks a segment to a lamp, or -1. */
+static int32_t blocker_of(struct receiver *r, struct vec3 from, int32_t input,
+                          struct vec3 to, int32_t lamp)
+{
+    int32_t own[2] = {input, scene_input_of(r->gather->model->scene, lamp)}, guess = -1;
+    r->gather->counts.segments++;
+    return octree_blocks_segment(r->gather->model->octree, from, to, own, &guess,
+                                 &r->gather->model->counts)
+               ? guess
+               : -1;
+}
+
+int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32_t lamp)
+{
+    int32_t input = r->facet.input;
+    if (r->points && r->points->above) {
+        const struct scene *scene = r->gather->model->scene;
+        struct segment segment = segment_make(x, y);
+        if (segment_is_blocked_by(&segment, &scene->triangles[input],
+                                  &scene->planes[input]))
+            return input;
+    }
+    return blocker_of(r, x, input, y, lamp);
+}
+
+/* Segments to groups that are next to each other in the tree, in two halves. */
+struct volley {
+    double direct[2]; /* light without blockers, over all bands, W/m^2 */
+    double seen[2];   /* light with them */
+    int count[2];     /* segments */
+};
+
+/* The half that segment `i` of `count` to a group belongs to; a single one, the
+ * smaller. */
+static int half_of(const struct volley *volley, int i, int count)
+{
+    return count > 1 ? 2 * i >= count : volley->count[0] > volley->count[1];
+}
+
+/* Adds the variance of the volley's light, in the colour of one of its lamps: by its
+ * visible share as if by chance, and by the difference of its halves. */
+static void end_volley(struct receiver *r, struct volley *volley, struct rgb light)
+{
+    double direct = volley->direct[0] + volley->direct[1];
+    int count = volley->count[0] + volley->count[1];
+    double seen = volley->seen[0] + volley->seen[1], apart = 0.0;
+    double share = count > 0 ? fmin(1.0, seen / direct) : 0.0;
+    if (volley->direct[0] > 0.0 && volley->direct[1] > 0.0)
+        apart = 0.5 * (volley->seen[0] / volley->direct[0] -
+                       volley->seen[1] / volley->direct[1]);
+    for (int c = 0; c < BANDS && share > 0.0; c++) {
+        double h = direct * light.band[c] / rgb_sum(light);
+        r->row.chance[c] += h * h * share * (1.0 - share) / count;
+        r->row.halves[c] += h * h * apart * apart;
+    }
+    *volley = (struct volley){.direct = {0.0, 0.0}};
+}
+
+/* The sequence of the segments to a node. */
+static struct sequence sequence_to(const struct receiver *r, int32_t node)
+{
+    return sequence_start(hash_mix(r->seed + 8) ^ hash_mix((uint64_t)node));
+}
+
+/* Fires `count` segments at a single lamp: without blockers they bring the irradiance
+ * `direct` all together, summed over bands, each in proportion to its kernel. */
+static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int count,
+                        int32_t root, double direct, struct volley *volley)
+{
+    const struct scene *scene = r->gather->model->scene;
+    struct triangle lamp = scene_root_triangle(scene, root);
+    struct vec3 normal = scene_root_plane(scene, root).normal;
+    struct rgb emission = scene_root_material(scene, root)->emission;
+    double all[2] = {0.0, 0.0}, seen[2] = {0.0, 0.0}, u[SEQUENCE_DIMENSIONS];
+    for (int i = 0; i < count; i++) {
+        int half = half_of(volley, i, count);
+        sequence_point(sequence, (uint32_t)i, u);
+        struct vec3 x = receiver_start(r, u[0], u[1]);
+        struct vec3 y = triangle_of_square(&lamp, u[2], u[3]);
+        double light = receiver_kernel(x, r->facet.plane.normal, y, normal);
+        all[half] += light;
+        if (light > 0.0 && receiver_blocker(r, x, y, root) < 0)
+            seen[half] += light;
+        volley->count[half]++;
+    }
+    double sum = all[0] + all[1];
+    for (int half = 0; half < 2 && sum > 0.0; half++) {
+        volley->direct[half] += direct * (all[half] / sum);
+        volley->seen[half] += direct * (seen[half] / sum);
+    }
+    if (sum > 0.0)
+        receiver_add_source(r, &ALL, emission,
+                            direct * ((seen[0] + seen[1]) / sum) / rgb_sum(emission));
+}
+
+/* The same for a wide lamp, whose variance is known. */
+static void aim_at_wide_lamp(struct receiver *r, int count, int32_t root, double direct)
+{
+    struct sequence sequence = sequence_to(r, root);
+    struct rgb emission = scene_root_material(r->gather->model->scene, root)->emission;
+    struct receiver_share share = receiver_share_of_wide(r, &sequence, count, root);
+    receiver_add_source(r, &ALL, emission, direct * share.seen / rgb_sum(emission));
+    for (int c = 0; c < BANDS; c++) {
+        double h = direct * emission.band[c] / rgb_sum(emission);
+        r->row.chance[c] += h * h * share.variance;
+        r->row.halves[c] += h * h * share.halves;
+    }
+}
+
+/* Fires one segment, or aimed ray, at a lamp of a group: it stands for `each` of the
+ * group's light. */
+static void aim_at_some(struct receiver *r, const struct lamps *lamps,
+                        const struct sequence *sequence, uint32_t index,
+                        const struct lamp_group *group, double each)
+{
+    const struct scene *scene = r->gather->model->scene;
+    double u[SEQUENCE_DIMENSIONS];
+    sequence_point(sequence, index, u);
+    struct lamp lamp = lamp_choose(lamps, group->node, hash_unit(r->seed + 17 + index));
+    struct triangle triangle = scene_root_triangle(scene, lamp.root);
+    struct vec3 x = receiver_start(r, u[0], u[1]);
+    struct vec3 y = triangle_of_square(&triangle, u[2], u[3]);
+    double factor = receiver_kernel(x, r->facet.plane.normal, y,
+                                    scene_root_plane(scene, lamp.root).normal) *
+                    scene_root_area(scene, lamp.root) * lamp.share *
+                    (each / group->direct);
+    if (!(factor > 0.0))
+        return;
+    if (lamps->reflect)
+        receiver_look_at(r, x, y, lamp.root, factor);
+    else if (receiver_blocker(r, x, y, lamp.root) < 0)
+        receiver_add_source(r, &ALL, lamp_light(lamps, lamp.root), factor);
+}
+
+/* Fires `count` of them at a group; unoccluded they bring `direct` all together. */
+static void aim_at_group(struct receiver *r, const struct lamps *lamps,
+                         const struct lamp_group *group, int count, double direct,
+                         struct volley *volley)
+{
+    struct sequence sequence = sequence_to(r, group->node);
+    bool single = !node_is_cluster(group->node) && !lamps->reflect;
+    if (single)
+        aim_at_lamp(r, &sequence, count, group->node, direct, volley);
+    for (int k = 0; k < count && !single; k++) {
+        int half = half_of(volley, k, count);
+        double before = rgb_sum(r->light);
+        aim_at_some(r, lamps, &sequence, (uint32_t)k, group, direct / count);
+        volley->direct[half] += direct / count;
+        volley->seen[half] += rgb_sum(r->light) - before;
+        volley->count[half]++;
+    }
+}
+
+static bool is_wide(const struct lamps *lamps, const struct lamp_group *group)
+{
+    return !lamps->reflect && !node_is_cluster(group->node) &&
+           group->direct > WIDE * lamps->sent[group->node];
+}
+
+/* Segments are dealt to the groups in proportion to their light. A group that is sure to
+ * get one counts with its own light, shared among its segments, for their number depends
+ * on where dealing starts. */
+void receiver_aim_at(struct receiver *r, struct lamps *lamps)
+{
+    lamps_group(lamps, &r->facet, &r->gather->model->estimating);
+    if (!(lamps->groups.direct > 0.0))
+        return;
+    int most = lamps->reflect ? (r->rays + RAYS_PER_AIMED - 1) / RAYS_PER_AIMED : r->rays;
+    double each = lamps->groups.direct / most, sum = 0.0;
+    double start = hash_unit(r->seed + 16);
+    struct volley volley = {.direct = {0.0, 0.0}};
+    struct rgb light = {{0.0, 0.0, 0.0}};
+    int done = 0;
+    for (int64_t i = 0; i < lamps->groups.count; i++) {
+        const struct lamp_group *group = &lamps->groups.items[i];
+        sum += group->direct;
+        int now = (int)fmin(most, floor(sum / each + start)), count = now - done;
+        if (count == 0)
+            continue;
+        double direct = group->direct >= each ? group->direct : count * each;
+        done = now;
+        if (is_wide(lamps, group)) {
+            aim_at_wide_lamp(r, count, group->node, direct);
+            continue;
+        }
+        aim_at_group(r, lamps, group, count, direct, &volley);
+        light = lamp_light(lamps, lamp_choose(lamps, group->node, 0.5).root);
+        if (volley.count[0] + volley.count[1] >= VOLLEY)
+            end_volley(r, &volley, light);
+    }
+    end_volley(r, &volley, light);
+}
+
+bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 x)
+{
+    struct triangle t = scene_root_triangle(scene, lamp);
+    struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
+    return vec3_dot(apart, apart) < NEAR_LAMP * scene_root_area(scene, lamp);
+}
+
+/* The lamp and a point of it are chosen by hashes; of a lamp that the horizon cuts, a
+ * point above it. */
+void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
+                         int32_t input, const struct rgb *weight, uint64_t seed)
+{
+    const struct final_gather *g = r->gather;
+    const struct scene *scene = g->model->scene;
+    double at = hash_unit(seed) * g->lamps.groups.around;
+    int64_t i = 0;
+    for (; i < g->lamps.groups.count - 1 && at >= g->lamps.groups.items[i].around; i++)
+        at -= g->lamps.groups.items[i].around;
+    if (!(g->lamps.groups.around > 0.0) || !(g->lamps.groups.items[i].around > 0.0))
+        return;
+    const struct lamp_group *group = &g->lamps.groups.items[i];
+    struct lamp lamp = lamp_choose(&g->lamps, group->node, hash_unit(seed + 1));
+    if (receiver_lamp_is_near(scene, lamp.root, x))
+        return;
+    struct triangle triangle = scene_root_triangle(scene, lamp.root);
+    struct vec3 facing = scene_root_plane(scene, lamp.root).normal;
+    struct rgb emission = scene_root_material(scene, lamp.root)->emission;
+    double factor = point_triangle_factor(x, normal, &triangle);
+    for (uint64_t k = 0; k < AIMS_MOST && factor > 0.0; k++) {
+        struct vec3 y = triangle_of_square(&triangle, hash_unit(seed + 2 + 2 * k),
+                                       hash_unit(seed + 3 + 2 * k));
+        if (!(receiver_kernel(x, normal, y, facing) > 0.0))
+            continue;
+        double share = lamp.share * (g->lamps.groups.around / group->around);
+        if (blocker_of(r, x, input, y, lamp.root) < 0)
+            receiver_add_source(r, weight, emission, factor * share);
+        return;
+    }
+}
+
+void receiver_aim(struct receiver *r)
+{
+    receiver_aim_at(r, &r->gather->lamps);
+    r->lamps = r->light;
+    r->light = (struct rgb){{0.0, 0.0, 0.0}};
+}
