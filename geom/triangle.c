@@ -20,6 +20,13 @@
 
 #include <stddef.h>
 
+/* A triangle is in a plane if no corner is further off than this. */
+static const double COPLANAR = 4.0 * GEOM_ROUNDING;
+
+/* Triangles that share a strip narrower than this part of a side only touch, as those
+ * with a corner on the side of another do in a file of six digits. */
+static const double TOUCHING = 1e-6;
+
 struct vec3 triangle_cross(const struct triangle *t)
 {
     return vec3_cross(vec3_sub(t->corner[1], t->corner[0]),
@@ -74,6 +81,37 @@ struct triangle triangle_child(const struct triangle *t, int child)
     case 2: return (struct triangle){{ca, bc, c}};
     default: return (struct triangle){{bc, ca, ab}};
     }
+}
+
+bool triangle_is_in(const struct triangle *t, const struct plane *own,
+                    const struct plane *plane)
+{
+    double off = 0.0;
+    for (int k = 0; k < 3; k++)
+        off = real_max(off, fabs(plane_distance(plane, t->corner[k])));
+    return off <= COPLANAR && vec3_dot(plane->normal, own->normal) > 0.0;
+}
+
+/* True if a side of s has all of t on its outside, or all but a narrow strip. */
+static bool has_side_before(const struct triangle *s, const struct triangle *t,
+                            const struct plane *plane)
+{
+    bool found = false;
+    for (int k = 0; k < 3 && !found; k++) {
+        struct vec3 side = vec3_sub(s->corner[(k + 1) % 3], s->corner[k]);
+        struct vec3 out = vec3_cross(side, plane->normal);
+        double least = -TOUCHING * vec3_dot(out, out);
+        found = true;
+        for (int j = 0; j < 3; j++)
+            found = found && vec3_dot(out, vec3_sub(t->corner[j], s->corner[k])) >= least;
+    }
+    return found;
+}
+
+bool triangles_overlap(const struct triangle *s, const struct triangle *t,
+                       const struct plane *plane)
+{
+    return !has_side_before(s, t, plane) && !has_side_before(t, s, plane);
 }
 
 struct segment segment_make(struct vec3 from, struct vec3 to)

@@ -64,6 +64,15 @@ static inline double plane_distance(const struct plane *plane, struct vec3 x)
     return vec3_dot(plane->normal, x) - plane->offset;
 }
 
+/* True if the triangle lies in the plane, of another one, and faces the same way. `own`:
+ * its own plane. */
+bool triangle_is_in(const struct triangle *t, const struct plane *own,
+                    const struct plane *plane);
+
+/* True if two triangles of a plane, which both face, share more than edges. */
+bool triangles_overlap(const struct triangle *s, const struct triangle *t,
+                       const struct plane *plane);
+
 /* Pre: from != to. */
 struct segment segment_make(struct vec3 from, struct vec3 to);
 

@@ -33,17 +33,10 @@
 #include "geom/alloc.h"
 #include "geom/stop.h"
 
-/* A triangle is in a plane if no corner is further off than this. */
-static const double COPLANAR = 4.0 * GEOM_ROUNDING;
-
 /* True if triangle t lies in the plane of triangle s and faces the same way. */
 static bool are_coplanar(const struct walls *walls, int32_t s, int32_t t)
 {
-    const struct plane *plane = &walls->planes[s];
-    double off = 0.0;
-    for (int k = 0; k < 3; k++)
-        off = real_max(off, fabs(plane_distance(plane, walls->triangles[t].corner[k])));
-    return off <= COPLANAR && vec3_dot(plane->normal, walls->planes[t].normal) > 0.0;
+    return triangle_is_in(&walls->triangles[t], &walls->planes[t], &walls->planes[s]);
 }
 
 /* --- neighbours --- */

@@ -56,7 +56,26 @@ static bool view_node(struct final_gather *g, const struct end *root, int32_t no
     return true;
 }
 
-/* True if it is proved that nothing stands between the root and the roots that it faces.
+/* True if two of the roots that are faced overlap: one is hidden in part by a face in its
+ * own plane. */
+static bool has_overlap(const struct final_gather *g)
+{
+    const struct gather_view *view = &g->view;
+    const struct scene *scene = g->model->scene;
+    for (int64_t i = 0; i < view->count; i++) {
+        struct triangle s = scene_root_triangle(scene, view->faced[i]);
+        struct plane plane = scene_root_plane(scene, view->faced[i]);
+        for (int64_t j = 0; j < i; j++) {
+            struct triangle t = scene_root_triangle(scene, view->faced[j]);
+            struct plane own = scene_root_plane(scene, view->faced[j]);
+            if (triangle_is_in(&t, &own, &plane) && triangles_overlap(&s, &t, &plane))
+                return true;
+        }
+    }
+    return false;
+}
+
+/* True if it is proved that nothing hides any of the roots that the root faces.
  * Segments come first: they find most blockers. */
 static bool is_open(struct final_gather *g, const struct facet *root)
 {
@@ -77,7 +96,7 @@ static bool is_open(struct final_gather *g, const struct facet *root)
         struct facet other = facet_make(g->model->forest, view->faced[i]);
         open = facets_are_open(root, &other, octree, &view->counts);
     }
-    return open;
+    return open && !has_overlap(g);
 }
 
 /* The points of a slender triangle are far apart for its width, so its mean factors would

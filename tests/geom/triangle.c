@@ -360,6 +360,29 @@ static void test_decals(void)
     tap_ok(hidden, "a point 1e-11 behind it is not");
 }
 
+static void test_overlap(void)
+{
+    struct random random = random_seed(10);
+    bool over = true, beside = true;
+    for (int i = 0; i < TRIANGLES; i++) {
+        struct triangle t = random_triangle(&random, 0.3, 0.2);
+        if (triangle_area(&t) < 1e-4)
+            continue;
+        struct plane plane = triangle_plane(&t);
+        struct triangle turned = triangle_turned(&t), child[4];
+        struct plane other = triangle_plane(&turned);
+        over = over && !triangle_is_in(&turned, &other, &plane);
+        for (int k = 0; k < 4; k++) {
+            child[k] = triangle_child(&t, k);
+            over = over && triangle_is_in(&child[k], &plane, &plane) &&
+                   triangles_overlap(&t, &child[k], &plane);
+            for (int j = 0; j < k; j++)
+                beside = beside && !triangles_overlap(&child[j], &child[k], &plane);
+        }
+    }
+    tap_ok(over && beside, "a child overlaps its parent, and no sister");
+}
+
 int main(void)
 {
     test_measure();
@@ -373,5 +396,6 @@ int main(void)
     test_fan();
     test_plane();
     test_decals();
+    test_overlap();
     return tap_done();
 }

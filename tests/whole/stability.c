@@ -252,6 +252,32 @@ static void test_coplanar(void)
     solution_free(&s);
 }
 
+/* A lamp over a floor on whose middle lies a dark sheet, in its plane and after it in the
+ * file; or that has a hole for the sheet. Nothing stands in the way, but factors to both
+ * would count the middle twice: the lamp would reflect 1.46 times as much. */
+static void test_sheet(void)
+{
+    double reflected[2];
+    for (int hole = 0; hole < 2; hole++) {
+        struct soup soup = {0};
+        soup_add_quad(&soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 1);
+        paint(&soup, 0.5, 1.0);
+        for (int k = 0; k < 16; k++)
+            if (!hole || k / 4 % 3 == 0 || k % 4 % 3 == 0)
+                soup_add_quad(&soup, point(0.25 * (k / 4), 0.25 * (k % 4), 0),
+                              point(0.25, 0, 0), point(0, 0.25, 0), 1);
+        paint(&soup, 0.8, 0.0);
+        soup_add_quad(&soup, point(0.25, 0.25, 0), point(0.5, 0, 0), point(0, 0.5, 0), 1);
+        paint(&soup, 0.1, 0.0);
+        struct solution s = solve_soup(&soup, "");
+        reflected[hole] = mean_radiosity(&s, 0, 2) - 1.0;
+        solution_free(&s);
+    }
+    tap_ok(fabs(reflected[0] / reflected[1] - 1.0) < 0.02,
+           "over a sheet that lies on a floor the lamp reflects %.5f, in a hole %.5f",
+           reflected[0], reflected[1]);
+}
+
 /* Every face of a furnace twice, in triangles of two sizes: rows of links sum to 2 and B
  * = E / (1 - 2 rho), which diverges from rho = 0.5 on, and is said to; capped, rho times
  * the row sum is 0.95 at most. */
@@ -725,6 +751,7 @@ int main(int argc, char **argv)
     test_termination();
     test_leak();
     test_coplanar();
+    test_sheet();
     test_duplicates(0.3, "--epsilon 1e-4 --final-gather 0", 2.5,
                     0.02); /* as exact as the row sums: 0.9 % measured */
     test_duplicates(0.3, "--epsilon 1e-4", 1.0 / 0.7,
