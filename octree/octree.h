@@ -70,17 +70,10 @@ bool octree_blocks_segment(const struct octree *octree, struct vec3 from, struct
 bool octree_has_wall(const struct octree *octree, const struct vec3 *p, int count_p,
                      const struct vec3 *q, int count_q, struct octree_counts *counts);
 
-/* True if it is proved that nothing can block a segment from the front of one triangle to
- * the front of another: no triangle reaches into the shaft between them, their convex
- * hull, in front of both planes. False says nothing. `own`: their numbers, as above. */
-bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p,
-                           const struct plane *plane_p, const struct triangle *q,
-                           const struct plane *plane_q, const int32_t own[2],
-                           struct octree_counts *counts);
-
-/* Finds the triangles that reach into that shaft: all that can block there. Writes at
- * most `most` of them into `entrants`, in ascending order. Returns their number;
- * most + 1 if there are more. */
+/* Finds the triangles that reach into the shaft between two, their convex hull in front
+ * of both planes: all that can block a segment from front to front. Writes at most `most`
+ * of them into `entrants`, in ascending order. Returns their number; most + 1 if there
+ * are more. None is a proof that the way is open. `own`: their numbers, as above. */
 int32_t octree_list_shaft(const struct octree *octree, const struct triangle *p,
                           const struct plane *plane_p, const struct triangle *q,
                           const struct plane *plane_q, const int32_t own[2],

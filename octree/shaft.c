@@ -123,11 +123,3 @@ int32_t octree_list_shaft(const struct octree *octree, const struct triangle *p,
     shaft_walk(&octree->inside, &shaft, find_entrants, &query, counts);
     return query.count;
 }
-
-bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p,
-                           const struct plane *plane_p, const struct triangle *q,
-                           const struct plane *plane_q, const int32_t own[2],
-                           struct octree_counts *counts)
-{
-    return octree_list_shaft(octree, p, plane_p, q, plane_q, own, NULL, 0, counts) == 0;
-}

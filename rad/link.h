@@ -37,12 +37,6 @@ static inline bool link_is_open(const struct link *link)
     return link->seen >= LINK_OPEN_NEAR;
 }
 
-/* Something stands between p and q, but does not hide all. */
-static inline bool link_is_partly_seen(const struct link *link)
-{
-    return link->seen > 0 && link->seen < LINK_ALL_SEEN;
-}
-
 /* Exchange area G. */
 static inline double link_area(const struct link *link)
 {

@@ -121,14 +121,6 @@ int32_t octree_list_shaft(const struct octree *octree, const struct triangle *p,
     return count;
 }
 
-bool octree_shaft_is_empty(const struct octree *octree, const struct triangle *p,
-                           const struct plane *plane_p, const struct triangle *q,
-                           const struct plane *plane_q, const int32_t own[2],
-                           struct octree_counts *counts)
-{
-    return octree_list_shaft(octree, p, plane_p, q, plane_q, own, NULL, 0, counts) == 0;
-}
-
 bool octree_first_hit(const struct octree *octree, struct vec3 origin,
                       struct vec3 direction, bool fronts_only, struct octree_hit *hit,
                       struct octree_counts *counts)

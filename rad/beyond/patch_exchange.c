@@ -187,6 +187,6 @@ bool facets_are_open(const struct facet *p, const struct facet *q,
                      const struct octree *octree, struct octree_counts *counts)
 {
     const int32_t own[2] = {p->input, q->input};
-    return octree_shaft_is_empty(octree, &p->triangle, &p->plane, &q->triangle, &q->plane,
-                                 own, counts);
+    return octree_list_shaft(octree, &p->triangle, &p->plane, &q->triangle, &q->plane,
+                             own, NULL, 0, counts) == 0;
 }

@@ -15,8 +15,8 @@
 /* G without blockers, within 1/500 of G or so. */
 static inline double link_unoccluded(const struct link *link)
 {
-    return link_is_partly_seen(link) ? (double)link->area * LINK_ALL_SEEN / link->seen
-                                     : (double)link->area;
+    bool partly = link->seen > 0 && link->seen < LINK_ALL_SEEN;
+    return partly ? (double)link->area * LINK_ALL_SEEN / link->seen : (double)link->area;
 }
 
 /* The part of child k, 1. */

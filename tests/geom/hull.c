@@ -1,12 +1,12 @@
-/* Tests of geom/hull.h and of octree_shaft_is_empty(): an empty hull is a proof, so no
- * segment from front to front may ever be blocked by a triangle that does not enter it;
- * and one that does enter blocks some. */
+/* Tests of geom/hull.h: an empty hull is a proof, so no segment from front to front may
+ * ever be blocked by a triangle that does not enter it; and one that does enter blocks
+ * some. Of the octree's answers: tests/octree/octree.c. */
 #include "geom/hull.h"
 
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
-enum { PAIRS = 20000, SEGMENTS = 40, SCENES = 200, TRIANGLES = 30 };
+enum { PAIRS = 20000, SEGMENTS = 40 };
 
 /* Whether the triangle blocks one of some random segments from front to front. */
 static bool blocks_some(struct random *random, const struct triangle *p,
@@ -87,54 +87,9 @@ static void test_places(void)
            "nor one that stands beside");
 }
 
-static bool faces(const struct plane *plane, const struct triangle *t)
-{
-    return plane_distance(plane, t->corner[0]) > 0.0 ||
-           plane_distance(plane, t->corner[1]) > 0.0 ||
-           plane_distance(plane, t->corner[2]) > 0.0;
-}
-
-/* The octree's answer is that of all triangles one by one. */
-static void test_octree(void)
-{
-    struct random random = random_seed(2);
-    int differ = 0, empty = 0, full = 0;
-    for (int n = 0; n < SCENES; n++) {
-        struct soup soup = {0};
-        soup_add_random(&soup, &random, TRIANGLES, 0.4, 0.15);
-        struct world world = world_make(scene_of_soup(&soup));
-        const struct scene *scene = world.scene;
-        for (int32_t a = 0; a < 10; a++) {
-            int32_t own[2] = {a, a + 10};
-            if (!faces(&scene->planes[a], &scene->triangles[a + 10]) ||
-                !faces(&scene->planes[a + 10], &scene->triangles[a]))
-                continue;
-            const struct triangle *p = &scene->triangles[a],
-                                  *q = &scene->triangles[a + 10];
-            struct octree_counts counts = {0};
-            struct hull hull =
-                hull_of_pair(p, &scene->planes[a], q, &scene->planes[a + 10]);
-            bool found = octree_shaft_is_empty(world.octree, p, &scene->planes[a], q,
-                                               &scene->planes[a + 10], own, &counts);
-            bool free = true;
-            for (int32_t t = 0; t < scene->input_count; t++)
-                free = free && (t == own[0] || t == own[1] ||
-                                !hull_is_entered(&hull, &scene->triangles[t]));
-            differ += found != free;
-            empty += free;
-            full += !free;
-        }
-        world_free(&world);
-    }
-    tap_ok(differ == 0 && empty > 100 && full > 100,
-           "the octree agrees with brute force: %d empty shafts, %d others", empty,
-           full);
-}
-
 int main(void)
 {
     test_proof();
     test_places();
-    test_octree();
     return tap_done();
 }
