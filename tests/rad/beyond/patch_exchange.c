@@ -352,42 +352,6 @@ static void test_proof(void)
     tap_ok(!walled_off && bent.area == 0.0, "unless they do not lie in one plane");
 }
 
-/* Two patches and a few large triangles between, beside or through them. Whenever a
- * proof is claimed no random segment from one to the other gets through. */
-static void test_claims(void)
-{
-    struct random random = random_seed(9);
-    int claims = 0, dark = 0, wrong = 0;
-    for (int i = 0; i < PAIRS; i++) {
-        struct triangle t[6];
-        struct plane planes[6];
-        t[0] = moved(random_triangle(&random, 0.1, 0.15), point(0, 0, -0.3));
-        t[1] = moved(random_triangle(&random, 0.1, 0.15), point(0, 0, 0.3));
-        for (int k = 2; k < 6; k++)
-            t[k] = moved(random_triangle(&random, 0.0, 0.6), point(0, 0, 0));
-        for (int k = 0; k < 6; k++)
-            planes[k] = triangle_plane(&t[k]);
-        struct facet p = facet_of(t[0], 0), q = facet_of(t[1], 1);
-        if (!facets_face(&p, &q))
-            continue;
-        struct octree *octree = octree_create(t, planes, 6);
-        struct octree_counts counts = {0};
-        struct exchange exchange = exchange_of(&p, &q, octree, &counts);
-        bool walled_off = facets_are_walled_off(&p, &q, octree, &counts);
-        octree_destroy(octree);
-        dark += exchange.area == 0.0;
-        claims += walled_off;
-        const int32_t own[2] = {0, 1};
-        for (int k = 0; k < 1000 && walled_off; k++)
-            wrong += brute_blocker(t, planes, 6, random_point_on(&random, &t[0]),
-                                   random_point_on(&random, &t[1]), own) < 0;
-    }
-    tap_ok(claims > 100 && dark > claims,
-           "%d of %d pairs that no ray joins are proved blocked",
-           claims, dark);
-    tap_ok(wrong == 0, "and of a thousand segments each none gets through");
-}
-
 /* --- points to polygons --- */
 
 /* A speck close to a large triangle is a point to it, and the triangle is all but that
@@ -537,7 +501,6 @@ int main(void)
     test_facing();
     test_horizon();
     test_proof();
-    test_claims();
     test_speck();
     test_any(FORM_FACTOR_DISK, 5 * PAIRS, "disks");
     test_any(FORM_FACTOR_POLYGON, PAIRS, "polygons");
