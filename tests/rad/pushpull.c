@@ -1,14 +1,31 @@
 /* Tests of rad/pushpull.h: no light is lost on its way from any level to the leaves,
- * pulls are means, the sums of a push-pull, and the change of energy. */
+ * pulls are means, the sums of a push-pull, the change of energy, and row sums. */
 #include "rad/beyond/range.h"
 #include "rad/pushpull.h"
 
 #include <string.h>
 
-#include "tests/dozen.h"
+#include "tests/scenes.h"
 #include "tests/tap.h"
 
-enum { SPLITS = 200 };
+enum { SPLITS = 200, ROOTS = 12, NO_AREA = 5, BLACK = 7 };
+
+/* Random triangles, one without an area. Materials: two that reflect, the first emits,
+ * and a black one. */
+static struct world make_world(void)
+{
+    struct soup soup = {0};
+    struct random random = random_seed(1);
+    soup_add_random(&soup, &random, ROOTS, 0.5, 0.3);
+    soup.items[NO_AREA].corner[2] = soup.items[NO_AREA].corner[0];
+    paint_with(&soup, (struct material){{{0.5, 0.25, 0.75}}, {{1.0, 2.0, 0.5}}});
+    paint_with(&soup, (struct material){{{0.98, 0.0, 0.1}}, {{0.0, 0.0, 0.0}}});
+    paint(&soup, 0, 0);
+    struct scene *scene = scene_of_soup(&soup);
+    for (int32_t i = 0; i < ROOTS; i++)
+        scene->material_of[i] = i == BLACK ? 2 : i % 2;
+    return world_make(scene);
+}
 
 /* Splits random patches below level 9; roots 0 and 1 stay whole. */
 static void grow(struct forest *forest, uint64_t seed)
@@ -281,6 +298,67 @@ static void test_units(void)
            "the same flux in another unit is the same light, to the bit");
 }
 
+/* --- row sums --- */
+
+/* Root 0 gets 1.25 of its area, root 1 half of it, in two of its children 0.4 more; the
+ * black one does not count, and root 3 is another's. */
+static void test_rows(void)
+{
+    struct world world = make_world();
+    struct forest *forest = world.model.forest;
+    struct flux_unit unit = flux_unit_for(2.0 * scene_area(world.scene));
+    bool own[ROOTS] = {true, true};
+    own[BLACK] = own[NO_AREA] = true;
+    forest_split(forest, 1);
+    double a = forest_area(forest, 0), b = forest_area(forest, 1);
+    int32_t child = forest->patches[1].children;
+    forest->patches[0].flux[0] = flux_from_watts(unit, 1.25 * a);
+    forest->patches[0].flux[1] =
+        flux_from_watts(unit, 7.0 * a); /* another band: no matter */
+    forest->patches[1].flux[0] = flux_from_watts(unit, 0.5 * b);
+    forest->patches[child].flux[0] = flux_from_watts(unit, 0.4 * b / 4.0);
+    forest->patches[child + 3].flux[0] = flux_from_watts(unit, 0.4 * b / 4.0);
+    forest->patches[3].flux[0] = flux_from_watts(unit, 9.0);
+    forest->patches[BLACK].flux[0] = flux_from_watts(unit, 9.0);
+    struct row_sums sums = row_sums_measure(forest, own, unit);
+    /* All numbers are of size 1 and rounded a few times. */
+    tap_ok(fabs(sums.min - 0.5) < 1e-13 && fabs(sums.max - 1.25) < 1e-13,
+           "least and greatest row sum");
+    struct flux_unit coarse = {unit.per_watt / ROW_SUMS_ROOM, unit.watt * ROW_SUMS_ROOM};
+    tap_ok(fabs(flux_to_watts(coarse, sums.area) - (a + b)) < 1e-13,
+           "the area counted is that of own leaves that are not dark");
+    tap_ok(fabs(flux_to_watts(coarse, sums.rows) - (1.25 * a + 0.7 * b)) < 1e-13, "rows");
+    double squares = 0.0625 * a + 0.5 * b * 0.25 + 0.5 * b * 0.01;
+    tap_ok(fabs(flux_to_watts(coarse, sums.squares) - squares) < 1e-13, "squares");
+    bool none[ROOTS] = {false};
+    sums = row_sums_measure(forest, none, unit);
+    tap_ok(sums.min == HUGE_VAL && sums.max == -HUGE_VAL && sums.area == 0 &&
+               sums.rows == 0 && sums.squares == 0,
+           "no leaf at all");
+    /* The unit of a transfer of B = 1 is chosen for a flux as large as the area. */
+    int tried = 0, right = 0;
+    for (int32_t root = 0; root < ROOTS; root++) {
+        double area = forest_area(forest, root);
+        if (root == NO_AREA || root == BLACK)
+            continue;
+        unit = flux_unit_for(area);
+        memset(none, 0, sizeof none);
+        none[root] = true;
+        clear_flux(forest);
+        forest_split(forest, root);
+        for (int k = 0; k < 4; k++)
+            forest->patches[forest->patches[root].children + k].flux[0] =
+                flux_from_watts(unit, 0.25 * 1.5 * area);
+        forest->patches[root].flux[0] = flux_from_watts(unit, 0.9375 * area);
+        sums = row_sums_measure(forest, none, unit);
+        tried++;
+        right += fabs((double)sums.rows / (double)sums.area - 2.4375) < 1e-12 &&
+                 fabs((double)sums.squares / (double)sums.area - 1.4375 * 1.4375) < 1e-12;
+    }
+    tap_ok(tried == 10 && right == tried, "rows may sum to more than 2 all over a scene");
+    world_free(&world);
+}
+
 int main(void)
 {
     test_push();
@@ -291,5 +369,6 @@ int main(void)
     test_two_ranks();
     test_divergence();
     test_units();
+    test_rows();
     return tap_done();
 }

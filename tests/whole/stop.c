@@ -202,26 +202,22 @@ static const struct image IMAGE = {SIZE, SIZE, picture};
 static int64_t write_ppm(void)
 {
     struct tone tone = tone_make(1.0);
-    write_text(WRITTEN, "o");
     return look_at_output(ppm_write(&IMAGE, &tone, WRITTEN, &error));
 }
 
 static int64_t write_pfm(void)
 {
-    write_text(WRITTEN, "o");
     return look_at_output(pfm_write(&IMAGE, WRITTEN, &error));
 }
 
 static int64_t write_png(void)
 {
     struct tone tone = tone_make(1.0);
-    write_text(WRITTEN, "o");
     return look_at_output(png_write(&IMAGE, &tone, WRITTEN, &error));
 }
 
 static int64_t write_hdr(void)
 {
-    write_text(WRITTEN, "o");
     return look_at_output(hdr_write(&IMAGE, WRITTEN, &error));
 }
 
@@ -229,13 +225,11 @@ static int64_t write_mesh(void)
 {
     struct tone tone = tone_make(1.0);
     struct mesh_answer none = {.error = NULL};
-    write_text(WRITTEN, "o");
     return look_at_output(mesh_write(shading, &tone, &none, WRITTEN, &error));
 }
 
 static int64_t write_vtk(void)
 {
-    write_text(WRITTEN, "o");
     return look_at_output(vtk_write(shading, NULL, WRITTEN, &error));
 }
 
@@ -271,6 +265,7 @@ static const struct phase {
 static int64_t run_until(const struct phase *phase, int64_t yes)
 {
     error = (struct error){EXIT_DONE, ""};
+    write_text(WRITTEN, "o");
     asks = 0;
     first_yes = yes;
     return phase->run();
