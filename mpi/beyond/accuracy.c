@@ -64,13 +64,13 @@ static void settle_claim(struct solver *solver, const struct spotcheck *check)
 {
     struct gathered *gathered = &solver->beyond->answer.counts;
     double square = fmax(0.0, check->square), estimate = gathered->error;
-    double rays = gathered->by_rays * gathered->by_rays;
     solver->beyond->accuracy.clear = square - estimate * estimate > SURE * check->doubt;
     if (solver->beyond->accuracy.clear) {
-        gathered->by_mesh = sqrt(square - rays);
+        gathered->by_mesh = sqrt(square - gathered->by_rays * gathered->by_rays);
     } else if (estimate > 0.0) {
-        gathered->by_rays *= sqrt(square) / estimate;
-        gathered->by_mesh *= sqrt(square) / estimate;
+        double factor = sqrt(fmax(square, check->doubt)) / estimate;
+        gathered->by_rays *= factor;
+        gathered->by_mesh *= factor;
     }
     gathered->error = sqrt(square + check->doubt);
     gathered->checked = check->leaves;
