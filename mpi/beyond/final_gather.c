@@ -20,6 +20,10 @@
  * shown B + n (B - L). (n / (1 - n) would be the whole difference, and noise where hardly
  * any far ray meets the leaf.)
  *
+ * Where a box stands on part of a leaf, rays from there meet its inside: that part is
+ * dark, so the part that others see is brighter than the mean, by the inverse of its
+ * share.
+ *
  * In a closed scene all emitted light is absorbed, by bare surfaces (on which no other
  * face lies). Noise, and leaves of which a dark part cannot be seen from afar (the table
  * under a sheet of paper), leave that untrue by a percent; one factor for each band, for
@@ -47,6 +51,15 @@ static const double CRACKS = 1e-5;
  * times its size over its distance: seen from near, it may be lit unlike its mean. */
 static const double UNDIVIDED = 0.2, UNDIVIDED_NEAR = 0.3;
 
+/* A leaf is seen brighter than it is in the mean by at most the inverse of this. */
+static const double LEAST_OUTSIDE = 0.125;
+
+/* What covers a leaf: faces in its plane, and things that stand on it. */
+struct cover {
+    double bare;    /* area without such faces, square scene units */
+    double outside; /* share that is not inside of things, 1 */
+};
+
 /* Leaves have numbers, in the order of forest_order(), the same on all ranks. Rows of a
  * rank are in the order of its leaves. */
 struct gathering {
@@ -55,7 +68,7 @@ struct gathering {
     struct gather_mesh mesh;
     int32_t *leaves;        /* [count] local numbers; borrowed from the mesh */
     double *areas;          /* [count] square scene units */
-    double *bare;           /* [count] bare areas, square scene units */
+    struct cover *covers;   /* [count] */
     int64_t count;
     int64_t *near;          /* [near_count] leaves too near for some, once numbered */
     int64_t near_count;
@@ -80,7 +93,7 @@ static void gathering_start(struct gathering *g, struct solver *solver)
     g->rank_of = g->mesh.rank_of;
     g->count = g->mesh.count;
     g->areas = alloc_array((size_t)g->count, sizeof *g->areas);
-    g->bare = alloc_array((size_t)g->count, sizeof *g->bare);
+    g->covers = alloc_array((size_t)g->count, sizeof *g->covers);
     for (int64_t i = 0; i < g->count; i++)
         g->areas[i] = forest_area(solver->model.forest, g->leaves[i]);
     g->near = alloc_array((size_t)g->count, sizeof *g->near);
@@ -101,7 +114,7 @@ static void gathering_end(struct gathering *g)
     g->solver->beyond->answer.gather = g->gather;
     gather_mesh_free(&g->mesh);
     alloc_free(g->areas);
-    alloc_free(g->bare);
+    alloc_free(g->covers);
     alloc_free(g->near);
     alloc_free(g->radiosity);
     alloc_free(g->all);
@@ -192,12 +205,32 @@ static void share_near(struct gathering *g)
     alloc_free(number);
 }
 
+/* Makes the radiosities to be gathered those of the parts of leaves outside of things,
+ * which receive all their light. */
+static void see_bare_parts(struct gathering *g, const struct rgb *b, bool lamps)
+{
+    const struct forest *forest = g->solver->model.forest;
+    for (int64_t i = 0; i < g->count; i++) {
+        double share = fmax(LEAST_OUTSIDE, g->covers[i].outside);
+        if (!(share < 1.0))
+            continue;
+        struct rgb e = forest_material(forest, g->leaves[i])->emission;
+        for (int c = 0; c < BANDS; c++) {
+            double own = lamps ? e.band[c] : 0.0;
+            g->radiosity[g->gather.place[g->leaves[i]]].band[c] =
+                own + (b[i].band[c] - own) / share;
+        }
+    }
+    final_gather_pull(&g->gather, g->radiosity);
+}
+
 /* Collective. Makes the radiosities to be gathered those that far receivers see: see
  * above. */
 static void see_from_afar(struct gathering *g, const struct rgb *b, bool lamps)
 {
     const struct final_gather *gather = &g->gather;
     int64_t *watts = alloc_array(BANDS * (size_t)g->near_count, sizeof *watts);
+    see_bare_parts(g, b, lamps);
     for (int64_t row = 0; row < gather->count; row++)
         final_gather_add_near(gather, row, g->radiosity, watts);
     add_up(g, watts, BANDS * g->near_count);
@@ -205,12 +238,13 @@ static void see_from_afar(struct gathering *g, const struct rgb *b, bool lamps)
         int64_t i = g->near[k];
         int32_t place = gather->place[g->leaves[i]];
         const struct gather_near *near = &gather->near.items[k];
-        double part = (double)near->area * gather->near.unit_area / g->areas[i];
-        double unit = gather->near.unit_watts / (g->areas[i] * fmax(1.0, part));
+        double area = g->areas[i] * fmax(LEAST_OUTSIDE, g->covers[i].outside);
+        double part = (double)near->area * gather->near.unit_area / area;
+        double unit = gather->near.unit_watts / (area * fmax(1.0, part));
         for (int c = 0; c < BANDS; c++) {
             int64_t sum = watts[BANDS * k + c] + (lamps ? near->watts[c] : 0);
-            g->radiosity[place].band[c] +=
-                fmin(1.0, part) * b[i].band[c] - (double)sum * unit;
+            double *at = &g->radiosity[place].band[c];
+            *at += fmin(1.0, part) * *at - (double)sum * unit;
         }
     }
     final_gather_pull(gather, g->radiosity);
@@ -232,15 +266,17 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
 }
 
 /* Collective. */
-static void share_bare_areas(struct gathering *g)
+static void share_covers(struct gathering *g)
 {
     struct rgb *own = g->all + g->at[g->solver->comm->rank];
     struct rgb *shares = alloc_array((size_t)g->count, sizeof *shares);
     for (int64_t row = 0; row < g->gather.count; row++)
-        own[row] = (struct rgb){{(double)g->gather.rows[row].bare, 0.0, 0.0}};
+        own[row] = (struct rgb){{(double)g->gather.rows[row].bare,
+                                 (double)g->gather.rows[row].outside, 0.0}};
     share_rows(g, shares);
     for (int64_t i = 0; i < g->count; i++)
-        g->bare[i] = g->areas[i] * shares[i].band[0];
+        g->covers[i] = (struct cover){.bare = g->areas[i] * shares[i].band[0],
+                                      .outside = shares[i].band[1]};
     alloc_free(shares);
 }
 
@@ -273,7 +309,9 @@ static void set_radiosities(const struct gathering *g, const struct rgb *h, stru
 static double shining_area(const struct gathering *g, int64_t i)
 {
     uint32_t root = g->solver->model.forest->patches[g->leaves[i]].id.root;
-    return root_is_lamp(&g->gather.lamps, (int32_t)root) ? g->areas[i] : g->bare[i];
+    const struct cover *cover = &g->covers[i];
+    return root_is_lamp(&g->gather.lamps, (int32_t)root) ? g->areas[i]
+                                                         : cover->bare * cover->outside;
 }
 
 /* Scales the irradiances of a closed scene so that all emitted light is absorbed. Returns
@@ -287,7 +325,7 @@ static double close_balance(const struct gathering *g, struct rgb *h)
         for (int c = 0; c < BANDS; c++) {
             emitted.band[c] += shining_area(g, i) * m->emission.band[c];
             absorbed.band[c] +=
-                g->bare[i] * (1.0 - m->reflectance.band[c]) * h[i].band[c];
+                g->covers[i].bare * (1.0 - m->reflectance.band[c]) * h[i].band[c];
         }
     }
     double factor[BANDS], largest = 0.0;
@@ -311,9 +349,9 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
             forest_material(g->solver->model.forest, g->leaves[i]);
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c];
-            absorbed += g->bare[i] * (1.0 - rho) * h[i].band[c];
-            arriving += g->bare[i] * h[i].band[c];
-            leaving += g->bare[i] * (b[i].band[c] - m->emission.band[c]) +
+            absorbed += g->covers[i].bare * (1.0 - rho) * h[i].band[c];
+            arriving += g->covers[i].bare * h[i].band[c];
+            leaving += g->covers[i].bare * (b[i].band[c] - m->emission.band[c]) +
                        g->areas[i] * m->emission.band[c]; /* what is covered, is lost */
             brightest = fmax(brightest, rho);
         }
@@ -493,6 +531,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     struct rgb *start = alloc_array(count, sizeof *start);
     double brightest = 0.0;
     share_near(g);
+    share_covers(g);
     irradiances(g, b, true, h); /* of lamps alone */
     set_radiosities(g, h, start);
     for (int64_t i = 0; i < g->count; i++) {
@@ -508,7 +547,6 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     for (size_t i = 0; i < count; i++) /* slopes may go below 0 where B has changed */
         for (int c = 0; c < BANDS; c++)
             h[i].band[c] = fmax(0.0, h[i].band[c]);
-    share_bare_areas(g);
     if (g->closed)
         g->solver->beyond->answer.counts.closing = close_balance(g, h);
     set_radiosities(g, h, b);

@@ -371,7 +371,7 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
         r.row.lamps = r.lamps;
     }
     keep_terms(&r);
-    r.row.bare = receiver_bare_share(&r);
+    receiver_find_covers(&r);
     RESERVE(gather->rows, &gather->row_capacity, gather->count + 1);
     gather->rows[gather->count++] = r.row;
 }

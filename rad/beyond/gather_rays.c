@@ -169,6 +169,22 @@ static bool is_covered(const struct final_gather *gather, int32_t leaf)
     return gather->near.covered && gather->near.covered[gather->place[leaf]];
 }
 
+/* True if rays from the point, up and along the plane in four directions, all meet backs:
+ * below the back of a canopy those along the plane do not. */
+static bool is_inside(struct receiver *r, struct vec3 origin)
+{
+    static const double RISE = 0.1;
+    struct vec3 normal = r->facet.plane.normal, direction = normal, along = r->along;
+    struct point point;
+    for (int k = 0; k <= 4; k++) {
+        if (trace(r, origin, direction, &point) != MET_BACK)
+            return false;
+        direction = vec3_add(along, vec3_scale(normal, RISE));
+        along = vec3_cross(normal, along);
+    }
+    return true;
+}
+
 /* A ray has met a back. Where the floor is covered by a thing that stands on it, a point
  * is inside of that thing, and another ray from there meets a back, too. */
 static void look_inside(struct receiver *r, struct vec3 origin, struct vec3 direction)
@@ -176,10 +192,10 @@ static void look_inside(struct receiver *r, struct vec3 origin, struct vec3 dire
     struct vec3 normal = r->facet.plane.normal;
     struct vec3 up = vec3_scale(normal, 2.0 * vec3_dot(normal, direction));
     struct point point;
-    if (trace(r, origin, vec3_sub(up, direction), &point) == MET_BACK)
-        r->inside++;
-    else
+    if (trace(r, origin, vec3_sub(up, direction), &point) != MET_BACK)
         r->escaped++;
+    else if (r->keeps && is_inside(r, origin))
+        r->inside++;
 }
 
 /* Russian roulette: the path goes on, for all that would have, with the probability of
@@ -341,7 +357,7 @@ void receiver_fire(struct receiver *r)
         r->gather->counts.escaped += r->escaped;
 }
 
-float receiver_bare_share(const struct receiver *r)
+void receiver_find_covers(struct receiver *r)
 {
     static const double ABOVE = 0x1p-26; /* scene units */
     struct model *model = r->gather->model;
@@ -349,8 +365,10 @@ float receiver_bare_share(const struct receiver *r)
     struct vec3 normal = r->facet.plane.normal;
     double u[SEQUENCE_DIMENSIONS];
     int covered = 0;
+    r->row.bare = 0.0f;
+    r->row.outside = 1.0f - (float)r->inside / (float)r->rays;
     if (r->gather->sums.count == 0 && !(rgb_sum(r->row.source) > 0.0))
-        return 0.0f;
+        return;
     for (uint32_t i = 0; i < BARE_POINTS; i++) {
         sequence_point(&sequence, i, u);
         struct vec3 x = triangle_of_square(&r->facet.triangle, u[0], u[1]);
@@ -360,6 +378,5 @@ float receiver_bare_share(const struct receiver *r)
                              vec3_scale(normal, -1.0), false, &hit, &model->counts) &&
             hit.triangle != r->facet.input;
     }
-    return (1.0f - (float)covered / BARE_POINTS) *
-           (1.0f - (float)r->inside / (float)r->rays);
+    r->row.bare = 1.0f - (float)covered / BARE_POINTS;
 }

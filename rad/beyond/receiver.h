@@ -89,11 +89,11 @@ struct receiver_share receiver_share_of_wide(struct receiver *r,
                                              const struct sequence *sequence, int count,
                                              int32_t lamp);
 
-/* The share of a leaf's area that is bare: not covered by another face in its plane (a
- * picture on a wall, a lamp in the ceiling), nor, as its rays have shown, inside of a
- * thing that stands on it. None of a leaf that sees nothing, as the underside of that
- * thing. */
-float receiver_bare_share(const struct receiver *r);
+/* Fills in the shares of the leaf's area that are bare, not covered by another face in
+ * its plane (a picture on a wall, a lamp in the ceiling), and, as its rays have shown,
+ * outside of things that stand on it. Of a leaf that sees nothing, as the underside of
+ * such a thing, nothing is bare. */
+void receiver_find_covers(struct receiver *r);
 
 /* Makes the row of a leaf from exact factors. False if its root is not open, or the row
  * cannot be exact; then it is to be made by rays. */

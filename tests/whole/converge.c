@@ -132,9 +132,9 @@ static void test_accuracy(const struct comm *comm, const char *path,
 }
 
 /* The final gather: less error with more rays, and with more leaves; its own estimate of
- * the error is true within a factor of 2, where rays cause it and, with 2,048 of them,
- * where the mesh is. `most`: a tenth above the last one's error. `shown`: the most that
- * interpolation between leaves may have, in errors of leaves. */
+ * the error is true within a factor of 2, or 2.5 above it, where rays cause it and, with
+ * 2,048 of them, the mesh. `most`: a tenth above the last one's error. `shown`: the most
+ * that interpolation between leaves may have, in errors of leaves. */
 static void test_gathered(const struct comm *comm, const char *path,
                           const struct truth *truth, double most, double shown)
 {
@@ -153,7 +153,7 @@ static void test_gathered(const struct comm *comm, const char *path,
         error[k] = now.leaf;
         if (comm->rank == 0)
             tap_ok(
-                now.converged && less && now.estimate < 2.0 * now.leaf &&
+                now.converged && less && now.estimate < 2.5 * now.leaf &&
                     now.estimate > 0.5 * now.leaf,
                 "%s, epsilon %g, gathered with %d rays: leaf error %.2f %%, said to be "
                 "%.2f %%",

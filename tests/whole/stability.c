@@ -324,6 +324,32 @@ static void test_covered(const char *words)
     solution_free(&s);
 }
 
+/* A furnace with 16 boxes on a floor of 32 leaves: all but these have B = E / (1 - rho),
+ * which is off by 11 % if the mean of a leaf is seen in place of its bare part. */
+static void test_standing(void)
+{
+    struct soup soup = {0};
+    add_room(&soup, 1);
+    for (int i = 0; i < 16; i++) {
+        double x = 0.1 + 0.22 * (i % 4), y = 0.1 + 0.22 * (i / 4);
+        soup_add_box(&soup, point(x, y, 0), point(x + 0.13, y + 0.12, 0.1), 1, false);
+    }
+    paint(&soup, 0.9, 1.0);
+    struct solution s = solve_soup(&soup, "--max-level 2 --min-area 0.005");
+    double least = HUGE_VAL, most = 0.0;
+    for (int32_t root = 0; root < scene_root_count(s.scene); root++) {
+        double up = scene_root_plane(s.scene, root).normal.z;
+        if (root < 12 ? up > 0.5 : up < -0.5) /* the floor, undersides */
+            continue;
+        least = fmin(least, radiosity(&s, root));
+        most = fmax(most, radiosity(&s, root));
+    }
+    tap_ok(least >= 9.99 && most <= 10.01,
+           "boxes on a floor of few leaves, in a furnace: B %.3f .. %.3f for 10", least,
+           most);
+    solution_free(&s);
+}
+
 /* A flat triangle, `width` times as wide as long, with a twin of opposite winding. */
 static void add_sliver(struct soup *soup, struct vec3 from, struct vec3 to, double width)
 {
@@ -759,6 +785,7 @@ int main(int argc, char **argv)
     test_duplicates(0.6, "--epsilon 1e-3 --final-gather 0", 1.0 / 0.05, 1e-3);
     test_duplicates(0.6, "--epsilon 1e-3 --paper", 0.0, 0.0);
     test_covered("--epsilon 1e-4 --tolerance 1e-6");
+    test_standing();
     test_slivers();
     test_degenerate();
     test_moved("a million times as large", 1e6, 0.0, 1e-7);
