@@ -58,6 +58,20 @@ bool triangle_is_degenerate(const struct triangle *t);
  * 3 = (bc, ca, ab). Two triangles that share an edge split it at the same bits. */
 struct triangle triangle_child(const struct triangle *t, int child);
 
+/* Turns barycentric coordinates in a triangle into those in the child with the point.
+ * Returns the number of the child. */
+static inline int triangle_child_at(double w[3])
+{
+    int child = w[0] >= 0.5 ? 0 : w[1] >= 0.5 ? 1 : w[2] >= 0.5 ? 2 : 3;
+    for (int k = 0; k < 3; k++)
+        w[k] *= 2.0;
+    if (child < 3)
+        w[child] -= 1.0;
+    for (int k = 0; k < 3 && child == 3; k++)
+        w[k] = 1.0 - w[k];
+    return child;
+}
+
 /* Signed distance to the plane, positive in front. */
 static inline double plane_distance(const struct plane *plane, struct vec3 x)
 {

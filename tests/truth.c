@@ -210,12 +210,8 @@ static void land_in(struct ground *ground, int32_t root, const double weight[3],
     if (first < 0)
         return;
     double w[3] = {weight[0], weight[1], weight[2]};
-    for (int level = id_level(ground->truth->items[first].id); level > 0; level--) {
-        int child = w[0] >= 0.5 ? 0 : w[1] >= 0.5 ? 1 : w[2] >= 0.5 ? 2 : 3;
-        for (int k = 0; k < 3; k++)
-            w[k] = child == 3 ? 1.0 - 2.0 * w[k] : 2.0 * w[k] - (k == child);
-        number = number << 2 | child;
-    }
+    for (int level = id_level(ground->truth->items[first].id); level > 0; level--)
+        number = number << 2 | triangle_child_at(w);
     for (int c = 0; c < BANDS; c++)
         ground->sums[(first + number) * BANDS + c] += llrint(light->band[c] / UNIT);
 }

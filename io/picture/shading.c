@@ -476,30 +476,13 @@ void shading_destroy(struct shading *shading)
     alloc_free(shading);
 }
 
-/* Turns barycentric coordinates in a patch into those in the child with the point.
- * Returns the number of the child. */
-static int descend(double w[3])
-{
-    for (int k = 0; k < 3; k++) {
-        if (w[k] < 0.5)
-            continue;
-        /* children 0 = (a, ab, ca), 1 = (ab, b, bc), 2 = (ca, bc, c): corner k stays k */
-        for (int i = 0; i < 3; i++)
-            w[i] = i == k ? 2.0 * w[i] - 1.0 : 2.0 * w[i];
-        return k;
-    }
-    for (int i = 0; i < 3; i++) /* child 3 = (bc, ca, ab) */
-        w[i] = 1.0 - 2.0 * w[i];
-    return 3;
-}
-
 struct rgb shading_at(const struct shading *shading, int32_t root, const double weight[3])
 {
     const struct forest *forest = shading->forest;
     double w[3] = {weight[0], weight[1], weight[2]};
     int32_t leaf = root;
     while (!patch_is_leaf(&forest->patches[leaf]))
-        leaf = forest->patches[leaf].children + descend(w);
+        leaf = forest->patches[leaf].children + triangle_child_at(w);
     const int32_t *corner = &shading->corners[3 * (int64_t)leaf];
     if (shading->flat)
         return shading->values[corner[0]];

@@ -70,12 +70,8 @@ static int32_t leaf_at(const struct forest *forest, int32_t root, struct vec3 x,
     w[2] = vec3_dot(vec3_cross(a, to), normal) * unit;
     w[0] = 1.0 - w[1] - w[2];
     int32_t p = root;
-    while (!patch_is_leaf(&forest->patches[p])) {
-        int child = w[0] >= 0.5 ? 0 : w[1] >= 0.5 ? 1 : w[2] >= 0.5 ? 2 : 3;
-        for (int k = 0; k < 3; k++)
-            w[k] = child == 3 ? 1.0 - 2.0 * w[k] : 2.0 * w[k] - (k == child ? 1.0 : 0.0);
-        p = forest->patches[p].children + child;
-    }
+    while (!patch_is_leaf(&forest->patches[p]))
+        p = forest->patches[p].children + triangle_child_at(w);
     return p;
 }
 

@@ -232,10 +232,9 @@ struct basin {
 static void fill_basin(void *listener, const struct landing *landing)
 {
     struct basin *basin = listener;
-    const double *w = landing->weight;
-    int child = w[0] >= 0.5 ? 0 : w[1] >= 0.5 ? 1 : w[2] >= 0.5 ? 2 : 3;
+    double w[3] = {landing->weight[0], landing->weight[1], landing->weight[2]};
     if (landing->root == basin->root)
-        basin->light[child] += landing->light.band[basin->band];
+        basin->light[triangle_child_at(w)] += landing->light.band[basin->band];
 }
 
 /* rho H over the children of a root, by light paths. */
