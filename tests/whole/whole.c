@@ -26,31 +26,39 @@ struct errors {
 /* The limits of all scenes: errors that no eye sees, few next to edges. */
 static const struct errors BARS = {1e-3, 2e-3, 1e-2};
 
-/* In a crater the exact answer takes B to be the same all over each of 60 facets, beside
- * a bright edge: it is as far off as this, for a finer epsilon finds the same. */
-static const struct errors CRATER = {4e-3, 5e-3, 1.5e-2};
-
 /* --- errors measured --- */
 
 /* An answer for one surface: by an equation, by root, or the same everywhere. */
 struct truth {
     const struct equation *equation;
-    const double *root; /* [roots] B of facets lit by facets: light_of_facets() */
+    const double *part; /* [roots * PARTS] B of parts of facets: light_of_facets() */
     double value;
     int surface;      /* of the equation */
     double low, high; /* roots are looked at whose centroids have y between these */
 };
 
-/* B at a point of a root, if all roots have these radiosities and none is hidden. */
+/* Facets are lit by facets in so many parts. */
+enum { PARTS = 16 };
+
+static struct triangle part_of_facet(const struct scene *scene, int32_t number)
+{
+    struct triangle quarter =
+        triangle_child(&scene->triangles[number / PARTS], number / 4 % 4);
+    return triangle_child(&quarter, number % 4);
+}
+
+/* B at a point of a root, if all parts have these radiosities and none is hidden. */
 static double light_of_facets(const struct scene *scene, const double *b, int32_t root,
                               struct vec3 x)
 {
     const struct material *m = scene_root_material(scene, root);
     double h = 0.0;
-    for (int32_t r = 0; r < scene_root_count(scene); r++)
-        if (r != root)
-            h += b[r] * point_triangle_factor(x, scene_root_plane(scene, root).normal,
-                                              &scene->triangles[r]);
+    for (int32_t p = 0; p < scene_root_count(scene) * PARTS; p++) {
+        struct triangle part = part_of_facet(scene, p);
+        if (p / PARTS != root)
+            h += b[p] * point_triangle_factor(x, scene_root_plane(scene, root).normal,
+                                              &part);
+    }
     return m->emission.band[0] + m->reflectance.band[0] * h;
 }
 
@@ -60,7 +68,7 @@ static double truth_of_leaf(const struct truth *truth, const struct solution *s,
 {
     const struct forest *forest = s->solver->model.forest;
     const struct equation *e = truth->equation;
-    if (!e && !truth->root)
+    if (!e && !truth->part)
         return truth->value;
     struct triangle t = forest_triangle(forest, leaf);
     double sum = 0.0;
@@ -72,8 +80,8 @@ static double truth_of_leaf(const struct truth *truth, const struct solution *s,
                 w[c] = q == 3 ? 0.5 - 0.5 * part : 0.5 * part + (c == q ? 0.5 : 0.0);
             }
             struct vec3 x = corners_mean(t.corner, point(w[0], w[1], w[2]));
-            if (truth->root) {
-                sum += light_of_facets(s->scene, truth->root,
+            if (truth->part) {
+                sum += light_of_facets(s->scene, truth->part,
                                        (int32_t)forest->patches[leaf].id.root, x) /
                        12.0;
                 continue;
@@ -308,23 +316,24 @@ static void test_cavity(double length, double eps, double wall, double base)
 /* --- spheres --- */
 
 /* The facets of a sphere are walls of a convex room: nothing is hidden, and light from
- * facet to facet is solved for with exact factors and B that is the same all over a
- * facet. */
+ * facet to facet is solved for with exact factors and B that is the same all over each
+ * part of a facet: over a whole one, it is up to .36 % off in the mean. */
 static double *facets_solve(const struct scene *scene)
 {
-    int32_t n = scene_root_count(scene);
+    int32_t n = scene_root_count(scene) * PARTS;
     double *factor = alloc_array((size_t)n * (size_t)n, sizeof *factor);
     double *b = alloc_array((size_t)n, sizeof *b), change = 1.0;
     for (int32_t i = 0; i < n; i++)
-        for (int32_t j = 0; j < i; j++) {
-            double g = triangle_exchange(&scene->triangles[i], &scene->triangles[j]);
-            factor[i * n + j] = g / scene->areas[i];
-            factor[j * n + i] = g / scene->areas[j];
+        for (int32_t j = 0; j < i - i % PARTS; j++) {
+            struct triangle p = part_of_facet(scene, i), q = part_of_facet(scene, j);
+            double g = triangle_exchange(&p, &q);
+            factor[i * n + j] = g / triangle_area(&p);
+            factor[j * n + i] = g / triangle_area(&q);
         }
     while (change > 1e-10) {
         change = 0.0;
         for (int32_t i = 0; i < n; i++) {
-            const struct material *m = scene_root_material(scene, i);
+            const struct material *m = scene_root_material(scene, i / PARTS);
             double h = 0.0;
             for (int32_t j = 0; j < n; j++)
                 h += factor[i * n + j] * b[j];
@@ -365,8 +374,7 @@ static struct scene *sphere_of_zones(const struct zone *zones, int count, int le
 /* H = sum f E / (1 - sum f rho), f being the shares of 4 pi that zones have: in a sphere;
  * facets are another sum of shares, and cost as much more or less as facets_solve() has
  * of each. */
-static void test_sphere(const char *name, const struct zone *zones, int count, int level,
-                        struct errors limit)
+static void test_sphere(const char *name, const struct zone *zones, int count, int level)
 {
     struct scene *scene = sphere_of_zones(zones, count, level);
     struct solution s = solve_scene(scene, options);
@@ -374,7 +382,8 @@ static void test_sphere(const char *name, const struct zone *zones, int count, i
     double area[8] = {0.0}, light[8] = {0.0}, whole = 0.0;
     for (int32_t i = 0; i < scene_root_count(scene); i++) {
         area[scene->material_of[i]] += scene->areas[i];
-        light[scene->material_of[i]] += scene->areas[i] * b[i];
+        for (int p = 0; p < PARTS; p++)
+            light[scene->material_of[i]] += scene->areas[i] / PARTS * b[i * PARTS + p];
     }
     struct soup sphere = {0};
     soup_add_sphere(&sphere, 1.0, level);
@@ -390,9 +399,9 @@ static void test_sphere(const char *name, const struct zone *zones, int count, i
             double exact = zones[z].material.emission.band[0] +
                            zones[z].material.reflectance.band[0] * up / down;
             double cost = fabs(light[z] / area[z] / exact - 1.0);
-            struct errors mean = {limit.mean, HUGE_VAL, HUGE_VAL};
+            struct errors mean = {BARS.mean, HUGE_VAL, HUGE_VAL};
             judge(&s, name, z, &(struct truth){.value = exact}, mean, cost);
-            judge(&s, "  and its facets", z, &(struct truth){.root = b}, limit, 0.0);
+            judge(&s, "  and its facets", z, &(struct truth){.part = b}, BARS, 0.0);
         }
     alloc_free(b);
     solution_free(&s);
@@ -555,10 +564,10 @@ int main(int argc, char **argv)
     const struct zone zones[] = {{-0.9, material_grey(0, 0)},
                                  {0.9, material_grey(.95, 0)},
                                  {2.0, material_grey(.9, 50)}};
-    test_sphere("sphere of zones", zones, 3, 2, BARS);
+    test_sphere("sphere of zones", zones, 3, 2);
     const struct zone crater[] = {{-0.7, material_grey(.8, 1)},
                                   {0.0, material_grey(.8, 0)}};
-    test_sphere("crater", crater, 2, 2, CRATER);
+    test_sphere("crater", crater, 2, 2);
     test_concentric(0.5, 2);
     test_concentric(0.2, 2);
     test_furnace(CUBE, 0.5, false, "--tolerance 1e-8");
