@@ -11,7 +11,7 @@ static inline struct shading *shade_forest(const struct forest *forest,
                                            const struct rgb *less, const float *error)
 {
     int64_t leaves;
-    uint8_t *open = shading_open_quarters(forest, octree, 0, 1, &leaves);
+    uint8_t *open = shading_open_parts(forest, octree, 0, 1, &leaves);
     struct shading *shading = shading_create(forest, less, error, open);
     alloc_free(open);
     return shading;

@@ -57,14 +57,14 @@ static void write_meshes(struct run *run, const struct shading *shading)
     alloc_free(colours);
 }
 
-/* Collective. Returns the open quarters of all leaves, of which each rank examines some;
+/* Collective. Returns the open parts of all leaves, of which each rank examines some;
  * NULL with --flat. */
 static uint8_t *survey_leaves(struct run *run)
 {
     if (run->options.flat)
         return NULL;
     int64_t leaves;
-    uint8_t *open = shading_open_quarters(run->solver->model.forest, run->octree,
+    uint8_t *open = shading_open_parts(run->solver->model.forest, run->octree,
                                           run->comm.rank, run->comm.size, &leaves);
     comm_add_bytes(&run->comm, open, leaves);
     return open;

@@ -25,9 +25,11 @@
  * and invisible, and must not darken the rest. It is found with the four points where the
  * rays of the leaf's links begin: a point is covered if four rays from it, up and far
  * aside, all meet a back first: it lies inside a solid, not merely below a shelf; or in a
- * gap that is narrow for the leaf, as behind a picture on a wall. The light of the leaf
- * then belongs to its open part: the shown irradiance is that of the leaf over the
- * fraction that is open. A vertex with only covered leaves around it takes their mean.
+ * gap that is narrow for the leaf, as behind a picture on a wall. If one of the four is
+ * covered, sixteen are examined: beside a row of books a strip of the bookcase is open,
+ * no wider than an eighth of the leaf. The light of the leaf then belongs to its open
+ * part: the shown irradiance is that of the leaf over the fraction that is open. A vertex
+ * with only covered leaves around it takes their mean.
  *
  * Between its vertices a leaf interpolates linearly. At a T-vertex, a vertex of a fine
  * leaf in the middle of a coarse leaf's edge, the two sides would differ. Such a vertex
@@ -43,7 +45,7 @@
 #include "geom/stop.h"
 #include "io/picture/surface.h"
 
-/* --- leaves, and their covered quarters --- */
+/* --- leaves, and their covered parts --- */
 
 /* Calls `visit` for each leaf of the level (-1: of any), roots in order, depth first. */
 static void for_each_leaf(const struct forest *forest, int level,
@@ -64,6 +66,9 @@ static void for_each_leaf(const struct forest *forest, int level,
 /* A gap is narrow for a leaf if it is less than this part of the distance from the middle
  * to a corner of its quarter. */
 static const double NARROW = 0.1;
+
+/* Parts of a leaf that are examined where some are covered. */
+enum { OPEN_PARTS = 16 };
 
 struct survey {
     const struct forest *forest;
@@ -92,23 +97,35 @@ static bool is_shut(const struct survey *survey, const struct plane *plane,
     return height < gap;
 }
 
-/* True if the point is covered. `aside`: a triangle around it, whose corners give three
- * directions along the surface. */
-static bool is_covered(const struct survey *survey, struct vec3 point,
-                       const struct plane *plane, const struct triangle *aside)
+/* True if the middle of a triangle is covered, whose corners give three directions along
+ * the surface. `gap`: the width of a narrow gap, scene units. */
+static bool is_covered(const struct survey *survey, const struct plane *plane,
+                       const struct triangle *part, double gap)
 {
+    struct vec3 point = triangle_centroid(part);
     struct vec3 rise = vec3_scale(plane->normal, 1024.0 * GEOM_ROUNDING);
     struct vec3 start = vec3_add(point, rise);
-    double gap = NARROW * vec3_length(vec3_sub(aside->corner[0], point));
     if (!is_shut(survey, plane, start, plane->normal, gap))
         return false;
     for (int k = 0; k < 3; k++) {
-        struct vec3 along = vec3_sub(aside->corner[k], point);
+        struct vec3 along = vec3_sub(part->corner[k], point);
         struct vec3 up = vec3_scale(plane->normal, 0.25 * vec3_length(along));
         if (!is_shut(survey, plane, start, vec3_add(along, up), gap))
             return false;
     }
     return true;
+}
+
+/* Counts the quarters of a triangle whose middles are open. */
+static int open_quarters(const struct survey *survey, const struct plane *plane,
+                         const struct triangle *t, double gap)
+{
+    int open = 0;
+    for (int k = 0; k < 4; k++) {
+        struct triangle child = triangle_child(t, k);
+        open += !is_covered(survey, plane, &child, gap);
+    }
+    return open;
 }
 
 static void survey_leaf(void *context, int32_t leaf)
@@ -121,14 +138,18 @@ static void survey_leaf(void *context, int32_t leaf)
     struct triangle t = forest_triangle(forest, leaf);
     struct plane plane =
         scene_root_plane(forest->scene, (int32_t)forest->patches[leaf].id.root);
-    for (int k = 0; k < 4; k++) {
-        struct triangle child = triangle_child(&t, k);
-        if (!is_covered(survey, triangle_centroid(&child), &plane, &child))
-            survey->open[number]++;
+    struct triangle quarter = triangle_child(&t, 0);
+    double gap = NARROW * vec3_length(vec3_sub(quarter.corner[0],
+                                               triangle_centroid(&quarter)));
+    if (open_quarters(survey, &plane, &t, gap) == 4)
+        survey->open[number] = OPEN_PARTS;
+    for (int k = 0; k < 4 && survey->open[number] < OPEN_PARTS; k++) {
+        quarter = triangle_child(&t, k);
+        survey->open[number] += (uint8_t)open_quarters(survey, &plane, &quarter, gap);
     }
 }
 
-uint8_t *shading_open_quarters(const struct forest *forest, const struct octree *octree,
+uint8_t *shading_open_parts(const struct forest *forest, const struct octree *octree,
                                int first, int step, int64_t *count)
 {
     struct survey survey = {forest, octree, 0, first, step, NULL};
@@ -257,11 +278,11 @@ enum { ROUNDS = 4 };
 /* Weight of a covered leaf: it counts only at vertices without open leaves. */
 static const double COVERED = 1e-12;
 
-/* Returns the open fraction of a leaf: 1/2, 3/4 or 1; with fewer open quarters it counts
- * as covered: 0. */
-static double open_fraction(uint8_t quarters)
+/* Returns the open fraction of a leaf: 1/8 to 1; with fewer open parts it counts as
+ * covered: 0. */
+static double open_fraction(uint8_t parts)
 {
-    return quarters < 2 ? 0.0 : 0.25 * quarters;
+    return parts < 2 ? 0.0 : (double)parts / OPEN_PARTS;
 }
 
 /* Returns the radiosity of the open part of a leaf, less less[leaf]. The whole irradiance
@@ -285,7 +306,7 @@ struct blend {
     struct table table;
     const struct rgb *less; /* [patches] radiosity to subtract, W/m^2, or NULL */
     const float *error;     /* [patches] of radiosity, two deviations, W/m^2, or NULL */
-    const uint8_t *open;    /* of shading_open_quarters() */
+    const uint8_t *open;    /* of shading_open_parts() */
     bool is_last;           /* of the corrections: it takes deficits as they are */
     int64_t next;           /* number of the next leaf in canonical order */
     int32_t *surface;       /* [roots] of surface_of_roots() */

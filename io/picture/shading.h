@@ -17,15 +17,15 @@ struct shading {
     int64_t vertex_count;
 };
 
-/* Counts the open quarters of each leaf, 0 to 4: those not covered by a solid that stands
- * on the leaf. Leaves are in canonical order: roots in order, depth first. Only the
+/* Counts the open sixteenths of each leaf: those not covered by a solid that stands on
+ * the leaf. Leaves are in canonical order: roots in order, depth first. Only the
  * leaves first, first + step, ... are examined, the others get 0, so that ranks can
  * divide the leaves and add their counts. `octree` is that of the scene.
  * Returns [count] numbers, to be freed with alloc_free(). */
-uint8_t *shading_open_quarters(const struct forest *forest, const struct octree *octree,
+uint8_t *shading_open_parts(const struct forest *forest, const struct octree *octree,
                                int first, int step, int64_t *count);
 
-/* Prepares the shading of a solution. `open`: the open quarters of all leaves. NULL gives
+/* Prepares the shading of a solution. `open`: the open parts of all leaves. NULL gives
  * flat shading: each leaf has three vertices of its own with its constant. `less`:
  * [patches] radiosity to subtract, W/m^2: that by the light of lamps, with its shadows;
  * or NULL. `error`: [patches] two standard deviations of the radiosity of leaves, W/m^2,

@@ -146,7 +146,7 @@ static int64_t survey_leaves(void)
 {
     int64_t count, sum = 0;
     const struct forest *forest = world.model.forest;
-    uint8_t *open = shading_open_quarters(forest, world.octree, 0, 1, &count);
+    uint8_t *open = shading_open_parts(forest, world.octree, 0, 1, &count);
     for (int64_t i = 0; i < count; i++)
         sum += open[i];
     alloc_free(open);
