@@ -26,10 +26,10 @@
  * rays of the leaf's links begin: a point is covered if four rays from it, up and far
  * aside, all meet a back first: it lies inside a solid, not merely below a shelf; or in a
  * gap that is narrow for the leaf, as behind a picture on a wall. If one of the four is
- * covered, sixteen are examined: beside a row of books a strip of the bookcase is open,
- * no wider than an eighth of the leaf. The light of the leaf then belongs to its open
- * part: the shown irradiance is that of the leaf over the fraction that is open. A vertex
- * with only covered leaves around it takes their mean.
+ * covered, sixteen are examined: beside a row of books a strip of the bookcase is open.
+ * The light of the leaf then belongs to its open part, if that is a quarter at least: the
+ * shown irradiance is that of the leaf over the fraction that is open. A vertex with only
+ * covered leaves around it takes their mean.
  *
  * Between its vertices a leaf interpolates linearly. At a T-vertex, a vertex of a fine
  * leaf in the middle of a coarse leaf's edge, the two sides would differ. Such a vertex
@@ -278,11 +278,11 @@ enum { ROUNDS = 4 };
 /* Weight of a covered leaf: it counts only at vertices without open leaves. */
 static const double COVERED = 1e-12;
 
-/* Returns the open fraction of a leaf: 1/8 to 1; with fewer open parts it counts as
+/* Returns the open fraction of a leaf: 1/4 to 1; with fewer open parts it counts as
  * covered: 0. */
 static double open_fraction(uint8_t parts)
 {
-    return parts < 2 ? 0.0 : (double)parts / OPEN_PARTS;
+    return parts < 4 ? 0.0 : (double)parts / OPEN_PARTS;
 }
 
 /* Returns the radiosity of the open part of a leaf, less less[leaf]. The whole irradiance
