@@ -458,7 +458,7 @@ static void test_settings(void)
                    "--oracle error\n"
                    "--linking tree\n--form-factor polygon\n--solver cg\n"
                    "--epsilon 0.0001\n--accuracy 0\n--max-level 10\n"
-                   "--min-area 9.9999999999999995e-08\n"),
+                   "--min-area 1e-10\n"),
            "the options that a run is bound to");
     parse("a.obj --paper --two-sided --epsilon 0.5");
     tap_ok(is_same(options_link_settings(&options),
