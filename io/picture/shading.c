@@ -150,7 +150,7 @@ static void survey_leaf(void *context, int32_t leaf)
 }
 
 uint8_t *shading_open_parts(const struct forest *forest, const struct octree *octree,
-                               int first, int step, int64_t *count)
+                            int first, int step, int64_t *count)
 {
     struct survey survey = {forest, octree, 0, first, step, NULL};
     for_each_leaf(forest, -1, survey_leaf, &survey);

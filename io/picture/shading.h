@@ -23,7 +23,7 @@ struct shading {
  * divide the leaves and add their counts. `octree` is that of the scene.
  * Returns [count] numbers, to be freed with alloc_free(). */
 uint8_t *shading_open_parts(const struct forest *forest, const struct octree *octree,
-                               int first, int step, int64_t *count);
+                            int first, int step, int64_t *count);
 
 /* Prepares the shading of a solution. `open`: the open parts of all leaves. NULL gives
  * flat shading: each leaf has three vertices of its own with its constant. `less`:
