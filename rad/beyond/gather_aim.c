@@ -27,7 +27,7 @@ static const double NEAR_LAMP = 4.0;
 /* Fewest segments that are enough to estimate the visible share of lamps; most tries for
  * a point of a lamp above the horizon; rays in all directions for each that is aimed at a
  * bright root. */
-enum { VOLLEY = 4, AIMS_MOST = 4, RAYS_PER_AIMED = 4 };
+enum { VOLLEY = 4, AIMS_MOST = 16, RAYS_PER_AIMED = 4 };
 
 static const struct rgb ALL = {{1.0, 1.0, 1.0}};
 
@@ -133,7 +133,8 @@ static struct sequence sequence_to(const struct receiver *r, int32_t node)
 }
 
 /* Fires `count` segments at a single lamp: without blockers they bring the irradiance
- * `direct` all together, summed over bands, each in proportion to its kernel. */
+ * `direct` all together, summed over bands, each in proportion to its kernel. Points
+ * below a horizon are passed over, or the light would be lost where all of few are. */
 static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int count,
                         int32_t root, double direct, struct volley *volley)
 {
@@ -142,14 +143,16 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
     struct vec3 normal = scene_root_plane(scene, root).normal;
     struct rgb emission = scene_root_material(scene, root)->emission;
     double all[2] = {0.0, 0.0}, seen[2] = {0.0, 0.0}, u[SEQUENCE_DIMENSIONS];
-    for (int i = 0; i < count; i++) {
-        int half = half_of(volley, i, count);
+    for (int i = 0, fired = 0; fired < count && i < AIMS_MOST * count; i++) {
         sequence_point(sequence, (uint32_t)i, u);
         struct vec3 x = receiver_start(r, u[0], u[1]);
         struct vec3 y = triangle_of_square(&lamp, u[2], u[3]);
         double light = receiver_kernel(x, r->facet.plane.normal, y, normal);
+        if (!(light > 0.0))
+            continue;
+        int half = half_of(volley, fired++, count);
         all[half] += light;
-        if (light > 0.0 && receiver_blocker(r, x, y, root) < 0)
+        if (receiver_blocker(r, x, y, root) < 0)
             seen[half] += light;
         volley->count[half]++;
     }
@@ -227,28 +230,43 @@ static bool is_wide(const struct lamps *lamps, const struct lamp_group *group)
            group->direct > WIDE * lamps->sent[group->node];
 }
 
+/* Segments that are still to be dealt, one for each so much light. */
+struct dealing {
+    double each; /* W/m^2 */
+    double sum;  /* light of the groups so far, in segments, from a chance start on */
+};
+
+/* Returns the number of segments of the next group, which brings the light `direct`. */
+static int deal(struct dealing *dealing, double direct)
+{
+    double before = floor(dealing->sum);
+    dealing->sum += direct / dealing->each;
+    return (int)(floor(dealing->sum) - before);
+}
+
 /* Segments are dealt to the groups in proportion to their light. A group that is sure to
- * get one counts with its own light, shared among its segments, for their number depends
- * on where dealing starts. */
+ * get one counts with its own light, shared among its segments. The others are dealt
+ * theirs apart, a whole number, so that together they count with their own light. */
 void receiver_aim_at(struct receiver *r, struct lamps *lamps)
 {
     lamps_group(lamps, &r->facet, &r->gather->model->estimating);
-    if (!(lamps->groups.direct > 0.0))
+    const struct lamp_groups *groups = &lamps->groups;
+    if (!(groups->direct > 0.0))
         return;
     int most = lamps->reflect ? (r->rays + RAYS_PER_AIMED - 1) / RAYS_PER_AIMED : r->rays;
-    double each = lamps->groups.direct / most, sum = 0.0;
-    double start = hash_unit(r->seed + 16);
+    double each = groups->direct / most, start = hash_unit(r->seed + 16), faint = 0.0;
+    for (int64_t i = 0; i < groups->count; i++)
+        faint += groups->items[i].direct < each ? groups->items[i].direct : 0.0;
+    struct dealing strong = {each, start}, weak = {faint / ceil(faint / each), start};
     struct volley volley = {.direct = {0.0, 0.0}};
     struct rgb light = {{0.0, 0.0, 0.0}};
-    int done = 0;
-    for (int64_t i = 0; i < lamps->groups.count; i++) {
-        const struct lamp_group *group = &lamps->groups.items[i];
-        sum += group->direct;
-        int now = (int)fmin(most, floor(sum / each + start)), count = now - done;
+    for (int64_t i = 0; i < groups->count; i++) {
+        const struct lamp_group *group = &groups->items[i];
+        bool sure = group->direct >= each;
+        int count = deal(sure ? &strong : &weak, group->direct);
         if (count == 0)
             continue;
-        double direct = group->direct >= each ? group->direct : count * each;
-        done = now;
+        double direct = sure ? group->direct : count * weak.each;
         if (is_wide(lamps, group)) {
             aim_at_wide_lamp(r, count, group->node, direct);
             continue;

@@ -207,6 +207,35 @@ static void test_lamps(void)
     tap_ok(fabs(h / exact - 0.5) <= 0.02, "half hidden: %.3f of its light", h / exact);
 }
 
+/* A floor sees nothing but a sky of 128 facets around it, of which the horizon cuts some,
+ * and a grain of a box that hides less than .1 %. Fewer segments than facets find all of
+ * its light, H = E: clusters of facets, chosen by chance, leave 1 %. */
+static void test_sky(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(-0.05, -0.05, 0.1), point(0.1, 0, 0), point(0, 0.1, 0), 4);
+    paint(&soup, 0.0, 0.0);
+    soup_add_sphere(&soup, 1.0, 2);
+    for (int64_t i = 32; i < soup.count; i++)
+        soup.items[i] = reversed(soup.items[i]);
+    paint(&soup, 0.0, 1.0);
+    soup_add_box(&soup, point(0.2, 0, 0.2), point(0.201, 0.001, 0.201), 1, false);
+    paint(&soup, 0.0, 0.0);
+    struct trial g = gather_scene(&soup, "", 64);
+    double largest = 0.0, sum = 0.0;
+    for (int64_t i = 0; i < g.gather.count; i++) {
+        if (g.s.solver->model.forest->patches[g.gather.rows[i].leaf].id.root >= 32)
+            continue;
+        double off = irradiance(&g, i) - 1.0;
+        largest = fmax(largest, fabs(off));
+        sum += off / 32.0;
+    }
+    tap_ok(fabs(sum) < 0.002 && largest < 0.01,
+           "below a sky H is E, off by %.2f %% in the mean, %.2f %% at most", 100.0 * sum,
+           100.0 * largest);
+    trial_free(&g);
+}
+
 /* A panel of a hundredth of the area of the black floor below it reflects all light that
  * there is: rays are aimed at it. Those in all directions would meet it five times in
  * all. A corner of the box hides .2 %. */
@@ -580,6 +609,7 @@ int main(int argc, char **argv)
     test_open();
     test_given_up();
     test_lamps();
+    test_sky();
     test_bright();
     test_bright_rows();
     test_grain();
