@@ -22,6 +22,9 @@
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "geom/alloc.h"
 
@@ -30,7 +33,8 @@ enum {
     TESTS_BEFORE_SLEEP = 200,
     SHORTEST_SLEEP = 20, /* microseconds */
     LONGEST_SLEEP = 1000,
-    SLEEP_GROWTH = 4 /* microseconds for each test in vain */
+    SLEEP_GROWTH = 4, /* microseconds for each test in vain */
+    LARGE = 1 << 17   /* bytes; larger arrays go back to the system when they are freed */
 };
 
 /* The tag of comm_exchange(); messages of one pair never overtake each other. */
@@ -51,6 +55,9 @@ static void out_of_memory(size_t bytes)
 void comm_start(struct comm *comm, int *argc, char ***argv)
 {
     MPI_Request request;
+#ifdef M_MMAP_THRESHOLD
+    mallopt(M_MMAP_THRESHOLD, LARGE); /* or it grows to the largest array freed so far */
+#endif
     MPI_Init(argc, argv);
     MPI_Comm_idup(MPI_COMM_WORLD, &comm->handle, &request);
     comm_wait(&request);

@@ -1,41 +1,34 @@
-/* Gathering a picture: rank 0 receives the rows of rank 0, then those of rank 1, and so
- * on, and puts each in its place. Of large pictures there are no more than two copies at
- * a time, and one where rank 0 is alone. */
+/* Gathering a picture: rank 0 receives row by row, each where it belongs. So there is no
+ * copy but the rows of each rank, and none where rank 0 is alone. */
 #include "mpi/picture.h"
 
 #include <string.h>
 
 #include "geom/alloc.h"
 
+enum { TAG = 2 }; /* rows of one rank never overtake each other */
+
 float *picture_gather(const struct comm *comm, float *rows, size_t row, int height)
 {
     if (comm->size == 1)
         return rows;
-    size_t ranks = (size_t)comm->size;
-    int *counts = alloc_array(ranks, sizeof *counts),
-        *at = alloc_array(ranks, sizeof *at);
-    for (int y = 0; y < height; y++)
-        counts[y % comm->size]++;
-    comm_displacements(comm, counts, at);
-    MPI_Datatype record;
-    MPI_Type_contiguous(comm_count(comm, (int64_t)row), MPI_FLOAT, &record);
-    MPI_Type_commit(&record);
-    bool collects = comm->rank == 0;
-    float *all = collects ? alloc_array((size_t)height * row, sizeof *all) : NULL;
-    MPI_Request request;
-    MPI_Igatherv(rows, counts[comm->rank], record, all, counts, at, record, 0,
-                 comm->handle, &request);
-    comm_wait(&request);
-    MPI_Type_free(&record);
-    alloc_free(rows);
-    float *picture = collects ? alloc_array((size_t)height * row, sizeof *picture) : NULL;
-    for (int y = 0; y < height && collects; y++) {
-        int place = at[y % comm->size] + y / comm->size;
-        memcpy(picture + (size_t)y * row, all + (size_t)place * row,
-               row * sizeof *picture);
+    float *picture =
+        comm->rank == 0 ? alloc_array((size_t)height * row, sizeof *picture) : NULL;
+    const float *next = rows;
+    for (int y = 0, floats = comm_count(comm, (int64_t)row); y < height; y++) {
+        int from = y % comm->size;
+        float *place = picture ? picture + (size_t)y * row : NULL;
+        MPI_Request request = MPI_REQUEST_NULL;
+        if (place && from > 0)
+            MPI_Irecv(place, floats, MPI_FLOAT, from, TAG, comm->handle, &request);
+        else if (place)
+            memcpy(place, next, row * sizeof *place);
+        else if (from == comm->rank)
+            MPI_Isend(next, floats, MPI_FLOAT, 0, TAG, comm->handle, &request);
+        if (request != MPI_REQUEST_NULL)
+            comm_wait(&request);
+        next += from == comm->rank ? row : 0;
     }
-    alloc_free(all);
-    alloc_free(at);
-    alloc_free(counts);
+    alloc_free(rows);
     return picture;
 }

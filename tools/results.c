@@ -204,6 +204,7 @@ bool results_show(struct run *run)
         return true;
     if (!show_check(run))
         return false;
+    beyond_free_vectors(run->solver); /* pictures and meshes take as much */
     double start = comm_seconds();
     uint8_t *open = survey_leaves(run);
     run->solver->account.seconds[PHASE_RENDER] = comm_seconds() - start;

@@ -166,7 +166,7 @@ uint8_t *shading_open_parts(const struct forest *forest, const struct octree *oc
 struct table {
     struct vec3 *positions;  /* [count] scene units */
     struct rgb *values;      /* [count] sum of weighted radiosities, then mean, W/m^2 */
-    double *weights;         /* [count] sum of the weights */
+    double *weights;         /* [count] sum of the weights, of corrections the areas */
     int32_t *surfaces;       /* [count] */
     int64_t count, capacity;
     int32_t *slots;          /* [slot_count] a vertex, or -1 */
@@ -221,13 +221,11 @@ static int32_t append_vertex(struct table *table, struct vec3 x, int32_t surface
     if (needed > INT32_MAX)
         alloc_fail(SIZE_MAX);
     if (needed > table->capacity) {
-        int64_t capacity = table->capacity;
-        RESERVE(table->positions, &capacity, needed);
-        size_t room = (size_t)capacity;
+        RESERVE(table->positions, &table->capacity, needed);
+        size_t room = (size_t)table->capacity;
         table->values = alloc_resize(table->values, room, sizeof *table->values);
         table->weights = alloc_resize(table->weights, room, sizeof *table->weights);
         table->surfaces = alloc_resize(table->surfaces, room, sizeof *table->surfaces);
-        table->capacity = capacity;
     }
     int32_t vertex = (int32_t)table->count++;
     table->positions[vertex] = x;
@@ -311,7 +309,6 @@ struct blend {
     int64_t next;           /* number of the next leaf in canonical order */
     int32_t *surface;       /* [roots] of surface_of_roots() */
     struct rgb *lacking;    /* [vertex_count] sum of area times deficit of leaves, W */
-    double *areas;          /* [vertex_count] sum of open areas of leaves, scene units */
     struct rgb *least;      /* [vertex_count] least value of open leaves around, W/m^2 */
     struct rgb *most;       /* [vertex_count] largest value of them, W/m^2 */
 };
@@ -419,7 +416,7 @@ static void add_lacking(void *context, int32_t leaf)
             *least = fraction > 0.0 ? fmin(*least, value.band[c]) : *least;
             *most = fraction > 0.0 ? fmax(*most, value.band[c]) : *most;
         }
-        blend->areas[corner[k]] += area;
+        blend->table.weights[corner[k]] += area;
     }
 }
 
@@ -429,10 +426,10 @@ static void give_what_lacks(struct blend *blend)
 {
     size_t count = (size_t)blend->table.count;
     blend->lacking = alloc_array(count, sizeof *blend->lacking);
-    blend->areas = alloc_array(count, sizeof *blend->areas);
     blend->least = alloc_array(count, sizeof *blend->least);
     blend->most = alloc_array(count, sizeof *blend->most);
     for (size_t v = 0; v < count; v++) {
+        blend->table.weights[v] = 0.0;
         blend->least[v] = (struct rgb){{HUGE_VAL, HUGE_VAL, HUGE_VAL}};
         blend->most[v] = (struct rgb){{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
     }
@@ -444,11 +441,10 @@ static void give_what_lacks(struct blend *blend)
             double *value = &blend->table.values[v].band[c];
             double low = blend->less ? 0.0 : blend->least[v].band[c];
             double high = blend->less ? HUGE_VAL : blend->most[v].band[c];
-            *value += blend->lacking[v].band[c] / blend->areas[v];
+            *value += blend->lacking[v].band[c] / blend->table.weights[v];
             *value = fmin(high, fmax(low, *value));
         }
     alloc_free(blend->lacking);
-    alloc_free(blend->areas);
     alloc_free(blend->least);
     alloc_free(blend->most);
 }

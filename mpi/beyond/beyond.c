@@ -28,6 +28,15 @@ static void report(const struct solver *solver, struct stats *stats)
     stats->bytes_broadcast += (int64_t)beyond->tree_block.bytes;
 }
 
+void beyond_free_vectors(struct solver *solver)
+{
+    routes_free(&solver->routes);
+    if (solver->beyond)
+        conjugate_free(&solver->beyond->descent);
+    if (solver->model.clusters)
+        cluster_light_free_vectors(solver->model.clusters);
+}
+
 static void end(struct solver *solver)
 {
     struct beyond *beyond = solver->beyond;

@@ -42,6 +42,9 @@ struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
 /* Returns solver->beyond; creates an empty one where there is none. */
 struct beyond *beyond_attach(struct solver *solver);
 
+/* Frees the vectors that transfers of light need, once there are no more. */
+void beyond_free_vectors(struct solver *solver);
+
 /* The answer of the final gather; an empty one where there is none. */
 const struct answer *beyond_answer(const struct solver *solver);
 

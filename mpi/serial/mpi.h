@@ -268,16 +268,6 @@ static inline int MPI_Iallgatherv(const void *send, int count, MPI_Datatype type
     return MPI_Ibarrier(comm, request);
 }
 
-static inline int MPI_Igatherv(const void *send, int count, MPI_Datatype type,
-                               void *receive, const int *counts, const int *displacements,
-                               MPI_Datatype receive_type, int root, MPI_Comm comm,
-                               MPI_Request *request)
-{
-    (void)root;
-    return MPI_Iallgatherv(send, count, type, receive, counts, displacements,
-                           receive_type, comm, request);
-}
-
 static inline int MPI_Ialltoall(const void *send, int count, MPI_Datatype type,
                                 void *receive, int receive_count,
                                 MPI_Datatype receive_type, MPI_Comm comm,

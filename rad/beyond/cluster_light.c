@@ -21,15 +21,22 @@ struct cluster_light *cluster_light_create(const struct cluster_tree *tree)
     return light;
 }
 
+void cluster_light_free_vectors(struct cluster_light *light)
+{
+    alloc_free(light->sent);
+    alloc_free(light->flux);
+    alloc_free(light->irradiance);
+    light->sent = light->irradiance = NULL;
+    light->flux = NULL;
+}
+
 void cluster_light_destroy(struct cluster_light *light)
 {
     if (!light)
         return;
+    cluster_light_free_vectors(light);
     alloc_free(light->radiosity);
-    alloc_free(light->sent);
     alloc_free(light->range);
-    alloc_free(light->flux);
-    alloc_free(light->irradiance);
     alloc_free(light);
 }
 

@@ -20,6 +20,9 @@ struct cluster_light {
 struct cluster_light *cluster_light_create(const struct cluster_tree *tree);
 void cluster_light_destroy(struct cluster_light *light);
 
+/* Frees all but tree, radiosity and range. */
+void cluster_light_free_vectors(struct cluster_light *light);
+
 /* The pull: means of the children, from the roots up, of a vector [patches]. */
 void cluster_light_average(const struct cluster_light *light, const struct forest *forest,
                            const struct rgb *of_patches, struct rgb *of_clusters);
