@@ -100,6 +100,7 @@ struct final_gather final_gather_create(struct model *model, int rays)
     gather.order = forest_order(forest);
     gather.place = alloc_array((size_t)forest->count, sizeof *gather.place);
     gather.sums.latest = alloc_array((size_t)forest->count, sizeof *gather.sums.latest);
+    gather.view.overlapped = alloc_array((size_t)forest->root_count, 1);
     for (int64_t i = 0; i < forest->count; i++)
         gather.place[gather.order[i]] = (int32_t)i;
     return gather;
@@ -122,6 +123,7 @@ void final_gather_free(struct final_gather *gather)
     lamps_free(&gather->lamps);
     lamps_free(&gather->bright);
     alloc_free(gather->view.faced);
+    alloc_free(gather->view.overlapped);
     alloc_free(gather->near.covered);
     alloc_free(gather->order);
     alloc_free(gather->place);

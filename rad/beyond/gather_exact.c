@@ -56,23 +56,31 @@ static bool view_node(struct final_gather *g, const struct end *root, int32_t no
     return true;
 }
 
-/* True if two of the roots that are faced overlap: one is hidden in part by a face in its
- * own plane. */
-static bool has_overlap(const struct final_gather *g)
+/* True if a root below the node overlaps this one: one hides part of the other, by a face
+ * in its own plane. */
+static bool has_overlap(struct final_gather *g, const struct end *root, int32_t node)
 {
-    const struct gather_view *view = &g->view;
-    const struct scene *scene = g->model->scene;
-    for (int64_t i = 0; i < view->count; i++) {
-        struct triangle s = scene_root_triangle(scene, view->faced[i]);
-        struct plane plane = scene_root_plane(scene, view->faced[i]);
-        for (int64_t j = 0; j < i; j++) {
-            struct triangle t = scene_root_triangle(scene, view->faced[j]);
-            struct plane own = scene_root_plane(scene, view->faced[j]);
-            if (triangle_is_in(&t, &own, &plane) && triangles_overlap(&s, &t, &plane))
-                return true;
-        }
-    }
-    return false;
+    struct end end = end_of(g->model, node);
+    const struct facet *s = &root->facet, *t = &end.facet;
+    bool found = false;
+    g->view.counts.node_tests++;
+    if (node == root->node || !ends_meet(root, &end).near)
+        return false;
+    if (!end.cluster)
+        return triangle_is_in(&t->triangle, &t->plane, &s->plane) &&
+               triangles_overlap(&s->triangle, &t->triangle, &s->plane);
+    for (int k = 0; k < 4 && !found && end.cluster->child[k] != NODE_NONE; k++)
+        found = has_overlap(g, root, end.cluster->child[k]);
+    return found;
+}
+
+static bool is_overlapped(struct final_gather *g, int32_t root)
+{
+    uint8_t *known = &g->view.overlapped[root];
+    struct end end = end_of(g->model, root);
+    if (*known == 0)
+        *known = has_overlap(g, &end, NODE_TOP) ? 2 : 1;
+    return *known == 2;
 }
 
 /* True if it is proved that nothing hides any of the roots that the root faces.
@@ -94,9 +102,10 @@ static bool is_open(struct final_gather *g, const struct facet *root)
     }
     for (int64_t i = 0; i < view->count && open; i++) {
         struct facet other = facet_make(g->model->forest, view->faced[i]);
-        open = facets_are_open(root, &other, octree, &view->counts);
+        open = facets_are_open(root, &other, octree, &view->counts) &&
+               !is_overlapped(g, view->faced[i]);
     }
-    return open && !has_overlap(g);
+    return open;
 }
 
 /* The points of a slender triangle are far apart for its width, so its mean factors would

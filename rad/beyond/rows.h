@@ -79,6 +79,8 @@ struct gather_view {
     bool open;         /* proved: nothing stands between the root and any of `faced` */
     int32_t *faced;    /* [count], roots */
     int64_t count, capacity;
+    uint8_t *overlapped; /* [roots] 2: another overlaps it in its plane; 1: none does; 0:
+                            unknown */
     struct octree_counts counts; /* of all proofs, which each rank makes that has a leaf
                                     of the root */
 };
