@@ -45,9 +45,6 @@ static const double TWICE = 0.66;
 /* Epsilon is multiplied by at most LITTLE and at least MUCH in a round. */
 static const double LITTLE = 0.5, MUCH = 0.125;
 
-/* A surplus of more deviations than this is not by chance. */
-static const double SURE = 2.0;
-
 /* Epsilon does not help if it was lowered to EIGHTH and STUCK of the mesh's error is
  * left. */
 static const double EIGHTH = 0.125, STUCK = 0.9;
@@ -58,26 +55,16 @@ static const double ALL = 0.97, SOME = 0.1;
 
 /* --- the claim --- */
 
-/* Puts measurements in the place of estimates. A surplus that is more than doubt is the
- * mesh's, for the estimate of the rays is good; else both are off by the same factor. */
+/* Puts measurements in the place of estimates. */
 static void settle_claim(struct solver *solver, const struct spotcheck *check)
 {
-    struct gathered *gathered = &solver->beyond->answer.counts;
-    double square = fmax(0.0, check->square), estimate = gathered->error;
-    solver->beyond->accuracy.clear = square - estimate * estimate > SURE * check->doubt;
-    if (solver->beyond->accuracy.clear) {
-        gathered->by_mesh = sqrt(square - gathered->by_rays * gathered->by_rays);
-    } else if (estimate > 0.0) {
-        double factor = sqrt(fmax(square, check->doubt)) / estimate;
-        gathered->by_rays *= factor;
-        gathered->by_mesh *= factor;
-    }
-    gathered->error = sqrt(square + check->doubt);
-    gathered->checked = check->leaves;
-    gathered->paths = check->paths;
-    double larger = estimate > 0.0 ? fmax(1.0, gathered->error / estimate) : 1.0;
+    struct beyond *beyond = solver->beyond;
+    double estimate = beyond->answer.counts.error;
+    beyond->accuracy.clear = spotcheck_settle(check, &beyond->answer.counts);
+    double larger =
+        estimate > 0.0 ? fmax(1.0, beyond->answer.counts.error / estimate) : 1.0;
     for (int64_t p = 0; p < solver->model.forest->count; p++)
-        solver->beyond->answer.error[p] *= (float)larger;
+        beyond->answer.error[p] *= (float)larger;
 }
 
 /* --- limits --- */
@@ -225,13 +212,6 @@ struct linked {
     int64_t count;
 };
 
-static struct rgb *keep_light(const struct forest *forest)
-{
-    struct rgb *kept = alloc_array((size_t)forest->count, sizeof *kept);
-    memcpy(kept, forest->radiosity, (size_t)forest->count * sizeof *kept);
-    return kept;
-}
-
 /* Puts the light of the links back. Leaves that the gather has split stay split, and
  * B is linear over them. */
 static void restore_light(struct forest *forest, const struct linked *linked)
@@ -260,10 +240,12 @@ static enum finish judge(struct solver *solver, struct vote *vote,
 
 enum finish solver_finish(struct solver *solver, struct vote *vote)
 {
-    const struct criterion *criterion = &solver->model.criterion;
-    struct linked linked = {.vote = *vote, .count = solver->model.forest->count};
-    bool measures = criterion->accuracy > 0.0;
-    linked.radiosity = measures ? keep_light(solver->model.forest) : NULL;
+    const struct forest *forest = solver->model.forest;
+    struct linked linked = {.vote = *vote, .count = forest->count};
+    bool measures = solver->model.criterion.accuracy > 0.0;
+    size_t kept = measures ? (size_t)linked.count : 0;
+    linked.radiosity = alloc_array(kept, sizeof *linked.radiosity);
+    memcpy(linked.radiosity, forest->radiosity, kept * sizeof *linked.radiosity);
     enum finish finish = solver_final_gather(solver, vote) ? FINISH_DONE : FINISH_STOPPED;
     if (measures && finish == FINISH_DONE)
         finish = judge(solver, vote, &linked);

@@ -50,6 +50,9 @@ static const double NOISE = 2.0;
 /* A doubt that is small enough, in parts of the square. */
 static const double DOUBT = 0.35;
 
+/* A surplus of more deviations than this is not by chance. */
+static const double SURE = 2.0;
+
 /* Two estimates of a leaf's reflected radiosity, W/m^2; no padding. */
 struct finding {
     struct rgb half[2];
@@ -257,4 +260,21 @@ struct spotcheck spotcheck_run(struct solver *solver, double goal)
     pathtracer_free(&c.pathtracer);
     solver->account.seconds[PHASE_SPOT_CHECKS] += comm_seconds() - start;
     return c.result;
+}
+
+bool spotcheck_settle(const struct spotcheck *check, struct gathered *gathered)
+{
+    double square = fmax(0.0, check->square), estimate = gathered->error;
+    bool clear = square - estimate * estimate > SURE * check->doubt;
+    if (clear) {
+        gathered->by_mesh = sqrt(square - gathered->by_rays * gathered->by_rays);
+    } else if (estimate > 0.0) {
+        double factor = sqrt(fmax(square, check->doubt)) / estimate;
+        gathered->by_rays *= factor;
+        gathered->by_mesh *= factor;
+    }
+    gathered->error = sqrt(square + check->doubt);
+    gathered->checked = check->leaves;
+    gathered->paths = check->paths;
+    return clear;
 }

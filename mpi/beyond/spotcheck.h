@@ -20,4 +20,9 @@ struct spotcheck {
  * has taken as many rays as the gather and some more. The same on all ranks. */
 struct spotcheck spotcheck_run(struct solver *solver, double goal);
 
+/* Puts the measurement in the place of estimates. True if it is larger by more than
+ * doubt: then the mesh has the surplus, for the estimate of the rays is good; else both
+ * parts are off by the same factor. Neither becomes 0 where nothing was found. */
+bool spotcheck_settle(const struct spotcheck *check, struct gathered *gathered);
+
 #endif

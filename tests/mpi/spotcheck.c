@@ -44,6 +44,22 @@ static void expect(struct solution *s, double square, const char *name)
            check.doubt, (long long)check.paths);
 }
 
+/* What is told of an error of 2 %, by rays and the mesh alike, becomes what a check finds
+ * of it. Where that is nothing, or less, for it scatters, both parts are as large as its
+ * doubt, and there is something left to tighten. */
+static void test_settling(double square, bool clear, double rays, double mesh)
+{
+    const double even = sqrt(2e-4), doubt = 1e-4;
+    struct gathered g = {.error = 0.02, .by_rays = even, .by_mesh = even};
+    struct spotcheck check = {.square = square, .doubt = doubt};
+    bool found = spotcheck_settle(&check, &g);
+    tap_ok(found == clear && fabs(g.by_rays - rays) < 1e-12 &&
+               fabs(g.by_mesh - mesh) < 1e-12 &&
+               fabs(g.error - sqrt(fmax(0.0, square) + doubt)) < 1e-12,
+           "%.2g +- %.2g in place of 0.02: %.4f by rays, %.4f by the mesh", square, doubt,
+           g.by_rays, g.by_mesh);
+}
+
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -59,6 +75,9 @@ int main(int argc, char **argv)
             s.solver->model.forest->patches[p].id.root == 0;
     expect(&s, 0.25 / (11.0 + 2.25), "which the estimate knows");
     solution_free(&s);
+    test_settling(1.6e-3, true, sqrt(2e-4), sqrt(1.4e-3));
+    test_settling(3.6e-4, false, sqrt(1.8e-4), sqrt(1.8e-4));
+    test_settling(-1e-4, false, sqrt(0.5e-4), sqrt(0.5e-4));
     comm_stop(&world_comm);
     return tap_done();
 }
