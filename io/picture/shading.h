@@ -15,6 +15,8 @@ struct shading {
     struct vec3 *positions;      /* [vertex_count] scene units */
     struct rgb *values;          /* [vertex_count] radiosity, W/m^2 */
     int64_t vertex_count;
+    bool *divided;               /* [forest->count] leaf: it has T-vertices */
+    struct table *table;         /* finds vertices; owns positions and values */
 };
 
 /* Counts the open sixteenths of each leaf: those not covered by a solid that stands on

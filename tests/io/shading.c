@@ -271,6 +271,28 @@ static void test_large_beside_small(void)
     }
 }
 
+/* Small leaves are lit around the middle of a large one's edge and dark at its ends: the
+ * edge shows both. */
+static void test_t_vertices(void)
+{
+    struct stage stage = square_stage();
+    for (int32_t p = 0; p < stage.forest->count; p++) {
+        struct patch_id id = stage.forest->patches[p].id;
+        if (id.root == 1 && id_level(id) < 4)
+            forest_split(stage.forest, p);
+        struct triangle t = forest_triangle(stage.forest, p);
+        struct vec3 x = scene_to_input(stage.scene, triangle_centroid(&t));
+        double lit = id.root == 1 && fabs(x.x + x.y - 1.0) < 0.5;
+        stage.forest->radiosity[p] = (struct rgb){{lit, lit, lit}};
+    }
+    shade(&stage, false);
+    double middle = value_at(&stage, 1, point(0.5, 0.5, 0)).band[0];
+    double end = value_at(&stage, 1, point(1, 0, 0)).band[0];
+    tap_ok(middle > 0.5 && end < 0.1, "an edge shows the light of its middle: %.2f, %.2f",
+           middle, end);
+    dismantle(&stage);
+}
+
 /* The visits can see a jump: flat shading has one at nearly every edge. */
 static void test_jumps_are_seen(void)
 {
@@ -868,6 +890,7 @@ int main(void)
     test_continuity("flat", square_stage);
     test_continuity("curved", curved_stage);
     test_large_beside_small();
+    test_t_vertices();
     test_jumps_are_seen();
     test_constant();
     test_linear();
