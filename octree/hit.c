@@ -22,24 +22,24 @@
 struct search {
     const struct octree *octree;
     struct ray ray;
-    bool fronts_only;
-    double nearest; /* t of the hit; 2 before there is one */
-    struct octree_hit hit;
+    double nearest;   /* t of the hit; 2 before there is one */
+    int32_t triangle; /* the hit; -1 before there is one */
+    bool front, fronts_only;
 };
 
 static const float REACH_MARGIN = 1e-6f; /* more than ties, and than rounding of t */
 
 /* Of two triangles met in the same place, a front counts before a back (the wall of the
  * next room lies back to back with ours), then the one that comes later in the file. */
-static bool wins_tie(const struct octree_hit *hit, int32_t t, bool front)
+static bool wins_tie(const struct search *search, int32_t t, bool front)
 {
-    return front != hit->front ? front : t > hit->triangle;
+    return front != search->front ? front : t > search->triangle;
 }
 
-static bool line_meets(const struct search *search, int32_t t, double weight[3])
+static bool line_meets(const struct search *search, int32_t t)
 {
     struct segment line = segment_make(search->ray.from, search->ray.to);
-    return segment_line_meets(&line, &search->octree->triangles[t], weight);
+    return segment_line_meets(&line, &search->octree->triangles[t], NULL);
 }
 
 /* Tests one triangle; it counts if it is met before the hit so far, or in the same place
@@ -54,12 +54,13 @@ INLINE void improve_hit(struct search *search, const struct record *r)
         return;
     enum passage passage = ray_passes(&search->ray, r, ends, at);
     if (passage == MISSES ||
-        (at > search->nearest - tie && !wins_tie(&search->hit, r->triangle, front)) ||
-        (passage == MAY_MEET && !line_meets(search, r->triangle, NULL)))
+        (at > search->nearest - tie && !wins_tie(search, r->triangle, front)) ||
+        (passage == MAY_MEET && !line_meets(search, r->triangle)))
         return;
     search->nearest = at < search->nearest ? at : search->nearest;
-    search->hit.triangle = r->triangle;
-    search->hit.front = front;
+    search->triangle = r->triangle;
+    search->front = front;
+    search->ray.reach = (float)search->nearest + REACH_MARGIN;
 }
 
 /* Visits a leaf, for ray_walk(). */
@@ -70,8 +71,23 @@ INLINE bool search_leaf(void *at, const struct record *records, int32_t count,
     counts->triangle_tests += count;
     for (int32_t i = 0; i < count; i++)
         improve_hit(search, &records[i]);
-    search->ray.reach = (float)search->nearest + REACH_MARGIN;
     return false;
+}
+
+/* Begins the search of a ray. Returns false if it misses the scene. */
+INLINE bool begin_search(struct search *search, const struct octree *octree,
+                         struct vec3 origin, struct vec3 direction, bool fronts_only)
+{
+    struct vec3 end;
+    search->octree = octree;
+    search->nearest = 2.0;
+    search->triangle = -1;
+    search->front = false;
+    search->fronts_only = fronts_only;
+    if (!ray_clip(octree, &origin, direction, &end))
+        return false;
+    ray_set(&search->ray, origin, end);
+    return true;
 }
 
 bool octree_first_hit(const struct octree *octree, struct vec3 origin,
@@ -79,20 +95,22 @@ bool octree_first_hit(const struct octree *octree, struct vec3 origin,
                       struct octree_counts *counts)
 {
     struct search search; /* set by parts, since the ray is large */
-    struct vec3 end;
-    counts->rays++;
-    search.octree = octree;
-    search.fronts_only = fronts_only;
-    search.nearest = 2.0;
-    search.hit.triangle = hit->triangle = -1;
-    if (!ray_clip(octree, &origin, direction, &end))
-        return false;
-    ray_set(&search.ray, origin, end);
     const float *reach = &search.ray.reach;
-    ray_walk(&octree->inside, &search.ray, reach, search_leaf, &search, counts);
-    ray_walk(&octree->hull, &search.ray, reach, search_leaf, &search, counts);
-    *hit = search.hit;
-    if (hit->triangle < 0)
-        return false;
-    return line_meets(&search, hit->triangle, hit->weight);
+    counts->rays++;
+    if (begin_search(&search, octree, origin, direction, fronts_only)) {
+        ray_walk(&octree->inside, &search.ray, reach, search_leaf, &search, counts);
+        ray_walk(&octree->hull, &search.ray, reach, search_leaf, &search, counts);
+    }
+    hit->triangle = search.triangle;
+    hit->front = search.front;
+    return hit->triangle >= 0;
+}
+
+void octree_hit_weights(const struct octree *octree, struct vec3 origin,
+                        struct vec3 direction, struct octree_hit *hit)
+{
+    struct vec3 end;
+    ray_clip(octree, &origin, direction, &end);
+    struct segment line = segment_make(origin, end);
+    segment_line_meets(&line, &octree->triangles[hit->triangle], hit->weight);
 }

@@ -34,7 +34,7 @@ struct bundle {
 struct octree_hit {
     int32_t triangle;
     bool front;       /* the front of the triangle is met */
-    double weight[3]; /* barycentric coordinates of the point */
+    double weight[3]; /* barycentric coordinates of the point: octree_hit_weights() */
 };
 
 /* Builds the octree over `count` triangles and their planes, in scene units (the box
@@ -87,9 +87,13 @@ bool octree_first_hit(const struct octree *octree, struct vec3 origin,
                       struct vec3 direction, bool fronts_only, struct octree_hit *hit,
                       struct octree_counts *counts);
 
-/* octree_first_hit() of 1 to PACKET_RAYS rays from one point; the triangle of a ray that
- * meets nothing becomes -1. Answers are the same to the bit, and come sooner if the rays
- * go to almost the same place, as those of neighbouring pixels do. */
+/* Sets the weights of what a ray meets first. */
+void octree_hit_weights(const struct octree *octree, struct vec3 origin,
+                        struct vec3 direction, struct octree_hit *hit);
+
+/* octree_first_hit() of 1 to PACKET_RAYS rays from one point, and weights; the triangle
+ * of a ray that meets nothing becomes -1. Answers are the same to the bit, and come
+ * sooner if the rays go to almost the same place, as those of neighbouring pixels do. */
 void octree_first_hits(const struct octree *octree, struct vec3 origin,
                        const struct vec3 *directions, int count, bool fronts_only,
                        struct octree_hit *hits, struct octree_counts *counts);

@@ -254,19 +254,6 @@ static bool set_packet(struct packet *packet, const struct vec3 *directions, int
     return set_bounds(packet, direction);
 }
 
-/* Sets the hit of a ray that meets this triangle first. */
-static void set_hit(const struct packet *packet, int32_t triangle, struct vec3 direction,
-                    struct octree_hit *hit)
-{
-    const struct octree *octree = packet->octree;
-    struct vec3 from = packet->eye, to;
-    hit->triangle = triangle;
-    hit->front = plane_distance(&octree->planes[triangle], from) > 0.0;
-    ray_clip(octree, &from, direction, &to);
-    struct segment line = segment_make(from, to);
-    segment_line_meets(&line, &octree->triangles[triangle], hit->weight);
-}
-
 void octree_first_hits(const struct octree *octree, struct vec3 origin,
                        const struct vec3 *directions, int count, bool fronts_only,
                        struct octree_hit *hits, struct octree_counts *counts)
@@ -291,7 +278,10 @@ void octree_first_hits(const struct octree *octree, struct vec3 origin,
         } else {
             counts->rays++;
             hits[i].triangle = triangles[i];
-            if (triangles[i] != NONE)
-                set_hit(&packet, triangles[i], directions[i], &hits[i]);
+            hits[i].front = triangles[i] != NONE &&
+                            plane_distance(&octree->planes[triangles[i]], origin) > 0.0;
         }
+    for (int i = 0; i < count; i++)
+        if (hits[i].triangle >= 0)
+            octree_hit_weights(octree, origin, directions[i], &hits[i]);
 }

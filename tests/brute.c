@@ -153,3 +153,10 @@ void octree_first_hits(const struct octree *octree, struct vec3 origin,
     for (int i = 0; i < count; i++)
         octree_first_hit(octree, origin, directions[i], fronts_only, &hits[i], counts);
 }
+
+void octree_hit_weights(const struct octree *octree, struct vec3 origin,
+                        struct vec3 direction, struct octree_hit *hit)
+{
+    struct segment s = segment_make(origin, vec3_add(origin, direction));
+    segment_line_meets(&s, &octree->triangles[hit->triangle], hit->weight);
+}

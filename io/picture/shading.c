@@ -91,6 +91,7 @@ static bool is_shut(const struct survey *survey, const struct plane *plane,
         return false;
     if (scene_root_on(scene, hit.triangle, hit.front) < 0)
         return true;
+    octree_hit_weights(survey->octree, start, direction, &hit);
     const struct triangle *t = &scene->triangles[hit.triangle];
     double height = 0.0;
     for (int k = 0; k < 3; k++)

@@ -68,6 +68,7 @@ static double look_at(const struct site *site, struct vec3 from, struct vec3 dir
     *triangle = hit.triangle;
     if (scene_root_on(site->scene, hit.triangle, hit.front) < 0)
         return BACK;
+    octree_hit_weights(site->octree, from, direction, &hit);
     const struct triangle *t = &site->scene->triangles[hit.triangle];
     struct vec3 weight = {hit.weight[0], hit.weight[1], hit.weight[2]};
     return vec3_length(vec3_sub(corners_mean(t->corner, weight), from));

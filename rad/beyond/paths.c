@@ -108,6 +108,7 @@ static bool arrive(const struct pathtracer *pathtracer, struct vec3 origin,
     if (!octree_first_hit(pathtracer->octree, origin, direction, fronts_only, &hit,
                           pathtracer->counts))
         return false;
+    octree_hit_weights(pathtracer->octree, origin, direction, &hit);
     q->root = scene_root_on(pathtracer->scene, hit.triangle, hit.front);
     q->x = corners_mean(pathtracer->scene->triangles[hit.triangle].corner,
                           (struct vec3){hit.weight[0], hit.weight[1], hit.weight[2]});

@@ -35,6 +35,7 @@ static struct sight look(const struct scene *scene, const struct octree *octree,
         if (!octree_first_hit(octree, eye, camera_ray(camera, x, y), false, &hit,
                               &counts))
             continue;
+        octree_hit_weights(octree, eye, camera_ray(camera, x, y), &hit);
         struct vec3 point = {0.0, 0.0, 0.0};
         for (int k = 0; k < 3; k++)
             point = vec3_add(point, vec3_scale(scene->triangles[hit.triangle].corner[k],

@@ -289,7 +289,7 @@ static bool sees_alike(const struct octree *octree, const struct scene *scene)
         bool first = octree_first_hit(octree, from, along, false, &hits[0], &counts[0]);
         bool second = octree_first_hit(own, from, along, false, &hits[1], &counts[1]);
         alike = alike && first && second && hits[0].triangle == hits[1].triangle &&
-                hits[0].weight[1] == hits[1].weight[1] &&
+                hits[0].front == hits[1].front &&
                 counts[0].triangle_tests == counts[1].triangle_tests;
     }
     octree_destroy(own);

@@ -293,6 +293,7 @@ static void test_first_hits(const struct world *world, const char *name, bool fr
         wrong += found != (nearest < HUGE_VAL);
         if (!found)
             continue;
+        octree_hit_weights(world->octree, origin, direction, &hit);
         double at = hit_distance(scene, hit.triangle, &ray, fronts_only);
         double front = plane_distance(&scene->planes[hit.triangle], origin);
         /* Positions are right to 1e-13 or so; planes of needles, whose normals come of an
@@ -355,6 +356,8 @@ static void test_packets(const struct world *world, const char *name, bool front
             bool found = octree_first_hit(world->octree, eye, directions[k], fronts_only,
                                           &hit, &single);
             hits += found;
+            if (found)
+                octree_hit_weights(world->octree, eye, directions[k], &hit);
             wrong += together[k].triangle != (found ? hit.triangle : -1) ||
                      (found && (together[k].front != hit.front ||
                                 memcmp(together[k].weight, hit.weight,
