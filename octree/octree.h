@@ -20,7 +20,8 @@ struct octree;
 enum {
     BUNDLE_ENDS = 4,                       /* points on either side of a bundle */
     BUNDLE_RAYS = BUNDLE_ENDS * BUNDLE_ENDS, /* segments of a bundle */
-    PACKET_RAYS = 64                         /* rays of a packet, at most */
+    PACKET_RAYS = 64,                        /* rays of a packet, at most */
+    STREAM_RAYS = 256                        /* rays of a stream, at most */
 };
 
 /* The 16 segments between four points and four others. Segment 4 a + b runs from from[a]
@@ -35,6 +36,13 @@ struct octree_hit {
     int32_t triangle;
     bool front;       /* the front of the triangle is met */
     double weight[3]; /* barycentric coordinates of the point: octree_hit_weights() */
+};
+
+/* Rays that go anywhere, and what they meet first. */
+struct stream {
+    struct vec3 origins[STREAM_RAYS], directions[STREAM_RAYS];
+    struct octree_hit hits[STREAM_RAYS]; /* without weights */
+    int count;
 };
 
 /* Builds the octree over `count` triangles and their planes, in scene units (the box
@@ -97,5 +105,11 @@ void octree_hit_weights(const struct octree *octree, struct vec3 origin,
 void octree_first_hits(const struct octree *octree, struct vec3 origin,
                        const struct vec3 *directions, int count, bool fronts_only,
                        struct octree_hit *hits, struct octree_counts *counts);
+
+/* octree_first_hit() of all rays of a stream; the triangle of one that meets nothing
+ * becomes -1. Answers are the same. They come sooner if there are many rays, most of all
+ * if they begin near to each other. */
+void octree_stream_hits(const struct octree *octree, struct stream *stream,
+                        bool fronts_only, struct octree_counts *counts);
 
 #endif

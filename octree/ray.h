@@ -20,16 +20,12 @@
 
 #include "octree/walk.h"
 
-/* For boxes the ray's numbers are in all lanes, too. A step of less than STEP_LEAST along
- * an axis counts as that, so that its inverse is a number. */
 struct ray {
     struct vec3 from, to;
     float origin[3], step[3];
-    lanes start[3];     /* the origin */
-    lanes inverse[3];   /* 1 / step */
-    lanes_mask weights; /* of the children: that of octant k ^ near is bit k */
-    int near;           /* the nearest octant: bits of the axes that the ray runs down */
-    float reach;        /* t up to which boxes are of use */
+    float inverse[3]; /* 1 / step; of a step below STEP_LEAST, 1 / STEP_LEAST */
+    float reach;      /* t up to which boxes are of use */
+    int near;         /* the nearest octant: bits of the axes that the ray runs down */
 };
 
 static const float STEP_LEAST = 1e-12f;
@@ -44,8 +40,7 @@ INLINE void ray_set_axis(struct ray *ray, int axis, double from, double to)
     ray->near |= (signbit(step) != 0) << axis;
     ray->origin[axis] = a;
     ray->step[axis] = step;
-    ray->start[axis] = lanes_all(a);
-    ray->inverse[axis] = lanes_all(copysignf(inverse, step));
+    ray->inverse[axis] = copysignf(inverse, step);
 }
 
 INLINE void ray_set(struct ray *ray, struct vec3 from, struct vec3 to)
@@ -57,7 +52,6 @@ INLINE void ray_set(struct ray *ray, struct vec3 from, struct vec3 to)
     ray_set_axis(ray, 0, from.x, to.x);
     ray_set_axis(ray, 1, from.y, to.y);
     ray_set_axis(ray, 2, from.z, to.z);
-    mask_set_weights(&ray->weights, ray->near);
 }
 
 /* Cuts the ray to a segment that ends behind the scene and begins no further from it than
@@ -81,26 +75,38 @@ INLINE bool ray_clip(const struct octree *octree, struct vec3 *origin,
 /* --- boxes --- */
 
 /* t at a side of the boxes' slabs across an axis. */
-#define SLAB_AT(node, ray, axis, side)                                             \
-    lanes_mul(lanes_sub(lanes_at((node)->bound[axis][side]), (ray)->start[axis]), \
-              (ray)->inverse[axis])
+#define SLAB_AT(axis, side) \
+    lanes_mul(lanes_all(ray->inverse[axis]), \
+              lanes_sub(lanes_at(node->bound[axis][side]), lanes_all(ray->origin[axis])))
 
-/* Children whose boxes the ray may meet within its reach. */
-INLINE unsigned ray_enters(const void *beam, const struct node *node, float enter[LANES])
+/* Says which children's boxes the ray, whose nearest octant is `near`, may meet within
+ * its reach, and where it enters them. */
+INLINE void ray_boxes(const struct ray *ray, int near, const struct node *node,
+                      lanes_mask *met, lanes *enter)
 {
-    const struct ray *ray = beam;
-    int x = ray->near & 1, y = ray->near >> 1 & 1, z = ray->near >> 2;
-    lanes n0 = SLAB_AT(node, ray, 0, x), f0 = SLAB_AT(node, ray, 0, x ^ 1);
-    lanes n1 = SLAB_AT(node, ray, 1, y), f1 = SLAB_AT(node, ray, 1, y ^ 1);
-    lanes n2 = SLAB_AT(node, ray, 2, z), f2 = SLAB_AT(node, ray, 2, z ^ 1);
+    int x = near & 1, y = near >> 1 & 1, z = near >> 2;
+    lanes n0 = SLAB_AT(0, x), f0 = SLAB_AT(0, x ^ 1);
+    lanes n1 = SLAB_AT(1, y), f1 = SLAB_AT(1, y ^ 1);
+    lanes n2 = SLAB_AT(2, z), f2 = SLAB_AT(2, z ^ 1);
     lanes zero = lanes_all(0.0f), most = lanes_all(ray->reach);
     lanes near2 = lanes_max(n2, zero), far2 = lanes_min(f2, most);
     lanes near01 = lanes_max(n0, n1), far01 = lanes_min(f0, f1);
     lanes first = lanes_max(near01, near2), last = lanes_min(far01, far2);
-    lanes_mask in = lanes_upto(first, last);
+    *met = lanes_upto(first, last);
+    *enter = first;
+}
+
+/* The same for a walk. */
+INLINE unsigned ray_enters(const void *beam, const struct node *node, float enter[LANES])
+{
+    const struct ray *ray = beam;
+    lanes_mask met, weights;
+    lanes first;
+    ray_boxes(ray, ray->near, node, &met, &first);
+    mask_set_weights(&weights, ray->near);
     if (enter)
         memcpy(enter, &first, LANES * sizeof *enter);
-    return mask_select(&in, &ray->weights);
+    return mask_select(&met, &weights);
 }
 
 /* Goes down along the ray, to the nearest box first. Visits may shorten `*reach`, which

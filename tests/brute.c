@@ -154,6 +154,14 @@ void octree_first_hits(const struct octree *octree, struct vec3 origin,
         octree_first_hit(octree, origin, directions[i], fronts_only, &hits[i], counts);
 }
 
+void octree_stream_hits(const struct octree *octree, struct stream *stream,
+                        bool fronts_only, struct octree_counts *counts)
+{
+    for (int i = 0; i < stream->count; i++)
+        octree_first_hit(octree, stream->origins[i], stream->directions[i], fronts_only,
+                         &stream->hits[i], counts);
+}
+
 void octree_hit_weights(const struct octree *octree, struct vec3 origin,
                         struct vec3 direction, struct octree_hit *hit)
 {

@@ -77,18 +77,16 @@ static int32_t leaf_at(const struct forest *forest, int32_t root, struct vec3 x,
 
 enum met { MET_NOTHING, MET_BACK, MET_FRONT };
 
-/* Finds the first surface that the ray meets; fills in the point of a front. */
-static enum met trace(struct receiver *r, struct vec3 origin, struct vec3 direction,
-                  struct point *point)
+/* What a ray has met; fills in the point of a front. */
+static enum met land(struct receiver *r, struct vec3 origin, struct vec3 direction,
+                     const struct octree_hit *hit, struct point *point)
 {
     const struct model *model = r->gather->model;
     const struct scene *scene = model->scene;
-    struct octree_hit hit;
     r->gather->counts.rays++;
-    if (!octree_first_hit(model->octree, origin, direction, false, &hit,
-                          &r->gather->model->counts))
+    if (hit->triangle < 0)
         return MET_NOTHING;
-    int32_t root = scene_root_on(scene, hit.triangle, hit.front);
+    int32_t root = scene_root_on(scene, hit->triangle, hit->front);
     if (root < 0 || !(scene_root_area(scene, root) > 0.0))
         return MET_BACK;
     struct plane plane = scene_root_plane(scene, root);
@@ -96,9 +94,19 @@ static enum met trace(struct receiver *r, struct vec3 origin, struct vec3 direct
     double along = fall > 0.0 ? plane_distance(&plane, origin) / fall : 0.0;
     point->at = vec3_add(origin, vec3_scale(direction, along));
     point->patch = leaf_at(model->forest, root, point->at, point->weight);
-    point->input = hit.triangle;
+    point->input = hit->triangle;
     point->normal = plane.normal;
     return MET_FRONT;
+}
+
+/* Finds the first surface that the ray meets. */
+static enum met trace(struct receiver *r, struct vec3 origin, struct vec3 direction,
+                      struct point *point)
+{
+    struct model *model = r->gather->model;
+    struct octree_hit hit;
+    octree_first_hit(model->octree, origin, direction, false, &hit, &model->counts);
+    return land(r, origin, direction, &hit, point);
 }
 
 /* --- the mesh --- */
@@ -229,16 +237,18 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
         receiver_add_near(r, weight, emission, 1.0);
 }
 
-/* Follows a path from its first ray on, and adds its light, times `weight`. The ray is of
- * this half. */
-static void follow(struct receiver *r, struct vec3 origin, struct vec3 direction,
+/* Follows a path from a ray of the stream on, and adds its light, times `weight`. The ray
+ * is of this half. */
+static void follow(struct receiver *r, const struct stream *stream, int ray,
                    struct rgb weight, int half, uint64_t seed)
 {
+    struct vec3 origin = stream->origins[ray], direction = stream->directions[ray];
     const struct forest *forest = r->gather->model->forest;
     struct vec3 normal = r->facet.plane.normal; /* at the origin */
     for (int count = 1;; count++, seed += 16) {
         struct point point;
-        enum met met = trace(r, origin, direction, &point);
+        enum met met = count == 1 ? land(r, origin, direction, &stream->hits[ray], &point)
+                                  : trace(r, origin, direction, &point);
         if (met == MET_BACK && count == 1)
             look_inside(r, origin, direction);
         else
@@ -331,18 +341,33 @@ static void add_bright(struct receiver *r, struct rgb source)
     }
 }
 
+/* Finds what the next rays of the receiver meet, as many as a stream takes. */
+static void fill_stream(struct receiver *r, const struct sequence *sequence, int first,
+                        struct stream *stream)
+{
+    struct model *model = r->gather->model;
+    struct vec3 normal = r->facet.plane.normal;
+    double u[SEQUENCE_DIMENSIONS];
+    stream->count = r->rays - first < STREAM_RAYS ? r->rays - first : STREAM_RAYS;
+    for (int i = 0; i < stream->count; i++) {
+        sequence_point(sequence, (uint32_t)(first + i), u);
+        stream->origins[i] = point_above(receiver_start(r, u[2], u[3]), normal);
+        stream->directions[i] = cosine_direction(normal, r->along, u[0], u[1]);
+    }
+    octree_stream_hits(model->octree, stream, false, &model->counts);
+}
+
 void receiver_fire(struct receiver *r)
 {
     struct sequence sequence = sequence_start(r->seed);
     struct rgb source = r->row.source;
-    double share = 1.0 / r->rays, u[SEQUENCE_DIMENSIONS];
+    struct stream stream;
+    double share = 1.0 / r->rays;
     for (int i = 0; i < r->rays; i++) {
-        int half = 2 * i / r->rays;
-        sequence_point(&sequence, (uint32_t)i, u);
-        struct vec3 x = receiver_start(r, u[2], u[3]);
-        follow(r, point_above(x, r->facet.plane.normal),
-               cosine_direction(r->facet.plane.normal, r->along, u[0], u[1]),
-               (struct rgb){{share, share, share}}, half,
+        int half = 2 * i / r->rays, k = i % STREAM_RAYS;
+        if (k == 0)
+            fill_stream(r, &sequence, i, &stream);
+        follow(r, &stream, k, (struct rgb){{share, share, share}}, half,
                hash_mix(r->seed ^ hash_mix((uint64_t)i)));
         r->near = -1;
         count_light(r, i, half);

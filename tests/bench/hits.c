@@ -4,13 +4,13 @@
  *   make bench && build/room 6350 1 > build/room.obj && build/mpi/hits build/room.obj
  *
  * First hits of rays of random directions that leave points of the surfaces, chosen by
- * area: each ray a point of its own, as paths do that wander, or 64 rays a point, as a
- * gather does; first hits of a camera in the scene; segments between points of surfaces
- * that face each other. Programs take turns, nine times, and the fastest turn counts, in
- * seconds of the processor. Rays are made for either beforehand. Embree's begin 1e-5
- * further on, its segments are cut short by 1e-4 at both ends, where they would meet the
- * triangles that they leave; both are asked about segments without the triangles that
- * have the scene on one side. Differences of Embree's answers are counted.
+ * area: each ray a point of its own, as paths do that wander, or 256 rays a point, in a
+ * stream, as a gather does; first hits of a camera in the scene; segments between points
+ * of surfaces that face each other. Programs take turns, nine times, and the fastest turn
+ * counts, in seconds of the processor. Rays are made for either beforehand. Embree's
+ * begin 1e-5 further on, its segments are cut short by 1e-4 at both ends, where they
+ * would meet the triangles that they leave; both are asked about segments without the
+ * triangles that have the scene on one side. Differences of Embree's answers are counted.
  *
  * Last, a picture of 1920 x 1080 pixels of 3 x 3 rays, without a final gather, from the
  * eye that phr chooses: all of render_scanlines(), beside rtcIntersect1() alone on the
@@ -23,14 +23,14 @@
 #include "tests/scenes.h"
 #include "tests/shaded.h"
 
-enum { TURNS = 9, GATHER = 64, WIDTH = 1920, HEIGHT = 1080, SAMPLES = 3 };
+enum { TURNS = 9, WIDTH = 1920, HEIGHT = 1080, SAMPLES = 3 };
 
 struct rays {
     struct vec3 *origins, *ends; /* [count] `ends` are directions, or a segment's ends */
     int32_t (*own)[2];           /* [count] triangles that a segment joins */
     int32_t *answers;            /* [count] triangle that is hit, or -1; is it blocked? */
     int count;
-    bool are_segments;
+    bool are_segments, are_streams;
     double *sums; /* [triangles] area of the triangles up to this one */
 };
 
@@ -50,6 +50,7 @@ static void fill_leaving(const struct subject *subject, struct rays *rays,
 {
     const struct plane *planes = subject->scene->planes;
     int32_t t = 0;
+    rays->are_streams = together == STREAM_RAYS;
     for (int i = 0; i < rays->count; i++) {
         if (i % together == 0) {
             t = random_place(subject, rays, random, &rays->origins[i]);
@@ -93,6 +94,22 @@ static void fill_segments(const struct subject *subject, struct rays *rays,
     }
 }
 
+static void run_streams(const struct octree *octree, struct rays *rays,
+                        struct octree_counts *counts)
+{
+    struct stream stream;
+    for (int i = 0; i < rays->count; i += stream.count) {
+        stream.count = rays->count - i < STREAM_RAYS ? rays->count - i : STREAM_RAYS;
+        for (int k = 0; k < stream.count; k++) {
+            stream.origins[k] = rays->origins[i + k];
+            stream.directions[k] = rays->ends[i + k];
+        }
+        octree_stream_hits(octree, &stream, false, counts);
+        for (int k = 0; k < stream.count; k++)
+            rays->answers[i + k] = stream.hits[k].triangle;
+    }
+}
+
 /* Returns the seconds that it takes. */
 static double run_octree(const struct octree *octree, struct rays *rays,
                          struct octree_counts *counts)
@@ -100,7 +117,9 @@ static double run_octree(const struct octree *octree, struct rays *rays,
     struct octree_hit hit;
     double start = cpu_seconds();
     *counts = (struct octree_counts){0};
-    for (int i = 0; i < rays->count; i++) {
+    if (rays->are_streams)
+        run_streams(octree, rays, counts);
+    for (int i = 0; i < rays->count && !rays->are_streams; i++) {
         int32_t guess = -1;
         if (rays->are_segments)
             rays->answers[i] =
@@ -192,7 +211,7 @@ static void bench_all(const struct subject *subject, int count, uint64_t seed)
         void (*fill)(const struct subject *, struct rays *, struct random *, int);
         int together;
     } kinds[] = {{"rays from surfaces, 1 from each point", fill_leaving, 1},
-                 {"rays from surfaces, 64 from each point", fill_leaving, GATHER},
+                 {"rays from surfaces, 256 from each point", fill_leaving, STREAM_RAYS},
                  {"rays of a camera", fill_camera, 0},
                  {"segments between points of surfaces", fill_segments, 0}};
     const struct scene *scene = subject->scene;

@@ -372,6 +372,34 @@ static void test_packets(const struct world *world, const char *name, bool front
            (int)single.node_tests);
 }
 
+/* Streams answer as their rays do one by one, wherever these begin: each anywhere, or
+ * all in one place. */
+static void test_streams(const struct world *world, const char *name, bool fronts_only)
+{
+    struct random random = random_seed(22);
+    struct octree_counts counts = {0}, single = {0};
+    int wrong = 0, hits = 0;
+    for (int i = 0; i < PACKETS / 8; i++) {
+        struct stream s = {.count = 1 + random_below(&random, STREAM_RAYS)};
+        for (int k = 0; k < s.count; k++) {
+            random_ray(&random, world->scene, i + k, &s.origins[k], &s.directions[k]);
+            s.origins[k] = s.origins[i % 2 ? k : 0];
+        }
+        octree_stream_hits(world->octree, &s, fronts_only, &counts);
+        for (int k = 0; k < s.count; k++) {
+            struct octree_hit hit;
+            bool found = octree_first_hit(world->octree, s.origins[k], s.directions[k],
+                                          fronts_only, &hit, &single);
+            hits += found;
+            wrong += s.hits[k].triangle != (found ? hit.triangle : -1) ||
+                     (found && s.hits[k].front != hit.front);
+        }
+    }
+    tap_ok(wrong == 0 && hits > PACKETS && counts.rays == single.rays,
+           "%s%s: streams of rays as one by one (%d hits)", name,
+           fronts_only ? ", fronts only" : "", hits);
+}
+
 /* A random triangle, or a box at a corner of it. Returns the number of corners. */
 static int random_corners(struct random *random, const struct scene *scene,
                           struct vec3 corners[8])
@@ -525,6 +553,8 @@ static void test_scene(void (*make)(struct soup *), bool packed, const char *nam
     test_first_hits(&world, name, true);
     test_packets(&world, name, false);
     test_packets(&world, name, true);
+    test_streams(&world, name, false);
+    test_streams(&world, name, true);
     test_walls(&world, name);
     test_shafts(&world, name);
     world_free(&world);
