@@ -132,11 +132,12 @@ static struct sequence sequence_to(const struct receiver *r, int32_t node)
     return sequence_start(hash_mix(r->seed + 8) ^ hash_mix((uint64_t)node));
 }
 
-/* Fires `count` segments at a single lamp: without blockers they bring the irradiance
- * `direct` all together, summed over bands, each in proportion to its kernel. Points
- * below a horizon are passed over, or the light would be lost where all of few are. */
-static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int count,
-                        int32_t root, double direct, struct volley *volley)
+/* Fires `count` segments, from number `first` of the sequence on, at a lamp: without
+ * blockers they bring the irradiance `direct` all together, summed over bands, each in
+ * proportion to its kernel. Points below a horizon are passed over, or the light would be
+ * lost where all of few are. */
+static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int first,
+                        int count, int32_t root, double direct, struct volley *volley)
 {
     const struct scene *scene = r->gather->model->scene;
     struct triangle lamp = scene_root_triangle(scene, root);
@@ -144,7 +145,7 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
     struct rgb emission = scene_root_material(scene, root)->emission;
     double all[2] = {0.0, 0.0}, seen[2] = {0.0, 0.0}, u[SEQUENCE_DIMENSIONS];
     for (int i = 0, fired = 0; fired < count && i < AIMS_MOST * count; i++) {
-        sequence_point(sequence, (uint32_t)i, u);
+        sequence_point(sequence, (uint32_t)(first + i), u);
         struct vec3 x = receiver_start(r, u[0], u[1]);
         struct vec3 y = triangle_of_square(&lamp, u[2], u[3]);
         double light = receiver_kernel(x, r->facet.plane.normal, y, normal);
@@ -180,44 +181,57 @@ static void aim_at_wide_lamp(struct receiver *r, int count, int32_t root, double
     }
 }
 
-/* Fires one segment, or aimed ray, at a lamp of a group: it stands for `each` of the
- * group's light. */
-static void aim_at_some(struct receiver *r, const struct lamps *lamps,
-                        const struct sequence *sequence, uint32_t index,
-                        const struct lamp_group *group, double each)
+/* Aims one ray at a bright root of a group: it stands for `share` of the root's light. */
+static void look_at_one(struct receiver *r, int32_t root, double share,
+                        const double u[SEQUENCE_DIMENSIONS])
 {
     const struct scene *scene = r->gather->model->scene;
-    double u[SEQUENCE_DIMENSIONS];
-    sequence_point(sequence, index, u);
-    struct lamp lamp = lamp_choose(lamps, group->node, hash_unit(r->seed + 17 + index));
-    struct triangle triangle = scene_root_triangle(scene, lamp.root);
+    struct triangle triangle = scene_root_triangle(scene, root);
     struct vec3 x = receiver_start(r, u[0], u[1]);
     struct vec3 y = triangle_of_square(&triangle, u[2], u[3]);
-    double factor = receiver_kernel(x, r->facet.plane.normal, y,
-                                    scene_root_plane(scene, lamp.root).normal) *
-                    scene_root_area(scene, lamp.root) * lamp.share *
-                    (each / group->direct);
-    if (!(factor > 0.0))
-        return;
-    if (lamps->reflect)
-        receiver_look_at(r, x, y, lamp.root, factor);
-    else if (receiver_blocker(r, x, y, lamp.root) < 0)
-        receiver_add_source(r, &ALL, lamp_light(lamps, lamp.root), factor);
+    double factor = scene_root_area(scene, root) *
+                    receiver_kernel(x, r->facet.plane.normal, y,
+                                    scene_root_plane(scene, root).normal);
+    if (factor > 0.0)
+        receiver_look_at(r, x, y, root, share * factor);
 }
 
-/* Fires `count` of them at a group; unoccluded they bring `direct` all together. */
+/* Fires one segment, number `index` of the sequence, at a lamp of a group: it stands for
+ * `share` of the lamp's light. */
+static void aim_at_one(struct receiver *r, const struct sequence *sequence, int index,
+                       int32_t root, double share)
+{
+    const struct scene *scene = r->gather->model->scene;
+    struct triangle lamp = scene_root_triangle(scene, root);
+    struct volley alone = {.direct = {0.0, 0.0}};
+    double factor = mean_factor(&r->facet.triangle, r->facet.plane.normal, &lamp,
+                                &r->gather->model->estimating);
+    double sent = rgb_sum(scene_root_material(scene, root)->emission);
+    aim_at_lamp(r, sequence, index, 1, root, share * factor * sent, &alone);
+}
+
+/* Fires `count` of them at a group; unoccluded they bring `direct` all together. They are
+ * spread evenly over its power, and each half of them is. */
 static void aim_at_group(struct receiver *r, const struct lamps *lamps,
                          const struct lamp_group *group, int count, double direct,
                          struct volley *volley)
 {
     struct sequence sequence = sequence_to(r, group->node);
     bool single = !node_is_cluster(group->node) && !lamps->reflect;
+    double start = hash_unit(sequence.scramble[0]);
     if (single)
-        aim_at_lamp(r, &sequence, count, group->node, direct, volley);
+        aim_at_lamp(r, &sequence, 0, count, group->node, direct, volley);
     for (int k = 0; k < count && !single; k++) {
         int half = half_of(volley, k, count);
-        double before = rgb_sum(r->light);
-        aim_at_some(r, lamps, &sequence, (uint32_t)k, group, direct / count);
+        int place = 2 * k < count ? 2 * k : (2 * k - count) | 1;
+        struct lamp lamp = lamp_choose(lamps, group->node, (place + start) / count);
+        double before = rgb_sum(r->light), u[SEQUENCE_DIMENSIONS];
+        double share = lamp.share * direct / (group->direct * count);
+        sequence_point(&sequence, (uint32_t)k, u);
+        if (lamps->reflect)
+            look_at_one(r, lamp.root, share, u);
+        else
+            aim_at_one(r, &sequence, k, lamp.root, share);
         volley->direct[half] += direct / count;
         volley->seen[half] += rgb_sum(r->light) - before;
         volley->count[half]++;
@@ -249,11 +263,11 @@ static int deal(struct dealing *dealing, double direct)
  * theirs apart, a whole number, so that together they count with their own light. */
 void receiver_aim_at(struct receiver *r, struct lamps *lamps)
 {
-    lamps_group(lamps, &r->facet, &r->gather->model->estimating);
+    int most = lamps->reflect ? (r->rays + RAYS_PER_AIMED - 1) / RAYS_PER_AIMED : r->rays;
+    lamps_group(lamps, &r->facet, most, &r->gather->model->estimating);
     const struct lamp_groups *groups = &lamps->groups;
     if (!(groups->direct > 0.0))
         return;
-    int most = lamps->reflect ? (r->rays + RAYS_PER_AIMED - 1) / RAYS_PER_AIMED : r->rays;
     double each = groups->direct / most, start = hash_unit(r->seed + 16), faint = 0.0;
     for (int64_t i = 0; i < groups->count; i++)
         faint += groups->items[i].direct < each ? groups->items[i].direct : 0.0;

@@ -1,10 +1,11 @@
 /* Lamps as a leaf sees them.
  *
  * From the top of the tree downwards, a cluster is one group as soon as it is small for
- * its distance; a lamp by itself is a group whose direct light is known from exact
- * factors. So a hall with ten thousand lamps has some dozens of groups for each leaf. The
- * direct light of bright roots decides only how often rays are aimed at them: an estimate
- * is enough.
+ * its distance and would get no more than one segment; a lamp by itself is a group whose
+ * direct light is known from exact factors. So a hall with ten thousand lamps has some
+ * hundreds of groups for each leaf. How much light one segment is to bring is estimated
+ * first, without exact factors. The direct light of bright roots decides only how often
+ * rays are aimed at them: an estimate is enough.
  *
  * The mean factor is taken at three points with a rule that is exact for polynomials of
  * the second degree. Where the other triangle is nearer than the size of this one, the
@@ -182,6 +183,7 @@ struct lit {
     const struct facet *facet;
     struct vec3 centroid;
     double radius;
+    double most; /* direct light of a cluster that is a group, W/m^2 */
 };
 
 /* About the cosine between a plane's normal and the way to a lamp. */
@@ -190,18 +192,47 @@ static double cosine_to(const struct plane *plane, struct vec3 apart, double dis
     return fmax(vec3_dot(apart, plane->normal) / sqrt(distance2), LEAST_COSINE);
 }
 
-static void add_cluster(const struct lit *leaf, int32_t node, struct vec3 apart,
-                        double radius, double watts, struct lamp_groups *groups)
+/* The largest product of the vector and a normal of the cluster, or more. */
+static double facing_most(const struct cluster *cluster, struct vec3 v)
 {
-    struct lamp_group group = {.node = node};
-    double distance2 = vec3_dot(apart, apart);
-    const struct plane *plane = &leaf->facet->plane;
-    group.around = watts / (PI * distance2);
-    if (vec3_dot(apart, plane->normal) + radius + leaf->radius > 0.0)
-        group.direct = cosine_to(plane, apart, distance2) * group.around;
-    add_group(groups, group);
+    const struct vec3 *low = &cluster->normal_low, *high = &cluster->normal_high;
+    return fmax(low->x * v.x, high->x * v.x) + fmax(low->y * v.y, high->y * v.y) +
+           fmax(low->z * v.z, high->z * v.z);
 }
 
+static void add_node(const struct lamps *lamps, const struct lit *leaf, int32_t node,
+                     struct lamp_groups *groups, int64_t *work);
+
+/* Adds a cluster as a group, or what is below it; neither if its lamps face away. */
+static void add_cluster(const struct lamps *lamps, const struct lit *leaf, int32_t node,
+                        double watts, struct lamp_groups *groups, int64_t *work)
+{
+    const struct cluster *cluster = &lamps->model->clusters->tree->clusters[~node];
+    const struct plane *plane = &leaf->facet->plane;
+    struct vec3 apart =
+        vec3_sub(vec3_middle(cluster->low, cluster->high), leaf->centroid);
+    double radius = 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low));
+    double distance2 = vec3_dot(apart, apart), distance = sqrt(distance2);
+    double facing = facing_most(cluster, vec3_scale(apart, -1.0));
+    double reach = radius + leaf->radius;
+    struct lamp_group group = {.node = node};
+    if (facing + reach <= 0.0)
+        return;
+    if (radius <= SMALL * fmax(distance - reach, leaf->radius)) {
+        facing = fmin(1.0, fmax(facing / distance, LEAST_COSINE));
+        group.around = facing * watts / fmax(PI * distance2, leaf->facet->area);
+        if (vec3_dot(apart, plane->normal) + reach > 0.0)
+            group.direct = cosine_to(plane, apart, distance2) * group.around;
+        if (group.direct <= leaf->most) {
+            add_group(groups, group);
+            return;
+        }
+    }
+    for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++)
+        add_node(lamps, leaf, cluster->child[k], groups, work);
+}
+
+/* Adds a lamp as a group. `work` NULL: its direct light is estimated. */
 static void add_root(const struct lamps *lamps, const struct lit *leaf, int32_t root,
                      struct lamp_groups *groups, int64_t *work)
 {
@@ -211,7 +242,7 @@ static void add_root(const struct lamps *lamps, const struct lit *leaf, int32_t 
     double distance2 = fmax(vec3_dot(apart, apart), lamp.area);
     struct lamp_group group = {.node = root};
     group.around = sent * fmin(1.0, lamp.area / (PI * distance2));
-    if (facets_face(leaf->facet, &lamp) && lamps->reflect)
+    if (facets_face(leaf->facet, &lamp) && (lamps->reflect || !work))
         group.direct = group.around * cosine_to(&leaf->facet->plane, apart, distance2) *
                        cosine_to(&lamp.plane, vec3_scale(apart, -1.0), distance2);
     else if (facets_face(leaf->facet, &lamp))
@@ -225,32 +256,24 @@ static void add_node(const struct lamps *lamps, const struct lit *leaf, int32_t 
                      struct lamp_groups *groups, int64_t *work)
 {
     double watts = watts_of(lamps, node);
-    if (!(watts > 0.0))
-        return;
-    if (!node_is_cluster(node)) {
+    if (watts > 0.0 && node_is_cluster(node))
+        add_cluster(lamps, leaf, node, watts, groups, work);
+    else if (watts > 0.0)
         add_root(lamps, leaf, node, groups, work);
-        return;
-    }
-    const struct cluster *cluster = &lamps->model->clusters->tree->clusters[~node];
-    struct vec3 apart =
-        vec3_sub(vec3_middle(cluster->low, cluster->high), leaf->centroid);
-    double radius = 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low));
-    if (radius <= SMALL * (vec3_length(apart) - radius - leaf->radius)) {
-        add_cluster(leaf, node, apart, radius, watts, groups);
-        return;
-    }
-    for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++)
-        add_node(lamps, leaf, cluster->child[k], groups, work);
 }
 
-void lamps_group(struct lamps *lamps, const struct facet *leaf, int64_t *work)
+void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments,
+                 int64_t *work)
 {
     struct lamp_groups *groups = &lamps->groups;
     struct lit lit = {leaf, triangle_centroid(&leaf->triangle),
-                      triangle_radius(&leaf->triangle)};
-    groups->count = 0;
-    groups->direct = groups->around = 0.0;
-    add_node(lamps, &lit, NODE_TOP, groups, work);
+                      triangle_radius(&leaf->triangle), HUGE_VAL};
+    for (int pass = 0; pass < 2; pass++) {
+        groups->count = 0;
+        groups->direct = groups->around = 0.0;
+        add_node(lamps, &lit, NODE_TOP, groups, pass == 0 ? NULL : work);
+        lit.most = groups->direct / segments;
+    }
 }
 
 struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u)

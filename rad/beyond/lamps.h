@@ -48,9 +48,11 @@ double lamps_power(const struct lamps *lamps);
 
 bool root_is_lamp(const struct lamps *lamps, int32_t root);
 
-/* Finds the groups of lamps that a leaf tells apart, in the tree's order: each is a root,
- * or a cluster that is small for its distance. Adds the tests that it took to `work`. */
-void lamps_group(struct lamps *lamps, const struct facet *leaf, int64_t *work);
+/* Finds the groups of lamps that a leaf tells apart by so many segments, in the tree's
+ * order: each is a root, or a cluster that is small for its distance and would get about
+ * one segment at most. Adds the tests that it took to `work`. */
+void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments,
+                 int64_t *work);
 
 /* A lamp of the group, by the power that it emits; `u` in [0, 1) chooses. */
 struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u);
