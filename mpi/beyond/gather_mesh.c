@@ -164,7 +164,8 @@ static void list_leaves(struct gather_mesh *mesh, const struct forest *forest)
     alloc_free(order);
 }
 
-/* Collective. Looks at `count` leaves; [count], on all ranks. */
+/* Collective. Looks at `count` leaves; [count], on all ranks. It is a phase: ranks wait
+ * for each other. */
 static struct gather_look *look(struct looking *l, const int32_t *leaves, int64_t count)
 {
     const struct comm *comm = l->solver->comm;
@@ -177,9 +178,13 @@ static struct gather_look *look(struct looking *l, const int32_t *leaves, int64_
         counts[rank_of_next(&dealt, comm->size)]++;
     comm_displacements(comm, counts, at);
     dealt = 0;
+    int64_t before = model_work(&l->solver->model);
     for (int64_t i = 0, k = at[comm->rank]; i < count && !stop_is_asked(); i++)
         if (rank_of_next(&dealt, comm->size) == comm->rank)
             all[k++] = final_gather_look(&l->gather, leaves[i], l->rays);
+    ledger_add(&l->solver->account.ledger,
+               (struct phase_work){.kind = WORK_FINAL_GATHER,
+                                   .share.done = model_work(&l->solver->model) - before});
     comm_share(comm, all, counts, at, sizeof *all);
     dealt = 0;
     for (int64_t i = 0; i < count; i++)
@@ -485,7 +490,6 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
 {
     struct model *model = &solver->model;
     struct looking l = {.solver = solver, .mesh = mesh, .links = links};
-    int64_t before = model_work(model);
     l.gather = final_gather_create(model, model->criterion.final_gather);
     l.rays = l.gather.rays / ROWS_PER_LOOK;
     list_leaves(mesh, model->forest);
@@ -501,8 +505,8 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     const struct octree_counts *proofs = &l.gather.view.counts;
     ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .share.done = model_work(model) - before +
-                                           proofs->node_tests + proofs->triangle_tests});
+                                   .share.done =
+                                       proofs->node_tests + proofs->triangle_tests});
     int64_t stopped = stop_is_asked();
     comm_add(solver->comm, &stopped, 1);
     final_gather_free(&l.gather);
