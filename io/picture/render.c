@@ -5,9 +5,11 @@
  *
  * Direct light of lamps has edges that no mesh follows, so it is gathered at each visible
  * point, by segments; reflected light is smooth and interpolated over the mesh. Or all
- * light is gathered at the point: then the picture has no trace of the mesh. All points
- * of a pixel on one triangle are gathered together; where lamps are seen in part, a
- * second time by more segments.
+ * light is gathered at the point: then the picture has no trace of the mesh. So it is on
+ * a leaf that counts as covered (io/picture/shading.h) but is seen, as the side of a book
+ * that stands out from its neighbours: its mean holds for no point. All points of a pixel
+ * on one triangle are gathered together; where lamps are seen in part, a second time by
+ * more segments.
  *
  * A surface with normals of its own has the light of the smooth surface in which the
  * facets are inscribed: a point is lifted towards the plane through each corner across
@@ -26,7 +28,8 @@
 
 enum {
     SEGMENTS = 32, /* to lamps, for a pixel */
-    MORE = 4       /* factor on them in a noisy pixel */
+    MORE = 4,      /* factor on them in a noisy pixel */
+    WHOLE = 128    /* rays and segments for a pixel of a covered leaf */
 };
 
 static const double NOISE = 0.02; /* error of a noisy pixel, relative to its light */
@@ -47,6 +50,7 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
 struct pixel_roots {
     int32_t *roots;
     struct vec3 *weights; /* barycentric coordinates in the root */
+    bool *whole;          /* all light is gathered there; set by show() */
     struct vec3 *at;      /* points, scene units; room for add_light() */
     int count;
 };
@@ -111,7 +115,7 @@ static struct plane facade_plane(const struct facade *facade, struct vec3 weight
     return (struct plane){normal, vec3_dot(normal, x)};
 }
 
-/* Adds the light of the first `count` entries, which are of one root. */
+/* Adds the light of the first `count` entries, which are of one root and whole alike. */
 static void add_light(const struct renderer *renderer, const struct pixel_roots *view,
                       int count, uint64_t seed, int rays, struct pixel_light *pixel)
 {
@@ -129,29 +133,31 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
                                    .input = scene_input_of(scene, view->roots[0]),
                                    .above = facade.curved};
     points.plane = facade_plane(&facade, middle, points.middle);
-    struct gather_light light =
-        final_gather_at(gather, &points, seed, rays, !renderer->shading);
+    bool whole = view->whole[0];
+    struct gather_light light = final_gather_at(gather, &points, seed, rays, whole);
     double rho = 0.0;
     for (int c = 0; c < BANDS; c++) {
         double h = light.lamps.band[c] + light.rest.band[c];
-        double e = renderer->shading ? 0.0 : m->emission.band[c];
+        double e = whole ? m->emission.band[c] : 0.0;
         pixel->sum.band[c] += count * (e + m->reflectance.band[c] * h);
         rho = fmax(rho, m->reflectance.band[c]);
     }
     pixel->variance += count * count * rho * rho * light.variance;
 }
 
-/* Moves the entries with the first entry's root to the front. Returns their number. */
+/* Moves the entries that are like the first to the front. Returns their number. */
 static int collect_root(struct pixel_roots *view)
 {
     int count = 0;
     for (int i = 0; i < view->count; i++) {
-        if (view->roots[i] != view->roots[0])
+        if (view->roots[i] != view->roots[0] || view->whole[i] != view->whole[0])
             continue;
         struct vec3 weight = view->weights[i];
         view->weights[i] = view->weights[count];
         view->weights[count] = weight;
         view->roots[i] = view->roots[count];
+        view->whole[i] = view->whole[count];
+        view->whole[count] = view->whole[0];
         view->roots[count++] = view->roots[0];
     }
     return count;
@@ -162,22 +168,28 @@ static int collect_root(struct pixel_roots *view)
 static struct pixel_light show(const struct renderer *renderer,
                                const struct pixel_roots *view, uint64_t seed, int rays)
 {
+    const struct shading *shading = renderer->shading;
     struct pixel_light pixel = {.variance = 0.0};
-    for (int i = 0; i < view->count && renderer->shading; i++) {
-        const struct vec3 *w = &view->weights[i];
-        struct rgb b = shading_at(renderer->shading, view->roots[i],
-                                  (double[]){w->x, w->y, w->z});
-        for (int c = 0; c < BANDS; c++)
+    for (int i = 0; i < view->count; i++) {
+        struct vec3 w = view->weights[i];
+        struct rgb b = {{0.0, 0.0, 0.0}};
+        bool covered = true;
+        if (shading)
+            b = shading_at(shading, view->roots[i], (double[]){w.x, w.y, w.z}, &covered);
+        view->whole[i] = covered && renderer->gather;
+        for (int c = 0; c < BANDS && !view->whole[i]; c++)
             pixel.sum.band[c] += b.band[c];
     }
     struct pixel_roots rest = *view;
     while (rest.count > 0 && renderer->gather) {
         int count = collect_root(&rest);
-        int own = (rays * count + view->count - 1) / view->count;
+        int all = shading && rest.whole[0] ? WHOLE : rays;
+        int own = (all * count + view->count - 1) / view->count;
         add_light(renderer, &rest, count, hash_mix(seed) + (uint64_t)rest.roots[0], own,
                   &pixel);
         rest.roots += count;
         rest.weights += count;
+        rest.whole += count;
         rest.count -= count;
     }
     return pixel;
@@ -187,7 +199,8 @@ struct rgb render_point(const struct renderer *renderer, int32_t root,
                         const double weight[3], uint64_t seed)
 {
     struct vec3 w = {weight[0], weight[1], weight[2]}, at;
-    struct pixel_roots view = {&root, &w, &at, 1};
+    bool whole;
+    struct pixel_roots view = {&root, &w, &whole, &at, 1};
     return show(renderer, &view, seed, renderer->rays).sum;
 }
 
@@ -286,6 +299,7 @@ float *render_scanlines(const struct renderer *renderer, const struct camera *ca
         .pixels = rays < PACKET_RAYS ? PACKET_RAYS / (int)rays : 1,
         .view = {.roots = alloc_array(rays, sizeof *strip.view.roots),
                  .weights = alloc_array(rays, sizeof *strip.view.weights),
+                 .whole = alloc_array(rays, sizeof *strip.view.whole),
                  .at = alloc_array(rays, sizeof *strip.view.at)}};
     strip.hits = alloc_array((size_t)strip.pixels * rays, sizeof *strip.hits);
     for (int i = 0; i < scanlines; i++) {
@@ -295,6 +309,7 @@ float *render_scanlines(const struct renderer *renderer, const struct camera *ca
     alloc_free(strip.hits);
     alloc_free(strip.view.roots);
     alloc_free(strip.view.weights);
+    alloc_free(strip.view.whole);
     alloc_free(strip.view.at);
     return rgb;
 }

@@ -390,6 +390,7 @@ static void add_leaf(void *context, int32_t leaf)
     struct blend *blend = context;
     const struct forest *forest = blend->shading->forest;
     struct triangle t = forest_triangle(forest, leaf);
+    blend->shading->covered[leaf] = blend->open[blend->next++] < OPEN_PARTS;
     for (int k = 0; k < 3; k++)
         blend->shading->corners[3 * (int64_t)leaf + k] =
             reach_vertex(blend->shading->table, t.corner[k],
@@ -519,6 +520,7 @@ struct shading *shading_create(const struct forest *forest, const struct rgb *le
     shading->flat = !open;
     shading->corners = alloc_array(3 * patches, sizeof *shading->corners);
     shading->divided = alloc_array(patches, sizeof *shading->divided);
+    shading->covered = alloc_array(patches, sizeof *shading->covered);
     shading->table = alloc_array(1, sizeof *shading->table);
     struct blend blend = {.shading = shading, .less = less, .error = error, .open = open};
     if (shading->flat)
@@ -541,17 +543,20 @@ void shading_destroy(struct shading *shading)
     alloc_free(shading->table->slots);
     alloc_free(shading->table);
     alloc_free(shading->divided);
+    alloc_free(shading->covered);
     alloc_free(shading->corners);
     alloc_free(shading);
 }
 
-struct rgb shading_at(const struct shading *shading, int32_t root, const double weight[3])
+struct rgb shading_at(const struct shading *shading, int32_t root, const double weight[3],
+                      bool *covered)
 {
     const struct forest *forest = shading->forest;
     double w[3] = {weight[0], weight[1], weight[2]};
     int32_t leaf = root;
     while (!patch_is_leaf(&forest->patches[leaf]))
         leaf = forest->patches[leaf].children + triangle_child_at(w);
+    *covered = shading->covered[leaf];
     if (shading->flat)
         return shading->values[shading->corners[3 * (int64_t)leaf]];
     struct tile tile = whole_leaf(shading, leaf), inner;

@@ -16,6 +16,7 @@ struct shading {
     struct rgb *values;          /* [vertex_count] radiosity, W/m^2 */
     int64_t vertex_count;
     bool *divided;               /* [forest->count] leaf: it has T-vertices */
+    bool *covered;               /* [forest->count] leaf: it counts as covered */
     struct table *table;         /* finds vertices; owns positions and values */
 };
 
@@ -38,8 +39,9 @@ struct shading *shading_create(const struct forest *forest, const struct rgb *le
 void shading_destroy(struct shading *shading);
 
 /* Returns the radiosity at the point of a root with these barycentric coordinates,
- * W/m^2. */
-struct rgb shading_at(const struct shading *shading, int32_t root,
-                      const double weight[3]);
+ * W/m^2. Sets `covered` to whether the leaf there counts as covered: then its mean holds
+ * for no point. */
+struct rgb shading_at(const struct shading *shading, int32_t root, const double weight[3],
+                      bool *covered);
 
 #endif

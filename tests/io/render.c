@@ -102,6 +102,28 @@ static void test_furnace(void)
     solution_free(&s);
 }
 
+/* A furnace with a box that leaves a strip of the floor along the walls: the strip shines
+ * as all does, though the two leaves of the floor are dark in the mean. */
+static void test_strip(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    soup_add_box(&soup, point(0.05, 0.05, -0.1), point(0.95, 0.95, 0.5), 1, false);
+    paint(&soup, 0.5, 0.5);
+    struct solution s = solve_soup(&soup, "--max-level 0");
+    struct shading *shading = shade_rest(&s);
+    double worst = 0.0;
+    for (int32_t root = 0; root < 12; root += 2)
+        for (int i = 1; i < 20; i++)
+            if (scene_root_plane(s.scene, root).normal.z > 0.9)
+                worst = fmax(worst, fabs(shown(&s, shading, root,
+                                               point(0.05 * i, 0.02, 0)) - 1.0));
+    tap_ok(worst > 0.0 && worst <= 0.02,
+           "a strip of floor beside a box is even within %.3f", worst);
+    shading_destroy(shading);
+    solution_free(&s);
+}
+
 /* --- smooth surfaces --- */
 
 /* A column of eight facets, a small lamp far away: light falls as the cosine of the
@@ -242,6 +264,7 @@ int main(int argc, char **argv)
     test_shadow(false);
     test_shadow(true);
     test_furnace();
+    test_strip();
     test_column();
     test_bowl();
     test_smoothed_box();

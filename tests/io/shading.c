@@ -157,7 +157,7 @@ static const struct triangle WHOLE = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 static struct rgb value_at(const struct stage *stage, int32_t root, struct vec3 w)
 {
     const double weight[3] = {w.x, w.y, w.z};
-    return shading_at(stage->shading, root, weight);
+    return shading_at(stage->shading, root, weight, &(bool){false});
 }
 
 /* --- continuity --- */
@@ -490,7 +490,7 @@ static void test_large_leaf_counts(void)
         if (stage.forest->patches[p].id.root == 1)
             stage.forest->radiosity[p] = (struct rgb){{1.0, 1.0, 1.0}};
     shade(&stage, false);
-    double shown = shading_at(stage.shading, 0, corner).band[0];
+    double shown = shading_at(stage.shading, 0, corner, &(bool){false}).band[0];
     tap_ok(shown < 0.2,
            "a bright leaf of 1/256 of its area makes a dark one shine little: %.2f",
            shown);
