@@ -169,7 +169,7 @@ hits() {
         }
         $1 == "octree:" { line("octree", $2) }
         $1 == "Embree:" { line("embree", $2) }
-        / 64 from each/ { exit }'
+        / 256 from each/ { exit }'
 }
 
 # The lines of a scene, one variant after the other.
