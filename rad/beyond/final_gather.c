@@ -387,7 +387,7 @@ void final_gather_cover(struct final_gather *gather, const uint8_t *open)
     for (int64_t i = 0; i < forest->count; i++) {
         int32_t p = gather->order[i];
         if (patch_is_leaf(&forest->patches[p]) && forest_area(forest, p) > 0.0)
-            gather->near.covered[i] = *open++ < 4;
+            gather->near.covered[i] = *open++ < 16;
     }
 }
 

@@ -54,7 +54,7 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
 void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool exact);
 
 /* Tells the gather which leaves things stand on: their means hold for no point. `open`:
- * below 4 for these; for all leaves with an area, roots in order, depth first. */
+ * below 16 for these; for all leaves with an area, roots in order, depth first. */
 void final_gather_cover(struct final_gather *gather, const uint8_t *open);
 
 /* Returns the light at points, for the radiosities of the forest: by `count` segments to

@@ -431,7 +431,7 @@ static double beside_dark_side(struct trial *g, const uint8_t *open)
  * again go on by chance. */
 static void test_covered_for_points(void)
 {
-    static const uint8_t OPEN[12] = {0, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4};
+    static const uint8_t OPEN[12] = {0, 15, 16, 16, 16, 16, 16, 16, 16, 16, 16, 16};
     struct soup soup = {0};
     soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
     paint(&soup, 0.5, 0.5);
