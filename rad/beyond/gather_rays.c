@@ -173,33 +173,43 @@ static bool is_covered(const struct final_gather *gather, int32_t leaf)
     return gather->near.covered && gather->near.covered[gather->place[leaf]];
 }
 
-/* True if rays from the point, up and along the plane in four directions, all meet backs:
- * below the back of a canopy those along the plane do not. */
-static bool is_inside(struct receiver *r, struct vec3 origin)
+/* True if rays from the point, along the plane in four directions, all meet backs. */
+static bool is_among_backs(struct receiver *r, struct vec3 origin, struct vec3 normal)
 {
     static const double RISE = 0.1;
-    struct vec3 normal = r->facet.plane.normal, direction = normal, along = r->along;
+    struct vec3 along = direction_along(normal);
     struct point point;
-    for (int k = 0; k <= 4; k++) {
-        if (trace(r, origin, direction, &point) != MET_BACK)
+    for (int k = 0; k < 4; k++, along = vec3_cross(normal, along))
+        if (trace(r, origin, vec3_add(along, vec3_scale(normal, RISE)), &point) !=
+            MET_BACK)
             return false;
-        direction = vec3_add(along, vec3_scale(normal, RISE));
-        along = vec3_cross(normal, along);
-    }
     return true;
 }
 
+/* True if the point is inside of a thing: it is among backs, and below one, or, where a
+ * column reaches the ceiling, below a point among backs. Below the back of a canopy a
+ * point is not among them, in a bin not below one. */
+static bool is_inside(struct receiver *r, struct vec3 origin)
+{
+    struct vec3 normal = r->facet.plane.normal;
+    struct point point;
+    enum met met = trace(r, origin, normal, &point);
+    return met != MET_NOTHING && is_among_backs(r, origin, normal) &&
+           (met == MET_BACK ||
+            is_among_backs(r, point_above(point.at, point.normal), point.normal));
+}
+
 /* A ray has met a back. Where the floor is covered by a thing that stands on it, a point
- * is inside of that thing, and another ray from there meets a back, too. */
+ * is inside of that thing; else another ray from there meets a back, too. */
 static void look_inside(struct receiver *r, struct vec3 origin, struct vec3 direction)
 {
     struct vec3 normal = r->facet.plane.normal;
     struct vec3 up = vec3_scale(normal, 2.0 * vec3_dot(normal, direction));
     struct point point;
-    if (trace(r, origin, vec3_sub(up, direction), &point) != MET_BACK)
-        r->escaped++;
-    else if (r->keeps && is_inside(r, origin))
+    if (r->keeps && is_inside(r, origin))
         r->inside++;
+    else if (trace(r, origin, vec3_sub(up, direction), &point) != MET_BACK)
+        r->escaped++;
 }
 
 /* Russian roulette: the path goes on, for all that would have, with the probability of

@@ -406,6 +406,31 @@ static void test_covered(void)
     trial_free(&g);
 }
 
+/* Four sides, seen from outside, stand on .04 of a floor below a ceiling. Where they
+ * reach it nothing sees that part; where they do not it is the bottom of a bin. The few
+ * rays that meet the ceiling inside of the column count as outside: 1 %, of .04. */
+static void test_column(double height, double outside)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 4);
+    soup_add_quad(&soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 4);
+    struct vec3 at = {0.4, 0.4, 0.0}, side = {0.2, 0.0, 0.0}, up = {0.0, 0.0, height};
+    for (int k = 0; k < 4; k++) {
+        soup_add_quad(&soup, at, side, up, 1);
+        at = vec3_add(at, side);
+        side = vec3_cross(point(0, 0, 1), side);
+    }
+    paint(&soup, 0.5, 1.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", 256);
+    double share = 0.0;
+    for (int64_t i = 0; i < 32; i++)
+        share += (double)g.gather.rows[i].outside / 32.0;
+    tap_ok(fabs(share - outside) < 0.002,
+           "a column of height %g stands on a floor: %.4f of it is outside", height,
+           share);
+    trial_free(&g);
+}
+
 /* H at a point of the last root of a furnace of B = 1 in which the first two roots, one
  * side, are dark as if covered; `open`: of final_gather_cover(), or NULL. */
 static double beside_dark_side(struct trial *g, const uint8_t *open)
@@ -670,6 +695,8 @@ int main(int argc, char **argv)
     test_grain();
     test_gap();
     test_covered();
+    test_column(1.0, 0.96);
+    test_column(0.9, 1.0);
     test_covered_for_points();
     test_flush_lamp();
     test_mesh(0.1);
