@@ -21,8 +21,9 @@
 #include "geom/lambert.h"
 #include "rad/beyond/sample.h"
 
-/* A cluster is a group if its radius is at most this part of its distance. */
-static const double SMALL = 0.25;
+/* A cluster is a group if its radius is at most this part of its distance; and for a
+ * first estimate of all light. */
+static const double SMALL = 0.25, SMALL_AT_FIRST = 3.0;
 
 /* Least cosine that a group of lamps is counted with: where a part of it may be above the
  * horizon, it has to be chosen now and then. */
@@ -183,21 +184,22 @@ struct lit {
     const struct facet *facet;
     struct vec3 centroid;
     double radius;
-    double most; /* direct light of a cluster that is a group, W/m^2 */
+    double small; /* radius of a cluster that is a group over its distance, and */
+    double most;  /* its direct light, W/m^2, at most */
 };
 
 /* About the cosine between a plane's normal and the way to a lamp. */
 static double cosine_to(const struct plane *plane, struct vec3 apart, double distance2)
 {
-    return fmax(vec3_dot(apart, plane->normal) / sqrt(distance2), LEAST_COSINE);
+    return real_max(vec3_dot(apart, plane->normal) / sqrt(distance2), LEAST_COSINE);
 }
 
 /* The largest product of the vector and a normal of the cluster, or more. */
 static double facing_most(const struct cluster *cluster, struct vec3 v)
 {
     const struct vec3 *low = &cluster->normal_low, *high = &cluster->normal_high;
-    return fmax(low->x * v.x, high->x * v.x) + fmax(low->y * v.y, high->y * v.y) +
-           fmax(low->z * v.z, high->z * v.z);
+    return real_max(low->x * v.x, high->x * v.x) +
+           real_max(low->y * v.y, high->y * v.y) + real_max(low->z * v.z, high->z * v.z);
 }
 
 static void add_node(const struct lamps *lamps, const struct lit *leaf, int32_t node,
@@ -218,9 +220,9 @@ static void add_cluster(const struct lamps *lamps, const struct lit *leaf, int32
     struct lamp_group group = {.node = node};
     if (facing + reach <= 0.0)
         return;
-    if (radius <= SMALL * fmax(distance - reach, leaf->radius)) {
-        facing = fmin(1.0, fmax(facing / distance, LEAST_COSINE));
-        group.around = facing * watts / fmax(PI * distance2, leaf->facet->area);
+    if (radius <= leaf->small * real_max(distance - reach, leaf->radius)) {
+        facing = real_min(1.0, real_max(facing / distance, LEAST_COSINE));
+        group.around = facing * watts / real_max(PI * distance2, leaf->facet->area);
         if (vec3_dot(apart, plane->normal) + reach > 0.0)
             group.direct = cosine_to(plane, apart, distance2) * group.around;
         if (group.direct <= leaf->most) {
@@ -267,11 +269,12 @@ void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments,
 {
     struct lamp_groups *groups = &lamps->groups;
     struct lit lit = {leaf, triangle_centroid(&leaf->triangle),
-                      triangle_radius(&leaf->triangle), HUGE_VAL};
+                      triangle_radius(&leaf->triangle), SMALL_AT_FIRST, HUGE_VAL};
     for (int pass = 0; pass < 2; pass++) {
         groups->count = 0;
         groups->direct = groups->around = 0.0;
         add_node(lamps, &lit, NODE_TOP, groups, pass == 0 ? NULL : work);
+        lit.small = SMALL;
         lit.most = groups->direct / segments;
     }
 }
