@@ -249,7 +249,7 @@ static const struct phase {
     {"choosing a camera", choose_camera, false, 0, 5000},
     {"looking at leaves", survey_leaves, false, 2, 0},
     {"flat shading", shade_flat, false, 1, 0},
-    {"smooth shading", shade_smooth, false, 10, 1},
+    {"smooth shading", shade_smooth, false, 4, 0},
     {"rendering", render, false, 0, 256},
     {"writing PPM", write_ppm, true, 0, 768},
     {"writing PFM", write_pfm, true, 0, 16},
