@@ -27,7 +27,8 @@
 #include "rad/beyond/sample.h"
 
 enum {
-    SEGMENTS = 32, /* to lamps, for a pixel */
+    SEGMENTS = 32, /* to lamps, for a pixel, at least */
+    RAYS_PER_SEGMENT = 8, /* --final-gather for one of them */
     MORE = 4,      /* factor on them in a noisy pixel */
     WHOLE = 128    /* rays and segments for a pixel of a covered leaf */
 };
@@ -38,8 +39,9 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
                               struct final_gather *gather)
 {
     struct renderer renderer = {.octree = octree, .shading = shading, .gather = gather};
-    if (gather)
-        renderer.rays = shading ? SEGMENTS : gather->model->criterion.final_gather;
+    int rays = gather ? gather->model->criterion.final_gather : 0;
+    int segments = rays / RAYS_PER_SEGMENT;
+    renderer.rays = !shading ? rays : segments > SEGMENTS ? segments : SEGMENTS;
     return renderer;
 }
 
