@@ -390,7 +390,7 @@ static void add_leaf(void *context, int32_t leaf)
     struct blend *blend = context;
     const struct forest *forest = blend->shading->forest;
     struct triangle t = forest_triangle(forest, leaf);
-    blend->shading->covered[leaf] = blend->open[blend->next++] < OPEN_PARTS;
+    blend->shading->covered[leaf] = open_fraction(blend->open[blend->next++]) == 0.0;
     for (int k = 0; k < 3; k++)
         blend->shading->corners[3 * (int64_t)leaf + k] =
             reach_vertex(blend->shading->table, t.corner[k],

@@ -106,22 +106,27 @@ static void test_furnace(void)
 }
 
 /* A furnace with a box that leaves a strip of the floor along the walls: the strip shines
- * as all does, though the two leaves of the floor are dark in the mean. */
-static void test_strip(void)
+ * as all does, though the two leaves of the floor are dark in the mean. A wide strip is
+ * interpolated, which takes less time and has no noise; the open part of a leaf is known
+ * in sixteenths. */
+static void test_strip(double width, bool is_narrow)
 {
+    double end = 1.0 - width, worst = 0.0;
+    bool covered = !is_narrow;
     struct soup soup = {0};
     soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
-    soup_add_box(&soup, point(0.05, 0.05, -0.1), point(0.95, 0.95, 0.5), 1, false);
+    soup_add_box(&soup, point(width, width, -0.1), point(end, end, 0.5), 1, false);
     paint(&soup, 0.5, 0.5);
     struct solution s = solve_soup(&soup, "--max-level 0");
     struct shading *shading = shade_rest(&s);
-    double worst = 0.0;
-    for (int32_t root = 0; root < 12; root += 2)
-        for (int i = 1; i < 20; i++)
-            if (scene_root_plane(s.scene, root).normal.z > 0.9)
-                worst = fmax(worst, fabs(shown(&s, shading, root,
-                                               point(0.05 * i, 0.02, 0)) - 1.0));
-    tap_ok(worst > 0.0 && worst <= 0.02,
+    int32_t floor = 0;
+    while (scene_root_plane(s.scene, floor).normal.z < 0.9)
+        floor += 2;
+    for (int i = 1; i < 20; i++)
+        worst = fmax(worst,
+                     fabs(shown(&s, shading, floor, point(0.05 * i, 0.02, 0)) - 1.0));
+    shading_at(shading, floor, (double[]){1.0, 0.0, 0.0}, &covered);
+    tap_ok(worst > 0.0 && worst <= (is_narrow ? 0.02 : 0.06) && covered == is_narrow,
            "a strip of floor beside a box is even within %.3f", worst);
     shading_destroy(shading);
     solution_free(&s);
@@ -268,7 +273,8 @@ int main(int argc, char **argv)
     test_shadow(false, 4096, 0.025);
     test_shadow(true, 64, 0.1);
     test_furnace();
-    test_strip();
+    test_strip(0.05, true);
+    test_strip(0.3, false);
     test_column();
     test_bowl();
     test_smoothed_box();
