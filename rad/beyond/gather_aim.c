@@ -277,7 +277,7 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
     for (int64_t i = 0; i < groups->count; i++) {
         const struct lamp_group *group = &groups->items[i];
         bool sure = group->direct >= each;
-        int count = deal(sure ? &strong : &weak, group->direct);
+        int count = group->direct > 0.0 ? deal(sure ? &strong : &weak, group->direct) : 0;
         if (count == 0)
             continue;
         double direct = sure ? group->direct : count * weak.each;
