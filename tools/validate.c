@@ -102,26 +102,24 @@ static double by_one_disk(const struct facet *p, const struct facet *q)
     return fmin(g, fmin(p->area, q->area));
 }
 
-static double by_solver(const struct facet *p, const struct facet *q,
-                        enum form_factor kind)
+static double by_disks(const struct facet *p, const struct facet *q)
 {
     struct octree *empty = octree_create(NULL, NULL, 0);
     struct octree_counts counts = {0};
-    struct visibility visibility = {.blocker = -1};
-    double g =
-        exchange_estimate(p, q, kind, empty, &visibility, &counts).area;
+    int32_t blocker = -1;
+    double seen, g = exchange_area(p, q, empty, &blocker, &seen, &counts);
     octree_destroy(empty);
     return g;
 }
 
-static double by_disks(const struct facet *p, const struct facet *q)
-{
-    return by_solver(p, q, FORM_FACTOR_DISK);
-}
-
 static double by_polygon(const struct facet *p, const struct facet *q)
 {
-    return by_solver(p, q, FORM_FACTOR_POLYGON);
+    struct octree *empty = octree_create(NULL, NULL, 0);
+    struct octree_counts counts = {0};
+    struct visibility visibility = {.blocker = -1};
+    double g = exchange_estimate(p, q, empty, &visibility, &counts).area;
+    octree_destroy(empty);
+    return g;
 }
 
 /* The stated error of a method from some distance on: both bounds hold. */

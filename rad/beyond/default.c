@@ -86,7 +86,7 @@ struct method method_of(const struct criterion *criterion)
     if (by_energy)
         method.side_to_split = node_side_to_split_by_energy;
     if (by_disks)
-        method.make_link = patch_link_make_by_disks;
+        method.make_link = link_make;
     if (all_pairs) {
         method.light_power = NULL;
         method.first_link = NULL;

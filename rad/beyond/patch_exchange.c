@@ -72,15 +72,6 @@ struct side {
     double unoccluded[SUBAREAS], area[SUBAREAS];
 };
 
-static struct side side_by_disks(const struct facet_pair *pair, unsigned visible,
-                                 bool of_p)
-{
-    struct side side;
-    for (int sub = 0; sub < SUBAREAS; sub++)
-        sum_kernels(pair, visible, of_p, sub, &side.unoccluded[sub], &side.area[sub]);
-    return side;
-}
-
 /* The mean form factor from a sub-area to the other patch, by three points: exact where
  * it varies with the square of the place (Stroud's formula of degree 2). */
 static double factor_close_by(const struct facet *own, int sub, const struct facet *other)
@@ -97,8 +88,8 @@ static double factor_close_by(const struct facet *own, int sub, const struct fac
 
 /* The visible share of a sub-area is that of its segments' kernels; where none of them
  * faces, that of the whole pair. */
-static struct side side_by_points(const struct facet_pair *pair, unsigned visible,
-                                  bool of_p, bool apart)
+static struct side side_of(const struct facet_pair *pair, unsigned visible, bool of_p,
+                           bool apart)
 {
     const struct facet *own = of_p ? pair->p : pair->q, *other = of_p ? pair->q : pair->p;
     const struct vec3 *points = of_p ? pair->bundle.from : pair->bundle.to;
@@ -149,17 +140,15 @@ static bool is_apart(const struct facet *p, const struct facet *q)
 }
 
 struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
-                                  enum form_factor kind, const struct octree *octree,
+                                  const struct octree *octree,
                                   struct visibility *visibility,
                                   struct octree_counts *counts)
 {
     struct facet_pair pair = facet_pair_make(p, q);
     unsigned visible = pair_look(&pair, octree, visibility, counts);
-    bool points = kind == FORM_FACTOR_POLYGON, apart = is_apart(p, q);
-    struct side side_p = points ? side_by_points(&pair, visible, true, apart)
-                                : side_by_disks(&pair, visible, true);
-    struct side side_q = points ? side_by_points(&pair, visible, false, apart)
-                                : side_by_disks(&pair, visible, false);
+    bool apart = is_apart(p, q);
+    struct side side_p = side_of(&pair, visible, true, apart);
+    struct side side_q = side_of(&pair, visible, false, apart);
     const struct side *smaller = p->area <= q->area ? &side_p : &side_q;
     double sum = sum_of(smaller->unoccluded);
     struct exchange exchange = {.unoccluded = sum, .apart = apart};

@@ -1,6 +1,5 @@
-/* Form factors of pairs of patches, phr's: from points to the whole other patch, or by
- * disks, with the parts that the children of either side have in them; and proofs of
- * visibility.
+/* Form factors of pairs of patches, phr's: from points to the whole other patch, with
+ * the parts that the children of either side have in them; and proofs of visibility.
  *
  * As in rad/formfactor.h it is the exchange area G = A_p F_pq = A_q F_qp. 0 <= G <=
  * min(A_p, A_q), always. */
@@ -33,11 +32,10 @@ struct visibility {
 bool facets_face(const struct facet *p, const struct facet *q);
 
 /* The exchange of a pair: visibility from segments between sub-areas that face each
- * other, unless it is known; form factors by the disk or from points to the whole other
- * patch: one for each sub-area, or three where the patches are not apart. Pre:
- * facets_face(p, q). */
+ * other, unless it is known; form factors from points to the whole other patch: one for
+ * each sub-area, or three where the patches are not apart. Pre: facets_face(p, q). */
 struct exchange exchange_estimate(const struct facet *p, const struct facet *q,
-                                  enum form_factor kind, const struct octree *octree,
+                                  const struct octree *octree,
                                   struct visibility *visibility,
                                   struct octree_counts *counts);
 

@@ -36,9 +36,9 @@ void link_set_parts(uint8_t parts[3], const double exact[4])
     }
 }
 
-static bool make(struct model *model, int32_t p, const struct facet *facet_p, int32_t q,
-                 const struct facet *facet_q, const struct link *parent,
-                 enum form_factor form_factor, struct link *link)
+bool patch_link_make(struct model *model, int32_t p, const struct facet *facet_p,
+                     int32_t q, const struct facet *facet_q, const struct link *parent,
+                     struct link *link)
 {
     if (!facets_face(facet_p, facet_q))
         return false;
@@ -48,8 +48,8 @@ static bool make(struct model *model, int32_t p, const struct facet *facet_p, in
     struct octree_counts work = {0};
     struct visibility visibility = {.open = parent && link_is_open(parent),
                           .blocker = parent ? parent->blocker : -1};
-    struct exchange exchange = exchange_estimate(facet_p, facet_q, form_factor,
-                                                 model->octree, &visibility, &work);
+    struct exchange exchange =
+        exchange_estimate(facet_p, facet_q, model->octree, &visibility, &work);
     octree_counts_add(&model->counts, &work);
     model->rays_spared += BUNDLE_RAYS - work.rays;
     model->estimating += TESTS_PER_FORM_FACTOR;
@@ -64,20 +64,6 @@ static bool make(struct model *model, int32_t p, const struct facet *facet_p, in
     link_set_parts(link->parts_p, exchange.parts_p);
     link_set_parts(link->parts_q, exchange.parts_q);
     return true;
-}
-
-bool patch_link_make(struct model *model, int32_t p, const struct facet *facet_p,
-                     int32_t q, const struct facet *facet_q, const struct link *parent,
-                     struct link *link)
-{
-    return make(model, p, facet_p, q, facet_q, parent, FORM_FACTOR_POLYGON, link);
-}
-
-bool patch_link_make_by_disks(struct model *model, int32_t p, const struct facet *facet_p,
-                              int32_t q, const struct facet *facet_q,
-                              const struct link *parent, struct link *link)
-{
-    return make(model, p, facet_p, q, facet_q, parent, FORM_FACTOR_DISK, link);
 }
 
 int patch_link_split(struct model *model, const struct link *link, int32_t patch,

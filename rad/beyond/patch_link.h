@@ -33,14 +33,11 @@ void link_set_parts(uint8_t parts[3], const double exact[4]);
 /* The share of the light that arrives, 0..1, in the form of the field `seen`. */
 uint8_t link_seen(double share);
 
-/* Entries of struct method: make_link, with form factors from points or by disks, and
- * split_link, which ends links of two patches that are proved to be walled off. */
+/* Entries of struct method: make_link, with form factors from points, and split_link,
+ * which ends links of two patches that are proved to be walled off. */
 bool patch_link_make(struct model *model, int32_t p, const struct facet *facet_p,
                      int32_t q, const struct facet *facet_q, const struct link *parent,
                      struct link *link);
-bool patch_link_make_by_disks(struct model *model, int32_t p, const struct facet *facet_p,
-                              int32_t q, const struct facet *facet_q,
-                              const struct link *parent, struct link *link);
 int patch_link_split(struct model *model, const struct link *link, int32_t patch,
                      struct link *children);
 

@@ -131,7 +131,7 @@ ideas() {
     done <<END
 all pairs of triangles, no tree|--final-gather 0 --linking pairs
 split by energy, not by error|--final-gather 0 --oracle bf
-disks, not polygons|--final-gather 0 --form-factor disk
+the paper's disks, not polygons|--final-gather 0 --form-factor disk
 Jacobi, not conjugate residuals|--final-gather 0 --solver jacobi
 the paper: all four|--final-gather 0 --paper
 END

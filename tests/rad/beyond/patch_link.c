@@ -265,13 +265,12 @@ static void test_parts(void)
         struct facet p = facet_make(world.model.forest, 0);
         struct facet q = facet_make(world.model.forest, 1);
         struct link link;
-        enum form_factor kind = i % 2 ? FORM_FACTOR_POLYGON : FORM_FACTOR_DISK;
-        world.model.method.make_link = i % 2 ? patch_link_make : patch_link_make_by_disks;
+        world.model.method = DEFAULT;
         if (make(&world, 0, 1, &link)) {
             struct octree_counts counts = {0};
             struct visibility visibility = {.open = false, .blocker = -1};
-            struct exchange exchange = exchange_estimate(&p, &q, kind, world.octree,
-                                                         &visibility, &counts);
+            struct exchange exchange =
+                exchange_estimate(&p, &q, world.octree, &visibility, &counts);
             made++;
             for (int k = 0; k < 4; k++) {
                 /* Within one in 256, and the rounding of exact parts. */
