@@ -15,9 +15,8 @@ struct node_exchange {
 /* True if the two are sampled by rays and not by points. */
 bool is_by_rays(const struct meeting *m);
 
-/* Another `salt`, other points. `closely`: by all pairs of points, not four of them. */
+/* Another `salt`, other points. */
 struct node_exchange node_exchange_estimate(struct model *model,
-                                            const struct meeting *m, int salt,
-                                            bool closely);
+                                            const struct meeting *m, int salt);
 
 #endif

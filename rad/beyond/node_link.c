@@ -92,8 +92,7 @@ static void look(struct model *model, const struct meeting *m, int salt,
                  struct link *link)
 {
     struct octree_counts before = model->counts;
-    bool closely = m->most * m->light > model->link_threshold;
-    struct node_exchange found = node_exchange_estimate(model, m, salt, closely);
+    struct node_exchange found = node_exchange_estimate(model, m, salt);
     double seen = found.unoccluded > 0.0 ? found.area / found.unoccluded : 0.0;
     double area = find_parts(model, &m->p, found.g_p, found.area, link->parts_p);
     area = find_parts(model, &m->q, found.g_q, area, link->parts_q);

@@ -282,8 +282,7 @@ static void test_estimates(bool planted)
             continue; /* estimates are cut off at the smaller area: that bias is meant */
         struct mean found = {0};
         for (int salt = 1; salt <= SALTS; salt++) {
-            struct node_exchange estimate =
-                node_exchange_estimate(model, &m, salt, salt % 2 == 0);
+            struct node_exchange estimate = node_exchange_estimate(model, &m, salt);
             mean_add(&found, value_of(&estimate, kind, planted));
         }
         tested[kind]++;
@@ -338,12 +337,11 @@ static bool has_judgement(struct model *model, struct link *link)
 {
     struct end p = end_of(model, link->p), q = end_of(model, link->q);
     struct meeting m = ends_meet(&p, &q);
-    bool closely = m.most * m.light > model->link_threshold;
     if (m.near) {
         node_link_keep(model, link, true);
         return link->blocker == 0;
     }
-    struct node_exchange found = node_exchange_estimate(model, &m, 0, closely);
+    struct node_exchange found = node_exchange_estimate(model, &m, 0);
     float area = (float)found.unoccluded;
     uint32_t expected, bits = (uint32_t)link->blocker, after;
     memcpy(&expected, &area, sizeof expected);
@@ -358,7 +356,7 @@ static bool has_judgement(struct model *model, struct link *link)
 static void test_judgement(void)
 {
     struct wood wood = wood_make(room(3, 4, false));
-    wood.world.model.link_threshold = HUGE_VAL; /* all are looked at, none closely */
+    wood.world.model.link_threshold = HUGE_VAL;
     struct link_list links = links_below_top(&wood);
     int count = 0, right = 0;
     for (int64_t i = 0; i < links.count; i++) {
