@@ -3,10 +3,7 @@
  * loop downwards meets them first. */
 #include "rad/beyond/cluster_light.h"
 
-#include <math.h>
-
 #include "geom/alloc.h"
-#include "rad/beyond/range.h"
 
 struct cluster_light *cluster_light_create(const struct cluster_tree *tree)
 {
@@ -15,7 +12,6 @@ struct cluster_light *cluster_light_create(const struct cluster_tree *tree)
     light->tree = tree;
     light->radiosity = alloc_array(count, sizeof *light->radiosity);
     light->sent = alloc_array(count, sizeof *light->sent);
-    light->range = alloc_array(count, sizeof *light->range);
     light->flux = alloc_array(BANDS * count, sizeof *light->flux);
     light->irradiance = alloc_array(count, sizeof *light->irradiance);
     return light;
@@ -36,7 +32,6 @@ void cluster_light_destroy(struct cluster_light *light)
         return;
     cluster_light_free_vectors(light);
     alloc_free(light->radiosity);
-    alloc_free(light->range);
     alloc_free(light);
 }
 
@@ -57,35 +52,6 @@ void cluster_light_average(const struct cluster_light *light, const struct fores
         }
         of_clusters[i] = sum;
     }
-}
-
-/* The variance of B in a root is that of its extremes; in a cluster, that within its
- * children, and that between them. */
-void cluster_light_bound(struct cluster_light *light, const struct forest *forest)
-{
-    double *variance = alloc_array((size_t)light->tree->count, sizeof *variance);
-    for (int32_t i = light->tree->count - 1; i >= 0; i--) {
-        const struct cluster *cluster = &light->tree->clusters[i];
-        double mean = rgb_sum(light->radiosity[i]), within = 0.0, between = 0.0;
-        for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
-            int32_t node = cluster->child[k];
-            double area = cluster_node_area(light->tree, forest->scene, node);
-            double share = area / cluster->area;
-            struct rgb child = node_is_cluster(node) ? light->radiosity[~node]
-                                                     : forest->radiosity[node];
-            double off = rgb_sum(child) - mean;
-            if (node_is_cluster(node)) {
-                within += share * variance[~node];
-            } else {
-                double half = 0.5 * forest_range(forest, node);
-                within += share * half * half;
-            }
-            between += share * off * off;
-        }
-        variance[i] = within + between;
-        light->range[i] = 2.0 * sqrt(within);
-    }
-    alloc_free(variance);
 }
 
 void cluster_light_push(struct cluster_light *light, struct forest *forest,

@@ -41,11 +41,9 @@ static void prepare(struct model *model)
 {
     struct cluster_light *clusters = model->clusters;
     forest_bound(model->forest);
-    if (clusters) {
+    if (clusters)
         cluster_light_average(clusters, model->forest, model->forest->radiosity,
                               clusters->radiosity);
-        cluster_light_bound(clusters, model->forest);
-    }
 }
 
 static struct patch_id node_id(const struct model *model, int32_t node)

@@ -171,13 +171,6 @@ static void look_nearby(struct model *model, const struct meeting *m, uint64_t s
         }
 }
 
-/* In the exchange of a cluster with itself both directions are one. */
-static void make_even(struct node_exchange *found)
-{
-    for (int k = 0; k < 4; k++)
-        found->g_p[k] = found->g_q[k] = 0.5 * (found->g_p[k] + found->g_q[k]);
-}
-
 /* No more than the smaller area. */
 static void limit_exchange(struct node_exchange *found, double limit)
 {
@@ -201,8 +194,6 @@ struct node_exchange node_exchange_estimate(struct model *model,
         look_nearby(model, m, seed, &found);
     else
         look_from_afar(model, m, seed, &found);
-    if (m->p.node == m->q.node)
-        make_even(&found);
     limit_exchange(&found, real_min(m->p.area, m->q.area));
     return found;
 }

@@ -23,7 +23,8 @@ void forest_bound(struct forest *forest)
     }
 }
 
-double forest_range(const struct forest *forest, int32_t patch)
+/* 0 of a patch that is newer, whose leaves were one. */
+static double range_of(const struct forest *forest, int32_t patch)
 {
     if (patch >= forest->bounded)
         return 0.0;
@@ -36,6 +37,6 @@ double forest_range_within(const struct forest *forest, int32_t patch)
     double range = 0.0;
     int32_t children = forest->patches[patch].children;
     for (int k = 0; k < 4 && children > 0; k++)
-        range = fmax(range, forest_range(forest, children + k));
+        range = fmax(range, range_of(forest, children + k));
     return range;
 }

@@ -8,10 +8,7 @@
 /* Finds the extremes of all patches there are. */
 void forest_bound(struct forest *forest);
 
-/* The range of a patch as of then; 0 of a patch that is newer, whose leaves were one. */
-double forest_range(const struct forest *forest, int32_t patch);
-
-/* The largest range of a child of a patch, 0 of a leaf. */
+/* The largest range of a child of a patch as of then, 0 of a leaf. */
 double forest_range_within(const struct forest *forest, int32_t patch);
 
 #endif

@@ -59,7 +59,6 @@ static struct wood wood_make(struct scene *scene)
     model->clusters = cluster_light_create(wood.tree);
     cluster_light_average(model->clusters, model->forest, model->forest->radiosity,
                           model->clusters->radiosity);
-    cluster_light_bound(model->clusters, model->forest);
     return wood;
 }
 
