@@ -16,13 +16,15 @@
 
 #include "geom/hash.h"
 
-static uint32_t reverse_bits(uint32_t x)
+/* Of two numbers side by side, which change places. */
+static inline uint64_t reverse_bits(uint64_t x)
 {
-    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
-    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
-    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
-    x = (x >> 8 & 0x00ff00ffu) | (x & 0x00ff00ffu) << 8;
-    return x >> 16 | x << 16;
+    x = (x >> 1 & UINT64_C(0x5555555555555555)) | (x & UINT64_C(0x5555555555555555)) << 1;
+    x = (x >> 2 & UINT64_C(0x3333333333333333)) | (x & UINT64_C(0x3333333333333333)) << 2;
+    x = (x >> 4 & UINT64_C(0x0f0f0f0f0f0f0f0f)) | (x & UINT64_C(0x0f0f0f0f0f0f0f0f)) << 4;
+    x = (x >> 8 & UINT64_C(0x00ff00ff00ff00ff)) | (x & UINT64_C(0x00ff00ff00ff00ff)) << 8;
+    x = (x >> 16 & UINT64_C(0xffff0000ffff)) | (x & UINT64_C(0xffff0000ffff)) << 16;
+    return x >> 32 | x << 32;
 }
 
 /* Permutes by multiplications that carry upwards. */
@@ -43,30 +45,37 @@ struct sequence sequence_start(uint64_t seed)
     return sequence;
 }
 
-/* Bit b of the index changes these bits of the coordinates: Sobol's direction numbers of
- * the first four dimensions, the upper 16 bits of each, reversed; the first dimension in
- * the lowest bits. */
-static const uint64_t SOBOL[16] = {
-    UINT64_C(0x0001000100010001), UINT64_C(0x0003000300030002),
-    UINT64_C(0x0004000600050004), UINT64_C(0x000a0009000f0008),
-    UINT64_C(0x001f001700110010), UINT64_C(0x002e003a00330020),
-    UINT64_C(0x0045007100550040), UINT64_C(0x00c900a300ff0080),
-    UINT64_C(0x011b011601010100), UINT64_C(0x02a4033903030200),
-    UINT64_C(0x079a067705050400), UINT64_C(0x0b6709aa0f0f0800),
-    UINT64_C(0x101e160111111000), UINT64_C(0x302d390333332000),
-    UINT64_C(0x4041770655554000), UINT64_C(0xa0c3aa09ffff8000)};
+/* The sums without carry of some of a, b, c and d, by the bits of their number. */
+#define SUMS_OF_TWO(x, a, b) x, (x) ^ (a), (x) ^ (b), (x) ^ (a) ^ (b)
+#define SUMS(a, b, c, d) {SUMS_OF_TWO(0, a, b), SUMS_OF_TWO(c, a, b), \
+                          SUMS_OF_TWO(d, a, b), SUMS_OF_TWO((c) ^ (d), a, b)}
+
+/* Four bits of the index at a time, the last bit first, change these bits of the
+ * coordinates: Sobol's direction numbers of the first four dimensions, the upper 16 bits
+ * of each, reversed; the first dimension in the lowest bits. */
+static const uint64_t SOBOL[4][16] = {
+    SUMS(UINT64_C(0xa0c3aa09ffff8000), UINT64_C(0x4041770655554000),
+         UINT64_C(0x302d390333332000), UINT64_C(0x101e160111111000)),
+    SUMS(UINT64_C(0x0b6709aa0f0f0800), UINT64_C(0x079a067705050400),
+         UINT64_C(0x02a4033903030200), UINT64_C(0x011b011601010100)),
+    SUMS(UINT64_C(0x00c900a300ff0080), UINT64_C(0x0045007100550040),
+         UINT64_C(0x002e003a00330020), UINT64_C(0x001f001700110010)),
+    SUMS(UINT64_C(0x000a0009000f0008), UINT64_C(0x0004000600050004),
+         UINT64_C(0x0003000300030002), UINT64_C(0x0001000100010001))};
 
 void sequence_point(const struct sequence *sequence, uint32_t index,
                     double u[SEQUENCE_DIMENSIONS])
 {
-    uint32_t place = reverse_bits(permute(reverse_bits(index), sequence->scramble[0]));
-    uint64_t bits = 0;
-    for (int b = 0; b < 16; b++)
-        bits ^= SOBOL[b] & (UINT64_C(0) - (place >> b & 1u));
-    for (int d = 0; d < SEQUENCE_DIMENSIONS; d++) {
-        uint32_t reversed = (uint32_t)(bits >> 16 * d) & 0xffffu;
-        u[d] = 0x1p-32 *
-               (double)reverse_bits(permute(reversed, sequence->scramble[1 + d]));
+    uint32_t turned = (uint32_t)(reverse_bits(index) >> 32); /* bits of the index */
+    uint32_t place = permute(turned, sequence->scramble[0]);
+    uint64_t sobol = SOBOL[0][place >> 16 & 15] ^ SOBOL[1][place >> 20 & 15] ^
+                     SOBOL[2][place >> 24 & 15] ^ SOBOL[3][place >> 28];
+    for (int d = 0; d < SEQUENCE_DIMENSIONS; d += 2, sobol >>= 32) {
+        uint64_t first = permute((uint32_t)sobol & 0xffffu, sequence->scramble[1 + d]);
+        uint64_t second = permute((uint32_t)sobol >> 16, sequence->scramble[2 + d]);
+        uint64_t both = reverse_bits(first << 32 | second);
+        u[d] = 0x1p-32 * (double)(uint32_t)both;
+        u[d + 1] = 0x1p-32 * (double)(uint32_t)(both >> 32);
     }
 }
 
