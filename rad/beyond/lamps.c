@@ -124,37 +124,6 @@ struct rgb lamp_light(const struct lamps *lamps, int32_t root)
     return light;
 }
 
-struct lamps lamps_create(const struct model *model, double least, bool reflect)
-{
-    const struct cluster_tree *tree = model->clusters->tree;
-    struct lamps lamps = {.model = model, .least = least, .reflect = reflect};
-    int32_t roots = scene_root_count(model->scene);
-    lamps.sent = alloc_array((size_t)roots, sizeof *lamps.sent);
-    lamps.before = alloc_array((size_t)tree->root_count + 1, sizeof *lamps.before);
-    for (int32_t place = 0; place < tree->root_count; place++) {
-        int32_t root = tree->roots[place];
-        double sent = rgb_sum(lamp_light(&lamps, root));
-        lamps.sent[root] = sent > least ? sent : 0.0;
-        lamps.before[place + 1] =
-            lamps.before[place] + scene_root_area(model->scene, root) * lamps.sent[root];
-    }
-    return lamps;
-}
-
-void lamps_free(struct lamps *lamps)
-{
-    alloc_free(lamps->groups.items);
-    alloc_free(lamps->sent);
-    alloc_free(lamps->before);
-}
-
-double lamps_power(const struct lamps *lamps)
-{
-    return lamps->before[lamps->model->clusters->tree->root_count];
-}
-
-/* --- groups --- */
-
 /* The roots of a node: places in the tree's order. */
 static void places_of(const struct cluster_tree *tree, int32_t node, int32_t *first,
                       int32_t *end)
@@ -170,6 +139,59 @@ static double watts_of(const struct lamps *lamps, int32_t node)
     places_of(lamps->model->clusters->tree, node, &first, &end);
     return lamps->before[end] - lamps->before[first];
 }
+
+/* Appends a cluster that has lamps, and then those below it. Returns it as a child. */
+static int32_t add_lit(struct lamps *lamps, int32_t node)
+{
+    const struct cluster *cluster = &lamps->model->clusters->tree->clusters[~node];
+    int32_t number = (int32_t)lamps->lit_count++, count = 0;
+    struct lit_cluster lit = {
+        node, {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE}, watts_of(lamps, node),
+        vec3_middle(cluster->low, cluster->high), cluster->normal_low,
+        cluster->normal_high, 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low))};
+    RESERVE(lamps->lit, &lamps->lit_capacity, lamps->lit_count);
+    for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
+        int32_t child = cluster->child[k];
+        if (watts_of(lamps, child) > 0.0)
+            lit.child[count++] = node_is_cluster(child) ? add_lit(lamps, child) : child;
+    }
+    lamps->lit[number] = lit;
+    return ~number;
+}
+
+struct lamps lamps_create(const struct model *model, double least, bool reflect)
+{
+    const struct cluster_tree *tree = model->clusters->tree;
+    struct lamps lamps = {.model = model, .least = least, .reflect = reflect};
+    int32_t roots = scene_root_count(model->scene);
+    lamps.sent = alloc_array((size_t)roots, sizeof *lamps.sent);
+    lamps.before = alloc_array((size_t)tree->root_count + 1, sizeof *lamps.before);
+    for (int32_t place = 0; place < tree->root_count; place++) {
+        int32_t root = tree->roots[place];
+        double sent = rgb_sum(lamp_light(&lamps, root));
+        lamps.sent[root] = sent > least ? sent : 0.0;
+        lamps.before[place + 1] =
+            lamps.before[place] + scene_root_area(model->scene, root) * lamps.sent[root];
+    }
+    if (lamps_power(&lamps) > 0.0)
+        add_lit(&lamps, NODE_TOP);
+    return lamps;
+}
+
+void lamps_free(struct lamps *lamps)
+{
+    alloc_free(lamps->groups.items);
+    alloc_free(lamps->sent);
+    alloc_free(lamps->before);
+    alloc_free(lamps->lit);
+}
+
+double lamps_power(const struct lamps *lamps)
+{
+    return lamps->before[lamps->model->clusters->tree->root_count];
+}
+
+/* --- groups --- */
 
 static void add_group(struct lamp_groups *groups, struct lamp_group group)
 {
@@ -195,34 +217,33 @@ static double cosine_to(const struct plane *plane, struct vec3 apart, double dis
 }
 
 /* The largest product of the vector and a normal of the cluster, or more. */
-static double facing_most(const struct cluster *cluster, struct vec3 v)
+static double facing_most(const struct lit_cluster *cluster, struct vec3 v)
 {
     const struct vec3 *low = &cluster->normal_low, *high = &cluster->normal_high;
     return real_max(low->x * v.x, high->x * v.x) +
            real_max(low->y * v.y, high->y * v.y) + real_max(low->z * v.z, high->z * v.z);
 }
 
-static void add_node(const struct lamps *lamps, const struct lit *leaf, int32_t node,
-                     struct lamp_groups *groups, int64_t *work);
+static void add_child(const struct lamps *lamps, const struct lit *leaf, int32_t child,
+                      struct lamp_groups *groups, int64_t *work);
 
 /* Adds a cluster as a group, or what is below it; neither if its lamps face away. */
-static void add_cluster(const struct lamps *lamps, const struct lit *leaf, int32_t node,
-                        double watts, struct lamp_groups *groups, int64_t *work)
+static void add_cluster(const struct lamps *lamps, const struct lit *leaf,
+                        const struct lit_cluster *cluster, struct lamp_groups *groups,
+                        int64_t *work)
 {
-    const struct cluster *cluster = &lamps->model->clusters->tree->clusters[~node];
     const struct plane *plane = &leaf->facet->plane;
-    struct vec3 apart =
-        vec3_sub(vec3_middle(cluster->low, cluster->high), leaf->centroid);
-    double radius = 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low));
+    struct vec3 apart = vec3_sub(cluster->middle, leaf->centroid);
     double distance2 = vec3_dot(apart, apart), distance = sqrt(distance2);
     double facing = facing_most(cluster, vec3_scale(apart, -1.0));
-    double reach = radius + leaf->radius;
-    struct lamp_group group = {.node = node};
+    double reach = cluster->radius + leaf->radius;
+    struct lamp_group group = {.node = cluster->node};
     if (facing + reach <= 0.0)
         return;
-    if (radius <= leaf->small * real_max(distance - reach, leaf->radius)) {
+    if (cluster->radius <= leaf->small * real_max(distance - reach, leaf->radius)) {
         facing = real_min(1.0, real_max(facing / distance, LEAST_COSINE));
-        group.around = facing * watts / real_max(PI * distance2, leaf->facet->area);
+        group.around =
+            facing * cluster->watts / real_max(PI * distance2, leaf->facet->area);
         if (vec3_dot(apart, plane->normal) + reach > 0.0)
             group.direct = cosine_to(plane, apart, distance2) * group.around;
         if (group.direct <= leaf->most) {
@@ -231,7 +252,7 @@ static void add_cluster(const struct lamps *lamps, const struct lit *leaf, int32
         }
     }
     for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++)
-        add_node(lamps, leaf, cluster->child[k], groups, work);
+        add_child(lamps, leaf, cluster->child[k], groups, work);
 }
 
 /* Adds a lamp as a group. `work` NULL: its direct light is estimated. */
@@ -241,9 +262,9 @@ static void add_root(const struct lamps *lamps, const struct lit *leaf, int32_t 
     struct facet lamp = facet_make(lamps->model->forest, root);
     struct vec3 apart = vec3_sub(triangle_centroid(&lamp.triangle), leaf->centroid);
     double sent = lamps->sent[root];
-    double distance2 = fmax(vec3_dot(apart, apart), lamp.area);
+    double distance2 = real_max(vec3_dot(apart, apart), lamp.area);
     struct lamp_group group = {.node = root};
-    group.around = sent * fmin(1.0, lamp.area / (PI * distance2));
+    group.around = sent * real_min(1.0, lamp.area / (PI * distance2));
     if (facets_face(leaf->facet, &lamp) && (lamps->reflect || !work))
         group.direct = group.around * cosine_to(&leaf->facet->plane, apart, distance2) *
                        cosine_to(&lamp.plane, vec3_scale(apart, -1.0), distance2);
@@ -254,14 +275,13 @@ static void add_root(const struct lamps *lamps, const struct lit *leaf, int32_t 
     add_group(groups, group);
 }
 
-static void add_node(const struct lamps *lamps, const struct lit *leaf, int32_t node,
-                     struct lamp_groups *groups, int64_t *work)
+static void add_child(const struct lamps *lamps, const struct lit *leaf, int32_t child,
+                      struct lamp_groups *groups, int64_t *work)
 {
-    double watts = watts_of(lamps, node);
-    if (watts > 0.0 && node_is_cluster(node))
-        add_cluster(lamps, leaf, node, watts, groups, work);
-    else if (watts > 0.0)
-        add_root(lamps, leaf, node, groups, work);
+    if (child < 0)
+        add_cluster(lamps, leaf, &lamps->lit[~child], groups, work);
+    else
+        add_root(lamps, leaf, child, groups, work);
 }
 
 void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments,
@@ -273,7 +293,8 @@ void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments,
     for (int pass = 0; pass < 2; pass++) {
         groups->count = 0;
         groups->direct = groups->around = 0.0;
-        add_node(lamps, &lit, NODE_TOP, groups, pass == 0 ? NULL : work);
+        if (lamps->lit_count > 0)
+            add_cluster(lamps, &lit, lamps->lit, groups, pass == 0 ? NULL : work);
         lit.small = SMALL;
         lit.most = groups->direct / segments;
     }

@@ -19,6 +19,16 @@ struct lamp_groups {
     double direct, around;    /* sums */
 };
 
+/* A cluster that has lamps, as a leaf asks for it. */
+struct lit_cluster {
+    int32_t node;
+    int32_t child[4]; /* those that have lamps: roots, or ~number of a lit cluster;
+                         NODE_NONE where there are fewer */
+    double watts;     /* power of its lamps, W in square scene units */
+    struct vec3 middle, normal_low, normal_high; /* of boxes, as in struct cluster */
+    double radius;    /* of a ball around the box */
+};
+
 struct lamps {
     const struct model *model; /* borrowed */
     double least;   /* a lamp sends more than this, summed over bands, W/m^2 */
@@ -26,6 +36,8 @@ struct lamps {
     double *sent;   /* [roots] sent by a lamp, over all bands, W/m^2; by others 0 */
     double *before; /* [tree->root_count + 1] power of the lamps before a place in the
                        tree's order, over all bands, W in square scene units */
+    struct lit_cluster *lit; /* [lit_count] parents first; the first is the top */
+    int64_t lit_count, lit_capacity;
     struct lamp_groups groups; /* of the leaf at hand */
 };
 
