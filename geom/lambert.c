@@ -87,10 +87,11 @@ static double mean_density(const struct sight *s)
 
 static bool is_far(const struct sight *s)
 {
-    double near = fmin(square(s[0].r), fmin(square(s[1].r), square(s[2].r)));
+    double near = real_min(square(s[0].r), real_min(square(s[1].r), square(s[2].r)));
     double size =
-        fmax(square(vec3_sub(s[1].r, s[0].r)),
-             fmax(square(vec3_sub(s[2].r, s[1].r)), square(vec3_sub(s[0].r, s[2].r))));
+        real_max(square(vec3_sub(s[1].r, s[0].r)),
+                 real_max(square(vec3_sub(s[2].r, s[1].r)),
+                          square(vec3_sub(s[0].r, s[2].r))));
     return !(size > FAR * FAR * near);
 }
 
@@ -103,7 +104,7 @@ static struct vec3 back_of(struct vec3 a, struct vec3 b, struct vec3 c)
 /* F of a far triangle above the horizon, whose area vector is half of `back`. */
 static double factor_by_points(const struct sight *s, struct vec3 back)
 {
-    return fmax(0.0, vec3_dot(s[0].r, back)) * mean_density(s) / (2.0 * PI);
+    return real_max(vec3_dot(s[0].r, back), 0.0) * mean_density(s) / (2.0 * PI);
 }
 
 /* F of a convex polygon above the horizon. */
@@ -179,14 +180,14 @@ double point_triangle_factor(struct vec3 x, struct vec3 normal, const struct tri
         s[k].rise = vec3_dot(normal, s[k].r);
     }
     struct vec3 back = back_of(t->corner[0], t->corner[1], t->corner[2]);
-    double lowest = fmin(s[0].rise, fmin(s[1].rise, s[2].rise));
-    double highest = fmax(s[0].rise, fmax(s[1].rise, s[2].rise));
+    double lowest = real_min(s[0].rise, real_min(s[1].rise, s[2].rise));
+    double highest = real_max(s[0].rise, real_max(s[1].rise, s[2].rise));
     if (highest <= 0.0 || !is_in_front(x, t, s[0].r, back))
         return 0.0;
     double factor = lowest < 0.0 ? factor_of_rest(s, normal)
                     : is_far(s)  ? factor_by_points(s, back)
                                  : factor_by_edges(s, normal, 3);
-    return fmax(0.0, fmin(1.0, factor));
+    return real_max(real_min(factor, 1.0), 0.0);
 }
 
 double point_polygon_factor(struct vec3 x, struct vec3 normal, const struct vec3 *corners,
@@ -199,5 +200,5 @@ double point_polygon_factor(struct vec3 x, struct vec3 normal, const struct vec3
         sum += point_triangle_factor(x, normal, &t) -
                point_triangle_factor(x, normal, &back);
     }
-    return fmax(0.0, fmin(1.0, sum));
+    return real_max(real_min(sum, 1.0), 0.0);
 }

@@ -136,20 +136,16 @@ void final_gather_free(struct final_gather *gather)
 /* --- rows --- */
 
 /* The factor, at most 1, that a parent's slope is made less by, so that B is not below 0
- * over any child. */
-static double slope_part(const struct rgb b[4], struct rgb middle)
+ * over any child, [4] of them. */
+static double slope_part(const struct rgb *b, struct rgb middle)
 {
     double part = 1.0;
     for (int c = 0; c < BANDS; c++) {
-        double low = middle.band[c], high = low;
-        for (int k = 0; k < 3; k++) {
-            low = fmin(low, b[k].band[c]);
-            high = fmax(high, b[k].band[c]);
-        }
-        double least = fmin(b[0].band[c], fmin(b[1].band[c], b[2].band[c]));
+        double low = real_min(b[0].band[c], real_min(b[1].band[c], b[2].band[c]));
+        double high = real_max(b[0].band[c], real_max(b[1].band[c], b[2].band[c]));
         double fall = middle.band[c] - low, rise = high - middle.band[c];
-        if (least < part * fall)
-            part = least / fall;
+        if (low < part * fall)
+            part = low / fall;
         if (b[3].band[c] < part * rise)
             part = b[3].band[c] / rise;
     }
@@ -165,13 +161,12 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     if (parent < 0)
         return (struct gather_slope){.rise = 0.0};
     struct gather_slope slope = {.first = patches[parent].children};
-    struct rgb b[4], middle;
-    for (int k = 0; k < 4; k++)
-        b[k] = forest->radiosity[slope.first + k];
+    const struct rgb *b = forest->radiosity + slope.first;
+    struct rgb middle;
     for (int c = 0; c < BANDS; c++)
         middle.band[c] = (b[0].band[c] + b[1].band[c] + b[2].band[c]) / 3.0;
     for (int k = 0; k < 3; k++)
-        slope.range = fmax(slope.range, fabs(rgb_sum(b[k]) - rgb_sum(middle)));
+        slope.range = real_max(slope.range, fabs(rgb_sum(b[k]) - rgb_sum(middle)));
     if (slope.range > FLAT * gather->mean)
         slope.rise = slope_part(b, middle) *
                      (!leaf ? 2.0 : patch == slope.first + 3 ? -1.0 : 1.0);
@@ -415,7 +410,7 @@ struct gather_light final_gather_at(struct final_gather *gather,
 int64_t gather_units(double value, double unit)
 {
     static const double MOST = 0x1p52;
-    double units = unit > 0.0 ? fmax(-MOST, fmin(MOST, value / unit)) : 0.0;
+    double units = unit > 0.0 ? real_max(-MOST, real_min(MOST, value / unit)) : 0.0;
     return (int64_t)(units < 0.0 ? units - 0.5 : units + 0.5);
 }
 
