@@ -55,24 +55,28 @@ struct point {
     int32_t input;     /* triangle */
     double weight[3];  /* barycentric coordinates in the leaf, 1 */
     struct vec3 at, normal;
+    struct vec3 middle; /* of the leaf: its centroid */
 };
 
-/* The leaf of the root at a point of it, and the barycentric coordinates `w` there. */
-static int32_t leaf_at(const struct forest *forest, int32_t root, struct vec3 x,
-                       double w[3])
+/* Finds the leaf of the root that the point lies on. */
+static void find_leaf(const struct forest *forest, int32_t root, struct point *point)
 {
     struct triangle t = scene_root_triangle(forest->scene, root);
     struct vec3 a = vec3_sub(t.corner[1], t.corner[0]);
-    struct vec3 b = vec3_sub(t.corner[2], t.corner[0]), to = vec3_sub(x, t.corner[0]);
+    struct vec3 b = vec3_sub(t.corner[2], t.corner[0]);
+    struct vec3 to = vec3_sub(point->at, t.corner[0]);
     struct vec3 normal = vec3_cross(a, b);
-    double unit = 1.0 / vec3_dot(normal, normal);
+    double unit = 1.0 / vec3_dot(normal, normal), *w = point->weight;
     w[1] = vec3_dot(vec3_cross(to, b), normal) * unit;
     w[2] = vec3_dot(vec3_cross(a, to), normal) * unit;
     w[0] = 1.0 - w[1] - w[2];
-    int32_t p = root;
-    while (!patch_is_leaf(&forest->patches[p]))
-        p = forest->patches[p].children + triangle_child_at(w);
-    return p;
+    point->patch = root;
+    while (!patch_is_leaf(&forest->patches[point->patch])) {
+        int k = triangle_child_at(w);
+        t = triangle_child(&t, k);
+        point->patch = forest->patches[point->patch].children + k;
+    }
+    point->middle = triangle_centroid(&t);
 }
 
 enum met { MET_NOTHING, MET_BACK, MET_FRONT };
@@ -93,7 +97,7 @@ static enum met land(struct receiver *r, struct vec3 origin, struct vec3 directi
     double fall = -vec3_dot(plane.normal, direction); /* above 0: a front is met */
     double along = fall > 0.0 ? plane_distance(&plane, origin) / fall : 0.0;
     point->at = vec3_add(origin, vec3_scale(direction, along));
-    point->patch = leaf_at(model->forest, root, point->at, point->weight);
+    find_leaf(model->forest, root, point);
     point->input = hit->triangle;
     point->normal = plane.normal;
     return MET_FRONT;
@@ -159,11 +163,10 @@ void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t 
 static bool is_too_near(const struct receiver *r, const struct point *met, struct vec3 x,
                         struct vec3 normal)
 {
-    const struct forest *forest = r->gather->model->forest;
     double near = r->points ? NEAR_PIXEL : NEAR;
-    struct triangle t = forest_triangle(forest, met->patch);
-    struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
-    double area = forest_area(forest, met->patch), width = vec3_dot(apart, met->normal);
+    double area = forest_area(r->gather->model->forest, met->patch);
+    struct vec3 apart = vec3_sub(met->middle, x);
+    double width = vec3_dot(apart, met->normal);
     return vec3_dot(apart, apart) < near * area ||
            (width * width < NARROW * area && vec3_dot(normal, met->normal) < OPPOSITE);
 }
