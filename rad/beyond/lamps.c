@@ -227,7 +227,8 @@ static double facing_most(const struct lit_cluster *cluster, struct vec3 v)
 static void add_child(const struct lamps *lamps, const struct lit *leaf, int32_t child,
                       struct lamp_groups *groups, int64_t *work);
 
-/* Adds a cluster as a group, or what is below it; neither if its lamps face away. */
+/* Adds a cluster as a group, or what is below it. Lamps that face away bring the leaf no
+ * light, but paths that go on may reach them. */
 static void add_cluster(const struct lamps *lamps, const struct lit *leaf,
                         const struct lit_cluster *cluster, struct lamp_groups *groups,
                         int64_t *work)
@@ -237,14 +238,14 @@ static void add_cluster(const struct lamps *lamps, const struct lit *leaf,
     double distance2 = vec3_dot(apart, apart), distance = sqrt(distance2);
     double facing = facing_most(cluster, vec3_scale(apart, -1.0));
     double reach = cluster->radius + leaf->radius;
+    bool away = facing + reach <= 0.0;
     struct lamp_group group = {.node = cluster->node};
-    if (facing + reach <= 0.0)
-        return;
-    if (cluster->radius <= leaf->small * real_max(distance - reach, leaf->radius)) {
+    if (away ||
+        cluster->radius <= leaf->small * real_max(distance - reach, leaf->radius)) {
         facing = real_min(1.0, real_max(facing / distance, LEAST_COSINE));
         group.around =
             facing * cluster->watts / real_max(PI * distance2, leaf->facet->area);
-        if (vec3_dot(apart, plane->normal) + reach > 0.0)
+        if (!away && vec3_dot(apart, plane->normal) + reach > 0.0)
             group.direct = cosine_to(plane, apart, distance2) * group.around;
         if (group.direct <= leaf->most) {
             add_group(groups, group);

@@ -431,25 +431,54 @@ static void test_column(double height, double outside)
     trial_free(&g);
 }
 
-/* H at a point of the last root of a furnace of B = 1 in which the first two roots, one
- * side, are dark as if covered; `open`: of final_gather_cover(), or NULL. */
-static double beside_dark_side(struct trial *g, const uint8_t *open)
+/* H at the middle of the last root, without that straight from lamps; `open`: of
+ * final_gather_cover(), or NULL. */
+static double rest_at_last(struct trial *g, const uint8_t *open, int rays)
 {
-    struct forest *forest = g->s.solver->model.forest;
-    const struct scene *scene = forest->scene;
+    const struct scene *scene = g->s.scene;
     int32_t last = scene_root_count(scene) - 1;
     struct triangle t = scene_root_triangle(scene, last);
     struct vec3 x = triangle_centroid(&t);
     struct gather_points points = {.at = &x, .count = 1, .middle = x,
                                    .plane = scene_root_plane(scene, last),
                                    .input = scene_input_of(scene, last)};
+    if (open)
+        final_gather_cover(&g->gather, open);
+    return final_gather_at(&g->gather, &points, 1, rays, true).rest.band[0];
+}
+
+/* A ceiling is lit by the floor, and that by a lamp of 32 facets which faces it, but not
+ * the ceiling. Paths that go on from the floor, as if things stood on it, find the lamp:
+ * as much light as by the means of its leaves, but for the noise of 1,024 rays. */
+static void test_lamp_that_faces_away(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 4);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0.4, 0.4, 0.5), point(0, 0.2, 0), point(0.2, 0, 0), 4);
+    paint(&soup, 0.0, 100.0);
+    soup_add_quad(&soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 1);
+    paint(&soup, 0.0, 0.0);
+    struct trial g = gather_scene(&soup, "", 16);
+    uint8_t *open = alloc_array((size_t)g.gather.count, sizeof *open);
+    double means = rest_at_last(&g, NULL, 1024), points = rest_at_last(&g, open, 1024);
+    tap_ok(means > 0.1 && fabs(points / means - 1.0) <= 0.05,
+           "by points of a floor a ceiling has H = %.3f, by means of leaves %.3f", points,
+           means);
+    alloc_free(open);
+    trial_free(&g);
+}
+
+/* H in a furnace of B = 1 in which the first two roots, one side, are dark as if
+ * covered. */
+static double beside_dark_side(struct trial *g, const uint8_t *open)
+{
+    struct forest *forest = g->s.solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++) {
         double b = forest->patches[p].id.root < 2 ? 0.0 : 1.0;
         forest->radiosity[p] = (struct rgb){{b, b, b}};
     }
-    if (open)
-        final_gather_cover(&g->gather, open);
-    return final_gather_at(&g->gather, &points, 1, 64, true).rest.band[0];
+    return rest_at_last(g, open, 64);
 }
 
 /* Of a leaf that a thing stands on, a point sees the bright part; paths that meet it
@@ -698,6 +727,7 @@ int main(int argc, char **argv)
     test_column(1.0, 0.96);
     test_column(0.9, 1.0);
     test_covered_for_points();
+    test_lamp_that_faces_away();
     test_flush_lamp();
     test_mesh(0.1);
     test_mesh(0.02);
