@@ -3,7 +3,7 @@
  * Stopping bias (Kirk and Arvo 1991): a link whose few samples happen to miss its light
  * looks good, is accepted, and stays too dark: 2.4 % of all light in a room of 18,000
  * triangles. So a link that is accepted is estimated afresh, from points that had no say
- * in that; and it keeps the findings of its first look for the passes to come.
+ * in that; and it keeps the G of its first look for the passes to come.
  *
  * A link that sees nothing stays, at the cost of 24 bytes, unless one wall is proved to
  * hide all: that no sample arrives is no proof. */
@@ -20,42 +20,21 @@
 
 /* --- looks --- */
 
-/* The findings of the first look, by which the criterion decides: by the G that counts,
- * links that happen to lack light would stay, and those with too much be split. They are
- * in the place of the blocker, which a link with a cluster in it has none of:
- *
- *     0eeeeeeeemmmmmmm  ssss  pppppp  qqqqqq
- *     G as a float      seen  spread  spread */
-struct judgement {
-    double unoccluded;         /* G without blockers */
-    double seen;               /* the share of it that arrives, in 15ths */
-    double spread_p, spread_q; /* see spread_of(); in 63rds of 4 */
-};
-
-static void judge(struct link *link, const struct judgement *found)
+/* G without blockers, as the first look found it. By that the criterion decides: by the G
+ * that counts, links that happen to lack light would stay, and those with too much be
+ * split. It is in the place of the blocker, which a link with a cluster in it has none
+ * of. */
+static void set_judged(struct link *link, double unoccluded)
 {
-    float area = (float)found->unoccluded;
-    uint32_t bits;
-    memcpy(&bits, &area, sizeof bits);
-    bits &= 0xffff0000u;
-    bits |= (uint32_t)(found->seen > 0.0 ? real_max(1.0, rint(15.0 * found->seen)) : 0.0)
-            << 12;
-    bits |= (uint32_t)rint(63.0 / 4.0 * found->spread_p) << 6;
-    bits |= (uint32_t)rint(63.0 / 4.0 * found->spread_q);
-    memcpy(&link->blocker, &bits, sizeof bits);
+    float area = (float)unoccluded;
+    memcpy(&link->blocker, &area, sizeof area);
 }
 
-static struct judgement judgement_of(const struct link *link)
+static double judged(const struct link *link)
 {
-    uint32_t bits, high;
     float area;
-    memcpy(&bits, &link->blocker, sizeof bits);
-    high = bits & 0xffff0000u;
-    memcpy(&area, &high, sizeof area);
-    return (struct judgement){.unoccluded = (double)area,
-                              .seen = (bits >> 12 & 15u) / 15.0,
-                              .spread_p = (bits >> 6 & 63u) * (4.0 / 63.0),
-                              .spread_q = (bits & 63u) * (4.0 / 63.0)};
+    memcpy(&area, &link->blocker, sizeof area);
+    return (double)area;
 }
 
 /* Twice the sum of the parts' deviations from shares by area: 2 for all in one half. */
@@ -97,9 +76,7 @@ static void look(struct model *model, const struct meeting *m, int salt,
     double area = find_parts(model, &m->p, found.g_p, found.area, link->parts_p);
     area = find_parts(model, &m->q, found.g_q, area, link->parts_q);
     if (salt == 0)
-        judge(link, &(struct judgement){found.unoccluded, seen,
-                                        spread_of(model, &m->p, link->parts_p),
-                                        spread_of(model, &m->q, link->parts_q)});
+        set_judged(link, found.unoccluded);
     area *= link->p == link->q ? 0.5 : 1.0;
     link->seen = area > 0.0 ? link_seen(seen) : 0;
     link->area = float_below(area > 0.0 ? area : found.unoccluded);
@@ -194,8 +171,9 @@ static const double SPREAD_LEFT = 2.0;
  * range of its own. (A range of clusters, from the deviations of the B of their roots,
  * changed no error, and the links by 1 %.) */
 static double error_of(const struct model *model, const struct end *own,
-                       const struct end *other, double spread, double area)
+                       const struct end *other, const uint8_t parts[3], double area)
 {
+    double spread = spread_of(model, own, parts);
     double range = own->cluster ? 0.0 : forest_range_within(model->forest, own->node);
     return area * (SPREAD_LEFT * spread * light_to(own, other) +
                    rgb_mean(other->reflectance) * range);
@@ -248,11 +226,10 @@ static const double DOUBT_MISSED = 1.0 / 16.0;
 static int32_t far_to_split(const struct model *model, const struct link *link,
                             const struct meeting *m)
 {
-    struct judgement found = judgement_of(link);
-    double area = found.unoccluded * found.seen;
-    double doubt = real_max(found.unoccluded, DOUBT_MISSED * m->most) * m->light;
-    double error_p = error_of(model, &m->p, &m->q, found.spread_p, area);
-    double error_q = error_of(model, &m->q, &m->p, found.spread_q, area);
+    double area = link_area(link);
+    double doubt = real_max(judged(link), DOUBT_MISSED * m->most) * m->light;
+    double error_p = error_of(model, &m->p, &m->q, link->parts_p, area);
+    double error_q = error_of(model, &m->q, &m->p, link->parts_q, area);
     if (error_p + error_q + doubt <= model->link_threshold)
         return NODE_NONE;
     bool larger = p_is_wider(m);

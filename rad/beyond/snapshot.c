@@ -167,8 +167,8 @@ static bool are_nodes(const struct link_check *check, int32_t p, int32_t q)
     return node_is_cluster(p) || node_is_cluster(q) || check->root[p] != check->root[q];
 }
 
-/* The blocker of a link of patches is a triangle; that of a link with a cluster is its
- * judgement, whose upper half is a finite number, not negative. */
+/* The blocker of a link of patches is a triangle; that of a link with a cluster is a
+ * finite number, not negative. */
 static bool blocker_is_sane(const struct link_check *check, const struct link *link)
 {
     const int32_t infinite = 0x7f800000;
