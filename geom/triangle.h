@@ -58,6 +58,18 @@ bool triangle_is_degenerate(const struct triangle *t);
  * 3 = (bc, ca, ab). Two triangles that share an edge split it at the same bits. */
 struct triangle triangle_child(const struct triangle *t, int child);
 
+/* The barycentric coordinates `w` of a point in the plane of a triangle. */
+static inline void triangle_weights(const struct triangle *t, struct vec3 x, double w[3])
+{
+    struct vec3 a = vec3_sub(t->corner[1], t->corner[0]);
+    struct vec3 b = vec3_sub(t->corner[2], t->corner[0]);
+    struct vec3 to = vec3_sub(x, t->corner[0]), normal = vec3_cross(a, b);
+    double unit = 1.0 / vec3_dot(normal, normal);
+    w[1] = vec3_dot(vec3_cross(to, b), normal) * unit;
+    w[2] = vec3_dot(vec3_cross(a, to), normal) * unit;
+    w[0] = 1.0 - w[1] - w[2];
+}
+
 /* Turns barycentric coordinates in a triangle into those in the child with the point.
  * Returns the number of the child. */
 static inline int triangle_child_at(double w[3])

@@ -62,17 +62,10 @@ struct point {
 static void find_leaf(const struct forest *forest, int32_t root, struct point *point)
 {
     struct triangle t = scene_root_triangle(forest->scene, root);
-    struct vec3 a = vec3_sub(t.corner[1], t.corner[0]);
-    struct vec3 b = vec3_sub(t.corner[2], t.corner[0]);
-    struct vec3 to = vec3_sub(point->at, t.corner[0]);
-    struct vec3 normal = vec3_cross(a, b);
-    double unit = 1.0 / vec3_dot(normal, normal), *w = point->weight;
-    w[1] = vec3_dot(vec3_cross(to, b), normal) * unit;
-    w[2] = vec3_dot(vec3_cross(a, to), normal) * unit;
-    w[0] = 1.0 - w[1] - w[2];
+    triangle_weights(&t, point->at, point->weight);
     point->patch = root;
     while (!patch_is_leaf(&forest->patches[point->patch])) {
-        int k = triangle_child_at(w);
+        int k = triangle_child_at(point->weight);
         t = triangle_child(&t, k);
         point->patch = forest->patches[point->patch].children + k;
     }

@@ -68,7 +68,7 @@ static double draw_next(struct draw *draw)
     if (k >= DIMENSIONS)
         return hash_unit(draw->next++);
     double moved = draw->shift[k] + draw->sample * STEP[k];
-    return moved - floor(moved);
+    return moved - (double)(int64_t)moved;
 }
 
 /* --- points and directions --- */
@@ -97,7 +97,6 @@ struct triangle pathtracer_part(struct patch_id id)
 struct arrival {
     struct vec3 x;
     int32_t root;
-    double weight[3]; /* barycentric coordinates in the root, where a ray arrives */
 };
 
 /* Finds where the ray arrives. False for a miss or a black back. */
@@ -108,13 +107,11 @@ static bool arrive(const struct pathtracer *pathtracer, struct vec3 origin,
     if (!octree_first_hit(pathtracer->octree, origin, direction, fronts_only, &hit,
                           pathtracer->counts))
         return false;
-    octree_hit_weights(pathtracer->octree, origin, direction, &hit);
+    const struct plane *plane = &pathtracer->scene->planes[hit.triangle];
+    double fall = -vec3_dot(plane->normal, direction);
+    double along = fall != 0.0 ? plane_distance(plane, origin) / fall : 0.0;
     q->root = scene_root_on(pathtracer->scene, hit.triangle, hit.front);
-    q->x = corners_mean(pathtracer->scene->triangles[hit.triangle].corner,
-                          (struct vec3){hit.weight[0], hit.weight[1], hit.weight[2]});
-    q->weight[0] = hit.weight[0];
-    q->weight[1] = hit.weight[hit.front ? 1 : 2]; /* a twin has its corners turned */
-    q->weight[2] = hit.weight[hit.front ? 2 : 1];
+    q->x = vec3_add(origin, vec3_scale(direction, along));
     return q->root >= 0;
 }
 
@@ -248,7 +245,7 @@ static bool goes_on(const struct pathtracer *pathtracer, int32_t root, struct dr
                     struct rgb *throughput)
 {
     const double *rho = scene_root_material(pathtracer->scene, root)->reflectance.band;
-    double survival = fmax(rho[0], fmax(rho[1], rho[2]));
+    double survival = real_max(rho[0], real_max(rho[1], rho[2]));
     if (hash_unit(draw->next++) >= survival)
         return false;
     for (int c = 0; c < BANDS; c++)
@@ -303,7 +300,9 @@ void pathtracer_shine(const struct pathtracer *pathtracer, uint64_t seed,
     for (;;) {
         if (!follow(pathtracer, &p, &draw, &q))
             return;
-        struct landing landing = {q.root, {q.weight[0], q.weight[1], q.weight[2]}, light};
+        struct landing landing = {.root = q.root, .light = light};
+        t = scene_root_triangle(scene, q.root);
+        triangle_weights(&t, q.x, landing.weight);
         land(listener, &landing);
         if (!goes_on(pathtracer, q.root, &draw, &light))
             return;
