@@ -244,13 +244,15 @@ static int32_t reach_vertex(struct table *table, struct vec3 x, int32_t surface)
     return table->slots[slot];
 }
 
-/* Returns the vertex in the middle between two, or -1: none is there. */
+/* Returns the vertex in the middle between two, or -1: none is there, or it is one of
+ * them, since they are next to each other in double. */
 static int32_t vertex_between(const struct table *table, int32_t u, int32_t v)
 {
     if (u < 0 || v < 0)
         return -1;
     struct vec3 x = vec3_middle(table->positions[u], table->positions[v]);
-    return table->slots[find_slot(table, x, table->surfaces[u])];
+    int32_t middle = table->slots[find_slot(table, x, table->surfaces[u])];
+    return middle == u || middle == v ? -1 : middle;
 }
 
 /* --- tiles of leaves that have T-vertices --- */

@@ -293,6 +293,30 @@ static void test_t_vertices(void)
     dismantle(&stage);
 }
 
+/* A sliver is divided until its leaves have corners in the same place, or next to each
+ * other, with nothing in between: they have no T-vertices, and show what they have. */
+static void test_collapsed_leaves(void)
+{
+    const double width = 3e-14;
+    struct soup soup = {0};
+    add_face(&soup, point(0, 0, 0), point(1, 0, 0), point(1, 1, 0), point(0, 1, 0));
+    soup_add(&soup, (struct triangle){
+                        {{0.9, 0.1, 0.5}, {0.9 + width, 0.1, 0.5}, {0.9, 0.9, 0.5}}});
+    paint(&soup, 0.0, 0.0);
+    struct stage stage = stage_of(scene_of_soup(&soup));
+    for (int way = 0; way < 4; way++) {
+        struct patch_id id = id_of_root(2);
+        while (id_level(id) < ID_MAX_LEVEL)
+            id = id_child(id, way);
+        forest_reach(stage.forest, id);
+    }
+    set_constant(stage.forest, 1.0);
+    shade(&stage, false);
+    double b = value_at(&stage, 2, point(0.2, 0.3, 0.5)).band[0];
+    tap_ok(fabs(b - 1.0) < 1e-12, "leaves of a sliver, collapsed: B = %g", b);
+    dismantle(&stage);
+}
+
 /* The visits can see a jump: flat shading has one at nearly every edge. */
 static void test_jumps_are_seen(void)
 {
@@ -891,6 +915,7 @@ int main(void)
     test_continuity("curved", curved_stage);
     test_large_beside_small();
     test_t_vertices();
+    test_collapsed_leaves();
     test_jumps_are_seen();
     test_constant();
     test_linear();
