@@ -147,10 +147,10 @@ static bool show_pictures(struct run *run, const uint8_t *open)
         shading = shade_leaves(run, gathers ? answer : NULL, open);
     struct renderer renderer =
         renderer_make(run->octree, shading, gathers ? &answer->gather : NULL);
-    if (gathers)
+    if (gathers) {
         answer->gather.counts = (struct gather_counts){.rays = 0};
-    if (gathers)
-        final_gather_cover(&answer->gather, open);
+        final_gather_set_partly_covered(&answer->gather, open);
+    }
     run->solver->account.seconds[PHASE_RENDER] += comm_seconds() - start;
     bool good = show_views(run, &renderer);
     if (gathers) {

@@ -124,7 +124,7 @@ void final_gather_free(struct final_gather *gather)
     lamps_free(&gather->bright);
     alloc_free(gather->view.faced);
     alloc_free(gather->view.overlapped);
-    alloc_free(gather->near.covered);
+    alloc_free(gather->near.partly_covered);
     alloc_free(gather->order);
     alloc_free(gather->place);
     alloc_free(gather->sums.items);
@@ -373,16 +373,17 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
     gather->rows[gather->count++] = r.row;
 }
 
-void final_gather_cover(struct final_gather *gather, const uint8_t *open)
+void final_gather_set_partly_covered(struct final_gather *gather, const uint8_t *open)
 {
     const struct forest *forest = gather->model->forest;
-    if (!gather->near.covered)
-        gather->near.covered =
-            alloc_array((size_t)forest->count, sizeof *gather->near.covered);
+    struct gather_nears *near = &gather->near;
+    if (!near->partly_covered)
+        near->partly_covered =
+            alloc_array((size_t)forest->count, sizeof *near->partly_covered);
     for (int64_t i = 0; i < forest->count; i++) {
         int32_t p = gather->order[i];
         if (patch_is_leaf(&forest->patches[p]) && forest_area(forest, p) > 0.0)
-            gather->near.covered[i] = *open++ < 16;
+            near->partly_covered[i] = *open++ < 16;
     }
 }
 

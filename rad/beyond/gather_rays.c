@@ -164,9 +164,10 @@ static bool is_too_near(const struct receiver *r, const struct point *met, struc
            (width * width < NARROW * area && vec3_dot(normal, met->normal) < OPPOSITE);
 }
 
-static bool is_covered(const struct final_gather *gather, int32_t leaf)
+static bool is_partly_covered(const struct final_gather *gather, int32_t leaf)
 {
-    return gather->near.covered && gather->near.covered[gather->place[leaf]];
+    return gather->near.partly_covered &&
+           gather->near.partly_covered[gather->place[leaf]];
 }
 
 /* True if rays from the point, along the plane in four directions, all meet backs. */
@@ -272,7 +273,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         bool aimed = root_is_lamp(&r->gather->lamps, root) &&
                      (count == 1 || !receiver_lamp_is_near(scene, root, origin));
         if (count == PATH_MOST || !(is_too_near(r, &point, origin, normal) ||
-                                    is_covered(r->gather, point.patch))) {
+                                    is_partly_covered(r->gather, point.patch))) {
             add_mesh(r, &point, aimed, &weight);
             return;
         }

@@ -60,8 +60,8 @@ struct gather_nears {
                                   all ranks, once these are added up, by number */
     double unit_area;          /* square scene units */
     double unit_watts;         /* W in square scene units */
-    uint8_t *covered; /* [forest->count] by place: 1: a thing stands on part of the leaf;
-                         NULL: unknown */
+    uint8_t *partly_covered; /* [forest->count] by place: 1: a thing stands on part of
+                                the leaf, at least; NULL: unknown */
 };
 
 /* Work of this rank. */

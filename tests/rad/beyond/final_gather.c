@@ -432,7 +432,7 @@ static void test_column(double height, double outside)
 }
 
 /* H at the middle of the last root, without that straight from lamps; `open`: of
- * final_gather_cover(), or NULL. */
+ * final_gather_set_partly_covered(), or NULL. */
 static double rest_at_last(struct trial *g, const uint8_t *open, int rays)
 {
     const struct scene *scene = g->s.scene;
@@ -443,7 +443,7 @@ static double rest_at_last(struct trial *g, const uint8_t *open, int rays)
                                    .plane = scene_root_plane(scene, last),
                                    .input = scene_input_of(scene, last)};
     if (open)
-        final_gather_cover(&g->gather, open);
+        final_gather_set_partly_covered(&g->gather, open);
     return final_gather_at(&g->gather, &points, 1, rays, true).rest.band[0];
 }
 
