@@ -23,8 +23,8 @@
  * number of all rays (Neyman, 1934). A leaf under a lamp housing gets many, a leaf of a
  * plain wall few.
  *
- * Looks are dealt in turns. They also measure the work of a ray, and rows are dealt by
- * the work that this predicts, as roots are by their areas. */
+ * Looks also measure the work of a ray. Further looks and rows are dealt by the work that
+ * this predicts, as roots are by their areas. */
 #include "mpi/beyond/gather_mesh.h"
 
 #include <math.h>
@@ -76,13 +76,31 @@ struct looking {
 
 /* --- dealing --- */
 
-/* The rank of the next item dealt. In each turn every rank gets one, in an order that
+/* The rank of the next root dealt. In each turn every rank gets one, in an order that
  * changes from turn to turn: dealt in one order, objects of as many triangles as ranks
  * would all have the same side on the same rank. */
 static int rank_of_next(int64_t *dealt, int ranks)
 {
     uint64_t index = (uint64_t)(*dealt)++, size = (uint64_t)ranks;
     return (int)((hash_mix(index / size) % size + index % size) % size);
+}
+
+/* Deals leaves so that the predicted sums of their work are even, those of equal work in
+ * no order. `rays`, [count], or NULL: those of a look. [count], to be freed. */
+static int *deal_leaves(const struct looking *l, const int32_t *leaves, const int *rays,
+                        int64_t count)
+{
+    int *rank_of = alloc_array((size_t)count, sizeof *rank_of);
+    int64_t *work = alloc_array((size_t)count, sizeof *work); /* tests / 2^16 */
+    for (int64_t i = 0; i < count; i++) {
+        const struct known *known = &l->known[leaves[i]];
+        double tests =
+            (double)known->fixed + (rays ? rays[i] : l->rays) * (double)known->work;
+        work[i] = (int64_t)(tests * 0x1p16) + (int64_t)(hash_mix((uint64_t)i) >> 48);
+    }
+    items_deal(work, (int32_t)count, l->solver->comm->size, rank_of);
+    alloc_free(work);
+    return rank_of;
 }
 
 /* --- open roots --- */
@@ -173,22 +191,21 @@ static struct gather_look *look(struct looking *l, const int32_t *leaves, int64_
     struct gather_look *looks = alloc_array((size_t)count, sizeof *looks);
     int *counts = alloc_array((size_t)comm->size, sizeof *counts);
     int *at = alloc_array((size_t)comm->size, sizeof *at);
-    int64_t dealt = 0;
+    int *rank_of = deal_leaves(l, leaves, NULL, count);
     for (int64_t i = 0; i < count; i++)
-        counts[rank_of_next(&dealt, comm->size)]++;
+        counts[rank_of[i]]++;
     comm_displacements(comm, counts, at);
-    dealt = 0;
     int64_t before = model_work(&l->solver->model);
     for (int64_t i = 0, k = at[comm->rank]; i < count && !stop_is_asked(); i++)
-        if (rank_of_next(&dealt, comm->size) == comm->rank)
+        if (rank_of[i] == comm->rank)
             all[k++] = final_gather_look(&l->gather, leaves[i], l->rays);
     ledger_add(&l->solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
                                    .share.done = model_work(&l->solver->model) - before});
     comm_share(comm, all, counts, at, sizeof *all);
-    dealt = 0;
     for (int64_t i = 0; i < count; i++)
-        looks[i] = all[at[rank_of_next(&dealt, comm->size)]++];
+        looks[i] = all[at[rank_of[i]]++];
+    alloc_free(rank_of);
     alloc_free(at);
     alloc_free(counts);
     alloc_free(all);
@@ -472,20 +489,6 @@ static void share_rays(struct looking *l)
     alloc_free(worth);
 }
 
-/* Deals rows so that the predicted sums of their work are even. */
-static void deal_rows(struct looking *l)
-{
-    struct gather_mesh *mesh = l->mesh;
-    int64_t *work = alloc_array((size_t)mesh->count, sizeof *work); /* tests */
-    for (int64_t i = 0; i < mesh->count; i++) {
-        const struct known *known = &l->known[mesh->leaves[i]];
-        work[i] = (int64_t)((double)known->fixed + mesh->rays[i] * (double)known->work);
-    }
-    mesh->rank_of = alloc_array((size_t)mesh->count, sizeof *mesh->rank_of);
-    items_deal(work, (int32_t)mesh->count, l->solver->comm->size, mesh->rank_of);
-    alloc_free(work);
-}
-
 bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *mesh)
 {
     struct model *model = &solver->model;
@@ -500,7 +503,7 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     if (l.rays >= FEWEST_LOOKED)
         refine(&l);
     share_rays(&l);
-    deal_rows(&l);
+    mesh->rank_of = deal_leaves(&l, mesh->leaves, mesh->rays, mesh->count);
     mesh->traced = l.gather.counts.rays + l.gather.counts.segments;
     const struct octree_counts *proofs = &l.gather.view.counts;
     ledger_add(&solver->account.ledger,
