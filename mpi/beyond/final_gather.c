@@ -9,9 +9,11 @@
  * gathered equation, whatever the errors of the links were. Rows are kept, so that all
  * this costs one tracing, and products with a sparse matrix.
  *
- * W is not symmetric: BiCGSTAB (van der Vorst, 1992), for the three bands side by side,
- * with areas for weights. Rows are dealt to the ranks. All ranks know all vectors, so
- * only W B takes an exchange, and scalar products are the same on all ranks.
+ * W is not symmetric: BiCGSTAB (van der Vorst, 1992), for the three bands side by side.
+ * In what is left of the equation a leaf counts by its area and, half of it all, relative
+ * to its light: else things below a wide sky would be left as the links have them. Rows
+ * are dealt to the ranks. All ranks know all vectors, so only W B takes an exchange, and
+ * scalar products are the same on all ranks.
  *
  * Where rays meet a leaf too near, such as the floor under a box, their paths find the
  * light there (gather_rays.c). It is darker there than in the mean, so the rest of the
@@ -53,6 +55,10 @@ static const double UNDIVIDED = 0.2, UNDIVIDED_NEAR = 0.3;
 
 /* A leaf is seen brighter than it is in the mean by at most the inverse of this. */
 static const double LEAST_OUTSIDE = 0.125;
+
+/* Leaves with less than this part of the mean radiosity are solved for as if they had
+ * so much. */
+static const double DARK = 1e-3;
 
 /* What covers a leaf: faces in its plane, and things that stand on it. */
 struct cover {
@@ -358,7 +364,7 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
     }
     vote->absorbed = absorbed;
     vote->escaped = leaving - arriving;
-    vote->remaining = residual / (1.0 - brightest);
+    vote->remaining = 2.0 * residual / (1.0 - brightest);
     vote->converged =
         vote->converged && vote->remaining <= g->solver->model.criterion.tolerance;
 }
@@ -522,6 +528,20 @@ static void share_straight_light(struct gathering *g)
     alloc_free(light);
 }
 
+/* Weights of leaves with the radiosities `b`: all of `b` has the size 1 by area, and 1 by
+ * leaf. */
+static double *weigh(const struct gathering *g, const struct rgb *b)
+{
+    double *weights = alloc_array((size_t)g->count, sizeof *weights), all = 0.0;
+    for (int64_t i = 0; i < g->count; i++)
+        all += g->areas[i] * rgb_sum(b[i]);
+    for (int64_t i = 0; i < g->count && all > 0.0; i++)
+        weights[i] = g->areas[i] / all +
+                     1.0 / ((double)g->count *
+                            fmax(rgb_sum(b[i]), DARK * g->gather.mean));
+    return weights;
+}
+
 /* Collective. Solves for light by the rows, from the links' solution on. */
 static void solve_rows(struct gathering *g, struct vote *vote)
 {
@@ -540,9 +560,11 @@ static void solve_rows(struct gathering *g, struct vote *vote)
         for (int c = 0; c < BANDS; c++)
             brightest = fmax(brightest, rho.band[c]);
     }
-    double goal = g->solver->model.criterion.tolerance * (1.0 - brightest);
-    struct bicgstab done = bicgstab_solve(reflect, g, start, g->areas, g->count, goal,
-                                          STEPS_MOST, b);
+    double goal = 0.5 * g->solver->model.criterion.tolerance * (1.0 - brightest);
+    double *weights = weigh(g, b);
+    struct bicgstab done =
+        bicgstab_solve(reflect, g, start, weights, g->count, goal, STEPS_MOST, b);
+    alloc_free(weights);
     irradiances(g, b, true, h);
     for (size_t i = 0; i < count; i++) /* slopes may go below 0 where B has changed */
         for (int c = 0; c < BANDS; c++)
