@@ -11,8 +11,9 @@
 struct renderer {
     const struct octree *octree;
     const struct shading *shading; /* all light; with `gather`, not the direct; or NULL */
-    struct final_gather *gather;   /* direct light; without `shading`, all; or NULL */
-    int rays;                      /* rays or segments of the gather for a pixel */
+    struct final_gather *gather;   /* direct light, and all on covered leaves; without
+                                      `shading`, all; or NULL */
+    int rays;                      /* for a pixel; with `shading` segments */
 };
 
 struct renderer renderer_make(const struct octree *octree, const struct shading *shading,
