@@ -33,6 +33,9 @@
  * its area. A pixel shows the error at one place, where a receiving leaf has its mean. */
 static const double NEAR = 0.2, NEAR_PIXEL = 1.0;
 
+/* The same, where that is the distance at which the ray met the leaf. */
+static const double NEAR_RAY = 0.05;
+
 /* A gap is narrow for a leaf if the square of its width is less than this part of the
  * leaf's area. */
 static const double NARROW = 0.04;
@@ -151,16 +154,18 @@ void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t 
 /* True if the leaf that a ray has met is too near to the ray's origin, for its size, for
  * its mean radiosity to hold there. The distance is that of its centroid, so that a point
  * takes the mean of the whole leaf or none of it: a far part alone would be given the
- * mean of the whole. In a gap that is narrow for the leaf all of it is too near, for it
- * may reach from the gap into the light. */
+ * mean of the whole. But a small thing in the shade at the edge of a wide ground has to
+ * see the shade around it, and not the mean: rays that end at once are too near, too. In
+ * a gap that is narrow for the leaf all of it is too near, for it may reach from the gap
+ * into the light. */
 static bool is_too_near(const struct receiver *r, const struct point *met, struct vec3 x,
                         struct vec3 normal)
 {
     double near = r->points ? NEAR_PIXEL : NEAR;
     double area = forest_area(r->gather->model->forest, met->patch);
-    struct vec3 apart = vec3_sub(met->middle, x);
+    struct vec3 apart = vec3_sub(met->middle, x), ray = vec3_sub(met->at, x);
     double width = vec3_dot(apart, met->normal);
-    return vec3_dot(apart, apart) < near * area ||
+    return vec3_dot(apart, apart) < near * area || vec3_dot(ray, ray) < NEAR_RAY * area ||
            (width * width < NARROW * area && vec3_dot(normal, met->normal) < OPPOSITE);
 }
 
