@@ -67,7 +67,7 @@ const struct method DEFAULT = {
     .first_link = node_link_top,
     .prepare = prepare,
     .make_link = patch_link_make,
-    .side_to_split = node_side_to_split,
+    .side_to_split = error_oracle_side_to_split,
     .split_link = node_link_split,
     .keep_link = node_link_keep,
     .transfer = node_links_transfer,
@@ -82,7 +82,7 @@ struct method method_of(const struct criterion *criterion)
         return PAPER;
     struct method method = DEFAULT;
     if (by_energy)
-        method.side_to_split = node_side_to_split_by_energy;
+        method.side_to_split = error_oracle_side_by_energy;
     if (by_disks)
         method.make_link = link_make;
     if (all_pairs) {

@@ -1,13 +1,16 @@
-/* Refinement by error: links of two patches. */
+/* Refinement by error: links of any two nodes. */
 #ifndef RAD_BEYOND_ERROR_ORACLE_H
 #define RAD_BEYOND_ERROR_ORACLE_H
 
 #include "rad/link.h"
 
-/* As side_to_split of struct method: the patch that causes more of the error. */
+/* As side_to_split of struct method: the side that causes more of the error. */
 int32_t error_oracle_side_to_split(const struct model *model, const struct link *link);
 
-/* Gives p and q of a link that is not split children, where the link varies over them
+/* The same of a link with a cluster in it; one of two patches is split by its energy. */
+int32_t error_oracle_side_by_energy(const struct model *model, const struct link *link);
+
+/* Gives patches of a link that is not split children, where the link varies over them
  * more than the criterion allows: it deals its light to them. */
 void error_oracle_divide(struct model *model, const struct link *link);
 

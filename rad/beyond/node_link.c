@@ -1,4 +1,4 @@
-/* Links with a cluster in them: making, splitting, judging, transfer.
+/* Links with a cluster in them: making, splitting, transfer.
  *
  * Stopping bias (Kirk and Arvo 1991): a link whose few samples happen to miss its light
  * looks good, is accepted, and stays too dark: 2.4 % of all light in a room of 18,000
@@ -9,42 +9,19 @@
  * hide all: that no sample arrives is no proof. */
 #include "rad/beyond/node_link.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "rad/beyond/node_exchange.h"
 #include "rad/beyond/error_oracle.h"
 #include "rad/beyond/patch_link.h"
-#include "rad/beyond/range.h"
-#include "rad/oracle.h"
 
 /* --- looks --- */
 
-/* G without blockers, as the first look found it. By that the criterion decides: by the G
- * that counts, links that happen to lack light would stay, and those with too much be
- * split. It is in the place of the blocker, which a link with a cluster in it has none
- * of. */
+/* G without blockers, as the first look found it: see link_judged(). */
 static void set_judged(struct link *link, double unoccluded)
 {
     float area = (float)unoccluded;
     memcpy(&link->blocker, &area, sizeof area);
-}
-
-static double judged(const struct link *link)
-{
-    float area;
-    memcpy(&area, &link->blocker, sizeof area);
-    return (double)area;
-}
-
-/* Twice the sum of the parts' deviations from shares by area: 2 for all in one half. */
-static double spread_of(const struct model *model, const struct end *end,
-                        const uint8_t parts[3])
-{
-    double off = 0.0;
-    for (int k = 0; k < 4; k++)
-        off += fabs(link_part(parts, k) - end_child_area(model, end, k) / end->area);
-    return 2.0 * off;
 }
 
 /* Finds the parts of children that exchange `area` in the proportions of `g`, none more
@@ -141,7 +118,7 @@ static int split_itself(struct model *model, int32_t node,
 int node_link_split(struct model *model, const struct link *link, int32_t node,
                     struct link *children)
 {
-    if (!node_is_cluster(link->p) && !node_is_cluster(link->q))
+    if (!link_has_cluster(link))
         return patch_link_split(model, link, node, children);
     if (link->p == link->q)
         return split_itself(model, node, children);
@@ -161,133 +138,14 @@ int node_link_split(struct model *model, const struct link *link, int32_t node,
     return count;
 }
 
-/* --- the criterion --- */
-
-/* Of the spread over an end: the children of a cluster are no quarters of a plane, over
- * which light varies smoothly. */
-static const double SPREAD_LEFT = 2.0;
-
-/* The error that one side causes: spread of its received light within its children, and
- * range of its own. (A range of clusters, from the deviations of the B of their roots,
- * changed no error, and the links by 1 %.) */
-static double error_of(const struct model *model, const struct end *own,
-                       const struct end *other, const uint8_t parts[3], double area)
-{
-    double spread = spread_of(model, own, parts);
-    double range = own->cluster ? 0.0 : forest_range_within(model->forest, own->node);
-    return area * (SPREAD_LEFT * spread * light_to(own, other) +
-                   rgb_mean(other->reflectance) * range);
-}
-
-static bool may_split(const struct model *model, const struct end *end)
-{
-    return end->cluster || patch_may_split(model, end->node);
-}
-
-/* A patch that only reflects is split before a cluster if it is four times as wide: its
- * parts would have to be linked with each part of the cluster afterwards. (Office3 at
- * epsilon 1e-4: 30 % fewer links than by width alone and an eighth less error, Cornell
- * box at 1e-3 a fifth fewer. With lamps put off, too, things of 2 cm beside them are lost
- * in their clusters: a room of 18,512 triangles has half more error.) */
-static const double PUT_OFF = 0.25;
-
-static double width_of(const struct end *end)
-{
-    return end->cluster || end->emits ? end->radius : PUT_OFF * end->radius;
-}
-
-/* The wider one; of equal ones that with the lower ID. */
-static bool p_is_wider(const struct meeting *m)
-{
-    double width_p = width_of(&m->p), width_q = width_of(&m->q);
-    if (width_p != width_q)
-        return width_p > width_q;
-    return id_compare(m->p.id, m->q.id) <= 0;
-}
-
-/* The side that goes first if it may, else the other. */
-static int32_t choose(const struct model *model, const struct meeting *m, bool p_first)
-{
-    const struct end *first = p_first ? &m->p : &m->q, *second = p_first ? &m->q : &m->p;
-    return may_split(model, first) ? first->node
-           : may_split(model, second) ? second->node : NODE_NONE;
-}
-
-/* The part in doubt of the bound on G of near ends, whatever a look would find: it may be
- * all in a few pairs of roots. */
-static const double DOUBT_NEAR = 0.6;
-
-/* The same of far ends, should a look find nothing at all: without it, errors would end
- * at a floor. */
-static const double DOUBT_MISSED = 1.0 / 16.0;
-
-/* A far link, by its first look: all of its G is in doubt. (With a quarter and an eighth,
- * as for patches, a room of 18,512 triangles has 5 % fewer links and 15 % more error.) */
-static int32_t far_to_split(const struct model *model, const struct link *link,
-                            const struct meeting *m)
-{
-    double area = link_area(link);
-    double doubt = real_max(judged(link), DOUBT_MISSED * m->most) * m->light;
-    double error_p = error_of(model, &m->p, &m->q, link->parts_p, area);
-    double error_q = error_of(model, &m->q, &m->p, link->parts_q, area);
-    if (error_p + error_q + doubt <= model->link_threshold)
-        return NODE_NONE;
-    bool larger = p_is_wider(m);
-    error_p += larger ? doubt : 0.0;
-    error_q += larger ? 0.0 : doubt;
-    return choose(model, m, error_p != error_q ? error_p > error_q : larger);
-}
-
-static bool is_of_patches(const struct link *link)
-{
-    return !node_is_cluster(link->p) && !node_is_cluster(link->q);
-}
-
-/* With a cluster in it. */
-static int32_t side_with_cluster(const struct model *model, const struct link *link)
-{
-    struct end p = end_of(model, link->p), q = end_of(model, link->q);
-    struct meeting m = ends_meet(&p, &q);
-    if (!m.near)
-        return far_to_split(model, link, &m);
-    bool fine = DOUBT_NEAR * m.most * m.light <= model->link_threshold;
-    return fine ? NODE_NONE : choose(model, &m, p_is_wider(&m));
-}
-
-int32_t node_side_to_split(const struct model *model, const struct link *link)
-{
-    return is_of_patches(link) ? error_oracle_side_to_split(model, link)
-                               : side_with_cluster(model, link);
-}
-
-int32_t node_side_to_split_by_energy(const struct model *model, const struct link *link)
-{
-    return is_of_patches(link) ? oracle_side_to_split(model, link)
-                               : side_with_cluster(model, link);
-}
-
-static void divide(struct model *model, const struct end *to, const struct end *from,
-                   const uint8_t parts[3], const struct link *link)
-{
-    if (to->cluster || !patch_may_split(model, to->node))
-        return;
-    double area = link_area(link) * spread_of(model, to, parts);
-    if (area * light_to(to, from) > model->link_threshold)
-        forest_split(model->forest, to->node);
-}
-
 void node_link_keep(struct model *model, struct link *link, bool is_new)
 {
-    if (is_of_patches(link)) {
-        error_oracle_divide(model, link);
-        return;
-    }
-    struct end p = end_of(model, link->p), q = end_of(model, link->q);
-    struct meeting m = ends_meet(&p, &q);
-    if (is_new)
+    if (is_new && link_has_cluster(link)) {
+        struct end p = end_of(model, link->p), q = end_of(model, link->q);
+        struct meeting m = ends_meet(&p, &q);
         look(model, &m, 1, link);
-    divide(model, &p, &q, link->parts_p, link);
-    divide(model, &q, &p, link->parts_q, link);
+    }
+    error_oracle_divide(model, link);
 }
 
 /* --- transfer ---

@@ -1,6 +1,6 @@
 /* Links between any two nodes of the tree: patches, clusters, or one of each; and of a
  * cluster with itself, for the light that its own parts exchange. Links of two patches
- * are left to rad/beyond/patch_link.h and rad/beyond/error_oracle.h.
+ * are left to rad/beyond/patch_link.h.
  *
  * A link of a cluster with itself has half of its G, since transfer takes it both
  * ways. */
@@ -15,10 +15,6 @@
 
 /* The link of the whole scene with itself, not looked at. */
 struct link node_link_top(void);
-
-/* Of two patches by their error, or by their energy. */
-int32_t node_side_to_split(const struct model *model, const struct link *link);
-int32_t node_side_to_split_by_energy(const struct model *model, const struct link *link);
 
 int node_link_split(struct model *model, const struct link *link, int32_t node,
                     struct link *children);

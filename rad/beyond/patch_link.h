@@ -12,6 +12,11 @@
 #include "rad/beyond/patch_exchange.h"
 #include "rad/link.h"
 
+static inline bool link_has_cluster(const struct link *link)
+{
+    return node_is_cluster(link->p) || node_is_cluster(link->q);
+}
+
 /* G without blockers, within 1/500 of G or so. */
 static inline double link_unoccluded(const struct link *link)
 {

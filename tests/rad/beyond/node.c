@@ -350,7 +350,7 @@ static void test_judgement(void)
     int count = 0, right = 0;
     for (int64_t i = 0; i < links.count; i++) {
         struct link *link = &links.items[i];
-        if (!node_is_cluster(link->p) && !node_is_cluster(link->q))
+        if (!link_has_cluster(link))
             continue;
         count++;
         right += has_judgement(&wood.world.model, link);
