@@ -193,10 +193,10 @@ static void test_pairs(void)
         struct facet p = facet_make(world.model.forest, 0);
         struct facet q = facet_make(world.model.forest, 1);
         struct octree_counts counts = {0}, others = {0};
-        int32_t blocker = -1;
+        int32_t blocker = -1, nothing = -1;
         double seen, all;
         double area = exchange_area(&p, &q, world.octree, &blocker, &seen, &counts);
-        double free = exchange_area(&p, &q, none, &blocker, &all, &others);
+        double free = exchange_area(&p, &q, none, &nothing, &all, &others);
         pairs += free > 0.0;
         partly += seen > 0.0 && seen < 1.0;
         beyond += free > fmin(p.area, q.area) || counts.rays > 16;
