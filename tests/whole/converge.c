@@ -133,7 +133,7 @@ static void test_accuracy(const struct comm *comm, const char *path,
 
 /* The final gather: less error with more rays, and with more leaves; its own estimate of
  * the error is true within a factor of 2, or 2.5 above it, where rays cause it and, with
- * 2,048 of them, the mesh. `most`: a tenth above the last one's error. `shown`: the most
+ * 1,024 of them, the mesh. `most`: a tenth above the last one's error. `shown`: the most
  * that interpolation between leaves may have, in errors of leaves. */
 static void test_gathered(const struct comm *comm, const char *path,
                           const struct truth *truth, double most, double shown)
@@ -142,7 +142,7 @@ static void test_gathered(const struct comm *comm, const char *path,
         double epsilon;
         int rays;
         int worse; /* the step that has more error, but for a tenth, or -1 */
-    } steps[] = {{1e-3, 32, -1}, {1e-3, 256, 0}, {1e-3, 2048, 1}, {1e-4, 256, 1}};
+    } steps[] = {{1e-3, 32, -1}, {1e-3, 256, 0}, {1e-3, 1024, 1}, {1e-4, 256, 1}};
     double error[4];
     for (int k = 0; k < 4; k++) {
         struct criterion criterion =
