@@ -6,17 +6,14 @@
 
 #include <math.h>
 
-/* A unit for powers that ranks add: from the emitted power and the largest reflectance
- * rho, since the light in a closed scene adds up to at most power / (1 - rho). 16 times
- * that leaves room for form factors whose rows sum to more than 1. */
-static struct flux_unit choose_flux_unit(const struct scene *scene)
+static double largest_reflectance(const struct scene *scene)
 {
     double largest = 0.0;
     for (int32_t root = 0; root < scene_root_count(scene); root++)
         for (int c = 0; c < BANDS; c++)
             largest = fmax(largest,
                            scene_root_material(scene, root)->reflectance.band[c]);
-    return flux_unit_for(16.0 * scene_emitted_power(scene) / (1.0 - largest));
+    return largest;
 }
 
 struct model model_make(const struct scene *scene, const struct octree *octree,
@@ -29,11 +26,13 @@ struct model model_make(const struct scene *scene, const struct octree *octree,
         .forest = forest,
         .criterion = *criterion,
         .method = method,
-        .flux_unit = choose_flux_unit(scene),
         .area = scene_area(scene),
         .emitted_power = scene_emitted_power(scene),
+        .absorptance = 1.0 - largest_reflectance(scene),
         .patch_threshold = criterion->min_area * scene_area(scene),
     };
+    /* 16 times the most light of a closed scene: rows may sum to more than 1. */
+    model.flux_unit = flux_unit_for(16.0 * model.emitted_power / model.absorptance);
     model_set_epsilon(&model, criterion->epsilon);
     return model;
 }

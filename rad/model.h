@@ -53,8 +53,9 @@ struct model {
     struct cluster_light *clusters; /* above the roots; NULL: none */
     struct criterion criterion;
     struct method method;
-    struct flux_unit flux_unit;
+    struct flux_unit flux_unit; /* of powers that ranks add */
     double area, emitted_power; /* of the scene: square scene units, W */
+    double absorptance;     /* 1 less the largest reflectance of any band, 1 */
     double link_threshold;  /* W, areas in square scene units: epsilon times the light */
     double patch_threshold; /* square scene units: no patch smaller than this is made */
     struct octree_counts counts; /* work of this rank so far */

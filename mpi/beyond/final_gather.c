@@ -349,7 +349,7 @@ static double close_balance(const struct gathering *g, struct rgb *h)
 static void judge(const struct gathering *g, const struct rgb *h, const struct rgb *b,
                   double residual, struct vote *vote)
 {
-    double absorbed = 0.0, leaving = 0.0, arriving = 0.0, brightest = 0.0;
+    double absorbed = 0.0, leaving = 0.0, arriving = 0.0;
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m =
             forest_material(g->solver->model.forest, g->leaves[i]);
@@ -359,12 +359,11 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
             arriving += g->covers[i].bare * h[i].band[c];
             leaving += g->covers[i].bare * (b[i].band[c] - m->emission.band[c]) +
                        g->areas[i] * m->emission.band[c]; /* what is covered, is lost */
-            brightest = fmax(brightest, rho);
         }
     }
     vote->absorbed = absorbed;
     vote->escaped = leaving - arriving;
-    vote->remaining = 2.0 * residual / (1.0 - brightest);
+    vote->remaining = 2.0 * residual / g->solver->model.absorptance;
     vote->converged =
         vote->converged && vote->remaining <= g->solver->model.criterion.tolerance;
 }
@@ -545,22 +544,18 @@ static double *weigh(const struct gathering *g, const struct rgb *b)
 /* Collective. Solves for light by the rows, from the links' solution on. */
 static void solve_rows(struct gathering *g, struct vote *vote)
 {
-    struct forest *forest = g->solver->model.forest;
+    const struct model *model = &g->solver->model;
+    struct forest *forest = model->forest;
     size_t count = (size_t)g->count;
     struct rgb *b = alloc_array(count, sizeof *b), *h = alloc_array(count, sizeof *h);
     struct rgb *start = alloc_array(count, sizeof *start);
-    double brightest = 0.0;
     share_near(g);
     share_covers(g);
     irradiances(g, b, true, h); /* of lamps alone */
     set_radiosities(g, h, start);
-    for (int64_t i = 0; i < g->count; i++) {
+    for (int64_t i = 0; i < g->count; i++)
         b[i] = forest->radiosity[g->leaves[i]];
-        struct rgb rho = forest_material(forest, g->leaves[i])->reflectance;
-        for (int c = 0; c < BANDS; c++)
-            brightest = fmax(brightest, rho.band[c]);
-    }
-    double goal = 0.5 * g->solver->model.criterion.tolerance * (1.0 - brightest);
+    double goal = 0.5 * model->criterion.tolerance * model->absorptance;
     double *weights = weigh(g, b);
     struct bicgstab done =
         bicgstab_solve(reflect, g, start, weights, g->count, goal, STEPS_MOST, b);
