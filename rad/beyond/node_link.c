@@ -17,7 +17,7 @@
 
 /* --- looks --- */
 
-/* G without blockers, as the first look found it: see link_judged(). */
+/* G without blockers, as the first look found it: see doubt_of_clusters(). */
 static void set_judged(struct link *link, double unoccluded)
 {
     float area = (float)unoccluded;
