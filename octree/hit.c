@@ -55,11 +55,11 @@ INLINE void improve_hit(struct search *search, const struct record *r)
 {
     struct ends ends = ends_of(&search->ray, r);
     bool front = ends.from > 0.0;
+    if ((front == (ends.to > 0.0)) | (search->fronts_only & !front))
+        return; /* before a division is waited for */
     double at = ends.from / (ends.from - ends.to), tie = 64.0 * GEOM_ROUNDING;
-    if ((front == (ends.to > 0.0)) | (at > search->nearest + tie) |
-        (search->fronts_only & !front))
-        return;
-    enum passage passage = ray_passes(&search->ray, r, ends, at);
+    bool is_behind = at > search->nearest + tie;
+    enum passage passage = is_behind ? MISSES : ray_passes(&search->ray, r, ends, at);
     if (passage == MISSES ||
         (at > search->nearest - tie && !wins_tie(search, r->triangle, front)) ||
         (passage == MAY_MEET && !line_meets(search, r->triangle)))
