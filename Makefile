@@ -179,10 +179,10 @@ EMBREE ?= $(wildcard /usr/include/embree3/rtcore.h /usr/local/include/embree3/rt
 bench: $(BUILD)/rays $(BUILD)/hits build/room
 
 $(BUILD)/rays $(BUILD)/hits: $(BUILD)/%: tests/bench/%.c tests/bench/subject.h \
-    $(OBJECTS) Makefile
+    rad/beyond/paths.c $(BUILD)/libphr.a Makefile
 	$(COMPILE) $(STRICT) $(WARN) $(if $(EMBREE),-DWITH_EMBREE) -I. $(MPI_INCLUDE) \
 	    $(CFLAGS) -o $@ \
-	    $< $(OBJECTS) $(if $(EMBREE),-lembree3) -lm
+	    $< $(BUILD)/libphr.a $(if $(EMBREE),-lembree3) -lm
 
 errors: $(BUILD)/reference $(BUILD)/measure
 

@@ -100,14 +100,18 @@ function rate(key) {
     return time[key] > 0 ? 1e-6 * rays[key] / time[key] : 0
 }
 
-function second_row(scene,    paths, octree, embree) {
-    paths = scene SUBSEP "paths"; octree = scene SUBSEP "octree"
-    embree = scene SUBSEP "embree"
-    printf "| %s | %s | %s | %s | %s | %s | %s | %s | %s |\n", scene,
+# By the octree and by Embree.
+function rates(key) {
+    return show(rate(key "octree")) " | " show(rate(key "embree")) " | " \
+        ratio(rate(key "octree"), rate(key "embree"))
+}
+
+function second_row(scene,    paths) {
+    paths = scene SUBSEP "paths"
+    printf "| %s | %s | %s | %s | %s | %s | %s | %s |\n", scene,
         slope(scene SUBSEP "links"), slope(scene SUBSEP "gather"),
         show(samples[paths] * 1e-6), ratio(rays[paths], samples[paths]),
-        show(rate(paths)), show(rate(octree)), show(rate(embree)),
-        ratio(rate(octree), rate(embree))
+        show(rate(paths)), rates(paths " "), rates(scene SUBSEP)
 }
 
 END {
@@ -121,8 +125,9 @@ END {
     }
     print ""
     print "| scene | slope, links alone | slope, phr | million paths | rays a path " \
-        "| million rays/s | first hits, octree | Embree | ratio |"
-    print "|---|---|---|---|---|---|---|---|---|"
+        "| million rays/s | paths, octree | Embree | ratio " \
+        "| first hits, octree | Embree | ratio |"
+    print "|---|---|---|---|---|---|---|---|---|---|---|---|"
     for (i = 1; i <= scene_count; i++)
         second_row(scenes[i])
 }

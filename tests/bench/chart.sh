@@ -20,7 +20,8 @@
 #   gather  the defaults: --epsilon and --final-gather move together, as in PAIRS
 #   paths   the path tracer at the leaves of the gather with the same setting, for about
 #           as many seconds (tests/bench/measure.c, --trace); samples are its paths
-#   octree, embree   100,000 rays that wander (tests/bench/hits.c)
+#   octree, embree               100,000 rays that wander (tests/bench/hits.c)
+#   paths octree, paths embree   the path tracer with either
 # A line ends with the first run of more than SECONDS_MOST, or before one that is broken
 # off: after four times as long by the clock (ulimit -t makes seconds of the processor
 # coarse), or after five minutes where the path tracer follows. Lines take turns, so that
@@ -164,12 +165,13 @@ turn() {
 # hits SCENE: its first hits, as lines of the CSV.
 hits() {
     "$BUILD/hits" "$(file_of "$1")" 100000 | awk -v OFS=, -v scene="$(name_of "$1")" '
-        function line(variant, rate) {
-            print scene, variant, "", 0.1 / rate ",,,", 100000 ",,,,,,,,"
+        function line(variant, rays, paths) {
+            print scene, variant, "", 1e-6 * rays / $2, "", "", paths, rays ",,,,,,,,"
         }
-        $1 == "octree:" { line("octree", $2) }
-        $1 == "Embree:" { line("embree", $2) }
-        / 256 from each/ { exit }'
+        /^ [^ ]/ { kind = $1 " " $4; next }
+        { program = tolower($1); sub(":", "", program) }
+        kind == "rays 1" { line(program, 100000) }
+        kind == "paths, each" { line("paths " program, $4, $7) }'
 }
 
 # The lines of a scene, one variant after the other.

@@ -14,7 +14,11 @@
  *
  * Last, a picture of 1920 x 1080 pixels of 3 x 3 rays, without a final gather, from the
  * eye that phr chooses: all of render_scanlines(), beside rtcIntersect1() alone on the
- * same rays, three turns. */
+ * same rays, three turns.
+ *
+ * Before it, beside Embree alone, the path tracer (rad/beyond/paths.c), all of it, with
+ * the same random numbers: RAYS paths, 64 from each triangle, chosen by area. The light
+ * that each finds says how much the answers differ. */
 #include "io/picture/render.h"
 #include "io/picture/viewpoint.h"
 #include "rad/beyond/sample.h"
@@ -23,7 +27,7 @@
 #include "tests/scenes.h"
 #include "tests/shaded.h"
 
-enum { TURNS = 9, WIDTH = 1920, HEIGHT = 1080, SAMPLES = 3 };
+enum { TURNS = 9, WIDTH = 1920, HEIGHT = 1080, SAMPLES = 3, PATHS = 64 };
 
 struct rays {
     struct vec3 *origins, *ends; /* [count] `ends` are directions, or a segment's ends */
@@ -35,12 +39,12 @@ struct rays {
 };
 
 /* A point of the surfaces, by area. Returns its triangle. */
-static int32_t random_place(const struct subject *subject, const struct rays *rays,
+static int32_t random_place(const struct subject *subject, const double *sums,
                             struct random *random, struct vec3 *x)
 {
     int32_t count = subject->scene->input_count;
-    double at = rays->sums[count - 1] * random_unit(random);
-    int32_t t = (int32_t)sum_place(rays->sums, count, at);
+    double at = sums[count - 1] * random_unit(random);
+    int32_t t = (int32_t)sum_place(sums, count, at);
     *x = random_point_on(random, &subject->scene->triangles[t]);
     return t;
 }
@@ -53,7 +57,7 @@ static void fill_leaving(const struct subject *subject, struct rays *rays,
     rays->are_streams = together == STREAM_RAYS;
     for (int i = 0; i < rays->count; i++) {
         if (i % together == 0) {
-            t = random_place(subject, rays, random, &rays->origins[i]);
+            t = random_place(subject, rays->sums, random, &rays->origins[i]);
             rays->origins[i] = point_above(rays->origins[i], planes[t].normal);
         } else {
             rays->origins[i] = rays->origins[i - 1];
@@ -87,8 +91,8 @@ static void fill_segments(const struct subject *subject, struct rays *rays,
         int32_t *own = rays->own[i];
         struct vec3 *from = &rays->origins[i], *to = &rays->ends[i];
         do {
-            own[0] = random_place(subject, rays, random, from);
-            own[1] = random_place(subject, rays, random, to);
+            own[0] = random_place(subject, rays->sums, random, from);
+            own[1] = random_place(subject, rays->sums, random, to);
         } while (plane_distance(&planes[own[0]], *to) <= 1e-3 ||
                  plane_distance(&planes[own[1]], *from) <= 1e-3);
     }
@@ -136,17 +140,20 @@ static double run_octree(const struct octree *octree, struct rays *rays,
 
 #ifdef WITH_EMBREE
 
+static inline struct RTCRay embree_ray(struct vec3 o, struct vec3 end, bool is_segment)
+{
+    struct vec3 d = is_segment ? vec3_sub(end, o) : end;
+    return (struct RTCRay){
+        .org_x = (float)o.x, .org_y = (float)o.y, .org_z = (float)o.z,
+        .dir_x = (float)d.x, .dir_y = (float)d.y, .dir_z = (float)d.z,
+        .tnear = is_segment ? 1e-4f : 1e-5f,
+        .tfar = is_segment ? 1.0f - 1e-4f : 1e30f, .mask = 0xffffffffu};
+}
+
 static void set_embree(const struct rays *rays, struct RTCRayHit *out)
 {
     for (int i = 0; i < rays->count; i++) {
-        struct vec3 o = rays->origins[i], d = rays->ends[i];
-        d = rays->are_segments ? vec3_sub(d, o) : d;
-        out[i] = (struct RTCRayHit){
-            .ray = {.org_x = (float)o.x, .org_y = (float)o.y, .org_z = (float)o.z,
-                    .dir_x = (float)d.x, .dir_y = (float)d.y, .dir_z = (float)d.z,
-                    .tnear = rays->are_segments ? 1e-4f : 1e-5f,
-                    .tfar = rays->are_segments ? 1.0f - 1e-4f : 1e30f,
-                    .mask = 0xffffffffu}};
+        out[i].ray = embree_ray(rays->origins[i], rays->ends[i], rays->are_segments);
         out[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
     }
 }
@@ -173,6 +180,88 @@ static double run_embree(const struct subject *subject, const struct rays *rays,
                    (rays->are_segments ? embree[i].ray.tfar < 0.0f : hit);
     }
     return seconds;
+}
+
+/* --- paths --- */
+
+/* Whose Embree answers the path tracer; NULL: the octree does. */
+static const struct subject *beside;
+
+static bool first_hit(const struct octree *octree, struct vec3 origin,
+                      struct vec3 direction, bool fronts_only, struct octree_hit *hit,
+                      struct octree_counts *counts)
+{
+    if (!beside)
+        return octree_first_hit(octree, origin, direction, fronts_only, hit, counts);
+    struct RTCIntersectContext context;
+    struct RTCRayHit ray = {.ray = embree_ray(origin, direction, false)};
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(beside->whole, &context, &ray);
+    counts->rays++;
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        return false;
+    hit->triangle = (int32_t)ray.hit.primID;
+    hit->front = vec3_dot(beside->scene->planes[hit->triangle].normal, direction) < 0.0;
+    return true;
+}
+
+static bool blocks_segment(const struct octree *octree, struct vec3 from, struct vec3 to,
+                           const int32_t own[2], int32_t *guess,
+                           struct octree_counts *counts)
+{
+    if (!beside)
+        return octree_blocks_segment(octree, from, to, own, guess, counts);
+    struct RTCIntersectContext context;
+    struct RTCRay ray = embree_ray(from, to, true);
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(beside->inside, &context, &ray);
+    counts->rays++;
+    return ray.tfar < 0.0f;
+}
+
+#define octree_first_hit first_hit
+#define octree_blocks_segment blocks_segment
+#include "rad/beyond/paths.c"
+#undef octree_first_hit
+#undef octree_blocks_segment
+
+/* Returns the seconds that it takes. */
+static double run_paths(const struct subject *subject, const double *sums, int count,
+                        uint64_t seed, const struct pathtracer *pathtracer, double *light)
+{
+    struct random random = random_seed(seed);
+    struct triangle whole = pathtracer_part((struct patch_id){0, 1});
+    double start = cpu_seconds();
+    pathtracer->counts->rays = 0;
+    *light = 0.0;
+    for (int i = 0; i < count; i += PATHS) {
+        struct vec3 unused;
+        int32_t t = random_place(subject, sums, &random, &unused);
+        struct rgb b = pathtracer_reflected(pathtracer, t, &whole, PATHS, (uint64_t)i);
+        *light += rgb_sum(b);
+    }
+    return cpu_seconds() - start;
+}
+
+static void bench_paths(const struct subject *subject, const double *sums, int count,
+                        uint64_t seed)
+{
+    struct pathtracer pathtracer = pathtracer_make(subject->scene, subject->octree);
+    double best[2] = {HUGE_VAL, HUGE_VAL}, light[2], rate[2];
+    for (int turn = 0; turn < 2 * TURNS; turn++) {
+        int k = turn % 2;
+        beside = k ? subject : NULL;
+        best[k] = fmin(best[k], run_paths(subject, sums, count, seed, &pathtracer,
+                                          &light[k]));
+        rate[k] = 1e-6 * (double)pathtracer.counts->rays / best[k];
+        if (turn >= 2 * TURNS - 2)
+            printf("  %s: %.3f million/s, %" PRId64 " rays of %d paths, light %.6g%s",
+                   k ? "Embree" : "octree", rate[k], pathtracer.counts->rays, count,
+                   light[k], k ? "" : "\n");
+    }
+    printf("; octree is %.2f of that\n", rate[0] / rate[1]);
+    pathtracer_free(&pathtracer);
 }
 
 #endif
@@ -233,6 +322,11 @@ static void bench_all(const struct subject *subject, int count, uint64_t seed)
         alloc_free(rays.own);
         alloc_free(rays.answers);
     }
+#ifdef WITH_EMBREE
+    printf(" paths, 64 from each triangle\n");
+    if (scene_emitted_power(scene) > 0.0)
+        bench_paths(subject, sums, (count + PATHS - 1) / PATHS * PATHS, seed);
+#endif
     alloc_free(sums);
 }
 
