@@ -33,6 +33,10 @@
  * radiosity: where all surfaces are alike, as in a furnace, there is none. */
 static const double LAMP = 4.0;
 
+/* Where no more than this part of the surface emits, all of that is lamps: a dim one may
+ * be all the light of a room beside a bright one, and rays would hardly find it. */
+static const double FEW = 0.05;
+
 /* Bright roots are aimed at if they send at least this part of the reflected light. */
 static const double LEAST_BRIGHT = 0.01;
 
@@ -63,6 +67,16 @@ static double mean_reflected(const struct model *model)
     return sum / model->area;
 }
 
+/* A lamp emits more than this, over all bands, W/m^2. */
+static double least_of_lamps(const struct model *model)
+{
+    double area = 0.0;
+    for (int32_t root = 0; root < scene_root_count(model->scene); root++)
+        if (material_emits(scene_root_material(model->scene, root)))
+            area += scene_root_area(model->scene, root);
+    return area <= FEW * model->area ? 0.0 : LAMP * mean_reflected(model);
+}
+
 /* Halves the rays for each fourfold of MANY leaves: a picture of them is as smooth as
  * before, and the time grows only with the root of their number. */
 static int rays_for(int rays, int64_t leaves)
@@ -75,10 +89,10 @@ static int rays_for(int rays, int64_t leaves)
 void final_gather_find_bright(struct final_gather *gather)
 {
     const struct model *model = gather->model;
-    double least = LEAST_BRIGHT * mean_reflected(model) * model->area;
+    double reflected = mean_reflected(model);
     lamps_free(&gather->bright);
-    gather->bright = lamps_create(model, gather->lamps.least, true);
-    if (lamps_power(&gather->bright) >= least)
+    gather->bright = lamps_create(model, LAMP * reflected, true);
+    if (lamps_power(&gather->bright) >= LEAST_BRIGHT * reflected * model->area)
         return;
     lamps_free(&gather->bright);
     gather->bright = lamps_create(model, HUGE_VAL, true);
@@ -91,7 +105,7 @@ struct final_gather final_gather_create(struct model *model, int rays)
     forest_bound(forest);
     gather.rays = rays_for(rays, forest_count(forest).leaves);
     gather.mean = mean_radiosity(model);
-    gather.lamps = lamps_create(model, LAMP * mean_reflected(model), false);
+    gather.lamps = lamps_create(model, least_of_lamps(model), false);
     final_gather_find_bright(&gather);
     gather.near.unit_area = 0x1p-50 * model->area;
     gather.near.unit_watts = 0x1p-44 * model->area * gather.mean;

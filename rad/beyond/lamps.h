@@ -1,6 +1,6 @@
-/* Lamps: roots so much brighter than the rest that rays in all directions would find them
- * too seldom. A final gather aims at them, and at bright roots, which are lamps by the
- * light that they reflect. */
+/* Lamps: roots that emit, and that rays in all directions would find too seldom for the
+ * light that they bring. A final gather aims at them, and at bright roots, which are
+ * lamps by the light that they reflect. */
 #ifndef RAD_BEYOND_LAMPS_H
 #define RAD_BEYOND_LAMPS_H
 
