@@ -201,12 +201,14 @@ static void look_at_one(struct receiver *r, int32_t root, double share,
 static void aim_at_one(struct receiver *r, const struct sequence *sequence, int index,
                        int32_t root, double share)
 {
-    const struct scene *scene = r->gather->model->scene;
-    struct triangle lamp = scene_root_triangle(scene, root);
+    const struct forest *forest = r->gather->model->forest;
+    struct facet lamp = facet_make(forest, root);
     struct volley alone = {.direct = {0.0, 0.0}};
-    double factor = mean_factor(&r->facet.triangle, r->facet.plane.normal, &lamp,
+    if (!facets_face(&r->facet, &lamp))
+        return;
+    double factor = mean_factor(&r->facet.triangle, r->facet.plane.normal, &lamp.triangle,
                                 &r->gather->model->estimating);
-    double sent = rgb_sum(scene_root_material(scene, root)->emission);
+    double sent = rgb_sum(forest_material(forest, root)->emission);
     aim_at_lamp(r, sequence, index, 1, root, share * factor * sent, &alone);
 }
 
