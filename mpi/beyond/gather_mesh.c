@@ -76,15 +76,6 @@ struct looking {
 
 /* --- dealing --- */
 
-/* The rank of the next root dealt. In each turn every rank gets one, in an order that
- * changes from turn to turn: dealt in one order, objects of as many triangles as ranks
- * would all have the same side on the same rank. */
-static int rank_of_next(int64_t *dealt, int ranks)
-{
-    uint64_t index = (uint64_t)(*dealt)++, size = (uint64_t)ranks;
-    return (int)((hash_mix(index / size) % size + index % size) % size);
-}
-
 /* Deals leaves so that the predicted sums of their work are even, those of equal work in
  * no order. `rays`, [count], or NULL: those of a look. [count], to be freed. */
 static int *deal_leaves(const struct looking *l, const int32_t *leaves, const int *rays,
@@ -128,38 +119,38 @@ static struct root_area *sort_roots(const struct scene *scene, int32_t roots)
     return sorted;
 }
 
-/* Collective. Proves roots [begin, end) of `sorted` open or not; each rank does some. */
-static void prove_roots(struct looking *l, const struct root_area *sorted, int32_t begin,
-                        int32_t end, uint8_t *open)
+/* Collective. Finds the open roots, proved to be so if `proof`; each rank examines some.
+ * True if they have half of the scene's area. Large roots come first, those of about the
+ * same area together, until that is out of reach. */
+static bool half_is_open(struct looking *l, const struct root_area *sorted, bool proof,
+                         uint8_t *open)
 {
+    const struct model *model = &l->solver->model;
     const struct comm *comm = l->solver->comm;
-    int64_t dealt = 0;
-    for (int32_t i = begin; i < end && !stop_is_asked(); i++)
-        if (rank_of_next(&dealt, comm->size) == comm->rank)
-            open[i] = final_gather_root_is_open(&l->gather, sorted[i].root);
-    comm_add_bytes(comm, open + begin, end - begin);
+    int32_t roots = scene_root_count(model->scene), end;
+    double blocked = 0.0;
+    for (int32_t begin = 0; begin < roots && 2.0 * blocked <= model->area; begin = end) {
+        for (end = begin; end < roots && 2.0 * sorted[end].area >= sorted[begin].area;
+             end++)
+            open[end] = end % comm->size == comm->rank && !stop_is_asked() &&
+                        final_gather_root_is_open(&l->gather, sorted[end].root, proof);
+        comm_add_bytes(comm, open + begin, end - begin);
+        for (int32_t i = begin; i < end; i++)
+            blocked += open[i] ? 0.0 : sorted[i].area;
+    }
+    return 2.0 * blocked <= model->area;
 }
 
 /* Collective. Finds the open roots. Exact rows cost much, and their mesh is that of the
  * links, which is good where nothing casts shadows: there are exact rows only if half of
- * the scene's area is open. Large roots are examined first, those of about the same area
- * together, until that is out of reach. */
+ * the scene's area is open. Proofs cost much: segments show first where it is not. */
 static void find_open_roots(struct looking *l)
 {
-    const struct model *model = &l->solver->model;
-    int32_t roots = scene_root_count(model->scene), end;
-    struct root_area *sorted = sort_roots(model->scene, roots);
+    int32_t roots = scene_root_count(l->solver->model.scene);
+    struct root_area *sorted = sort_roots(l->solver->model.scene, roots);
     uint8_t *open = alloc_array((size_t)roots, sizeof *open);
-    double blocked = 0.0;
     l->open = alloc_array((size_t)roots, sizeof *l->open);
-    for (int32_t begin = 0; begin < roots && 2.0 * blocked <= model->area; begin = end) {
-        for (end = begin; end < roots && 2.0 * sorted[end].area >= sorted[begin].area;)
-            end++;
-        prove_roots(l, sorted, begin, end, open);
-        for (int32_t i = begin; i < end; i++)
-            blocked += open[i] ? 0.0 : sorted[i].area;
-    }
-    if (2.0 * blocked <= model->area)
+    if (half_is_open(l, sorted, false, open) && half_is_open(l, sorted, true, open))
         for (int32_t i = 0; i < roots; i++)
             l->open[sorted[i].root] = open[i];
     alloc_free(open);

@@ -43,8 +43,8 @@ void final_gather_free(struct final_gather *gather);
 void final_gather_find_bright(struct final_gather *gather);
 
 /* True if it is proved that nothing stands between a root and the roots that it faces:
- * then its leaves may have exact rows. */
-bool final_gather_root_is_open(struct final_gather *gather, int32_t root);
+ * then its leaves may have exact rows. Without `proof`: if no segment finds a blocker. */
+bool final_gather_root_is_open(struct final_gather *gather, int32_t root, bool proof);
 
 /* Looks at the quarters of a leaf, by `rays` rays each. */
 struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays);

@@ -83,31 +83,6 @@ static bool is_overlapped(struct final_gather *g, int32_t root)
     return *known == 2;
 }
 
-/* True if it is proved that nothing hides any of the roots that the root faces.
- * Segments come first: they find most blockers. */
-static bool is_open(struct final_gather *g, const struct facet *root)
-{
-    const struct octree *octree = g->model->octree;
-    struct gather_view *view = &g->view;
-    struct vec3 middle = triangle_centroid(&root->triangle);
-    int32_t guess = -1;
-    bool open = true;
-    for (int64_t i = 0; i < view->count && open; i++) {
-        struct facet other = facet_make(g->model->forest, view->faced[i]);
-        const int32_t own[2] = {root->input, other.input};
-        struct vec3 there = triangle_centroid(&other.triangle);
-        open = !(receiver_kernel(middle, root->plane.normal, there,
-                                 other.plane.normal) > 0.0) ||
-               !octree_blocks_segment(octree, middle, there, own, &guess, &view->counts);
-    }
-    for (int64_t i = 0; i < view->count && open; i++) {
-        struct facet other = facet_make(g->model->forest, view->faced[i]);
-        open = facets_are_open(root, &other, octree, &view->counts) &&
-               !is_overlapped(g, view->faced[i]);
-    }
-    return open;
-}
-
 /* The points of a slender triangle are far apart for its width, so its mean factors would
  * take too many of them. */
 static bool is_slender(const struct facet *root)
@@ -116,15 +91,38 @@ static bool is_slender(const struct facet *root)
     return radius * radius > SLENDER * root->area;
 }
 
+/* Lists the roots that a root faces. True if they are few, and nothing hides any of them
+ * as far as segments tell; if `proof`, too. Segments find most blockers. */
+static bool is_open(struct final_gather *g, int32_t number, bool proof)
+{
+    struct end root = end_of(g->model, number);
+    const struct octree *octree = g->model->octree;
+    struct gather_view *view = &g->view;
+    struct vec3 middle = triangle_centroid(&root.facet.triangle);
+    int32_t guess = -1;
+    view->count = 0;
+    bool open = !is_slender(&root.facet) && view_node(g, &root, NODE_TOP);
+    for (int64_t i = 0; i < view->count && open; i++) {
+        struct facet other = facet_make(g->model->forest, view->faced[i]);
+        const int32_t own[2] = {root.facet.input, other.input};
+        struct vec3 there = triangle_centroid(&other.triangle);
+        open = !(receiver_kernel(middle, root.facet.plane.normal, there,
+                                 other.plane.normal) > 0.0) ||
+               !octree_blocks_segment(octree, middle, there, own, &guess, &view->counts);
+    }
+    for (int64_t i = 0; i < view->count && open && proof; i++) {
+        struct facet other = facet_make(g->model->forest, view->faced[i]);
+        open = facets_are_open(&root.facet, &other, octree, &view->counts) &&
+               !is_overlapped(g, view->faced[i]);
+    }
+    return open;
+}
+
 static const struct gather_view *view_of(struct final_gather *g, int32_t root)
 {
-    if (g->view.root != root) {
-        struct end end = end_of(g->model, root);
-        g->view.root = root;
-        g->view.count = 0;
-        g->view.open = !is_slender(&end.facet) && view_node(g, &end, NODE_TOP) &&
-                       is_open(g, &end.facet);
-    }
+    if (g->view.root != root)
+        g->view.open = is_open(g, root, true);
+    g->view.root = root;
     return &g->view;
 }
 
@@ -282,9 +280,12 @@ static bool close_row(struct receiver *r)
 
 /* --- public --- */
 
-bool final_gather_root_is_open(struct final_gather *gather, int32_t root)
+bool final_gather_root_is_open(struct final_gather *gather, int32_t root, bool proof)
 {
-    return view_of(gather, root)->open;
+    if (proof)
+        return view_of(gather, root)->open;
+    gather->view.root = -1;
+    return is_open(gather, root, false);
 }
 
 bool receiver_add_exact(struct receiver *r)

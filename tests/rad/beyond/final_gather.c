@@ -152,7 +152,7 @@ static void test_given_up(void)
         lamps = fmax(lamps, rgb_sum(row->lamps));
         rays = fmax(rays, row->halves[0] + row->chance[0]);
     }
-    tap_ok(final_gather_root_is_open(&g.gather, 0) && rays > 0.0,
+    tap_ok(final_gather_root_is_open(&g.gather, 0, true) && rays > 0.0,
            "exact rows are given up on where a sheet lies");
     tap_ok(lamps == 0.0, "lamps bring nothing to its underside: %g W/m^2", lamps);
     trial_free(&g);
