@@ -76,20 +76,23 @@ struct looking {
 
 /* --- dealing --- */
 
-/* Deals leaves so that the predicted sums of their work are even, those of equal work in
- * no order. `rays`, [count], or NULL: those of a look. [count], to be freed. */
+/* Deals leaves so that the predicted sums of their work are even. Of leaves of equal work
+ * every rank gets one in each turn, in an order that changes. `rays`, [count], or NULL:
+ * those of a look. [count], to be freed. */
 static int *deal_leaves(const struct looking *l, const int32_t *leaves, const int *rays,
                         int64_t count)
 {
+    int ranks = l->solver->comm->size;
     int *rank_of = alloc_array((size_t)count, sizeof *rank_of);
-    int64_t *work = alloc_array((size_t)count, sizeof *work); /* tests / 2^16 */
+    int64_t *work = alloc_array((size_t)count, sizeof *work); /* tests / 2^24 */
     for (int64_t i = 0; i < count; i++) {
         const struct known *known = &l->known[leaves[i]];
         double tests =
             (double)known->fixed + (rays ? rays[i] : l->rays) * (double)known->work;
-        work[i] = (int64_t)(tests * 0x1p16) + (int64_t)(hash_mix((uint64_t)i) >> 48);
+        work[i] = (int64_t)(tests * 0x1p24) - i / ranks * 256 +
+                  (int64_t)(hash_mix((uint64_t)i) >> 56);
     }
-    items_deal(work, (int32_t)count, l->solver->comm->size, rank_of);
+    items_deal(work, (int32_t)count, ranks, rank_of);
     alloc_free(work);
     return rank_of;
 }
@@ -242,11 +245,17 @@ static void split_leaf(struct forest *forest, int32_t leaf,
                 emission->band[c] + (double)look->reflected[k][c];
 }
 
-static void keep_known(struct looking *l, int32_t leaf, const struct gather_look *look)
+/* Keeps the estimates for a leaf by the quarters of a look from `first` to `last`. */
+static void keep_known(struct looking *l, int32_t leaf, const struct gather_look *look,
+                       int first, int last)
 {
+    struct known known = {.variance = look->variance + spread_of(look)};
+    for (int k = first; k <= last; k++) {
+        known.fixed += look->fixed[k] / (float)(last - first + 1);
+        known.work += look->work[k] / (float)(last - first + 1);
+    }
     RESERVE(l->known, &l->known_capacity, l->solver->model.forest->count);
-    l->known[leaf] = (struct known){look->variance + spread_of(look), look->fixed,
-                                    look->work};
+    l->known[leaf] = known;
 }
 
 /* (rho H)^2 of a leaf, over all bands, as links or looks tell it. */
@@ -286,13 +295,13 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     for (int64_t i = 0; i < count; i++) {
         int32_t leaf = (*leaves)[i];
         double error = forest_area(forest, leaf) * spread_of(&looks[i]);
-        keep_known(l, leaf, &looks[i]);
+        keep_known(l, leaf, &looks[i], 0, 3);
         if (!(error > *threshold) || !may_split(l, leaf))
             continue;
         split_leaf(forest, leaf, &looks[i]);
         for (int k = 0; k < 4; k++) {
             next[made++] = forest->patches[leaf].children + k;
-            keep_known(l, forest->patches[leaf].children + k, &looks[i]);
+            keep_known(l, forest->patches[leaf].children + k, &looks[i], k, k);
         }
     }
     alloc_free(looks);

@@ -319,8 +319,8 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
     struct rgb *each = alloc_array((size_t)rays, sizeof *each);
     double variance = 0.0;
-    int64_t before = model_work(gather->model), fixed = gather->model->estimating;
     for (int k = 0; k < 4; k++) {
+        int64_t before = model_work(gather->model), fixed = gather->model->estimating;
         struct facet quarter = facet;
         quarter.triangle = triangle_child(&facet.triangle, k);
         quarter.area = 0.25 * facet.area;
@@ -334,14 +334,14 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
             look.reflected[k][c] = (float)(rho->band[c] * h.band[c]);
             variance += 0.25 * rho->band[c] * rho->band[c] * r.row.chance[c];
         }
+        fixed = gather->model->estimating - fixed;
+        look.fixed[k] = (float)fixed;
+        look.work[k] =
+            (float)(model_work(gather->model) - before - fixed) / (float)rays;
     }
     for (int i = 0; i < rays; i++)
         for (int c = 0; c < BANDS; c++)
             each[i].band[c] *= rho->band[c];
-    fixed = gather->model->estimating - fixed;
-    look.fixed = 0.25f * (float)fixed;
-    look.work =
-        (float)(model_work(gather->model) - before - fixed) / (4.0f * (float)rays);
     look.noise = fmax(0.0, variance - variance_in_common(each, rays));
     look.variance = variance * rays;
     alloc_free(each);

@@ -23,8 +23,8 @@ struct gather_look {
     double noise;              /* variance of rho H of a quarter, by chance, from the mean
                                   of all */
     double variance;           /* of rho H of a ray, over bands, (W/m^2)^2 */
-    float fixed;               /* predicted tests of a row, without its rays */
-    float work;                /* predicted tests of each ray of a row */
+    float fixed[4];            /* tests that a quarter took, without its rays */
+    float work[4];             /* tests that each ray of a quarter took */
 };
 
 /* B as a linear function over a patch: see final_gather.c. */
