@@ -168,11 +168,10 @@ struct lamps lamps_create(const struct model *model, double least, bool reflect)
     lamps.before = alloc_array((size_t)tree->root_count + 1, sizeof *lamps.before);
     for (int32_t place = 0; place < tree->root_count; place++) {
         int32_t root = tree->roots[place];
-        double sent = rgb_sum(lamp_light(&lamps, root)), sum = lamps.before[place];
+        double sent = rgb_sum(lamp_light(&lamps, root));
+        lamps.sent[root] = sent > least ? sent : 0.0;
         lamps.before[place + 1] =
-            sent > least ? sum + scene_root_area(model->scene, root) * sent : sum;
-        if (lamps.before[place + 1] > sum) /* else it is lost in rounding */
-            lamps.sent[root] = sent;
+            lamps.before[place] + scene_root_area(model->scene, root) * lamps.sent[root];
     }
     if (lamps_power(&lamps) > 0.0)
         add_lit(&lamps, NODE_TOP);
