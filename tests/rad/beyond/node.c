@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "geom/hash.h"
+#include "rad/beyond/error_oracle.h"
 #include "rad/beyond/node_exchange.h"
 #include "rad/beyond/node_link.h"
 #include "rad/beyond/patch_link.h"
@@ -342,21 +343,44 @@ static bool has_judgement(struct model *model, struct link *link)
     return memcmp(&area, &link->blocker, sizeof area) == 0;
 }
 
+/* Of which later looks see nothing, a far link is split by the G of its first look, if
+ * that is more than looks may miss. */
+static bool heeds_judgement(struct model *model, struct link link, int *heard)
+{
+    struct end p = end_of(model, link.p), q = end_of(model, link.q);
+    struct meeting m = ends_meet(&p, &q);
+    float judged;
+    memcpy(&judged, &link.blocker, sizeof judged);
+    double doubt = (double)judged * m.light, threshold = model->link_threshold;
+    if (!(doubt > 0.125 * m.most * m.light))
+        return true;
+    link.seen = 0;
+    model->link_threshold = 0.9 * doubt;
+    bool splits = error_oracle_side_to_split(model, &link) != NODE_NONE;
+    model->link_threshold = 1.1 * doubt;
+    bool stays = error_oracle_side_to_split(model, &link) == NODE_NONE;
+    model->link_threshold = threshold;
+    ++*heard;
+    return splits && stays;
+}
+
 static void test_judgement(void)
 {
     struct wood wood = wood_make(room(3, 4, false));
     wood.world.model.link_threshold = HUGE_VAL;
     struct link_list links = links_below_top(&wood);
-    int count = 0, right = 0;
+    int count = 0, right = 0, heeded = 0, heard = 0;
     for (int64_t i = 0; i < links.count; i++) {
         struct link *link = &links.items[i];
         if (!link_has_cluster(link))
             continue;
         count++;
         right += has_judgement(&wood.world.model, link);
+        heeded += heeds_judgement(&wood.world.model, *link, &heard);
     }
     tap_ok(count > 100 && right == count,
            "%d of %d links keep the G of their first look", right, count);
+    tap_ok(heard > 20 && heeded == count, "and %d far ones are split by it", heard);
     link_list_free(&links);
     wood_free(&wood);
 }
