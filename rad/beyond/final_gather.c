@@ -111,6 +111,7 @@ struct final_gather final_gather_create(struct model *model, int rays)
     gather.near.unit_watts = 0x1p-44 * model->area * gather.mean;
     gather.near.items =
         alloc_array((size_t)forest->count, sizeof *gather.near.items);
+    gather.near.cut = alloc_array((size_t)forest->count, 1);
     gather.order = forest_order(forest);
     gather.place = alloc_array((size_t)forest->count, sizeof *gather.place);
     gather.sums.latest = alloc_array((size_t)forest->count, sizeof *gather.sums.latest);
@@ -139,6 +140,7 @@ void final_gather_free(struct final_gather *gather)
     alloc_free(gather->view.faced);
     alloc_free(gather->view.overlapped);
     alloc_free(gather->near.partly_covered);
+    alloc_free(gather->near.cut);
     alloc_free(gather->order);
     alloc_free(gather->place);
     alloc_free(gather->sums.items);

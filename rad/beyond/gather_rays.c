@@ -16,8 +16,9 @@
  * The mesh is wrong where a ray ends nearer than the leaf there is large: under a sheet
  * of paper on a table the table is dark, but the leaf is not. And it is wrong in a gap
  * that is narrow for the leaf, also far from where the ray began: the leaf may reach into
- * the light. It is wrong, too, where a box stands on part of a leaf: pictures know such
- * leaves. There the ray goes on: the point that it met receives light from a lamp, by one
+ * the light. It is wrong, too, where something cuts the leaf, as a wall does that stands
+ * on it, and where a box stands on part of it: pictures know such leaves. There the ray
+ * goes on: the point that it met receives light from a lamp, by one
  * segment, and from one more ray, until a ray ends far enough away. That is a path tracer
  * for near surfaces and radiosity for the rest. */
 #include "rad/beyond/receiver.h"
@@ -50,6 +51,9 @@ static const double BESIDE = 2.0;
 
 /* Most points of a path, points of a leaf that are tested for being bare. */
 enum { PATH_MOST = 8, BARE_POINTS = 4 };
+
+/* Points of a path from which it goes on in any case. */
+enum { PATH_SURE = 2 };
 
 /* --- points that rays meet --- */
 
@@ -175,6 +179,44 @@ static bool is_partly_covered(const struct final_gather *gather, int32_t leaf)
            gather->near.partly_covered[gather->place[leaf]];
 }
 
+/* True if a thing stands on the leaf or cuts it: just above it something is between its
+ * middle and a corner, or the middle of an edge. Light may differ on both sides. */
+static bool is_cut(struct final_gather *gather, int32_t leaf)
+{
+    static const double INSET = 0.99;
+    const struct forest *forest = gather->model->forest;
+    uint8_t *known = &gather->near.cut[gather->place[leaf]];
+    if (*known != 0)
+        return *known == 2;
+    struct triangle t = forest_triangle(forest, leaf);
+    int32_t root = (int32_t)forest->patches[leaf].id.root, own[2] = {-1, -1};
+    struct vec3 normal = scene_root_plane(forest->scene, root).normal;
+    struct vec3 middle = triangle_centroid(&t);
+    int32_t guess = -1;
+    *known = 1;
+    for (int k = 0; k < 6 && *known == 1; k++) {
+        struct vec3 a = t.corner[k % 3], b = t.corner[(k + k / 3) % 3];
+        struct vec3 end = vec3_scale(vec3_add(a, b), 0.5);
+        end = vec3_add(middle, vec3_scale(vec3_sub(end, middle), INSET));
+        if (octree_blocks_segment(gather->model->octree, point_above(middle, normal),
+                                  point_above(end, normal), own, &guess,
+                                  &gather->view.counts))
+            *known = 2;
+    }
+    return *known == 2;
+}
+
+/* True if a ray has met a leaf that is cut, from nearer than it is wide: whoever stands
+ * on one side sees that alone, and the mean is that of both. */
+static bool is_cut_between(const struct receiver *r, const struct point *met,
+                           struct vec3 x)
+{
+    struct vec3 ray = vec3_sub(met->at, x);
+    return r->keeps &&
+           vec3_dot(ray, ray) < forest_area(r->gather->model->forest, met->patch) &&
+           is_cut(r->gather, met->patch);
+}
+
 /* True if rays from the point, along the plane in four directions, all meet backs. */
 static bool is_among_backs(struct receiver *r, struct vec3 origin, struct vec3 normal)
 {
@@ -216,7 +258,8 @@ static void look_inside(struct receiver *r, struct vec3 origin, struct vec3 dire
 
 /* Russian roulette: the path goes on, for all that would have, with the probability of
  * the largest reflectance. The mesh's light is added in the mean whether it goes on or
- * not, so that rows still sum to 1. */
+ * not, so that rows still sum to 1. That is noise where the mesh is far from right, as in
+ * the shade at the edge of a wide bright leaf, so few paths get here. */
 static bool goes_on(struct receiver *r, const struct point *point, bool aimed, double u,
                     struct rgb *weight)
 {
@@ -278,13 +321,15 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         bool aimed = root_is_lamp(&r->gather->lamps, root) &&
                      (count == 1 || !receiver_lamp_is_near(scene, root, origin));
         if (count == PATH_MOST || !(is_too_near(r, &point, origin, normal) ||
+                                    is_cut_between(r, &point, origin) ||
                                     is_partly_covered(r->gather, point.patch))) {
             add_mesh(r, &point, aimed, &weight);
             return;
         }
         if (count == 1)
             begin_path(r, &point, aimed, &weight);
-        if (count > 1 && !goes_on(r, &point, aimed, hash_unit(seed + 13), &weight))
+        if (count > PATH_SURE &&
+            !goes_on(r, &point, aimed, hash_unit(seed + 13), &weight))
             return;
         if (!aimed)
             receiver_add_source(r, &weight, material->emission, 1.0);

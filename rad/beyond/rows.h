@@ -60,6 +60,8 @@ struct gather_nears {
                                   all ranks, once these are added up, by number */
     double unit_area;          /* square scene units */
     double unit_watts;         /* W in square scene units */
+    uint8_t *cut;            /* [forest->count] by place: 2: something cuts the leaf; 1:
+                                nothing does; 0: unknown */
     uint8_t *partly_covered; /* [forest->count] by place: 1: a thing stands on part of
                                 the leaf, at least; NULL: unknown */
 };
