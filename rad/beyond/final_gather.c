@@ -137,6 +137,7 @@ void final_gather_free(struct final_gather *gather)
 {
     lamps_free(&gather->lamps);
     lamps_free(&gather->bright);
+    openings_free(gather->view.openings);
     alloc_free(gather->view.faced);
     alloc_free(gather->view.overlapped);
     alloc_free(gather->near.partly_covered);
@@ -278,7 +279,7 @@ static struct receiver receiver_make(struct final_gather *gather, struct facet f
 {
     return (struct receiver){.gather = gather, .facet = facet, .seed = seed,
                              .along = direction_along(facet.plane.normal), .rays = rays,
-                             .near = -1};
+                             .near = -1, .least = -1.0};
 }
 
 static uint64_t seed_of(const struct final_gather *gather, int32_t leaf)
@@ -379,6 +380,7 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
     } else {
         gather->sums.count = 0; /* without those of exact factors */
         r.light = (struct rgb){{0.0, 0.0, 0.0}};
+        receiver_find_openings(&r);
         receiver_aim(&r);
         receiver_fire(&r);
         r.row.lamps = r.lamps;

@@ -145,7 +145,7 @@ void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t 
     const struct final_gather *g = r->gather;
     struct vec3 way = vec3_sub(y, x);
     struct point point;
-    if (is_beside(g->model->scene, root, x) ||
+    if (is_beside(g->model->scene, root, x) || receiver_aims_through(r, root) ||
         trace(r, point_above(x, r->facet.plane.normal),
               vec3_scale(way, 1.0 / vec3_length(way)), &point) != MET_FRONT ||
         root_of(r, &point) != root)
@@ -277,6 +277,40 @@ static bool goes_on(struct receiver *r, const struct point *point, bool aimed, d
     return u < most;
 }
 
+void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor,
+                  uint64_t seed)
+{
+    const struct final_gather *g = r->gather;
+    const struct forest *forest = g->model->forest;
+    struct rgb weight = {{factor, factor, factor}};
+    struct point point = {.input = scene_input_of(forest->scene, root), .at = y,
+                          .normal = scene_root_plane(forest->scene, root).normal};
+    bool aimed = root_is_lamp(&g->lamps, root);
+    find_leaf(forest, root, &point);
+    r->bright += factor;
+    for (int count = 1; count < PATH_MOST && forest->patches[point.patch].parent < 0;
+         count++, seed += 16) {
+        const struct material *material = forest_material(forest, point.patch);
+        if (!aimed)
+            receiver_add_source(r, &weight, material->emission, 1.0);
+        for (int c = 0; c < BANDS; c++)
+            weight.band[c] *= material->reflectance.band[c];
+        receiver_aim_beside(r, point.at, point.normal, point.input, &weight, seed);
+        struct vec3 origin = point_above(point.at, point.normal);
+        struct vec3 direction =
+            cosine_direction(point.normal, direction_along(point.normal),
+                             hash_unit(seed + 14), hash_unit(seed + 15));
+        if (trace(r, origin, direction, &point) != MET_FRONT) {
+            r->escaped++;
+            return;
+        }
+        root = root_of(r, &point);
+        aimed = root_is_lamp(&g->lamps, root) &&
+                !receiver_lamp_is_near(forest->scene, root, origin);
+    }
+    add_mesh(r, &point, aimed, &weight);
+}
+
 /* A row's ray begins a path: the leaf that it has met is too near. */
 static void begin_path(struct receiver *r, const struct point *met, bool aimed,
                        const struct rgb *weight)
@@ -313,8 +347,9 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         const struct material *material = forest_material(forest, point.patch);
         int32_t root = root_of(r, &point);
         const struct scene *scene = r->gather->model->scene;
-        if (count == 1 && root_is_lamp(&r->gather->bright, root) &&
-            !is_beside(scene, root, origin)) {
+        if (count == 1 && (receiver_aims_through(r, root) ||
+                           (root_is_lamp(&r->gather->bright, root) &&
+                            !is_beside(scene, root, origin)))) {
             r->sums.aside[half]++;
             return;
         }
@@ -386,6 +421,7 @@ static void add_bright(struct receiver *r, struct rgb source)
     int aside = r->sums.aside[0] + r->sums.aside[1];
     sums->first = sums->count;
     receiver_aim_at(r, &r->gather->bright);
+    receiver_aim_through(r);
     double other = fmax(0.0, 1.0 - r->bright) * r->rays;
     other /= aside < r->rays ? r->rays - aside : r->rays;
     for (int64_t i = 0; i < sums->first; i++)

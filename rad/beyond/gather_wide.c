@@ -2,7 +2,7 @@
  *
  * Segments to points all over such a lamp hardly ever find the opening. But each blocked
  * one names a blocker, and the part of the lamp that a blocker hides from a point can be
- * cut out exactly (geom/outlook.h). So each further segment is aimed at the remainder,
+ * cut out exactly (remainder.h). So each further segment is aimed at the remainder,
  * the part of the lamp that no known blocker hides: with V = 1 where it passes, and 0
  * where it does not,
  *
@@ -18,95 +18,8 @@
 #include "rad/beyond/receiver.h"
 
 #include <math.h>
-#include <string.h>
 
-#include "geom/lambert.h"
-#include "geom/outlook.h"
-
-enum { BLOCKERS_MOST = 8 };
-
-/* A lamp, triangles that hide parts of it, and the remainder at one point. */
-struct wide_lamp {
-    int32_t root;
-    struct triangle triangle;
-    struct plane plane;
-    int32_t blockers[BLOCKERS_MOST]; /* [count] triangles in front of the plane */
-    int count;
-    struct outlook outlook;
-    int hidden;    /* blockers that have been cut out of the outlook; -1: there is none */
-    double whole;  /* factor of the lamp without blockers, 1 */
-    double before[OUTLOOK_PIECES + 1]; /* factors of the pieces before each, added up,
-                                          1 */
-};
-
-/* True if the triangle is a blocker that was not known and is now. */
-static bool learn(const struct receiver *r, struct wide_lamp *lamp, int32_t blocker)
-{
-    const struct triangle *t = &r->gather->model->scene->triangles[blocker];
-    for (int k = 0; k < 3; k++)
-        if (!(plane_distance(&lamp->plane, t->corner[k]) > 0.0))
-            return false;
-    for (int i = 0; i < lamp->count; i++)
-        if (lamp->blockers[i] == blocker)
-            return false;
-    if (lamp->count == BLOCKERS_MOST)
-        return false;
-    lamp->blockers[lamp->count++] = blocker;
-    return true;
-}
-
-/* The lamp as seen from x. */
-static void look_out(const struct receiver *r, struct wide_lamp *lamp, struct vec3 x)
-{
-    struct vec3 normal = r->facet.plane.normal;
-    struct outlook *outlook = &lamp->outlook;
-    bool again = lamp->hidden >= 0 && memcmp(&outlook->from, &x, sizeof x) == 0;
-    if (again && lamp->hidden == lamp->count)
-        return;
-    if (!again) {
-        outlook_start(outlook, x, &lamp->triangle);
-        lamp->whole = point_triangle_factor(x, normal, &lamp->triangle);
-        lamp->hidden = 0;
-    }
-    while (lamp->hidden < lamp->count)
-        outlook_hide(outlook,
-                     &r->gather->model->scene->triangles[lamp->blockers[lamp->hidden++]]);
-    lamp->before[1] = lamp->whole;
-    for (int i = 0; i < outlook->count && lamp->count > 0; i++)
-        lamp->before[i + 1] = lamp->before[i] +
-                              point_polygon_factor(x, normal, outlook->piece[i].corner,
-                                                   outlook->piece[i].count);
-}
-
-/* The point of a convex polygon that u and v in [0, 1] stand for. */
-static struct vec3 point_of_piece(const struct outlook_piece *piece, double u, double v)
-{
-    double before[OUTLOOK_CORNERS] = {0.0};
-    for (int k = 1; k + 1 < piece->count; k++) {
-        struct triangle t = {{piece->corner[0], piece->corner[k], piece->corner[k + 1]}};
-        before[k] = before[k - 1] + triangle_area(&t);
-    }
-    int k = 1;
-    double at = u * before[piece->count - 2];
-    while (k + 2 < piece->count && at >= before[k])
-        k++;
-    struct triangle t = {{piece->corner[0], piece->corner[k], piece->corner[k + 1]}};
-    double own = before[k] - before[k - 1];
-    return triangle_of_square(&t, own > 0.0 ? fmin(1.0, (at - before[k - 1]) / own) : 0.0,
-                              v);
-}
-
-/* A point of the remainder, chosen by u and v in [0, 1). */
-static struct vec3 point_of_remainder(const struct wide_lamp *lamp, double u, double v)
-{
-    int i = 0;
-    double at = u * lamp->before[lamp->outlook.count];
-    while (i + 1 < lamp->outlook.count && at >= lamp->before[i + 1])
-        i++;
-    double own = lamp->before[i + 1] - lamp->before[i];
-    return point_of_piece(&lamp->outlook.piece[i],
-                          own > 0.0 ? fmin(1.0, (at - lamp->before[i]) / own) : 0.0, v);
-}
+#include "rad/beyond/remainder.h"
 
 /* Sums over points. */
 struct sums {
@@ -115,18 +28,18 @@ struct sums {
 };
 
 /* False if a blocker has been met that was not known. */
-static bool add_point(struct receiver *r, struct wide_lamp *lamp,
+static bool add_point(struct receiver *r, struct remainder *lamp,
                       const double u[SEQUENCE_DIMENSIONS], int half, struct sums *sums)
 {
     struct vec3 x = receiver_start(r, u[0], u[1]);
-    look_out(r, lamp, x);
-    double seen = lamp->before[lamp->outlook.count];
+    const struct scene *scene = r->gather->model->scene;
+    double seen = remainder_look(lamp, scene, x, r->facet.plane.normal);
     if (seen > 0.0) {
-        struct vec3 y = point_of_remainder(lamp, u[2], u[3]);
+        struct vec3 y = remainder_point(lamp, 0, u[2], u[3]);
         int32_t blocker = -1;
         if (receiver_kernel(x, r->facet.plane.normal, y, lamp->plane.normal) > 0.0)
             blocker = receiver_blocker(r, x, y, lamp->root);
-        if (blocker >= 0 && learn(r, lamp, blocker))
+        if (blocker >= 0 && remainder_learn(lamp, scene, blocker))
             return false;
         seen = blocker >= 0 ? 0.0 : seen;
     }
@@ -161,8 +74,7 @@ struct receiver_share receiver_share_of_wide(struct receiver *r,
                                              int32_t root)
 {
     const struct scene *scene = r->gather->model->scene;
-    struct wide_lamp lamp = {.root = root, .triangle = scene_root_triangle(scene, root),
-                             .plane = scene_root_plane(scene, root), .hidden = -1};
+    struct remainder lamp = remainder_start(scene, root);
     struct sums sums = {.wholes = 0.0};
     double u[SEQUENCE_DIMENSIONS];
     for (int i = 0; i < count; i++) {

@@ -29,6 +29,8 @@ struct receiver {
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
     struct rgb lamps;     /* H by lamps */
     double bright;        /* form factor of the bright roots, 1 */
+    double least;         /* that roots reflect which are aimed at through openings,
+                             W/m^2; below 0: none is */
     struct ray_sums sums;
 };
 
@@ -57,6 +59,22 @@ bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 
  * aimed at y meets it. */
 void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t root,
                       double factor);
+
+/* Finds the bright roots that the receiver, a leaf in the dark, sees through narrow
+ * openings. */
+void receiver_find_openings(struct receiver *r);
+
+/* True if the root is one of them. */
+bool receiver_aims_through(const struct receiver *r, int32_t root);
+
+/* Adds their light. */
+void receiver_aim_through(struct receiver *r);
+
+/* Adds the light of a point y of a root that is seen; the root has this form factor. Of a
+ * root that is a leaf, as in the depth of an opening, the light at the point is found by
+ * a path: its near end is darker than its mean. */
+void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor,
+                  uint64_t seed);
 
 /* Adds `weight` times the light of a lamp that has this form factor. */
 void receiver_add_source(struct receiver *r, const struct rgb *weight,

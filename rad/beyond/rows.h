@@ -75,12 +75,17 @@ struct gather_counts {
     int64_t exact;          /* rows made without rays */
 };
 
+/* Bright roots that a root sees through narrow openings: gather_narrow.c. */
+struct openings;
+void openings_free(struct openings *openings);
+
 /* A root and the roots that it faces. */
 struct gather_view {
     int32_t root;      /* -1: none yet */
     bool open;         /* proved: nothing stands between the root and any of `faced` */
     int32_t *faced;    /* [count], roots */
     int64_t count, capacity;
+    struct openings *openings; /* NULL: none yet */
     uint8_t *overlapped; /* [roots] 2: another overlaps it in its plane; 1: none does; 0:
                             unknown */
     struct octree_counts counts; /* of all proofs, which each rank makes that has a leaf

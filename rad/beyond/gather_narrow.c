@@ -1,0 +1,259 @@
+/* Light through narrow openings.
+ *
+ * Below a door light comes from the next room, where all is a thousand times as bright,
+ * and one ray in ten thousand finds it. For a leaf such roots are lamps, whatever they
+ * are in the whole scene. So a large root that is in the dark is examined once: which
+ * bright roots can be seen from it past the blockers that a few segments find, as with
+ * wide lamps (gather_wide.c)? At those its leaves aim, each at the remainder of the root
+ * behind the blockers, and rays that meet one are put aside, as with bright roots. The
+ * examination decides only how light is looked for, and from other points, so answers are
+ * right in the mean.
+ *
+ * Of a root that is behind many things, such as furniture, not just a few walls, too much
+ * stays hidden in the remainder: if no point of it is seen, it is left to the rays. */
+#include "rad/beyond/receiver.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "geom/hash.h"
+#include "rad/beyond/remainder.h"
+
+/* Roots are aimed at that reflect so many times the irradiance of the leaf. */
+static const double TIMES = 30.0;
+
+/* A root is large that has this part of all area. */
+static const double LARGE = 1e-3;
+
+/* Roots that are examined, those that send most; points from which each is looked at;
+ * points of a leaf, at least and at most; quarterings of a remainder. */
+enum { MOST_ROOTS = 64, POINTS_LOOKED = 256, POINTS = 8, MOST_POINTS = 64 };
+enum { QUARTERINGS = 3 };
+
+/* A leaf has MOST_POINTS where the factor of a remainder is more than this. */
+static const double PEAK = 0.01;
+
+/* Roots that are aimed at from the leaves of one root. */
+struct openings {
+    struct remainder items[MOST_ROOTS]; /* [count] */
+    int count;
+    int32_t from;   /* root; -1: none yet */
+    uint8_t *aimed; /* [roots] 1: one of the items */
+};
+
+static double reflected_by(const struct forest *forest, int32_t patch)
+{
+    return rgb_sum(forest->radiosity[patch]) -
+           rgb_sum(forest_material(forest, patch)->emission);
+}
+
+static double irradiance_of(const struct forest *forest, int32_t patch)
+{
+    struct rgb rho = forest_material(forest, patch)->reflectance;
+    return BANDS * reflected_by(forest, patch) / rgb_sum(rho);
+}
+
+static bool is_in_the_dark(const struct final_gather *g, int32_t patch)
+{
+    return TIMES * irradiance_of(g->model->forest, patch) < g->mean; /* not if NaN */
+}
+
+/* --- what a root sees --- */
+
+static double watts_of(const struct forest *forest, int32_t root)
+{
+    return forest_area(forest, root) * reflected_by(forest, root);
+}
+
+/* Finds the roots that reflect TIMES the irradiance, of those that the receiver faces,
+ * largest senders first; [MOST_ROOTS]. Returns their number. */
+static int find_bright(const struct forest *forest, const struct facet *receiver,
+                       double irradiance, int32_t *roots)
+{
+    int count = 0;
+    for (int32_t root = 0; root < forest->root_count; root++) {
+        if (!(reflected_by(forest, root) > TIMES * irradiance))
+            continue;
+        struct facet facet = facet_make(forest, root);
+        double watts = watts_of(forest, root);
+        if (!facets_face(receiver, &facet) ||
+            (count == MOST_ROOTS && watts <= watts_of(forest, roots[count - 1])))
+            continue;
+        int at = count < MOST_ROOTS ? count++ : count - 1;
+        for (; at > 0 && watts > watts_of(forest, roots[at - 1]); at--)
+            roots[at] = roots[at - 1];
+        roots[at] = root;
+    }
+    return count;
+}
+
+/* Looks from a point `x` of the receiver at the remainder: returns the factor of all that
+ * is seen of it, and a point `y` of that; 0 if there is none. */
+static double look(struct receiver *r, struct remainder *remainder,
+                   const struct sequence *sequence, int index, struct vec3 *x,
+                   struct vec3 *y)
+{
+    struct vec3 normal = r->facet.plane.normal;
+    double u[SEQUENCE_DIMENSIONS];
+    sequence_point(sequence, (uint32_t)index, u);
+    *x = receiver_start(r, u[0], u[1]);
+    double seen = remainder_look(remainder, r->gather->model->scene, *x, normal);
+    r->gather->model->estimating += 1 + remainder->count;
+    if (!(seen > 0.0))
+        return 0.0;
+    *y = remainder_point(remainder, QUARTERINGS, u[2], u[3]);
+    return receiver_kernel(*x, normal, *y, remainder->plane.normal) > 0.0 ? seen : 0.0;
+}
+
+/* True if the remainder of a root can be seen from the receiver, and is so small that few
+ * points of it tell more than many rays in all directions. */
+static bool is_worth_aiming(struct receiver *r, struct remainder *remainder)
+{
+    struct sequence sequence =
+        sequence_start(hash_mix(r->seed) ^ hash_mix((uint64_t)remainder->root));
+    double sum = 0.0;
+    int count = 0, passed = 0; /* points since a blocker was learnt */
+    for (int i = 0; i < POINTS_LOOKED; i++, count++) {
+        struct vec3 x, y;
+        double seen = look(r, remainder, &sequence, i, &x, &y);
+        int32_t blocker = seen > 0.0 ? receiver_blocker(r, x, y, remainder->root) : -1;
+        if (blocker >= 0 &&
+            remainder_learn(remainder, r->gather->model->scene, blocker)) {
+            count = passed = 0;
+            sum = 0.0;
+            i--;
+            continue;
+        }
+        sum += seen;
+        passed += seen > 0.0 && blocker < 0;
+    }
+    return passed > 0 && sum * r->gather->rays < POINTS * count;
+}
+
+/* Each rank that has a leaf of the root finds the same, so its work is counted apart, as
+ * that of proofs. */
+static void examine_root(struct openings *openings, struct receiver *whole, int32_t root)
+{
+    struct final_gather *g = whole->gather;
+    struct octree_counts tests = g->model->counts, *apart = &g->view.counts;
+    struct gather_counts rays = g->counts;
+    int64_t estimating = g->model->estimating;
+    struct remainder *item = &openings->items[openings->count];
+    *item = remainder_start(g->model->scene, root);
+    if (is_worth_aiming(whole, item)) {
+        openings->aimed[root] = 1;
+        openings->count++;
+    }
+    apart->node_tests += g->model->counts.node_tests - tests.node_tests;
+    apart->triangle_tests += g->model->counts.triangle_tests - tests.triangle_tests;
+    g->model->counts = tests;
+    g->model->estimating = estimating;
+    g->counts = rays;
+}
+
+static void find_openings(struct openings *openings, const struct receiver *r,
+                          int32_t from)
+{
+    const struct final_gather *g = r->gather;
+    const struct forest *forest = g->model->forest;
+    struct receiver whole = *r;
+    for (int i = 0; i < openings->count; i++)
+        openings->aimed[openings->items[i].root] = 0;
+    openings->from = from;
+    openings->count = 0;
+    if (forest_area(forest, from) < LARGE * g->model->area || !is_in_the_dark(g, from))
+        return;
+    whole.facet = facet_make(forest, from);
+    whole.seed = hash_mix((uint64_t)from + 32);
+    int32_t roots[MOST_ROOTS];
+    int count = find_bright(forest, &whole.facet, irradiance_of(forest, from), roots);
+    for (int i = 0; i < count; i++)
+        examine_root(openings, &whole, roots[i]);
+}
+
+/* --- what a leaf sees --- */
+
+void receiver_find_openings(struct receiver *r)
+{
+    struct final_gather *g = r->gather;
+    const struct forest *forest = g->model->forest;
+    if (!is_in_the_dark(g, r->row.leaf))
+        return;
+    if (!g->view.openings) {
+        g->view.openings = alloc_array(1, sizeof *g->view.openings);
+        g->view.openings->aimed = alloc_array((size_t)forest->root_count, 1);
+        g->view.openings->from = -1;
+    }
+    int32_t from = (int32_t)forest->patches[r->row.leaf].id.root;
+    if (g->view.openings->from != from)
+        find_openings(g->view.openings, r, from);
+    r->least = TIMES * irradiance_of(forest, r->row.leaf);
+}
+
+bool receiver_aims_through(const struct receiver *r, int32_t root)
+{
+    const struct final_gather *g = r->gather;
+    return r->least >= 0.0 && g->view.openings->aimed[root] &&
+           reflected_by(g->model->forest, root) > r->least;
+}
+
+/* Points for a leaf: the more the more of the root is seen somewhere, as beside the
+ * opening, where light falls on a small part of the leaf. */
+static int points_for(struct receiver *r, struct remainder *remainder, uint64_t seed)
+{
+    struct sequence sequence = sequence_start(hash_mix(seed + 2));
+    double most = 0.0, u[SEQUENCE_DIMENSIONS];
+    for (uint32_t k = 0; k < POINTS; k++) {
+        sequence_point(&sequence, k, u);
+        most = fmax(most, remainder_look(remainder, r->gather->model->scene,
+                                         receiver_start(r, u[0], u[1]),
+                                         r->facet.plane.normal));
+    }
+    int points = POINTS;
+    while (points < MOST_POINTS && points * PEAK < MOST_POINTS * most)
+        points *= 2;
+    return points;
+}
+
+/* Aims at one root, and adds the variance of its light. */
+static void aim_at_remainder(struct receiver *r, struct remainder *remainder)
+{
+    uint64_t seed = hash_mix(r->seed + 40) ^ hash_mix((uint64_t)remainder->root);
+    struct sequence sequence = sequence_start(seed);
+    int points = points_for(r, remainder, seed);
+    struct rgb first = r->light, last = first, middle = first;
+    for (int k = 0; k < points; k++) {
+        struct vec3 x, y;
+        double seen = look(r, remainder, &sequence, k, &x, &y);
+        if (seen > 0.0 && receiver_blocker(r, x, y, remainder->root) < 0)
+            receiver_see(r, remainder->root, y, seen / points,
+                         hash_mix(seed + 1) + 256 * (uint64_t)k);
+        for (int c = 0; c < BANDS; c++) {
+            double h = r->light.band[c] - last.band[c];
+            r->row.chance[c] += h * h;
+        }
+        last = r->light;
+        middle = 2 * k + 2 == points ? last : middle;
+    }
+    for (int c = 0; c < BANDS; c++) {
+        double all = last.band[c] - first.band[c];
+        double apart = 2.0 * (middle.band[c] - first.band[c]) - all;
+        r->row.chance[c] = fmax(0.0, r->row.chance[c] - all * all / points);
+        r->row.halves[c] += apart * apart;
+    }
+}
+
+void receiver_aim_through(struct receiver *r)
+{
+    const struct final_gather *g = r->gather;
+    for (int i = 0; r->least >= 0.0 && i < g->view.openings->count; i++)
+        if (receiver_aims_through(r, g->view.openings->items[i].root))
+            aim_at_remainder(r, &g->view.openings->items[i]);
+}
+
+void openings_free(struct openings *openings)
+{
+    if (openings)
+        alloc_free(openings->aimed);
+    alloc_free(openings);
+}

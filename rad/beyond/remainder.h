@@ -1,0 +1,42 @@
+/* What is seen of a root from a point past triangles that are known to hide parts of it:
+ * its remainder. */
+#ifndef RAD_BEYOND_REMAINDER_H
+#define RAD_BEYOND_REMAINDER_H
+
+#include "geom/outlook.h"
+#include "geom/scene.h"
+
+enum { BLOCKERS_MOST = 24 };
+
+struct remainder {
+    int32_t root;
+    struct triangle triangle;
+    struct plane plane;
+    int32_t blockers[BLOCKERS_MOST]; /* [count] triangles in front of the plane */
+    int count;
+    struct outlook outlook;
+    struct vec3 normal; /* of the surface that it is looked at from */
+    int hidden;    /* blockers that have been cut out of the outlook; -1: there is none */
+    double whole;  /* factor of the root without blockers, 1 */
+    double before[OUTLOOK_PIECES + 1]; /* factors of the pieces before each, added up,
+                                          1 */
+};
+
+/* All of the root. */
+struct remainder remainder_start(const struct scene *scene, int32_t root);
+
+/* True if the triangle is a blocker that was not known and is now. */
+bool remainder_learn(struct remainder *remainder, const struct scene *scene,
+                     int32_t blocker);
+
+/* Looks from the point x of a surface with this normal. Returns the factor of all that is
+ * seen, 1. */
+double remainder_look(struct remainder *remainder, const struct scene *scene,
+                      struct vec3 x, struct vec3 normal);
+
+/* A point of it as looked at last, chosen by u and v in [0, 1): by the factors of its
+ * parts, which are quartered so often. */
+struct vec3 remainder_point(const struct remainder *remainder, int quarterings, double u,
+                            double v);
+
+#endif
