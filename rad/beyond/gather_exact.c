@@ -28,6 +28,10 @@ static const double SLENDER = 64.0;
  * for, there is more to win. */
 static const double VARIES = 0.1;
 
+/* The light of a sender is looked at in quarters if the square of its size is more than
+ * this times the square of its distance. */
+static const double NEAR_SENDER = 0.2;
+
 /* Most times that a leaf is quartered. */
 enum { QUARTERINGS = 3 };
 
@@ -148,20 +152,41 @@ static void three_points(const struct triangle *t, struct vec3 x[3])
         x[k] = vec3_add(sum, vec3_scale(c[k], 0.5));
 }
 
-/* The mean place on a sender that its light comes from, in barycentric coordinates. */
+/* The square of the size of a sender over its distance. */
+static double nearness(const struct facet *to, const struct triangle *sender)
+{
+    struct vec3 apart =
+        vec3_sub(triangle_centroid(&to->triangle), triangle_centroid(sender));
+    double radius = triangle_radius(sender);
+    return radius * radius / vec3_dot(apart, apart);
+}
+
+/* The mean place on a sender that its light comes from, in barycentric coordinates, by
+ * three points of it, or of each of its quarters if it is near: else the senders along a
+ * tube all err to the same side, and reflection after reflection adds to it. */
 static void place_of_light(const struct facet *to, const struct triangle *sender,
                            struct vec3 normal, double w[3])
 {
-    struct vec3 x[3], y[3];
-    double light[3] = {0.0, 0.0, 0.0};
+    const struct triangle at = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+    struct vec3 x[3], y[3], weights[3], sum = {0.0, 0.0, 0.0};
+    int parts = nearness(to, sender) > NEAR_SENDER ? 4 : 1;
+    double all = 0.0;
     three_points(&to->triangle, x);
-    three_points(sender, y);
+    for (int part = 0; part < parts; part++) {
+        struct triangle from = parts == 1 ? *sender : triangle_child(sender, part);
+        struct triangle there = parts == 1 ? at : triangle_child(&at, part);
+        three_points(&from, y);
+        three_points(&there, weights);
+        for (int k = 0; k < 3; k++) {
+            double light = 0.0;
+            for (int i = 0; i < 3; i++)
+                light += receiver_kernel(x[i], to->plane.normal, y[k], normal);
+            sum = vec3_add(sum, vec3_scale(weights[k], light));
+            all += light;
+        }
+    }
     for (int k = 0; k < 3; k++)
-        for (int i = 0; i < 3; i++)
-            light[k] += receiver_kernel(x[i], to->plane.normal, y[k], normal);
-    double all = light[0] + light[1] + light[2];
-    for (int k = 0; k < 3; k++)
-        w[k] = all > 0.0 ? 1.0 / 6.0 + 0.5 * light[k] / all : 1.0 / 3.0;
+        w[k] = all > 0.0 ? vec3_axis(sum, k) / all : 1.0 / 3.0;
 }
 
 /* True if a sender over which B varies by `range` is to be taken in parts: over it the
@@ -171,10 +196,7 @@ static bool is_to_be_split(const struct receiver *r, const struct triangle *send
                            double factor, double range)
 {
     const struct final_gather *g = r->gather;
-    struct vec3 apart =
-        vec3_sub(triangle_centroid(&r->facet.triangle), triangle_centroid(sender));
-    double radius = triangle_radius(sender);
-    double near2 = fmin(1.0, radius * radius / vec3_dot(apart, apart));
+    double near2 = fmin(1.0, nearness(&r->facet, sender));
     return factor * range * near2 * g->rays > VARIES * g->mean;
 }
 
@@ -206,8 +228,9 @@ static double factor_to(const struct receiver *r, const struct triangle *sender)
 /* Adds a part whose factor is known as a whole. */
 static void add_whole(struct receiver *r, const struct sender_part *part, double factor)
 {
-    double w[3], at[3];
-    place_of_light(&r->facet, &part->triangle, part->normal, w);
+    double w[3] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}, at[3];
+    if (gather_slope(r->gather, part->patch).rise != 0.0)
+        place_of_light(&r->facet, &part->triangle, part->normal, w);
     for (int k = 0; k < 3; k++)
         at[k] = part->centre[k] + part->size * (w[k] - 1.0 / 3.0);
     receiver_add_point(r, part->patch, at, &(struct rgb){{factor, factor, factor}});

@@ -557,6 +557,8 @@ int main(int argc, char **argv)
     test_cavity(4.0, 0.5, 0.0, 0.0);
     test_round("light pipe", &PIPE, 1.0, (double[]){0, 1}, (double[]){.9, 0},
                (double[]){0, 0}, BARS);
+    test_round("long light pipe", &PIPE, 10.0, (double[]){0, 1}, (double[]){.9, 0},
+               (double[]){0, 0}, BARS);
     test_round("discs, rho 0.5", &DISCS, 1.0, (double[]){1, 0}, (double[]){.5, .5},
                (double[]){1.039054697589, .198684128339}, BARS);
     test_round("discs, rho 0.8", &DISCS, 1.0, (double[]){1, 0}, (double[]){.8, .8},
