@@ -25,10 +25,10 @@ static const double TIMES = 30.0;
 /* A root is large that has this part of all area. */
 static const double LARGE = 1e-3;
 
-/* Roots that are examined, those that send most; points from which each is looked at;
- * points of a leaf, at least and at most; quarterings of a remainder. */
-enum { MOST_ROOTS = 64, POINTS_LOOKED = 256, POINTS = 8, MOST_POINTS = 64 };
-enum { QUARTERINGS = 3 };
+/* Roots examined, those that send most; points from which each is looked at, or until
+ * SEEN past known blockers; points of a leaf, least and most; quarterings of that. */
+enum { MOST_ROOTS = 64, POINTS_LOOKED = 256, SEEN = 8 };
+enum { POINTS = 8, MOST_POINTS = 64, QUARTERINGS = 3 };
 
 /* A leaf has MOST_POINTS where the factor of a remainder is more than this. */
 static const double PEAK = 0.01;
@@ -113,7 +113,7 @@ static bool is_worth_aiming(struct receiver *r, struct remainder *remainder)
         sequence_start(hash_mix(r->seed) ^ hash_mix((uint64_t)remainder->root));
     double sum = 0.0;
     int count = 0, passed = 0; /* points since a blocker was learnt */
-    for (int i = 0; i < POINTS_LOOKED; i++, count++) {
+    for (int i = 0; i < POINTS_LOOKED && passed < SEEN; i++, count++) {
         struct vec3 x, y;
         double seen = look(r, remainder, &sequence, i, &x, &y);
         int32_t blocker = seen > 0.0 ? receiver_blocker(r, x, y, remainder->root) : -1;
