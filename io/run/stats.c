@@ -12,7 +12,8 @@ static const char *const PHASE_NAMES[PHASE_COUNT] = {
     "migration", "gather",      "push_pull", "scatter",    "solve",
     "render",    "write",       "octree",    "spaces",     "tree",
     "prepare",   "looks",       "sums",      "routes",     "final_gather",
-    "rows",      "spot_checks", "row_sums",  "shading",    "viewpoint"};
+    "rows",      "products",    "spot_checks", "row_sums",  "shading",
+    "viewpoint"};
 
 /* In the order of enum hold. */
 static const char *const HOLD_NAMES[] = {"none",    "level",      "area",

@@ -235,10 +235,13 @@ static void see_bare_parts(struct gathering *g, const struct rgb *b, bool lamps)
 static void see_from_afar(struct gathering *g, const struct rgb *b, bool lamps)
 {
     const struct final_gather *gather = &g->gather;
+    double *seconds = &g->solver->account.seconds[PHASE_PRODUCTS];
     int64_t *watts = alloc_array(BANDS * (size_t)g->near_count, sizeof *watts);
     see_bare_parts(g, b, lamps);
+    *seconds -= comm_seconds();
     for (int64_t row = 0; row < gather->count; row++)
         final_gather_add_near(gather, row, g->radiosity, watts);
+    *seconds += comm_seconds();
     add_up(g, watts, BANDS * g->near_count);
     for (int64_t k = 0; k < g->near_count; k++) {
         int64_t i = g->near[k];
@@ -262,12 +265,14 @@ static void see_from_afar(struct gathering *g, const struct rgb *b, bool lamps)
 static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
                         struct rgb *h)
 {
-    const struct comm *comm = g->solver->comm;
+    double *seconds = &g->solver->account.seconds[PHASE_PRODUCTS];
+    struct rgb *own = g->all + g->at[g->solver->comm->rank];
     place_radiosities(g, b);
     see_from_afar(g, b, lamps);
-    struct rgb *own = g->all + g->at[comm->rank];
+    *seconds -= comm_seconds();
     for (int64_t row = 0; row < g->gather.count; row++)
         own[row] = final_gather_irradiance(&g->gather, row, g->radiosity, lamps);
+    *seconds += comm_seconds();
     share_rows(g, h);
 }
 

@@ -100,7 +100,8 @@ END {
     divided("push-pull at home", "push_pull", "own")
     same("routes", "repeated", "routes")
     if (tree) divided("rows of the final gather", "rows", "final_gather")
-    solved = seconds["final_gather"] - seconds["rows"]
+    if (tree) divided("rows times light", "products", "final_gather")
+    solved = seconds["final_gather"] - seconds["rows"] - seconds["products"]
     if (tree)
         line("light solved for by rows", "repeated", solved, solved, solved, "repeated")
     same("row sums for the report", "repeated", "row_sums")
