@@ -16,7 +16,9 @@
  * and over a leaf it is linear (rad/beyond/final_gather.c). What is left is the bend: B
  * of a leaf less that of the linear function over its parent. Where surfaces reflect
  * nearly all light its error comes back many times, so less of it is allowed: BENT. The
- * leaf is split, and B is linear over it.
+ * leaf is split, and B is linear over it. But a root that is not divided has no parent:
+ * where a surface is many small roots, each link to one tells too little to divide it,
+ * and B would be constant over each. So these are looked at, too.
  *
  * Looks also tell how noisy the light of a leaf is: rows get rays in proportion to the
  * square root of area times variance, which makes the noise, by area, least for a given
@@ -52,7 +54,7 @@ enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 4 };
 enum { MOST_DOUBLED = 4, MOST_HALVED = 2 };
 enum { ROUNDS = 6, FEWEST_RAYS = 4 };
 
-/* Marks in place of a variance: the row will be exact; the leaf is not looked at. */
+/* Marks in place of a variance: the row will be exact; too dark to be looked at. */
 static const double IS_EXACT = -1.0, IS_UNSEEN = -2.0;
 
 /* Estimates for a leaf, by its look or its parent's. */
@@ -352,16 +354,25 @@ static void split_bent(struct looking *l)
     list_leaves(mesh, forest);
 }
 
+/* Leaves of open roots will have exact rows: of divided ones, or of `all`. */
+static void know_exact(struct looking *l, bool all)
+{
+    const struct forest *forest = l->solver->model.forest;
+    for (int64_t i = 0; i < l->mesh->count; i++) {
+        int32_t leaf = l->mesh->leaves[i];
+        const struct patch *patch = &forest->patches[leaf];
+        if (l->open[patch->id.root] && (all || patch->parent >= 0))
+            l->known[leaf] = (struct known){IS_EXACT, 0.0f, 1.0f};
+    }
+}
+
 /* Before there are looks: all leaves that need rays are as noisy as each other. */
 static void know_nothing(struct looking *l)
 {
-    const struct forest *forest = l->solver->model.forest;
-    RESERVE(l->known, &l->known_capacity, forest->count);
-    for (int64_t i = 0; i < l->mesh->count; i++) {
-        int32_t leaf = l->mesh->leaves[i];
-        bool open = l->open[forest->patches[leaf].id.root];
-        l->known[leaf] = (struct known){open ? IS_EXACT : 1.0, 0.0f, 1.0f};
-    }
+    RESERVE(l->known, &l->known_capacity, l->solver->model.forest->count);
+    for (int64_t i = 0; i < l->mesh->count; i++)
+        l->known[l->mesh->leaves[i]] = (struct known){1.0, 0.0f, 1.0f};
+    know_exact(l, l->rays < FEWEST_LOOKED);
 }
 
 /* The leaves to be looked at, [*count]. */
@@ -379,14 +390,13 @@ static int32_t *choose_leaves(struct looking *l, int64_t *count)
     *count = 0;
     for (int64_t i = 0; i < mesh->count; i++) {
         struct known *known = &l->known[mesh->leaves[i]];
-        if (known->variance == IS_EXACT)
-            continue;
+        bool exact = known->variance == IS_EXACT;
         double area = forest_area(model->forest, mesh->leaves[i]);
         double most = SPREAD_MOST * (light[i] + UNSURE * area * (sum / model->area));
-        if (most >= MESH * model->criterion.epsilon * sum) {
+        if (!exact && most >= MESH * model->criterion.epsilon * sum) {
             leaves[(*count)++] = mesh->leaves[i];
         } else {
-            known->variance = IS_UNSEEN;
+            known->variance = exact ? IS_EXACT : IS_UNSEEN;
             l->unseen += light[i];
         }
     }
@@ -437,6 +447,7 @@ static void refine(struct looking *l)
     alloc_free(leaves);
     forest_average(l->solver->model.forest);
     list_leaves(mesh, l->solver->model.forest);
+    know_exact(l, true);
     guess_unseen(l);
 }
 
