@@ -29,9 +29,10 @@
 #include "rad/beyond/sequence.h"
 #include "rad/pushpull.h"
 
-/* A lamp emits, and a bright root reflects, more than this times the mean reflected
- * radiosity: where all surfaces are alike, as in a furnace, there is none. */
-static const double LAMP = 4.0;
+/* A lamp emits more than LAMP times the mean radiosity or, where little is reflected,
+ * BRIGHT times the mean that is reflected; a bright root reflects more than that. Where
+ * all surfaces are alike, as in a furnace, there is none. */
+static const double LAMP = 1.1, BRIGHT = 4.0;
 
 /* Where no more than this part of the surface emits, all of that is lamps: a dim one may
  * be all the light of a room beside a bright one, and rays would hardly find it. */
@@ -74,7 +75,9 @@ static double least_of_lamps(const struct model *model)
     for (int32_t root = 0; root < scene_root_count(model->scene); root++)
         if (material_emits(scene_root_material(model->scene, root)))
             area += scene_root_area(model->scene, root);
-    return area <= FEW * model->area ? 0.0 : LAMP * mean_reflected(model);
+    if (area <= FEW * model->area)
+        return 0.0;
+    return fmin(LAMP * mean_radiosity(model), BRIGHT * mean_reflected(model));
 }
 
 /* Halves the rays for each fourfold of MANY leaves: a picture of them is as smooth as
@@ -91,7 +94,7 @@ void final_gather_find_bright(struct final_gather *gather)
     const struct model *model = gather->model;
     double reflected = mean_reflected(model);
     lamps_free(&gather->bright);
-    gather->bright = lamps_create(model, LAMP * reflected, true);
+    gather->bright = lamps_create(model, BRIGHT * reflected, true);
     if (lamps_power(&gather->bright) >= LEAST_BRIGHT * reflected * model->area)
         return;
     lamps_free(&gather->bright);
