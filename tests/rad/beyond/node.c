@@ -364,12 +364,39 @@ static bool heeds_judgement(struct model *model, struct link link, int *heard)
     return splits && stays;
 }
 
+/* If a far patch is dark and its parts are even, all error of a link to a bright cluster
+ * is in doubt. True of other links. */
+static bool heeds_even_parts(struct model *model, struct link link, int *heard)
+{
+    bool of_p = !node_is_cluster(link.p);
+    int32_t patch = of_p ? link.p : link.q, cluster = of_p ? link.q : link.p;
+    if (node_is_cluster(patch) || link.seen == 0)
+        return true;
+    struct rgb *dark = &model->forest->radiosity[patch], kept = *dark;
+    struct rgb *bright = &model->clusters->radiosity[~cluster], before = *bright;
+    *dark = (struct rgb){{0.0, 0.0, 0.0}};
+    *bright = (struct rgb){{1.0, 1.0, 1.0}};
+    struct end p = end_of(model, link.p), q = end_of(model, link.q);
+    struct meeting m = ends_meet(&p, &q);
+    float judged;
+    memcpy(&judged, &link.blocker, sizeof judged);
+    memset(of_p ? link.parts_p : link.parts_q, 64, sizeof link.parts_p);
+    double threshold = model->link_threshold;
+    model->link_threshold = 1.1 * fmax((double)judged, m.most / 16.0) * m.light;
+    bool stays = error_oracle_side_to_split(model, &link) == NODE_NONE;
+    model->link_threshold = threshold;
+    *dark = kept;
+    *bright = before;
+    *heard += !m.near && m.light > 0.0;
+    return stays || m.near;
+}
+
 static void test_judgement(void)
 {
     struct wood wood = wood_make(room(3, 4, false));
     wood.world.model.link_threshold = HUGE_VAL;
     struct link_list links = links_below_top(&wood);
-    int count = 0, right = 0, heeded = 0, heard = 0;
+    int count = 0, right = 0, heeded = 0, heard = 0, even = 0, patches = 0;
     for (int64_t i = 0; i < links.count; i++) {
         struct link *link = &links.items[i];
         if (!link_has_cluster(link))
@@ -377,10 +404,13 @@ static void test_judgement(void)
         count++;
         right += has_judgement(&wood.world.model, link);
         heeded += heeds_judgement(&wood.world.model, *link, &heard);
+        even += heeds_even_parts(&wood.world.model, *link, &patches);
     }
     tap_ok(count > 100 && right == count,
            "%d of %d links keep the G of their first look", right, count);
     tap_ok(heard > 20 && heeded == count, "and %d far ones are split by it", heard);
+    tap_ok(patches > 10 && even == count, "%d of patches are not split for even parts",
+           patches);
     link_list_free(&links);
     wood_free(&wood);
 }
