@@ -86,12 +86,13 @@ static int *deal_leaves(const struct looking *l, const int32_t *leaves, const in
 {
     int ranks = l->solver->comm->size;
     int *rank_of = alloc_array((size_t)count, sizeof *rank_of);
-    int64_t *work = alloc_array((size_t)count, sizeof *work); /* tests / 2^24 */
+    int64_t *work = alloc_array((size_t)count, sizeof *work);
+    double unit = 0x1p32 / l->gather.rays; /* of a test: their sum has to fit */
     for (int64_t i = 0; i < count; i++) {
         const struct known *known = &l->known[leaves[i]];
         double tests =
             (double)known->fixed + (rays ? rays[i] : l->rays) * (double)known->work;
-        work[i] = (int64_t)(tests * 0x1p24) - i / ranks * 256 +
+        work[i] = (int64_t)(tests * unit) - i / ranks * 256 +
                   (int64_t)(hash_mix((uint64_t)i) >> 56);
     }
     items_deal(work, (int32_t)count, ranks, rank_of);
