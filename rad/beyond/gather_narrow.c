@@ -35,8 +35,8 @@ static const double PEAK = 0.01;
 
 /* Roots that are aimed at from the leaves of one root. */
 struct openings {
-    struct remainder items[MOST_ROOTS]; /* [count] */
-    int count;
+    struct remainder *items; /* [count] */
+    int64_t count, capacity;
     int32_t from;   /* root; -1: none yet */
     uint8_t *aimed; /* [roots] 1: one of the items */
 };
@@ -138,6 +138,7 @@ static void examine_root(struct openings *openings, struct receiver *whole, int3
     struct octree_counts tests = g->model->counts, *apart = &g->view.counts;
     struct gather_counts rays = g->counts;
     int64_t estimating = g->model->estimating;
+    RESERVE(openings->items, &openings->capacity, openings->count + 1);
     struct remainder *item = &openings->items[openings->count];
     *item = remainder_start(g->model->scene, root);
     if (is_worth_aiming(whole, item)) {
@@ -157,7 +158,7 @@ static void find_openings(struct openings *openings, const struct receiver *r,
     const struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     struct receiver whole = *r;
-    for (int i = 0; i < openings->count; i++)
+    for (int64_t i = 0; i < openings->count; i++)
         openings->aimed[openings->items[i].root] = 0;
     openings->from = from;
     openings->count = 0;
@@ -246,14 +247,16 @@ static void aim_at_remainder(struct receiver *r, struct remainder *remainder)
 void receiver_aim_through(struct receiver *r)
 {
     const struct final_gather *g = r->gather;
-    for (int i = 0; r->least >= 0.0 && i < g->view.openings->count; i++)
+    for (int64_t i = 0; r->least >= 0.0 && i < g->view.openings->count; i++)
         if (receiver_aims_through(r, g->view.openings->items[i].root))
             aim_at_remainder(r, &g->view.openings->items[i]);
 }
 
 void openings_free(struct openings *openings)
 {
-    if (openings)
-        alloc_free(openings->aimed);
+    if (!openings)
+        return;
+    alloc_free(openings->items);
+    alloc_free(openings->aimed);
     alloc_free(openings);
 }
