@@ -20,7 +20,9 @@
  * leaf, which others see, is brighter than the mean. With the part n of the leaf's light
  * that goes to near receivers and the mean radiosity L that they have met, far ones are
  * shown B + n (B - L). (n / (1 - n) would be the whole difference, and noise where hardly
- * any far ray meets the leaf.)
+ * any far ray meets the leaf.) This excess, n (B - L), is that of the solution before, so
+ * light is solved for ROUNDS times: as a part of W it would make rows of both signs, and
+ * light in bright rooms would grow with each reflection.
  *
  * Where a box stands on part of a leaf, rays from there meet its inside: that part is
  * dark, so the part that others see is brighter than the mean, by the inverse of its
@@ -46,6 +48,9 @@
 
 enum { STEPS_MOST = 500 };
 
+/* Times that the excess of leaves too near is found anew. */
+enum { ROUNDS = 3 };
+
 /* A scene is closed if no more than this part of all rays escapes. */
 static const double CRACKS = 1e-5;
 
@@ -66,6 +71,12 @@ struct cover {
     double outside; /* share that is not inside of things, 1 */
 };
 
+/* A leaf too near for some. */
+struct too_near {
+    int64_t leaf;      /* number */
+    struct rgb excess; /* of B as seen from afar over its mean, W/m^2 */
+};
+
 /* Leaves have numbers, in the order of forest_order(), the same on all ranks. Rows of a
  * rank are in the order of its leaves. */
 struct gathering {
@@ -76,7 +87,7 @@ struct gathering {
     double *areas;          /* [count] square scene units */
     struct cover *covers;   /* [count] */
     int64_t count;
-    int64_t *near;          /* [near_count] leaves too near for some, once numbered */
+    struct too_near *near;  /* [near_count], once numbered */
     int64_t near_count;
     bool closed;            /* hardly any ray of any rank escapes */
     struct rgb *radiosity;  /* by place: radiosities to be gathered */
@@ -172,12 +183,11 @@ static void share_rows(struct gathering *g, struct rgb *values)
     alloc_free(next);
 }
 
-/* Sets the radiosities to be gathered: of leaves, and by the pull of all patches. */
+/* Sets the radiosities to be gathered: of leaves, until the pull. */
 static void place_radiosities(struct gathering *g, const struct rgb *b)
 {
     for (int64_t i = 0; i < g->count; i++)
         g->radiosity[g->gather.place[g->leaves[i]]] = b[i];
-    final_gather_pull(&g->gather, g->radiosity);
 }
 
 /* Collective. Adds up integers of all ranks, which go to the sum and back. */
@@ -203,7 +213,7 @@ static void share_near(struct gathering *g)
             continue;
         number[place] = (int32_t)g->near_count;
         items[g->near_count] = items[place];
-        g->near[g->near_count++] = i;
+        g->near[g->near_count++].leaf = i;
     }
     for (int64_t k = 0; k < final_gather_terms(gather); k++)
         if (gather->terms[k].near >= 0)
@@ -227,48 +237,54 @@ static void see_bare_parts(struct gathering *g, const struct rgb *b, bool lamps)
                 own + (b[i].band[c] - own) / share;
         }
     }
-    final_gather_pull(&g->gather, g->radiosity);
 }
 
-/* Collective. Makes the radiosities to be gathered those that far receivers see: see
- * above. */
-static void see_from_afar(struct gathering *g, const struct rgb *b, bool lamps)
+/* Collective. Finds how much brighter far receivers see leaves than these are in the
+ * mean, for their radiosities `b`: see above. */
+static void find_excess(struct gathering *g, const struct rgb *b)
 {
     const struct final_gather *gather = &g->gather;
     double *seconds = &g->solver->account.seconds[PHASE_PRODUCTS];
     int64_t *watts = alloc_array(BANDS * (size_t)g->near_count, sizeof *watts);
-    see_bare_parts(g, b, lamps);
+    place_radiosities(g, b);
+    see_bare_parts(g, b, true);
+    final_gather_pull(gather, g->radiosity);
     *seconds -= comm_seconds();
     for (int64_t row = 0; row < gather->count; row++)
         final_gather_add_near(gather, row, g->radiosity, watts);
     *seconds += comm_seconds();
     add_up(g, watts, BANDS * g->near_count);
     for (int64_t k = 0; k < g->near_count; k++) {
-        int64_t i = g->near[k];
-        int32_t place = gather->place[g->leaves[i]];
+        int64_t i = g->near[k].leaf;
         const struct gather_near *near = &gather->near.items[k];
+        const struct rgb *own = &g->radiosity[gather->place[g->leaves[i]]];
         double area = g->areas[i] * fmax(LEAST_OUTSIDE, g->covers[i].outside);
         double part = (double)near->area * gather->near.unit_area / area;
         double unit = gather->near.unit_watts / (area * fmax(1.0, part));
-        for (int c = 0; c < BANDS; c++) {
-            int64_t sum = watts[BANDS * k + c] + (lamps ? near->watts[c] : 0);
-            double *at = &g->radiosity[place].band[c];
-            *at += fmin(1.0, part) * *at - (double)sum * unit;
-        }
+        for (int c = 0; c < BANDS; c++)
+            g->near[k].excess.band[c] =
+                fmax(-own->band[c],
+                     fmin(1.0, part) * own->band[c] -
+                         (double)(watts[BANDS * k + c] + near->watts[c]) * unit);
     }
-    final_gather_pull(gather, g->radiosity);
     alloc_free(watts);
 }
 
-/* Collective. Irradiances of all leaves, W/m^2, for their radiosities `b`, with the
- * source if `lamps`. */
+/* Collective. Irradiances of all leaves, W/m^2, for their radiosities `b`; with the
+ * source and the excess if `lamps`. */
 static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
                         struct rgb *h)
 {
     double *seconds = &g->solver->account.seconds[PHASE_PRODUCTS];
     struct rgb *own = g->all + g->at[g->solver->comm->rank];
     place_radiosities(g, b);
-    see_from_afar(g, b, lamps);
+    see_bare_parts(g, b, lamps);
+    for (int64_t k = 0; k < g->near_count && lamps; k++) {
+        int32_t place = g->gather.place[g->leaves[g->near[k].leaf]];
+        for (int c = 0; c < BANDS; c++)
+            g->radiosity[place].band[c] += g->near[k].excess.band[c];
+    }
+    final_gather_pull(&g->gather, g->radiosity);
     *seconds -= comm_seconds();
     for (int64_t row = 0; row < g->gather.count; row++)
         own[row] = final_gather_irradiance(&g->gather, row, g->radiosity, lamps);
@@ -554,16 +570,20 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     size_t count = (size_t)g->count;
     struct rgb *b = alloc_array(count, sizeof *b), *h = alloc_array(count, sizeof *h);
     struct rgb *start = alloc_array(count, sizeof *start);
+    struct rgb *none = alloc_array(count, sizeof *none);
     share_near(g);
     share_covers(g);
-    irradiances(g, b, true, h); /* of lamps alone */
-    set_radiosities(g, h, start);
     for (int64_t i = 0; i < g->count; i++)
         b[i] = forest->radiosity[g->leaves[i]];
     double goal = 0.5 * model->criterion.tolerance * model->absorptance;
     double *weights = weigh(g, b);
-    struct bicgstab done =
-        bicgstab_solve(reflect, g, start, weights, g->count, goal, STEPS_MOST, b);
+    struct bicgstab done = {.steps = 0};
+    for (int round = 0; round < ROUNDS; round++) {
+        find_excess(g, b);
+        irradiances(g, none, true, h); /* of lamps and of excess alone */
+        set_radiosities(g, h, start);
+        done = bicgstab_solve(reflect, g, start, weights, g->count, goal, STEPS_MOST, b);
+    }
     alloc_free(weights);
     irradiances(g, b, true, h);
     for (size_t i = 0; i < count; i++) /* slopes may go below 0 where B has changed */
@@ -574,12 +594,14 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     set_radiosities(g, h, b);
     judge(g, h, b, done.residual, vote);
     place_radiosities(g, b);
+    final_gather_pull(&g->gather, g->radiosity);
     estimate_errors(g);
     share_straight_light(g);
     for (int64_t i = 0; i < g->count; i++)
         forest->radiosity[g->leaves[i]] = b[i];
     forest_average(forest);
     final_gather_find_bright(&g->gather); /* as a stored solution has them */
+    alloc_free(none);
     alloc_free(start);
     alloc_free(h);
     alloc_free(b);

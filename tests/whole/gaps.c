@@ -278,6 +278,19 @@ static void test_errors(void)
     solution_free(&s);
 }
 
+/* If the excess of leaves too near were part of the equation, light would grow with each
+ * reflection, and not converge. */
+static void test_white_room(void)
+{
+    struct scene *white = room();
+    for (int32_t i = 0; i < white->material_count; i++)
+        white->materials[i].reflectance = (struct rgb){{0.9, 0.9, 0.9}};
+    struct solution s = solve_scene(white, "--epsilon 1e-3 --final-gather 64");
+    tap_ok(s.vote.converged, "a white room is solved for: estimated error %.1f %%",
+           100.0 * s.solver->beyond->answer.counts.error);
+    solution_free(&s);
+}
+
 /* --- a tent --- */
 
 /* A face and its back. */
@@ -337,6 +350,7 @@ int main(int argc, char **argv)
     comm_start(&world_comm, &argc, &argv);
     test_room();
     test_errors();
+    test_white_room();
     test_tent();
     comm_stop(&world_comm);
     return tap_done();
