@@ -14,8 +14,8 @@
  *
  * Leaves with exact rows are not looked at: links without blockers tell where B varies,
  * and over a leaf it is linear (rad/beyond/final_gather.c). What is left is the bend: B
- * of a leaf less that of the linear function over its parent. Where surfaces reflect
- * nearly all light its error comes back many times, so less of it is allowed: BENT. The
+ * of a leaf less that of the linear function over its parent. Its error comes back as
+ * often as light is reflected, so less of it is allowed: BENT times the absorptance. The
  * leaf is split, and B is linear over it. But a root that is not divided has no parent:
  * where a surface is many small roots, each link to one tells too little to divide it,
  * and B would be constant over each. So these are looked at, too.
@@ -40,7 +40,7 @@
 #include "mpi/memory.h"
 #include "rad/oracle.h"
 
-static const double MESH = 0.005, BENT = 0.001;
+static const double MESH = 0.005, BENT = 0.002;
 
 /* The variance of the light over a leaf is at most this times its square, which the links
  * tell with an error of this part of the mean square. */
@@ -331,8 +331,10 @@ static double bend_of(const struct forest *forest, int32_t leaf)
 static void split_bent(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;
-    struct forest *forest = l->solver->model.forest;
+    const struct model *model = &l->solver->model;
+    struct forest *forest = model->forest;
     double *bends = alloc_array((size_t)mesh->count, sizeof *bends), sum = 0.0;
+    double part = BENT * model->absorptance * model->criterion.epsilon;
     for (int64_t i = 0; i < mesh->count; i++) {
         int32_t leaf = mesh->leaves[i];
         double area = forest_area(forest, leaf);
@@ -342,8 +344,7 @@ static void split_bent(struct looking *l)
     }
     for (int64_t i = 0; i < mesh->count; i++) {
         int32_t leaf = mesh->leaves[i];
-        if (!(bends[i] > BENT * l->solver->model.criterion.epsilon * sum) ||
-            !may_split(l, leaf))
+        if (!(bends[i] > part * sum) || !may_split(l, leaf))
             continue;
         forest_split(forest, leaf);
         mesh->split++;

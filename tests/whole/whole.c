@@ -576,6 +576,7 @@ int main(int argc, char **argv)
     test_isothermal(&PLATES, 0.1, 0.1, SHORT, .601952438427);
     test_isothermal(&PLATES, 0.1, 0.2, SHORT, 0.0);
     test_isothermal(&PLATES, 0.1, 0.5, SHORT, .920355233642);
+    test_isothermal(&PLATES, 0.1, 0.02, 2 * SHORT, 0.0);
     test_isothermal(&GROOVE, PI / 6.0, 0.5, STRIP, .8061670444);
     test_isothermal(&GROOVE, PI / 3.0, 0.5, STRIP, .6729508487);
     test_isothermal(&GROOVE, PI / 3.0, 0.9, STRIP, .9476083454);
