@@ -91,6 +91,11 @@ for ranks in 1 2 3 4 7 16; do
         same ranks-$ranks serial
 done
 
+# By counts. Dealt once, by predicted work, 2.8 %.
+idle=$(sed -n "s|.*\"final_gather\":.*\"all\": \([0-9]*\).*\"slowest\": \([0-9]*\).*|\
+1 - \1 / 16 / \2|p" "$work/ranks-16/s.json")
+check "16 ranks are idle for at most 1.5 % of a gather: $idle" holds "$idle <= 0.015"
+
 produce flat-serial "$work/serial/phr" $cornell --flat --two-sided
 produce flat-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided
 check "the same with --flat --two-sided" same flat-3 flat-serial

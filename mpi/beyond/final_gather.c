@@ -38,11 +38,11 @@
 #include "mpi/beyond/beyond.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
 #include "mpi/beyond/gather_mesh.h"
+#include "mpi/beyond/stages.h"
 #include "rad/beyond/bicgstab.h"
 #include "rad/pushpull.h"
 
@@ -93,21 +93,17 @@ struct gathering {
     struct rgb *radiosity;  /* by place: radiosities to be gathered */
     struct rgb *all;        /* [count] buffer: a value of each row, rank by rank */
     int64_t bytes;          /* of values that ranks have exchanged so far */
-    int *rank_of;           /* [count] rank that has the row; borrowed from the mesh */
-    int *counts;            /* [ranks] rows of a rank */
-    int *at;                /* [ranks] place of a rank's first row in `all` */
+    struct stages stages;   /* who has which rows */
 };
 
 /* --- rows --- */
 
 static void gathering_start(struct gathering *g, struct solver *solver)
 {
-    const struct comm *comm = solver->comm;
     size_t patches = (size_t)solver->model.forest->count;
     g->gather =
         final_gather_create(&solver->model, solver->model.criterion.final_gather);
     g->leaves = g->mesh.leaves;
-    g->rank_of = g->mesh.rank_of;
     g->count = g->mesh.count;
     g->areas = alloc_array((size_t)g->count, sizeof *g->areas);
     g->covers = alloc_array((size_t)g->count, sizeof *g->covers);
@@ -116,11 +112,6 @@ static void gathering_start(struct gathering *g, struct solver *solver)
     g->near = alloc_array((size_t)g->count, sizeof *g->near);
     g->radiosity = alloc_array(patches, sizeof *g->radiosity);
     g->all = alloc_array((size_t)g->count, sizeof *g->all);
-    g->counts = alloc_array((size_t)comm->size, sizeof *g->counts);
-    g->at = alloc_array((size_t)comm->size, sizeof *g->at);
-    for (int64_t i = 0; i < g->count; i++)
-        g->counts[g->rank_of[i]]++;
-    comm_displacements(comm, g->counts, g->at);
 }
 
 /* Hands the gather over to the solver. */
@@ -135,27 +126,25 @@ static void gathering_end(struct gathering *g)
     alloc_free(g->near);
     alloc_free(g->radiosity);
     alloc_free(g->all);
-    alloc_free(g->counts);
-    alloc_free(g->at);
+    stages_free(&g->stages);
+}
+
+static void make_row(void *context, int64_t i)
+{
+    struct gathering *g = context;
+    final_gather_add(&g->gather, g->leaves[i], g->mesh.rays[i], g->mesh.exact[i]);
+    progress_tick(g->solver->progress,
+                  (double)g->gather.count * g->solver->comm->size / (double)g->count);
 }
 
 /* Collective. False if a signal on any rank has ended it. */
 static bool make_rows(struct gathering *g)
 {
     struct solver *solver = g->solver;
-    int64_t before = model_work(&solver->model);
     progress_begin(solver->progress, "gathering", -1, 0);
-    for (int64_t i = 0; i < g->count && !stop_is_asked(); i++) {
-        if (g->rank_of[i] != solver->comm->rank)
-            continue;
-        final_gather_add(&g->gather, g->leaves[i], g->mesh.rays[i], g->mesh.exact[i]);
-        progress_tick(solver->progress, (double)i / (double)g->count);
-    }
-    const struct octree_counts *proofs = &g->gather.view.counts;
-    ledger_add(&solver->account.ledger,
-               (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .share.done = model_work(&solver->model) - before +
-                                           proofs->node_tests + proofs->triangle_tests});
+    g->stages = (struct stages){.solver = solver, .gather = &g->gather, .act = make_row,
+                                .context = g, .work = g->mesh.work, .count = g->count};
+    stages_run(&g->stages);
     const struct gather_counts *counts = &g->gather.counts;
     int64_t sums[] = {counts->escaped, stop_is_asked(), counts->rays, counts->segments,
                       counts->exact, final_gather_terms(&g->gather),
@@ -173,14 +162,10 @@ static bool make_rows(struct gathering *g)
 /* Collective. Brings the value of each row, from `all`, to all ranks, by leaf number. */
 static void share_rows(struct gathering *g, struct rgb *values)
 {
-    const struct comm *comm = g->solver->comm;
-    comm_share(comm, g->all, g->counts, g->at, sizeof *g->all);
+    comm_share(g->solver->comm, g->all, g->stages.counts, g->stages.at, sizeof *g->all);
     g->bytes += g->count * (int64_t)sizeof *g->all;
-    int *next = alloc_array((size_t)comm->size, sizeof *next);
-    memcpy(next, g->at, (size_t)comm->size * sizeof *next);
     for (int64_t i = 0; i < g->count; i++)
-        values[i] = g->all[next[g->rank_of[i]]++];
-    alloc_free(next);
+        values[i] = g->all[g->stages.place[i]];
 }
 
 /* Sets the radiosities to be gathered: of leaves, until the pull. */
@@ -276,7 +261,7 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
                         struct rgb *h)
 {
     double *seconds = &g->solver->account.seconds[PHASE_PRODUCTS];
-    struct rgb *own = g->all + g->at[g->solver->comm->rank];
+    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
     place_radiosities(g, b);
     see_bare_parts(g, b, lamps);
     for (int64_t k = 0; k < g->near_count && lamps; k++) {
@@ -295,7 +280,7 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
 /* Collective. */
 static void share_covers(struct gathering *g)
 {
-    struct rgb *own = g->all + g->at[g->solver->comm->rank];
+    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
     struct rgb *shares = alloc_array((size_t)g->count, sizeof *shares);
     for (int64_t row = 0; row < g->gather.count; row++)
         own[row] = (struct rgb){{(double)g->gather.rows[row].bare,
@@ -420,7 +405,7 @@ static struct rgb variation_of(const struct gathering *g, int64_t place, struct 
 static void variances_by_mesh(struct gathering *g, struct rgb *variance)
 {
     const struct final_gather *gather = &g->gather;
-    struct rgb *own = g->all + g->at[g->solver->comm->rank];
+    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
     for (int64_t row = 0, k = 0; row < gather->count; row++) {
         struct triangle leaf =
             forest_triangle(g->solver->model.forest, gather->rows[row].leaf);
@@ -468,7 +453,7 @@ static void raise_to_sisters(const struct gathering *g, struct rgb *variance)
  * together. */
 static void variances_by_rays(struct gathering *g, struct rgb *variance)
 {
-    struct rgb *own = g->all + g->at[g->solver->comm->rank];
+    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
     struct rgb *halves = alloc_array((size_t)g->count, sizeof *halves);
     double as_chosen = 0.0, by_chance = 0.0;
     for (int kind = 0; kind < 2; kind++) {
@@ -532,7 +517,7 @@ static void estimate_errors(struct gathering *g)
 static void share_straight_light(struct gathering *g)
 {
     const struct forest *forest = g->solver->model.forest;
-    struct rgb *own = g->all + g->at[g->solver->comm->rank];
+    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
     struct rgb *light = alloc_array((size_t)g->count, sizeof *light);
     struct rgb *straight = alloc_array((size_t)forest->count, sizeof *straight);
     for (int64_t row = 0; row < g->gather.count; row++)

@@ -26,7 +26,7 @@
  * plain wall few.
  *
  * Looks also measure the work of a ray. Further looks and rows are dealt by the work that
- * this predicts, as roots are by their areas. */
+ * this predicts. */
 #include "mpi/beyond/gather_mesh.h"
 
 #include <math.h>
@@ -34,9 +34,8 @@
 #include <string.h>
 
 #include "geom/alloc.h"
-#include "geom/hash.h"
 #include "geom/stop.h"
-#include "mpi/assign.h"
+#include "mpi/beyond/stages.h"
 #include "mpi/memory.h"
 #include "rad/oracle.h"
 
@@ -74,30 +73,25 @@ struct looking {
     double unseen;   /* sum of area * (rho H)^2 of leaves that are not looked at */
     int rays;        /* of a look at a quarter */
     int64_t links;   /* of all ranks */
+    const int32_t *leaves;     /* [] that are looked at */
+    struct gather_look *looks; /* [looked] of this rank */
+    int64_t looked;
 };
 
-/* --- dealing --- */
+/* --- work --- */
 
-/* Deals leaves so that the predicted sums of their work are even. Of leaves of equal work
- * every rank gets one in each turn, in an order that changes. `rays`, [count], or NULL:
- * those of a look. [count], to be freed. */
-static int *deal_leaves(const struct looking *l, const int32_t *leaves, const int *rays,
-                        int64_t count)
+/* The predicted work of leaves, in tests, [count], to be freed. `rays`, [count], or NULL:
+ * those of a look. */
+static int64_t *predict_work(const struct looking *l, const int32_t *leaves,
+                             const int *rays, int64_t count)
 {
-    int ranks = l->solver->comm->size;
-    int *rank_of = alloc_array((size_t)count, sizeof *rank_of);
     int64_t *work = alloc_array((size_t)count, sizeof *work);
-    double unit = 0x1p32 / l->gather.rays; /* of a test: their sum has to fit */
     for (int64_t i = 0; i < count; i++) {
         const struct known *known = &l->known[leaves[i]];
-        double tests =
-            (double)known->fixed + (rays ? rays[i] : l->rays) * (double)known->work;
-        work[i] = (int64_t)(tests * unit) - i / ranks * 256 +
-                  (int64_t)(hash_mix((uint64_t)i) >> 56);
+        double each = (double)known->work;
+        work[i] = 1 + (int64_t)((double)known->fixed + (rays ? rays[i] : l->rays) * each);
     }
-    items_deal(work, (int32_t)count, ranks, rank_of);
-    alloc_free(work);
-    return rank_of;
+    return work;
 }
 
 /* --- open roots --- */
@@ -153,12 +147,16 @@ static bool half_is_open(struct looking *l, const struct root_area *sorted, bool
 static void find_open_roots(struct looking *l)
 {
     int32_t roots = scene_root_count(l->solver->model.scene);
+    int64_t before = final_gather_work(&l->gather);
     struct root_area *sorted = sort_roots(l->solver->model.scene, roots);
     uint8_t *open = alloc_array((size_t)roots, sizeof *open);
     l->open = alloc_array((size_t)roots, sizeof *l->open);
     if (half_is_open(l, sorted, false, open) && half_is_open(l, sorted, true, open))
         for (int32_t i = 0; i < roots; i++)
             l->open[sorted[i].root] = open[i];
+    ledger_add(&l->solver->account.ledger,
+               (struct phase_work){.kind = WORK_FINAL_GATHER,
+                                   .share.done = final_gather_work(&l->gather) - before});
     alloc_free(open);
     alloc_free(sorted);
 }
@@ -179,33 +177,32 @@ static void list_leaves(struct gather_mesh *mesh, const struct forest *forest)
     alloc_free(order);
 }
 
-/* Collective. Looks at `count` leaves; [count], on all ranks. It is a phase: ranks wait
- * for each other. */
+static void look_at(void *context, int64_t item)
+{
+    struct looking *l = context;
+    l->looks[l->looked++] = final_gather_look(&l->gather, l->leaves[item], l->rays);
+}
+
+/* Collective. Looks at `count` leaves; [count], on all ranks. */
 static struct gather_look *look(struct looking *l, const int32_t *leaves, int64_t count)
 {
     const struct comm *comm = l->solver->comm;
-    struct gather_look *all = alloc_array((size_t)count, sizeof *all);
+    int64_t *work = predict_work(l, leaves, NULL, count);
     struct gather_look *looks = alloc_array((size_t)count, sizeof *looks);
-    int *counts = alloc_array((size_t)comm->size, sizeof *counts);
-    int *at = alloc_array((size_t)comm->size, sizeof *at);
-    int *rank_of = deal_leaves(l, leaves, NULL, count);
+    struct stages stages = {.solver = l->solver, .gather = &l->gather, .act = look_at,
+                            .context = l, .work = work, .count = count};
+    l->leaves = leaves;
+    l->looks = alloc_array((size_t)count, sizeof *looks);
+    l->looked = 0;
+    stages_run(&stages);
+    memmove(l->looks + stages.at[comm->rank], l->looks,
+            (size_t)l->looked * sizeof *looks);
+    comm_share(comm, l->looks, stages.counts, stages.at, sizeof *looks);
     for (int64_t i = 0; i < count; i++)
-        counts[rank_of[i]]++;
-    comm_displacements(comm, counts, at);
-    int64_t before = model_work(&l->solver->model);
-    for (int64_t i = 0, k = at[comm->rank]; i < count && !stop_is_asked(); i++)
-        if (rank_of[i] == comm->rank)
-            all[k++] = final_gather_look(&l->gather, leaves[i], l->rays);
-    ledger_add(&l->solver->account.ledger,
-               (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .share.done = model_work(&l->solver->model) - before});
-    comm_share(comm, all, counts, at, sizeof *all);
-    for (int64_t i = 0; i < count; i++)
-        looks[i] = all[at[rank_of[i]]++];
-    alloc_free(rank_of);
-    alloc_free(at);
-    alloc_free(counts);
-    alloc_free(all);
+        looks[i] = l->looks[stages.place[i]];
+    stages_free(&stages);
+    alloc_free(l->looks);
+    alloc_free(work);
     return looks;
 }
 
@@ -248,17 +245,11 @@ static void split_leaf(struct forest *forest, int32_t leaf,
                 emission->band[c] + (double)look->reflected[k][c];
 }
 
-/* Keeps the estimates for a leaf by the quarters of a look from `first` to `last`. */
-static void keep_known(struct looking *l, int32_t leaf, const struct gather_look *look,
-                       int first, int last)
+static void keep_known(struct looking *l, int32_t leaf, const struct gather_look *look)
 {
-    struct known known = {.variance = look->variance + spread_of(look)};
-    for (int k = first; k <= last; k++) {
-        known.fixed += look->fixed[k] / (float)(last - first + 1);
-        known.work += look->work[k] / (float)(last - first + 1);
-    }
     RESERVE(l->known, &l->known_capacity, l->solver->model.forest->count);
-    l->known[leaf] = known;
+    l->known[leaf] = (struct known){look->variance + spread_of(look), look->fixed,
+                                    look->work};
 }
 
 /* (rho H)^2 of a leaf, over all bands, as links or looks tell it. */
@@ -298,13 +289,13 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     for (int64_t i = 0; i < count; i++) {
         int32_t leaf = (*leaves)[i];
         double error = forest_area(forest, leaf) * spread_of(&looks[i]);
-        keep_known(l, leaf, &looks[i], 0, 3);
+        keep_known(l, leaf, &looks[i]);
         if (!(error > *threshold) || !may_split(l, leaf))
             continue;
         split_leaf(forest, leaf, &looks[i]);
         for (int k = 0; k < 4; k++) {
             next[made++] = forest->patches[leaf].children + k;
-            keep_known(l, forest->patches[leaf].children + k, &looks[i], k, k);
+            keep_known(l, forest->patches[leaf].children + k, &looks[i]);
         }
     }
     alloc_free(looks);
@@ -516,13 +507,8 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     if (l.rays >= FEWEST_LOOKED)
         refine(&l);
     share_rays(&l);
-    mesh->rank_of = deal_leaves(&l, mesh->leaves, mesh->rays, mesh->count);
+    mesh->work = predict_work(&l, mesh->leaves, mesh->rays, mesh->count);
     mesh->traced = l.gather.counts.rays + l.gather.counts.segments;
-    const struct octree_counts *proofs = &l.gather.view.counts;
-    ledger_add(&solver->account.ledger,
-               (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .share.done =
-                                       proofs->node_tests + proofs->triangle_tests});
     int64_t stopped = stop_is_asked();
     comm_add(solver->comm, &stopped, 1);
     final_gather_free(&l.gather);
@@ -536,6 +522,6 @@ void gather_mesh_free(struct gather_mesh *mesh)
     alloc_free(mesh->leaves);
     alloc_free(mesh->rays);
     alloc_free(mesh->exact);
-    alloc_free(mesh->rank_of);
+    alloc_free(mesh->work);
     *mesh = (struct gather_mesh){0};
 }

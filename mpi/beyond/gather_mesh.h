@@ -10,7 +10,7 @@ struct gather_mesh {
     int32_t *leaves; /* [count] local numbers */
     int *rays;       /* [count] to be fired for the row */
     bool *exact;     /* [count] the row may be exact */
-    int *rank_of;    /* [count] rank that makes the row */
+    int64_t *work;   /* [count] predicted for the row, in tests */
     int64_t count;
     int64_t split;   /* leaves split */
     int64_t traced;  /* rays and segments of looks on this rank */

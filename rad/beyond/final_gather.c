@@ -254,6 +254,12 @@ void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
     }
 }
 
+int64_t final_gather_work(const struct final_gather *gather)
+{
+    const struct octree_counts *proofs = &gather->view.counts;
+    return model_work(gather->model) + proofs->node_tests + proofs->triangle_tests;
+}
+
 int64_t final_gather_terms(const struct final_gather *gather)
 {
     return gather->count > 0 ? gather->rows[gather->count - 1].end : 0;
@@ -325,8 +331,8 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
     struct rgb *each = alloc_array((size_t)rays, sizeof *each);
     double variance = 0.0;
+    int64_t before = model_work(gather->model), fixed = gather->model->estimating;
     for (int k = 0; k < 4; k++) {
-        int64_t before = model_work(gather->model), fixed = gather->model->estimating;
         struct facet quarter = facet;
         quarter.triangle = triangle_child(&facet.triangle, k);
         quarter.area = 0.25 * facet.area;
@@ -340,16 +346,16 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
             look.reflected[k][c] = (float)(rho->band[c] * h.band[c]);
             variance += 0.25 * rho->band[c] * rho->band[c] * r.row.chance[c];
         }
-        fixed = gather->model->estimating - fixed;
-        look.fixed[k] = (float)fixed;
-        look.work[k] =
-            (float)(model_work(gather->model) - before - fixed) / (float)rays;
     }
     for (int i = 0; i < rays; i++)
         for (int c = 0; c < BANDS; c++)
             each[i].band[c] *= rho->band[c];
     look.noise = fmax(0.0, variance - variance_in_common(each, rays));
     look.variance = variance * rays;
+    fixed = gather->model->estimating - fixed;
+    look.fixed = 0.25f * (float)fixed;
+    look.work =
+        (float)(model_work(gather->model) - before - fixed) / (4.0f * (float)rays);
     alloc_free(each);
     return look;
 }

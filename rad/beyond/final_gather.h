@@ -23,8 +23,8 @@ struct gather_look {
     double noise;              /* variance of rho H of a quarter, by chance, from the mean
                                   of all */
     double variance;           /* of rho H of a ray, over bands, (W/m^2)^2 */
-    float fixed[4];            /* tests that a quarter took, without its rays */
-    float work[4];             /* tests that each ray of a quarter took */
+    float fixed;               /* tests of a quarter, without its rays */
+    float work;                /* tests of each ray */
 };
 
 /* B as a linear function over a patch: see final_gather.c. */
@@ -62,6 +62,9 @@ void final_gather_set_partly_covered(struct final_gather *gather, const uint8_t 
 struct gather_light final_gather_at(struct final_gather *gather,
                                     const struct gather_points *points, uint64_t seed,
                                     int count, bool all);
+
+/* The work of this rank so far, proofs included, in tests. */
+int64_t final_gather_work(const struct final_gather *gather);
 
 /* The number of terms of all rows. */
 int64_t final_gather_terms(const struct final_gather *gather);

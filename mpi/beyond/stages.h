@@ -1,0 +1,30 @@
+/* Looks and rows of the final gather, dealt to the ranks in stages. */
+#ifndef MPI_BEYOND_STAGES_H
+#define MPI_BEYOND_STAGES_H
+
+#include "mpi/solver.h"
+#include "rad/beyond/final_gather.h"
+
+struct stages {
+    struct solver *solver;
+    const struct final_gather *gather; /* counts the work that is done */
+    void (*act)(void *context, int64_t item);
+    void *context;
+    const int64_t *work; /* [count] predicted for each item, in any unit, at least 1 */
+    int64_t count;
+    int *counts;       /* [ranks] items that a rank has done */
+    int *at;           /* [ranks] place of its first one, if those of rank 0 come first */
+    int32_t *place;    /* [count] of each item; a rank has its own as it has done them */
+    int *rank_of;      /* [count] rank that does an item */
+    int32_t *items;    /* [left] not done yet, heavy ones first */
+    int64_t left;
+    double ratio;      /* tests that items took for the work predicted, in a stage */
+};
+
+/* Collective. Has each item done on one rank, so that ranks have about the same work.
+ * Pre: the fields up to `count` are set, the others 0. After a signal, items count as
+ * done that are not. */
+void stages_run(struct stages *stages);
+void stages_free(struct stages *stages);
+
+#endif
