@@ -19,10 +19,12 @@
  * light there (gather_rays.c). It is darker there than in the mean, so the rest of the
  * leaf, which others see, is brighter than the mean. With the part n of the leaf's light
  * that goes to near receivers and the mean radiosity L that they have met, far ones are
- * shown B + n (B - L). (n / (1 - n) would be the whole difference, and noise where hardly
- * any far ray meets the leaf.) This excess, n (B - L), is that of the solution before, so
- * light is solved for ROUNDS times: as a part of W it would make rows of both signs, and
- * light in bright rooms would grow with each reflection.
+ * shown B + n (B - L), and less where n > 1/2: min(1, 2 (1 - n)) of this. (n / (1 - n)
+ * would be the whole difference, and noise where hardly any far ray meets the leaf.) This
+ * excess is that of the answer before, so light is solved for in turns, until one changes
+ * nothing: as a part of W it would make rows of both signs, and light in bright rooms
+ * would grow with each reflection. (Six turns settle rooms up to rho .9; at .99, 2 %
+ * of the light still goes up and down.)
  *
  * Where a box stands on part of a leaf, rays from there meet its inside: that part is
  * dark, so the part that others see is brighter than the mean, by the inverse of its
@@ -31,7 +33,7 @@
  * In a closed scene all emitted light is absorbed, by bare surfaces (on which no other
  * face lies). Noise, and leaves of which a dark part cannot be seen from afar (the table
  * under a sheet of paper), leave that untrue by a percent; one factor for each band, for
- * all irradiances, makes it true.
+ * all irradiances, makes it true in each turn: else the excess at rho .99 grows.
  *
  * Rejected: the defect solved for over the links, and added. Where links reflect less
  * than is right, as in bright closed rooms, each round leaves nine tenths of it. */
@@ -48,8 +50,8 @@
 
 enum { STEPS_MOST = 500 };
 
-/* Times that the excess of leaves too near is found anew. */
-enum { ROUNDS = 3 };
+/* Times that the excess of leaves too near is found anew, at most. */
+enum { ROUNDS_MOST = 6 };
 
 /* A scene is closed if no more than this part of all rays escapes. */
 static const double CRACKS = 1e-5;
@@ -246,11 +248,12 @@ static void find_excess(struct gathering *g, const struct rgb *b)
         double area = g->areas[i] * fmax(LEAST_OUTSIDE, g->covers[i].outside);
         double part = (double)near->area * gather->near.unit_area / area;
         double unit = gather->near.unit_watts / (area * fmax(1.0, part));
-        for (int c = 0; c < BANDS; c++)
+        double n = fmin(1.0, part), damping = fmin(1.0, 2.0 * (1.0 - n));
+        for (int c = 0; c < BANDS; c++) {
+            double met = (double)(watts[BANDS * k + c] + near->watts[c]) * unit; /* n L */
             g->near[k].excess.band[c] =
-                fmax(-own->band[c],
-                     fmin(1.0, part) * own->band[c] -
-                         (double)(watts[BANDS * k + c] + near->watts[c]) * unit);
+                fmax(-own->band[c], damping * (n * own->band[c] - met));
+        }
     }
     alloc_free(watts);
 }
@@ -547,7 +550,8 @@ static double *weigh(const struct gathering *g, const struct rgb *b)
     return weights;
 }
 
-/* Collective. Solves for light by the rows, from the links' solution on. */
+/* Collective. Solves for light by the rows, from the links' solution on: `b` by BiCGSTAB,
+ * and `answer`, of which the balance is closed. */
 static void solve_rows(struct gathering *g, struct vote *vote)
 {
     const struct model *model = &g->solver->model;
@@ -556,36 +560,38 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     struct rgb *b = alloc_array(count, sizeof *b), *h = alloc_array(count, sizeof *h);
     struct rgb *start = alloc_array(count, sizeof *start);
     struct rgb *none = alloc_array(count, sizeof *none);
+    struct rgb *answer = alloc_array(count, sizeof *answer);
     share_near(g);
     share_covers(g);
     for (int64_t i = 0; i < g->count; i++)
-        b[i] = forest->radiosity[g->leaves[i]];
+        answer[i] = b[i] = forest->radiosity[g->leaves[i]];
     double goal = 0.5 * model->criterion.tolerance * model->absorptance;
     double *weights = weigh(g, b);
-    struct bicgstab done = {.steps = 0};
-    for (int round = 0; round < ROUNDS; round++) {
-        find_excess(g, b);
+    struct bicgstab done = {.steps = 1};
+    for (int round = 0; done.steps > 0 && round < ROUNDS_MOST; round++) {
+        find_excess(g, answer);
         irradiances(g, none, true, h); /* of lamps and of excess alone */
         set_radiosities(g, h, start);
         done = bicgstab_solve(reflect, g, start, weights, g->count, goal, STEPS_MOST, b);
+        irradiances(g, b, true, h);
+        for (size_t i = 0; i < count; i++) /* slopes may go below 0 where B has changed */
+            for (int c = 0; c < BANDS; c++)
+                h[i].band[c] = fmax(0.0, h[i].band[c]);
+        if (g->closed)
+            g->solver->beyond->answer.counts.closing = close_balance(g, h);
+        set_radiosities(g, h, answer);
     }
     alloc_free(weights);
-    irradiances(g, b, true, h);
-    for (size_t i = 0; i < count; i++) /* slopes may go below 0 where B has changed */
-        for (int c = 0; c < BANDS; c++)
-            h[i].band[c] = fmax(0.0, h[i].band[c]);
-    if (g->closed)
-        g->solver->beyond->answer.counts.closing = close_balance(g, h);
-    set_radiosities(g, h, b);
-    judge(g, h, b, done.residual, vote);
-    place_radiosities(g, b);
+    judge(g, h, answer, done.residual, vote);
+    place_radiosities(g, answer);
     final_gather_pull(&g->gather, g->radiosity);
     estimate_errors(g);
     share_straight_light(g);
     for (int64_t i = 0; i < g->count; i++)
-        forest->radiosity[g->leaves[i]] = b[i];
+        forest->radiosity[g->leaves[i]] = answer[i];
     forest_average(forest);
     final_gather_find_bright(&g->gather); /* as a stored solution has them */
+    alloc_free(answer);
     alloc_free(none);
     alloc_free(start);
     alloc_free(h);
