@@ -30,6 +30,9 @@ static const double LARGE = 1e-3;
 enum { MOST_ROOTS = 64, POINTS_LOOKED = 256, SEEN = 8 };
 enum { POINTS = 8, MOST_POINTS = 64, QUARTERINGS = 3 };
 
+/* Rays of a row for each of POINTS: with fewer, aiming costs more than all of them. */
+enum { RAYS_PER_POINT = 8 };
+
 /* A leaf has MOST_POINTS where the factor of a remainder is more than this. */
 static const double PEAK = 0.01;
 
@@ -178,7 +181,8 @@ void receiver_find_openings(struct receiver *r)
 {
     struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
-    if (!is_in_the_dark(g, r->row.leaf))
+    if (g->model->criterion.final_gather < RAYS_PER_POINT * POINTS ||
+        !is_in_the_dark(g, r->row.leaf))
         return;
     if (!g->view.openings) {
         g->view.openings = alloc_array(1, sizeof *g->view.openings);

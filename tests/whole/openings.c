@@ -65,6 +65,8 @@ static void turn(struct soup *soup, int64_t first, int64_t by)
     }
 }
 
+static bool aims; /* leaves of the last solution have looked for openings */
+
 /* Light that comes through an opening from y, z = `low` to `high`, faces in this order,
  * W/m^2; NaN if it has not converged. */
 static double light_through(struct vec3 low, struct vec3 high, int order,
@@ -88,6 +90,7 @@ static double light_through(struct vec3 low, struct vec3 high, int order,
     paint(&soup, 0.0, 100.0);
     struct solution s = solve_soup(&soup, words);
     double mean = s.vote.converged ? mean_radiosity(&s, 0, dark) : NAN;
+    aims = s.solver->beyond->answer.gather.view.openings != NULL;
     solution_free(&s);
     return mean;
 }
@@ -106,6 +109,16 @@ static void test_opening(const char *name, struct vec3 low, struct vec3 high,
     tap_ok(worst <= 0.09, "and by %.2f %% at most", 100.0 * worst);
 }
 
+/* Eight points that a leaf aims at an opening cost more than so few rays. */
+static void test_few_rays(void)
+{
+    struct vec3 low = point(0, 1.05, 0), high = point(0, 1.95, 0.015);
+    light_through(low, high, 0, "--final-gather 64");
+    bool many = aims;
+    light_through(low, high, 0, "--final-gather 63");
+    tap_ok(many && !aims, "leaves with 64 rays aim at openings, with 63 they do not");
+}
+
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -115,6 +128,7 @@ int main(int argc, char **argv)
                  2.417e-3);
     test_opening("keyhole", point(0, 1.6, 1.0), point(0, 1.61, 1.03), "--tolerance 1e-7",
                  2.938e-6);
+    test_few_rays();
     comm_stop(&world_comm);
     return tap_done();
 }
