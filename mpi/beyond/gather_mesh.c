@@ -45,6 +45,10 @@ static const double MESH = 0.005, BENT = 0.002;
  * tell with an error of this part of the mean square. */
 static const double SPREAD_MOST = 3.0, UNSURE = 0.1;
 
+/* Light of the mean radiosity of all surfaces, lamps included, has about this variance by
+ * one ray, relative to its square. */
+static const double VARIANCE_OF_MEAN = 3.0;
+
 /* A look takes this part of the rays of a row for each quarter of the leaf. If these are
  * fewer than FEWEST_LOOKED, there are no looks. */
 enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 4 };
@@ -359,12 +363,24 @@ static void know_exact(struct looking *l, bool all)
     }
 }
 
-/* Before there are looks: all leaves that need rays are as noisy as each other. */
+/* A guess at the variance of rho H of a leaf by one ray: by the light that the leaf has,
+ * as links tell it, and by light of the mean radiosity, which may arrive, too. */
+static double guess_variance(const struct looking *l, int32_t leaf)
+{
+    const struct forest *forest = l->solver->model.forest;
+    double rho = rgb_sum(forest_material(forest, leaf)->reflectance) / BANDS;
+    double mean = rho * l->gather.mean / BANDS; /* of a band */
+    return square_of_light(forest, leaf) + VARIANCE_OF_MEAN * BANDS * mean * mean;
+}
+
+/* Before there are looks: guesses for all leaves that need rays. */
 static void know_nothing(struct looking *l)
 {
     RESERVE(l->known, &l->known_capacity, l->solver->model.forest->count);
-    for (int64_t i = 0; i < l->mesh->count; i++)
-        l->known[l->mesh->leaves[i]] = (struct known){1.0, 0.0f, 1.0f};
+    for (int64_t i = 0; i < l->mesh->count; i++) {
+        int32_t leaf = l->mesh->leaves[i];
+        l->known[leaf] = (struct known){guess_variance(l, leaf), 0.0f, 1.0f};
+    }
     know_exact(l, l->rays < FEWEST_LOOKED);
 }
 

@@ -1,6 +1,7 @@
 /* Tests of rad/beyond/final_gather.h and rad/beyond/lamps.h: the light of a leaf, by
  * exact factors and by rays, against closed forms. */
 #include "mpi/beyond/beyond.h"
+#include "mpi/beyond/gather_mesh.h"
 #include "rad/beyond/final_gather.h"
 
 #include "geom/lambert.h"
@@ -797,6 +798,33 @@ static void test_looks(void)
     solution_free(&s);
 }
 
+/* With few rays there are no looks. Of three squares of a size, grey, white, and white
+ * below a lamp, the first reflects a quarter of the noise that the second does, and the
+ * third is brighter than the mean. (One of two boxes hides the other: rows by rays.) */
+static void test_guess(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.2, 0.0);
+    soup_add_quad(&soup, point(0, 3, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    soup_add_quad(&soup, point(0, 6, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.8, 0.0);
+    soup_add_quad(&soup, point(0, 6, 0.1), point(0, 1, 0), point(1, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    soup_add_box(&soup, point(0, 2.5, 1), point(1, 4.5, 2), 1, false);
+    soup_add_box(&soup, point(0, 2.5, 3), point(1, 4.5, 4), 1, false);
+    paint(&soup, 0.0, 0.0);
+    struct solution s = solve_soup(&soup, "--max-level 0 --final-gather 16");
+    struct gather_mesh mesh = {.count = 0};
+    bool made = gather_mesh_make(s.solver, 0, &mesh);
+    const int *rays = mesh.rays;
+    tap_ok(made && mesh.traced == 0 && 2 * rays[0] <= rays[2] && 2 * rays[2] <= rays[4],
+           "%d rays for a grey leaf, %d for a white one, %d below a lamp", rays[0],
+           rays[2], rays[4]);
+    gather_mesh_free(&mesh);
+    solution_free(&s);
+}
+
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -826,6 +854,7 @@ int main(int argc, char **argv)
     test_even();
     test_chance();
     test_looks();
+    test_guess();
     comm_stop(&world_comm);
     return tap_done();
 }
