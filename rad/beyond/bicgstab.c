@@ -55,13 +55,8 @@ static double quotient(double a, double b)
     return b != 0.0 && fabs(q) < 1e30 ? q : 0.0;
 }
 
-static void begin(struct vectors *z, linear_map *map, void *context, const struct rgb *b,
-                  const struct rgb *x)
+static void begin(struct vectors *z)
 {
-    map(context, x, z->r);
-    for (int64_t i = 0; i < z->count; i++)
-        for (int c = 0; c < BANDS; c++)
-            z->r[i].band[c] = b[i].band[c] - z->r[i].band[c];
     memcpy(z->r0, z->r, (size_t)z->count * sizeof *z->r);
     memcpy(z->p, z->r, (size_t)z->count * sizeof *z->r);
     struct rgb rho = product(z, z->r0, z->r);
@@ -103,23 +98,24 @@ static bool step(struct vectors *z, linear_map *map, void *context, struct rgb *
     return moved;
 }
 
-struct bicgstab bicgstab_solve(linear_map *map, void *context, const struct rgb *b,
-                               const double *weights, int64_t count, double goal,
-                               int most, struct rgb *x)
+struct bicgstab bicgstab_solve(linear_map *map, void *context, const double *weights,
+                               int64_t count, struct bicgstab_end end, struct rgb *x,
+                               struct rgb *r)
 {
-    struct rgb *room = alloc_array(5 * (size_t)count, sizeof *room);
-    struct vectors z = {.r = room, .r0 = room + count, .p = room + 2 * count,
-                        .v = room + 3 * count, .t = room + 4 * count,
-                        .weights = weights, .count = count};
+    struct rgb *room = alloc_array(4 * (size_t)count, sizeof *room);
+    struct vectors z = {.r = r, .r0 = room, .p = room + count, .v = room + 2 * count,
+                        .t = room + 3 * count, .weights = weights, .count = count};
     struct bicgstab done = {0, 0.0};
     bool fresh = true, moved = true;
     for (;; done.steps++) {
-        if (fresh)
-            begin(&z, map, context, b, x);
         double size = size_of(&z, x);
-        done.residual = size > 0.0 ? size_of(&z, z.r) / size : 0.0;
-        if (done.residual <= goal || done.steps == most || (fresh && !moved))
+        done.residual = size > 0.0 ? size_of(&z, r) / size : 0.0;
+        if (done.steps == 0)
+            end.residual = fmax(end.residual, end.part * done.residual);
+        if (done.residual <= end.residual || done.steps == end.steps || (fresh && !moved))
             break;
+        if (fresh)
+            begin(&z);
         fresh = !step(&z, map, context, x);
         moved = !fresh;
     }

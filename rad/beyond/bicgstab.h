@@ -15,10 +15,17 @@ struct bicgstab {
     double residual; /* sum of weight |b - A x| over that of weight |x|, bands together */
 };
 
-/* Improves x until the residual is at most `goal`, or after `most` steps. Vectors are
- * [count]; `weights` [count], above 0, are those of their scalar product. */
-struct bicgstab bicgstab_solve(linear_map *map, void *context, const struct rgb *b,
-                               const double *weights, int64_t count, double goal,
-                               int most, struct rgb *x);
+/* When to stop: at the first of these. */
+struct bicgstab_end {
+    double residual; /* at most, 1 */
+    double part;     /* of the residual that there is at first, at most, 1 */
+    int steps;
+};
+
+/* Improves x. `r`: its residual b - A x, before and after. Vectors are [count]; `weights`
+ * [count], above 0, are those of their scalar product. */
+struct bicgstab bicgstab_solve(linear_map *map, void *context, const double *weights,
+                               int64_t count, struct bicgstab_end end, struct rgb *x,
+                               struct rgb *r);
 
 #endif
