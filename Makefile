@@ -41,7 +41,7 @@ SHELL = /bin/sh
 .SECONDARY:
 
 MPICC ?= mpicc
-CFLAGS ?= -O2 -g
+CFLAGS ?= -O3 -g
 INSTALL ?= install
 prefix ?= /usr/local
 bindir = $(prefix)/bin
