@@ -40,7 +40,8 @@ done)"make chart"
 : "${SCENES:=cornell shadow room1004 room6348 room18512 room31936}"
 : "${SECONDS_MOST:=30}"
 : "${EPSILONS:=1e-2 1e-3 3e-4 1e-4 3e-5 1e-5 3e-6 1e-6 3e-7}"
-: "${PAIRS:=3e-2/16 3e-2/32 1e-2/64 1e-3/128 1e-3/256 3e-4/512 1e-4/1024 3e-5/2048}"
+: "${PAIRS:=3e-2/8 3e-2/16 3e-2/32 1e-2/64 1e-2/128 3e-3/256 1e-3/512 \
+3e-4/1024 1e-4/2048}"
 export LC_ALL=C
 folder=$BUILD/chart
 mkdir -p "$folder"
