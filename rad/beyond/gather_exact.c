@@ -32,6 +32,12 @@ static const double VARIES = 0.1;
  * this times the square of its distance. */
 static const double NEAR_SENDER = 0.2;
 
+/* Faces are all but parallel if the cosine between their normals is less. */
+static const double PARALLEL = -0.99;
+
+/* A corner is behind a leaf's plane if it is by this part of the leaf's radius. */
+static const double BEHIND = 0.01;
+
 /* Most times that a leaf is quartered. */
 enum { QUARTERINGS = 3 };
 
@@ -130,16 +136,27 @@ static const struct gather_view *view_of(struct final_gather *g, int32_t root)
     return &g->view;
 }
 
+/* True if the leaf and a sender form a hinge: the sender ends at the leaf's plane, or
+ * before it, and is not beneath the leaf. */
+static bool is_hinge(const struct receiver *r, const struct facet *sender)
+{
+    double lowest = 0.0;
+    for (int k = 0; k < 3; k++)
+        lowest =
+            fmin(lowest, plane_distance(&r->facet.plane, sender->triangle.corner[k]));
+    return vec3_dot(r->facet.plane.normal, sender->plane.normal) > PARALLEL &&
+           lowest >= -BEHIND * triangle_radius(&r->facet.triangle);
+}
+
 /* True if the leaf lies so close on a much larger one that it shades the part of it that
  * it sees: that part is darker than the mean of the whole. */
-static bool lies_on(const struct receiver *r, int32_t sender, double factor)
+static bool lies_on(const struct receiver *r, int32_t patch, double factor)
 {
     const struct forest *forest = r->gather->model->forest;
-    uint32_t root = forest->patches[sender].id.root;
-    struct plane plane = scene_root_plane(forest->scene, (int32_t)root);
-    double height = plane_distance(&plane, triangle_centroid(&r->facet.triangle));
-    return factor > 0.25 && forest_area(forest, sender) > 4.0 * r->facet.area &&
-           height < 0.25 * triangle_radius(&r->facet.triangle);
+    struct facet sender = facet_make(forest, patch);
+    double height = plane_distance(&sender.plane, triangle_centroid(&r->facet.triangle));
+    return factor > 0.25 && sender.area > 4.0 * r->facet.area &&
+           height < 0.25 * triangle_radius(&r->facet.triangle) && !is_hinge(r, &sender);
 }
 
 /* Three points of a triangle, by a rule that is exact for the second degree: the

@@ -159,6 +159,23 @@ static void test_given_up(void)
     trial_free(&g);
 }
 
+/* In a hinge of 30 degrees small leaves at the edge are close to a wide one that does not
+ * go on beneath them: factors are exact. Under a sheet that leans on a floor, it does. */
+static void test_hinge(double start, bool exact)
+{
+    struct soup soup = {0};
+    double cosine = sqrt(0.75);
+    soup_add_quad(&soup, point(0.4, 0, 0), point(0, 1, 0), point(cosine, 0, 0.5), 8);
+    paint(&soup, 0.5, 1.0);
+    soup_add_quad(&soup, point(start, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.5, 1.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", 64);
+    tap_ok((g.gather.counts.exact == g.gather.count) == exact,
+           "%s: %lld of %lld rows are exact", exact ? "a hinge" : "a leaning sheet",
+           (long long)g.gather.counts.exact, (long long)g.gather.count);
+    trial_free(&g);
+}
+
 /* --- lamps --- */
 
 /* A floor below a small lamp, and a black box beside them so that rays are needed.
@@ -832,6 +849,8 @@ int main(int argc, char **argv)
     test_furnished();
     test_open();
     test_given_up();
+    test_hinge(0.4, true);
+    test_hinge(0.0, false);
     test_lamps();
     test_sky();
     test_bulbs();
