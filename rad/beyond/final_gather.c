@@ -108,6 +108,7 @@ struct final_gather final_gather_create(struct model *model, int rays)
     forest_bound(forest);
     gather.rays = rays_for(rays, forest_count(forest).leaves);
     gather.mean = mean_radiosity(model);
+    gather.sums.flat = FLAT;
     gather.lamps = lamps_create(model, least_of_lamps(model), false);
     final_gather_find_bright(&gather);
     gather.near.unit_area = 0x1p-50 * model->area;
@@ -187,7 +188,7 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
         middle.band[c] = (b[0].band[c] + b[1].band[c] + b[2].band[c]) / 3.0;
     for (int k = 0; k < 3; k++)
         slope.range = real_max(slope.range, fabs(rgb_sum(b[k]) - rgb_sum(middle)));
-    if (slope.range > FLAT * gather->mean)
+    if (slope.range > gather->sums.flat * gather->mean)
         slope.rise = slope_part(b, middle) *
                      (!leaf ? 2.0 : patch == slope.first + 3 ? -1.0 : 1.0);
     return slope;

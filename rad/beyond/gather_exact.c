@@ -24,9 +24,9 @@ enum { FACED_PER_RAY = 4 };
 static const double SLENDER = 64.0;
 
 /* A sender is taken as a whole in an exact row if B over it, times its factor and the
- * number of rays, varies by less than this part of the mean: where more rays are asked
- * for, there is more to win. */
-static const double VARIES = 0.1;
+ * number of rays, varies by less than this times what counts as constant: where more rays
+ * are asked for, there is more to win. */
+static const double VARIES = 10.0;
 
 /* The light of a sender is looked at in quarters if the square of its size is more than
  * this times the square of its distance. */
@@ -214,7 +214,7 @@ static bool is_to_be_split(const struct receiver *r, const struct triangle *send
 {
     const struct final_gather *g = r->gather;
     double near2 = fmin(1.0, nearness(&r->facet, sender));
-    return factor * range * near2 * g->rays > VARIES * g->mean;
+    return factor * range * near2 * g->rays > VARIES * g->sums.flat * g->mean;
 }
 
 /* A patch as a sender, or a part of a leaf. */
@@ -328,13 +328,19 @@ bool final_gather_root_is_open(struct final_gather *gather, int32_t root, bool p
     return is_open(gather, root, false);
 }
 
+/* From the default epsilon on, errors of senders fall with its root, as those of the mesh
+ * do. */
 bool receiver_add_exact(struct receiver *r)
 {
-    const struct forest *forest = r->gather->model->forest;
+    struct final_gather *g = r->gather;
+    const struct forest *forest = g->model->forest;
+    double flat = g->sums.flat;
     uint32_t root = forest->patches[r->row.leaf].id.root;
-    const struct gather_view *view = view_of(r->gather, (int32_t)root);
+    const struct gather_view *view = view_of(g, (int32_t)root);
     bool good = view->open;
+    g->sums.flat = fmin(flat, sqrt(g->model->criterion.epsilon));
     for (int64_t i = 0; i < view->count && good; i++)
         good = add_sender(r, view->faced[i]);
+    g->sums.flat = flat;
     return good && close_row(r);
 }
