@@ -44,6 +44,9 @@ static const double LEAST_BRIGHT = 0.01;
 /* Radiosity that varies by less than this part of the mean over a leaf is constant. */
 static const double FLAT = 0.01;
 
+/* Most by which the slope of B over a leaf is more than that over its parent. */
+static const double STEEPEST = 2.0;
+
 /* Leaves from which on each has fewer rays, and fewest rays of a leaf. */
 enum { MANY = 25000, FEWEST = 4 };
 
@@ -173,6 +176,42 @@ static double slope_part(const struct rgb *b, struct rgb middle)
     return part > 0.0 ? part : 0.0;
 }
 
+/* The mean of the outer children of a patch, over all bands; `off`, [3], becomes their
+ * differences from it. */
+static double outer_mean(const struct forest *forest, int32_t patch, double *off)
+{
+    const struct rgb *b = forest->radiosity + forest->patches[patch].children;
+    double mean = (rgb_sum(b[0]) + rgb_sum(b[1]) + rgb_sum(b[2])) / 3.0;
+    for (int k = 0; k < 3; k++)
+        off[k] = rgb_sum(b[k]) - mean;
+    return mean;
+}
+
+/* To an edge where surfaces meet B rises ever more steeply: the factor by which its slope
+ * over the parent of a leaf, along that over the grandparent, is more than the latter, if
+ * both lead up to the leaf. The slope over the leaf is as much more again, if B stays
+ * above 0. */
+static double steepening(const struct forest *forest, int32_t leaf)
+{
+    const struct patch *patches = forest->patches;
+    int32_t parent = patches[leaf].parent, above = patches[parent].parent;
+    int k = leaf - patches[parent].children;
+    int j = above < 0 ? 3 : parent - patches[above].children;
+    double fine[3], wide[3], along = 0.0, square = 0.0, low = 0.0;
+    if (k == 3 || j == 3)
+        return 1.0;
+    double b = outer_mean(forest, parent, fine) + fine[k];
+    outer_mean(forest, above, wide);
+    for (int i = 0; i < 3; i++) {
+        along += 2.0 * fine[i] * wide[i];
+        square += wide[i] * wide[i];
+        low = fmin(low, fine[i]);
+    }
+    if (!(fine[k] > 0.0 && wide[j] > 0.0 && along > square))
+        return 1.0;
+    return fmin(fmin(along / square, STEEPEST), fmax(1.0, b / -low));
+}
+
 struct gather_slope gather_slope(const struct final_gather *gather, int32_t patch)
 {
     const struct forest *forest = gather->model->forest;
@@ -191,6 +230,8 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     if (slope.range > gather->sums.flat * gather->mean)
         slope.rise = slope_part(b, middle) *
                      (!leaf ? 2.0 : patch == slope.first + 3 ? -1.0 : 1.0);
+    if (gather->sums.exact && leaf && slope.rise != 0.0)
+        slope.rise *= steepening(forest, patch);
     return slope;
 }
 

@@ -338,9 +338,11 @@ bool receiver_add_exact(struct receiver *r)
     uint32_t root = forest->patches[r->row.leaf].id.root;
     const struct gather_view *view = view_of(g, (int32_t)root);
     bool good = view->open;
+    g->sums.exact = true;
     g->sums.flat = fmin(flat, sqrt(g->model->criterion.epsilon));
     for (int64_t i = 0; i < view->count && good; i++)
         good = add_sender(r, view->faced[i]);
     g->sums.flat = flat;
+    g->sums.exact = false;
     return good && close_row(r);
 }

@@ -27,6 +27,7 @@ struct gather_sums {
     struct gather_sum *items; /* [count] */
     int64_t count, capacity;
     int64_t first;   /* those before are not added to */
+    bool exact;      /* the row is made of exact factors */
     double flat;     /* part of the mean radiosity by which B may vary over a sender and
                         count as constant */
     int32_t *latest; /* [forest->count] by place: where the latest sum of that place is,

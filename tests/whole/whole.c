@@ -595,6 +595,7 @@ int main(int argc, char **argv)
     test_isothermal(&GROOVE, PI / 2.0, 0.5, STRIP, .5878526172);
     test_edge(PI / 2.0, 0.5);
     test_edge(PI / 3.0, 0.8);
+    test_strips(&GROOVE, PI / 4.0, (double[]){1, 0}, (double[]){.9, .9}, STRIP, 0.0);
     test_cavity(1.0, 0.5, .7596668, .7382803);
     test_cavity(2.0, 0.5, .8334092, .8580643);
     test_cavity(4.0, 0.5, 0.0, 0.0);
