@@ -5,11 +5,12 @@
  *
  * Direct light of lamps has edges that no mesh follows, so it is gathered at each visible
  * point, by segments; reflected light is smooth and interpolated over the mesh. Or all
- * light is gathered at the point: then the picture has no trace of the mesh. So it is on
- * a leaf that counts as covered (io/picture/shading.h) but is seen, as the side of a book
- * that stands out from its neighbours: its mean holds for no point. All points of a pixel
- * on one triangle are gathered together; where lamps are seen in part, a second time by
- * more segments.
+ * light is gathered at the point: then the picture has no trace of the mesh. So it is
+ * where interpolation does not hold (io/picture/shading.h): on a leaf that counts as
+ * covered but is seen, as the side of a book that stands out from its neighbours; at a
+ * point in a narrow gap, of a leaf that is open elsewhere; on a steep leaf, in the
+ * housing of a lamp. All points of a pixel on one triangle are gathered together; where
+ * that is noisy, as where lamps are seen in part, a second time by more rays.
  *
  * A surface with normals of its own has the light of the smooth surface in which the
  * facets are inscribed: a point is lifted towards the plane through each corner across
@@ -29,8 +30,9 @@
 enum {
     SEGMENTS = 32, /* to lamps, for a pixel, at least */
     RAYS_PER_SEGMENT = 8, /* --final-gather for one of them */
-    MORE = 4,      /* factor on them in a noisy pixel */
-    WHOLE = 128    /* rays and segments for a pixel of a covered leaf */
+    WHOLE = 128,   /* rays and segments for a pixel in which things cover the leaf */
+    STEEP = 512,   /* the same on a steep leaf */
+    MORE = 4       /* factor on all of these in a noisy pixel */
 };
 
 static const double NOISE = 0.02; /* error of a noisy pixel, relative to its light */
@@ -52,7 +54,8 @@ struct renderer renderer_make(const struct octree *octree, const struct shading 
 struct pixel_roots {
     int32_t *roots;
     struct vec3 *weights; /* barycentric coordinates in the root */
-    bool *whole;          /* all light is gathered there; set by show() */
+    int *whole;           /* rays for a pixel of such points, of which all light is
+                             gathered; 0: it is interpolated; set by show() */
     struct vec3 *at;      /* points, scene units; room for add_light() */
     int count;
 };
@@ -60,7 +63,8 @@ struct pixel_roots {
 /* Light of a pixel. */
 struct pixel_light {
     struct rgb sum;  /* of the radiosities that the camera rays meet, W/m^2 */
-    double variance; /* of `sum` by the choice of segments, over bands, (W/m^2)^2 */
+    double variance; /* of `sum` by the choice of segments and rays, over bands,
+                        (W/m^2)^2 */
 };
 
 /* Least cosine between the normal at a corner and that of the plane, 45 degrees, for
@@ -135,7 +139,7 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
                                    .input = scene_input_of(scene, view->roots[0]),
                                    .above = facade.curved};
     points.plane = facade_plane(&facade, middle, points.middle);
-    bool whole = view->whole[0];
+    bool whole = view->whole[0] > 0;
     struct gather_light light = final_gather_at(gather, &points, seed, rays, whole);
     double rho = 0.0;
     for (int c = 0; c < BANDS; c++) {
@@ -165,27 +169,43 @@ static int collect_root(struct pixel_roots *view)
     return count;
 }
 
-/* Returns the light of all entries together, gathered by about `rays` rays. Reorders the
- * entries. */
-static struct pixel_light show(const struct renderer *renderer,
-                               const struct pixel_roots *view, uint64_t seed, int rays)
+/* Returns the number of rays for a pixel of points such as entry i, all light of which is
+ * to be gathered; or 0, and sets `light` to that which is interpolated. */
+static int rays_for_all(const struct renderer *renderer, const struct pixel_roots *view,
+                        int i, struct rgb *light)
 {
     const struct shading *shading = renderer->shading;
+    struct vec3 w = view->weights[i];
+    int32_t leaf, root = view->roots[i];
+    if (!shading)
+        return renderer->rays;
+    *light = shading_at(shading, root, (double[]){w.x, w.y, w.z}, &leaf);
+    enum shade shade = shading->shades[leaf];
+    if (!renderer->gather || shade == SHADE_SMOOTH)
+        return 0;
+    struct triangle t = scene_root_triangle(shading->forest->scene, root);
+    if (shade == SHADE_IN_PART && !shading_is_shut(shading, renderer->octree, leaf,
+                                                   corners_mean(t.corner, w)))
+        return 0;
+    return shade == SHADE_STEEP ? STEEP : WHOLE;
+}
+
+/* Returns the light of all entries together, gathered by `more` times the usual rays.
+ * Reorders the entries. */
+static struct pixel_light show(const struct renderer *renderer,
+                               const struct pixel_roots *view, uint64_t seed, int more)
+{
     struct pixel_light pixel = {.variance = 0.0};
     for (int i = 0; i < view->count; i++) {
-        struct vec3 w = view->weights[i];
         struct rgb b = {{0.0, 0.0, 0.0}};
-        bool covered = true;
-        if (shading)
-            b = shading_at(shading, view->roots[i], (double[]){w.x, w.y, w.z}, &covered);
-        view->whole[i] = covered && renderer->gather;
-        for (int c = 0; c < BANDS && !view->whole[i]; c++)
+        view->whole[i] = rays_for_all(renderer, view, i, &b);
+        for (int c = 0; c < BANDS && view->whole[i] == 0; c++)
             pixel.sum.band[c] += b.band[c];
     }
     struct pixel_roots rest = *view;
     while (rest.count > 0 && renderer->gather) {
         int count = collect_root(&rest);
-        int all = shading && rest.whole[0] ? WHOLE : rays;
+        int all = more * (rest.whole[0] > 0 ? rest.whole[0] : renderer->rays);
         int own = (all * count + view->count - 1) / view->count;
         add_light(renderer, &rest, count, hash_mix(seed) + (uint64_t)rest.roots[0], own,
                   &pixel);
@@ -197,13 +217,24 @@ static struct pixel_light show(const struct renderer *renderer,
     return pixel;
 }
 
+/* The same; a noisy pixel a second time by more rays. */
+static struct rgb show_well(const struct renderer *renderer,
+                            const struct pixel_roots *view, uint64_t seed)
+{
+    struct pixel_light pixel = show(renderer, view, seed, 1);
+    double most = NOISE * rgb_sum(pixel.sum);
+    if (renderer->shading && pixel.variance > most * most)
+        pixel = show(renderer, view, seed, MORE);
+    return pixel.sum;
+}
+
 struct rgb render_point(const struct renderer *renderer, int32_t root,
                         const double weight[3], uint64_t seed)
 {
     struct vec3 w = {weight[0], weight[1], weight[2]}, at;
-    bool whole;
+    int whole;
     struct pixel_roots view = {&root, &w, &whole, &at, 1};
-    return show(renderer, &view, seed, renderer->rays).sum;
+    return show_well(renderer, &view, seed);
 }
 
 /* --- pixels --- */
@@ -266,12 +297,9 @@ static void render_pixel(struct strip *strip, const struct octree_hit *hits, int
     const struct renderer *renderer = strip->renderer;
     uint64_t seed = (uint64_t)py * (uint64_t)strip->camera->width + (uint64_t)px;
     collect_roots(strip, hits, &strip->view);
-    struct pixel_light pixel = show(renderer, &strip->view, seed, renderer->rays);
-    double most = NOISE * rgb_sum(pixel.sum);
-    if (renderer->shading && pixel.variance > most * most)
-        pixel = show(renderer, &strip->view, seed, MORE * renderer->rays);
+    struct rgb sum = show_well(renderer, &strip->view, seed);
     for (int c = 0; c < BANDS; c++)
-        rgb[c] = (float)(pixel.sum.band[c] / strip->rays);
+        rgb[c] = (float)(sum.band[c] / strip->rays);
 }
 
 static void render_scanline(struct strip *strip, int py, float *rgb)

@@ -11,8 +11,8 @@
 struct renderer {
     const struct octree *octree;
     const struct shading *shading; /* all light; with `gather`, not the direct; or NULL */
-    struct final_gather *gather;   /* direct light, and all on covered leaves; without
-                                      `shading`, all; or NULL */
+    struct final_gather *gather;   /* direct light, and all where `shading` does not
+                                      hold; without `shading`, all; or NULL */
     int rays;                      /* for a pixel; with `shading` segments */
 };
 

@@ -8,6 +8,14 @@
 #include "octree/octree.h"
 #include "rad/patch.h"
 
+/* Where interpolation over a leaf holds. */
+enum shade {
+    SHADE_SMOOTH,  /* at all points */
+    SHADE_IN_PART, /* where nothing covers the leaf: shading_is_shut() */
+    SHADE_COVERED, /* nowhere: only less than a quarter is open */
+    SHADE_STEEP    /* nowhere: light varies by more than its mean over all surfaces */
+};
+
 struct shading {
     const struct forest *forest; /* borrowed */
     bool flat;                   /* each leaf has its constant radiosity */
@@ -16,7 +24,7 @@ struct shading {
     struct rgb *values;          /* [vertex_count] radiosity, W/m^2 */
     int64_t vertex_count;
     bool *divided;               /* [forest->count] leaf: it has T-vertices */
-    bool *covered;               /* [forest->count] leaf: it counts as covered */
+    uint8_t *shades;             /* [forest->count] enum shade of a leaf */
     struct table *table;         /* finds vertices; owns positions and values */
 };
 
@@ -39,9 +47,13 @@ struct shading *shading_create(const struct forest *forest, const struct rgb *le
 void shading_destroy(struct shading *shading);
 
 /* Returns the radiosity at the point of a root with these barycentric coordinates,
- * W/m^2. Sets `covered` to whether the leaf there counts as covered: then its mean holds
- * for no point. */
+ * W/m^2. Sets `leaf` to the leaf there. */
 struct rgb shading_at(const struct shading *shading, int32_t root, const double weight[3],
-                      bool *covered);
+                      int32_t *leaf);
+
+/* True if a solid or a narrow gap covers a point of a leaf, scene units. `octree` is that
+ * of the scene. */
+bool shading_is_shut(const struct shading *shading, const struct octree *octree,
+                     int32_t leaf, struct vec3 point);
 
 #endif

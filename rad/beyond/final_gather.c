@@ -468,10 +468,10 @@ struct gather_light final_gather_at(struct final_gather *gather,
     struct gather_light light = {.variance = 0.0};
     r.points = points;
     receiver_aim(&r);
-    for (int c = 0; c < BANDS; c++)
-        light.variance += r.row.chance[c];
     if (all)
         receiver_fire(&r);
+    for (int c = 0; c < BANDS; c++)
+        light.variance += r.row.chance[c];
     light.lamps = r.lamps;
     light.rest = r.sums.h;
     return light;

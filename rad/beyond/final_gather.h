@@ -14,7 +14,8 @@
 struct gather_light {
     struct rgb lamps; /* emission that comes straight from lamps */
     struct rgb rest;  /* all other light; 0 unless asked for */
-    double variance;  /* of `lamps`, by the choice of segments, over bands, (W/m^2)^2 */
+    double variance;  /* of both, by the choice of segments and rays, over bands,
+                         (W/m^2)^2 */
 };
 
 /* A look at a leaf: the light of its quarters by a few rays, in the same directions. */

@@ -54,21 +54,22 @@ struct measure {
     struct error error;
 };
 
-/* Collective. As phr.c does. */
+/* Collective. As tools/results.c does. */
 static struct shading *shade(const struct measure *measure, const struct solution *s)
 {
     const struct forest *forest = s->solver->model.forest;
-    if (measure->options.pixels)
-        return NULL;
     if (measure->options.flat)
         return shading_create(forest, NULL, NULL, NULL);
     int64_t leaves;
     uint8_t *open = shading_open_parts(forest, s->octree, measure->comm.rank,
                                           measure->comm.size, &leaves);
     comm_add_bytes(&measure->comm, open, leaves);
-    const struct answer *answer = &s->solver->beyond->answer;
-    struct shading *shading =
-        shading_create(forest, answer->straight, answer->error, open);
+    struct answer *answer = &s->solver->beyond->answer;
+    if (answer->straight)
+        final_gather_set_partly_covered(&answer->gather, open);
+    struct shading *shading = NULL;
+    if (!measure->options.pixels)
+        shading = shading_create(forest, answer->straight, answer->error, open);
     alloc_free(open);
     return shading;
 }

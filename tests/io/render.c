@@ -112,7 +112,7 @@ static void test_furnace(void)
 static void test_strip(double width, bool is_narrow)
 {
     double end = 1.0 - width, worst = 0.0;
-    bool covered = !is_narrow;
+    int32_t leaf;
     struct soup soup = {0};
     soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
     soup_add_box(&soup, point(width, width, -0.1), point(end, end, 0.5), 1, false);
@@ -125,9 +125,41 @@ static void test_strip(double width, bool is_narrow)
     for (int i = 1; i < 20; i++)
         worst = fmax(worst,
                      fabs(shown(&s, shading, floor, point(0.05 * i, 0.02, 0)) - 1.0));
-    shading_at(shading, floor, (double[]){1.0, 0.0, 0.0}, &covered);
+    shading_at(shading, floor, (double[]){1.0, 0.0, 0.0}, &leaf);
+    bool covered = shading->shades[leaf] == SHADE_COVERED;
     tap_ok(worst > 0.0 && worst <= (is_narrow ? 0.02 : 0.06) && covered == is_narrow,
            "a strip of floor beside a box is even within %.3f", worst);
+    shading_destroy(shading);
+    solution_free(&s);
+}
+
+/* A board hung close to the floor of a room covers half of its two leaves: the floor is
+ * dark in the gap. Fifty times as deep in the gap as it is wide, a point sees less than a
+ * thousandth of the room. Near the end of the gap few of the rays find any light, so more
+ * are fired: 1 + 4 times 128. */
+static void test_gap(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    soup_add_box(&soup, point(0.05, 0.05, 0.005), point(0.95, 0.6, 0.1), 1, false);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0.3, 0.3, 0.999), point(0, 0.4, 0), point(0.4, 0, 0), 1);
+    paint(&soup, 0.0, 10.0);
+    struct solution s = solve_soup(&soup, "--max-level 0");
+    struct shading *shading = shade_rest(&s);
+    const struct gather_counts *counts = &s.solver->beyond->answer.gather.counts;
+    int32_t floor = 0;
+    while (scene_root_plane(s.scene, floor).normal.z < 0.9)
+        floor += 2;
+    double open = shown(&s, shading, floor, point(0.7, 0.85, 0));
+    double dark = shown(&s, shading, floor, point(0.3, 0.3, 0));
+    tap_ok(open > 0.0 && dark < 1e-3 * open,
+           "the floor is dark in a gap: %.1e of the light beside it", dark / open);
+    int64_t before = counts->rays;
+    double end = shown(&s, shading, floor, point(0.3, 0.585, 0));
+    tap_ok(end > dark && counts->rays - before >= 5 * 128,
+           "at its end, at %.3f of it, light is looked for again (%lld rays)", end / open,
+           (long long)(counts->rays - before));
     shading_destroy(shading);
     solution_free(&s);
 }
@@ -275,6 +307,7 @@ int main(int argc, char **argv)
     test_furnace();
     test_strip(0.05, true);
     test_strip(0.3, false);
+    test_gap();
     test_column();
     test_bowl();
     test_smoothed_box();

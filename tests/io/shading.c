@@ -20,6 +20,7 @@
 #include <stdlib.h>
 
 #include "rad/beyond/paths.h"
+#include "rad/pushpull.h"
 #include "tests/scenes.h"
 #include "tests/shaded.h"
 #include "tests/tap.h"
@@ -157,7 +158,7 @@ static const struct triangle WHOLE = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 static struct rgb value_at(const struct stage *stage, int32_t root, struct vec3 w)
 {
     const double weight[3] = {w.x, w.y, w.z};
-    return shading_at(stage->shading, root, weight, &(bool){false});
+    return shading_at(stage->shading, root, weight, &(int32_t){0});
 }
 
 /* --- continuity --- */
@@ -514,7 +515,7 @@ static void test_large_leaf_counts(void)
         if (stage.forest->patches[p].id.root == 1)
             stage.forest->radiosity[p] = (struct rgb){{1.0, 1.0, 1.0}};
     shade(&stage, false);
-    double shown = shading_at(stage.shading, 0, corner, &(bool){false}).band[0];
+    double shown = shading_at(stage.shading, 0, corner, &(int32_t){0}).band[0];
     tap_ok(shown < 0.2,
            "a bright leaf of 1/256 of its area makes a dark one shine little: %.2f",
            shown);
@@ -891,6 +892,54 @@ static void test_partly_covered(int levels, double smallest)
     dismantle(&stage);
 }
 
+/* Leaves that a box covers in part know which points of them it covers. */
+static void test_shut_points(void)
+{
+    struct stage stage = stage_of(floor_scene(BOX, ROOMY));
+    int points = 0, wrong = 0, in_part = 0;
+    split_regularly(stage.forest, 1);
+    set_constant(stage.forest, 1.0);
+    shade(&stage, false);
+    for (int i = 0; i < 32; i++)
+        for (int j = 0; j < 32; j++) {
+            double b = (i - j) / 32.0, c = (j + 0.25) / 32.0;
+            struct vec3 x = point(8.0 * (b + c), 8.0 * c, 0.0);
+            int32_t leaf;
+            if (b <= 0.0)
+                continue;
+            shading_at(stage.shading, 0, (double[]){1.0 - b - c, b, c}, &leaf);
+            in_part += stage.shading->shades[leaf] == SHADE_IN_PART;
+            wrong += shading_is_shut(stage.shading, stage.octree, leaf,
+                                     scene_from_input(stage.scene, x)) != is_under(x);
+            points++;
+        }
+    tap_ok(wrong == 0 && in_part > points / 8, "a box covers points below it alone (%d)",
+           points);
+    dismantle(&stage);
+}
+
+/* --- steep leaves --- */
+
+/* Light rises over one leaf and its neighbours by more than the mean of all; elsewhere it
+ * is even. */
+static void test_steep(double bright, bool is_steep)
+{
+    struct stage stage = square_stage();
+    int steep = 0;
+    split_regularly(stage.forest, 4);
+    set_constant(stage.forest, 1.0);
+    int32_t first = forest_reach(stage.forest, (struct patch_id){0, 256});
+    stage.forest->radiosity[first] = (struct rgb){{bright, 2.0 * bright, 0.0}};
+    forest_average(stage.forest);
+    shade(&stage, false);
+    for (int32_t p = 0; p < stage.forest->count; p++)
+        steep += stage.shading->shades[p] == SHADE_STEEP;
+    bool own = stage.shading->shades[first] == SHADE_STEEP;
+    tap_ok(own == is_steep && (is_steep ? steep <= 8 : steep == 0),
+           "a leaf %g times as bright as all others: %d leaves are steep", bright, steep);
+    dismantle(&stage);
+}
+
 /* A triangle without area keeps its number, has no vertices and no neighbours. */
 static void test_dropped_triangle(void)
 {
@@ -941,6 +990,9 @@ int main(void)
                  true);
     test_partly_covered(0, 0.8125);
     test_partly_covered(1, 0.5);
+    test_shut_points();
+    test_steep(8.0, true);
+    test_steep(1.5, false);
     test_dropped_triangle();
     return tap_done();
 }
