@@ -35,7 +35,7 @@ enum {
     MORE = 4       /* factor on all of these in a noisy pixel */
 };
 
-static const double NOISE = 0.02; /* error of a noisy pixel, relative to its light */
+static const double NOISE = 0.01; /* error of a noisy pixel, relative to its light */
 
 struct renderer renderer_make(const struct octree *octree, const struct shading *shading,
                               struct final_gather *gather)
@@ -222,9 +222,11 @@ static struct rgb show_well(const struct renderer *renderer,
                             const struct pixel_roots *view, uint64_t seed)
 {
     struct pixel_light pixel = show(renderer, view, seed, 1);
-    double most = NOISE * rgb_sum(pixel.sum);
-    if (renderer->shading && pixel.variance > most * most)
-        pixel = show(renderer, view, seed, MORE);
+    double most = NOISE * rgb_sum(pixel.sum), square = most * most;
+    if (renderer->shading && pixel.variance > square) {
+        double wanted = ceil(pixel.variance / square); /* or infinite, in the dark */
+        pixel = show(renderer, view, seed, wanted < MORE ? (int)wanted : MORE);
+    }
     return pixel.sum;
 }
 

@@ -45,10 +45,8 @@ static double factor_to_lamp(struct vec3 x, double from, double to)
 }
 
 /* A floor of two leaves, a square lamp above, of which a smaller plate halfway between
- * hides some: the shadow has its edges where they are, although no leaf knows of them. Of
- * 32 points in squares of their own the half-shadow's edge may cut some 6, of 512 some
- * 25: segments are an eighth of the rays. */
-static void test_shadow(bool all, int rays, double allowed)
+ * hides some, with so many rays. */
+static struct solution half_shadow(int rays)
 {
     char words[64];
     struct soup soup = {0};
@@ -59,7 +57,15 @@ static void test_shadow(bool all, int rays, double allowed)
     soup_add_quad(&soup, point(-0.2, -0.2, 0.5), point(0.4, 0, 0), point(0, 0.4, 0), 1);
     paint(&soup, 0.0, 0.0);
     snprintf(words, sizeof words, "--max-level 0 --final-gather %d", rays);
-    struct solution s = solve_soup(&soup, words);
+    return solve_soup(&soup, words);
+}
+
+/* The shadow has its edges where they are, although no leaf knows of them. Of
+ * 32 points in squares of their own the half-shadow's edge may cut some 6, of 512 some
+ * 25: segments are an eighth of the rays. */
+static void test_shadow(bool all, int rays, double allowed)
+{
+    struct solution s = half_shadow(rays);
     struct shading *shading = all ? NULL : shade_rest(&s);
     double lit = 0.0, dark = 0.0, half = 0.0;
     for (int i = 0; i <= 10; i++) {
@@ -75,6 +81,24 @@ static void test_shadow(bool all, int rays, double allowed)
     tap_ok(lit <= 1e-6, "%s: lit points are right within %.1e", light, lit);
     tap_ok(dark == 0.0, "%s: shadow is dark", light);
     tap_ok(half <= allowed, "%s: half-shadow is right within %.1e", light, half);
+    shading_destroy(shading);
+    solution_free(&s);
+}
+
+/* Where .35 of the lamp is hidden, .58 of one of its triangles and .12 of the other, 256
+ * segments to each are as noisy as sqrt(.25 (.58 .42 + .12 .88) / 256) = .0185 of its
+ * light, or .0285 of what is seen; of three bands together .0165. So (1.65)^2 = 2.7 times
+ * as many are wanted for a noise of 1 %: three times, and not four. */
+static void test_noise(void)
+{
+    struct solution s = half_shadow(4096);
+    struct shading *shading = shade_rest(&s);
+    const struct gather_counts *counts = &s.solver->beyond->answer.gather.counts;
+    int64_t before = counts->segments;
+    shown(&s, shading, 0, point(0.43, 0.015, 0.0));
+    int64_t fired = counts->segments - before;
+    tap_ok(fired == (1 + 3) * 512, "a noisy pixel gets the segments that it wants: %lld",
+           (long long)fired);
     shading_destroy(shading);
     solution_free(&s);
 }
@@ -304,6 +328,7 @@ int main(int argc, char **argv)
     test_shadow(false, 64, 0.1);
     test_shadow(false, 4096, 0.025);
     test_shadow(true, 64, 0.1);
+    test_noise();
     test_furnace();
     test_strip(0.05, true);
     test_strip(0.3, false);
