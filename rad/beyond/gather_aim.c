@@ -276,6 +276,7 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
     struct dealing strong = {each, start}, weak = {faint / ceil(faint / each), start};
     struct volley volley = {.direct = {0.0, 0.0}};
     struct rgb light = {{0.0, 0.0, 0.0}};
+    bool dark = !lamps->reflect && receiver_is_in_the_dark(r);
     for (int64_t i = 0; i < groups->count; i++) {
         const struct lamp_group *group = &groups->items[i];
         bool sure = group->direct >= each;
@@ -285,6 +286,10 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
         double direct = sure ? group->direct : count * weak.each;
         if (is_wide(lamps, group)) {
             aim_at_wide_lamp(r, count, group->node, direct);
+            continue;
+        }
+        if (dark) {
+            receiver_aim_from(r, lamps, group->node, count, direct / group->direct);
             continue;
         }
         aim_at_group(r, lamps, group, count, direct, &volley);

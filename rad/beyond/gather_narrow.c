@@ -61,6 +61,11 @@ static bool is_in_the_dark(const struct final_gather *g, int32_t patch)
     return TIMES * irradiance_of(g->model->forest, patch) < g->mean; /* not if NaN */
 }
 
+bool receiver_is_in_the_dark(const struct receiver *r)
+{
+    return r->keeps && is_in_the_dark(r->gather, r->row.leaf);
+}
+
 /* --- what a root sees --- */
 
 static double watts_of(const struct forest *forest, int32_t root)

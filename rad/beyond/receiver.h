@@ -46,6 +46,14 @@ void receiver_aim(struct receiver *r);
  * rays. */
 void receiver_aim_at(struct receiver *r, struct lamps *lamps);
 
+/* True if little light comes to the receiver, a leaf, as the links have it. */
+bool receiver_is_in_the_dark(const struct receiver *r);
+
+/* Adds `share` times the light of a node's lamps to a leaf in the dark, by `count` points
+ * of the lamps at most. */
+void receiver_aim_from(struct receiver *r, const struct lamps *lamps, int32_t node,
+                       int count, double share);
+
 /* Adds `weight` times the light of one lamp at a point x beside the leaf, on the triangle
  * `input`. */
 void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,

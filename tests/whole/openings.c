@@ -1,9 +1,13 @@
-/* Light that comes into a dark room by reflections alone, through a narrow opening.
+/* Light that comes into a dark room through a narrow opening, most of it by reflections.
  *
  * Two rooms of 3 m, rho 0.7, share a wall of 4 cm with an opening; a lamp of 0.36 m^2 and
  * 100 W/m^2 is in the ceiling of the first. The light of the second was computed by a
  * program of its own that follows paths from points of the opening both ways, to the lamp
  * and into the dark, so each of its 300,000 samples counts: its noise is below 0.4 %.
+ *
+ * Through a wall without thickness the lamp also shines straight onto a spot of the dark
+ * room's floor, a thousandth of a wide leaf. Where segments have to begin there, the room
+ * is off by up to 138 % behind a pinhole, 52 % behind a keyhole.
  *
  * The faces are in several orders, for each has rays and segments of its own. Over eight
  * of them single runs are off by 3 % RMS, so 9 % is three times that. */
@@ -13,7 +17,7 @@
 #include "tests/defaults.h"
 #include "tests/tap.h"
 
-static const double SIZE = 3.0, THICK = 0.04;
+static const double SIZE = 3.0;
 
 enum { ORDERS = 4 };
 
@@ -67,13 +71,13 @@ static void turn(struct soup *soup, int64_t first, int64_t by)
 
 static bool aims; /* leaves of the last solution have looked for openings */
 
-/* Light that comes through an opening from y, z = `low` to `high`, faces in this order,
- * W/m^2; NaN if it has not converged. */
-static double light_through(struct vec3 low, struct vec3 high, int order,
+/* Light that comes through an opening from y, z = `low` to `high` of a wall that is so
+ * thick, faces in this order, W/m^2; NaN if it has not converged. */
+static double light_through(double thick, struct vec3 low, struct vec3 high, int order,
                             const char *words)
 {
     struct soup soup = {0};
-    double end = SIZE + THICK;
+    double end = SIZE + thick;
     add_room(&soup, end, 1, SIZE, SIZE);
     add_wall(&soup, end, 1, low, high);
     turn(&soup, 0, 3 * order);
@@ -95,12 +99,12 @@ static double light_through(struct vec3 low, struct vec3 high, int order,
     return mean;
 }
 
-static void test_opening(const char *name, struct vec3 low, struct vec3 high,
-                         const char *words, double truth)
+static void test_opening(const char *name, double thick, struct vec3 low,
+                         struct vec3 high, const char *words, double truth)
 {
     double sum = 0.0, worst = 0.0;
     for (int order = 0; order < ORDERS; order++) {
-        double off = light_through(low, high, order, words) / truth - 1.0;
+        double off = light_through(thick, low, high, order, words) / truth - 1.0;
         sum += off / ORDERS;
         worst = fabs(off) <= worst ? worst : fabs(off);
     }
@@ -113,21 +117,25 @@ static void test_opening(const char *name, struct vec3 low, struct vec3 high,
 static void test_few_rays(void)
 {
     struct vec3 low = point(0, 1.05, 0), high = point(0, 1.95, 0.015);
-    light_through(low, high, 0, "--final-gather 64");
+    light_through(0.04, low, high, 0, "--final-gather 64");
     bool many = aims;
-    light_through(low, high, 0, "--final-gather 63");
+    light_through(0.04, low, high, 0, "--final-gather 63");
     tap_ok(many && !aims, "leaves with 64 rays aim at openings, with 63 they do not");
 }
 
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
-    test_opening("gap below a door", point(0, 1.05, 0), point(0, 1.95, 0.015), "",
+    test_opening("gap below a door", 0.04, point(0, 1.05, 0), point(0, 1.95, 0.015), "",
                  2.505e-4);
-    test_opening("gap four times as high", point(0, 1.05, 0), point(0, 1.95, 0.06), "",
-                 2.417e-3);
-    test_opening("keyhole", point(0, 1.6, 1.0), point(0, 1.61, 1.03), "--tolerance 1e-7",
-                 2.938e-6);
+    test_opening("gap four times as high", 0.04, point(0, 1.05, 0),
+                 point(0, 1.95, 0.06), "", 2.417e-3);
+    test_opening("keyhole", 0.04, point(0, 1.6, 1.0), point(0, 1.61, 1.03),
+                 "--tolerance 1e-7", 2.938e-6);
+    test_opening("pinhole in a wall without thickness", 0.0, point(0, 1.6, 1.2),
+                 point(0, 1.61, 1.21), "--tolerance 1e-7", 1.124e-5);
+    test_opening("keyhole in it", 0.0, point(0, 1.6, 1.0), point(0, 1.61, 1.03),
+                 "--tolerance 1e-7", 3.204e-5);
     test_few_rays();
     comm_stop(&world_comm);
     return tap_done();
