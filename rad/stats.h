@@ -90,8 +90,8 @@ struct gathered {
     int64_t looks;          /* rays and segments fired before there were rows */
     int64_t split;          /* leaves that the gathered light was seen to vary over */
     int64_t pixels;         /* rays and segments fired for the picture */
-    double closing; /* largest part that irradiances of a closed scene were changed by, so
-                       that all emitted light is absorbed; 0: it is open */
+    double closing; /* largest part, of a band, of the light that leaves surfaces of a
+                       closed scene and is lost or made; 0: it is open */
     double error;   /* of the leaves, relative RMS of reflected radiosity */
     double by_rays; /* part of the error from the choice of rays */
     double by_mesh; /* part from B varying within leaves; the squares of both parts sum to

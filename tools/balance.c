@@ -15,10 +15,10 @@
 
 #include "geom/hash.h"
 
-/* Parts of the emitted power that are warned of, absorbed beyond it or lost; the
- * correction of a closed scene's balance that is; and the ratio of absorbed to emitted
- * power above which a run has failed. */
-static const double OFF = 0.01, OFF_BALANCE = 0.05, ABSURD = 1.5;
+/* Parts of the emitted power that are warned of, absorbed beyond it or lost; the part of
+ * all light that leaves surfaces, made up for in a closed scene, that is; and the ratio
+ * of absorbed to emitted power above which a run has failed. */
+static const double OFF = 0.01, OFF_BALANCE = 0.01, ABSURD = 1.5;
 
 /* Starts of rays over a surface, and over all others in its plane, scene units. */
 static const double ABOVE = 1024.0 * GEOM_ROUNDING, HEIGHT = 0x1p-20;

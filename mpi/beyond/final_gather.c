@@ -19,27 +19,35 @@
  * light there (gather_rays.c). It is darker there than in the mean, so the rest of the
  * leaf, which others see, is brighter than the mean. With the part n of the leaf's light
  * that goes to near receivers and the mean radiosity L that they have met, far ones are
- * shown B + n (B - L), and less where n > 1/2: min(1, 2 (1 - n)) of this. (n / (1 - n)
- * would be the whole difference, and noise where hardly any far ray meets the leaf.) This
- * excess is that of the answer before, so light is solved for in turns, until one changes
- * nothing: as a part of W it would make rows of both signs, and light in bright rooms
- * would grow with each reflection. (Six turns settle rooms up to rho .9; at .99, 2 %
- * of the light still goes up and down.)
+ * shown B + n (B - L), and less where n > 1/2: min(1, 2 (1 - n)) of the difference.
+ * (n / (1 - n) would be the whole, and noise where hardly any far ray meets the leaf.)
+ * As a part of W that would make rows of both signs, and light in bright rooms would grow
+ * with each reflection; as a factor of B it makes none. The factors are those of the
+ * answer before, so light is solved for in turns, until one changes nothing.
  *
  * Where a box stands on part of a leaf, rays from there meet its inside: that part is
  * dark, so the part that others see is brighter than the mean, by the inverse of its
  * share.
  *
- * In a closed scene all emitted light is absorbed, by bare surfaces (on which no other
- * face lies). Noise, and leaves of which a dark part cannot be seen from afar (the table
- * under a sheet of paper), leave that untrue by a percent; one factor for each band, for
- * all irradiances, makes it true in each turn: else the excess at rho .99 grows.
+ * In a closed scene as much light arrives as leaves, on bare surfaces (on which no other
+ * face lies). Rows sum to 1, but columns have the noise of rays and what is wrong with
+ * leaves that are seen in part, so W loses or makes some thousandths of the light: of
+ * rho .99 a hundredfold of that would be missing in the end. It is made up for within W,
+ * in proportion to the irradiances of the turn before: with these, h, the areas a, and
+ * W' = W + h (a - W^T a)^T / (a^T h),
+ *
+ *     a^T W' = a^T,
+ *
+ * whatever light there is. So the balance of the answer is true. One factor for the
+ * irradiances of the answer would make it true as well, but by the hundredfold, and for
+ * the light that comes straight from lamps, too.
  *
  * Rejected: the defect solved for over the links, and added. Where links reflect less
  * than is right, as in bright closed rooms, each round leaves nine tenths of it. */
 #include "mpi/beyond/beyond.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
@@ -50,11 +58,11 @@
 
 enum { STEPS_MOST = 500 };
 
-/* Times that the excess of leaves too near is found anew, at most. */
+/* Times that it is found anew how bright leaves too near are seen, at most. */
 enum { ROUNDS_MOST = 6 };
 
-/* The part of what is left of the equation that each turn but the last one leaves: the
- * next excess changes it by as much. */
+/* The part of what is left of the equation that each turn but the last one leaves: how
+ * bright leaves are seen in the next one changes it by as much. */
 static const double LEFT = 0.03;
 
 /* A scene is closed if no more than this part of all rays escapes. */
@@ -79,8 +87,8 @@ struct cover {
 
 /* A leaf too near for some. */
 struct too_near {
-    int64_t leaf;      /* number */
-    struct rgb excess; /* of B as seen from afar over its mean, W/m^2 */
+    int64_t leaf;     /* number */
+    struct rgb shown; /* B as seen from afar over its mean, 1 */
 };
 
 /* Leaves have numbers, in the order of forest_order(), the same on all ranks. Rows of a
@@ -96,6 +104,8 @@ struct gathering {
     struct too_near *near;  /* [near_count], once numbered */
     int64_t near_count;
     bool closed;            /* hardly any ray of any rank escapes */
+    struct rgb *spread;     /* [count] how light that is missing is spread, W/m^2 */
+    struct rgb missing;     /* part of what left last that did not arrive, 1 */
     struct rgb *radiosity;  /* by place: radiosities to be gathered */
     struct rgb *all;        /* [count] buffer: a value of each row, rank by rank */
     int64_t bytes;          /* of values that ranks have exchanged so far */
@@ -118,6 +128,7 @@ static void gathering_start(struct gathering *g, struct solver *solver)
     g->near = alloc_array((size_t)g->count, sizeof *g->near);
     g->radiosity = alloc_array(patches, sizeof *g->radiosity);
     g->all = alloc_array((size_t)g->count, sizeof *g->all);
+    g->spread = alloc_array((size_t)g->count, sizeof *g->spread);
 }
 
 /* Hands the gather over to the solver. */
@@ -132,6 +143,7 @@ static void gathering_end(struct gathering *g)
     alloc_free(g->near);
     alloc_free(g->radiosity);
     alloc_free(g->all);
+    alloc_free(g->spread);
     stages_free(&g->stages);
 }
 
@@ -230,9 +242,9 @@ static void see_bare_parts(struct gathering *g, const struct rgb *b, bool lamps)
     }
 }
 
-/* Collective. Finds how much brighter far receivers see leaves than these are in the
- * mean, for their radiosities `b`: see above. */
-static void find_excess(struct gathering *g, const struct rgb *b)
+/* Collective. Finds how bright far receivers see leaves, relative to their means, for
+ * their radiosities `b`: see above. */
+static void find_shown(struct gathering *g, const struct rgb *b)
 {
     const struct final_gather *gather = &g->gather;
     double *seconds = &g->solver->account.seconds[PHASE_PRODUCTS];
@@ -255,15 +267,51 @@ static void find_excess(struct gathering *g, const struct rgb *b)
         double n = fmin(1.0, part), damping = fmin(1.0, 2.0 * (1.0 - n));
         for (int c = 0; c < BANDS; c++) {
             double met = (double)(watts[BANDS * k + c] + near->watts[c]) * unit; /* n L */
-            g->near[k].excess.band[c] =
-                fmax(-own->band[c], damping * (n * own->band[c] - met));
+            double excess = own->band[c] > 0.0 ? n - met / own->band[c] : 0.0;
+            g->near[k].shown.band[c] = fmax(0.0, 1.0 + damping * excess);
         }
     }
     alloc_free(watts);
 }
 
+/* The area of a leaf whose emission arrives: all of a lamp, for segments pass through a
+ * ceiling in whose plane it is; else the bare area. */
+static double shining_area(const struct gathering *g, int64_t i)
+{
+    uint32_t root = g->solver->model.forest->patches[g->leaves[i]].id.root;
+    const struct cover *cover = &g->covers[i];
+    return root_is_lamp(&g->gather.lamps, (int32_t)root) ? g->areas[i]
+                                                         : cover->bare * cover->outside;
+}
+
+/* Spreads what is missing, so that as much light arrives as leaves, over irradiances `h`
+ * for the radiosities `b`. `lamps`: as of irradiances(). */
+static void close_balance(struct gathering *g, const struct rgb *b, bool lamps,
+                          struct rgb *h)
+{
+    struct rgb leaving = {{0.0, 0.0, 0.0}}, arriving = leaving, all = leaving;
+    for (int64_t i = 0; i < g->count; i++) {
+        const struct material *m =
+            forest_material(g->solver->model.forest, g->leaves[i]);
+        double bare = g->covers[i].bare, more = lamps ? shining_area(g, i) - bare : 0.0;
+        for (int c = 0; c < BANDS; c++) {
+            leaving.band[c] += bare * b[i].band[c] + more * m->emission.band[c];
+            arriving.band[c] += bare * h[i].band[c];
+            all.band[c] += bare * g->spread[i].band[c];
+        }
+    }
+    for (int c = 0; c < BANDS; c++) {
+        bool lit = all.band[c] > 0.0; /* where no light arrives, none is missing */
+        double missing = lit ? leaving.band[c] - arriving.band[c] : 0.0;
+        double part = lit ? missing / all.band[c] : 0.0;
+        for (int64_t i = 0; i < g->count; i++)
+            h[i].band[c] += part * g->spread[i].band[c];
+        g->missing.band[c] = leaving.band[c] > 0.0 ? missing / leaving.band[c] : 0.0;
+    }
+}
+
 /* Collective. Irradiances of all leaves, W/m^2, for their radiosities `b`; with the
- * source and the excess if `lamps`. */
+ * source and what lamps lack if `lamps`; in a closed scene as much as leaves. */
 static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
                         struct rgb *h)
 {
@@ -271,10 +319,10 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
     struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
     place_radiosities(g, b);
     see_bare_parts(g, b, lamps);
-    for (int64_t k = 0; k < g->near_count && lamps; k++) {
+    for (int64_t k = 0; k < g->near_count; k++) {
         int32_t place = g->gather.place[g->leaves[g->near[k].leaf]];
         for (int c = 0; c < BANDS; c++)
-            g->radiosity[place].band[c] += g->near[k].excess.band[c];
+            g->radiosity[place].band[c] *= g->near[k].shown.band[c];
     }
     final_gather_pull(&g->gather, g->radiosity);
     *seconds -= comm_seconds();
@@ -282,6 +330,8 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
         own[row] = final_gather_irradiance(&g->gather, row, g->radiosity, lamps);
     *seconds += comm_seconds();
     share_rows(g, h);
+    if (g->closed)
+        close_balance(g, b, lamps, h);
 }
 
 /* Collective. */
@@ -323,39 +373,21 @@ static void set_radiosities(const struct gathering *g, const struct rgb *h, stru
     }
 }
 
-/* The area of a leaf whose emission arrives: all of a lamp, for segments pass through a
- * ceiling in whose plane it is; else the bare area. */
-static double shining_area(const struct gathering *g, int64_t i)
+/* Scales the irradiances of a closed scene so that all emitted light is absorbed: where
+ * they were below 0, thousandths are not. */
+static void absorb_all(const struct gathering *g, struct rgb *h)
 {
-    uint32_t root = g->solver->model.forest->patches[g->leaves[i]].id.root;
-    const struct cover *cover = &g->covers[i];
-    return root_is_lamp(&g->gather.lamps, (int32_t)root) ? g->areas[i]
-                                                         : cover->bare * cover->outside;
-}
-
-/* Scales the irradiances of a closed scene so that all emitted light is absorbed. Returns
- * the largest relative change. */
-static double close_balance(const struct gathering *g, struct rgb *h)
-{
-    struct rgb emitted = {{0.0, 0.0, 0.0}}, absorbed = {{0.0, 0.0, 0.0}};
-    for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m =
-            forest_material(g->solver->model.forest, g->leaves[i]);
-        for (int c = 0; c < BANDS; c++) {
-            emitted.band[c] += shining_area(g, i) * m->emission.band[c];
-            absorbed.band[c] +=
-                g->covers[i].bare * (1.0 - m->reflectance.band[c]) * h[i].band[c];
-        }
-    }
-    double factor[BANDS], largest = 0.0;
     for (int c = 0; c < BANDS; c++) {
-        factor[c] = absorbed.band[c] > 0.0 ? emitted.band[c] / absorbed.band[c] : 1.0;
-        largest = fmax(largest, fabs(factor[c] - 1.0));
+        double emitted = 0.0, absorbed = 0.0;
+        for (int64_t i = 0; i < g->count; i++) {
+            const struct material *m =
+                forest_material(g->solver->model.forest, g->leaves[i]);
+            emitted += shining_area(g, i) * m->emission.band[c];
+            absorbed += g->covers[i].bare * (1.0 - m->reflectance.band[c]) * h[i].band[c];
+        }
+        for (int64_t i = 0; i < g->count && absorbed > 0.0; i++)
+            h[i].band[c] *= emitted / absorbed;
     }
-    for (int64_t i = 0; i < g->count; i++)
-        for (int c = 0; c < BANDS; c++)
-            h[i].band[c] *= factor[c];
-    return largest;
 }
 
 /* Updates the vote for the gathered light. */
@@ -564,12 +596,35 @@ static double *weigh(const struct gathering *g, const struct rgb *b)
     return weights;
 }
 
-/* Collective. Solves for light by the rows, from the links' solution on: `b` by BiCGSTAB,
- * and `answer`, of which the balance is closed. */
+/* Collective. One turn: finds how bright leaves are seen and how missing light is spread,
+ * by `answer`, and solves for `b`, which becomes the answer but where it is below 0. `h`
+ * and `r`: buffers. */
+static struct bicgstab take_turn(struct gathering *g, const double *weights,
+                                 struct bicgstab_end end, struct rgb *b, struct rgb *h,
+                                 struct rgb *r, struct rgb *answer)
+{
+    size_t count = (size_t)g->count;
+    find_shown(g, answer);
+    irradiances(g, answer, true, h);
+    memcpy(g->spread, h, count * sizeof *h);
+    find_residual(g, b, r);
+    struct bicgstab done = bicgstab_solve(reflect, g, weights, g->count, end, b, r);
+    irradiances(g, b, true, h);
+    for (size_t i = 0; i < count; i++) /* slopes may go below 0 where B has changed */
+        for (int c = 0; c < BANDS; c++)
+            h[i].band[c] = fmax(0.0, h[i].band[c]);
+    if (g->closed)
+        absorb_all(g, h);
+    set_radiosities(g, h, answer);
+    return done;
+}
+
+/* Collective. Solves for light by the rows, from the links' solution on. */
 static void solve_rows(struct gathering *g, struct vote *vote)
 {
     const struct model *model = &g->solver->model;
     struct forest *forest = model->forest;
+    struct gathered *told = &g->solver->beyond->answer.counts;
     size_t count = (size_t)g->count;
     struct rgb *b = alloc_array(count, sizeof *b), *h = alloc_array(count, sizeof *h);
     struct rgb *r = alloc_array(count, sizeof *r);
@@ -583,21 +638,14 @@ static void solve_rows(struct gathering *g, struct vote *vote)
         .part = LEFT, .steps = STEPS_MOST};
     double *weights = weigh(g, b);
     struct bicgstab done = {.steps = 1};
-    for (int round = 0; done.steps > 0 && round < ROUNDS_MOST; round++) {
-        find_excess(g, answer);
-        find_residual(g, b, r);
-        if (round == ROUNDS_MOST - 1)
+    for (int turn = 1; done.steps > 0 && turn <= ROUNDS_MOST; turn++) {
+        if (turn == ROUNDS_MOST)
             end.part = 0.0;
-        done = bicgstab_solve(reflect, g, weights, g->count, end, b, r);
-        irradiances(g, b, true, h);
-        for (size_t i = 0; i < count; i++) /* slopes may go below 0 where B has changed */
-            for (int c = 0; c < BANDS; c++)
-                h[i].band[c] = fmax(0.0, h[i].band[c]);
-        if (g->closed)
-            g->solver->beyond->answer.counts.closing = close_balance(g, h);
-        set_radiosities(g, h, answer);
+        done = take_turn(g, weights, end, b, h, r, answer);
     }
     alloc_free(weights);
+    for (int c = 0; c < BANDS; c++)
+        told->closing = fmax(told->closing, fabs(g->missing.band[c]));
     judge(g, h, answer, done.residual, vote);
     place_radiosities(g, answer);
     final_gather_pull(&g->gather, g->radiosity);
