@@ -51,8 +51,7 @@
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
-#include "mpi/beyond/gather_mesh.h"
-#include "mpi/beyond/stages.h"
+#include "mpi/beyond/gather_error.h"
 #include "rad/beyond/bicgstab.h"
 #include "rad/pushpull.h"
 
@@ -68,49 +67,12 @@ static const double LEFT = 0.03;
 /* A scene is closed if no more than this part of all rays escapes. */
 static const double CRACKS = 1e-5;
 
-/* The light of a root that is not divided varies by about the first part, or the second
- * times its size over its distance: seen from near, it may be lit unlike its mean. */
-static const double UNDIVIDED = 0.2, UNDIVIDED_NEAR = 0.3;
-
 /* A leaf is seen brighter than it is in the mean by at most the inverse of this. */
 static const double LEAST_OUTSIDE = 0.125;
 
 /* Leaves with less than this part of the mean radiosity are solved for as if they had
  * so much. */
 static const double DARK = 1e-3;
-
-/* What covers a leaf: faces in its plane, and things that stand on it. */
-struct cover {
-    double bare;    /* area without such faces, square scene units */
-    double outside; /* share that is not inside of things, 1 */
-};
-
-/* A leaf too near for some. */
-struct too_near {
-    int64_t leaf;     /* number */
-    struct rgb shown; /* B as seen from afar over its mean, 1 */
-};
-
-/* Leaves have numbers, in the order of forest_order(), the same on all ranks. Rows of a
- * rank are in the order of its leaves. */
-struct gathering {
-    struct solver *solver;
-    struct final_gather gather;
-    struct gather_mesh mesh;
-    int32_t *leaves;        /* [count] local numbers; borrowed from the mesh */
-    double *areas;          /* [count] square scene units */
-    struct cover *covers;   /* [count] */
-    int64_t count;
-    struct too_near *near;  /* [near_count], once numbered */
-    int64_t near_count;
-    bool closed;            /* hardly any ray of any rank escapes */
-    struct rgb *spread;     /* [count] how light that is missing is spread, W/m^2 */
-    struct rgb missing;     /* part of what left last that did not arrive, 1 */
-    struct rgb *radiosity;  /* by place: radiosities to be gathered */
-    struct rgb *all;        /* [count] buffer: a value of each row, rank by rank */
-    int64_t bytes;          /* of values that ranks have exchanged so far */
-    struct stages stages;   /* who has which rows */
-};
 
 /* --- rows --- */
 
@@ -176,15 +138,6 @@ static bool make_rows(struct gathering *g)
 }
 
 /* --- the equation --- */
-
-/* Collective. Brings the value of each row, from `all`, to all ranks, by leaf number. */
-static void share_rows(struct gathering *g, struct rgb *values)
-{
-    comm_share(g->solver->comm, g->all, g->stages.counts, g->stages.at, sizeof *g->all);
-    g->bytes += g->count * (int64_t)sizeof *g->all;
-    for (int64_t i = 0; i < g->count; i++)
-        values[i] = g->all[g->stages.place[i]];
-}
 
 /* Sets the radiosities to be gathered: of leaves, until the pull. */
 static void place_radiosities(struct gathering *g, const struct rgb *b)
@@ -329,7 +282,7 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
     for (int64_t row = 0; row < g->gather.count; row++)
         own[row] = final_gather_irradiance(&g->gather, row, g->radiosity, lamps);
     *seconds += comm_seconds();
-    share_rows(g, h);
+    gathering_share_rows(g, h);
     if (g->closed)
         close_balance(g, b, lamps, h);
 }
@@ -342,7 +295,7 @@ static void share_covers(struct gathering *g)
     for (int64_t row = 0; row < g->gather.count; row++)
         own[row] = (struct rgb){{(double)g->gather.rows[row].bare,
                                  (double)g->gather.rows[row].outside, 0.0}};
-    share_rows(g, shares);
+    gathering_share_rows(g, shares);
     for (int64_t i = 0; i < g->count; i++)
         g->covers[i] = (struct cover){.bare = g->areas[i] * shares[i].band[0],
                                       .outside = shares[i].band[1]};
@@ -413,145 +366,6 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
         vote->converged && vote->remaining <= g->solver->model.criterion.tolerance;
 }
 
-/* --- errors --- */
-
-/* An estimate of how B varies within a leaf as seen from a point: half of its difference
- * from the mean over its parent; of undivided roots, a part of the reflected
- * radiosity. */
-static struct rgb variation_of(const struct gathering *g, int64_t place, struct vec3 from)
-{
-    const struct forest *forest = g->solver->model.forest;
-    int32_t patch = g->gather.order[place], parent = forest->patches[patch].parent;
-    const struct rgb *mean = &g->radiosity[parent >= 0 ? g->gather.place[parent] : place];
-    struct rgb b = g->radiosity[place], deviation;
-    struct rgb e = forest_material(forest, patch)->emission;
-    double part = UNDIVIDED;
-    if (parent < 0) {
-        struct triangle t = forest_triangle(forest, patch);
-        struct vec3 apart = vec3_sub(triangle_centroid(&t), from);
-        double near = sqrt(forest_area(forest, patch) / vec3_dot(apart, apart));
-        part = fmin(1.0, fmax(UNDIVIDED, UNDIVIDED_NEAR * near));
-    }
-    for (int c = 0; c < BANDS; c++)
-        deviation.band[c] = parent >= 0 ? 0.5 * (b.band[c] - mean->band[c])
-                                        : part * (b.band[c] - e.band[c]);
-    return deviation;
-}
-
-/* Collective. Variance of H that comes from B varying within the leaves that rows see,
- * (W/m^2)^2. B varies independently in different leaves, so their errors add up as
- * variances. Pre: g->radiosity is the solution. */
-static void variances_by_mesh(struct gathering *g, struct rgb *variance)
-{
-    const struct final_gather *gather = &g->gather;
-    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
-    for (int64_t row = 0, k = 0; row < gather->count; row++) {
-        struct triangle leaf =
-            forest_triangle(g->solver->model.forest, gather->rows[row].leaf);
-        struct vec3 from = triangle_centroid(&leaf);
-        own[row] = (struct rgb){{0.0, 0.0, 0.0}};
-        for (; k < gather->rows[row].end; k++) {
-            struct rgb deviation = variation_of(g, gather->terms[k].place, from);
-            for (int c = 0; c < BANDS; c++) {
-                double h = (double)gather->terms[k].weight[c] * deviation.band[c];
-                own[row].band[c] += h * h;
-            }
-        }
-    }
-    share_rows(g, variance);
-}
-
-/* A leaf whose rays have missed a small bright thing that one of its sisters has found is
- * too dark, and its variance is too small as well: it gets the mean of the sisters', each
- * that of one ray, where that is more. */
-static void raise_to_sisters(const struct gathering *g, struct rgb *variance)
-{
-    const struct patch *patches = g->solver->model.forest->patches;
-    size_t count = (size_t)g->solver->model.forest->count;
-    struct rgb *sums = alloc_array(count, sizeof *sums);
-    uint8_t *sisters = alloc_array(count, sizeof *sisters);
-    for (int raises = 0; raises < 2; raises++)
-        for (int64_t i = 0; i < g->count; i++) {
-            int32_t parent = patches[g->leaves[i]].parent;
-            if (parent < 0)
-                continue;
-            double rays = g->mesh.rays[i], *v = variance[i].band;
-            sisters[parent] = (uint8_t)(sisters[parent] + !raises);
-            for (int c = 0; c < BANDS; c++)
-                if (raises)
-                    v[c] = fmax(v[c], sums[parent].band[c] / (sisters[parent] * rays));
-                else
-                    sums[parent].band[c] += rays * v[c];
-        }
-    alloc_free(sisters);
-    alloc_free(sums);
-}
-
-/* Collective. Variance of H that comes from the choice of rays: the variance by
- * chance, times the ratio of the sequence's variance to it, estimated over all leaves
- * together. */
-static void variances_by_rays(struct gathering *g, struct rgb *variance)
-{
-    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
-    struct rgb *halves = alloc_array((size_t)g->count, sizeof *halves);
-    double as_chosen = 0.0, by_chance = 0.0;
-    for (int kind = 0; kind < 2; kind++) {
-        for (int64_t row = 0; row < g->gather.count; row++)
-            for (int c = 0; c < BANDS; c++)
-                own[row].band[c] = kind ? g->gather.rows[row].halves[c]
-                                        : g->gather.rows[row].chance[c];
-        share_rows(g, kind ? halves : variance);
-    }
-    for (int64_t i = 0; i < g->count; i++)
-        for (int c = 0; c < BANDS; c++) {
-            as_chosen += g->areas[i] * halves[i].band[c];
-            by_chance += g->areas[i] * variance[i].band[c];
-        }
-    double better = by_chance > 0.0 ? fmin(1.0, as_chosen / by_chance) : 1.0;
-    raise_to_sisters(g, variance);
-    for (int64_t i = 0; i < g->count; i++)
-        for (int c = 0; c < BANDS; c++)
-            variance[i].band[c] *= better;
-    alloc_free(halves);
-}
-
-/* Collective. Two deviations of B, of the band that has most. */
-static void estimate_errors(struct gathering *g)
-{
-    struct solver *solver = g->solver;
-    size_t count = (size_t)g->count;
-    struct rgb *mesh = alloc_array(count, sizeof *mesh);
-    struct rgb *rays = alloc_array(count, sizeof *rays);
-    double by_rays = 0.0, by_mesh = 0.0, light = 0.0;
-    variances_by_mesh(g, mesh);
-    variances_by_rays(g, rays);
-    alloc_free(solver->beyond->answer.error);
-    float *error = alloc_array((size_t)solver->model.forest->count, sizeof *error);
-    solver->beyond->answer.error = error;
-    for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m = forest_material(solver->model.forest, g->leaves[i]);
-        double largest = 0.0;
-        for (int c = 0; c < BANDS; c++) {
-            double rho = m->reflectance.band[c];
-            double deviation = rho * sqrt(mesh[i].band[c] + rays[i].band[c]);
-            struct rgb b = g->radiosity[g->gather.place[g->leaves[i]]];
-            double reflected = b.band[c] - m->emission.band[c];
-            largest = fmax(largest, deviation);
-            by_rays += g->areas[i] * rho * rho * rays[i].band[c];
-            by_mesh += g->areas[i] * rho * rho * mesh[i].band[c];
-            light += g->areas[i] * reflected * reflected;
-        }
-        error[g->leaves[i]] = (float)(2.0 * largest);
-    }
-    if (light > 0.0) {
-        solver->beyond->answer.counts.by_rays = sqrt(by_rays / light);
-        solver->beyond->answer.counts.by_mesh = sqrt(by_mesh / light);
-        solver->beyond->answer.counts.error = sqrt((by_rays + by_mesh) / light);
-    }
-    alloc_free(rays);
-    alloc_free(mesh);
-}
-
 /* Collective. */
 static void share_straight_light(struct gathering *g)
 {
@@ -561,7 +375,7 @@ static void share_straight_light(struct gathering *g)
     struct rgb *straight = alloc_array((size_t)forest->count, sizeof *straight);
     for (int64_t row = 0; row < g->gather.count; row++)
         own[row] = g->gather.rows[row].lamps;
-    share_rows(g, light);
+    gathering_share_rows(g, light);
     for (int64_t i = 0; i < g->count; i++) {
         struct rgb rho = forest_material(forest, g->leaves[i])->reflectance;
         for (int c = 0; c < BANDS; c++)
@@ -649,7 +463,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     judge(g, h, answer, done.residual, vote);
     place_radiosities(g, answer);
     final_gather_pull(&g->gather, g->radiosity);
-    estimate_errors(g);
+    gathering_estimate_errors(g);
     share_straight_light(g);
     for (int64_t i = 0; i < g->count; i++)
         forest->radiosity[g->leaves[i]] = answer[i];

@@ -1,0 +1,152 @@
+/* Errors of a final gather, leaf by leaf.
+ *
+ * A row sees each leaf by its mean, while B varies over it; and it has a number of rays
+ * that were chosen among many. The variances of both add up: each leaf's H, times rho, is
+ * off by their root. The first is taken from how B varies in the parent, the second from
+ * how what single rays brought scatters. */
+#include "mpi/beyond/gather_error.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "mpi/beyond/beyond.h"
+
+/* The light of a root that is not divided varies by about the first part, or the second
+ * times its size over its distance: seen from near, it may be lit unlike its mean. */
+static const double UNDIVIDED = 0.2, UNDIVIDED_NEAR = 0.3;
+
+/* An estimate of how B varies within a leaf as seen from a point: half of its difference
+ * from the mean over its parent; of undivided roots, a part of the reflected
+ * radiosity. */
+static struct rgb variation_of(const struct gathering *g, int64_t place, struct vec3 from)
+{
+    const struct forest *forest = g->solver->model.forest;
+    int32_t patch = g->gather.order[place], parent = forest->patches[patch].parent;
+    const struct rgb *mean = &g->radiosity[parent >= 0 ? g->gather.place[parent] : place];
+    struct rgb b = g->radiosity[place], deviation;
+    struct rgb e = forest_material(forest, patch)->emission;
+    double part = UNDIVIDED;
+    if (parent < 0) {
+        struct triangle t = forest_triangle(forest, patch);
+        struct vec3 apart = vec3_sub(triangle_centroid(&t), from);
+        double near = sqrt(forest_area(forest, patch) / vec3_dot(apart, apart));
+        part = fmin(1.0, fmax(UNDIVIDED, UNDIVIDED_NEAR * near));
+    }
+    for (int c = 0; c < BANDS; c++)
+        deviation.band[c] = parent >= 0 ? 0.5 * (b.band[c] - mean->band[c])
+                                        : part * (b.band[c] - e.band[c]);
+    return deviation;
+}
+
+/* Collective. Variance of H that comes from B varying within the leaves that rows see,
+ * (W/m^2)^2. B varies independently in different leaves, so their errors add up as
+ * variances. Pre: g->radiosity is the solution. */
+static void variances_by_mesh(struct gathering *g, struct rgb *variance)
+{
+    const struct final_gather *gather = &g->gather;
+    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
+    for (int64_t row = 0, k = 0; row < gather->count; row++) {
+        struct triangle leaf =
+            forest_triangle(g->solver->model.forest, gather->rows[row].leaf);
+        struct vec3 from = triangle_centroid(&leaf);
+        own[row] = (struct rgb){{0.0, 0.0, 0.0}};
+        for (; k < gather->rows[row].end; k++) {
+            struct rgb deviation = variation_of(g, gather->terms[k].place, from);
+            for (int c = 0; c < BANDS; c++) {
+                double h = (double)gather->terms[k].weight[c] * deviation.band[c];
+                own[row].band[c] += h * h;
+            }
+        }
+    }
+    gathering_share_rows(g, variance);
+}
+
+/* A leaf whose rays have missed a small bright thing that one of its sisters has found is
+ * too dark, and its variance is too small as well: it gets the mean of the sisters', each
+ * that of one ray, where that is more. */
+static void raise_to_sisters(const struct gathering *g, struct rgb *variance)
+{
+    const struct patch *patches = g->solver->model.forest->patches;
+    size_t count = (size_t)g->solver->model.forest->count;
+    struct rgb *sums = alloc_array(count, sizeof *sums);
+    uint8_t *sisters = alloc_array(count, sizeof *sisters);
+    for (int raises = 0; raises < 2; raises++)
+        for (int64_t i = 0; i < g->count; i++) {
+            int32_t parent = patches[g->leaves[i]].parent;
+            if (parent < 0)
+                continue;
+            double rays = g->mesh.rays[i], *v = variance[i].band;
+            sisters[parent] = (uint8_t)(sisters[parent] + !raises);
+            for (int c = 0; c < BANDS; c++)
+                if (raises)
+                    v[c] = fmax(v[c], sums[parent].band[c] / (sisters[parent] * rays));
+                else
+                    sums[parent].band[c] += rays * v[c];
+        }
+    alloc_free(sisters);
+    alloc_free(sums);
+}
+
+/* Collective. Variance of H that comes from the choice of rays: the variance by
+ * chance, times the ratio of the sequence's variance to it, estimated over all leaves
+ * together. */
+static void variances_by_rays(struct gathering *g, struct rgb *variance)
+{
+    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
+    struct rgb *halves = alloc_array((size_t)g->count, sizeof *halves);
+    double as_chosen = 0.0, by_chance = 0.0;
+    for (int kind = 0; kind < 2; kind++) {
+        for (int64_t row = 0; row < g->gather.count; row++)
+            for (int c = 0; c < BANDS; c++)
+                own[row].band[c] = kind ? g->gather.rows[row].halves[c]
+                                        : g->gather.rows[row].chance[c];
+        gathering_share_rows(g, kind ? halves : variance);
+    }
+    for (int64_t i = 0; i < g->count; i++)
+        for (int c = 0; c < BANDS; c++) {
+            as_chosen += g->areas[i] * halves[i].band[c];
+            by_chance += g->areas[i] * variance[i].band[c];
+        }
+    double better = by_chance > 0.0 ? fmin(1.0, as_chosen / by_chance) : 1.0;
+    raise_to_sisters(g, variance);
+    for (int64_t i = 0; i < g->count; i++)
+        for (int c = 0; c < BANDS; c++)
+            variance[i].band[c] *= better;
+    alloc_free(halves);
+}
+
+void gathering_estimate_errors(struct gathering *g)
+{
+    struct solver *solver = g->solver;
+    size_t count = (size_t)g->count;
+    struct rgb *mesh = alloc_array(count, sizeof *mesh);
+    struct rgb *rays = alloc_array(count, sizeof *rays);
+    double by_rays = 0.0, by_mesh = 0.0, light = 0.0;
+    variances_by_mesh(g, mesh);
+    variances_by_rays(g, rays);
+    alloc_free(solver->beyond->answer.error);
+    float *error = alloc_array((size_t)solver->model.forest->count, sizeof *error);
+    solver->beyond->answer.error = error;
+    for (int64_t i = 0; i < g->count; i++) {
+        const struct material *m = forest_material(solver->model.forest, g->leaves[i]);
+        double largest = 0.0;
+        for (int c = 0; c < BANDS; c++) {
+            double rho = m->reflectance.band[c];
+            double deviation = rho * sqrt(mesh[i].band[c] + rays[i].band[c]);
+            struct rgb b = g->radiosity[g->gather.place[g->leaves[i]]];
+            double reflected = b.band[c] - m->emission.band[c];
+            largest = fmax(largest, deviation);
+            by_rays += g->areas[i] * rho * rho * rays[i].band[c];
+            by_mesh += g->areas[i] * rho * rho * mesh[i].band[c];
+            light += g->areas[i] * reflected * reflected;
+        }
+        error[g->leaves[i]] = (float)(2.0 * largest);
+    }
+    if (light > 0.0) {
+        solver->beyond->answer.counts.by_rays = sqrt(by_rays / light);
+        solver->beyond->answer.counts.by_mesh = sqrt(by_mesh / light);
+        solver->beyond->answer.counts.error = sqrt((by_rays + by_mesh) / light);
+    }
+    alloc_free(rays);
+    alloc_free(mesh);
+}

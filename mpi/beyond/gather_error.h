@@ -1,0 +1,12 @@
+/* How wrong the light of each leaf of a final gather may be. */
+#ifndef MPI_BEYOND_GATHER_ERROR_H
+#define MPI_BEYOND_GATHER_ERROR_H
+
+#include "mpi/beyond/gathering.h"
+
+/* Collective. Two deviations of B of each leaf, of the band that has most, W/m^2, and
+ * their RMS by rays and by the mesh: both go into the solver's answer. Pre: g->radiosity
+ * is the solution. */
+void gathering_estimate_errors(struct gathering *g);
+
+#endif
