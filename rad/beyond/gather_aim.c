@@ -93,6 +93,21 @@ int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32
     return blocker_of(r, x, input, y, lamp);
 }
 
+int32_t receiver_first_blocker(struct receiver *r, struct vec3 x, struct vec3 y,
+                               int32_t lamp)
+{
+    struct model *model = r->gather->model;
+    int32_t blocker = receiver_blocker(r, x, y, lamp);
+    struct octree_hit hit;
+    if (blocker >= 0 && blocker != r->facet.input &&
+        octree_first_hit(model->octree, point_above(x, r->facet.plane.normal),
+                         vec3_sub(y, x), false, &hit, &model->counts) &&
+        hit.triangle != r->facet.input &&
+        hit.triangle != scene_input_of(model->scene, lamp))
+        blocker = hit.triangle;
+    return blocker;
+}
+
 /* Segments to groups that are next to each other in the tree, in two halves. */
 struct volley {
     double direct[2]; /* light without blockers, over all bands, W/m^2 */

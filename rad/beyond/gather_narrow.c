@@ -124,7 +124,8 @@ static bool is_worth_aiming(struct receiver *r, struct remainder *remainder)
     for (int i = 0; i < POINTS_LOOKED && passed < SEEN; i++, count++) {
         struct vec3 x, y;
         double seen = look(r, remainder, &sequence, i, &x, &y);
-        int32_t blocker = seen > 0.0 ? receiver_blocker(r, x, y, remainder->root) : -1;
+        int32_t blocker =
+            seen > 0.0 ? receiver_first_blocker(r, x, y, remainder->root) : -1;
         if (blocker >= 0 &&
             remainder_learn(remainder, r->gather->model->scene, blocker)) {
             count = passed = 0;

@@ -43,7 +43,7 @@ static double look_from(struct receiver *r, struct remainder *leaf, int32_t root
     struct vec3 x = remainder_point(leaf, QUARTERINGS, u[2], u[3]);
     int32_t blocker = -1;
     if (receiver_kernel(x, r->facet.plane.normal, y, facing) > 0.0)
-        blocker = receiver_blocker(r, x, y, root);
+        blocker = receiver_first_blocker(r, x, y, root);
     if (blocker >= 0 && remainder_learn(leaf, model->scene, blocker))
         return -1.0;
     return blocker < 0 ? seen : 0.0;

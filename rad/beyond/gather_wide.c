@@ -38,7 +38,7 @@ static bool add_point(struct receiver *r, struct remainder *lamp,
         struct vec3 y = remainder_point(lamp, 0, u[2], u[3]);
         int32_t blocker = -1;
         if (receiver_kernel(x, r->facet.plane.normal, y, lamp->plane.normal) > 0.0)
-            blocker = receiver_blocker(r, x, y, lamp->root);
+            blocker = receiver_first_blocker(r, x, y, lamp->root);
         if (blocker >= 0 && remainder_learn(lamp, scene, blocker))
             return false;
         seen = blocker >= 0 ? 0.0 : seen;

@@ -102,6 +102,10 @@ struct vec3 receiver_start(const struct receiver *r, double u, double v);
  * -1. */
 int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32_t lamp);
 
+/* The same, the first one on the way: any octree names it, and so learns the same. */
+int32_t receiver_first_blocker(struct receiver *r, struct vec3 x, struct vec3 y,
+                               int32_t lamp);
+
 /* The part of the light of a lamp that is seen, 1. */
 struct receiver_share {
     double seen;
