@@ -326,8 +326,8 @@ static void set_radiosities(const struct gathering *g, const struct rgb *h, stru
     }
 }
 
-/* Scales the irradiances of a closed scene so that all emitted light is absorbed: where
- * they were below 0, thousandths are not. */
+/* Scales the irradiances of a closed scene so that all emitted light is absorbed. Their
+ * balance lacks what was below 0 and is 0, and what is left of the equation. */
 static void absorb_all(const struct gathering *g, struct rgb *h)
 {
     for (int c = 0; c < BANDS; c++) {
