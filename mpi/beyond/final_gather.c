@@ -227,14 +227,14 @@ static void find_shown(struct gathering *g, const struct rgb *b)
     alloc_free(watts);
 }
 
-/* The area of a leaf whose emission arrives: all of a lamp, for segments pass through a
- * ceiling in whose plane it is; else the bare area. */
+/* The area of a leaf whose emission arrives: of a lamp all that is outside of things, for
+ * segments pass through a ceiling in whose plane it is; else the bare area. */
 static double shining_area(const struct gathering *g, int64_t i)
 {
     uint32_t root = g->solver->model.forest->patches[g->leaves[i]].id.root;
     const struct cover *cover = &g->covers[i];
-    return root_is_lamp(&g->gather.lamps, (int32_t)root) ? g->areas[i]
-                                                         : cover->bare * cover->outside;
+    bool lamp = root_is_lamp(&g->gather.lamps, (int32_t)root);
+    return (lamp ? g->areas[i] : cover->bare) * cover->outside;
 }
 
 /* Spreads what is missing, so that as much light arrives as leaves, over irradiances `h`

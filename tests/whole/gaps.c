@@ -278,6 +278,24 @@ static void test_errors(void)
     solution_free(&s);
 }
 
+/* A column stands around a half of a lamp. What shines in there is lost, and no other
+ * light makes up for it. The share of each of the lamp's leaves that is in there is known
+ * from 64 rays or more, to 1 % of the whole. */
+static void test_lamp_in_column(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(4, 3, HIGH), 1, true);
+    add_box(&soup, 1.7, 0.8, 0.1, 1.3, 1.6, HIGH - 0.2);
+    paint(&soup, 0.7, 0.0);
+    add_box(&soup, 1.2, 1.2, 2.2, 1.0, 0.8, 0.1);
+    paint(&soup, 0.5, 10.0);
+    struct solution s = solve_soup(&soup, "--epsilon 1e-3 --final-gather 64");
+    double absorbed = s.stats.absorbed_power / s.stats.emitted_power;
+    tap_ok(fabs(absorbed - 0.5) <= 0.01, "half a lamp in a column: %.3f is absorbed",
+           absorbed);
+    solution_free(&s);
+}
+
 /* Light in white rooms would grow with each reflection if leaves too near were seen
  * brighter by a difference, not by a factor. What W loses or makes is less than a three
  * hundredth; of rho .99 a hundredfold of that would be missing in the end. */
@@ -406,6 +424,7 @@ int main(int argc, char **argv)
     comm_start(&world_comm, &argc, &argv);
     test_room();
     test_errors();
+    test_lamp_in_column();
     test_white_room(0.9);
     test_white_room(0.99);
     test_below_box();
