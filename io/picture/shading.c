@@ -75,6 +75,9 @@ static void for_each_leaf(const struct forest *forest,
  * to a corner of its quarter. */
 static const double NARROW = 0.1;
 
+/* The deviation of a leaf's radiosity, in parts of its error. */
+static const double DEVIATION = 0.4;
+
 /* Parts of a leaf that are examined where some are covered. */
 enum { OPEN_PARTS = 16 };
 
@@ -389,7 +392,7 @@ struct lack {
 struct blend {
     struct shading *shading;
     const struct rgb *less; /* [patches] radiosity to subtract, W/m^2, or NULL */
-    const float *error;     /* [patches] of radiosity, two deviations, W/m^2, or NULL */
+    const float *error;     /* [patches] of radiosity, W/m^2, or NULL */
     const uint8_t *open;    /* of shading_open_parts() */
     int64_t next;           /* number of the next leaf in canonical order */
     int32_t *surface;       /* [roots] of surface_of_roots() */
@@ -449,7 +452,7 @@ static struct rgb deficit_of(const struct blend *blend, int32_t leaf)
     }
     if (blend->less && blend->error && blend->round > 0 && !blend->is_last &&
         fraction > 0.0 && largest > 0.0) {
-        double part = 0.5 * (double)blend->error[leaf] / (fraction * largest);
+        double part = DEVIATION * (double)blend->error[leaf] / (fraction * largest);
         share = fmax(0.0, 1.0 - part * part);
     }
     for (int c = 0; c < BANDS; c++)

@@ -139,11 +139,11 @@ static const double SEEN = 0.1;
 
 enum { PATHS = 16, ROUNDS_LEAST = 8, ROUNDS_MOST = 8192 };
 
-/* NOISY: wrong by a factor of two, but by at most 2.5 times the error that is said, five
+/* NOISY: wrong by a factor of two, but by at most twice the error that is said, five
  * deviations: of ten thousand leaves with few rays the worst is off by more than four. */
 enum verdict { RIGHT, DIM, NOISY, WRONG, VERDICTS };
 
-/* Light that a leaf reflects, and twice its deviation, W/m^2. */
+/* Light that a leaf reflects, and two and a half deviations, W/m^2. */
 struct found {
     double light, error;
 };
@@ -174,7 +174,7 @@ static enum verdict judge_leaf(const struct pathtracer *pathtracer, struct patch
         return DIM;
     if (light <= 2.0 * *truth && light >= 0.5 * *truth)
         return RIGHT;
-    return fabs(light - *truth) <= 2.5 * found.error ? NOISY : WRONG;
+    return fabs(light - *truth) <= 2.0 * found.error ? NOISY : WRONG;
 }
 
 static double reflected(const struct solution *s, int32_t patch)
@@ -233,10 +233,12 @@ static void test_room(void)
     solution_free(&s);
 }
 
-/* True if the leaf is off by its error at most: by paths, until their deviation is a
- * sixth of it. */
-static bool error_holds(const struct pathtracer *pathtracer, struct patch_id id,
-                        struct found found)
+enum holds { HELD, BROKEN, UNKNOWN, HOLDS };
+
+/* Tells whether the leaf is off by its error at most: by paths, until their deviation is
+ * a sixth of it, or UNKNOWN if it stays above a third. */
+static enum holds error_holds(const struct pathtracer *pathtracer, struct patch_id id,
+                              struct found found)
 {
     enum { MOST = 512 };
     struct triangle part = pathtracer_part(id);
@@ -250,32 +252,78 @@ static bool error_holds(const struct pathtracer *pathtracer, struct patch_id id,
         squares += b * b;
         deviation = sqrt(fmax(0.0, squares / n - sum / n * (sum / n)) / n);
     }
-    return fabs(found.light - sum / n) <= found.error;
+    if (deviation > found.error / 3.0)
+        return UNKNOWN;
+    return fabs(found.light - sum / n) <= found.error ? HELD : BROKEN;
 }
 
-/* Errors hold for 95 % of leaves of furnished rooms; here, where half of all leaves see
- * little but the inside of a gap, for 91 %. Without the sisters' noise, and with light
- * that varies over near roots as over far ones, they hold for 87 %. */
-static void test_errors(void)
+/* Errors are to hold for this part of the leaves that reflect. */
+static void test_errors(struct scene *scene, const char *options, const char *name,
+                        double part)
 {
     enum { LOOKED = 300 };
-    struct solution s = solve_scene(room(), "--epsilon 1e-2 --final-gather 64");
+    struct solution s = solve_scene(scene, options);
     const struct forest *forest = s.solver->model.forest;
     struct pathtracer pathtracer = pathtracer_make(s.scene, s.octree);
-    int held = 0, looked = 0;
+    int counts[HOLDS] = {0};
     int64_t step = forest->count / LOOKED;
     for (int64_t p = step / 2; p < forest->count; p += step) {
         struct found found = {reflected(&s, (int32_t)p),
                               (double)s.solver->beyond->answer.error[p]};
-        if (!patch_is_leaf(&forest->patches[p]))
+        if (!patch_is_leaf(&forest->patches[p]) ||
+            !(rgb_sum(forest_material(forest, (int32_t)p)->reflectance) > 0.0))
             continue;
-        held += error_holds(&pathtracer, forest->patches[p].id, found);
-        looked++;
+        counts[error_holds(&pathtracer, forest->patches[p].id, found)]++;
     }
-    tap_ok(held >= 0.89 * looked, "errors hold for %d of %d leaves (%.1f s)", held,
-           looked, s.seconds);
+    int known = counts[HELD] + counts[BROKEN];
+    tap_ok(known > counts[UNKNOWN] && counts[HELD] >= part * known,
+           "%s: errors hold for %d of %d leaves (%.1f s)", name, counts[HELD], known,
+           s.seconds);
     pathtracer_free(&pathtracer);
     solution_free(&s);
+}
+
+/* A room whose window looks out on a ground and a black sky that shines. A table and
+ * boxes. Far below there is a wide black plain: `lit`, or the face is turned down. */
+static struct scene *room_to_the_sky(bool lit)
+{
+    struct soup soup = {0};
+    add_rectangle(&soup, point(0, 0, 0), point(4, 3, 0), 2, false);
+    add_rectangle(&soup, point(0, 0, HIGH), point(4, 3, HIGH), 2, true);
+    add_rectangle(&soup, point(0, 0, 0), point(0, 3, HIGH), 0, false);
+    add_rectangle(&soup, point(4, 0, 0), point(4, 3, HIGH), 0, true);
+    add_rectangle(&soup, point(0, 3, 0), point(4, 3, HIGH), 1, true);
+    add_rectangle(&soup, point(0, 0, 0), point(4, 0, 1), 1, false);
+    add_rectangle(&soup, point(0, 0, 2.2), point(4, 0, HIGH), 1, false);
+    add_rectangle(&soup, point(0, 0, 1), point(0.8, 0, 2.2), 1, false);
+    add_rectangle(&soup, point(3.2, 0, 1), point(4, 0, 2.2), 1, false);
+    add_box(&soup, 1, 1, 0.7, 1.6, 0.8, 0.03);
+    add_box(&soup, 1.2, 1.3, 0.731, 0.3, 0.3, 0.2);
+    add_box(&soup, 3, 2, GAP, 0.6, 0.6, 1.2);
+    add_box(&soup, 0.3, 2.4, GAP, 1.5, 0.5, 1.9);
+    paint(&soup, 0.7, 0.0);
+    add_rectangle(&soup, point(-8, -6, -0.5), point(12, -0.2, -0.5), 2, false);
+    paint(&soup, 0.3, 0.0);
+    add_rectangle(&soup, point(-8, -6, -3), point(12, -6, 12), 1, false);
+    paint(&soup, 0.0, 5.0);
+    add_rectangle(&soup, point(-40, -6, -4), point(40, 40, -4), 2, !lit);
+    paint(&soup, 0.0, 0.0);
+    return scene_of_soup(&soup);
+}
+
+/* Noise of light that is not reflected is no error: all other rows are the same. */
+static void test_black_plain(void)
+{
+    double by_rays[2];
+    for (int lit = 0; lit < 2; lit++) {
+        struct solution s =
+            solve_scene(room_to_the_sky(lit), "--epsilon 1e-3 --final-gather 64");
+        by_rays[lit] = s.solver->beyond->answer.counts.by_rays;
+        solution_free(&s);
+    }
+    tap_ok(fabs(by_rays[1] / by_rays[0] - 1.0) <= 0.05,
+           "light on a black plain makes an error by rays of %.2f %% one of %.2f %%",
+           100.0 * by_rays[0], 100.0 * by_rays[1]);
 }
 
 /* A column stands around a half of a lamp. What shines in there is lost, and no other
@@ -294,6 +342,15 @@ static void test_lamp_in_column(void)
     tap_ok(fabs(absorbed - 0.5) <= 0.01, "half a lamp in a column: %.3f is absorbed",
            absorbed);
     solution_free(&s);
+}
+
+/* Errors are to hold for 95 % of leaves; here they do for 97 and all. With two deviations
+ * in place of two and a half it would be 93 % in the room with gaps, where half of all
+ * leaves see little but the inside of one. */
+static void test_room_errors(void)
+{
+    test_errors(room(), "--epsilon 1e-2 --final-gather 64", "gaps", 0.95);
+    test_errors(room_to_the_sky(false), "--epsilon 1e-3 --final-gather 64", "sky", 0.95);
 }
 
 /* Light in white rooms would grow with each reflection if leaves too near were seen
@@ -423,7 +480,8 @@ int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
     test_room();
-    test_errors();
+    test_room_errors();
+    test_black_plain();
     test_lamp_in_column();
     test_white_room(0.9);
     test_white_room(0.99);
