@@ -256,16 +256,22 @@ static void keep_known(struct looking *l, int32_t leaf, const struct gather_look
                                     look->work};
 }
 
-/* (rho H)^2 of a leaf, over all bands, as links or looks tell it. */
-static double square_of_light(const struct forest *forest, int32_t leaf)
+/* (rho H)^2 of a leaf, as links or looks tell it. */
+static struct rgb squares_of_light(const struct forest *forest, int32_t leaf)
 {
     const struct rgb *emission = &forest_material(forest, leaf)->emission;
-    double square = 0.0;
+    struct rgb squares;
     for (int c = 0; c < BANDS; c++) {
         double b = forest->radiosity[leaf].band[c] - emission->band[c];
-        square += b * b;
+        squares.band[c] = b * b;
     }
-    return square;
+    return squares;
+}
+
+/* The same, over all bands. */
+static double square_of_light(const struct forest *forest, int32_t leaf)
+{
+    return rgb_sum(squares_of_light(forest, leaf));
 }
 
 static bool may_split(const struct looking *l, int32_t leaf)
@@ -308,18 +314,30 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     return made;
 }
 
-/* The square of B of a leaf less that of the linear function over its parent. */
-static double bend_of(const struct forest *forest, int32_t leaf)
+/* The square of B of a leaf less that of the linear function over its parent, as a part
+ * of `all` of the same band: of the band where that is most, for dim bands are to be
+ * right, too. Over a root that function is constant, and some children have its B by
+ * chance: there the one that is most off counts for all. */
+static double bend_of(const struct forest *forest, int32_t leaf, const struct rgb *all)
 {
-    if (forest->patches[leaf].parent < 0)
+    const struct patch *patches = forest->patches;
+    int32_t parent = patches[leaf].parent, first = leaf, count = 1;
+    double bend = 0.0;
+    if (parent < 0)
         return 0.0;
-    struct rgb line = light_by_parent(forest, leaf);
-    double square = 0.0;
-    for (int c = 0; c < BANDS; c++) {
-        double off = forest->radiosity[leaf].band[c] - line.band[c];
-        square += off * off;
+    if (patches[parent].parent < 0) {
+        first = patches[parent].children;
+        count = 4;
     }
-    return square;
+    for (int32_t child = first; child < first + count; child++) {
+        struct rgb line = light_by_parent(forest, child);
+        for (int c = 0; c < BANDS; c++) {
+            double off = forest->radiosity[child].band[c] - line.band[c];
+            if (all->band[c] > 0.0)
+                bend = fmax(bend, off * off / all->band[c]);
+        }
+    }
+    return bend;
 }
 
 /* Splits leaves with exact rows where light bends. */
@@ -328,18 +346,21 @@ static void split_bent(struct looking *l)
     struct gather_mesh *mesh = l->mesh;
     const struct model *model = &l->solver->model;
     struct forest *forest = model->forest;
-    double *bends = alloc_array((size_t)mesh->count, sizeof *bends), sum = 0.0;
+    struct rgb sum = {{0.0, 0.0, 0.0}};
     double part = BENT * model->absorptance * model->criterion.epsilon;
     for (int64_t i = 0; i < mesh->count; i++) {
-        int32_t leaf = mesh->leaves[i];
-        double area = forest_area(forest, leaf);
-        sum += area * square_of_light(forest, leaf);
-        if (l->open[forest->patches[leaf].id.root])
-            bends[i] = area * bend_of(forest, leaf);
+        struct rgb light = squares_of_light(forest, mesh->leaves[i]);
+        for (int c = 0; c < BANDS; c++)
+            sum.band[c] += forest_area(forest, mesh->leaves[i]) * light.band[c];
     }
+    double dim = GATHER_DIM * GATHER_DIM * rgb_sum(sum);
+    for (int c = 0; c < BANDS; c++)
+        sum.band[c] = fmax(sum.band[c], dim);
     for (int64_t i = 0; i < mesh->count; i++) {
         int32_t leaf = mesh->leaves[i];
-        if (!(bends[i] > part * sum) || !may_split(l, leaf))
+        if (!l->open[forest->patches[leaf].id.root] ||
+            !(forest_area(forest, leaf) * bend_of(forest, leaf, &sum) > part) ||
+            !may_split(l, leaf))
             continue;
         forest_split(forest, leaf);
         mesh->split++;
@@ -347,7 +368,6 @@ static void split_bent(struct looking *l)
         for (int32_t child = first; child < first + 4; child++)
             forest->radiosity[child] = light_by_parent(forest, child);
     }
-    alloc_free(bends);
     list_leaves(mesh, forest);
 }
 

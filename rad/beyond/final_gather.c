@@ -24,7 +24,6 @@
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
-#include "rad/beyond/range.h"
 #include "rad/beyond/receiver.h"
 #include "rad/beyond/sequence.h"
 #include "rad/pushpull.h"
@@ -59,6 +58,19 @@ static double mean_radiosity(const struct model *model)
         sum += scene_root_area(model->scene, root) *
                rgb_sum(model->forest->radiosity[root]);
     return sum / model->area;
+}
+
+/* The factor by which each band has the mean over all bands. */
+static struct rgb scale_of_bands(const struct model *model, double mean)
+{
+    struct rgb scale = {{0.0, 0.0, 0.0}};
+    for (int c = 0; c < BANDS && mean > 0.0; c++) {
+        for (int32_t root = 0; root < scene_root_count(model->scene); root++)
+            scale.band[c] += scene_root_area(model->scene, root) *
+                             model->forest->radiosity[root].band[c];
+        scale.band[c] = mean / fmax(scale.band[c] / model->area, GATHER_DIM * mean);
+    }
+    return scale;
 }
 
 static double mean_reflected(const struct model *model)
@@ -104,13 +116,51 @@ void final_gather_find_bright(struct final_gather *gather)
     gather->bright = lamps_create(model, HUGE_VAL, true);
 }
 
+/* How far apart radiosities are, over all bands; or `scaled`: in the band where that is
+ * the largest part of the band's mean, the same part of the mean over all bands. */
+static double difference(const struct final_gather *g, struct rgb a, struct rgb b,
+                         bool scaled)
+{
+    double most = 0.0;
+    if (!scaled)
+        return fabs(rgb_sum(a) - rgb_sum(b));
+    for (int c = 0; c < BANDS; c++)
+        most = real_max(most, g->sums.scale.band[c] * fabs(a.band[c] - b.band[c]));
+    return most;
+}
+
+/* The largest differences of B, scaled, between the leaves below each patch. */
+static float *ranges_of(const struct final_gather *g)
+{
+    const struct forest *forest = g->model->forest;
+    size_t count = (size_t)forest->count;
+    float *ranges = alloc_array(count, sizeof *ranges);
+    struct rgb *low = alloc_array(count, sizeof *low);
+    struct rgb *high = alloc_array(count, sizeof *high);
+    for (int64_t p = forest->count - 1; p >= 0; p--) { /* children before parents */
+        int32_t first = forest->patches[p].children;
+        bool leaf = patch_is_leaf(&forest->patches[p]);
+        low[p] = leaf ? forest->radiosity[p] : low[first];
+        high[p] = leaf ? forest->radiosity[p] : high[first];
+        for (int k = 1; k < 4 && !leaf; k++)
+            for (int c = 0; c < BANDS; c++) {
+                low[p].band[c] = real_min(low[p].band[c], low[first + k].band[c]);
+                high[p].band[c] = real_max(high[p].band[c], high[first + k].band[c]);
+            }
+        ranges[p] = (float)difference(g, high[p], low[p], true);
+    }
+    alloc_free(low);
+    alloc_free(high);
+    return ranges;
+}
+
 struct final_gather final_gather_create(struct model *model, int rays)
 {
     struct forest *forest = model->forest;
     struct final_gather gather = {.model = model, .view = {.root = -1}};
-    forest_bound(forest);
     gather.rays = rays_for(rays, forest_count(forest).leaves);
     gather.mean = mean_radiosity(model);
+    gather.sums.scale = scale_of_bands(model, gather.mean);
     gather.sums.flat = FLAT;
     gather.lamps = lamps_create(model, least_of_lamps(model), false);
     final_gather_find_bright(&gather);
@@ -123,6 +173,7 @@ struct final_gather final_gather_create(struct model *model, int rays)
     gather.place = alloc_array((size_t)forest->count, sizeof *gather.place);
     gather.sums.latest = alloc_array((size_t)forest->count, sizeof *gather.sums.latest);
     gather.view.overlapped = alloc_array((size_t)forest->root_count, 1);
+    gather.sums.ranges = ranges_of(&gather);
     for (int64_t i = 0; i < forest->count; i++)
         gather.place[gather.order[i]] = (int32_t)i;
     return gather;
@@ -153,6 +204,7 @@ void final_gather_free(struct final_gather *gather)
     alloc_free(gather->place);
     alloc_free(gather->sums.items);
     alloc_free(gather->sums.latest);
+    alloc_free(gather->sums.ranges);
     final_gather_drop_rows(gather);
     *gather = (struct final_gather){0};
 }
@@ -226,7 +278,8 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     for (int c = 0; c < BANDS; c++)
         middle.band[c] = (b[0].band[c] + b[1].band[c] + b[2].band[c]) / 3.0;
     for (int k = 0; k < 3; k++)
-        slope.range = real_max(slope.range, fabs(rgb_sum(b[k]) - rgb_sum(middle)));
+        slope.range = real_max(
+            slope.range, difference(gather, b[k], middle, gather->sums.exact));
     if (slope.range > gather->sums.flat * gather->mean)
         slope.rise = slope_part(b, middle) *
                      (!leaf ? 2.0 : patch == slope.first + 3 ? -1.0 : 1.0);

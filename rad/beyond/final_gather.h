@@ -33,7 +33,7 @@ struct gather_slope {
     int32_t first; /* child 0 of the patch, or of its parent */
     double rise;   /* s, made less where B would be below 0; 0: B is constant */
     double range;  /* largest difference of B from its value at the centre, over all
-                      bands, W/m^2 */
+                      bands; in exact rows of one band, as that of `ranges`, W/m^2 */
 };
 
 /* Borrows the model, which has clusters and a solution. `rays`: at least 1. */

@@ -275,7 +275,6 @@ static bool add_sender(struct receiver *r, int32_t patch)
 {
     const struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
-    const struct extremes *extremes = &forest->extremes[patch];
     struct sender_part whole = {.patch = patch,
                          .triangle = forest_triangle(forest, patch),
                          .centre = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0},
@@ -290,7 +289,7 @@ static bool add_sender(struct receiver *r, int32_t patch)
         return !lies_on(r, patch, factor);
     }
     if (!is_to_be_split(r, &whole.triangle, factor,
-                        (double)extremes->high - (double)extremes->low)) {
+                        (double)g->sums.ranges[patch])) {
         add_whole(r, &whole, factor);
         return !lies_on(r, patch, factor);
     }

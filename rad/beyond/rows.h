@@ -7,6 +7,10 @@
 
 #include "rad/beyond/lamps.h"
 
+/* Bands with less than this part of all light are no more right than one with this part:
+ * their light is known no better than to the tolerance of all. */
+#define GATHER_DIM 1e-3
+
 /* The form factor from a leaf to a patch, 1, band by band. Local numbers of patches
  * differ from rank to rank, so a patch is named by its place in forest_order(), here as
  * in all arrays of the final gather. */
@@ -30,6 +34,11 @@ struct gather_sums {
     bool exact;      /* the row is made of exact factors */
     double flat;     /* part of the mean radiosity by which B may vary over a sender and
                         count as constant */
+    struct rgb scale; /* factors by which all bands have the same mean, that over bands
+                         and all surface; of a band with less than GATHER_DIM of it the
+                         factor of one with so much, 1 */
+    float *ranges;   /* [forest->count] how much B varies over a patch, from leaf to leaf,
+                        in the band where that is most, scaled, W/m^2 */
     int32_t *latest; /* [forest->count] by place: where the latest sum of that place is,
                         if there is one */
 };

@@ -35,6 +35,7 @@ struct truth {
     double value;
     int surface;      /* of the equation */
     double low, high; /* roots are looked at whose centroids have y between these */
+    int band;         /* of the light */
 };
 
 /* Facets are lit by facets in so many parts. */
@@ -111,7 +112,7 @@ static struct errors measure(const struct solution *s, int material,
         if (!patch_is_leaf(&forest->patches[p]) ||
             !is_looked_at(truth, s, root, material))
             continue;
-        double a = forest_area(forest, p), b = forest->radiosity[p].band[0];
+        double a = forest_area(forest, p), b = forest->radiosity[p].band[truth->band];
         double is = truth_of_leaf(truth, s, p), off = b / is - 1.0;
         area += a;
         exact += a * is;
@@ -208,7 +209,7 @@ static void test_strips(const struct shape *shape, double size, const double emi
     struct solution s = solve_strips(e, length, false, options);
     for (int k = 0; k < 2; k++) {
         struct truth truth = {
-            e, NULL, 0.0, k, 0.5 * (length - MIDDLE), 0.5 * (length + MIDDLE)};
+            e, NULL, 0.0, k, 0.5 * (length - MIDDLE), 0.5 * (length + MIDDLE), 0};
         if (k == 0 || emission[0] != emission[1])
             judge(&s, name, k, &truth, BARS, 0.0);
     }
@@ -254,6 +255,33 @@ static void test_squares(const double emission[2], const double rho[2],
               &(struct truth){e, .surface = k}, limit, 0.0);
     solution_free(&s);
     alloc_free(e);
+}
+
+/* Each band has its own reflectance and light. A mesh that is right for the band with
+ * most of the light is too coarse for dim ones that are reflected more often: these are
+ * to be as right. */
+static void test_bands(double distance, struct rgb rho, struct rgb emission)
+{
+    struct soup soup = {0};
+    add_strip(&soup, point(0, 0, 0), point(1, 0, 0), 1, false);
+    paint_with(&soup, (struct material){rho, emission});
+    add_strip(&soup, point(0, 0, distance), point(1, 0, 0), 1, true);
+    paint_with(&soup, (struct material){rho, {{0.0, 0.0, 0.0}}});
+    struct solution s = solve_soup(&soup, options);
+    for (int band = 0; band < BANDS; band++) {
+        const double light[2] = {emission.band[band], 0.0};
+        const double both[2] = {rho.band[band], rho.band[band]};
+        struct equation *e = equation_make(&SQUARES, distance, light, both);
+        for (int k = 0; k < 2; k++) {
+            char name[64];
+            snprintf(name, sizeof name, "square %d, band %d, E %g, rho %g", k + 1, band,
+                     light[0], both[0]);
+            judge(&s, name, k, &(struct truth){e, .surface = k, .band = band}, BARS,
+                  0.0);
+        }
+        alloc_free(e);
+    }
+    solution_free(&s);
 }
 
 /* --- tubes and discs --- */
@@ -583,6 +611,7 @@ int main(int argc, char **argv)
                  (double[]){.121991353392, .121991353392}, false, BARS);
     test_squares((double[]){1, 0}, (double[]){.5, .5},
                  (double[]){1.010218055060, .100947189239}, true, BARS);
+    test_bands(0.5, (struct rgb){{.1, .5, .9}}, (struct rgb){{1, .01, .01}});
     test_isothermal(&PLATES, 1.0, 0.1, STRIP, .159605984267);
     test_isothermal(&PLATES, 1.0, 0.5, STRIP, .630764377100);
     test_isothermal(&PLATES, 0.1, 0.1, SHORT, .601952438427);
