@@ -77,6 +77,35 @@ static void set_residual(struct system *s, const struct rgb *b, const struct rgb
             r[i].band[c] = b[i].band[c] - r[i].band[c];
 }
 
+/* Steps taken from x = 1 on until `part` of the first residual is left, and at most
+ * `most`; `left` becomes what is left, as a part. */
+static int steps_to(struct system *s, const struct rgb *b, const double *weights,
+                    double part, int most, double *left)
+{
+    struct rgb x[SIZE], r[SIZE];
+    for (int i = 0; i < SIZE; i++)
+        x[i] = (struct rgb){{1.0, 1.0, 1.0}};
+    set_residual(s, b, x, r);
+    double first = residual_of(s, b, weights, x);
+    struct bicgstab_end end = {.part = part, .steps = most};
+    struct bicgstab done = bicgstab_solve(apply, s, weights, SIZE, end, x, r);
+    *left = done.residual / first;
+    return done.steps;
+}
+
+/* A part is reached with the step that leaves less, neither sooner nor later. */
+static void test_part(struct system *s, const struct rgb *b, const double *weights)
+{
+    enum { STEPS = 3 };
+    double left, ignored;
+    steps_to(s, b, weights, 0.0, STEPS, &left);
+    int reached = steps_to(s, b, weights, 1.01 * left, 200, &ignored),
+        missed = steps_to(s, b, weights, 0.99 * left, 200, &ignored);
+    tap_ok(reached == STEPS && missed > STEPS,
+           "down to 1.01 and 0.99 of what %d steps leave, %.2g: %d and %d steps", STEPS,
+           left, reached, missed);
+}
+
 static void test_known(struct random *random, struct system *s, double bright)
 {
     struct rgb truth[SIZE], b[SIZE], x[SIZE], r[SIZE];
@@ -92,6 +121,7 @@ static void test_known(struct random *random, struct system *s, double bright)
     s->scale[1] = 0.5;
     s->scale[2] = 0.0; /* solved after half a step */
     apply(s, truth, b);
+    test_part(s, b, weights);
     set_residual(s, b, x, r);
     struct bicgstab_end end = {.residual = 1e-13, .steps = 1};
     struct bicgstab done = bicgstab_solve(apply, s, weights, SIZE, end, x, r);
