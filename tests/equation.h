@@ -105,10 +105,15 @@ static double tube_lamp(double length, double u)
     return (x * x + 0.5) / sqrt(x * x + 1.0) - x;
 }
 
+/* Polygons with the area of the disc reach beyond it at their corners. Beyond the wall
+ * the kernel is another one, and panels are not fine enough for the last 1e-5 before it:
+ * B of a place next to it counts. */
+static const double NEXT_TO_WALL = 1.0 - 1e-4;
+
 static void tube_place(double length, int surface, struct vec3 x, double *u, double *v)
 {
     (void)length;
-    *u = surface == 0 ? x.z : sqrt(x.x * x.x + x.y * x.y);
+    *u = surface == 0 ? x.z : fmin(NEXT_TO_WALL, sqrt(x.x * x.x + x.y * x.y));
     *v = 0.0;
 }
 

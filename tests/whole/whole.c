@@ -334,6 +334,19 @@ static void test_round(const char *name, const struct shape *shape, double size,
     alloc_free(e);
 }
 
+/* At a corner of the base of a cavity, which is a polygon, B is that of the rim, but for
+ * what it changes over a thousandth of the radius. */
+static void test_corner(void)
+{
+    static const double half[2] = {0.5, 0.5};
+    struct equation *e = equation_make(&CAVITY, 2.0, half, half);
+    double u, v, inner = light_at(e, 1, 0.999, 0.0);
+    e->shape->place(e->size, 1, rim(0, 0.0), &u, &v);
+    double off = light_at(e, 1, u, v) / inner - 1.0;
+    tap_ok(fabs(off) < 1e-3, "a corner of a cavity's base is off by %.2g", off);
+    alloc_free(e);
+}
+
 static void test_cavity(double length, double eps, double wall, double base)
 {
     char name[64];
@@ -625,6 +638,7 @@ int main(int argc, char **argv)
     test_edge(PI / 2.0, 0.5);
     test_edge(PI / 3.0, 0.8);
     test_strips(&GROOVE, PI / 4.0, (double[]){1, 0}, (double[]){.9, .9}, STRIP, 0.0);
+    test_corner();
     test_cavity(1.0, 0.5, .7596668, .7382803);
     test_cavity(2.0, 0.5, .8334092, .8580643);
     test_cavity(4.0, 0.5, 0.0, 0.0);
