@@ -51,11 +51,10 @@ static const double BESIDE = 2.0;
 
 /* Most points of a path, and of one in an opening; points of a leaf that are tested for
  * being bare. */
-enum { PATH_MOST = 1024, OPENING_MOST = 8, BARE_POINTS = 4 };
+enum { PATH_MOST = 256, OPENING_MOST = 8, BARE_POINTS = 4 };
 
-/* Points of a path from which it goes on in any case; points after which, and after each
- * doubling of them, every other path ends, whatever is reflected. */
-enum { PATH_SURE = 2, PATH_LONG = 32 };
+/* Points of a path from which it goes on in any case. */
+enum { PATH_SURE = 2 };
 
 /* --- points that rays meet --- */
 
@@ -262,17 +261,17 @@ static void look_inside(struct receiver *r, struct vec3 origin, struct vec3 dire
  * the largest reflectance. The mesh's light is added in the mean whether it goes on or
  * not, so that rows still sum to 1. That is noise where the mesh is far from right, as in
  * the shade at the edge of a wide bright leaf, so few paths get here. Deep in a gap
- * between bright surfaces paths are long: if they ended with the mesh's light, which is
- * the mean of inside and outside, gaps would shine. `count`: points so far. */
-static bool goes_on(struct receiver *r, const struct point *point, bool aimed, int count,
-                    double u, struct rgb *weight)
+ * between bright surfaces paths are long: if they ended soon with the mesh's light, which
+ * is the mean of inside and outside, gaps would shine. Rejected: ending half of the
+ * longest and giving their light to the others; what is then taken off the mesh makes
+ * large rows of both signs, by which light at rho .999 is not found. */
+static bool goes_on(struct receiver *r, const struct point *point, bool aimed, double u,
+                    struct rgb *weight)
 {
     const struct rgb *rho =
         &forest_material(r->gather->model->forest, point->patch)->reflectance;
     double most = fmax(rho->band[0], fmax(rho->band[1], rho->band[2]));
     struct rgb rest = *weight;
-    if (count >= PATH_LONG && (count & (count - 1)) == 0)
-        most *= 0.5;
     if (u < most) {
         for (int c = 0; c < BANDS; c++) {
             weight->band[c] /= most;
@@ -370,7 +369,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         if (count == 1)
             begin_path(r, &point, aimed, &weight);
         if (count > PATH_SURE &&
-            !goes_on(r, &point, aimed, count, hash_unit(seed + 13), &weight))
+            !goes_on(r, &point, aimed, hash_unit(seed + 13), &weight))
             return;
         if (!aimed)
             receiver_add_source(r, &weight, material->emission, 1.0);

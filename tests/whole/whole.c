@@ -451,7 +451,7 @@ static void test_sphere(const char *name, const struct zone *zones, int count, i
 
 /* --- furnaces, and light that is kept --- */
 
-enum room { CUBE, CORRIDOR, FURNISHED };
+enum room { CUBE, CORRIDOR, FURNISHED, HUNG };
 
 static void add_room(struct soup *soup, enum room room)
 {
@@ -461,6 +461,8 @@ static void add_room(struct soup *soup, enum room room)
         struct vec3 low = point(0.1 + 0.28 * k, 0.15 + 0.25 * k, 0.6 - 0.2 * k);
         soup_add_box(soup, low, vec3_add(low, point(0.2, 0.2, 0.25)), 1, false);
     }
+    if (room == HUNG) /* a picture close to a wall: paths of more than a hundred points */
+        soup_add_box(soup, point(0.0005, 0.4, 0.4), point(0.005, 0.6, 0.6), 1, false);
 }
 
 /* B = E / (1 - rho) of every leaf, whatever it sees; of a furnished room whose triangles
@@ -469,7 +471,8 @@ static void add_room(struct soup *soup, enum room room)
  * for. */
 static void test_furnace(enum room room, double rho, bool mixed, const char *words)
 {
-    static const char *const names[] = {"cube", "corridor 1:100", "furnished room"};
+    static const char *const names[] = {"cube", "corridor 1:100", "furnished room",
+                                        "room with a picture"};
     static const struct errors limit = {1e-6, 1e-6, 1e-6};
     char name[64];
     struct soup soup = {0};
@@ -671,6 +674,7 @@ int main(int argc, char **argv)
     test_furnace(FURNISHED, 0.9, false, "--tolerance 1e-8");
     test_furnace(FURNISHED, 0.999, false, "--tolerance 1e-8");
     test_furnace(FURNISHED, 0.9, true, "--tolerance 1e-8");
+    test_furnace(HUNG, 0.999, false, "--tolerance 1e-8 --epsilon 1e-3");
     test_light_is_kept(0.5, "");
     test_light_is_kept(0.9, "--epsilon 1e-3");
     test_light_is_kept(0.99, "--epsilon 1e-3");
