@@ -28,6 +28,8 @@
  * aside, all meet a back first: it lies inside a solid, not merely below a shelf; or in a
  * gap that is narrow for the leaf, as behind a picture on a wall. If one of the four is
  * covered, sixteen are examined: beside a row of books a strip of the bookcase is open.
+ * If none is, something may still cover a strip between them: the back of a wardrobe,
+ * close to the wall, that ends on the leaf. Where nothing is that near, none does.
  * The light of the leaf then belongs to its open part, if that is a quarter at least: the
  * shown irradiance is that of the leaf over the fraction that is open. A vertex with only
  * covered leaves around it takes their mean. Pictures find out whether a point of such a
@@ -78,8 +80,9 @@ static const double NARROW = 0.1;
 /* The deviation of a leaf's radiosity, in parts of its error. */
 static const double DEVIATION = 0.4;
 
-/* Parts of a leaf that are examined where some are covered. */
-enum { OPEN_PARTS = 16 };
+/* Parts of a leaf that are examined where some are covered; what counts as open parts
+ * where it is proved besides that no point between them is covered. */
+enum { OPEN_PARTS = 16, PROVED_OPEN = 17 };
 
 struct survey {
     const struct forest *forest;
@@ -161,6 +164,21 @@ static int open_quarters(const struct survey *survey, const struct plane *plane,
     return open;
 }
 
+/* True if nothing reaches into the space over a leaf up to a height: if all things over
+ * it are higher, or stand elsewhere, none of its points is covered. */
+static bool is_clear(const struct survey *survey, const struct plane *plane,
+                     const struct triangle *leaf, int32_t input, double height)
+{
+    struct octree_counts counts = {0};
+    struct vec3 rise = vec3_scale(plane->normal, height);
+    struct triangle lid = {{vec3_add(leaf->corner[0], rise),
+                            vec3_add(leaf->corner[2], rise),
+                            vec3_add(leaf->corner[1], rise)}};
+    struct plane down = triangle_plane(&lid);
+    return octree_list_shaft(survey->octree, leaf, plane, &lid, &down,
+                             (int32_t[]){input, input}, NULL, 0, &counts) == 0;
+}
+
 static void survey_leaf(void *context, int32_t leaf)
 {
     struct survey *survey = context;
@@ -169,11 +187,14 @@ static void survey_leaf(void *context, int32_t leaf)
     if (!survey->open || number % survey->step != survey->first)
         return;
     struct triangle t = forest_triangle(forest, leaf);
-    struct plane plane =
-        scene_root_plane(forest->scene, (int32_t)forest->patches[leaf].id.root);
+    int32_t root = (int32_t)forest->patches[leaf].id.root;
+    struct plane plane = scene_root_plane(forest->scene, root);
     double gap = narrow_gap(&t);
     if (open_quarters(survey, &plane, &t, gap) == 4)
-        survey->open[number] = OPEN_PARTS;
+        survey->open[number] =
+            is_clear(survey, &plane, &t, scene_input_of(forest->scene, root), gap)
+                ? PROVED_OPEN
+                : OPEN_PARTS;
     for (int k = 0; k < 4 && survey->open[number] < OPEN_PARTS; k++) {
         struct triangle quarter = triangle_child(&t, k);
         survey->open[number] += (uint8_t)open_quarters(survey, &plane, &quarter, gap);
@@ -363,7 +384,7 @@ static const double COVERED = 1e-12;
  * covered: 0. */
 static double open_fraction(uint8_t parts)
 {
-    return parts < 4 ? 0.0 : (double)parts / OPEN_PARTS;
+    return parts < 4 ? 0.0 : parts < OPEN_PARTS ? (double)parts / OPEN_PARTS : 1.0;
 }
 
 /* Returns the radiosity of the open part of a leaf, less less[leaf]. The whole irradiance
@@ -424,7 +445,7 @@ static void add_leaf(void *context, int32_t leaf)
     struct triangle t = forest_triangle(forest, leaf);
     uint8_t open = blend->open[blend->next++];
     blend->shading->shades[leaf] = open_fraction(open) == 0.0 ? SHADE_COVERED
-                                   : open < OPEN_PARTS        ? SHADE_IN_PART
+                                   : open < PROVED_OPEN       ? SHADE_IN_PART
                                                               : SHADE_SMOOTH;
     for (int k = 0; k < 3; k++)
         blend->shading->corners[3 * (int64_t)leaf + k] =

@@ -29,9 +29,10 @@ struct shading {
 };
 
 /* Counts the open sixteenths of each leaf: those not covered by a solid that stands on
- * the leaf. Leaves are in canonical order: roots in order, depth first. Only the
- * leaves first, first + step, ... are examined, the others get 0, so that ranks can
- * divide the leaves and add their counts. `octree` is that of the scene.
+ * the leaf; 17 where no point of it can be. Leaves are in canonical order: roots in
+ * order, depth first. Only the leaves first, first + step, ... are examined, the others
+ * get 0, so that ranks can divide the leaves and add their counts. `octree` is that of
+ * the scene.
  * Returns [count] numbers, to be freed with alloc_free(). */
 uint8_t *shading_open_parts(const struct forest *forest, const struct octree *octree,
                             int first, int step, int64_t *count);

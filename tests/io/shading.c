@@ -918,6 +918,28 @@ static void test_shut_points(void)
     dismantle(&stage);
 }
 
+/* A box stands between the four points that are examined, the middles of the quarters:
+ * (2.7, 1.3), (6.7, 1.3), (6.7, 5.3) and (5.3, 2.7). Its leaf knows of it; the other has
+ * none. */
+static void test_between_points(void)
+{
+    struct soup soup = {0};
+    add_face(&soup, point(0, 0, 0), point(8, 0, 0), point(8, 8, 0), point(0, 8, 0));
+    soup_add_box(&soup, point(4.4, 0.5, 0), point(4.8, 4, 1.5), 1, false);
+    struct stage stage = stage_of(scene_of_soup(&soup));
+    set_constant(stage.forest, 1.0);
+    shade(&stage, false);
+    struct vec3 inside = scene_from_input(stage.scene, point(4.6, 2, 0));
+    struct vec3 outside = scene_from_input(stage.scene, point(5, 2, 0));
+    tap_ok(stage.shading->shades[0] == SHADE_IN_PART &&
+               stage.shading->shades[1] == SHADE_SMOOTH,
+           "a leaf knows of a box between the points that are examined");
+    tap_ok(shading_is_shut(stage.shading, stage.octree, 0, inside) &&
+               !shading_is_shut(stage.shading, stage.octree, 0, outside),
+           "which covers the points below it alone");
+    dismantle(&stage);
+}
+
 /* --- steep leaves --- */
 
 /* Light rises over one leaf and its neighbours by more than the mean of all; elsewhere it
@@ -991,6 +1013,7 @@ int main(void)
     test_partly_covered(0, 0.8125);
     test_partly_covered(1, 0.5);
     test_shut_points();
+    test_between_points();
     test_steep(8.0, true);
     test_steep(1.5, false);
     test_dropped_triangle();
