@@ -196,6 +196,7 @@ void final_gather_free(struct final_gather *gather)
     lamps_free(&gather->lamps);
     lamps_free(&gather->bright);
     openings_free(gather->view.openings);
+    sparks_free(gather->view.sparks);
     alloc_free(gather->view.faced);
     alloc_free(gather->view.overlapped);
     alloc_free(gather->near.partly_covered);
@@ -322,8 +323,7 @@ static struct gather_sum *sum_of(struct final_gather *g, int32_t place, int32_t 
     return &sums->items[sums->count++];
 }
 
-/* Adds `weight` times the radiosity of a patch as a whole. */
-static void add_term(struct receiver *r, int32_t patch, const struct rgb *weight)
+void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight)
 {
     struct final_gather *g = r->gather;
     struct rgb b = g->model->forest->radiosity[patch];
@@ -339,13 +339,13 @@ static void add_term(struct receiver *r, int32_t patch, const struct rgb *weight
 void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
                         const struct rgb *weight)
 {
-    add_term(r, patch, weight);
+    receiver_add_patch(r, patch, weight);
     struct gather_slope slope = gather_slope(r->gather, patch);
     for (int k = 0; k < 3 && slope.rise != 0.0; k++) {
         struct rgb part;
         for (int c = 0; c < BANDS; c++)
             part.band[c] = weight->band[c] * slope.rise * (at[k] - 1.0 / 3.0);
-        add_term(r, slope.first + k, &part);
+        receiver_add_patch(r, slope.first + k, &part);
     }
 }
 
@@ -383,13 +383,19 @@ static struct receiver receiver_make(struct final_gather *gather, struct facet f
 {
     return (struct receiver){.gather = gather, .facet = facet, .seed = seed,
                              .along = direction_along(facet.plane.normal), .rays = rays,
-                             .near = -1, .least = -1.0};
+                             .near = -1, .dark = {.least = -1.0}};
 }
 
 static uint64_t seed_of(const struct final_gather *gather, int32_t leaf)
 {
     struct patch_id id = gather->model->forest->patches[leaf].id;
     return hash_mix((uint64_t)id.root << 32 | id.hierarchy);
+}
+
+struct receiver receiver_of_leaf(struct final_gather *gather, int32_t leaf, int rays)
+{
+    return receiver_make(gather, facet_make(gather->model->forest, leaf),
+                         seed_of(gather, leaf), rays);
 }
 
 /* H by lamps and rays. */
@@ -474,8 +480,7 @@ static struct rgb light_of_lamps(const struct receiver *r)
 
 void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool exact)
 {
-    struct receiver r = receiver_make(gather, facet_make(gather->model->forest, leaf),
-                                      seed_of(gather, leaf), rays);
+    struct receiver r = receiver_of_leaf(gather, leaf, rays);
     r.keeps = true;
     r.row = (struct gather_row){.leaf = leaf};
     gather->sums.count = gather->sums.first = 0;
@@ -485,6 +490,8 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
         gather->sums.count = 0; /* without those of exact factors */
         r.light = (struct rgb){{0.0, 0.0, 0.0}};
         receiver_find_openings(&r);
+        receiver_find_sparks(&r);
+        gather->sums.count = gather->sums.first = 0;
         receiver_aim(&r);
         receiver_fire(&r);
         r.row.lamps = r.lamps;

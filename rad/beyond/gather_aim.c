@@ -280,7 +280,10 @@ static int deal(struct dealing *dealing, double direct)
  * theirs apart, a whole number, so that together they count with their own light. */
 void receiver_aim_at(struct receiver *r, struct lamps *lamps)
 {
-    int most = lamps->reflect ? (r->rays + RAYS_PER_AIMED - 1) / RAYS_PER_AIMED : r->rays;
+    bool dark = !lamps->reflect && receiver_is_in_the_dark(r);
+    int most = lamps->reflect ? (r->rays + RAYS_PER_AIMED - 1) / RAYS_PER_AIMED
+               : dark         ? r->gather->rays
+                              : r->rays;
     lamps_group(lamps, &r->facet, most, &r->gather->model->estimating);
     const struct lamp_groups *groups = &lamps->groups;
     if (!(groups->direct > 0.0))
@@ -291,7 +294,6 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
     struct dealing strong = {each, start}, weak = {faint / ceil(faint / each), start};
     struct volley volley = {.direct = {0.0, 0.0}};
     struct rgb light = {{0.0, 0.0, 0.0}};
-    bool dark = !lamps->reflect && receiver_is_in_the_dark(r);
     for (int64_t i = 0; i < groups->count; i++) {
         const struct lamp_group *group = &groups->items[i];
         bool sure = group->direct >= each;

@@ -28,13 +28,13 @@ static const double LARGE = 1e-3;
 /* Roots examined, those that send most; points from which each is looked at, or until
  * SEEN past known blockers; points of a leaf, least and most; quarterings of that. */
 enum { MOST_ROOTS = 64, POINTS_LOOKED = 256, SEEN = 8 };
-enum { POINTS = 8, MOST_POINTS = 64, QUARTERINGS = 3 };
+enum { POINTS = 16, MOST_POINTS = 256, QUARTERINGS = 3 };
 
 /* Rays of a row for each of POINTS: with fewer, aiming costs more than all of them. */
-enum { RAYS_PER_POINT = 8 };
+enum { RAYS_PER_POINT = 4 };
 
 /* A leaf has MOST_POINTS where the factor of a remainder is more than this. */
-static const double PEAK = 0.01;
+static const double PEAK = 0.04;
 
 /* Roots that are aimed at from the leaves of one root. */
 struct openings {
@@ -56,14 +56,30 @@ static double irradiance_of(const struct forest *forest, int32_t patch)
     return BANDS * reflected_by(forest, patch) / rgb_sum(rho);
 }
 
+static struct rgb rgb_less(struct rgb a, struct rgb b)
+{
+    for (int c = 0; c < BANDS; c++)
+        a.band[c] -= b.band[c];
+    return a;
+}
+
 static bool is_in_the_dark(const struct final_gather *g, int32_t patch)
 {
     return TIMES * irradiance_of(g->model->forest, patch) < g->mean; /* not if NaN */
 }
 
+bool root_is_dark(const struct final_gather *g, int32_t root)
+{
+    return forest_area(g->model->forest, root) >= LARGE * g->model->area &&
+           is_in_the_dark(g, root);
+}
+
 bool receiver_is_in_the_dark(const struct receiver *r)
 {
-    return r->keeps && is_in_the_dark(r->gather, r->row.leaf);
+    const struct final_gather *g = r->gather;
+    return r->keeps &&
+           (is_in_the_dark(g, r->row.leaf) ||
+            is_in_the_dark(g, (int32_t)g->model->forest->patches[r->row.leaf].id.root));
 }
 
 /* --- what a root sees --- */
@@ -73,14 +89,16 @@ static double watts_of(const struct forest *forest, int32_t root)
     return forest_area(forest, root) * reflected_by(forest, root);
 }
 
-/* Finds the roots that reflect TIMES the irradiance, of those that the receiver faces,
- * largest senders first; [MOST_ROOTS]. Returns their number. */
-static int find_bright(const struct forest *forest, const struct facet *receiver,
+/* Finds the roots that reflect TIMES the irradiance, of those that the receiver faces
+ * but is not in the dark with, largest senders first; [MOST_ROOTS]. Returns their
+ * number. */
+static int find_bright(const struct final_gather *g, const struct facet *receiver,
                        double irradiance, int32_t *roots)
 {
+    const struct forest *forest = g->model->forest;
     int count = 0;
     for (int32_t root = 0; root < forest->root_count; root++) {
-        if (!(reflected_by(forest, root) > TIMES * irradiance))
+        if (!(reflected_by(forest, root) > TIMES * irradiance) || root_is_dark(g, root))
             continue;
         struct facet facet = facet_make(forest, root);
         double watts = watts_of(forest, root);
@@ -139,14 +157,26 @@ static bool is_worth_aiming(struct receiver *r, struct remainder *remainder)
     return passed > 0 && sum * r->gather->rays < POINTS * count;
 }
 
-/* Each rank that has a leaf of the root finds the same, so its work is counted apart, as
- * that of proofs. */
+struct apart apart_begin(const struct final_gather *g)
+{
+    return (struct apart){g->model->counts, g->counts, g->model->estimating};
+}
+
+void apart_end(struct final_gather *g, const struct apart *apart)
+{
+    const struct octree_counts *tests = &g->model->counts;
+    g->view.counts.node_tests += tests->node_tests - apart->tests.node_tests;
+    g->view.counts.triangle_tests += tests->triangle_tests - apart->tests.triangle_tests;
+    g->model->counts = apart->tests;
+    g->model->estimating = apart->estimating;
+    g->counts = apart->rays;
+}
+
+/* Each rank that has a leaf of the root finds the same. */
 static void examine_root(struct openings *openings, struct receiver *whole, int32_t root)
 {
     struct final_gather *g = whole->gather;
-    struct octree_counts tests = g->model->counts, *apart = &g->view.counts;
-    struct gather_counts rays = g->counts;
-    int64_t estimating = g->model->estimating;
+    struct apart apart = apart_begin(g);
     RESERVE(openings->items, &openings->capacity, openings->count + 1);
     struct remainder *item = &openings->items[openings->count];
     *item = remainder_start(g->model->scene, root);
@@ -154,11 +184,7 @@ static void examine_root(struct openings *openings, struct receiver *whole, int3
         openings->aimed[root] = 1;
         openings->count++;
     }
-    apart->node_tests += g->model->counts.node_tests - tests.node_tests;
-    apart->triangle_tests += g->model->counts.triangle_tests - tests.triangle_tests;
-    g->model->counts = tests;
-    g->model->estimating = estimating;
-    g->counts = rays;
+    apart_end(g, &apart);
 }
 
 static void find_openings(struct openings *openings, const struct receiver *r,
@@ -171,12 +197,12 @@ static void find_openings(struct openings *openings, const struct receiver *r,
         openings->aimed[openings->items[i].root] = 0;
     openings->from = from;
     openings->count = 0;
-    if (forest_area(forest, from) < LARGE * g->model->area || !is_in_the_dark(g, from))
+    if (!root_is_dark(g, from))
         return;
     whole.facet = facet_make(forest, from);
     whole.seed = hash_mix((uint64_t)from + 32);
     int32_t roots[MOST_ROOTS];
-    int count = find_bright(forest, &whole.facet, irradiance_of(forest, from), roots);
+    int count = find_bright(g, &whole.facet, irradiance_of(forest, from), roots);
     for (int i = 0; i < count; i++)
         examine_root(openings, &whole, roots[i]);
 }
@@ -188,7 +214,7 @@ void receiver_find_openings(struct receiver *r)
     struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     if (g->model->criterion.final_gather < RAYS_PER_POINT * POINTS ||
-        !is_in_the_dark(g, r->row.leaf))
+        !receiver_is_in_the_dark(r))
         return;
     if (!g->view.openings) {
         g->view.openings = alloc_array(1, sizeof *g->view.openings);
@@ -198,14 +224,20 @@ void receiver_find_openings(struct receiver *r)
     int32_t from = (int32_t)forest->patches[r->row.leaf].id.root;
     if (g->view.openings->from != from)
         find_openings(g->view.openings, r, from);
-    r->least = TIMES * irradiance_of(forest, r->row.leaf);
+    r->dark.least = TIMES * fmin(irradiance_of(forest, r->row.leaf),
+                            irradiance_of(forest, from));
+}
+
+bool openings_are_known(const struct final_gather *g)
+{
+    return g->view.openings && g->view.openings->count > 0;
 }
 
 bool receiver_aims_through(const struct receiver *r, int32_t root)
 {
     const struct final_gather *g = r->gather;
-    return r->least >= 0.0 && g->view.openings->aimed[root] &&
-           reflected_by(g->model->forest, root) > r->least;
+    return r->dark.least >= 0.0 && g->view.openings->aimed[root] &&
+           reflected_by(g->model->forest, root) > r->dark.least;
 }
 
 /* Points for a leaf: the more the more of the root is seen somewhere, as beside the
@@ -235,10 +267,13 @@ static void aim_at_remainder(struct receiver *r, struct remainder *remainder)
     struct rgb first = r->light, last = first, middle = first;
     for (int k = 0; k < points; k++) {
         struct vec3 x, y;
+        struct rgb source = r->row.source;
         double seen = look(r, remainder, &sequence, k, &x, &y);
-        if (seen > 0.0 && receiver_blocker(r, x, y, remainder->root) < 0)
+        if (seen > 0.0 && receiver_blocker(r, x, y, remainder->root) < 0) {
             receiver_see(r, remainder->root, y, seen / points,
                          hash_mix(seed + 1) + 256 * (uint64_t)k);
+            receiver_catch(r, x, rgb_less(r->row.source, source));
+        }
         for (int c = 0; c < BANDS; c++) {
             double h = r->light.band[c] - last.band[c];
             r->row.chance[c] += h * h;
@@ -257,7 +292,7 @@ static void aim_at_remainder(struct receiver *r, struct remainder *remainder)
 void receiver_aim_through(struct receiver *r)
 {
     const struct final_gather *g = r->gather;
-    for (int64_t i = 0; r->least >= 0.0 && i < g->view.openings->count; i++)
+    for (int64_t i = 0; r->dark.least >= 0.0 && i < g->view.openings->count; i++)
         if (receiver_aims_through(r, g->view.openings->items[i].root))
             aim_at_remainder(r, &g->view.openings->items[i]);
 }

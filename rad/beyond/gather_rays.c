@@ -293,7 +293,8 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
     bool aimed = root_is_lamp(&g->lamps, root);
     find_leaf(forest, root, &point);
     r->bright += factor;
-    for (int count = 1; count < OPENING_MOST && forest->patches[point.patch].parent < 0;
+    for (int count = 1;
+         count == 1 || (count < OPENING_MOST && forest->patches[point.patch].parent < 0);
          count++, seed += 16) {
         const struct material *material = forest_material(forest, point.patch);
         if (!aimed)
@@ -322,7 +323,8 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
 {
     struct final_gather *g = r->gather;
     struct rgb emission = forest_material(g->model->forest, met->patch)->emission;
-    if (!r->keeps) /* a look's leaves may have no places yet */
+    if (!r->keeps || /* a look's leaves may have no places yet */
+        leaf_has_sparks(g, met->patch)) /* sparks tell how bright it is seen */
         return;
     r->near = g->place[met->patch];
     g->near.items[r->near].area +=
@@ -360,6 +362,11 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         }
         bool aimed = root_is_lamp(&r->gather->lamps, root) &&
                      (count == 1 || !receiver_lamp_is_near(scene, root, origin));
+        if (count == 1 && receiver_sees_sparks(r, point.patch)) {
+            add_mesh(r, &point, aimed, &weight);
+            receiver_leave_out_sparks(r, point.patch, weight.band[0]);
+            return;
+        }
         if (count == PATH_MOST || !(is_too_near(r, &point, origin, normal) ||
                                     is_cut_between(r, &point, origin) ||
                                     is_partly_covered(r->gather, point.patch))) {
@@ -427,6 +434,7 @@ static void add_bright(struct receiver *r, struct rgb source)
     sums->first = sums->count;
     receiver_aim_at(r, &r->gather->bright);
     receiver_aim_through(r);
+    receiver_add_sparks(r);
     double other = fmax(0.0, 1.0 - r->bright) * r->rays;
     other /= aside < r->rays ? r->rays - aside : r->rays;
     for (int64_t i = 0; i < sums->first; i++)

@@ -10,8 +10,9 @@
  *     H  =  P / (n area)  sum of F(y, remainder of the leaf) V E / (sum over bands of E),
  *
  * where V tells whether a segment to the remainder passes: if not, a blocker more is
- * known, and all begins anew. That is the light of wide lamps (gather_wide.c) seen from
- * the other end. Behind more than BLOCKERS_MOST blockers V decides alone. */
+ * known, and all begins anew. All leaves of a root have the same points y, so that of
+ * each all of the light lands somewhere. That is the light of wide lamps (gather_wide.c)
+ * seen from the other end. Behind more than BLOCKERS_MOST blockers V decides alone. */
 #include "rad/beyond/receiver.h"
 
 #include <math.h>
@@ -30,7 +31,8 @@ struct spots {
 /* The factor of the leaf from a point y of a lamp; below 0: a blocker has been met that
  * was not known. */
 static double look_from(struct receiver *r, struct remainder *leaf, int32_t root,
-                        struct vec3 y, const double u[SEQUENCE_DIMENSIONS])
+                        struct vec3 y, const double u[SEQUENCE_DIMENSIONS],
+                        struct vec3 *at)
 {
     struct model *model = r->gather->model;
     struct vec3 facing = scene_root_plane(model->scene, root).normal;
@@ -42,6 +44,7 @@ static double look_from(struct receiver *r, struct remainder *leaf, int32_t root
         return 0.0;
     struct vec3 x = remainder_point(leaf, QUARTERINGS, u[2], u[3]);
     int32_t blocker = -1;
+    *at = x;
     if (receiver_kernel(x, r->facet.plane.normal, y, facing) > 0.0)
         blocker = receiver_first_blocker(r, x, y, root);
     if (blocker >= 0 && remainder_learn(leaf, model->scene, blocker))
@@ -49,11 +52,11 @@ static double look_from(struct receiver *r, struct remainder *leaf, int32_t root
     return blocker < 0 ? seen : 0.0;
 }
 
-/* Adds the light of one point, with this weight. */
-static void add_light(struct spots *spots, int half, double weight, struct rgb emission)
+/* Adds the light of one point. */
+static void add_light(struct spots *spots, int half, struct rgb light)
 {
     for (int c = 0; c < BANDS; c++) {
-        double h = weight * emission.band[c];
+        double h = light.band[c];
         spots->sum.band[c] += h;
         spots->squares.band[c] += h * h;
         spots->half[half].band[c] += h;
@@ -68,9 +71,11 @@ void receiver_aim_from(struct receiver *r, const struct lamps *lamps, int32_t no
     struct remainder leaf =
         remainder_start(scene, (int32_t)forest->patches[r->row.leaf].id.root);
     struct sequence sequence =
-        sequence_start(hash_mix(r->seed + 48) ^ hash_mix((uint64_t)node));
+        sequence_start(hash_mix((uint64_t)leaf.root + 48) ^ hash_mix((uint64_t)node));
     double start = hash_unit(sequence.scramble[0]), u[SEQUENCE_DIMENSIONS];
     struct spots spots = {.squares = {{0.0, 0.0, 0.0}}};
+    struct vec3 at[POINTS_MOST];
+    struct rgb each[POINTS_MOST];
     leaf.triangle = r->facet.triangle;
     count = count < POINTS_MOST ? count : POINTS_MOST;
     for (int k = 0; k < count; k++) {
@@ -79,7 +84,7 @@ void receiver_aim_from(struct receiver *r, const struct lamps *lamps, int32_t no
         struct triangle t = scene_root_triangle(scene, lamp.root);
         sequence_point(&sequence, (uint32_t)k, u);
         struct vec3 y = triangle_of_square(&t, u[0], u[1]);
-        double seen = look_from(r, &leaf, lamp.root, y, u);
+        double seen = look_from(r, &leaf, lamp.root, y, u, &at[k]);
         double weight = share * lamp.share * scene_root_area(scene, lamp.root) /
                         (count * r->facet.area);
         if (seen < 0.0) {
@@ -87,9 +92,14 @@ void receiver_aim_from(struct receiver *r, const struct lamps *lamps, int32_t no
             k = -1;
             continue;
         }
-        add_light(&spots, half, weight * seen,
-                  scene_root_material(scene, lamp.root)->emission);
+        each[k] = scene_root_material(scene, lamp.root)->emission;
+        for (int c = 0; c < BANDS; c++)
+            each[k].band[c] *= weight * seen;
+        add_light(&spots, half, each[k]);
     }
+    for (int k = 0; k < count && r->dark.catches; k++)
+        if (rgb_sum(each[k]) > 0.0)
+            receiver_catch(r, at[k], each[k]);
     receiver_add_source(r, &(struct rgb){{1.0, 1.0, 1.0}}, spots.sum, 1.0);
     for (int c = 0; c < BANDS; c++) {
         double sum = spots.sum.band[c];

@@ -13,6 +13,14 @@ struct ray_sums {
     struct rgb *each; /* [rays] H by each ray is added to these; NULL: not wanted */
 };
 
+/* What a leaf in the dark looks for. */
+struct in_the_dark {
+    double least;           /* that roots reflect which are aimed at through openings,
+                               W/m^2; below 0: none is */
+    struct sparks *catches; /* that keep the light which is aimed at; NULL: none do */
+    struct sparks *sparks;  /* of which the leaf sees some; NULL: of none */
+};
+
 struct receiver {
     struct final_gather *gather;
     struct facet facet;   /* the leaf; for points, a triangle without extent */
@@ -29,10 +37,25 @@ struct receiver {
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
     struct rgb lamps;     /* H by lamps */
     double bright;        /* form factor of the bright roots, 1 */
-    double least;         /* that roots reflect which are aimed at through openings,
-                             W/m^2; below 0: none is */
+    struct in_the_dark dark;
     struct ray_sums sums;
 };
+
+/* A receiver that is a leaf. */
+struct receiver receiver_of_leaf(struct final_gather *gather, int32_t leaf, int rays);
+
+/* Counts before work that each rank does which needs it: it is counted apart, as that of
+ * proofs. */
+struct apart {
+    struct octree_counts tests;
+    struct gather_counts rays;
+    int64_t estimating;
+};
+struct apart apart_begin(const struct final_gather *gather);
+void apart_end(struct final_gather *gather, const struct apart *apart);
+
+/* Adds `weight` times the mean radiosity of a patch. */
+void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight);
 
 /* Adds `weight` times the radiosity that a patch has at a point of it, which has the
  * barycentric coordinates `at`: see gather_slope(). */
@@ -72,15 +95,41 @@ void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t 
  * openings. */
 void receiver_find_openings(struct receiver *r);
 
+/* True if the root that was asked for last has any. */
+bool openings_are_known(const struct final_gather *gather);
+
 /* True if the root is one of them. */
 bool receiver_aims_through(const struct receiver *r, int32_t root);
 
 /* Adds their light. */
 void receiver_aim_through(struct receiver *r);
 
-/* Adds the light of a point y of a root that is seen; the root has this form factor. Of a
- * root that is a leaf, as in the depth of an opening, the light at the point is found by
- * a path: its near end is darker than its mean. */
+/* True if a root is large and in the dark. */
+bool root_is_dark(const struct final_gather *gather, int32_t root);
+
+/* Keeps the sums since the last call, and `source`, as light that lands at the point x;
+ * does nothing where it is not to be caught. */
+void receiver_catch(struct receiver *r, struct vec3 x, struct rgb source);
+
+/* Finds the sparks that a leaf in the dark sees. */
+void receiver_find_sparks(struct receiver *r);
+
+/* Adds their light. */
+void receiver_add_sparks(struct receiver *r);
+
+/* True if first light of a leaf in the dark is known. */
+bool leaf_has_sparks(const struct final_gather *gather, int32_t leaf);
+
+/* True if it sees first light of a leaf as sparks. */
+bool receiver_sees_sparks(const struct receiver *r, int32_t patch);
+
+/* Takes away that light from a ray, of this weight, that has met the leaf. */
+void receiver_leave_out_sparks(struct receiver *r, int32_t patch, double weight);
+
+/* Adds the light of a point y of a root that is seen; the root has this form factor. The
+ * light at the point is found by a path of a step: beside an opening a leaf is darker
+ * than in the mean. On roots that are leaves, as in the depth of the opening, it goes
+ * on. */
 void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor,
                   uint64_t seed);
 

@@ -91,6 +91,10 @@ struct gather_counts {
 struct openings;
 void openings_free(struct openings *openings);
 
+/* Points in the dark where light comes in: gather_sparks.c. */
+struct sparks;
+void sparks_free(struct sparks *sparks);
+
 /* A root and the roots that it faces. */
 struct gather_view {
     int32_t root;      /* -1: none yet */
@@ -98,6 +102,7 @@ struct gather_view {
     int32_t *faced;    /* [count], roots */
     int64_t count, capacity;
     struct openings *openings; /* NULL: none yet */
+    struct sparks *sparks;     /* NULL: none yet */
     uint8_t *overlapped; /* [roots] 2: another overlaps it in its plane; 1: none does; 0:
                             unknown */
     struct octree_counts counts; /* of all proofs, which each rank makes that has a leaf

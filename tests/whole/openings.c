@@ -7,10 +7,14 @@
  *
  * Through a wall without thickness the lamp also shines straight onto a spot of the dark
  * room's floor, a thousandth of a wide leaf. Where segments have to begin there, the room
- * is off by up to 138 % behind a pinhole, 52 % behind a keyhole.
+ * is off by up to 138 % behind a pinhole, 52 % behind a keyhole. Below a door without
+ * thickness most of the light comes onto a strip as wide as the gap. Where few rays of
+ * the room find that leaf, and where it sends as much from all over it, the room is off
+ * by up to 70 %, by 20 % in the mean; behind the keyhole by 6.5 %.
  *
  * The faces are in several orders, for each has rays and segments of its own. Over eight
- * of them single runs are off by 3 % RMS, so 9 % is three times that. */
+ * of them single runs are off by 3 % RMS, so 9 % is three times that; by 2 % RMS below
+ * the thin door, so 6 %; by 1 % through the keyholes, so 3 %. */
 #include <math.h>
 
 #include "mpi/beyond/beyond.h"
@@ -100,7 +104,7 @@ static double light_through(double thick, struct vec3 low, struct vec3 high, int
 }
 
 static void test_opening(const char *name, double thick, struct vec3 low,
-                         struct vec3 high, const char *words, double truth)
+                         struct vec3 high, const char *words, double truth, double most)
 {
     double sum = 0.0, worst = 0.0;
     for (int order = 0; order < ORDERS; order++) {
@@ -110,7 +114,7 @@ static void test_opening(const char *name, double thick, struct vec3 low,
     }
     tap_ok(fabs(sum) <= 0.03, "light through a %s is off by %+.2f %% in the mean", name,
            100.0 * sum);
-    tap_ok(worst <= 0.09, "and by %.2f %% at most", 100.0 * worst);
+    tap_ok(worst <= most, "and by %.2f %% at most", 100.0 * worst);
 }
 
 /* Eight points that a leaf aims at an opening cost more than so few rays. */
@@ -126,16 +130,18 @@ static void test_few_rays(void)
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
-    test_opening("gap below a door", 0.04, point(0, 1.05, 0), point(0, 1.95, 0.015), "",
-                 2.505e-4);
-    test_opening("gap four times as high", 0.04, point(0, 1.05, 0),
-                 point(0, 1.95, 0.06), "", 2.417e-3);
-    test_opening("keyhole", 0.04, point(0, 1.6, 1.0), point(0, 1.61, 1.03),
-                 "--tolerance 1e-7", 2.938e-6);
-    test_opening("pinhole in a wall without thickness", 0.0, point(0, 1.6, 1.2),
-                 point(0, 1.61, 1.21), "--tolerance 1e-7", 1.124e-5);
-    test_opening("keyhole in it", 0.0, point(0, 1.6, 1.0), point(0, 1.61, 1.03),
-                 "--tolerance 1e-7", 3.204e-5);
+    struct vec3 low = point(0, 1.05, 0), high = point(0, 1.95, 0.015);
+    struct vec3 key = point(0, 1.6, 1.0), end = point(0, 1.61, 1.03);
+    test_opening("gap below a door", 0.04, low, high, "", 2.505e-4, 0.09);
+    test_opening("gap below a thin door", 0.0, low, high, "", 9.422e-4, 0.06);
+    high.z = 0.06;
+    test_opening("gap four times as high", 0.04, low, high, "", 2.417e-3, 0.09);
+    test_opening("keyhole", 0.04, key, end, "--tolerance 1e-7", 2.938e-6, 0.03);
+    test_opening("keyhole in a thin wall", 0.0, key, end, "--tolerance 1e-7", 3.204e-5,
+                 0.03);
+    key.z = 1.2;
+    end.z = 1.21;
+    test_opening("pinhole in it", 0.0, key, end, "--tolerance 1e-7", 1.124e-5, 0.09);
     test_few_rays();
     comm_stop(&world_comm);
     return tap_done();
