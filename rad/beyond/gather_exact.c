@@ -41,8 +41,9 @@ static const double BEHIND = 0.01;
 /* Most times that a leaf is quartered. */
 enum { QUARTERINGS = 3 };
 
-/* An exact row whose sum is within this of 1 sees no way out. */
-static const double CLOSED = 1e-3;
+/* An exact row whose sum is within CLOSED of 1 sees no way out. One within ALL_BUT may
+ * see none: in an acute corner single points miss faces that are near. */
+static const double CLOSED = 1e-3, ALL_BUT = 0.1;
 
 /* --- the roots that a root faces --- */
 
@@ -238,8 +239,10 @@ static struct sender_part part_child(const struct sender_part *part, int k)
 
 static double factor_to(const struct receiver *r, const struct triangle *sender)
 {
-    return mean_factor(&r->facet.triangle, r->facet.plane.normal, sender,
-                       &r->gather->model->estimating);
+    int64_t *work = &r->gather->model->estimating;
+    const struct vec3 normal = r->facet.plane.normal;
+    return r->gather->sums.sharp ? near_factor(&r->facet.triangle, normal, sender, work)
+                                 : mean_factor(&r->facet.triangle, normal, sender, work);
 }
 
 /* Adds a part whose factor is known as a whole. */
@@ -299,14 +302,20 @@ static bool add_sender(struct receiver *r, int32_t patch)
     return good;
 }
 
+static double sum_of_row(const struct gather_sums *sums)
+{
+    double sum = 0.0;
+    for (int64_t i = 0; i < sums->count; i++)
+        sum += sums->items[i].weight[0];
+    return sum;
+}
+
 /* False if an exact row has a sum that cannot be true, as where faces lie on each other.
  * One that all but sums to 1 is made to. */
 static bool close_row(struct receiver *r)
 {
     const struct gather_sums *sums = &r->gather->sums;
-    double sum = 0.0;
-    for (int64_t i = 0; i < sums->count; i++)
-        sum += sums->items[i].weight[0];
+    double sum = sum_of_row(sums);
     if (sum > 1.0 + CLOSED)
         return false;
     r->gather->counts.exact++;
@@ -339,8 +348,17 @@ bool receiver_add_exact(struct receiver *r)
     bool good = view->open;
     g->sums.exact = true;
     g->sums.flat = fmin(flat, sqrt(g->model->criterion.epsilon));
-    for (int64_t i = 0; i < view->count && good; i++)
-        good = add_sender(r, view->faced[i]);
+    for (int turn = 0; turn < 2 && good; turn++) {
+        double off = fabs(sum_of_row(&g->sums) - 1.0);
+        if (turn > 0 && (off <= CLOSED || off > ALL_BUT))
+            break;
+        g->sums.sharp = turn > 0;
+        g->sums.count = 0;
+        r->light = (struct rgb){{0.0, 0.0, 0.0}};
+        for (int64_t i = 0; i < view->count && good; i++)
+            good = add_sender(r, view->faced[i]);
+    }
+    g->sums.sharp = false;
     g->sums.flat = flat;
     g->sums.exact = false;
     return good && close_row(r);

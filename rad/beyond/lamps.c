@@ -102,11 +102,18 @@ double mean_factor(const struct triangle *from, struct vec3 normal,
         *work += TESTS_PER_FORM_FACTOR;
         return point_triangle_factor(from->corner[0], normal, to);
     }
-    if (is_near(from, to) && is_across_gap(from, normal, to)) {
-        *work += TESTS_PER_EXACT_FACTOR;
-        return triangle_exchange(from, to) / triangle_area(from);
-    }
+    if (is_near(from, to) && is_across_gap(from, normal, to))
+        return near_factor(from, normal, to, work);
     return factor_of_quarters(from, normal, to, QUARTERINGS, work);
+}
+
+double near_factor(const struct triangle *from, struct vec3 normal,
+                   const struct triangle *to, int64_t *work)
+{
+    if (!is_near(from, to))
+        return mean_factor(from, normal, to, work);
+    *work += TESTS_PER_EXACT_FACTOR;
+    return triangle_exchange(from, to) / triangle_area(from);
 }
 
 /* --- lamps --- */

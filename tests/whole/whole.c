@@ -451,10 +451,27 @@ static void test_sphere(const char *name, const struct zone *zones, int count, i
 
 /* --- furnaces, and light that is kept --- */
 
-enum room { CUBE, CORRIDOR, FURNISHED, HUNG };
+enum room { CUBE, CORRIDOR, FURNISHED, HUNG, WEDGE };
+
+/* A prism: at the ends of its edge single points of a leaf miss the end that is near. */
+static void add_wedge(struct soup *soup)
+{
+    const struct vec3 low[3] = {point(0, 0, 0), point(1, -.025, 0), point(1, .025, 0)};
+    struct vec3 up = point(0, 0, 1), high[3];
+    for (int k = 0; k < 3; k++)
+        high[k] = vec3_add(low[k], up);
+    soup_add(soup, (struct triangle){{low[0], low[1], low[2]}});
+    soup_add(soup, (struct triangle){{high[0], high[2], high[1]}});
+    for (int k = 0; k < 3; k++)
+        soup_add_quad(soup, low[k], up, vec3_sub(low[(k + 1) % 3], low[k]), 1);
+}
 
 static void add_room(struct soup *soup, enum room room)
 {
+    if (room == WEDGE) {
+        add_wedge(soup);
+        return;
+    }
     soup_add_box(soup, point(0, 0, 0),
                  room == CORRIDOR ? point(100, 1, 1) : point(1, 1, 1), 1, true);
     for (int k = 0; k < 3 && room == FURNISHED; k++) {
@@ -472,7 +489,7 @@ static void add_room(struct soup *soup, enum room room)
 static void test_furnace(enum room room, double rho, bool mixed, const char *words)
 {
     static const char *const names[] = {"cube", "corridor 1:100", "furnished room",
-                                        "room with a picture"};
+                                        "room with a picture", "acute wedge"};
     static const struct errors limit = {1e-6, 1e-6, 1e-6};
     char name[64];
     struct soup soup = {0};
@@ -675,6 +692,7 @@ int main(int argc, char **argv)
     test_furnace(FURNISHED, 0.999, false, "--tolerance 1e-8");
     test_furnace(FURNISHED, 0.9, true, "--tolerance 1e-8");
     test_furnace(HUNG, 0.999, false, "--tolerance 1e-8 --epsilon 1e-3");
+    test_furnace(WEDGE, 0.999, false, "--tolerance 1e-8 --epsilon 1e-3");
     test_light_is_kept(0.5, "");
     test_light_is_kept(0.9, "--epsilon 1e-3");
     test_light_is_kept(0.99, "--epsilon 1e-3");
