@@ -18,16 +18,17 @@
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
-/* A lamp is wide if its factor from the leaf, unoccluded, is more than this. */
-static const double WIDE = 0.05;
+/* A lamp is wide if its factor from the receiver, unoccluded, is more than this. Points
+ * of pixels are few, so that cutting takes less time there, and noise shows. */
+static const double WIDE = 0.05, WIDE_AT_POINTS = 0.03;
 
 /* A lamp is near if the square of its distance is less than this times its area. */
 static const double NEAR_LAMP = 4.0;
 
-/* Fewest segments that are enough to estimate the visible share of lamps; most tries for
- * a point of a lamp above the horizon; rays in all directions for each that is aimed at a
- * bright root. */
-enum { VOLLEY = 4, AIMS_MOST = 16, RAYS_PER_AIMED = 4 };
+/* Fewest segments that are enough to estimate the visible share of lamps; fewest for a
+ * lamp of less than WIDE to be cut; most tries for a point of a lamp above the horizon;
+ * rays in all directions for each that is aimed at a bright root. */
+enum { VOLLEY = 4, CUTS_LEAST = 8, AIMS_MOST = 16, RAYS_PER_AIMED = 4 };
 
 static const struct rgb ALL = {{1.0, 1.0, 1.0}};
 
@@ -255,10 +256,13 @@ static void aim_at_group(struct receiver *r, const struct lamps *lamps,
     }
 }
 
-static bool is_wide(const struct lamps *lamps, const struct lamp_group *group)
+/* With few segments to find its blockers by, a wide lamp is noisy. */
+static bool is_wide(const struct receiver *r, const struct lamps *lamps,
+                    const struct lamp_group *group, int count)
 {
+    double least = r->points && count >= CUTS_LEAST ? WIDE_AT_POINTS : WIDE;
     return !lamps->reflect && !node_is_cluster(group->node) &&
-           group->direct > WIDE * lamps->sent[group->node];
+           group->direct > least * lamps->sent[group->node];
 }
 
 /* Segments that are still to be dealt, one for each so much light. */
@@ -301,7 +305,7 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
         if (count == 0)
             continue;
         double direct = sure ? group->direct : count * weak.each;
-        if (is_wide(lamps, group)) {
+        if (is_wide(r, lamps, group, count)) {
             aim_at_wide_lamp(r, count, group->node, direct);
             continue;
         }

@@ -1,9 +1,9 @@
 /* Light that surfaces in the dark reflect, right where an opening lets it in.
  *
- * What comes below a door or through a keyhole falls onto a strip or a spot of the dark
- * room, often a thousandth of a leaf or of the room. Few rays of the room's leaves meet
- * that leaf, so most of the light in the dark would be that of one or two rays; and as
- * the leaf's mean it would begin all over the leaf, where half of it, beside the door,
+ * Light that comes below a door or through a keyhole falls onto a strip or a spot of the
+ * dark room, often a thousandth of a leaf or of the room. Few rays of the room's leaves
+ * meet that leaf, so most of the light in the dark would be that of one or two rays; and
+ * as the leaf's mean it would begin all over the leaf, where half of it, beside the door,
  * lights the door, and a part goes back through the gap.
  *
  * The points where the first light lands are known, for leaves in the dark aim at it
@@ -135,7 +135,7 @@ void receiver_catch(struct receiver *r, struct vec3 x, struct rgb source)
     sums->first = sums->count;
 }
 
-/* Makes what has been caught of a leaf, from number `begin` on, one. */
+/* Makes all sparks that have been caught of a leaf, from number `begin` on, one. */
 static void add_up(struct sparks *sparks, struct receiver *r, int64_t begin)
 {
     const struct spark_list *caught = &sparks->caught;
@@ -185,7 +185,7 @@ static void catch_light(struct sparks *sparks, struct final_gather *g, int32_t p
     add_up(sparks, &r, begin);
 }
 
-/* Chooses from what has been caught by power. */
+/* Chooses from the sparks that have been caught, by power. */
 static void choose(struct sparks *sparks, int32_t root)
 {
     const struct spark_list *caught = &sparks->caught;

@@ -8,9 +8,10 @@
  *
  *     H at x  =  E F(remainder, x) V.
  *
- * Where one does not pass, a blocker more is known, and all begins anew. A wall with a
- * hole is known after some ten segments, and the remainder is the hole. Then the light at
- * each point is exact, half-shadows included.
+ * Where one does not pass, a blocker more is known, and the point is looked from again;
+ * all points are, until none finds a blocker. A wall with a hole is known after some ten
+ * segments, and the remainder is the hole. Then the light at each point is exact,
+ * half-shadows included.
  *
  * Of more than BLOCKERS_MOST blockers the last ones count by V alone, as all do where
  * the lamp is small: there it is the place on the leaf that decides on light and shadow,
@@ -27,11 +28,19 @@ struct sums {
     double wholes, seens, mixed; /* their squares and products */
 };
 
+/* Point i of `count` of the receiver. Those of a pixel are few, so that each is looked
+ * from several times on end. */
+static struct vec3 point_of(const struct receiver *r, const double *u, int i, int count)
+{
+    const struct gather_points *points = r->points;
+    return points ? points->at[(int64_t)i * points->count / count]
+                  : receiver_start(r, u[0], u[1]);
+}
+
 /* False if a blocker has been met that was not known. */
-static bool add_point(struct receiver *r, struct remainder *lamp,
+static bool add_point(struct receiver *r, struct remainder *lamp, struct vec3 x,
                       const double u[SEQUENCE_DIMENSIONS], int half, struct sums *sums)
 {
-    struct vec3 x = receiver_start(r, u[0], u[1]);
     const struct scene *scene = r->gather->model->scene;
     double seen = remainder_look(lamp, scene, x, r->facet.plane.normal);
     if (seen > 0.0) {
@@ -75,14 +84,18 @@ struct receiver_share receiver_share_of_wide(struct receiver *r,
 {
     const struct scene *scene = r->gather->model->scene;
     struct remainder lamp = remainder_start(scene, root);
-    struct sums sums = {.wholes = 0.0};
+    struct sums sums;
     double u[SEQUENCE_DIMENSIONS];
-    for (int i = 0; i < count; i++) {
-        sequence_point(sequence, (uint32_t)i, u);
-        if (!add_point(r, &lamp, u, 2 * i >= count, &sums)) {
-            sums = (struct sums){.wholes = 0.0};
-            i = -1;
+    bool learnt;
+    do {
+        sums = (struct sums){.wholes = 0.0};
+        learnt = false;
+        for (int i = 0; i < count; i++) {
+            sequence_point(sequence, (uint32_t)i, u);
+            struct vec3 x = point_of(r, u, i, count);
+            while (!add_point(r, &lamp, x, u, 2 * i >= count, &sums))
+                learnt = true;
         }
-    }
+    } while (learnt);
     return share_of_sums(&sums);
 }
