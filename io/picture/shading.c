@@ -384,7 +384,7 @@ static const double COVERED = 1e-12;
  * covered: 0. */
 static double open_fraction(uint8_t parts)
 {
-    return parts < 4 ? 0.0 : parts < OPEN_PARTS ? (double)parts / OPEN_PARTS : 1.0;
+    return parts < 4 ? 0.0 : fmin(1.0, (double)parts / OPEN_PARTS);
 }
 
 /* Returns the radiosity of the open part of a leaf, less less[leaf]. The whole irradiance

@@ -6,8 +6,7 @@
 
 /* Collective. A bound on the error of B of 95 % of leaves, W/m^2, by the deviation of the
  * band that has most, and the RMS of deviations by rays and by the mesh: both go into the
- * solver's answer. Pre: g->radiosity
- * is the solution. */
+ * solver's answer. Pre: g->radiosity is the solution. */
 void gathering_estimate_errors(struct gathering *g);
 
 #endif

@@ -487,11 +487,10 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
     if (exact && receiver_add_exact(&r)) {
         r.row.lamps = light_of_lamps(&r);
     } else {
-        gather->sums.count = 0; /* without those of exact factors */
-        r.light = (struct rgb){{0.0, 0.0, 0.0}};
         receiver_find_openings(&r);
         receiver_find_sparks(&r);
-        gather->sums.count = gather->sums.first = 0;
+        r.light = (struct rgb){{0.0, 0.0, 0.0}};
+        gather->sums.count = gather->sums.first = 0; /* of this row alone */
         receiver_aim(&r);
         receiver_fire(&r);
         r.row.lamps = r.lamps;
