@@ -7,7 +7,7 @@ function value(key,    text) { # the number behind "key":
 }
 
 BEGIN { # phases that are parts of others
-    split("octree spaces tree prepare looks rows shading viewpoint", names, " ")
+    split("octree spaces tree prepare looks rows products shading viewpoint", names, " ")
     for (i in names) is_part[names[i]] = 1
 }
 FNR == 1 { # a run on one rank, the run on many, the replay
