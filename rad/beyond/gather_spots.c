@@ -43,10 +43,10 @@ static double look_from(struct receiver *r, struct remainder *leaf, int32_t root
     if (!(seen > 0.0))
         return 0.0;
     struct vec3 x = remainder_point(leaf, QUARTERINGS, u[2], u[3]);
-    int32_t blocker = -1;
     *at = x;
-    if (receiver_kernel(x, r->facet.plane.normal, y, facing) > 0.0)
-        blocker = receiver_first_blocker(r, x, y, root);
+    if (!(receiver_kernel(x, r->facet.plane.normal, y, facing) > 0.0))
+        return 0.0;
+    int32_t blocker = receiver_first_blocker(r, x, y, root);
     if (blocker >= 0 && remainder_learn(leaf, model->scene, blocker))
         return -1.0;
     return blocker < 0 ? seen : 0.0;

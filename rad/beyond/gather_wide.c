@@ -45,12 +45,12 @@ static bool add_point(struct receiver *r, struct remainder *lamp, struct vec3 x,
     double seen = remainder_look(lamp, scene, x, r->facet.plane.normal);
     if (seen > 0.0) {
         struct vec3 y = remainder_point(lamp, 0, u[2], u[3]);
-        int32_t blocker = -1;
-        if (receiver_kernel(x, r->facet.plane.normal, y, lamp->plane.normal) > 0.0)
-            blocker = receiver_first_blocker(r, x, y, lamp->root);
+        bool above =
+            receiver_kernel(x, r->facet.plane.normal, y, lamp->plane.normal) > 0.0;
+        int32_t blocker = above ? receiver_first_blocker(r, x, y, lamp->root) : -1;
         if (blocker >= 0 && remainder_learn(lamp, scene, blocker))
             return false;
-        seen = blocker >= 0 ? 0.0 : seen;
+        seen = above && blocker < 0 ? seen : 0.0;
     }
     sums->whole[half] += lamp->whole;
     sums->seen[half] += seen;

@@ -1,5 +1,7 @@
-/* The parts that blockers hide are cut out exactly (geom/outlook.h). A blocker may touch
- * the root's plane, as a wall touches its floor, but has to be in front of it. */
+/* The parts that blockers hide are cut out exactly (geom/outlook.h), and so is the part
+ * below the horizon, where no segment can tell whether light comes from a point. A
+ * blocker may touch the root's plane, as a wall touches its floor, but has to be in front
+ * of it. */
 #include "rad/beyond/remainder.h"
 
 #include <math.h>
@@ -45,6 +47,7 @@ double remainder_look(struct remainder *remainder, const struct scene *scene,
         return remainder->before[outlook->count];
     if (!again) {
         outlook_start(outlook, x, &remainder->triangle);
+        outlook_keep_above(outlook, normal);
         remainder->whole = point_triangle_factor(x, normal, &remainder->triangle);
         remainder->hidden = 0;
     }
