@@ -43,8 +43,10 @@ static const double LEAST_BRIGHT = 0.01;
 /* Radiosity that varies by less than this part of the mean over a leaf is constant. */
 static const double FLAT = 0.01;
 
-/* Most by which the slope of B over a leaf is more than that over its parent. */
-static const double STEEPEST = 2.0;
+/* Most by which the slope of B over a leaf is more than that over its parent: the square
+ * root of the distance from an edge makes it 1.41, and links are not right enough there
+ * to tell more. */
+static const double STEEPEST = 1.5;
 
 /* Leaves from which on each has fewer rays, and fewest rays of a leaf. */
 enum { MANY = 25000, FEWEST = 4 };
@@ -298,7 +300,7 @@ struct rgb light_by_parent(const struct forest *forest, int32_t patch)
     if (grandparent < 0 || k == 3)
         return light;
     int32_t first = patches[grandparent].children;
-    double s = parent == first + 3 ? -1.0 : 1.0;
+    double s = parent == first + 3 ? -1.0 : steepening(forest, parent);
     for (int c = 0; c < BANDS; c++) {
         for (int j = 0; j < 3; j++) {
             double w = j == k ? 2.0 / 3.0 : 1.0 / 6.0; /* of the patch's centroid */

@@ -75,8 +75,8 @@ void final_gather_drop_rows(struct final_gather *gather);
 
 struct gather_slope gather_slope(const struct final_gather *gather, int32_t patch);
 
-/* Returns B of a patch as the linear function over its parent has it, W/m^2. Pre: it has
- * a parent. */
+/* Returns B of a patch as the linear function over its parent has it, as steep as rows
+ * take it at an edge, W/m^2. Pre: it has a parent. */
 struct rgb light_by_parent(const struct forest *forest, int32_t patch);
 
 /* The integer of a value in units, bounded. */
