@@ -616,10 +616,10 @@ static void test_falling(const struct equation *e, const struct truth *truth, in
     }
 }
 
-/* To both sides of the default and finer. The strips are twice as long as others: their
- * ends are a quarter of .01 % in the middle of those. The square that does not shine sees
- * light that varies by little over one that does: below the default's error that counts,
- * too. */
+/* To both sides of the default and finer. The strips are twice as long as others, in
+ * whose middle the finest step has an RMS of .0025 %, not .0019. The square that does not
+ * shine sees light that varies by little over one that does: below the default's error
+ * that counts, too. */
 static void test_convergence(void)
 {
     static const double half[2] = {0.5, 0.5}, first[2] = {1.0, 0.0}, most[2] = {0.8, 0.8};
