@@ -19,7 +19,7 @@
 #include "geom/hash.h"
 
 /* Bytes: a link with its share of the room that lists grow by; a patch with all that runs
- * along with the forest (extremes, vectors of the solver, caps) and the same. */
+ * along with the forest (ranges, vectors of the solver, caps) and the same. */
 enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 416, BYTES_PER_CLUSTER = 290 };
 
 /* Of a row of the final gather: rays that end on the same leaf have one term of 20 bytes,

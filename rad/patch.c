@@ -34,7 +34,7 @@ void forest_destroy(struct forest *forest)
         return;
     alloc_free(forest->patches);
     alloc_free(forest->radiosity);
-    alloc_free(forest->extremes);
+    alloc_free(forest->ranges);
     alloc_free(forest->above);
     alloc_free(forest->caps);
     alloc_free(forest);

@@ -21,11 +21,6 @@ struct patch {
     int32_t children;       /* local number of child 0 (1..3 follow it), 0 for a leaf */
 };
 
-/* Least and most radiosity, summed over bands, of the leaves below a patch, W/m^2. */
-struct extremes {
-    float low, high;
-};
-
 /* In place of a local number: no patch, and no cluster either. */
 enum { NODE_NONE = INT32_MIN };
 
@@ -40,13 +35,12 @@ struct forest {
     struct patch *patches;     /* [count] */
     struct rgb *radiosity;     /* [count] B, W/m^2; of an inner patch the mean over its
                                   leaves */
-    struct extremes *extremes; /* [bounded] see rad/beyond/range.h; NULL: there are
-                                  none */
+    float *ranges;             /* [ranged] see rad/beyond/range.h; NULL: there are none */
     struct rgb *above;         /* [root_count] irradiance that clusters hand down to
                                   each root, W/m^2; NULL: there are none */
     double *caps;              /* [count] factor of the irradiance of each leaf, 1; NULL:
                                   there are none; see rad/beyond/conjugate.h */
-    int64_t count, capacity, radiosity_capacity, bounded, extremes_capacity;
+    int64_t count, capacity, radiosity_capacity, ranged;
     int32_t root_count;
 };
 

@@ -2,7 +2,7 @@
  *
  * Between passes all ranks have the same trees with the same radiosities. Not kept are
  * the quantities that every pass computes anew: fluxes, directions of conjugate residuals
- * (each pass starts them afresh), inner radiosities and extremes, and proofs that leaves
+ * (each pass starts them afresh), inner radiosities and ranges, and proofs that leaves
  * are open, for which rays are fired again.
  *
  * Links are renumbered in place (patches depth first, as in forest_order()), sorted,

@@ -24,6 +24,7 @@
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "rad/beyond/range.h"
 #include "rad/beyond/receiver.h"
 #include "rad/beyond/sequence.h"
 #include "rad/pushpull.h"
@@ -131,31 +132,6 @@ static double difference(const struct final_gather *g, struct rgb a, struct rgb 
     return most;
 }
 
-/* The largest differences of B, scaled, between the leaves below each patch. */
-static float *ranges_of(const struct final_gather *g)
-{
-    const struct forest *forest = g->model->forest;
-    size_t count = (size_t)forest->count;
-    float *ranges = alloc_array(count, sizeof *ranges);
-    struct rgb *low = alloc_array(count, sizeof *low);
-    struct rgb *high = alloc_array(count, sizeof *high);
-    for (int64_t p = forest->count - 1; p >= 0; p--) { /* children before parents */
-        int32_t first = forest->patches[p].children;
-        bool leaf = patch_is_leaf(&forest->patches[p]);
-        low[p] = leaf ? forest->radiosity[p] : low[first];
-        high[p] = leaf ? forest->radiosity[p] : high[first];
-        for (int k = 1; k < 4 && !leaf; k++)
-            for (int c = 0; c < BANDS; c++) {
-                low[p].band[c] = real_min(low[p].band[c], low[first + k].band[c]);
-                high[p].band[c] = real_max(high[p].band[c], high[first + k].band[c]);
-            }
-        ranges[p] = (float)difference(g, high[p], low[p], true);
-    }
-    alloc_free(low);
-    alloc_free(high);
-    return ranges;
-}
-
 struct final_gather final_gather_create(struct model *model, int rays)
 {
     struct forest *forest = model->forest;
@@ -175,7 +151,9 @@ struct final_gather final_gather_create(struct model *model, int rays)
     gather.place = alloc_array((size_t)forest->count, sizeof *gather.place);
     gather.sums.latest = alloc_array((size_t)forest->count, sizeof *gather.sums.latest);
     gather.view.overlapped = alloc_array((size_t)forest->root_count, 1);
-    gather.sums.ranges = ranges_of(&gather);
+    gather.sums.ranges = alloc_array((size_t)forest->count, sizeof *gather.sums.ranges);
+    for (int c = 0; c < BANDS; c++)
+        forest_raise_ranges(forest, c, gather.sums.scale.band[c], gather.sums.ranges);
     for (int64_t i = 0; i < forest->count; i++)
         gather.place[gather.order[i]] = (int32_t)i;
     return gather;

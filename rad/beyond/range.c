@@ -6,37 +6,49 @@
 
 #include "geom/alloc.h"
 
-void forest_bound(struct forest *forest)
+/* The least and the most below a patch, W/m^2. */
+struct extremes {
+    double low, high;
+};
+
+/* Sums are floats, which hide the rounding of means of equal leaves. */
+static double number_of(struct rgb b, int band)
 {
-    RESERVE(forest->extremes, &forest->extremes_capacity, forest->count);
-    forest->bounded = forest->count;
-    for (int64_t p = forest->count - 1; p >= 0; p--) {
-        const struct patch *patch = &forest->patches[p];
-        float brightness = (float)rgb_sum(forest->radiosity[p]);
-        struct extremes *own = &forest->extremes[p];
-        const struct extremes *child = &forest->extremes[patch->children];
-        *own = (struct extremes){brightness, brightness};
-        for (int k = 0; k < 4 && !patch_is_leaf(patch); k++) {
-            own->low = fminf(own->low, child[k].low);
-            own->high = fmaxf(own->high, child[k].high);
-        }
-    }
+    return band < BANDS ? b.band[band] : (double)(float)rgb_sum(b);
 }
 
-/* 0 of a patch that is newer, whose leaves were one. */
-static double range_of(const struct forest *forest, int32_t patch)
+void forest_raise_ranges(const struct forest *forest, int band, double scale,
+                         float *ranges)
 {
-    if (patch >= forest->bounded)
-        return 0.0;
-    struct extremes e = forest->extremes[patch];
-    return (double)(e.high - e.low);
+    struct extremes *extremes = alloc_array((size_t)forest->count, sizeof *extremes);
+    for (int64_t p = forest->count - 1; p >= 0; p--) {
+        const struct patch *patch = &forest->patches[p];
+        const struct extremes *child = &extremes[patch->children];
+        double number = number_of(forest->radiosity[p], band);
+        struct extremes own = {number, number};
+        for (int k = 0; k < 4 && !patch_is_leaf(patch); k++) {
+            own.low = real_min(own.low, child[k].low);
+            own.high = real_max(own.high, child[k].high);
+        }
+        extremes[p] = own;
+        ranges[p] = fmaxf(ranges[p], (float)(scale * (own.high - own.low)));
+    }
+    alloc_free(extremes);
+}
+
+void forest_bound(struct forest *forest)
+{
+    alloc_free(forest->ranges);
+    forest->ranged = forest->count;
+    forest->ranges = alloc_array((size_t)forest->count, sizeof *forest->ranges);
+    forest_raise_ranges(forest, BANDS, 1.0, forest->ranges);
 }
 
 double forest_range_within(const struct forest *forest, int32_t patch)
 {
     double range = 0.0;
-    int32_t children = forest->patches[patch].children;
-    for (int k = 0; k < 4 && children > 0; k++)
-        range = fmax(range, range_of(forest, children + k));
+    int32_t children = forest->patches[patch].children; /* newer ones were one leaf */
+    for (int k = 0; k < 4 && children > 0 && children < forest->ranged; k++)
+        range = fmax(range, (double)forest->ranges[children + k]);
     return range;
 }

@@ -1,11 +1,15 @@
-/* How far the radiosities of the leaves below a patch lie apart, summed over bands,
- * W/m^2. */
+/* How far the radiosities of the leaves below a patch lie apart, W/m^2. */
 #ifndef RAD_BEYOND_RANGE_H
 #define RAD_BEYOND_RANGE_H
 
 #include "rad/patch.h"
 
-/* Finds the extremes of all patches there are. */
+/* Raises the range of each patch, [forest->count], to `scale` times that in a band, or
+ * that of the sum over bands if `band` is BANDS. */
+void forest_raise_ranges(const struct forest *forest, int band, double scale,
+                         float *ranges);
+
+/* Finds the ranges, summed over bands, of all patches there are. */
 void forest_bound(struct forest *forest);
 
 /* The largest range of a child of a patch as of then, 0 of a leaf. */
