@@ -95,6 +95,15 @@ static double factor_of_quarters(const struct triangle *from, struct vec3 normal
     return factor;
 }
 
+double near_factor(const struct triangle *from, struct vec3 normal,
+                   const struct triangle *to, int64_t *work)
+{
+    if (!is_near(from, to))
+        return factor_of_points(from, normal, to, work);
+    *work += TESTS_PER_EXACT_FACTOR;
+    return triangle_exchange(from, to) / triangle_area(from);
+}
+
 double mean_factor(const struct triangle *from, struct vec3 normal,
                    const struct triangle *to, int64_t *work)
 {
@@ -105,15 +114,6 @@ double mean_factor(const struct triangle *from, struct vec3 normal,
     if (is_near(from, to) && is_across_gap(from, normal, to))
         return near_factor(from, normal, to, work);
     return factor_of_quarters(from, normal, to, QUARTERINGS, work);
-}
-
-double near_factor(const struct triangle *from, struct vec3 normal,
-                   const struct triangle *to, int64_t *work)
-{
-    if (!is_near(from, to))
-        return mean_factor(from, normal, to, work);
-    *work += TESTS_PER_EXACT_FACTOR;
-    return triangle_exchange(from, to) / triangle_area(from);
 }
 
 /* --- lamps --- */

@@ -75,7 +75,7 @@ struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u);
 double mean_factor(const struct triangle *from, struct vec3 normal,
                    const struct triangle *to, int64_t *work);
 
-/* The same, in closed form if the other is near. */
+/* The same, in closed form if the other is near. Pre: the first has an area. */
 double near_factor(const struct triangle *from, struct vec3 normal,
                    const struct triangle *to, int64_t *work);
 
