@@ -37,16 +37,6 @@
 
 enum { SPREAD_CHUNK = 1 << 20 }; /* bytes */
 
-/* Collective. The least value of all ranks. */
-static int least(const struct comm *comm, int value)
-{
-    int all;
-    MPI_Request request;
-    MPI_Iallreduce(&value, &all, 1, MPI_INT, MPI_MIN, comm->handle, &request);
-    comm_wait(&request);
-    return all;
-}
-
 /* Bytes from `data` to where a block may begin. */
 static int gap_of(const char *data)
 {
@@ -124,14 +114,14 @@ static bool open_window(struct node_block *block)
     int code = MPI_Win_allocate_shared(size, unit, MPI_INFO_NULL, node->handle,
                                        &block->data, &block->window);
     MPI_Comm_set_errhandler(node->handle, MPI_ERRORS_ARE_FATAL);
-    if (!least(node, code == MPI_SUCCESS))
+    if (comm_largest(node, code != MPI_SUCCESS) > 0.0)
         return false;
     MPI_Win_lock_all(MPI_MODE_NOCHECK, block->window);
     MPI_Win_shared_query(block->window, 0, &size, &unit, &block->data);
     int gap = PACK_ALIGNMENT; /* all begin where rank 0 does; -1: nowhere */
     if (node->rank == 0)
         gap = can_touch(block->data, (size_t)size) ? gap_of(block->data) : -1;
-    gap = least(node, gap);
+    gap = -(int)comm_largest(node, -gap);
     if (gap < 0)
         close_window(block);
     else
@@ -177,7 +167,7 @@ static void send_to_fillers(struct node_block *block, const struct comm *comm)
 
 void node_block_spread(struct node_block *block, const struct comm *comm)
 {
-    if (!least(comm, comm->rank == 0 || !block->fills))
+    if (comm_largest(comm, comm->rank > 0 && block->fills) > 0.0)
         send_to_fillers(block, comm);
     if (!block->shared)
         return;

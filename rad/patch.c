@@ -111,6 +111,17 @@ int32_t forest_next(const struct forest *forest, int32_t patch, bool descend)
     return -1;
 }
 
+int32_t forest_next_leaf(const struct forest *forest, int32_t leaf)
+{
+    int32_t p = leaf, root = p < 0 ? -1 : (int32_t)forest->patches[p].id.root;
+    do {
+        p = p < 0 ? -1 : forest_next(forest, p, true);
+        while (p < 0 && ++root < forest->root_count)
+            p = scene_root_area(forest->scene, root) > 0.0 ? root : -1;
+    } while (p >= 0 && !patch_is_leaf(&forest->patches[p]));
+    return p;
+}
+
 int32_t *forest_order(const struct forest *forest)
 {
     int32_t *order = alloc_array((size_t)forest->count, sizeof *order);

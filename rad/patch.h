@@ -90,6 +90,10 @@ int32_t *forest_order(const struct forest *forest);
  * ends with -1. `descend` false skips what is below `patch`. */
 int32_t forest_next(const struct forest *forest, int32_t patch, bool descend);
 
+/* The leaf after `leaf`, in the same order, of the roots that have an area: start with
+ * leaf = -1, ends with -1. */
+int32_t forest_next_leaf(const struct forest *forest, int32_t leaf);
+
 /* A hash of all trees and of the radiosities of their leaves, roots in order: the same
  * on any number of ranks and on any machine. */
 uint64_t forest_checksum(const struct forest *forest);

@@ -6,25 +6,6 @@
 #include "geom/alloc.h"
 #include "geom/stop.h"
 
-int32_t mesh_next_leaf(const struct forest *forest, int32_t p)
-{
-    int32_t root = p < 0 ? -1 : (int32_t)forest->patches[p].id.root;
-    if (p >= 0)
-        p = forest_next(forest, p, true);
-    for (;;) {
-        while (p >= 0 && !patch_is_leaf(&forest->patches[p]))
-            p = forest_next(forest, p, true);
-        if (p >= 0)
-            return p;
-        do
-            root++;
-        while (root < forest->root_count && scene_root_area(forest->scene, root) <= 0.0);
-        if (root >= forest->root_count)
-            return -1;
-        p = root;
-    }
-}
-
 void mesh_write_header(struct output *output, int64_t vertices, int64_t faces)
 {
     fprintf(output->file,
@@ -90,8 +71,8 @@ bool mesh_write(const struct shading *shading, const struct tone *tone,
                              : "");
     solution_write_header(&output, forest->scene, answer->lamps.known);
     write_vertices(&output, shading, tone);
-    int32_t leaf = mesh_next_leaf(forest, -1);
-    for (; leaf >= 0 && stop_check(error); leaf = mesh_next_leaf(forest, leaf))
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (; leaf >= 0 && stop_check(error); leaf = forest_next_leaf(forest, leaf))
         write_face(&output, shading, answer, leaf);
     solution_write_scene(&output, forest->scene, &answer->lamps);
     return output_close(&output, error);
@@ -101,8 +82,8 @@ float *mesh_colours(const struct forest *forest, int64_t *count)
 {
     float *rgb = alloc_array((size_t)forest_count(forest).leaves * 3, sizeof *rgb);
     int64_t at = 0;
-    int32_t leaf = mesh_next_leaf(forest, -1);
-    for (; leaf >= 0; leaf = mesh_next_leaf(forest, leaf))
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
         for (int c = 0; c < BANDS; c++)
             rgb[at++] = (float)forest->radiosity[leaf].band[c];
     *count = at / 3;

@@ -17,10 +17,6 @@ struct mesh_answer {
     struct solution_lamps lamps; /* known: there is `straight` */
 };
 
-/* Returns the leaf after `leaf` (-1: the first one) in canonical order: roots in order,
- * depth first; or -1. */
-int32_t mesh_next_leaf(const struct forest *forest, int32_t leaf);
-
 /* Writes binary little-endian PLY: vertices with float x y z (input units), uchar red
  * green blue (sRGB of their radiosity) and float radiosity_r radiosity_g radiosity_b (of
  * the smooth shading, W/m^2); faces with `list uchar int vertex_indices`,

@@ -37,8 +37,8 @@ static void write_column(struct output *output, const struct shading *shading,
                          const float *errors, enum column column, struct error *error)
 {
     const struct forest *forest = shading->forest;
-    int32_t leaf = mesh_next_leaf(forest, -1);
-    for (; leaf >= 0 && stop_check(error); leaf = mesh_next_leaf(forest, leaf))
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (; leaf >= 0 && stop_check(error); leaf = forest_next_leaf(forest, leaf))
         write_cell(output, shading, errors, leaf, column);
     putc('\n', output->file);
 }

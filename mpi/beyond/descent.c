@@ -50,10 +50,11 @@ static double wanted_of(const struct solver *solver, const struct ballot *sum)
 static double negative_light(const struct forest *forest)
 {
     double sum = 0.0;
-    for (int32_t root = 0; root < forest->root_count; root++)
-        for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
-            for (int c = 0; c < BANDS && patch_is_leaf(&forest->patches[p]); c++)
-                sum += forest_area(forest, p) * fmax(0.0, -forest->radiosity[p].band[c]);
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
+        for (int c = 0; c < BANDS; c++)
+            sum += forest_area(forest, leaf) *
+                   fmax(0.0, -forest->radiosity[leaf].band[c]);
     return sum;
 }
 

@@ -167,18 +167,14 @@ static void find_open_roots(struct looking *l)
 
 /* --- looks --- */
 
-/* The leaves that have an area. */
 static void list_leaves(struct gather_mesh *mesh, const struct forest *forest)
 {
-    int32_t *order = forest_order(forest);
     alloc_free(mesh->leaves);
     mesh->leaves = alloc_array((size_t)forest->count, sizeof *mesh->leaves);
     mesh->count = 0;
-    for (int64_t i = 0; i < forest->count; i++)
-        if (patch_is_leaf(&forest->patches[order[i]]) &&
-            forest_area(forest, order[i]) > 0.0)
-            mesh->leaves[mesh->count++] = order[i];
-    alloc_free(order);
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
+        mesh->leaves[mesh->count++] = leaf;
 }
 
 static void look_at(void *context, int64_t item)

@@ -107,18 +107,16 @@ static double over(double part, double sum)
 static void list_leaves(struct checking *c)
 {
     const struct forest *forest = c->solver->model.forest;
-    int32_t *order = forest_order(forest);
     struct merit sum = {0.0, 0.0, 0.0};
     double upto = 0.0;
     c->leaves = alloc_array((size_t)forest->count, sizeof *c->leaves);
     c->upto = alloc_array((size_t)forest->count, sizeof *c->upto);
-    for (int64_t i = 0; i < forest->count; i++) {
-        int32_t p = order[i];
-        if (!patch_is_leaf(&forest->patches[p]) || !(forest_area(forest, p) > 0.0) ||
-            !(rgb_sum(forest_material(forest, p)->reflectance) > 0.0))
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf)) {
+        if (!(rgb_sum(forest_material(forest, leaf)->reflectance) > 0.0))
             continue;
-        struct merit merit = merit_of(c, p);
-        c->leaves[c->count++] = p;
+        struct merit merit = merit_of(c, leaf);
+        c->leaves[c->count++] = leaf;
         sum.area += merit.area;
         sum.light += merit.light;
         sum.error += merit.error;
@@ -131,7 +129,6 @@ static void list_leaves(struct checking *c)
     for (int64_t i = 0; i < c->count; i++)
         c->upto[i] /= upto;
     c->light = sum.light;
-    alloc_free(order);
 }
 
 static void draw_leaves(struct checking *c, int batch)

@@ -488,11 +488,9 @@ void final_gather_set_partly_covered(struct final_gather *gather, const uint8_t 
     if (!near->partly_covered)
         near->partly_covered =
             alloc_array((size_t)forest->count, sizeof *near->partly_covered);
-    for (int64_t i = 0; i < forest->count; i++) {
-        int32_t p = gather->order[i];
-        if (patch_is_leaf(&forest->patches[p]) && forest_area(forest, p) > 0.0)
-            near->partly_covered[i] = *open++ < 16;
-    }
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
+        near->partly_covered[gather->place[leaf]] = *open++ < 16;
 }
 
 struct gather_light final_gather_at(struct final_gather *gather,

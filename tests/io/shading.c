@@ -640,13 +640,12 @@ static void test_vertex_order(void)
     shade(&stage, false);
     int32_t next = 0;
     bool right = true;
-    for (int32_t root = 0; root < 2; root++) {
-        for (int32_t p = root; p >= 0; p = forest_next(stage.forest, p, true)) {
-            const int32_t *corner = &stage.shading->corners[3 * (int64_t)p];
-            for (int k = 0; k < 3 && patch_is_leaf(&stage.forest->patches[p]); k++) {
-                right = right && corner[k] >= 0 && corner[k] <= next;
-                next += corner[k] == next;
-            }
+    int32_t leaf = forest_next_leaf(stage.forest, -1);
+    for (; leaf >= 0; leaf = forest_next_leaf(stage.forest, leaf)) {
+        const int32_t *corner = &stage.shading->corners[3 * (int64_t)leaf];
+        for (int k = 0; k < 3; k++) {
+            right = right && corner[k] >= 0 && corner[k] <= next;
+            next += corner[k] == next;
         }
     }
     tap_ok(right && next == stage.shading->vertex_count,

@@ -205,9 +205,14 @@ static void test_walk(struct scene *scene)
     for (int i = 0; i < PATHS; i++)
         forest_reach(forest, random_id(&random, ROOTS, 6));
     int64_t seen = 0;
-    bool ordered = true, skipped = true;
+    int32_t leaf = forest_next_leaf(forest, -1);
+    bool ordered = true, skipped = true, listed = true;
     for (int32_t root = 0; root < ROOTS; root++) {
         for (int32_t p = root; p >= 0; seen++) {
+            if (patch_is_leaf(&forest->patches[p]) && root != 4) {
+                listed = listed && leaf == p;
+                leaf = leaf < 0 ? leaf : forest_next_leaf(forest, leaf);
+            }
             int32_t next = forest_next(forest, p, true);
             if (next >= 0)
                 ordered = ordered && forest->patches[next].id.root == (uint32_t)root &&
@@ -222,6 +227,7 @@ static void test_walk(struct scene *scene)
     tap_ok(ordered && seen == forest->count,
            "the walk visits each patch once, depth first");
     tap_ok(skipped, "and skips descendants of a patch on request");
+    tap_ok(listed && leaf == -1, "leaves follow each other, but for those without area");
     forest_destroy(forest);
 }
 

@@ -24,12 +24,11 @@ static struct trial gather_scene(struct soup *soup, const char *words, int rays)
     struct forest *forest = g.s.solver->model.forest;
     g.gather = final_gather_create(&g.s.solver->model, rays);
     g.radiosity = alloc_array((size_t)forest->count, sizeof *g.radiosity);
-    for (int64_t i = 0; i < forest->count; i++) {
-        int32_t p = g.gather.order[i];
-        g.radiosity[i] = forest->radiosity[p];
-        if (patch_is_leaf(&forest->patches[p]) && forest_area(forest, p) > 0.0)
-            final_gather_add(&g.gather, p, rays, true);
-    }
+    for (int64_t i = 0; i < forest->count; i++)
+        g.radiosity[i] = forest->radiosity[g.gather.order[i]];
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
+        final_gather_add(&g.gather, leaf, rays, true);
     return g;
 }
 
