@@ -64,7 +64,7 @@ static uint8_t *survey_leaves(struct run *run)
     if (run->options.flat)
         return NULL;
     int64_t leaves;
-    uint8_t *open = shading_open_parts(run->solver->model.forest, run->octree,
+    uint8_t *open = open_parts_survey(run->solver->model.forest, run->octree,
                                           run->comm.rank, run->comm.size, &leaves);
     comm_add_bytes(&run->comm, open, leaves);
     return open;

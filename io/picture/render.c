@@ -184,8 +184,8 @@ static int rays_for_all(const struct renderer *renderer, const struct pixel_root
     if (!renderer->gather || shade == SHADE_SMOOTH)
         return 0;
     struct triangle t = scene_root_triangle(shading->forest->scene, root);
-    if (shade == SHADE_IN_PART && !shading_is_shut(shading, renderer->octree, leaf,
-                                                   corners_mean(t.corner, w)))
+    if (shade == SHADE_IN_PART && !leaf_is_shut_at(shading->forest, renderer->octree,
+                                                   leaf, corners_mean(t.corner, w)))
         return 0;
     return shade == SHADE_STEEP ? STEEP : WHOLE;
 }

@@ -22,18 +22,12 @@
  * (make cycles). The last correction takes deficits whole: as much light is shown as
  * leaves have.
  *
- * Where a box stands on the floor, leaves are covered in part. The covered part is dark
- * and invisible, and must not darken the rest. It is found with the four points where the
- * rays of the leaf's links begin: a point is covered if four rays from it, up and far
- * aside, all meet a back first: it lies inside a solid, not merely below a shelf; or in a
- * gap that is narrow for the leaf, as behind a picture on a wall. If one of the four is
- * covered, sixteen are examined: beside a row of books a strip of the bookcase is open.
- * If none is, something may still cover a strip between them: the back of a wardrobe,
- * close to the wall, that ends on the leaf. Where nothing is that near, none does.
- * The light of the leaf then belongs to its open part, if that is a quarter at least: the
- * shown irradiance is that of the leaf over the fraction that is open. A vertex with only
- * covered leaves around it takes their mean. Pictures find out whether a point of such a
- * leaf is covered itself: there it is dark.
+ * Where a box stands on the floor, leaves are covered in part (io/picture/open_parts.h).
+ * The covered part is dark and invisible, and must not darken the rest. The light of the
+ * leaf belongs to its open part, if that is a quarter at least: the shown irradiance is
+ * that of the leaf over the fraction that is open. A vertex with only covered leaves
+ * around it takes their mean. Pictures find out whether a point of such a leaf is covered
+ * itself: there it is dark.
  *
  * In the housing of a lamp light is a hundred times as bright as in the room, and rises
  * and falls by much of that over a leaf, in no straight line. Leaves over which it varies
@@ -56,162 +50,7 @@
 #include "geom/alloc.h"
 #include "geom/stop.h"
 #include "io/picture/surface.h"
-
-/* --- leaves, and their covered parts --- */
-
-/* Calls `visit` for each leaf, roots in order, depth first. */
-static void for_each_leaf(const struct forest *forest,
-                          void (*visit)(void *context, int32_t leaf), void *context)
-{
-    for (int32_t root = 0; root < forest->root_count; root++) {
-        if (scene_root_area(forest->scene, root) <= 0.0)
-            continue;
-        for (int32_t p = root; p >= 0 && !stop_is_asked();
-             p = forest_next(forest, p, true))
-            if (patch_is_leaf(&forest->patches[p]))
-                visit(context, p);
-    }
-}
-
-/* A gap is narrow for a leaf if it is less than this part of the distance from the middle
- * to a corner of its quarter. */
-static const double NARROW = 0.1;
-
-/* The deviation of a leaf's radiosity, in parts of its error. */
-static const double DEVIATION = 0.4;
-
-/* Parts of a leaf that are examined where some are covered; what counts as open parts
- * where it is proved besides that no point between them is covered. */
-enum { OPEN_PARTS = 16, PROVED_OPEN = 17 };
-
-struct survey {
-    const struct forest *forest;
-    const struct octree *octree;
-    int64_t count;       /* leaves visited */
-    int64_t first, step; /* the leaves to examine: first, first + step, ... */
-    uint8_t *open;       /* [count]; NULL: leaves are only counted */
-};
-
-/* True if the ray from a point of the plane meets a back, or a front less than `gap`
- * above the plane. */
-static bool is_shut(const struct survey *survey, const struct plane *plane,
-                    struct vec3 start, struct vec3 direction, double gap)
-{
-    const struct scene *scene = survey->forest->scene;
-    struct octree_counts counts = {0};
-    struct octree_hit hit;
-    if (!octree_first_hit(survey->octree, start, direction, false, &hit, &counts))
-        return false;
-    if (scene_root_on(scene, hit.triangle, hit.front) < 0)
-        return true;
-    octree_hit_weights(survey->octree, start, direction, &hit);
-    const struct triangle *t = &scene->triangles[hit.triangle];
-    double height = 0.0;
-    for (int k = 0; k < 3; k++)
-        height += hit.weight[k] * plane_distance(plane, t->corner[k]);
-    return height < gap;
-}
-
-/* True if the middle of a triangle is covered, whose corners give three directions along
- * the surface. `gap`: the width of a narrow gap, scene units. */
-static bool is_covered(const struct survey *survey, const struct plane *plane,
-                       const struct triangle *part, double gap)
-{
-    struct vec3 point = triangle_centroid(part);
-    struct vec3 rise = vec3_scale(plane->normal, 1024.0 * GEOM_ROUNDING);
-    struct vec3 start = vec3_add(point, rise);
-    if (!is_shut(survey, plane, start, plane->normal, gap))
-        return false;
-    for (int k = 0; k < 3; k++) {
-        struct vec3 along = vec3_sub(part->corner[k], point);
-        struct vec3 up = vec3_scale(plane->normal, 0.25 * vec3_length(along));
-        if (!is_shut(survey, plane, start, vec3_add(along, up), gap))
-            return false;
-    }
-    return true;
-}
-
-/* The width of a narrow gap for a leaf, scene units. */
-static double narrow_gap(const struct triangle *leaf)
-{
-    struct triangle quarter = triangle_child(leaf, 0);
-    return NARROW * vec3_length(vec3_sub(quarter.corner[0], triangle_centroid(&quarter)));
-}
-
-bool shading_is_shut(const struct shading *shading, const struct octree *octree,
-                     int32_t leaf, struct vec3 point)
-{
-    const struct forest *forest = shading->forest;
-    struct survey survey = {.forest = forest, .octree = octree};
-    struct triangle t = forest_triangle(forest, leaf), around = t;
-    struct plane plane =
-        scene_root_plane(forest->scene, (int32_t)forest->patches[leaf].id.root);
-    struct vec3 moved = vec3_sub(point, triangle_centroid(&t));
-    for (int k = 0; k < 3; k++)
-        around.corner[k] = vec3_add(t.corner[k], moved);
-    return is_covered(&survey, &plane, &around, narrow_gap(&t));
-}
-
-/* Counts the quarters of a triangle whose middles are open. */
-static int open_quarters(const struct survey *survey, const struct plane *plane,
-                         const struct triangle *t, double gap)
-{
-    int open = 0;
-    for (int k = 0; k < 4; k++) {
-        struct triangle child = triangle_child(t, k);
-        open += !is_covered(survey, plane, &child, gap);
-    }
-    return open;
-}
-
-/* True if nothing reaches into the space over a leaf up to a height: if all things over
- * it are higher, or stand elsewhere, none of its points is covered. */
-static bool is_clear(const struct survey *survey, const struct plane *plane,
-                     const struct triangle *leaf, int32_t input, double height)
-{
-    struct octree_counts counts = {0};
-    struct vec3 rise = vec3_scale(plane->normal, height);
-    struct triangle lid = {{vec3_add(leaf->corner[0], rise),
-                            vec3_add(leaf->corner[2], rise),
-                            vec3_add(leaf->corner[1], rise)}};
-    struct plane down = triangle_plane(&lid);
-    return octree_list_shaft(survey->octree, leaf, plane, &lid, &down,
-                             (int32_t[]){input, input}, NULL, 0, &counts) == 0;
-}
-
-static void survey_leaf(void *context, int32_t leaf)
-{
-    struct survey *survey = context;
-    const struct forest *forest = survey->forest;
-    int64_t number = survey->count++;
-    if (!survey->open || number % survey->step != survey->first)
-        return;
-    struct triangle t = forest_triangle(forest, leaf);
-    int32_t root = (int32_t)forest->patches[leaf].id.root;
-    struct plane plane = scene_root_plane(forest->scene, root);
-    double gap = narrow_gap(&t);
-    if (open_quarters(survey, &plane, &t, gap) == 4)
-        survey->open[number] =
-            is_clear(survey, &plane, &t, scene_input_of(forest->scene, root), gap)
-                ? PROVED_OPEN
-                : OPEN_PARTS;
-    for (int k = 0; k < 4 && survey->open[number] < OPEN_PARTS; k++) {
-        struct triangle quarter = triangle_child(&t, k);
-        survey->open[number] += (uint8_t)open_quarters(survey, &plane, &quarter, gap);
-    }
-}
-
-uint8_t *shading_open_parts(const struct forest *forest, const struct octree *octree,
-                            int first, int step, int64_t *count)
-{
-    struct survey survey = {forest, octree, 0, first, step, NULL};
-    for_each_leaf(forest, survey_leaf, &survey);
-    *count = survey.count;
-    survey.open = alloc_array((size_t)survey.count, sizeof *survey.open);
-    survey.count = 0;
-    for_each_leaf(forest, survey_leaf, &survey);
-    return survey.open;
-}
+#include "rad/beyond/final_gather.h"
 
 /* --- vertices: a hash table from (point, surface) to a number --- */
 
@@ -374,18 +213,14 @@ static void add_mean(const struct table *table, const struct tile *tile, double 
 
 /* --- values --- */
 
+/* The deviation of a leaf's radiosity, in parts of its error. */
+static const double DEVIATION = 0.4;
+
 /* Corrections of light without that of lamps. */
 enum { ROUNDS = 4 };
 
 /* Weight of a covered leaf: it counts only at vertices without open leaves. */
 static const double COVERED = 1e-12;
-
-/* Returns the open fraction of a leaf: 1/4 to 1; with fewer open parts it counts as
- * covered: 0. */
-static double open_fraction(uint8_t parts)
-{
-    return parts < 4 ? 0.0 : fmin(1.0, (double)parts / OPEN_PARTS);
-}
 
 /* Returns the radiosity of the open part of a leaf, less less[leaf]. The whole irradiance
  * of the leaf falls on its open part. */
@@ -414,8 +249,8 @@ struct blend {
     struct shading *shading;
     const struct rgb *less; /* [patches] radiosity to subtract, W/m^2, or NULL */
     const float *error;     /* [patches] of radiosity, W/m^2, or NULL */
-    const uint8_t *open;    /* of shading_open_parts() */
-    int64_t next;           /* number of the next leaf in canonical order */
+    const uint8_t *open;    /* of open_parts_survey() */
+    int64_t number;         /* of the leaf at hand in canonical order */
     int32_t *surface;       /* [roots] of surface_of_roots() */
     int round;              /* 0: the means at vertices; then corrections */
     bool is_last;           /* of the corrections: it takes deficits as they are */
@@ -425,9 +260,21 @@ struct blend {
     double steep;              /* least difference over a steep leaf, over bands, W/m^2 */
 };
 
-static void add_flat_leaf(void *context, int32_t leaf)
+/* Calls `visit` for each leaf. */
+static void for_each_leaf(struct blend *blend,
+                          void (*visit)(struct blend *blend, int32_t leaf))
 {
-    struct shading *shading = ((struct blend *)context)->shading;
+    const struct forest *forest = blend->shading->forest;
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (blend->number = 0; leaf >= 0 && !stop_is_asked(); blend->number++) {
+        visit(blend, leaf);
+        leaf = forest_next_leaf(forest, leaf);
+    }
+}
+
+static void add_flat_leaf(struct blend *blend, int32_t leaf)
+{
+    struct shading *shading = blend->shading;
     const struct forest *forest = shading->forest;
     struct triangle t = forest_triangle(forest, leaf);
     for (int k = 0; k < 3; k++) {
@@ -438,24 +285,23 @@ static void add_flat_leaf(void *context, int32_t leaf)
     }
 }
 
-static void add_leaf(void *context, int32_t leaf)
+static void add_leaf(struct blend *blend, int32_t leaf)
 {
-    struct blend *blend = context;
     const struct forest *forest = blend->shading->forest;
     struct triangle t = forest_triangle(forest, leaf);
-    uint8_t open = blend->open[blend->next++];
-    blend->shading->shades[leaf] = open_fraction(open) == 0.0 ? SHADE_COVERED
-                                   : open < PROVED_OPEN       ? SHADE_IN_PART
-                                                              : SHADE_SMOOTH;
+    uint8_t open = blend->open[blend->number];
+    blend->shading->shades[leaf] = open_parts_fraction(open) == 0.0 ? SHADE_COVERED
+                                   : open < PROVED_OPEN             ? SHADE_IN_PART
+                                                                    : SHADE_SMOOTH;
     for (int k = 0; k < 3; k++)
         blend->shading->corners[3 * (int64_t)leaf + k] =
             reach_vertex(blend->shading->table, t.corner[k],
                          blend->surface[forest->patches[leaf].id.root]);
 }
 
-static void find_division(void *context, int32_t leaf)
+static void find_division(struct blend *blend, int32_t leaf)
 {
-    struct shading *shading = ((struct blend *)context)->shading;
+    struct shading *shading = blend->shading;
     struct tile whole = whole_leaf(shading, leaf), inner;
     shading->divided[leaf] = find_inner(shading->table, &whole, &inner);
 }
@@ -509,12 +355,11 @@ static void give_inside(struct blend *blend, int32_t u, int32_t v)
     give_inside(blend, middle, v);
 }
 
-static void give_leaf(void *context, int32_t leaf)
+static void give_leaf(struct blend *blend, int32_t leaf)
 {
-    struct blend *blend = context;
     const struct forest *forest = blend->shading->forest;
     const int32_t *corner = &blend->shading->corners[3 * (int64_t)leaf];
-    double fraction = open_fraction(blend->open[blend->next++]);
+    double fraction = open_parts_fraction(blend->open[blend->number]);
     double area = blend->round > 0 ? forest_area(forest, leaf) : 1.0;
     blend->fraction = fraction;
     blend->value = open_radiosity(forest, blend->less, leaf, fraction);
@@ -537,8 +382,7 @@ static void give_what_lacks(struct blend *blend)
             blend->lacks[v].least.band[c] = HUGE_VAL;
             blend->lacks[v].most.band[c] = -HUGE_VAL;
         }
-    blend->next = 0;
-    for_each_leaf(blend->shading->forest, give_leaf, blend);
+    for_each_leaf(blend, give_leaf);
     for (int64_t v = 0; v < table->count; v++) {
         const struct lack *lack = &blend->lacks[v];
         bool open = lack->least.band[0] <= lack->most.band[0];
@@ -553,22 +397,8 @@ static void give_what_lacks(struct blend *blend)
     alloc_free(blend->lacks);
 }
 
-/* Reflected light, in the mean over all surfaces, summed over bands, W/m^2. */
-static double mean_reflected(const struct forest *forest)
+static void find_steep(struct blend *blend, int32_t leaf)
 {
-    double light = 0.0, area = 0.0;
-    for (int32_t root = 0; root < forest->root_count; root++) {
-        double a = scene_root_area(forest->scene, root);
-        area += a;
-        light += a * (rgb_sum(forest->radiosity[root]) -
-                      rgb_sum(forest_material(forest, root)->emission));
-    }
-    return area > 0.0 ? light / area : 0.0;
-}
-
-static void find_steep(void *context, int32_t leaf)
-{
-    const struct blend *blend = context;
     struct tile whole = whole_leaf(blend->shading, leaf);
     double low = HUGE_VAL, high = 0.0;
     for (int k = 0; k < 3; k++) {
@@ -584,15 +414,15 @@ static void blend_leaves(struct blend *blend)
     const struct forest *forest = blend->shading->forest;
     int rounds = blend->less ? ROUNDS : 1;
     blend->surface = surface_of_roots(forest->scene);
-    for_each_leaf(forest, add_leaf, blend);
-    for_each_leaf(forest, find_division, blend);
+    for_each_leaf(blend, add_leaf);
+    for_each_leaf(blend, find_division);
     for (; blend->round <= rounds; blend->round++) {
         blend->is_last = blend->round == rounds;
         give_what_lacks(blend);
     }
     alloc_free(blend->surface);
-    blend->steep = mean_reflected(forest);
-    for_each_leaf(forest, find_steep, blend);
+    blend->steep = forest_mean_reflected(forest);
+    for_each_leaf(blend, find_steep);
 }
 
 struct shading *shading_create(const struct forest *forest, const struct rgb *less,
@@ -608,7 +438,7 @@ struct shading *shading_create(const struct forest *forest, const struct rgb *le
     shading->table = alloc_array(1, sizeof *shading->table);
     struct blend blend = {.shading = shading, .less = less, .error = error, .open = open};
     if (shading->flat)
-        for_each_leaf(forest, add_flat_leaf, &blend);
+        for_each_leaf(&blend, add_flat_leaf);
     else
         blend_leaves(&blend);
     shading->positions = shading->table->positions;

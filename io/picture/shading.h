@@ -5,13 +5,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "octree/octree.h"
-#include "rad/patch.h"
+#include "io/picture/open_parts.h"
 
 /* Where interpolation over a leaf holds. */
 enum shade {
     SHADE_SMOOTH,  /* at all points */
-    SHADE_IN_PART, /* where nothing covers the leaf: shading_is_shut() */
+    SHADE_IN_PART, /* where nothing covers the leaf: leaf_is_shut_at() */
     SHADE_COVERED, /* nowhere: only less than a quarter is open */
     SHADE_STEEP    /* nowhere: light varies by more than its mean over all surfaces */
 };
@@ -28,21 +27,12 @@ struct shading {
     struct table *table;         /* finds vertices; owns positions and values */
 };
 
-/* Counts the open sixteenths of each leaf: those not covered by a solid that stands on
- * the leaf; 17 where no point of it can be. Leaves are in canonical order: roots in
- * order, depth first. Only the leaves first, first + step, ... are examined, the others
- * get 0, so that ranks can divide the leaves and add their counts. `octree` is that of
- * the scene.
- * Returns [count] numbers, to be freed with alloc_free(). */
-uint8_t *shading_open_parts(const struct forest *forest, const struct octree *octree,
-                            int first, int step, int64_t *count);
-
-/* Prepares the shading of a solution. `open`: the open parts of all leaves. NULL gives
- * flat shading: each leaf has three vertices of its own with its constant. `less`:
- * [patches] radiosity to subtract, W/m^2: that by the light of lamps, with its shadows;
- * or NULL. `error`: [patches] two standard deviations of the radiosity of leaves, W/m^2,
- * or NULL; heeded only if there is `less`. Vertices are numbered in the canonical order
- * of leaves: the same on every rank. */
+/* Prepares the shading of a solution. `open`: of open_parts_survey(). NULL gives flat
+ * shading: each leaf has three vertices of its own with its constant. `less`: [patches]
+ * radiosity to subtract, W/m^2: that by the light of lamps, with its shadows; or NULL.
+ * `error`: [patches] two standard deviations of the radiosity of leaves, W/m^2, or NULL;
+ * heeded only if there is `less`. Vertices are numbered in the canonical order of leaves:
+ * the same on every rank. */
 struct shading *shading_create(const struct forest *forest, const struct rgb *less,
                                const float *error, const uint8_t *open);
 void shading_destroy(struct shading *shading);
@@ -51,10 +41,5 @@ void shading_destroy(struct shading *shading);
  * W/m^2. Sets `leaf` to the leaf there. */
 struct rgb shading_at(const struct shading *shading, int32_t root, const double weight[3],
                       int32_t *leaf);
-
-/* True if a solid or a narrow gap covers a point of a leaf, scene units. `octree` is that
- * of the scene. */
-bool shading_is_shut(const struct shading *shading, const struct octree *octree,
-                     int32_t leaf, struct vec3 point);
 
 #endif

@@ -76,14 +76,14 @@ static struct rgb scale_of_bands(const struct model *model, double mean)
     return scale;
 }
 
-static double mean_reflected(const struct model *model)
+double forest_mean_reflected(const struct forest *forest)
 {
     double sum = 0.0;
-    for (int32_t root = 0; root < scene_root_count(model->scene); root++)
-        sum += scene_root_area(model->scene, root) *
-               (rgb_sum(model->forest->radiosity[root]) -
-                rgb_sum(scene_root_material(model->scene, root)->emission));
-    return sum / model->area;
+    for (int32_t root = 0; root < forest->root_count; root++)
+        sum += scene_root_area(forest->scene, root) *
+               (rgb_sum(forest->radiosity[root]) -
+                rgb_sum(forest_material(forest, root)->emission));
+    return sum / scene_area(forest->scene);
 }
 
 /* A lamp emits more than this, over all bands, W/m^2. */
@@ -95,7 +95,8 @@ static double least_of_lamps(const struct model *model)
             area += scene_root_area(model->scene, root);
     if (area <= FEW * model->area)
         return 0.0;
-    return fmin(LAMP * mean_radiosity(model), BRIGHT * mean_reflected(model));
+    double reflected = forest_mean_reflected(model->forest);
+    return fmin(LAMP * mean_radiosity(model), BRIGHT * reflected);
 }
 
 /* Halves the rays for each fourfold of MANY leaves: a picture of them is as smooth as
@@ -110,7 +111,7 @@ static int rays_for(int rays, int64_t leaves)
 void final_gather_find_bright(struct final_gather *gather)
 {
     const struct model *model = gather->model;
-    double reflected = mean_reflected(model);
+    double reflected = forest_mean_reflected(model->forest);
     lamps_free(&gather->bright);
     gather->bright = lamps_create(model, BRIGHT * reflected, true);
     if (lamps_power(&gather->bright) >= LEAST_BRIGHT * reflected * model->area)

@@ -36,6 +36,9 @@ struct gather_slope {
                       bands; in exact rows of one band, as that of `ranges`, W/m^2 */
 };
 
+/* The light reflected, in the mean over all surface, summed over bands, W/m^2. */
+double forest_mean_reflected(const struct forest *forest);
+
 /* Borrows the model, which has clusters and a solution. `rays`: at least 1. */
 struct final_gather final_gather_create(struct model *model, int rays);
 void final_gather_free(struct final_gather *gather);

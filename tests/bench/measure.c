@@ -66,7 +66,7 @@ static struct shading *shade(const struct measure *measure, const struct solutio
     if (measure->options.flat)
         return shading_create(forest, NULL, NULL, NULL);
     int64_t leaves;
-    uint8_t *open = shading_open_parts(forest, s->octree, measure->comm.rank,
+    uint8_t *open = open_parts_survey(forest, s->octree, measure->comm.rank,
                                           measure->comm.size, &leaves);
     comm_add_bytes(&measure->comm, open, leaves);
     struct answer *answer = &s->solver->beyond->answer;

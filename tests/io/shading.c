@@ -1,8 +1,8 @@
 /* Tests of io/picture/shading.h. Proved are: the interpolation is continuous over every
  * smooth surface, also where large leaves meet small ones and where roots meet; it keeps
  * constants and, on a regular subdivision, linear functions; it neither depends on the
- * order in which patches were made nor blends across bounds (materials, creases, sides,
- * the dark under a box); facets whose normals agree show one curved surface.
+ * order in which patches were made nor blends across bounds (materials, creases, sides);
+ * facets whose normals agree show one curved surface.
  *
  *      3-------2     the square: roots (0, 1, 2) and (0, 2, 3), whose common edge is
  *      | 1  /  |     the diagonal
@@ -21,42 +21,21 @@
 
 #include "rad/beyond/paths.h"
 #include "rad/pushpull.h"
-#include "tests/scenes.h"
 #include "tests/shaded.h"
 #include "tests/tap.h"
 
 static const double CONTINUOUS = 1e-12;
 enum { DEEPEST = 6 };
 
-/* A scene with all that stands on it. */
-struct stage {
-    struct scene *scene;
-    struct octree *octree;
-    struct forest *forest;
-    struct shading *shading;
-};
-
 /* --- scenes --- */
-
-/* The quadrilateral abcd as the roots (a, b, c) and (a, c, d). */
-static void add_face(struct soup *soup, struct vec3 a, struct vec3 b, struct vec3 c,
-                     struct vec3 d)
-{
-    soup_add(soup, (struct triangle){{a, b, c}});
-    soup_add(soup, (struct triangle){{a, c, d}});
-}
-
-static struct stage stage_of(struct scene *scene)
-{
-    struct world world = world_make(scene);
-    return (struct stage){scene, world.octree, world.model.forest, NULL};
-}
 
 /* The square with its corner 3 lifted by `lift`; a second material is there. */
 static struct scene *folded_square(double lift)
 {
     struct soup soup = {0};
-    add_face(&soup, point(0, 0, 0), point(1, 0, 0), point(1, 1, 0), point(0, 1, lift));
+    struct vec3 a = {0, 0, 0}, b = {1, 0, 0}, c = {1, 1, 0}, d = {0, 1, lift};
+    soup_add(&soup, (struct triangle){{a, b, c}});
+    soup_add(&soup, (struct triangle){{a, c, d}});
     paint(&soup, 0.0, 0.0);
     paint(&soup, 0.0, 0.0);
     return scene_of_soup(&soup);
@@ -91,29 +70,7 @@ static struct stage square_stage(void)
     return stage_of(folded_square(0.0));
 }
 
-static void shade(struct stage *stage, bool flat)
-{
-    shading_destroy(stage->shading);
-    stage->shading = flat ? shading_create(stage->forest, NULL, NULL, NULL)
-                          : shade_forest(stage->forest, stage->octree, NULL, NULL);
-}
-
-static void dismantle(struct stage *stage)
-{
-    shading_destroy(stage->shading);
-    forest_destroy(stage->forest);
-    octree_destroy(stage->octree);
-    scene_destroy(stage->scene);
-}
-
 /* --- subdivisions and fields --- */
-
-static void split_regularly(struct forest *forest, int level)
-{
-    for (int32_t p = 0; p < forest->count; p++)
-        if (id_level(forest->patches[p].id) < level)
-            forest_split(forest, p);
-}
 
 /* Splits about `share` of the patches of each root: leaves of all levels side by side. */
 static void split_randomly(struct forest *forest, struct random *random, double share)
@@ -154,12 +111,6 @@ static double difference(struct rgb a, struct rgb b)
 
 /* A root in its own barycentric coordinates. */
 static const struct triangle WHOLE = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-
-static struct rgb value_at(const struct stage *stage, int32_t root, struct vec3 w)
-{
-    const double weight[3] = {w.x, w.y, w.z};
-    return shading_at(stage->shading, root, weight, &(int32_t){0});
-}
 
 /* --- continuity --- */
 
@@ -241,7 +192,7 @@ static void test_continuity(const char *name, struct stage (*make)(void))
         struct stage stage = make();
         split_randomly(stage.forest, &random, 0.2 + 0.01 * round);
         set_randomly(stage.forest, &random);
-        shade(&stage, false);
+        shade_stage(&stage, false);
         visit_edges(&stage, &random, &seen);
         dismantle(&stage);
     }
@@ -263,7 +214,7 @@ static void test_large_beside_small(void)
             id = id_child(id, id_level(id) < 3 ? 0 : fine ? 1 : 2);
         forest_reach(stage.forest, id);
         set_randomly(stage.forest, &random);
-        shade(&stage, false);
+        shade_stage(&stage, false);
         visit_edges(&stage, &random, &seen);
         tap_ok(seen.over_diagonal > 20 && seen.largest < CONTINUOUS,
                "level %d beside an undivided root %d (largest jump %.1e)", DEEPEST,
@@ -286,7 +237,7 @@ static void test_t_vertices(void)
         double lit = id.root == 1 && fabs(x.x + x.y - 1.0) < 0.5;
         stage.forest->radiosity[p] = (struct rgb){{lit, lit, lit}};
     }
-    shade(&stage, false);
+    shade_stage(&stage, false);
     double middle = value_at(&stage, 1, point(0.5, 0.5, 0)).band[0];
     double end = value_at(&stage, 1, point(1, 0, 0)).band[0];
     tap_ok(middle > 0.5 && end < 0.1, "an edge shows the light of its middle: %.2f, %.2f",
@@ -300,7 +251,7 @@ static void test_collapsed_leaves(void)
 {
     const double width = 3e-14;
     struct soup soup = {0};
-    add_face(&soup, point(0, 0, 0), point(1, 0, 0), point(1, 1, 0), point(0, 1, 0));
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
     soup_add(&soup, (struct triangle){
                         {{0.9, 0.1, 0.5}, {0.9 + width, 0.1, 0.5}, {0.9, 0.9, 0.5}}});
     paint(&soup, 0.0, 0.0);
@@ -312,7 +263,7 @@ static void test_collapsed_leaves(void)
         forest_reach(stage.forest, id);
     }
     set_constant(stage.forest, 1.0);
-    shade(&stage, false);
+    shade_stage(&stage, false);
     double b = value_at(&stage, 2, point(0.2, 0.3, 0.5)).band[0];
     tap_ok(fabs(b - 1.0) < 1e-12, "leaves of a sliver, collapsed: B = %g", b);
     dismantle(&stage);
@@ -326,7 +277,7 @@ static void test_jumps_are_seen(void)
     struct stage stage = square_stage();
     split_randomly(stage.forest, &random, 0.4);
     set_randomly(stage.forest, &random);
-    shade(&stage, true);
+    shade_stage(&stage, true);
     visit_edges(&stage, &random, &seen);
     tap_ok(seen.largest > 0.5, "flat shading jumps (by %.2f)", seen.largest);
     dismantle(&stage);
@@ -343,7 +294,7 @@ static void test_constant(void)
     double largest = 0.0;
     split_randomly(stage.forest, &random, 0.4);
     set_constant(stage.forest, 0.7);
-    shade(&stage, false);
+    shade_stage(&stage, false);
     for (int i = 0; i < 20000; i++) {
         struct vec3 w = random_point_on(&random, &WHOLE);
         struct rgb value = value_at(&stage, i % 2, w);
@@ -364,7 +315,7 @@ static void test_linear(void)
     struct stage stage = square_stage();
     split_regularly(stage.forest, 4);
     set_linearly(stage.forest);
-    shade(&stage, false);
+    shade_stage(&stage, false);
     int inner = 0;
     double largest = 0.0;
     double border = fmax(stage.scene->high.x, stage.scene->high.y) * (1.0 - 2.5 / 16.0);
@@ -468,7 +419,7 @@ static double edge_error(struct stage *stage, bool flat, double *mean, double *l
     double square = 0.0;
     *mean = 0.0;
     *least = HUGE_VAL;
-    shade(stage, flat);
+    shade_stage(stage, flat);
     for (int i = 0; i < 100000; i++) {
         struct vec3 w = random_point_on(&random, &WHOLE);
         struct triangle t = scene_root_triangle(stage->scene, i % 2);
@@ -514,7 +465,7 @@ static void test_large_leaf_counts(void)
     for (int64_t p = 0; p < stage.forest->count; p++)
         if (stage.forest->patches[p].id.root == 1)
             stage.forest->radiosity[p] = (struct rgb){{1.0, 1.0, 1.0}};
-    shade(&stage, false);
+    shade_stage(&stage, false);
     double shown = shading_at(stage.shading, 0, corner, &(int32_t){0}).band[0];
     tap_ok(shown < 0.2,
            "a bright leaf of 1/256 of its area makes a dark one shine little: %.2f",
@@ -553,7 +504,7 @@ static void test_flat(void)
     struct stage stage = square_stage();
     split_randomly(stage.forest, &random, 0.4);
     set_randomly(stage.forest, &random);
-    shade(&stage, true);
+    shade_stage(&stage, true);
     tap_ok(is_flat(&stage), "flat: each leaf shows its constant");
     tap_ok(stage.shading->vertex_count == 3 * forest_count(stage.forest).leaves,
            "flat: no vertex is shared");
@@ -621,8 +572,8 @@ static void test_numbering(void)
         copy_shuffled(one.forest, other.forest, &random);
         set_by_id(one.forest);
         set_by_id(other.forest);
-        shade(&one, flat);
-        shade(&other, flat);
+        shade_stage(&one, flat);
+        shade_stage(&other, flat);
         tap_ok(corners_agree(&one, &other) && vertices_agree(one.shading, other.shading),
                "%s: patches made in another order, the same vertices to the bit",
                flat ? "flat" : "smooth");
@@ -637,7 +588,7 @@ static void test_vertex_order(void)
     struct random random = random_seed(17);
     struct stage stage = square_stage();
     split_randomly(stage.forest, &random, 0.5);
-    shade(&stage, false);
+    shade_stage(&stage, false);
     int32_t next = 0;
     bool right = true;
     int32_t leaf = forest_next_leaf(stage.forest, -1);
@@ -661,7 +612,7 @@ static double jump_of(struct stage *stage)
     stage->forest->radiosity[0] = (struct rgb){{1.0, 1.0, 1.0}};
     stage->forest->radiosity[1] = (struct rgb){{0.0, 0.0, 0.0}};
     split_regularly(stage->forest, 2);
-    shade(stage, false);
+    shade_stage(stage, false);
     return difference(value_at(stage, 0, point(0.5, 0, 0.5)),
                       value_at(stage, 1, point(0.5, 0.5, 0)));
 }
@@ -729,8 +680,8 @@ static void test_normals_on_a_plane(void)
     split_randomly(with.forest, &again, 0.5);
     set_randomly(plain.forest, &random);
     set_randomly(with.forest, &again);
-    shade(&plain, false);
-    shade(&with, false);
+    shade_stage(&plain, false);
+    shade_stage(&with, false);
     tap_ok(plain.forest->count > 20 && vertices_agree(plain.shading, with.shading),
            "normals on a plane change nothing");
     dismantle(&plain);
@@ -746,201 +697,12 @@ static void test_two_sided(void)
     for (int32_t root = 0; root < 4; root++)
         stage.forest->radiosity[root] = (struct rgb){{root, root / 2, root % 2}};
     split_regularly(stage.forest, 3);
-    shade(&stage, false);
+    shade_stage(&stage, false);
     struct rgb front = value_at(&stage, 0, point(0.5, 0, 0.5));
     struct rgb back = value_at(&stage, 2, point(0.5, 0.5, 0)); /* corners 0, 2, 1 */
     tap_ok(difference(front, (struct rgb){{0.5, 0.0, 0.5}}) < 1e-14 &&
                difference(back, (struct rgb){{2.5, 1.0, 0.5}}) < 1e-14,
            "two-sided: sides do not blend, neighbours do");
-    dismantle(&stage);
-}
-
-/* --- covered leaves --- */
-
-/* Heights above the floor, whose leaves have quarters of 0.25, with 0.19 from the middle
- * to a corner: of a box; of a shelf below which rays still get out; of plates in whose
- * gap there is light, and in which there is none. */
-static const double ROOMY = 1.5, KNEE = 0.1, LOW = 0.02, NARROW = 0.01, TOUCHING = 1e-9;
-
-/* A box without bottom; its top alone, whose back is below; that turned over. */
-enum cover { BOX, SHELF, PLATE };
-
-/* A floor of 8 x 8 with a cover on (2..4) x (2..6). */
-static struct scene *floor_scene(enum cover cover, double height)
-{
-    struct soup soup = {0};
-    struct vec3 base[4] = {{2, 2, 0}, {4, 2, 0}, {4, 6, 0}, {2, 6, 0}}, top[4];
-    for (int i = 0; i < 4; i++) /* counter-clockwise seen from above */
-        top[i] = point(base[i].x, base[i].y, height);
-    add_face(&soup, point(0, 0, 0), point(8, 0, 0), point(8, 8, 0), point(0, 8, 0));
-    if (cover == PLATE)
-        add_face(&soup, top[3], top[2], top[1], top[0]);
-    else
-        add_face(&soup, top[0], top[1], top[2], top[3]);
-    for (int i = 0; i < 4 && cover == BOX; i++)
-        add_face(&soup, base[i], base[(i + 1) % 4], top[(i + 1) % 4], top[i]);
-    return scene_of_soup(&soup);
-}
-
-static bool is_under(struct vec3 x)
-{
-    return x.x >= 2.0 && x.x <= 4.0 && x.y >= 2.0 && x.y <= 6.0;
-}
-
-/* Divides the floor along the box, makes the part under it 1/4 and all else 1, and
- * returns the smallest and the largest value of the floor's vertices off the box and on
- * its edge, and the largest one inside. */
-static void shade_floor(struct stage *stage, double *low, double *high, double *inside)
-{
-    split_regularly(stage->forest, 4);
-    for (int32_t p = 0; p < stage->forest->count; p++) {
-        struct triangle t = forest_triangle(stage->forest, p);
-        bool dark = is_under(scene_to_input(stage->scene, triangle_centroid(&t)));
-        dark = dark && stage->forest->patches[p].id.root < 2;
-        double value = dark ? 0.25 : 1.0;
-        stage->forest->radiosity[p] = (struct rgb){{value, value, value}};
-    }
-    shade(stage, false);
-    *low = *high = 1.0;
-    *inside = 0.0;
-    for (int i = 0; i <= 16; i++) {
-        for (int j = 0; j <= 16;
-             j++) { /* (0, 0), (8, 0), (8, 8): x = 8 (b + c), y = 8 c */
-            double b = (i - j) / 16.0, c = j / 16.0;
-            struct rgb value = i >= j ? value_at(stage, 0, point(1.0 - b - c, b, c))
-                                      : value_at(stage, 1, point(1.0 - c, i / 16.0, -b));
-            if (i > 4 && i < 8 && j > 4 && j < 12) {
-                *inside = fmax(*inside, value.band[0]);
-                continue;
-            }
-            *low = fmin(*low, value.band[0]);
-            *high = fmax(*high, value.band[0]);
-        }
-    }
-}
-
-/* A covered leaf weighs 1e-12 of an open one; up to five lie around a vertex. Where the
- * floor counts as open the shadow blends into the light around it. */
-static void test_covered(const char *name, enum cover cover, double height,
-                         bool two_sided, double emission, bool covered)
-{
-    double low, high, inside;
-    struct scene *scene = floor_scene(cover, height);
-    scene->two_sided = two_sided;
-    scene->materials[0] = material_grey(0.0, emission);
-    struct stage stage = stage_of(scene);
-    shade_floor(&stage, &low, &high, &inside);
-    tap_ok(covered ? low > 1.0 - 1e-10 : low < 0.9, "%s (1 - %.1e)", name, 1.0 - low);
-    if (covered && !two_sided)
-        tap_ok(high <= 1.0 + 1e-15 && inside == 0.25, "and none of the light inside");
-    dismantle(&stage);
-}
-
-/* Counts the quarters of a triangle of the floor whose middles are not under the box. */
-static int open_quarters(const struct stage *stage, const struct triangle *t)
-{
-    int open = 0;
-    for (int k = 0; k < 4; k++) {
-        struct triangle child = triangle_child(t, k);
-        open += !is_under(scene_to_input(stage->scene, triangle_centroid(&child)));
-    }
-    return open;
-}
-
-/* Share of a leaf of the floor that is not under the box, in sixteenths. */
-static double open_share(const struct stage *stage, int32_t leaf)
-{
-    struct triangle t = forest_triangle(stage->forest, leaf);
-    double share = 0.0;
-    for (int k = 0; k < 4; k++) {
-        struct triangle child = triangle_child(&t, k);
-        share += open_quarters(stage, &child) / 16.0;
-    }
-    return open_quarters(stage, &t) == 4 ? 1.0 : share;
-}
-
-/* The floor has leaves that are open to 13/16 and 1, divided once 1/2, 3/4 and 1. With
- * the share s open and the emission E, the radiosity E + s (1 - E) must show as 1
- * everywhere. */
-static void test_partly_covered(int levels, double smallest)
-{
-    static const double emission[BANDS] = {0.0, 0.5, 0.25};
-    struct stage stage = stage_of(floor_scene(BOX, ROOMY));
-    double least = 1.0, largest = 0.0;
-    split_regularly(stage.forest, levels);
-    for (int c = 0; c < BANDS; c++) {
-        stage.scene->materials[0].emission.band[c] = emission[c];
-        for (int32_t p = 0; p < stage.forest->count; p++)
-            stage.forest->radiosity[p].band[c] =
-                emission[c] + open_share(&stage, p) * (1.0 - emission[c]);
-    }
-    shade(&stage, false);
-    for (int32_t p = 0; p < stage.forest->count; p++) {
-        struct patch_id id = stage.forest->patches[p].id;
-        struct triangle w = pathtracer_part(id);
-        if (id.root >= 2 || !patch_is_leaf(&stage.forest->patches[p]))
-            continue;
-        least = fmin(least, open_share(&stage, p));
-        for (int k = 0; k < 3; k++)
-            largest =
-                fmax(largest, difference(value_at(&stage, (int32_t)id.root, w.corner[k]),
-                                         (struct rgb){{1.0, 1.0, 1.0}}));
-    }
-    tap_ok(least == smallest && largest < 1e-15,
-           "the open part of a leaf is shown (within %.1e)", largest);
-    dismantle(&stage);
-}
-
-/* Leaves that a thing covers in part know which points of them it covers. Below a plate
- * rays get out within `margin` of its rim, where points may be either. The leaves have
- * quarters of 2, so gaps below .15 are narrow. */
-static void test_shut_points(enum cover cover, double height, double margin, bool covers,
-                             const char *name)
-{
-    struct stage stage = stage_of(floor_scene(cover, height));
-    int points = 0, wrong = 0, in_part = 0;
-    split_regularly(stage.forest, 1);
-    set_constant(stage.forest, 1.0);
-    shade(&stage, false);
-    for (int i = 0; i < 32; i++)
-        for (int j = 0; j < 32; j++) {
-            double b = (i - j) / 32.0, c = (j + 0.25) / 32.0;
-            struct vec3 x = point(8.0 * (b + c), 8.0 * c, 0.0);
-            int32_t leaf;
-            double inside = fmin(fmin(x.x - 2.0, 4.0 - x.x), fmin(x.y - 2.0, 6.0 - x.y));
-            if (b <= 0.0 || (is_under(x) && inside < margin))
-                continue;
-            shading_at(stage.shading, 0, (double[]){1.0 - b - c, b, c}, &leaf);
-            in_part += stage.shading->shades[leaf] == SHADE_IN_PART;
-            wrong += shading_is_shut(stage.shading, stage.octree, leaf,
-                                     scene_from_input(stage.scene, x)) !=
-                     (covers && is_under(x));
-            points++;
-        }
-    tap_ok(wrong == 0 && points > 256 && in_part > (covers ? points / 8 : -1),
-           "%s (%d of %d wrong)", name, wrong, points);
-    dismantle(&stage);
-}
-
-/* A box stands between the four points that are examined, the middles of the quarters:
- * (2.7, 1.3), (6.7, 1.3), (6.7, 5.3) and (5.3, 2.7). Its leaf knows of it; the other has
- * none. */
-static void test_between_points(void)
-{
-    struct soup soup = {0};
-    add_face(&soup, point(0, 0, 0), point(8, 0, 0), point(8, 8, 0), point(0, 8, 0));
-    soup_add_box(&soup, point(4.4, 0.5, 0), point(4.8, 4, 1.5), 1, false);
-    struct stage stage = stage_of(scene_of_soup(&soup));
-    set_constant(stage.forest, 1.0);
-    shade(&stage, false);
-    struct vec3 inside = scene_from_input(stage.scene, point(4.6, 2, 0));
-    struct vec3 outside = scene_from_input(stage.scene, point(5, 2, 0));
-    tap_ok(stage.shading->shades[0] == SHADE_IN_PART &&
-               stage.shading->shades[1] == SHADE_SMOOTH,
-           "a leaf knows of a box between the points that are examined");
-    tap_ok(shading_is_shut(stage.shading, stage.octree, 0, inside) &&
-               !shading_is_shut(stage.shading, stage.octree, 0, outside),
-           "which covers the points below it alone");
     dismantle(&stage);
 }
 
@@ -957,7 +719,7 @@ static void test_steep(double bright, bool is_steep)
     int32_t first = forest_reach(stage.forest, (struct patch_id){0, 256});
     stage.forest->radiosity[first] = (struct rgb){{bright, 2.0 * bright, 0.0}};
     forest_average(stage.forest);
-    shade(&stage, false);
+    shade_stage(&stage, false);
     for (int32_t p = 0; p < stage.forest->count; p++)
         steep += stage.shading->shades[p] == SHADE_STEEP;
     bool own = stage.shading->shades[first] == SHADE_STEEP;
@@ -976,7 +738,7 @@ static void test_dropped_triangle(void)
     soup_add(&soup, (struct triangle){{a, c, d}});
     struct stage stage = stage_of(scene_of_soup(&soup));
     set_constant(stage.forest, 1.0);
-    shade(&stage, false);
+    shade_stage(&stage, false);
     tap_ok(stage.shading->vertex_count == 4 &&
                difference(value_at(&stage, 2, point(0.25, 0.25, 0.5)),
                           (struct rgb){{1.0, 2.0, 0.0}}) < 1e-15,
@@ -1005,21 +767,6 @@ int main(void)
     test_curved_edges();
     test_normals_on_a_plane();
     test_two_sided();
-    test_covered("under a box: no darkness outside", BOX, ROOMY, false, 0.0, true);
-    test_covered("below a shelf the floor is open", SHELF, KNEE, false, 0.0, false);
-    test_covered("under a lamp's front, too", PLATE, ROOMY, false, 0.0, false);
-    test_covered("and under a plate that is hung low", PLATE, LOW, false, 0.0, false);
-    test_covered("but not under one close to it", PLATE, NARROW, false, 0.0, true);
-    test_covered("nor under one that touches it", PLATE, TOUCHING, false, 0.0, true);
-    test_covered("two-sided, nothing is covered", BOX, ROOMY, true, 0.0, false);
-    test_covered("but by a box of lamps, whose backs are black", BOX, ROOMY, true, 1.0,
-                 true);
-    test_partly_covered(0, 0.8125);
-    test_partly_covered(1, 0.5);
-    test_between_points();
-    test_shut_points(BOX, ROOMY, 0.0, true, "a box covers points below it alone");
-    test_shut_points(PLATE, KNEE, 0.4, true, "a plate in a narrow gap does, too");
-    test_shut_points(PLATE, 2.0 * KNEE, 0.8, false, "one in a wider gap covers none");
     test_steep(8.0, true);
     test_steep(1.5, false);
     test_dropped_triangle();

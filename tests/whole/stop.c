@@ -146,7 +146,7 @@ static int64_t survey_leaves(void)
 {
     int64_t count, sum = 0;
     const struct forest *forest = world.model.forest;
-    uint8_t *open = shading_open_parts(forest, world.octree, 0, 1, &count);
+    uint8_t *open = open_parts_survey(forest, world.octree, 0, 1, &count);
     for (int64_t i = 0; i < count; i++)
         sum += open[i];
     alloc_free(open);
@@ -247,7 +247,7 @@ static const struct phase {
     {"form factors between groups", add_pairs, false, 9, 0},
     {"their table", print_table, false, 0, 1},
     {"choosing a camera", choose_camera, false, 0, 5000},
-    {"looking at leaves", survey_leaves, false, 2, 0},
+    {"looking at leaves", survey_leaves, false, 1, 0},
     {"flat shading", shade_flat, false, 1, 0},
     {"smooth shading", shade_smooth, false, 4, 0},
     {"rendering", render, false, 0, 256},

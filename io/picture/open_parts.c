@@ -1,0 +1,152 @@
+/* Open parts.
+ *
+ * Where a box stands on the floor, leaves are covered in part. The covered part is found
+ * with the four points where the rays of the leaf's links begin: a point is covered if
+ * four rays from it, up and far aside, all meet a back first: it lies inside a solid, not
+ * merely below a shelf; or in a gap that is narrow for the leaf, as behind a picture on a
+ * wall. If one of the four is covered, sixteen are examined: beside a row of books a
+ * strip of the bookcase is open. If none is, something may still cover a strip between
+ * them: the back of a wardrobe, close to the wall, that ends on the leaf. Where nothing
+ * is that near, none does. */
+#include "io/picture/open_parts.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "geom/stop.h"
+
+/* A gap is narrow for a leaf if it is less than this part of the distance from the middle
+ * to a corner of its quarter. */
+static const double NARROW = 0.1;
+
+/* A leaf that things may stand on. */
+struct footing {
+    const struct scene *scene;
+    const struct octree *octree;
+    struct triangle leaf;
+    struct plane plane;
+    int32_t input; /* triangle of the leaf */
+    double gap;    /* width of a narrow gap, scene units */
+};
+
+static struct footing footing_of(const struct forest *forest,
+                                 const struct octree *octree, int32_t leaf)
+{
+    const struct scene *scene = forest->scene;
+    int32_t root = (int32_t)forest->patches[leaf].id.root;
+    struct footing footing = {.scene = scene, .octree = octree,
+                              .leaf = forest_triangle(forest, leaf),
+                              .plane = scene_root_plane(scene, root),
+                              .input = scene_input_of(scene, root)};
+    struct triangle quarter = triangle_child(&footing.leaf, 0);
+    struct vec3 middle = triangle_centroid(&quarter);
+    footing.gap = NARROW * vec3_length(vec3_sub(quarter.corner[0], middle));
+    return footing;
+}
+
+/* True if the ray from a point of the plane meets a back, or a front less than a narrow
+ * gap above the plane. */
+static bool is_shut(const struct footing *footing, struct vec3 start,
+                    struct vec3 direction)
+{
+    struct octree_counts counts = {0};
+    struct octree_hit hit;
+    if (!octree_first_hit(footing->octree, start, direction, false, &hit, &counts))
+        return false;
+    if (scene_root_on(footing->scene, hit.triangle, hit.front) < 0)
+        return true;
+    octree_hit_weights(footing->octree, start, direction, &hit);
+    const struct triangle *t = &footing->scene->triangles[hit.triangle];
+    double height = 0.0;
+    for (int k = 0; k < 3; k++)
+        height += hit.weight[k] * plane_distance(&footing->plane, t->corner[k]);
+    return height < footing->gap;
+}
+
+/* True if the middle of a triangle is covered, whose corners give three directions along
+ * the surface. */
+static bool is_covered(const struct footing *footing, const struct triangle *part)
+{
+    struct vec3 point = triangle_centroid(part), normal = footing->plane.normal;
+    struct vec3 start = vec3_add(point, vec3_scale(normal, 1024.0 * GEOM_ROUNDING));
+    if (!is_shut(footing, start, normal))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        struct vec3 along = vec3_sub(part->corner[k], point);
+        struct vec3 up = vec3_scale(normal, 0.25 * vec3_length(along));
+        if (!is_shut(footing, start, vec3_add(along, up)))
+            return false;
+    }
+    return true;
+}
+
+bool leaf_is_shut_at(const struct forest *forest, const struct octree *octree,
+                     int32_t leaf, struct vec3 point)
+{
+    struct footing footing = footing_of(forest, octree, leaf);
+    struct triangle around = footing.leaf;
+    struct vec3 moved = vec3_sub(point, triangle_centroid(&footing.leaf));
+    for (int k = 0; k < 3; k++)
+        around.corner[k] = vec3_add(footing.leaf.corner[k], moved);
+    return is_covered(&footing, &around);
+}
+
+/* Counts the quarters of a triangle whose middles are open. */
+static int open_quarters(const struct footing *footing, const struct triangle *t)
+{
+    int open = 0;
+    for (int k = 0; k < 4; k++) {
+        struct triangle child = triangle_child(t, k);
+        open += !is_covered(footing, &child);
+    }
+    return open;
+}
+
+/* True if nothing reaches into the space over a leaf up to a narrow gap: if all things
+ * over it are higher, or stand elsewhere, none of its points is covered. */
+static bool is_clear(const struct footing *footing)
+{
+    struct octree_counts counts = {0};
+    struct vec3 rise = vec3_scale(footing->plane.normal, footing->gap);
+    const struct triangle *leaf = &footing->leaf;
+    struct triangle lid = {{vec3_add(leaf->corner[0], rise),
+                            vec3_add(leaf->corner[2], rise),
+                            vec3_add(leaf->corner[1], rise)}};
+    struct plane down = triangle_plane(&lid);
+    const int32_t own[2] = {footing->input, footing->input};
+    return octree_list_shaft(footing->octree, leaf, &footing->plane, &lid, &down, own,
+                             NULL, 0, &counts) == 0;
+}
+
+static int count_open(const struct forest *forest, const struct octree *octree,
+                      int32_t leaf)
+{
+    struct footing footing = footing_of(forest, octree, leaf);
+    int open = 0;
+    if (open_quarters(&footing, &footing.leaf) == 4)
+        return is_clear(&footing) ? PROVED_OPEN : OPEN_PARTS;
+    for (int k = 0; k < 4; k++) {
+        struct triangle quarter = triangle_child(&footing.leaf, k);
+        open += open_quarters(&footing, &quarter);
+    }
+    return open;
+}
+
+uint8_t *open_parts_survey(const struct forest *forest, const struct octree *octree,
+                           int first, int step, int64_t *count)
+{
+    *count = forest_count(forest).leaves;
+    uint8_t *open = alloc_array((size_t)*count, sizeof *open);
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (int64_t i = 0; leaf >= 0 && !stop_is_asked(); i++) {
+        if (i % step == first)
+            open[i] = (uint8_t)count_open(forest, octree, leaf);
+        leaf = forest_next_leaf(forest, leaf);
+    }
+    return open;
+}
+
+double open_parts_fraction(uint8_t parts)
+{
+    return parts < 4 ? 0.0 : fmin(1.0, (double)parts / OPEN_PARTS);
+}
