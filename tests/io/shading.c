@@ -173,15 +173,15 @@ static void visit_edge(const struct stage *stage, int32_t leaf, int k, double t,
 static void visit_edges(const struct stage *stage, struct random *random,
                         struct continuity *seen)
 {
-    for (int32_t p = 0; p < stage->forest->count; p++) {
-        for (int k = 0; k < 3 && patch_is_leaf(&stage->forest->patches[p]); k++) {
+    int32_t p = forest_next_leaf(stage->forest, -1);
+    for (; p >= 0; p = forest_next_leaf(stage->forest, p))
+        for (int k = 0; k < 3; k++) {
             visit_edge(stage, p, k, 0.5, seen);
             visit_edge(stage, p, k, 0.25, seen);
             for (int i = 0; i < 3; i++)
                 visit_edge(stage, p, k, (double)(1 + random_bits(random) % 1023) / 1024.0,
                            seen);
         }
-    }
 }
 
 static void test_continuity(const char *name, struct stage (*make)(void))
@@ -479,10 +479,9 @@ static bool is_flat(const struct stage *stage)
 {
     const struct forest *forest = stage->forest;
     bool flat = true;
-    for (int32_t p = 0; p < forest->count; p++) {
+    int32_t p = forest_next_leaf(forest, -1);
+    for (; p >= 0; p = forest_next_leaf(forest, p)) {
         const struct patch *patch = &forest->patches[p];
-        if (!patch_is_leaf(patch))
-            continue;
         struct triangle w = pathtracer_part(patch->id), t = forest_triangle(forest, p);
         struct rgb value =
             value_at(stage, (int32_t)patch->id.root, triangle_centroid(&w));
@@ -543,9 +542,8 @@ static void copy_shuffled(const struct forest *from, struct forest *to,
 static bool corners_agree(const struct stage *a, const struct stage *b)
 {
     bool agree = a->forest->count == b->forest->count;
-    for (int32_t p = 0; agree && p < a->forest->count; p++) {
-        if (!patch_is_leaf(&a->forest->patches[p]))
-            continue;
+    int32_t p = forest_next_leaf(a->forest, -1);
+    for (; agree && p >= 0; p = forest_next_leaf(a->forest, p)) {
         int32_t q = forest_reach(b->forest, a->forest->patches[p].id);
         for (int k = 0; k < 3; k++)
             agree = agree && a->shading->corners[3 * (int64_t)p + k] ==

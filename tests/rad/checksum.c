@@ -136,10 +136,7 @@ static void test_bits(const struct scene *scene)
     forest->patches[0].flux[0]++;
     tap_ok(patch_is_leaf(&forest->patches[0]) || forest_checksum(forest) == plain,
            "fluxes do not");
-    int32_t p = 0;
-    while (!patch_is_leaf(&forest->patches[p]))
-        p++;
-    forest_split(forest, p);
+    forest_split(forest, forest_next_leaf(forest, -1));
     tap_ok(forest_checksum(forest) != plain,
            "a split changes it, with the same radiosities too");
     forest_destroy(forest);

@@ -77,9 +77,8 @@ static void test_push(void)
         grow(forest, seed);
         int64_t poured = pour(&world, seed);
         double arrived = 0.0;
-        for (int32_t p = 0; p < forest->count; p++) {
-            if (!patch_is_leaf(&forest->patches[p]) || forest_area(forest, p) <= 0.0)
-                continue;
+        int32_t p = forest_next_leaf(forest, -1);
+        for (; p >= 0; p = forest_next_leaf(forest, p)) {
             struct rgb h = leaf_irradiance(forest, p, world.model.flux_unit);
             arrived += forest_area(forest, p) * rgb_sum(h);
         }

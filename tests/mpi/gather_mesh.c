@@ -1,0 +1,219 @@
+/* Tests of mpi/beyond/gather_mesh.h: the leaves that a final gather splits, and the rays
+ * that each of them gets. */
+#include "mpi/beyond/beyond.h"
+#include "mpi/beyond/gather_mesh.h"
+#include "tests/gathered.h"
+#include "tests/tap.h"
+
+/* A floor below a small lamp, and a small black box because of which rays are needed; the
+ * links split nothing. Leaves are to be split until A times the variance of their light
+ * over quarters is at most 0.005 epsilon of the sum of A B^2 (MESH in gather_mesh.c),
+ * and no further. Chance moves the threshold by a factor of two at most. */
+static void test_mesh(double epsilon)
+{
+    char words[32];
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 1.0 - 1e-3, 0.0);
+    soup_add_quad(&soup, point(0.45, 0.45, 0.3), point(0, 0.1, 0), point(0.1, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    soup_add_box(&soup, point(0.3, 0.3, 0.15), point(0.31, 0.31, 0.16), 1, false);
+    paint(&soup, 0.0, 0.0);
+    snprintf(words, sizeof words, "--epsilon %g", epsilon);
+    struct solution s = solve_soup(&soup, words);
+    const struct forest *forest = s.solver->model.forest;
+    const struct gathered *gathered = &s.solver->beyond->answer.counts;
+    double squares = 0.0, largest = 0.0, least = HUGE_VAL, goal = 0.005 * epsilon;
+    for (int pass = 0; pass < 2; pass++)
+        for (int32_t p = 0; p < forest->count; p++) {
+            const struct patch *patch = &forest->patches[p];
+            struct triangle t = forest_triangle(forest, p);
+            double area = forest_area(forest, p), h[4], mean = 0.0, spread = 0.0;
+            if (patch->id.root > 1)
+                continue;
+            for (int k = 0; k < 4; k++) {
+                struct triangle child = triangle_child(&t, k);
+                h[k] = lit_by(forest->scene, 2, 4, &child);
+                mean += 0.25 * h[k];
+            }
+            for (int k = 0; k < 4; k++)
+                spread += 0.25 * (h[k] - mean) * (h[k] - mean);
+            if (pass == 0 && patch_is_leaf(patch))
+                squares += area * mean * mean;
+            if (pass == 1 && patch_is_leaf(patch))
+                largest = fmax(largest, area * spread / squares);
+            else if (pass == 1)
+                least = fmin(least, area * spread / squares);
+        }
+    tap_ok(largest <= 2.0 * goal, "varying over a leaf %.1e of all is left, %.1e allowed",
+           largest, goal);
+    tap_ok(least >= 0.5 * goal && least < 1.0,
+           "leaves were split over which %.1e varied at least", least);
+    double rays = (double)gathered->rays / (double)forest_count(forest).leaves;
+    tap_ok(rays > 180.0 && rays <= 256.0, "%.0f rays for each leaf in the mean", rays);
+    solution_free(&s);
+}
+
+/* A closed room with a table low above its floor, which nothing splits: rays of the table
+ * find the dark of the floor below it, so all others have to see the floor brighter than
+ * its mean. Otherwise light of the floor is lost, and irradiances have to be raised to
+ * close the balance. */
+static void test_near(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    paint(&soup, 0.8, 0.0);
+    soup_add_box(&soup, point(0.3, 0.3, 0.03), point(0.7, 0.7, 0.05), 1, false);
+    paint(&soup, 0.2, 0.0);
+    soup_add_box(&soup, point(0.4, 0.4, 0.7), point(0.6, 0.6, 0.9), 1, false);
+    paint(&soup, 0.0, 1.0);
+    struct solution s = solve_soup(&soup, "--epsilon 0.1 --max-level 0");
+    double closing = s.solver->beyond->answer.counts.closing;
+    tap_ok(closing < 0.02, "irradiances are raised by %.1f %% to close a balance",
+           100.0 * closing);
+    solution_free(&s);
+}
+
+/* Where all is as bright as all else, nothing is split. */
+static void test_even(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    soup_add_box(&soup, point(0.6, 0.6, 0.1), point(0.8, 0.8, 0.5), 1, false);
+    paint(&soup, 0.5, 1.0);
+    struct solution s = solve_soup(&soup, "--epsilon 1e-2");
+    tap_ok(s.solver->beyond->answer.counts.split == 0 &&
+               s.solver->beyond->answer.counts.looks > 0,
+           "in a furnace nothing is split, by %lld rays",
+           (long long)s.solver->beyond->answer.counts.looks);
+    solution_free(&s);
+}
+
+/* Every second cell of the walls of a room, upwards or downwards. */
+static void add_cells(struct soup *soup, int odd)
+{
+    enum { CELLS = 10 };
+    const double size = 2.0 / CELLS;
+    for (int i = 0; i < CELLS; i++)
+        for (int k = 0; k < CELLS; k++) {
+            double a = i * size - 1.0, b = k * size - 1.0;
+            if ((i + k) % 2 != odd)
+                continue;
+            soup_add_quad(soup, point(-1, a, b), point(0, size, 0), point(0, 0, size), 1);
+            soup_add_quad(soup, point(1, a, b), point(0, 0, size), point(0, size, 0), 1);
+            soup_add_quad(soup, point(b, -1, a), point(0, 0, size), point(size, 0, 0), 1);
+            soup_add_quad(soup, point(b, 1, a), point(size, 0, 0), point(0, 0, size), 1);
+            soup_add_quad(soup, point(a, b, -1), point(size, 0, 0), point(0, size, 0), 1);
+            soup_add_quad(soup, point(a, b, 1), point(0, size, 0), point(size, 0, 0), 1);
+        }
+}
+
+/* A small grey cube in the middle of a black room of which every second cell shines: its
+ * light is as good as even, but whether a ray finds any is chance. Looks tell that: the
+ * variance of a leaf's quarters is above its expectation for one leaf in four, which may
+ * be split; otherwise all are, and again. Leaves of the cube get the most rays that there
+ * are, 16 times the mean, and black ones the least, with a quarter more aimed at the
+ * cube. */
+static void test_chance(void)
+{
+    enum { CUBE = 12, WALLS = 1200, MEAN = 256 };
+    struct soup soup = {0};
+    for (int odd = 0; odd < 2; odd++) {
+        add_cells(&soup, odd);
+        paint(&soup, 0.0, odd ? 1.0 : 0.0);
+    }
+    soup_add_box(&soup, point(-0.1, -0.1, -0.1), point(0.1, 0.1, 0.1), 1, false);
+    paint(&soup, 0.5, 0.0);
+    struct solution s = solve_soup(&soup, "--epsilon 0.1");
+    const struct gathered *gathered = &s.solver->beyond->answer.counts;
+    int64_t cube = s.stats.leaves - WALLS;
+    tap_ok(4 * gathered->split <= CUBE && cube == CUBE + 3 * gathered->split,
+           "of 12 leaves whose light varies by chance alone %lld are split",
+           (long long)gathered->split);
+    int64_t rays = cube * 16 * MEAN + WALLS * MEAN / 4;
+    tap_ok(gathered->rays >= rays && gathered->rays <= rays + WALLS * MEAN / 16,
+           "%lld rays for %lld noisy leaves and 1200 black ones",
+           (long long)gathered->rays, (long long)cube);
+    solution_free(&s);
+}
+
+/* A small bright cube in a room of which every second cell reflects: the light of the
+ * quarters of its faces differs by chance alone, by as much as looks say, and by less
+ * than half of the chance of each quarter, for rays from all of them have the same
+ * directions. */
+static void test_looks(void)
+{
+    enum { WALLS = 1200, RAYS = 16 };
+    struct soup soup = {0};
+    for (int odd = 0; odd < 2; odd++) {
+        add_cells(&soup, odd);
+        paint(&soup, odd ? 0.9 : 0.0, 0.0);
+    }
+    soup_add_box(&soup, point(-0.02, -0.02, -0.02), point(0.02, 0.02, 0.02), 1, false);
+    paint(&soup, 0.5, 1.0);
+    struct solution s = solve_soup(&soup, "--epsilon 0.1");
+    struct model *model = &s.solver->model;
+    struct final_gather gather = final_gather_create(model, RAYS);
+    double spread = 0.0, noise = 0.0, alone = 0.0;
+    int32_t p = forest_next_leaf(model->forest, -1);
+    for (; p >= 0; p = forest_next_leaf(model->forest, p)) {
+        if (model->forest->patches[p].id.root < WALLS)
+            continue;
+        struct gather_look look = final_gather_look(&gather, p, RAYS);
+        double sum = 0.0, squares = 0.0;
+        for (int k = 0; k < 4; k++) {
+            double b = (double)look.reflected[k][0];
+            sum += b;
+            squares += b * b;
+        }
+        spread += 0.25 * BANDS * (squares - 0.25 * sum * sum);
+        noise += look.noise;
+        alone += look.variance / RAYS;
+    }
+    tap_ok(spread < 2.0 * noise && spread > 0.5 * noise && noise < 0.5 * alone,
+           "quarters differ by %.1e, %.1e expected, %.1e by rays of their own", spread,
+           noise, alone);
+    final_gather_free(&gather);
+    solution_free(&s);
+}
+
+/* With few rays there are no looks. Of three squares of a size, grey, white, and white
+ * below a lamp, the first reflects a quarter of the noise that the second does, and the
+ * third is brighter than the mean. (One of two boxes hides the other: rows by rays.) */
+static void test_guess(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.2, 0.0);
+    soup_add_quad(&soup, point(0, 3, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    soup_add_quad(&soup, point(0, 6, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.8, 0.0);
+    soup_add_quad(&soup, point(0, 6, 0.1), point(0, 1, 0), point(1, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    soup_add_box(&soup, point(0, 2.5, 1), point(1, 4.5, 2), 1, false);
+    soup_add_box(&soup, point(0, 2.5, 3), point(1, 4.5, 4), 1, false);
+    paint(&soup, 0.0, 0.0);
+    struct solution s = solve_soup(&soup, "--max-level 0 --final-gather 16");
+    struct gather_mesh mesh = {.count = 0};
+    bool made = gather_mesh_make(s.solver, 0, &mesh);
+    const int *rays = mesh.rays;
+    tap_ok(made && mesh.traced == 0 && 2 * rays[0] <= rays[2] && 2 * rays[2] <= rays[4],
+           "%d rays for a grey leaf, %d for a white one, %d below a lamp", rays[0],
+           rays[2], rays[4]);
+    gather_mesh_free(&mesh);
+    solution_free(&s);
+}
+
+int main(int argc, char **argv)
+{
+    comm_start(&world_comm, &argc, &argv);
+    test_mesh(0.1);
+    test_mesh(0.02);
+    test_near();
+    test_even();
+    test_chance();
+    test_looks();
+    test_guess();
+    comm_stop(&world_comm);
+    return tap_done();
+}

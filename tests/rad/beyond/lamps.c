@@ -1,0 +1,342 @@
+/* Tests of rad/beyond/lamps.h, and of aiming at lamps and bright roots: the light that
+ * they bring to leaves and points, against closed forms. */
+#include "geom/contour.h"
+#include "tests/gathered.h"
+#include "tests/tap.h"
+
+/* Against the contour integral over both triangles: three points, or as many on quarters
+ * of quarters where that is near, have to be right within 0.2 %; out of a gap, where they
+ * would find nothing, it is the contour integral itself. */
+static void test_mean_factor(void)
+{
+    static const double heights[] = {0.0, 0.1, 1.0, 3.0};
+    const struct triangle floor = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    struct plane plane = triangle_plane(&floor);
+    int64_t work = 0;
+    for (int k = 0; k < 4; k++) {
+        double h = heights[k];
+        struct triangle wall = {{{0, 0, h}, {0, 1, h}, {0, 0, 1 + h}}};
+        double exact = triangle_exchange(&floor, &wall) / triangle_area(&floor);
+        double off = mean_factor(&floor, plane.normal, &wall, &work) / exact - 1.0;
+        tap_ok(fabs(off) <= 2e-3, "a wall %g above the floor: factor %.5f, off by %.1e",
+               h, exact, off);
+    }
+    struct triangle beside = {{{1, 0, 0.002}, {0, 1, 0.002}, {1, 1, 0.002}}};
+    double exact = triangle_exchange(&floor, &beside) / triangle_area(&floor);
+    double off = mean_factor(&floor, plane.normal, &beside, &work) / exact - 1.0;
+    tap_ok(fabs(off) <= 1e-9, "light out of a gap of 0.002: factor %.5f, off by %.1e",
+           exact, off);
+}
+
+/* The factor from the first 32 roots, a floor, to those up to `end`. */
+static double factor_of_floor(const struct scene *scene, int32_t end)
+{
+    double exchange = 0.0, area = 0.0;
+    for (int32_t i = 0; i < 32; i++) {
+        area += triangle_area(&scene->triangles[i]);
+        for (int32_t k = 32; k < end; k++)
+            exchange += triangle_exchange(&scene->triangles[i], &scene->triangles[k]);
+    }
+    return exchange / area;
+}
+
+/* A floor below a small lamp, and a black box beside them so that rays are needed.
+ * `screened`: a screen hides half of the lamp from all of the floor, more or less. The
+ * lamp's direct light is all there is: the floor is black. */
+static double lit_floor(int lamps, bool screened, double *exact, int64_t *groups)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 4);
+    paint(&soup, 0.0, 0.0);
+    soup_add_quad(&soup, point(0.45, 0.45, 1), point(0, 0.1, 0), point(0.1, 0, 0), lamps);
+    paint(&soup, 0.0, 1.0);
+    soup_add_box(&soup, point(0, 0, 0.1), point(0.05, 0.05, 0.2), 1, false);
+    if (screened) /* right below the lamp, upwards and downwards */
+        soup_add_box(&soup, point(0.44, 0.44, 0.998), point(0.5, 0.56, 0.999), 1, false);
+    paint(&soup, 0.0, 0.0);
+    struct trial g = gather_scene(&soup, "", 64);
+    *exact = factor_of_floor(g.s.scene, 32 + 2 * lamps * lamps);
+    *groups = g.gather.lamps.groups.count;
+    double mean = mean_of_roots(&g, 0, 32);
+    trial_free(&g);
+    return mean;
+}
+
+/* Where nothing hides the lamp its light is that of exact factors, but for that which
+ * the corner of the box takes (its share of the hemisphere below the lamp, .2 % at
+ * most). Lamps of a group are chosen by chance: 1 %. */
+static void test_lamps(void)
+{
+    double exact;
+    int64_t few, many;
+    double h = lit_floor(1, false, &exact, &few);
+    tap_ok(h <= 1.001 * exact && h >= 0.997 * exact,
+           "a lamp of 2 triangles: %.6f, exact %.6f", h, exact);
+    h = lit_floor(24, false, &exact, &many);
+    tap_ok(fabs(h / exact - 1.0) <= 0.01, "of 1152 triangles: %.6f, exact %.6f", h,
+           exact);
+    tap_ok(many < 300, "which are %lld groups", (long long)many);
+    h = lit_floor(1, true, &exact, &few);
+    tap_ok(fabs(h / exact - 0.5) <= 0.02, "half hidden: %.3f of its light", h / exact);
+}
+
+/* A floor sees nothing but a sky of 128 facets around it, of which the horizon cuts some,
+ * and a grain of a box that hides less than .1 %. Fewer segments than facets find all of
+ * its light, H = E: clusters of facets, chosen by chance, leave 1 %. */
+static void test_sky(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(-0.05, -0.05, 0.1), point(0.1, 0, 0), point(0, 0.1, 0), 4);
+    paint(&soup, 0.0, 0.0);
+    soup_add_sphere(&soup, 1.0, 2);
+    for (int64_t i = 32; i < soup.count; i++)
+        soup.items[i] = reversed(soup.items[i]);
+    paint(&soup, 0.0, 1.0);
+    soup_add_box(&soup, point(0.2, 0, 0.2), point(0.201, 0.001, 0.201), 1, false);
+    paint(&soup, 0.0, 0.0);
+    struct trial g = gather_scene(&soup, "", 64);
+    double largest = 0.0, sum = 0.0;
+    for (int64_t i = 0; i < g.gather.count; i++) {
+        if (g.s.solver->model.forest->patches[g.gather.rows[i].leaf].id.root >= 32)
+            continue;
+        double off = irradiance(&g, i) - 1.0;
+        largest = fmax(largest, fabs(off));
+        sum += off / 32.0;
+    }
+    tap_ok(fabs(sum) < 0.002 && largest < 0.01,
+           "below a sky H is E, off by %.2f %% in the mean, %.2f %% at most", 100.0 * sum,
+           100.0 * largest);
+    trial_free(&g);
+}
+
+/* Two bulbs of 128 facets above a floor, one of them higher, each of which is a cluster
+ * that many segments are aimed at: it is opened, until parts get one each of the 64,
+ * which is 1.6 % of the light. With facets chosen by chance from all around the bulb,
+ * leaves were off by 4.4 %, 23 % at most. */
+static void test_bulbs(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(-1, -1, 0), point(2, 0, 0), point(0, 2, 0), 4);
+    paint(&soup, 0.0, 0.0);
+    soup_add_sphere(&soup, 0.1, 2);
+    soup_add_sphere(&soup, 0.1, 2);
+    for (int64_t i = 32; i < soup.count; i++)
+        for (int k = 0; k < 3; k++)
+            soup.items[i].corner[k] =
+                vec3_add(soup.items[i].corner[k],
+                         i < 160 ? point(0.4, 0.3, 1) : point(-0.5, 0, 2));
+    paint(&soup, 0.0, 1.0);
+    soup_add_box(&soup, point(0.2, 0, 0.2), point(0.201, 0.001, 0.201), 1, false);
+    paint(&soup, 0.0, 0.0);
+    struct trial g = gather_scene(&soup, "", 64);
+    double largest = 0.0, squares = 0.0;
+    for (int64_t i = 0; i < g.gather.count; i++) {
+        int32_t leaf = g.gather.rows[i].leaf;
+        const struct forest *forest = g.s.solver->model.forest;
+        if (forest->patches[leaf].id.root >= 32)
+            continue;
+        struct triangle t = forest_triangle(forest, leaf);
+        double h = 0.0;
+        for (int k = 0; k < 4; k++) {
+            struct triangle quarter = triangle_child(&t, k);
+            h += 0.25 * lit_by(g.s.scene, 32, 288, &quarter);
+        }
+        double off = irradiance(&g, i) / h - 1.0;
+        largest = fmax(largest, fabs(off));
+        squares += off * off / 32.0;
+    }
+    tap_ok(largest < 0.06 && squares < 0.016 * 0.016,
+           "below bulbs of 256 facets leaves are off by %.2f %%, at most %.2f %%",
+           100.0 * sqrt(squares), 100.0 * largest);
+    trial_free(&g);
+}
+
+/* A panel of a hundredth of the area of the black floor below it reflects all light that
+ * there is: rays are aimed at it. Those in all directions would meet it five times in
+ * all. A corner of the box hides .2 %. */
+static void test_bright(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 4);
+    paint(&soup, 0.0, 0.0);
+    soup_add_quad(&soup, point(0.45, 0.45, 1), point(0, 0.1, 0), point(0.1, 0, 0), 1);
+    paint(&soup, 0.9, 0.0);
+    soup_add_quad(&soup, point(1.1, 0.4, 0), point(0.2, 0, 0), point(0, 0.2, 0), 1);
+    paint(&soup, 0.0, 100.0);
+    soup_add_box(&soup, point(0, 0, 0.1), point(0.05, 0.05, 0.2), 1, false);
+    paint(&soup, 0.0, 0.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", 64);
+    double exact = factor_of_floor(g.s.scene, 34);
+    for (int64_t k = 0; k < g.s.solver->model.forest->count; k++) {
+        uint32_t root = g.s.solver->model.forest->patches[g.gather.order[k]].id.root;
+        g.radiosity[k].band[0] = root == 32 || root == 33 ? 1.0 : 0.0;
+    }
+    double h = mean_of_roots(&g, 0, 32);
+    tap_ok(fabs(h / exact - 1.0) <= 0.01, "a bright panel: %.6f, exact %.6f", h, exact);
+    trial_free(&g);
+}
+
+/* In a closed room with a box lit brightly by a lamp beside it, rows still sum to 1, but
+ * those of which a ray has gone on. */
+static void test_bright_rows(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 2, true);
+    paint(&soup, 0.5, 0.0);
+    soup_add_box(&soup, point(0.5, 0.5, 0.5), point(0.55, 0.55, 0.55), 1, false);
+    paint(&soup, 0.9, 0.0);
+    soup_add_box(&soup, point(0.6, 0.5, 0.5), point(0.65, 0.55, 0.55), 1, false);
+    paint(&soup, 0.0, 100.0);
+    struct trial g = gather_scene(&soup, "", 64);
+    const struct gather_row *rows = g.gather.rows;
+    double worst = 0.0, bright = g.gather.bright.before[72];
+    int64_t count = 0;
+    for (int64_t i = 0, k = 0; i < g.gather.count; i++) {
+        double sum = 0.0;
+        bool near = false;
+        for (; k < rows[i].end; k++) {
+            sum += (double)g.gather.terms[k].weight[0];
+            near = near || g.gather.terms[k].near >= 0;
+        }
+        worst = fmax(worst, near ? 0.0 : fabs(sum - 1.0));
+        count += !near;
+    }
+    tap_ok(bright > 0.0 && worst <= 2e-6 && 4 * count > g.gather.count,
+           "beside a bright box rows of %lld leaves sum to 1, within %.1e",
+           (long long)count, worst);
+    trial_free(&g);
+}
+
+/* A white grain of 1 mm lies on a dark floor of 1 m, ten times as bright: it sends a
+ * millionth of the light, and no ray is aimed at it. */
+static void test_grain(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.09, 0.0);
+    soup_add_quad(&soup, point(0.5, 0.5, 1), point(0, 0.1, 0), point(0.1, 0, 0), 1);
+    paint(&soup, 0.0, 100.0);
+    soup_add_box(&soup, point(0.5, 0.5, 0), point(0.501, 0.501, 0.001), 1, false);
+    paint(&soup, 0.9, 0.0);
+    struct trial g = gather_scene(&soup, "", 64);
+    double bright = lamps_power(&g.gather.bright), lamps = lamps_power(&g.gather.lamps);
+    tap_ok(bright == 0.0 && lamps > 0.0, "no ray is aimed at a white grain (%g W)",
+           bright);
+    trial_free(&g);
+}
+
+/* The mean B of the walls of a closet that a candle lights, alone or next to a hall. */
+static double light_of_closet(bool hall)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0.5, 0.5, 0.95), point(0, 0.05, 0), point(0.05, 0, 0), 1);
+    paint(&soup, 0.5, 10.0);
+    if (hall)
+        soup_add_box(&soup, point(2, 0, 0), point(4, 2, 2), 1, true);
+    paint(&soup, 0.5, 0.0);
+    if (hall)
+        soup_add_quad(&soup, point(2.5, 0.5, 1.9), point(0, 1, 0), point(1, 0, 0), 1);
+    paint(&soup, 0.0, 1e5);
+    struct solution s = solve_soup(&soup, "");
+    double mean = mean_radiosity(&s, 0, 12);
+    solution_free(&s);
+    return mean;
+}
+
+/* The candle is no lamp next to the hall's light, but it is all the closet has. Coarser
+ * leaves are one reason for the difference, noise is the other. */
+static void test_candle(void)
+{
+    double alone = light_of_closet(false), beside = light_of_closet(true);
+    tap_ok(fabs(beside / alone - 1.0) <= 0.03,
+           "beside a bright hall a closet has B = %.5f, alone %.5f", beside, alone);
+}
+
+/* A wide lamp behind a window of a metre in a wall of four pieces, as a point of a floor
+ * sees it in a pixel: all of the window shines. Of segments to all of the lamp one in
+ * twenty or fewer passes the window; 32 of them are off by a half. What walls hide is cut
+ * out, exactly; of a piece that none of 32 segments meets no more than a 32nd of the
+ * remainder is left, more or less, of two no more than .07. Without a sill the window
+ * goes on below the floor: no segment is cast to points there. */
+static void test_window(bool sill)
+{
+    enum { RUNS = 8, SEGMENTS = 32 };
+    const int walls = sill ? 4 : 3, input = 2 * walls;
+    struct soup soup = {0};
+    struct vec3 y = point(0, 1, 0), z = point(0, 0, 1);
+    const struct vec3 low = point(4, 1.5, sill ? 1 : -2), high = point(4, 1.5, 2),
+                      floor = point(1.5, 1.6, 0);
+    const double foot = sill ? 0 : -3;
+    const double pieces[4][4] = {
+        {-20, 1.5, foot, 20}, {2.5, 20, foot, 20}, {1.5, 2.5, 2, 20}, {1.5, 2.5, 0, 1}};
+    for (int k = 0; k < walls; k++)
+        soup_add_quad(&soup, point(4, pieces[k][0], pieces[k][2]),
+                      vec3_scale(z, pieces[k][3] - pieces[k][2]),
+                      vec3_scale(y, pieces[k][1] - pieces[k][0]), 1);
+    soup_add_quad(&soup, point(0, 0, 0), point(4, 0, 0), point(0, 4, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(9, -20, -6), vec3_scale(z, 36), vec3_scale(y, 45), 1);
+    paint(&soup, 0.0, 1.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", 1);
+    const struct vec3 window[4] = {low, high, vec3_add(high, y), vec3_add(low, y)};
+    struct vec3 x = scene_from_input(g.s.scene, floor);
+    struct gather_points points = {.at = &x, .count = 1, .middle = x,
+                                   .plane = scene_root_plane(g.s.scene, input),
+                                   .input = scene_input_of(g.s.scene, input)};
+    double exact = point_polygon_factor(floor, z, window, 4), worst = 0.0;
+    for (uint64_t run = 0; run < RUNS; run++) {
+        struct rgb h =
+            final_gather_at(&g.gather, &points, run, SEGMENTS, false).lamps;
+        worst = fmax(worst, fabs(h.band[0] / exact - 1.0));
+    }
+    tap_ok(worst <= 0.07, "a lamp behind a window: %.4f is exact, off by %.2g at most",
+           exact, worst);
+    trial_free(&g);
+}
+
+/* A lamp in the plane of the ceiling that comes before it in the file: rays meet the
+ * ceiling, segments reach the lamp, and the room is as bright as with the lamp behind. */
+static void test_flush_lamp(void)
+{
+    double mean[2];
+    for (int first = 0; first < 2; first++) {
+        struct soup soup = {0};
+        for (int part = 0; part < 2; part++)
+            if (part == first) {
+                soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+                soup_add_box(&soup, point(0.6, 0.6, 0), point(0.8, 0.8, 0.5), 1, false);
+                paint(&soup, 0.5, 0.0);
+            } else {
+                soup_add_quad(&soup, point(0.4, 0.4, 1), point(0, 0.2, 0),
+                              point(0.2, 0, 0), 1);
+                paint(&soup, 0.0, 10.0);
+            }
+        struct solution s = solve_soup(&soup, "");
+        int32_t floor = (first == 0 ? 0 : 2) + 8; /* z = 0 */
+        mean[first] = s.solver->model.forest->radiosity[floor].band[0];
+        solution_free(&s);
+    }
+    tap_ok(mean[0] > 0.0 && fabs(mean[1] / mean[0] - 1.0) < 0.05,
+           "a lamp before its ceiling in the file: %.4f, behind it: %.4f", mean[1],
+           mean[0]);
+}
+
+int main(int argc, char **argv)
+{
+    comm_start(&world_comm, &argc, &argv);
+    test_mean_factor();
+    test_lamps();
+    test_sky();
+    test_bulbs();
+    test_bright();
+    test_bright_rows();
+    test_grain();
+    test_candle();
+    test_window(true);
+    test_window(false);
+    test_flush_lamp();
+    comm_stop(&world_comm);
+    return tap_done();
+}
