@@ -23,9 +23,10 @@
 /* Points of a group, at most; quarterings of the remainder. */
 enum { POINTS_MOST = 32, QUARTERINGS = 3 };
 
-/* Irradiance by the points of a group, W/m^2. */
-struct spots {
-    struct rgb sum, squares, half[2];
+/* The light of one point of a lamp. */
+struct spot {
+    struct vec3 at;   /* where it lands on the leaf */
+    struct rgb light; /* irradiance of the leaf, W/m^2 */
 };
 
 /* The factor of the leaf from a point y of a lamp; below 0: a blocker has been met that
@@ -42,69 +43,70 @@ static double look_from(struct receiver *r, struct remainder *leaf, int32_t root
     model->estimating += 1 + leaf->count;
     if (!(seen > 0.0))
         return 0.0;
-    struct vec3 x = remainder_point(leaf, QUARTERINGS, u[2], u[3]);
-    *at = x;
-    if (!(receiver_kernel(x, r->facet.plane.normal, y, facing) > 0.0))
+    *at = remainder_point(leaf, QUARTERINGS, u[2], u[3]);
+    if (!(receiver_kernel(*at, r->facet.plane.normal, y, facing) > 0.0))
         return 0.0;
-    int32_t blocker = receiver_first_blocker(r, x, y, root);
+    int32_t blocker = receiver_first_blocker(r, *at, y, root);
     if (blocker >= 0 && remainder_learn(leaf, model->scene, blocker))
         return -1.0;
     return blocker < 0 ? seen : 0.0;
 }
 
-/* Adds the light of one point. */
-static void add_light(struct spots *spots, int half, struct rgb light)
+/* Finds the spots of `count` points of a group, which bring `share` of its light. False
+ * if a blocker has been met that was not known. */
+static bool find_spots(struct receiver *r, struct remainder *leaf,
+                       const struct lamps *lamps, int32_t node, int count, double share,
+                       struct spot *spots)
 {
-    for (int c = 0; c < BANDS; c++) {
-        double h = light.band[c];
-        spots->sum.band[c] += h;
-        spots->squares.band[c] += h * h;
-        spots->half[half].band[c] += h;
+    const struct scene *scene = r->gather->model->scene;
+    struct sequence sequence =
+        sequence_start(hash_mix((uint64_t)leaf->root + 48) ^ hash_mix((uint64_t)node));
+    double start = hash_unit(sequence.scramble[0]);
+    for (int k = 0; k < count; k++) {
+        double u[SEQUENCE_DIMENSIONS];
+        int place = 2 * k < count ? 2 * k : (2 * k - count) | 1;
+        struct lamp lamp = lamp_choose(lamps, node, (place + start) / count);
+        struct triangle t = scene_root_triangle(scene, lamp.root);
+        sequence_point(&sequence, (uint32_t)k, u);
+        struct vec3 y = triangle_of_square(&t, u[0], u[1]);
+        double seen = look_from(r, leaf, lamp.root, y, u, &spots[k].at);
+        if (seen < 0.0)
+            return false;
+        double weight = share * lamp.share * scene_root_area(scene, lamp.root) /
+                        (count * r->facet.area);
+        spots[k].light = scene_root_material(scene, lamp.root)->emission;
+        for (int c = 0; c < BANDS; c++)
+            spots[k].light.band[c] *= weight * seen;
     }
+    return true;
 }
 
 void receiver_aim_from(struct receiver *r, const struct lamps *lamps, int32_t node,
                        int count, double share)
 {
     const struct forest *forest = r->gather->model->forest;
-    const struct scene *scene = forest->scene;
-    struct remainder leaf =
-        remainder_start(scene, (int32_t)forest->patches[r->row.leaf].id.root);
-    struct sequence sequence =
-        sequence_start(hash_mix((uint64_t)leaf.root + 48) ^ hash_mix((uint64_t)node));
-    double start = hash_unit(sequence.scramble[0]), u[SEQUENCE_DIMENSIONS];
-    struct spots spots = {.squares = {{0.0, 0.0, 0.0}}};
-    struct vec3 at[POINTS_MOST];
-    struct rgb each[POINTS_MOST];
+    int32_t root = (int32_t)forest->patches[r->row.leaf].id.root;
+    struct remainder leaf = remainder_start(forest->scene, root);
+    struct spot spots[POINTS_MOST];
+    struct rgb sum = {{0.0, 0.0, 0.0}}, squares = sum, half[2] = {sum, sum};
     leaf.triangle = r->facet.triangle;
     count = count < POINTS_MOST ? count : POINTS_MOST;
+    while (!find_spots(r, &leaf, lamps, node, count, share, spots))
+        ;
     for (int k = 0; k < count; k++) {
-        int half = 2 * k >= count, place = half ? (2 * k - count) | 1 : 2 * k;
-        struct lamp lamp = lamp_choose(lamps, node, (place + start) / count);
-        struct triangle t = scene_root_triangle(scene, lamp.root);
-        sequence_point(&sequence, (uint32_t)k, u);
-        struct vec3 y = triangle_of_square(&t, u[0], u[1]);
-        double seen = look_from(r, &leaf, lamp.root, y, u, &at[k]);
-        double weight = share * lamp.share * scene_root_area(scene, lamp.root) /
-                        (count * r->facet.area);
-        if (seen < 0.0) {
-            spots = (struct spots){.squares = {{0.0, 0.0, 0.0}}};
-            k = -1;
-            continue;
+        for (int c = 0; c < BANDS; c++) {
+            double h = spots[k].light.band[c];
+            sum.band[c] += h;
+            squares.band[c] += h * h;
+            half[2 * k >= count].band[c] += h;
         }
-        each[k] = scene_root_material(scene, lamp.root)->emission;
-        for (int c = 0; c < BANDS; c++)
-            each[k].band[c] *= weight * seen;
-        add_light(&spots, half, each[k]);
+        if (rgb_sum(spots[k].light) > 0.0)
+            receiver_catch(r, spots[k].at, spots[k].light);
     }
-    for (int k = 0; k < count && r->dark.catches; k++)
-        if (rgb_sum(each[k]) > 0.0)
-            receiver_catch(r, at[k], each[k]);
-    receiver_add_source(r, &(struct rgb){{1.0, 1.0, 1.0}}, spots.sum, 1.0);
+    receiver_add_source(r, &(struct rgb){{1.0, 1.0, 1.0}}, sum, 1.0);
     for (int c = 0; c < BANDS; c++) {
-        double sum = spots.sum.band[c];
-        double apart = spots.half[0].band[c] - spots.half[1].band[c];
-        r->row.chance[c] += fmax(0.0, spots.squares.band[c] - sum * sum / count);
+        double h = sum.band[c], apart = half[0].band[c] - half[1].band[c];
+        r->row.chance[c] += fmax(0.0, squares.band[c] - h * h / count);
         r->row.halves[c] += count > 1 ? apart * apart : 0.0;
     }
 }
