@@ -92,6 +92,20 @@ static inline struct vec3 vec3_most(struct vec3 a, struct vec3 b)
     return (struct vec3){real_max(a.x, b.x), real_max(a.y, b.y), real_max(a.z, b.z)};
 }
 
+/* Band by band: a - b, and sum += weight * colour. */
+static inline struct rgb rgb_sub(struct rgb a, struct rgb b)
+{
+    for (int c = 0; c < BANDS; c++)
+        a.band[c] -= b.band[c];
+    return a;
+}
+
+static inline void rgb_add(struct rgb *sum, double weight, struct rgb colour)
+{
+    for (int c = 0; c < BANDS; c++)
+        sum->band[c] += weight * colour.band[c];
+}
+
 static inline double rgb_sum(struct rgb c)
 {
     return c.band[0] + c.band[1] + c.band[2];

@@ -207,8 +207,7 @@ static void add_mean(const struct table *table, const struct tile *tile, double 
         tile = &inner;
     }
     for (int k = 0; k < 3; k++)
-        for (int c = 0; c < BANDS; c++)
-            mean->band[c] += share / 3.0 * tile->value[k].band[c];
+        rgb_add(mean, share / 3.0, tile->value[k]);
 }
 
 /* --- values --- */
@@ -310,13 +309,12 @@ static void find_division(struct blend *blend, int32_t leaf)
 static struct rgb deficit_of(const struct blend *blend, int32_t leaf)
 {
     struct tile whole = whole_leaf(blend->shading, leaf);
-    struct rgb deficit, mean = {{0.0, 0.0, 0.0}};
+    struct rgb mean = {{0.0, 0.0, 0.0}};
     double largest = 0.0, share = 1.0, fraction = blend->fraction;
     add_mean(blend->shading->table, &whole, 1.0, &mean);
-    for (int c = 0; c < BANDS; c++) {
-        deficit.band[c] = blend->value.band[c] - mean.band[c];
+    struct rgb deficit = rgb_sub(blend->value, mean);
+    for (int c = 0; c < BANDS; c++)
         largest = fmax(largest, fabs(deficit.band[c]));
-    }
     if (blend->less && blend->error && blend->round > 0 && !blend->is_last &&
         fraction > 0.0 && largest > 0.0) {
         double part = DEVIATION * (double)blend->error[leaf] / (fraction * largest);
@@ -481,7 +479,6 @@ struct rgb shading_at(const struct shading *shading, int32_t root, const double 
     }
     struct rgb sum = {{0.0, 0.0, 0.0}};
     for (int k = 0; k < 3; k++)
-        for (int c = 0; c < BANDS; c++)
-            sum.band[c] += w[k] * tile.value[k].band[c];
+        rgb_add(&sum, w[k], tile.value[k]);
     return sum;
 }

@@ -186,8 +186,7 @@ static void mix_colours(struct reader *reader)
         struct material material = reader->palette.materials[face->material];
         struct rgb sum = {{0.0, 0.0, 0.0}};
         for (int32_t k = 0; k < face->count; k++)
-            for (int c = 0; c < BANDS; c++)
-                sum.band[c] += reader->colours[reader->corners[face->first + k]].band[c];
+            rgb_add(&sum, 1.0, reader->colours[reader->corners[face->first + k]]);
         for (int c = 0; c < BANDS; c++)
             material.reflectance.band[c] = sum.band[c] / face->count;
         face->material = palette_add(&mixed, &material);

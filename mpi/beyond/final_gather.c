@@ -182,12 +182,11 @@ static void share_near(struct gathering *g)
  * which receive all their light. */
 static void see_bare_parts(struct gathering *g, const struct rgb *b, bool lamps)
 {
-    const struct forest *forest = g->solver->model.forest;
     for (int64_t i = 0; i < g->count; i++) {
         double share = fmax(LEAST_OUTSIDE, g->covers[i].outside);
         if (!(share < 1.0))
             continue;
-        struct rgb e = forest_material(forest, g->leaves[i])->emission;
+        struct rgb e = gathering_material(g, i)->emission;
         for (int c = 0; c < BANDS; c++) {
             double own = lamps ? e.band[c] : 0.0;
             g->radiosity[g->gather.place[g->leaves[i]]].band[c] =
@@ -245,8 +244,7 @@ static void close_balance(struct gathering *g, const struct rgb *b, bool lamps,
 {
     struct rgb leaving = {{0.0, 0.0, 0.0}}, arriving = leaving, all = leaving;
     for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m =
-            forest_material(g->solver->model.forest, g->leaves[i]);
+        const struct material *m = gathering_material(g, i);
         double bare = g->covers[i].bare, more = lamps ? shining_area(g, i) - bare : 0.0;
         for (int c = 0; c < BANDS; c++) {
             leaving.band[c] += bare * b[i].band[c] + more * m->emission.band[c];
@@ -309,8 +307,7 @@ static void reflect(void *context, const struct rgb *x, struct rgb *y)
     struct gathering *g = context;
     irradiances(g, x, false, y);
     for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m =
-            forest_material(g->solver->model.forest, g->leaves[i]);
+        const struct material *m = gathering_material(g, i);
         for (int c = 0; c < BANDS; c++)
             y[i].band[c] = x[i].band[c] - m->reflectance.band[c] * y[i].band[c];
     }
@@ -320,8 +317,7 @@ static void reflect(void *context, const struct rgb *x, struct rgb *y)
 static void set_radiosities(const struct gathering *g, const struct rgb *h, struct rgb *b)
 {
     for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m =
-            forest_material(g->solver->model.forest, g->leaves[i]);
+        const struct material *m = gathering_material(g, i);
         for (int c = 0; c < BANDS; c++)
             b[i].band[c] = m->emission.band[c] + m->reflectance.band[c] * h[i].band[c];
     }
@@ -334,8 +330,7 @@ static void absorb_all(const struct gathering *g, struct rgb *h)
     for (int c = 0; c < BANDS; c++) {
         double emitted = 0.0, absorbed = 0.0;
         for (int64_t i = 0; i < g->count; i++) {
-            const struct material *m =
-                forest_material(g->solver->model.forest, g->leaves[i]);
+            const struct material *m = gathering_material(g, i);
             emitted += shining_area(g, i) * m->emission.band[c];
             absorbed += g->covers[i].bare * (1.0 - m->reflectance.band[c]) * h[i].band[c];
         }
@@ -350,8 +345,7 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
 {
     double absorbed = 0.0, leaving = 0.0, arriving = 0.0;
     for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m =
-            forest_material(g->solver->model.forest, g->leaves[i]);
+        const struct material *m = gathering_material(g, i);
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c];
             absorbed += g->covers[i].bare * (1.0 - rho) * h[i].band[c];
@@ -378,7 +372,7 @@ static void share_straight_light(struct gathering *g)
         own[row] = g->gather.rows[row].lamps;
     gathering_share_rows(g, light);
     for (int64_t i = 0; i < g->count; i++) {
-        struct rgb rho = forest_material(forest, g->leaves[i])->reflectance;
+        struct rgb rho = gathering_material(g, i)->reflectance;
         for (int c = 0; c < BANDS; c++)
             straight[g->leaves[i]].band[c] = rho.band[c] * light[i].band[c];
     }
@@ -393,8 +387,7 @@ static void find_residual(struct gathering *g, const struct rgb *b, struct rgb *
     irradiances(g, b, true, r);
     set_radiosities(g, r, r);
     for (int64_t i = 0; i < g->count; i++)
-        for (int c = 0; c < BANDS; c++)
-            r[i].band[c] -= b[i].band[c];
+        r[i] = rgb_sub(r[i], b[i]);
 }
 
 /* Weights of leaves with the radiosities `b`: all of `b` has the size 1 by area, and 1 by

@@ -29,10 +29,10 @@ static struct rgb variation_of(const struct gathering *g, int64_t place, struct 
 {
     const struct forest *forest = g->solver->model.forest;
     int32_t patch = g->gather.order[place], parent = forest->patches[patch].parent;
-    const struct rgb *mean = &g->radiosity[parent >= 0 ? g->gather.place[parent] : place];
-    struct rgb b = g->radiosity[place], deviation;
-    struct rgb e = forest_material(forest, patch)->emission;
-    double part = UNDIVIDED;
+    struct rgb base = parent >= 0 ? g->radiosity[g->gather.place[parent]]
+                                  : forest_material(forest, patch)->emission;
+    struct rgb deviation = rgb_sub(g->radiosity[place], base);
+    double part = 0.5;
     if (parent < 0) {
         struct triangle t = forest_triangle(forest, patch);
         struct vec3 apart = vec3_sub(triangle_centroid(&t), from);
@@ -40,8 +40,7 @@ static struct rgb variation_of(const struct gathering *g, int64_t place, struct 
         part = fmin(1.0, fmax(UNDIVIDED, UNDIVIDED_NEAR * near));
     }
     for (int c = 0; c < BANDS; c++)
-        deviation.band[c] = parent >= 0 ? 0.5 * (b.band[c] - mean->band[c])
-                                        : part * (b.band[c] - e.band[c]);
+        deviation.band[c] *= part;
     return deviation;
 }
 
@@ -108,8 +107,7 @@ static double ratio_of_sequence(const struct gathering *g, const struct rgb *hal
 {
     double by_halves = 0.0, by_chance = 0.0;
     for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m =
-            forest_material(g->solver->model.forest, g->leaves[i]);
+        const struct material *m = gathering_material(g, i);
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c], weight = g->areas[i] * rho * rho;
             by_halves += weight * halves[i].band[c];
@@ -155,7 +153,7 @@ void gathering_estimate_errors(struct gathering *g)
     float *error = alloc_array((size_t)solver->model.forest->count, sizeof *error);
     solver->beyond->answer.error = error;
     for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m = forest_material(solver->model.forest, g->leaves[i]);
+        const struct material *m = gathering_material(g, i);
         double largest = 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c];

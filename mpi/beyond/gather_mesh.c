@@ -255,13 +255,11 @@ static void keep_known(struct looking *l, int32_t leaf, const struct gather_look
 /* (rho H)^2 of a leaf, as links or looks tell it. */
 static struct rgb squares_of_light(const struct forest *forest, int32_t leaf)
 {
-    const struct rgb *emission = &forest_material(forest, leaf)->emission;
-    struct rgb squares;
-    for (int c = 0; c < BANDS; c++) {
-        double b = forest->radiosity[leaf].band[c] - emission->band[c];
-        squares.band[c] = b * b;
-    }
-    return squares;
+    struct rgb light =
+        rgb_sub(forest->radiosity[leaf], forest_material(forest, leaf)->emission);
+    for (int c = 0; c < BANDS; c++)
+        light.band[c] *= light.band[c];
+    return light;
 }
 
 /* The same, over all bands. */
@@ -344,11 +342,9 @@ static void split_bent(struct looking *l)
     struct forest *forest = model->forest;
     struct rgb sum = {{0.0, 0.0, 0.0}};
     double part = BENT * model->absorptance * model->criterion.epsilon;
-    for (int64_t i = 0; i < mesh->count; i++) {
-        struct rgb light = squares_of_light(forest, mesh->leaves[i]);
-        for (int c = 0; c < BANDS; c++)
-            sum.band[c] += forest_area(forest, mesh->leaves[i]) * light.band[c];
-    }
+    for (int64_t i = 0; i < mesh->count; i++)
+        rgb_add(&sum, forest_area(forest, mesh->leaves[i]),
+                squares_of_light(forest, mesh->leaves[i]));
     double dim = GATHER_DIM * GATHER_DIM * rgb_sum(sum);
     for (int c = 0; c < BANDS; c++)
         sum.band[c] = fmax(sum.band[c], dim);

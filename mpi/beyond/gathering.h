@@ -38,6 +38,13 @@ struct gathering {
     struct stages stages;   /* who has which rows */
 };
 
+/* The material of a leaf, by its number. */
+static inline const struct material *gathering_material(const struct gathering *g,
+                                                        int64_t leaf)
+{
+    return forest_material(g->solver->model.forest, g->leaves[leaf]);
+}
+
 /* Collective. Brings the value of each row, from `all`, to all ranks, by leaf number:
  * [count]. */
 void gathering_share_rows(struct gathering *g, struct rgb *values);

@@ -76,11 +76,7 @@ struct checking {
 
 static struct rgb reflected(const struct forest *forest, int32_t leaf)
 {
-    struct rgb b = forest->radiosity[leaf];
-    struct rgb e = forest_material(forest, leaf)->emission;
-    for (int c = 0; c < BANDS; c++)
-        b.band[c] -= e.band[c];
-    return b;
+    return rgb_sub(forest->radiosity[leaf], forest_material(forest, leaf)->emission);
 }
 
 /* The parts of a leaf in the three sums that its probability goes by. */

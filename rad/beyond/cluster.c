@@ -249,8 +249,7 @@ static void add_child(struct cluster *parent, const struct cluster *child)
         fresh ? child->normal_low : vec3_least(parent->normal_low, child->normal_low);
     parent->normal_high =
         fresh ? child->normal_high : vec3_most(parent->normal_high, child->normal_high);
-    for (int c = 0; c < BANDS; c++)
-        parent->reflectance.band[c] += child->reflecting * child->reflectance.band[c];
+    rgb_add(&parent->reflectance, child->reflecting, child->reflectance);
     parent->area += child->area;
     parent->reflecting += child->reflecting;
     parent->is_dark = (fresh || parent->is_dark) && child->is_dark;

@@ -44,11 +44,8 @@ void cluster_light_average(const struct cluster_light *light, const struct fores
         for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++) {
             int32_t node = cluster->child[k];
             double area = cluster_node_area(light->tree, forest->scene, node);
-            double share = area / cluster->area;
-            const struct rgb *child =
-                node_is_cluster(node) ? &of_clusters[~node] : &of_patches[node];
-            for (int c = 0; c < BANDS; c++)
-                sum.band[c] += share * child->band[c];
+            rgb_add(&sum, area / cluster->area,
+                    node_is_cluster(node) ? of_clusters[~node] : of_patches[node]);
         }
         of_clusters[i] = sum;
     }

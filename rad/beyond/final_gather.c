@@ -383,8 +383,7 @@ struct receiver receiver_of_leaf(struct final_gather *gather, int32_t leaf, int 
 static struct rgb light_of(const struct receiver *r)
 {
     struct rgb h = r->lamps;
-    for (int c = 0; c < BANDS; c++)
-        h.band[c] += r->sums.h.band[c];
+    rgb_add(&h, 1.0, r->sums.h);
     return h;
 }
 

@@ -193,12 +193,9 @@ static const struct rgb *take(const struct model *model, int32_t node,
     double part[4];
     int count = list_children(model, node, parts, child, part);
     *sum = (struct rgb){{0.0, 0.0, 0.0}};
-    for (int k = 0; k < count; k++) {
-        const struct rgb *b = node_is_cluster(child[k])
-                                  ? &model->clusters->sent[~child[k]] : &vector[child[k]];
-        for (int c = 0; c < BANDS; c++)
-            sum->band[c] += part[k] * b->band[c];
-    }
+    for (int k = 0; k < count; k++)
+        rgb_add(sum, part[k], node_is_cluster(child[k])
+                                  ? model->clusters->sent[~child[k]] : vector[child[k]]);
     return sum;
 }
 
