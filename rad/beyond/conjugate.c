@@ -115,22 +115,25 @@ double conjugate_missing(const struct conjugate *cg, const struct forest *forest
     return cg->share * cg->growth / (1.0 - cg->growth) * sum;
 }
 
-/* <x, y> / <y, y>; 0 if y is 0, as of a system that is solved. */
-static double quotient(double along, double square)
+/* <x, K p> / <K p, K p>, where x is r, or K r if `image`; 0 if K p is 0, as of a system
+ * that is solved. */
+static double quotient(const struct conjugate *cg, const struct forest *forest, int c,
+                       bool image)
 {
+    double along = 0.0, square = 0.0;
+    for (int64_t i = 0; i < cg->count; i++) {
+        double w = weight_of(cg, forest, i, c), kp = cg->image[i].band[c];
+        double x = cg->residual[i].band[c] - (image ? change(cg, forest, i, c) : 0.0);
+        along += w * (x * kp);
+        square += w * (kp * kp);
+    }
     return square > 0.0 ? along / square : 0.0;
 }
 
 /* p = r + turn p, K p = K r + turn K p. */
 static void turn(struct conjugate *cg, const struct forest *forest, int c)
 {
-    double along = 0.0, square = 0.0;
-    for (int64_t i = 0; i < cg->count; i++) {
-        double w = weight_of(cg, forest, i, c), image = cg->image[i].band[c];
-        along += w * ((cg->residual[i].band[c] - change(cg, forest, i, c)) * image);
-        square += w * (image * image);
-    }
-    double factor = -quotient(along, square);
+    double factor = -quotient(cg, forest, c, true);
     for (int64_t i = 0; i < cg->count; i++) {
         double *p = &cg->direction[i].band[c], *image = &cg->image[i].band[c];
         double r = cg->residual[i].band[c];
@@ -142,13 +145,7 @@ static void turn(struct conjugate *cg, const struct forest *forest, int c)
 /* B += step p, r -= step K p. */
 static void advance(struct conjugate *cg, const struct forest *forest, int c)
 {
-    double along = 0.0, square = 0.0;
-    for (int64_t i = 0; i < cg->count; i++) {
-        double w = weight_of(cg, forest, i, c), image = cg->image[i].band[c];
-        along += w * (cg->residual[i].band[c] * image);
-        square += w * (image * image);
-    }
-    double step = quotient(along, square);
+    double step = quotient(cg, forest, c, false);
     for (int64_t i = 0; i < cg->count; i++) {
         cg->radiosity[i].band[c] += step * cg->direction[i].band[c];
         cg->residual[i].band[c] -= step * cg->image[i].band[c];
