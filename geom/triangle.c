@@ -38,12 +38,6 @@ double triangle_area(const struct triangle *t)
     return 0.5 * vec3_length(triangle_cross(t));
 }
 
-struct vec3 triangle_centroid(const struct triangle *t)
-{
-    struct vec3 sum = vec3_add(vec3_add(t->corner[0], t->corner[1]), t->corner[2]);
-    return vec3_scale(sum, 1.0 / 3.0);
-}
-
 double triangle_radius(const struct triangle *t)
 {
     struct vec3 centre = triangle_centroid(t);
@@ -69,18 +63,6 @@ bool triangle_is_degenerate(const struct triangle *t)
         longest = edge > longest ? edge : longest;
     }
     return 2.0 * triangle_area(t) <= GEOM_ROUNDING * longest; /* its height is noise */
-}
-
-struct triangle triangle_child(const struct triangle *t, int child)
-{
-    struct vec3 a = t->corner[0], b = t->corner[1], c = t->corner[2];
-    struct vec3 ab = vec3_middle(a, b), bc = vec3_middle(b, c), ca = vec3_middle(c, a);
-    switch (child) {
-    case 0: return (struct triangle){{a, ab, ca}};
-    case 1: return (struct triangle){{ab, b, bc}};
-    case 2: return (struct triangle){{ca, bc, c}};
-    default: return (struct triangle){{bc, ca, ab}};
-    }
 }
 
 bool triangle_is_in(const struct triangle *t, const struct plane *own,

@@ -30,8 +30,13 @@ struct segment {
 
 struct vec3 triangle_cross(const struct triangle *t);   /* normal times twice the area */
 double triangle_area(const struct triangle *t);         /* square scene units */
-struct vec3 triangle_centroid(const struct triangle *t);
 double triangle_radius(const struct triangle *t); /* largest, corner to centroid */
+
+static inline struct vec3 triangle_centroid(const struct triangle *t)
+{
+    struct vec3 sum = vec3_add(vec3_add(t->corner[0], t->corner[1]), t->corner[2]);
+    return vec3_scale(sum, 1.0 / 3.0);
+}
 
 /* The mean of three corners, or of their normals, with these weights, which are x, y and
  * z: the point that has them as its barycentric coordinates. */
@@ -56,7 +61,17 @@ bool triangle_is_degenerate(const struct triangle *t);
 
 /* Child 0..3 of the quadtree split: 0 = (a, ab, ca), 1 = (ab, b, bc), 2 = (ca, bc, c) and
  * 3 = (bc, ca, ab). Two triangles that share an edge split it at the same bits. */
-struct triangle triangle_child(const struct triangle *t, int child);
+static inline struct triangle triangle_child(const struct triangle *t, int child)
+{
+    struct vec3 a = t->corner[0], b = t->corner[1], c = t->corner[2];
+    struct vec3 ab = vec3_middle(a, b), bc = vec3_middle(b, c), ca = vec3_middle(c, a);
+    switch (child) {
+    case 0: return (struct triangle){{a, ab, ca}};
+    case 1: return (struct triangle){{ab, b, bc}};
+    case 2: return (struct triangle){{ca, bc, c}};
+    default: return (struct triangle){{bc, ca, ab}};
+    }
+}
 
 /* The barycentric coordinates `w` of a point in the plane of a triangle. */
 static inline void triangle_weights(const struct triangle *t, struct vec3 x, double w[3])

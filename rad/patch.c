@@ -78,13 +78,6 @@ struct triangle forest_triangle(const struct forest *forest, int32_t patch)
     return t;
 }
 
-double forest_area(const struct forest *forest, int32_t patch)
-{
-    struct patch_id id = forest->patches[patch].id;
-    double share = 1.0 / (double)(UINT32_C(1) << (2 * id_level(id)));
-    return scene_root_area(forest->scene, (int32_t)id.root) * share;
-}
-
 struct forest_counts forest_count(const struct forest *forest)
 {
     struct forest_counts counts = {0};

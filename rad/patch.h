@@ -66,7 +66,12 @@ struct triangle forest_triangle(const struct forest *forest, int32_t patch);
 
 /* Area, square scene units: the root's times 4^-level, so that children add up
  * exactly. */
-double forest_area(const struct forest *forest, int32_t patch);
+static inline double forest_area(const struct forest *forest, int32_t patch)
+{
+    struct patch_id id = forest->patches[patch].id;
+    double share = 1.0 / (double)(UINT32_C(1) << (2 * id_level(id)));
+    return scene_root_area(forest->scene, (int32_t)id.root) * share;
+}
 
 static inline const struct material *forest_material(const struct forest *forest,
                                                      int32_t patch)

@@ -81,13 +81,6 @@ void sequence_point(const struct sequence *sequence, uint32_t index,
 
 /* --- from the square --- */
 
-struct vec3 triangle_of_square(const struct triangle *t, double u, double v)
-{
-    double root = sqrt(u), c = root * v, b = root - c;
-    return vec3_add(vec3_scale(t->corner[0], 1.0 - root),
-                    vec3_add(vec3_scale(t->corner[1], b), vec3_scale(t->corner[2], c)));
-}
-
 /* Sine and cosine of an angle of at most pi / 4, within 2e-9 (the next term of the
  * series). */
 static void turn(double angle, double *sine, double *cosine)

@@ -22,7 +22,12 @@ void sequence_point(const struct sequence *sequence, uint32_t index,
                     double u[SEQUENCE_DIMENSIONS]);
 
 /* The image of (u, v) in [0, 1) on the triangle; the map keeps ratios of areas. */
-struct vec3 triangle_of_square(const struct triangle *t, double u, double v);
+static inline struct vec3 triangle_of_square(const struct triangle *t, double u, double v)
+{
+    double root = sqrt(u), c = root * v, b = root - c;
+    return vec3_add(vec3_scale(t->corner[0], 1.0 - root),
+                    vec3_add(vec3_scale(t->corner[1], b), vec3_scale(t->corner[2], c)));
+}
 
 /* The image of (u, v) in [0, 1) as a direction, distributed as the cosine to `normal`.
  * `along` is at right angles to it; both are of length 1. */
