@@ -116,7 +116,7 @@ static void restore_answer(struct solver *solver, const struct solution_mesh *so
         answer->gather.lamps =
             lamps_create(&solver->model, solution->lamps.lamp_least, false);
         answer->gather.mean = solution->lamps.mean;
-        final_gather_find_bright(&answer->gather);
+        final_gather_renew(&answer->gather);
         answer->straight = alloc_array(count, sizeof *answer->straight);
     }
     if (solution->has_error)

@@ -462,7 +462,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     for (int64_t i = 0; i < g->count; i++)
         forest->radiosity[g->leaves[i]] = answer[i];
     forest_average(forest);
-    final_gather_find_bright(&g->gather); /* as a stored solution has them */
+    final_gather_renew(&g->gather); /* as a stored solution has them */
     alloc_free(answer);
     alloc_free(r);
     alloc_free(h);

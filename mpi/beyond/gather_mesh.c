@@ -302,6 +302,8 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
             keep_known(l, forest->patches[leaf].children + k, &looks[i]);
         }
     }
+    if (made > 0)
+        final_gather_renew(&l->gather);
     alloc_free(looks);
     alloc_free(*leaves);
     *leaves = next;
@@ -361,6 +363,7 @@ static void split_bent(struct looking *l)
             forest->radiosity[child] = light_by_parent(forest, child);
     }
     list_leaves(mesh, forest);
+    final_gather_renew(&l->gather);
 }
 
 /* Leaves of open roots will have exact rows: of divided ones, or of `all`. */

@@ -108,7 +108,7 @@ static int rays_for(int rays, int64_t leaves)
     return rays;
 }
 
-void final_gather_find_bright(struct final_gather *gather)
+static void find_bright(struct final_gather *gather)
 {
     const struct model *model = gather->model;
     double reflected = forest_mean_reflected(model->forest);
@@ -142,7 +142,7 @@ struct final_gather final_gather_create(struct model *model, int rays)
     gather.sums.scale = scale_of_bands(model, gather.mean);
     gather.sums.flat = FLAT;
     gather.lamps = lamps_create(model, least_of_lamps(model), false);
-    final_gather_find_bright(&gather);
+    final_gather_renew(&gather);
     gather.near.unit_area = 0x1p-50 * model->area;
     gather.near.unit_watts = 0x1p-44 * model->area * gather.mean;
     gather.near.items =
@@ -182,6 +182,7 @@ void final_gather_free(struct final_gather *gather)
     alloc_free(gather->view.overlapped);
     alloc_free(gather->near.partly_covered);
     alloc_free(gather->near.cut);
+    alloc_free(gather->leaves);
     alloc_free(gather->order);
     alloc_free(gather->place);
     alloc_free(gather->sums.items);
@@ -270,6 +271,19 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     return slope;
 }
 
+void final_gather_renew(struct final_gather *gather)
+{
+    const struct forest *forest = gather->model->forest;
+    find_bright(gather);
+    RESERVE(gather->leaves, &gather->leaf_capacity, forest->count);
+    for (int32_t p = 0; p < forest->count; p++) {
+        struct triangle t = forest_triangle(forest, p);
+        if (patch_is_leaf(&forest->patches[p]))
+            gather->leaves[p] = (struct gather_leaf){
+                triangle_centroid(&t), forest_area(forest, p), gather_slope(gather, p)};
+    }
+}
+
 struct rgb light_by_parent(const struct forest *forest, int32_t patch)
 {
     const struct patch *patches = forest->patches;
@@ -320,8 +334,10 @@ void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *wei
 void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
                         const struct rgb *weight)
 {
+    const struct final_gather *g = r->gather;
+    struct gather_slope slope =
+        g->sums.exact ? gather_slope(g, patch) : g->leaves[patch].slope;
     receiver_add_patch(r, patch, weight);
-    struct gather_slope slope = gather_slope(r->gather, patch);
     for (int k = 0; k < 3 && slope.rise != 0.0; k++) {
         struct rgb part;
         for (int c = 0; c < BANDS; c++)

@@ -28,14 +28,6 @@ struct gather_look {
     float work;                /* tests of each ray */
 };
 
-/* B as a linear function over a patch: see final_gather.c. */
-struct gather_slope {
-    int32_t first; /* child 0 of the patch, or of its parent */
-    double rise;   /* s, made less where B would be below 0; 0: B is constant */
-    double range;  /* largest difference of B from its value at the centre, over all
-                      bands; in exact rows of one band, as that of `ranges`, W/m^2 */
-};
-
 /* The light reflected, in the mean over all surface, summed over bands, W/m^2. */
 double forest_mean_reflected(const struct forest *forest);
 
@@ -43,8 +35,9 @@ double forest_mean_reflected(const struct forest *forest);
 struct final_gather final_gather_create(struct model *model, int rays);
 void final_gather_free(struct final_gather *gather);
 
-/* Finds the bright roots anew, by the radiosities of the forest. */
-void final_gather_find_bright(struct final_gather *gather);
+/* Finds the bright roots anew, and what rays meet, by the radiosities of the forest and
+ * its leaves. To be called when these have changed. */
+void final_gather_renew(struct final_gather *gather);
 
 /* True if it is proved that nothing stands between a root and the roots that it faces:
  * then its leaves may have exact rows. Without `proof`: if no segment finds a blocker. */

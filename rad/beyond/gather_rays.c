@@ -63,7 +63,6 @@ struct point {
     int32_t input;     /* triangle */
     double weight[3];  /* barycentric coordinates in the leaf, 1 */
     struct vec3 at, normal;
-    struct vec3 middle; /* of the leaf: its centroid */
 };
 
 /* Finds the leaf of the root that the point lies on. */
@@ -74,10 +73,8 @@ static void find_leaf(const struct forest *forest, int32_t root, struct point *p
     point->patch = root;
     while (!patch_is_leaf(&forest->patches[point->patch])) {
         int k = triangle_child_at(point->weight);
-        t = triangle_child(&t, k);
         point->patch = forest->patches[point->patch].children + k;
     }
-    point->middle = triangle_centroid(&t);
 }
 
 enum met { MET_NOTHING, MET_BACK, MET_FRONT };
@@ -167,8 +164,9 @@ static bool is_too_near(const struct receiver *r, const struct point *met, struc
                         struct vec3 normal)
 {
     double near = r->points ? NEAR_PIXEL : NEAR;
-    double area = forest_area(r->gather->model->forest, met->patch);
-    struct vec3 apart = vec3_sub(met->middle, x), ray = vec3_sub(met->at, x);
+    const struct gather_leaf *leaf = &r->gather->leaves[met->patch];
+    double area = leaf->area;
+    struct vec3 apart = vec3_sub(leaf->middle, x), ray = vec3_sub(met->at, x);
     double width = vec3_dot(apart, met->normal);
     return vec3_dot(apart, apart) < near * area || vec3_dot(ray, ray) < NEAR_RAY * area ||
            (width * width < NARROW * area && vec3_dot(normal, met->normal) < OPPOSITE);
@@ -214,7 +212,7 @@ static bool is_cut_between(const struct receiver *r, const struct point *met,
 {
     struct vec3 ray = vec3_sub(met->at, x);
     return r->keeps &&
-           vec3_dot(ray, ray) < forest_area(r->gather->model->forest, met->patch) &&
+           vec3_dot(ray, ray) < r->gather->leaves[met->patch].area &&
            is_cut(r->gather, met->patch);
 }
 

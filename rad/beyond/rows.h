@@ -79,6 +79,21 @@ struct gather_nears {
                                 the leaf, at least; NULL: unknown */
 };
 
+/* B as a linear function over a patch: see final_gather.c. */
+struct gather_slope {
+    int32_t first; /* child 0 of the patch, or of its parent */
+    double rise;   /* s, made less where B would be below 0; 0: B is constant */
+    double range;  /* largest difference of B from its value at the centre, over all
+                      bands; in exact rows of one band, as that of `ranges`, W/m^2 */
+};
+
+/* A leaf as rays meet it. */
+struct gather_leaf {
+    struct vec3 middle; /* its centroid */
+    double area;        /* square scene units */
+    struct gather_slope slope;
+};
+
 /* Work of this rank. */
 struct gather_counts {
     int64_t rays;           /* fired for first hits */
@@ -118,6 +133,8 @@ struct final_gather {
     struct lamps lamps;
     struct lamps bright;       /* roots that reflect so much that segments bring it */
     struct gather_view view;   /* of the root of the leaf at hand */
+    struct gather_leaf *leaves; /* [forest->count] of patches that are leaves */
+    int64_t leaf_capacity;
     int32_t *order; /* [forest->count] patches as in forest_order() */
     int32_t *place; /* [forest->count] the place of each patch in `order` */
     struct gather_nears near;
