@@ -88,11 +88,10 @@ static double mean_density(const struct sight *s)
 static bool is_far(const struct sight *s)
 {
     double near = real_min(square(s[0].r), real_min(square(s[1].r), square(s[2].r)));
-    double size =
-        real_max(square(vec3_sub(s[1].r, s[0].r)),
-                 real_max(square(vec3_sub(s[2].r, s[1].r)),
-                          square(vec3_sub(s[0].r, s[2].r))));
-    return !(size > FAR * FAR * near);
+    bool far = true;
+    for (int k = 0; k < 3 && far; k++)
+        far = !(square(vec3_sub(s[(k + 1) % 3].r, s[k].r)) > FAR * FAR * near);
+    return far;
 }
 
 /* Twice the area vector of a triangle, towards its back. */

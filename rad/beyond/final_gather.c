@@ -321,9 +321,9 @@ static struct gather_sum *sum_of(struct final_gather *g, int32_t place, int32_t 
 void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight)
 {
     struct final_gather *g = r->gather;
-    struct rgb b = g->model->forest->radiosity[patch];
+    const struct rgb *b = &g->model->forest->radiosity[patch];
     for (int c = 0; c < BANDS; c++)
-        r->light.band[c] += weight->band[c] * b.band[c];
+        r->light.band[c] += weight->band[c] * b->band[c];
     if (!r->keeps)
         return;
     struct gather_sum *sum = sum_of(g, g->place[patch], r->near);
@@ -338,10 +338,12 @@ void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
     struct gather_slope slope =
         g->sums.exact ? gather_slope(g, patch) : g->leaves[patch].slope;
     receiver_add_patch(r, patch, weight);
+    struct rgb steep = *weight, part;
+    for (int c = 0; c < BANDS; c++)
+        steep.band[c] *= slope.rise;
     for (int k = 0; k < 3 && slope.rise != 0.0; k++) {
-        struct rgb part;
         for (int c = 0; c < BANDS; c++)
-            part.band[c] = weight->band[c] * slope.rise * (at[k] - 1.0 / 3.0);
+            part.band[c] = steep.band[c] * (at[k] - 1.0 / 3.0);
         receiver_add_patch(r, slope.first + k, &part);
     }
 }
