@@ -328,30 +328,6 @@ bool scene_has_twin(const struct scene *scene, int32_t input)
            (scene->two_sided_lamps || !material_emits(scene_root_material(scene, input)));
 }
 
-int32_t scene_root_on(const struct scene *scene, int32_t input, bool front)
-{
-    if (front)
-        return input;
-    return scene_has_twin(scene, input) ? input + scene->input_count : -1;
-}
-
-struct triangle scene_root_triangle(const struct scene *scene, int32_t root)
-{
-    const struct triangle *t = &scene->triangles[scene_input_of(scene, root)];
-    return root >= scene->input_count ? triangle_turned(t) : *t;
-}
-
-struct plane scene_root_plane(const struct scene *scene, int32_t root)
-{
-    int32_t input = scene_input_of(scene, root);
-    struct plane plane = scene->planes[input];
-    if (root == input)
-        return plane;
-    if (!scene_has_twin(scene, input))
-        return (struct plane){{0.0, 0.0, 0.0}, 0.0};
-    return (struct plane){vec3_scale(plane.normal, -1.0), -plane.offset};
-}
-
 struct vec3 scene_root_normal(const struct scene *scene, int32_t root, int corner)
 {
     if (!scene->normals)

@@ -137,12 +137,31 @@ bool scene_has_twin(const struct scene *scene, int32_t input);
 
 /* The root whose front is on the front, or the back, of an input triangle; -1 if that
  * side is black. */
-int32_t scene_root_on(const struct scene *scene, int32_t input, bool front);
+static inline int32_t scene_root_on(const struct scene *scene, int32_t input, bool front)
+{
+    if (front)
+        return input;
+    return scene_has_twin(scene, input) ? input + scene->input_count : -1;
+}
 
 /* Geometry of a root. A twin has its corners in the order (a, c, b) and faces the other
  * way. */
-struct triangle scene_root_triangle(const struct scene *scene, int32_t root);
-struct plane scene_root_plane(const struct scene *scene, int32_t root);
+static inline struct triangle scene_root_triangle(const struct scene *scene, int32_t root)
+{
+    const struct triangle *t = &scene->triangles[scene_input_of(scene, root)];
+    return root >= scene->input_count ? triangle_turned(t) : *t;
+}
+
+static inline struct plane scene_root_plane(const struct scene *scene, int32_t root)
+{
+    int32_t input = scene_input_of(scene, root);
+    struct plane plane = scene->planes[input];
+    if (root == input)
+        return plane;
+    if (!scene_has_twin(scene, input))
+        return (struct plane){{0.0, 0.0, 0.0}, 0.0};
+    return (struct plane){vec3_scale(plane.normal, -1.0), -plane.offset};
+}
 
 /* The normal for shading at a corner of a root, turned to the root's front; 0 if there is
  * none. */

@@ -38,14 +38,6 @@ double triangle_area(const struct triangle *t)
     return 0.5 * vec3_length(triangle_cross(t));
 }
 
-double triangle_radius(const struct triangle *t)
-{
-    struct vec3 centre = triangle_centroid(t);
-    double a = vec3_length(vec3_sub(t->corner[0], centre));
-    double b = vec3_length(vec3_sub(t->corner[1], centre));
-    return real_max(a, real_max(b, vec3_length(vec3_sub(t->corner[2], centre))));
-}
-
 struct plane triangle_plane(const struct triangle *t)
 {
     struct vec3 cross = triangle_cross(t);

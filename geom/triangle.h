@@ -30,12 +30,20 @@ struct segment {
 
 struct vec3 triangle_cross(const struct triangle *t);   /* normal times twice the area */
 double triangle_area(const struct triangle *t);         /* square scene units */
-double triangle_radius(const struct triangle *t); /* largest, corner to centroid */
 
 static inline struct vec3 triangle_centroid(const struct triangle *t)
 {
     struct vec3 sum = vec3_add(vec3_add(t->corner[0], t->corner[1]), t->corner[2]);
     return vec3_scale(sum, 1.0 / 3.0);
+}
+
+/* Largest, corner to centroid. */
+static inline double triangle_radius(const struct triangle *t)
+{
+    struct vec3 centre = triangle_centroid(t);
+    double a = vec3_length(vec3_sub(t->corner[0], centre));
+    double b = vec3_length(vec3_sub(t->corner[1], centre));
+    return real_max(a, real_max(b, vec3_length(vec3_sub(t->corner[2], centre))));
 }
 
 /* The mean of three corners, or of their normals, with these weights, which are x, y and

@@ -118,11 +118,6 @@ double mean_factor(const struct triangle *from, struct vec3 normal,
 
 /* --- lamps --- */
 
-bool root_is_lamp(const struct lamps *lamps, int32_t root)
-{
-    return lamps->sent[root] > 0.0;
-}
-
 struct rgb lamp_light(const struct lamps *lamps, int32_t root)
 {
     struct rgb light = scene_root_material(lamps->model->scene, root)->emission;

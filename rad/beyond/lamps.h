@@ -58,7 +58,10 @@ struct rgb lamp_light(const struct lamps *lamps, int32_t root);
 /* The power that all lamps send, over all bands, W in square scene units. */
 double lamps_power(const struct lamps *lamps);
 
-bool root_is_lamp(const struct lamps *lamps, int32_t root);
+static inline bool root_is_lamp(const struct lamps *lamps, int32_t root)
+{
+    return lamps->sent[root] > 0.0;
+}
 
 /* Finds the groups of lamps that a leaf tells apart by so many segments, in the tree's
  * order: each is a root, or a cluster that is small for its distance and would get about
