@@ -144,10 +144,10 @@ static double width_of(const struct end *end)
 /* The wider one; of equal ones that with the lower ID. */
 static bool p_is_wider(const struct meeting *m)
 {
-    double width_p = width_of(&m->p), width_q = width_of(&m->q);
+    double width_p = width_of(m->p), width_q = width_of(m->q);
     if (width_p != width_q)
         return width_p > width_q;
-    return id_compare(m->p.id, m->q.id) <= 0;
+    return id_compare(m->p->id, m->q->id) <= 0;
 }
 
 /* The side that causes more of the error, or the larger one if it causes all that is in

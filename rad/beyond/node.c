@@ -138,7 +138,7 @@ static double gap_between(const struct end *a, const struct end *b)
 
 struct meeting ends_meet(const struct end *p, const struct end *q)
 {
-    struct meeting m = {.p = *p, .q = *q};
+    struct meeting m = {.p = p, .q = q};
     double gap = gap_between(p, q), limit = real_min(p->area, q->area);
     m.near = gap < 0.5 * (p->radius + q->radius);
     m.most = real_min(limit, p->area * q->area / (PI * gap * gap + 1e-300));

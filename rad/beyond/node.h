@@ -47,7 +47,7 @@ static inline double light_to(const struct end *to, const struct end *from)
 
 /* Two ends, of which one at least is a cluster. */
 struct meeting {
-    struct end p, q;
+    const struct end *p, *q; /* borrowed */
     bool near;    /* their boxes are closer than half of the sum of their radii */
     double most;  /* bound on G */
     double light; /* light_to() both ways together */

@@ -30,12 +30,12 @@ enum { SAMPLES = 4, RINGS = 4 };
  * patch: in which of its quarters a ray ends is not known. */
 bool is_by_rays(const struct meeting *m)
 {
-    return m->near && (m->p.area <= m->q.area ? m->q.cluster : m->p.cluster) != NULL;
+    return m->near && (m->p->area <= m->q->area ? m->q->cluster : m->p->cluster) != NULL;
 }
 
 static uint64_t seed_of(const struct meeting *m, int salt)
 {
-    return hash_mix(hash_mix(id_number(m->p.id) + (uint64_t)salt) ^ id_number(m->q.id));
+    return hash_mix(hash_mix(id_number(m->p->id) + (uint64_t)salt) ^ id_number(m->q->id));
 }
 
 /* The part of a root in which a sample lies. */
@@ -116,8 +116,8 @@ static void look_from_afar(struct model *model, const struct meeting *m, uint64_
                            struct node_exchange *found)
 {
     struct sample from[SAMPLES], to[SAMPLES];
-    int count_p = sample_children(model, &m->p, seed, from);
-    int count_q = sample_children(model, &m->q, seed + 32, to);
+    int count_p = sample_children(model, m->p, seed, from);
+    int count_q = sample_children(model, m->q, seed + 32, to);
     int32_t blocker = -1;
     for (int a = 0; a < count_p; a++)
         for (int b = 0; b < count_q; b++) {
@@ -126,8 +126,8 @@ static void look_from_afar(struct model *model, const struct meeting *m, uint64_
                    rise_b = -vec3_dot(to[b].normal, d);
             if (!(rise_a > 0.0 && rise_b > 0.0))
                 continue;
-            double r2 = vec3_dot(d, d), area_a = end_child_area(model, &m->p, a);
-            double g = area_a * end_child_area(model, &m->q, b) *
+            double r2 = vec3_dot(d, d), area_a = end_child_area(model, m->p, a);
+            double g = area_a * end_child_area(model, m->q, b) *
                        (rise_a * rise_b / r2) / (PI * r2);
             bool seen = is_seen(model, from[a].point,
                                 scene_input_of(model->scene, from[a].root), to[b].point,
@@ -154,8 +154,8 @@ static int cluster_child_at(const struct cluster_tree *tree,
 static void look_nearby(struct model *model, const struct meeting *m, uint64_t seed,
                         struct node_exchange *found)
 {
-    bool from_p = m->p.area <= m->q.area;
-    const struct end *from = from_p ? &m->p : &m->q, *to = from_p ? &m->q : &m->p;
+    bool from_p = m->p->area <= m->q->area;
+    const struct end *from = from_p ? m->p : m->q, *to = from_p ? m->q : m->p;
     for (int a = 0; a < SAMPLES && end_child_area(model, from, a) > 0.0; a++)
         for (int ring = 0; ring < RINGS; ring++) {
             uint64_t own = seed + 64 + 8 * (uint64_t)(RINGS * a + ring);
@@ -194,6 +194,6 @@ struct node_exchange node_exchange_estimate(struct model *model,
         look_nearby(model, m, seed, &found);
     else
         look_from_afar(model, m, seed, &found);
-    limit_exchange(&found, real_min(m->p.area, m->q.area));
+    limit_exchange(&found, real_min(m->p->area, m->q->area));
     return found;
 }

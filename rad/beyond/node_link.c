@@ -50,8 +50,8 @@ static void look(struct model *model, const struct meeting *m, int salt,
     struct octree_counts before = model->counts;
     struct node_exchange found = node_exchange_estimate(model, m, salt);
     double seen = found.unoccluded > 0.0 ? found.area / found.unoccluded : 0.0;
-    double area = find_parts(model, &m->p, found.g_p, found.area, link->parts_p);
-    area = find_parts(model, &m->q, found.g_q, area, link->parts_q);
+    double area = find_parts(model, m->p, found.g_p, found.area, link->parts_p);
+    area = find_parts(model, m->q, found.g_q, area, link->parts_q);
     if (salt == 0)
         set_judged(link, found.unoccluded);
     area *= link->p == link->q ? 0.5 : 1.0;

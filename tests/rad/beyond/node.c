@@ -253,10 +253,10 @@ static double truth_of(const struct wood *wood, int32_t p, int32_t q, enum kind 
 /* The kind of a pair, or KINDS if it is not to be tested. */
 static enum kind kind_of(const struct wood *wood, const struct meeting *m)
 {
-    if (m->p.node == m->q.node)
-        return node_is_cluster(m->p.node) ? ITSELF : KINDS;
-    if (overlap(wood->tree, m->p.node, m->q.node) || !ends_may_face(&m->p, &m->q) ||
-        (!m->p.cluster && !m->q.cluster))
+    if (m->p->node == m->q->node)
+        return node_is_cluster(m->p->node) ? ITSELF : KINDS;
+    if (overlap(wood->tree, m->p->node, m->q->node) || !ends_may_face(m->p, m->q) ||
+        (!m->p->cluster && !m->q->cluster))
         return KINDS;
     return is_by_rays(m) ? NEARBY : AFAR;
 }
