@@ -381,11 +381,12 @@ static void share_straight_light(struct gathering *g)
     alloc_free(light);
 }
 
-/* Collective. What the radiosities `b` leave of the equation, E + rho H - b. */
-static void find_residual(struct gathering *g, const struct rgb *b, struct rgb *r)
+/* Collective. What the radiosities `b` leave of the equation, E + rho H - b, and H. */
+static void find_residual(struct gathering *g, const struct rgb *b, struct rgb *h,
+                          struct rgb *r)
 {
-    irradiances(g, b, true, r);
-    set_radiosities(g, r, r);
+    irradiances(g, b, true, h);
+    set_radiosities(g, h, r);
     for (int64_t i = 0; i < g->count; i++)
         r[i] = rgb_sub(r[i], b[i]);
 }
@@ -415,9 +416,10 @@ static struct bicgstab take_turn(struct gathering *g, const double *weights,
     find_shown(g, answer);
     irradiances(g, answer, true, h);
     memcpy(g->spread, h, count * sizeof *h);
-    find_residual(g, b, r);
+    find_residual(g, b, h, r);
     struct bicgstab done = bicgstab_solve(reflect, g, weights, g->count, end, b, r);
-    irradiances(g, b, true, h);
+    if (done.steps > 0)
+        irradiances(g, b, true, h);
     for (size_t i = 0; i < count; i++) /* slopes may go below 0 where B has changed */
         for (int c = 0; c < BANDS; c++)
             h[i].band[c] = fmax(0.0, h[i].band[c]);
