@@ -35,6 +35,7 @@
 void conjugate_free(struct conjugate *cg)
 {
     alloc_free(cg->leaves);
+    alloc_free(cg->weight);
     alloc_free(cg->radiosity);
     alloc_free(cg->residual);
     alloc_free(cg->direction);
@@ -69,6 +70,17 @@ static void add_leaf(struct conjugate *cg, struct forest *forest, int32_t leaf,
     cg->leaves[cg->count++] = leaf;
 }
 
+static struct rgb weight_of(const struct forest *forest, int32_t leaf)
+{
+    struct rgb weight = {{0.0, 0.0, 0.0}};
+    struct rgb rho = forest_material(forest, leaf)->reflectance;
+    for (int c = 0; c < BANDS; c++)
+        if (rho.band[c] > 0.0)
+            weight.band[c] =
+                forest_area(forest, leaf) / (rho.band[c] * forest->caps[leaf]);
+    return weight;
+}
+
 void conjugate_begin(struct conjugate *cg, struct forest *forest, const struct rgb *rows)
 {
     conjugate_free(cg);
@@ -81,21 +93,15 @@ void conjugate_begin(struct conjugate *cg, struct forest *forest, const struct r
             add_leaf(cg, forest, p, rows[p].band[0]);
     }
     size_t count = (size_t)cg->count;
+    cg->weight = alloc_array(count, sizeof *cg->weight);
     cg->radiosity = alloc_array(count, sizeof *cg->radiosity);
     cg->residual = alloc_array(count, sizeof *cg->residual);
     cg->direction = alloc_array(count, sizeof *cg->direction);
     cg->image = alloc_array(count, sizeof *cg->image);
-    for (int64_t i = 0; i < cg->count; i++)
+    for (int64_t i = 0; i < cg->count; i++) {
+        cg->weight[i] = weight_of(forest, cg->leaves[i]);
         cg->radiosity[i] = forest->radiosity[cg->leaves[i]];
-}
-
-/* The weight w of a leaf. */
-static double weight_of(const struct conjugate *cg, const struct forest *forest,
-                        int64_t i, int c)
-{
-    int32_t leaf = cg->leaves[i];
-    double rho = forest_material(forest, leaf)->reflectance.band[c];
-    return rho > 0.0 ? forest_area(forest, leaf) / (rho * forest->caps[leaf]) : 0.0;
+    }
 }
 
 /* The residual of B + r, the light that the iteration was of. */
@@ -111,7 +117,7 @@ double conjugate_missing(const struct conjugate *cg, const struct forest *forest
     double sum = 0.0;
     for (int64_t i = 0; i < cg->count; i++)
         for (int c = 0; c < BANDS; c++)
-            sum += weight_of(cg, forest, i, c) * fabs(change(cg, forest, i, c));
+            sum += cg->weight[i].band[c] * fabs(change(cg, forest, i, c));
     return cg->share * cg->growth / (1.0 - cg->growth) * sum;
 }
 
@@ -122,7 +128,7 @@ static double quotient(const struct conjugate *cg, const struct forest *forest, 
 {
     double along = 0.0, square = 0.0;
     for (int64_t i = 0; i < cg->count; i++) {
-        double w = weight_of(cg, forest, i, c), kp = cg->image[i].band[c];
+        double w = cg->weight[i].band[c], kp = cg->image[i].band[c];
         double x = cg->residual[i].band[c] - (image ? change(cg, forest, i, c) : 0.0);
         along += w * (x * kp);
         square += w * (kp * kp);

@@ -17,7 +17,9 @@
 
 struct conjugate {
     int32_t *leaves;       /* [count] those that reflect, as in forest_order() */
-    struct rgb *radiosity; /* B, W/m^2; [count], like the others leaf by leaf */
+    struct rgb *weight;    /* w, square scene units; [count], like the others leaf by
+                              leaf */
+    struct rgb *radiosity; /* B, W/m^2 */
     struct rgb *residual;  /* r = G(B) - B */
     struct rgb *direction; /* p */
     struct rgb *image;     /* K p */
