@@ -164,65 +164,61 @@ static bool is_divided(const struct model *model, int32_t node, const uint8_t pa
             !(parts[0] == 64 && parts[1] == 64 && parts[2] == 64));
 }
 
-/* Lists the children of a node and their parts, of which the last child has the rest.
- * Returns their number. */
-static inline int list_children(const struct model *model, int32_t node,
-                                const uint8_t parts[3], int32_t child[4], double part[4])
+/* What light to and from a node is shared among. */
+struct shares {
+    int count;
+    int32_t node[4]; /* [count] */
+    double part[4];  /* [count] of the light, 1 */
+};
+
+/* The node itself; or its children by the parts, of which the last one has the rest. */
+static inline struct shares shares_of(const struct model *model, int32_t node,
+                                      const uint8_t parts[3])
 {
-    int count = 0, rest = 256;
-    for (; count < 4 && (child[count] = node_child(model, node, count)) != NODE_NONE;
-         count++) {
-        int own = count < 3 ? parts[count] : rest;
-        part[count] = own * (1.0 / 256.0);
+    struct shares shares = {1, {node}, {1.0}};
+    int rest = 256;
+    if (!is_divided(model, node, parts))
+        return shares;
+    for (int k = 0; k < 4; k++) {
+        int32_t child = node_child(model, node, k);
+        if (child == NODE_NONE)
+            break;
+        int own = k < 3 ? parts[k] : rest;
+        shares.node[k] = child;
+        shares.part[k] = own * (1.0 / 256.0);
+        shares.count = k + 1;
         rest -= own;
     }
-    part[count - 1] += rest * (1.0 / 256.0);
-    return count;
+    shares.part[shares.count - 1] += rest * (1.0 / 256.0);
+    return shares;
 }
 
-/* Returns the entry of a vector [patches] that a link takes from a node: its own, or the
- * sum, in `*sum`, of those of its children weighted by the parts. (A pointer: a transfer
- * with copies of colours took 1.5 times as long.) */
-static const struct rgb *take(const struct model *model, int32_t node,
-                              const uint8_t parts[3], const struct rgb *vector,
-                              struct rgb *sum)
+/* The light that a link takes from those that share it, of a vector [patches]. */
+static inline struct rgb take(const struct model *model, const struct shares *shares,
+                              const struct rgb *vector)
 {
-    if (!is_divided(model, node, parts))
-        return &vector[node];
-    int32_t child[4];
-    double part[4];
-    int count = list_children(model, node, parts, child, part);
-    *sum = (struct rgb){{0.0, 0.0, 0.0}};
-    for (int k = 0; k < count; k++)
-        rgb_add(sum, part[k], node_is_cluster(child[k])
-                                  ? model->clusters->sent[~child[k]] : vector[child[k]]);
+    struct rgb sum = {{0.0, 0.0, 0.0}};
+    for (int k = 0; k < shares->count; k++) {
+        int32_t node = shares->node[k];
+        rgb_add(&sum, shares->part[k], node_is_cluster(node)
+                                           ? model->clusters->sent[~node] : vector[node]);
+    }
     return sum;
 }
 
-/* Adds a part of the light G B to the flux of a node. */
-static void add_flux(const struct model *model, int32_t node, double part, double area,
-                     const struct rgb *radiosity, struct flux_unit unit)
+/* Adds light, G B, to the flux of those that share it. */
+static inline void give(const struct model *model, const struct shares *shares,
+                        double area, const struct rgb *radiosity, struct flux_unit unit)
 {
-    int64_t *flux = node_is_cluster(node)
-                        ? model->clusters->flux + BANDS * (int64_t)~node
-                        : model->forest->patches[node].flux;
-    for (int c = 0; c < BANDS; c++)
-        flux[c] += flux_from_watts(unit, part * (area * radiosity->band[c]));
-}
-
-/* Adds light, G B, to a node, or to its children by the parts. */
-static void give(const struct model *model, int32_t node, const uint8_t parts[3],
-                 double area, const struct rgb *radiosity, struct flux_unit unit)
-{
-    if (!is_divided(model, node, parts)) {
-        add_flux(model, node, 1.0, area, radiosity, unit);
-        return;
+    for (int k = 0; k < shares->count; k++) {
+        int32_t node = shares->node[k];
+        int64_t *flux = node_is_cluster(node)
+                            ? model->clusters->flux + BANDS * (int64_t)~node
+                            : model->forest->patches[node].flux;
+        for (int c = 0; c < BANDS; c++)
+            flux[c] +=
+                flux_from_watts(unit, shares->part[k] * (area * radiosity->band[c]));
     }
-    int32_t child[4];
-    double part[4];
-    int count = list_children(model, node, parts, child, part);
-    for (int k = 0; k < count; k++)
-        add_flux(model, child[k], part[k], area, radiosity, unit);
 }
 
 void node_links_transfer(const struct link_list *list, const struct model *model,
@@ -230,10 +226,10 @@ void node_links_transfer(const struct link_list *list, const struct model *model
 {
     for (int64_t i = 0; i < list->seen; i++) {
         const struct link *link = &list->items[i];
-        struct rgb sum_p, sum_q;
-        const struct rgb *from_p = take(model, link->p, link->parts_p, vector, &sum_p);
-        const struct rgb *from_q = take(model, link->q, link->parts_q, vector, &sum_q);
-        give(model, link->p, link->parts_p, (double)link->area, from_q, unit);
-        give(model, link->q, link->parts_q, (double)link->area, from_p, unit);
+        struct shares p = shares_of(model, link->p, link->parts_p);
+        struct shares q = shares_of(model, link->q, link->parts_q);
+        struct rgb from_p = take(model, &p, vector), from_q = take(model, &q, vector);
+        give(model, &p, (double)link->area, &from_q, unit);
+        give(model, &q, (double)link->area, &from_p, unit);
     }
 }
