@@ -11,8 +11,12 @@
  * each other (Owen's scrambling). */
 enum { SEQUENCE_DIMENSIONS = 4 };
 
+struct scramble {
+    uint32_t sum, product; /* odd */
+};
+
 struct sequence {
-    uint32_t scramble[1 + SEQUENCE_DIMENSIONS];
+    struct scramble scramble[1 + SEQUENCE_DIMENSIONS];
 };
 
 struct sequence sequence_start(uint64_t seed);
