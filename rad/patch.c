@@ -72,9 +72,8 @@ struct triangle forest_triangle(const struct forest *forest, int32_t patch)
 {
     struct patch_id id = forest->patches[patch].id;
     struct triangle t = scene_root_triangle(forest->scene, (int32_t)id.root);
-    int level = id_level(id);
-    for (int step = 0; step < level; step++)
-        t = triangle_child(&t, id_step(id, step));
+    for (int below = 2 * id_level(id) - 2; below >= 0; below -= 2)
+        t = triangle_child(&t, (int)(id.hierarchy >> below & 3u));
     return t;
 }
 

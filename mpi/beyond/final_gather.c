@@ -172,7 +172,7 @@ static void share_near(struct gathering *g)
         items[g->near_count] = items[place];
         g->near[g->near_count++].leaf = i;
     }
-    for (int64_t k = 0; k < final_gather_terms(gather); k++)
+    for (int64_t k = final_gather_terms(gather) - 1; k >= 0; k--)
         if (gather->terms[k].near >= 0)
             gather->terms[k].near = number[gather->terms[k].near];
     alloc_free(number);
