@@ -381,16 +381,6 @@ static void share_straight_light(struct gathering *g)
     alloc_free(light);
 }
 
-/* Collective. What the radiosities `b` leave of the equation, E + rho H - b, and H. */
-static void find_residual(struct gathering *g, const struct rgb *b, struct rgb *h,
-                          struct rgb *r)
-{
-    irradiances(g, b, true, h);
-    set_radiosities(g, h, r);
-    for (int64_t i = 0; i < g->count; i++)
-        r[i] = rgb_sub(r[i], b[i]);
-}
-
 /* Weights of leaves with the radiosities `b`: all of `b` has the size 1 by area, and 1 by
  * leaf. */
 static double *weigh(const struct gathering *g, const struct rgb *b)
@@ -416,7 +406,10 @@ static struct bicgstab take_turn(struct gathering *g, const double *weights,
     find_shown(g, answer);
     irradiances(g, answer, true, h);
     memcpy(g->spread, h, count * sizeof *h);
-    find_residual(g, b, h, r);
+    irradiances(g, b, true, h);
+    set_radiosities(g, h, r);
+    for (size_t i = 0; i < count; i++) /* what b leaves of the equation, E + rho H - b */
+        r[i] = rgb_sub(r[i], b[i]);
     struct bicgstab done = bicgstab_solve(reflect, g, weights, g->count, end, b, r);
     if (done.steps > 0)
         irradiances(g, b, true, h);

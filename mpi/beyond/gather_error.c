@@ -34,9 +34,9 @@ static struct rgb variation_of(const struct gathering *g, int64_t place, struct 
     struct rgb deviation = rgb_sub(g->radiosity[place], base);
     double part = 0.5;
     if (parent < 0) {
-        struct triangle t = forest_triangle(forest, patch);
-        struct vec3 apart = vec3_sub(triangle_centroid(&t), from);
-        double near = sqrt(forest_area(forest, patch) / vec3_dot(apart, apart));
+        const struct gather_leaf *leaf = &g->gather.near.leaves[patch];
+        struct vec3 apart = vec3_sub(leaf->middle, from);
+        double near = sqrt(leaf->area / vec3_dot(apart, apart));
         part = fmin(1.0, fmax(UNDIVIDED, UNDIVIDED_NEAR * near));
     }
     for (int c = 0; c < BANDS; c++)
@@ -52,9 +52,7 @@ static void variances_by_mesh(struct gathering *g, struct rgb *variance)
     const struct final_gather *gather = &g->gather;
     struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
     for (int64_t row = 0, k = 0; row < gather->count; row++) {
-        struct triangle leaf =
-            forest_triangle(g->solver->model.forest, gather->rows[row].leaf);
-        struct vec3 from = triangle_centroid(&leaf);
+        struct vec3 from = gather->near.leaves[gather->rows[row].leaf].middle;
         for (int c = 0; c < BANDS; c++) {
             double off = FACTORS * gather->rows[row].lamps.band[c];
             own[row].band[c] = off * off;

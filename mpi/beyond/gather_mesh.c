@@ -191,6 +191,7 @@ static struct gather_look *look(struct looking *l, const int32_t *leaves, int64_
     struct gather_look *looks = alloc_array((size_t)count, sizeof *looks);
     struct stages stages = {.solver = l->solver, .gather = &l->gather, .act = look_at,
                             .context = l, .work = work, .count = count};
+    final_gather_renew(&l->gather);
     l->leaves = leaves;
     l->looks = alloc_array((size_t)count, sizeof *looks);
     l->looked = 0;
@@ -302,8 +303,6 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
             keep_known(l, forest->patches[leaf].children + k, &looks[i]);
         }
     }
-    if (made > 0)
-        final_gather_renew(&l->gather);
     alloc_free(looks);
     alloc_free(*leaves);
     *leaves = next;
@@ -363,7 +362,6 @@ static void split_bent(struct looking *l)
             forest->radiosity[child] = light_by_parent(forest, child);
     }
     list_leaves(mesh, forest);
-    final_gather_renew(&l->gather);
 }
 
 /* Leaves of open roots will have exact rows: of divided ones, or of `all`. */

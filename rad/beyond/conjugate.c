@@ -72,13 +72,11 @@ static void add_leaf(struct conjugate *cg, struct forest *forest, int32_t leaf,
 
 static struct rgb weight_of(const struct forest *forest, int32_t leaf)
 {
-    struct rgb weight = {{0.0, 0.0, 0.0}};
-    struct rgb rho = forest_material(forest, leaf)->reflectance;
+    struct rgb rho = forest_material(forest, leaf)->reflectance, w;
+    double area = forest_area(forest, leaf);
     for (int c = 0; c < BANDS; c++)
-        if (rho.band[c] > 0.0)
-            weight.band[c] =
-                forest_area(forest, leaf) / (rho.band[c] * forest->caps[leaf]);
-    return weight;
+        w.band[c] = rho.band[c] > 0.0 ? area / (rho.band[c] * forest->caps[leaf]) : 0.0;
+    return w;
 }
 
 void conjugate_begin(struct conjugate *cg, struct forest *forest, const struct rgb *rows)

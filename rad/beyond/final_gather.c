@@ -108,18 +108,6 @@ static int rays_for(int rays, int64_t leaves)
     return rays;
 }
 
-static void find_bright(struct final_gather *gather)
-{
-    const struct model *model = gather->model;
-    double reflected = forest_mean_reflected(model->forest);
-    lamps_free(&gather->bright);
-    gather->bright = lamps_create(model, BRIGHT * reflected, true);
-    if (lamps_power(&gather->bright) >= LEAST_BRIGHT * reflected * model->area)
-        return;
-    lamps_free(&gather->bright);
-    gather->bright = lamps_create(model, HUGE_VAL, true);
-}
-
 /* How far apart radiosities are, over all bands; or `scaled`: in the band where that is
  * the largest part of the band's mean, the same part of the mean over all bands. */
 static double difference(const struct final_gather *g, struct rgb a, struct rgb b,
@@ -147,7 +135,6 @@ struct final_gather final_gather_create(struct model *model, int rays)
     gather.near.unit_watts = 0x1p-44 * model->area * gather.mean;
     gather.near.items =
         alloc_array((size_t)forest->count, sizeof *gather.near.items);
-    gather.near.cut = alloc_array((size_t)forest->count, 1);
     gather.order = forest_order(forest);
     gather.place = alloc_array((size_t)forest->count, sizeof *gather.place);
     gather.sums.latest = alloc_array((size_t)forest->count, sizeof *gather.sums.latest);
@@ -181,8 +168,7 @@ void final_gather_free(struct final_gather *gather)
     alloc_free(gather->view.faced);
     alloc_free(gather->view.overlapped);
     alloc_free(gather->near.partly_covered);
-    alloc_free(gather->near.cut);
-    alloc_free(gather->leaves);
+    alloc_free(gather->near.leaves);
     alloc_free(gather->order);
     alloc_free(gather->place);
     alloc_free(gather->sums.items);
@@ -273,14 +259,22 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
 
 void final_gather_renew(struct final_gather *gather)
 {
-    const struct forest *forest = gather->model->forest;
-    find_bright(gather);
-    RESERVE(gather->leaves, &gather->leaf_capacity, forest->count);
+    const struct model *model = gather->model;
+    const struct forest *forest = model->forest;
+    double reflected = forest_mean_reflected(model->forest);
+    lamps_free(&gather->bright);
+    gather->bright = lamps_create(model, BRIGHT * reflected, true);
+    if (lamps_power(&gather->bright) < LEAST_BRIGHT * reflected * model->area) {
+        lamps_free(&gather->bright);
+        gather->bright = lamps_create(model, HUGE_VAL, true);
+    }
+    alloc_free(gather->near.leaves);
+    gather->near.leaves =
+        alloc_array((size_t)forest->count, sizeof *gather->near.leaves);
     for (int32_t p = 0; p < forest->count; p++) {
         struct triangle t = forest_triangle(forest, p);
-        if (patch_is_leaf(&forest->patches[p]))
-            gather->leaves[p] = (struct gather_leaf){
-                triangle_centroid(&t), forest_area(forest, p), gather_slope(gather, p)};
+        gather->near.leaves[p] = (struct gather_leaf){
+            triangle_centroid(&t), forest_area(forest, p), gather_slope(gather, p), 0};
     }
 }
 
@@ -336,7 +330,7 @@ void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
 {
     const struct final_gather *g = r->gather;
     struct gather_slope slope =
-        g->sums.exact ? gather_slope(g, patch) : g->leaves[patch].slope;
+        g->sums.exact ? gather_slope(g, patch) : g->near.leaves[patch].slope;
     receiver_add_patch(r, patch, weight);
     struct rgb steep = *weight, part;
     for (int c = 0; c < BANDS; c++)

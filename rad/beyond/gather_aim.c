@@ -236,7 +236,7 @@ static void aim_at_group(struct receiver *r, const struct lamps *lamps,
 {
     struct sequence sequence = sequence_to(r, group->node);
     bool single = !node_is_cluster(group->node) && !lamps->reflect;
-    double start = hash_unit(sequence.scramble[0].sum);
+    double start = hash_unit(sequence.scramble[0]);
     if (single)
         aim_at_lamp(r, &sequence, 0, count, group->node, direct, volley);
     for (int k = 0; k < count && !single; k++) {

@@ -164,7 +164,7 @@ static bool is_too_near(const struct receiver *r, const struct point *met, struc
                         struct vec3 normal)
 {
     double near = r->points ? NEAR_PIXEL : NEAR;
-    const struct gather_leaf *leaf = &r->gather->leaves[met->patch];
+    const struct gather_leaf *leaf = &r->gather->near.leaves[met->patch];
     double area = leaf->area;
     struct vec3 apart = vec3_sub(leaf->middle, x), ray = vec3_sub(met->at, x);
     double width = vec3_dot(apart, met->normal);
@@ -184,7 +184,7 @@ static bool is_cut(struct final_gather *gather, int32_t leaf)
 {
     static const double INSET = 0.99;
     const struct forest *forest = gather->model->forest;
-    uint8_t *known = &gather->near.cut[gather->place[leaf]];
+    uint8_t *known = &gather->near.leaves[leaf].cut;
     if (*known != 0)
         return *known == 2;
     struct triangle t = forest_triangle(forest, leaf);
@@ -212,7 +212,7 @@ static bool is_cut_between(const struct receiver *r, const struct point *met,
 {
     struct vec3 ray = vec3_sub(met->at, x);
     return r->keeps &&
-           vec3_dot(ray, ray) < r->gather->leaves[met->patch].area &&
+           vec3_dot(ray, ray) < r->gather->near.leaves[met->patch].area &&
            is_cut(r->gather, met->patch);
 }
 

@@ -61,7 +61,7 @@ static bool find_spots(struct receiver *r, struct remainder *leaf,
     const struct scene *scene = r->gather->model->scene;
     struct sequence sequence =
         sequence_start(hash_mix((uint64_t)leaf->root + 48) ^ hash_mix((uint64_t)node));
-    double start = hash_unit(sequence.scramble[0].sum);
+    double start = hash_unit(sequence.scramble[0]);
     for (int k = 0; k < count; k++) {
         double u[SEQUENCE_DIMENSIONS];
         int place = 2 * k < count ? 2 * k : (2 * k - count) | 1;

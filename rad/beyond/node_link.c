@@ -179,12 +179,9 @@ static inline struct shares shares_of(const struct model *model, int32_t node,
     int rest = 256;
     if (!is_divided(model, node, parts))
         return shares;
-    for (int k = 0; k < 4; k++) {
-        int32_t child = node_child(model, node, k);
-        if (child == NODE_NONE)
-            break;
+    for (int k = 0; k < 4 && node_child(model, node, k) != NODE_NONE; k++) {
         int own = k < 3 ? parts[k] : rest;
-        shares.node[k] = child;
+        shares.node[k] = node_child(model, node, k);
         shares.part[k] = own * (1.0 / 256.0);
         shares.count = k + 1;
         rest -= own;

@@ -67,18 +67,6 @@ struct gather_near {
     int64_t watts[BANDS]; /* that the rays found there, emitted by lamps */
 };
 
-/* Sums of integers, for they are over ranks; and the leaves that things stand on. */
-struct gather_nears {
-    struct gather_near *items; /* [forest->count] by place, for the rows of this rank; of
-                                  all ranks, once these are added up, by number */
-    double unit_area;          /* square scene units */
-    double unit_watts;         /* W in square scene units */
-    uint8_t *cut;            /* [forest->count] by place: 2: something cuts the leaf; 1:
-                                nothing does; 0: unknown */
-    uint8_t *partly_covered; /* [forest->count] by place: 1: a thing stands on part of
-                                the leaf, at least; NULL: unknown */
-};
-
 /* B as a linear function over a patch: see final_gather.c. */
 struct gather_slope {
     int32_t first; /* child 0 of the patch, or of its parent */
@@ -87,11 +75,24 @@ struct gather_slope {
                       bands; in exact rows of one band, as that of `ranges`, W/m^2 */
 };
 
-/* A leaf as rays meet it. */
+/* A patch as rays meet it. */
 struct gather_leaf {
     struct vec3 middle; /* its centroid */
     double area;        /* square scene units */
     struct gather_slope slope;
+    uint8_t cut; /* 2: something cuts the leaf; 1: nothing does; 0: unknown */
+};
+
+/* Sums of integers, for they are over ranks; the patches as rays meet them, and those that
+ * things stand on. */
+struct gather_nears {
+    struct gather_near *items; /* [forest->count] by place, for the rows of this rank; of
+                                  all ranks, once these are added up, by number */
+    double unit_area;          /* square scene units */
+    double unit_watts;         /* W in square scene units */
+    struct gather_leaf *leaves; /* [forest->count] all patches, by their numbers */
+    uint8_t *partly_covered; /* [forest->count] by place: 1: a thing stands on part of
+                                the leaf, at least; NULL: unknown */
 };
 
 /* Work of this rank. */
@@ -133,8 +134,6 @@ struct final_gather {
     struct lamps lamps;
     struct lamps bright;       /* roots that reflect so much that segments bring it */
     struct gather_view view;   /* of the root of the leaf at hand */
-    struct gather_leaf *leaves; /* [forest->count] of patches that are leaves */
-    int64_t leaf_capacity;
     int32_t *order; /* [forest->count] patches as in forest_order() */
     int32_t *place; /* [forest->count] the place of each patch in `order` */
     struct gather_nears near;

@@ -28,11 +28,11 @@ static inline uint64_t reverse_bits(uint64_t x)
 }
 
 /* Permutes by multiplications that carry upwards. */
-static uint32_t permute(uint32_t x, const struct scramble *scramble)
+static uint32_t permute(const struct sequence *sequence, int k, uint32_t x)
 {
     x ^= x * 0x3d20adeau;
-    x += scramble->sum;
-    x *= scramble->product;
+    x += sequence->scramble[k];
+    x *= sequence->odd[k];
     x ^= x * 0x05526c56u;
     return x ^ x * 0x53a22864u;
 }
@@ -41,8 +41,8 @@ struct sequence sequence_start(uint64_t seed)
 {
     struct sequence sequence;
     for (int k = 0; k < 1 + SEQUENCE_DIMENSIONS; k++) {
-        uint32_t bits = (uint32_t)hash_mix(seed + (uint64_t)k);
-        sequence.scramble[k] = (struct scramble){bits, bits >> 16 | 1u};
+        sequence.scramble[k] = (uint32_t)hash_mix(seed + (uint64_t)k);
+        sequence.odd[k] = sequence.scramble[k] >> 16 | 1u;
     }
     return sequence;
 }
@@ -69,12 +69,12 @@ void sequence_point(const struct sequence *sequence, uint32_t index,
                     double u[SEQUENCE_DIMENSIONS])
 {
     uint32_t turned = (uint32_t)(reverse_bits(index) >> 32); /* bits of the index */
-    uint32_t place = permute(turned, &sequence->scramble[0]);
+    uint32_t place = permute(sequence, 0, turned);
     uint64_t sobol = SOBOL[0][place >> 16 & 15] ^ SOBOL[1][place >> 20 & 15] ^
                      SOBOL[2][place >> 24 & 15] ^ SOBOL[3][place >> 28];
     for (int d = 0; d < SEQUENCE_DIMENSIONS; d += 2, sobol >>= 32) {
-        uint64_t first = permute((uint32_t)sobol & 0xffffu, &sequence->scramble[1 + d]);
-        uint64_t second = permute((uint32_t)sobol >> 16, &sequence->scramble[2 + d]);
+        uint64_t first = permute(sequence, 1 + d, (uint32_t)sobol & 0xffffu);
+        uint64_t second = permute(sequence, 2 + d, (uint32_t)sobol >> 16);
         uint64_t both = reverse_bits(first << 32 | second);
         u[d] = 0x1p-32 * (double)(uint32_t)both;
         u[d + 1] = 0x1p-32 * (double)(uint32_t)(both >> 32);

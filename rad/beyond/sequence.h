@@ -11,12 +11,8 @@
  * each other (Owen's scrambling). */
 enum { SEQUENCE_DIMENSIONS = 4 };
 
-struct scramble {
-    uint32_t sum, product; /* odd */
-};
-
 struct sequence {
-    struct scramble scramble[1 + SEQUENCE_DIMENSIONS];
+    uint32_t scramble[1 + SEQUENCE_DIMENSIONS], odd[1 + SEQUENCE_DIMENSIONS];
 };
 
 struct sequence sequence_start(uint64_t seed);
