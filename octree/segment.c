@@ -25,7 +25,7 @@ struct query {
 };
 
 /* As segment_is_blocked_by(). */
-static bool is_blocked_by(const struct query *query, const struct record *r)
+static inline bool is_blocked_by(const struct query *query, const struct record *r)
 {
     struct ends ends = ends_of(&query->ray, r);
     bool down = (ends.from > GEOM_ROUNDING) & (ends.to < -GEOM_ROUNDING);

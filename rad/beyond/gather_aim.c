@@ -32,22 +32,6 @@ enum { VOLLEY = 4, CUTS_LEAST = 8, AIMS_MOST = 16, RAYS_PER_AIMED = 4 };
 
 static const struct rgb ALL = {{1.0, 1.0, 1.0}};
 
-struct vec3 receiver_start(const struct receiver *r, double u, double v)
-{
-    const struct gather_points *points = r->points;
-    return points ? points->at[(int)(u * points->count)]
-                  : triangle_of_square(&r->facet.triangle, u, v);
-}
-
-double receiver_kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,
-                       struct vec3 normal_y)
-{
-    struct vec3 d = vec3_sub(y, x);
-    double d2 = vec3_dot(d, d);
-    double rise = vec3_dot(normal_x, d), fall = -vec3_dot(normal_y, d);
-    return rise > 0.0 && fall > 0.0 ? rise * fall / (PI * d2 * d2) : 0.0;
-}
-
 void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
                        double factor)
 {
@@ -70,8 +54,8 @@ void receiver_add_source(struct receiver *r, const struct rgb *weight,
 }
 
 /* The triangle that blocks a segment to a lamp, or -1. */
-static int32_t blocker_of(struct receiver *r, struct vec3 from, int32_t input,
-                          struct vec3 to, int32_t lamp)
+static inline int32_t blocker_of(struct receiver *r, struct vec3 from, int32_t input,
+                                 struct vec3 to, int32_t lamp)
 {
     int32_t own[2] = {input, scene_input_of(r->gather->model->scene, lamp)}, guess = -1;
     r->gather->counts.segments++;

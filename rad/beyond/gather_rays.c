@@ -66,7 +66,8 @@ struct point {
 };
 
 /* Finds the leaf of the root that the point lies on. */
-static void find_leaf(const struct forest *forest, int32_t root, struct point *point)
+static inline void find_leaf(const struct forest *forest, int32_t root,
+                             struct point *point)
 {
     struct triangle t = scene_root_triangle(forest->scene, root);
     triangle_weights(&t, point->at, point->weight);
@@ -80,8 +81,8 @@ static void find_leaf(const struct forest *forest, int32_t root, struct point *p
 enum met { MET_NOTHING, MET_BACK, MET_FRONT };
 
 /* What a ray has met; fills in the point of a front. */
-static enum met land(struct receiver *r, struct vec3 origin, struct vec3 direction,
-                     const struct octree_hit *hit, struct point *point)
+static inline enum met land(struct receiver *r, struct vec3 origin, struct vec3 direction,
+                            const struct octree_hit *hit, struct point *point)
 {
     const struct model *model = r->gather->model;
     const struct scene *scene = model->scene;
@@ -114,8 +115,8 @@ static enum met trace(struct receiver *r, struct vec3 origin, struct vec3 direct
 /* --- the mesh --- */
 
 /* Adds the mesh's light at a point; `aimed`: without emission. */
-static void add_mesh(struct receiver *r, const struct point *point, bool aimed,
-                     const struct rgb *weight)
+static inline void add_mesh(struct receiver *r, const struct point *point, bool aimed,
+                            const struct rgb *weight)
 {
     const struct forest *forest = r->gather->model->forest;
     struct rgb emission = forest_material(forest, point->patch)->emission;

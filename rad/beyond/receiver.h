@@ -145,7 +145,12 @@ void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb 
 void receiver_fire(struct receiver *r);
 
 /* The point of the receiver that u and v in [0, 1) stand for. */
-struct vec3 receiver_start(const struct receiver *r, double u, double v);
+static inline struct vec3 receiver_start(const struct receiver *r, double u, double v)
+{
+    const struct gather_points *points = r->points;
+    return points ? points->at[(int)(u * points->count)]
+                  : triangle_of_square(&r->facet.triangle, u, v);
+}
 
 /* The triangle that blocks the segment from a point of the receiver to one of a lamp, or
  * -1. */
@@ -179,7 +184,13 @@ void receiver_find_covers(struct receiver *r);
 bool receiver_add_exact(struct receiver *r);
 
 /* cos cos' / (pi r^2) of the points x and y, without visibility; 0 below a horizon. */
-double receiver_kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,
-                       struct vec3 normal_y);
+static inline double receiver_kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,
+                                     struct vec3 normal_y)
+{
+    struct vec3 d = vec3_sub(y, x);
+    double d2 = vec3_dot(d, d);
+    double rise = vec3_dot(normal_x, d), fall = -vec3_dot(normal_y, d);
+    return rise > 0.0 && fall > 0.0 ? rise * fall / (PI * d2 * d2) : 0.0;
+}
 
 #endif
