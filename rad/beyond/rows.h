@@ -83,8 +83,8 @@ struct gather_leaf {
     uint8_t cut; /* 2: something cuts the leaf; 1: nothing does; 0: unknown */
 };
 
-/* Sums of integers, for they are over ranks; the patches as rays meet them, and those that
- * things stand on. */
+/* Sums of integers, for they are over ranks; the patches as rays meet them, and the
+ * leaves that things stand on. */
 struct gather_nears {
     struct gather_near *items; /* [forest->count] by place, for the rows of this rank; of
                                   all ranks, once these are added up, by number */
