@@ -41,6 +41,13 @@
 
 static const double MESH = 0.005, BENT = 0.002;
 
+/* Links make a mesh for the brightest band. It may be too coarse by more than a level for
+ * a dim one, with less than a DIM-th of the mean squared light of bands, that is
+ * reflected more often. Where B is smooth, the error of a bend over a child is the part
+ * FALL of that over its parent, a sixteenth for the square of the bend, a quarter for the
+ * area; a child is split, too, if it is more than MUCH times what is allowed. */
+static const double DIM = 2.0, FALL = 1.0 / 64.0, MUCH = 64.0;
+
 /* The variance of the light over a leaf is at most this times its square, which the links
  * tell with an error of this part of the mean square. */
 static const double SPREAD_MOST = 3.0, UNSURE = 0.1;
@@ -309,18 +316,15 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     return made;
 }
 
-/* The square of B of a leaf less that of the linear function over its parent, as a part
- * of `all` of the same band: of the band where that is most, for dim bands are to be
- * right, too. Over a root that function is constant, and some children have its B by
- * chance: there the one that is most off counts for all. */
-static double bend_of(const struct forest *forest, int32_t leaf, const struct rgb *all)
+/* The squares of B of a leaf less that of the linear function over its parent, band by
+ * band. Over a root that function is constant, and some children have its B by chance:
+ * there the one that is most off counts for all. */
+static struct rgb bends_of(const struct forest *forest, int32_t leaf)
 {
     const struct patch *patches = forest->patches;
-    int32_t parent = patches[leaf].parent, first = leaf, count = 1;
-    double bend = 0.0;
-    if (parent < 0)
-        return 0.0;
-    if (patches[parent].parent < 0) {
+    int32_t parent = patches[leaf].parent, first = leaf, count = parent < 0 ? 0 : 1;
+    struct rgb bends = {{0.0, 0.0, 0.0}};
+    if (parent >= 0 && patches[parent].parent < 0) {
         first = patches[parent].children;
         count = 4;
     }
@@ -328,21 +332,57 @@ static double bend_of(const struct forest *forest, int32_t leaf, const struct rg
         struct rgb line = light_by_parent(forest, child);
         for (int c = 0; c < BANDS; c++) {
             double off = forest->radiosity[child].band[c] - line.band[c];
-            if (all->band[c] > 0.0)
-                bend = fmax(bend, off * off / all->band[c]);
+            bends.band[c] = fmax(bends.band[c], off * off);
         }
     }
-    return bend;
+    return bends;
+}
+
+/* How many times a leaf with exact rows is to be split: once if in any band the square
+ * of the bend, as a part of `all` of the same band, is more than is allowed, for dim
+ * bands are to be right, too; more often if it is so much more in a dim one that a level
+ * is not enough. `all`: squares of light, by area. */
+static int splits_of(const struct looking *l, int32_t leaf, const struct rgb *all)
+{
+    const struct model *model = &l->solver->model;
+    struct rgb bends = bends_of(model->forest, leaf);
+    double part = BENT * model->absorptance * model->criterion.epsilon;
+    double area = forest_area(model->forest, leaf);
+    int splits = 0;
+    for (int c = 0; c < BANDS; c++) {
+        if (!(area * bends.band[c] > part * all->band[c]))
+            continue;
+        int levels = 1;
+        double error = FALL * area * bends.band[c];
+        bool dim = DIM * BANDS * all->band[c] < rgb_sum(*all);
+        for (; dim && error > MUCH * part * all->band[c]; error *= FALL)
+            levels++;
+        splits = levels > splits ? levels : splits;
+    }
+    return splits;
+}
+
+/* Splits a leaf into parts on which B is linear, so many levels deep. */
+static void split_bent_leaf(struct looking *l, int32_t leaf, int levels)
+{
+    struct forest *forest = l->solver->model.forest;
+    if (levels == 0 || !may_split(l, leaf))
+        return;
+    forest_split(forest, leaf);
+    l->mesh->split++;
+    int32_t first = forest->patches[leaf].children;
+    for (int32_t child = first; child < first + 4; child++)
+        forest->radiosity[child] = light_by_parent(forest, child);
+    for (int32_t child = first; child < first + 4; child++)
+        split_bent_leaf(l, child, levels - 1);
 }
 
 /* Splits leaves with exact rows where light bends. */
 static void split_bent(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;
-    const struct model *model = &l->solver->model;
-    struct forest *forest = model->forest;
+    struct forest *forest = l->solver->model.forest;
     struct rgb sum = {{0.0, 0.0, 0.0}};
-    double part = BENT * model->absorptance * model->criterion.epsilon;
     for (int64_t i = 0; i < mesh->count; i++)
         rgb_add(&sum, forest_area(forest, mesh->leaves[i]),
                 squares_of_light(forest, mesh->leaves[i]));
@@ -351,15 +391,8 @@ static void split_bent(struct looking *l)
         sum.band[c] = fmax(sum.band[c], dim);
     for (int64_t i = 0; i < mesh->count; i++) {
         int32_t leaf = mesh->leaves[i];
-        if (!l->open[forest->patches[leaf].id.root] ||
-            !(forest_area(forest, leaf) * bend_of(forest, leaf, &sum) > part) ||
-            !may_split(l, leaf))
-            continue;
-        forest_split(forest, leaf);
-        mesh->split++;
-        int32_t first = forest->patches[leaf].children;
-        for (int32_t child = first; child < first + 4; child++)
-            forest->radiosity[child] = light_by_parent(forest, child);
+        if (l->open[forest->patches[leaf].id.root])
+            split_bent_leaf(l, leaf, splits_of(l, leaf, &sum));
     }
     list_leaves(mesh, forest);
 }

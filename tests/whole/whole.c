@@ -162,18 +162,25 @@ static void add_speck(struct soup *soup)
     paint(soup, 0.0, 0.0);
 }
 
-/* Two strips as surfaces of an equation. */
+/* Two strips as surfaces of equations of this shape and size. */
+static void add_strips(struct soup *soup, const struct shape *shape, double size,
+                       int length, const struct material material[2])
+{
+    bool groove = shape == &GROOVE;
+    add_strip(soup, point(0, 0, 0), point(1, 0, 0), length, false);
+    paint_with(soup, material[0]);
+    add_strip(soup, point(0, 0, groove ? 0.0 : size),
+              groove ? point(cos(size), 0, sin(size)) : point(1, 0, 0), length, true);
+    paint_with(soup, material[1]);
+}
+
 static struct solution solve_strips(const struct equation *e, int length, bool speck,
                                     const char *words)
 {
     struct soup soup = {0};
-    bool groove = e->shape == &GROOVE;
-    add_strip(&soup, point(0, 0, 0), point(1, 0, 0), length, false);
-    paint(&soup, e->rho[0], e->emission[0]);
-    add_strip(&soup, point(0, 0, groove ? 0.0 : e->size),
-              groove ? point(cos(e->size), 0, sin(e->size)) : point(1, 0, 0), length,
-              true);
-    paint(&soup, e->rho[1], e->emission[1]);
+    add_strips(&soup, e->shape, e->size, length,
+               (struct material[]){material_grey(e->rho[0], e->emission[0]),
+                                   material_grey(e->rho[1], e->emission[1])});
     if (speck)
         add_speck(&soup);
     return solve_soup(&soup, words);
@@ -260,24 +267,26 @@ static void test_squares(const double emission[2], const double rho[2],
 /* Each band has its own reflectance and light. A mesh that is right for the band with
  * most of the light is too coarse for dim ones that are reflected more often: these are
  * to be as right. */
-static void test_bands(double distance, struct rgb rho, struct rgb emission)
+static void test_bands(const struct shape *shape, double size, int length,
+                       struct rgb rho, struct rgb emission)
 {
     struct soup soup = {0};
-    add_strip(&soup, point(0, 0, 0), point(1, 0, 0), 1, false);
-    paint_with(&soup, (struct material){rho, emission});
-    add_strip(&soup, point(0, 0, distance), point(1, 0, 0), 1, true);
-    paint_with(&soup, (struct material){rho, {{0.0, 0.0, 0.0}}});
+    add_strips(&soup, shape, size, length,
+               (struct material[]){{rho, emission}, {rho, {{0.0, 0.0, 0.0}}}});
     struct solution s = solve_soup(&soup, options);
+    double middle = 0.5 * length, half = fmin(middle, 0.5 * MIDDLE);
     for (int band = 0; band < BANDS; band++) {
         const double light[2] = {emission.band[band], 0.0};
         const double both[2] = {rho.band[band], rho.band[band]};
-        struct equation *e = equation_make(&SQUARES, distance, light, both);
+        struct equation *e = equation_make(shape, size, light, both);
         for (int k = 0; k < 2; k++) {
             char name[64];
-            snprintf(name, sizeof name, "square %d, band %d, E %g, rho %g", k + 1, band,
-                     light[0], both[0]);
-            judge(&s, name, k, &(struct truth){e, .surface = k, .band = band}, BARS,
-                  0.0);
+            snprintf(name, sizeof name, "%s %d, band %d, E %g, rho %g",
+                     shape == &GROOVE ? "groove" : "square", k + 1, band, light[0],
+                     both[0]);
+            judge(&s, name, k,
+                  &(struct truth){e, NULL, 0.0, k, middle - half, middle + half, band},
+                  BARS, 0.0);
         }
         alloc_free(e);
     }
@@ -646,7 +655,11 @@ int main(int argc, char **argv)
                  (double[]){.121991353392, .121991353392}, false, BARS);
     test_squares((double[]){1, 0}, (double[]){.5, .5},
                  (double[]){1.010218055060, .100947189239}, true, BARS);
-    test_bands(0.5, (struct rgb){{.1, .5, .9}}, (struct rgb){{1, .01, .01}});
+    test_bands(&SQUARES, 0.5, 1, (struct rgb){{.1, .5, .9}}, (struct rgb){{1, .01, .01}});
+    test_bands(&SQUARES, 0.3, 1, (struct rgb){{.05, .5, .95}},
+               (struct rgb){{1, .1, .01}});
+    test_bands(&GROOVE, PI / 3.0, STRIP, (struct rgb){{.1, .5, .9}},
+               (struct rgb){{1, .1, .01}});
     test_isothermal(&PLATES, 1.0, 0.1, STRIP, .159605984267);
     test_isothermal(&PLATES, 1.0, 0.5, STRIP, .630764377100);
     test_isothermal(&PLATES, 0.1, 0.1, SHORT, .601952438427);
