@@ -53,6 +53,13 @@ void receiver_add_source(struct receiver *r, const struct rgb *weight,
     }
 }
 
+/* Adds a lamp that has this form factor. */
+static void add_lamp(struct receiver *r, struct rgb emission, double factor)
+{
+    r->shares.lit += factor;
+    receiver_add_source(r, &ALL, emission, factor);
+}
+
 /* The triangle that blocks a segment to a lamp, or -1. */
 static inline int32_t blocker_of(struct receiver *r, struct vec3 from, int32_t input,
                                  struct vec3 to, int32_t lamp)
@@ -155,6 +162,8 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
         all[half] += light;
         if (receiver_blocker(r, x, y, root) < 0)
             seen[half] += light;
+        else
+            r->shares.doubt = true;
         volley->count[half]++;
     }
     double sum = all[0] + all[1];
@@ -163,8 +172,7 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
         volley->seen[half] += direct * (seen[half] / sum);
     }
     if (sum > 0.0)
-        receiver_add_source(r, &ALL, emission,
-                            direct * ((seen[0] + seen[1]) / sum) / rgb_sum(emission));
+        add_lamp(r, emission, direct * ((seen[0] + seen[1]) / sum) / rgb_sum(emission));
 }
 
 /* The same for a wide lamp, whose variance is known. */
@@ -173,7 +181,8 @@ static void aim_at_wide_lamp(struct receiver *r, int count, int32_t root, double
     struct sequence sequence = sequence_to(r, root);
     struct rgb emission = scene_root_material(r->gather->model->scene, root)->emission;
     struct receiver_share share = receiver_share_of_wide(r, &sequence, count, root);
-    receiver_add_source(r, &ALL, emission, direct * share.seen / rgb_sum(emission));
+    add_lamp(r, emission, direct * share.seen / rgb_sum(emission));
+    r->shares.doubt = r->shares.doubt || share.seen < 1.0;
     for (int c = 0; c < BANDS; c++) {
         double h = direct * emission.band[c] / rgb_sum(emission);
         r->row.chance[c] += h * h * share.variance;
@@ -272,6 +281,7 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
     int most = lamps->reflect ? (r->rays + RAYS_PER_AIMED - 1) / RAYS_PER_AIMED
                : dark         ? r->gather->rays
                               : r->rays;
+    r->shares.doubt = r->shares.doubt || dark;
     lamps_group(lamps, &r->facet, most, &r->gather->model->estimating);
     const struct lamp_groups *groups = &lamps->groups;
     if (!(groups->direct > 0.0))

@@ -10,8 +10,10 @@
  *
  *     H = sum over aimed rays of F B  +  (1 - sum of F) * mean of B over the others,
  *
- * so rows still sum to 1. Beside a bright root all this does not apply: rays find it
- * often enough, and factors of a few points of it would vary without bound.
+ * so rows still sum to 1. In a row, rays that have met lamps stand for the form factor of
+ * these, if segments have found it without doubt. Beside a bright root all this does not
+ * apply: rays find it often enough, and factors of a few points of it would vary without
+ * bound.
  *
  * The mesh is wrong where a ray ends nearer than the leaf there is large: under a sheet
  * of paper on a table the table is dark, but the leaf is not. And it is wrong in a gap
@@ -52,6 +54,9 @@ static const double BESIDE = 2.0;
 /* Most points of a path, and of one in an opening; points of a leaf that are tested for
  * being bare. */
 enum { PATH_MOST = 256, OPENING_MOST = 8, BARE_POINTS = 4 };
+
+/* Rays that have to have met lamps, and others, to stand for their shares. */
+enum { ENOUGH = 4 };
 
 /* Points of a path from which it goes on in any case. */
 enum { PATH_SURE = 2 };
@@ -151,7 +156,7 @@ void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t 
         return;
     add_mesh(r, &point, root_is_lamp(&g->lamps, root),
              &(struct rgb){{factor, factor, factor}});
-    r->bright += factor;
+    r->shares.bright += factor;
 }
 
 /* True if the leaf that a ray has met is too near to the ray's origin, for its size, for
@@ -291,7 +296,7 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
                           .normal = scene_root_plane(forest->scene, root).normal};
     bool aimed = root_is_lamp(&g->lamps, root);
     find_leaf(forest, root, &point);
-    r->bright += factor;
+    r->shares.bright += factor;
     for (int count = 1;
          count == 1 || (count < OPENING_MOST && forest->patches[point.patch].parent < 0);
          count++, seed += 16) {
@@ -314,6 +319,19 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
                 !receiver_lamp_is_near(forest->scene, root, origin);
     }
     add_mesh(r, &point, aimed, &weight);
+}
+
+/* A ray ends on the mesh. If it is the first of a path and has met a lamp, it counts as
+ * one that has. */
+static void end_path(struct receiver *r, const struct point *point, bool aimed,
+                     bool first, const struct rgb *weight)
+{
+    const struct forest *forest = r->gather->model->forest;
+    struct rgb emission = forest_material(forest, point->patch)->emission;
+    add_mesh(r, point, aimed, weight);
+    r->sums.on_lamps += aimed && first;
+    for (int c = 0; c < BANDS && aimed && first; c++)
+        r->sums.taken.band[c] -= weight->band[c] * emission.band[c];
 }
 
 /* A row's ray begins a path: the leaf that it has met is too near. */
@@ -369,9 +387,10 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         if (count == PATH_MOST || !(is_too_near(r, &point, origin, normal) ||
                                     is_cut_between(r, &point, origin) ||
                                     is_partly_covered(r->gather, point.patch))) {
-            add_mesh(r, &point, aimed, &weight);
+            end_path(r, &point, aimed, count == 1, &weight);
             return;
         }
+        r->shares.doubt = r->shares.doubt || (count == 1 && aimed);
         if (count == 1)
             begin_path(r, &point, aimed, &weight);
         if (count > PATH_SURE &&
@@ -422,26 +441,53 @@ static void add_variances(struct receiver *r)
     }
 }
 
+/* Factors of the weights of rays that have met lamps, and of others. */
+struct factors {
+    double lamps, others;
+};
+
+/* The rays of a row that have met lamps stand for the lamps' form factor where segments
+ * have found it without doubt, and enough rays have met both them and others: how many
+ * did by chance is noise. */
+static struct factors factors_of(const struct receiver *r)
+{
+    int aside = r->sums.aside[0] + r->sums.aside[1], on = r->sums.on_lamps;
+    int others = r->rays - aside - on;
+    double rest = fmax(0.0, 1.0 - r->shares.bright) * r->rays;
+    double all = rest / (aside < r->rays ? r->rays - aside : r->rays);
+    if (!r->keeps || r->shares.doubt || aside > 0 || on < ENOUGH || others < ENOUGH ||
+        !(r->shares.bright + r->shares.lit < 1.0))
+        return (struct factors){all, all};
+    double lit = r->shares.lit * r->rays;
+    return (struct factors){lit / on, (rest - lit) / others};
+}
+
 /* Aims at the bright roots, and makes the light of rays, which have not counted them,
  * that of all other directions, so that the row still sums to 1. `source`: of the row
  * before rays were fired. */
 static void add_bright(struct receiver *r, struct rgb source)
 {
-    struct gather_sums *sums = &r->gather->sums;
+    struct final_gather *g = r->gather;
+    struct gather_sums *sums = &g->sums;
     struct rgb after = r->row.source;
-    int aside = r->sums.aside[0] + r->sums.aside[1];
     sums->first = sums->count;
-    receiver_aim_at(r, &r->gather->bright);
+    receiver_aim_at(r, &g->bright);
     receiver_aim_through(r);
     receiver_add_sparks(r);
-    double other = fmax(0.0, 1.0 - r->bright) * r->rays;
-    other /= aside < r->rays ? r->rays - aside : r->rays;
-    for (int64_t i = 0; i < sums->first; i++)
+    struct factors factors = factors_of(r);
+    for (int64_t i = 0; i < sums->first; i++) {
+        int32_t patch = g->order[sums->items[i].place];
+        bool lamp =
+            sums->items[i].near < 0 &&
+            root_is_lamp(&g->lamps, (int32_t)g->model->forest->patches[patch].id.root);
         for (int c = 0; c < BANDS; c++)
-            sums->items[i].weight[c] *= other;
+            sums->items[i].weight[c] *= lamp ? factors.lamps : factors.others;
+    }
     for (int c = 0; c < BANDS; c++) {
-        r->row.source.band[c] += (other - 1.0) * (after.band[c] - source.band[c]);
-        r->sums.h.band[c] = other * r->sums.h.band[c] + r->light.band[c];
+        double by_rays = after.band[c] - source.band[c], taken = r->sums.taken.band[c];
+        r->row.source.band[c] += (factors.others - 1.0) * (by_rays - taken) +
+                                 (factors.lamps - 1.0) * taken;
+        r->sums.h.band[c] = factors.others * r->sums.h.band[c] + r->light.band[c];
         r->light.band[c] = 0.0;
     }
 }

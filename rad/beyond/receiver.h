@@ -10,7 +10,16 @@
 struct ray_sums {
     struct rgb h, squares, half[2]; /* of H, of H^2, of H by halves */
     int aside[2];     /* rays that have met bright roots, by halves */
+    int on_lamps;     /* rays that have met lamps first */
+    struct rgb taken; /* H by the emission that these have not counted, below 0 */
     struct rgb *each; /* [rays] H by each ray is added to these; NULL: not wanted */
+};
+
+/* Shares of the view that are aimed at. */
+struct aimed_shares {
+    double bright; /* form factor of the bright roots, 1 */
+    double lit;    /* form factor of the lamps, as segments have found it, 1 */
+    bool doubt;    /* that may be wrong: something hides a lamp, or it is near */
 };
 
 /* What a leaf in the dark looks for. */
@@ -36,7 +45,7 @@ struct receiver {
                              -1: none */
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
     struct rgb lamps;     /* H by lamps */
-    double bright;        /* form factor of the bright roots, 1 */
+    struct aimed_shares shares;
     struct in_the_dark dark;
     struct ray_sums sums;
 };

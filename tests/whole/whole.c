@@ -571,8 +571,9 @@ static struct errors cost_of_facets(const struct scene *scene, double q, double 
 }
 
 /* The inner sphere, of this radius, emits. A share q of the rays from outside meet it and
- * find Bi - Bo more light. */
-static void test_concentric(double radius, int level)
+ * find Bi - Bo more light. What facets cost has nothing to do with the noise of rays, and
+ * squares add up: at most this RMS is left. */
+static void test_concentric(double radius, int level, double rms)
 {
     const double rho = 0.8, q = radius * radius,
                  ratio = rho * q / (1.0 - rho * (1.0 - q));
@@ -589,7 +590,9 @@ static void test_concentric(double radius, int level)
     struct errors cost = cost_of_facets(s.scene, q, rho * (inner / outer - 1.0));
     judge(&s, "concentric spheres, inner", 0, &(struct truth){.value = inner}, BARS, 0.0);
     judge(&s, "concentric spheres, outer", 1, &(struct truth){.value = outer},
-          (struct errors){BARS.mean, BARS.rms + cost.rms, BARS.worst + cost.worst}, 0.0);
+          (struct errors){BARS.mean, sqrt(rms * rms + cost.rms * cost.rms),
+                          BARS.worst + cost.worst},
+          0.0);
     solution_free(&s);
 }
 
@@ -695,10 +698,10 @@ int main(int argc, char **argv)
     const struct zone crater[] = {{-0.7, material_grey(.8, 1)},
                                   {0.0, material_grey(.8, 0)}};
     test_sphere("crater", crater, 2, 2);
-    test_concentric(0.2, 2);
-    test_concentric(0.35, 2);
-    test_concentric(0.5, 2);
-    test_concentric(0.7, 2);
+    test_concentric(0.2, 2, BARS.rms);
+    test_concentric(0.35, 2, BARS.rms);
+    test_concentric(0.5, 2, BARS.rms);
+    test_concentric(0.7, 2, 4e-3); /* too dim for a lamp beside so bright a wall */
     test_furnace(CUBE, 0.5, false, "--tolerance 1e-8");
     test_furnace(CUBE, 0.9, false, "--tolerance 1e-8");
     test_furnace(CUBE, 0.999, false, "--tolerance 1e-8");
