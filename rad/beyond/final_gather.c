@@ -163,6 +163,7 @@ void final_gather_free(struct final_gather *gather)
 {
     lamps_free(&gather->lamps);
     lamps_free(&gather->bright);
+    regions_free(gather->view.regions);
     openings_free(gather->view.openings);
     sparks_free(gather->view.sparks);
     alloc_free(gather->view.faced);
@@ -384,16 +385,16 @@ static struct receiver receiver_make(struct final_gather *gather, struct facet f
                              .near = -1, .dark = {.least = -1.0}};
 }
 
-static uint64_t seed_of(const struct final_gather *gather, int32_t leaf)
+uint64_t patch_seed(const struct forest *forest, int32_t patch)
 {
-    struct patch_id id = gather->model->forest->patches[leaf].id;
+    struct patch_id id = forest->patches[patch].id;
     return hash_mix((uint64_t)id.root << 32 | id.hierarchy);
 }
 
 struct receiver receiver_of_leaf(struct final_gather *gather, int32_t leaf, int rays)
 {
     return receiver_make(gather, facet_make(gather->model->forest, leaf),
-                         seed_of(gather, leaf), rays);
+                         patch_seed(gather->model->forest, leaf), rays);
 }
 
 /* H by lamps and rays. */
@@ -435,7 +436,7 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
         quarter.triangle = triangle_child(&facet.triangle, k);
         quarter.area = 0.25 * facet.area;
         struct receiver r =
-            receiver_make(gather, quarter, hash_mix(seed_of(gather, leaf) + 1), rays);
+            receiver_make(gather, quarter, hash_mix(patch_seed(forest, leaf) + 1), rays);
         r.sums.each = each;
         receiver_aim(&r);
         receiver_fire(&r);

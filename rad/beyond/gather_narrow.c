@@ -1,16 +1,16 @@
 /* Light through narrow openings.
  *
  * Below a door light comes from the next room, where all is a thousand times as bright,
- * and one ray in ten thousand finds it. For a leaf such roots are lamps, whatever they
- * are in the whole scene. So a large root that is in the dark is examined once: which
- * bright roots can be seen from it past the blockers that a few segments find, as with
- * wide lamps (gather_wide.c)? At those its leaves aim, each at the remainder of the root
- * behind the blockers, and rays that meet one are put aside, as with bright roots. The
- * examination decides only how light is looked for, and from other points, so answers are
- * right in the mean.
+ * and one ray in ten thousand finds it. For a leaf all that is lit there is a lamp,
+ * whatever it is in the whole scene. So a large region in the dark (gather_regions.c) is
+ * examined once: which bright regions can be seen from it past the blockers that a few
+ * segments find, as with wide lamps (gather_wide.c)? At those its leaves aim, each at the
+ * remainder of the region behind the blockers, and rays that meet one are put aside, as
+ * with bright roots. The examination decides only how light is looked for, and from other
+ * points, so answers are right in the mean.
  *
- * Of a root that is behind many things, such as furniture, not just a few walls, too much
- * stays hidden in the remainder: if no point of it is seen, it is left to the rays. */
+ * Of a region that is behind many things, such as furniture, not just a few walls, too
+ * much stays hidden in the remainder: if no point of it is seen, it is left to rays. */
 #include "rad/beyond/receiver.h"
 
 #include <math.h>
@@ -19,96 +19,67 @@
 #include "geom/hash.h"
 #include "rad/beyond/remainder.h"
 
-/* Roots are aimed at that reflect so many times the irradiance of the leaf. */
-static const double TIMES = 30.0;
-
-/* A root is large that has this part of all area. */
-static const double LARGE = 1e-3;
-
-/* Roots examined, those that send most; points from which each is looked at, or until
+/* Regions examined, those that send most; points from which each is looked at, or until
  * SEEN past known blockers; points of a leaf, least and most; quarterings of that. */
-enum { MOST_ROOTS = 64, POINTS_LOOKED = 256, SEEN = 8 };
-enum { POINTS = 16, MOST_POINTS = 256, QUARTERINGS = 3 };
+enum { MOST_REGIONS = 64, POINTS_LOOKED = 256, SEEN = 8 };
+enum { POINTS = 64, MOST_POINTS = 256, QUARTERINGS = 3 };
 
-/* Rays of a row for each of POINTS: with fewer, aiming costs more than all of them. */
-enum { RAYS_PER_POINT = 4 };
+/* A region is worth aiming at if fewer rays than this find it. */
+static const double WORTH = 16.0;
 
 /* A leaf has MOST_POINTS where the factor of a remainder is more than this. */
 static const double PEAK = 0.04;
 
-/* Roots that are aimed at from the leaves of one root. */
-struct openings {
-    struct remainder *items; /* [count] */
-    int64_t count, capacity;
-    int32_t from;   /* root; -1: none yet */
-    uint8_t *aimed; /* [roots] 1: one of the items */
+struct opening {
+    int32_t region; /* that is seen through it */
+    struct remainder remainder;
 };
 
-static double reflected_by(const struct forest *forest, int32_t patch)
-{
-    return rgb_sum(forest->radiosity[patch]) -
-           rgb_sum(forest_material(forest, patch)->emission);
-}
-
-static double irradiance_of(const struct forest *forest, int32_t patch)
-{
-    struct rgb rho = forest_material(forest, patch)->reflectance;
-    return BANDS * reflected_by(forest, patch) / rgb_sum(rho);
-}
-
-static struct rgb rgb_less(struct rgb a, struct rgb b)
-{
-    for (int c = 0; c < BANDS; c++)
-        a.band[c] -= b.band[c];
-    return a;
-}
-
-static bool is_in_the_dark(const struct final_gather *g, int32_t patch)
-{
-    return TIMES * irradiance_of(g->model->forest, patch) < g->mean; /* not if NaN */
-}
-
-bool root_is_dark(const struct final_gather *g, int32_t root)
-{
-    return forest_area(g->model->forest, root) >= LARGE * g->model->area &&
-           is_in_the_dark(g, root);
-}
+/* Regions that are aimed at from the leaves of one region. */
+struct openings {
+    struct opening *items; /* [count] */
+    int64_t count, capacity;
+    int32_t from;   /* region; -1: none yet */
+    uint8_t *aimed; /* [patches] 1: one of the items */
+};
 
 bool receiver_is_in_the_dark(const struct receiver *r)
 {
-    const struct final_gather *g = r->gather;
-    return r->keeps &&
-           (is_in_the_dark(g, r->row.leaf) ||
-            is_in_the_dark(g, (int32_t)g->model->forest->patches[r->row.leaf].id.root));
+    struct final_gather *g = r->gather;
+    return r->keeps && (patch_is_dark(g, r->row.leaf) ||
+                        patch_is_dark(g, region_of(g, r->row.leaf)));
 }
 
-/* --- what a root sees --- */
+/* --- the view of a region --- */
 
-static double watts_of(const struct forest *forest, int32_t root)
+static double watts_of(const struct forest *forest, int32_t patch)
 {
-    return forest_area(forest, root) * reflected_by(forest, root);
+    return forest_area(forest, patch) * patch_reflected(forest, patch);
 }
 
-/* Finds the roots that reflect TIMES the irradiance, of those that the receiver faces
- * but is not in the dark with, largest senders first; [MOST_ROOTS]. Returns their
+/* Finds the regions that reflect DARK_TIMES the irradiance, of those that the receiver
+ * faces but is not in the dark with, largest senders first; [MOST_REGIONS]. Returns their
  * number. */
-static int find_bright(const struct final_gather *g, const struct facet *receiver,
-                       double irradiance, int32_t *roots)
+static int find_bright(struct final_gather *g, const struct facet *receiver,
+                       double irradiance, int32_t *bright)
 {
     const struct forest *forest = g->model->forest;
+    const struct regions *regions = gather_regions(g);
     int count = 0;
-    for (int32_t root = 0; root < forest->root_count; root++) {
-        if (!(reflected_by(forest, root) > TIMES * irradiance) || root_is_dark(g, root))
+    for (int64_t i = 0; i < regions->count; i++) {
+        int32_t region = regions->items[i];
+        if (!(patch_reflected(forest, region) > DARK_TIMES * irradiance) ||
+            region_is_dark(g, region))
             continue;
-        struct facet facet = facet_make(forest, root);
-        double watts = watts_of(forest, root);
+        struct facet facet = facet_make(forest, region);
+        double watts = watts_of(forest, region);
         if (!facets_face(receiver, &facet) ||
-            (count == MOST_ROOTS && watts <= watts_of(forest, roots[count - 1])))
+            (count == MOST_REGIONS && watts <= watts_of(forest, bright[count - 1])))
             continue;
-        int at = count < MOST_ROOTS ? count++ : count - 1;
-        for (; at > 0 && watts > watts_of(forest, roots[at - 1]); at--)
-            roots[at] = roots[at - 1];
-        roots[at] = root;
+        int at = count < MOST_REGIONS ? count++ : count - 1;
+        for (; at > 0 && watts > watts_of(forest, bright[at - 1]); at--)
+            bright[at] = bright[at - 1];
+        bright[at] = region;
     }
     return count;
 }
@@ -131,12 +102,13 @@ static double look(struct receiver *r, struct remainder *remainder,
     return receiver_kernel(*x, normal, *y, remainder->plane.normal) > 0.0 ? seen : 0.0;
 }
 
-/* True if the remainder of a root can be seen from the receiver, and is so small that few
- * points of it tell more than many rays in all directions. */
-static bool is_worth_aiming(struct receiver *r, struct remainder *remainder)
+/* True if the remainder of a region can be seen from the receiver, and is so small that
+ * few points of it tell more than many rays in all directions. */
+static bool is_worth_aiming(struct receiver *r, struct opening *opening)
 {
-    struct sequence sequence =
-        sequence_start(hash_mix(r->seed) ^ hash_mix((uint64_t)remainder->root));
+    struct remainder *remainder = &opening->remainder;
+    struct sequence sequence = sequence_start(
+        hash_mix(r->seed) ^ patch_seed(r->gather->model->forest, opening->region));
     double sum = 0.0;
     int count = 0, passed = 0; /* points since a blocker was learnt */
     for (int i = 0; i < POINTS_LOOKED && passed < SEEN; i++, count++) {
@@ -154,7 +126,7 @@ static bool is_worth_aiming(struct receiver *r, struct remainder *remainder)
         sum += seen;
         passed += seen > 0.0 && blocker < 0;
     }
-    return passed > 0 && sum * r->gather->rays < POINTS * count;
+    return passed > 0 && sum * r->gather->rays < WORTH * count;
 }
 
 struct apart apart_begin(const struct final_gather *g)
@@ -172,17 +144,17 @@ void apart_end(struct final_gather *g, const struct apart *apart)
     g->counts = apart->rays;
 }
 
-/* Each rank that has a leaf of the root finds the same. */
-static void examine_root(struct openings *openings, struct receiver *whole, int32_t root)
+/* Each rank that has a leaf of the region finds the same. */
+static void examine_region(struct openings *openings, struct receiver *whole,
+                           int32_t region)
 {
     struct final_gather *g = whole->gather;
     struct apart apart = apart_begin(g);
-    RESERVE(openings->items, &openings->capacity, openings->count + 1);
-    struct remainder *item = &openings->items[openings->count];
-    *item = remainder_start(g->model->scene, root);
-    if (is_worth_aiming(whole, item)) {
-        openings->aimed[root] = 1;
-        openings->count++;
+    struct opening opening = {region, remainder_start(g->model->forest, region)};
+    if (is_worth_aiming(whole, &opening)) {
+        RESERVE(openings->items, &openings->capacity, openings->count + 1);
+        openings->items[openings->count++] = opening;
+        openings->aimed[region] = 1;
     }
     apart_end(g, &apart);
 }
@@ -190,42 +162,42 @@ static void examine_root(struct openings *openings, struct receiver *whole, int3
 static void find_openings(struct openings *openings, const struct receiver *r,
                           int32_t from)
 {
-    const struct final_gather *g = r->gather;
+    struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     struct receiver whole = *r;
     for (int64_t i = 0; i < openings->count; i++)
-        openings->aimed[openings->items[i].root] = 0;
+        openings->aimed[openings->items[i].region] = 0;
     openings->from = from;
     openings->count = 0;
-    if (!root_is_dark(g, from))
+    if (!region_is_dark(g, from))
         return;
     whole.facet = facet_make(forest, from);
-    whole.seed = hash_mix((uint64_t)from + 32);
-    int32_t roots[MOST_ROOTS];
-    int count = find_bright(g, &whole.facet, irradiance_of(forest, from), roots);
+    whole.seed = hash_mix(patch_seed(forest, from) + 32);
+    int32_t bright[MOST_REGIONS];
+    int count = find_bright(g, &whole.facet, patch_irradiance(forest, from), bright);
     for (int i = 0; i < count; i++)
-        examine_root(openings, &whole, roots[i]);
+        examine_region(openings, &whole, bright[i]);
 }
 
-/* --- what a leaf sees --- */
+/* --- the view of a leaf --- */
 
 void receiver_find_openings(struct receiver *r)
 {
     struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
-    if (g->model->criterion.final_gather < RAYS_PER_POINT * POINTS ||
+    if (g->model->criterion.final_gather < POINTS || /* aiming would cost more */
         !receiver_is_in_the_dark(r))
         return;
     if (!g->view.openings) {
         g->view.openings = alloc_array(1, sizeof *g->view.openings);
-        g->view.openings->aimed = alloc_array((size_t)forest->root_count, 1);
+        g->view.openings->aimed = alloc_array((size_t)forest->count, 1);
         g->view.openings->from = -1;
     }
-    int32_t from = (int32_t)forest->patches[r->row.leaf].id.root;
+    int32_t from = region_of(g, r->row.leaf);
     if (g->view.openings->from != from)
         find_openings(g->view.openings, r, from);
-    r->dark.least = TIMES * fmin(irradiance_of(forest, r->row.leaf),
-                            irradiance_of(forest, from));
+    r->dark.least = DARK_TIMES * fmin(patch_irradiance(forest, r->row.leaf),
+                            patch_irradiance(forest, from));
 }
 
 bool openings_are_known(const struct final_gather *g)
@@ -233,14 +205,21 @@ bool openings_are_known(const struct final_gather *g)
     return g->view.openings && g->view.openings->count > 0;
 }
 
-bool receiver_aims_through(const struct receiver *r, int32_t root)
+static bool aims_at(const struct receiver *r, int32_t region)
 {
-    const struct final_gather *g = r->gather;
-    return r->dark.least >= 0.0 && g->view.openings->aimed[root] &&
-           reflected_by(g->model->forest, root) > r->dark.least;
+    return patch_reflected(r->gather->model->forest, region) > r->dark.least;
 }
 
-/* Points for a leaf: the more the more of the root is seen somewhere, as beside the
+bool receiver_aims_through(const struct receiver *r, int32_t leaf)
+{
+    struct final_gather *g = r->gather;
+    if (!(r->dark.least >= 0.0))
+        return false;
+    int32_t region = region_of(g, leaf);
+    return g->view.openings->aimed[region] && aims_at(r, region);
+}
+
+/* Points for a leaf: the more the more of the region is seen somewhere, as beside the
  * opening, where light falls on a small part of the leaf. */
 static int points_for(struct receiver *r, struct remainder *remainder, uint64_t seed)
 {
@@ -258,10 +237,12 @@ static int points_for(struct receiver *r, struct remainder *remainder, uint64_t 
     return points;
 }
 
-/* Aims at one root, and adds the variance of its light. */
-static void aim_at_remainder(struct receiver *r, struct remainder *remainder)
+/* Aims at one region, and adds the variance of its light. */
+static void aim_at(struct receiver *r, struct opening *opening)
 {
-    uint64_t seed = hash_mix(r->seed + 40) ^ hash_mix((uint64_t)remainder->root);
+    struct remainder *remainder = &opening->remainder;
+    uint64_t seed =
+        hash_mix(r->seed + 40) ^ patch_seed(r->gather->model->forest, opening->region);
     struct sequence sequence = sequence_start(seed);
     int points = points_for(r, remainder, seed);
     struct rgb first = r->light, last = first, middle = first;
@@ -272,7 +253,7 @@ static void aim_at_remainder(struct receiver *r, struct remainder *remainder)
         if (seen > 0.0 && receiver_blocker(r, x, y, remainder->root) < 0) {
             receiver_see(r, remainder->root, y, seen / points,
                          hash_mix(seed + 1) + 256 * (uint64_t)k);
-            receiver_catch(r, x, rgb_less(r->row.source, source));
+            receiver_catch(r, x, rgb_sub(r->row.source, source));
         }
         for (int c = 0; c < BANDS; c++) {
             double h = r->light.band[c] - last.band[c];
@@ -291,10 +272,10 @@ static void aim_at_remainder(struct receiver *r, struct remainder *remainder)
 
 void receiver_aim_through(struct receiver *r)
 {
-    const struct final_gather *g = r->gather;
-    for (int64_t i = 0; r->dark.least >= 0.0 && i < g->view.openings->count; i++)
-        if (receiver_aims_through(r, g->view.openings->items[i].root))
-            aim_at_remainder(r, &g->view.openings->items[i]);
+    struct openings *openings = r->gather->view.openings;
+    for (int64_t i = 0; r->dark.least >= 0.0 && i < openings->count; i++)
+        if (aims_at(r, openings->items[i].region))
+            aim_at(r, &openings->items[i]);
 }
 
 void openings_free(struct openings *openings)

@@ -39,6 +39,10 @@ static const double NEAR = 0.2, NEAR_PIXEL = 1.0;
 /* The same, where that is the distance at which the ray met the leaf. */
 static const double NEAR_RAY = 0.05;
 
+/* The same, for paths that have come through an opening: there light falls off over the
+ * width of the opening, and leaves may be as wide. */
+static const double NEAR_OPENING = 16.0;
+
 /* A gap is narrow for a leaf if the square of its width is less than this part of the
  * leaf's area. */
 static const double NARROW = 0.04;
@@ -51,9 +55,9 @@ static const double OPPOSITE = -0.7;
  * square of the root's radius. */
 static const double BESIDE = 2.0;
 
-/* Most points of a path, and of one in an opening; points of a leaf that are tested for
- * being bare. */
-enum { PATH_MOST = 256, OPENING_MOST = 8, BARE_POINTS = 4 };
+/* Most points of a path; points of a leaf that are tested for being bare; rays that tell
+ * how much of a point's light goes into the dark. */
+enum { PATH_MOST = 256, BARE_POINTS = 4, DARK_RAYS = 32 };
 
 /* Rays that have to have met lamps, and others, to stand for their shares. */
 enum { ENOUGH = 4 };
@@ -149,10 +153,10 @@ void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t 
     const struct final_gather *g = r->gather;
     struct vec3 way = vec3_sub(y, x);
     struct point point;
-    if (is_beside(g->model->scene, root, x) || receiver_aims_through(r, root) ||
+    if (is_beside(g->model->scene, root, x) ||
         trace(r, point_above(x, r->facet.plane.normal),
               vec3_scale(way, 1.0 / vec3_length(way)), &point) != MET_FRONT ||
-        root_of(r, &point) != root)
+        root_of(r, &point) != root || receiver_aims_through(r, point.patch))
         return;
     add_mesh(r, &point, root_is_lamp(&g->lamps, root),
              &(struct rgb){{factor, factor, factor}});
@@ -220,6 +224,23 @@ static bool is_cut_between(const struct receiver *r, const struct point *met,
     return r->keeps &&
            vec3_dot(ray, ray) < r->gather->near.leaves[met->patch].area &&
            is_cut(r->gather, met->patch);
+}
+
+double share_in_the_dark(struct final_gather *g, int32_t region, struct vec3 x,
+                         uint64_t seed)
+{
+    struct receiver r = {.gather = g, .facet = facet_make(g->model->forest, region)};
+    struct vec3 normal = r.facet.plane.normal, along = direction_along(normal);
+    int dark = 0;
+    for (uint64_t i = 0; i < DARK_RAYS; i++) {
+        struct point point;
+        struct vec3 direction = cosine_direction(
+            normal, along, ((double)i + hash_unit(seed)) / DARK_RAYS,
+            hash_unit(seed + 16 + i));
+        dark += trace(&r, point_above(x, normal), direction, &point) == MET_FRONT &&
+                patch_is_dark(g, point.patch);
+    }
+    return (double)dark / DARK_RAYS;
 }
 
 /* True if rays from the point, along the plane in four directions, all meet backs. */
@@ -297,9 +318,8 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
     bool aimed = root_is_lamp(&g->lamps, root);
     find_leaf(forest, root, &point);
     r->shares.bright += factor;
-    for (int count = 1;
-         count == 1 || (count < OPENING_MOST && forest->patches[point.patch].parent < 0);
-         count++, seed += 16) {
+    bool near = true;
+    for (int count = 1; near && count < PATH_MOST; count++, seed += 16) {
         const struct material *material = forest_material(forest, point.patch);
         if (!aimed)
             receiver_add_source(r, &weight, material->emission, 1.0);
@@ -317,6 +337,8 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
         root = root_of(r, &point);
         aimed = root_is_lamp(&g->lamps, root) &&
                 !receiver_lamp_is_near(forest->scene, root, origin);
+        struct vec3 ray = vec3_sub(point.at, origin);
+        near = vec3_dot(ray, ray) < NEAR_OPENING * forest_area(forest, point.patch);
     }
     add_mesh(r, &point, aimed, &weight);
 }
@@ -371,7 +393,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         const struct material *material = forest_material(forest, point.patch);
         int32_t root = root_of(r, &point);
         const struct scene *scene = r->gather->model->scene;
-        if (count == 1 && (receiver_aims_through(r, root) ||
+        if (count == 1 && (receiver_aims_through(r, point.patch) ||
                            (root_is_lamp(&r->gather->bright, root) &&
                             !is_beside(scene, root, origin)))) {
             r->sums.aside[half]++;

@@ -8,7 +8,7 @@
  *
  * The points where the first light lands are known, for leaves in the dark aim at it
  * (gather_narrow.c, gather_spots.c). So that part of a leaf's radiosity is sent from
- * there: of all such points of a root a few are chosen by their power, the sparks, and a
+ * there: of all such points of a region a few are chosen, the sparks, and a
  * leaf r in the dark gets
  *
  *     H  =  1 / A_r  sum over sparks of  power F(spark, r) V
@@ -24,15 +24,19 @@
 #include "geom/hash.h"
 #include "rad/beyond/remainder.h"
 
-/* Sparks of a root; points of a root from which it is seen whether it sees any of another
- * one; quarterings of a leaf for the end of a segment. */
-enum { SPARKS = 64, VIEWS = 8, QUARTERINGS = 3 };
+/* Sparks of a region, and candidates; points of a region from which it is seen whether it
+ * sees any of another one; quarterings of a leaf for the end of a segment. */
+enum { SPARKS = 64, CANDIDATES = 1024, VIEWS = 8, QUARTERINGS = 3 };
+
+/* A spark is worth its power times the part of its light that goes into the dark, plus
+ * this. */
+static const double LEAST_SENT = 0.05;
 
 /* Light that a leaf reflects, for its mean: `source` and terms, which begin where those
  * of the item before end. */
 struct spark {
     struct vec3 at;
-    int32_t root;
+    int32_t region; /* that it is on */
     double power;      /* over all bands, W in square scene units */
     double area;       /* of the leaf, square scene units */
     struct rgb source; /* W/m^2 */
@@ -47,12 +51,12 @@ struct spark_list {
 };
 
 struct sparks {
-    struct spark_list chosen; /* of all roots */
+    struct spark_list chosen; /* of all regions */
     struct spark_list first;  /* all first light of a leaf in one */
-    struct spark_list caught; /* of the root at hand */
+    struct spark_list caught; /* of the region at hand */
     int32_t *number;          /* [patches] 1 + number in `first`; 0: none */
-    int32_t from;             /* root that has been tested for: -1: none */
-    uint8_t *seen;            /* [roots] from there */
+    int32_t from;             /* region that has been tested for; -1: none */
+    uint8_t *seen;            /* [patches] 1: region that is seen from there */
     bool any;                 /* is seen from there */
 };
 
@@ -108,7 +112,7 @@ static void add_sums(struct receiver *r, struct spark_list *list, int64_t first,
     const struct forest *forest = g->model->forest;
     struct rgb rho = forest_material(forest, r->row.leaf)->reflectance;
     struct spark spark = {.at = x, .area = r->facet.area,
-                          .root = (int32_t)forest->patches[r->row.leaf].id.root};
+                          .region = region_of(r->gather, r->row.leaf)};
     for (int c = 0; c < BANDS; c++) {
         spark.source.band[c] = rho.band[c] * source.band[c];
         spark.power += r->facet.area * spark.source.band[c];
@@ -185,50 +189,72 @@ static void catch_light(struct sparks *sparks, struct final_gather *g, int32_t p
     add_up(sparks, &r, begin);
 }
 
-/* Chooses from the sparks that have been caught, by power. */
-static void choose(struct sparks *sparks, int32_t root)
+/* Chooses `wanted` sparks of a list by their worth, [list->count], and adds them to the
+ * others, each with the part of light that it stands for. */
+static void choose(const struct spark_list *list, const double *worth, int wanted,
+                   double start, struct spark_list *chosen)
 {
-    const struct spark_list *caught = &sparks->caught;
-    double power = 0.0, sum = 0.0;
-    for (int64_t i = 0; i < caught->count; i++)
-        power += caught->items[i].power;
-    double each = power / SPARKS, next = each * hash_unit(hash_mix((uint64_t)root + 56));
-    for (int64_t i = 0; i < caught->count && power > 0.0; i++) {
-        struct spark spark = caught->items[i];
+    double all = 0.0, sum = 0.0;
+    for (int64_t i = 0; i < list->count; i++)
+        all += worth[i];
+    double each = all / wanted, next = each * start;
+    for (int64_t i = 0; i < list->count && all > 0.0; i++) {
+        struct spark spark = list->items[i];
         double part = 0.0;
-        for (sum += spark.power; next < sum; next += each)
-            part += each / spark.power;
+        for (sum += worth[i]; next < sum; next += each)
+            part += each / worth[i];
         if (!(part > 0.0))
             continue;
+        spark.power *= part;
         for (int c = 0; c < BANDS; c++)
             spark.source.band[c] *= part;
-        add_spark(&sparks->chosen, spark);
-        for (int64_t k = first_term(caught, i); k < caught->items[i].end; k++) {
+        add_spark(chosen, spark);
+        for (int64_t k = first_term(list, i); k < list->items[i].end; k++) {
             double weight[BANDS];
             for (int c = 0; c < BANDS; c++)
-                weight[c] = part * (double)caught->terms[k].weight[c];
-            add_term(&sparks->chosen, caught->terms[k].place, weight);
+                weight[c] = part * (double)list->terms[k].weight[c];
+            add_term(chosen, list->terms[k].place, weight);
         }
     }
 }
 
-/* Finds the sparks of all large roots in the dark: each rank the same, so their work is
+/* Chooses from the sparks that have been caught: candidates by their power, and of these
+ * by the light that they send into the dark, deep in a gap next to none. */
+static void choose_sparks(struct sparks *sparks, struct final_gather *g, uint64_t seed)
+{
+    struct spark_list *caught = &sparks->caught, some = {0};
+    double *worth = alloc_array((size_t)caught->count + CANDIDATES, sizeof *worth);
+    for (int64_t i = 0; i < caught->count; i++)
+        worth[i] = caught->items[i].power;
+    choose(caught, worth, CANDIDATES, hash_unit(hash_mix(seed + 56)), &some);
+    for (int64_t i = 0; i < some.count; i++)
+        worth[i] = some.items[i].power *
+                   (LEAST_SENT + share_in_the_dark(g, some.items[i].region,
+                                                   some.items[i].at,
+                                                   hash_mix(seed + 64) + (uint64_t)i));
+    choose(&some, worth, SPARKS, hash_unit(hash_mix(seed + 57)), &sparks->chosen);
+    list_free(&some);
+    alloc_free(worth);
+    caught->count = 0;
+}
+
+/* Finds the sparks of all large regions in the dark: each rank the same, so their work is
  * counted apart. */
 static void make_sparks(struct final_gather *g)
 {
     const struct forest *forest = g->model->forest;
+    const struct regions *regions = gather_regions(g);
     struct sparks *sparks = alloc_array(1, sizeof *sparks);
     g->view.sparks = sparks;
     sparks->number = alloc_array((size_t)forest->count, sizeof *sparks->number);
-    sparks->seen = alloc_array((size_t)forest->root_count, 1);
+    sparks->seen = alloc_array((size_t)forest->count, 1);
     sparks->from = -1;
     struct apart apart = apart_begin(g);
-    for (int32_t root = 0; root < forest->root_count; root++) {
-        if (!root_is_dark(g, root))
+    for (int64_t i = 0; i < regions->count; i++) {
+        if (!region_is_dark(g, regions->items[i]))
             continue;
-        catch_light(sparks, g, root);
-        choose(sparks, root);
-        sparks->caught.count = 0;
+        catch_light(sparks, g, regions->items[i]);
+        choose_sparks(sparks, g, patch_seed(forest, regions->items[i]));
     }
     apart_end(g, &apart);
 }
@@ -240,40 +266,42 @@ static void make_sparks(struct final_gather *g)
 static bool reaches(struct receiver *r, const struct spark *spark,
                     struct remainder *leaf, const double *u, double *factor)
 {
-    const struct scene *scene = r->gather->model->scene;
-    struct vec3 normal = scene_root_plane(scene, spark->root).normal;
+    const struct forest *forest = r->gather->model->forest;
+    int32_t root = (int32_t)forest->patches[spark->region].id.root;
+    struct vec3 normal = scene_root_plane(forest->scene, root).normal;
     if (!(plane_distance(&r->facet.plane, spark->at) > 0.0))
         return false;
-    *factor = remainder_look(leaf, scene, spark->at, normal);
+    *factor = remainder_look(leaf, forest->scene, spark->at, normal);
     r->gather->model->estimating++;
     if (!(*factor > 0.0))
         return false;
     struct vec3 x = remainder_point(leaf, QUARTERINGS, u[2], u[3]);
     return receiver_kernel(x, r->facet.plane.normal, spark->at, normal) > 0.0 &&
-           receiver_blocker(r, x, spark->at, spark->root) < 0;
+           receiver_blocker(r, x, spark->at, root) < 0;
 }
 
-/* Finds the roots with sparks of which a root sees any. */
+/* Finds the regions with sparks of which a region sees any. */
 static void find_seen(struct sparks *sparks, const struct receiver *r, int32_t from)
 {
     struct final_gather *g = r->gather;
+    const struct forest *forest = g->model->forest;
     struct receiver whole = *r;
     struct apart apart = apart_begin(g);
     double u[SEQUENCE_DIMENSIONS], factor;
-    whole.facet = facet_make(g->model->forest, from);
-    struct remainder all = remainder_start(g->model->scene, from);
-    struct sequence sequence = sequence_start(hash_mix((uint64_t)from + 57));
+    whole.facet = facet_make(forest, from);
+    struct remainder all = remainder_start(forest, from);
+    struct sequence sequence = sequence_start(hash_mix(patch_seed(forest, from) + 57));
     sparks->from = from;
     sparks->any = false;
-    for (int32_t root = 0; root < g->model->forest->root_count; root++)
-        sparks->seen[root] = 0;
+    for (int64_t i = 0; i < sparks->chosen.count; i++)
+        sparks->seen[sparks->chosen.items[i].region] = 0;
     for (int64_t i = 0; i < sparks->chosen.count; i++) {
         const struct spark *spark = &sparks->chosen.items[i];
-        for (uint32_t k = 0; k < VIEWS && !sparks->seen[spark->root]; k++) {
+        for (uint32_t k = 0; k < VIEWS && !sparks->seen[spark->region]; k++) {
             sequence_point(&sequence, VIEWS * (uint32_t)i + k, u);
-            sparks->seen[spark->root] = reaches(&whole, spark, &all, u, &factor);
+            sparks->seen[spark->region] = reaches(&whole, spark, &all, u, &factor);
         }
-        sparks->any = sparks->any || sparks->seen[spark->root];
+        sparks->any = sparks->any || sparks->seen[spark->region];
     }
     apart_end(g, &apart);
 }
@@ -281,7 +309,7 @@ static void find_seen(struct sparks *sparks, const struct receiver *r, int32_t f
 void receiver_find_sparks(struct receiver *r)
 {
     struct final_gather *g = r->gather;
-    int32_t from = (int32_t)g->model->forest->patches[r->row.leaf].id.root;
+    int32_t from = region_of(g, r->row.leaf);
     if (!g->view.sparks)
         make_sparks(g);
     if (!(r->dark.least >= 0.0))
@@ -291,7 +319,7 @@ void receiver_find_sparks(struct receiver *r)
     if (!g->view.sparks->any)
         return;
     r->dark.sparks = g->view.sparks;
-    if (root_is_dark(g, from) && r->rays < g->rays)
+    if (region_is_dark(g, from) && r->rays < g->rays)
         r->rays = g->rays;
 }
 
@@ -315,15 +343,14 @@ void receiver_add_sparks(struct receiver *r)
         return;
     const struct sparks *sparks = r->dark.sparks;
     const struct spark_list *list = &sparks->chosen;
-    struct remainder leaf = remainder_start(r->gather->model->scene, sparks->from);
+    struct remainder leaf = remainder_start(r->gather->model->forest, r->row.leaf);
     struct sequence sequence = sequence_start(hash_mix(r->seed + 56));
     struct rgb first = r->light, last = first;
     double u[SEQUENCE_DIMENSIONS], factor;
     int count = 0;
-    leaf.triangle = r->facet.triangle;
     for (int64_t i = 0; i < list->count; i++) {
         const struct spark *spark = &list->items[i];
-        if (!sparks->seen[spark->root])
+        if (!sparks->seen[spark->region])
             continue;
         sequence_point(&sequence, (uint32_t)count++, u);
         if (reaches(r, spark, &leaf, u, &factor))
@@ -348,7 +375,7 @@ bool leaf_has_sparks(const struct final_gather *g, int32_t leaf)
 bool receiver_sees_sparks(const struct receiver *r, int32_t patch)
 {
     return r->dark.sparks && r->dark.sparks->number[patch] > 0 &&
-           r->dark.sparks->seen[r->gather->model->forest->patches[patch].id.root];
+           r->dark.sparks->seen[region_of(r->gather, patch)];
 }
 
 void receiver_leave_out_sparks(struct receiver *r, int32_t patch, double weight)

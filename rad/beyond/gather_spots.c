@@ -85,11 +85,9 @@ void receiver_aim_from(struct receiver *r, const struct lamps *lamps, int32_t no
                        int count, double share)
 {
     const struct forest *forest = r->gather->model->forest;
-    int32_t root = (int32_t)forest->patches[r->row.leaf].id.root;
-    struct remainder leaf = remainder_start(forest->scene, root);
+    struct remainder leaf = remainder_start(forest, r->row.leaf);
     struct spot spots[POINTS_MOST];
     struct rgb sum = {{0.0, 0.0, 0.0}}, squares = sum, half[2] = {sum, sum};
-    leaf.triangle = r->facet.triangle;
     count = count < POINTS_MOST ? count : POINTS_MOST;
     while (!find_spots(r, &leaf, lamps, node, count, share, spots))
         ;

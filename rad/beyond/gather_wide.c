@@ -82,8 +82,7 @@ struct receiver_share receiver_share_of_wide(struct receiver *r,
                                              const struct sequence *sequence, int count,
                                              int32_t root)
 {
-    const struct scene *scene = r->gather->model->scene;
-    struct remainder lamp = remainder_start(scene, root);
+    struct remainder lamp = remainder_start(r->gather->model->forest, root);
     struct sums sums;
     double u[SEQUENCE_DIMENSIONS];
     bool learnt;

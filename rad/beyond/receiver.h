@@ -50,6 +50,9 @@ struct receiver {
     struct ray_sums sums;
 };
 
+/* A number made of the ID of a patch. */
+uint64_t patch_seed(const struct forest *forest, int32_t patch);
+
 /* A receiver that is a leaf. */
 struct receiver receiver_of_leaf(struct final_gather *gather, int32_t leaf, int rays);
 
@@ -78,7 +81,32 @@ void receiver_aim(struct receiver *r);
  * rays. */
 void receiver_aim_at(struct receiver *r, struct lamps *lamps);
 
-/* True if little light comes to the receiver, a leaf, as the links have it. */
+/* --- in the dark --- */
+
+/* From the dark, light is looked for that is so many times as much as arrives there. */
+enum { DARK_TIMES = 30 };
+
+/* Surfaces that are all in the dark, or not: roots, or patches of roots that are both. */
+struct regions {
+    int32_t *items; /* [count] patches, in the order of roots, depth first */
+    int64_t count, capacity;
+    int32_t *of;    /* [patches] the region that a leaf is in */
+    uint8_t *dark;  /* [patches] 1: a region, large, in the dark and not in a gap */
+};
+const struct regions *gather_regions(struct final_gather *gather);
+int32_t region_of(struct final_gather *gather, int32_t leaf);
+
+/* True if it is one where light is looked for in the dark. */
+bool region_is_dark(struct final_gather *gather, int32_t region);
+
+/* True if little light comes to the patch, as the links or looks have it. */
+bool patch_is_dark(const struct final_gather *gather, int32_t patch);
+
+/* B less E, and H, of a patch, W/m^2 over all bands; H is NaN if it is black. */
+double patch_reflected(const struct forest *forest, int32_t patch);
+double patch_irradiance(const struct forest *forest, int32_t patch);
+
+/* True if little light comes to the receiver, a leaf, or to its region. */
 bool receiver_is_in_the_dark(const struct receiver *r);
 
 /* Adds `share` times the light of a node's lamps to a leaf in the dark, by `count` points
@@ -100,25 +128,26 @@ bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 
 void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t root,
                       double factor);
 
-/* Finds the bright roots that the receiver, a leaf in the dark, sees through narrow
+/* Finds the bright regions that the receiver, a leaf in the dark, sees through narrow
  * openings. */
 void receiver_find_openings(struct receiver *r);
 
-/* True if the root that was asked for last has any. */
+/* True if the region that was asked for last has any. */
 bool openings_are_known(const struct final_gather *gather);
 
-/* True if the root is one of them. */
-bool receiver_aims_through(const struct receiver *r, int32_t root);
+/* True if a leaf is in one of them. */
+bool receiver_aims_through(const struct receiver *r, int32_t leaf);
 
 /* Adds their light. */
 void receiver_aim_through(struct receiver *r);
 
-/* True if a root is large and in the dark. */
-bool root_is_dark(const struct final_gather *gather, int32_t root);
-
 /* Keeps the sums since the last call, and `source`, as light that lands at the point x;
  * does nothing where it is not to be caught. */
 void receiver_catch(struct receiver *r, struct vec3 x, struct rgb source);
+
+/* The part of the rays from a point of a region that end in the dark, 1. */
+double share_in_the_dark(struct final_gather *gather, int32_t region, struct vec3 x,
+                         uint64_t seed);
 
 /* Finds the sparks that a leaf in the dark sees. */
 void receiver_find_sparks(struct receiver *r);

@@ -10,10 +10,13 @@
 #include "geom/lambert.h"
 #include "rad/beyond/sequence.h"
 
-struct remainder remainder_start(const struct scene *scene, int32_t root)
+struct remainder remainder_start(const struct forest *forest, int32_t patch)
 {
-    return (struct remainder){.root = root, .triangle = scene_root_triangle(scene, root),
-                              .plane = scene_root_plane(scene, root), .hidden = -1};
+    int32_t root = (int32_t)forest->patches[patch].id.root;
+    return (struct remainder){.root = root,
+                              .triangle = forest_triangle(forest, patch),
+                              .plane = scene_root_plane(forest->scene, root),
+                              .hidden = -1};
 }
 
 bool remainder_learn(struct remainder *remainder, const struct scene *scene,

@@ -1,15 +1,15 @@
-/* What is seen of a root from a point past triangles that are known to hide parts of it:
+/* What is seen of a patch from a point past triangles that are known to hide parts of it:
  * its remainder. */
 #ifndef RAD_BEYOND_REMAINDER_H
 #define RAD_BEYOND_REMAINDER_H
 
 #include "geom/outlook.h"
-#include "geom/scene.h"
+#include "rad/patch.h"
 
 enum { BLOCKERS_MOST = 24 };
 
 struct remainder {
-    int32_t root;
+    int32_t root; /* of the patch */
     struct triangle triangle;
     struct plane plane;
     int32_t blockers[BLOCKERS_MOST]; /* [count] triangles in front of the plane */
@@ -17,13 +17,13 @@ struct remainder {
     struct outlook outlook;
     struct vec3 normal; /* of the surface that it is looked at from */
     int hidden;    /* blockers that have been cut out of the outlook; -1: there is none */
-    double whole;  /* factor of the root without blockers, 1 */
+    double whole;  /* factor of the patch without blockers, 1 */
     double before[OUTLOOK_PIECES + 1]; /* factors of the pieces before each, added up,
                                           1 */
 };
 
-/* All of the root. */
-struct remainder remainder_start(const struct scene *scene, int32_t root);
+/* All of the patch. */
+struct remainder remainder_start(const struct forest *forest, int32_t patch);
 
 /* True if the triangle is a blocker that was not known and is now. */
 bool remainder_learn(struct remainder *remainder, const struct scene *scene,

@@ -104,7 +104,11 @@ struct gather_counts {
     int64_t exact;          /* rows made without rays */
 };
 
-/* Bright roots that a root sees through narrow openings: gather_narrow.c. */
+/* Surfaces in the dark, and lit ones: gather_regions.c. */
+struct regions;
+void regions_free(struct regions *regions);
+
+/* Bright regions that one sees through narrow openings: gather_narrow.c. */
 struct openings;
 void openings_free(struct openings *openings);
 
@@ -118,6 +122,7 @@ struct gather_view {
     bool open;         /* proved: nothing stands between the root and any of `faced` */
     int32_t *faced;    /* [count], roots */
     int64_t count, capacity;
+    struct regions *regions;   /* NULL: none yet */
     struct openings *openings; /* NULL: none yet */
     struct sparks *sparks;     /* NULL: none yet */
     uint8_t *overlapped; /* [roots] 2: another overlaps it in its plane; 1: none does; 0:

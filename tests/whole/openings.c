@@ -37,12 +37,11 @@ static void add_rectangle(struct soup *soup, struct vec3 low, struct vec3 high, 
         soup_add_quad(soup, low, sign > 0 ? u : v, sign > 0 ? v : u, 1);
 }
 
-/* The walls of a room from x on without the one to the other room; `from` and `to`: the
- * hole in its ceiling. */
+/* The walls of a room from x on without the floor and the wall to the other room; `from`
+ * and `to`: the hole in its ceiling. */
 static void add_room(struct soup *soup, double x, int side, double from, double to)
 {
     double end = x + SIZE, far = side > 0 ? end : x;
-    add_rectangle(soup, point(x, 0, 0), point(end, SIZE, 0), 1);
     add_rectangle(soup, point(x, 0, 0), point(end, 0, SIZE), 1);
     add_rectangle(soup, point(x, SIZE, 0), point(end, SIZE, SIZE), -1);
     add_rectangle(soup, point(far, 0, 0), point(far, SIZE, SIZE), -side);
@@ -75,20 +74,30 @@ static void turn(struct soup *soup, int64_t first, int64_t by)
 
 static bool aims; /* leaves of the last solution have looked for openings */
 
+static void add_floor(struct soup *soup, double x, double end)
+{
+    add_rectangle(soup, point(x, 0, 0), point(end, SIZE, 0), 1);
+}
+
 /* Light that comes through an opening from y, z = `low` to `high` of a wall that is so
- * thick, faces in this order, W/m^2; NaN if it has not converged. */
-static double light_through(double thick, struct vec3 low, struct vec3 high, int order,
-                            const char *words)
+ * thick, faces in this order, W/m^2; NaN if it has not converged. If there is `one_floor`
+ * of both rooms, that of the other faces of the dark one. */
+static double light_through(double thick, struct vec3 low, struct vec3 high,
+                            bool one_floor, int order, const char *words)
 {
     struct soup soup = {0};
     double end = SIZE + thick;
+    if (!one_floor)
+        add_floor(&soup, end, end + SIZE);
     add_room(&soup, end, 1, SIZE, SIZE);
     add_wall(&soup, end, 1, low, high);
     turn(&soup, 0, 3 * order);
     int32_t dark = (int32_t)soup.count;
+    add_floor(&soup, 0.0, one_floor ? end + SIZE : SIZE);
     add_room(&soup, 0.0, -1, 1.2, 1.8);
     add_wall(&soup, SIZE, -1, low, high);
-    add_rectangle(&soup, point(SIZE, low.y, low.z), point(end, high.y, low.z), 1);
+    if (!one_floor)
+        add_rectangle(&soup, point(SIZE, low.y, low.z), point(end, high.y, low.z), 1);
     add_rectangle(&soup, point(SIZE, low.y, high.z), point(end, high.y, high.z), -1);
     add_rectangle(&soup, point(SIZE, low.y, low.z), point(end, low.y, high.z), 1);
     add_rectangle(&soup, point(SIZE, high.y, low.z), point(end, high.y, high.z), -1);
@@ -104,11 +113,13 @@ static double light_through(double thick, struct vec3 low, struct vec3 high, int
 }
 
 static void test_opening(const char *name, double thick, struct vec3 low,
-                         struct vec3 high, const char *words, double truth, double most)
+                         struct vec3 high, bool one_floor, const char *words,
+                         double truth, double most)
 {
     double sum = 0.0, worst = 0.0;
     for (int order = 0; order < ORDERS; order++) {
-        double off = light_through(thick, low, high, order, words) / truth - 1.0;
+        double light = light_through(thick, low, high, one_floor, order, words);
+        double off = light / truth - 1.0;
         sum += off / ORDERS;
         worst = fabs(off) <= worst ? worst : fabs(off);
     }
@@ -117,13 +128,13 @@ static void test_opening(const char *name, double thick, struct vec3 low,
     tap_ok(worst <= most, "and by %.2f %% at most", 100.0 * worst);
 }
 
-/* Eight points that a leaf aims at an opening cost more than so few rays. */
+/* The points that a leaf aims at an opening from cost more than so few rays. */
 static void test_few_rays(void)
 {
     struct vec3 low = point(0, 1.05, 0), high = point(0, 1.95, 0.015);
-    light_through(0.04, low, high, 0, "--final-gather 64");
+    light_through(0.04, low, high, false, 0, "--final-gather 64");
     bool many = aims;
-    light_through(0.04, low, high, 0, "--final-gather 63");
+    light_through(0.04, low, high, false, 0, "--final-gather 63");
     tap_ok(many && !aims, "leaves with 64 rays aim at openings, with 63 they do not");
 }
 
@@ -132,16 +143,20 @@ int main(int argc, char **argv)
     comm_start(&world_comm, &argc, &argv);
     struct vec3 low = point(0, 1.05, 0), high = point(0, 1.95, 0.015);
     struct vec3 key = point(0, 1.6, 1.0), end = point(0, 1.61, 1.03);
-    test_opening("gap below a door", 0.04, low, high, "", 2.505e-4, 0.09);
-    test_opening("gap below a thin door", 0.0, low, high, "", 9.422e-4, 0.06);
+    test_opening("gap below a door", 0.04, low, high, false, "", 2.505e-4, 0.09);
+    test_opening("gap over one floor", 0.04, low, high, true, "", 2.179e-4, 0.09);
+    test_opening("thin one", 0.0, low, high, true, "", 7.653e-4, 0.06);
+    test_opening("wide one", 0.1, low, high, true, "", 7.474e-5, 0.09);
+    test_opening("gap below a thin door", 0.0, low, high, false, "", 9.422e-4, 0.06);
     high.z = 0.06;
-    test_opening("gap four times as high", 0.04, low, high, "", 2.417e-3, 0.09);
-    test_opening("keyhole", 0.04, key, end, "--tolerance 1e-7", 2.938e-6, 0.03);
-    test_opening("keyhole in a thin wall", 0.0, key, end, "--tolerance 1e-7", 3.204e-5,
-                 0.03);
+    test_opening("gap four times as high", 0.04, low, high, false, "", 2.417e-3, 0.09);
+    test_opening("keyhole", 0.04, key, end, false, "--tolerance 1e-7", 2.938e-6, 0.03);
+    test_opening("keyhole in a thin wall", 0.0, key, end, false, "--tolerance 1e-7",
+                 3.204e-5, 0.03);
     key.z = 1.2;
     end.z = 1.21;
-    test_opening("pinhole in it", 0.0, key, end, "--tolerance 1e-7", 1.124e-5, 0.09);
+    test_opening("pinhole in it", 0.0, key, end, false, "--tolerance 1e-7", 1.124e-5,
+                 0.09);
     test_few_rays();
     comm_stop(&world_comm);
     return tap_done();

@@ -1,0 +1,149 @@
+/* Surfaces in the dark, and lit ones.
+ *
+ * Where a room is dark beside a lit one, its leaves look for light as others do not
+ * (gather_narrow.c, gather_sparks.c). What is dark or lit is often not a whole root: a
+ * floor that goes on below a door is one face. So a root is a region, but where it is not
+ * in the dark and a large part of it is, its children are, and so on. */
+#include "rad/beyond/receiver.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "geom/hash.h"
+
+/* A region is large that has this part of all area. */
+static const double LARGE = 1e-3;
+
+/* Points of a region that have room before them, or not: a distance whose square is more
+ * than this part of the area. */
+enum { POINTS = 8 };
+static const double WIDE = 0.04;
+
+double patch_irradiance(const struct forest *forest, int32_t patch)
+{
+    struct rgb rho = forest_material(forest, patch)->reflectance;
+    return BANDS * patch_reflected(forest, patch) / rgb_sum(rho);
+}
+
+double patch_reflected(const struct forest *forest, int32_t patch)
+{
+    return rgb_sum(forest->radiosity[patch]) -
+           rgb_sum(forest_material(forest, patch)->emission);
+}
+
+bool patch_is_dark(const struct final_gather *g, int32_t patch)
+{
+    double h = patch_irradiance(g->model->forest, patch); /* NaN if it is black */
+    return DARK_TIMES * h < g->mean;
+}
+
+/* The distance from a point of a surface up to the next one, scene units; 0 if that shows
+ * its back: then the point is inside of a thing. */
+static double room_before(struct final_gather *g, struct vec3 x, struct vec3 up)
+{
+    const struct scene *scene = g->model->scene;
+    struct octree_hit hit;
+    if (!octree_first_hit(g->model->octree, point_above(x, up), up, false, &hit,
+                          &g->view.counts))
+        return HUGE_VAL;
+    int32_t root = scene_root_on(scene, hit.triangle, hit.front);
+    if (root < 0)
+        return 0.0;
+    struct plane plane = scene_root_plane(scene, root);
+    return plane_distance(&plane, x) / -vec3_dot(plane.normal, up);
+}
+
+/* True if there is room before most of the region: else a thing stands on it, or it is in
+ * a gap that is narrow for it. */
+static bool is_in_a_room(struct final_gather *g, int32_t region)
+{
+    struct facet facet = facet_make(g->model->forest, region);
+    struct sequence sequence =
+        sequence_start(hash_mix(patch_seed(g->model->forest, region) + 65));
+    double u[SEQUENCE_DIMENSIONS];
+    int free = 0;
+    for (uint32_t i = 0; i < POINTS; i++) {
+        sequence_point(&sequence, i, u);
+        struct vec3 x = triangle_of_square(&facet.triangle, u[0], u[1]);
+        double room = room_before(g, x, facet.plane.normal);
+        free += room * room > WIDE * facet.area;
+    }
+    return 2 * free > POINTS;
+}
+
+static bool is_dark_room(struct final_gather *g, int32_t region)
+{
+    return forest_area(g->model->forest, region) >= LARGE * g->model->area &&
+           patch_is_dark(g, region) && is_in_a_room(g, region);
+}
+
+/* The area of leaves in the dark. */
+static double dark_area(const struct final_gather *g, int32_t patch)
+{
+    const struct patch *at = &g->model->forest->patches[patch];
+    double area = 0.0;
+    if (patch_is_leaf(at))
+        return patch_is_dark(g, patch) ? forest_area(g->model->forest, patch) : 0.0;
+    for (int k = 0; k < 4; k++)
+        area += dark_area(g, at->children + k);
+    return area;
+}
+
+static void name_leaves(struct regions *regions, const struct forest *forest,
+                        int32_t patch, int32_t region)
+{
+    const struct patch *at = &forest->patches[patch];
+    regions->of[patch] = region;
+    for (int k = 0; k < 4 && !patch_is_leaf(at); k++)
+        name_leaves(regions, forest, at->children + k, region);
+}
+
+static void add_regions(struct regions *regions, struct final_gather *g, int32_t patch)
+{
+    const struct forest *forest = g->model->forest;
+    const struct patch *at = &forest->patches[patch];
+    bool mixed = !patch_is_leaf(at) && !patch_is_dark(g, patch) &&
+                 dark_area(g, patch) >= LARGE * g->model->area;
+    for (int k = 0; k < 4 && mixed; k++)
+        add_regions(regions, g, at->children + k);
+    if (mixed)
+        return;
+    RESERVE(regions->items, &regions->capacity, regions->count + 1);
+    regions->items[regions->count++] = patch;
+    name_leaves(regions, forest, patch, patch);
+    regions->dark[patch] = is_dark_room(g, patch);
+}
+
+const struct regions *gather_regions(struct final_gather *g)
+{
+    const struct forest *forest = g->model->forest;
+    struct regions *regions = g->view.regions;
+    if (regions)
+        return regions;
+    regions = g->view.regions = alloc_array(1, sizeof *regions);
+    regions->of = alloc_array((size_t)forest->count, sizeof *regions->of);
+    regions->dark = alloc_array((size_t)forest->count, 1);
+    for (int32_t root = 0; root < forest->root_count; root++)
+        add_regions(regions, g, root);
+    return regions;
+}
+
+bool region_is_dark(struct final_gather *g, int32_t region)
+{
+    return gather_regions(g)->dark[region];
+}
+
+int32_t region_of(struct final_gather *g, int32_t leaf)
+{
+    return gather_regions(g)->of[leaf];
+}
+
+void regions_free(struct regions *regions)
+{
+    if (!regions)
+        return;
+    alloc_free(regions->items);
+    alloc_free(regions->of);
+    alloc_free(regions->dark);
+    alloc_free(regions);
+}
