@@ -355,7 +355,8 @@ static int splits_of(const struct looking *l, int32_t leaf, const struct rgb *al
         int levels = 1;
         double error = FALL * area * bends.band[c];
         bool dim = DIM * BANDS * all->band[c] < rgb_sum(*all);
-        for (; dim && error > MUCH * part * all->band[c]; error *= FALL)
+        for (; dim && levels < ID_MAX_LEVEL && error > MUCH * part * all->band[c];
+             error *= FALL)
             levels++;
         splits = levels > splits ? levels : splits;
     }

@@ -485,6 +485,7 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
     if (exact && receiver_add_exact(&r)) {
         r.row.lamps = light_of_lamps(&r);
     } else {
+        gather_find_sparks(gather);
         receiver_find_openings(&r);
         receiver_find_sparks(&r);
         r.light = (struct rgb){{0.0, 0.0, 0.0}};

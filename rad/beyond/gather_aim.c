@@ -281,7 +281,7 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
     int most = lamps->reflect ? (r->rays + RAYS_PER_AIMED - 1) / RAYS_PER_AIMED
                : dark         ? r->gather->rays
                               : r->rays;
-    r->shares.doubt = r->shares.doubt || dark;
+    r->shares.doubt = r->shares.doubt || dark || (!lamps->reflect && !lamps->alike);
     lamps_group(lamps, &r->facet, most, &r->gather->model->estimating);
     const struct lamp_groups *groups = &lamps->groups;
     if (!(groups->direct > 0.0))

@@ -103,30 +103,30 @@ static double look(struct receiver *r, struct remainder *remainder,
 }
 
 /* True if the remainder of a region can be seen from the receiver, and is so small that
- * few points of it tell more than many rays in all directions. */
+ * few points of it tell more than many rays in all directions. It is looked at from
+ * POINTS at least: one of them in the opening itself may see much of it. */
 static bool is_worth_aiming(struct receiver *r, struct opening *opening)
 {
     struct remainder *remainder = &opening->remainder;
     struct sequence sequence = sequence_start(
         hash_mix(r->seed) ^ patch_seed(r->gather->model->forest, opening->region));
     double sum = 0.0;
-    int count = 0, passed = 0; /* points since a blocker was learnt */
-    for (int i = 0; i < POINTS_LOOKED && passed < SEEN; i++, count++) {
+    int i = 0, passed = 0; /* since a blocker was learnt */
+    for (; i < POINTS_LOOKED && (passed < SEEN || i < POINTS); i++) {
         struct vec3 x, y;
         double seen = look(r, remainder, &sequence, i, &x, &y);
         int32_t blocker =
             seen > 0.0 ? receiver_first_blocker(r, x, y, remainder->root) : -1;
         if (blocker >= 0 &&
             remainder_learn(remainder, r->gather->model->scene, blocker)) {
-            count = passed = 0;
-            sum = 0.0;
+            passed = 0;
             i--;
             continue;
         }
-        sum += seen;
+        sum += blocker < 0 ? seen : 0.0;
         passed += seen > 0.0 && blocker < 0;
     }
-    return passed > 0 && sum * r->gather->rays < WORTH * count;
+    return passed > 0 && sum * r->gather->rays < WORTH * i;
 }
 
 struct apart apart_begin(const struct final_gather *g)
@@ -252,7 +252,7 @@ static void aim_at(struct receiver *r, struct opening *opening)
         double seen = look(r, remainder, &sequence, k, &x, &y);
         if (seen > 0.0 && receiver_blocker(r, x, y, remainder->root) < 0) {
             receiver_see(r, remainder->root, y, seen / points,
-                         hash_mix(seed + 1) + 256 * (uint64_t)k);
+                         hash_mix(seed ^ hash_mix((uint64_t)k)));
             receiver_catch(r, x, rgb_sub(r->row.source, source));
         }
         for (int c = 0; c < BANDS; c++) {

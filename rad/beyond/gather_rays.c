@@ -325,6 +325,8 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
             receiver_add_source(r, &weight, material->emission, 1.0);
         for (int c = 0; c < BANDS; c++)
             weight.band[c] *= material->reflectance.band[c];
+        if (!(rgb_sum(weight) > 0.0))
+            return;
         receiver_aim_beside(r, point.at, point.normal, point.input, &weight, seed);
         struct vec3 origin = point_above(point.at, point.normal);
         struct vec3 direction =
@@ -363,8 +365,10 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
     struct final_gather *g = r->gather;
     struct rgb emission = forest_material(g->model->forest, met->patch)->emission;
     if (!r->keeps || /* a look's leaves may have no places yet */
-        leaf_has_sparks(g, met->patch)) /* sparks tell how bright it is seen */
+        leaf_has_sparks(g, met->patch)) { /* sparks tell how bright it is seen */
+        r->shares.doubt = true;
         return;
+    }
     r->near = g->place[met->patch];
     g->near.items[r->near].area +=
         gather_units(r->facet.area / r->rays, g->near.unit_area);

@@ -47,10 +47,9 @@ static double room_before(struct final_gather *g, struct vec3 x, struct vec3 up)
                           &g->view.counts))
         return HUGE_VAL;
     int32_t root = scene_root_on(scene, hit.triangle, hit.front);
-    if (root < 0)
-        return 0.0;
-    struct plane plane = scene_root_plane(scene, root);
-    return plane_distance(&plane, x) / -vec3_dot(plane.normal, up);
+    struct plane plane = scene_root_plane(scene, root < 0 ? 0 : root);
+    double fall = -vec3_dot(plane.normal, up); /* above 0: a front is met */
+    return root >= 0 && fall > 0.0 ? plane_distance(&plane, x) / fall : 0.0;
 }
 
 /* True if there is room before most of the region: else a thing stands on it, or it is in
@@ -61,14 +60,14 @@ static bool is_in_a_room(struct final_gather *g, int32_t region)
     struct sequence sequence =
         sequence_start(hash_mix(patch_seed(g->model->forest, region) + 65));
     double u[SEQUENCE_DIMENSIONS];
-    int free = 0;
+    int roomy = 0;
     for (uint32_t i = 0; i < POINTS; i++) {
         sequence_point(&sequence, i, u);
         struct vec3 x = triangle_of_square(&facet.triangle, u[0], u[1]);
         double room = room_before(g, x, facet.plane.normal);
-        free += room * room > WIDE * facet.area;
+        roomy += room * room > WIDE * facet.area;
     }
-    return 2 * free > POINTS;
+    return 2 * roomy > POINTS;
 }
 
 static bool is_dark_room(struct final_gather *g, int32_t region)

@@ -227,21 +227,23 @@ static void choose_sparks(struct sparks *sparks, struct final_gather *g, uint64_
     for (int64_t i = 0; i < caught->count; i++)
         worth[i] = caught->items[i].power;
     choose(caught, worth, CANDIDATES, hash_unit(hash_mix(seed + 56)), &some);
-    for (int64_t i = 0; i < some.count; i++)
-        worth[i] = some.items[i].power *
-                   (LEAST_SENT + share_in_the_dark(g, some.items[i].region,
-                                                   some.items[i].at,
-                                                   hash_mix(seed + 64) + (uint64_t)i));
+    for (int64_t i = 0; i < some.count; i++) {
+        const struct spark *spark = &some.items[i];
+        double sent = share_in_the_dark(g, spark->region, spark->at,
+                                        hash_mix(hash_mix(seed + 64) + (uint64_t)i));
+        worth[i] = spark->power * (LEAST_SENT + sent);
+    }
     choose(&some, worth, SPARKS, hash_unit(hash_mix(seed + 57)), &sparks->chosen);
     list_free(&some);
     alloc_free(worth);
     caught->count = 0;
 }
 
-/* Finds the sparks of all large regions in the dark: each rank the same, so their work is
- * counted apart. */
-static void make_sparks(struct final_gather *g)
+/* Each rank finds the same, so their work is counted apart. */
+void gather_find_sparks(struct final_gather *g)
 {
+    if (g->view.sparks)
+        return;
     const struct forest *forest = g->model->forest;
     const struct regions *regions = gather_regions(g);
     struct sparks *sparks = alloc_array(1, sizeof *sparks);
@@ -310,8 +312,6 @@ void receiver_find_sparks(struct receiver *r)
 {
     struct final_gather *g = r->gather;
     int32_t from = region_of(g, r->row.leaf);
-    if (!g->view.sparks)
-        make_sparks(g);
     if (!(r->dark.least >= 0.0))
         return;
     if (g->view.sparks->from != from)

@@ -164,7 +164,9 @@ static int32_t add_lit(struct lamps *lamps, int32_t node)
 struct lamps lamps_create(const struct model *model, double least, bool reflect)
 {
     const struct cluster_tree *tree = model->clusters->tree;
-    struct lamps lamps = {.model = model, .least = least, .reflect = reflect};
+    struct lamps lamps = {.model = model, .least = least, .reflect = reflect,
+                          .alike = true};
+    const struct material *first = NULL;
     int32_t roots = scene_root_count(model->scene);
     lamps.sent = alloc_array((size_t)roots, sizeof *lamps.sent);
     lamps.before = alloc_array((size_t)tree->root_count + 1, sizeof *lamps.before);
@@ -172,6 +174,13 @@ struct lamps lamps_create(const struct model *model, double least, bool reflect)
         int32_t root = tree->roots[place];
         double sent = rgb_sum(lamp_light(&lamps, root));
         lamps.sent[root] = sent > least ? sent : 0.0;
+        if (sent > least) {
+            const struct material *m = scene_root_material(model->scene, root);
+            first = first ? first : m;
+            for (int c = 0; c < BANDS; c++)
+                lamps.alike =
+                    lamps.alike && m->emission.band[c] == first->emission.band[c];
+        }
         lamps.before[place + 1] =
             lamps.before[place] + scene_root_area(model->scene, root) * lamps.sent[root];
     }

@@ -33,6 +33,7 @@ struct lamps {
     const struct model *model; /* borrowed */
     double least;   /* a lamp sends more than this, summed over bands, W/m^2 */
     bool reflect;   /* bright roots: they send reflected light, and no emission */
+    bool alike;     /* all send the same, so that their light tells their form factor */
     double *sent;   /* [roots] sent by a lamp, over all bands, W/m^2; by others 0 */
     double *before; /* [tree->root_count + 1] power of the lamps before a place in the
                        tree's order, over all bands, W in square scene units */

@@ -9,7 +9,7 @@
 /* Sums over the rays of a receiver. */
 struct ray_sums {
     struct rgb h, squares, half[2]; /* of H, of H^2, of H by halves */
-    int aside[2];     /* rays that have met bright roots, by halves */
+    int aside[2];     /* rays that have met what is aimed at, by halves */
     int on_lamps;     /* rays that have met lamps first */
     struct rgb taken; /* H by the emission that these have not counted, below 0 */
     struct rgb *each; /* [rays] H by each ray is added to these; NULL: not wanted */
@@ -17,14 +17,14 @@ struct ray_sums {
 
 /* Shares of the view that are aimed at. */
 struct aimed_shares {
-    double bright; /* form factor of the bright roots, 1 */
+    double bright; /* form factor of bright roots and regions, 1 */
     double lit;    /* form factor of the lamps, as segments have found it, 1 */
     bool doubt;    /* that may be wrong: something hides a lamp, or it is near */
 };
 
 /* What a leaf in the dark looks for. */
 struct in_the_dark {
-    double least;           /* that roots reflect which are aimed at through openings,
+    double least;           /* that regions reflect which are aimed at through openings,
                                W/m^2; below 0: none is */
     struct sparks *catches; /* that keep the light which is aimed at; NULL: none do */
     struct sparks *sparks;  /* of which the leaf sees some; NULL: of none */
@@ -149,6 +149,10 @@ void receiver_catch(struct receiver *r, struct vec3 x, struct rgb source);
 double share_in_the_dark(struct final_gather *gather, int32_t region, struct vec3 x,
                          uint64_t seed);
 
+/* Finds the sparks of all large regions in the dark, once. It asks for the openings of
+ * these, so those of a leaf are to be found afterwards. */
+void gather_find_sparks(struct final_gather *gather);
+
 /* Finds the sparks that a leaf in the dark sees. */
 void receiver_find_sparks(struct receiver *r);
 
@@ -165,9 +169,8 @@ bool receiver_sees_sparks(const struct receiver *r, int32_t patch);
 void receiver_leave_out_sparks(struct receiver *r, int32_t patch, double weight);
 
 /* Adds the light of a point y of a root that is seen; the root has this form factor. The
- * light at the point is found by a path of a step: beside an opening a leaf is darker
- * than in the mean. On roots that are leaves, as in the depth of the opening, it goes
- * on. */
+ * light at the point is found by a path: beside an opening a leaf is darker than in the
+ * mean. It goes on until a ray ends far away for the size of the leaf there. */
 void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor,
                   uint64_t seed);
 
