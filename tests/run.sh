@@ -1,9 +1,9 @@
 #!/bin/sh
-# Runs all tests: the unit tests named as arguments, the corpora of the fuzz harnesses,
-# then the scripts tests/[0-9]*.sh in order. Each prints TAP lines; failures are shown,
-# and the last line is "N passed, N failed". A test that dies or ends without its plan
-# counts as one failure more. Called by `make check`, which sets BUILD, MPIEXEC, MPICC, CC
-# and MAKE.
+# Runs all tests: the unit tests named as arguments, the corpora of the fuzz harnesses and
+# the scripts tests/[0-9]*.sh, as many at a time as there are cores, but for those of many
+# ranks, one by one after them. Each prints TAP lines; failures are shown, and the last
+# line is "N passed, N failed". A test that dies or ends without its plan counts as one
+# failure more. Called by `make check`, which sets BUILD, MPIEXEC, MPICC, CC and MAKE.
 
 cd "$(dirname "$0")/.." || exit 2
 logs=$BUILD/tests/logs
@@ -44,15 +44,15 @@ run() {
     judge "$name" $?
 }
 
-# run_together NAME...: unit tests of one process, as many at a time as there are cores.
+# run_together FILE: runs the tests of the file's lines, "NAME COMMAND", side by side.
 run_together() {
-    printf '%s\n' "$@" | LOGS=$logs PROGRAMS=$BUILD/tests \
-        xargs -P "$(getconf _NPROCESSORS_ONLN || echo 1)" -I NAME sh -c \
-        'timeout -k 10 600 "$PROGRAMS/NAME" >"$LOGS/NAME.tap" 2>&1
-        echo $? >"$LOGS/NAME.status"'
-    for name in "$@"; do
+    xargs -P "$(getconf _NPROCESSORS_ONLN || echo 1)" -I LINE sh -c '
+        log=$1/${2%% *}
+        timeout -k 10 600 ${2#* } >"$log.tap" 2>&1
+        echo $? >"$log.status"' sh "$logs" LINE <"$1"
+    while read -r name command; do
         judge "$name" "$(cat "$logs/$name.status")"
-    done
+    done <"$1"
 }
 
 # run_on_ranks NAME P...: the unit test NAME with mpiexec, once for each number of ranks.
@@ -64,14 +64,25 @@ run_on_ranks() {
     done
 }
 
-alone=
-for test in "$@"; do
-    case $test in
-    linking | exchange | conjugate | exact | converge) ;;
-    *) alone="$alone $test" ;;
-    esac
-done
-run_together $alone
+{
+    for test in "$@"; do
+        case $test in
+        linking | exchange | conjugate | exact | converge) ;;
+        *) echo "$test $BUILD/tests/$test" ;;
+        esac
+    done
+    for harness in tests/fuzz/*.c; do
+        format=$(basename "$harness" .c)
+        echo "fuzz-$format $BUILD/tests/fuzz/$format tests/fuzz/corpus/$format/*"
+    done
+    for script in tests/[0-9]*.sh; do
+        case $script in
+        *-ranks.sh | *-restart.sh | *-faults.sh | *-pipes.sh) ;;
+        *) echo "$(basename "$script" .sh) sh $script" ;;
+        esac
+    done
+} >"$logs/together"
+run_together "$logs/together"
 for test in "$@"; do
     case $test in
     linking) run_on_ranks "$test" 1 3 7 ;;
@@ -87,11 +98,7 @@ for test in "$@"; do
         ;;
     esac
 done
-for harness in tests/fuzz/*.c; do
-    format=$(basename "$harness" .c)
-    run "fuzz-$format" "$BUILD/tests/fuzz/$format" tests/fuzz/corpus/"$format"/*
-done
-for script in tests/[0-9]*.sh; do
+for script in tests/*-ranks.sh tests/*-restart.sh tests/*-faults.sh tests/*-pipes.sh; do
     run "$(basename "$script" .sh)" sh "$script"
 done
 
