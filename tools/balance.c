@@ -24,7 +24,7 @@ static const double OFF = 0.01, OFF_BALANCE = 0.01, ABSURD = 1.5;
 static const double ABOVE = 1024.0 * GEOM_ROUNDING, HEIGHT = 0x1p-20;
 
 enum {
-    LAMP_RAYS = 10000, /* onto all lamps */
+    LAMP_RAYS = 1000,  /* onto all lamps */
     RAYS = 100000,     /* from all fronts that have light */
     CRACKS = 1         /* of these, so many may leave a closed scene */
 };
