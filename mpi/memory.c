@@ -20,12 +20,13 @@
 
 /* Bytes: a link with its share of the room that lists grow by; a patch with all that runs
  * along with the forest (ranges, vectors of the solver, caps) and the same. */
-enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 416, BYTES_PER_CLUSTER = 290 };
+enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 510, BYTES_PER_CLUSTER = 290 };
 
-/* Of a row of the final gather: rays that end on the same leaf have one term of 20 bytes,
- * three quarters of the patches are leaves, and the list grows by half. Exact rows, whose
- * terms are as many as what is seen openly, may take twice as much. */
-enum { BYTES_PER_RAY = 15 };
+/* Of a row of the final gather: three quarters of the patches are leaves; rays that end
+ * on the same leaf have one term of 20 bytes, and three more where B rises over it. That
+ * is 1 to 1.9 terms for each patch and ray in the Cornell box and in rooms, and 4.9 where
+ * most leaves look through an opening. */
+enum { BYTES_PER_RAY = 32 };
 
 /* The part of the machines' memory that links, patches and clusters may take. */
 static const double SHARE = 0.8;
