@@ -44,8 +44,9 @@ static const double NEAR_RAY = 0.05;
 static const double NEAR_OPENING = 16.0;
 
 /* A gap is narrow for a leaf if the square of its width is less than this part of the
- * leaf's area. */
-static const double NARROW = 0.04;
+ * leaf's area, and that of the distance at which a ray met the leaf less than so many of
+ * them: farther facets of a round thing are seen along their planes, with no gap. */
+static const double NARROW = 0.04, ALONG = 16.0;
 
 /* Two surfaces face each other across a gap if the cosine between their normals is
  * less. */
@@ -179,7 +180,8 @@ static bool is_too_near(const struct receiver *r, const struct point *met, struc
     struct vec3 apart = vec3_sub(leaf->middle, x), ray = vec3_sub(met->at, x);
     double width = vec3_dot(apart, met->normal);
     return vec3_dot(apart, apart) < near * area || vec3_dot(ray, ray) < NEAR_RAY * area ||
-           (width * width < NARROW * area && vec3_dot(normal, met->normal) < OPPOSITE);
+           (width * width < NARROW * area && vec3_dot(ray, ray) < ALONG * area &&
+            vec3_dot(normal, met->normal) < OPPOSITE);
 }
 
 static bool is_partly_covered(const struct final_gather *gather, int32_t leaf)
