@@ -29,10 +29,11 @@
 #include "rad/beyond/sequence.h"
 #include "rad/pushpull.h"
 
-/* A lamp emits more than LAMP times the mean radiosity or, where little is reflected,
- * BRIGHT times the mean that is reflected; a bright root reflects more than that. Where
- * all surfaces are alike, as in a furnace, there is none. */
-static const double LAMP = 1.1, BRIGHT = 4.0;
+/* A lamp emits more than GLOW times the mean radiosity, if surfaces that do so are LAMP
+ * times as bright as the mean; if not, more than LAMP times the mean: where all surfaces
+ * are as bright, as in a furnace, there is none. Where little is reflected, BRIGHT times
+ * the mean that is reflected is enough; a bright root reflects more than that. */
+static const double GLOW = 0.25, LAMP = 1.1, BRIGHT = 4.0;
 
 /* Where no more than this part of the surface emits, all of that is lamps: a dim one may
  * be all the light of a room beside a bright one, and rays would hardly find it. */
@@ -86,17 +87,35 @@ double forest_mean_reflected(const struct forest *forest)
     return sum / scene_area(forest->scene);
 }
 
+/* The surfaces that emit more than `least`, over all bands: their area, in square scene
+ * units, and the mean of their radiosity, W/m^2. */
+struct emitters {
+    double area, mean;
+};
+
+static struct emitters emitters_above(const struct model *model, double least)
+{
+    struct emitters all = {0.0, 0.0};
+    for (int32_t root = 0; root < scene_root_count(model->scene); root++) {
+        double area = scene_root_area(model->scene, root);
+        if (!(rgb_sum(scene_root_material(model->scene, root)->emission) > least))
+            continue;
+        all.area += area;
+        all.mean += area * rgb_sum(model->forest->radiosity[root]);
+    }
+    all.mean /= all.area > 0.0 ? all.area : 1.0;
+    return all;
+}
+
 /* A lamp emits more than this, over all bands, W/m^2. */
 static double least_of_lamps(const struct model *model)
 {
-    double area = 0.0;
-    for (int32_t root = 0; root < scene_root_count(model->scene); root++)
-        if (material_emits(scene_root_material(model->scene, root)))
-            area += scene_root_area(model->scene, root);
-    if (area <= FEW * model->area)
+    double mean = mean_radiosity(model);
+    if (emitters_above(model, 0.0).area <= FEW * model->area)
         return 0.0;
-    double reflected = forest_mean_reflected(model->forest);
-    return fmin(LAMP * mean_radiosity(model), BRIGHT * reflected);
+    bool glow = emitters_above(model, GLOW * mean).mean > LAMP * mean;
+    return fmin((glow ? GLOW : LAMP) * mean,
+                BRIGHT * forest_mean_reflected(model->forest));
 }
 
 /* Halves the rays for each fourfold of MANY leaves: a picture of them is as smooth as
