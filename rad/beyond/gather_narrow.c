@@ -41,6 +41,7 @@ struct openings {
     int64_t count, capacity;
     int32_t from;   /* region; -1: none yet */
     uint8_t *aimed; /* [patches] 1: one of the items */
+    uint8_t *known; /* [patches] 1: a large region in the dark aims at it */
 };
 
 bool receiver_is_in_the_dark(const struct receiver *r)
@@ -58,10 +59,10 @@ static double watts_of(const struct forest *forest, int32_t patch)
 }
 
 /* Finds the regions that reflect DARK_TIMES the irradiance, of those that the receiver
- * faces but is not in the dark with, largest senders first; [MOST_REGIONS]. Returns their
- * number. */
+ * faces but is not in the dark with, largest senders first; [MOST_REGIONS]. `among`,
+ * [patches]: 1 for those that may be found; NULL: all. Returns their number. */
 static int find_bright(struct final_gather *g, const struct facet *receiver,
-                       double irradiance, int32_t *bright)
+                       double irradiance, const uint8_t *among, int32_t *bright)
 {
     const struct forest *forest = g->model->forest;
     const struct regions *regions = gather_regions(g);
@@ -69,7 +70,7 @@ static int find_bright(struct final_gather *g, const struct facet *receiver,
     for (int64_t i = 0; i < regions->count; i++) {
         int32_t region = regions->items[i];
         if (!(patch_reflected(forest, region) > DARK_TIMES * irradiance) ||
-            region_is_dark(g, region))
+            region_is_dark(g, region) || (among && !among[region]))
             continue;
         struct facet facet = facet_make(forest, region);
         double watts = watts_of(forest, region);
@@ -155,10 +156,14 @@ static void examine_region(struct openings *openings, struct receiver *whole,
         RESERVE(openings->items, &openings->capacity, openings->count + 1);
         openings->items[openings->count++] = opening;
         openings->aimed[region] = 1;
+        if (region_is_dark(g, openings->from))
+            openings->known[region] = 1;
     }
     apart_end(g, &apart);
 }
 
+/* Small regions in the dark, as of furniture, look at what large ones aim at: of those
+ * all are examined before the first row is made, see gather_find_sparks(). */
 static void find_openings(struct openings *openings, const struct receiver *r,
                           int32_t from)
 {
@@ -169,12 +174,14 @@ static void find_openings(struct openings *openings, const struct receiver *r,
         openings->aimed[openings->items[i].region] = 0;
     openings->from = from;
     openings->count = 0;
-    if (!region_is_dark(g, from))
+    bool large = region_is_dark(g, from);
+    if (!large && !patch_is_dark(g, from))
         return;
     whole.facet = facet_make(forest, from);
     whole.seed = hash_mix(patch_seed(forest, from) + 32);
     int32_t bright[MOST_REGIONS];
-    int count = find_bright(g, &whole.facet, patch_irradiance(forest, from), bright);
+    int count = find_bright(g, &whole.facet, patch_irradiance(forest, from),
+                            large ? NULL : openings->known, bright);
     for (int i = 0; i < count; i++)
         examine_region(openings, &whole, bright[i]);
 }
@@ -191,6 +198,7 @@ void receiver_find_openings(struct receiver *r)
     if (!g->view.openings) {
         g->view.openings = alloc_array(1, sizeof *g->view.openings);
         g->view.openings->aimed = alloc_array((size_t)forest->count, 1);
+        g->view.openings->known = alloc_array((size_t)forest->count, 1);
         g->view.openings->from = -1;
     }
     int32_t from = region_of(g, r->row.leaf);
@@ -284,5 +292,6 @@ void openings_free(struct openings *openings)
         return;
     alloc_free(openings->items);
     alloc_free(openings->aimed);
+    alloc_free(openings->known);
     alloc_free(openings);
 }
