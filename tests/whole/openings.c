@@ -14,7 +14,8 @@
  *
  * Where one floor goes on below the door, and only whole faces look for light, its dark
  * end shows the mean of leaves that reach into the gap: there the other faces of the dark
- * room are up to 39 % too bright.
+ * room are up to 39 % too bright. Where only large ones aim, posts in the dark are 61 %
+ * too dark, and claim 11 %; the noise of what is true there is 0.7 %.
  *
  * The faces are in several orders, for each has rays and segments of its own. Over eight
  * of them single runs are off by 3 % RMS, so 9 % is three times that; by 2 % RMS below
@@ -83,37 +84,55 @@ static void add_floor(struct soup *soup, double x, double end)
     add_rectangle(soup, point(x, 0, 0), point(end, SIZE, 0), 1);
 }
 
+/* Adds two rooms, the triangles of the dark one first, and a lamp in the other, faces in
+ * this order. Returns the number behind those of the dark room, but for the floor if
+ * there is `one_floor` of both. */
+static int32_t add_rooms(struct soup *soup, double thick, struct vec3 low,
+                         struct vec3 high, bool one_floor, int order)
+{
+    double end = SIZE + thick;
+    int64_t first = soup->count;
+    if (!one_floor)
+        add_floor(soup, end, end + SIZE);
+    add_room(soup, end, 1, SIZE, SIZE);
+    add_wall(soup, end, 1, low, high);
+    turn(soup, first, 3 * order);
+    int32_t dark = (int32_t)soup->count;
+    add_floor(soup, 0.0, one_floor ? end + SIZE : SIZE);
+    add_room(soup, 0.0, -1, 1.2, 1.8);
+    add_wall(soup, SIZE, -1, low, high);
+    if (!one_floor)
+        add_rectangle(soup, point(SIZE, low.y, low.z), point(end, high.y, low.z), 1);
+    add_rectangle(soup, point(SIZE, low.y, high.z), point(end, high.y, high.z), -1);
+    add_rectangle(soup, point(SIZE, low.y, low.z), point(end, low.y, high.z), 1);
+    add_rectangle(soup, point(SIZE, high.y, low.z), point(end, high.y, high.z), -1);
+    turn(soup, dark, 3 * order);
+    paint(soup, 0.7, 0.0);
+    add_rectangle(soup, point(1.2, 1.2, SIZE), point(1.8, 1.8, SIZE), -1);
+    paint(soup, 0.0, 100.0);
+    return dark;
+}
+
+/* The mean radiosity of the first `count` triangles, W/m^2; NaN if it has not
+ * converged. */
+static double light_of(struct soup *soup, int32_t count, const char *words)
+{
+    struct solution s = solve_soup(soup, words);
+    double mean = s.vote.converged ? mean_radiosity(&s, 0, count) : NAN;
+    aims = s.solver->beyond->answer.gather.view.openings != NULL;
+    solution_free(&s);
+    return mean;
+}
+
 /* Light that comes through an opening from y, z = `low` to `high` of a wall that is so
- * thick, faces in this order, W/m^2; NaN if it has not converged. If there is `one_floor`
- * of both rooms, that of the other faces of the dark one. */
+ * thick, faces in this order. If there is `one_floor` of both rooms, that of the other
+ * faces of the dark one. */
 static double light_through(double thick, struct vec3 low, struct vec3 high,
                             bool one_floor, int order, const char *words)
 {
     struct soup soup = {0};
-    double end = SIZE + thick;
-    if (!one_floor)
-        add_floor(&soup, end, end + SIZE);
-    add_room(&soup, end, 1, SIZE, SIZE);
-    add_wall(&soup, end, 1, low, high);
-    turn(&soup, 0, 3 * order);
-    int32_t dark = (int32_t)soup.count;
-    add_floor(&soup, 0.0, one_floor ? end + SIZE : SIZE);
-    add_room(&soup, 0.0, -1, 1.2, 1.8);
-    add_wall(&soup, SIZE, -1, low, high);
-    if (!one_floor)
-        add_rectangle(&soup, point(SIZE, low.y, low.z), point(end, high.y, low.z), 1);
-    add_rectangle(&soup, point(SIZE, low.y, high.z), point(end, high.y, high.z), -1);
-    add_rectangle(&soup, point(SIZE, low.y, low.z), point(end, low.y, high.z), 1);
-    add_rectangle(&soup, point(SIZE, high.y, low.z), point(end, high.y, high.z), -1);
-    turn(&soup, dark, 3 * order);
-    paint(&soup, 0.7, 0.0);
-    add_rectangle(&soup, point(1.2, 1.2, SIZE), point(1.8, 1.8, SIZE), -1);
-    paint(&soup, 0.0, 100.0);
-    struct solution s = solve_soup(&soup, words);
-    double mean = s.vote.converged ? mean_radiosity(&s, 0, dark) : NAN;
-    aims = s.solver->beyond->answer.gather.view.openings != NULL;
-    solution_free(&s);
-    return mean;
+    int32_t dark = add_rooms(&soup, thick, low, high, one_floor, order);
+    return light_of(&soup, dark, words);
 }
 
 static void test_opening(const char *name, double thick, struct vec3 low,
@@ -130,6 +149,30 @@ static void test_opening(const char *name, double thick, struct vec3 low,
     tap_ok(fabs(sum) <= 0.03, "light through a %s is off by %+.2f %% in the mean", name,
            100.0 * sum);
     tap_ok(worst <= most, "and by %.2f %% at most", 100.0 * worst);
+}
+
+/* A post of 5 cm on the floor. */
+static void add_post(struct soup *soup, double x, double y)
+{
+    double end = x + 0.05, side = y + 0.05, top = 0.72;
+    add_rectangle(soup, point(x, y, 0), point(x, side, top), -1);
+    add_rectangle(soup, point(end, y, 0), point(end, side, top), 1);
+    add_rectangle(soup, point(x, y, 0), point(end, y, top), -1);
+    add_rectangle(soup, point(x, side, 0), point(end, side, top), 1);
+    add_rectangle(soup, point(x, y, top), point(end, side, top), 1);
+}
+
+/* Four posts in the dark room, each of their faces 1/3000 of all surface. */
+static void test_posts(double truth)
+{
+    struct vec3 low = point(0, 1.05, 0), high = point(0, 1.95, 0.015);
+    struct soup soup = {0};
+    for (int i = 0; i < 4; i++)
+        add_post(&soup, i & 1 ? 4.06 : 5.17, i & 2 ? 1.02 : 1.73);
+    int32_t posts = (int32_t)soup.count;
+    add_rooms(&soup, 0.04, low, high, false, 0);
+    double off = light_of(&soup, posts, "") / truth - 1.0;
+    tap_ok(fabs(off) <= 0.1, "posts in the dark are off by %+.2f %%", 100.0 * off);
 }
 
 /* The points that a leaf aims at an opening from cost more than so few rays. */
@@ -161,6 +204,7 @@ int main(int argc, char **argv)
     end.z = 1.21;
     test_opening("pinhole in it", 0.0, key, end, false, "--tolerance 1e-7", 1.124e-5,
                  0.09);
+    test_posts(4.743e-4);
     test_few_rays();
     comm_stop(&world_comm);
     return tap_done();
