@@ -360,6 +360,20 @@ static void end_path(struct receiver *r, const struct point *point, bool aimed,
         r->sums.taken.band[c] -= weight->band[c] * emission.band[c];
 }
 
+/* Adds the mean light of a leaf less its first light, which sparks bring. B slopes as the
+ * first light does, steeply where the leaf reaches into a gap: with the slope, the dark
+ * end less the mean first light would be below 0. */
+static void add_without_sparks(struct receiver *r, const struct point *point, bool aimed,
+                               const struct rgb *weight)
+{
+    receiver_add_patch(r, point->patch, weight);
+    if (aimed)
+        receiver_add_source(
+            r, weight, forest_material(r->gather->model->forest, point->patch)->emission,
+            -1.0);
+    receiver_leave_out_sparks(r, point->patch, weight->band[0]);
+}
+
 /* A row's ray begins a path: the leaf that it has met is too near. */
 static void begin_path(struct receiver *r, const struct point *met, bool aimed,
                        const struct rgb *weight)
@@ -408,8 +422,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         bool aimed = root_is_lamp(&r->gather->lamps, root) &&
                      (count == 1 || !receiver_lamp_is_near(scene, root, origin));
         if (count == 1 && receiver_sees_sparks(r, point.patch)) {
-            add_mesh(r, &point, aimed, &weight);
-            receiver_leave_out_sparks(r, point.patch, weight.band[0]);
+            add_without_sparks(r, &point, aimed, &weight);
             return;
         }
         if (count == PATH_MOST || !(is_too_near(r, &point, origin, normal) ||
