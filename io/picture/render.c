@@ -136,7 +136,7 @@ static void add_light(const struct renderer *renderer, const struct pixel_roots 
     }
     struct gather_points points = {.at = view->at, .count = count,
                                    .middle = facade_point(&facade, middle),
-                                   .input = scene_input_of(scene, view->roots[0]),
+                                   .root = view->roots[0],
                                    .above = facade.curved};
     points.plane = facade_plane(&facade, middle, points.middle);
     bool whole = view->whole[0] > 0;

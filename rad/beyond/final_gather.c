@@ -396,10 +396,12 @@ static void keep_terms(struct receiver *r)
 
 /* --- public --- */
 
-static struct receiver receiver_make(struct final_gather *gather, struct facet facet,
-                                     uint64_t seed, int rays)
+/* A receiver on the patch. */
+static struct receiver receiver_make(struct final_gather *gather, int32_t patch,
+                                     struct facet facet, uint64_t seed, int rays)
 {
     return (struct receiver){.gather = gather, .facet = facet, .seed = seed,
+                             .row = {.leaf = patch},
                              .along = direction_along(facet.plane.normal), .rays = rays,
                              .near = -1, .dark = {.least = -1.0}};
 }
@@ -412,7 +414,7 @@ uint64_t patch_seed(const struct forest *forest, int32_t patch)
 
 struct receiver receiver_of_leaf(struct final_gather *gather, int32_t leaf, int rays)
 {
-    return receiver_make(gather, facet_make(gather->model->forest, leaf),
+    return receiver_make(gather, leaf, facet_make(gather->model->forest, leaf),
                          patch_seed(gather->model->forest, leaf), rays);
 }
 
@@ -448,6 +450,7 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     struct gather_look look = {.noise = 0.0f};
     const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
     struct rgb *each = alloc_array((size_t)rays, sizeof *each);
+    uint64_t seed = hash_mix(patch_seed(forest, leaf) + 1);
     double variance = 0.0;
     int64_t before = model_work(gather->model), fixed = gather->model->estimating;
     for (int k = 0; k < 4; k++) {
@@ -455,7 +458,7 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
         quarter.triangle = triangle_child(&facet.triangle, k);
         quarter.area = 0.25 * facet.area;
         struct receiver r =
-            receiver_make(gather, quarter, hash_mix(patch_seed(forest, leaf) + 1), rays);
+            receiver_make(gather, leaf, quarter, seed, rays);
         r.sums.each = each;
         receiver_aim(&r);
         receiver_fire(&r);
@@ -499,7 +502,6 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool 
 {
     struct receiver r = receiver_of_leaf(gather, leaf, rays);
     r.keeps = true;
-    r.row = (struct gather_row){.leaf = leaf};
     gather->sums.count = gather->sums.first = 0;
     if (exact && receiver_add_exact(&r)) {
         r.row.lamps = light_of_lamps(&r);
@@ -538,8 +540,8 @@ struct gather_light final_gather_at(struct final_gather *gather,
     struct vec3 x = points->middle;
     struct facet facet = {.triangle = {{x, x, x}},
                           .plane = points->plane,
-                          .input = points->input};
-    struct receiver r = receiver_make(gather, facet, hash_mix(seed), count);
+                          .input = scene_input_of(gather->model->scene, points->root)};
+    struct receiver r = receiver_make(gather, points->root, facet, hash_mix(seed), count);
     struct gather_light light = {.variance = 0.0};
     r.points = points;
     receiver_aim(&r);

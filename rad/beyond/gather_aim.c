@@ -272,7 +272,15 @@ static int deal(struct dealing *dealing, double direct)
     return (int)(floor(dealing->sum) - before);
 }
 
-/* Segments are dealt to the groups in proportion to their light. A group that is sure to
+/* The irradiance that lamps can bring the receiver: that of its patch. */
+static double most_light(const struct receiver *r)
+{
+    double h = patch_irradiance(r->gather->model->forest, r->row.leaf);
+    return h > 0.0 ? h : HUGE_VAL; /* NaN if it is black */
+}
+
+/* Segments are dealt to the groups in proportion to the light that they can bring: lamps
+ * behind walls, however bright, leave some for those in the room. A group that is sure to
  * get one counts with its own light, shared among its segments. The others are dealt
  * theirs apart, a whole number, so that together they count with their own light. */
 void receiver_aim_at(struct receiver *r, struct lamps *lamps)
@@ -282,23 +290,24 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
                : dark         ? r->gather->rays
                               : r->rays;
     r->shares.doubt = r->shares.doubt || dark || (!lamps->reflect && !lamps->alike);
-    lamps_group(lamps, &r->facet, most, &r->gather->model->estimating);
+    lamps_group(lamps, &r->facet, most, most_light(r), &r->gather->model->estimating);
     const struct lamp_groups *groups = &lamps->groups;
-    if (!(groups->direct > 0.0))
+    if (!(groups->worth > 0.0))
         return;
-    double each = groups->direct / most, start = hash_unit(r->seed + 16), faint = 0.0;
+    double each = groups->worth / most, start = hash_unit(r->seed + 16), faint = 0.0;
     for (int64_t i = 0; i < groups->count; i++)
-        faint += groups->items[i].direct < each ? groups->items[i].direct : 0.0;
+        faint += groups->items[i].worth < each ? groups->items[i].worth : 0.0;
     struct dealing strong = {each, start}, weak = {faint / ceil(faint / each), start};
     struct volley volley = {.direct = {0.0, 0.0}};
     struct rgb light = {{0.0, 0.0, 0.0}};
     for (int64_t i = 0; i < groups->count; i++) {
         const struct lamp_group *group = &groups->items[i];
-        bool sure = group->direct >= each;
-        int count = group->direct > 0.0 ? deal(sure ? &strong : &weak, group->direct) : 0;
+        bool sure = group->worth >= each;
+        int count = group->worth > 0.0 ? deal(sure ? &strong : &weak, group->worth) : 0;
         if (count == 0)
             continue;
-        double direct = sure ? group->direct : count * weak.each;
+        double direct =
+            group->direct * (sure ? 1.0 : count * weak.each / group->worth);
         if (is_wide(r, lamps, group, count)) {
             aim_at_wide_lamp(r, count, group->node, direct);
             continue;

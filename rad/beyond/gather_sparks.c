@@ -177,7 +177,6 @@ static void catch_light(struct sparks *sparks, struct final_gather *g, int32_t p
     struct receiver r = receiver_of_leaf(g, patch, g->rays);
     int64_t begin = sparks->caught.count;
     r.keeps = true;
-    r.row = (struct gather_row){.leaf = patch};
     r.dark.catches = sparks;
     g->sums.count = g->sums.first = 0;
     receiver_find_openings(&r);

@@ -204,22 +204,44 @@ double lamps_power(const struct lamps *lamps)
 
 /* --- groups --- */
 
-static void add_group(struct lamp_groups *groups, struct lamp_group group)
-{
-    RESERVE(groups->items, &groups->capacity, groups->count + 1);
-    groups->items[groups->count++] = group;
-    groups->direct += group.direct;
-    groups->around += group.around;
-}
-
 /* The leaf that lamps are grouped for. */
 struct lit {
     const struct facet *facet;
     struct vec3 centroid;
     double radius;
     double small; /* radius of a cluster that is a group over its distance, and */
-    double most;  /* its direct light, W/m^2, at most */
+    double each;  /* its direct light, W/m^2, at most */
+    double most;  /* that the lamps of a node are worth, W/m^2 */
 };
+
+static void sum_up(struct lamp_groups *groups, int64_t first)
+{
+    groups->worth = groups->around = 0.0;
+    for (int64_t i = first; i < groups->count; i++) {
+        groups->worth += groups->items[i].worth;
+        groups->around += groups->items[i].around;
+    }
+}
+
+/* Makes the groups from number `first` on worth no more than `most` together, and chosen
+ * from beside the leaf as if they brought no more there. */
+static void limit(struct lamp_groups *groups, int64_t first, double most)
+{
+    sum_up(groups, first);
+    double direct = real_min(1.0, most / groups->worth),
+           around = real_min(1.0, most / groups->around);
+    for (int64_t i = first; i < groups->count; i++) {
+        groups->items[i].worth *= direct;
+        groups->items[i].around *= around;
+    }
+}
+
+static void add_group(struct lamp_groups *groups, struct lamp_group group)
+{
+    group.worth = group.direct;
+    RESERVE(groups->items, &groups->capacity, groups->count + 1);
+    groups->items[groups->count++] = group;
+}
 
 /* About the cosine between a plane's normal and the way to a lamp. */
 static double cosine_to(const struct plane *plane, struct vec3 apart, double distance2)
@@ -258,7 +280,7 @@ static void add_cluster(const struct lamps *lamps, const struct lit *leaf,
             facing * cluster->watts / real_max(PI * distance2, leaf->facet->area);
         if (!away && vec3_dot(apart, plane->normal) + reach > 0.0)
             group.direct = cosine_to(plane, apart, distance2) * group.around;
-        if (group.direct <= leaf->most) {
+        if (group.direct <= leaf->each) {
             add_group(groups, group);
             return;
         }
@@ -290,25 +312,29 @@ static void add_root(const struct lamps *lamps, const struct lit *leaf, int32_t 
 static void add_child(const struct lamps *lamps, const struct lit *leaf, int32_t child,
                       struct lamp_groups *groups, int64_t *work)
 {
+    int64_t first = groups->count;
     if (child < 0)
         add_cluster(lamps, leaf, &lamps->lit[~child], groups, work);
     else
         add_root(lamps, leaf, child, groups, work);
+    limit(groups, first, leaf->most);
 }
 
-void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments,
+void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments, double most,
                  int64_t *work)
 {
     struct lamp_groups *groups = &lamps->groups;
-    struct lit lit = {leaf, triangle_centroid(&leaf->triangle),
-                      triangle_radius(&leaf->triangle), SMALL_AT_FIRST, HUGE_VAL};
+    struct lit lit = {.facet = leaf, .centroid = triangle_centroid(&leaf->triangle),
+                      .radius = triangle_radius(&leaf->triangle),
+                      .small = SMALL_AT_FIRST, .each = HUGE_VAL, .most = HUGE_VAL};
     for (int pass = 0; pass < 2; pass++) {
         groups->count = 0;
-        groups->direct = groups->around = 0.0;
         if (lamps->lit_count > 0)
             add_cluster(lamps, &lit, lamps->lit, groups, pass == 0 ? NULL : work);
+        sum_up(groups, 0);
         lit.small = SMALL;
-        lit.most = groups->direct / segments;
+        lit.most = most;
+        lit.each = groups->worth / segments;
     }
 }
 

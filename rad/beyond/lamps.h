@@ -10,13 +10,14 @@
 struct lamp_group {
     int32_t node;
     double direct; /* irradiance of the leaf, about, over all bands, unoccluded, W/m^2 */
-    double around; /* the same for a surface beside the leaf that faces the group */
+    double worth;  /* the same, but no more than the leaf may have; and */
+    double around; /* for a surface beside the leaf that faces the group */
 };
 
 struct lamp_groups {
     struct lamp_group *items; /* [count] */
     int64_t count, capacity;
-    double direct, around;    /* sums */
+    double worth, around;     /* sums */
 };
 
 /* A cluster that has lamps, as a leaf asks for it. */
@@ -66,8 +67,9 @@ static inline bool root_is_lamp(const struct lamps *lamps, int32_t root)
 
 /* Finds the groups of lamps that a leaf tells apart by so many segments, in the tree's
  * order: each is a root, or a cluster that is small for its distance and would get about
- * one segment at most. Adds the tests that it took to `work`. */
-void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments,
+ * one segment at most. None is worth more than `most` to it, W/m^2. Adds the tests that
+ * it took to `work`. */
+void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments, double most,
                  int64_t *work);
 
 /* A lamp of the group, by the power that it emits; `u` in [0, 1) chooses. */

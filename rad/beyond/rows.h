@@ -155,7 +155,7 @@ struct gather_points {
     int count;
     struct vec3 middle;
     struct plane plane; /* of the surface, at the middle */
-    int32_t input;      /* triangle of the points */
+    int32_t root;       /* that the points are on */
     bool above;         /* they lie a little above it, so that it may hide lamps */
 };
 

@@ -216,7 +216,7 @@ static double rest_at_last(struct trial *g, const uint8_t *open, int rays)
     struct vec3 x = triangle_centroid(&t);
     struct gather_points points = {.at = &x, .count = 1, .middle = x,
                                    .plane = scene_root_plane(scene, last),
-                                   .input = scene_input_of(scene, last)};
+                                   .root = last};
     if (open)
         final_gather_set_partly_covered(&g->gather, open);
     return final_gather_at(&g->gather, &points, 1, rays, true).rest.band[0];

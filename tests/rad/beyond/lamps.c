@@ -284,7 +284,7 @@ static void test_window(bool sill)
     struct vec3 x = scene_from_input(g.s.scene, floor);
     struct gather_points points = {.at = &x, .count = 1, .middle = x,
                                    .plane = scene_root_plane(g.s.scene, input),
-                                   .input = scene_input_of(g.s.scene, input)};
+                                   .root = input};
     double exact = point_polygon_factor(floor, z, window, 4), worst = 0.0;
     for (uint64_t run = 0; run < RUNS; run++) {
         struct rgb h =
