@@ -30,7 +30,7 @@ struct shading {
 /* Prepares the shading of a solution. `open`: of open_parts_survey(). NULL gives flat
  * shading: each leaf has three vertices of its own with its constant. `less`: [patches]
  * radiosity to subtract, W/m^2: that by the light of lamps, with its shadows; or NULL.
- * `error`: [patches] two standard deviations of the radiosity of leaves, W/m^2, or NULL;
+ * `error`: [patches] that of the radiosity of leaves, as in the mesh, W/m^2, or NULL;
  * heeded only if there is `less`. Vertices are numbered in the canonical order of leaves:
  * the same on every rank. */
 struct shading *shading_create(const struct forest *forest, const struct rgb *less,
