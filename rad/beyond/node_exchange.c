@@ -38,10 +38,10 @@ static uint64_t seed_of(const struct meeting *m, int salt)
     return hash_mix(hash_mix(id_number(m->p->id) + (uint64_t)salt) ^ id_number(m->q->id));
 }
 
-/* The part of a root in which a sample lies. */
-struct region {
+/* The triangle in which a sample lies: a root, or a quarter of a patch. */
+struct ground {
     int32_t root;
-    struct triangle triangle; /* the root, or a quarter of a patch */
+    struct triangle triangle;
     struct vec3 normal;
 };
 
@@ -55,8 +55,8 @@ static int32_t root_by_area(const struct cluster_tree *tree,
 }
 
 /* In child k of an end: a quarter of a patch, or a root of a cluster, chosen by area. */
-static struct region region_in(const struct model *model, const struct end *end, int k,
-                           uint64_t seed)
+static struct ground ground_in(const struct model *model, const struct end *end, int k,
+                               uint64_t seed)
 {
     const struct cluster_tree *tree = model->clusters->tree;
     int32_t root = (int32_t)end->id.root;
@@ -66,7 +66,7 @@ static struct region region_in(const struct model *model, const struct end *end,
                    ? root_by_area(tree, &tree->clusters[~child], hash_unit(seed))
                    : child;
     }
-    return (struct region){root,
+    return (struct ground){root,
                          end->cluster ? scene_root_triangle(model->scene, root)
                                       : triangle_child(&end->facet.triangle, k),
                          scene_root_plane(model->scene, root).normal};
@@ -85,9 +85,9 @@ static int sample_children(const struct model *model, const struct end *end,
     int count = 0;
     for (; count < SAMPLES && end_child_area(model, end, count) > 0.0; count++) {
         uint64_t own = seed + 4 * (uint64_t)count;
-        struct region region = region_in(model, end, count, own);
+        struct ground ground = ground_in(model, end, count, own);
         samples[count] = (struct sample){
-            region.root, triangle_sample(&region.triangle, own + 1), region.normal};
+            ground.root, triangle_sample(&ground.triangle, own + 1), ground.normal};
     }
     return count;
 }
@@ -159,9 +159,9 @@ static void look_nearby(struct model *model, const struct meeting *m, uint64_t s
     for (int a = 0; a < SAMPLES && end_child_area(model, from, a) > 0.0; a++)
         for (int ring = 0; ring < RINGS; ring++) {
             uint64_t own = seed + 64 + 8 * (uint64_t)(RINGS * a + ring);
-            struct region region = region_in(model, from, a, own);
+            struct ground ground = ground_in(model, from, a, own);
             struct half_line ray =
-                ray_sample(&region.triangle, region.normal, own + 1, ring, RINGS);
+                ray_sample(&ground.triangle, ground.normal, own + 1, ring, RINGS);
             int32_t root = root_met(model->scene, model->octree, &ray, -1,
                                      &model->counts);
             int b = cluster_child_at(model->clusters->tree, to->cluster, root);

@@ -90,7 +90,7 @@ enum { DARK_TIMES = 30 };
 struct regions {
     int32_t *items; /* [count] patches, in the order of roots, depth first */
     int64_t count, capacity;
-    int32_t *of;    /* [patches] the region that a leaf is in */
+    int32_t *of;    /* [patches] the region of a leaf; of others, nothing */
     uint8_t *dark;  /* [patches] 1: a region, large, in the dark and not in a gap */
 };
 const struct regions *gather_regions(struct final_gather *gather);
