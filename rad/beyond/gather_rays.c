@@ -342,7 +342,7 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
         aimed = root_is_lamp(&g->lamps, root) &&
                 !receiver_lamp_is_near(forest->scene, root, origin);
         struct vec3 ray = vec3_sub(point.at, origin);
-        near = vec3_dot(ray, ray) < NEAR_OPENING * forest_area(forest, point.patch);
+        near = vec3_dot(ray, ray) < NEAR_OPENING * g->near.leaves[point.patch].area;
     }
     add_mesh(r, &point, aimed, &weight);
 }

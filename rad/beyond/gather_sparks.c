@@ -222,7 +222,7 @@ static void choose(const struct spark_list *list, const double *worth, int wante
 static void choose_sparks(struct sparks *sparks, struct final_gather *g, uint64_t seed)
 {
     struct spark_list *caught = &sparks->caught, some = {0};
-    double *worth = alloc_array((size_t)caught->count + CANDIDATES, sizeof *worth);
+    double *worth = alloc_array((size_t)caught->count, sizeof *worth);
     for (int64_t i = 0; i < caught->count; i++)
         worth[i] = caught->items[i].power;
     choose(caught, worth, CANDIDATES, hash_unit(hash_mix(seed + 56)), &some);
