@@ -167,6 +167,7 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
         volley->count[half]++;
     }
     double sum = all[0] + all[1];
+    r->shares.doubt = r->shares.doubt || !(sum > 0.0);
     for (int half = 0; half < 2 && sum > 0.0; half++) {
         volley->direct[half] += direct * (all[half] / sum);
         volley->seen[half] += direct * (seen[half] / sum);
