@@ -4,10 +4,11 @@
  * and one ray in ten thousand finds it. For a leaf all that is lit there is a lamp,
  * whatever it is in the whole scene. So a large region in the dark (gather_regions.c) is
  * examined once: which bright regions can be seen from it past the blockers that a few
- * segments find, as with wide lamps (gather_wide.c)? At those its leaves aim, each at the
- * remainder of the region behind the blockers, and rays that meet one are put aside, as
- * with bright roots. The examination decides only how light is looked for, and from other
- * points, so answers are right in the mean.
+ * segments find, as with wide lamps (gather_wide.c)? Of small ones, as of furniture, it
+ * is asked which of those they see. At these the leaves of a region aim, each at the
+ * remainder of the bright one behind the blockers, and rays that meet one are put aside,
+ * as with bright roots. The examination decides only how light is looked for, and from
+ * other points, so answers are right in the mean.
  *
  * Of a region that is behind many things, such as furniture, not just a few walls, too
  * much stays hidden in the remainder: if no point of it is seen, it is left to rays. */
@@ -41,7 +42,8 @@ struct openings {
     int64_t count, capacity;
     int32_t from;   /* region; -1: none yet */
     uint8_t *aimed; /* [patches] 1: one of the items */
-    uint8_t *known; /* [patches] 1: a large region in the dark aims at it */
+    int32_t *known; /* [known_count] regions that large ones in the dark aim at */
+    int64_t known_count, known_capacity;
 };
 
 bool receiver_is_in_the_dark(const struct receiver *r)
@@ -59,18 +61,18 @@ static double watts_of(const struct forest *forest, int32_t patch)
 }
 
 /* Finds the regions that reflect DARK_TIMES the irradiance, of those that the receiver
- * faces but is not in the dark with, largest senders first; [MOST_REGIONS]. `among`,
- * [patches]: 1 for those that may be found; NULL: all. Returns their number. */
+ * faces but is not in the dark with, largest senders first; [MOST_REGIONS]. They are
+ * among so many. Returns their number. */
 static int find_bright(struct final_gather *g, const struct facet *receiver,
-                       double irradiance, const uint8_t *among, int32_t *bright)
+                       double irradiance, const int32_t *among, int64_t so_many,
+                       int32_t *bright)
 {
     const struct forest *forest = g->model->forest;
-    const struct regions *regions = gather_regions(g);
     int count = 0;
-    for (int64_t i = 0; i < regions->count; i++) {
-        int32_t region = regions->items[i];
+    for (int64_t i = 0; i < so_many; i++) {
+        int32_t region = among[i];
         if (!(patch_reflected(forest, region) > DARK_TIMES * irradiance) ||
-            region_is_dark(g, region) || (among && !among[region]))
+            region_is_dark(g, region))
             continue;
         struct facet facet = facet_make(forest, region);
         double watts = watts_of(forest, region);
@@ -145,6 +147,15 @@ void apart_end(struct final_gather *g, const struct apart *apart)
     g->counts = apart->rays;
 }
 
+static void make_known(struct openings *openings, int32_t region)
+{
+    for (int64_t i = 0; i < openings->known_count; i++)
+        if (openings->known[i] == region)
+            return;
+    RESERVE(openings->known, &openings->known_capacity, openings->known_count + 1);
+    openings->known[openings->known_count++] = region;
+}
+
 /* Each rank that has a leaf of the region finds the same. */
 static void examine_region(struct openings *openings, struct receiver *whole,
                            int32_t region)
@@ -157,13 +168,12 @@ static void examine_region(struct openings *openings, struct receiver *whole,
         openings->items[openings->count++] = opening;
         openings->aimed[region] = 1;
         if (region_is_dark(g, openings->from))
-            openings->known[region] = 1;
+            make_known(openings, region);
     }
     apart_end(g, &apart);
 }
 
-/* Small regions in the dark, as of furniture, look at what large ones aim at: of those
- * all are examined before the first row is made, see gather_find_sparks(). */
+/* Large regions are all examined before the first row is made: gather_find_sparks(). */
 static void find_openings(struct openings *openings, const struct receiver *r,
                           int32_t from)
 {
@@ -180,8 +190,10 @@ static void find_openings(struct openings *openings, const struct receiver *r,
     whole.facet = facet_make(forest, from);
     whole.seed = hash_mix(patch_seed(forest, from) + 32);
     int32_t bright[MOST_REGIONS];
+    const struct regions *all = gather_regions(g);
     int count = find_bright(g, &whole.facet, patch_irradiance(forest, from),
-                            large ? NULL : openings->known, bright);
+                            large ? all->items : openings->known,
+                            large ? all->count : openings->known_count, bright);
     for (int i = 0; i < count; i++)
         examine_region(openings, &whole, bright[i]);
 }
@@ -198,7 +210,6 @@ void receiver_find_openings(struct receiver *r)
     if (!g->view.openings) {
         g->view.openings = alloc_array(1, sizeof *g->view.openings);
         g->view.openings->aimed = alloc_array((size_t)forest->count, 1);
-        g->view.openings->known = alloc_array((size_t)forest->count, 1);
         g->view.openings->from = -1;
     }
     int32_t from = region_of(g, r->row.leaf);

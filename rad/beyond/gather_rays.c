@@ -44,9 +44,13 @@ static const double NEAR_RAY = 0.05;
 static const double NEAR_OPENING = 16.0;
 
 /* A gap is narrow for a leaf if the square of its width is less than this part of the
- * leaf's area, and that of the distance at which a ray met the leaf less than so many of
- * them: farther facets of a round thing are seen along their planes, with no gap. */
-static const double NARROW = 0.04, ALONG = 16.0;
+ * leaf's area. */
+static const double NARROW = 0.04;
+
+/* A ray has met a leaf in a gap only if the square of the ray's length is less than this
+ * times the leaf's area: small facets of a round thing far away are seen along their
+ * planes, with no gap. */
+static const double ALONG = 16.0;
 
 /* Two surfaces face each other across a gap if the cosine between their normals is
  * less. */

@@ -209,9 +209,9 @@ struct lit {
     const struct facet *facet;
     struct vec3 centroid;
     double radius;
-    double small; /* radius of a cluster that is a group over its distance, and */
-    double each;  /* its direct light, W/m^2, at most */
-    double most;  /* that the lamps of a node are worth, W/m^2 */
+    double small; /* a group's radius over its distance, at most */
+    double each;  /* a cluster's direct light, at most, if it is a group, W/m^2 */
+    double most;  /* worth of the lamps of a node below the top, at most, W/m^2 */
 };
 
 static void sum_up(struct lamp_groups *groups, int64_t first)
@@ -223,16 +223,16 @@ static void sum_up(struct lamp_groups *groups, int64_t first)
     }
 }
 
-/* Makes the groups from number `first` on worth no more than `most` together, and chosen
- * from beside the leaf as if they brought no more there. */
+/* Makes the groups from number `first` on, those of a node, worth no more than `most`, on
+ * the leaf and beside it. */
 static void limit(struct lamp_groups *groups, int64_t first, double most)
 {
     sum_up(groups, first);
-    double direct = real_min(1.0, most / groups->worth),
-           around = real_min(1.0, most / groups->around);
+    double on_leaf = real_min(1.0, most / groups->worth),
+           beside = real_min(1.0, most / groups->around);
     for (int64_t i = first; i < groups->count; i++) {
-        groups->items[i].worth *= direct;
-        groups->items[i].around *= around;
+        groups->items[i].worth *= on_leaf;
+        groups->items[i].around *= beside;
     }
 }
 
@@ -326,14 +326,13 @@ void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments, do
     struct lamp_groups *groups = &lamps->groups;
     struct lit lit = {.facet = leaf, .centroid = triangle_centroid(&leaf->triangle),
                       .radius = triangle_radius(&leaf->triangle),
-                      .small = SMALL_AT_FIRST, .each = HUGE_VAL, .most = HUGE_VAL};
+                      .small = SMALL_AT_FIRST, .each = HUGE_VAL, .most = most};
     for (int pass = 0; pass < 2; pass++) {
         groups->count = 0;
         if (lamps->lit_count > 0)
             add_cluster(lamps, &lit, lamps->lit, groups, pass == 0 ? NULL : work);
         sum_up(groups, 0);
         lit.small = SMALL;
-        lit.most = most;
         lit.each = groups->worth / segments;
     }
 }

@@ -10,8 +10,8 @@
 struct lamp_group {
     int32_t node;
     double direct; /* irradiance of the leaf, about, over all bands, unoccluded, W/m^2 */
-    double worth;  /* the same, but no more than the leaf may have; and */
-    double around; /* for a surface beside the leaf that faces the group */
+    double worth;  /* the same, less where that is more than may arrive, W/m^2 */
+    double around; /* worth for a surface beside the leaf that faces the group, W/m^2 */
 };
 
 struct lamp_groups {
@@ -67,10 +67,10 @@ static inline bool root_is_lamp(const struct lamps *lamps, int32_t root)
 
 /* Finds the groups of lamps that a leaf tells apart by so many segments, in the tree's
  * order: each is a root, or a cluster that is small for its distance and would get about
- * one segment at most. None is worth more than `most` to it, W/m^2. Adds the tests that
- * it took to `work`. */
-void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments, double most,
-                 int64_t *work);
+ * one segment at most. All lamps of a node of the tree below its top are worth no more
+ * than `most` to it, W/m^2. Adds the tests that it took to `work`. */
+void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments,
+                 double most, int64_t *work);
 
 /* A lamp of the group, by the power that it emits; `u` in [0, 1) chooses. */
 struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u);
