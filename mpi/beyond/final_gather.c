@@ -69,7 +69,7 @@ static const double LEFT = 0.03;
 static const double CRACKS = 1e-5;
 
 /* A leaf is seen brighter than it is in the mean by at most the inverse of this. */
-static const double LEAST_OUTSIDE = 0.125;
+static const double LEAST_OUTSIDE = 0x1p-6;
 
 /* Leaves with less than this part of the mean radiosity are solved for as if they had
  * so much. */
@@ -286,6 +286,21 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
         close_balance(g, b, lamps, h);
 }
 
+/* Finds the shares of patches outside of things. */
+static void find_seen(struct gathering *g)
+{
+    const struct forest *forest = g->solver->model.forest;
+    const int32_t *place = g->gather.place;
+    double *seen = g->gather.near.seen;
+    for (int64_t i = 0; i < g->count; i++)
+        seen[place[g->leaves[i]]] = g->covers[i].outside;
+    for (int64_t i = forest->count - 1; i >= 0; i--) {
+        const struct patch *patch = &forest->patches[g->gather.order[i]];
+        for (int k = 0; k < 4 && !patch_is_leaf(patch); k++)
+            seen[i] += 0.25 * seen[place[patch->children + k]];
+    }
+}
+
 /* Collective. */
 static void share_covers(struct gathering *g)
 {
@@ -298,6 +313,7 @@ static void share_covers(struct gathering *g)
     for (int64_t i = 0; i < g->count; i++)
         g->covers[i] = (struct cover){.bare = g->areas[i] * shares[i].band[0],
                                       .outside = shares[i].band[1]};
+    find_seen(g);
     alloc_free(shares);
 }
 

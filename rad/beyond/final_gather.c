@@ -152,6 +152,7 @@ struct final_gather final_gather_create(struct model *model, int rays)
     final_gather_renew(&gather);
     gather.near.unit_area = 0x1p-50 * model->area;
     gather.near.unit_watts = 0x1p-44 * model->area * gather.mean;
+    gather.near.seen = alloc_array((size_t)forest->count, sizeof *gather.near.seen);
     gather.near.items =
         alloc_array((size_t)forest->count, sizeof *gather.near.items);
     gather.order = forest_order(forest);
@@ -187,6 +188,7 @@ void final_gather_free(struct final_gather *gather)
     sparks_free(gather->view.sparks);
     alloc_free(gather->view.faced);
     alloc_free(gather->view.overlapped);
+    alloc_free(gather->near.seen);
     alloc_free(gather->near.partly_covered);
     alloc_free(gather->near.leaves);
     alloc_free(gather->order);
@@ -580,16 +582,24 @@ void final_gather_add_near(const struct final_gather *gather, int64_t row,
 void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity)
 {
     const struct forest *forest = gather->model->forest;
+    const double *seen = gather->near.seen;
     for (int64_t i = forest->count - 1; i >= 0; i--) {
         const struct patch *patch = &forest->patches[gather->order[i]];
-        if (patch_is_leaf(patch))
+        if (patch_is_leaf(patch) || !(seen[i] > 0.0))
             continue;
         for (int c = 0; c < BANDS; c++) {
             double sum = 0.0;
-            for (int k = 0; k < 4; k++)
-                sum += radiosity[gather->place[patch->children + k]].band[c];
-            radiosity[i].band[c] = 0.25 * sum;
+            for (int k = 0; k < 4; k++) {
+                int32_t child = gather->place[patch->children + k];
+                sum += seen[child] * radiosity[child].band[c];
+            }
+            radiosity[i].band[c] = 0.25 * sum / seen[i];
         }
+    }
+    for (int64_t i = 0; i < forest->count; i++) {
+        int32_t parent = forest->patches[gather->order[i]].parent;
+        if (!(seen[i] > 0.0) && parent >= 0)
+            radiosity[i] = radiosity[gather->place[parent]];
     }
 }
 

@@ -83,7 +83,9 @@ int64_t gather_units(double value, double unit);
 void final_gather_add_near(const struct final_gather *gather, int64_t row,
                            const struct rgb *radiosity, int64_t *watts);
 
-/* The pull: inner patches get the mean of their leaves. `radiosity`: by place. */
+/* The pull: inner patches get the mean of their leaves, by the shares of these that are
+ * seen, and patches of which nothing is seen the mean of what is seen beside them: slopes
+ * between neighbours do not know that a thing stands there. By place. */
 void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity);
 
 /* Returns H of a row, W/m^2, for the radiosities of all patches by place, with its source

@@ -60,6 +60,9 @@ static const double OPPOSITE = -0.7;
  * square of the root's radius. */
 static const double BESIDE = 2.0;
 
+/* Faces in one place are less far apart, in scene units. */
+static const double ABOVE = 0x1p-26;
+
 /* Most points of a path; points of a leaf that are tested for being bare; rays that tell
  * how much of a point's light goes into the dark. */
 enum { PATH_MOST = 256, BARE_POINTS = 4, DARK_RAYS = 32 };
@@ -94,12 +97,11 @@ static inline void find_leaf(const struct forest *forest, int32_t root,
 
 enum met { MET_NOTHING, MET_BACK, MET_FRONT };
 
-/* What a ray has met; fills in the point of a front. */
-static inline enum met land(struct receiver *r, struct vec3 origin, struct vec3 direction,
+/* What a ray has met; fills in the point of a front, with the root as its patch. */
+static inline enum met meet(struct receiver *r, struct vec3 origin, struct vec3 direction,
                             const struct octree_hit *hit, struct point *point)
 {
-    const struct model *model = r->gather->model;
-    const struct scene *scene = model->scene;
+    const struct scene *scene = r->gather->model->scene;
     r->gather->counts.rays++;
     if (hit->triangle < 0)
         return MET_NOTHING;
@@ -110,20 +112,40 @@ static inline enum met land(struct receiver *r, struct vec3 origin, struct vec3 
     double fall = -vec3_dot(plane.normal, direction); /* above 0: a front is met */
     double along = fall > 0.0 ? plane_distance(&plane, origin) / fall : 0.0;
     point->at = vec3_add(origin, vec3_scale(direction, along));
-    find_leaf(model->forest, root, point);
+    point->patch = root;
     point->input = hit->triangle;
     point->normal = plane.normal;
     return MET_FRONT;
+}
+
+/* The same, with the leaf. */
+static inline enum met land(struct receiver *r, struct vec3 origin, struct vec3 direction,
+                            const struct octree_hit *hit, struct point *point)
+{
+    enum met met = meet(r, origin, direction, hit, point);
+    if (met == MET_FRONT)
+        find_leaf(r->gather->model->forest, point->patch, point);
+    return met;
+}
+
+/* Finds the first surface that the ray meets, but no leaf. */
+static enum met probe(struct receiver *r, struct vec3 origin, struct vec3 direction,
+                      struct point *point)
+{
+    struct model *model = r->gather->model;
+    struct octree_hit hit;
+    octree_first_hit(model->octree, origin, direction, false, &hit, &model->counts);
+    return meet(r, origin, direction, &hit, point);
 }
 
 /* Finds the first surface that the ray meets. */
 static enum met trace(struct receiver *r, struct vec3 origin, struct vec3 direction,
                       struct point *point)
 {
-    struct model *model = r->gather->model;
-    struct octree_hit hit;
-    octree_first_hit(model->octree, origin, direction, false, &hit, &model->counts);
-    return land(r, origin, direction, &hit, point);
+    enum met met = probe(r, origin, direction, point);
+    if (met == MET_FRONT)
+        find_leaf(r->gather->model->forest, point->patch, point);
+    return met;
 }
 
 /* --- the mesh --- */
@@ -249,42 +271,92 @@ double share_in_the_dark(struct final_gather *g, int32_t region, struct vec3 x,
     return (double)dark / DARK_RAYS;
 }
 
-/* True if rays from the point, along the plane in four directions, all meet backs. */
-static bool is_among_backs(struct receiver *r, struct vec3 origin, struct vec3 normal)
+/* True if another face lies back to back with the front at this point. */
+static bool is_backed(struct receiver *r, const struct point *front)
+{
+    struct model *model = r->gather->model;
+    struct vec3 step = vec3_scale(front->normal, ABOVE);
+    int32_t own[2] = {front->input, -1}, other = -1;
+    return octree_blocks_segment(model->octree, vec3_add(front->at, step),
+                                 vec3_sub(front->at, step), own, &other,
+                                 &model->counts) &&
+           vec3_dot(scene_root_plane(model->scene, other).normal, front->normal) < 0.0;
+}
+
+/* True if a ray's end may bound the thing that it began in: a back; the front of a wall
+ * that the thing touches, which counts before the back in the same place; or, where the
+ * thing has no face there, a front across from one of these. `single` becomes true if a
+ * back is met with no front in its place. */
+static bool is_bound(struct receiver *r, enum met met, struct point *point, bool *single)
+{
+    if (met == MET_FRONT && !is_backed(r, point)) {
+        struct vec3 normal = point->normal;
+        met = probe(r, point_above(point->at, normal), normal, point);
+        if (met == MET_FRONT && !is_backed(r, point))
+            return false;
+    }
+    *single = *single || met == MET_BACK;
+    return met != MET_NOTHING;
+}
+
+/* True if rays from the point, along the plane in four directions, all meet bounds. */
+static bool is_among_bounds(struct receiver *r, struct vec3 origin, struct vec3 normal,
+                            bool *single)
 {
     static const double RISE = 0.1;
     struct vec3 along = direction_along(normal);
     struct point point;
-    for (int k = 0; k < 4; k++, along = vec3_cross(normal, along))
-        if (trace(r, origin, vec3_add(along, vec3_scale(normal, RISE)), &point) !=
-            MET_BACK)
+    for (int k = 0; k < 4; k++, along = vec3_cross(normal, along)) {
+        enum met met =
+            probe(r, origin, vec3_add(along, vec3_scale(normal, RISE)), &point);
+        if (!is_bound(r, met, &point, single))
             return false;
+    }
     return true;
 }
 
-/* True if the point is inside of a thing: it is among backs, and below one, or, where a
- * column reaches the ceiling, below a point among backs. Below the back of a canopy a
- * point is not among them, in a bin not below one. */
+/* True if the point is inside of a thing: it is among bounds, and below one, or, where a
+ * column reaches the ceiling, below a point among them. Below the back of a canopy a
+ * point is not among them, in a bin not below one. Where all walls are double nothing
+ * tells the inside of a box from a room, and it is taken for a room. */
 static bool is_inside(struct receiver *r, struct vec3 origin)
 {
     struct vec3 normal = r->facet.plane.normal;
+    bool single = false;
     struct point point;
-    enum met met = trace(r, origin, normal, &point);
-    return met != MET_NOTHING && is_among_backs(r, origin, normal) &&
-           (met == MET_BACK ||
-            is_among_backs(r, point_above(point.at, point.normal), point.normal));
+    if (!is_among_bounds(r, origin, normal, &single))
+        return false;
+    enum met met = probe(r, origin, normal, &point);
+    if (met == MET_BACK)
+        return true;
+    return met == MET_FRONT &&
+           (is_backed(r, &point) ||
+            is_among_bounds(r, point_above(point.at, point.normal), point.normal,
+                            &single)) &&
+           single;
 }
 
-/* A ray has met a back. Where the floor is covered by a thing that stands on it, a point
- * is inside of that thing; else another ray from there meets a back, too. */
-static void look_inside(struct receiver *r, struct vec3 origin, struct vec3 direction)
+/* True if the first ray of a path comes from inside of a thing. It costs a ray and more,
+ * so it is asked only where some ray of the leaf has met a back. */
+static bool comes_from_inside(struct receiver *r, struct vec3 origin, enum met met,
+                              const struct point *at)
+{
+    struct point point;
+    bool single = false;
+    if (!r->sums.on_back)
+        return false;
+    point = *at;
+    return is_bound(r, met, &point, &single) && is_inside(r, origin);
+}
+
+/* A ray has met a back, and not from inside of a thing: else another ray from there meets
+ * a back, too. */
+static void look_again(struct receiver *r, struct vec3 origin, struct vec3 direction)
 {
     struct vec3 normal = r->facet.plane.normal;
     struct vec3 up = vec3_scale(normal, 2.0 * vec3_dot(normal, direction));
     struct point point;
-    if (r->keeps && is_inside(r, origin))
-        r->inside++;
-    else if (trace(r, origin, vec3_sub(up, direction), &point) != MET_BACK)
+    if (probe(r, origin, vec3_sub(up, direction), &point) != MET_BACK)
         r->escaped++;
 }
 
@@ -408,8 +480,12 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         struct point point;
         enum met met = count == 1 ? land(r, origin, direction, &stream->hits[ray], &point)
                                   : trace(r, origin, direction, &point);
+        if (count == 1 && comes_from_inside(r, origin, met, &point)) {
+            r->inside++;
+            return;
+        }
         if (met == MET_BACK && count == 1)
-            look_inside(r, origin, direction);
+            look_again(r, origin, direction);
         else
             r->escaped += met != MET_FRONT;
         if (met != MET_FRONT)
@@ -537,6 +613,18 @@ static void add_bright(struct receiver *r, struct rgb source)
     }
 }
 
+/* True if a ray of the stream has met a back: a thing may stand on the leaf. */
+static bool meets_backs(const struct receiver *r, const struct stream *stream)
+{
+    const struct scene *scene = r->gather->model->scene;
+    for (int i = 0; i < stream->count; i++) {
+        const struct octree_hit *hit = &stream->hits[i];
+        if (!hit->front && hit->triangle >= 0 && !scene_has_twin(scene, hit->triangle))
+            return true;
+    }
+    return false;
+}
+
 /* Finds what the next rays of the receiver meet, as many as a stream takes. */
 static void fill_stream(struct receiver *r, const struct sequence *sequence, int first,
                         struct stream *stream)
@@ -551,6 +639,7 @@ static void fill_stream(struct receiver *r, const struct sequence *sequence, int
         stream->directions[i] = cosine_direction(normal, r->along, u[0], u[1]);
     }
     octree_stream_hits(model->octree, stream, false, &model->counts);
+    r->sums.on_back = r->keeps && (r->sums.on_back || meets_backs(r, stream));
 }
 
 void receiver_fire(struct receiver *r)
@@ -568,6 +657,8 @@ void receiver_fire(struct receiver *r)
         r->near = -1;
         count_light(r, i, half);
     }
+    if (r->inside == r->rays)
+        return; /* what could be aimed at would be walls that things touch */
     add_variances(r);
     add_bright(r, source);
     if (r->escaped < r->rays)
@@ -576,7 +667,6 @@ void receiver_fire(struct receiver *r)
 
 void receiver_find_covers(struct receiver *r)
 {
-    static const double ABOVE = 0x1p-26; /* scene units */
     struct model *model = r->gather->model;
     struct sequence sequence = sequence_start(r->seed + 24);
     struct vec3 normal = r->facet.plane.normal;
@@ -584,7 +674,8 @@ void receiver_find_covers(struct receiver *r)
     int covered = 0;
     r->row.bare = 0.0f;
     r->row.outside = 1.0f - (float)r->inside / (float)r->rays;
-    if (r->gather->sums.count == 0 && !(rgb_sum(r->row.source) > 0.0))
+    if (r->inside == r->rays ||
+        (r->gather->sums.count == 0 && !(rgb_sum(r->row.source) > 0.0)))
         return;
     for (uint32_t i = 0; i < BARE_POINTS; i++) {
         sequence_point(&sequence, i, u);
@@ -593,7 +684,8 @@ void receiver_find_covers(struct receiver *r)
         covered +=
             octree_first_hit(model->octree, vec3_add(x, vec3_scale(normal, ABOVE)),
                              vec3_scale(normal, -1.0), false, &hit, &model->counts) &&
-            hit.triangle != r->facet.input;
+            hit.triangle != r->facet.input && (hit.front || r->inside == 0);
     }
-    r->row.bare = 1.0f - (float)covered / BARE_POINTS;
+    double share = (double)covered / BARE_POINTS / (double)r->row.outside;
+    r->row.bare = 1.0f - (float)fmin(1.0, share);
 }

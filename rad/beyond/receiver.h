@@ -11,6 +11,7 @@ struct ray_sums {
     struct rgb h, squares, half[2]; /* of H, of H^2, of H by halves */
     int aside[2];     /* rays that have met what is aimed at, by halves */
     int on_lamps;     /* rays that have met lamps first */
+    bool on_back;     /* some ray has met a back: a thing may stand on the leaf */
     struct rgb taken; /* H by the emission that these have not counted, below 0 */
     struct rgb *each; /* [rays] H by each ray is added to these; NULL: not wanted */
 };

@@ -91,6 +91,7 @@ struct gather_nears {
     double unit_area;          /* square scene units */
     double unit_watts;         /* W in square scene units */
     struct gather_leaf *leaves; /* [forest->count] all patches, by their numbers */
+    double *seen;            /* [forest->count] by place: shares outside of things, 1 */
     uint8_t *partly_covered; /* [forest->count] by place: 1: a thing stands on part of
                                 the leaf, at least; NULL: unknown */
 };

@@ -9,6 +9,7 @@
  * leaves, root mean square over the area, and that of the worst leaf, all relative to the
  * exact answer. */
 #include <math.h>
+#include <string.h>
 
 #include "geom/lambert.h"
 #include "tests/defaults.h"
@@ -467,7 +468,7 @@ static void test_sphere(const char *name, const struct zone *zones, int count, i
 
 /* --- furnaces, and light that is kept --- */
 
-enum room { CUBE, CORRIDOR, FURNISHED, HUNG, WEDGE };
+enum room { CUBE, CORRIDOR, FURNISHED, HUNG, WEDGE, TOUCHING };
 
 /* A prism: at the ends of its edge single points of a leaf miss the end that is near. */
 static void add_wedge(struct soup *soup)
@@ -480,6 +481,19 @@ static void add_wedge(struct soup *soup)
     soup_add(soup, (struct triangle){{high[0], high[2], high[1]}});
     for (int k = 0; k < 3; k++)
         soup_add_quad(soup, low[k], up, vec3_sub(low[(k + 1) % 3], low[k]), 1);
+}
+
+/* Boxes that touch each other, the floor and a wall, and one that has no faces there. */
+static void add_touching(struct soup *soup)
+{
+    static const double y[4] = {0.1, 0.3, 0.1, 0.7}, z[4] = {0, 0, 0.25, 0};
+    for (int k = 0; k < 4; k++)
+        soup_add_box(soup, point(0, y[k], z[k]),
+                     point(0.2, y[k] + 0.2, z[k] + (z[k] > 0.0 ? 0.15 : 0.25)), 1, false);
+    struct triangle *last = soup->items + soup->count - 12; /* sides by axis, low, high */
+    memmove(last, last + 2, 6 * sizeof *last);
+    memmove(last + 6, last + 10, 2 * sizeof *last);
+    soup->count -= 4;
 }
 
 static void add_room(struct soup *soup, enum room room)
@@ -496,6 +510,8 @@ static void add_room(struct soup *soup, enum room room)
     }
     if (room == HUNG) /* a picture close to a wall: paths of more than a hundred points */
         soup_add_box(soup, point(0.0005, 0.4, 0.4), point(0.005, 0.6, 0.6), 1, false);
+    if (room == TOUCHING)
+        add_touching(soup);
 }
 
 /* B = E / (1 - rho) of every leaf, whatever it sees; of a furnished room whose triangles
@@ -524,12 +540,43 @@ static void test_furnace(enum room room, double rho, bool mixed, const char *wor
     solution_free(&s);
 }
 
+/* True if a face lies in the same plane back to back. */
+static bool is_touched(const struct scene *scene, int32_t input)
+{
+    struct plane plane = scene_root_plane(scene, input);
+    for (int32_t i = 0; i < scene->input_count; i++) {
+        struct triangle t = scene_root_triangle(scene, i);
+        if (vec3_dot(scene_root_plane(scene, i).normal, plane.normal) < -0.99 &&
+            fabs(plane_distance(&plane, triangle_centroid(&t))) < 1e-9)
+            return true;
+    }
+    return false;
+}
+
+/* The same, where boxes hide parts of walls and of each other: those are dark, so planes
+ * in which they are do not count. */
+static void test_touching(double rho)
+{
+    static const struct errors limit = {1e-5, 1e-5, 1e-4};
+    char name[64];
+    struct soup soup = {0};
+    add_room(&soup, TOUCHING);
+    paint(&soup, rho, 1.0 - rho);
+    paint(&soup, rho, 1.0 - rho);
+    struct solution s = solve_soup(&soup, options);
+    for (int32_t i = 0; i < s.scene->input_count; i++)
+        s.scene->material_of[i] = is_touched(s.scene, i);
+    snprintf(name, sizeof name, "furnace, boxes that touch walls, rho %g", rho);
+    judge(&s, name, 0, &(struct truth){.value = 1.0}, limit, 0.0);
+    solution_free(&s);
+}
+
 /* With a lamp of 1 part in 100 of a room whose rho is the same everywhere the mean of H
  * is exactly the power over A (1 - rho), and nothing escapes: the balance is closed. */
-static void test_light_is_kept(double rho, const char *words)
+static void test_light_is_kept(enum room room, double rho, const char *words)
 {
     struct soup soup = {0};
-    add_room(&soup, FURNISHED);
+    add_room(&soup, room);
     paint(&soup, rho, 0.0);
     soup_add_box(&soup, point(0.45, 0.85, 0.45), point(0.55, 0.86, 0.55), 1, false);
     paint(&soup, rho, 100.0);
@@ -539,9 +586,10 @@ static void test_light_is_kept(double rho, const char *words)
     double exact = power / (1.0 - rho) / (scene_area(s.scene) * scene_area_unit(s.scene)),
            escaped = s.stats.escaped_power / BANDS / power;
     tap_ok(s.vote.converged && fabs(mean / exact - 1.0) <= 1e-5 && fabs(escaped) <= 1e-5,
-           "room with a lamp, rho %g: mean B %+.4f %%, escaped %+.4f %% (at most 0.001 "
+           "%s with a lamp, rho %g: mean B %+.4f %%, escaped %+.4f %% (at most 0.001 "
            "%%; %.1f s)",
-           rho, 100.0 * (mean / exact - 1.0), 100.0 * escaped, s.seconds);
+           room == TOUCHING ? "boxes that touch walls" : "room", rho,
+           100.0 * (mean / exact - 1.0), 100.0 * escaped, s.seconds);
     solution_free(&s);
 }
 
@@ -703,10 +751,13 @@ int main(int argc, char **argv)
     test_furnace(FURNISHED, 0.9, true, "--tolerance 1e-8");
     test_furnace(HUNG, 0.999, false, "--tolerance 1e-8 --epsilon 1e-3");
     test_furnace(WEDGE, 0.999, false, "--tolerance 1e-8 --epsilon 1e-3");
-    test_light_is_kept(0.5, "");
-    test_light_is_kept(0.9, "--epsilon 1e-3");
-    test_light_is_kept(0.99, "--epsilon 1e-3");
-    test_light_is_kept(0.999, "");
+    test_touching(0.9);
+    test_touching(0.99);
+    test_light_is_kept(FURNISHED, 0.5, "");
+    test_light_is_kept(FURNISHED, 0.9, "--epsilon 1e-3");
+    test_light_is_kept(FURNISHED, 0.99, "--epsilon 1e-3");
+    test_light_is_kept(FURNISHED, 0.999, "");
+    test_light_is_kept(TOUCHING, 0.99, "");
     if (argc < 2)
         test_convergence();
     comm_stop(&world_comm);
