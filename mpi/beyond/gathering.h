@@ -7,8 +7,8 @@
 
 /* What covers a leaf: faces in its plane, and things that stand on it. */
 struct cover {
-    double bare;    /* area without such faces, square scene units */
     double outside; /* share that is not inside of things, 1 */
+    double bare;    /* area, less such faces' share of that, square scene units */
 };
 
 /* A leaf too near for some. */

@@ -54,8 +54,8 @@ struct gather_row {
                              (W/m^2)^2, for the solution's radiosities */
     double halves[BANDS]; /* squared difference of the first and second half of the
                              rays: a sample of the variance by the sequence */
-    float bare;        /* share of the leaf's area that no face in its plane covers, 1 */
-    float outside;     /* share that is not inside of a thing that stands on it, 1 */
+    float outside;     /* share of the leaf that is not inside of a thing on it, 1 */
+    float bare;        /* share of that which no face in the leaf's plane covers, 1 */
 };
 
 /* A leaf where rays have met it too near for its mean to hold: their paths went on from
