@@ -141,7 +141,7 @@ static void sieve_add(struct catalogue *known, const struct signature *s)
 static bool sieve_holds(const struct catalogue *known, const struct signature *s)
 {
     uint64_t at = remainder_of(known, s);
-    return known->seen[1][at / 8] >> at % 8 & 1u;
+    return (known->seen[1][at / 8] >> at % 8 & 1) != 0;
 }
 
 static void sieve_add_all(struct catalogue *known)
