@@ -17,13 +17,13 @@
  *
  * The mesh is wrong where a ray ends nearer than the leaf there is large: under a sheet
  * of paper on a table the table is dark, but the leaf is not. And it is wrong in a gap
- * that is narrow for the leaf, also far from where the ray began: the leaf may reach into
- * the light. It is wrong, too, where something cuts the leaf, as a wall does that stands
- * on it, and where a box stands on part of it: pictures know such leaves. There the ray
- * goes on: the point that it met receives light from a lamp, by one
+ * that is narrow for the leaf, up to some widths of the leaf from where the ray began:
+ * the leaf may reach into the light. It is wrong, too, where something cuts the leaf, as
+ * a wall does that stands on it, and where a box stands on part of it: pictures know such
+ * leaves. There the ray goes on: the point that it met receives light from a lamp, by one
  * segment, and from one more ray, until a ray ends far enough away. That is a path tracer
  * for near surfaces and radiosity for the rest. */
-#include "rad/beyond/receiver.h"
+#include "rad/beyond/met.h"
 
 #include <math.h>
 
@@ -60,93 +60,15 @@ static const double OPPOSITE = -0.7;
  * square of the root's radius. */
 static const double BESIDE = 2.0;
 
-/* Faces in one place are less far apart, in scene units. */
-static const double ABOVE = 0x1p-26;
-
-/* Most points of a path; points of a leaf that are tested for being bare; rays that tell
- * how much of a point's light goes into the dark. */
-enum { PATH_MOST = 256, BARE_POINTS = 4, DARK_RAYS = 32 };
+/* Most points of a path; rays that tell how much of a point's light goes into the
+ * dark. */
+enum { PATH_MOST = 256, DARK_RAYS = 32 };
 
 /* Rays that have to have met lamps, and others, to stand for their shares. */
 enum { ENOUGH = 4 };
 
 /* Points of a path from which it goes on in any case. */
 enum { PATH_SURE = 2 };
-
-/* --- points that rays meet --- */
-
-struct point {
-    int32_t patch;     /* leaf of the forest */
-    int32_t input;     /* triangle */
-    double weight[3];  /* barycentric coordinates in the leaf, 1 */
-    struct vec3 at, normal;
-};
-
-/* Finds the leaf of the root that the point lies on. */
-static inline void find_leaf(const struct forest *forest, int32_t root,
-                             struct point *point)
-{
-    struct triangle t = scene_root_triangle(forest->scene, root);
-    triangle_weights(&t, point->at, point->weight);
-    point->patch = root;
-    while (!patch_is_leaf(&forest->patches[point->patch])) {
-        int k = triangle_child_at(point->weight);
-        point->patch = forest->patches[point->patch].children + k;
-    }
-}
-
-enum met { MET_NOTHING, MET_BACK, MET_FRONT };
-
-/* What a ray has met; fills in the point of a front, with the root as its patch. */
-static inline enum met meet(struct receiver *r, struct vec3 origin, struct vec3 direction,
-                            const struct octree_hit *hit, struct point *point)
-{
-    const struct scene *scene = r->gather->model->scene;
-    r->gather->counts.rays++;
-    if (hit->triangle < 0)
-        return MET_NOTHING;
-    int32_t root = scene_root_on(scene, hit->triangle, hit->front);
-    if (root < 0 || !(scene_root_area(scene, root) > 0.0))
-        return MET_BACK;
-    struct plane plane = scene_root_plane(scene, root);
-    double fall = -vec3_dot(plane.normal, direction); /* above 0: a front is met */
-    double along = fall > 0.0 ? plane_distance(&plane, origin) / fall : 0.0;
-    point->at = vec3_add(origin, vec3_scale(direction, along));
-    point->patch = root;
-    point->input = hit->triangle;
-    point->normal = plane.normal;
-    return MET_FRONT;
-}
-
-/* The same, with the leaf. */
-static inline enum met land(struct receiver *r, struct vec3 origin, struct vec3 direction,
-                            const struct octree_hit *hit, struct point *point)
-{
-    enum met met = meet(r, origin, direction, hit, point);
-    if (met == MET_FRONT)
-        find_leaf(r->gather->model->forest, point->patch, point);
-    return met;
-}
-
-/* Finds the first surface that the ray meets, but no leaf. */
-static enum met probe(struct receiver *r, struct vec3 origin, struct vec3 direction,
-                      struct point *point)
-{
-    struct model *model = r->gather->model;
-    struct octree_hit hit;
-    octree_first_hit(model->octree, origin, direction, false, &hit, &model->counts);
-    return meet(r, origin, direction, &hit, point);
-}
-
-/* Finds the first surface that the ray meets. */
-static enum met trace(struct receiver *r, struct vec3 origin, struct vec3 direction,
-                      struct point *point)
-{
-    enum met met = probe(r, origin, direction, point);
-    if (met == MET_FRONT)
-        find_leaf(r->gather->model->forest, point->patch, point);
-    return met;
-}
 
 /* --- the mesh --- */
 
@@ -195,7 +117,7 @@ void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t 
  * takes the mean of the whole leaf or none of it: a far part alone would be given the
  * mean of the whole. But a small thing in the shade at the edge of a wide ground has to
  * see the shade around it, and not the mean: rays that end at once are too near, too. In
- * a gap that is narrow for the leaf all of it is too near, for it may reach from the gap
+ * a gap that is narrow for the leaf more of it is too near, for it may reach from the gap
  * into the light. */
 static bool is_too_near(const struct receiver *r, const struct point *met, struct vec3 x,
                         struct vec3 normal)
@@ -269,84 +191,6 @@ double share_in_the_dark(struct final_gather *g, int32_t region, struct vec3 x,
                 patch_is_dark(g, point.patch);
     }
     return (double)dark / DARK_RAYS;
-}
-
-/* True if another face lies back to back with the front at this point. */
-static bool is_backed(struct receiver *r, const struct point *front)
-{
-    struct model *model = r->gather->model;
-    struct vec3 step = vec3_scale(front->normal, ABOVE);
-    int32_t own[2] = {front->input, -1}, other = -1;
-    return octree_blocks_segment(model->octree, vec3_add(front->at, step),
-                                 vec3_sub(front->at, step), own, &other,
-                                 &model->counts) &&
-           vec3_dot(scene_root_plane(model->scene, other).normal, front->normal) < 0.0;
-}
-
-/* True if a ray's end may bound the thing that it began in: a back; the front of a wall
- * that the thing touches, which counts before the back in the same place; or, where the
- * thing has no face there, a front across from one of these. `single` becomes true if a
- * back is met with no front in its place. */
-static bool is_bound(struct receiver *r, enum met met, struct point *point, bool *single)
-{
-    if (met == MET_FRONT && !is_backed(r, point)) {
-        struct vec3 normal = point->normal;
-        met = probe(r, point_above(point->at, normal), normal, point);
-        if (met == MET_FRONT && !is_backed(r, point))
-            return false;
-    }
-    *single = *single || met == MET_BACK;
-    return met != MET_NOTHING;
-}
-
-/* True if rays from the point, along the plane in four directions, all meet bounds. */
-static bool is_among_bounds(struct receiver *r, struct vec3 origin, struct vec3 normal,
-                            bool *single)
-{
-    static const double RISE = 0.1;
-    struct vec3 along = direction_along(normal);
-    struct point point;
-    for (int k = 0; k < 4; k++, along = vec3_cross(normal, along)) {
-        enum met met =
-            probe(r, origin, vec3_add(along, vec3_scale(normal, RISE)), &point);
-        if (!is_bound(r, met, &point, single))
-            return false;
-    }
-    return true;
-}
-
-/* True if the point is inside of a thing: it is among bounds, and below one, or, where a
- * column reaches the ceiling, below a point among them. Below the back of a canopy a
- * point is not among them, in a bin not below one. Where all walls are double nothing
- * tells the inside of a box from a room, and it is taken for a room. */
-static bool is_inside(struct receiver *r, struct vec3 origin)
-{
-    struct vec3 normal = r->facet.plane.normal;
-    bool single = false;
-    struct point point;
-    if (!is_among_bounds(r, origin, normal, &single))
-        return false;
-    enum met met = probe(r, origin, normal, &point);
-    if (met == MET_BACK)
-        return true;
-    return met == MET_FRONT &&
-           (is_backed(r, &point) ||
-            is_among_bounds(r, point_above(point.at, point.normal), point.normal,
-                            &single)) &&
-           single;
-}
-
-/* True if the first ray of a path comes from inside of a thing. It costs a ray and more,
- * so it is asked only where some ray of the leaf has met a back. */
-static bool comes_from_inside(struct receiver *r, struct vec3 origin, enum met met,
-                              const struct point *at)
-{
-    struct point point;
-    bool single = false;
-    if (!r->sums.on_back)
-        return false;
-    point = *at;
-    return is_bound(r, met, &point, &single) && is_inside(r, origin);
 }
 
 /* A ray has met a back, and not from inside of a thing: else another ray from there meets
@@ -480,7 +324,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         struct point point;
         enum met met = count == 1 ? land(r, origin, direction, &stream->hits[ray], &point)
                                   : trace(r, origin, direction, &point);
-        if (count == 1 && comes_from_inside(r, origin, met, &point)) {
+        if (count == 1 && ray_comes_from_inside(r, origin, met, &point)) {
             r->inside++;
             return;
         }
@@ -663,29 +507,4 @@ void receiver_fire(struct receiver *r)
     add_bright(r, source);
     if (r->escaped < r->rays)
         r->gather->counts.escaped += r->escaped;
-}
-
-void receiver_find_covers(struct receiver *r)
-{
-    struct model *model = r->gather->model;
-    struct sequence sequence = sequence_start(r->seed + 24);
-    struct vec3 normal = r->facet.plane.normal;
-    double u[SEQUENCE_DIMENSIONS];
-    int covered = 0;
-    r->row.bare = 0.0f;
-    r->row.outside = 1.0f - (float)r->inside / (float)r->rays;
-    if (r->inside == r->rays ||
-        (r->gather->sums.count == 0 && !(rgb_sum(r->row.source) > 0.0)))
-        return;
-    for (uint32_t i = 0; i < BARE_POINTS; i++) {
-        sequence_point(&sequence, i, u);
-        struct vec3 x = triangle_of_square(&r->facet.triangle, u[0], u[1]);
-        struct octree_hit hit;
-        covered +=
-            octree_first_hit(model->octree, vec3_add(x, vec3_scale(normal, ABOVE)),
-                             vec3_scale(normal, -1.0), false, &hit, &model->counts) &&
-            hit.triangle != r->facet.input && (hit.front || r->inside == 0);
-    }
-    double share = (double)covered / BARE_POINTS / (double)r->row.outside;
-    r->row.bare = 1.0f - (float)fmin(1.0, share);
 }

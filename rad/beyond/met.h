@@ -1,0 +1,87 @@
+/* The points of surfaces that rays of the final gather meet. For the files of the final
+ * gather alone. */
+#ifndef RAD_BEYOND_MET_H
+#define RAD_BEYOND_MET_H
+
+#include "rad/beyond/receiver.h"
+
+struct point {
+    int32_t patch;     /* leaf of the forest */
+    int32_t input;     /* triangle */
+    double weight[3];  /* barycentric coordinates in the leaf, 1 */
+    struct vec3 at, normal;
+};
+
+/* Finds the leaf of the root that the point lies on. */
+static inline void find_leaf(const struct forest *forest, int32_t root,
+                             struct point *point)
+{
+    struct triangle t = scene_root_triangle(forest->scene, root);
+    triangle_weights(&t, point->at, point->weight);
+    point->patch = root;
+    while (!patch_is_leaf(&forest->patches[point->patch])) {
+        int k = triangle_child_at(point->weight);
+        point->patch = forest->patches[point->patch].children + k;
+    }
+}
+
+enum met { MET_NOTHING, MET_BACK, MET_FRONT };
+
+/* What a ray has met; fills in the point of a front, with the root as its patch. */
+static inline enum met meet(struct receiver *r, struct vec3 origin, struct vec3 direction,
+                            const struct octree_hit *hit, struct point *point)
+{
+    const struct scene *scene = r->gather->model->scene;
+    r->gather->counts.rays++;
+    if (hit->triangle < 0)
+        return MET_NOTHING;
+    int32_t root = scene_root_on(scene, hit->triangle, hit->front);
+    if (root < 0 || !(scene_root_area(scene, root) > 0.0))
+        return MET_BACK;
+    struct plane plane = scene_root_plane(scene, root);
+    double fall = -vec3_dot(plane.normal, direction); /* above 0: a front is met */
+    double along = fall > 0.0 ? plane_distance(&plane, origin) / fall : 0.0;
+    point->at = vec3_add(origin, vec3_scale(direction, along));
+    point->patch = root;
+    point->input = hit->triangle;
+    point->normal = plane.normal;
+    return MET_FRONT;
+}
+
+/* The same, with the leaf. */
+static inline enum met land(struct receiver *r, struct vec3 origin, struct vec3 direction,
+                            const struct octree_hit *hit, struct point *point)
+{
+    enum met met = meet(r, origin, direction, hit, point);
+    if (met == MET_FRONT)
+        find_leaf(r->gather->model->forest, point->patch, point);
+    return met;
+}
+
+/* Finds the first surface that the ray meets, but no leaf. */
+static inline enum met probe(struct receiver *r, struct vec3 origin,
+                             struct vec3 direction, struct point *point)
+{
+    struct model *model = r->gather->model;
+    struct octree_hit hit;
+    octree_first_hit(model->octree, origin, direction, false, &hit, &model->counts);
+    return meet(r, origin, direction, &hit, point);
+}
+
+/* Finds the first surface that the ray meets. */
+static inline enum met trace(struct receiver *r, struct vec3 origin,
+                             struct vec3 direction, struct point *point)
+{
+    enum met met = probe(r, origin, direction, point);
+    if (met == MET_FRONT)
+        find_leaf(r->gather->model->forest, point->patch, point);
+    return met;
+}
+
+/* True if the first ray of a path, which has met this point, comes from inside of a thing
+ * that stands on the leaf. It costs a ray and more, so it is asked only where some ray of
+ * the leaf has met a back. */
+bool ray_comes_from_inside(struct receiver *r, struct vec3 origin, enum met met,
+                           const struct point *at);
+
+#endif
