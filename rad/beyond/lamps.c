@@ -4,8 +4,9 @@
  * its distance and would get no more than one segment; a lamp by itself is a group whose
  * direct light is known from exact factors. So a hall with ten thousand lamps has some
  * hundreds of groups for each leaf. How much light one segment is to bring is estimated
- * first, without exact factors. The direct light of bright roots decides only how often
- * rays are aimed at them: an estimate is enough.
+ * first, without exact factors. Light that walls may keep off counts for no more than
+ * comes to the leaf as the links have it. The direct light of bright roots decides only
+ * how often rays are aimed at them: an estimate is enough.
  *
  * The mean factor is taken at three points with a rule that is exact for polynomials of
  * the second degree. Where the other triangle is nearer than the size of this one, the
