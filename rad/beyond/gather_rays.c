@@ -300,14 +300,15 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
 {
     struct final_gather *g = r->gather;
     struct rgb emission = forest_material(g->model->forest, met->patch)->emission;
+    int64_t area = gather_units(r->facet.area / r->rays, g->near.unit_area);
     if (!r->keeps || /* a look's leaves may have no places yet */
+        area == 0 || /* a receiver as small as that darkens no leaf */
         leaf_has_sparks(g, met->patch)) { /* sparks tell how bright it is seen */
         r->shares.doubt = true;
         return;
     }
     r->near = g->place[met->patch];
-    g->near.items[r->near].area +=
-        gather_units(r->facet.area / r->rays, g->near.unit_area);
+    g->near.items[r->near].area += area;
     if (aimed) /* segments bring it, so the path does not count it */
         receiver_add_near(r, weight, emission, 1.0);
 }

@@ -113,6 +113,30 @@ static void test_gap(void)
     solution_free(&s);
 }
 
+/* A speck close above a floor meets it too near. Leaves met so are numbered if the area of
+ * those that have met them is a unit, 2^-50 of all, or more. By way of others no terms
+ * come, however small the speck. */
+static void test_speck(double size, bool tells)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    soup_add_quad(&soup, point(0.5, 0.3, 0.1 * size), point(0, size, 0),
+                  point(size, 0, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0, 0, 5), point(0, 1, 0), point(1, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", 64);
+    int64_t near = 0, lost = 0;
+    for (int64_t k = 0; k < final_gather_terms(&g.gather); k++) {
+        int32_t leaf = g.gather.terms[k].near;
+        near += leaf >= 0;
+        lost += leaf >= 0 && g.gather.near.items[leaf].area == 0;
+    }
+    tap_ok((near > 0) == tells && lost == 0, "a speck of %g: %lld terms by way of leaves "
+           "too near, %lld without a unit", size, (long long)near, (long long)lost);
+    trial_free(&g);
+}
+
 /* Below a small roof over the corner of a wide ground, which is lit from above, a plate
  * stands upright. It sees the shadow, and the ground beyond, instead of the mean of a
  * leaf that is large for it. */
@@ -280,6 +304,8 @@ int main(int argc, char **argv)
     test_hinge(0.4, true);
     test_hinge(0.0, false);
     test_gap();
+    test_speck(1e-4, true);
+    test_speck(1e-7, false);
     test_corner();
     test_apart();
     test_covered();
