@@ -398,10 +398,11 @@ static void keep_terms(struct receiver *r)
 
 /* --- public --- */
 
-/* A receiver on the patch. */
+/* A receiver on the patch. Rays beyond the points of a sequence would be the same. */
 static struct receiver receiver_make(struct final_gather *gather, int32_t patch,
                                      struct facet facet, uint64_t seed, int rays)
 {
+    rays = rays < SEQUENCE_POINTS ? rays : SEQUENCE_POINTS;
     return (struct receiver){.gather = gather, .facet = facet, .seed = seed,
                              .row = {.leaf = patch},
                              .along = direction_along(facet.plane.normal), .rays = rays,

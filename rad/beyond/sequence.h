@@ -11,13 +11,16 @@
  * each other (Owen's scrambling). */
 enum { SEQUENCE_DIMENSIONS = 4 };
 
+/* Points of a sequence. Behind them come the same ones again. */
+enum { SEQUENCE_POINTS = 1 << 16 };
+
 struct sequence {
     uint32_t scramble[1 + SEQUENCE_DIMENSIONS], odd[1 + SEQUENCE_DIMENSIONS];
 };
 
 struct sequence sequence_start(uint64_t seed);
 
-/* The point of this index, below 65,536, each coordinate in 0 <= u < 1. */
+/* The point of this index, each coordinate in 0 <= u < 1. */
 void sequence_point(const struct sequence *sequence, uint32_t index,
                     double u[SEQUENCE_DIMENSIONS]);
 

@@ -1,5 +1,6 @@
 /* Tests of rad/beyond/final_gather.h: rows and the light of leaves and points, against
  * closed forms. */
+#include "rad/beyond/sequence.h"
 #include "tests/gathered.h"
 #include "tests/tap.h"
 
@@ -25,6 +26,21 @@ static void test_furnished(void)
            "rows of %lld leaves sum to 1, within %.1e", (long long)g.gather.count, worst);
     tap_ok(g.gather.counts.rays > 64 * 60, "by %lld rays",
            (long long)g.gather.counts.rays);
+    trial_free(&g);
+}
+
+/* A sheet lies on a floor, all of it black: a ray meets one surface. More rays than a
+ * sequence has points would tell no more, and errors would seem less. */
+static void test_most_rays(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    soup_add_quad(&soup, point(0.4, 0.4, 1e-3), point(0, 0.2, 0), point(0.2, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", 2 * SEQUENCE_POINTS);
+    int64_t rays = g.gather.counts.rays, leaves = g.gather.count - g.gather.counts.exact;
+    tap_ok(leaves > 0 && rays == SEQUENCE_POINTS * leaves, "%lld rays for %lld leaves",
+           (long long)rays, (long long)leaves);
     trial_free(&g);
 }
 
@@ -113,18 +129,15 @@ static void test_gap(void)
     solution_free(&s);
 }
 
-/* A speck close above a floor meets it too near. Leaves met so are numbered if the area of
- * those that have met them is a unit, 2^-50 of all, or more. By way of others no terms
- * come, however small the speck. */
+/* A speck close above a floor meets it too near. Leaves met so are numbered if the area
+ * of those that have met them is a unit, 2^-50 of all, or more: no terms come by way of
+ * others, however small the speck. */
 static void test_speck(double size, bool tells)
 {
     struct soup soup = {0};
     soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
-    soup_add_quad(&soup, point(0.5, 0.3, 0.1 * size), point(0, size, 0),
-                  point(size, 0, 0), 1);
-    paint(&soup, 0.5, 0.0);
-    soup_add_quad(&soup, point(0, 0, 5), point(0, 1, 0), point(1, 0, 0), 1);
-    paint(&soup, 0.0, 1.0);
+    soup_add_quad(&soup, point(0, 0, size / 10), point(0, size, 0), point(size, 0, 0), 1);
+    paint(&soup, 0.5, 1.0);
     struct trial g = gather_scene(&soup, "--max-level 0", 64);
     int64_t near = 0, lost = 0;
     for (int64_t k = 0; k < final_gather_terms(&g.gather); k++) {
@@ -299,6 +312,7 @@ int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
     test_furnished();
+    test_most_rays();
     test_open();
     test_given_up();
     test_hinge(0.4, true);
