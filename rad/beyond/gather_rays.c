@@ -229,6 +229,28 @@ static bool goes_on(struct receiver *r, const struct point *point, bool aimed, d
     return u < most;
 }
 
+/* A path that has met the point goes on from there: adds the emission, unless it is
+ * `aimed` at, and the light of a lamp, and makes a ray of the seed's. False if the point
+ * absorbs all. */
+static bool leave(struct receiver *r, const struct point *point, bool aimed,
+                  uint64_t seed, struct rgb *weight, struct vec3 *origin,
+                  struct vec3 *direction)
+{
+    const struct material *material =
+        forest_material(r->gather->model->forest, point->patch);
+    if (!aimed)
+        receiver_add_source(r, weight, material->emission, 1.0);
+    for (int c = 0; c < BANDS; c++)
+        weight->band[c] *= material->reflectance.band[c];
+    if (!(rgb_sum(*weight) > 0.0))
+        return false;
+    receiver_aim_beside(r, point->at, point->normal, point->input, weight, seed);
+    *origin = point_above(point->at, point->normal);
+    *direction = cosine_direction(point->normal, direction_along(point->normal),
+                                  hash_unit(seed + 14), hash_unit(seed + 15));
+    return true;
+}
+
 void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor,
                   uint64_t seed)
 {
@@ -242,18 +264,9 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
     r->shares.bright += factor;
     bool near = true;
     for (int count = 1; near && count < PATH_MOST; count++, seed += 16) {
-        const struct material *material = forest_material(forest, point.patch);
-        if (!aimed)
-            receiver_add_source(r, &weight, material->emission, 1.0);
-        for (int c = 0; c < BANDS; c++)
-            weight.band[c] *= material->reflectance.band[c];
-        if (!(rgb_sum(weight) > 0.0))
+        struct vec3 origin, direction;
+        if (!leave(r, &point, aimed, seed, &weight, &origin, &direction))
             return;
-        receiver_aim_beside(r, point.at, point.normal, point.input, &weight, seed);
-        struct vec3 origin = point_above(point.at, point.normal);
-        struct vec3 direction =
-            cosine_direction(point.normal, direction_along(point.normal),
-                             hash_unit(seed + 14), hash_unit(seed + 15));
         if (trace(r, origin, direction, &point) != MET_FRONT) {
             r->escaped++;
             return;
@@ -323,8 +336,8 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
     struct vec3 normal = r->facet.plane.normal; /* at the origin */
     for (int count = 1;; count++, seed += 16) {
         struct point point;
-        enum met met = count == 1 ? land(r, origin, direction, &stream->hits[ray], &point)
-                                  : trace(r, origin, direction, &point);
+        enum met met = count == 1 ? meet(r, origin, direction, &stream->hits[ray], &point)
+                                  : probe(r, origin, direction, &point);
         if (count == 1 && ray_comes_from_inside(r, origin, met, &point)) {
             r->inside++;
             return;
@@ -335,8 +348,8 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
             r->escaped += met != MET_FRONT;
         if (met != MET_FRONT)
             return;
-        const struct material *material = forest_material(forest, point.patch);
-        int32_t root = root_of(r, &point);
+        int32_t root = point.patch;
+        find_leaf(forest, root, &point);
         const struct scene *scene = r->gather->model->scene;
         if (count == 1 && (receiver_aims_through(r, point.patch) ||
                            (root_is_lamp(&r->gather->bright, root) &&
@@ -362,17 +375,9 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         if (count > PATH_SURE &&
             !goes_on(r, &point, aimed, hash_unit(seed + 13), &weight))
             return;
-        if (!aimed)
-            receiver_add_source(r, &weight, material->emission, 1.0);
-        for (int c = 0; c < BANDS; c++)
-            weight.band[c] *= material->reflectance.band[c];
-        if (!(rgb_sum(weight) > 0.0))
+        if (!leave(r, &point, aimed, seed, &weight, &origin, &direction))
             return;
-        receiver_aim_beside(r, point.at, point.normal, point.input, &weight, seed);
         normal = point.normal;
-        origin = point_above(point.at, normal);
-        direction = cosine_direction(normal, direction_along(normal),
-                                     hash_unit(seed + 14), hash_unit(seed + 15));
     }
 }
 

@@ -48,16 +48,6 @@ static inline enum met meet(struct receiver *r, struct vec3 origin, struct vec3 
     return MET_FRONT;
 }
 
-/* The same, with the leaf. */
-static inline enum met land(struct receiver *r, struct vec3 origin, struct vec3 direction,
-                            const struct octree_hit *hit, struct point *point)
-{
-    enum met met = meet(r, origin, direction, hit, point);
-    if (met == MET_FRONT)
-        find_leaf(r->gather->model->forest, point->patch, point);
-    return met;
-}
-
 /* Finds the first surface that the ray meets, but no leaf. */
 static inline enum met probe(struct receiver *r, struct vec3 origin,
                              struct vec3 direction, struct point *point)
