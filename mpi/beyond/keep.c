@@ -38,17 +38,13 @@ static void collect_numbers(const struct solver *solver, const struct vote *vote
                             struct snapshot *snapshot)
 {
     const struct model *model = &solver->model;
-    int64_t own[] = {solver->links.count, model->counts.rays, model->counts.node_tests,
-                     model->counts.triangle_tests, model->walled_off,
-                     model->rays_spared};
-    int64_t sum[sizeof own / sizeof own[0]];
-    MPI_Request request;
-    MPI_Iallreduce(own, sum, (int)(sizeof own / sizeof own[0]), MPI_INT64_T, MPI_SUM,
-                   solver->comm->handle, &request);
-    comm_wait(&request);
-    snapshot->link_count = sum[0];
+    int64_t sums[] = {solver->links.count, model->counts.rays, model->counts.node_tests,
+                      model->counts.triangle_tests, model->walled_off,
+                      model->rays_spared};
+    comm_add(solver->comm, sums, sizeof sums / sizeof sums[0]);
+    snapshot->link_count = sums[0];
     for (int i = 0; i < 5; i++)
-        snapshot->number[SNAPSHOT_RAYS + i] = sum[1 + i];
+        snapshot->number[SNAPSHOT_RAYS + i] = sums[1 + i];
     snapshot->number[SNAPSHOT_PASSES] = solver->turn.pass;
     snapshot->number[SNAPSHOT_ITERATIONS] = solver->turn.iteration;
     snapshot->number[SNAPSHOT_SETTLED] = vote->settled;
@@ -148,13 +144,17 @@ static void merge(struct funnel *funnel, link_sink *sink, void *context)
     alloc_free(block);
 }
 
+/* Gives the patches of a link their numbers. */
+static void renumber_link(struct link *link, const int32_t *number)
+{
+    link->p = node_is_cluster(link->p) ? link->p : number[link->p];
+    link->q = node_is_cluster(link->q) ? link->q : number[link->q];
+}
+
 static void renumber(struct link_list *list, const int32_t *number)
 {
-    for (int64_t i = 0; i < list->count; i++) {
-        struct link *link = &list->items[i];
-        link->p = node_is_cluster(link->p) ? link->p : number[link->p];
-        link->q = node_is_cluster(link->q) ? link->q : number[link->q];
-    }
+    for (int64_t i = 0; i < list->count; i++)
+        renumber_link(&list->items[i], number);
 }
 
 void links_collect(struct solver *solver, link_sink *sink, void *context)
@@ -273,9 +273,7 @@ void links_deal(struct solver *solver, const int32_t *order, struct link *links,
 {
     comm_broadcast(solver->comm, links, (size_t)count * sizeof *links);
     for (int64_t i = solver->comm->rank; i < count; i += solver->comm->size) {
-        struct link link = links[i];
-        link.p = node_is_cluster(link.p) ? link.p : order[link.p];
-        link.q = node_is_cluster(link.q) ? link.q : order[link.q];
-        link_list_append(&solver->links, link);
+        renumber_link(&links[i], order);
+        link_list_append(&solver->links, links[i]);
     }
 }
