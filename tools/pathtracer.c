@@ -201,7 +201,7 @@ static float *trace_leaves(const struct tracing *run)
     for (int64_t i = run->comm.rank; i < count; i += size) {
         struct patch_id id = run->solution.leaves[i].id;
         struct triangle part = pathtracer_part(id);
-        uint64_t seed = ((uint64_t)id.root << 32 | id.hierarchy) << 1;
+        uint64_t seed = id_number(id) << 1;
         for (uint64_t half = 0; half < HALVES; half++) {
             struct rgb h = pathtracer_reflected(&run->pathtracer, (int32_t)id.root, &part,
                                                 run->samples / HALVES, seed + half);

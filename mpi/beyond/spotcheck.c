@@ -139,7 +139,7 @@ static struct finding trace_leaf(const struct checking *c, int32_t leaf, uint64_
 {
     struct patch_id id = c->solver->model.forest->patches[leaf].id;
     struct triangle part = pathtracer_part(id);
-    uint64_t seed = hash_mix(hash_mix((uint64_t)id.root << 32 | id.hierarchy) + draw);
+    uint64_t seed = hash_mix(hash_mix(id_number(id)) + draw);
     struct finding found;
     for (uint64_t half = 0; half < 2; half++)
         found.half[half] = pathtracer_reflected(&c->pathtracer, (int32_t)id.root, &part,

@@ -411,8 +411,7 @@ static struct receiver receiver_make(struct final_gather *gather, int32_t patch,
 
 uint64_t patch_seed(const struct forest *forest, int32_t patch)
 {
-    struct patch_id id = forest->patches[patch].id;
-    return hash_mix((uint64_t)id.root << 32 | id.hierarchy);
+    return hash_mix(id_number(forest->patches[patch].id));
 }
 
 struct receiver receiver_of_leaf(struct final_gather *gather, int32_t leaf, int rays)

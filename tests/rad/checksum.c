@@ -43,7 +43,7 @@ static void set_values(struct forest *forest)
 {
     for (int64_t p = 0; p < forest->count; p++) {
         struct patch_id id = forest->patches[p].id;
-        struct random random = random_seed((uint64_t)id.root << 32 | id.hierarchy);
+        struct random random = random_seed(id_number(id));
         random_bits(&random);
         for (int c = 0; c < BANDS; c++)
             forest->radiosity[p].band[c] = random_double(&random);
