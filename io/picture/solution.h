@@ -9,7 +9,7 @@
  *                  triangle i are 3 i, 3 i + 1 and 3 i + 2
  *     solution     one record: double x y z, the scene's centre in input units, int
  *                  exponent, uchar two_sided, two_sided_lamps; after a final gather,
- *                  double lamp_least and mean (struct mesh_answer)
+ *                  double lamp_least and mean (struct solution_lamps)
  *
  * so that the scene is there to the last bit. A triangle without leaves was dropped, and
  * one without leaves of its twin has none. */
@@ -53,8 +53,9 @@ struct solution_mesh {
 bool solution_is_stored(const struct ply_file *file);
 
 /* Reads a mesh from an open file. To be freed with solution_mesh_free().
- * Errors: those of ply_read(); a property of io/picture/mesh.h is missing; the leaves of
- * a root leave gaps or overlap, or are not those of the scene. EXIT_USAGE. */
+ * Errors: those of ply_file_open() and ply_file_record(); a property of
+ * io/picture/mesh.h is missing; the leaves of a root leave gaps or overlap, or are not
+ * those of the scene. EXIT_USAGE. */
 bool solution_mesh_read(struct solution_mesh *solution, struct source *source,
                         struct error *error);
 

@@ -18,7 +18,7 @@
 /* The part of the mean work expected after which a rank stops. */
 static const double PART = 0.9;
 
-/* The last stage has no more items for each rank. */
+/* A stage that deals no more than this number of items for each rank is the last one. */
 enum { LAST = 32 };
 
 /* Items and tests of a rank in a stage; no padding. */

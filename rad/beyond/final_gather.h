@@ -69,6 +69,8 @@ int64_t final_gather_terms(const struct final_gather *gather);
 /* Forgets all rows, and leaves too near. */
 void final_gather_drop_rows(struct final_gather *gather);
 
+/* Returns the slope of B over a leaf, or over an inner patch as a whole: 0 over a root
+ * that is not divided. */
 struct gather_slope gather_slope(const struct final_gather *gather, int32_t patch);
 
 /* Returns B of a patch as the linear function over its parent has it, as steep as rows

@@ -229,8 +229,8 @@ static void add_met_light(const struct pathtracer *pathtracer, const struct arri
 
 /* --- paths --- */
 
-/* The same for a ray that leaves a surface, in a direction whose density is its cosine to
- * the normal over pi. */
+/* Finds where a ray arrives that leaves a surface, in a direction whose density is its
+ * cosine to the normal over pi. False for a miss or a black back. */
 static bool follow(const struct pathtracer *pathtracer, const struct arrival *p,
                    struct draw *draw, struct arrival *q)
 {
