@@ -135,6 +135,19 @@ static inline void soup_add_quad(struct soup *soup, struct vec3 origin, struct v
     }
 }
 
+/* The rectangle from `low` to `high`, whose front is in the direction of the sign on the
+ * axis where both are equal; nothing if it has no extent. */
+static inline void soup_add_rectangle(struct soup *soup, struct vec3 low,
+                                      struct vec3 high, int sign)
+{
+    struct vec3 d = vec3_sub(high, low);
+    struct vec3 u = d.x == 0.0 ? point(0, d.y, 0) : d.y == 0.0 ? point(0, 0, d.z)
+                                                               : point(d.x, 0, 0);
+    struct vec3 v = vec3_sub(d, u);
+    if ((d.x == 0.0) + (d.y == 0.0) + (d.z == 0.0) == 1)
+        soup_add_quad(soup, low, sign > 0 ? u : v, sign > 0 ? v : u, 1);
+}
+
 /* The six sides of a box, n x n cells each; fronts outwards, or inwards for a room. */
 static inline void soup_add_box(struct soup *soup, struct vec3 low, struct vec3 high,
                                 int n, bool inwards)

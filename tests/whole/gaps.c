@@ -5,20 +5,7 @@
 #include "tests/tap.h"
 #include "tests/truth.h"
 
-/* --- rectangles, in metres; z is up --- */
-
-/* Between two corners that have one coordinate in common, that of `axis`; the front looks
- * along it, or back. */
-static void add_rectangle(struct soup *soup, struct vec3 low, struct vec3 high, int axis,
-                          bool back)
-{
-    struct vec3 size = vec3_sub(high, low);
-    struct vec3 edge[3] = {{size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z}};
-    struct vec3 u = edge[(axis + 1) % 3], v = edge[(axis + 2) % 3];
-    soup_add_quad(soup, low, back ? v : u, back ? u : v, 1);
-}
-
-/* --- a room with gaps of 2 mm --- */
+/* --- a room with gaps of 2 mm; z is up --- */
 
 static const double GAP = 0.002, SIDE = 4.0, HIGH = 2.5;
 
@@ -28,15 +15,15 @@ static void add_box(struct soup *soup, double x, double y, double z, double dx, 
     soup_add_box(soup, point(x, y, z), point(x + dx, y + dy, z + dz), 1, false);
 }
 
-/* All faces of a box but that below. */
-static void add_cap(struct soup *soup, struct vec3 low, struct vec3 high, bool inwards)
+/* All faces of a box but that below; `sign`: 1 outwards, -1 inwards. */
+static void add_cap(struct soup *soup, struct vec3 low, struct vec3 high, int sign)
 {
     struct vec3 top = point(low.x, low.y, high.z);
-    add_rectangle(soup, low, point(low.x, high.y, high.z), 0, !inwards);
-    add_rectangle(soup, point(high.x, low.y, low.z), high, 0, inwards);
-    add_rectangle(soup, low, point(high.x, low.y, high.z), 1, !inwards);
-    add_rectangle(soup, point(low.x, high.y, low.z), high, 1, inwards);
-    add_rectangle(soup, top, high, 2, inwards);
+    soup_add_rectangle(soup, low, point(low.x, high.y, high.z), -sign);
+    soup_add_rectangle(soup, point(high.x, low.y, low.z), high, sign);
+    soup_add_rectangle(soup, low, point(high.x, low.y, high.z), -sign);
+    soup_add_rectangle(soup, point(low.x, high.y, low.z), high, sign);
+    soup_add_rectangle(soup, top, high, sign);
 }
 
 /* Places along x and y where the ceiling and its four recesses begin and end. */
@@ -50,19 +37,19 @@ static bool is_recess(int i, int k)
 /* The shell, with recesses 5 cm deep. */
 static void add_shell(struct soup *soup)
 {
-    add_rectangle(soup, point(0, 0, 0), point(SIDE, SIDE, 0), 2, false);
-    add_rectangle(soup, point(0, 0, 0), point(0, SIDE, HIGH), 0, false);
-    add_rectangle(soup, point(SIDE, 0, 0), point(SIDE, SIDE, HIGH), 0, true);
-    add_rectangle(soup, point(0, 0, 0), point(SIDE, 0, HIGH), 1, false);
-    add_rectangle(soup, point(0, SIDE, 0), point(SIDE, SIDE, HIGH), 1, true);
+    soup_add_rectangle(soup, point(0, 0, 0), point(SIDE, SIDE, 0), 1);
+    soup_add_rectangle(soup, point(0, 0, 0), point(0, SIDE, HIGH), 1);
+    soup_add_rectangle(soup, point(SIDE, 0, 0), point(SIDE, SIDE, HIGH), -1);
+    soup_add_rectangle(soup, point(0, 0, 0), point(SIDE, 0, HIGH), 1);
+    soup_add_rectangle(soup, point(0, SIDE, 0), point(SIDE, SIDE, HIGH), -1);
     for (int i = 0; i < 5; i++)
         for (int k = 0; k < 5; k++) {
             struct vec3 low = point(FIELDS[i], FIELDS[k], HIGH);
             struct vec3 high = point(FIELDS[i + 1], FIELDS[k + 1], HIGH + 0.05);
             if (is_recess(i, k))
-                add_cap(soup, low, high, true);
+                add_cap(soup, low, high, -1);
             else
-                add_rectangle(soup, low, point(high.x, high.y, HIGH), 2, true);
+                soup_add_rectangle(soup, low, point(high.x, high.y, HIGH), -1);
         }
 }
 
@@ -77,9 +64,9 @@ static void add_lamps(struct soup *soup)
             struct vec3 low = point(x[0] + GAP, y[0] + GAP, HIGH + 0.01);
             struct vec3 high = point(x[1] - GAP, y[1] - GAP, HIGH + 0.05 - GAP);
             if (part == 0)
-                add_rectangle(soup, low, point(high.x, high.y, low.z), 2, true);
+                soup_add_rectangle(soup, low, point(high.x, high.y, low.z), -1);
             else
-                add_cap(soup, low, high, false);
+                add_cap(soup, low, high, 1);
         }
         paint(soup, 0.5, part == 0 ? 20.0 : 0.0);
     }
@@ -88,7 +75,6 @@ static void add_lamps(struct soup *soup)
 /* Pictures and cupboards on the walls, a table with a sheet of paper, a rug. */
 static void add_things(struct soup *soup)
 {
-
     add_box(soup, 0.5, GAP, 1.3, 0.8, 0.02, 0.6);
     add_box(soup, 1.6, GAP, 1.4, 0.4, 0.02, 0.3);
     add_box(soup, GAP, 1.0, 1.2, 0.02, 1.2, 0.8);
@@ -288,25 +274,25 @@ static void test_errors(struct scene *scene, const char *options, const char *na
 static struct scene *room_to_the_sky(bool lit)
 {
     struct soup soup = {0};
-    add_rectangle(&soup, point(0, 0, 0), point(4, 3, 0), 2, false);
-    add_rectangle(&soup, point(0, 0, HIGH), point(4, 3, HIGH), 2, true);
-    add_rectangle(&soup, point(0, 0, 0), point(0, 3, HIGH), 0, false);
-    add_rectangle(&soup, point(4, 0, 0), point(4, 3, HIGH), 0, true);
-    add_rectangle(&soup, point(0, 3, 0), point(4, 3, HIGH), 1, true);
-    add_rectangle(&soup, point(0, 0, 0), point(4, 0, 1), 1, false);
-    add_rectangle(&soup, point(0, 0, 2.2), point(4, 0, HIGH), 1, false);
-    add_rectangle(&soup, point(0, 0, 1), point(0.8, 0, 2.2), 1, false);
-    add_rectangle(&soup, point(3.2, 0, 1), point(4, 0, 2.2), 1, false);
+    soup_add_rectangle(&soup, point(0, 0, 0), point(4, 3, 0), 1);
+    soup_add_rectangle(&soup, point(0, 0, HIGH), point(4, 3, HIGH), -1);
+    soup_add_rectangle(&soup, point(0, 0, 0), point(0, 3, HIGH), 1);
+    soup_add_rectangle(&soup, point(4, 0, 0), point(4, 3, HIGH), -1);
+    soup_add_rectangle(&soup, point(0, 3, 0), point(4, 3, HIGH), -1);
+    soup_add_rectangle(&soup, point(0, 0, 0), point(4, 0, 1), 1);
+    soup_add_rectangle(&soup, point(0, 0, 2.2), point(4, 0, HIGH), 1);
+    soup_add_rectangle(&soup, point(0, 0, 1), point(0.8, 0, 2.2), 1);
+    soup_add_rectangle(&soup, point(3.2, 0, 1), point(4, 0, 2.2), 1);
     add_box(&soup, 1, 1, 0.7, 1.6, 0.8, 0.03);
     add_box(&soup, 1.2, 1.3, 0.731, 0.3, 0.3, 0.2);
     add_box(&soup, 3, 2, GAP, 0.6, 0.6, 1.2);
     add_box(&soup, 0.3, 2.4, GAP, 1.5, 0.5, 1.9);
     paint(&soup, 0.7, 0.0);
-    add_rectangle(&soup, point(-8, -6, -0.5), point(12, -0.2, -0.5), 2, false);
+    soup_add_rectangle(&soup, point(-8, -6, -0.5), point(12, -0.2, -0.5), 1);
     paint(&soup, 0.3, 0.0);
-    add_rectangle(&soup, point(-8, -6, -3), point(12, -6, 12), 1, false);
+    soup_add_rectangle(&soup, point(-8, -6, -3), point(12, -6, 12), 1);
     paint(&soup, 0.0, 5.0);
-    add_rectangle(&soup, point(-40, -6, -4), point(40, 40, -4), 2, !lit);
+    soup_add_rectangle(&soup, point(-40, -6, -4), point(40, 40, -4), lit ? 1 : -1);
     paint(&soup, 0.0, 0.0);
     return scene_of_soup(&soup);
 }

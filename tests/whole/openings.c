@@ -34,40 +34,28 @@ static const double SIZE = 3.0;
 
 enum { ORDERS = 4 };
 
-/* The rectangle from `low` to `high`, whose front is in the direction of the sign on the
- * axis where both are equal; nothing if it has no extent. */
-static void add_rectangle(struct soup *soup, struct vec3 low, struct vec3 high, int sign)
-{
-    struct vec3 d = vec3_sub(high, low);
-    struct vec3 u = d.x == 0.0 ? point(0, d.y, 0) : d.y == 0.0 ? point(0, 0, d.z)
-                                                               : point(d.x, 0, 0);
-    struct vec3 v = vec3_sub(d, u);
-    if ((d.x == 0.0) + (d.y == 0.0) + (d.z == 0.0) == 1)
-        soup_add_quad(soup, low, sign > 0 ? u : v, sign > 0 ? v : u, 1);
-}
-
 /* The walls of a room from x on without the floor and the wall to the other room; `from`
  * and `to`: the hole in its ceiling. */
 static void add_room(struct soup *soup, double x, int side, double from, double to)
 {
     double end = x + SIZE, far = side > 0 ? end : x;
-    add_rectangle(soup, point(x, 0, 0), point(end, 0, SIZE), 1);
-    add_rectangle(soup, point(x, SIZE, 0), point(end, SIZE, SIZE), -1);
-    add_rectangle(soup, point(far, 0, 0), point(far, SIZE, SIZE), -side);
-    add_rectangle(soup, point(x, 0, SIZE), point(end, from, SIZE), -1);
-    add_rectangle(soup, point(x, to, SIZE), point(end, SIZE, SIZE), -1);
-    add_rectangle(soup, point(x, from, SIZE), point(x + from, to, SIZE), -1);
-    add_rectangle(soup, point(x + to, from, SIZE), point(end, to, SIZE), -1);
+    soup_add_rectangle(soup, point(x, 0, 0), point(end, 0, SIZE), 1);
+    soup_add_rectangle(soup, point(x, SIZE, 0), point(end, SIZE, SIZE), -1);
+    soup_add_rectangle(soup, point(far, 0, 0), point(far, SIZE, SIZE), -side);
+    soup_add_rectangle(soup, point(x, 0, SIZE), point(end, from, SIZE), -1);
+    soup_add_rectangle(soup, point(x, to, SIZE), point(end, SIZE, SIZE), -1);
+    soup_add_rectangle(soup, point(x, from, SIZE), point(x + from, to, SIZE), -1);
+    soup_add_rectangle(soup, point(x + to, from, SIZE), point(end, to, SIZE), -1);
 }
 
 /* A side of the wall at x, with a hole. */
 static void add_wall(struct soup *soup, double x, int sign, struct vec3 low,
                      struct vec3 high)
 {
-    add_rectangle(soup, point(x, 0, 0), point(x, low.y, SIZE), sign);
-    add_rectangle(soup, point(x, high.y, 0), point(x, SIZE, SIZE), sign);
-    add_rectangle(soup, point(x, low.y, 0), point(x, high.y, low.z), sign);
-    add_rectangle(soup, point(x, low.y, high.z), point(x, high.y, SIZE), sign);
+    soup_add_rectangle(soup, point(x, 0, 0), point(x, low.y, SIZE), sign);
+    soup_add_rectangle(soup, point(x, high.y, 0), point(x, SIZE, SIZE), sign);
+    soup_add_rectangle(soup, point(x, low.y, 0), point(x, high.y, low.z), sign);
+    soup_add_rectangle(soup, point(x, low.y, high.z), point(x, high.y, SIZE), sign);
 }
 
 /* Moves the triangles from number `first` on: the one `by` after it comes first. */
@@ -85,7 +73,7 @@ static bool aims; /* leaves of the last solution have looked for openings */
 
 static void add_floor(struct soup *soup, double x, double end)
 {
-    add_rectangle(soup, point(x, 0, 0), point(end, SIZE, 0), 1);
+    soup_add_rectangle(soup, point(x, 0, 0), point(end, SIZE, 0), 1);
 }
 
 /* Adds two rooms, the triangles of the dark one first, and a lamp in the other, faces in
@@ -106,13 +94,13 @@ static int32_t add_rooms(struct soup *soup, double thick, struct vec3 low,
     add_room(soup, 0.0, -1, 1.2, 1.8);
     add_wall(soup, SIZE, -1, low, high);
     if (!one_floor)
-        add_rectangle(soup, point(SIZE, low.y, low.z), point(end, high.y, low.z), 1);
-    add_rectangle(soup, point(SIZE, low.y, high.z), point(end, high.y, high.z), -1);
-    add_rectangle(soup, point(SIZE, low.y, low.z), point(end, low.y, high.z), 1);
-    add_rectangle(soup, point(SIZE, high.y, low.z), point(end, high.y, high.z), -1);
+        soup_add_rectangle(soup, point(SIZE, low.y, low.z), point(end, high.y, low.z), 1);
+    soup_add_rectangle(soup, point(SIZE, low.y, high.z), point(end, high.y, high.z), -1);
+    soup_add_rectangle(soup, point(SIZE, low.y, low.z), point(end, low.y, high.z), 1);
+    soup_add_rectangle(soup, point(SIZE, high.y, low.z), point(end, high.y, high.z), -1);
     turn(soup, dark, 3 * order);
     paint(soup, 0.7, 0.0);
-    add_rectangle(soup, point(1.2, 1.2, SIZE), point(1.8, 1.8, SIZE), -1);
+    soup_add_rectangle(soup, point(1.2, 1.2, SIZE), point(1.8, 1.8, SIZE), -1);
     paint(soup, 0.0, 100.0);
     return dark;
 }
@@ -158,11 +146,11 @@ static void test_opening(const char *name, double thick, struct vec3 low,
 static void add_post(struct soup *soup, double x, double y)
 {
     double end = x + 0.05, side = y + 0.05, top = 0.72;
-    add_rectangle(soup, point(x, y, 0), point(x, side, top), -1);
-    add_rectangle(soup, point(end, y, 0), point(end, side, top), 1);
-    add_rectangle(soup, point(x, y, 0), point(end, y, top), -1);
-    add_rectangle(soup, point(x, side, 0), point(end, side, top), 1);
-    add_rectangle(soup, point(x, y, top), point(end, side, top), 1);
+    soup_add_rectangle(soup, point(x, y, 0), point(x, side, top), -1);
+    soup_add_rectangle(soup, point(end, y, 0), point(end, side, top), 1);
+    soup_add_rectangle(soup, point(x, y, 0), point(end, y, top), -1);
+    soup_add_rectangle(soup, point(x, side, 0), point(end, side, top), 1);
+    soup_add_rectangle(soup, point(x, y, top), point(end, side, top), 1);
 }
 
 /* Four posts in the dark room, each of their faces 1/3000 of all surface. */
