@@ -43,18 +43,10 @@ static const double NEAR_RAY = 0.05;
  * width of the opening, and leaves may be as wide. */
 static const double NEAR_OPENING = 16.0;
 
-/* A gap is narrow for a leaf if the square of its width is less than this part of the
- * leaf's area. */
-static const double NARROW = 0.04;
-
 /* A ray has met a leaf in a gap only if the square of the ray's length is less than this
  * times the leaf's area: small facets of a round thing far away are seen along their
  * planes, with no gap. */
 static const double ALONG = 16.0;
-
-/* Two surfaces face each other across a gap if the cosine between their normals is
- * less. */
-static const double OPPOSITE = -0.7;
 
 /* A point is beside a root if the square of its distance is less than this times the
  * square of the root's radius. */
@@ -128,8 +120,8 @@ static bool is_too_near(const struct receiver *r, const struct point *met, struc
     struct vec3 apart = vec3_sub(leaf->middle, x), ray = vec3_sub(met->at, x);
     double width = vec3_dot(apart, met->normal);
     return vec3_dot(apart, apart) < near * area || vec3_dot(ray, ray) < NEAR_RAY * area ||
-           (width * width < NARROW * area && vec3_dot(ray, ray) < ALONG * area &&
-            vec3_dot(normal, met->normal) < OPPOSITE);
+           (vec3_dot(ray, ray) < ALONG * area &&
+            gap_is_narrow(normal, met->normal, width, area));
 }
 
 static bool is_partly_covered(const struct final_gather *gather, int32_t leaf)

@@ -32,11 +32,6 @@ static const double LEAST_COSINE = 0.1;
 
 enum { QUARTERINGS = 3 };
 
-/* Two triangles face each other across a gap if the cosine between their normals is less
- * than OPPOSITE. It is narrow for one of them if the square of its width is less than
- * NARROW of that one's area. */
-static const double OPPOSITE = -0.7, NARROW = 0.04;
-
 /* The exact factor of two triangles takes about as long as so many tests. */
 enum { TESTS_PER_EXACT_FACTOR = 400 };
 
@@ -78,8 +73,7 @@ static bool is_across_gap(const struct triangle *from, struct vec3 normal,
 {
     struct plane plane = triangle_plane(to);
     double width = plane_distance(&plane, triangle_centroid(from));
-    return vec3_dot(normal, plane.normal) < OPPOSITE &&
-           width * width < NARROW * triangle_area(from);
+    return gap_is_narrow(normal, plane.normal, width, triangle_area(from));
 }
 
 static double factor_of_quarters(const struct triangle *from, struct vec3 normal,
