@@ -70,18 +70,6 @@ static inline struct shading *shade(const struct solution *s)
     return shade_forest(s->solver->model.forest, s->octree, NULL, NULL);
 }
 
-/* Barycentric coordinates of a point on the triangle's plane. */
-static inline void weights_at(const struct triangle *t, struct vec3 x, double weight[3])
-{
-    struct vec3 a = vec3_sub(t->corner[1], t->corner[0]),
-                b = vec3_sub(t->corner[2], t->corner[0]);
-    struct vec3 normal = vec3_cross(a, b), to = vec3_sub(x, t->corner[0]);
-    double unit = vec3_dot(normal, normal);
-    weight[1] = vec3_dot(vec3_cross(to, b), normal) / unit;
-    weight[2] = vec3_dot(vec3_cross(a, to), normal) / unit;
-    weight[0] = 1.0 - weight[1] - weight[2];
-}
-
 /* Radiosity at a point in input units of one of the roots first .. first + count - 1, the
  * one that the point is on (or is least outside of). W/m^2, first band. */
 static inline double shown_at(const struct solution *s, const struct shading *shading,
@@ -93,7 +81,7 @@ static inline double shown_at(const struct solution *s, const struct shading *sh
     for (int32_t r = first; r < first + count; r++) {
         double weight[3];
         struct triangle t = scene_root_triangle(s->scene, r);
-        weights_at(&t, x, weight);
+        triangle_weights(&t, x, weight);
         double lowest = fmin(weight[0], fmin(weight[1], weight[2]));
         if (lowest > least) {
             least = lowest;

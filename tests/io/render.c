@@ -18,7 +18,7 @@ static double shown(struct solution *s, const struct shading *shading, int32_t f
     for (int32_t root = first; root < first + 2; root++) {
         double weight[3];
         struct triangle t = scene_root_triangle(s->scene, root);
-        weights_at(&t, x, weight);
+        triangle_weights(&t, x, weight);
         if (fmin(weight[0], fmin(weight[1], weight[2])) >= -1e-9)
             return render_point(&renderer, root, weight, 1).band[0];
     }
