@@ -170,17 +170,6 @@ static double reflected(const struct solution *s, int32_t patch)
            forest_material(forest, patch)->emission.band[0];
 }
 
-static double mean_reflected(const struct solution *s)
-{
-    const struct forest *forest = s->solver->model.forest;
-    double sum = 0.0, area = 0.0;
-    for (int32_t root = 0; root < forest->root_count; root++) {
-        sum += forest_area(forest, root) * reflected(s, root);
-        area += forest_area(forest, root);
-    }
-    return sum / area;
-}
-
 /* One leaf in 400 may be noisy: in a lamp's housing few rays find the slit of light. */
 static void test_room(void)
 {
@@ -188,7 +177,7 @@ static void test_room(void)
     const struct forest *forest = s.solver->model.forest;
     struct pathtracer pathtracer = pathtracer_make(s.scene, s.octree);
     int counts[VERDICTS] = {0};
-    double mean = mean_reflected(&s), worst = 1.0, truth;
+    double mean = forest_mean_reflected(forest) / BANDS, worst = 1.0, truth;
     char where[100] = "";
     for (int32_t p = 0; p < forest->count; p++) {
         if (!patch_is_leaf(&forest->patches[p]))
