@@ -24,8 +24,9 @@
 #                        ImageMagick docs/film.gif
 #   make answers         scenes/answers.csv: the light of the scenes for lectures, by
 #                        paths
-#   make prove           long tests: errors over six fourfold steps of epsilon; pictures
-#                        beside the path tracer's; kills at forty moments
+#   make prove           long tests: errors over six fourfold steps of epsilon; 500 random
+#                        sets of options; pictures beside the path tracer's; kills at
+#                        forty moments
 #   make cycles          pictures beside those of Blender's Cycles, where it is installed
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
@@ -256,6 +257,7 @@ check-long: $(PHR)
 # About an hour and a half, most of it for references that are kept in $(BUILD)/prove.
 prove: errors $(PHR) $(IMGDIFF) pathtracer build/room check-long
 	BUILD="$(BUILD)" sh tests/prove.sh
+	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" RUNS=500 SEED=2 sh tests/68-sweep.sh
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/pictures.sh
 
 # About ten minutes, nearly all for Blender's pictures, which are kept in $(BUILD)/cycles.

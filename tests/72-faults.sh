@@ -4,7 +4,8 @@
 . tests/tap.sh
 . tests/faults.sh
 
-scene="scenes/cornell.obj --epsilon 1e-6 --flat --size 20x20"
+box="scenes/cornell.obj --epsilon 1e-6 --flat --size 20x20"
+scene="$box --final-gather 8"
 
 # A launcher that was sent a signal may end with 0 whatever its ranks end with: then the
 # message of phr counts.
@@ -164,7 +165,7 @@ check "which is the one before, whole" goes_on full
 
 if [ -c /dev/full ]; then
     for option in --checkpoint "--paper --save-links"; do
-        $MPIEXEC -n 2 sh -c 'exec 2>"$0/full.err"; exec "$@"' "$work" "$PHR" $scene \
+        $MPIEXEC -n 2 sh -c 'exec 2>"$0/full.err"; exec "$@"' "$work" "$PHR" $box \
             --quiet $option /dev/full \
             >/dev/null 2>&1
         status=$?
