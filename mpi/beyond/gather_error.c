@@ -22,6 +22,9 @@ static const double BOUND = 2.5;
 /* Factors of lamps, by few points of a leaf, deviate by about this part. */
 static const double FACTORS = 4e-4;
 
+/* Leaves in classes by their light, and how many a ratio is estimated over. */
+enum { CLASSES = 48, BRIGHTEST = 8, FEWEST = 128 };
+
 /* An estimate of how B varies within a leaf as seen from a point: half of its difference
  * from the mean over its parent; of undivided roots, a part of the reflected
  * radiosity. */
@@ -94,31 +97,86 @@ static void raise_to_sisters(const struct gathering *g, struct rgb *variance)
     alloc_free(sums);
 }
 
-/* The ratio of the sequence's variance to that by chance, of reflected light, by the
- * variances of all leaves by their halves and by chance. A quarter of the squared
- * difference of two halves is the variance of their mean if they have nothing to do with
- * each other, as if by chance, where the ratio is 1. Of a sequence the second half falls
- * into the gaps of the first: where variance falls threefold with twice the rays, as in
- * the Cornell box and in rooms, it is half of that. There the ratio is small. */
-static double ratio_of_sequence(const struct gathering *g, const struct rgb *halves,
-                                const struct rgb *chance)
+/* Variances of a class of leaves, summed up, each times its leaf's area. */
+struct noise {
+    double by_halves, by_chance;
+    int64_t count;
+};
+
+/* The class of a leaf by its H in a band. Each has twice the light of the one before; the
+ * last has all above 2^BRIGHTEST of the mean. */
+static int class_of(double light, double mean)
 {
-    double by_halves = 0.0, by_chance = 0.0;
-    for (int64_t i = 0; i < g->count; i++) {
-        const struct material *m = gathering_material(g, i);
-        for (int c = 0; c < BANDS; c++) {
-            double rho = m->reflectance.band[c], weight = g->areas[i] * rho * rho;
-            by_halves += weight * halves[i].band[c];
-            by_chance += weight * chance[i].band[c];
-        }
+    int exponent = 0;
+    if (!(light > 0.0 && mean > 0.0))
+        return 0;
+    frexp(light / mean, &exponent);
+    int place = CLASSES - 1 - BRIGHTEST + exponent;
+    return place < 0 ? 0 : place < CLASSES ? place : CLASSES - 1;
+}
+
+/* A leaf's H in a band, W/m^2; 0 if it reflects none. */
+static double irradiance_of(const struct gathering *g, int64_t leaf, int band)
+{
+    const struct material *m = gathering_material(g, leaf);
+    double rho = m->reflectance.band[band];
+    double b = g->radiosity[g->gather.place[g->leaves[leaf]]].band[band];
+    return rho > 0.0 ? fmax(0.0, (b - m->emission.band[band]) / rho) : 0.0;
+}
+
+/* Adds each leaf, a band at a time, to a class, whose number `own`, [BANDS * count],
+ * tells. Leaves count by their area and the square of their reflectance. */
+static void classify(const struct gathering *g, const struct rgb *halves,
+                     const struct rgb *chance, struct noise *classes, uint8_t *own)
+{
+    double *light = alloc_array(BANDS * (size_t)g->count, sizeof *light);
+    double *weight = alloc_array(BANDS * (size_t)g->count, sizeof *weight);
+    double sum = 0.0, all = 0.0;
+    for (int64_t k = 0; k < BANDS * g->count; k++) {
+        int64_t i = k / BANDS;
+        double rho = gathering_material(g, i)->reflectance.band[k % BANDS];
+        light[k] = irradiance_of(g, i, (int)(k % BANDS));
+        weight[k] = g->areas[i] * rho * rho;
+        sum += weight[k] * light[k];
+        all += weight[k];
     }
-    double ratio = by_chance > 0.0 ? fmin(1.0, by_halves / by_chance) : 1.0;
+    for (int64_t k = 0; k < BANDS * g->count; k++) {
+        own[k] = (uint8_t)class_of(light[k], sum / all);
+        struct noise *class = &classes[own[k]];
+        class->by_halves += weight[k] * halves[k / BANDS].band[k % BANDS];
+        class->by_chance += weight[k] * chance[k / BANDS].band[k % BANDS];
+        class->count += weight[k] > 0.0;
+    }
+    alloc_free(weight);
+    alloc_free(light);
+}
+
+/* The ratio of the sequence's variance to that by chance, of reflected light, by the
+ * variances of the leaves of a class by their halves and by chance, and of those next to
+ * it while they are few. A quarter of the squared difference of two halves is the
+ * variance of their mean if they have nothing to do with each other, as if by chance,
+ * where the ratio is 1. Of a sequence the second half falls into the gaps of the first:
+ * where variance falls threefold with twice the rays, as in the Cornell box and in rooms,
+ * it is half of that. There the ratio is small. Where a few rays bring most light, as in
+ * a storey below a stairwell, it is not. */
+static double ratio_of_sequence(const struct noise *classes, int class)
+{
+    struct noise all = {0};
+    for (int width = 0; all.count < FEWEST && width < CLASSES; width++)
+        for (int k = class - width; k <= class + width; k += width ? 2 * width : 1) {
+            if (k < 0 || k >= CLASSES)
+                continue;
+            all.by_halves += classes[k].by_halves;
+            all.by_chance += classes[k].by_chance;
+            all.count += classes[k].count;
+        }
+    double ratio = all.by_chance > 0.0 ? fmin(1.0, all.by_halves / all.by_chance) : 1.0;
     return ratio / (2.0 - ratio);
 }
 
 /* Collective. Variance of H that comes from the choice of rays: the variance by
  * chance, times the ratio of the sequence's variance to it, estimated over all leaves
- * together. */
+ * that have about as much light. */
 static void variances_by_rays(struct gathering *g, struct rgb *variance)
 {
     struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
@@ -130,11 +188,16 @@ static void variances_by_rays(struct gathering *g, struct rgb *variance)
                                         : g->gather.rows[row].chance[c];
         gathering_share_rows(g, kind ? halves : variance);
     }
-    double ratio = ratio_of_sequence(g, halves, variance);
+    struct noise classes[CLASSES] = {{0}};
+    double ratios[CLASSES];
+    uint8_t *own_class = alloc_array(BANDS * (size_t)g->count, sizeof *own_class);
+    classify(g, halves, variance, classes, own_class);
+    for (int k = 0; k < CLASSES; k++)
+        ratios[k] = ratio_of_sequence(classes, k);
     raise_to_sisters(g, variance);
-    for (int64_t i = 0; i < g->count; i++)
-        for (int c = 0; c < BANDS; c++)
-            variance[i].band[c] *= ratio;
+    for (int64_t k = 0; k < BANDS * g->count; k++)
+        variance[k / BANDS].band[k % BANDS] *= ratios[own_class[k]];
+    alloc_free(own_class);
     alloc_free(halves);
 }
 

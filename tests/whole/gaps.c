@@ -232,20 +232,23 @@ static enum holds error_holds(const struct pathtracer *pathtracer, struct patch_
     return fabs(found.light - sum / n) <= found.error ? HELD : BROKEN;
 }
 
-/* Errors are to hold for this part of the leaves that reflect. */
-static void test_errors(struct scene *scene, const char *options, const char *name,
-                        double part)
+/* Errors are to hold for this part of the leaves that reflect, of the first triangles. */
+static void test_errors(struct scene *scene, uint32_t roots, const char *options,
+                        const char *name, double part)
 {
     enum { LOOKED = 300 };
     struct solution s = solve_scene(scene, options);
     const struct forest *forest = s.solver->model.forest;
     struct pathtracer pathtracer = pathtracer_make(s.scene, s.octree);
     int counts[HOLDS] = {0};
-    int64_t step = forest->count / LOOKED;
-    for (int64_t p = step / 2; p < forest->count; p += step) {
+    int64_t all = 0, seen = 0;
+    for (int64_t p = 0; p < forest->count; p++)
+        all += forest->patches[p].id.root < roots;
+    for (int64_t p = 0, step = all / LOOKED; p < forest->count; p++) {
         struct found found = {reflected(&s, (int32_t)p),
                               (double)s.solver->beyond->answer.error[p]};
-        if (!patch_is_leaf(&forest->patches[p]) ||
+        if (forest->patches[p].id.root >= roots || seen++ % step != step / 2 ||
+            !patch_is_leaf(&forest->patches[p]) ||
             !(rgb_sum(forest_material(forest, (int32_t)p)->reflectance) > 0.0))
             continue;
         counts[error_holds(&pathtracer, forest->patches[p].id, found)]++;
@@ -286,6 +289,48 @@ static struct scene *room_to_the_sky(bool lit)
     return scene_of_soup(&soup);
 }
 
+/* The faces of a room of 6 m by 4 m that look inwards, with a stairwell in its ceiling,
+ * or in its floor. */
+static void add_storey(struct soup *soup, double low, double high, bool below)
+{
+    double well = below ? high : low, flat = below ? low : high;
+    int up = below ? 1 : -1; /* the side of the flat face, without a stairwell */
+    soup_add_rectangle(soup, point(0, 0, low), point(0, 4, high), 1);
+    soup_add_rectangle(soup, point(6, 0, low), point(6, 4, high), -1);
+    soup_add_rectangle(soup, point(0, 0, low), point(6, 0, high), 1);
+    soup_add_rectangle(soup, point(0, 4, low), point(6, 4, high), -1);
+    soup_add_rectangle(soup, point(0, 0, flat), point(6, 4, flat), up);
+    soup_add_rectangle(soup, point(0, 0, well), point(6, 0.5, well), -up);
+    soup_add_rectangle(soup, point(0, 1.5, well), point(6, 4, well), -up);
+    soup_add_rectangle(soup, point(0, 0.5, well), point(1, 1.5, well), -up);
+    soup_add_rectangle(soup, point(4, 0.5, well), point(6, 1.5, well), -up);
+}
+
+/* Two storeys, the lower one first, which has the light that comes down the stairwell. */
+static struct scene *house(void)
+{
+    struct soup soup = {0};
+    add_storey(&soup, 0.0, 2.4, true);
+    add_storey(&soup, 2.6, 5.0, false);
+    soup_add_rectangle(&soup, point(1, 0.5, 2.4), point(1, 1.5, 2.6), 1);
+    soup_add_rectangle(&soup, point(4, 0.5, 2.4), point(4, 1.5, 2.6), -1);
+    soup_add_rectangle(&soup, point(1, 0.5, 2.4), point(4, 0.5, 2.6), 1);
+    soup_add_rectangle(&soup, point(1, 1.5, 2.4), point(4, 1.5, 2.6), -1);
+    paint(&soup, 0.6, 0.0);
+    soup_add_rectangle(&soup, point(4.5, 2, 4.99), point(5, 3, 4.99), -1);
+    paint(&soup, 0.0, 100.0);
+    return scene_of_soup(&soup);
+}
+
+/* Where a few rays bring most light, the sequence helps less than above. By a ratio of
+ * variances that all leaves have in common errors would hold for 24 of 30 leaves, and the
+ * paths could not tell of the others. */
+static void test_lower_storey(void)
+{
+    enum { TRIANGLES = 18 };
+    test_errors(house(), TRIANGLES, "", "below a stairwell", 0.95);
+}
+
 /* Noise of light that is not reflected is no error: all other rows are the same. */
 static void test_black_plain(void)
 {
@@ -324,8 +369,9 @@ static void test_lamp_in_column(void)
  * leaves see little but the inside of one. */
 static void test_room_errors(void)
 {
-    test_errors(room(), "--epsilon 1e-2 --final-gather 64", "gaps", 0.95);
-    test_errors(room_to_the_sky(false), "--epsilon 1e-3 --final-gather 64", "sky", 0.95);
+    test_errors(room(), UINT32_MAX, "--epsilon 1e-2 --final-gather 64", "gaps", 0.95);
+    test_errors(room_to_the_sky(false), UINT32_MAX, "--epsilon 1e-3 --final-gather 64",
+                "sky", 0.95);
 }
 
 /* Light in white rooms would grow with each reflection if leaves too near were seen
@@ -432,6 +478,7 @@ int main(int argc, char **argv)
     comm_start(&world_comm, &argc, &argv);
     test_room();
     test_room_errors();
+    test_lower_storey();
     test_black_plain();
     test_lamp_in_column();
     test_white_room(0.9);
