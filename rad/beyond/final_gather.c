@@ -274,8 +274,10 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     if (slope.range > gather->sums.flat * gather->mean)
         slope.rise = slope_part(b, middle) *
                      (!leaf ? 2.0 : patch == slope.first + 3 ? -1.0 : 1.0);
+    slope.steep = 1.0;
     if (gather->sums.exact && leaf && slope.rise != 0.0)
-        slope.rise *= steepening(forest, patch);
+        slope.steep = steepening(forest, patch);
+    slope.rise *= slope.steep;
     return slope;
 }
 

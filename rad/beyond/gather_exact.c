@@ -170,12 +170,11 @@ static void three_points(const struct triangle *t, struct vec3 x[3])
         x[k] = vec3_add(sum, vec3_scale(c[k], 0.5));
 }
 
-/* The square of the size of a sender over its distance. */
-static double nearness(const struct facet *to, const struct triangle *sender)
+/* The square of the size of a triangle over the distance to another. */
+static double nearness(const struct triangle *to, const struct triangle *triangle)
 {
-    struct vec3 apart =
-        vec3_sub(triangle_centroid(&to->triangle), triangle_centroid(sender));
-    double radius = triangle_radius(sender);
+    struct vec3 apart = vec3_sub(triangle_centroid(to), triangle_centroid(triangle));
+    double radius = triangle_radius(triangle);
     return radius * radius / vec3_dot(apart, apart);
 }
 
@@ -187,7 +186,7 @@ static void place_of_light(const struct facet *to, const struct triangle *sender
 {
     const struct triangle at = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
     struct vec3 x[3], y[3], weights[3], sum = {0.0, 0.0, 0.0};
-    int parts = nearness(to, sender) > NEAR_SENDER ? 4 : 1;
+    int parts = nearness(&to->triangle, sender) > NEAR_SENDER ? 4 : 1;
     double all = 0.0;
     three_points(&to->triangle, x);
     for (int part = 0; part < parts; part++) {
@@ -214,7 +213,7 @@ static bool is_to_be_split(const struct receiver *r, const struct triangle *send
                            double factor, double range)
 {
     const struct final_gather *g = r->gather;
-    double near2 = fmin(1.0, nearness(&r->facet, sender));
+    double near2 = fmin(1.0, nearness(&r->facet.triangle, sender));
     return factor * range * near2 * g->rays > VARIES * g->sums.flat * g->mean;
 }
 
@@ -224,16 +223,25 @@ struct sender_part {
     struct triangle triangle;
     struct vec3 normal;
     double centre[3]; /* barycentric coordinates in the patch */
-    double size;      /* of its edges, those of the patch being 1; below 0 upside down */
+    double size;      /* of its edges, those of the patch being 1, times how much steeper B
+                         is over it; below 0 upside down */
+    double steep[3];  /* over child k B is steeper by this factor, 1 */
+    bool whole;       /* no part of the patch, but all of it */
 };
 
+/* Towards an edge B is ever steeper, from a child that leads up to that child's. */
 static struct sender_part part_child(const struct sender_part *part, int k)
 {
     struct sender_part child = *part;
+    double steep = k == 3 ? 1.0 : part->steep[k];
+    child.whole = false;
     child.triangle = triangle_child(&part->triangle, k);
     child.size = k == 3 ? -0.5 * part->size : 0.5 * part->size;
     for (int j = 0; j < 3 && k < 3; j++)
         child.centre[j] += child.size * ((j == k ? 1.0 : 0.0) - 1.0 / 3.0);
+    child.size *= steep;
+    for (int j = 0; j < 3 && steep == 1.0; j++)
+        child.steep[j] = 1.0;
     return child;
 }
 
@@ -245,11 +253,20 @@ static double factor_to(const struct receiver *r, const struct triangle *sender)
                                  : mean_factor(&r->facet.triangle, normal, sender, work);
 }
 
+/* True if a part is so near, for its size or the leaf's, that three points of the leaf do
+ * not tell where on it its light comes from. A part is small, and its middle does. */
+static bool is_near_part(const struct receiver *r, const struct sender_part *part)
+{
+    const struct triangle *to = &r->facet.triangle;
+    return !part->whole && (nearness(to, &part->triangle) > NEAR_SENDER ||
+                            nearness(&part->triangle, to) > NEAR_SENDER);
+}
+
 /* Adds a part whose factor is known as a whole. */
 static void add_whole(struct receiver *r, const struct sender_part *part, double factor)
 {
     double w[3] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}, at[3];
-    if (gather_slope(r->gather, part->patch).rise != 0.0)
+    if (gather_slope(r->gather, part->patch).rise != 0.0 && !is_near_part(r, part))
         place_of_light(&r->facet, &part->triangle, part->normal, w);
     for (int k = 0; k < 3; k++)
         at[k] = part->centre[k] + part->size * (w[k] - 1.0 / 3.0);
@@ -272,6 +289,18 @@ static void add_part(struct receiver *r, const struct sender_part *part, double 
     }
 }
 
+/* Sets how much steeper B gets over the children of a leaf. */
+static void part_set_steepness(struct sender_part *part, const struct forest *forest,
+                               const struct gather_slope *slope)
+{
+    double mean = 0.0;
+    for (int k = 0; k < 3; k++)
+        mean += rgb_sum(forest->radiosity[slope->first + k]) / 3.0;
+    for (int k = 0; k < 3; k++)
+        if (rgb_sum(forest->radiosity[slope->first + k]) > mean)
+            part->steep[k] = slope->steep;
+}
+
 /* Adds the exact factor to a patch, or to its leaves where B varies over it. False if one
  * of them is too near. */
 static bool add_sender(struct receiver *r, int32_t patch)
@@ -281,14 +310,19 @@ static bool add_sender(struct receiver *r, int32_t patch)
     struct sender_part whole = {.patch = patch,
                          .triangle = forest_triangle(forest, patch),
                          .centre = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0},
-                         .size = 1.0};
+                         .size = 1.0,
+                         .steep = {1.0, 1.0, 1.0},
+                         .whole = true};
     double factor = factor_to(r, &whole.triangle);
     if (!(factor > 0.0))
         return true;
     uint32_t root = forest->patches[patch].id.root;
     whole.normal = scene_root_plane(forest->scene, (int32_t)root).normal;
     if (patch_is_leaf(&forest->patches[patch])) {
-        add_part(r, &whole, gather_slope(g, patch).range, factor, QUARTERINGS);
+        struct gather_slope slope = gather_slope(g, patch);
+        if (slope.rise != 0.0)
+            part_set_steepness(&whole, forest, &slope);
+        add_part(r, &whole, slope.range, factor, QUARTERINGS);
         return !lies_on(r, patch, factor);
     }
     if (!is_to_be_split(r, &whole.triangle, factor,
