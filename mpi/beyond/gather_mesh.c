@@ -42,11 +42,11 @@
 static const double MESH = 0.005, BENT = 0.002;
 
 /* Links make a mesh for the brightest band. It may be too coarse by more than a level for
- * a dim one, with less than a DIM-th of the mean squared light of bands, that is
- * reflected more often. Where B is smooth, the error of a bend over a child is the part
- * FALL of that over its parent, a sixteenth for the square of the bend, a quarter for the
- * area; a child is split, too, if it is more than MUCH times what is allowed. */
-static const double DIM = 2.0, FALL = 1.0 / 64.0, MUCH = 64.0;
+ * a dim one that is reflected more often, and where much is reflected next to an edge.
+ * Where B is smooth, the error of a bend over a child is the part FALL of that over its
+ * parent, a sixteenth for the square of the bend, a quarter for the area; a child is
+ * split, too, if it is more than MUCH times what is allowed. */
+static const double FALL = 1.0 / 64.0, MUCH = 64.0;
 
 /* The variance of the light over a leaf is at most this times its square, which the links
  * tell with an error of this part of the mean square. */
@@ -340,8 +340,8 @@ static struct rgb bends_of(const struct forest *forest, int32_t leaf)
 
 /* How many times a leaf with exact rows is to be split: once if in any band the square
  * of the bend, as a part of `all` of the same band, is more than is allowed, for dim
- * bands are to be right, too; more often if it is so much more in a dim one that a level
- * is not enough. `all`: squares of light, by area. */
+ * bands are to be right, too; more often if it is so much more that a level is not
+ * enough. `all`: squares of light, by area. */
 static int splits_of(const struct looking *l, int32_t leaf, const struct rgb *all)
 {
     const struct model *model = &l->solver->model;
@@ -354,9 +354,7 @@ static int splits_of(const struct looking *l, int32_t leaf, const struct rgb *al
             continue;
         int levels = 1;
         double error = FALL * area * bends.band[c];
-        bool dim = DIM * BANDS * all->band[c] < rgb_sum(*all);
-        for (; dim && levels < ID_MAX_LEVEL && error > MUCH * part * all->band[c];
-             error *= FALL)
+        for (; levels < ID_MAX_LEVEL && error > MUCH * part * all->band[c]; error *= FALL)
             levels++;
         splits = levels > splits ? levels : splits;
     }
