@@ -517,12 +517,12 @@ static void add_room(struct soup *soup, enum room room)
 /* B = E / (1 - rho) of every leaf, whatever it sees; of a furnished room whose triangles
  * have rho and half of it in turns, with E = 1 - rho, B = 1. Rows sum to 1, and there is
  * no noise where all is alike; the tolerance bounds the mean error, so less is asked
- * for. */
+ * for, and single leaves are off by more. */
 static void test_furnace(enum room room, double rho, bool mixed, const char *words)
 {
     static const char *const names[] = {"cube", "corridor 1:100", "furnished room",
                                         "room with a picture", "acute wedge"};
-    static const struct errors limit = {1e-6, 1e-6, 1e-6};
+    static const struct errors limit = {1e-6, 1e-6, 3e-6};
     char name[64];
     struct soup soup = {0};
     add_room(&soup, room);
@@ -704,7 +704,6 @@ int main(int argc, char **argv)
     test_isothermal(&PLATES, 1.0, 0.1, STRIP, .159605984267);
     test_isothermal(&PLATES, 1.0, 0.5, STRIP, .630764377100);
     test_isothermal(&PLATES, 0.1, 0.1, SHORT, .601952438427);
-    test_isothermal(&PLATES, 0.1, 0.2, SHORT, 0.0);
     test_isothermal(&PLATES, 0.1, 0.5, SHORT, .920355233642);
     test_isothermal(&PLATES, 0.1, 0.02, 2 * SHORT, 0.0);
     test_isothermal(&GROOVE, PI / 6.0, 0.5, STRIP, .8061670444);
@@ -714,7 +713,7 @@ int main(int argc, char **argv)
     test_edge(PI / 2.0, 0.5);
     test_edge(PI / 3.0, 0.8);
     test_strips(&GROOVE, PI / 4.0, (double[]){1, 0}, (double[]){.9, .9}, STRIP, 0.0);
-    test_strips(&GROOVE, PI / 3.0, (double[]){1, 0}, (double[]){.95, .95}, STRIP, 0.0);
+    test_strips(&GROOVE, PI / 3.0, (double[]){1, 0}, (double[]){.98, .98}, STRIP, 0.0);
     test_corner();
     test_cavity(1.0, 0.5, .7596668, .7382803);
     test_cavity(2.0, 0.5, .8334092, .8580643);
