@@ -223,8 +223,8 @@ struct sender_part {
     struct triangle triangle;
     struct vec3 normal;
     double centre[3]; /* barycentric coordinates in the patch */
-    double size;      /* of its edges, those of the patch being 1, times how much steeper B
-                         is over it; below 0 upside down */
+    double size;      /* of its edges, those of the patch being 1, times how much steeper
+                         B is over it; below 0 upside down */
     double steep[3];  /* over child k B is steeper by this factor, 1 */
     bool whole;       /* no part of the patch, but all of it */
 };
