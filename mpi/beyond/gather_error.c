@@ -22,7 +22,8 @@ static const double BOUND = 2.5;
 /* Factors of lamps, by few points of a leaf, deviate by about this part. */
 static const double FACTORS = 4e-4;
 
-/* Leaves in classes by their light, and how many a ratio is estimated over. */
+/* Classes of leaves by their light: the last has 2^(BRIGHTEST - 1) times the mean and
+ * more. Fewest leaves, counted in each band, that a ratio is estimated over. */
 enum { CLASSES = 48, BRIGHTEST = 8, FEWEST = 128 };
 
 /* An estimate of how B varies within a leaf as seen from a point: half of its difference
@@ -103,8 +104,7 @@ struct noise {
     int64_t count;
 };
 
-/* The class of a leaf by its H in a band. Each has twice the light of the one before; the
- * last has all above 2^BRIGHTEST of the mean. */
+/* The class of a leaf by its H in a band. Each has twice the light of the one before. */
 static int class_of(double light, double mean)
 {
     int exponent = 0;

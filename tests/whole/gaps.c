@@ -244,7 +244,7 @@ static void test_errors(struct scene *scene, uint32_t roots, const char *options
     int64_t all = 0, seen = 0;
     for (int64_t p = 0; p < forest->count; p++)
         all += forest->patches[p].id.root < roots;
-    for (int64_t p = 0, step = all / LOOKED; p < forest->count; p++) {
+    for (int64_t p = 0, step = all < LOOKED ? 1 : all / LOOKED; p < forest->count; p++) {
         struct found found = {reflected(&s, (int32_t)p),
                               (double)s.solver->beyond->answer.error[p]};
         if (forest->patches[p].id.root >= roots || seen++ % step != step / 2 ||
