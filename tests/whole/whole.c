@@ -517,12 +517,12 @@ static void add_room(struct soup *soup, enum room room)
 /* B = E / (1 - rho) of every leaf, whatever it sees; of a furnished room whose triangles
  * have rho and half of it in turns, with E = 1 - rho, B = 1. Rows sum to 1, and there is
  * no noise where all is alike; the tolerance bounds the mean error, so less is asked
- * for, and single leaves are off by more. */
+ * for, and at rho .999 single leaves of the wedge are off by more. */
 static void test_furnace(enum room room, double rho, bool mixed, const char *words)
 {
     static const char *const names[] = {"cube", "corridor 1:100", "furnished room",
                                         "room with a picture", "acute wedge"};
-    static const struct errors limit = {1e-6, 1e-6, 3e-6};
+    const struct errors limit = {1e-6, 1e-6, room == WEDGE ? 3e-6 : 1e-6};
     char name[64];
     struct soup soup = {0};
     add_room(&soup, room);
