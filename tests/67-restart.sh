@@ -140,7 +140,7 @@ check "one with a changed byte" \
 # from, and one too late to be stopped goes on as well. At even moments, counted from the
 # end of the first pass, the pass that is broken off is one that the memory limit ends.
 fine="scenes/cornell.obj --epsilon 3e-6 --size 40x40"
-later="scenes/cornell.obj --epsilon 3e-6 --linking pairs --size 20x20 --memory 14M"
+later="scenes/cornell.obj --epsilon 3e-6 --linking pairs --size 20x20 --memory 15M"
 run fine 2 $fine --quiet
 run later 2 $later >/dev/null
 check "a limit in the second pass" grep -q '(1547 split)' "$work/later.err"

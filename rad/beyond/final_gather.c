@@ -32,14 +32,14 @@
 /* A lamp emits more than GLOW times the mean radiosity, if surfaces that do so are LAMP
  * times as bright as the mean; if not, more than LAMP times the mean: where all surfaces
  * are as bright, as in a furnace, there is none. Where little is reflected, BRIGHT times
- * the mean that is reflected is enough; a bright root reflects more than that. */
+ * the mean that is reflected is enough; a bright patch reflects more than that. */
 static const double GLOW = 0.25, LAMP = 1.1, BRIGHT = 4.0;
 
 /* Where no more than this part of the surface emits, all of that is lamps: a dim one may
  * be all the light of a room beside a bright one, and rays would hardly find it. */
 static const double FEW = 0.05;
 
-/* Bright roots are aimed at if they send at least this part of the reflected light. */
+/* Bright patches are aimed at if they send at least this part of the reflected light. */
 static const double LEAST_BRIGHT = 0.01;
 
 /* Radiosity that varies by less than this part of the mean over a leaf is constant. */
@@ -189,6 +189,7 @@ void final_gather_free(struct final_gather *gather)
     alloc_free(gather->view.faced);
     alloc_free(gather->view.overlapped);
     alloc_free(gather->near.seen);
+    alloc_free(gather->near.paths);
     alloc_free(gather->near.partly_covered);
     alloc_free(gather->near.leaves);
     alloc_free(gather->order);

@@ -35,7 +35,7 @@ double forest_mean_reflected(const struct forest *forest);
 struct final_gather final_gather_create(struct model *model, int rays);
 void final_gather_free(struct final_gather *gather);
 
-/* Finds the bright roots anew, and what rays meet, by the radiosities of the forest and
+/* Finds the bright patches anew, and what rays meet, by the radiosities of the forest and
  * its leaves. To be called when these have changed. */
 void final_gather_renew(struct final_gather *gather);
 

@@ -1,13 +1,14 @@
-/* Aiming at lamps and at bright roots, from a receiver of the final gather.
+/* Aiming at lamps and at bright patches, from a receiver of the final gather.
  *
  * Rays that leave a receiver in all directions rarely meet a lamp, which is where most of
  * their noise would come from. Lamps (rad/beyond/lamps.c) are aimed at by segments, in
  * proportion to the light that they would bring unoccluded, which is known from exact
  * factors.
  *
- * Next come bright roots, those that reflect more than a lamp emits at least: the inside
- * of a lamp's housing sends a tenth of the light of a furnished room and brings most of
- * the variance, as one ray in 500 meets it. Rays are aimed at them, too. */
+ * Next come bright patches, those that reflect more than a lamp emits at least, be they
+ * roots or the parts of a wall beside a lamp: the inside of a lamp's housing sends a
+ * tenth of the light of a furnished room and brings most of the variance, as one ray in
+ * 500 meets it. Rays are aimed at them, too. */
 #include "rad/beyond/receiver.h"
 
 #include <math.h>
@@ -27,7 +28,7 @@ static const double NEAR_LAMP = 4.0;
 
 /* Fewest segments that are enough to estimate the visible share of lamps; fewest for a
  * lamp of less than WIDE to be cut; most tries for a point of a lamp above the horizon;
- * rays in all directions for each that is aimed at a bright root. */
+ * rays in all directions for each that is aimed at a bright patch. */
 enum { VOLLEY = 4, CUTS_LEAST = 8, AIMS_MOST = 16, RAYS_PER_AIMED = 4 };
 
 static const struct rgb ALL = {{1.0, 1.0, 1.0}};
@@ -37,9 +38,8 @@ void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb 
 {
     struct gather_nears *near = &r->gather->near;
     for (int c = 0; c < BANDS && r->near >= 0; c++)
-        near->items[r->near].watts[c] += gather_units(
-            r->facet.area * weight->band[c] * factor * emission.band[c],
-            near->unit_watts);
+        near->paths[near->path_count - 1].light.band[c] +=
+            weight->band[c] * factor * emission.band[c];
 }
 
 void receiver_add_source(struct receiver *r, const struct rgb *weight,
@@ -133,10 +133,14 @@ static void end_volley(struct receiver *r, struct volley *volley, struct rgb lig
     *volley = (struct volley){.direct = {0.0, 0.0}};
 }
 
-/* The sequence of the segments to a node. */
+/* The sequence of the segments to a node. Patches that are no roots have other numbers on
+ * other ranks, and the same IDs. */
 static struct sequence sequence_to(const struct receiver *r, int32_t node)
 {
-    return sequence_start(hash_mix(r->seed + 8) ^ hash_mix((uint64_t)node));
+    const struct forest *forest = r->gather->model->forest;
+    uint64_t number = node < forest->root_count ? (uint64_t)node
+                                                : id_number(forest->patches[node].id);
+    return sequence_start(hash_mix(r->seed + 8) ^ hash_mix(number));
 }
 
 /* Fires `count` segments, from number `first` of the sequence on, at a lamp: without
@@ -191,19 +195,17 @@ static void aim_at_wide_lamp(struct receiver *r, int count, int32_t root, double
     }
 }
 
-/* Aims one ray at a bright root of a group: it stands for `share` of the root's light. */
-static void look_at_one(struct receiver *r, int32_t root, double share,
+/* Aims one ray at a bright patch of a group: it stands for `share` of its light. */
+static void look_at_one(struct receiver *r, int32_t patch, double share,
                         const double u[SEQUENCE_DIMENSIONS])
 {
-    const struct scene *scene = r->gather->model->scene;
-    struct triangle triangle = scene_root_triangle(scene, root);
+    struct facet facet = facet_make(r->gather->model->forest, patch);
     struct vec3 x = receiver_start(r, u[0], u[1]);
-    struct vec3 y = triangle_of_square(&triangle, u[2], u[3]);
-    double factor = scene_root_area(scene, root) *
-                    receiver_kernel(x, r->facet.plane.normal, y,
-                                    scene_root_plane(scene, root).normal);
+    struct vec3 y = triangle_of_square(&facet.triangle, u[2], u[3]);
+    double factor = facet.area * receiver_kernel(x, r->facet.plane.normal, y,
+                                                 facet.plane.normal);
     if (factor > 0.0)
-        receiver_look_at(r, x, y, root, share * factor);
+        receiver_look_at(r, x, y, patch, share * factor);
 }
 
 /* Fires one segment, number `index` of the sequence, at a lamp of a group: it stands for
@@ -241,9 +243,9 @@ static void aim_at_group(struct receiver *r, const struct lamps *lamps,
         double share = lamp.share * direct / (group->direct * count);
         sequence_point(&sequence, (uint32_t)k, u);
         if (lamps->reflect)
-            look_at_one(r, lamp.root, share, u);
+            look_at_one(r, lamp.patch, share, u);
         else
-            aim_at_one(r, &sequence, k, lamp.root, share);
+            aim_at_one(r, &sequence, k, lamp.patch, share);
         volley->direct[half] += direct / count;
         volley->seen[half] += rgb_sum(r->light) - before;
         volley->count[half]++;
@@ -318,7 +320,7 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
             continue;
         }
         aim_at_group(r, lamps, group, count, direct, &volley);
-        light = lamp_light(lamps, lamp_choose(lamps, group->node, 0.5).root);
+        light = lamp_light(lamps, lamp_choose(lamps, group->node, 0.5).patch);
         if (volley.count[0] + volley.count[1] >= VOLLEY)
             end_volley(r, &volley, light);
     }
@@ -347,11 +349,11 @@ void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
         return;
     const struct lamp_group *group = &g->lamps.groups.items[i];
     struct lamp lamp = lamp_choose(&g->lamps, group->node, hash_unit(seed + 1));
-    if (receiver_lamp_is_near(scene, lamp.root, x))
+    if (receiver_lamp_is_near(scene, lamp.patch, x))
         return;
-    struct triangle triangle = scene_root_triangle(scene, lamp.root);
-    struct vec3 facing = scene_root_plane(scene, lamp.root).normal;
-    struct rgb emission = scene_root_material(scene, lamp.root)->emission;
+    struct triangle triangle = scene_root_triangle(scene, lamp.patch);
+    struct vec3 facing = scene_root_plane(scene, lamp.patch).normal;
+    struct rgb emission = scene_root_material(scene, lamp.patch)->emission;
     double factor = point_triangle_factor(x, normal, &triangle);
     for (uint64_t k = 0; k < AIMS_MOST && factor > 0.0; k++) {
         struct vec3 y = triangle_of_square(&triangle, hash_unit(seed + 2 + 2 * k),
@@ -359,7 +361,7 @@ void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
         if (!(receiver_kernel(x, normal, y, facing) > 0.0))
             continue;
         double share = lamp.share * (g->lamps.groups.around / group->around);
-        if (blocker_of(r, x, input, y, lamp.root) < 0)
+        if (blocker_of(r, x, input, y, lamp.patch) < 0)
             receiver_add_source(r, weight, emission, factor * share);
         return;
     }

@@ -7,7 +7,7 @@
  * segments find, as with wide lamps (gather_wide.c)? Of small ones, as of furniture, it
  * is asked which of those they see. At these the leaves of a region aim, each at the
  * remainder of the bright one behind the blockers, and rays that meet one are put aside,
- * as with bright roots. The examination decides only how light is looked for, and from
+ * as with bright patches. The examination decides only how light is looked for, and from
  * other points, so answers are right in the mean.
  *
  * Of a region that is behind many things, such as furniture, not just a few walls, too

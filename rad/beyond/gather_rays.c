@@ -4,14 +4,14 @@
  * that ends on a front adds 1 / N to the weight of the leaf that it meets. So in a closed
  * scene each row sums to 1, by construction and not by luck. Noise is their only fault,
  * and lamps are where most of it would come from: these are aimed at (gather_aim.c), and
- * rays that meet a lamp count its reflected light and not its emission. Bright roots are
- * aimed at, too: a ray that was not, and meets one, is put aside, and the others stand
- * for all directions but those of bright roots,
+ * rays that meet a lamp count its reflected light and not its emission. Bright patches
+ * are aimed at, too: a ray that was not, and meets one, is put aside, and the others
+ * stand for all directions but those of bright patches,
  *
  *     H = sum over aimed rays of F B  +  (1 - sum of F) * mean of B over the others,
  *
  * so rows still sum to 1. In a row, rays that have met lamps stand for the form factor of
- * these, if segments have found it without doubt. Beside a bright root all this does not
+ * these, if segments have found it without doubt. Beside a bright patch all this does not
  * apply: rays find it often enough, and factors of a few points of it would vary without
  * bound.
  *
@@ -27,6 +27,7 @@
 
 #include <math.h>
 
+#include "geom/alloc.h"
 #include "geom/hash.h"
 #include "rad/beyond/final_gather.h"
 #include "rad/beyond/sequence.h"
@@ -48,8 +49,8 @@ static const double NEAR_OPENING = 16.0;
  * planes, with no gap. */
 static const double ALONG = 16.0;
 
-/* A point is beside a root if the square of its distance is less than this times the
- * square of the root's radius. */
+/* A point is beside a patch if the square of its distance is less than this times the
+ * square of the patch's radius. */
 static const double BESIDE = 2.0;
 
 /* Most points of a path; rays that tell how much of a point's light goes into the
@@ -75,9 +76,9 @@ static inline void add_mesh(struct receiver *r, const struct point *point, bool 
         receiver_add_source(r, weight, emission, -1.0);
 }
 
-static bool is_beside(const struct scene *scene, int32_t root, struct vec3 x)
+static bool is_beside(const struct forest *forest, int32_t patch, struct vec3 x)
 {
-    struct triangle t = scene_root_triangle(scene, root);
+    struct triangle t = forest_triangle(forest, patch);
     struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
     double radius = triangle_radius(&t);
     return vec3_dot(apart, apart) < BESIDE * radius * radius;
@@ -86,22 +87,6 @@ static bool is_beside(const struct scene *scene, int32_t root, struct vec3 x)
 static int32_t root_of(const struct receiver *r, const struct point *point)
 {
     return (int32_t)r->gather->model->forest->patches[point->patch].id.root;
-}
-
-void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t root,
-                      double factor)
-{
-    const struct final_gather *g = r->gather;
-    struct vec3 way = vec3_sub(y, x);
-    struct point point;
-    if (is_beside(g->model->scene, root, x) ||
-        trace(r, point_above(x, r->facet.plane.normal),
-              vec3_scale(way, 1.0 / vec3_length(way)), &point) != MET_FRONT ||
-        root_of(r, &point) != root || receiver_aims_through(r, point.patch))
-        return;
-    add_mesh(r, &point, root_is_lamp(&g->lamps, root),
-             &(struct rgb){{factor, factor, factor}});
-    r->shares.bright += factor;
 }
 
 /* True if the leaf that a ray has met is too near to the ray's origin, for its size, for
@@ -166,6 +151,15 @@ static bool is_cut_between(const struct receiver *r, const struct point *met,
     return r->keeps &&
            vec3_dot(ray, ray) < r->gather->near.leaves[met->patch].area &&
            is_cut(r->gather, met->patch);
+}
+
+/* True if a ray from x, where a surface has this normal, takes the mesh's light at the
+ * point that it has met. */
+static bool ends_on_mesh(const struct receiver *r, const struct point *met, struct vec3 x,
+                         struct vec3 normal)
+{
+    return !(is_too_near(r, met, x, normal) || is_cut_between(r, met, x) ||
+             is_partly_covered(r->gather, met->patch));
 }
 
 double share_in_the_dark(struct final_gather *g, int32_t region, struct vec3 x,
@@ -272,6 +266,34 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
     add_mesh(r, &point, aimed, &weight);
 }
 
+/* True if rays from x, where a surface has this normal, are aimed at the bright patch
+ * that the point which one has met is on. */
+static bool is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x,
+                        struct vec3 normal)
+{
+    int32_t bright = r->gather->bright.part_of[met->patch];
+    return bright >= 0 && !is_beside(r->gather->model->forest, bright, x) &&
+           ends_on_mesh(r, met, x, normal);
+}
+
+void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
+                      double factor)
+{
+    const struct final_gather *g = r->gather;
+    struct vec3 way = vec3_sub(y, x);
+    struct point point;
+    if (is_beside(g->model->forest, patch, x) ||
+        trace(r, point_above(x, r->facet.plane.normal),
+              vec3_scale(way, 1.0 / vec3_length(way)), &point) != MET_FRONT ||
+        g->bright.part_of[point.patch] != patch ||
+        !ends_on_mesh(r, &point, x, r->facet.plane.normal) ||
+        receiver_aims_through(r, point.patch))
+        return;
+    add_mesh(r, &point, root_is_lamp(&g->lamps, root_of(r, &point)),
+             &(struct rgb){{factor, factor, factor}});
+    r->shares.bright += factor;
+}
+
 /* A ray ends on the mesh. If it is the first of a path and has met a lamp, it counts as
  * one that has. */
 static void end_path(struct receiver *r, const struct point *point, bool aimed,
@@ -305,15 +327,15 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
 {
     struct final_gather *g = r->gather;
     struct rgb emission = forest_material(g->model->forest, met->patch)->emission;
-    int64_t area = gather_units(r->facet.area / r->rays, g->near.unit_area);
+    struct gather_nears *near = &g->near;
     if (!r->keeps || /* a look's leaves may have no places yet */
-        area == 0 || /* a receiver as small as that darkens no leaf */
         leaf_has_sparks(g, met->patch)) { /* sparks tell how bright it is seen */
         r->shares.doubt = true;
         return;
     }
     r->near = g->place[met->patch];
-    g->near.items[r->near].area += area;
+    RESERVE(near->paths, &near->path_capacity, near->path_count + 1);
+    near->paths[near->path_count++] = (struct gather_path){.place = r->near};
     if (aimed) /* segments bring it, so the path does not count it */
         receiver_add_near(r, weight, emission, 1.0);
 }
@@ -344,8 +366,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         find_leaf(forest, root, &point);
         const struct scene *scene = r->gather->model->scene;
         if (count == 1 && (receiver_aims_through(r, point.patch) ||
-                           (root_is_lamp(&r->gather->bright, root) &&
-                            !is_beside(scene, root, origin)))) {
+                           is_aimed_at(r, &point, origin, normal))) {
             r->sums.aside[half]++;
             return;
         }
@@ -355,9 +376,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
             add_without_sparks(r, &point, aimed, &weight);
             return;
         }
-        if (count == PATH_MOST || !(is_too_near(r, &point, origin, normal) ||
-                                    is_cut_between(r, &point, origin) ||
-                                    is_partly_covered(r->gather, point.patch))) {
+        if (count == PATH_MOST || ends_on_mesh(r, &point, origin, normal)) {
             end_path(r, &point, aimed, count == 1, &weight);
             return;
         }
@@ -388,7 +407,7 @@ static void count_light(struct receiver *r, int i, int half)
     }
 }
 
-/* Adds the variance by rays other than those that have met bright roots. */
+/* Adds the variance by rays other than those that have met bright patches. */
 static void add_variances(struct receiver *r)
 {
     double count[2] = {(r->rays + 1) / 2 - r->sums.aside[0],
@@ -425,7 +444,24 @@ static struct factors factors_of(const struct receiver *r)
     return (struct factors){lit / on, (rest - lit) / others};
 }
 
-/* Aims at the bright roots, and makes the light of rays, which have not counted them,
+/* Adds what the row's paths have found to the light of the leaves too near that they have
+ * met first. `factor`: of their weights, and so of the area: else leaves would be seen
+ * too bright from afar. */
+static void add_paths(struct gather_nears *near, const struct receiver *r, double factor)
+{
+    double area = factor * r->facet.area;
+    for (int64_t i = 0; i < near->path_count; i++) {
+        const struct gather_path *path = &near->paths[i];
+        struct gather_near *item = &near->items[path->place];
+        int64_t units = gather_units(area / r->rays, near->unit_area);
+        item->area += units > 0 ? units : 1; /* so that the leaf gets a number */
+        for (int c = 0; c < BANDS; c++)
+            item->watts[c] += gather_units(area * path->light.band[c], near->unit_watts);
+    }
+    near->path_count = 0;
+}
+
+/* Aims at the bright patches, and makes the light of rays, which have not counted them,
  * that of all other directions, so that the row still sums to 1. `source`: of the row
  * before rays were fired. */
 static void add_bright(struct receiver *r, struct rgb source)
@@ -438,6 +474,7 @@ static void add_bright(struct receiver *r, struct rgb source)
     receiver_aim_through(r);
     receiver_add_sparks(r);
     struct factors factors = factors_of(r);
+    add_paths(&g->near, r, factors.others);
     for (int64_t i = 0; i < sums->first; i++) {
         int32_t patch = g->order[sums->items[i].place];
         bool lamp =

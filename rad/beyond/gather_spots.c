@@ -66,15 +66,15 @@ static bool find_spots(struct receiver *r, struct remainder *leaf,
         double u[SEQUENCE_DIMENSIONS];
         int place = 2 * k < count ? 2 * k : (2 * k - count) | 1;
         struct lamp lamp = lamp_choose(lamps, node, (place + start) / count);
-        struct triangle t = scene_root_triangle(scene, lamp.root);
+        struct triangle t = scene_root_triangle(scene, lamp.patch);
         sequence_point(&sequence, (uint32_t)k, u);
         struct vec3 y = triangle_of_square(&t, u[0], u[1]);
-        double seen = look_from(r, leaf, lamp.root, y, u, &spots[k].at);
+        double seen = look_from(r, leaf, lamp.patch, y, u, &spots[k].at);
         if (seen < 0.0)
             return false;
-        double weight = share * lamp.share * scene_root_area(scene, lamp.root) /
+        double weight = share * lamp.share * scene_root_area(scene, lamp.patch) /
                         (count * r->facet.area);
-        spots[k].light = scene_root_material(scene, lamp.root)->emission;
+        spots[k].light = scene_root_material(scene, lamp.patch)->emission;
         for (int c = 0; c < BANDS; c++)
             spots[k].light.band[c] *= weight * seen;
     }

@@ -5,8 +5,9 @@
  * direct light is known from exact factors. So a hall with ten thousand lamps has some
  * hundreds of groups for each leaf. How much light one segment is to bring is estimated
  * first, without exact factors. Light that walls may keep off counts for no more than
- * comes to the leaf as the links have it. The direct light of bright roots decides only
- * how often rays are aimed at them: an estimate is enough.
+ * comes to the leaf as the links have it. Of bright patches, a root with some below it is
+ * told apart in the same way. Their direct light decides only how often rays are aimed at
+ * them: an estimate is enough.
  *
  * The mean factor is taken at three points with a rule that is exact for polynomials of
  * the second degree. Where the other triangle is nearer than the size of this one, the
@@ -113,11 +114,12 @@ double mean_factor(const struct triangle *from, struct vec3 normal,
 
 /* --- lamps --- */
 
-struct rgb lamp_light(const struct lamps *lamps, int32_t root)
+struct rgb lamp_light(const struct lamps *lamps, int32_t patch)
 {
-    struct rgb light = scene_root_material(lamps->model->scene, root)->emission;
+    const struct forest *forest = lamps->model->forest;
+    struct rgb light = forest_material(forest, patch)->emission;
     for (int c = 0; c < BANDS && lamps->reflect; c++)
-        light.band[c] = lamps->model->forest->radiosity[root].band[c] - light.band[c];
+        light.band[c] = forest->radiosity[patch].band[c] - light.band[c];
     return light;
 }
 
@@ -156,19 +158,47 @@ static int32_t add_lit(struct lamps *lamps, int32_t node)
     return ~number;
 }
 
+/* Finds the bright patches in a patch; `part`: the one that it is part of, or -1. Returns
+ * their power. */
+static double find_bright(struct lamps *lamps, int32_t patch, int32_t part)
+{
+    const struct forest *forest = lamps->model->forest;
+    int32_t first = forest->patches[patch].children;
+    double sent = rgb_sum(lamp_light(lamps, patch)), below = 0.0;
+    if (part < 0 && sent > lamps->least)
+        part = patch;
+    for (int k = 0; k < 4 && !patch_is_leaf(&forest->patches[patch]); k++)
+        below += find_bright(lamps, first + k, part);
+    lamps->part_of[patch] = part;
+    lamps->power[patch] = part == patch ? forest_area(forest, patch) * sent : below;
+    return lamps->power[patch];
+}
+
+/* What a root sends, by the power of its bright patches. */
+static double sent_by_bright(struct lamps *lamps, int32_t root)
+{
+    return find_bright(lamps, root, -1) / scene_root_area(lamps->model->scene, root);
+}
+
 struct lamps lamps_create(const struct model *model, double least, bool reflect)
 {
     const struct cluster_tree *tree = model->clusters->tree;
+    size_t patches = (size_t)model->forest->count;
     struct lamps lamps = {.model = model, .least = least, .reflect = reflect,
                           .alike = true};
     const struct material *first = NULL;
     int32_t roots = scene_root_count(model->scene);
     lamps.sent = alloc_array((size_t)roots, sizeof *lamps.sent);
     lamps.before = alloc_array((size_t)tree->root_count + 1, sizeof *lamps.before);
+    if (reflect) {
+        lamps.power = alloc_array(patches, sizeof *lamps.power);
+        lamps.part_of = alloc_array(patches, sizeof *lamps.part_of);
+    }
     for (int32_t place = 0; place < tree->root_count; place++) {
         int32_t root = tree->roots[place];
-        double sent = rgb_sum(lamp_light(&lamps, root));
-        lamps.sent[root] = sent > least ? sent : 0.0;
+        double sent = reflect ? sent_by_bright(&lamps, root)
+                              : rgb_sum(lamp_light(&lamps, root));
+        lamps.sent[root] = reflect || sent > least ? sent : 0.0;
         if (sent > least) {
             const struct material *m = scene_root_material(model->scene, root);
             first = first ? first : m;
@@ -189,6 +219,8 @@ void lamps_free(struct lamps *lamps)
     alloc_free(lamps->groups.items);
     alloc_free(lamps->sent);
     alloc_free(lamps->before);
+    alloc_free(lamps->power);
+    alloc_free(lamps->part_of);
     alloc_free(lamps->lit);
 }
 
@@ -284,6 +316,32 @@ static void add_cluster(const struct lamps *lamps, const struct lit *leaf,
         add_child(lamps, leaf, cluster->child[k], groups, work);
 }
 
+/* Adds a patch that is bright, or has bright ones below it and is small for its distance,
+ * as a group; or those below it. Their light is estimated. */
+static void add_patch(const struct lamps *lamps, const struct lit *leaf, int32_t patch,
+                      struct lamp_groups *groups)
+{
+    const struct forest *forest = lamps->model->forest;
+    struct facet facet = facet_make(forest, patch);
+    struct vec3 apart = vec3_sub(triangle_centroid(&facet.triangle), leaf->centroid);
+    double distance2 = real_max(vec3_dot(apart, apart), facet.area);
+    double radius = triangle_radius(&facet.triangle);
+    struct lamp_group group = {.node = patch};
+    group.around = real_min(lamps->power[patch] / (PI * distance2),
+                            lamps->power[patch] / facet.area);
+    if (facets_face(leaf->facet, &facet))
+        group.direct = group.around * cosine_to(&leaf->facet->plane, apart, distance2) *
+                       cosine_to(&facet.plane, vec3_scale(apart, -1.0), distance2);
+    bool small = radius * radius <= leaf->small * leaf->small * distance2;
+    if (lamps->part_of[patch] == patch || (small && group.direct <= leaf->each)) {
+        add_group(groups, group);
+        return;
+    }
+    for (int32_t k = 0; k < 4; k++)
+        if (lamps->power[forest->patches[patch].children + k] > 0.0)
+            add_patch(lamps, leaf, forest->patches[patch].children + k, groups);
+}
+
 /* Adds a lamp as a group. `work` NULL: its direct light is estimated. */
 static void add_root(const struct lamps *lamps, const struct lit *leaf, int32_t root,
                      struct lamp_groups *groups, int64_t *work)
@@ -294,7 +352,7 @@ static void add_root(const struct lamps *lamps, const struct lit *leaf, int32_t 
     double distance2 = real_max(vec3_dot(apart, apart), lamp.area);
     struct lamp_group group = {.node = root};
     group.around = sent * real_min(1.0, lamp.area / (PI * distance2));
-    if (facets_face(leaf->facet, &lamp) && (lamps->reflect || !work))
+    if (facets_face(leaf->facet, &lamp) && !work)
         group.direct = group.around * cosine_to(&leaf->facet->plane, apart, distance2) *
                        cosine_to(&lamp.plane, vec3_scale(apart, -1.0), distance2);
     else if (facets_face(leaf->facet, &lamp))
@@ -310,6 +368,8 @@ static void add_child(const struct lamps *lamps, const struct lit *leaf, int32_t
     int64_t first = groups->count;
     if (child < 0)
         add_cluster(lamps, leaf, &lamps->lit[~child], groups, work);
+    else if (lamps->reflect)
+        add_patch(lamps, leaf, child, groups);
     else
         add_root(lamps, leaf, child, groups, work);
     limit(groups, first, leaf->most);
@@ -332,16 +392,44 @@ void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments, do
     }
 }
 
+/* Of the bright patches in a patch, in turn, the one at which the power of those before
+ * it reaches `at`. */
+static int32_t bright_at(const struct lamps *lamps, int32_t patch, double at)
+{
+    const struct forest *forest = lamps->model->forest;
+    while (lamps->part_of[patch] != patch) {
+        int32_t first = forest->patches[patch].children;
+        for (int32_t child = first; child < first + 4; child++) {
+            if (!(lamps->power[child] > 0.0))
+                continue;
+            patch = child;
+            if (at < lamps->power[child])
+                break;
+            at -= lamps->power[child];
+        }
+    }
+    return patch;
+}
+
 struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u)
 {
     const struct cluster_tree *tree = lamps->model->clusters->tree;
     int32_t first, end;
+    if (lamps->reflect && !node_is_cluster(node)) {
+        int32_t patch = bright_at(lamps, node, u * lamps->power[node]);
+        return (struct lamp){patch, lamps->power[node] / lamps->power[patch]};
+    }
     places_of(tree, node, &first, &end);
     double all = lamps->before[end] - lamps->before[first];
     double at = lamps->before[first] + u * all;
     first += (int32_t)sum_place(lamps->before + first + 1, end - first, at);
     while (lamps->before[first + 1] == lamps->before[first]) /* no lamp: by rounding */
         first--;
+    int32_t patch = tree->roots[first];
     double own = lamps->before[first + 1] - lamps->before[first];
-    return (struct lamp){tree->roots[first], all / own};
+    if (lamps->reflect) {
+        patch = bright_at(lamps, patch, at - lamps->before[first]);
+        own = lamps->power[patch];
+    }
+    return (struct lamp){patch, all / own};
 }

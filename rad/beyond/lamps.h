@@ -1,6 +1,6 @@
 /* Lamps: roots that emit, and that rays in all directions would find too seldom for the
- * light that they bring. A final gather aims at them, and at bright roots, which are
- * lamps by the light that they reflect. */
+ * light that they bring. A final gather aims at them, and at bright patches, which are
+ * lamps by the light that they reflect: roots, or the parts of a wall beside a lamp. */
 #ifndef RAD_BEYOND_LAMPS_H
 #define RAD_BEYOND_LAMPS_H
 
@@ -8,7 +8,7 @@
 
 /* A node whose lamps count as one, as seen from a leaf. */
 struct lamp_group {
-    int32_t node;
+    int32_t node;  /* a cluster or a root; a bright patch, or one with some below it */
     double direct; /* irradiance of the leaf, about, over all bands, unoccluded, W/m^2 */
     double worth;  /* the same, less where that is more than may arrive, W/m^2 */
     double around; /* worth for a surface beside the leaf that faces the group, W/m^2 */
@@ -33,11 +33,14 @@ struct lit_cluster {
 struct lamps {
     const struct model *model; /* borrowed */
     double least;   /* a lamp sends more than this, summed over bands, W/m^2 */
-    bool reflect;   /* bright roots: they send reflected light, and no emission */
+    bool reflect;   /* bright patches: they send reflected light, and no emission */
     bool alike;     /* all send the same, so that their light tells their form factor */
     double *sent;   /* [roots] sent by a lamp, over all bands, W/m^2; by others 0 */
     double *before; /* [tree->root_count + 1] power of the lamps before a place in the
                        tree's order, over all bands, W in square scene units */
+    double *power;  /* [patches] if `reflect`: that of the bright patches which a patch
+                       is, or has below it; NULL if not */
+    int32_t *part_of; /* [patches] the bright patch that a patch is, or is part of; -1 */
     struct lit_cluster *lit; /* [lit_count] parents first; the first is the top */
     int64_t lit_count, lit_capacity;
     struct lamp_groups groups; /* of the leaf at hand */
@@ -45,8 +48,8 @@ struct lamps {
 
 /* A lamp that was chosen. */
 struct lamp {
-    int32_t root;
-    double share; /* power of all lamps of its group over its own, 1 */
+    int32_t patch; /* a root; of bright patches one of these */
+    double share;  /* power of all lamps of its group over its own, 1 */
 };
 
 /* Borrows the model, which has clusters, and a solution if `reflect`. A lamp sends more
@@ -55,7 +58,7 @@ struct lamps lamps_create(const struct model *model, double least, bool reflect)
 void lamps_free(struct lamps *lamps);
 
 /* The light that a lamp sends, W/m^2. */
-struct rgb lamp_light(const struct lamps *lamps, int32_t root);
+struct rgb lamp_light(const struct lamps *lamps, int32_t patch);
 
 /* The power that all lamps send, over all bands, W in square scene units. */
 double lamps_power(const struct lamps *lamps);

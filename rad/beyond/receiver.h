@@ -18,7 +18,7 @@ struct ray_sums {
 
 /* Shares of the view that are aimed at. */
 struct aimed_shares {
-    double bright; /* form factor of bright roots and regions, 1 */
+    double bright; /* form factor of bright patches and regions, 1 */
     double lit;    /* form factor of the lamps, as segments have found it, 1 */
     bool doubt;    /* that may be wrong: something hides a lamp, or it is near */
 };
@@ -78,7 +78,7 @@ void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
 /* Adds the light of lamps, by segments. */
 void receiver_aim(struct receiver *r);
 
-/* Adds the light of lamps by as many segments as rays, or of bright roots by fewer
+/* Adds the light of lamps by as many segments as rays, or of bright patches by fewer
  * rays. */
 void receiver_aim_at(struct receiver *r, struct lamps *lamps);
 
@@ -124,9 +124,9 @@ void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
  * on the way of a path they count its emission, and segments do not. */
 bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 x);
 
-/* Adds the light of a bright root that has this form factor, where a ray from x that is
+/* Adds the light of a bright patch that has this form factor, where a ray from x that is
  * aimed at y meets it. */
-void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t root,
+void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
                       double factor);
 
 /* Finds the bright regions that the receiver, a leaf in the dark, sees through narrow

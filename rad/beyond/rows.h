@@ -67,6 +67,12 @@ struct gather_near {
     int64_t watts[BANDS]; /* that the rays found there, emitted by lamps */
 };
 
+/* The path of a ray of the row at hand that has met a leaf too near. */
+struct gather_path {
+    int32_t place;    /* of the leaf */
+    struct rgb light; /* times the ray's share of the row, that lamps brought, W/m^2 */
+};
+
 /* B as a linear function over a patch: see final_gather.c. */
 struct gather_slope {
     int32_t first; /* child 0 of the patch, or of its parent */
@@ -90,6 +96,8 @@ struct gather_leaf {
 struct gather_nears {
     struct gather_near *items; /* [forest->count] by place, for the rows of this rank; of
                                   all ranks, once these are added up, by number */
+    struct gather_path *paths; /* [path_count] of the row at hand */
+    int64_t path_count, path_capacity;
     double unit_area;          /* square scene units */
     double unit_watts;         /* W in square scene units */
     struct gather_leaf *leaves; /* [forest->count] all patches, by their numbers */
@@ -140,7 +148,7 @@ struct final_gather {
     int rays;              /* from a leaf, in the mean */
     double mean;           /* radiosity, over bands and all surface, W/m^2 */
     struct lamps lamps;
-    struct lamps bright;       /* roots that reflect so much that segments bring it */
+    struct lamps bright;       /* patches that reflect so much that rays aim at them */
     struct gather_view view;   /* of the root of the leaf at hand */
     int32_t *order; /* [forest->count] patches as in forest_order() */
     int32_t *place; /* [forest->count] the place of each patch in `order` */
