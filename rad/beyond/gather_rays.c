@@ -167,16 +167,18 @@ double share_in_the_dark(struct final_gather *g, int32_t region, struct vec3 x,
 {
     struct receiver r = {.gather = g, .facet = facet_make(g->model->forest, region)};
     struct vec3 normal = r.facet.plane.normal, along = direction_along(normal);
-    int dark = 0;
+    int dark = 0, lit = 0;
     for (uint64_t i = 0; i < DARK_RAYS; i++) {
         struct point point;
         struct vec3 direction = cosine_direction(
             normal, along, ((double)i + hash_unit(seed)) / DARK_RAYS,
             hash_unit(seed + 16 + i));
-        dark += trace(&r, point_above(x, normal), direction, &point) == MET_FRONT &&
-                patch_is_dark(g, point.patch);
+        if (trace(&r, point_above(x, normal), direction, &point) != MET_FRONT)
+            continue;
+        dark += patch_is_dark(g, point.patch);
+        lit += patch_is_lit(g, point.patch);
     }
-    return (double)dark / DARK_RAYS;
+    return dark + lit > 0 ? (double)dark / (dark + lit) : 1.0;
 }
 
 /* A ray has met a back, and not from inside of a thing: else another ray from there meets
@@ -444,7 +446,7 @@ static struct factors factors_of(const struct receiver *r)
     return (struct factors){lit / on, (rest - lit) / others};
 }
 
-/* Adds what the row's paths have found to the light of the leaves too near that they have
+/* Adds the light of the row's paths to that of the leaves too near that they have
  * met first. `factor`: of their weights, and so of the area: else leaves would be seen
  * too bright from afar. */
 static void add_paths(struct gather_nears *near, const struct receiver *r, double factor)

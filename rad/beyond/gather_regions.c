@@ -37,6 +37,11 @@ bool patch_is_dark(const struct final_gather *g, int32_t patch)
     return DARK_TIMES * h < g->mean;
 }
 
+bool patch_is_lit(const struct final_gather *g, int32_t patch)
+{
+    return DARK_TIMES * patch_irradiance(g->model->forest, patch) >= g->mean;
+}
+
 /* The distance from a point of a surface up to the next one, scene units; 0 if that shows
  * its back: then the point is inside of a thing. */
 static double room_before(struct final_gather *g, struct vec3 x, struct vec3 up)
@@ -53,27 +58,31 @@ static double room_before(struct final_gather *g, struct vec3 x, struct vec3 up)
 }
 
 /* True if there is room before most of the region: else a thing stands on it, or it is in
- * a gap that is narrow for it. */
-static bool is_in_a_room(struct final_gather *g, int32_t region)
+ * a gap that is narrow for it. And most that it sees is dark: else rays find the light,
+ * as from a face that looks out of the scene. */
+static bool is_in_a_dark_room(struct final_gather *g, int32_t region)
 {
     struct facet facet = facet_make(g->model->forest, region);
     struct sequence sequence =
         sequence_start(hash_mix(patch_seed(g->model->forest, region) + 65));
-    double u[SEQUENCE_DIMENSIONS];
+    struct apart apart = apart_begin(g); /* each rank does the same */
+    double u[SEQUENCE_DIMENSIONS], dark = 0.0;
     int roomy = 0;
     for (uint32_t i = 0; i < POINTS; i++) {
         sequence_point(&sequence, i, u);
         struct vec3 x = triangle_of_square(&facet.triangle, u[0], u[1]);
         double room = room_before(g, x, facet.plane.normal);
         roomy += room * room > WIDE * facet.area;
+        dark += share_in_the_dark(g, region, x, hash_mix(sequence.scramble[0] + i));
     }
-    return 2 * roomy > POINTS;
+    apart_end(g, &apart);
+    return 2 * roomy > POINTS && 4.0 * dark > 3.0 * POINTS;
 }
 
 static bool is_dark_room(struct final_gather *g, int32_t region)
 {
     return forest_area(g->model->forest, region) >= LARGE * g->model->area &&
-           patch_is_dark(g, region) && is_in_a_room(g, region);
+           patch_is_dark(g, region) && is_in_a_dark_room(g, region);
 }
 
 /* The area of leaves in the dark. */

@@ -100,8 +100,10 @@ int32_t region_of(struct final_gather *gather, int32_t leaf);
 /* True if it is one where light is looked for in the dark. */
 bool region_is_dark(struct final_gather *gather, int32_t region);
 
-/* True if little light comes to the patch, as the links or looks have it. */
+/* True if little light comes to the patch, as the links or looks have it; if more does.
+ * Of a black one it is not known. */
 bool patch_is_dark(const struct final_gather *gather, int32_t patch);
+bool patch_is_lit(const struct final_gather *gather, int32_t patch);
 
 /* B less E, and H, of a patch, W/m^2 over all bands; H is NaN if it is black. */
 double patch_reflected(const struct forest *forest, int32_t patch);
@@ -146,7 +148,8 @@ void receiver_aim_through(struct receiver *r);
  * does nothing where it is not to be caught. */
 void receiver_catch(struct receiver *r, struct vec3 x, struct rgb source);
 
-/* The part of the rays from a point of a region that end in the dark, 1. */
+/* The part of the rays from a point of a region that end in the dark, 1, of those that
+ * end there or on lit surfaces; 1 if none does. */
 double share_in_the_dark(struct final_gather *gather, int32_t region, struct vec3 x,
                          uint64_t seed);
 

@@ -1,6 +1,7 @@
 /* Tests of rad/beyond/lamps.h, and of aiming at lamps and bright patches: the light that
  * they bring to leaves and points, against closed forms. */
 #include "geom/contour.h"
+#include "rad/beyond/receiver.h"
 #include "tests/gathered.h"
 #include "tests/tap.h"
 
@@ -362,6 +363,37 @@ static void test_flush_lamp(void)
            mean[0]);
 }
 
+/* A closed room beside a lit one is dark. The back of a box that looks out of the scene
+ * is as dark, but what there is to be seen from it is lit: rays find that. */
+static void test_dark_rooms(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true); /* triangles 0 to 11 */
+    soup_add_box(&soup, point(2, 0, 0), point(3, 1, 1), 1, true);
+    paint(&soup, 0.5, 0.0);
+    soup_add_box(&soup, point(2.4, 0.4, 0.4), point(2.6, 0.6, 0.6), 1, false);
+    paint(&soup, 0.0, 10.0);
+    struct trial g = gather_scene(&soup, "", 64);
+    int dark = 0;
+    for (int32_t root = 0; root < 12; root++)
+        dark += region_is_dark(&g.gather, root);
+    bool lit = region_is_dark(&g.gather, 12);
+    trial_free(&g);
+    struct soup open = {0};
+    soup_add_quad(&open, point(0, 0, 0), point(0, 0, 1), point(0, 1, 0), 1); /* away */
+    soup_add_quad(&open, point(0, 0, 0), point(0, 1, 0), point(0, 0, 1), 1);
+    soup_add_quad(&open, point(-6, -1, 0), point(0, 3, 0), point(0, 0, 3), 1);
+    paint(&open, 0.5, 0.0);
+    soup_add_quad(&open, point(1, 0, 0), point(0, 0, 1), point(0, 1, 0), 1);
+    soup_add_quad(&open, point(-5, -1, 0), point(0, 0, 1), point(0, 1, 0), 1);
+    paint(&open, 0.0, 10.0);
+    g = gather_scene(&open, "", 64);
+    tap_ok(dark == 12 && !lit && patch_is_dark(&g.gather, 0) &&
+               !region_is_dark(&g.gather, 0),
+           "a dark room has %d dark faces, and a back that looks out is none", dark);
+    trial_free(&g);
+}
+
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -374,6 +406,7 @@ int main(int argc, char **argv)
     test_bright_rows();
     test_grain();
     test_candle();
+    test_dark_rooms();
     test_window(true);
     test_window(false);
     test_flush_lamp();
