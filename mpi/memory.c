@@ -20,7 +20,7 @@
 
 /* Bytes: a link with its share of the room that lists grow by; a patch with all that runs
  * along with the forest (ranges, vectors of the solver, caps) and the same. */
-enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 530, BYTES_PER_CLUSTER = 290 };
+enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 560, BYTES_PER_CLUSTER = 290 };
 
 /* Of a row of the final gather: three quarters of the patches are leaves; rays that end
  * on the same leaf have one term of 20 bytes, and three more where B rises over it. That

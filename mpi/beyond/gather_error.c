@@ -7,6 +7,7 @@
 #include "mpi/beyond/gather_error.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "geom/alloc.h"
 #include "mpi/beyond/beyond.h"
@@ -74,8 +75,9 @@ static void variances_by_mesh(struct gathering *g, struct rgb *variance)
 
 /* A leaf whose rays have missed a small bright thing that one of its sisters has found is
  * too dark, and its variance is too small as well: it gets the mean of the sisters', each
- * that of one ray, where that is more. */
-static void raise_to_sisters(const struct gathering *g, struct rgb *variance)
+ * that of one ray, where that is more. `rays`: of each leaf; or segments. */
+static void raise_to_sisters(const struct gathering *g, const int *rays,
+                             struct rgb *variance)
 {
     const struct patch *patches = g->solver->model.forest->patches;
     size_t count = (size_t)g->solver->model.forest->count;
@@ -86,13 +88,13 @@ static void raise_to_sisters(const struct gathering *g, struct rgb *variance)
             int32_t parent = patches[g->leaves[i]].parent;
             if (parent < 0)
                 continue;
-            double rays = g->mesh.rays[i], *v = variance[i].band;
+            double *v = variance[i].band;
             sisters[parent] = (uint8_t)(sisters[parent] + !raises);
             for (int c = 0; c < BANDS; c++)
                 if (raises)
-                    v[c] = fmax(v[c], sums[parent].band[c] / (sisters[parent] * rays));
+                    v[c] = fmax(v[c], sums[parent].band[c] / (sisters[parent] * rays[i]));
                 else
-                    sums[parent].band[c] += rays * v[c];
+                    sums[parent].band[c] += rays[i] * v[c];
         }
     alloc_free(sisters);
     alloc_free(sums);
@@ -181,12 +183,15 @@ static void variances_by_rays(struct gathering *g, struct rgb *variance)
 {
     struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
     struct rgb *halves = alloc_array((size_t)g->count, sizeof *halves);
-    for (int kind = 0; kind < 2; kind++) {
-        for (int64_t row = 0; row < g->gather.count; row++)
-            for (int c = 0; c < BANDS; c++)
-                own[row].band[c] = kind ? g->gather.rows[row].halves[c]
-                                        : g->gather.rows[row].chance[c];
-        gathering_share_rows(g, kind ? halves : variance);
+    struct rgb *lamps = alloc_array((size_t)g->count, sizeof *lamps);
+    struct rgb *const to[3] = {variance, halves, lamps};
+    for (int kind = 0; kind < 3; kind++) {
+        for (int64_t row = 0; row < g->gather.count; row++) {
+            const struct gather_row *at = &g->gather.rows[row];
+            const double *const of[3] = {at->chance, at->halves, at->of_segments};
+            memcpy(own[row].band, of[kind], sizeof own[row].band);
+        }
+        gathering_share_rows(g, to[kind]);
     }
     struct noise classes[CLASSES] = {{0}};
     double ratios[CLASSES];
@@ -194,10 +199,16 @@ static void variances_by_rays(struct gathering *g, struct rgb *variance)
     classify(g, halves, variance, classes, own_class);
     for (int k = 0; k < CLASSES; k++)
         ratios[k] = ratio_of_sequence(classes, k);
-    raise_to_sisters(g, variance);
+    for (int64_t i = 0; i < g->count; i++)
+        variance[i] = rgb_sub(variance[i], lamps[i]);
+    raise_to_sisters(g, g->mesh.rays, variance);
+    raise_to_sisters(g, g->mesh.segments, lamps);
+    for (int64_t i = 0; i < g->count; i++)
+        rgb_add(&variance[i], 1.0, lamps[i]);
     for (int64_t k = 0; k < BANDS * g->count; k++)
         variance[k / BANDS].band[k % BANDS] *= ratios[own_class[k]];
     alloc_free(own_class);
+    alloc_free(lamps);
     alloc_free(halves);
 }
 

@@ -23,7 +23,8 @@
  * Looks also tell how noisy the light of a leaf is: rows get rays in proportion to the
  * square root of area times variance, which makes the noise, by area, least for a given
  * number of all rays (Neyman, 1934). A leaf under a lamp housing gets many, a leaf of a
- * plain wall few.
+ * plain wall few. So do segments to lamps, which are many in a half-shade where rays may
+ * be few.
  *
  * Looks also measure the work of a ray. Further looks and rows are dealt by the work that
  * this predicts. */
@@ -60,18 +61,24 @@ static const double VARIANCE_OF_MEAN = 3.0;
  * fewer than FEWEST_LOOKED, there are no looks. */
 enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 4 };
 
-/* A leaf has 2^MOST_DOUBLED times the mean number of rays at most, and 2^-MOST_HALVED. */
+/* A leaf has 2^MOST_DOUBLED times the mean number of rays at most, and 2^-MOST_HALVED;
+ * and of segments. */
 enum { MOST_DOUBLED = 4, MOST_HALVED = 2 };
 enum { ROUNDS = 6, FEWEST_RAYS = 4 };
+
+/* Few rays of a look may miss what is bright: the mean noise of all leaves, relative to
+ * their light, counts as so many more. */
+static const double UNSURE_RAYS = 32.0;
 
 /* Marks in place of a variance: the row will be exact; too dark to be looked at. */
 static const double IS_EXACT = -1.0, IS_UNSEEN = -2.0;
 
 /* Estimates for a leaf, by its look or its parent's. */
 struct known {
-    double variance; /* of rho H by one ray, (W/m^2)^2; IS_EXACT, IS_UNSEEN */
-    float fixed;     /* tests of its row, without its rays */
-    float work;      /* tests of each ray */
+    double by_ray;     /* variance of rho H by one ray, (W/m^2)^2; IS_EXACT, IS_UNSEEN */
+    double by_segment; /* the same by one segment */
+    float fixed;       /* tests of its row, without its rays */
+    float work;        /* tests of each ray */
 };
 
 struct looking {
@@ -91,16 +98,16 @@ struct looking {
 
 /* --- work --- */
 
-/* The predicted work of leaves, in tests, [count], to be freed. `rays`, [count], or NULL:
- * those of a look. */
+/* The predicted work of leaves, in tests, [count], to be freed: of their rows in `mesh`;
+ * or, if that is NULL, of looks. */
 static int64_t *predict_work(const struct looking *l, const int32_t *leaves,
-                             const int *rays, int64_t count)
+                             const struct gather_mesh *mesh, int64_t count)
 {
     int64_t *work = alloc_array((size_t)count, sizeof *work);
     for (int64_t i = 0; i < count; i++) {
         const struct known *known = &l->known[leaves[i]];
-        double each = (double)known->work;
-        work[i] = 1 + (int64_t)((double)known->fixed + (rays ? rays[i] : l->rays) * each);
+        double rays = mesh ? 0.5 * (mesh->rays[i] + mesh->segments[i]) : l->rays;
+        work[i] = 1 + (int64_t)((double)known->fixed + rays * (double)known->work);
     }
     return work;
 }
@@ -256,8 +263,10 @@ static void split_leaf(struct forest *forest, int32_t leaf,
 static void keep_known(struct looking *l, int32_t leaf, const struct gather_look *look)
 {
     RESERVE(l->known, &l->known_capacity, l->solver->model.forest->count);
-    l->known[leaf] = (struct known){look->variance + spread_of(look), look->fixed,
-                                    look->work};
+    double all = look->variance + spread_of(look);
+    double by_segment = fmin(all, look->of_segment);
+    l->known[leaf] =
+        (struct known){all - by_segment, by_segment, look->fixed, look->work};
 }
 
 /* (rho H)^2 of a leaf, as links or looks tell it. */
@@ -404,7 +413,7 @@ static void know_exact(struct looking *l, bool all)
         int32_t leaf = l->mesh->leaves[i];
         const struct patch *patch = &forest->patches[leaf];
         if (l->open[patch->id.root] && (all || patch->parent >= 0))
-            l->known[leaf] = (struct known){IS_EXACT, 0.0f, 1.0f};
+            l->known[leaf] = (struct known){IS_EXACT, 0.0, 0.0f, 1.0f};
     }
 }
 
@@ -424,7 +433,8 @@ static void know_nothing(struct looking *l)
     RESERVE(l->known, &l->known_capacity, l->solver->model.forest->count);
     for (int64_t i = 0; i < l->mesh->count; i++) {
         int32_t leaf = l->mesh->leaves[i];
-        l->known[leaf] = (struct known){guess_variance(l, leaf), 0.0f, 1.0f};
+        double guess = guess_variance(l, leaf);
+        l->known[leaf] = (struct known){guess, guess, 0.0f, 1.0f};
     }
     know_exact(l, l->rays < FEWEST_LOOKED);
 }
@@ -444,13 +454,13 @@ static int32_t *choose_leaves(struct looking *l, int64_t *count)
     *count = 0;
     for (int64_t i = 0; i < mesh->count; i++) {
         struct known *known = &l->known[mesh->leaves[i]];
-        bool exact = known->variance == IS_EXACT;
+        bool exact = known->by_ray == IS_EXACT;
         double area = forest_area(model->forest, mesh->leaves[i]);
         double most = SPREAD_MOST * (light[i] + UNSURE * area * (sum / model->area));
         if (!exact && most >= MESH * model->criterion.epsilon * sum) {
             leaves[(*count)++] = mesh->leaves[i];
         } else {
-            known->variance = exact ? IS_EXACT : IS_UNSEEN;
+            known->by_ray = exact ? IS_EXACT : IS_UNSEEN;
             l->unseen += light[i];
         }
     }
@@ -459,31 +469,38 @@ static int32_t *choose_leaves(struct looking *l, int64_t *count)
 }
 
 /* Gives leaves that were not looked at the mean noise, relative to their light, and the
- * mean work of those that were. */
+ * mean work of those that were. Of these, too, the noise is made more like the mean. */
 static void guess_unseen(struct looking *l)
 {
     const struct gather_mesh *mesh = l->mesh;
     const struct forest *forest = l->solver->model.forest;
-    double variance = 0.0, square = 0.0, fixed = 0.0, work = 0.0;
+    double by_ray = 0.0, by_segment = 0.0, square = 0.0, fixed = 0.0, work = 0.0;
+    double unsure = UNSURE_RAYS / (UNSURE_RAYS + 4.0 * l->rays);
     int64_t seen = 0;
     for (int64_t i = 0; i < mesh->count; i++) {
         const struct known *known = &l->known[mesh->leaves[i]];
         double area = forest_area(forest, mesh->leaves[i]);
-        if (known->variance < 0.0)
+        if (known->by_ray < 0.0)
             continue;
-        variance += area * known->variance;
+        by_ray += area * known->by_ray;
+        by_segment += area * known->by_segment;
         square += area * square_of_light(forest, mesh->leaves[i]);
         fixed += (double)known->fixed;
         work += (double)known->work;
         seen++;
     }
-    double relative = square > 0.0 ? variance / square : 0.0;
     for (int64_t i = 0; i < mesh->count && seen > 0; i++) {
         struct known *known = &l->known[mesh->leaves[i]];
-        if (known->variance == IS_UNSEEN)
-            *known = (struct known){relative * square_of_light(forest, mesh->leaves[i]),
+        double all = square_of_light(forest, mesh->leaves[i]);
+        double part = square > 0.0 ? all / square : 0.0;
+        if (known->by_ray == IS_UNSEEN)
+            *known = (struct known){part * by_ray, part * by_segment,
                                     (float)(fixed / (double)seen),
                                     (float)(work / (double)seen)};
+        else if (known->by_ray >= 0.0) {
+            known->by_ray += unsure * (part * by_ray - known->by_ray);
+            known->by_segment += unsure * (part * by_segment - known->by_segment);
+        }
     }
 }
 
@@ -524,32 +541,36 @@ static int rays_of_class(int rays, int class)
     return rays > FEWEST_RAYS ? rays : FEWEST_RAYS;
 }
 
-/* Shares rays in proportion to worth; their sum is that of equal rays for all leaves. */
+/* Shares rays and segments in proportion to worth; their sum is that of equal numbers of
+ * both for all leaves. */
 static void share_rays(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;
     const struct forest *forest = l->solver->model.forest;
-    double *worth = alloc_array((size_t)mesh->count, sizeof *worth);
+    double *worth = alloc_array(2 * (size_t)mesh->count, sizeof *worth);
     double low = 0.0, high = 0.0;
-    for (int64_t i = 0; i < mesh->count; i++) {
-        double variance = l->known[mesh->leaves[i]].variance;
-        worth[i] = sqrt(forest_area(forest, mesh->leaves[i]) * fmax(0.0, variance));
-        high = fmax(high, worth[i]);
+    for (int64_t k = 0; k < 2 * mesh->count; k++) {
+        const struct known *known = &l->known[mesh->leaves[k / 2]];
+        double variance = k % 2 ? known->by_segment : fmax(0.0, known->by_ray);
+        worth[k] = sqrt(forest_area(forest, mesh->leaves[k / 2]) * variance);
+        high = fmax(high, worth[k]);
     }
     for (int step = 0; step < 40 && high > 0.0; step++) { /* worth of the mean number */
         double unit = 0.5 * (low + high);
         int64_t sum = 0;
-        for (int64_t i = 0; i < mesh->count; i++)
-            sum += rays_of_class(l->gather.rays, class_of(worth[i] / unit));
-        *(sum > l->gather.rays * mesh->count ? &low : &high) = unit;
+        for (int64_t k = 0; k < 2 * mesh->count; k++)
+            sum += rays_of_class(l->gather.rays, class_of(worth[k] / unit));
+        *(sum > 2 * l->gather.rays * mesh->count ? &low : &high) = unit;
     }
     mesh->rays = alloc_array((size_t)mesh->count, sizeof *mesh->rays);
+    mesh->segments = alloc_array((size_t)mesh->count, sizeof *mesh->segments);
     mesh->exact = alloc_array((size_t)mesh->count, sizeof *mesh->exact);
-    for (int64_t i = 0; i < mesh->count; i++) {
-        bool open = l->known[mesh->leaves[i]].variance == IS_EXACT;
-        int class = high > 0.0 && !open ? class_of(worth[i] / high) : 0;
-        mesh->rays[i] = rays_of_class(l->gather.rays, class);
-        mesh->exact[i] = open;
+    for (int64_t i = 0; i < mesh->count; i++)
+        mesh->exact[i] = l->known[mesh->leaves[i]].by_ray == IS_EXACT;
+    for (int64_t k = 0; k < 2 * mesh->count; k++) {
+        int class = high > 0.0 && !mesh->exact[k / 2] ? class_of(worth[k] / high) : 0;
+        (k % 2 ? mesh->segments : mesh->rays)[k / 2] =
+            rays_of_class(l->gather.rays, class);
     }
     alloc_free(worth);
 }
@@ -568,7 +589,7 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     if (l.rays >= FEWEST_LOOKED)
         refine(&l);
     share_rays(&l);
-    mesh->work = predict_work(&l, mesh->leaves, mesh->rays, mesh->count);
+    mesh->work = predict_work(&l, mesh->leaves, mesh, mesh->count);
     mesh->traced = l.gather.counts.rays + l.gather.counts.segments;
     int64_t stopped = stop_is_asked();
     comm_add(solver->comm, &stopped, 1);
@@ -582,6 +603,7 @@ void gather_mesh_free(struct gather_mesh *mesh)
 {
     alloc_free(mesh->leaves);
     alloc_free(mesh->rays);
+    alloc_free(mesh->segments);
     alloc_free(mesh->exact);
     alloc_free(mesh->work);
     *mesh = (struct gather_mesh){0};

@@ -9,6 +9,7 @@
 struct gather_mesh {
     int32_t *leaves; /* [count] local numbers */
     int *rays;       /* [count] to be fired for the row */
+    int *segments;   /* [count] to be fired at lamps */
     bool *exact;     /* [count] the row may be exact */
     int64_t *work;   /* [count] predicted for the row, in tests */
     int64_t count;

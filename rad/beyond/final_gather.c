@@ -409,7 +409,7 @@ static struct receiver receiver_make(struct final_gather *gather, int32_t patch,
     return (struct receiver){.gather = gather, .facet = facet, .seed = seed,
                              .row = {.leaf = patch},
                              .along = direction_along(facet.plane.normal), .rays = rays,
-                             .near = -1, .dark = {.least = -1.0}};
+                             .segments = rays, .near = -1, .dark = {.least = -1.0}};
 }
 
 uint64_t patch_seed(const struct forest *forest, int32_t patch)
@@ -421,69 +421,6 @@ struct receiver receiver_of_leaf(struct final_gather *gather, int32_t leaf, int 
 {
     return receiver_make(gather, leaf, facet_make(gather->model->forest, leaf),
                          patch_seed(gather->model->forest, leaf), rays);
-}
-
-/* H by lamps and rays. */
-static struct rgb light_of(const struct receiver *r)
-{
-    struct rgb h = r->lamps;
-    rgb_add(&h, 1.0, r->sums.h);
-    return h;
-}
-
-/* The variance by chance, over bands, that the quarters of a leaf have in common: their
- * rays have the same directions. `each`, [rays]: rho H by each ray, summed over
- * quarters. */
-static double variance_in_common(const struct rgb *each, int rays)
-{
-    double variance = 0.0;
-    for (int c = 0; c < BANDS; c++) {
-        double sum = 0.0, squares = 0.0;
-        for (int i = 0; i < rays; i++) {
-            sum += each[i].band[c];
-            squares += each[i].band[c] * each[i].band[c];
-        }
-        variance += 0.0625 * (squares - sum * sum / rays);
-    }
-    return fmax(0.0, variance);
-}
-
-struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays)
-{
-    const struct forest *forest = gather->model->forest;
-    struct facet facet = facet_make(forest, leaf);
-    struct gather_look look = {.noise = 0.0f};
-    const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
-    struct rgb *each = alloc_array((size_t)rays, sizeof *each);
-    uint64_t seed = hash_mix(patch_seed(forest, leaf) + 1);
-    double variance = 0.0;
-    int64_t before = model_work(gather->model), fixed = gather->model->estimating;
-    for (int k = 0; k < 4; k++) {
-        struct facet quarter = facet;
-        quarter.triangle = triangle_child(&facet.triangle, k);
-        quarter.area = 0.25 * facet.area;
-        struct receiver r =
-            receiver_make(gather, leaf, quarter, seed, rays);
-        r.sums.each = each;
-        receiver_aim(&r);
-        receiver_fire(&r);
-        struct rgb h = light_of(&r);
-        for (int c = 0; c < BANDS; c++) {
-            look.reflected[k][c] = (float)(rho->band[c] * h.band[c]);
-            variance += 0.25 * rho->band[c] * rho->band[c] * r.row.chance[c];
-        }
-    }
-    for (int i = 0; i < rays; i++)
-        for (int c = 0; c < BANDS; c++)
-            each[i].band[c] *= rho->band[c];
-    look.noise = fmax(0.0, variance - variance_in_common(each, rays));
-    look.variance = variance * rays;
-    fixed = gather->model->estimating - fixed;
-    look.fixed = 0.25f * (float)fixed;
-    look.work =
-        (float)(model_work(gather->model) - before - fixed) / (4.0f * (float)rays);
-    alloc_free(each);
-    return look;
 }
 
 /* The irradiance straight from lamps, by an exact row. */
@@ -503,9 +440,11 @@ static struct rgb light_of_lamps(const struct receiver *r)
     return light;
 }
 
-void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool exact)
+void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int segments,
+                      bool exact)
 {
     struct receiver r = receiver_of_leaf(gather, leaf, rays);
+    r.segments = segments;
     r.keeps = true;
     gather->sums.count = gather->sums.first = 0;
     if (exact && receiver_add_exact(&r)) {

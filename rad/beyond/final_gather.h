@@ -23,7 +23,9 @@ struct gather_look {
     float reflected[4][BANDS]; /* rho H of each quarter, W/m^2 */
     double noise;              /* variance of rho H of a quarter, by chance, from the mean
                                   of all */
-    double variance;           /* of rho H of a ray, over bands, (W/m^2)^2 */
+    double variance;           /* of rho H of a ray with its segment, over bands,
+                                  (W/m^2)^2 */
+    double of_segment;         /* that of the segment, over the whole leaf */
     float fixed;               /* tests of a quarter, without its rays */
     float work;                /* tests of each ray */
 };
@@ -46,9 +48,10 @@ bool final_gather_root_is_open(struct final_gather *gather, int32_t root, bool p
 /* Looks at the quarters of a leaf, by `rays` rays each. */
 struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays);
 
-/* Appends the row of a leaf, made by `rays` rays; or, if `exact` and its root is open, by
- * exact factors. */
-void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, bool exact);
+/* Appends the row of a leaf, made by `rays` rays, and `segments` to lamps; or, if `exact`
+ * and its root is open, by exact factors. */
+void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int segments,
+                      bool exact);
 
 /* Tells the gather which leaves things stand on: their means hold for no point. `open`:
  * below 16 for these; for all leaves with an area, roots in order, depth first. */

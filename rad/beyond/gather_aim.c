@@ -12,6 +12,7 @@
 #include "rad/beyond/receiver.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "geom/hash.h"
 #include "geom/lambert.h"
@@ -102,10 +103,36 @@ int32_t receiver_first_blocker(struct receiver *r, struct vec3 x, struct vec3 y,
 
 /* Segments to groups that are next to each other in the tree, in two halves. */
 struct volley {
-    double direct[2]; /* light without blockers, over all bands, W/m^2 */
+    double direct[2]; /* light without blockers, about, over all bands, W/m^2 */
     double seen[2];   /* light with them */
     int count[2];     /* segments */
+    double direct2, seen2, both; /* sums over segments of `direct` and `seen` squared, and
+                                    of their product */
 };
+
+/* Adds a segment to a half. */
+static void add_segment(struct volley *volley, int half, double direct, double seen)
+{
+    volley->direct[half] += direct;
+    volley->seen[half] += seen;
+    volley->count[half]++;
+    volley->direct2 += direct * direct;
+    volley->seen2 += seen * seen;
+    volley->both += direct * seen;
+}
+
+/* Adds the segments of another, their light times `scale`. */
+static void add_volley(struct volley *volley, const struct volley *other, double scale)
+{
+    for (int half = 0; half < 2; half++) {
+        volley->direct[half] += scale * other->direct[half];
+        volley->seen[half] += scale * other->seen[half];
+        volley->count[half] += other->count[half];
+    }
+    volley->direct2 += scale * scale * other->direct2;
+    volley->seen2 += scale * scale * other->seen2;
+    volley->both += scale * scale * other->both;
+}
 
 /* The half that segment `i` of `count` to a group belongs to; a single one, the
  * smaller. */
@@ -114,20 +141,22 @@ static int half_of(const struct volley *volley, int i, int count)
     return count > 1 ? 2 * i >= count : volley->count[0] > volley->count[1];
 }
 
-/* Adds the variance of the volley's light, in the colour of one of its lamps: by its
- * visible share as if by chance, and by the difference of its halves. */
+/* Adds the variance of the volley's light, in the colour of one of its lamps: as if by
+ * chance, by how far single segments are from the mean share that is seen, and by the
+ * difference of its halves. */
 static void end_volley(struct receiver *r, struct volley *volley, struct rgb light)
 {
-    double direct = volley->direct[0] + volley->direct[1];
-    int count = volley->count[0] + volley->count[1];
-    double seen = volley->seen[0] + volley->seen[1], apart = 0.0;
-    double share = count > 0 ? fmin(1.0, seen / direct) : 0.0;
+    double direct = volley->direct[0] + volley->direct[1], apart = 0.0;
+    double share = direct > 0.0 ? (volley->seen[0] + volley->seen[1]) / direct : 0.0;
+    double variance =
+        volley->seen2 + share * (share * volley->direct2 - 2.0 * volley->both);
+    r->shares.direct += direct;
     if (volley->direct[0] > 0.0 && volley->direct[1] > 0.0)
         apart = 0.5 * (volley->seen[0] / volley->direct[0] -
                        volley->seen[1] / volley->direct[1]);
     for (int c = 0; c < BANDS && share > 0.0; c++) {
-        double h = direct * light.band[c] / rgb_sum(light);
-        r->row.chance[c] += h * h * share * (1.0 - share) / count;
+        double part = light.band[c] / rgb_sum(light), h = direct * part;
+        r->row.chance[c] += part * part * fmax(0.0, variance);
         r->row.halves[c] += h * h * apart * apart;
     }
     *volley = (struct volley){.direct = {0.0, 0.0}};
@@ -154,7 +183,8 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
     struct triangle lamp = scene_root_triangle(scene, root);
     struct vec3 normal = scene_root_plane(scene, root).normal;
     struct rgb emission = scene_root_material(scene, root)->emission;
-    double all[2] = {0.0, 0.0}, seen[2] = {0.0, 0.0}, u[SEQUENCE_DIMENSIONS];
+    struct volley own = {.direct = {0.0, 0.0}};
+    double u[SEQUENCE_DIMENSIONS];
     for (int i = 0, fired = 0; fired < count && i < AIMS_MOST * count; i++) {
         sequence_point(sequence, (uint32_t)(first + i), u);
         struct vec3 x = receiver_start(r, u[0], u[1]);
@@ -162,22 +192,16 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
         double light = receiver_kernel(x, r->facet.plane.normal, y, normal);
         if (!(light > 0.0))
             continue;
-        int half = half_of(volley, fired++, count);
-        all[half] += light;
-        if (receiver_blocker(r, x, y, root) < 0)
-            seen[half] += light;
-        else
-            r->shares.doubt = true;
-        volley->count[half]++;
+        bool hidden = receiver_blocker(r, x, y, root) >= 0;
+        add_segment(&own, half_of(volley, fired++, count), light, hidden ? 0.0 : light);
+        r->shares.doubt = r->shares.doubt || hidden;
     }
-    double sum = all[0] + all[1];
-    r->shares.doubt = r->shares.doubt || !(sum > 0.0);
-    for (int half = 0; half < 2 && sum > 0.0; half++) {
-        volley->direct[half] += direct * (all[half] / sum);
-        volley->seen[half] += direct * (seen[half] / sum);
-    }
-    if (sum > 0.0)
-        add_lamp(r, emission, direct * ((seen[0] + seen[1]) / sum) / rgb_sum(emission));
+    double all = own.direct[0] + own.direct[1], seen = own.seen[0] + own.seen[1];
+    r->shares.doubt = r->shares.doubt || !(all > 0.0);
+    if (!(all > 0.0))
+        return;
+    add_volley(volley, &own, direct / all);
+    add_lamp(r, emission, direct * (seen / all) / rgb_sum(emission));
 }
 
 /* The same for a wide lamp, whose variance is known. */
@@ -187,6 +211,7 @@ static void aim_at_wide_lamp(struct receiver *r, int count, int32_t root, double
     struct rgb emission = scene_root_material(r->gather->model->scene, root)->emission;
     struct receiver_share share = receiver_share_of_wide(r, &sequence, count, root);
     add_lamp(r, emission, direct * share.seen / rgb_sum(emission));
+    r->shares.direct += direct;
     r->shares.doubt = r->shares.doubt || share.seen < 1.0;
     for (int c = 0; c < BANDS; c++) {
         double h = direct * emission.band[c] / rgb_sum(emission);
@@ -246,9 +271,7 @@ static void aim_at_group(struct receiver *r, const struct lamps *lamps,
             look_at_one(r, lamp.patch, share, u);
         else
             aim_at_one(r, &sequence, k, lamp.patch, share);
-        volley->direct[half] += direct / count;
-        volley->seen[half] += rgb_sum(r->light) - before;
-        volley->count[half]++;
+        add_segment(volley, half, direct / count, rgb_sum(r->light) - before);
     }
 }
 
@@ -291,7 +314,7 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
     bool dark = !lamps->reflect && receiver_is_in_the_dark(r);
     int most = lamps->reflect ? (r->rays + RAYS_PER_AIMED - 1) / RAYS_PER_AIMED
                : dark         ? r->gather->rays
-                              : r->rays;
+                              : r->segments;
     r->shares.doubt = r->shares.doubt || dark || (!lamps->reflect && !lamps->alike);
     lamps_group(lamps, &r->facet, most, most_light(r), &r->gather->model->estimating);
     const struct lamp_groups *groups = &lamps->groups;
@@ -372,4 +395,5 @@ void receiver_aim(struct receiver *r)
     receiver_aim_at(r, &r->gather->lamps);
     r->lamps = r->light;
     r->light = (struct rgb){{0.0, 0.0, 0.0}};
+    memcpy(r->row.of_segments, r->row.chance, sizeof r->row.of_segments);
 }

@@ -101,8 +101,8 @@ void receiver_find_covers(struct receiver *r)
     double u[SEQUENCE_DIMENSIONS];
     int covered = 0;
     r->row.bare = 0.0f;
-    r->row.outside = 1.0f - (float)r->inside / (float)r->rays;
-    if (r->inside == r->rays ||
+    r->row.outside = 1.0f - (float)r->sums.inside / (float)r->rays;
+    if (r->sums.inside == r->rays ||
         (r->gather->sums.count == 0 && !(rgb_sum(r->row.source) > 0.0)))
         return;
     for (uint32_t i = 0; i < BARE_POINTS; i++) {
@@ -112,7 +112,7 @@ void receiver_find_covers(struct receiver *r)
         covered +=
             octree_first_hit(model->octree, vec3_add(x, vec3_scale(normal, ABOVE)),
                              vec3_scale(normal, -1.0), false, &hit, &model->counts) &&
-            hit.triangle != r->facet.input && (hit.front || r->inside == 0);
+            hit.triangle != r->facet.input && (hit.front || r->sums.inside == 0);
     }
     double share = (double)covered / BARE_POINTS / (double)r->row.outside;
     r->row.bare = 1.0f - (float)fmin(1.0, share);

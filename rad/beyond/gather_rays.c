@@ -57,9 +57,6 @@ static const double BESIDE = 2.0;
  * dark. */
 enum { PATH_MOST = 256, DARK_RAYS = 32 };
 
-/* Rays that have to have met lamps, and others, to stand for their shares. */
-enum { ENOUGH = 4 };
-
 /* Points of a path from which it goes on in any case. */
 enum { PATH_SURE = 2 };
 
@@ -355,7 +352,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         enum met met = count == 1 ? meet(r, origin, direction, &stream->hits[ray], &point)
                                   : probe(r, origin, direction, &point);
         if (count == 1 && ray_comes_from_inside(r, origin, met, &point)) {
-            r->inside++;
+            r->sums.inside++;
             return;
         }
         if (met == MET_BACK && count == 1)
@@ -431,15 +428,14 @@ struct factors {
 };
 
 /* The rays of a row that have met lamps stand for the lamps' form factor where segments
- * have found it without doubt, and enough rays have met both them and others: how many
- * did by chance is noise. */
+ * have found it without doubt: how many did by chance is noise. */
 static struct factors factors_of(const struct receiver *r)
 {
     int aside = r->sums.aside[0] + r->sums.aside[1], on = r->sums.on_lamps;
     int others = r->rays - aside - on;
     double rest = fmax(0.0, 1.0 - r->shares.bright) * r->rays;
     double all = rest / (aside < r->rays ? r->rays - aside : r->rays);
-    if (!r->keeps || r->shares.doubt || aside > 0 || on < ENOUGH || others < ENOUGH ||
+    if (!r->keeps || r->shares.doubt || aside > 0 || on == 0 || others == 0 ||
         !(r->shares.bright + r->shares.lit < 1.0))
         return (struct factors){all, all};
     double lit = r->shares.lit * r->rays;
@@ -538,7 +534,7 @@ void receiver_fire(struct receiver *r)
         r->near = -1;
         count_light(r, i, half);
     }
-    if (r->inside == r->rays)
+    if (r->sums.inside == r->rays)
         return; /* what could be aimed at would be walls that things touch */
     add_variances(r);
     add_bright(r, source);

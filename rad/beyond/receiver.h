@@ -10,6 +10,7 @@
 struct ray_sums {
     struct rgb h, squares, half[2]; /* of H, of H^2, of H by halves */
     int aside[2];     /* rays that have met what is aimed at, by halves */
+    int inside;       /* rays from points inside of things */
     int on_lamps;     /* rays that have met lamps first */
     bool on_back;     /* some ray has met a back: a thing may stand on the leaf */
     struct rgb taken; /* H by the emission that these have not counted, below 0 */
@@ -20,6 +21,7 @@ struct ray_sums {
 struct aimed_shares {
     double bright; /* form factor of bright patches and regions, 1 */
     double lit;    /* form factor of the lamps, as segments have found it, 1 */
+    double direct; /* light of the lamps over all bands, if nothing hid any, W/m^2 */
     bool doubt;    /* that may be wrong: something hides a lamp, or it is near */
 };
 
@@ -40,8 +42,8 @@ struct receiver {
     uint64_t seed;        /* made of an ID */
     struct vec3 along;    /* a direction in the plane */
     int rays;             /* to be fired */
+    int segments;         /* to be fired at lamps, about */
     int escaped;          /* rays and paths that have left the scene */
-    int inside;           /* rays from points inside of things */
     int32_t near;         /* place of the leaf too near that the ray at hand met first;
                              -1: none */
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */

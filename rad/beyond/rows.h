@@ -52,6 +52,7 @@ struct gather_row {
     struct rgb lamps;  /* irradiance straight from lamps, W/m^2 */
     double chance[BANDS]; /* variance of H if rays and segments were chosen by chance,
                              (W/m^2)^2, for the solution's radiosities */
+    double of_segments[BANDS]; /* the part of that which comes from segments to lamps */
     double halves[BANDS]; /* squared difference of the first and second half of the
                              rays: a sample of the variance by the sequence */
     float outside;     /* share of the leaf that is not inside of a thing on it, 1 */

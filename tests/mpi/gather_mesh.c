@@ -49,8 +49,10 @@ static void test_mesh(double epsilon)
            largest, goal);
     tap_ok(least >= 0.5 * goal && least < 1.0,
            "leaves were split over which %.1e varied at least", least);
-    double rays = (double)gathered->rays / (double)forest_count(forest).leaves;
-    tap_ok(rays > 180.0 && rays <= 256.0, "%.0f rays for each leaf in the mean", rays);
+    double shots = (double)(gathered->rays + gathered->segments) / 2.0 /
+                   (double)forest_count(forest).leaves;
+    tap_ok(shots > 180.0 && shots <= 256.0,
+           "as many rays and segments as %.0f of both for each leaf", shots);
     solution_free(&s);
 }
 
@@ -109,11 +111,12 @@ static void add_cells(struct soup *soup, int odd)
 }
 
 /* A small grey cube in the middle of a black room of which every second cell shines: its
- * light is as good as even, but whether a ray finds any is chance. Looks tell that: the
- * variance of a leaf's quarters is above its expectation for one leaf in four, which may
- * be split; otherwise all are, and again. Leaves of the cube get the most rays that there
- * are, 16 times the mean, and black ones the least, with a quarter more aimed at the
- * cube. */
+ * light is as good as even, but whether a segment finds any is chance. Looks tell that:
+ * the variance of a leaf's quarters is above its expectation for one leaf in four, which
+ * may be split; otherwise all are, and again. Leaves of the cube get the most segments
+ * that there are, 16 times the mean, and black ones the least; so do all of rays, which
+ * bring nothing else, with a quarter more aimed at the cube. (A segment to a point of a
+ * cell that is below the horizon is left out.) */
 static void test_chance(void)
 {
     enum { CUBE = 12, WALLS = 1200, MEAN = 256 };
@@ -130,10 +133,12 @@ static void test_chance(void)
     tap_ok(4 * gathered->split <= CUBE && cube == CUBE + 3 * gathered->split,
            "of 12 leaves whose light varies by chance alone %lld are split",
            (long long)gathered->split);
-    int64_t rays = cube * 16 * MEAN + WALLS * MEAN / 4;
-    tap_ok(gathered->rays >= rays && gathered->rays <= rays + WALLS * MEAN / 16,
-           "%lld rays for %lld noisy leaves and 1200 black ones",
-           (long long)gathered->rays, (long long)cube);
+    int64_t rays = (cube + WALLS) * MEAN / 4, segments = (16 * cube + WALLS / 4) * MEAN;
+    tap_ok(gathered->rays >= rays && gathered->rays <= rays + WALLS * MEAN / 16 &&
+               gathered->segments > segments - segments / 10 &&
+               gathered->segments <= segments,
+           "%lld rays, %lld segments for %lld noisy leaves and 1200 black ones",
+           (long long)gathered->rays, (long long)gathered->segments, (long long)cube);
     solution_free(&s);
 }
 

@@ -1,0 +1,105 @@
+/* Looks at leaves, before rows are made.
+ *
+ * A few rays from each quarter of a leaf, in the same directions, tell whether its light
+ * varies, and how noisy it is: by rays, and by segments to lamps. */
+#include "rad/beyond/final_gather.h"
+#include "rad/beyond/receiver.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "geom/hash.h"
+
+/* What a quarter has found. */
+struct quarter {
+    struct rgb light, lamps;      /* H by all, straight from lamps, W/m^2 */
+    double direct;                /* over all bands, if nothing hid lamps, W/m^2 */
+    double by_all, by_segments;   /* variance of rho H by chance, over bands, (W/m^2)^2 */
+};
+
+/* The variance by chance, over bands, that the quarters have in common: their rays have
+ * the same directions. `each`, [rays]: H by each ray, summed over quarters. */
+static double variance_in_common(const struct rgb *each, int rays, const struct rgb *rho)
+{
+    double variance = 0.0;
+    for (int c = 0; c < BANDS; c++) {
+        double sum = 0.0, squares = 0.0;
+        for (int i = 0; i < rays; i++) {
+            sum += each[i].band[c];
+            squares += each[i].band[c] * each[i].band[c];
+        }
+        variance += 0.0625 * rho->band[c] * rho->band[c] * (squares - sum * sum / rays);
+    }
+    return fmax(0.0, variance);
+}
+
+/* The variance of rho H over the leaf that comes from different shares of the lamps being
+ * hidden from its quarters, over bands. */
+static double variance_by_shade(const struct quarter *quarters, const struct rgb *rho)
+{
+    struct rgb lamps = {{0.0, 0.0, 0.0}};
+    double direct = 0.0, variance = 0.0, square = 0.0;
+    for (int k = 0; k < 4; k++) {
+        direct += quarters[k].direct;
+        rgb_add(&lamps, 1.0, quarters[k].lamps);
+    }
+    double seen = rgb_sum(lamps);
+    if (!(seen > 0.0))
+        return 0.0;
+    for (int k = 0; k < 4; k++) {
+        double off = rgb_sum(quarters[k].lamps) - seen * (quarters[k].direct / direct);
+        variance += 0.25 * off * off;
+    }
+    for (int c = 0; c < BANDS; c++) {
+        double part = rho->band[c] * lamps.band[c] / seen;
+        square += part * part;
+    }
+    return variance * square;
+}
+
+static struct quarter look_at(struct receiver *r, const struct rgb *rho)
+{
+    receiver_aim(r);
+    receiver_fire(r);
+    struct quarter quarter = {r->lamps, r->lamps, r->shares.direct, 0.0, 0.0};
+    rgb_add(&quarter.light, 1.0, r->sums.h);
+    for (int c = 0; c < BANDS; c++) {
+        double square = rho->band[c] * rho->band[c];
+        quarter.by_all += square * r->row.chance[c];
+        quarter.by_segments += square * r->row.of_segments[c];
+    }
+    return quarter;
+}
+
+struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays)
+{
+    const struct forest *forest = gather->model->forest;
+    const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
+    struct receiver whole = receiver_of_leaf(gather, leaf, rays);
+    struct gather_look look = {.noise = 0.0f};
+    struct quarter quarters[4];
+    struct rgb *each = alloc_array((size_t)rays, sizeof *each);
+    double variance = 0.0, by_segments = 0.0;
+    int64_t before = model_work(gather->model), fixed = gather->model->estimating;
+    whole.seed = hash_mix(patch_seed(forest, leaf) + 1);
+    whole.sums.each = each;
+    for (int k = 0; k < 4; k++) {
+        struct receiver r = whole;
+        r.facet.triangle = triangle_child(&whole.facet.triangle, k);
+        r.facet.area = 0.25 * whole.facet.area;
+        quarters[k] = look_at(&r, rho);
+        variance += 0.25 * quarters[k].by_all;
+        by_segments += 0.25 * quarters[k].by_segments;
+        for (int c = 0; c < BANDS; c++)
+            look.reflected[k][c] = (float)(rho->band[c] * quarters[k].light.band[c]);
+    }
+    look.noise = fmax(0.0, variance - variance_in_common(each, rays, rho));
+    look.variance = variance * rays;
+    look.of_segment = by_segments * rays + variance_by_shade(quarters, rho);
+    fixed = gather->model->estimating - fixed;
+    look.fixed = 0.25f * (float)fixed;
+    look.work =
+        (float)(model_work(gather->model) - before - fixed) / (4.0f * (float)rays);
+    alloc_free(each);
+    return look;
+}
