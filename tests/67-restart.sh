@@ -139,7 +139,7 @@ check "one with a changed byte" \
 # ranks. One that has no checkpoint yet says nothing of it; then there is nothing to go on
 # from, and one too late to be stopped goes on as well. At even moments, counted from the
 # end of the first pass, the pass that is broken off is one that the memory limit ends.
-fine="scenes/cornell.obj --epsilon 3e-6 --size 40x40"
+fine="scenes/cornell.obj --epsilon 3e-6 --size 40x40 --final-gather 64"
 later="scenes/cornell.obj --epsilon 3e-6 --linking pairs --size 20x20 --memory 15M"
 run fine 2 $fine --quiet
 run later 2 $later >/dev/null
@@ -176,7 +176,7 @@ check "most of these had begun ($begun)" [ $begun -ge 5 ]
 
 counts="checksum links patches passes iterations rays node_tests converged memory_limited
         absorbed_power"
-fine="scenes/cornell.obj --epsilon 1e-5 --size 40x40"
+fine="scenes/cornell.obj --epsilon 1e-5 --size 40x40 --final-gather 64"
 for ranks in 1 2 3 4; do
     run small-$ranks $ranks $fine --memory 2M \
         --checkpoint "$work/small-$ranks.check" >/dev/null

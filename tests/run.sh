@@ -1,10 +1,10 @@
 #!/bin/sh
 # Runs all tests: the unit tests named as arguments, the corpora of the fuzz harnesses and
-# the scripts tests/[0-9]*.sh, as many at a time as there are cores, but for those of more
-# than four ranks or with limits of time, one by one after them. Each prints TAP lines;
-# failures are shown, and the last line is "N passed, N failed". A test that dies or ends
-# without its plan counts as one failure more. Called by `make check`, which sets BUILD,
-# MPIEXEC, MPICC, CC and MAKE.
+# the scripts tests/[0-9]*.sh, as many at a time as there are cores, but for those that
+# run many ranks for long or have limits of time, one by one after them. Each prints TAP
+# lines; failures are shown, and the last line is "N passed, N failed". A test that dies
+# or ends without its plan counts as one failure more. Called by `make check`, which sets
+# BUILD, MPIEXEC, MPICC, CC and MAKE.
 
 cd "$(dirname "$0")/.." || exit 2
 logs=$BUILD/tests/logs
@@ -12,7 +12,7 @@ rm -rf "$logs"
 mkdir -p "$logs"
 passed=0
 failed=0
-apart="57-viewfactors 60-ranks 67-restart 70-errors 72-faults 74-pipes"
+apart="60-ranks 67-restart 70-errors 72-faults 74-pipes"
 
 # judge NAME STATUS: shows the verdict on a test from its log, and adds it to the counts.
 judge() {

@@ -720,8 +720,6 @@ int main(int argc, char **argv)
     test_cavity(4.0, 0.5, 0.0, 0.0);
     test_round("light pipe", &PIPE, 1.0, 1, (double[]){0, 1}, (double[]){.9, 0},
                (double[]){0, 0});
-    test_round("long light pipe", &PIPE, 3.0, 1, (double[]){0, 1}, (double[]){.9, 0},
-               (double[]){0, 0});
     test_round("light pipe in rings", &PIPE, 6.0, 6, (double[]){0, 1}, (double[]){.8, 0},
                (double[]){0, 0});
     test_round("discs, rho 0.5", &DISCS, 1.0, 0, (double[]){1, 0}, (double[]){.5, .5},
