@@ -31,6 +31,9 @@ static const double SMALL = 0.25, SMALL_AT_FIRST = 3.0;
  * horizon, it has to be chosen now and then. */
 static const double LEAST_COSINE = 0.1;
 
+/* The part of all segments that go to groups by their light without blockers. */
+static const double DEFENSIVE = 0.25;
+
 enum { QUARTERINGS = 3 };
 
 /* The exact factor of two triangles takes about as long as so many tests. */
@@ -375,6 +378,20 @@ static void add_child(const struct lamps *lamps, const struct lit *leaf, int32_t
     limit(groups, first, leaf->most);
 }
 
+/* Gives a part of all worth to groups by their direct light: links may be wrong, and a
+ * bright lamp that is rarely chosen would count many times as much. */
+static void spread_worth(struct lamp_groups *groups)
+{
+    double direct = 0.0;
+    for (int64_t i = 0; i < groups->count; i++)
+        direct += groups->items[i].direct;
+    for (int64_t i = 0; i < groups->count && direct > 0.0; i++) {
+        struct lamp_group *group = &groups->items[i];
+        double even = groups->worth * (group->direct / direct);
+        group->worth += DEFENSIVE * (even - group->worth);
+    }
+}
+
 void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments, double most,
                  int64_t *work)
 {
@@ -390,6 +407,7 @@ void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments, do
         lit.small = SMALL;
         lit.each = groups->worth / segments;
     }
+    spread_worth(groups);
 }
 
 /* Of the bright patches in a patch, in turn, the one at which the power of those before

@@ -71,7 +71,8 @@ static inline bool root_is_lamp(const struct lamps *lamps, int32_t root)
 /* Finds the groups of lamps that a leaf tells apart by so many segments, in the tree's
  * order: each is a root, or a cluster that is small for its distance and would get about
  * one segment at most. All lamps of a node of the tree below its top are worth no more
- * than `most` to it, W/m^2. Adds the tests that it took to `work`. */
+ * than `most` to it, W/m^2; then a quarter of all worth is shared by direct light. Adds
+ * the tests that it took to `work`. */
 void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments,
                  double most, int64_t *work);
 

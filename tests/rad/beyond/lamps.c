@@ -363,6 +363,34 @@ static void test_flush_lamp(void)
            mean[0]);
 }
 
+/* If links say that little light arrives, whatever lamps could bring, a near lamp is
+ * worth no more than each of many far ones. It is to be chosen often all the same: its
+ * light counts as many times as that is unlikely. */
+static void test_worth(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), point(0.1, 0, 0), point(0, 0.1, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0, 0, 0.2), point(0, 0.1, 0), point(0.1, 0, 0), 1);
+    for (int k = 0; k < 32; k++)
+        soup_add_quad(&soup, point(k, 9 + k % 3, 9), point(0, 1, 0), point(1, 0, 0), 1);
+    paint(&soup, 0.0, 10.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", 16);
+    struct facet leaf = facet_make(g.s.solver->model.forest, 0);
+    struct lamp_groups *groups = &g.gather.lamps.groups;
+    double direct = 0.0, most = 0.0;
+    int64_t work = 0;
+    lamps_group(&g.gather.lamps, &leaf, 16, 1e-4, &work);
+    for (int64_t i = 0; i < groups->count; i++)
+        direct += groups->items[i].direct;
+    for (int64_t i = 0; i < groups->count; i++)
+        most = fmax(most, groups->items[i].direct / groups->items[i].worth);
+    most *= groups->worth / direct;
+    tap_ok(groups->count > 8 && most <= 4.0, "of %lld groups none counts more than %.2f "
+           "times all", (long long)groups->count, most);
+    trial_free(&g);
+}
+
 /* A closed room beside a lit one is dark. The back of a box that looks out of the scene
  * is as dark, but what there is to be seen from it is lit: rays find that. */
 static void test_dark_rooms(void)
@@ -407,6 +435,7 @@ int main(int argc, char **argv)
     test_grain();
     test_candle();
     test_dark_rooms();
+    test_worth();
     test_window(true);
     test_window(false);
     test_flush_lamp();
