@@ -29,7 +29,8 @@ set border lw 0.8
 set tics nomirror scale 0.5
 set xrange [*:*]
 set yrange [0.2:100]
-set xtics (0.001, 0.01, 0.1, 1, 10, 100, 1000)
+set format x "%g"
+set xtics (0.0001, 0.001, 0.01, 0.1, 1, 10, 100, 1000)
 set ytics (0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)
 unset key
 
@@ -80,7 +81,7 @@ do for [chart in "leaf shown"] {
     unset key
     set xrange [*:*]
     set yrange [0.2:100]
-    set xtics (0.001, 0.01, 0.1, 1, 10, 100, 1000) nomirror scale 0.5
+    set xtics (0.0001, 0.001, 0.01, 0.1, 1, 10, 100, 1000) nomirror scale 0.5
     set ytics (0.2, 0.5, 1, 2, 5, 10, 20, 50, 100) nomirror scale 0.5
     set border 31 lw 0.8
     set grid lc rgb "#dddddd" lt 1 lw 0.6
