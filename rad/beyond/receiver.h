@@ -21,7 +21,8 @@ struct ray_sums {
 struct aimed_shares {
     double bright; /* form factor of bright patches and regions, 1 */
     double lit;    /* form factor of the lamps, as segments have found it, 1 */
-    double direct; /* light of the lamps over all bands, if nothing hid any, W/m^2 */
+    double direct; /* light of all that is aimed at, over all bands, if nothing hid any,
+                      W/m^2 */
     bool doubt;    /* that may be wrong: something hides a lamp, or it is near */
 };
 
@@ -80,8 +81,8 @@ void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
 /* Adds the light of lamps, by segments. */
 void receiver_aim(struct receiver *r);
 
-/* Adds the light of lamps by as many segments as rays, or of bright patches by fewer
- * rays. */
+/* Adds the light of lamps by the receiver's segments, or of bright patches by a part of
+ * as many rays as it has. */
 void receiver_aim_at(struct receiver *r, struct lamps *lamps);
 
 /* --- in the dark --- */
