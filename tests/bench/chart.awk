@@ -7,8 +7,7 @@
 # that curve is read as the others are. Where phr does not get there, it is read at phr's
 # finest run.
 #
-# Slopes: the line of least squares, in logarithms, through the runs of the last decade of
-# seconds.
+# Slopes: of the decade of seconds that ends with a run, interpolated on the curve.
 
 BEGIN { FS = "," }
 
@@ -61,16 +60,27 @@ function traced(scene, wanted,    key, k) {
     return needed(key, wanted)
 }
 
-# d log error / d log seconds, over the last decade of seconds.
-function slope(key,    k, n, x, y, sx, sy, sxx, sxy) {
-    n = sx = sy = sxx = sxy = 0
-    for (k = count[key]; k > 0; k--)
-        if (seconds[key, k] > 0 && error[key, k] > 0 &&
-            10 * seconds[key, k] >= seconds[key, count[key]]) {
-            x = log(seconds[key, k]); y = log(error[key, k])
-            n++; sx += x; sy += y; sxx += x * x; sxy += x * y
+# The error at this many seconds, between two runs or beyond the last.
+function error_at(key, t,    k, share) {
+    for (k = 2; k < count[key] && seconds[key, k] < t; k++)
+        ;
+    share = log(t / seconds[key, k - 1]) / log(seconds[key, k] / seconds[key, k - 1])
+    return error[key, k - 1] * (error[key, k] / error[key, k - 1]) ^ share
+}
+
+# d log error / d log seconds, over the decade of seconds before a run.
+function slope(key, k) {
+    return log(error[key, k] / error_at(key, seconds[key, k] / 10)) / log(10)
+}
+
+# That of the steepest decade, and of the last.
+function slopes(key,    k, least, last) {
+    for (k = 2; k <= count[key]; k++)
+        if (seconds[key, k] >= 10 * seconds[key, 1] && error[key, k] > 0) {
+            last = slope(key, k)
+            least = last < least ? last : least
         }
-    return n > 1 ? sprintf("%.2f", (n * sxy - sx * sy) / (n * sxx - sx * sx)) : "-"
+    return last ? sprintf("%.2f, %.2f", least, last) : "-"
 }
 
 # Two digits; a dash for an error not reached.
@@ -108,8 +118,8 @@ function rates(key) {
 
 function second_row(scene,    paths) {
     paths = scene SUBSEP "paths"
-    printf "| %s | %s | %s | %s | %s | %s | %s | %s |\n", scene,
-        slope(scene SUBSEP "links"), slope(scene SUBSEP "gather"),
+    printf "| %s | %s | %s | %s | %s | %s | %s | %s | %s |\n", scene,
+        slopes(scene SUBSEP "links"), slopes(scene SUBSEP "gather"), slopes(paths),
         show(samples[paths] * 1e-6), ratio(rays[paths], samples[paths]),
         show(rate(paths)), rates(paths " "), rates(scene SUBSEP)
 }
@@ -124,10 +134,10 @@ END {
         row(scenes[i], 0.01)
     }
     print ""
-    print "| scene | slope, links alone | slope, phr | million paths | rays a path " \
-        "| million rays/s | paths, octree | Embree | ratio " \
+    print "| scene | slopes, links alone | phr | path tracer | million paths " \
+        "| rays a path | million rays/s | paths, octree | Embree | ratio " \
         "| first hits, octree | Embree | ratio |"
-    print "|---|---|---|---|---|---|---|---|---|---|---|---|"
+    print "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
     for (i = 1; i <= scene_count; i++)
         second_row(scenes[i])
 }
