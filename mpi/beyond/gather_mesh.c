@@ -13,12 +13,10 @@
  * of many small triangles few are looked at.
  *
  * Leaves with exact rows are not looked at: links without blockers tell where B varies,
- * and over a leaf it is linear (rad/beyond/final_gather.c). What is left is the bend: B
- * of a leaf less that of the linear function over its parent. Its error comes back as
- * often as light is reflected, so less of it is allowed: BENT times the absorptance. The
- * leaf is split, and B is linear over it. But a root that is not divided has no parent:
- * where a surface is many small roots, each link to one tells too little to divide it,
- * and B would be constant over each. So these are looked at, too.
+ * over a leaf it is linear, and where it bends (rad/beyond/gather_bends.c) the leaf is
+ * split. But a root that is not divided has no parent: where a surface is many small
+ * roots, each link to one tells too little to divide it, and B would be constant over
+ * each. So these are looked at, too.
  *
  * Looks also tell how noisy the light of a leaf is: rows get rays in proportion to the
  * square root of area times variance, which makes the noise, by area, least for a given
@@ -31,23 +29,18 @@
 #include "mpi/beyond/gather_mesh.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
+#include "mpi/beyond/gather_open.h"
+#include "mpi/beyond/gather_shots.h"
 #include "mpi/beyond/stages.h"
 #include "mpi/memory.h"
+#include "rad/beyond/gather_bends.h"
 #include "rad/oracle.h"
 
-static const double MESH = 0.005, BENT = 0.002;
-
-/* Links make a mesh for the brightest band. It may be too coarse by more than a level for
- * a dim one that is reflected more often, and where much is reflected next to an edge.
- * Where B is smooth, the error of a bend over a child is the part FALL of that over its
- * parent, a sixteenth for the square of the bend, a quarter for the area; a child is
- * split, too, if it is more than MUCH times what is allowed. */
-static const double FALL = 1.0 / 64.0, MUCH = 64.0;
+static const double MESH = 0.005;
 
 /* The variance of the light over a leaf is at most this times its square, which the links
  * tell with an error of this part of the mean square. */
@@ -61,10 +54,7 @@ static const double VARIANCE_OF_MEAN = 3.0;
  * fewer than FEWEST_LOOKED, there are no looks. */
 enum { ROWS_PER_LOOK = 16, FEWEST_LOOKED = 4 };
 
-/* A leaf has 2^MOST_DOUBLED times the mean number of rays at most, and 2^-MOST_HALVED;
- * and of segments. */
-enum { MOST_DOUBLED = 4, MOST_HALVED = 2 };
-enum { ROUNDS = 6, FEWEST_RAYS = 4 };
+enum { ROUNDS = 6 };
 
 /* Few rays of a look may miss what is bright: the mean noise of all leaves, relative to
  * their light, counts as so many more. */
@@ -110,73 +100,6 @@ static int64_t *predict_work(const struct looking *l, const int32_t *leaves,
         work[i] = 1 + (int64_t)((double)known->fixed + rays * (double)known->work);
     }
     return work;
-}
-
-/* --- open roots --- */
-
-struct root_area {
-    double area; /* square scene units */
-    int32_t root;
-};
-
-/* Largest first. */
-static int compare_areas(const void *left, const void *right)
-{
-    const struct root_area *a = left, *b = right;
-    int order = (a->area < b->area) - (a->area > b->area);
-    return order != 0 ? order : (a->root > b->root) - (a->root < b->root);
-}
-
-/* Returns all roots, largest first. */
-static struct root_area *sort_roots(const struct scene *scene, int32_t roots)
-{
-    struct root_area *sorted = alloc_array((size_t)roots, sizeof *sorted);
-    for (int32_t root = 0; root < roots; root++)
-        sorted[root] = (struct root_area){scene_root_area(scene, root), root};
-    qsort(sorted, (size_t)roots, sizeof *sorted, compare_areas);
-    return sorted;
-}
-
-/* Collective. Finds the open roots, proved to be so if `proof`; each rank examines some.
- * True if they have half of the scene's area. Large roots come first, those of about the
- * same area together, until that is out of reach. */
-static bool half_is_open(struct looking *l, const struct root_area *sorted, bool proof,
-                         uint8_t *open)
-{
-    const struct model *model = &l->solver->model;
-    const struct comm *comm = l->solver->comm;
-    int32_t roots = scene_root_count(model->scene), end;
-    double blocked = 0.0;
-    for (int32_t begin = 0; begin < roots && 2.0 * blocked <= model->area; begin = end) {
-        for (end = begin; end < roots && 2.0 * sorted[end].area >= sorted[begin].area;
-             end++)
-            open[end] = end % comm->size == comm->rank && !stop_is_asked() &&
-                        final_gather_root_is_open(&l->gather, sorted[end].root, proof);
-        comm_add_bytes(comm, open + begin, end - begin);
-        for (int32_t i = begin; i < end; i++)
-            blocked += open[i] ? 0.0 : sorted[i].area;
-    }
-    return 2.0 * blocked <= model->area;
-}
-
-/* Collective. Finds the open roots. Exact rows cost much, and their mesh is that of the
- * links, which is good where nothing casts shadows: there are exact rows only if half of
- * the scene's area is open. Proofs cost much: segments show first where it is not. */
-static void find_open_roots(struct looking *l)
-{
-    int32_t roots = scene_root_count(l->solver->model.scene);
-    int64_t before = final_gather_work(&l->gather);
-    struct root_area *sorted = sort_roots(l->solver->model.scene, roots);
-    uint8_t *open = alloc_array((size_t)roots, sizeof *open);
-    l->open = alloc_array((size_t)roots, sizeof *l->open);
-    if (half_is_open(l, sorted, false, open) && half_is_open(l, sorted, true, open))
-        for (int32_t i = 0; i < roots; i++)
-            l->open[sorted[i].root] = open[i];
-    ledger_add(&l->solver->account.ledger,
-               (struct phase_work){.kind = WORK_FINAL_GATHER,
-                                   .share.done = final_gather_work(&l->gather) - before});
-    alloc_free(open);
-    alloc_free(sorted);
 }
 
 /* --- looks --- */
@@ -325,51 +248,6 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     return made;
 }
 
-/* The squares of B of a leaf less that of the linear function over its parent, band by
- * band. Over a root that function is constant, and some children have its B by chance:
- * there the one that is most off counts for all. */
-static struct rgb bends_of(const struct forest *forest, int32_t leaf)
-{
-    const struct patch *patches = forest->patches;
-    int32_t parent = patches[leaf].parent, first = leaf, count = parent < 0 ? 0 : 1;
-    struct rgb bends = {{0.0, 0.0, 0.0}};
-    if (parent >= 0 && patches[parent].parent < 0) {
-        first = patches[parent].children;
-        count = 4;
-    }
-    for (int32_t child = first; child < first + count; child++) {
-        struct rgb line = light_by_parent(forest, child);
-        for (int c = 0; c < BANDS; c++) {
-            double off = forest->radiosity[child].band[c] - line.band[c];
-            bends.band[c] = fmax(bends.band[c], off * off);
-        }
-    }
-    return bends;
-}
-
-/* How many times a leaf with exact rows is to be split: once if in any band the square
- * of the bend, as a part of `all` of the same band, is more than is allowed, for dim
- * bands are to be right, too; more often if it is so much more that a level is not
- * enough. `all`: squares of light, by area. */
-static int splits_of(const struct looking *l, int32_t leaf, const struct rgb *all)
-{
-    const struct model *model = &l->solver->model;
-    struct rgb bends = bends_of(model->forest, leaf);
-    double part = BENT * model->absorptance * model->criterion.epsilon;
-    double area = forest_area(model->forest, leaf);
-    int splits = 0;
-    for (int c = 0; c < BANDS; c++) {
-        if (!(area * bends.band[c] > part * all->band[c]))
-            continue;
-        int levels = 1;
-        double error = FALL * area * bends.band[c];
-        for (; levels < ID_MAX_LEVEL && error > MUCH * part * all->band[c]; error *= FALL)
-            levels++;
-        splits = levels > splits ? levels : splits;
-    }
-    return splits;
-}
-
 /* Splits a leaf into parts on which B is linear, so many levels deep. */
 static void split_bent_leaf(struct looking *l, int32_t leaf, int levels)
 {
@@ -400,7 +278,7 @@ static void split_bent(struct looking *l)
     for (int64_t i = 0; i < mesh->count; i++) {
         int32_t leaf = mesh->leaves[i];
         if (l->open[forest->patches[leaf].id.root])
-            split_bent_leaf(l, leaf, splits_of(l, leaf, &sum));
+            split_bent_leaf(l, leaf, gather_splits_of(&l->solver->model, leaf, &sum));
     }
     list_leaves(mesh, forest);
 }
@@ -524,54 +402,29 @@ static void refine(struct looking *l)
 
 /* --- rays --- */
 
-/* The power of two by which a leaf of this worth gets more than the mean rays. */
-static int class_of(double worth)
-{
-    int class = 0;
-    for (; worth >= 1.4142135623730951 && class < MOST_DOUBLED; worth *= 0.5)
-        class++;
-    for (; worth < 0.7071067811865476 && class > -MOST_HALVED; worth *= 2.0)
-        class--;
-    return class;
-}
-
-static int rays_of_class(int rays, int class)
-{
-    rays = class > 0 ? rays << class : rays >> -class;
-    return rays > FEWEST_RAYS ? rays : FEWEST_RAYS;
-}
-
-/* Shares rays and segments in proportion to worth; their sum is that of equal numbers of
- * both for all leaves. */
+/* Shares rays and segments in proportion to the square root of area times variance.
+ * Exact rows have the mean number, of which they make no use. */
 static void share_rays(struct looking *l)
 {
     struct gather_mesh *mesh = l->mesh;
     const struct forest *forest = l->solver->model.forest;
     double *worth = alloc_array(2 * (size_t)mesh->count, sizeof *worth);
-    double low = 0.0, high = 0.0;
+    int *shots = alloc_array(2 * (size_t)mesh->count, sizeof *shots);
     for (int64_t k = 0; k < 2 * mesh->count; k++) {
         const struct known *known = &l->known[mesh->leaves[k / 2]];
         double variance = k % 2 ? known->by_segment : fmax(0.0, known->by_ray);
         worth[k] = sqrt(forest_area(forest, mesh->leaves[k / 2]) * variance);
-        high = fmax(high, worth[k]);
     }
-    for (int step = 0; step < 40 && high > 0.0; step++) { /* worth of the mean number */
-        double unit = 0.5 * (low + high);
-        int64_t sum = 0;
-        for (int64_t k = 0; k < 2 * mesh->count; k++)
-            sum += rays_of_class(l->gather.rays, class_of(worth[k] / unit));
-        *(sum > 2 * l->gather.rays * mesh->count ? &low : &high) = unit;
-    }
+    gather_share_shots(worth, 2 * mesh->count, l->gather.rays, shots);
     mesh->rays = alloc_array((size_t)mesh->count, sizeof *mesh->rays);
     mesh->segments = alloc_array((size_t)mesh->count, sizeof *mesh->segments);
     mesh->exact = alloc_array((size_t)mesh->count, sizeof *mesh->exact);
-    for (int64_t i = 0; i < mesh->count; i++)
+    for (int64_t i = 0; i < mesh->count; i++) {
         mesh->exact[i] = l->known[mesh->leaves[i]].by_ray == IS_EXACT;
-    for (int64_t k = 0; k < 2 * mesh->count; k++) {
-        int class = high > 0.0 && !mesh->exact[k / 2] ? class_of(worth[k] / high) : 0;
-        (k % 2 ? mesh->segments : mesh->rays)[k / 2] =
-            rays_of_class(l->gather.rays, class);
+        mesh->rays[i] = mesh->exact[i] ? l->gather.rays : shots[2 * i];
+        mesh->segments[i] = mesh->exact[i] ? l->gather.rays : shots[2 * i + 1];
     }
+    alloc_free(shots);
     alloc_free(worth);
 }
 
@@ -582,7 +435,7 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     l.gather = final_gather_create(model, model->criterion.final_gather);
     l.rays = l.gather.rays / ROWS_PER_LOOK;
     list_leaves(mesh, model->forest);
-    find_open_roots(&l);
+    l.open = gather_find_open_roots(solver, &l.gather);
     if (l.rays >= FEWEST_LOOKED)
         split_bent(&l);
     know_nothing(&l);

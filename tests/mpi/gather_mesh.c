@@ -2,6 +2,7 @@
  * that each of them gets. */
 #include "mpi/beyond/beyond.h"
 #include "mpi/beyond/gather_mesh.h"
+#include "mpi/beyond/gather_shots.h"
 #include "tests/gathered.h"
 #include "tests/tap.h"
 
@@ -209,6 +210,32 @@ static void test_guess(void)
     solution_free(&s);
 }
 
+/* Shots are shared by worth: their sum is that of equal numbers at most and near it, and
+ * the noise is less than of these. */
+static void test_shots(void)
+{
+    enum { COUNT = 1000, MEAN = 256 };
+    double worth[COUNT], shared = 0.0, equal = 0.0;
+    int shots[COUNT], sum = 0, wrong = 0;
+    for (int k = 0; k < COUNT; k++)
+        worth[k] = k < 10 ? 0.0 : exp(0.002 * k);
+    gather_share_shots(worth, COUNT, MEAN, shots);
+    for (int k = 0; k < COUNT; k++) {
+        sum += shots[k];
+        shared += worth[k] * worth[k] / shots[k];
+        equal += worth[k] * worth[k] / MEAN;
+        wrong += k < 10 ? shots[k] != MEAN / 4 : k > 0 && shots[k] < shots[k - 1];
+    }
+    tap_ok(wrong == 0 && sum <= MEAN * COUNT && sum > 0.9 * MEAN * COUNT &&
+               shared < 0.9 * equal,
+           "shots shared by worth: %.3f of all, noise %.2f of that of equal shares",
+           (double)sum / (MEAN * COUNT), shared / equal);
+    for (int k = 0; k < COUNT; k++)
+        worth[k] = 0.0;
+    gather_share_shots(worth, COUNT, MEAN, shots);
+    tap_ok(shots[0] == MEAN && shots[COUNT - 1] == MEAN, "of no worth: all the mean");
+}
+
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -219,6 +246,7 @@ int main(int argc, char **argv)
     test_chance();
     test_looks();
     test_guess();
+    test_shots();
     comm_stop(&world_comm);
     return tap_done();
 }
