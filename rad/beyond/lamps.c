@@ -34,6 +34,9 @@ static const double LEAST_COSINE = 0.1;
 /* The part of all segments that go to groups by their light without blockers. */
 static const double DEFENSIVE = 0.25;
 
+/* A bright patch is even: no child sends more than this times as much per area. */
+static const double EVEN = 2.0;
+
 enum { QUARTERINGS = 3 };
 
 /* The exact factor of two triangles takes about as long as so many tests. */
@@ -161,6 +164,18 @@ static int32_t add_lit(struct lamps *lamps, int32_t node)
     return ~number;
 }
 
+/* True if no child of the patch, which sends so much, is much brighter: the mean of a
+ * wall may be bright because of one spot beside a lamp. Points on all of the wall would
+ * seldom be on the spot, and leaves near the wall would not aim at it at all. */
+static bool is_even(const struct lamps *lamps, int32_t patch, double sent)
+{
+    const struct patch *self = &lamps->model->forest->patches[patch];
+    for (int k = 0; k < 4 && !patch_is_leaf(self); k++)
+        if (rgb_sum(lamp_light(lamps, self->children + k)) > EVEN * sent)
+            return false;
+    return true;
+}
+
 /* Finds the bright patches in a patch; `part`: the one that it is part of, or -1. Returns
  * their power. */
 static double find_bright(struct lamps *lamps, int32_t patch, int32_t part)
@@ -168,7 +183,7 @@ static double find_bright(struct lamps *lamps, int32_t patch, int32_t part)
     const struct forest *forest = lamps->model->forest;
     int32_t first = forest->patches[patch].children;
     double sent = rgb_sum(lamp_light(lamps, patch)), below = 0.0;
-    if (part < 0 && sent > lamps->least)
+    if (part < 0 && sent > lamps->least && is_even(lamps, patch, sent))
         part = patch;
     for (int k = 0; k < 4 && !patch_is_leaf(&forest->patches[patch]); k++)
         below += find_bright(lamps, first + k, part);
