@@ -33,7 +33,8 @@
  * and falls by much of that over a leaf, in no straight line. Leaves over which it varies
  * by more than the mean of all light, one in two hundred by area, had half of the squared
  * error of the pictures of furnished rooms. They are steep: no value is to be
- * interpolated there.
+ * interpolated there. So no reflected light lacks there either: a deficit of values that
+ * are not shown would only darken leaves beyond the edge of a lampshade, down to black.
  *
  * Between its corners a leaf interpolates linearly. A leaf with T-vertices is divided, as
  * its children would be, into tiles without any; where these have a corner that is no
@@ -305,6 +306,17 @@ static void find_division(struct blend *blend, int32_t leaf)
     shading->divided[leaf] = find_inner(shading->table, &whole, &inner);
 }
 
+static bool is_steep(const struct blend *blend, int32_t leaf)
+{
+    struct tile whole = whole_leaf(blend->shading, leaf);
+    double low = HUGE_VAL, high = 0.0;
+    for (int k = 0; k < 3; k++) {
+        low = fmin(low, rgb_sum(whole.value[k]));
+        high = fmax(high, rgb_sum(whole.value[k]));
+    }
+    return high - low > blend->steep;
+}
+
 /* Returns the deficit of the leaf at hand, less its noise. */
 static struct rgb deficit_of(const struct blend *blend, int32_t leaf)
 {
@@ -359,6 +371,8 @@ static void give_leaf(struct blend *blend, int32_t leaf)
     const int32_t *corner = &blend->shading->corners[3 * (int64_t)leaf];
     double fraction = open_parts_fraction(blend->open[blend->number]);
     double area = blend->round > 0 ? forest_area(forest, leaf) : 1.0;
+    if (blend->less && blend->round > 0 && is_steep(blend, leaf))
+        return;
     blend->fraction = fraction;
     blend->value = open_radiosity(forest, blend->less, leaf, fraction);
     blend->weight = fmax(fraction, COVERED) * area;
@@ -370,7 +384,7 @@ static void give_leaf(struct blend *blend, int32_t leaf)
 }
 
 /* Adds the mean deficit of the leaves around to each vertex. In corrections a vertex with
- * only covered leaves around it keeps its value. */
+ * only covered or steep leaves around it keeps its value. */
 static void give_what_lacks(struct blend *blend)
 {
     struct table *table = blend->shading->table;
@@ -397,13 +411,7 @@ static void give_what_lacks(struct blend *blend)
 
 static void find_steep(struct blend *blend, int32_t leaf)
 {
-    struct tile whole = whole_leaf(blend->shading, leaf);
-    double low = HUGE_VAL, high = 0.0;
-    for (int k = 0; k < 3; k++) {
-        low = fmin(low, rgb_sum(whole.value[k]));
-        high = fmax(high, rgb_sum(whole.value[k]));
-    }
-    if (high - low > blend->steep)
+    if (is_steep(blend, leaf))
         blend->shading->shades[leaf] = SHADE_STEEP;
 }
 
@@ -411,6 +419,7 @@ static void blend_leaves(struct blend *blend)
 {
     const struct forest *forest = blend->shading->forest;
     int rounds = blend->less ? ROUNDS : 1;
+    blend->steep = forest_mean_reflected(forest);
     blend->surface = surface_of_roots(forest->scene);
     for_each_leaf(blend, add_leaf);
     for_each_leaf(blend, find_division);
@@ -419,7 +428,6 @@ static void blend_leaves(struct blend *blend)
         give_what_lacks(blend);
     }
     alloc_free(blend->surface);
-    blend->steep = forest_mean_reflected(forest);
     for_each_leaf(blend, find_steep);
 }
 

@@ -726,6 +726,35 @@ static void test_steep(double bright, bool is_steep)
     dismantle(&stage);
 }
 
+/* Reflected light is a hundred times as bright on one side of a jump, as in a shade on a
+ * wall. Leaves next to it are steep, and others on the dark side show their light: if
+ * steep leaves were corrected, the next ones would be steep, too, and the rest dark. */
+static void test_beside_jump(void)
+{
+    struct stage stage = square_stage();
+    const struct forest *forest = stage.forest;
+    double least = HUGE_VAL, jump = 0.75 * stage.scene->high.x;
+    int steep = 0;
+    split_regularly(stage.forest, 4);
+    for (int32_t p = 0; p < forest->count; p++) {
+        struct triangle t = forest_triangle(forest, p);
+        double b = triangle_centroid(&t).x > jump ? 100.0 : 1.0;
+        forest->radiosity[p] = (struct rgb){{b, b, b}};
+    }
+    reflected_error(&stage, 0.0, true);
+    const int32_t *corners = stage.shading->corners;
+    for (int32_t p = 0; p < forest->count; p++) {
+        bool is_steep = stage.shading->shades[p] == SHADE_STEEP;
+        steep += is_steep;
+        for (int k = 0; k < 3 && patch_is_leaf(&forest->patches[p]) && !is_steep; k++)
+            least = fmin(least, stage.shading->values[corners[3 * p + k]].band[0]);
+    }
+    tap_ok(least >= 0.95 && steep > 0 && steep < 128,
+           "beside a jump: %d leaves are steep, others show %.2f of their light", steep,
+           least);
+    dismantle(&stage);
+}
+
 /* A triangle without area keeps its number, has no vertices and no neighbours. */
 static void test_dropped_triangle(void)
 {
@@ -767,6 +796,7 @@ int main(void)
     test_two_sided();
     test_steep(8.0, true);
     test_steep(1.5, false);
+    test_beside_jump();
     test_dropped_triangle();
     return tap_done();
 }
