@@ -8,10 +8,14 @@
  *
  *     H at x  =  E F(remainder, x) V.
  *
- * Where one does not pass, a blocker more is known, and the point is looked from again;
- * all points are, until none finds a blocker. A wall with a hole is known after some ten
- * segments, and the remainder is the hole. Then the light at each point is exact,
- * half-shadows included.
+ * A wall with a hole is known after some ten segments, and the remainder is the hole.
+ * Then the light at each point is exact, half-shadows included.
+ *
+ * Blockers are learnt by other points than those that the light is estimated at: from
+ * each until its segment passes, and from all until none finds a new one. The estimate is
+ * right in the mean, whatever has been learnt. By one and the same points, whose segments
+ * all pass in the end, the blockers that they had missed would not count at all: below a
+ * bush of 150 leaves, these were 4 % too bright.
  *
  * Of more than BLOCKERS_MOST blockers the last ones count by V alone, as all do where
  * the lamp is small: there it is the place on the leaf that decides on light and shadow,
@@ -37,27 +41,43 @@ static struct vec3 point_of(const struct receiver *r, const double *u, int i, in
                   : receiver_start(r, u[0], u[1]);
 }
 
-/* False if a blocker has been met that was not known. */
-static bool add_point(struct receiver *r, struct remainder *lamp, struct vec3 x,
-                      const double u[SEQUENCE_DIMENSIONS], int half, struct sums *sums)
+/* Looks from the point x at a point of the remainder that u chooses. Returns the factor
+ * of all that is seen of it, or 0 if something is in between: `blocker`, else -1. */
+static double look(struct receiver *r, struct remainder *lamp, struct vec3 x,
+                   const double u[SEQUENCE_DIMENSIONS], int32_t *blocker)
+{
+    struct vec3 normal = r->facet.plane.normal;
+    double seen = remainder_look(lamp, r->gather->model->scene, x, normal);
+    *blocker = -1;
+    if (!(seen > 0.0))
+        return 0.0;
+    struct vec3 y = remainder_point(lamp, 0, u[2], u[3]);
+    if (!(receiver_kernel(x, normal, y, lamp->plane.normal) > 0.0))
+        return 0.0;
+    *blocker = receiver_first_blocker(r, x, y, lamp->root);
+    return *blocker < 0 ? seen : 0.0;
+}
+
+/* Learns the blockers that are found from the points behind the first `count`, as many
+ * again. */
+static void learn(struct receiver *r, struct remainder *lamp,
+                  const struct sequence *sequence, int count)
 {
     const struct scene *scene = r->gather->model->scene;
-    double seen = remainder_look(lamp, scene, x, r->facet.plane.normal);
-    if (seen > 0.0) {
-        struct vec3 y = remainder_point(lamp, 0, u[2], u[3]);
-        bool above =
-            receiver_kernel(x, r->facet.plane.normal, y, lamp->plane.normal) > 0.0;
-        int32_t blocker = above ? receiver_first_blocker(r, x, y, lamp->root) : -1;
-        if (blocker >= 0 && remainder_learn(lamp, scene, blocker))
-            return false;
-        seen = above && blocker < 0 ? seen : 0.0;
+    double u[SEQUENCE_DIMENSIONS];
+    bool learnt = true;
+    while (learnt) {
+        learnt = false;
+        for (int i = 0; i < count; i++) {
+            int32_t blocker;
+            sequence_point(sequence, (uint32_t)(count + i), u);
+            struct vec3 x = point_of(r, u, i, count);
+            for (look(r, lamp, x, u, &blocker);
+                 blocker >= 0 && remainder_learn(lamp, scene, blocker);
+                 look(r, lamp, x, u, &blocker))
+                learnt = true;
+        }
     }
-    sums->whole[half] += lamp->whole;
-    sums->seen[half] += seen;
-    sums->wholes += lamp->whole * lamp->whole;
-    sums->seens += seen * seen;
-    sums->mixed += lamp->whole * seen;
-    return true;
 }
 
 static struct receiver_share share_of_sums(const struct sums *sums)
@@ -83,18 +103,18 @@ struct receiver_share receiver_share_of_wide(struct receiver *r,
                                              int32_t root)
 {
     struct remainder lamp = remainder_start(r->gather->model->forest, root);
-    struct sums sums;
+    struct sums sums = {.wholes = 0.0};
     double u[SEQUENCE_DIMENSIONS];
-    bool learnt;
-    do {
-        sums = (struct sums){.wholes = 0.0};
-        learnt = false;
-        for (int i = 0; i < count; i++) {
-            sequence_point(sequence, (uint32_t)i, u);
-            struct vec3 x = point_of(r, u, i, count);
-            while (!add_point(r, &lamp, x, u, 2 * i >= count, &sums))
-                learnt = true;
-        }
-    } while (learnt);
+    learn(r, &lamp, sequence, count);
+    for (int i = 0; i < count; i++) {
+        int32_t blocker;
+        sequence_point(sequence, (uint32_t)i, u);
+        double seen = look(r, &lamp, point_of(r, u, i, count), u, &blocker);
+        sums.whole[2 * i >= count] += lamp.whole;
+        sums.seen[2 * i >= count] += seen;
+        sums.wholes += lamp.whole * lamp.whole;
+        sums.seens += seen * seen;
+        sums.mixed += lamp.whole * seen;
+    }
     return share_of_sums(&sums);
 }

@@ -1,6 +1,7 @@
 /* Tests of rad/beyond/lamps.h, and of aiming at lamps and bright patches: the light that
  * they bring to leaves and points, against closed forms. */
 #include "geom/contour.h"
+#include "rad/beyond/paths.h"
 #include "rad/beyond/receiver.h"
 #include "tests/gathered.h"
 #include "tests/tap.h"
@@ -297,6 +298,40 @@ static void test_candle(void)
            "beside a bright hall a closet has B = %.5f, alone %.5f", beside, alone);
 }
 
+/* A floor below a lamp as wide and 40 small black squares between them, against paths,
+ * with a noise of .2 %. If points that have learnt blockers tell how much of the lamp is
+ * seen, too, blockers that they have missed do not count, and the floor is 7 % too
+ * bright. */
+static void test_foliage(void)
+{
+    enum { SQUARES = 40, SEGMENTS = 32, PATHS = 200000 };
+    struct random random = random_seed(31);
+    struct soup soup = {0};
+    double truth = 0.0;
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.999, 0.0);
+    soup_add_quad(&soup, point(0, 0, 1), point(0, 1, 0), point(1, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    for (int k = 0; k < SQUARES; k++) {
+        double x = random_unit(&random), y = random_unit(&random);
+        double z = 0.1 + 0.8 * random_unit(&random), turn = 0.1 * random_unit(&random);
+        soup_add_quad(&soup, point(x, y, z), point(0.06, 0, turn), point(0, 0.06, -turn),
+                      1);
+    }
+    paint(&soup, 0.0, 0.0);
+    struct trial g = gather_scene(&soup, "--max-level 3", SEGMENTS);
+    struct pathtracer pathtracer = pathtracer_make(g.s.scene, g.s.octree);
+    struct triangle whole = pathtracer_part(id_of_root(0));
+    for (int32_t root = 0; root < 2; root++)
+        truth += 0.5 / 0.999 *
+                 pathtracer_reflected(&pathtracer, root, &whole, PATHS, 1).band[0];
+    double h = mean_of_roots(&g, 0, 2);
+    tap_ok(fabs(h / truth - 1.0) <= 0.02, "below foliage: H = %.4f, by paths %.4f", h,
+           truth);
+    pathtracer_free(&pathtracer);
+    trial_free(&g);
+}
+
 /* A wide lamp behind a window of a metre in a wall of four pieces, as a point of a floor
  * sees it in a pixel: all of the window shines. Of segments to all of the lamp one in
  * twenty or fewer passes the window; 32 of them are off by a half. What walls hide is cut
@@ -438,6 +473,7 @@ int main(int argc, char **argv)
     test_bright_rows();
     test_grain();
     test_candle();
+    test_foliage();
     test_dark_rooms();
     test_worth();
     test_window(true);
