@@ -10,7 +10,8 @@
  * so that all leaves have about the same share of it. At most, if all of its light falls
  * on one quarter, a leaf has a variance of 3 times the square of its light: a leaf that
  * could not even then be split, by the light of the links, is not looked at. In a scene
- * of many small triangles few are looked at.
+ * of many small triangles few are looked at. Leaves of which a part is in a dark room are
+ * split in any case (rad/beyond/gather_regions.c).
  *
  * Leaves with exact rows are not looked at: links without blockers tell where B varies,
  * over a leaf it is linear, and where it bends (rad/beyond/gather_bends.c) the leaf is
@@ -234,7 +235,9 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
         int32_t leaf = (*leaves)[i];
         double error = forest_area(forest, leaf) * spread_of(&looks[i]);
         keep_known(l, leaf, &looks[i]);
-        if (!(error > *threshold) || !may_split(l, leaf))
+        bool split = error > *threshold ||
+                     final_gather_is_at_border(&l->gather, leaf, &looks[i]);
+        if (!split || !may_split(l, leaf))
             continue;
         split_leaf(forest, leaf, &looks[i]);
         for (int k = 0; k < 4; k++) {

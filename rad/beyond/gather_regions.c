@@ -3,7 +3,13 @@
  * Where a room is dark beside a lit one, its leaves look for light as others do not
  * (gather_narrow.c, gather_sparks.c). What is dark or lit is often not a whole root: a
  * floor that goes on below a door is one face. So a root is a region, but where it is not
- * in the dark and a large part of it is, its children are, and so on. */
+ * in the dark and a large part of it is, its children are, and so on.
+ *
+ * A leaf at the border, which reaches below the wall into the light, would show its mean
+ * to the dark room, a hundred times the light there; all of them together made a room
+ * twice as bright. So leaves at a border are split, until they are too small to reach
+ * through a wall. */
+#include "rad/beyond/final_gather.h"
 #include "rad/beyond/receiver.h"
 
 #include <math.h>
@@ -13,6 +19,10 @@
 
 /* A region is large that has this part of all area. */
 static const double LARGE = 1e-3;
+
+/* A leaf is at a border if one of its quarters has this many times the light of another,
+ * and the leaf at least this part of all area. */
+static const double MIXED = 10.0, LEAST_AT_BORDER = 2e-6;
 
 /* Points of a region that have room before them, or not: a distance whose square is more
  * than this part of the area. */
@@ -83,6 +93,34 @@ static bool is_dark_room(struct final_gather *g, int32_t region)
 {
     return forest_area(g->model->forest, region) >= LARGE * g->model->area &&
            patch_is_dark(g, region) && is_in_a_dark_room(g, region);
+}
+
+bool final_gather_is_at_border(struct final_gather *g, int32_t leaf,
+                               const struct gather_look *look)
+{
+    const struct forest *forest = g->model->forest;
+    double rho = rgb_sum(forest_material(forest, leaf)->reflectance);
+    double light[4] = {0.0, 0.0, 0.0, 0.0}; /* H of each quarter, over bands */
+    int least = 0, most = 0;
+    for (int k = 0; k < 4; k++) {
+        for (int c = 0; c < BANDS; c++)
+            light[k] += BANDS * (double)look->reflected[k][c] / rho;
+        least = light[k] < light[least] ? k : least;
+        most = light[k] > light[most] ? k : most;
+    }
+    if (!(DARK_TIMES * light[least] < g->mean &&
+          light[most] > MIXED * light[least]) ||
+        forest_area(forest, leaf) < LEAST_AT_BORDER * g->model->area)
+        return false;
+    struct facet facet = facet_make(forest, leaf);
+    struct triangle quarter = triangle_child(&facet.triangle, least);
+    struct vec3 x = triangle_centroid(&quarter);
+    struct apart apart = apart_begin(g); /* each rank does the same */
+    double room = room_before(g, x, facet.plane.normal);
+    bool dark = room * room > LARGE * g->model->area &&
+                4.0 * share_in_the_dark(g, leaf, x, patch_seed(forest, leaf) + 66) > 3.0;
+    apart_end(g, &apart);
+    return dark;
 }
 
 /* The area of leaves in the dark. */

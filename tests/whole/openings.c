@@ -16,7 +16,8 @@
  * end shows the mean of leaves that reach into the gap: there the other faces of the dark
  * room are up to 39 % too bright. Below a wall of 20 cm they are 10 % too dark
  * where such a leaf slopes from the gap's light down to none, and all that the opening
- * lets in is taken off the dark end.
+ * lets in is taken off the dark end. Where leaves reach through the wall, as those of a
+ * floor that begins elsewhere do, and are not split, they are 22 % too bright.
  *
  * Where only large faces aim, posts in the dark are 61 % too dark, and claim 11 %; the
  * noise of what is true there is 0.7 %.
@@ -71,6 +72,7 @@ static void turn(struct soup *soup, int64_t first, int64_t by)
     }
 }
 
+static double strip; /* of the floor of the lit room, that is a face of its own */
 static bool aims; /* leaves of the last solution have looked for openings */
 
 static void add_floor(struct soup *soup, double x, double end)
@@ -92,7 +94,9 @@ static int32_t add_rooms(struct soup *soup, double thick, struct vec3 low,
     add_wall(soup, end, 1, low, high);
     turn(soup, first, 3 * order);
     int32_t dark = (int32_t)soup->count;
-    add_floor(soup, 0.0, one_floor ? end + SIZE : SIZE);
+    if (strip > 0.0)
+        add_floor(soup, 0.0, strip);
+    add_floor(soup, strip, one_floor ? end + SIZE : SIZE);
     add_room(soup, 0.0, -1, 1.2, 1.8);
     add_wall(soup, SIZE, -1, low, high);
     if (!one_floor)
@@ -187,6 +191,10 @@ int main(int argc, char **argv)
     struct vec3 key = point(0, 1.6, 1.0), end = point(0, 1.61, 1.03);
     test_opening("gap below a door", 0.04, low, high, false, 2.505e-4, 0.09);
     test_opening("gap over one floor", 0.04, low, high, true, 2.179e-4, 0.09);
+    strip = 0.9;
+    test_opening("gap over a floor that begins elsewhere", 0.04, low, high, true,
+                 2.179e-4, 0.09);
+    strip = 0.0;
     test_opening("thin one", 0.0, low, high, true, 7.653e-4, 0.06);
     test_opening("wide one", 0.1, low, high, true, 7.474e-5, 0.09);
     test_opening("one in a thick wall", 0.2, low, high, true, 2.945e-5, 0.09);
