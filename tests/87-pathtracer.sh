@@ -83,6 +83,8 @@ for ranks in 2 3; do
     check "the same norms" cmp -s "$work/norms-ranks" "$work/norms-0.5"
 done
 
+check "help" eval '"$PATHTRACER" --help | grep -q "^usage: pathtracer"'
+
 # refused NAME ARGUMENTS...: ends with 2 and one line.
 refused() {
     name=$1

@@ -376,8 +376,11 @@ int main(int argc, char **argv)
     argc = take_own(&run, argc, argv);
     bool parsed = run.error.code == EXIT_DONE &&
                   options_parse(&run.options, argc, argv, &run.error) &&
-                  check_outputs(&run);
-    if (parsed && read_all(&run)) {
+                  (run.options.help || check_outputs(&run));
+    if (parsed && run.options.help) {
+        if (run.comm.rank == 0)
+            puts(USAGE);
+    } else if (parsed && read_all(&run)) {
         run.pathtracer = pathtracer_make(run.scene, run.octree);
         trace_and_write(&run);
     }

@@ -243,11 +243,12 @@ static bool set_gather(const struct argument *a)
     size_t length = strlen(a->value), ending = sizeof PIXELS - 1;
     a->options->pixels =
         length >= ending && strcmp(a->value + length - ending, PIXELS) == 0;
-    if (!a->options->pixels)
+    if (!a->options->pixels && !strchr(a->value, ','))
         return set_integer(a);
     if (length == ending)
         return true;
-    if (a->value[length - ending - 1] != ',' || !cut_value(a, ending + 1, number))
+    if (!a->options->pixels || a->value[length - ending - 1] != ',' ||
+        !cut_value(a, ending + 1, number))
         return is_not(a, "N, pixels or N,pixels");
     rays.value = number;
     return set_integer(&rays);
