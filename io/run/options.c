@@ -245,7 +245,7 @@ static bool set_gather(const struct argument *a)
         length >= ending && strcmp(a->value + length - ending, PIXELS) == 0;
     if (!a->options->pixels && !strchr(a->value, ','))
         return set_integer(a);
-    if (length == ending)
+    if (a->options->pixels && length == ending)
         return true;
     if (!a->options->pixels || a->value[length - ending - 1] != ',' ||
         !cut_value(a, ending + 1, number))
