@@ -149,7 +149,7 @@ static bool show_pictures(struct run *run, const uint8_t *open)
         renderer_make(run->octree, shading, gathers ? &answer->gather : NULL);
     if (gathers) {
         answer->gather.counts = (struct gather_counts){.rays = 0};
-        final_gather_set_partly_covered(&answer->gather, open);
+        final_gather_set_partly_covered(&answer->gather, open, OPEN_PARTS);
     }
     run->solver->account.seconds[PHASE_RENDER] += comm_seconds() - start;
     bool good = show_views(run, &renderer);

@@ -10,13 +10,13 @@
 
 /* Open parts of a leaf at most; and of one of which it is proved besides that no point
  * between them is covered. */
-enum { OPEN_PARTS = 16, PROVED_OPEN = 17 };
+enum { OPEN_PARTS = 254, PROVED_OPEN = 255 };
 
-/* Counts the open sixteenths of each leaf: those not covered by a solid that stands on
- * the leaf; 17 where no point of it can be. Leaves are in the order of
- * forest_next_leaf(). Only the leaves first, first + step, ... are examined, the others
- * get 0, so that ranks can divide the leaves and add their counts. `octree` is that of
- * the scene.
+/* Finds the open area of each leaf, not covered by a solid that stands on the leaf, in
+ * 254ths, rounded down; 255 where no point of it can be covered. Leaves are in the order
+ * of forest_next_leaf(). Only the leaves first, first + step, ... are examined, the
+ * others get 0, so that ranks can divide the leaves and add their numbers. `octree` is
+ * that of the scene.
  * Returns [count] numbers, to be freed with alloc_free(). */
 uint8_t *open_parts_survey(const struct forest *forest, const struct octree *octree,
                            int first, int step, int64_t *count);

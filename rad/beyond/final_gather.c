@@ -465,7 +465,8 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int s
     gather->rows[gather->count++] = r.row;
 }
 
-void final_gather_set_partly_covered(struct final_gather *gather, const uint8_t *open)
+void final_gather_set_partly_covered(struct final_gather *gather, const uint8_t *open,
+                                     uint8_t whole)
 {
     const struct forest *forest = gather->model->forest;
     struct gather_nears *near = &gather->near;
@@ -474,7 +475,7 @@ void final_gather_set_partly_covered(struct final_gather *gather, const uint8_t 
             alloc_array((size_t)forest->count, sizeof *near->partly_covered);
     int32_t leaf = forest_next_leaf(forest, -1);
     for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
-        near->partly_covered[gather->place[leaf]] = *open++ < 16;
+        near->partly_covered[gather->place[leaf]] = *open++ < whole;
 }
 
 struct gather_light final_gather_at(struct final_gather *gather,

@@ -71,7 +71,7 @@ static struct shading *shade(const struct measure *measure, const struct solutio
     comm_add_bytes(&measure->comm, open, leaves);
     struct answer *answer = &s->solver->beyond->answer;
     if (answer->straight)
-        final_gather_set_partly_covered(&answer->gather, open);
+        final_gather_set_partly_covered(&answer->gather, open, OPEN_PARTS);
     struct shading *shading = NULL;
     if (!measure->options.pixels)
         shading = shading_create(forest, answer->straight, answer->error, open);

@@ -255,7 +255,7 @@ static double rest_at_last(struct trial *g, const uint8_t *open, int rays)
                                    .plane = scene_root_plane(scene, last),
                                    .root = last};
     if (open)
-        final_gather_set_partly_covered(&g->gather, open);
+        final_gather_set_partly_covered(&g->gather, open, 16);
     return final_gather_at(&g->gather, &points, 1, rays, true).rest.band[0];
 }
 
