@@ -1,6 +1,6 @@
 /* Samples: two numbers give a point of the parallelogram of two edges, of which one half
  * is folded onto the other; the direction around the normal is that of a point in a
- * square, which is good enough and needs no sine. */
+ * square, the first of some that is in the disk, too. */
 #include "rad/beyond/sample.h"
 
 #include "geom/hash.h"
@@ -30,26 +30,30 @@ struct vec3 triangle_sample(const struct triangle *t, uint64_t seed)
 }
 
 /* The direction with this square of the sine to the triangle's unit normal, turned about
- * that by an angle that depends on u and v in 0..1. */
-static struct vec3 direction_above(const struct triangle *t, struct vec3 normal, double u,
-                                   double v, double sine2)
+ * that by an angle from the seed. */
+static struct vec3 direction_above(const struct triangle *t, struct vec3 normal,
+                                   double sine2, uint64_t seed)
 {
-    struct vec3 x = vec3_sub(t->corner[1], t->corner[0]);
-    x = vec3_unit(x);
-    double a = 2.0 * u - 1.0, b = 2.0 * v - 1.0;
-    double scale = sqrt(sine2) / (sqrt(a * a + b * b) + 1e-300);
+    struct vec3 x = vec3_unit(vec3_sub(t->corner[1], t->corner[0]));
+    double a, b, r2;
+    do {
+        a = 2.0 * hash_unit(seed) - 1.0;
+        b = 2.0 * hash_unit(seed + 1) - 1.0;
+        r2 = a * a + b * b;
+        seed = hash_mix(seed);
+    } while (!(r2 > 0.0 && r2 <= 1.0));
+    double scale = sqrt(sine2 / r2);
     struct vec3 along = vec3_add(vec3_scale(x, a * scale),
                                  vec3_scale(vec3_cross(normal, x), b * scale));
     return vec3_add(along, vec3_scale(normal, sqrt(1.0 - sine2)));
 }
 
 struct half_line ray_sample(const struct triangle *t, struct vec3 normal, uint64_t seed,
-                      int ring, int rings)
+                            int ring, int rings)
 {
     double sine2 = (ring + hash_unit(seed + 4)) / rings;
     return (struct half_line){point_above(triangle_sample(t, seed), normal),
-                        direction_above(t, normal, hash_unit(seed + 2),
-                                        hash_unit(seed + 3), sine2)};
+                              direction_above(t, normal, sine2, seed + 2)};
 }
 
 int32_t root_met(const struct scene *scene, const struct octree *octree,

@@ -27,9 +27,9 @@ static inline struct vec3 point_above(struct vec3 point, struct vec3 normal)
 
 /* A ray from a point of the triangle's front, distributed as the cosine to its unit
  * normal, in ring `ring` of `rings` equally probable ones from the normal outwards.
- * Uses seed to seed + 4. */
+ * Uses seed to seed + 4, and more made of these. */
 struct half_line ray_sample(const struct triangle *t, struct vec3 normal, uint64_t seed,
-                      int ring, int rings);
+                            int ring, int rings);
 
 /* The root whose front the ray meets first; -1 if it meets a back, `outside` if none. */
 int32_t root_met(const struct scene *scene, const struct octree *octree,

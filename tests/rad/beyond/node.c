@@ -9,6 +9,8 @@
 #include "rad/beyond/node_exchange.h"
 #include "rad/beyond/node_link.h"
 #include "rad/beyond/patch_link.h"
+#include "rad/beyond/sample.h"
+#include "rad/beyond/sequence.h"
 #include "tests/scenes.h"
 #include "tests/solve.h"
 #include "tests/tap.h"
@@ -187,26 +189,33 @@ static double variance_of(const struct mean *mean)
     return fmax(0.0, square) / (mean->count - 1);
 }
 
-/* The part of a root's light that arrives at roots of q, G. */
+/* The part of a root's light that arrives at roots of q, G. Where few rays do, their
+ * number scatters by one at least. */
 static void look_around(const struct wood *wood, int32_t root, int32_t first, int32_t end,
                         double *area, double *variance)
 {
-    enum { RAYS = 2000 };
+    enum { RAYS = 4000 };
     const struct scene *scene = wood->world.scene;
     struct triangle t = scene_root_triangle(scene, root);
     struct octree_counts counts = {0};
     struct mean hits = {0};
+    struct random random = random_seed((uint64_t)root);
+    struct vec3 normal = scene_root_plane(scene, root).normal;
+    struct vec3 along = direction_along(normal);
     for (int i = 0; i < RAYS; i++) {
-        uint64_t seed = hash_mix((uint64_t)root << 32 | (uint64_t)i);
-        struct vec3 normal = scene_root_plane(scene, root).normal;
-        struct half_line ray = ray_sample(&t, normal, seed, 0, 1);
+        double u[4];
+        for (int d = 0; d < 4; d++)
+            u[d] = random_between(&random, 0.0, 1.0);
+        struct half_line ray = {
+            point_above(triangle_of_square(&t, u[0], u[1]), normal),
+            cosine_direction(normal, along, u[2], u[3])};
         int32_t met = root_met(scene, wood->world.octree, &ray, -1, &counts);
         int32_t place = met < 0 ? -1 : wood->tree->place[met];
         mean_add(&hits, place >= first && place < end);
     }
     double own = scene_root_area(scene, root);
     *area += own * mean_of(&hits);
-    *variance += own * own * variance_of(&hits);
+    *variance += own * own * fmax(variance_of(&hits), 1.0 / ((double)RAYS * RAYS));
 }
 
 /* True if the mean is within 4 standard errors of the truth, which has a variance, too.

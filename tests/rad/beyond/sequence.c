@@ -1,9 +1,11 @@
-/* Tests of rad/beyond/sequence.h: points are spread evenly, on triangles and hemispheres
- * too. */
+/* Tests of rad/beyond/sequence.h and sample.h: points are spread evenly, on triangles and
+ * hemispheres too. */
 #include "rad/beyond/sequence.h"
 
 #include <math.h>
 
+#include "geom/hash.h"
+#include "rad/beyond/sample.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
 
@@ -119,11 +121,39 @@ static void test_directions(void)
            most);
 }
 
+/* Rays at random, in rings, turn evenly about the normal: of 4,096, 256 are in each of 16
+ * sectors, and chi squared of 15 degrees of freedom exceeds 44 once in 10,000 times. No
+ * angle to the normal is in another ring. */
+static void test_rays(void)
+{
+    enum { RINGS = 8, EACH = 256 };
+    const struct triangle t = {{{0.1, 0.2, 0.3}, {0.9, 0.1, 0.5}, {0.4, 0.8, 0.2}}};
+    struct vec3 normal = triangle_plane(&t).normal, across, along;
+    int sectors[SIDE] = {0};
+    bool in_ring = true;
+    double chi2 = 0.0;
+    along = vec3_unit(vec3_sub(t.corner[1], t.corner[0]));
+    across = vec3_cross(normal, along);
+    for (int i = 0; i < EACH * SIDE; i++) {
+        struct half_line ray =
+            ray_sample(&t, normal, hash_mix((uint64_t)i), i % RINGS, RINGS);
+        double up = vec3_dot(ray.direction, normal);
+        in_ring = in_ring && (int)(RINGS * (1.0 - up * up)) == i % RINGS;
+        double angle = atan2(vec3_dot(ray.direction, across),
+                             vec3_dot(ray.direction, along));
+        sectors[(int)fmin(SIDE - 1, SIDE * (angle / 6.283185307179586 + 0.5))]++;
+    }
+    for (int i = 0; i < SIDE; i++)
+        chi2 += (double)(sectors[i] - EACH) * (sectors[i] - EACH) / EACH;
+    tap_ok(in_ring && chi2 < 44.0, "rays at random turn evenly (chi squared %.1f)", chi2);
+}
+
 int main(void)
 {
     test_strata();
     test_integral();
     test_triangle();
     test_directions();
+    test_rays();
     return tap_done();
 }
