@@ -37,9 +37,6 @@ enum {
     LARGE = 1 << 17   /* bytes; larger arrays go back to the system when they are freed */
 };
 
-/* The tag of comm_exchange(); messages of one pair never overtake each other. */
-enum { EXCHANGE = 7 };
-
 /* For the handler of exhausted memory, which has no argument. */
 static MPI_Comm failing_comm;
 
@@ -112,6 +109,12 @@ void comm_wait(MPI_Request *request)
     wait_for(request);
 }
 
+void comm_wait_message(MPI_Request *request)
+{
+    counted.messages++;
+    wait_for(request);
+}
+
 void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes)
 {
     const size_t chunk = (size_t)1 << 26;
@@ -155,8 +158,8 @@ void *comm_gather_each(const struct comm *comm, const void *own, size_t bytes)
 {
     void *all = alloc_array((size_t)comm->size, bytes);
     MPI_Request request;
-    MPI_Iallgather(own, (int)bytes, MPI_BYTE, all, (int)bytes, MPI_BYTE, comm->handle,
-                   &request);
+    int count = comm_count(comm, (int64_t)bytes);
+    MPI_Iallgather(own, count, MPI_BYTE, all, count, MPI_BYTE, comm->handle, &request);
     comm_wait(&request);
     return all;
 }
@@ -225,17 +228,16 @@ void *comm_exchange(const struct comm *comm, const void *records, const int *cou
         if (!is_other && counts[r] > 0)
             memcpy(in, out, (size_t)counts[r] * bytes);
         if (is_other && receive[r] > 0)
-            MPI_Irecv(in, receive[r], record, r, EXCHANGE, comm->handle,
+            MPI_Irecv(in, receive[r], record, r, TAG_EXCHANGE, comm->handle,
                       &requests[messages++]);
         if (is_other && counts[r] > 0)
-            MPI_Isend(out, counts[r], record, r, EXCHANGE, comm->handle,
+            MPI_Isend(out, counts[r], record, r, TAG_EXCHANGE, comm->handle,
                       &requests[messages++]);
         in += (size_t)receive[r] * bytes;
         out += (size_t)counts[r] * bytes;
     }
-    counted.messages += messages;
     for (int i = 0; i < messages; i++)
-        wait_for(&requests[i]);
+        comm_wait_message(&requests[i]);
     MPI_Type_free(&record);
     alloc_free(requests);
     alloc_free(receive);

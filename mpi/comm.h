@@ -20,8 +20,13 @@ void comm_start(struct comm *comm, int *argc, char ***argv);
 /* Collective. Waits for all ranks and finalises MPI. */
 void comm_stop(struct comm *comm);
 
-/* Waits for a non-blocking operation and leaves the processor to others meanwhile. */
+/* Messages from one rank to another. Those of one tag never overtake each other. */
+enum comm_tag { TAG_RECORDS = 1, TAG_SCANLINE, TAG_EXCHANGE };
+
+/* Waits for a collective operation, or for a message to or from one rank, that does not
+ * block, and leaves the processor to others meanwhile. */
 void comm_wait(MPI_Request *request);
+void comm_wait_message(MPI_Request *request);
 
 /* Collective. Rank 0's bytes go to all; any size. */
 void comm_broadcast(const struct comm *comm, void *buffer, size_t bytes);
@@ -80,8 +85,7 @@ const char *comm_build(void);
 /* Operations that this rank has waited for. */
 struct comm_counts {
     int64_t collectives;
-    int64_t messages; /* log P for a collective of P ranks, and those that this one has
-                         sent or received in comm_exchange() */
+    int64_t messages; /* log P for a collective of P ranks, and those to and from one */
 };
 
 struct comm_counts comm_counts(void);

@@ -6,8 +6,6 @@
 
 #include "geom/alloc.h"
 
-enum { TAG = 2 }; /* rows of one rank never overtake each other */
-
 float *picture_gather(const struct comm *comm, float *rows, size_t row, int height)
 {
     if (comm->size == 1)
@@ -20,13 +18,14 @@ float *picture_gather(const struct comm *comm, float *rows, size_t row, int heig
         float *place = picture ? picture + (size_t)y * row : NULL;
         MPI_Request request = MPI_REQUEST_NULL;
         if (place && from > 0)
-            MPI_Irecv(place, floats, MPI_FLOAT, from, TAG, comm->handle, &request);
+            MPI_Irecv(place, floats, MPI_FLOAT, from, TAG_SCANLINE, comm->handle,
+                      &request);
         else if (place)
             memcpy(place, next, row * sizeof *place);
         else if (from == comm->rank)
-            MPI_Isend(next, floats, MPI_FLOAT, 0, TAG, comm->handle, &request);
+            MPI_Isend(next, floats, MPI_FLOAT, 0, TAG_SCANLINE, comm->handle, &request);
         if (request != MPI_REQUEST_NULL)
-            comm_wait(&request);
+            comm_wait_message(&request);
         next += from == comm->rank ? row : 0;
     }
     alloc_free(rows);

@@ -9,7 +9,7 @@
 
 #include "geom/alloc.h"
 
-enum { PIECE = 4096, TAG = 1 };
+enum { PIECE = 4096 };
 
 static void send_all(const struct comm *comm, const char *records, int64_t count,
                      size_t bytes)
@@ -18,8 +18,8 @@ static void send_all(const struct comm *comm, const char *records, int64_t count
         int64_t now = count - at < PIECE ? count - at : PIECE;
         MPI_Request request;
         MPI_Isend(records + (size_t)at * bytes, (int)((size_t)now * bytes), MPI_BYTE, 0,
-                  TAG, comm->handle, &request);
-        comm_wait(&request);
+                  TAG_RECORDS, comm->handle, &request);
+        comm_wait_message(&request);
     }
 }
 
@@ -53,8 +53,8 @@ const void *funnel_next(struct funnel *funnel, int rank)
         spout->left -= spout->count;
         MPI_Request request;
         MPI_Irecv(spout->piece, (int)((size_t)spout->count * funnel->bytes), MPI_BYTE,
-                  rank, TAG, funnel->comm->handle, &request);
-        comm_wait(&request);
+                  rank, TAG_RECORDS, funnel->comm->handle, &request);
+        comm_wait_message(&request);
     }
     return spout->records + (size_t)spout->at * funnel->bytes;
 }
