@@ -20,7 +20,6 @@
 #include "rad/beyond/final_gather.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
@@ -50,7 +49,7 @@ static const double FLAT = 0.01;
  * to tell more. */
 static const double STEEPEST = 1.5;
 
-/* Leaves from which on each has fewer rays, and fewest rays of a leaf. */
+/* Rays of a leaf halve at 2, 8, 32, ... times MANY leaves; fewest rays of a leaf. */
 enum { MANY = 25000, FEWEST = 4 };
 
 /* --- the whole --- */
@@ -444,7 +443,7 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int s
                       bool exact)
 {
     struct receiver r = receiver_of_leaf(gather, leaf, rays);
-    r.segments = segments;
+    r.segments = segments < SEQUENCE_POINTS ? segments : SEQUENCE_POINTS;
     r.keeps = true;
     gather->sums.count = gather->sums.first = 0;
     if (exact && receiver_add_exact(&r)) {
