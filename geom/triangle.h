@@ -46,6 +46,28 @@ static inline double triangle_radius(const struct triangle *t)
     return real_max(a, real_max(b, vec3_length(vec3_sub(t->corner[2], centre))));
 }
 
+/* The corners of the box around it. */
+static inline struct vec3 triangle_low(const struct triangle *t)
+{
+    return vec3_least(t->corner[0], vec3_least(t->corner[1], t->corner[2]));
+}
+
+static inline struct vec3 triangle_high(const struct triangle *t)
+{
+    return vec3_most(t->corner[0], vec3_most(t->corner[1], t->corner[2]));
+}
+
+/* Three points, the mean over which is that over the triangle for what varies with the
+ * square of the place (Stroud's formula of degree 2): the barycentric coordinates of
+ * point k are 2/3 for corner k, and 1/6. */
+static inline void triangle_three_points(const struct triangle *t, struct vec3 x[3])
+{
+    const struct vec3 *c = t->corner;
+    struct vec3 sixth = vec3_scale(vec3_add(vec3_add(c[0], c[1]), c[2]), 1.0 / 6.0);
+    for (int k = 0; k < 3; k++)
+        x[k] = vec3_add(sixth, vec3_scale(c[k], 0.5));
+}
+
 /* The mean of three corners, or of their normals, with these weights, which are x, y and
  * z: the point that has them as its barycentric coordinates. */
 static inline struct vec3 corners_mean(const struct vec3 corner[3],

@@ -10,8 +10,6 @@
  * has. */
 #include "mpi/broadcast.h"
 
-#include "geom/alloc.h"
-
 static void pack_both(const struct scene *scene, const struct octree *octree,
                       struct pack *pack)
 {

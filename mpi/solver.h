@@ -132,8 +132,8 @@ struct vote {
     int64_t links;     /* links there are */
     double remaining;  /* change of energy, or bound on the remaining error, relative to
                           all light; HUGE_VAL: none */
-    double absorbed;   /* W, areas in square scene units */
-    double escaped;    /* W: light that leaves surfaces, less light that links deliver */
+    double absorbed;   /* W, areas in square scene units, like the next */
+    double escaped;    /* light that leaves surfaces, less light that links deliver */
 };
 
 /* The paper's steps, with links of this method. Borrows comm, scene and octree. */

@@ -10,8 +10,6 @@
  * factors lack or have too much. */
 #include "mpi/solver.h"
 
-#include <math.h>
-
 void ballot_add(struct ballot *sum, const struct ballot *ballot)
 {
     sum->light = flux_add(sum->light, ballot->light);

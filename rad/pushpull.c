@@ -10,8 +10,6 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "geom/alloc.h"
-
 struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf,
                            struct flux_unit unit)
 {

@@ -17,7 +17,7 @@ enum phase {
     PHASE_SUMS,      /* sums through clusters and over all patches, on all ranks */
     PHASE_ROUTES,    /* the routes and what belongs to each patch, on all ranks */
     PHASE_FINAL_GATHER, /* rows of the final gather, and their solution */
-    PHASE_ROWS,      /* part of FINAL_GATHER: the rows */
+    PHASE_ROWS,      /* part of FINAL_GATHER: the mesh and the rows */
     PHASE_PRODUCTS,  /* part of FINAL_GATHER: a rank's rows times radiosities */
     PHASE_SPOT_CHECKS, /* the error of leaves, measured by paths */
     PHASE_ROW_SUMS,  /* the row sums that a run reports */

@@ -11,8 +11,6 @@
  * is lost, too. */
 #include "tools/balance.h"
 
-#include <math.h>
-
 #include "geom/hash.h"
 
 /* Parts of the emitted power that are warned of, absorbed beyond it or lost; the part of

@@ -14,7 +14,6 @@
 #include <float.h>
 #include <math.h>
 
-#include "geom/alloc.h"
 #include "io/picture/mesh.h"
 
 static double ratio(double a, double b)

@@ -154,12 +154,12 @@ static struct light look(struct view *view, struct vec3 x)
 /* Returns the integrals over a part of the viewer by three points. */
 static struct light integrate(struct view *view, const struct triangle *part)
 {
-    const struct vec3 *c = part->corner;
-    struct vec3 sixth = vec3_scale(vec3_add(vec3_add(c[0], c[1]), c[2]), 1.0 / 6.0);
+    struct vec3 x[3];
     struct light sum = {0.0, 0.0};
     double weight = triangle_area(part) / 3.0;
+    triangle_three_points(part, x);
     for (int k = 0; k < 3; k++) {
-        struct light light = look(view, vec3_add(sixth, vec3_scale(c[k], 0.5)));
+        struct light light = look(view, x[k]);
         sum.seen += weight * light.seen;
         sum.hidden += weight * light.hidden;
     }

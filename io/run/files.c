@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "geom/alloc.h"
 #include "io/run/output.h"
 #include "io/run/place.h"
 

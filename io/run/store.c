@@ -12,7 +12,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "geom/alloc.h"
 #include "geom/hash.h"
 #include "geom/little.h"
 #include "geom/stop.h"

@@ -26,7 +26,6 @@
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
-#include "geom/stop.h"
 
 static bool is_blank(char c)
 {

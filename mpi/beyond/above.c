@@ -2,7 +2,6 @@
  * (mpi/broadcast.c). Clusters have no home: each rank gets the sums of their flux. */
 #include "mpi/beyond/beyond.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "geom/alloc.h"

@@ -37,21 +37,21 @@ static const double AIM = 0.85, SMALLEST_EPSILON = 1e-10;
 
 /* Rays are multiplied by at most this in a round: with few of them it is cheap to find
  * the mesh's part. */
-enum { MORE = 8 };
+enum { RAYS_FACTOR_MOST = 8 };
 
 /* Noise with twice the rays over noise now. */
-static const double TWICE = 0.66;
+static const double NOISE_OF_TWICE = 0.66;
 
-/* Epsilon is multiplied by at most LITTLE and at least MUCH in a round. */
-static const double LITTLE = 0.5, MUCH = 0.125;
+/* Epsilon is multiplied in a round by at most this, and at least. */
+static const double EPSILON_FACTOR_MOST = 0.5, EPSILON_FACTOR_LEAST = 0.125;
 
-/* Epsilon does not help if it was lowered to EIGHTH and STUCK of the mesh's error is
+/* Epsilon does not help if it was lowered to LOWERED and STUCK of the mesh's error is
  * left. */
-static const double EIGHTH = 0.125, STUCK = 0.9;
+static const double LOWERED = 0.125, STUCK = 0.9;
 
-/* Where limits keep this share of the leaves from being split: ALL, there is no finer
- * mesh; SOME, they are the reason why epsilon does not help. */
-static const double ALL = 0.97, SOME = 0.1;
+/* Where limits keep this share of the leaves from being split: NEARLY_ALL_HELD, there is
+ * no finer mesh; MANY_HELD, they are the reason why epsilon does not help. */
+static const double NEARLY_ALL_HELD = 0.97, MANY_HELD = 0.1;
 
 /* --- the claim --- */
 
@@ -99,10 +99,10 @@ static enum hold hold_of_mesh(const struct solver *solver, int64_t links)
         return HOLD_MEMORY;
     if (solver->turn.iteration >= solver->model.criterion.max_iterations)
         return HOLD_ITERATIONS;
-    bool stuck = (epsilon <= EIGHTH * accuracy->coarse_epsilon &&
+    bool stuck = (epsilon <= LOWERED * accuracy->coarse_epsilon &&
                   solver->beyond->answer.counts.by_mesh > STUCK * accuracy->coarse) ||
-                 epsilon * LITTLE < SMALLEST_EPSILON;
-    if (share > ALL || (stuck && share > SOME))
+                 epsilon * EPSILON_FACTOR_MOST < SMALLEST_EPSILON;
+    if (share > NEARLY_ALL_HELD || (stuck && share > MANY_HELD))
         return hold;
     return stuck ? HOLD_EPSILON : HOLD_NONE;
 }
@@ -136,9 +136,9 @@ static bool raise_rays(struct solver *solver, double allowed, int64_t links)
     struct criterion *criterion = &solver->model.criterion;
     int before = criterion->final_gather;
     for (double left = solver->beyond->answer.counts.by_rays;
-         left > allowed && criterion->final_gather < MORE * before &&
+         left > allowed && criterion->final_gather < RAYS_FACTOR_MOST * before &&
          hold_of_rays(solver, criterion->final_gather, links) == HOLD_NONE;
-         left *= TWICE)
+         left *= NOISE_OF_TWICE)
         criterion->final_gather *= 2;
     solver->memory.rays = criterion->final_gather;
     return criterion->final_gather > before;
@@ -149,8 +149,9 @@ static void lower_epsilon(struct solver *solver, double allowed)
     struct criterion *criterion = &solver->model.criterion;
     struct accuracy *accuracy = &solver->beyond->accuracy;
     double mesh = solver->beyond->answer.counts.by_mesh, part = allowed / mesh;
-    double lower = fmin(LITTLE, fmax(MUCH, part * part * part));
-    bool much = criterion->epsilon <= EIGHTH * accuracy->coarse_epsilon;
+    double lower = fmax(EPSILON_FACTOR_LEAST, part * part * part);
+    lower = fmin(EPSILON_FACTOR_MOST, lower);
+    bool much = criterion->epsilon <= LOWERED * accuracy->coarse_epsilon;
     if (accuracy->clear && (much || accuracy->coarse == 0.0)) {
         accuracy->coarse = mesh;
         accuracy->coarse_epsilon = criterion->epsilon;
@@ -196,7 +197,7 @@ static bool wants_more(struct solver *solver, int64_t links, bool *lowered)
     }
     if (solver->beyond->answer.counts.error <= solver->model.criterion.accuracy)
         return false;
-    if (accuracy->rounds == ROUNDS_MOST) {
+    if (accuracy->rounds >= ROUNDS_MOST) {
         accuracy->hold = HOLD_ROUNDS;
         return false;
     }

@@ -1,8 +1,6 @@
 /* Exchanges steps of the paper's solver for phr's own, as the criterion names them. */
 #include "mpi/beyond/beyond.h"
 
-#include <math.h>
-
 #include "geom/alloc.h"
 
 /* Nodes receive by their clusters, too: twice as much fits into the unit. */

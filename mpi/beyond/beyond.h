@@ -42,7 +42,7 @@ struct solver *beyond_create(const struct comm *comm, const struct scene *scene,
 /* Returns solver->beyond; creates an empty one where there is none. */
 struct beyond *beyond_attach(struct solver *solver);
 
-/* Frees the vectors that transfers of light need, once there are no more. */
+/* Frees the vectors that transfers of light need, after the last transfer. */
 void beyond_free_vectors(struct solver *solver);
 
 /* The answer of the final gather; an empty one where there is none. */

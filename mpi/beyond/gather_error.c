@@ -3,7 +3,7 @@
  * A row sees each leaf by its mean, while B varies over it; and it has a number of rays
  * that were chosen among many. The variances of both add up: each leaf's H, times rho, is
  * off by their root. The first is taken from how B varies in the parent, the second from
- * how what single rays brought scatters. */
+ * the scatter of the light of single rays. */
 #include "mpi/beyond/gather_error.h"
 
 #include <math.h>

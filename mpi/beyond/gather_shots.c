@@ -12,8 +12,7 @@
  * least. */
 enum { MOST_DOUBLED = 4, MOST_HALVED = 2, FEWEST = 4, STEPS = 40 };
 
-/* The power of two by which one gets more than the mean that is worth so many times as
- * much. */
+/* The power of two next to a leaf's worth over the mean's, within bounds. */
 static int power_of(double worth)
 {
     int power = 0;

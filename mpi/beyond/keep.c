@@ -13,8 +13,6 @@
 #include "mpi/beyond/beyond.h"
 #include "mpi/beyond/keep.h"
 
-#include <math.h>
-
 #include "geom/alloc.h"
 #include "mpi/beyond/funnel.h"
 

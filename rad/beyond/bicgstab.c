@@ -66,7 +66,7 @@ static void begin(struct vectors *z)
 /* False if nothing has moved. */
 static bool step(struct vectors *z, linear_map *map, void *context, struct rgb *x)
 {
-    struct rgb a, minus, o, turn, back;
+    struct rgb a, minus, o, turn;
     map(context, z->p, z->v);
     struct rgb under = product(z, z->r0, z->v);
     for (int c = 0; c < BANDS; c++) {
@@ -87,11 +87,10 @@ static bool step(struct vectors *z, linear_map *map, void *context, struct rgb *
     bool moved = false;
     for (int c = 0; c < BANDS; c++) {
         turn.band[c] = quotient(rho.band[c], z->rho[c]) * quotient(a.band[c], o.band[c]);
-        back.band[c] = -o.band[c];
         z->rho[c] = rho.band[c];
         moved = moved || a.band[c] != 0.0 || o.band[c] != 0.0;
     }
-    add(z->p, z->v, back, z->count);
+    add(z->p, z->v, minus, z->count);
     for (int64_t i = 0; i < z->count; i++)
         for (int c = 0; c < BANDS; c++)
             z->p[i].band[c] = z->r[i].band[c] + turn.band[c] * z->p[i].band[c];

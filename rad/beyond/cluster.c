@@ -21,7 +21,6 @@
  * error for 27 numbers a cluster). */
 #include "rad/beyond/cluster.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
@@ -227,8 +226,8 @@ static struct cluster cluster_of_root(const struct scene *scene, int32_t root)
     const struct material *material = scene_root_material(scene, root);
     double area = scene_root_area(scene, root);
     return (struct cluster){
-        .low = vec3_least(t.corner[0], vec3_least(t.corner[1], t.corner[2])),
-        .high = vec3_most(t.corner[0], vec3_most(t.corner[1], t.corner[2])),
+        .low = triangle_low(&t),
+        .high = triangle_high(&t),
         .normal_low = normal,
         .normal_high = normal,
         .area = area,

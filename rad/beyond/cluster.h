@@ -18,7 +18,6 @@
 #include "geom/scene.h"
 #include "octree/octree.h"
 #include "rad/patch.h"
-#include "rad/beyond/sample.h"
 
 /* The top is cluster 0. Ask for NODE_NONE first: it is below 0, too. */
 enum { NODE_TOP = -1 };

@@ -16,7 +16,6 @@
 
 #include "geom/hash.h"
 #include "geom/lambert.h"
-#include "rad/beyond/final_gather.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
@@ -262,8 +261,8 @@ static void aim_at_group(struct receiver *r, const struct lamps *lamps,
         aim_at_lamp(r, &sequence, 0, count, group->node, direct, volley);
     for (int k = 0; k < count && !single; k++) {
         int half = half_of(volley, k, count);
-        int place = 2 * k < count ? 2 * k : (2 * k - count) | 1;
-        struct lamp lamp = lamp_choose(lamps, group->node, (place + start) / count);
+        double place = (lamp_place(k, count) + start) / count;
+        struct lamp lamp = lamp_choose(lamps, group->node, place);
         double before = rgb_sum(r->light), u[SEQUENCE_DIMENSIONS];
         double share = lamp.share * direct / (group->direct * count);
         sequence_point(&sequence, (uint32_t)k, u);

@@ -160,16 +160,6 @@ static bool lies_on(const struct receiver *r, int32_t patch, double factor)
            height < 0.25 * triangle_radius(&r->facet.triangle) && !is_hinge(r, &sender);
 }
 
-/* Three points of a triangle, by a rule that is exact for the second degree: the
- * barycentric coordinates of point k are 2/3 for corner k, and 1/6. */
-static void three_points(const struct triangle *t, struct vec3 x[3])
-{
-    const struct vec3 *c = t->corner;
-    struct vec3 sum = vec3_scale(vec3_add(vec3_add(c[0], c[1]), c[2]), 1.0 / 6.0);
-    for (int k = 0; k < 3; k++)
-        x[k] = vec3_add(sum, vec3_scale(c[k], 0.5));
-}
-
 /* The square of the size of a triangle over the distance to another. */
 static double nearness(const struct triangle *to, const struct triangle *triangle)
 {
@@ -188,12 +178,12 @@ static void place_of_light(const struct facet *to, const struct triangle *sender
     struct vec3 x[3], y[3], weights[3], sum = {0.0, 0.0, 0.0};
     int parts = nearness(&to->triangle, sender) > NEAR_SENDER ? 4 : 1;
     double all = 0.0;
-    three_points(&to->triangle, x);
+    triangle_three_points(&to->triangle, x);
     for (int part = 0; part < parts; part++) {
         struct triangle from = parts == 1 ? *sender : triangle_child(sender, part);
         struct triangle there = parts == 1 ? at : triangle_child(&at, part);
-        three_points(&from, y);
-        three_points(&there, weights);
+        triangle_three_points(&from, y);
+        triangle_three_points(&there, weights);
         for (int k = 0; k < 3; k++) {
             double light = 0.0;
             for (int i = 0; i < 3; i++)

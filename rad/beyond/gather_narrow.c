@@ -61,15 +61,15 @@ static double watts_of(const struct forest *forest, int32_t patch)
 }
 
 /* Finds the regions that reflect DARK_TIMES the irradiance, of those that the receiver
- * faces but is not in the dark with, largest senders first; [MOST_REGIONS]. They are
- * among so many. Returns their number. */
+ * faces but is not in the dark with, largest senders first; [MOST_REGIONS]. Candidates
+ * are those of `among`, [among_count]. Returns their number. */
 static int find_bright(struct final_gather *g, const struct facet *receiver,
-                       double irradiance, const int32_t *among, int64_t so_many,
+                       double irradiance, const int32_t *among, int64_t among_count,
                        int32_t *bright)
 {
     const struct forest *forest = g->model->forest;
     int count = 0;
-    for (int64_t i = 0; i < so_many; i++) {
+    for (int64_t i = 0; i < among_count; i++) {
         int32_t region = among[i];
         if (!(patch_reflected(forest, region) > DARK_TIMES * irradiance) ||
             region_is_dark(g, region))

@@ -16,6 +16,7 @@
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "rad/beyond/sample.h"
 
 /* A region is large that has this part of all area. */
 static const double LARGE = 1e-3;

@@ -64,8 +64,8 @@ static bool find_spots(struct receiver *r, struct remainder *leaf,
     double start = hash_unit(sequence.scramble[0]);
     for (int k = 0; k < count; k++) {
         double u[SEQUENCE_DIMENSIONS];
-        int place = 2 * k < count ? 2 * k : (2 * k - count) | 1;
-        struct lamp lamp = lamp_choose(lamps, node, (place + start) / count);
+        double place = (lamp_place(k, count) + start) / count;
+        struct lamp lamp = lamp_choose(lamps, node, place);
         struct triangle t = scene_root_triangle(scene, lamp.patch);
         sequence_point(&sequence, (uint32_t)k, u);
         struct vec3 y = triangle_of_square(&t, u[0], u[1]);

@@ -39,7 +39,7 @@ static const double EVEN = 2.0;
 
 enum { QUARTERINGS = 3 };
 
-/* The exact factor of two triangles takes about as long as so many tests. */
+/* Tests that take about as long as the exact factor of two triangles. */
 enum { TESTS_PER_EXACT_FACTOR = 400 };
 
 /* --- factors --- */
@@ -47,13 +47,11 @@ enum { TESTS_PER_EXACT_FACTOR = 400 };
 static double factor_of_points(const struct triangle *from, struct vec3 normal,
                                const struct triangle *to, int64_t *work)
 {
-    const struct vec3 *c = from->corner;
-    struct vec3 sum = vec3_scale(vec3_add(vec3_add(c[0], c[1]), c[2]), 1.0 / 6.0);
+    struct vec3 x[3];
     double factor = 0.0;
-    for (int k = 0; k < 3; k++) {
-        struct vec3 x = vec3_add(sum, vec3_scale(c[k], 0.5));
-        factor += point_triangle_factor(x, normal, to) / 3.0;
-    }
+    triangle_three_points(from, x);
+    for (int k = 0; k < 3; k++)
+        factor += point_triangle_factor(x[k], normal, to) / 3.0;
     *work += 3 * TESTS_PER_FORM_FACTOR;
     return factor;
 }
@@ -61,9 +59,8 @@ static double factor_of_points(const struct triangle *from, struct vec3 normal,
 /* From a point to the box around a triangle, squared. */
 static double distance2_to_box(struct vec3 x, const struct triangle *t)
 {
-    const struct vec3 *c = t->corner;
-    struct vec3 below = vec3_sub(vec3_least(c[0], vec3_least(c[1], c[2])), x);
-    struct vec3 above = vec3_sub(x, vec3_most(c[0], vec3_most(c[1], c[2])));
+    struct vec3 below = vec3_sub(triangle_low(t), x);
+    struct vec3 above = vec3_sub(x, triangle_high(t));
     struct vec3 none = {0.0, 0.0, 0.0};
     struct vec3 apart = vec3_most(none, vec3_most(below, above));
     return vec3_dot(apart, apart);

@@ -40,7 +40,8 @@ struct lamps {
                        tree's order, over all bands, W in square scene units */
     double *power;  /* [patches] if `reflect`: that of the bright patches which a patch
                        is, or has below it; NULL if not */
-    int32_t *part_of; /* [patches] the bright patch that a patch is, or is part of; -1 */
+    int32_t *part_of; /* [patches] the bright patch that a patch is, or is part of; -1:
+                         none; as `power` in roots with an area, NULL if not `reflect` */
     struct lit_cluster *lit; /* [lit_count] parents first; the first is the top */
     int64_t lit_count, lit_capacity;
     struct lamp_groups groups; /* of the leaf at hand */
@@ -75,6 +76,13 @@ static inline bool root_is_lamp(const struct lamps *lamps, int32_t root)
  * the tests that it took to `work`. */
 void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments,
                  double most, int64_t *work);
+
+/* The place of choice k of `count` in the order of what is chosen from: the first half
+ * takes every other place, the second the rest, so that both are spread evenly. */
+static inline int lamp_place(int k, int count)
+{
+    return 2 * k < count ? 2 * k : (2 * k - count) | 1;
+}
 
 /* A lamp of the group, by the power that it emits; `u` in [0, 1) chooses. */
 struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u);

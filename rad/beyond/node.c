@@ -40,9 +40,8 @@ struct end end_of(const struct model *model, int32_t node)
                       .radiosity = model->forest->radiosity[node],
                       .is_dark = material_is_dark(material),
                       .emits = material_emits(material)};
-    const struct vec3 *corner = end.facet.triangle.corner;
-    end.low = vec3_least(corner[0], vec3_least(corner[1], corner[2]));
-    end.high = vec3_most(corner[0], vec3_most(corner[1], corner[2]));
+    end.low = triangle_low(&end.facet.triangle);
+    end.high = triangle_high(&end.facet.triangle);
     end.normal_low = end.normal_high = end.facet.plane.normal;
     end.area = end.facet.area;
     end.radius = triangle_radius(&end.facet.triangle);

@@ -23,6 +23,7 @@
 #include <math.h>
 
 #include "geom/hash.h"
+#include "rad/beyond/sample.h"
 
 enum { SAMPLES = 4, RINGS = 4 };
 

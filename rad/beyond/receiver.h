@@ -44,7 +44,8 @@ struct receiver {
     struct vec3 along;    /* a direction in the plane */
     int rays;             /* to be fired */
     int segments;         /* to be fired at lamps, about */
-    int escaped;          /* rays and paths that have left the scene */
+    int escaped;          /* rays and paths that have left the scene,
+                             or ended on a back */
     int32_t near;         /* place of the leaf too near that the ray at hand met first;
                              -1: none */
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
@@ -87,7 +88,7 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps);
 
 /* --- in the dark --- */
 
-/* From the dark, light is looked for that is so many times as much as arrives there. */
+/* From the dark, light is looked for that is this many times as much as arrives there. */
 enum { DARK_TIMES = 30 };
 
 /* Surfaces that are all in the dark, or not: roots, or patches of roots that are both. */

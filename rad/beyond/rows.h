@@ -78,8 +78,7 @@ struct gather_path {
 struct gather_slope {
     int32_t first; /* child 0 of the patch, or of its parent */
     double rise;   /* s, made less where B would be below 0; 0: B is constant */
-    double steep;  /* over a child that leads up the slope is so many times that over the
-                      leaf, 1 */
+    double steep;  /* slope over a child that leads up, over that of the leaf, 1 */
     double range;  /* largest difference of B from its value at the centre, over all
                       bands; in exact rows of one band, as that of `ranges`, W/m^2 */
 };

@@ -1,4 +1,4 @@
-/* Fuzzing: the common part of the harnesses tests/fuzz/FORMAT.c.
+/* Fuzzing: the common part of the harnesses tests/fuzz/<format>.c.
  *
  * A harness is one function, the entry of libFuzzer and of AFL++'s persistent mode, that
  * gives the bytes to the reader of its format and checks the promises of every reader:
