@@ -10,6 +10,14 @@
  * factor. It goes on with the probability of y's largest reflectance. A miss or a back
  * ends it; a back with a twin is the front of the twin.
  *
+ * A guess S(y) at the reflected radiosity takes noise from that chance: with the
+ * probability q of going on,
+ *
+ *     rho H  =  S  +  (rho H - S) / q  with the probability q, else S,
+ *
+ * in the mean, whatever S is. Where S is right, a path of a bright room brings nearly the
+ * same light however long it is; else as much as its length, which varies as it does.
+ *
  * Emission is found in two ways, by a point chosen on the lights (by power, evenly over
  * the area of one: a density L(y) of its emission, all bands, over all power) with a
  * shadow segment, and by the paths that meet a light. Each light path is counted with the
@@ -36,6 +44,7 @@
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "geom/stop.h"
 #include "rad/beyond/sequence.h"
 
 /* --- numbers in [0, 1) --- */
@@ -240,17 +249,36 @@ static bool follow(const struct pathtracer *pathtracer, const struct arrival *p,
     return arrive(pathtracer, point_above(p->x, normal), direction, false, q);
 }
 
+/* The probability of going on from a surface. */
+static double survival_at(const struct pathtracer *pathtracer, int32_t root)
+{
+    const double *rho = scene_root_material(pathtracer->scene, root)->reflectance.band;
+    return real_max(rho[0], real_max(rho[1], rho[2]));
+}
+
 /* Whether a path goes on from a surface, and with how much. */
 static bool goes_on(const struct pathtracer *pathtracer, int32_t root, struct draw *draw,
                     struct rgb *throughput)
 {
     const double *rho = scene_root_material(pathtracer->scene, root)->reflectance.band;
-    double survival = real_max(rho[0], real_max(rho[1], rho[2]));
+    double survival = survival_at(pathtracer, root);
     if (hash_unit(draw->next++) >= survival)
         return false;
     for (int c = 0; c < BANDS; c++)
         throughput->band[c] *= rho[c] / survival;
     return true;
+}
+
+/* The guess at the radiosity that is reflected where a path arrives. */
+static struct rgb guess_at(const struct forest *forest, const struct arrival *q)
+{
+    struct triangle t = scene_root_triangle(forest->scene, q->root);
+    double weight[3];
+    int32_t patch = q->root;
+    triangle_weights(&t, q->x, weight);
+    while (!patch_is_leaf(&forest->patches[patch]))
+        patch = forest->patches[patch].children + triangle_child_at(weight);
+    return rgb_sub(forest->radiosity[patch], forest_material(forest, patch)->emission);
 }
 
 static struct rgb irradiance(const struct pathtracer *pathtracer, struct arrival p,
@@ -263,7 +291,13 @@ static struct rgb irradiance(const struct pathtracer *pathtracer, struct arrival
         if (!follow(pathtracer, &p, draw, &q))
             return sum;
         add_met_light(pathtracer, &p, &q, throughput, &sum);
-        if (!goes_on(pathtracer, q.root, draw, &throughput))
+        struct rgb before = throughput;
+        double survival = survival_at(pathtracer, q.root);
+        bool on = goes_on(pathtracer, q.root, draw, &throughput);
+        if (pathtracer->guess)
+            add_light(&sum, before, on ? 1.0 - 1.0 / survival : 1.0,
+                      guess_at(pathtracer->guess, &q));
+        if (!on)
             return sum;
         p = q;
     }
@@ -276,7 +310,7 @@ struct rgb pathtracer_reflected(const struct pathtracer *pathtracer, int32_t roo
     struct rgb rho = scene_root_material(pathtracer->scene, root)->reflectance;
     struct triangle t = scene_root_triangle(pathtracer->scene, root);
     struct draw draw = draw_make(seed);
-    for (draw.sample = 0; draw.sample < samples; draw.sample++) {
+    for (; draw.sample < samples && !stop_is_asked(); draw.sample++) {
         draw.used = 0;
         struct arrival start = {.root = root};
         start.x = corners_mean(t.corner, point_on(part, &draw));

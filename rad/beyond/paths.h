@@ -12,7 +12,7 @@
 
 #include "geom/scene.h"
 #include "octree/octree.h"
-#include "rad/id.h"
+#include "rad/patch.h"
 #include "rad/beyond/sample.h"
 
 struct pathtracer {
@@ -21,6 +21,8 @@ struct pathtracer {
     double *power;                /* [roots] of roots 0 .. r, W in square scene units */
     bool *hidden;                 /* [roots] lamps that no ray meets: below another
                                      face */
+    const struct forest *guess;   /* reflected radiosity that takes noise from paths, or
+                                     NULL; expectations are the same, right or wrong */
     struct octree_counts *counts; /* rays so far; owned */
 };
 

@@ -1,7 +1,7 @@
 /* Tests of mpi/beyond/spotcheck.h: errors that are planted in an exact answer are found,
  * and no others. In a furnace, a closed cube whose faces emit E = 1 W/m^2 and reflect
- * half of the arriving light, B - E, is 1 everywhere; the final gather finds that within
- * rounding. */
+ * the part rho of the arriving light, B - E is rho / (1 - rho) everywhere; the final
+ * gather finds that within rounding. */
 #include "mpi/beyond/beyond.h"
 #include "mpi/beyond/spotcheck.h"
 
@@ -12,11 +12,11 @@
 
 static const double GOAL = 0.02;
 
-static struct solution furnace(void)
+static struct solution furnace(double rho)
 {
     struct soup soup = {0};
     soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
-    paint(&soup, 0.5, 1.0);
+    paint(&soup, rho, 1.0);
     return solve_soup(&soup, "--max-level 2 --epsilon 1e-3");
 }
 
@@ -63,7 +63,7 @@ static void test_settling(double square, bool clear, double rays, double mesh)
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
-    struct solution s = furnace();
+    struct solution s = furnace(0.5), bright = furnace(0.999);
     expect(&s, 0.0, "an exact answer");
     spoil(&s, 12, 1.1);
     expect(&s, 0.01 / 1.21, "all leaves too bright by a tenth");
@@ -75,6 +75,10 @@ int main(int argc, char **argv)
             s.solver->model.forest->patches[p].id.root == 0;
     expect(&s, 0.25 / (11.0 + 2.25), "which the estimate knows");
     solution_free(&s);
+    expect(&bright, 0.0, "an exact answer, rho 0.999");
+    spoil(&bright, 12, 1.1);
+    expect(&bright, 0.01 / 1.21, "all leaves too bright by a tenth");
+    solution_free(&bright);
     test_settling(1.6e-3, true, sqrt(2e-4), sqrt(1.4e-3));
     test_settling(3.6e-4, false, sqrt(1.8e-4), sqrt(1.8e-4));
     test_settling(-1e-4, false, sqrt(0.5e-4), sqrt(0.5e-4));

@@ -29,9 +29,11 @@ static struct outcome outcome_of(double sum, double squares)
 
 /* rho H over a part of a root; with a camera, B of the middle of its 3 x 3 pixels. */
 static struct outcome trace_by(const struct world *world, const struct camera *camera,
-                               int32_t root, const struct triangle *part, int band)
+                               int32_t root, const struct triangle *part, int band,
+                               const struct forest *guess)
 {
     struct pathtracer pathtracer = pathtracer_make(world->scene, world->octree);
+    pathtracer.guess = guess;
     double sum = 0.0, squares = 0.0;
     for (uint64_t run = 0; run < RUNS; run++) {
         struct rgb b = camera
@@ -47,7 +49,7 @@ static struct outcome trace_by(const struct world *world, const struct camera *c
 static struct outcome trace(const struct world *world, int32_t root,
                             const struct triangle *part, int band)
 {
-    return trace_by(world, NULL, root, part, band);
+    return trace_by(world, NULL, root, part, band, NULL);
 }
 
 /* `precise`: the largest standard deviation that is small enough, relative to the answer.
@@ -88,7 +90,7 @@ static struct outcome trace_pixel(const struct world *world, int band)
 {
     struct camera camera = {.eye = {0, 0.5, 0}, .at = {1, 2, 1}, .up = {0, 1, 0},
                             .fov = 90.0, .width = 3, .height = 3};
-    return trace_by(world, &camera, 0, NULL, band);
+    return trace_by(world, &camera, 0, NULL, band, NULL);
 }
 
 static void test_pixel(void)
@@ -99,6 +101,23 @@ static void test_pixel(void)
     expect(trace_pixel(&twins, 1), 10.0, 0.004, "two-sided furnace: through a pixel");
     world_free(&room);
     world_free(&twins);
+}
+
+/* A guess leaves the expectation, right or wrong: it is `part` of the furnace's light,
+ * times `odd` on one child of each root. */
+static void test_guess(double part, double odd, double precise, const char *what)
+{
+    struct world room = furnace(false);
+    struct forest *forest = room.model.forest;
+    for (int32_t root = 0; root < forest->root_count; root++)
+        forest_split(forest, root);
+    for (int32_t p = 0; p < forest->count; p++) {
+        bool is_odd = p == forest->patches[forest->patches[p].id.root].children;
+        double reflected = 8.0 * part * (is_odd ? odd : 1.0);
+        forest->radiosity[p] = (struct rgb){{0.0, 2.0 + reflected, 0.0}};
+    }
+    expect(trace_by(&room, NULL, 3, &WHOLE, 1, forest), 8.0, precise, what);
+    world_free(&room);
 }
 
 /* A row of form factors: one reflecting triangle in a closed black room that glows
@@ -302,6 +321,10 @@ static void test_light_paths(void)
 int main(void)
 {
     test_furnace();
+    test_guess(1.0, 1.0, 0.001, "a right guess takes more than half of the noise");
+    test_guess(1.0, 3.0, 0.004, "one that is wrong on parts of roots");
+    test_guess(0.25, 1.0, 0.004, "one that is too dark");
+    test_guess(2.0, 1.0, 0.006, "one that is too bright");
     test_pixel();
     test_row();
     test_two_sided();
