@@ -22,7 +22,8 @@
  * a wall does that stands on it, and where a box stands on part of it: pictures know such
  * leaves. There the ray goes on: the point that it met receives light from a lamp, by one
  * segment, and from one more ray, until a ray ends far enough away. That is a path tracer
- * for near surfaces and radiosity for the rest. */
+ * for near surfaces and radiosity for the rest. In pixels one ray is aimed at a bright
+ * patch from there, too: else single pixels shine along all edges of a room. */
 #include "rad/beyond/met.h"
 
 #include <math.h>
@@ -84,6 +85,16 @@ static bool is_beside(const struct forest *forest, int32_t patch, struct vec3 x)
 static int32_t root_of(const struct receiver *r, const struct point *point)
 {
     return (int32_t)r->gather->model->forest->patches[point->patch].id.root;
+}
+
+/* True if the point that a path has met is of a lamp, which is aimed at from x on its
+ * way. */
+static bool is_aimed_lamp(const struct receiver *r, const struct point *met,
+                          struct vec3 x)
+{
+    int32_t root = root_of(r, met);
+    return root_is_lamp(&r->gather->lamps, root) &&
+           !receiver_lamp_is_near(r->gather->model->scene, root, x);
 }
 
 /* True if the leaf that a ray has met is too near to the ray's origin, for its size, for
@@ -256,9 +267,7 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
             r->escaped++;
             return;
         }
-        root = root_of(r, &point);
-        aimed = root_is_lamp(&g->lamps, root) &&
-                !receiver_lamp_is_near(forest->scene, root, origin);
+        aimed = is_aimed_lamp(r, &point, origin);
         struct vec3 ray = vec3_sub(point.at, origin);
         near = vec3_dot(ray, ray) < NEAR_OPENING * g->near.leaves[point.patch].area;
     }
@@ -291,6 +300,48 @@ void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t 
     add_mesh(r, &point, root_is_lamp(&g->lamps, root_of(r, &point)),
              &(struct rgb){{factor, factor, factor}});
     r->shares.bright += factor;
+}
+
+/* True if the bright patch that a path has met, from x on its way, is aimed at from
+ * there: in pixels, if a point of all bright patches, chosen by power, brings no more
+ * light than a ray that meets this one. (A row would no longer sum to 1.) */
+static bool is_aimed_at_beside(const struct receiver *r, const struct point *met,
+                               struct vec3 x, struct vec3 normal)
+{
+    const struct lamps *bright = &r->gather->bright;
+    int32_t patch = bright->part_of[met->patch];
+    if (!r->points || patch < 0)
+        return false;
+    struct vec3 ray = vec3_sub(met->at, x);
+    double area = forest_area(r->gather->model->forest, patch);
+    return PI * vec3_dot(ray, ray) * bright->power[patch] >=
+               area * lamps_power(bright) &&
+           ends_on_mesh(r, met, x, normal);
+}
+
+/* Adds `weight` times the light of such patches, by one ray from x. */
+static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
+                        const struct rgb *weight, uint64_t seed)
+{
+    const struct final_gather *g = r->gather;
+    if (!r->points || !(lamps_power(&g->bright) > 0.0))
+        return;
+    struct lamp lamp = lamp_choose(&g->bright, NODE_TOP, hash_unit(seed));
+    struct facet facet = facet_make(g->model->forest, lamp.patch);
+    struct vec3 y =
+        triangle_of_square(&facet.triangle, hash_unit(seed + 1), hash_unit(seed + 2));
+    double factor =
+        lamp.share * facet.area * receiver_kernel(x, normal, y, facet.plane.normal);
+    struct point point;
+    if (!(factor > 0.0) ||
+        trace(r, x, vec3_unit(vec3_sub(y, x)), &point) != MET_FRONT ||
+        g->bright.part_of[point.patch] != lamp.patch ||
+        !is_aimed_at_beside(r, &point, x, normal))
+        return;
+    struct rgb light = *weight;
+    for (int c = 0; c < BANDS; c++)
+        light.band[c] *= factor;
+    add_mesh(r, &point, is_aimed_lamp(r, &point, x), &light);
 }
 
 /* A ray ends on the mesh. If it is the first of a path and has met a lamp, it counts as
@@ -361,20 +412,21 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
             r->escaped += met != MET_FRONT;
         if (met != MET_FRONT)
             return;
-        int32_t root = point.patch;
-        find_leaf(forest, root, &point);
-        const struct scene *scene = r->gather->model->scene;
+        find_leaf(forest, point.patch, &point);
         if (count == 1 && (receiver_aims_through(r, point.patch) ||
                            is_aimed_at(r, &point, origin, normal))) {
             r->sums.aside[half]++;
             return;
         }
-        bool aimed = root_is_lamp(&r->gather->lamps, root) &&
-                     (count == 1 || !receiver_lamp_is_near(scene, root, origin));
+        bool aimed = count == 1
+                         ? root_is_lamp(&r->gather->lamps, root_of(r, &point))
+                         : is_aimed_lamp(r, &point, origin);
         if (count == 1 && receiver_sees_sparks(r, point.patch)) {
             add_without_sparks(r, &point, aimed, &weight);
             return;
         }
+        if (count > 1 && is_aimed_at_beside(r, &point, origin, normal))
+            return;
         if (count == PATH_MOST || ends_on_mesh(r, &point, origin, normal)) {
             end_path(r, &point, aimed, count == 1, &weight);
             return;
@@ -388,6 +440,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         if (!leave(r, &point, aimed, seed, &weight, &origin, &direction))
             return;
         normal = point.normal;
+        look_beside(r, origin, normal, &weight, seed + 10);
     }
 }
 
