@@ -143,10 +143,9 @@ static uint8_t survey(const struct forest *forest, const struct octree *octree,
                       int32_t leaf)
 {
     struct footing footing = footing_of(forest, octree, leaf);
-    int open = count_open(&footing, &footing.leaf, POINTS);
-    if (open == POINTS && is_clear(&footing, &footing.leaf))
+    if (open_quarters(&footing, &footing.leaf) == 4 && is_clear(&footing, &footing.leaf))
         return PROVED_OPEN;
-    return (uint8_t)(open * OPEN_PARTS / POINTS);
+    return (uint8_t)(count_open(&footing, &footing.leaf, POINTS) * OPEN_PARTS / POINTS);
 }
 
 uint8_t *open_parts_survey(const struct forest *forest, const struct octree *octree,
