@@ -34,7 +34,8 @@ static const double LEAST_COSINE = 0.1;
 /* The part of all segments that go to groups by their light without blockers. */
 static const double DEFENSIVE = 0.25;
 
-/* A bright patch is even: no child sends more than this times as much per area. */
+/* A bright patch is even: the mean square of its light is at most this times the square
+ * of the mean, as if it all came from the inverse of this part. */
 static const double EVEN = 2.0;
 
 enum { QUARTERINGS = 3 };
@@ -161,16 +162,24 @@ static int32_t add_lit(struct lamps *lamps, int32_t node)
     return ~number;
 }
 
-/* True if no child of the patch, which sends so much, is much brighter: the mean of a
- * wall may be bright because of one spot beside a lamp. Points on all of the wall would
- * seldom be on the spot, and leaves near the wall would not aim at it at all. */
-static bool is_even(const struct lamps *lamps, int32_t patch, double sent)
+/* The mean square of the light that leaves of the patch send, (W/m^2)^2. */
+static double mean_square(const struct lamps *lamps, int32_t patch)
 {
     const struct patch *self = &lamps->model->forest->patches[patch];
-    for (int k = 0; k < 4 && !patch_is_leaf(self); k++)
-        if (rgb_sum(lamp_light(lamps, self->children + k)) > EVEN * sent)
-            return false;
-    return true;
+    double sent = rgb_sum(lamp_light(lamps, patch)), sum = 0.0;
+    if (patch_is_leaf(self))
+        return sent * sent;
+    for (int k = 0; k < 4; k++)
+        sum += mean_square(lamps, self->children + k);
+    return 0.25 * sum;
+}
+
+/* True if most of the patch, which sends so much, sends about that: the mean of a wall
+ * may be bright because of a spot or a strip of it beside a lamp. Points on all of the
+ * wall would seldom be there, and leaves near the wall would not aim at it at all. */
+static bool is_even(const struct lamps *lamps, int32_t patch, double sent)
+{
+    return mean_square(lamps, patch) <= EVEN * sent * sent;
 }
 
 /* Finds the bright patches in a patch; `part`: the one that it is part of, or -1. Returns
