@@ -135,7 +135,7 @@ bool report_summary(struct run *run)
                     (long long)run->stats.iterations);
         if (run->stats.hold == HOLD_NOTHING)
             run_say(run, "warning: --accuracy has nothing to measure: "
-                         "no surface reflects light");
+                         "no light is reflected");
         else if (run->stats.hold != HOLD_NONE)
             run_say(run,
                     "warning: the error is %.2g %%, not the %.3g %% of --accuracy: %s",

@@ -50,7 +50,8 @@ static const double EPSILON_FACTOR_MOST = 0.5, EPSILON_FACTOR_LEAST = 0.125;
 static const double LOWERED = 0.125, STUCK = 0.9;
 
 /* Where limits keep this share of the leaves from being split: NEARLY_ALL_HELD, there is
- * no finer mesh; MANY_HELD, they are the reason why epsilon does not help. */
+ * no finer mesh; MANY_HELD, they are the reason why epsilon does not help or needs too
+ * many rounds. */
 static const double NEARLY_ALL_HELD = 0.97, MANY_HELD = 0.1;
 
 /* --- the claim --- */
@@ -198,7 +199,9 @@ static bool wants_more(struct solver *solver, int64_t links, bool *lowered)
     if (solver->beyond->answer.counts.error <= solver->model.criterion.accuracy)
         return false;
     if (accuracy->rounds >= ROUNDS_MOST) {
-        accuracy->hold = HOLD_ROUNDS;
+        double share;
+        enum hold hold = hold_of_leaves(solver, &share);
+        accuracy->hold = share > MANY_HELD ? hold : HOLD_ROUNDS;
         return false;
     }
     return tighten(solver, links, lowered);

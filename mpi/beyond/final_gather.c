@@ -469,7 +469,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     judge(g, h, answer, done.residual, vote);
     place_radiosities(g, answer);
     final_gather_pull(&g->gather, g->radiosity);
-    gathering_estimate_errors(g);
+    gathering_estimate_errors(g, vote->remaining);
     share_straight_light(g);
     for (int64_t i = 0; i < g->count; i++)
         forest->radiosity[g->leaves[i]] = answer[i];

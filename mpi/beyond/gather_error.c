@@ -3,7 +3,8 @@
  * A row sees each leaf by its mean, while B varies over it; and it has a number of rays
  * that were chosen among many. The variances of both add up: each leaf's H, times rho, is
  * off by their root. The first is taken from how B varies in the parent, the second from
- * the scatter of the light of single rays. */
+ * the scatter of the light of single rays. The part of B that the solution may lack comes
+ * on top: a furnace, whose rows are exact, has no other error. */
 #include "mpi/beyond/gather_error.h"
 
 #include <math.h>
@@ -212,7 +213,7 @@ static void variances_by_rays(struct gathering *g, struct rgb *variance)
     alloc_free(halves);
 }
 
-void gathering_estimate_errors(struct gathering *g)
+void gathering_estimate_errors(struct gathering *g, double remaining)
 {
     struct solver *solver = g->solver;
     size_t count = (size_t)g->count;
@@ -226,23 +227,24 @@ void gathering_estimate_errors(struct gathering *g)
     solver->beyond->answer.error = error;
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m = gathering_material(g, i);
+        struct rgb b = g->radiosity[g->gather.place[g->leaves[i]]];
         double largest = 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c];
             double deviation = rho * sqrt(mesh[i].band[c] + rays[i].band[c]);
-            struct rgb b = g->radiosity[g->gather.place[g->leaves[i]]];
             double reflected = b.band[c] - m->emission.band[c];
-            largest = fmax(largest, deviation);
+            largest = fmax(largest, BOUND * deviation + remaining * b.band[c]);
             by_rays += g->areas[i] * rho * rho * rays[i].band[c];
             by_mesh += g->areas[i] * rho * rho * mesh[i].band[c];
             light += g->areas[i] * reflected * reflected;
         }
-        error[g->leaves[i]] = (float)(BOUND * largest);
+        error[g->leaves[i]] = (float)largest;
     }
     if (light > 0.0) {
         solver->beyond->answer.counts.by_rays = sqrt(by_rays / light);
         solver->beyond->answer.counts.by_mesh = sqrt(by_mesh / light);
-        solver->beyond->answer.counts.error = sqrt((by_rays + by_mesh) / light);
+        solver->beyond->answer.counts.error =
+            sqrt((by_rays + by_mesh) / light + remaining * remaining);
     }
     alloc_free(rays);
     alloc_free(mesh);
