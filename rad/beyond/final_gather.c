@@ -288,10 +288,12 @@ void final_gather_renew(struct final_gather *gather)
     double reflected = forest_mean_reflected(model->forest);
     lamps_free(&gather->bright);
     gather->bright = lamps_create(model, BRIGHT * reflected, true);
-    if (lamps_power(&gather->bright) < LEAST_BRIGHT * reflected * model->area) {
+    double part = lamps_power(&gather->bright) / (reflected * model->area);
+    if (!(part >= LEAST_BRIGHT)) { /* NaN where nothing is reflected */
         lamps_free(&gather->bright);
         gather->bright = lamps_create(model, HUGE_VAL, true);
     }
+    gather->bright.part = part;
     alloc_free(gather->near.leaves);
     gather->near.leaves =
         alloc_array((size_t)forest->count, sizeof *gather->near.leaves);

@@ -26,10 +26,14 @@ static const double WIDE = 0.05, WIDE_AT_POINTS = 0.03;
 /* A lamp is near if the square of its distance is less than this times its area. */
 static const double NEAR_LAMP = 4.0;
 
+/* For each ray in all directions there are as many that are aimed at bright patches as
+ * these send of the reflected light, at least so many. */
+static const double AIMED_LEAST = 0.25;
+
 /* Fewest segments that are enough to estimate the visible share of lamps; fewest for a
- * lamp of less than WIDE to be cut; most tries for a point of a lamp above the horizon;
- * rays in all directions for each that is aimed at a bright patch. */
-enum { VOLLEY = 4, CUTS_LEAST = 8, AIMS_MOST = 16, RAYS_PER_AIMED = 4 };
+ * lamp of less than WIDE to be cut; most tries for a point of a lamp above the
+ * horizon. */
+enum { VOLLEY = 4, CUTS_LEAST = 8, AIMS_MOST = 16 };
 
 static const struct rgb ALL = {{1.0, 1.0, 1.0}};
 
@@ -311,7 +315,7 @@ static double most_light(const struct receiver *r)
 void receiver_aim_at(struct receiver *r, struct lamps *lamps)
 {
     bool dark = !lamps->reflect && receiver_is_in_the_dark(r);
-    int most = lamps->reflect ? (r->rays + RAYS_PER_AIMED - 1) / RAYS_PER_AIMED
+    int most = lamps->reflect ? (int)ceil(r->rays * fmax(AIMED_LEAST, lamps->part))
                : dark         ? r->gather->rays
                               : r->segments;
     r->shares.doubt = r->shares.doubt || dark || (!lamps->reflect && !lamps->alike);

@@ -42,6 +42,7 @@ struct lamps {
                        is, or has below it; NULL if not */
     int32_t *part_of; /* [patches] the bright patch that a patch is, or is part of; -1:
                          none; as `power` in roots with an area, NULL if not `reflect` */
+    double part;    /* of all reflected light that bright patches send, 1 */
     struct lit_cluster *lit; /* [lit_count] parents first; the first is the top */
     int64_t lit_count, lit_capacity;
     struct lamp_groups groups; /* of the leaf at hand */
