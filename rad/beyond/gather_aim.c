@@ -16,6 +16,8 @@
 
 #include "geom/hash.h"
 #include "geom/lambert.h"
+#include "rad/beyond/gather_narrow.h"
+#include "rad/beyond/gather_regions.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 

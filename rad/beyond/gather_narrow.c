@@ -12,12 +12,13 @@
  *
  * Of a region that is behind many things, such as furniture, not just a few walls, too
  * much stays hidden in the remainder: if no point of it is seen, it is left to rays. */
-#include "rad/beyond/receiver.h"
+#include "rad/beyond/gather_narrow.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "rad/beyond/gather_regions.h"
 #include "rad/beyond/remainder.h"
 
 /* Regions examined, those that send most; points from which each is looked at, or until
@@ -130,21 +131,6 @@ static bool is_worth_aiming(struct receiver *r, struct opening *opening)
         passed += seen > 0.0 && blocker < 0;
     }
     return passed > 0 && sum * r->gather->rays < WORTH * i;
-}
-
-struct apart apart_begin(const struct final_gather *g)
-{
-    return (struct apart){g->model->counts, g->counts, g->model->estimating};
-}
-
-void apart_end(struct final_gather *g, const struct apart *apart)
-{
-    const struct octree_counts *tests = &g->model->counts;
-    g->view.counts.node_tests += tests->node_tests - apart->tests.node_tests;
-    g->view.counts.triangle_tests += tests->triangle_tests - apart->tests.triangle_tests;
-    g->model->counts = apart->tests;
-    g->model->estimating = apart->estimating;
-    g->counts = apart->rays;
 }
 
 static void make_known(struct openings *openings, int32_t region)

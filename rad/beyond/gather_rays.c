@@ -31,8 +31,11 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "rad/beyond/final_gather.h"
-#include "rad/beyond/sequence.h"
+#include "rad/beyond/gather_narrow.h"
+#include "rad/beyond/gather_regions.h"
+#include "rad/beyond/gather_sparks.h"
 #include "rad/beyond/sample.h"
+#include "rad/beyond/sequence.h"
 
 /* A leaf is too near for its size if the square of its distance is less than this part of
  * its area. A pixel shows the error at one place, where a receiving leaf has its mean. */

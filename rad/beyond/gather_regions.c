@@ -9,13 +9,13 @@
  * to the dark room, a hundred times the light there; all of them together made a room
  * twice as bright. So leaves at a border are split, until they are too small to reach
  * through a wall. */
-#include "rad/beyond/final_gather.h"
-#include "rad/beyond/receiver.h"
+#include "rad/beyond/gather_regions.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "rad/beyond/final_gather.h"
 #include "rad/beyond/sample.h"
 
 /* A region is large that has this part of all area. */
@@ -183,6 +183,21 @@ bool region_is_dark(struct final_gather *g, int32_t region)
 int32_t region_of(struct final_gather *g, int32_t leaf)
 {
     return gather_regions(g)->of[leaf];
+}
+
+struct apart apart_begin(const struct final_gather *g)
+{
+    return (struct apart){g->model->counts, g->counts, g->model->estimating};
+}
+
+void apart_end(struct final_gather *g, const struct apart *apart)
+{
+    const struct octree_counts *tests = &g->model->counts;
+    g->view.counts.node_tests += tests->node_tests - apart->tests.node_tests;
+    g->view.counts.triangle_tests += tests->triangle_tests - apart->tests.triangle_tests;
+    g->model->counts = apart->tests;
+    g->model->estimating = apart->estimating;
+    g->counts = apart->rays;
 }
 
 void regions_free(struct regions *regions)

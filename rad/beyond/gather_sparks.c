@@ -16,12 +16,14 @@
  * with the exact factor from a point to a polygon, and one segment for V. To rays of such
  * leaves the leaf where it lands is as bright as without its first light. All know the
  * same sparks, so that, of each, all of its light arrives somewhere. */
-#include "rad/beyond/receiver.h"
+#include "rad/beyond/gather_sparks.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "rad/beyond/gather_narrow.h"
+#include "rad/beyond/gather_regions.h"
 #include "rad/beyond/remainder.h"
 
 /* Sparks of a region, and candidates; points of a region from which it is seen whether it

@@ -61,16 +61,6 @@ uint64_t patch_seed(const struct forest *forest, int32_t patch);
 /* A receiver that is a leaf. */
 struct receiver receiver_of_leaf(struct final_gather *gather, int32_t leaf, int rays);
 
-/* Counts before work that each rank does which needs it: it is counted apart, as that of
- * proofs. */
-struct apart {
-    struct octree_counts tests;
-    struct gather_counts rays;
-    int64_t estimating;
-};
-struct apart apart_begin(const struct final_gather *gather);
-void apart_end(struct final_gather *gather, const struct apart *apart);
-
 /* Adds `weight` times the mean radiosity of a patch. */
 void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight);
 
@@ -85,36 +75,6 @@ void receiver_aim(struct receiver *r);
 /* Adds the light of lamps by the receiver's segments, or of bright patches by a part of
  * as many rays as it has. */
 void receiver_aim_at(struct receiver *r, struct lamps *lamps);
-
-/* --- in the dark --- */
-
-/* From the dark, light is looked for that is this many times as much as arrives there. */
-enum { DARK_TIMES = 30 };
-
-/* Surfaces that are all in the dark, or not: roots, or patches of roots that are both. */
-struct regions {
-    int32_t *items; /* [count] patches, in the order of roots, depth first */
-    int64_t count, capacity;
-    int32_t *of;    /* [patches] the region of a leaf; of others, nothing */
-    uint8_t *dark;  /* [patches] 1: a region, large, in the dark and not in a gap */
-};
-const struct regions *gather_regions(struct final_gather *gather);
-int32_t region_of(struct final_gather *gather, int32_t leaf);
-
-/* True if it is one where light is looked for in the dark. */
-bool region_is_dark(struct final_gather *gather, int32_t region);
-
-/* True if little light comes to the patch, as the links or looks have it; if more does.
- * Of a black one it is not known. */
-bool patch_is_dark(const struct final_gather *gather, int32_t patch);
-bool patch_is_lit(const struct final_gather *gather, int32_t patch);
-
-/* B less E, and H, of a patch, W/m^2 over all bands; H is NaN if it is black. */
-double patch_reflected(const struct forest *forest, int32_t patch);
-double patch_irradiance(const struct forest *forest, int32_t patch);
-
-/* True if little light comes to the receiver, a leaf, or to its region. */
-bool receiver_is_in_the_dark(const struct receiver *r);
 
 /* Adds `share` times the light of a node's lamps to a leaf in the dark, by `count` points
  * of the lamps at most. */
@@ -135,18 +95,18 @@ bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 
 void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
                       double factor);
 
+/* --- in the dark: gather_narrow.c, gather_sparks.c --- */
+
 /* Finds the bright regions that the receiver, a leaf in the dark, sees through narrow
  * openings. */
 void receiver_find_openings(struct receiver *r);
 
-/* True if the region that was asked for last has any. */
-bool openings_are_known(const struct final_gather *gather);
+/* Finds the sparks of all large regions in the dark, once. It asks for the openings of
+ * these, so those of a leaf are to be found afterwards. */
+void gather_find_sparks(struct final_gather *gather);
 
-/* True if a leaf is in one of them. */
-bool receiver_aims_through(const struct receiver *r, int32_t leaf);
-
-/* Adds their light. */
-void receiver_aim_through(struct receiver *r);
+/* Finds the sparks that a leaf in the dark sees. */
+void receiver_find_sparks(struct receiver *r);
 
 /* Keeps the sums since the last call, and `source`, as light that lands at the point x;
  * does nothing where it is not to be caught. */
@@ -156,25 +116,6 @@ void receiver_catch(struct receiver *r, struct vec3 x, struct rgb source);
  * end there or on lit surfaces; 1 if none does. */
 double share_in_the_dark(struct final_gather *gather, int32_t region, struct vec3 x,
                          uint64_t seed);
-
-/* Finds the sparks of all large regions in the dark, once. It asks for the openings of
- * these, so those of a leaf are to be found afterwards. */
-void gather_find_sparks(struct final_gather *gather);
-
-/* Finds the sparks that a leaf in the dark sees. */
-void receiver_find_sparks(struct receiver *r);
-
-/* Adds their light. */
-void receiver_add_sparks(struct receiver *r);
-
-/* True if first light of a leaf in the dark is known. */
-bool leaf_has_sparks(const struct final_gather *gather, int32_t leaf);
-
-/* True if it sees first light of a leaf as sparks. */
-bool receiver_sees_sparks(const struct receiver *r, int32_t patch);
-
-/* Takes away that light from a ray, of this weight, that has met the leaf. */
-void receiver_leave_out_sparks(struct receiver *r, int32_t patch, double weight);
 
 /* Adds the light of a point y of a root that is seen; the root has this form factor. The
  * light at the point is found by a path: beside an opening a leaf is darker than in the

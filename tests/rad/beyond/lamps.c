@@ -2,7 +2,7 @@
  * they bring to leaves and points, against closed forms. */
 #include "geom/contour.h"
 #include "rad/beyond/paths.h"
-#include "rad/beyond/receiver.h"
+#include "rad/beyond/gather_regions.h"
 #include "tests/gathered.h"
 #include "tests/tap.h"
 
