@@ -278,12 +278,14 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
 }
 
 /* True if rays from x, where a surface has this normal, are aimed at the bright patch
- * that the point which one has met is on. */
+ * that the point which one has met is on. A leaf that sends sparks is not aimed at: these
+ * bring its first light. */
 static bool is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x,
                         struct vec3 normal)
 {
     int32_t bright = r->gather->bright.part_of[met->patch];
-    return bright >= 0 && !is_beside(r->gather->model->forest, bright, x) &&
+    return bright >= 0 && !receiver_sees_sparks(r, met->patch) &&
+           !is_beside(r->gather->model->forest, bright, x) &&
            ends_on_mesh(r, met, x, normal);
 }
 
@@ -298,7 +300,7 @@ void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t 
               vec3_scale(way, 1.0 / vec3_length(way)), &point) != MET_FRONT ||
         g->bright.part_of[point.patch] != patch ||
         !ends_on_mesh(r, &point, x, r->facet.plane.normal) ||
-        receiver_aims_through(r, point.patch))
+        receiver_aims_through(r, point.patch) || receiver_sees_sparks(r, point.patch))
         return;
     add_mesh(r, &point, root_is_lamp(&g->lamps, root_of(r, &point)),
              &(struct rgb){{factor, factor, factor}});

@@ -33,6 +33,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "geom/lambert.h"
 #include "mpi/beyond/beyond.h"
 #include "tests/defaults.h"
 #include "tests/tap.h"
@@ -176,6 +177,44 @@ static void test_posts(double truth)
     tap_ok(fabs(off) <= 0.1, "posts in the dark are off by %+.2f %%", 100.0 * off);
 }
 
+/* A lamp of 3 cm in the lit room, 20 cm before a hole of 1 cm in a thin wall, shines onto
+ * a screen that hangs 30 cm behind it: a bright surface in the dark, at which rays would
+ * be aimed. Its first light is sent by sparks; counted by both the dark room was 62 % too
+ * bright. All light that comes in is absorbed there, in the end, so together its faces
+ * reflect rho / (1 - rho) of it; half a percent more comes in by reflections. */
+static void test_screen(void)
+{
+    struct vec3 low = point(0, 1.6, 1.0), high = point(0, 1.61, 1.01);
+    const double centre[2] = {1.605, 1.005}, half = 0.015, emission = 11000.0;
+    struct soup soup = {0};
+    int32_t behind = add_rooms(&soup, 0.0, low, high, false, 0);
+    soup.count -= 2; /* without the lamp in the ceiling */
+    soup.painted--;
+    soup_add_rectangle(&soup, point(3.3, 0.8, 0.3), point(3.3, 2.3, 1.8), -1);
+    soup_add_rectangle(&soup, point(3.301, 0.8, 0.3), point(3.301, 2.3, 1.8), 1);
+    paint(&soup, 0.7, 0.0);
+    int32_t lamp = (int32_t)soup.count, screen = lamp - 4;
+    soup_add_rectangle(&soup, point(2.8, centre[0] - half, centre[1] - half),
+                       point(2.8, centre[0] + half, centre[1] + half), 1);
+    paint(&soup, 0.0, emission);
+    struct solution s = solve_soup(&soup, "");
+    struct vec3 hole = scene_from_input(s.scene, point(3, centre[0], centre[1]));
+    struct vec3 edge = scene_from_input(s.scene, point(3, centre[0] + 0.01, centre[1]));
+    double side = edge.y - hole.y, in = 0.0, found = 0.0; /* scene units */
+    for (int32_t i = lamp; i < lamp + 2; i++) {
+        struct triangle t = scene_root_triangle(s.scene, i);
+        in += emission * side * side * point_triangle_factor(hole, point(-1, 0, 0), &t);
+    }
+    for (int32_t i = 0; i < lamp; i++)
+        if (i < behind || i >= screen)
+            found += scene_root_area(s.scene, i) * mean_radiosity(&s, i, 1);
+    double off = found / (in * 0.7 / 0.3) - 1.0;
+    tap_ok(s.vote.converged && fabs(off) <= 0.05,
+           "a screen behind a hole: the light of the room is off by %+.2f %%",
+           100.0 * off);
+    solution_free(&s);
+}
+
 /* The points that a leaf aims at an opening from cost more than so few rays. */
 static void test_few_rays(void)
 {
@@ -213,6 +252,7 @@ int main(int argc, char **argv)
     end.z = 1.21;
     test_opening("pinhole in it", 0.0, key, end, false, 1.124e-5, 0.09);
     test_posts(4.743e-4);
+    test_screen();
     test_few_rays();
     comm_stop(&world_comm);
     return tap_done();
