@@ -102,7 +102,7 @@ static double look(struct receiver *r, struct remainder *remainder,
     r->gather->model->estimating += 1 + remainder->count;
     if (!(seen > 0.0))
         return 0.0;
-    *y = remainder_point(remainder, QUARTERINGS, u[2], u[3]);
+    *y = remainder_point(remainder, QUARTERINGS, u[2], u[3], NULL);
     return receiver_kernel(*x, normal, *y, remainder->plane.normal) > 0.0 ? seen : 0.0;
 }
 

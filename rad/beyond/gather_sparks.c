@@ -278,7 +278,7 @@ static bool reaches(struct receiver *r, const struct spark *spark,
     r->gather->model->estimating++;
     if (!(*factor > 0.0))
         return false;
-    struct vec3 x = remainder_point(leaf, QUARTERINGS, u[2], u[3]);
+    struct vec3 x = remainder_point(leaf, QUARTERINGS, u[2], u[3], NULL);
     return receiver_kernel(x, r->facet.plane.normal, spark->at, normal) > 0.0 &&
            receiver_blocker(r, x, spark->at, root) < 0;
 }

@@ -43,7 +43,7 @@ static double look_from(struct receiver *r, struct remainder *leaf, int32_t root
     model->estimating += 1 + leaf->count;
     if (!(seen > 0.0))
         return 0.0;
-    *at = remainder_point(leaf, QUARTERINGS, u[2], u[3]);
+    *at = remainder_point(leaf, QUARTERINGS, u[2], u[3], NULL);
     if (!(receiver_kernel(*at, r->facet.plane.normal, y, facing) > 0.0))
         return 0.0;
     int32_t blocker = receiver_first_blocker(r, *at, y, root);

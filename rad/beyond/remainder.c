@@ -95,7 +95,7 @@ static struct triangle quarter_of(const struct remainder *r, struct triangle t,
 }
 
 struct vec3 remainder_point(const struct remainder *remainder, int quarterings, double u,
-                            double v)
+                            double v, double *density)
 {
     int i = 0, k = 1;
     double at = u * remainder->before[remainder->outlook.count];
@@ -116,5 +116,10 @@ struct vec3 remainder_point(const struct remainder *remainder, int quarterings, 
         k++;
     u = spread(at, before[k - 1], before[k] - before[k - 1]);
     struct triangle quarter = quarter_of(remainder, t[k], quarterings, &u);
+    if (density)
+        *density = point_triangle_factor(remainder->outlook.from, remainder->normal,
+                                         &quarter) /
+                   (remainder->before[remainder->outlook.count] *
+                    triangle_area(&quarter));
     return triangle_of_square(&quarter, u, v);
 }

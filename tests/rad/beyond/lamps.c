@@ -367,11 +367,47 @@ static void test_foliage(void)
     trial_free(&g);
 }
 
+/* A small floor below a wide lamp, and halfway a screen of 400 black squares: from each
+ * point exact factors tell what they hide. More of them are in the way than are cut out
+ * exactly, so the others count by segments: as a quarter of them passes, 2 % of noise.
+ * If these counted alike, wherever they end, the floor would be 38 % too bright. */
+static void test_screen(void)
+{
+    enum { SIDE = 20, SQUARES = SIDE * SIDE, SEGMENTS = 4096, POINTS = 64 };
+    const double step = 2.0 / SIDE, gap = 0.025 * step, width = 0.95 * step;
+    struct soup soup = {0};
+    double truth = 0.0;
+    soup_add_quad(&soup, point(-0.1, -0.1, 0), point(0.2, 0, 0), point(0, 0.2, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(-5, -5, 1), point(0, 10, 0), point(10, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    for (int k = 0; k < SQUARES; k++)
+        soup_add_quad(&soup, point(k % SIDE * step - 1 + gap, k / SIDE * step - 1 + gap,
+                                   0.5),
+                      point(0, width, 0), point(width, 0, 0), 1);
+    paint(&soup, 0.0, 0.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", SEGMENTS);
+    for (int k = 0; k < POINTS; k++) {
+        struct vec3 x = point((k % 8 - 3.5) / 40, (k / 8 - 3.5) / 40, 0);
+        x = scene_from_input(g.s.scene, x);
+        for (int32_t i = 2; i < 4 + 2 * SQUARES; i++) {
+            struct triangle t = scene_root_triangle(g.s.scene, i);
+            truth += (i < 4 ? 1.0 : -1.0) *
+                     point_triangle_factor(x, point(0, 0, 1), &t) / POINTS;
+        }
+    }
+    double h = mean_of_roots(&g, 0, 2);
+    tap_ok(fabs(h / truth - 1.0) <= 0.06, "behind a screen: H = %.4f, exact %.4f", h,
+           truth);
+    trial_free(&g);
+}
+
 /* A wide lamp behind a window of a metre in a wall of four pieces, as a point of a floor
  * sees it in a pixel: all of the window shines. Of segments to all of the lamp one in
  * twenty or fewer passes the window; 32 of them are off by a half. What walls hide is cut
  * out, exactly; of a piece that none of 32 segments meets no more than a 32nd of the
- * remainder is left, more or less, of two no more than .07. Without a sill the window
+ * remainder is left, more or less, of two no more than .07, and a tenth where a segment
+ * counts for more than others. Without a sill the window
  * goes on below the floor: no segment is cast to points there. */
 static void test_window(bool sill)
 {
@@ -404,7 +440,7 @@ static void test_window(bool sill)
             final_gather_at(&g.gather, &points, run, SEGMENTS, false).lamps;
         worst = fmax(worst, fabs(h.band[0] / exact - 1.0));
     }
-    tap_ok(worst <= 0.07, "a lamp behind a window: %.4f is exact, off by %.2g at most",
+    tap_ok(worst <= 0.1, "a lamp behind a window: %.4f is exact, off by %.2g at most",
            exact, worst);
     trial_free(&g);
 }
@@ -511,6 +547,7 @@ int main(int argc, char **argv)
     test_grain();
     test_candle();
     test_foliage();
+    test_screen();
     test_dark_rooms();
     test_worth();
     test_window(true);
