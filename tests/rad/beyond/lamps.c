@@ -402,6 +402,53 @@ static void test_screen(void)
     trial_free(&g);
 }
 
+/* The part of a grid of black squares with their sides along x and y, each in a cell of
+ * the width `step`, that hides a segment which meets it at x, y. */
+static bool grid_hides(double x, double y, double step, double width)
+{
+    double u = x / step - floor(x / step), v = y / step - floor(y / step);
+    return fmax(fabs(u - 0.5), fabs(v - 0.5)) < 0.5 * width / step;
+}
+
+/* The same from the other end, in the dark: a lamp of 30 cm above a floor of a metre in
+ * 144 parts, which is in the dark beside a bright sun, and halfway a screen of 1,600
+ * squares. The truth is a sum over a million segments, right within .2 %. If the points
+ * of the lamp that have learnt blockers tell how much is seen, the floor is 18 % too
+ * bright. */
+static void test_screen_in_the_dark(void)
+{
+    enum { SIDE = 40, PARTS = 12, SEGMENTS = 256, SAMPLES = 1000000 };
+    const double step = 1.4 / SIDE, width = step * sqrt(0.8);
+    struct random random = random_seed(33);
+    struct soup soup = {0};
+    double truth = 0.0;
+    soup_add_quad(&soup, point(-0.5, -0.5, 0), point(1, 0, 0), point(0, 1, 0), PARTS);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(-0.15, -0.15, 2), point(0, 0.3, 0), point(0.3, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    soup_add_quad(&soup, point(-1, -1, 10), point(2, 0, 0), point(0, 2, 0), 1);
+    paint(&soup, 0.0, 100.0);
+    for (int k = 0; k < SIDE * SIDE; k++)
+        soup_add_quad(&soup, point(k % SIDE * step - 0.7 + 0.5 * (step - width),
+                                   k / SIDE * step - 0.7 + 0.5 * (step - width), 1),
+                      point(0, width, 0), point(width, 0, 0), 1);
+    paint(&soup, 0.0, 0.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", SEGMENTS);
+    for (int i = 0; i < SAMPLES; i++) {
+        double x[4]; /* on the floor, on the lamp */
+        for (int k = 0; k < 4; k++)
+            x[k] = (k < 2 ? 1.0 : 0.3) * (random_unit(&random) - 0.5);
+        double r2 = (x[0] - x[2]) * (x[0] - x[2]) + (x[1] - x[3]) * (x[1] - x[3]) + 4.0;
+        if (!grid_hides(0.5 * (x[0] + x[2]) + 0.7, 0.5 * (x[1] + x[3]) + 0.7, step,
+                        width))
+            truth += 0.09 * 4.0 / (PI * r2 * r2) / SAMPLES;
+    }
+    double h = mean_of_roots(&g, 0, 2 * PARTS * PARTS);
+    tap_ok(patch_is_dark(&g.gather, 0) && fabs(h / truth - 1.0) <= 0.05,
+           "in the dark behind a screen: H = %.6f, by segments %.6f", h, truth);
+    trial_free(&g);
+}
+
 /* A wide lamp behind a window of a metre in a wall of four pieces, as a point of a floor
  * sees it in a pixel: all of the window shines. Of segments to all of the lamp one in
  * twenty or fewer passes the window; 32 of them are off by a half. What walls hide is cut
@@ -548,6 +595,7 @@ int main(int argc, char **argv)
     test_candle();
     test_foliage();
     test_screen();
+    test_screen_in_the_dark();
     test_dark_rooms();
     test_worth();
     test_window(true);
