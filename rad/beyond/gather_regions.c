@@ -22,8 +22,9 @@
 static const double LARGE = 1e-3;
 
 /* A leaf is at a border if one of its quarters has this many times the light of another,
- * and the leaf at least this part of all area. */
-static const double MIXED = 10.0, LEAST_AT_BORDER = 2e-6;
+ * at least this part of the mean (less comes into sealed rooms, by rounding), and the
+ * leaf this part of all area. */
+static const double MIXED = 10.0, LEAST_LIT = 1e-6, LEAST_AT_BORDER = 2e-6;
 
 /* Points of a region that have room before them, or not: a distance whose square is more
  * than this part of the area. */
@@ -110,7 +111,7 @@ bool final_gather_is_at_border(struct final_gather *g, int32_t leaf,
         most = light[k] > light[most] ? k : most;
     }
     if (!(DARK_TIMES * light[least] < g->mean &&
-          light[most] > MIXED * light[least]) ||
+          light[most] > fmax(MIXED * light[least], LEAST_LIT * g->mean)) ||
         forest_area(forest, leaf) < LEAST_AT_BORDER * g->model->area)
         return false;
     struct facet facet = facet_make(forest, leaf);

@@ -562,6 +562,10 @@ static void test_dark_rooms(void)
     for (int32_t root = 0; root < 12; root++)
         dark += region_is_dark(&g.gather, root);
     bool lit = region_is_dark(&g.gather, 12);
+    struct gather_look light = {.reflected = {{1.0}}}, trace = {.reflected = {{1e-10f}}};
+    tap_ok(final_gather_is_at_border(&g.gather, 0, &light) &&
+               !final_gather_is_at_border(&g.gather, 0, &trace),
+           "light at one end of a dark leaf splits it, a trace by rounding does not");
     trial_free(&g);
     struct soup open = {0};
     soup_add_quad(&open, point(0, 0, 0), point(0, 0, 1), point(0, 1, 0), 1); /* away */
