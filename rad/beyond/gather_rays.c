@@ -189,7 +189,7 @@ double share_in_the_dark(struct final_gather *g, int32_t region, struct vec3 x,
         dark += patch_is_dark(g, point.patch);
         lit += patch_is_lit(g, point.patch);
     }
-    return dark + lit > 0 ? (double)dark / (dark + lit) : 1.0;
+    return dark > 0 ? (double)dark / (dark + lit) : 0.0;
 }
 
 /* A ray has met a back, and not from inside of a thing: else another ray from there meets

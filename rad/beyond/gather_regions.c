@@ -69,6 +69,15 @@ static double room_before(struct final_gather *g, struct vec3 x, struct vec3 up)
     return root >= 0 && fall > 0.0 ? plane_distance(&plane, x) / fall : 0.0;
 }
 
+bool patch_has_dark(const struct final_gather *g, int32_t patch)
+{
+    const struct patch *at = &g->model->forest->patches[patch];
+    bool has = patch_is_leaf(at) && patch_is_dark(g, patch);
+    for (int k = 0; k < 4 && !has && !patch_is_leaf(at); k++)
+        has = patch_has_dark(g, at->children + k);
+    return has;
+}
+
 /* True if there is room before most of the region: else a thing stands on it, or it is in
  * a gap that is narrow for it. And most that it sees is dark: else rays find the light,
  * as from a face that looks out of the scene. */

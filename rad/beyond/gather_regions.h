@@ -27,6 +27,9 @@ bool region_is_dark(struct final_gather *gather, int32_t region);
 bool patch_is_dark(const struct final_gather *gather, int32_t patch);
 bool patch_is_lit(const struct final_gather *gather, int32_t patch);
 
+/* True if a leaf of the patch is in the dark. */
+bool patch_has_dark(const struct final_gather *gather, int32_t patch);
+
 /* B less E, and H, of a patch, W/m^2 over all bands; H is NaN if it is black. */
 double patch_reflected(const struct forest *forest, int32_t patch);
 double patch_irradiance(const struct forest *forest, int32_t patch);

@@ -113,7 +113,7 @@ void receiver_find_sparks(struct receiver *r);
 void receiver_catch(struct receiver *r, struct vec3 x, struct rgb source);
 
 /* The part of the rays from a point of a region that end in the dark, 1, of those that
- * end there or on lit surfaces; 1 if none does. */
+ * end there or on lit surfaces; 0 if none does, as where it looks out of the scene. */
 double share_in_the_dark(struct final_gather *gather, int32_t region, struct vec3 x,
                          uint64_t seed);
 

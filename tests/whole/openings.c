@@ -18,10 +18,10 @@
  * where such a leaf slopes from the gap's light down to none, and all that the opening
  * lets in is taken off the dark end.
  *
- * Where leaves reach through the wall, as those of a floor that begins elsewhere do, the
- * room is not right yet: over eight orders -11 to +28 %, +5 in the mean, and -5 over
- * two. Where leaves at the border are not split, four orders are +5 to +22 %, and two
- * +14 in the mean.
+ * Where leaves reach through the wall, as those of a floor that begins elsewhere do,
+ * single orders are noisy: over eight -5 to +16 %, +3 in the mean, and -1 over two. If
+ * leaves that are lit at one end alone send no sparks, eight are -11 to +28 %, +5 in the
+ * mean, and two -5.
  *
  * Where only large faces aim, posts in the dark are 61 % too dark, and claim 11 %; the
  * noise of what is true there is 0.7 %.
@@ -148,7 +148,7 @@ static void test_opening(const char *name, double thick, struct vec3 low,
         sum += off / orders;
         worst = fabs(off) <= worst ? worst : fabs(off);
     }
-    tap_ok(fabs(sum) <= (strip > 0.0 ? 0.1 : 0.03),
+    tap_ok(fabs(sum) <= 0.03,
            "light through a %s is off by %+.2f %% in the mean", name, 100.0 * sum);
     tap_ok(worst <= most, "and by %.2f %% at most", 100.0 * worst);
 }
@@ -236,7 +236,7 @@ int main(int argc, char **argv)
     test_opening("gap over one floor", 0.04, low, high, true, 2.179e-4, 0.09);
     strip = 0.9;
     test_opening("gap over a floor that begins elsewhere", 0.04, low, high, true,
-                 2.179e-4, 0.3);
+                 2.179e-4, 0.2);
     strip = 0.0;
     test_opening("thin one", 0.0, low, high, true, 7.653e-4, 0.06);
     if (argc > 1)
