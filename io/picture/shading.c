@@ -13,14 +13,15 @@
  * pictures falls by a tenth to a third (furnished room, Cornell box).
  *
  * Light without that of lamps is smooth, and falls or rises up to the very edge of a
- * surface, beyond the means of all leaves there: it gets ROUNDS corrections and no such
- * range. More of them, and leaves that have few rays, would exaggerate differences that
- * are noise, so each deficit d, of a leaf whose radiosity has the standard deviation s,
- * counts 1 - (s/d)^2 times, or not at all: the estimate of a value from one noisy sample
- * (James and Stein, 1961). Leaves that have too much by noise have a larger s than those
- * that have too little, so light would be lost: .6 % of the picture of a furnished room
- * (make cycles). The last correction takes deficits whole: as much light is shown as
- * leaves have.
+ * surface, beyond the means of all leaves there: it gets ROUNDS corrections and BEYOND
+ * times that range. (On eight leaves of a chair, across which the edge of a beam out of a
+ * lampshade ran, two of the corners were black without that.) More of them, and leaves
+ * that have few rays, would exaggerate differences that are noise, so each deficit d, of
+ * a leaf whose radiosity has the standard deviation s, counts 1 - (s/d)^2 times, or not
+ * at all: the estimate of a value from one noisy sample (James and Stein, 1961). Leaves
+ * that have too much by noise have a larger s than those that have too little, so light
+ * would be lost: .6 % of the picture of a furnished room (make cycles). The last
+ * correction takes deficits whole: as much light is shown as leaves have.
  *
  * Where a box stands on the floor, leaves are covered in part (io/picture/open_parts.h).
  * The covered part is dark and invisible, and must not darken the rest. The light of the
@@ -216,8 +217,9 @@ static void add_mean(const struct table *table, const struct tile *tile, double 
 /* The deviation of a leaf's radiosity, in parts of its error. */
 static const double DEVIATION = 0.4;
 
-/* Corrections of light without that of lamps. */
+/* Corrections of light without that of lamps; how far it may be beyond the leaves. */
 enum { ROUNDS = 4 };
+static const double BEYOND = 1.5;
 
 /* Weight of a covered leaf: it counts only at vertices without open leaves. */
 static const double COVERED = 1e-12;
@@ -398,10 +400,11 @@ static void give_what_lacks(struct blend *blend)
     for (int64_t v = 0; v < table->count; v++) {
         const struct lack *lack = &blend->lacks[v];
         bool open = lack->least.band[0] <= lack->most.band[0];
+        double beyond = blend->less ? BEYOND : 1.0;
         for (int c = 0; c < BANDS && (open || blend->round == 0); c++) {
             double *value = &table->values[v].band[c];
-            double low = blend->less || !open ? 0.0 : lack->least.band[c];
-            double high = blend->less || !open ? HUGE_VAL : lack->most.band[c];
+            double low = open ? lack->least.band[c] / beyond : 0.0;
+            double high = open ? lack->most.band[c] * beyond : HUGE_VAL;
             *value += lack->sum.band[c] / lack->weight;
             *value = fmin(high, fmax(low, *value));
         }

@@ -755,6 +755,27 @@ static void test_beside_jump(void)
     dismantle(&stage);
 }
 
+/* Reflected light is three times as bright on one side of a jump that runs across few
+ * leaves: corrections would make the far corners nearly black. They are two thirds as
+ * bright as the darkest leaf at least. */
+static void test_across_jump(void)
+{
+    struct stage stage = square_stage();
+    double least = HUGE_VAL;
+    split_regularly(stage.forest, 1);
+    for (int32_t p = 0; p < stage.forest->count; p++) {
+        struct triangle t = forest_triangle(stage.forest, p);
+        double b = triangle_centroid(&t).x > 0.0 ? 3.0 : 1.0;
+        stage.forest->radiosity[p] = (struct rgb){{b, b, b}};
+    }
+    reflected_error(&stage, 0.0, true);
+    for (int64_t v = 0; v < stage.shading->vertex_count; v++)
+        least = fmin(least, stage.shading->values[v].band[0]);
+    tap_ok(least >= 0.66, "beside a jump across eight leaves the least light is %.2f",
+           least);
+    dismantle(&stage);
+}
+
 /* A triangle without area keeps its number, has no vertices and no neighbours. */
 static void test_dropped_triangle(void)
 {
@@ -797,6 +818,7 @@ int main(void)
     test_steep(8.0, true);
     test_steep(1.5, false);
     test_beside_jump();
+    test_across_jump();
     test_dropped_triangle();
     return tap_done();
 }
