@@ -68,7 +68,7 @@ surf 0 1 0 1 1 2 3
 END
 said=$(./phr "$work/notes.obj" 2>&1 >"$work/stdout" | grep warning)
 notes="phr: $work/notes.obj: warning:"
-expected="$notes 1 material file(s) missing (first: absent.mtl)
+expected="$notes 1 material file(s) missing or not readable (first: absent.mtl)
 $notes 1 material(s) without a definition, taken as grey (first: nothing)
 $notes 1 newmtl without a name: taken as the material of usemtl without one
 $notes 1 transparent material(s) (d or Tr), taken as opaque

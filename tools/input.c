@@ -25,8 +25,8 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
                          const struct scene_repairs *prepared)
 {
     char number[64] = "";
-    warn(run, read->libraries.count, "material file(s) missing (first: %s)",
-         read->libraries.first);
+    warn(run, read->libraries.count,
+         "material file(s) missing or not readable (first: %s)", read->libraries.first);
     warn(run, read->materials.count,
          "material(s) without a definition, taken as grey (first: %s)",
          read->materials.first);

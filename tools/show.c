@@ -356,8 +356,8 @@ static int32_t named_patch(struct run *run, const struct camera *camera,
         patch = find_patch(run->solver->model.forest, id);
     }
     if (patch < 0)
-        error_set(&run->error, EXIT_USAGE, "--show links:%s: there is no such patch",
-                  name);
+        error_set(&run->error, EXIT_USAGE,
+                  "--show links:%s: there is no such patch, or none is seen there", name);
     return patch;
 }
 

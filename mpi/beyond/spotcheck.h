@@ -7,7 +7,8 @@
 
 struct spotcheck {
     double square;  /* mean square error of leaves, by area, over the mean square of the
-                       reflected radiosity; unbiased, so it may fall below 0 */
+                       reflected radiosity; it may fall below 0. Unbiased, but for when
+                       it ends: it may miss leaves so few that no draw was one */
     double doubt;   /* standard deviation of `square` */
     int64_t leaves; /* checked */
     int64_t paths;  /* traced */
