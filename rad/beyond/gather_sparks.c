@@ -415,6 +415,18 @@ static void add_light(struct receiver *r, const struct spark_list *list, int64_t
     }
 }
 
+/* True if the receiver gets light of the sparks of a region. Not in a gap that is narrow
+ * for it: how bright the region is there is told by paths, and not by the mean. */
+static bool gets_sparks(const struct receiver *r, int32_t region)
+{
+    const struct forest *forest = r->gather->model->forest;
+    int32_t root = (int32_t)forest->patches[region].id.root;
+    struct plane plane = scene_root_plane(forest->scene, root);
+    double width = plane_distance(&plane, triangle_centroid(&r->facet.triangle));
+    return r->dark.sparks->seen[region] &&
+           !gap_is_narrow(r->facet.plane.normal, plane.normal, width, r->facet.area);
+}
+
 void receiver_add_sparks(struct receiver *r)
 {
     if (!r->dark.sparks)
@@ -428,7 +440,7 @@ void receiver_add_sparks(struct receiver *r)
     int count = 0;
     for (int64_t i = 0; i < list->count; i++) {
         const struct spark *spark = &list->items[i];
-        if (!sparks->seen[spark->region] || receiver_aims_through(r, spark->region))
+        if (!gets_sparks(r, spark->region) || receiver_aims_through(r, spark->region))
             continue;
         sequence_point(&sequence, (uint32_t)count++, u);
         if (reaches(r, spark, &leaf, u, &factor))
@@ -453,7 +465,7 @@ bool leaf_has_sparks(const struct final_gather *g, int32_t leaf)
 bool receiver_sees_sparks(const struct receiver *r, int32_t patch)
 {
     return r->dark.sparks && r->dark.sparks->number[patch] > 0 &&
-           r->dark.sparks->seen[region_of(r->gather, patch)];
+           gets_sparks(r, region_of(r->gather, patch));
 }
 
 void receiver_leave_out_sparks(struct receiver *r, int32_t patch, double weight)
