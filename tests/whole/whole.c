@@ -772,7 +772,8 @@ int main(int argc, char **argv)
     test_furnace(FURNISHED, 0.9, false, "--tolerance 1e-8");
     test_furnace(FURNISHED, 0.999, false, "--tolerance 1e-8");
     test_furnace(FURNISHED, 0.9, true, "--tolerance 1e-8");
-    test_furnace(HUNG, 0.999, false, "--tolerance 1e-8 --epsilon 1e-3");
+    test_furnace(HUNG, 0.999, false,
+                 "--tolerance 1e-8 --epsilon 1e-3 --final-gather 128");
     test_furnace(WEDGE, 0.999, false, "--tolerance 1e-8 --epsilon 1e-3");
     test_loose();
     test_touching(0.9);
