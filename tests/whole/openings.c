@@ -19,7 +19,7 @@
  * lets in is taken off the dark end.
  *
  * Where leaves reach through the wall, as those of a floor that begins elsewhere do,
- * single orders are noisy: over eight -5 to +16 %, +3 in the mean, and -1 over two. If
+ * single orders are noisy: over eight up to 14 %, +2.3 in the mean, and -1 over two. If
  * leaves that are lit at one end alone send no sparks, eight are -11 to +28 %, +5 in the
  * mean, and two -5.
  *
