@@ -32,7 +32,6 @@
 #include "geom/hash.h"
 #include "rad/beyond/final_gather.h"
 #include "rad/beyond/gather_narrow.h"
-#include "rad/beyond/gather_regions.h"
 #include "rad/beyond/gather_sparks.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
@@ -57,12 +56,8 @@ static const double ALONG = 16.0;
  * square of the patch's radius. */
 static const double BESIDE = 2.0;
 
-/* Most points of a path; rays that tell how much of a point's light goes into the
- * dark. */
-enum { PATH_MOST = 256, DARK_RAYS = 32 };
-
-/* Points of a path from which it goes on in any case. */
-enum { PATH_SURE = 2 };
+/* Most points of a path; those from which it goes on in any case. */
+enum { PATH_MOST = 256, PATH_SURE = 2 };
 
 /* --- the mesh --- */
 
@@ -171,25 +166,6 @@ static bool ends_on_mesh(const struct receiver *r, const struct point *met, stru
 {
     return !(is_too_near(r, met, x, normal) || is_cut_between(r, met, x) ||
              is_partly_covered(r->gather, met->patch));
-}
-
-double share_in_the_dark(struct final_gather *g, int32_t region, struct vec3 x,
-                         uint64_t seed)
-{
-    struct receiver r = {.gather = g, .facet = facet_make(g->model->forest, region)};
-    struct vec3 normal = r.facet.plane.normal, along = direction_along(normal);
-    int dark = 0, lit = 0;
-    for (uint64_t i = 0; i < DARK_RAYS; i++) {
-        struct point point;
-        struct vec3 direction = cosine_direction(
-            normal, along, ((double)i + hash_unit(seed)) / DARK_RAYS,
-            hash_unit(seed + 16 + i));
-        if (trace(&r, point_above(x, normal), direction, &point) != MET_FRONT)
-            continue;
-        dark += patch_is_dark(g, point.patch);
-        lit += patch_is_lit(g, point.patch);
-    }
-    return dark > 0 ? (double)dark / (dark + lit) : 0.0;
 }
 
 /* A ray has met a back, and not from inside of a thing: else another ray from there meets

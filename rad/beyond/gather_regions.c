@@ -16,6 +16,7 @@
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "rad/beyond/final_gather.h"
+#include "rad/beyond/met.h"
 #include "rad/beyond/sample.h"
 
 /* A region is large that has this part of all area. */
@@ -30,6 +31,9 @@ static const double MIXED = 10.0, LEAST_LIT = 1e-6, LEAST_AT_BORDER = 2e-6;
  * than this part of the area. */
 enum { POINTS = 8 };
 static const double WIDE = 0.04;
+
+/* Rays that tell how much of a point's light goes into the dark. */
+enum { DARK_RAYS = 32 };
 
 double patch_irradiance(const struct forest *forest, int32_t patch)
 {
@@ -69,13 +73,23 @@ static double room_before(struct final_gather *g, struct vec3 x, struct vec3 up)
     return root >= 0 && fall > 0.0 ? plane_distance(&plane, x) / fall : 0.0;
 }
 
-bool patch_has_dark(const struct final_gather *g, int32_t patch)
+double share_in_the_dark(struct final_gather *g, int32_t region, struct vec3 x,
+                         uint64_t seed)
 {
-    const struct patch *at = &g->model->forest->patches[patch];
-    bool has = patch_is_leaf(at) && patch_is_dark(g, patch);
-    for (int k = 0; k < 4 && !has && !patch_is_leaf(at); k++)
-        has = patch_has_dark(g, at->children + k);
-    return has;
+    struct receiver r = {.gather = g, .facet = facet_make(g->model->forest, region)};
+    struct vec3 normal = r.facet.plane.normal, along = direction_along(normal);
+    int dark = 0, lit = 0;
+    for (uint64_t i = 0; i < DARK_RAYS; i++) {
+        struct point point;
+        struct vec3 direction = cosine_direction(
+            normal, along, ((double)i + hash_unit(seed)) / DARK_RAYS,
+            hash_unit(seed + 16 + i));
+        if (trace(&r, point_above(x, normal), direction, &point) != MET_FRONT)
+            continue;
+        dark += patch_is_dark(g, point.patch);
+        lit += patch_is_lit(g, point.patch);
+    }
+    return dark > 0 ? (double)dark / (dark + lit) : 0.0;
 }
 
 /* True if there is room before most of the region: else a thing stands on it, or it is in
@@ -144,6 +158,11 @@ static double dark_area(const struct final_gather *g, int32_t patch)
     for (int k = 0; k < 4; k++)
         area += dark_area(g, at->children + k);
     return area;
+}
+
+bool patch_has_dark(const struct final_gather *g, int32_t patch)
+{
+    return dark_area(g, patch) > 0.0;
 }
 
 static void name_leaves(struct regions *regions, const struct forest *forest,

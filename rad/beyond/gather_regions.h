@@ -34,6 +34,11 @@ bool patch_has_dark(const struct final_gather *gather, int32_t patch);
 double patch_reflected(const struct forest *forest, int32_t patch);
 double patch_irradiance(const struct forest *forest, int32_t patch);
 
+/* The part of the rays from a point of a region that end in the dark, 1, of those that
+ * end there or on lit surfaces; 0 if none does, as where it looks out of the scene. */
+double share_in_the_dark(struct final_gather *gather, int32_t region, struct vec3 x,
+                         uint64_t seed);
+
 /* Counts before work that each rank does which needs it: it is counted apart, as that of
  * proofs. */
 struct apart {

@@ -112,11 +112,6 @@ void receiver_find_sparks(struct receiver *r);
  * does nothing where it is not to be caught. */
 void receiver_catch(struct receiver *r, struct vec3 x, struct rgb source);
 
-/* The part of the rays from a point of a region that end in the dark, 1, of those that
- * end there or on lit surfaces; 0 if none does, as where it looks out of the scene. */
-double share_in_the_dark(struct final_gather *gather, int32_t region, struct vec3 x,
-                         uint64_t seed);
-
 /* Adds the light of a point y of a root that is seen; the root has this form factor. The
  * light at the point is found by a path: beside an opening a leaf is darker than in the
  * mean. It goes on until a ray ends far away for the size of the leaf there. */
