@@ -6,7 +6,8 @@
 
 counts="checksum links patches leaves passes iterations rays node_tests triangle_tests
         absorbed_power escaped_power error_estimate"
-quiet="--quiet --epsilon 1e-4 --size 40x40"
+quiet="--quiet --size 40x40"
+fineness="--epsilon 1e-4"
 
 # build NAME ARGUMENTS...: another phr as $work/NAME/phr; fails with the log if it has
 # warnings.
@@ -33,9 +34,9 @@ produce() {
     directory=$work/$1
     shift
     mkdir -p "$directory"
-    "$@" $quiet -o "$directory/a.pfm" -o "$directory/a.ppm" -o "$directory/a.ply" \
-        -o "$directory/a.png" -o "$directory/a.hdr" -o "$directory/a.vtk" \
-        --stats "$directory/s.json"
+    "$@" $quiet $fineness -o "$directory/a.pfm" -o "$directory/a.ppm" \
+        -o "$directory/a.ply" -o "$directory/a.png" -o "$directory/a.hdr" \
+        -o "$directory/a.vtk" --stats "$directory/s.json"
 }
 
 # produce_and_validate DIRECTORY PROGRAM: those of the Cornell box, and the table of
@@ -108,6 +109,7 @@ idle=$(sed -n "s|.*\"final_gather\":.*\"all\": \([0-9]*\).*\"slowest\": \([0-9]*
 1 - \1 / 16 / \2|p" "$work/ranks-16/s.json")
 check "16 ranks are idle for at most 1.5 % of a gather: $idle" holds "$idle <= 0.015"
 
+fineness="--epsilon 1e-3 --final-gather 64"
 produce flat-serial "$work/serial/phr" $cornell --flat --two-sided
 produce flat-3 $MPIEXEC -n 3 "$BUILD/phr" $cornell --flat --two-sided
 check "the same with --flat --two-sided" same flat-3 flat-serial
@@ -157,7 +159,7 @@ check "and gives the lamp one" [ "$(roots lamps-3)" = "0-75 " ]
 from_above() {
     printf 'eye 278 900 280\nat 278 548.8 280\nup 0 0 1\nfov 8\nsize 9 9\n' \
         >"$work/above.view"
-    "$work/serial/phr" scenes/cornell.obj --view "$work/above.view" $quiet \
+    "$work/serial/phr" scenes/cornell.obj --view "$work/above.view" $quiet $fineness \
         --size 9x9 "$@" \
         -o "$work/above.ppm" && tail -c 243 "$work/above.ppm" | od -An -v -t u1 |
         awk '{ for (i = 1; i <= NF; i++) sum += $i } END { print sum }'
@@ -165,6 +167,7 @@ from_above() {
 
 check "the back of the lamp is black" [ "$(from_above --two-sided)" = 0 ]
 check "that of a two-sided one shines" holds "$(from_above --two-sided-lamps) > 0"
+fineness="--epsilon 1e-4"
 
 # on_ranks NAME SCENE OPTIONS...: the same bytes on 2, 3 and 7 ranks.
 on_ranks() {
