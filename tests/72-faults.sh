@@ -88,6 +88,25 @@ check "and no picture" [ ! -e "$work/new.ppm" ]
 check "it goes on from the checkpoint of the solution" \
     grep -q "^phr: stopped by SIGTERM; go on with --resume $work/check\$" "$work/err"
 
+# Outlines are found by rays of their own, once the picture is there.
+outlines="scenes/cornell.obj --epsilon 1e-2 --final-gather 0 --show mesh --size 3000x3000
+    --samples 1"
+"$PHR" $outlines --quiet -o "$work/outlines.ppm"
+for wait in 0.5 0.7 0.9; do
+    start 2 $outlines -o "$work/new.ppm"
+    wait_for 1 "(0 split)"
+    sleep $wait
+    kill -TERM "$(tail -n 1 "$work/ranks")" 2>/dev/null
+    finish
+    if [ "$status" -eq 0 ]; then
+        check "SIGTERM after $wait s of outlines: the picture is whole" \
+            cmp "$work/new.ppm" "$work/outlines.ppm"
+    else
+        check "SIGTERM after $wait s of outlines: no picture" [ ! -e "$work/new.ppm" ]
+    fi
+    rm -f "$work/new.ppm"
+done
+
 # stopped_early NAME: the run is stopped before its first checkpoint.
 stopped_early() {
     kill -TERM "$launched"

@@ -45,6 +45,14 @@ said=$(sed -n 's/.*patch 2\/1: \([0-9]*\) links.*/\1/p' "$work/err")
 check "links of a patch and of those above it: all ($said)" [ "$said" -gt 10 -a \
     "$said" = "$(grep -cE '^(2/1?|[^ ]* 2/1?) ' "$work/links")" ]
 
+# The links of a finished run that is resumed, which has transferred no light.
+for way in --checkpoint --resume; do
+    show 1 links:0/ --final-gather 0 "$way" "$work/check"
+    mv "$work/1.links.ppm" "$work/links$way.ppm"
+done
+check "links: the same picture from a checkpoint" \
+    cmp "$work/links--checkpoint.ppm" "$work/links--resume.ppm"
+
 # refused WHAT REASON OPTIONS...
 refused() {
     what=$1 reason=$2

@@ -12,6 +12,7 @@
 #include "io/picture/render.h"
 #include "mpi/beyond/keep.h"
 #include "mpi/picture.h"
+#include "rad/beyond/cluster_light.h"
 #include "rad/beyond/patch_link.h"
 #include "tools/label.h"
 
@@ -60,12 +61,11 @@ static struct rgb hue(double turn)
 static double error_scale(const struct forest *forest, const float *error)
 {
     double sum = 0.0, area = 0.0;
-    for (int64_t p = 0; p < forest->count; p++) {
-        if (!patch_is_leaf(&forest->patches[p]))
-            continue;
-        double e = (double)error[p];
-        sum += forest_area(forest, (int32_t)p) * e * e;
-        area += forest_area(forest, (int32_t)p);
+    int32_t leaf = forest_next_leaf(forest, -1); /* in the same order on all ranks */
+    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf)) {
+        double e = (double)error[leaf];
+        sum += forest_area(forest, leaf) * e * e;
+        area += forest_area(forest, leaf);
     }
     return sum > 0.0 ? 3.0 * sqrt(sum / area) : 1.0;
 }
@@ -372,6 +372,10 @@ static bool overlay_links(struct run *run, const struct camera *camera,
     bool good = run_agree(run);
     if (good) {
         char name[LABEL_SIZE];
+        const struct model *model = &run->solver->model;
+        if (model->clusters) /* a finished run that was resumed has none of it */
+            cluster_light_average(model->clusters, model->forest,
+                                  model->forest->radiosity, model->clusters->radiosity);
         links_collect(run->solver, find_links, &found);
         if (run->comm.rank == 0) {
             struct patch_id id = run->solver->model.forest->patches[found.patch].id;
@@ -391,10 +395,10 @@ bool show_overlay(struct run *run, const struct camera *camera, float *picture)
     if (show == SHOW_LIGHT || show == SHOW_ERROR)
         return true;
     int32_t *leaves = leaves_of_pixels(run, camera);
-    bool good = true;
-    if (show == SHOW_LINKS)
+    bool good = run_goes_on(run); /* a signal leaves holes in it */
+    if (good && show == SHOW_LINKS)
         good = overlay_links(run, camera, leaves, picture);
-    else if (run->comm.rank == 0)
+    else if (good && run->comm.rank == 0)
         draw_outlines(run, camera, leaves, picture);
     alloc_free(leaves);
     return good;
