@@ -117,6 +117,10 @@ for limit in 5 24 40; do # in the first round, in the second, and at its end
 done
 check "which takes two rounds and more" \
     grep -q '"rounds": [2-9]' "$work/accuracy-40.json"
+"$PHR" scenes/cornell.obj --accuracy 1.5% --epsilon 1e-2 --final-gather 300 \
+    --resume "$work/accuracy-40.check" >"$work/out" 2>"$work/err"
+check "and says that it does not take other rays" grep -q \
+    'warning: no use is made of --final-gather 300: --accuracy has come to' "$work/err"
 # Rays fired again are counted again.
 counts="checksum links patches passes iterations absorbed_power"
 resumes two-sided 8 --two-sided --max-level 4

@@ -137,6 +137,10 @@ sleep 0.3
 stopped_early "while a pipe is read that stays open"
 exec 3>&-
 
+start 2 scenes/cornell.obj -o "$work/new.ppm" --resume "$work/pipe.obj"
+sleep 0.5
+stopped_early "while a checkpoint is waited for"
+
 build/room 300000 1 >"$work/large.obj"
 start 2 "$work/pipe.obj" -o "$work/new.ppm" --checkpoint "$work/early"
 cat "$work/large.obj" >"$work/pipe.obj"

@@ -3,6 +3,7 @@
 #include "tools/stored.h"
 
 #include "geom/alloc.h"
+#include "geom/signals.h"
 #include "mpi/beyond/keep.h"
 
 static struct store_terms terms_of(const struct run *run, enum store_kind kind)
@@ -65,18 +66,35 @@ static bool load_links(struct run *run, struct store_reader *reader, const int32
     return good;
 }
 
+/* With --accuracy a checkpoint goes on with as many rays as its last round had. */
+static void warn_of_rays(struct run *run, int asked)
+{
+    static const char *const NAMES[] = {"--final-gather", NULL};
+    int rays = run->solver->model.criterion.final_gather;
+    if (*options_given(&run->options, NAMES) && rays != asked)
+        run_say(run, "warning: no use is made of --final-gather %d: --accuracy has come "
+                "to %d", asked, rays);
+}
+
 bool stored_load(struct run *run, enum store_kind kind, const char *path)
 {
     double start = comm_seconds();
+    int asked = run->solver->model.criterion.final_gather;
     struct store_terms terms = terms_of(run, kind);
     struct store_reader reader = {0};
-    if (run->comm.rank == 0)
+    if (!run_goes_on(run)) /* a tree that a signal has ended is not that of the file */
+        return false;
+    if (run->comm.rank == 0) {
+        signals_end_calls(true); /* of a pipe, too */
         store_open(&reader, path, &terms, &run->error);
+        signals_end_calls(false);
+    }
     bool good = run_agree(run);
     if (good) {
         int32_t *order = snapshot_restore(run->solver, &run->vote, &reader.snapshot);
         good = load_links(run, &reader, order, reader.snapshot.link_count);
         alloc_free(order);
+        warn_of_rays(run, asked);
     }
     if (good && kind == STORE_CHECKPOINT)
         run->kept = path;
