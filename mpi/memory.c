@@ -24,9 +24,9 @@ enum { BYTES_PER_LINK = 36, BYTES_PER_PATCH = 560, BYTES_PER_CLUSTER = 290 };
 
 /* Of a row of the final gather: three quarters of the patches are leaves; rays that end
  * on the same leaf have one term of 20 bytes, and three more where B rises over it. That
- * is 1 to 1.9 terms for each patch and ray in the Cornell box and in rooms, and 4.9 where
- * most leaves look through an opening. */
-enum { BYTES_PER_RAY = 32 };
+ * is 1.6 terms for each patch and ray in the Cornell box, 2.6 to 3 in rooms and
+ * corridors, and 4.9 where most leaves look through an opening. */
+enum { BYTES_PER_RAY = 60 };
 
 /* The part of the machines' memory that links, patches and clusters may take. */
 static const double SHARE = 0.8;

@@ -14,6 +14,7 @@
 #include "mpi/migrate.h"
 #include "geom/signals.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "geom/alloc.h"
@@ -308,13 +309,16 @@ static void refine(struct solver *solver, struct link_list *prolific, struct lev
     }
 }
 
-/* Collective. The links that the memory limit leaves unsplit join the others. At the end
- * all ranks agree on whether a signal has come meanwhile. */
+/* Collective. The links that the memory limit leaves unsplit join the others, and divide
+ * no patch. At the end all ranks agree on whether a signal has come meanwhile. */
 static void keep_unsplit(struct solver *solver, struct link_list *prolific,
                          struct level *level)
 {
+    double threshold = solver->model.patch_threshold;
+    solver->model.patch_threshold = HUGE_VAL;
     for (int64_t i = 0; goes_on(solver, prolific, i); i++)
         keep_link(solver, &prolific->items[i]);
+    solver->model.patch_threshold = threshold;
     exchange_loads(solver, prolific, level);
 }
 

@@ -89,6 +89,7 @@ struct gathered {
     int64_t terms;          /* of all rows, as kept */
     int64_t looks;          /* rays and segments fired before there were rows */
     int64_t split;          /* leaves that the gathered light was seen to vary over */
+    bool limited;           /* there was no memory to split others */
     int64_t pixels;         /* rays and segments fired for the picture */
     double closing; /* largest part, of a band, of the light that leaves surfaces of a
                        closed scene and is lost or made; 0: it is open */
@@ -105,7 +106,7 @@ struct stats {
     bool converged;
     int64_t clusters;      /* of the tree above the roots, 0: there is none */
     int64_t counted_bytes; /* of links, patches and clusters, as --memory counts them */
-    bool memory_limited;       /* linking or refinement ended there */
+    bool memory_limited;       /* linking, refinement or the gather's mesh ended there */
     double epsilon;            /* relative to the emitted power */
     double error_estimate;     /* of the leaves, relative RMS; 0: there is none */
     double accuracy;           /* asked for, 0: none was */

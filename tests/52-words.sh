@@ -85,6 +85,13 @@ check "none, where all do something" idle 1 "" $box --size 9x9 --samples 2 --exp
     --flat -o "$work/idle.ppm"
 check "nor with --quiet" idle 1 "" $box --quiet --size 9x9
 
+# bytes WHAT: as mpi/memory.c counts one.
+bytes() { sed -n "s/.*BYTES_PER_$1 = \([0-9]*\).*/\1/p" mpi/memory.c; }
+text="$(bytes LINK) bytes for each link of all ranks, $(bytes PATCH) for each patch"
+text="$text, $(bytes CLUSTER) for each cluster, and $(bytes RAY) for each patch and ray"
+check "the manual counts bytes as the memory limit does: $text" \
+    sh -c 'tr "\n" " " <phr.1 | grep -qF "$0"' "$text"
+
 # --- progress ---
 
 run="./phr scenes/cornell.obj --max-level 3 --samples 8 --size 128x128"

@@ -208,6 +208,23 @@ check "it goes on where there is more memory" \
 check "to the end" [ "$(stat_of "$work/grown.json" converged)" = true ]
 run still 3 $fine --memory 2M --resume "$work/small-4.check" >/dev/null
 check "and not where there is not" same still small-1
+check "what it counts is within the limit" \
+    holds "$(stat_of "$work/small-1.json" counted_bytes) <= 2 * 1024 ^ 2"
+
+# Room for all links, and not for all leaves that the gather would split.
+whole="scenes/cornell.obj --epsilon 1e-3 --size 40x40"
+run gathers 2 $whole >/dev/null
+most=$(stat_of "$work/gathers.json" counted_bytes)
+for ranks in 1 3; do
+    run cut-$ranks $ranks $whole --memory $((most * 9 / 10)) >/dev/null
+done
+check "the limit holds for the mesh of a gather" same cut-3 cut-1
+check "whose links are all there" [ "$(stat_of "$work/cut-1.json" links)" = \
+    "$(stat_of "$work/gathers.json" links)" ]
+check "and the run says so" \
+    [ "$(stat_of "$work/cut-1.json" memory_limited)" = true -a "$(grep -c \
+        'phr: warning: refinement ended at the memory limit' "$work/cut-3.err")" -eq 1 ]
+check "not without a limit" [ "$(stat_of "$work/gathers.json" memory_limited)" = false ]
 
 # The limit ends a pass that is not the first: from the checkpoint of the pass before, it
 # ends there again.

@@ -20,7 +20,9 @@ static void report(const struct solver *solver, struct stats *stats)
     stats->accuracy = solver->model.criterion.accuracy;
     stats->hold = beyond->accuracy.hold;
     stats->rounds = beyond->accuracy.rounds;
-    stats->converged = stats->converged && stats->hold == HOLD_NONE;
+    stats->memory_limited = stats->memory_limited || beyond->answer.counts.limited;
+    stats->converged =
+        stats->converged && stats->hold == HOLD_NONE && !stats->memory_limited;
     stats->error_estimate = beyond->answer.counts.error;
     stats->gathered = beyond->answer.counts;
     stats->bytes_broadcast += (int64_t)beyond->tree_block.bytes;

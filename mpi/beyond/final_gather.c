@@ -135,7 +135,8 @@ static bool make_rows(struct gathering *g)
     g->closed = (double)sums[0] <= CRACKS * (double)(sums[2] + g->count);
     solver->beyond->answer.counts = (struct gathered){
         .rays = sums[2], .segments = sums[3], .exact = sums[4],
-        .terms = sums[5], .looks = sums[6], .split = g->mesh.split};
+        .terms = sums[5], .looks = sums[6], .split = g->mesh.split,
+        .limited = g->mesh.limited};
     return sums[1] == 0;
 }
 

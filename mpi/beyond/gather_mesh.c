@@ -209,11 +209,15 @@ static double square_of_light(const struct forest *forest, int32_t leaf)
     return rgb_sum(squares_of_light(forest, leaf));
 }
 
-static bool may_split(const struct looking *l, int32_t leaf)
+static bool may_split(struct looking *l, int32_t leaf)
 {
     const struct solver *solver = l->solver;
-    return patch_may_split(&solver->model, leaf) &&
-           memory_has_room(&solver->memory, l->links, 1, solver->model.forest->count);
+    if (!patch_may_split(&solver->model, leaf))
+        return false;
+    bool room =
+        memory_has_room(&solver->memory, l->links, 1, solver->model.forest->count);
+    l->mesh->limited = l->mesh->limited || !room;
+    return room;
 }
 
 /* Looks at `leaves` and splits those over which light varies; the children of these take

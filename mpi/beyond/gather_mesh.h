@@ -14,6 +14,7 @@ struct gather_mesh {
     int64_t *work;   /* [count] predicted for the row, in tests */
     int64_t count;
     int64_t split;   /* leaves split */
+    bool limited;    /* the memory limit has kept others from it */
     int64_t traced;  /* rays and segments of looks on this rank */
 };
 
