@@ -1,13 +1,14 @@
 /* Things that stand on a leaf, and faces in its plane that cover it.
  *
  * Rays that begin inside of a thing bring no light, and none of theirs leaves the scene:
- * they are told by probes that meet bounds of the thing on all sides, which may be faces
- * of its own or those of walls that it touches. Other faces in the leaf's plane, as of a
- * picture on a wall, are found by a few points just above it. */
+ * they are told by probes that meet bounds of the thing on all sides (inside.h). Other
+ * faces in the leaf's plane, as of a picture on a wall, are found by a few points just
+ * above it. */
 #include "rad/beyond/met.h"
 
 #include <math.h>
 
+#include "rad/beyond/inside.h"
 #include "rad/beyond/sequence.h"
 #include "rad/beyond/sample.h"
 
@@ -17,32 +18,12 @@ static const double ABOVE = 0x1p-26;
 /* Points of a leaf that are tested for being bare. */
 enum { BARE_POINTS = 4 };
 
-/* True if another face lies back to back with the front at this point. */
-static bool is_backed(struct receiver *r, const struct point *front)
+static bool is_bound(struct receiver *r, struct vec3 origin, struct vec3 direction,
+                     bool *single)
 {
     struct model *model = r->gather->model;
-    struct vec3 step = vec3_scale(front->normal, ABOVE);
-    int32_t own[2] = {front->input, -1}, other = -1;
-    return octree_blocks_segment(model->octree, vec3_add(front->at, step),
-                                 vec3_sub(front->at, step), own, &other,
-                                 &model->counts) &&
-           vec3_dot(scene_root_plane(model->scene, other).normal, front->normal) < 0.0;
-}
-
-/* True if a ray's end may bound the thing that it began in: a back; the front of a wall
- * that the thing touches, which counts before the back in the same place; or, where the
- * thing has no face there, a front across from one of these. `single` becomes true if a
- * back is met with no front in its place. */
-static bool is_bound(struct receiver *r, enum met met, struct point *point, bool *single)
-{
-    if (met == MET_FRONT && !is_backed(r, point)) {
-        struct vec3 normal = point->normal;
-        met = probe(r, point_above(point->at, normal), normal, point);
-        if (met == MET_FRONT && !is_backed(r, point))
-            return false;
-    }
-    *single = *single || met == MET_BACK;
-    return met != MET_NOTHING;
+    return ray_is_bound(model->scene, model->octree, origin, direction, single,
+                        &model->counts);
 }
 
 /* True if rays from the point, along the plane in four directions, all meet bounds. */
@@ -51,11 +32,9 @@ static bool is_among_bounds(struct receiver *r, struct vec3 origin, struct vec3 
 {
     static const double RISE = 0.1;
     struct vec3 along = direction_along(normal);
-    struct point point;
     for (int k = 0; k < 4; k++, along = vec3_cross(normal, along)) {
-        enum met met =
-            probe(r, origin, vec3_add(along, vec3_scale(normal, RISE)), &point);
-        if (!is_bound(r, met, &point, single))
+        struct vec3 direction = vec3_add(along, vec3_scale(normal, RISE));
+        if (!is_bound(r, origin, vec3_unit(direction), single))
             return false;
     }
     return true;
@@ -69,28 +48,22 @@ static bool is_inside(struct receiver *r, struct vec3 origin)
 {
     struct vec3 normal = r->facet.plane.normal;
     bool single = false;
-    struct point point;
     if (!is_among_bounds(r, origin, normal, &single))
         return false;
-    enum met met = probe(r, origin, normal, &point);
-    if (met == MET_BACK)
-        return true;
-    return met == MET_FRONT &&
-           (is_backed(r, &point) ||
-            is_among_bounds(r, point_above(point.at, point.normal), point.normal,
-                            &single)) &&
+    if (is_bound(r, origin, normal, &single))
+        return single;
+    struct point point;
+    return probe(r, origin, normal, &point) == MET_FRONT &&
+           is_among_bounds(r, point_above(point.at, point.normal), point.normal,
+                           &single) &&
            single;
 }
 
-bool ray_comes_from_inside(struct receiver *r, struct vec3 origin, enum met met,
-                           const struct point *at)
+bool ray_comes_from_inside(struct receiver *r, struct vec3 origin, struct vec3 direction)
 {
-    struct point point;
     bool single = false;
-    if (!r->sums.on_back)
-        return false;
-    point = *at;
-    return is_bound(r, met, &point, &single) && is_inside(r, origin);
+    return r->sums.on_back && is_bound(r, origin, direction, &single) &&
+           is_inside(r, origin);
 }
 
 void receiver_find_covers(struct receiver *r)

@@ -383,7 +383,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         struct point point;
         enum met met = count == 1 ? meet(r, origin, direction, &stream->hits[ray], &point)
                                   : probe(r, origin, direction, &point);
-        if (count == 1 && ray_comes_from_inside(r, origin, met, &point)) {
+        if (count == 1 && ray_comes_from_inside(r, origin, direction)) {
             r->sums.inside++;
             return;
         }

@@ -68,10 +68,9 @@ static inline enum met trace(struct receiver *r, struct vec3 origin,
     return met;
 }
 
-/* True if the first ray of a path, which has met this point, comes from inside of a thing
- * that stands on the leaf. It costs a ray and more, so it is asked only where some ray of
- * the leaf has met a back. */
-bool ray_comes_from_inside(struct receiver *r, struct vec3 origin, enum met met,
-                           const struct point *at);
+/* True if the first ray of a path comes from inside of a thing that stands on the leaf.
+ * It costs some rays, so it is asked only where some ray of the leaf has met a back. */
+bool ray_comes_from_inside(struct receiver *r, struct vec3 origin,
+                           struct vec3 direction);
 
 #endif

@@ -597,6 +597,35 @@ static void test_touching(double rho)
     solution_free(&s);
 }
 
+/* The walls around a heap of tetrahedra that pierce each other, so that a ray from inside
+ * of one meets fronts of others, too. Their leaves are partly inside of others, and are
+ * seen from outside as bright as they are there. (The light inside is lost.) */
+static void test_pierced(void)
+{
+    static const struct errors limit = {5e-3, 5e-3, 1e-2};
+    struct random random = {7};
+    struct soup soup = {0};
+    add_room(&soup, CUBE);
+    paint(&soup, 0.99, 0.01);
+    for (int k = 0; k < 16; k++) {
+        struct vec3 at[4];
+        for (int i = 0; i < 4; i++)
+            at[i] = vec3_add(point(0.5, 0.5, 0.5), random_point(&random, 0.3));
+        bool left = vec3_dot(vec3_cross(vec3_sub(at[1], at[0]), vec3_sub(at[2], at[0])),
+                             vec3_sub(at[3], at[0])) > 0.0;
+        for (int i = 0; i < 4; i++) {
+            struct triangle t = {{at[(i + 1) % 4], at[(i + 2) % 4], at[(i + 3) % 4]}};
+            soup_add(&soup, left == (i % 2 == 0) ? t : reversed(t));
+        }
+    }
+    paint(&soup, 0.99, 0.01);
+    struct solution s =
+        solve_soup(&soup, *options ? options : "--epsilon 1e-3 --final-gather 64");
+    judge(&s, "furnace, things that pierce each other, rho 0.99", 0,
+          &(struct truth){.value = 1.0}, limit, 0.0);
+    solution_free(&s);
+}
+
 /* With a lamp of 1 part in 100 of a room whose rho is the same everywhere the mean of H
  * is exactly the power over A (1 - rho), and nothing escapes: the balance is closed. */
 static void test_light_is_kept(enum room room, double rho, const char *words)
@@ -778,6 +807,7 @@ int main(int argc, char **argv)
     test_loose();
     test_touching(0.9);
     test_touching(0.99);
+    test_pierced();
     test_light_is_kept(FURNISHED, 0.5, "");
     test_light_is_kept(FURNISHED, 0.9, "--epsilon 1e-3");
     test_light_is_kept(FURNISHED, 0.99, "--epsilon 1e-3");

@@ -1,0 +1,92 @@
+/* Things may pierce each other, so the first face that a ray meets does not tell: from
+ * inside of one thing it may be the front of another. So faces are counted, as in the
+ * crossing number of a polygon: a front is an entry, a back an exit, and one exit more
+ * than entries is the thing that the ray has begun in. The walls of a room are entered,
+ * and behind them there are as many exits as entries. */
+#include "rad/beyond/inside.h"
+
+#include <math.h>
+
+#include "rad/beyond/sample.h"
+
+/* Faces in one place are less far apart, in scene units. */
+static const double APART = 0x1p-26;
+
+/* Faces that a ray crosses, at most. */
+enum { CROSSED_MOST = 32 };
+
+/* A face that a ray crosses. */
+struct crossing {
+    int32_t input; /* triangle, -1: none */
+    bool back;     /* it is met from behind, and has one side */
+    struct vec3 at;
+    struct vec3 normal; /* towards the ray's origin, but of a back */
+};
+
+struct space {
+    const struct scene *scene;
+    const struct octree *octree;
+    struct octree_counts *counts;
+};
+
+/* The face that a ray crosses next; a back in the place of a front counts as that. */
+static struct crossing next_face(const struct space *space, struct vec3 origin,
+                             struct vec3 direction)
+{
+    struct octree_hit hit;
+    if (!octree_first_hit(space->octree, origin, direction, false, &hit, space->counts))
+        return (struct crossing){.input = -1};
+    struct plane plane = space->scene->planes[hit.triangle];
+    double fall = vec3_dot(plane.normal, direction);
+    double along = fall != 0.0 ? -plane_distance(&plane, origin) / fall : 0.0;
+    bool twin = scene_has_twin(space->scene, hit.triangle);
+    return (struct crossing){
+        hit.triangle, !hit.front && !twin, vec3_add(origin, vec3_scale(direction, along)),
+        vec3_scale(plane.normal, !hit.front && twin ? -1.0 : 1.0)};
+}
+
+/* True if another face lies back to back with a front. */
+static bool is_backed(const struct space *space, const struct crossing *front)
+{
+    struct vec3 step = vec3_scale(front->normal, APART);
+    int32_t own[2] = {front->input, -1}, other = -1;
+    return octree_blocks_segment(space->octree, vec3_add(front->at, step),
+                                 vec3_sub(front->at, step), own, &other,
+                                 space->counts) &&
+           vec3_dot(scene_root_plane(space->scene, other).normal, front->normal) < 0.0;
+}
+
+/* True if a ray that meets the face has left more things than it has entered. */
+static bool leaves_a_thing(const struct space *space, struct crossing face,
+                           struct vec3 direction, bool *single)
+{
+    int entered = 0;
+    for (int count = 0; count < CROSSED_MOST && face.input >= 0; count++) {
+        bool backed = !face.back && is_backed(space, &face);
+        if (entered == 0 && (face.back || backed)) {
+            *single = *single || face.back;
+            return true;
+        }
+        if (!backed && !scene_has_twin(space->scene, face.input))
+            entered += face.back ? -1 : 1;
+        double beyond = face.back ? APART : -APART;
+        struct vec3 origin = vec3_add(face.at, vec3_scale(face.normal, beyond));
+        face = next_face(space, origin, direction);
+    }
+    return false;
+}
+
+bool ray_is_bound(const struct scene *scene, const struct octree *octree,
+                  struct vec3 origin, struct vec3 direction, bool *single,
+                  struct octree_counts *counts)
+{
+    const struct space space = {scene, octree, counts};
+    struct crossing first = next_face(&space, origin, direction);
+    if (leaves_a_thing(&space, first, direction, single))
+        return true;
+    if (first.input < 0 || first.back)
+        return false;
+    origin = point_above(first.at, first.normal);
+    return leaves_a_thing(&space, next_face(&space, origin, first.normal), first.normal,
+                          single);
+}

@@ -1,0 +1,20 @@
+/* Whether a ray begins inside of a thing: a solid whose faces show it their backs. */
+#ifndef RAD_BEYOND_INSIDE_H
+#define RAD_BEYOND_INSIDE_H
+
+#include <stdbool.h>
+
+#include "geom/scene.h"
+#include "octree/octree.h"
+
+/* True if a ray may begin inside of a thing: on its way it leaves more things than it
+ * enters, be it by a back or by the front of a wall that the thing touches; or, where the
+ * thing has no face on that wall, a ray from there across does. `single` becomes true if
+ * that is a back with no front in its place: where all walls are double nothing tells the
+ * inside of a box from a room. Faces with two sides bound nothing. Points in scene units;
+ * `direction` has length 1. */
+bool ray_is_bound(const struct scene *scene, const struct octree *octree,
+                  struct vec3 origin, struct vec3 direction, bool *single,
+                  struct octree_counts *counts);
+
+#endif
