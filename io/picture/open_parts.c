@@ -1,7 +1,7 @@
 /* Open parts.
  *
- * Where a box stands on the floor, leaves are covered in part. A point is covered if four
- * rays from it, up and far aside, all meet a back first: it lies inside a solid, not
+ * Where a box stands on the floor, leaves are covered in part. A point is covered if
+ * four rays from it, up and far aside, all begin inside of a solid (inside.h), and not
  * merely below a shelf; or in a gap that is narrow for the leaf, as behind a picture on a
  * wall. Where nothing ends near the leaf, all of it is alike. Else it is quartered, and
  * so are its quarters, as long as things are near and not all of four middles are
@@ -14,6 +14,7 @@
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
+#include "rad/beyond/inside.h"
 
 /* A gap is narrow for a leaf if it is less than this part of the distance from the middle
  * to a corner of its quarter. */
@@ -47,17 +48,14 @@ static struct footing footing_of(const struct forest *forest,
     return footing;
 }
 
-/* True if the ray from a point of the plane meets a back, or a front less than a narrow
- * gap above the plane. */
-static bool is_shut(const struct footing *footing, struct vec3 start,
-                    struct vec3 direction)
+/* True if the ray from a point of the plane ends less than a narrow gap above it. */
+static bool ends_in_gap(const struct footing *footing, struct vec3 start,
+                        struct vec3 direction)
 {
     struct octree_counts counts = {0};
     struct octree_hit hit;
     if (!octree_first_hit(footing->octree, start, direction, false, &hit, &counts))
         return false;
-    if (scene_root_on(footing->scene, hit.triangle, hit.front) < 0)
-        return true;
     octree_hit_weights(footing->octree, start, direction, &hit);
     const struct triangle *t = &footing->scene->triangles[hit.triangle];
     double height = 0.0;
@@ -72,15 +70,22 @@ static bool is_covered(const struct footing *footing, const struct triangle *par
 {
     struct vec3 point = triangle_centroid(part), normal = footing->plane.normal;
     struct vec3 start = vec3_add(point, vec3_scale(normal, 1024.0 * GEOM_ROUNDING));
-    if (!is_shut(footing, start, normal))
-        return false;
-    for (int k = 0; k < 3; k++) {
-        struct vec3 along = vec3_sub(part->corner[k], point);
-        struct vec3 up = vec3_scale(normal, 0.25 * vec3_length(along));
-        if (!is_shut(footing, start, vec3_add(along, up)))
+    struct octree_counts counts = {0};
+    bool single = false, gap = false;
+    for (int k = -1; k < 3; k++) {
+        struct vec3 direction = normal;
+        if (k >= 0) {
+            struct vec3 along = vec3_sub(part->corner[k], point);
+            direction = vec3_add(along, vec3_scale(normal, 0.25 * vec3_length(along)));
+        }
+        direction = vec3_unit(direction);
+        if (ends_in_gap(footing, start, direction))
+            gap = true;
+        else if (!ray_is_bound(footing->scene, footing->octree, start, direction, &single,
+                               &counts))
             return false;
     }
-    return true;
+    return single || gap;
 }
 
 bool leaf_is_shut_at(const struct forest *forest, const struct octree *octree,

@@ -167,20 +167,25 @@ static void test_shut_points(enum cover cover, double height, double margin, boo
 
 /* A box covers a strip at the edge of the floor, lower than the middles of sixteenths
  * of its leaf. The points that are examined are in rows of a sixteenth of the floor's
- * side: half of such a row may be missed. */
-static void test_strip(void)
+ * side: half of such a row may be missed. Pillars may stand in the box and rise from it:
+ * rays from inside of it meet their fronts. */
+static void test_strip(bool pierced)
 {
-    static const double WIDTH = 0.45, SIDE = 8.0;
+    static const double SIDE = 8.0;
+    const double width = pierced ? 3.0 : 0.45;
     int64_t leaves;
     struct soup soup = {0};
     soup_add_quad(&soup, point(0, 0, 0), point(SIDE, 0, 0), point(0, SIDE, 0), 1);
-    soup_add_box(&soup, point(-1, -1, 0), point(SIDE + 1, WIDTH, 1.5), 1, false);
+    soup_add_box(&soup, point(-1, -1, 0), point(SIDE + 1, width, 1.5), 1, false);
+    for (double x = 0.0; x < SIDE && pierced; x += 2.0)
+        soup_add_box(&soup, point(x, -0.5, -1), point(x + 0.3, 2.8, 3), 1, false);
     struct stage stage = stage_of(scene_of_soup(&soup));
     uint8_t *open = open_parts_survey(stage.forest, stage.octree, 0, 1, &leaves);
-    double left = 1.0 - WIDTH / SIDE, true_share = left * left;
+    double left = 1.0 - width / SIDE, true_share = left * left;
     double share = open_parts_fraction(open[0]);
     tap_ok(fabs(share - true_share) < 1.0 / 16.0,
-           "%.3f of a leaf is open beside a strip, counted as %.3f", true_share, share);
+           "%.3f of a leaf is open beside a strip%s, counted as %.3f", true_share,
+           pierced ? " with pillars in it" : "", share);
     alloc_free(open);
     dismantle(&stage);
 }
@@ -219,7 +224,8 @@ int main(void)
                  true);
     test_partly_covered(0, 206);
     test_partly_covered(1, 127);
-    test_strip();
+    test_strip(false);
+    test_strip(true);
     test_between_points();
     test_shut_points(BOX, ROOMY, 0.0, true, "a box covers points below it alone");
     test_shut_points(PLATE, KNEE, 0.4, true, "a plate in a narrow gap does, too");
