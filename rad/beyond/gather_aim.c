@@ -303,10 +303,10 @@ static int deal(struct dealing *dealing, double direct)
     return (int)(floor(dealing->sum) - before);
 }
 
-/* The irradiance that lamps can bring the receiver: that of its patch. */
-static double most_light(const struct receiver *r)
+/* The irradiance that lamps can bring to a patch: that which it has. */
+static double most_light(const struct forest *forest, int32_t patch)
 {
-    double h = patch_irradiance(r->gather->model->forest, r->row.leaf);
+    double h = patch_irradiance(forest, patch);
     return h > 0.0 ? h : HUGE_VAL; /* NaN if it is black */
 }
 
@@ -321,7 +321,9 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
                : dark         ? r->gather->rays
                               : r->segments;
     r->shares.doubt = r->shares.doubt || dark || (!lamps->reflect && !lamps->alike);
-    lamps_group(lamps, &r->facet, most, most_light(r), &r->gather->model->estimating);
+    lamps_group(lamps, &r->facet, most,
+                most_light(r->gather->model->forest, r->row.leaf),
+                &r->gather->model->estimating);
     const struct lamp_groups *groups = &lamps->groups;
     if (!(groups->worth > 0.0))
         return;
@@ -363,21 +365,18 @@ bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 
 }
 
 /* The lamp and a point of it are chosen by hashes; of a lamp that the horizon cuts, a
- * point above it. */
+ * point above it. Light that walls may keep off counts for no more than comes to the
+ * patch as the links have it. */
 void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
-                         int32_t input, const struct rgb *weight, uint64_t seed)
+                         int32_t patch, const struct rgb *weight, uint64_t seed)
 {
     const struct final_gather *g = r->gather;
+    const struct forest *forest = g->model->forest;
     const struct scene *scene = g->model->scene;
-    double at = hash_unit(seed) * g->lamps.groups.around;
-    int64_t i = 0;
-    for (; i < g->lamps.groups.count - 1 && at >= g->lamps.groups.items[i].around; i++)
-        at -= g->lamps.groups.items[i].around;
-    if (!(g->lamps.groups.around > 0.0) || !(g->lamps.groups.items[i].around > 0.0))
-        return;
-    const struct lamp_group *group = &g->lamps.groups.items[i];
-    struct lamp lamp = lamp_choose(&g->lamps, group->node, hash_unit(seed + 1));
-    if (receiver_lamp_is_near(scene, lamp.patch, x))
+    int32_t input = scene_input_of(scene, (int32_t)forest->patches[patch].id.root);
+    struct lamp lamp = lamp_choose_at(&g->lamps, x, normal, most_light(forest, patch),
+                                      hash_unit(seed));
+    if (lamp.patch < 0 || receiver_lamp_is_near(scene, lamp.patch, x))
         return;
     struct triangle triangle = scene_root_triangle(scene, lamp.patch);
     struct vec3 facing = scene_root_plane(scene, lamp.patch).normal;
@@ -388,9 +387,8 @@ void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
                                        hash_unit(seed + 3 + 2 * k));
         if (!(receiver_kernel(x, normal, y, facing) > 0.0))
             continue;
-        double share = lamp.share * (g->lamps.groups.around / group->around);
         if (blocker_of(r, x, input, y, lamp.patch) < 0)
-            receiver_add_source(r, weight, emission, factor * share);
+            receiver_add_source(r, weight, emission, factor * lamp.share);
         return;
     }
 }

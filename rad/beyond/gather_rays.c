@@ -219,7 +219,7 @@ static bool leave(struct receiver *r, const struct point *point, bool aimed,
         weight->band[c] *= material->reflectance.band[c];
     if (!(rgb_sum(*weight) > 0.0))
         return false;
-    receiver_aim_beside(r, point->at, point->normal, point->input, weight, seed);
+    receiver_aim_beside(r, point->at, point->normal, point->patch, weight, seed);
     *origin = point_above(point->at, point->normal);
     *direction = cosine_direction(point->normal, direction_along(point->normal),
                                   hash_unit(seed + 14), hash_unit(seed + 15));

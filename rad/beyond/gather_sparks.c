@@ -210,16 +210,14 @@ static void add_light_at(struct receiver *r, struct vec3 x, const double *u,
     const struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     struct vec3 normal = r->facet.plane.normal, above = point_above(x, normal);
-    int32_t root = (int32_t)forest->patches[r->row.leaf].id.root;
     struct point met;
-    receiver_aim_beside(r, above, normal, scene_input_of(forest->scene, root), weight,
-                        seed);
+    receiver_aim_beside(r, above, normal, r->row.leaf, weight, seed);
     if (trace(r, above, cosine_direction(normal, r->along, u[0], u[1]), &met) !=
             MET_FRONT ||
         patch_is_dark(g, met.patch))
         return;
     receiver_add_patch(r, met.patch, weight);
-    root = (int32_t)forest->patches[met.patch].id.root;
+    int32_t root = (int32_t)forest->patches[met.patch].id.root;
     if (root_is_lamp(&g->lamps, root))
         receiver_add_source(r, weight, forest_material(forest, met.patch)->emission,
                             -1.0);
@@ -232,7 +230,6 @@ static void catch_by_rays(struct sparks *sparks, struct final_gather *g, int32_t
     struct sequence sequence = sequence_start(hash_mix(r.seed + 71));
     int64_t begin = sparks->caught.count;
     double u[SEQUENCE_DIMENSIONS], share = 1.0 / r.rays;
-    receiver_aim_at(&r, &g->lamps); /* so that its lamps are known */
     g->sums.count = g->sums.first = 0;
     r.keeps = true;
     r.dark.catches = sparks;

@@ -27,6 +27,11 @@
  * first estimate of all light. */
 static const double SMALL = 0.25, SMALL_AT_FIRST = 3.0;
 
+/* A lamp is chosen by its exact light if the square of its distance is less than this
+ * times its area; levels below a near cluster that are looked at. */
+static const double NEAR_LAMP = 16.0;
+enum { LOOKED = 2 };
+
 /* Least cosine that a group of lamps is counted with: where a part of it may be above the
  * horizon, it has to be chosen now and then. */
 static const double LEAST_COSINE = 0.1;
@@ -267,24 +272,18 @@ struct lit {
 
 static void sum_up(struct lamp_groups *groups, int64_t first)
 {
-    groups->worth = groups->around = 0.0;
-    for (int64_t i = first; i < groups->count; i++) {
+    groups->worth = 0.0;
+    for (int64_t i = first; i < groups->count; i++)
         groups->worth += groups->items[i].worth;
-        groups->around += groups->items[i].around;
-    }
 }
 
-/* Makes the groups from number `first` on, those of a node, worth no more than `most`, on
- * the leaf and beside it. */
+/* Makes the groups from number `first` on, those of a node, worth no more than `most`. */
 static void limit(struct lamp_groups *groups, int64_t first, double most)
 {
     sum_up(groups, first);
-    double on_leaf = real_min(1.0, most / groups->worth),
-           beside = real_min(1.0, most / groups->around);
-    for (int64_t i = first; i < groups->count; i++) {
-        groups->items[i].worth *= on_leaf;
-        groups->items[i].around *= beside;
-    }
+    double part = real_min(1.0, most / groups->worth);
+    for (int64_t i = first; i < groups->count; i++)
+        groups->items[i].worth *= part;
 }
 
 static void add_group(struct lamp_groups *groups, struct lamp_group group)
@@ -311,8 +310,7 @@ static double facing_most(const struct lit_cluster *cluster, struct vec3 v)
 static void add_child(const struct lamps *lamps, const struct lit *leaf, int32_t child,
                       struct lamp_groups *groups, int64_t *work);
 
-/* Adds a cluster as a group, or what is below it. Lamps that face away bring the leaf no
- * light, but paths that go on may reach them. */
+/* Adds a cluster as a group, or those below it. */
 static void add_cluster(const struct lamps *lamps, const struct lit *leaf,
                         const struct lit_cluster *cluster, struct lamp_groups *groups,
                         int64_t *work)
@@ -322,15 +320,13 @@ static void add_cluster(const struct lamps *lamps, const struct lit *leaf,
     double distance2 = vec3_dot(apart, apart), distance = sqrt(distance2);
     double facing = facing_most(cluster, vec3_scale(apart, -1.0));
     double reach = cluster->radius + leaf->radius;
-    bool away = facing + reach <= 0.0;
     struct lamp_group group = {.node = cluster->node};
-    if (away ||
-        cluster->radius <= leaf->small * real_max(distance - reach, leaf->radius)) {
+    if (facing + reach <= 0.0 || vec3_dot(apart, plane->normal) + reach <= 0.0)
+        return;
+    if (cluster->radius <= leaf->small * real_max(distance - reach, leaf->radius)) {
         facing = real_min(1.0, real_max(facing / distance, LEAST_COSINE));
-        group.around =
-            facing * cluster->watts / real_max(PI * distance2, leaf->facet->area);
-        if (!away && vec3_dot(apart, plane->normal) + reach > 0.0)
-            group.direct = cosine_to(plane, apart, distance2) * group.around;
+        group.direct = cosine_to(plane, apart, distance2) * facing * cluster->watts /
+                       real_max(PI * distance2, leaf->facet->area);
         if (group.direct <= leaf->each) {
             add_group(groups, group);
             return;
@@ -351,10 +347,10 @@ static void add_patch(const struct lamps *lamps, const struct lit *leaf, int32_t
     double distance2 = real_max(vec3_dot(apart, apart), facet.area);
     double radius = triangle_radius(&facet.triangle);
     struct lamp_group group = {.node = patch};
-    group.around = real_min(lamps->power[patch] / (PI * distance2),
-                            lamps->power[patch] / facet.area);
+    double around = real_min(lamps->power[patch] / (PI * distance2),
+                             lamps->power[patch] / facet.area);
     if (facets_face(leaf->facet, &facet))
-        group.direct = group.around * cosine_to(&leaf->facet->plane, apart, distance2) *
+        group.direct = around * cosine_to(&leaf->facet->plane, apart, distance2) *
                        cosine_to(&facet.plane, vec3_scale(apart, -1.0), distance2);
     bool small = radius * radius <= leaf->small * leaf->small * distance2;
     if (lamps->part_of[patch] == patch || (small && group.direct <= leaf->each)) {
@@ -375,9 +371,9 @@ static void add_root(const struct lamps *lamps, const struct lit *leaf, int32_t 
     double sent = lamps->sent[root];
     double distance2 = real_max(vec3_dot(apart, apart), lamp.area);
     struct lamp_group group = {.node = root};
-    group.around = sent * real_min(1.0, lamp.area / (PI * distance2));
+    double around = sent * real_min(1.0, lamp.area / (PI * distance2));
     if (facets_face(leaf->facet, &lamp) && !work)
-        group.direct = group.around * cosine_to(&leaf->facet->plane, apart, distance2) *
+        group.direct = around * cosine_to(&leaf->facet->plane, apart, distance2) *
                        cosine_to(&lamp.plane, vec3_scale(apart, -1.0), distance2);
     else if (facets_face(leaf->facet, &lamp))
         group.direct = sent * mean_factor(&leaf->facet->triangle,
@@ -471,4 +467,82 @@ struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u)
         own = lamps->power[patch];
     }
     return (struct lamp){patch, all / own};
+}
+
+/* The irradiance of a point x that lamps of so much power may bring, about, W/m^2: they
+ * face it by `facing` and are above its horizon by `up`, scene units; near ones may do so
+ * at any angle. */
+static double worth_of(double watts, struct vec3 apart, double radius, double facing,
+                       double up)
+{
+    double distance2 = vec3_dot(apart, apart);
+    if (!(facing > 0.0 && up > 0.0))
+        return 0.0;
+    if (distance2 < 4.0 * radius * radius)
+        return watts / (PI * real_max(distance2, radius * radius));
+    double distance = sqrt(distance2);
+    return watts / (PI * distance2) *
+           real_min(1.0, real_max(facing / distance, LEAST_COSINE)) *
+           real_min(1.0, real_max(up / distance, LEAST_COSINE));
+}
+
+/* The same, of a node; of a cluster that is near, its children's, so many levels down. A
+ * lamp that is near tells exactly. */
+static double worth_at(const struct lamps *lamps, int32_t node, struct vec3 x,
+                       struct vec3 normal, int levels)
+{
+    if (node >= 0) {
+        const struct scene *scene = lamps->model->scene;
+        struct triangle t = scene_root_triangle(scene, node);
+        struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
+        double area = scene_root_area(scene, node);
+        if (vec3_dot(apart, apart) < NEAR_LAMP * area)
+            return lamps->sent[node] * point_triangle_factor(x, normal, &t);
+        struct plane plane = scene_root_plane(scene, node);
+        double radius = triangle_radius(&t);
+        return worth_of(lamps->sent[node] * area, apart, radius,
+                        plane_distance(&plane, x), vec3_dot(apart, normal) + radius);
+    }
+    const struct lit_cluster *cluster = &lamps->lit[~node];
+    struct vec3 apart = vec3_sub(cluster->middle, x);
+    double sum = 0.0, radius = cluster->radius;
+    if (levels == 0 || vec3_dot(apart, apart) >= 4.0 * radius * radius)
+        return worth_of(cluster->watts, apart, radius,
+                        facing_most(cluster, vec3_scale(apart, -1.0)) + radius,
+                        vec3_dot(apart, normal) + radius);
+    for (int k = 0; k < 4 && cluster->child[k] != NODE_NONE; k++)
+        sum += worth_at(lamps, cluster->child[k], x, normal, levels - 1);
+    return sum;
+}
+
+struct lamp lamp_choose_at(const struct lamps *lamps, struct vec3 x, struct vec3 normal,
+                           double most, double u)
+{
+    static const struct lamp NONE = {-1, 0.0};
+    double share = 1.0;
+    int32_t child = ~0;
+    if (lamps->lit_count == 0)
+        return NONE;
+    while (child < 0) {
+        const struct lit_cluster *cluster = &lamps->lit[~child];
+        double worth[4], sum = 0.0;
+        int count = 0, k = 0;
+        for (; count < 4 && cluster->child[count] != NODE_NONE; count++) {
+            worth[count] =
+                real_min(most, worth_at(lamps, cluster->child[count], x, normal,
+                                        LOOKED));
+            sum += worth[count];
+        }
+        if (!(sum > 0.0))
+            return NONE;
+        double at = u * sum;
+        for (; k < count - 1 && at >= worth[k]; k++)
+            at -= worth[k];
+        while (!(worth[k] > 0.0)) /* by rounding */
+            k--;
+        u = at / worth[k];
+        share *= sum / worth[k];
+        child = cluster->child[k];
+    }
+    return (struct lamp){child, share};
 }

@@ -11,13 +11,12 @@ struct lamp_group {
     int32_t node;  /* a cluster or a root; a bright patch, or one with some below it */
     double direct; /* irradiance of the leaf, about, over all bands, unoccluded, W/m^2 */
     double worth;  /* the same, less where that is more than may arrive, W/m^2 */
-    double around; /* worth for a surface beside the leaf that faces the group, W/m^2 */
 };
 
 struct lamp_groups {
     struct lamp_group *items; /* [count] */
     int64_t count, capacity;
-    double worth, around;     /* sums */
+    double worth;             /* sum */
 };
 
 /* A cluster that has lamps, as a leaf asks for it. */
@@ -50,8 +49,9 @@ struct lamps {
 
 /* A lamp that was chosen. */
 struct lamp {
-    int32_t patch; /* a root; of bright patches one of these */
-    double share;  /* power of all lamps of its group over its own, 1 */
+    int32_t patch; /* a root; of bright patches one of these; -1: none */
+    double share;  /* the inverse of its chance, 1: of a group, the power of all of its
+                      lamps over its own */
 };
 
 /* Borrows the model, which has clusters, and a solution if `reflect`. A lamp sends more
@@ -87,6 +87,13 @@ static inline int lamp_place(int k, int count)
 
 /* A lamp of the group, by the power that it emits; `u` in [0, 1) chooses. */
 struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u);
+
+/* A lamp for a point x of a surface with this unit normal, by the light that it would
+ * bring without blockers, about, on the way down the tree from its top; no node counts
+ * with more than `most`, W/m^2. `u` in [0, 1) chooses. None: no lamp can be seen from x.
+ * Pre: not `reflect`. */
+struct lamp lamp_choose_at(const struct lamps *lamps, struct vec3 x, struct vec3 normal,
+                           double most, double u);
 
 /* The factor (1) from a triangle with this unit normal to another, unoccluded: the mean
  * over points of it, which are the more the nearer the other is. Source: Lambert, exact

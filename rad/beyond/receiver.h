@@ -81,10 +81,9 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps);
 void receiver_aim_from(struct receiver *r, const struct lamps *lamps, int32_t node,
                        int count, double share);
 
-/* Adds `weight` times the light of one lamp at a point x beside the leaf, on the triangle
- * `input`. */
+/* Adds `weight` times the light of one lamp at a point x of a patch beside the leaf. */
 void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
-                         int32_t input, const struct rgb *weight, uint64_t seed);
+                         int32_t patch, const struct rgb *weight, uint64_t seed);
 
 /* True if a lamp is so near, for its size, that rays from a point find it often enough:
  * on the way of a path they count its emission, and segments do not. */

@@ -19,9 +19,9 @@
  * lets in is taken off the dark end.
  *
  * Where leaves reach through the wall, as those of a floor that begins elsewhere do,
- * single orders are noisy: over eight up to 14 %, +2.3 in the mean, and -1 over two. If
- * leaves that are lit at one end alone send no sparks, eight are -11 to +28 %, +5 in the
- * mean, and two -5.
+ * single orders are noisy: over eight -7 to +17 %, +1.8 in the mean, so that of two is
+ * known no better than 10 %. If leaves that are lit at one end alone send no sparks,
+ * eight are -11 to +28 %, +5 in the mean.
  *
  * Where only large faces aim, posts in the dark are 61 % too dark, and claim 11 %; the
  * noise of what is true there is 0.7 %.
@@ -141,6 +141,7 @@ static double light_through(double thick, struct vec3 low, struct vec3 high,
 static void test_opening(const char *name, double thick, struct vec3 low,
                          struct vec3 high, bool one_floor, double truth, double most)
 {
+    double mean = strip > 0.0 && orders < 8 ? 0.1 : 0.03;
     double sum = 0.0, worst = 0.0;
     for (int order = 0; order < orders; order++) {
         double light = light_through(thick, low, high, one_floor, order, "");
@@ -148,7 +149,7 @@ static void test_opening(const char *name, double thick, struct vec3 low,
         sum += off / orders;
         worst = fabs(off) <= worst ? worst : fabs(off);
     }
-    tap_ok(fabs(sum) <= 0.03,
+    tap_ok(fabs(sum) <= mean,
            "light through a %s is off by %+.2f %% in the mean", name, 100.0 * sum);
     tap_ok(worst <= most, "and by %.2f %% at most", 100.0 * worst);
 }
