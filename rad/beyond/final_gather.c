@@ -38,8 +38,10 @@ static const double GLOW = 0.25, LAMP = 1.1, BRIGHT = 4.0;
  * be all the light of a room beside a bright one, and rays would hardly find it. */
 static const double FEW = 0.05;
 
-/* Bright patches are aimed at if they send at least this part of the reflected light. */
-static const double LEAST_BRIGHT = 0.01;
+/* Bright patches are aimed at if the light of one ray varies, by their being met or not,
+ * by at least this part of its mean square: a patch of 1 part in 1,000 that is 40 times
+ * as bright as the mean. */
+static const double LEAST_BRIGHT = 0.04;
 
 /* Radiosity that varies by less than this part of the mean over a leaf is constant. */
 static const double FLAT = 0.01;
@@ -288,8 +290,13 @@ void final_gather_renew(struct final_gather *gather)
     double reflected = forest_mean_reflected(model->forest);
     lamps_free(&gather->bright);
     gather->bright = lamps_create(model, BRIGHT * reflected, true);
-    double part = lamps_power(&gather->bright) / (reflected * model->area);
-    if (!(part >= LEAST_BRIGHT)) { /* NaN where nothing is reflected */
+    double part = lamps_power(&gather->bright) / (reflected * model->area), squares = 0.0;
+    for (int32_t p = 0; p < forest->count; p++)
+        if (gather->bright.part_of[p] == p && gather->bright.power[p] > 0.0)
+            squares += gather->bright.power[p] * gather->bright.power[p] /
+                       forest_area(forest, p);
+    squares /= reflected * reflected * model->area;
+    if (!(squares >= LEAST_BRIGHT)) { /* NaN where nothing is reflected */
         lamps_free(&gather->bright);
         gather->bright = lamps_create(model, HUGE_VAL, true);
     }

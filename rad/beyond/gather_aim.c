@@ -227,7 +227,7 @@ static void aim_at_wide_lamp(struct receiver *r, int count, int32_t root, double
 
 /* Aims one ray at a bright patch of a group: it stands for `share` of its light. */
 static void look_at_one(struct receiver *r, int32_t patch, double share,
-                        const double u[SEQUENCE_DIMENSIONS])
+                        const double u[SEQUENCE_DIMENSIONS], uint64_t seed)
 {
     struct facet facet = facet_make(r->gather->model->forest, patch);
     struct vec3 x = receiver_start(r, u[0], u[1]);
@@ -235,7 +235,7 @@ static void look_at_one(struct receiver *r, int32_t patch, double share,
     double factor = facet.area * receiver_kernel(x, r->facet.plane.normal, y,
                                                  facet.plane.normal);
     if (factor > 0.0)
-        receiver_look_at(r, x, y, patch, share * factor);
+        receiver_look_at(r, x, y, patch, share * factor, seed);
 }
 
 /* Fires one segment, number `index` of the sequence, at a lamp of a group: it stands for
@@ -273,7 +273,8 @@ static void aim_at_group(struct receiver *r, const struct lamps *lamps,
         double share = lamp.share * direct / (group->direct * count);
         sequence_point(&sequence, (uint32_t)k, u);
         if (lamps->reflect)
-            look_at_one(r, lamp.patch, share, u);
+            look_at_one(r, lamp.patch, share, u,
+                        hash_mix(sequence.scramble[1] + (uint64_t)k));
         else
             aim_at_one(r, &sequence, k, lamp.patch, share);
         add_segment(volley, half, direct / count, rgb_sum(r->light) - before);

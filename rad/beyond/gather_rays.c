@@ -187,7 +187,7 @@ static void look_again(struct receiver *r, struct vec3 origin, struct vec3 direc
  * is the mean of inside and outside, gaps would shine. Rejected: ending half of the
  * longest and giving their light to the others; what is then taken off the mesh makes
  * large rows of both signs, by which light at rho .999 is not found. */
-static bool goes_on(struct receiver *r, const struct point *point, bool aimed, double u,
+static bool survives(struct receiver *r, const struct point *point, bool aimed, double u,
                     struct rgb *weight)
 {
     const struct rgb *rho =
@@ -255,39 +255,22 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
 
 /* True if rays from x, where a surface has this normal, are aimed at the bright patch
  * that the point which one has met is on. A leaf that sends sparks is not aimed at: these
- * bring its first light. */
+ * bring its first light. From pixels the path of such a ray goes on where it does not end
+ * on the mesh, from the holder of a bulb, say: found by chance it is a bright speck. */
 static bool is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x,
                         struct vec3 normal)
 {
     int32_t bright = r->gather->bright.part_of[met->patch];
     return bright >= 0 && !receiver_sees_sparks(r, met->patch) &&
            !is_beside(r->gather->model->forest, bright, x) &&
-           ends_on_mesh(r, met, x, normal);
-}
-
-void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
-                      double factor)
-{
-    const struct final_gather *g = r->gather;
-    struct vec3 way = vec3_sub(y, x);
-    struct point point;
-    if (is_beside(g->model->forest, patch, x) ||
-        trace(r, point_above(x, r->facet.plane.normal),
-              vec3_scale(way, 1.0 / vec3_length(way)), &point) != MET_FRONT ||
-        g->bright.part_of[point.patch] != patch ||
-        !ends_on_mesh(r, &point, x, r->facet.plane.normal) ||
-        receiver_aims_through(r, point.patch) || receiver_sees_sparks(r, point.patch))
-        return;
-    add_mesh(r, &point, root_is_lamp(&g->lamps, root_of(r, &point)),
-             &(struct rgb){{factor, factor, factor}});
-    r->shares.bright += factor;
+           (r->points || ends_on_mesh(r, met, x, normal));
 }
 
 /* True if the bright patch that a path has met, from x on its way, is aimed at from
  * there: in pixels, if a point of all bright patches, chosen by power, brings no more
  * light than a ray that meets this one. (A row would no longer sum to 1.) */
 static bool is_aimed_at_beside(const struct receiver *r, const struct point *met,
-                               struct vec3 x, struct vec3 normal)
+                               struct vec3 x)
 {
     const struct lamps *bright = &r->gather->bright;
     int32_t patch = bright->part_of[met->patch];
@@ -295,10 +278,13 @@ static bool is_aimed_at_beside(const struct receiver *r, const struct point *met
         return false;
     struct vec3 ray = vec3_sub(met->at, x);
     double area = forest_area(r->gather->model->forest, patch);
-    return PI * vec3_dot(ray, ray) * bright->power[patch] >=
-               area * lamps_power(bright) &&
-           ends_on_mesh(r, met, x, normal);
+    return PI * vec3_dot(ray, ray) * bright->power[patch] >= area * lamps_power(bright);
 }
+
+/* A path goes on from a point that it has met and does not end on; adds its light, times
+ * `weight`. `aims`: from all of its points at bright patches. */
+static void go_on(struct receiver *r, struct point point, bool aimed, struct rgb weight,
+                  uint64_t seed, bool aims);
 
 /* Adds `weight` times the light of such patches, by one ray from x. */
 static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
@@ -316,25 +302,49 @@ static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
     struct point point;
     if (!(factor > 0.0) ||
         trace(r, x, vec3_unit(vec3_sub(y, x)), &point) != MET_FRONT ||
-        g->bright.part_of[point.patch] != lamp.patch ||
-        !is_aimed_at_beside(r, &point, x, normal))
+        g->bright.part_of[point.patch] != lamp.patch || !is_aimed_at_beside(r, &point, x))
         return;
     struct rgb light = *weight;
     for (int c = 0; c < BANDS; c++)
         light.band[c] *= factor;
-    add_mesh(r, &point, is_aimed_lamp(r, &point, x), &light);
+    bool aimed = is_aimed_lamp(r, &point, x);
+    if (ends_on_mesh(r, &point, x, normal))
+        add_mesh(r, &point, aimed, &light);
+    else
+        go_on(r, point, aimed, light, hash_mix(seed), false);
 }
 
-/* A ray ends on the mesh. If it is the first of a path and has met a lamp, it counts as
- * one that has. */
-static void end_path(struct receiver *r, const struct point *point, bool aimed,
-                     bool first, const struct rgb *weight)
+void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
+                      double factor, uint64_t seed)
+{
+    const struct final_gather *g = r->gather;
+    struct vec3 way = vec3_sub(y, x), normal = r->facet.plane.normal;
+    struct point point;
+    if (is_beside(g->model->forest, patch, x) ||
+        trace(r, point_above(x, normal), vec3_scale(way, 1.0 / vec3_length(way)),
+              &point) != MET_FRONT ||
+        g->bright.part_of[point.patch] != patch || !is_aimed_at(r, &point, x, normal) ||
+        receiver_aims_through(r, point.patch))
+        return;
+    struct rgb weight = {{factor, factor, factor}};
+    bool aimed = root_is_lamp(&g->lamps, root_of(r, &point));
+    r->shares.bright += factor;
+    if (ends_on_mesh(r, &point, x, normal))
+        add_mesh(r, &point, aimed, &weight);
+    else
+        go_on(r, point, aimed, weight, seed, true);
+}
+
+/* The first ray of a path ends on the mesh. If it has met a lamp, it counts as one that
+ * has. */
+static void end_ray(struct receiver *r, const struct point *point, bool aimed,
+                    const struct rgb *weight)
 {
     const struct forest *forest = r->gather->model->forest;
     struct rgb emission = forest_material(forest, point->patch)->emission;
     add_mesh(r, point, aimed, weight);
-    r->sums.on_lamps += aimed && first;
-    for (int c = 0; c < BANDS && aimed && first; c++)
+    r->sums.on_lamps += aimed;
+    for (int c = 0; c < BANDS && aimed; c++)
         r->sums.taken.band[c] -= weight->band[c] * emission.band[c];
 }
 
@@ -371,6 +381,32 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
         receiver_add_near(r, weight, emission, 1.0);
 }
 
+static void go_on(struct receiver *r, struct point point, bool aimed, struct rgb weight,
+                  uint64_t seed, bool aims)
+{
+    for (int count = 1; count < PATH_MOST; count++, seed += 16) {
+        struct vec3 origin, direction, normal = point.normal;
+        if (count > PATH_SURE &&
+            !survives(r, &point, aimed, hash_unit(seed + 13), &weight))
+            return;
+        if (!leave(r, &point, aimed, seed, &weight, &origin, &direction))
+            return;
+        if (aims)
+            look_beside(r, origin, normal, &weight, seed + 10);
+        if (trace(r, origin, direction, &point) != MET_FRONT) {
+            r->escaped++;
+            return;
+        }
+        aimed = is_aimed_lamp(r, &point, origin);
+        if (aims && is_aimed_at_beside(r, &point, origin))
+            return;
+        if (count + 1 == PATH_MOST || ends_on_mesh(r, &point, origin, normal)) {
+            add_mesh(r, &point, aimed, &weight);
+            return;
+        }
+    }
+}
+
 /* Follows a path from a ray of the stream on, and adds its light, times `weight`. The ray
  * is of this half. */
 static void follow(struct receiver *r, const struct stream *stream, int ray,
@@ -378,50 +414,33 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
 {
     struct vec3 origin = stream->origins[ray], direction = stream->directions[ray];
     const struct forest *forest = r->gather->model->forest;
-    struct vec3 normal = r->facet.plane.normal; /* at the origin */
-    for (int count = 1;; count++, seed += 16) {
-        struct point point;
-        enum met met = count == 1 ? meet(r, origin, direction, &stream->hits[ray], &point)
-                                  : probe(r, origin, direction, &point);
-        if (count == 1 && ray_comes_from_inside(r, origin, direction)) {
-            r->sums.inside++;
-            return;
-        }
-        if (met == MET_BACK && count == 1)
-            look_again(r, origin, direction);
-        else
-            r->escaped += met != MET_FRONT;
-        if (met != MET_FRONT)
-            return;
-        find_leaf(forest, point.patch, &point);
-        if (count == 1 && (receiver_aims_through(r, point.patch) ||
-                           is_aimed_at(r, &point, origin, normal))) {
-            r->sums.aside[half]++;
-            return;
-        }
-        bool aimed = count == 1
-                         ? root_is_lamp(&r->gather->lamps, root_of(r, &point))
-                         : is_aimed_lamp(r, &point, origin);
-        if (count == 1 && receiver_sees_sparks(r, point.patch)) {
-            add_without_sparks(r, &point, aimed, &weight);
-            return;
-        }
-        if (count > 1 && is_aimed_at_beside(r, &point, origin, normal))
-            return;
-        if (count == PATH_MOST || ends_on_mesh(r, &point, origin, normal)) {
-            end_path(r, &point, aimed, count == 1, &weight);
-            return;
-        }
-        r->shares.doubt = r->shares.doubt || (count == 1 && aimed);
-        if (count == 1)
-            begin_path(r, &point, aimed, &weight);
-        if (count > PATH_SURE &&
-            !goes_on(r, &point, aimed, hash_unit(seed + 13), &weight))
-            return;
-        if (!leave(r, &point, aimed, seed, &weight, &origin, &direction))
-            return;
-        normal = point.normal;
-        look_beside(r, origin, normal, &weight, seed + 10);
+    struct vec3 normal = r->facet.plane.normal;
+    struct point point;
+    enum met met = meet(r, origin, direction, &stream->hits[ray], &point);
+    if (ray_comes_from_inside(r, origin, direction)) {
+        r->sums.inside++;
+        return;
+    }
+    if (met == MET_BACK)
+        look_again(r, origin, direction);
+    else
+        r->escaped += met != MET_FRONT;
+    if (met != MET_FRONT)
+        return;
+    find_leaf(forest, point.patch, &point);
+    if (receiver_aims_through(r, point.patch) || is_aimed_at(r, &point, origin, normal)) {
+        r->sums.aside[half]++;
+        return;
+    }
+    bool aimed = root_is_lamp(&r->gather->lamps, root_of(r, &point));
+    if (receiver_sees_sparks(r, point.patch)) {
+        add_without_sparks(r, &point, aimed, &weight);
+    } else if (ends_on_mesh(r, &point, origin, normal)) {
+        end_ray(r, &point, aimed, &weight);
+    } else {
+        r->shares.doubt = r->shares.doubt || aimed;
+        begin_path(r, &point, aimed, &weight);
+        go_on(r, point, aimed, weight, seed, true);
     }
 }
 

@@ -92,7 +92,7 @@ bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 
 /* Adds the light of a bright patch that has this form factor, where a ray from x that is
  * aimed at y meets it. */
 void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
-                      double factor);
+                      double factor, uint64_t seed);
 
 /* --- in the dark: gather_narrow.c, gather_sparks.c --- */
 

@@ -263,6 +263,30 @@ static void test_bright_beside(void)
     trial_free(&g);
 }
 
+/* A bulb in its holder, in a room. The holder is hundreds of times as bright as the
+ * walls, sends less than a hundredth of their light, and the bulb covers a part of it, so
+ * that rays that meet it go on. Found by chance it is a speck. */
+static void test_holder(void)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    paint(&soup, 0.7, 0.0);
+    soup_add_box(&soup, point(0.49, 0.49, 0.50), point(0.51, 0.51, 0.52), 1, false);
+    paint(&soup, 0.0, 1e4);
+    soup_add_box(&soup, point(0.48, 0.48, 0.48), point(0.52, 0.52, 0.50), 1, false);
+    paint(&soup, 0.1, 0.0);
+    struct trial g = gather_scene(&soup, "--epsilon 1e-3", 64);
+    const struct forest *forest = g.s.solver->model.forest;
+    uint8_t *open = alloc_array((size_t)forest->count, sizeof *open);
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (int64_t i = 0; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
+        open[i++] = forest->patches[leaf].id.root < 24;
+    final_gather_set_partly_covered(&g.gather, open, 1);
+    alloc_free(open);
+    judge_pixel(&g, 10, point(0.3, 0.3, 0.4), "below a bulb in its holder");
+    trial_free(&g);
+}
+
 /* Eighty bulbs of 32 facets on a wall: from a point beside one of them that is chosen
  * which brings most light, so that no estimate of all light is more than ten times too
  * large. If lamps are chosen by power it is 340 times. */
@@ -641,6 +665,7 @@ int main(int argc, char **argv)
     test_bulbs();
     test_bright();
     test_bright_beside();
+    test_holder();
     test_choice();
     test_bright_part(point(0.4, 0.6, 0.9), 0.004, "--max-level 6");
     test_bright_part(point(0.4, 0.6, 0.97), 0.004, "--max-level 7");
