@@ -153,8 +153,8 @@ void balance_judge(struct run *run)
     else if (escaped > OFF && is_closed(run))
         run_say(run,
                 "warning: %.3g %% of the light of this closed scene is lost: "
-                "%sit may fall on black backs (see --two-sided), "
-                "faces may lie on each other, or --epsilon is too large",
+                "%sit may fall on black backs (see --two-sided), be sent inside of "
+                "things, faces may lie on each other, or --epsilon is too large",
                 100.0 * escaped,
                 run->vote.converged ? "" : "there are too few iterations, ");
 }

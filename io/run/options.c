@@ -243,7 +243,7 @@ static bool set_gather(const struct argument *a)
     size_t length = strlen(a->value), ending = sizeof PIXELS - 1;
     a->options->pixels =
         length >= ending && strcmp(a->value + length - ending, PIXELS) == 0;
-    if (!a->options->pixels && !strchr(a->value, ','))
+    if (!a->options->pixels && !strpbrk(a->value, ",p"))
         return set_integer(a);
     if (a->options->pixels && length == ending)
         return true;

@@ -417,6 +417,8 @@ static void test_restart(void)
                   "--flat and --final-gather pixels do not go together");
     check_refused("a.obj --final-gather 64pixels",
                   "--final-gather: '64pixels' is not N, pixels or N,pixels");
+    check_refused("a.obj --final-gather pixel",
+                  "--final-gather: 'pixel' is not N, pixels or N,pixels");
     check_refused("a.obj --final-gather 64,256",
                   "--final-gather: '64,256' is not N, pixels or N,pixels");
     check_refused("a.obj --final-gather 6x,pixels",
