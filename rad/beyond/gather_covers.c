@@ -12,9 +12,6 @@
 #include "rad/beyond/sequence.h"
 #include "rad/beyond/sample.h"
 
-/* Faces in one place are less far apart, in scene units. */
-static const double ABOVE = 0x1p-26;
-
 /* Points of a leaf that are tested for being bare. */
 enum { BARE_POINTS = 4 };
 
@@ -83,7 +80,7 @@ void receiver_find_covers(struct receiver *r)
         struct vec3 x = triangle_of_square(&r->facet.triangle, u[0], u[1]);
         struct octree_hit hit;
         covered +=
-            octree_first_hit(model->octree, vec3_add(x, vec3_scale(normal, ABOVE)),
+            octree_first_hit(model->octree, vec3_add(x, vec3_scale(normal, FACES_APART)),
                              vec3_scale(normal, -1.0), false, &hit, &model->counts) &&
             hit.triangle != r->facet.input && (hit.front || r->sums.inside == 0);
     }

@@ -232,7 +232,7 @@ void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor
     const struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     struct rgb weight = {{factor, factor, factor}};
-    struct point point = {.input = scene_input_of(forest->scene, root), .at = y,
+    struct point point = {.at = y,
                           .normal = scene_root_plane(forest->scene, root).normal};
     bool aimed = root_is_lamp(&g->lamps, root);
     find_leaf(forest, root, &point);

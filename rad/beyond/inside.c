@@ -9,9 +9,6 @@
 
 #include "rad/beyond/sample.h"
 
-/* Faces in one place are less far apart, in scene units. */
-static const double APART = 0x1p-26;
-
 /* Faces that a ray crosses, at most. */
 enum { CROSSED_MOST = 32 };
 
@@ -48,7 +45,7 @@ static struct crossing next_face(const struct space *space, struct vec3 origin,
 /* True if another face lies back to back with a front. */
 static bool is_backed(const struct space *space, const struct crossing *front)
 {
-    struct vec3 step = vec3_scale(front->normal, APART);
+    struct vec3 step = vec3_scale(front->normal, FACES_APART);
     int32_t own[2] = {front->input, -1}, other = -1;
     return octree_blocks_segment(space->octree, vec3_add(front->at, step),
                                  vec3_sub(front->at, step), own, &other,
@@ -69,7 +66,7 @@ static bool leaves_a_thing(const struct space *space, struct crossing face,
         }
         if (!backed && !scene_has_twin(space->scene, face.input))
             entered += face.back ? -1 : 1;
-        double beyond = face.back ? APART : -APART;
+        double beyond = face.back ? FACES_APART : -FACES_APART;
         struct vec3 origin = vec3_add(face.at, vec3_scale(face.normal, beyond));
         face = next_face(space, origin, direction);
     }

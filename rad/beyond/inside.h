@@ -7,6 +7,9 @@
 #include "geom/scene.h"
 #include "octree/octree.h"
 
+/* Faces in one place are less far apart, in scene units. */
+#define FACES_APART 0x1p-26
+
 /* True if a ray may begin inside of a thing: on its way it leaves more things than it
  * enters, be it by a back or by the front of a wall that the thing touches; or, where the
  * thing has no face on that wall, a ray from there across does. `single` becomes true if

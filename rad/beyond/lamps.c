@@ -29,7 +29,7 @@ static const double SMALL = 0.25, SMALL_AT_FIRST = 3.0;
 
 /* A lamp is chosen by its exact light if the square of its distance is less than this
  * times its area; levels below a near cluster that are looked at. */
-static const double NEAR_LAMP = 16.0;
+static const double EXACT_WITHIN = 16.0;
 enum { LOOKED = 2 };
 
 /* Least cosine that a group of lamps is counted with: where a part of it may be above the
@@ -496,7 +496,7 @@ static double worth_at(const struct lamps *lamps, int32_t node, struct vec3 x,
         struct triangle t = scene_root_triangle(scene, node);
         struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
         double area = scene_root_area(scene, node);
-        if (vec3_dot(apart, apart) < NEAR_LAMP * area)
+        if (vec3_dot(apart, apart) < EXACT_WITHIN * area)
             return lamps->sent[node] * point_triangle_factor(x, normal, &t);
         struct plane plane = scene_root_plane(scene, node);
         double radius = triangle_radius(&t);

@@ -7,7 +7,6 @@
 
 struct point {
     int32_t patch;     /* leaf of the forest */
-    int32_t input;     /* triangle */
     double weight[3];  /* barycentric coordinates in the leaf, 1 */
     struct vec3 at, normal;
 };
@@ -43,7 +42,6 @@ static inline enum met meet(struct receiver *r, struct vec3 origin, struct vec3 
     double along = fall > 0.0 ? plane_distance(&plane, origin) / fall : 0.0;
     point->at = vec3_add(origin, vec3_scale(direction, along));
     point->patch = root;
-    point->input = hit->triangle;
     point->normal = plane.normal;
     return MET_FRONT;
 }
