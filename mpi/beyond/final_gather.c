@@ -33,10 +33,11 @@
  * face lies). Rows sum to 1, but columns have the noise of rays and what is wrong with
  * leaves that are seen in part, so W loses or makes some thousandths of the light: of
  * rho .99 a hundredfold of that would be missing in the end. It is made up for within W,
- * in proportion to the irradiances of the turn before: with these, h, the areas a, and
- * W' = W + h (a - W^T a)^T / (a^T h),
+ * in proportion to the irradiances of the turn before: with these, h, the areas a, the
+ * shares k of what leaves that are kept, 1 but where a leaf faces out of the scene, and
+ * W' = W + h (k a - W^T a)^T / (a^T h),
  *
- *     a^T W' = a^T,
+ *     a^T W' = (k a)^T,
  *
  * whatever light there is. So the balance of the answer is true. One factor for the
  * irradiances of the answer would make it true as well, but by the hundredfold, and for
@@ -230,13 +231,14 @@ static void find_shown(struct gathering *g, const struct rgb *b)
 }
 
 /* The area of a leaf whose emission arrives: of a lamp all that is outside of things, for
- * segments pass through a ceiling in whose plane it is; else the bare area. */
+ * segments pass through a ceiling in whose plane it is; else the bare area. The top of a
+ * lamp at the ceiling shines out of the room: nothing of that is kept. */
 static double shining_area(const struct gathering *g, int64_t i)
 {
     uint32_t root = g->solver->model.forest->patches[g->leaves[i]].id.root;
     const struct cover *cover = &g->covers[i];
     bool lamp = root_is_lamp(&g->gather.lamps, (int32_t)root);
-    return (lamp ? g->areas[i] : cover->bare) * cover->outside;
+    return (lamp ? g->areas[i] : cover->bare) * cover->outside * cover->kept;
 }
 
 /* Spreads what is missing, so that as much light arrives as leaves, over irradiances `h`
@@ -247,9 +249,10 @@ static void close_balance(struct gathering *g, const struct rgb *b, bool lamps,
     struct rgb leaving = {{0.0, 0.0, 0.0}}, arriving = leaving, all = leaving;
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m = gathering_material(g, i);
-        double bare = g->covers[i].bare, more = lamps ? shining_area(g, i) - bare : 0.0;
+        double bare = g->covers[i].bare, kept = g->covers[i].kept * bare;
+        double more = lamps ? shining_area(g, i) - kept : 0.0;
         for (int c = 0; c < BANDS; c++) {
-            leaving.band[c] += bare * b[i].band[c] + more * m->emission.band[c];
+            leaving.band[c] += kept * b[i].band[c] + more * m->emission.band[c];
             arriving.band[c] += bare * h[i].band[c];
             all.band[c] += bare * g->spread[i].band[c];
         }
@@ -310,11 +313,13 @@ static void share_covers(struct gathering *g)
     struct rgb *shares = alloc_array((size_t)g->count, sizeof *shares);
     for (int64_t row = 0; row < g->gather.count; row++)
         own[row] = (struct rgb){{(double)g->gather.rows[row].bare,
-                                 (double)g->gather.rows[row].outside, 0.0}};
+                                 (double)g->gather.rows[row].outside,
+                                 (double)g->gather.rows[row].kept}};
     gathering_share_rows(g, shares);
     for (int64_t i = 0; i < g->count; i++)
         g->covers[i] = (struct cover){.bare = g->areas[i] * shares[i].band[0],
-                                      .outside = shares[i].band[1]};
+                                      .outside = shares[i].band[1],
+                                      .kept = shares[i].band[2]};
     find_seen(g);
     alloc_free(shares);
 }
@@ -341,19 +346,20 @@ static void set_radiosities(const struct gathering *g, const struct rgb *h, stru
     }
 }
 
-/* Scales the irradiances of a closed scene so that all emitted light is absorbed. Their
- * balance lacks what was below 0 and is 0, and what is left of the equation. */
+/* Scales the irradiances of a closed scene so that all light that is kept is absorbed.
+ * Their balance lacks what was below 0 and is 0, and what is left of the equation. */
 static void absorb_all(const struct gathering *g, struct rgb *h)
 {
     for (int c = 0; c < BANDS; c++) {
-        double emitted = 0.0, absorbed = 0.0;
+        double emitted = 0.0, gone = 0.0;
         for (int64_t i = 0; i < g->count; i++) {
             const struct material *m = gathering_material(g, i);
             emitted += shining_area(g, i) * m->emission.band[c];
-            absorbed += g->covers[i].bare * (1.0 - m->reflectance.band[c]) * h[i].band[c];
+            double on = g->covers[i].kept * m->reflectance.band[c];
+            gone += g->covers[i].bare * (1.0 - on) * h[i].band[c];
         }
-        for (int64_t i = 0; i < g->count && absorbed > 0.0; i++)
-            h[i].band[c] *= emitted / absorbed;
+        for (int64_t i = 0; i < g->count && gone > 0.0; i++)
+            h[i].band[c] *= emitted / gone;
     }
 }
 

@@ -9,6 +9,7 @@
 struct cover {
     double outside; /* share that is not inside of things, 1 */
     double bare;    /* area, less such faces' share of that, square scene units */
+    double kept;    /* share of its light that arrives on fronts, 1 */
 };
 
 /* A leaf too near for some. */

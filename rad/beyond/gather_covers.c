@@ -63,6 +63,32 @@ bool ray_comes_from_inside(struct receiver *r, struct vec3 origin, struct vec3 d
            is_inside(r, origin);
 }
 
+/* True if a ray of the receiver begins outside of things. */
+static bool is_partly_outside(struct receiver *r)
+{
+    struct sequence sequence = sequence_start(r->seed);
+    double u[SEQUENCE_DIMENSIONS];
+    for (int i = 0; i < r->rays; i++) {
+        sequence_point(&sequence, (uint32_t)i, u);
+        struct vec3 x = receiver_start(r, u[2], u[3]);
+        if (!is_inside(r, point_above(x, r->facet.plane.normal)))
+            return true;
+    }
+    return false;
+}
+
+void receiver_find_outside(struct receiver *r)
+{
+    int lost = 0;
+    if (r->sums.inside > 0 && r->sums.inside < r->rays && !is_partly_outside(r)) {
+        lost = r->sums.inside;
+        r->sums.inside = 0;
+    }
+    int outside = r->rays - r->sums.inside;
+    if (outside > 0)
+        r->row.kept = 1.0f - fminf(1.0f, (float)(r->escaped + lost) / (float)outside);
+}
+
 void receiver_find_covers(struct receiver *r)
 {
     struct model *model = r->gather->model;

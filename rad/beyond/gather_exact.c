@@ -343,6 +343,7 @@ static bool close_row(struct receiver *r)
     if (sum > 1.0 + CLOSED)
         return false;
     r->gather->counts.exact++;
+    r->row.kept = sum < 1.0 - CLOSED ? (float)sum : 1.0f;
     r->gather->counts.escaped += sum > 0.0 && sum < 1.0 - CLOSED;
     for (int64_t i = 0; i < sums->count && sum >= 1.0 - CLOSED; i++)
         for (int c = 0; c < BANDS; c++)

@@ -587,6 +587,7 @@ void receiver_fire(struct receiver *r)
         r->near = -1;
         count_light(r, i, half);
     }
+    receiver_find_outside(r);
     if (r->sums.inside == r->rays)
         return; /* what could be aimed at would be walls that things touch */
     add_variances(r);

@@ -157,6 +157,12 @@ struct receiver_share receiver_share_of_wide(struct receiver *r,
                                              const struct sequence *sequence, int count,
                                              int32_t lamp);
 
+/* Fills in the share of the leaf's light that is kept. Rays that seemed to begin inside
+ * of a thing do so only if others begin outside of it, or all see backs: where walls show
+ * their backs, and a floor and a ceiling end at them, the whole room is as the inside of
+ * a column. Its rays are lost on the backs. */
+void receiver_find_outside(struct receiver *r);
+
 /* Fills in the shares of the leaf's area that are bare, not covered by another face in
  * its plane (a picture on a wall, a lamp in the ceiling), and, as its rays have shown,
  * outside of things that stand on it. Of a leaf that sees nothing, as the underside of

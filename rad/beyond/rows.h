@@ -57,6 +57,8 @@ struct gather_row {
                              rays: a sample of the variance by the sequence */
     float outside;     /* share of the leaf that is not inside of a thing on it, 1 */
     float bare;        /* share of that which no face in the leaf's plane covers, 1 */
+    float kept;        /* share of the leaf's light that arrives on fronts, by where its
+                          own rays end, 1 */
 };
 
 /* A leaf where rays have met it too near for its mean to hold: their paths went on from

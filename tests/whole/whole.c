@@ -648,6 +648,55 @@ static void test_light_is_kept(enum room room, double rho, const char *words)
     solution_free(&s);
 }
 
+/* A box that shines hangs from the ceiling of a closed room, its top in that plane. What
+ * the top emits leaves the room, so three quarters of the power is absorbed. */
+static void test_light_out(void)
+{
+    struct soup soup = {0};
+    add_room(&soup, CUBE);
+    paint(&soup, 0.6, 0.0);
+    soup_add_box(&soup, point(0.4, 0.4, 0.9), point(0.6, 0.6, 1.0), 1, false);
+    paint(&soup, 0.6, 1.0);
+    struct solution s = solve_soup(&soup, *options ? options : "--epsilon 1e-3");
+    double part = s.stats.absorbed_power / s.stats.emitted_power;
+    tap_ok(fabs(part - 0.75) <= 1e-4, "a lamp with its top in the ceiling: %.5f of its "
+           "light is absorbed (3/4 is below it)", part);
+    solution_free(&s);
+}
+
+/* The mean B of two squares with a lamp between them, all of rho 1/2; `walls`: backs of
+ * walls are around them. */
+static double light_on_squares(bool walls)
+{
+    static const struct vec3 along = {1, 0, 0}, across = {0, 1, 0}, up = {0, 0, 1};
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 1), across, along, 1);
+    soup_add_quad(&soup, point(0, 0, 0), along, across, 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_box(&soup, point(0.4, 0.4, 0.4), point(0.6, 0.6, 0.6), 1, false);
+    paint(&soup, 0.5, 1.0);
+    for (int k = 0; k < 4 && walls; k++) {
+        struct vec3 side = k % 2 == 0 ? along : across;
+        struct vec3 from = k < 2 ? point(0, 0, 0) : k == 2 ? across : along;
+        bool turned = k == 0 || k == 3;
+        soup_add_quad(&soup, from, turned ? side : up, turned ? up : side, 1);
+    }
+    if (walls)
+        paint(&soup, 0.5, 0.0);
+    struct solution s = solve_soup(&soup, *options ? options : "--epsilon 1e-3");
+    double mean = mean_radiosity(&s, 0, 4);
+    solution_free(&s);
+    return mean;
+}
+
+/* Backs are black: as much light is lost on them as between the squares alone. */
+static void test_backs(void)
+{
+    double open = light_on_squares(false), walled = light_on_squares(true);
+    tap_ok(fabs(walled / open - 1.0) <= 5e-3, "squares between backs of walls: B %.5f, "
+           "and without walls %.5f (at most 0.5 %%)", walled, open);
+}
+
 /* B at a point of the outer sphere, `b` being that of the inner and the outer one: of its
  * view each facet of the inner sphere that faces it takes its form factor, for none hides
  * another, and the outer sphere takes the rest. */
@@ -813,6 +862,8 @@ int main(int argc, char **argv)
     test_light_is_kept(FURNISHED, 0.99, "--epsilon 1e-3");
     test_light_is_kept(FURNISHED, 0.999, "");
     test_light_is_kept(TOUCHING, 0.99, "");
+    test_light_out();
+    test_backs();
     if (argc < 2)
         test_convergence();
     comm_stop(&world_comm);
