@@ -302,25 +302,24 @@ static void know_exact(struct looking *l, bool all)
     }
 }
 
-/* A guess at the variance of rho H of a leaf by one ray: by the light that the leaf has,
- * as links tell it, and by light of the mean radiosity, which may arrive, too. */
-static double guess_variance(const struct looking *l, int32_t leaf)
+/* What is known of a leaf that needs rays before it is looked at: a guess at the variance
+ * of rho H by one ray, by the light that the leaf has, as links tell it, and by light of
+ * the mean radiosity, which may arrive, too. */
+static struct known guess_of(const struct looking *l, int32_t leaf)
 {
     const struct forest *forest = l->solver->model.forest;
     double rho = rgb_sum(forest_material(forest, leaf)->reflectance) / BANDS;
     double mean = rho * l->gather.mean / BANDS; /* of a band */
-    return square_of_light(forest, leaf) + VARIANCE_OF_MEAN * BANDS * mean * mean;
+    double guess = square_of_light(forest, leaf) + VARIANCE_OF_MEAN * BANDS * mean * mean;
+    return (struct known){guess, guess, 0.0f, 1.0f};
 }
 
 /* Before there are looks: guesses for all leaves that need rays. */
 static void know_nothing(struct looking *l)
 {
     RESERVE(l->known, &l->known_capacity, l->solver->model.forest->count);
-    for (int64_t i = 0; i < l->mesh->count; i++) {
-        int32_t leaf = l->mesh->leaves[i];
-        double guess = guess_variance(l, leaf);
-        l->known[leaf] = (struct known){guess, guess, 0.0f, 1.0f};
-    }
+    for (int64_t i = 0; i < l->mesh->count; i++)
+        l->known[l->mesh->leaves[i]] = guess_of(l, l->mesh->leaves[i]);
     know_exact(l, l->rays < FEWEST_LOOKED);
 }
 
@@ -354,7 +353,8 @@ static int32_t *choose_leaves(struct looking *l, int64_t *count)
 }
 
 /* Gives leaves that were not looked at the mean noise, relative to their light, and the
- * mean work of those that were. Of these, too, the noise is made more like the mean. */
+ * mean work of those that were, or a guess if none was. Of those that were, too, the
+ * noise is made more like the mean. */
 static void guess_unseen(struct looking *l)
 {
     const struct gather_mesh *mesh = l->mesh;
@@ -374,11 +374,13 @@ static void guess_unseen(struct looking *l)
         work += (double)known->work;
         seen++;
     }
-    for (int64_t i = 0; i < mesh->count && seen > 0; i++) {
+    for (int64_t i = 0; i < mesh->count; i++) {
         struct known *known = &l->known[mesh->leaves[i]];
         double all = square_of_light(forest, mesh->leaves[i]);
         double part = square > 0.0 ? all / square : 0.0;
-        if (known->by_ray == IS_UNSEEN)
+        if (known->by_ray == IS_UNSEEN && seen == 0)
+            *known = guess_of(l, mesh->leaves[i]);
+        else if (known->by_ray == IS_UNSEEN)
             *known = (struct known){part * by_ray, part * by_segment,
                                     (float)(fixed / (double)seen),
                                     (float)(work / (double)seen)};
