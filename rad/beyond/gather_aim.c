@@ -383,9 +383,9 @@ void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
     struct vec3 facing = scene_root_plane(scene, lamp.patch).normal;
     struct rgb emission = scene_root_material(scene, lamp.patch)->emission;
     double factor = point_triangle_factor(x, normal, &triangle);
-    for (uint64_t k = 0; k < AIMS_MOST && factor > 0.0; k++) {
-        struct vec3 y = triangle_of_square(&triangle, hash_unit(seed + 2 + 2 * k),
-                                       hash_unit(seed + 3 + 2 * k));
+    uint64_t at = seed + 2;
+    for (int k = 0; k < AIMS_MOST && factor > 0.0; k++, at = hash_mix(at)) {
+        struct vec3 y = triangle_of_square(&triangle, hash_unit(at), hash_unit(at + 1));
         if (!(receiver_kernel(x, normal, y, facing) > 0.0))
             continue;
         if (blocker_of(r, x, input, y, lamp.patch) < 0)
