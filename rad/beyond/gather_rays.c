@@ -52,6 +52,11 @@ static const double NEAR_OPENING = 16.0;
  * planes, with no gap. */
 static const double ALONG = 16.0;
 
+/* A leaf that a wall cuts is too near if the square of the ray's length is less than this
+ * times its area. A Cornell box takes 2 % more rays than with 1, for which it is a third
+ * too bright inside of a hut on a lawn. */
+static const double CUT = 16.0;
+
 /* A point is beside a patch if the square of its distance is less than this times the
  * square of the patch's radius. */
 static const double BESIDE = 2.0;
@@ -148,14 +153,14 @@ static bool is_cut(struct final_gather *gather, int32_t leaf)
     return *known == 2;
 }
 
-/* True if a ray has met a leaf that is cut, from nearer than it is wide: whoever stands
- * on one side sees that alone, and the mean is that of both. */
+/* True if a ray has met a leaf that is cut, and is not far away: whoever stands on one
+ * side sees that alone, and the mean is that of both. */
 static bool is_cut_between(const struct receiver *r, const struct point *met,
                            struct vec3 x)
 {
     struct vec3 ray = vec3_sub(met->at, x);
     return r->keeps &&
-           vec3_dot(ray, ray) < r->gather->near.leaves[met->patch].area &&
+           vec3_dot(ray, ray) < CUT * r->gather->near.leaves[met->patch].area &&
            is_cut(r->gather, met->patch);
 }
 
