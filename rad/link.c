@@ -1,6 +1,7 @@
 /* Links: making, splitting, transferring.
  *
- * A child inherits the last blocker, which is tested first; its siblings hand theirs on.
+ * A child inherits the last blocker, which is tested first; one that gets a link hands
+ * its own on to the next.
  *
  * Where no ray arrives there is no link: without energy it would never be split, nor
  * would it carry light. */

@@ -44,8 +44,9 @@ double remainder_look(struct remainder *remainder, const struct scene *scene,
                       struct vec3 x, struct vec3 normal)
 {
     struct outlook *outlook = &remainder->outlook;
+    bool again = remainder->hidden >= 0 && memcmp(&outlook->from, &x, sizeof x) == 0 &&
+                 memcmp(&remainder->normal, &normal, sizeof normal) == 0;
     remainder->normal = normal;
-    bool again = remainder->hidden >= 0 && memcmp(&outlook->from, &x, sizeof x) == 0;
     if (again && remainder->hidden == remainder->count)
         return remainder->before[outlook->count];
     if (!again) {
