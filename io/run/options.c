@@ -201,16 +201,17 @@ static bool cut_value(const struct argument *a, size_t ending, char digits[64])
     return true;
 }
 
-/* Sets a fraction: a number, or a percentage. */
+/* Sets a fraction: a number, or a percentage. Of 5, 5% may be meant. */
 static bool set_fraction(const struct argument *a)
 {
     char digits[64];
     double *field = a->field;
     size_t length = strlen(a->value);
-    if (length < 2 || a->value[length - 1] != '%' || !cut_value(a, 1, digits))
-        return set_real(a);
-    if (!text_is_number(digits, field))
+    bool percents = length >= 2 && a->value[length - 1] == '%' && cut_value(a, 1, digits);
+    if (!text_is_number(percents ? digits : a->value, field))
         return is_not(a, "a number");
+    if (!percents)
+        return check_range(a, *field, 1.0, "", "; percents end in %, as in 1%");
     *field /= 100.0;
     return check_range(a, *field, 0.01, " %", " %");
 }

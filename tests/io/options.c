@@ -360,6 +360,8 @@ static void test_errors(void)
                   "or be FORMAT:FILE, as in ppm:FILE");
     check_refused("a.obj --accuracy 101%",
                   "--accuracy: 101% is not between 0.01 % and 100 %");
+    check_refused("a.obj --accuracy 5", "--accuracy: 5 is not between 0.0001 and 1; "
+                                        "percents end in %, as in 1%");
     check_refused("a.obj --memory 0", "--memory: 0 is not between 1 and 1e+18 bytes");
     check_refused("a.obj --max-level 16", "--max-level: 16 is not between 0 and 15");
     check_refused("a.obj --view a -o m.ply --view b -o b.ppm",
