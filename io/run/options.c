@@ -100,6 +100,8 @@ bool target_refuse(const char *argument, struct error *error)
 
 /* --- values --- */
 
+enum { NOT_GIVEN = -1 }; /* rays of the final gather */
+
 /* A picture before all views belongs to the first. */
 static bool add_output(const struct argument *a)
 {
@@ -235,7 +237,8 @@ static bool set_bytes(const struct argument *a)
     return true;
 }
 
-/* Sets rays and pixels: N, "pixels", or both as "N,pixels". */
+/* Sets rays and pixels: N, "pixels", or both as "N,pixels". Without N it is the default,
+ * whatever was given before. */
 static bool set_gather(const struct argument *a)
 {
     static const char PIXELS[] = "pixels";
@@ -246,8 +249,10 @@ static bool set_gather(const struct argument *a)
         length >= ending && strcmp(a->value + length - ending, PIXELS) == 0;
     if (!a->options->pixels && !strpbrk(a->value, ",p"))
         return set_integer(a);
-    if (a->options->pixels && length == ending)
+    if (a->options->pixels && length == ending) {
+        *(int *)a->field = NOT_GIVEN;
         return true;
+    }
     if (!a->options->pixels || a->value[length - ending - 1] != ',' ||
         !cut_value(a, ending + 1, number))
         return is_not(a, "N, pixels or N,pixels");
@@ -375,7 +380,7 @@ static void set_defaults(struct options *options)
 {
     struct criterion *criterion = &options->criterion;
     bool tree = criterion->linking == LINKING_TREE, accurate = criterion->accuracy > 0.0;
-    if (criterion->final_gather < 0) /* not given */
+    if (criterion->final_gather == NOT_GIVEN)
         criterion->final_gather = !tree ? 0 : accurate ? FEW_RAYS : GATHER_RAYS;
     if (criterion->epsilon < 0.0)
         criterion->epsilon = options->form_factors ? EPSILON_FACTORS
@@ -460,7 +465,7 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
                       .alpha = 0.5,
                       .tolerance = 1e-5,
                       .max_iterations = 1000,
-                      .final_gather = -1},
+                      .final_gather = NOT_GIVEN},
     };
     options->outputs = alloc_array((size_t)argc, sizeof *options->outputs);
     options->views = alloc_array((size_t)argc, sizeof *options->views);

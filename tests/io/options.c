@@ -431,6 +431,13 @@ static void test_restart(void)
     tap_ok(parse("a.obj --final-gather 64,pixels") && options.pixels &&
                options.criterion.final_gather == 64,
            "or as many as are given");
+    tap_ok(parse("a.obj --final-gather 16 --final-gather pixels") && options.pixels &&
+               options.criterion.final_gather == 256 &&
+               parse("a.obj --final-gather 0 --final-gather pixels") &&
+               options.criterion.final_gather == 256 &&
+               parse("a.obj --final-gather 16,pixels --final-gather 64") &&
+               !options.pixels && options.criterion.final_gather == 64,
+           "the last final gather counts, for rays and for pixels");
     check_refused("a.obj --paper --accuracy 1%", "--accuracy goes with --linking tree");
     check_refused("a.obj --accuracy 1% --linking pairs",
                   "--accuracy goes with --linking tree");
