@@ -85,6 +85,23 @@ shows normals tests/golden/spheres.obj --epsilon 1e-2 -- $small \
 shows pixels tests/golden/spheres.obj --epsilon 1e-2 -- --size 24x18 --samples 2 \
     --view tests/golden/spheres.view --final-gather 16,pixels
 
+# --accuracy begins with 64 rays of leaves, and has pixels of 256 or as many as are given.
+# accurate NAME OPTIONS...: the mesh $work/NAME.ply; prints the rays of all pixels.
+accurate() {
+    name=$1
+    shift
+    ./phr scenes/cornell.obj --quiet --accuracy 50% --epsilon 1 "$@" --size 12x9 \
+        --samples 1 -o "$work/$name.ply" -o "$work/$name.pfm" --stats "$work/$name.json"
+    sed -n 's/.*"pixels": \([0-9]*\).*/\1/p' "$work/$name.json"
+}
+
+some=$(accurate some --final-gather 32,pixels)
+default=$(accurate pixels --final-gather pixels)
+accurate leaves >"$work/out"
+check "--accuracy: pixels have 256 rays, and not the 64 of leaves ($some, $default)" \
+    holds "int($default / $some + 0.5) == 8"
+check "and leaves are the same with pixels" cmp "$work/leaves.ply" "$work/pixels.ply"
+
 # In a shadow on a leaf that the sun lights, all light is a millionth of the leaf's.
 printf 'newmtl %s\nKd %s\nKe %s\n' floor "0.5 0.5 0.5" "0 0 0" dark \
     "1e-5 1e-5 1e-5" "0 0 0" sun "0 0 0" "1e6 1e6 1e6" >"$work/sun.mtl"

@@ -147,6 +147,8 @@ static bool show_pictures(struct run *run, const uint8_t *open)
         shading = shade_leaves(run, gathers ? answer : NULL, open);
     struct renderer renderer =
         renderer_make(run->octree, shading, gathers ? &answer->gather : NULL);
+    if (run->options.pixels && renderer.rays < run->options.pixel_rays)
+        renderer.rays = run->options.pixel_rays;
     if (gathers) {
         answer->gather.counts = (struct gather_counts){.rays = 0};
         final_gather_set_partly_covered(&answer->gather, open, OPEN_PARTS);

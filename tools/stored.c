@@ -69,9 +69,8 @@ static bool load_links(struct run *run, struct store_reader *reader, const int32
 /* With --accuracy a checkpoint goes on with as many rays as its last round had. */
 static void warn_of_rays(struct run *run, int asked)
 {
-    static const char *const NAMES[] = {"--final-gather", NULL};
     int rays = run->solver->model.criterion.final_gather;
-    if (*options_given(&run->options, NAMES) && rays != asked)
+    if (run->options.pixel_rays == 0 && rays != asked) /* they are asked for by number */
         run_say(run, "warning: no use is made of --final-gather %d: --accuracy has come "
                 "to %d", asked, rays);
 }

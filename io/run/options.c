@@ -380,6 +380,7 @@ static void set_defaults(struct options *options)
 {
     struct criterion *criterion = &options->criterion;
     bool tree = criterion->linking == LINKING_TREE, accurate = criterion->accuracy > 0.0;
+    options->pixel_rays = criterion->final_gather == NOT_GIVEN ? GATHER_RAYS : 0;
     if (criterion->final_gather == NOT_GIVEN)
         criterion->final_gather = !tree ? 0 : accurate ? FEW_RAYS : GATHER_RAYS;
     if (criterion->epsilon < 0.0)

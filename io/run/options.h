@@ -48,6 +48,8 @@ struct options {
     int width, height;        /* of --size; 0: those of the view */
     int samples;              /* samples x samples rays a pixel */
     bool pixels;              /* the final gather is done at each pixel, too */
+    int pixel_rays;           /* by this many rays at least; 0: by as many as a leaf has,
+                                 since --final-gather names them */
     enum dump dump;
     enum show show;
     const char *show_patch;   /* of SHOW_LINKS: ROOT/PATH or X,Y; else NULL */

@@ -431,6 +431,11 @@ static void test_restart(void)
     tap_ok(parse("a.obj --final-gather 64,pixels") && options.pixels &&
                options.criterion.final_gather == 64,
            "or as many as are given");
+    tap_ok(parse("a.obj --accuracy 5% --final-gather pixels") &&
+               options.criterion.final_gather == 64 && options.pixel_rays == 256 &&
+               parse("a.obj --accuracy 5% --final-gather 16,pixels") &&
+               options.criterion.final_gather == 16 && options.pixel_rays == 0,
+           "with --accuracy pixels have the default, too, or those that are given");
     tap_ok(parse("a.obj --final-gather 16 --final-gather pixels") && options.pixels &&
                options.criterion.final_gather == 256 &&
                parse("a.obj --final-gather 0 --final-gather pixels") &&
