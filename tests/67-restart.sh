@@ -121,6 +121,10 @@ check "which takes two rounds and more" \
     --resume "$work/accuracy-40.check" >"$work/out" 2>"$work/err"
 check "and says that it does not take other rays" grep -q \
     'warning: no use is made of --final-gather 300: --accuracy has come to' "$work/err"
+"$PHR" scenes/cornell.obj --accuracy 1.5% --epsilon 1e-2 --final-gather pixels \
+    --size 4x4 --resume "$work/accuracy-40.check" -o "$work/4x4.pfm" \
+    >"$work/out" 2>"$work/err"
+check "but not of rays that nobody gave" holds "$(grep -c 'no use' "$work/err") == 0"
 # Rays fired again are counted again.
 counts="checksum links patches passes iterations absorbed_power"
 resumes two-sided 8 --two-sided --max-level 4
@@ -129,6 +133,9 @@ resumes jacobi 8 --solver jacobi --max-level 3
 check "--solver is bound" \
     refused "$work/check-1: made with --solver cg, this run has --solver jacobi" \
     $cornell --resume "$work/check-1" --solver jacobi
+check "so is --accuracy, which --epsilon depends on" \
+    refused "$work/check-1: made with --accuracy 0, this run has --accuracy 0.01" \
+    scenes/cornell.obj --quiet --resume "$work/check-1" --accuracy 1%
 check "so are twins of lamps" refused \
     "$work/two-sided.check: made with --two-sided-lamps off" \
     $cornell --max-level 4 --resume "$work/two-sided.check" --two-sided-lamps

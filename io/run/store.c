@@ -210,7 +210,8 @@ static bool check_hash(struct store_reader *reader, int64_t size, struct error *
     return hash == little_get64(chunk) || damaged(reader, "its checksum is wrong", error);
 }
 
-/* Names the first setting that differs. */
+/* Names the last setting that differs: one that the default of another depends on stands
+ * behind it. But one that only one of the runs has is named if it alone differs. */
 static bool check_settings(struct store_reader *reader, int64_t bytes, const char *wanted,
                            struct error *error)
 {
@@ -218,16 +219,23 @@ static bool check_settings(struct store_reader *reader, int64_t bytes, const cha
     if (!get(reader, made, (size_t)bytes, error))
         return false;
     made[bytes] = '\0';
-    const char *a = made, *b = wanted;
-    while (*a || *b) {
-        int length_a = (int)strcspn(a, "\n"), length_b = (int)strcspn(b, "\n");
-        if (length_a != length_b || strncmp(a, b, (size_t)length_a) != 0)
-            return error_set(error, EXIT_USAGE, "%s: made with %.*s, this run has %.*s",
-                             reader->path, length_a < 80 ? length_a : 80, a, length_b, b);
+    const char *differs = NULL, *from = NULL;
+    for (const char *a = made, *b = wanted; *a || *b;) {
+        size_t length_a = strcspn(a, "\n"), length_b = strcspn(b, "\n");
+        bool same = length_a == length_b && strncmp(a, b, length_a) == 0;
+        if (!same && (!differs || (*a && *b))) {
+            differs = a;
+            from = b;
+        }
         a += length_a + (a[length_a] != '\0');
         b += length_b + (b[length_b] != '\0');
     }
-    return true;
+    if (!differs)
+        return true;
+    int shown = (int)strcspn(differs, "\n");
+    return error_set(error, EXIT_USAGE, "%s: made with %.*s, this run has %.*s",
+                     reader->path, shown < 80 ? shown : 80, differs,
+                     (int)strcspn(from, "\n"), from);
 }
 
 static bool get64(struct store_reader *reader, int64_t *value, struct error *error)

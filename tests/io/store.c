@@ -163,6 +163,14 @@ static void test_refusals(const uint8_t *bytes, size_t size)
     tap_ok(refuses(bytes, size, &wrong,
                    "F: made with --epsilon 0.01, this run has --epsilon 0.02"),
            "another number");
+    wrong.settings = "--oracle bf\n--epsilon 0.02\n";
+    tap_ok(refuses(bytes, size, &wrong,
+                   "F: made with --epsilon 0.01, this run has --epsilon 0.02"),
+           "of two others the last is named");
+    wrong.settings = "--oracle bf\n";
+    tap_ok(refuses(bytes, size, &wrong,
+                   "F: made with --oracle error, this run has --oracle bf"),
+           "but not one that this run does not have");
     struct scene *other = store_scene();
     wrong = (struct store_terms){STORE_CHECKPOINT, STORE_SETTINGS, other, NULL};
     tap_ok(takes(bytes, size, &wrong, &error), "the same scene again is the same scene");
