@@ -35,9 +35,12 @@ done
 show 1 level --max-level 0 --final-gather 0
 check "levels: one colour where nothing is divided" \
     [ "$(colours "$work/1.level.ppm")" -eq 3 ]
+check "levels come with a legend" \
+    grep -q '^phr: legend: blue is level 0, green 4, yellow 6, red 8' "$work/err"
 show 1 error
-check "errors come with their scale" \
-    grep -q 'error: black is 0, red .*, yellow .*, white .* W/m^2 or more' "$work/err"
+check "errors, too: with their scale" grep -q \
+    '^phr: legend: black is an error of 0, red .*, yellow .*, white .* W/m^2 or more' \
+    "$work/err"
 
 show 2 links:2/1 --paper --final-gather 0
 said=$(sed -n 's/.*patch 2\/1: \([0-9]*\) links.*/\1/p' "$work/err")

@@ -89,9 +89,12 @@ struct rgb *show_colours(struct run *run)
         return NULL;
     if (show == SHOW_ERROR) {
         scale = error_scale(forest, beyond_answer(run->solver)->error);
-        run_say(run, "error: black is 0, red %.3g, yellow %.3g, white %.3g W/m^2 or more",
+        run_say(run, "legend: black is an error of 0, red %.3g, yellow %.3g, "
+                     "white %.3g W/m^2 or more",
                 scale / 3.0, 2.0 * scale / 3.0, scale);
     }
+    if (show == SHOW_LEVEL)
+        run_say(run, "legend: blue is level 0, green 4, yellow 6, red 8");
     struct rgb *colours = alloc_array((size_t)forest->count, sizeof *colours);
     for (int64_t p = 0; p < forest->count; p++)
         if (patch_is_leaf(&forest->patches[p]))
