@@ -150,6 +150,10 @@ check "files of the computation are refused" says 2 \
 check "and not written" [ ! -e "$work/new.json" -a ! -e "$work/new" ]
 check "so are links, which it does not have" says 2 \
     "is a stored solution: it has no links" "$work/plain.ply" --dump links
+check "nor owners" says 2 "owner and links need a run" "$work/plain.ply" --show owner \
+    -o "$work/new.ppm"
+check "which meshes do not show" says 0 "no use is made of --show" "$work/plain.ply" \
+    --show owner -o "$work/new.ply"
 check "a solution without roots is refused" says 2 "a solution without its roots" \
     tests/fuzz/corpus/ply/solution.ply -o "$work/new.pfm"
 LC_ALL=C sed 's/^property float rest_g$/property float next_g/' "$work/plain.ply" \

@@ -56,19 +56,23 @@ done
 check "links: the same picture from a checkpoint" \
     cmp "$work/links--checkpoint.ppm" "$work/links--resume.ppm"
 
-# refused WHAT REASON OPTIONS...
+# refused WHAT REASON OPTIONS...: refused before there is light.
 refused() {
     what=$1 reason=$2
     shift 2
     show 2 "$what" "$@"
-    [ $? -eq 2 ] && grep -q "$reason" "$work/err"
+    [ $? -eq 2 ] && grep -q "$reason" "$work/err" && ! grep -q linking "$work/err"
 }
-check "no such patch" refused links:12/33333 'there is no such patch'
+check "no such patch" refused links:12/33333 'there is no such patch' --max-level 4
 check "no such root" refused links:99/ 'there is no such patch'
-check "no such pixel" refused links:64,0 'there is no such patch'
+check "no patch and no pixel" refused links:5 'neither a patch, .*, nor a pixel'
+check "no such pixel" refused links:64,0 'there is no such pixel in 64x64'
 check "no patch named" refused links 'of which patch'
 check "no error without a final gather" refused error 'no error without' --final-gather 0
 check "no such picture" refused leaves 'is not one of light|mesh'
+show 2 links:12/33333
+check "a patch that is not divided so often is known to be missing later" \
+    grep -q 'there is no such patch' "$work/err"
 
 # The timeline: as much work as the slowest ranks of all levels do one after another.
 $MPIEXEC -n 3 "$PHR" scenes/cornell.obj --quiet --paper --epsilon 1e-3 \

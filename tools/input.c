@@ -10,6 +10,7 @@
 #include "io/scene/ply.h"
 #include "geom/signals.h"
 #include "tools/idle.h"
+#include "tools/show.h"
 #include "tools/viewfactor.h"
 
 /* Warns of `count` cases, if there are any; `text` may have a place for `detail`. */
@@ -195,7 +196,7 @@ void input_read(struct run *run)
 {
     signals_end_calls(true);
     if (files_check(&run->options, &run->error) &&
-        files_probe(&run->options, &run->error) && read_scene(run))
-        read_cameras(run);
+        files_probe(&run->options, &run->error) && read_scene(run) && read_cameras(run))
+        show_check(run);
     signals_end_calls(false);
 }

@@ -6,7 +6,7 @@
 
 /* On rank 0. Reads run->scene, prepared, and run->cameras as the options say, warns of
  * repairs, and probes the outputs. Errors (a wrong file, a scene without light, an output
- * that cannot be written) are in run->error. */
+ * that cannot be written, a --show that cannot be) are in run->error. */
 void input_read(struct run *run);
 
 #endif

@@ -204,8 +204,6 @@ bool results_show(struct run *run)
         meshes = meshes || format_is_mesh(options->outputs[i].format);
     if (!pictures && !meshes)
         return true;
-    if (!show_check(run))
-        return false;
     beyond_free_vectors(run->solver); /* pictures and meshes take as much */
     double start = comm_seconds();
     uint8_t *open = survey_leaves(run);

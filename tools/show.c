@@ -16,17 +16,62 @@
 #include "rad/beyond/patch_link.h"
 #include "tools/label.h"
 
+/* --- checks before there is light --- */
+
+/* Reads X,Y. False if the text is not of this form. */
+static bool read_pixel(const char *text, long *x, long *y)
+{
+    char *end;
+    *x = strtol(text, &end, 10);
+    if (end == text || *end != ',')
+        return false;
+    const char *second = end + 1;
+    *y = strtol(second, &end, 10);
+    return end != second && *end == '\0';
+}
+
+/* Checks the name of the patch of --show links. A pixel has to be in all pictures. */
+static bool check_links(struct run *run)
+{
+    const char *name = run->options.show_patch;
+    struct patch_id id;
+    long x, y;
+    if (read_pixel(name, &x, &y)) {
+        for (int i = 0; i < run_camera_count(run); i++) {
+            int width = run->cameras[i].width, height = run->cameras[i].height;
+            if (x < 0 || y < 0 || x >= width || y >= height)
+                return error_set(&run->error, EXIT_USAGE,
+                                 "--show links:%s: there is no such pixel in %dx%d", name,
+                                 width, height);
+        }
+        return true;
+    }
+    if (!label_read(name, &id))
+        return error_set(&run->error, EXIT_USAGE,
+                         "--show links:%s: neither a patch, as in links:5/023, nor a "
+                         "pixel, as in links:X,Y",
+                         name);
+    return (id.root < (uint32_t)scene_root_count(run->scene) &&
+            id_level(id) <= run->options.criterion.max_level) ||
+           error_set(&run->error, EXIT_USAGE, "--show links:%s: there is no such patch",
+                     name);
+}
+
 bool show_check(struct run *run)
 {
     enum show show = run->options.show;
-    if (show == SHOW_ERROR && !(run->solver->beyond && beyond_answer(run->solver)->error))
+    bool error = run->stored ? run->stored->has_error
+                             : run->options.criterion.final_gather > 0;
+    if (!options_show(&run->options, 0)) /* there is no picture */
+        return true;
+    if (show == SHOW_ERROR && !error)
         return error_set(&run->error, EXIT_USAGE,
                          "--show error: there is no error without a final gather");
     if (run->stored && (show == SHOW_OWNER || show == SHOW_LINKS))
         return error_set(&run->error, EXIT_USAGE,
                          "--show owner and links need a run: "
                          "a stored solution has no ranks and no links");
-    return true;
+    return show != SHOW_LINKS || check_links(run);
 }
 
 /* --- colours --- */
@@ -319,20 +364,6 @@ static void draw_links(const struct found_links *found, const struct camera *cam
     }
 }
 
-/* --- the patch of --show links --- */
-
-/* Reads X,Y. False if the text is not of this form. */
-static bool read_pixel(const char *text, long *x, long *y)
-{
-    char *end;
-    *x = strtol(text, &end, 10);
-    if (end == text || *end != ',')
-        return false;
-    const char *second = end + 1;
-    *y = strtol(second, &end, 10);
-    return end != second && *end == '\0';
-}
-
 /* The patch with this ID, or -1: there is none. */
 static int32_t find_patch(const struct forest *forest, struct patch_id id)
 {
@@ -352,12 +383,10 @@ static int32_t named_patch(struct run *run, const struct camera *camera,
     struct patch_id id;
     long x, y;
     int32_t patch = -1;
-    if (read_pixel(name, &x, &y)) {
-        if (x >= 0 && y >= 0 && x < camera->width && y < camera->height)
-            patch = leaves[(size_t)y * (size_t)camera->width + (size_t)x];
-    } else if (label_read(name, &id)) {
+    if (read_pixel(name, &x, &y))
+        patch = leaves[(size_t)y * (size_t)camera->width + (size_t)x];
+    else if (label_read(name, &id))
         patch = find_patch(run->solver->model.forest, id);
-    }
     if (patch < 0)
         error_set(&run->error, EXIT_USAGE,
                   "--show links:%s: there is no such patch, or none is seen there", name);
