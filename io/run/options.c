@@ -433,6 +433,7 @@ static bool check_rules(const struct options *o, struct error *error)
         {accurate && !rays, "--accuracy and --final-gather 0 do not go together", ""},
         {o->pixels && !rays, "--final-gather pixels needs rays, and a tree", ""},
         {o->pixels && o->flat, "--flat and --final-gather pixels do not go together", ""},
+        {scene && o->quiet && o->verbose, "--quiet and --verbose do not go together", ""},
         {!scene && !o->help && !o->version && !o->validate, "no scene given; see --help",
          ""},
         {scene && o->form_factors && light, "--form-factors and %s do not go together",

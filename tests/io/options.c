@@ -367,6 +367,7 @@ static void test_errors(void)
     check_refused("a.obj --view a -o m.ply --view b -o b.ppm",
                   "--view a: no picture (-o) follows it");
     check_refused("--flat --fast --help", "unknown option --fast; see --help");
+    check_refused("a.obj --quiet --verbose", "--quiet and --verbose do not go together");
     check_refused("a.obj --stats a.json --stats b.json",
                   "--stats is given twice: a.json and b.json");
 }
