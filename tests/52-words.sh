@@ -79,6 +79,10 @@ check "without 8-bit colours" idle 1 "--exposure" $box --size 9x9 --exposure 2 \
     -o "$work/idle.pfm"
 check "with --validate" idle 1 "--epsilon, -o, scenes/cornell.obj" scenes/cornell.obj \
     --validate --epsilon 1 -o "$mesh"
+check "without predictions" idle 1 "--alpha" scenes/squares.obj --alpha 0.25
+check "with them" idle 1 "" scenes/squares.obj --alpha 0.25 --paper
+check "or where they are told" idle 1 "" scenes/squares.obj --alpha 0.25 \
+    --stats "$work/idle.json"
 check "overruled by --paper" idle 1 "--solver: --paper follows" scenes/squares.obj \
     --solver cg --oracle error --paper --oracle error
 check "none, where all do something" idle 1 "" $box --size 9x9 --samples 2 --exposure 2 \

@@ -17,6 +17,7 @@ static const char *const OUTPUT[] = {"--flat", NULL};
 static const char *const LIGHT[] = {
     "--min-area", "--oracle", "--linking", "--form-factor", "--solver", "--balance",
     "--paper", "--alpha", "--tolerance", "--max-iterations", "--ke", "--memory", NULL};
+static const char *const PREDICTION[] = {"--alpha", NULL};
 static const char *const GATHER[] = {"--final-gather", NULL};
 static const char *const FACTORS[] = {"--epsilon", "--accuracy", "--max-level",
                                       "--two-sided", "--two-sided-lamps", NULL};
@@ -37,6 +38,13 @@ static bool shows_light(const struct options *options)
 {
     return options->show == SHOW_LIGHT || options->show == SHOW_MESH ||
            options->show == SHOW_LINKS;
+}
+
+/* True if costs that are predicted move links, or are told. */
+static bool predicts(const struct options *options)
+{
+    return options->criterion.balance == BALANCE_GREEDY || options->stats ||
+           options->verbose || options->checkpoint;
 }
 
 /* Adds the options that are of no use to the outputs. Returns true if pixels that gather
@@ -84,6 +92,8 @@ void idle_warn(struct run *run)
     } else {
         warn_overruled(run);
         pixels = add_idle(options, &names);
+        if (!predicts(options))
+            add(&names, PREDICTION);
     }
     if (options->validate) {
         add(&names, FACTORS);
