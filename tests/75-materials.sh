@@ -44,6 +44,8 @@ Kd 0.5 0.5 0.5
 d 0.25
 newmtl painted
 map_Kd wood.png
+newmtl measured
+Kd spectral grass.rfl
 newmtl
 Kd 0.5 0.5 0.5
 END
@@ -64,15 +66,19 @@ usemtl painted
 f 1 3 4
 usemtl nothing
 f 2 4 3
+usemtl measured
+f 2 3 4
 surf 0 1 0 1 1 2 3
 END
 said=$(./phr "$work/notes.obj" 2>&1 >"$work/stdout" | grep warning)
 notes="phr: $work/notes.obj: warning:"
+unread="material(s) with Kd or Ke as spectral or xyz, not read: Kd is grey, and Ke 0"
 expected="$notes 1 material file(s) missing or not readable (first: absent.mtl)
 $notes 1 material(s) without a definition, taken as grey (first: nothing)
 $notes 1 newmtl without a name: taken as the material of usemtl without one
 $notes 1 transparent material(s) (d or Tr), taken as opaque
 $notes 1 material(s) with a texture, which is not read: Kd counts, or grey
+$notes 1 $unread
 $notes 2 corner(s) with a vn that is no direction, or not there: ignored
 $notes 2 line(s) with unknown keywords passed over (first: line 8)"
 are_the_notes() {

@@ -37,6 +37,9 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
          "");
     warn(run, read->textured,
          "material(s) with a texture, which is not read: Kd counts, or grey", "");
+    warn(run, read->unread,
+         "material(s) with Kd or Ke as spectral or xyz, not read: Kd is grey, and Ke 0",
+         "");
     warn(run, read->bad_normals,
          "corner(s) with a vn that is no direction, or not there: ignored", "");
     snprintf(number, sizeof number, "%ld", read->first_unknown);

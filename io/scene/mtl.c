@@ -7,9 +7,11 @@
  * Ke is not in the original description of the format, but modelling programs write it
  * for lights. A material with Ke alone is a black light: grey would be a reflectance that
  * nobody wrote down. A texture without Kd is neutral grey: it reflects light of an
- * unknown colour. Ka, Ks, Tf and illum do not describe diffuse surfaces and are skipped.
- * Where d and Tr contradict each other, d counts: programs disagree on the meaning of Tr
- * 1.
+ * unknown colour. So does a Kd as `spectral` or `xyz`: the reflectance with an X, Y and Z
+ * depends on the light that they were taken under, which no file says. Such a Ke has no
+ * neutral value, and is 0. Ka, Ks, Tf and illum do not describe diffuse surfaces and are
+ * skipped. Where d and Tr contradict each other, d counts: programs disagree on the
+ * meaning of Tr 1.
  *
  * Kd and Ke themselves are read strictly: a negative or misspelt number would give a
  * wrong picture without a message. */
@@ -58,12 +60,24 @@ static bool read_numbers(const struct text *text, char *word, char *rest,
     return true;
 }
 
-static bool read_colour(const struct text *text, const char *keyword, char *rest,
-                        struct rgb *colour, struct error *error)
+/* A reflectance that is not read is grey, unless there is one in numbers. */
+static void take_neutral(struct mtl_entry *entry)
 {
+    if (!entry->has_kd)
+        entry->material.reflectance = NEUTRAL.reflectance;
+}
+
+static bool read_colour(const struct text *text, const char *keyword, char *rest,
+                        struct mtl_entry *entry, struct error *error)
+{
+    bool is_kd = is_keyword(keyword, "kd");
     char *word = text_word(&rest);
-    if (word && (is_keyword(word, "spectral") || is_keyword(word, "xyz")))
+    if (word && (is_keyword(word, "spectral") || is_keyword(word, "xyz"))) {
+        entry->unread = true;
+        if (is_kd)
+            take_neutral(entry);
         return true;
+    }
     struct rgb numbers;
     int count;
     if (!read_numbers(text, word, rest, &numbers, &count, error))
@@ -73,7 +87,11 @@ static bool read_colour(const struct text *text, const char *keyword, char *rest
                          text->path, text->line, keyword, count);
     for (int c = count; c < BANDS; c++)
         numbers.band[c] = numbers.band[0];
-    *colour = numbers;
+    if (is_kd)
+        entry->material.reflectance = numbers;
+    else
+        entry->material.emission = numbers;
+    entry->has_kd = entry->has_kd || is_kd;
     return true;
 }
 
@@ -104,8 +122,7 @@ static void note_opacity(struct mtl_entry *entry, char *rest, bool is_d)
 static void note_texture(struct mtl_entry *entry)
 {
     entry->textured = true;
-    if (!entry->has_kd)
-        entry->material.reflectance = NEUTRAL.reflectance;
+    take_neutral(entry);
 }
 
 /* `*current` is the number of the material that the line belongs to, or negative. */
@@ -119,8 +136,7 @@ static bool read_line(struct mtl_table *table, const struct text *text, char *li
         *current = start_material(table, line);
         return true;
     }
-    bool is_kd = is_keyword(keyword, "kd");
-    bool is_colour = is_kd || is_keyword(keyword, "ke");
+    bool is_colour = is_keyword(keyword, "kd") || is_keyword(keyword, "ke");
     if (*current < 0 && is_colour)
         return error_set(error, EXIT_USAGE, "%s:%ld: %s before newmtl", text->path,
                          text->line, keyword);
@@ -131,12 +147,7 @@ static bool read_line(struct mtl_table *table, const struct text *text, char *li
         note_opacity(entry, line, is_keyword(keyword, "d"));
     else if (is_keyword(keyword, "map_kd"))
         note_texture(entry);
-    if (!is_colour)
-        return true;
-    entry->has_kd = entry->has_kd || is_kd;
-    struct material *material = &entry->material;
-    return read_colour(text, keyword, line,
-                       is_kd ? &material->reflectance : &material->emission, error);
+    return !is_colour || read_colour(text, keyword, line, entry, error);
 }
 
 bool mtl_of_text(struct mtl_table *table, struct text *text, struct error *error)

@@ -2,8 +2,8 @@
  *
  * Understood: newmtl, Kd (the reflectance rho, 1) and Ke (the emitted radiosity E,
  * W/m^2), each as three numbers or one for grey, in capitals or not. d, Tr and map_Kd
- * only set flags for a warning: every material is opaque and of one colour. Kd and Ke in
- * the forms `spectral` and `xyz` and all other keywords are skipped. */
+ * only set flags for a warning: every material is opaque and of one colour. So do Kd and
+ * Ke in the forms `spectral` and `xyz`. All other keywords are skipped. */
 #ifndef IO_SCENE_MTL_H
 #define IO_SCENE_MTL_H
 
@@ -20,6 +20,7 @@ struct mtl_entry {
     bool used;                /* a face has it; set by the caller */
     bool transparent;         /* d below 1 or, without d, Tr above 0 */
     bool textured;            /* has map_Kd */
+    bool unread;              /* has Kd or Ke as spectral or xyz */
     bool has_kd;              /* Kd was read */
     bool has_d;               /* d was read, which overrides Tr */
 };
@@ -36,9 +37,9 @@ struct mtl_table {
 int32_t mtl_find(struct mtl_table *table, const char *name);
 
 /* Adds the materials of the library `path`. A material without Kd is black, or grey if it
- * has a texture; one without Ke emits nothing; of two definitions the later one counts.
- * If the file cannot be read, `*found` is false and the table unchanged, without an
- * error.
+ * has a texture, or a Kd that is not read; one without Ke emits nothing; of two
+ * definitions the later one counts. If the file cannot be read, `*found` is false and the
+ * table unchanged, without an error.
  * Errors: "FILE:LINE: REASON"; EXIT_USAGE. */
 bool mtl_read(struct mtl_table *table, const char *path, bool *found,
               struct error *error);

@@ -327,6 +327,7 @@ static int32_t number_materials(const struct obj_reader *reader, int32_t *number
             text_missing_add(&repairs->materials, reader->materials.names.name[i]);
         repairs->transparent += entry->used && entry->transparent;
         repairs->textured += entry->used && entry->textured;
+        repairs->unread += entry->used && entry->unread;
     }
     if (!entries[NAMELESS].defined)
         number[NAMELESS] = number[NO_MATERIAL];

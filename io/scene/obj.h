@@ -28,6 +28,7 @@ struct obj_repairs {
     int64_t transparent;           /* used materials with d or Tr: opaque instead */
     int64_t nameless;              /* newmtl lines without a name, as of usemtl */
     int64_t textured;              /* used materials with map_Kd: of one colour instead */
+    int64_t unread;                /* used materials with Kd or Ke as spectral or xyz */
     int64_t unknown_lines;         /* lines with unknown keywords: skipped */
     long first_unknown;            /* number of the first such line */
 };

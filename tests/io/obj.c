@@ -278,9 +278,9 @@ static void test_materials(void)
            "kd with one number, KE with four");
     tap_ok(colour_is(material_at(scene, 4)->reflectance, 1.5, 1, 1),
            "Kd of 1 and more is left");
-    tap_ok(colour_is(material_at(scene, 6)->reflectance, 0, 0, 0) &&
-               colour_is(material_at(scene, 6)->emission, 0, 0, 0),
-           "spectral and xyz are passed over");
+    tap_ok(colour_is(material_at(scene, 6)->reflectance, 0.5, 0.5, 0.5) &&
+               colour_is(material_at(scene, 6)->emission, 0, 0, 0) && repairs.unread == 1,
+           "spectral and xyz are counted: grey, and no light");
     tap_ok(colour_is(material_at(scene, 7)->reflectance, 0, 0, 0) &&
                colour_is(material_at(scene, 7)->emission, 3, 3, 3),
            "the later of two definitions counts");
@@ -297,13 +297,15 @@ static void test_notes(void)
                "newmtl clear\nd 0.5\nnewmtl glass\nTr 0.25\nnewmtl halo\nd -halo 0.5\n"
                "newmtl words\nd\nTr none\nnewmtl painted\nmap_Kd a b.png\n"
                "newmtl dyed\nmap_Kd x.png\nKd 0.25 0 0\nnewmtl dyed too\nKd 0.25 0 0\n"
-               "map_Kd x.png\nnewmtl unused\nd 0\nmap_Kd x.png\n");
+               "map_Kd x.png\nnewmtl unused\nd 0\nmap_Kd x.png\nKd xyz 1\n"
+               "newmtl lit\nKd xyz 1\nKd 0.25 0 0\nKe 1 0 0\nKe Spectral x.rfl\n"
+               "newmtl dim\nKe xyz 1 1 1\n");
     struct scene *scene = read_scene(
         "mtllib obj_test.mtl\n" CORNERS
         "usemtl opaque\nf 1 2 3\nusemtl also opaque\nf 1 2 3\n"
         "usemtl clear\nf 1 2 3\nf 1 2 3\nusemtl glass\nf 1 2 3\nusemtl halo\nf 1 2 3\n"
         "usemtl words\nf 1 2 3\nusemtl painted\nf 1 2 3\nusemtl dyed\nf 1 2 3\n"
-        "usemtl dyed too\nf 1 2 3\n");
+        "usemtl dyed too\nf 1 2 3\nusemtl lit\nf 1 2 3\nusemtl dim\nf 1 2 3\n");
     tap_ok(scene && repairs.transparent == 3,
            "transparent materials that are used are counted");
     tap_ok(scene && repairs.textured == 3 &&
@@ -311,6 +313,11 @@ static void test_notes(void)
                colour_is(material_at(scene, 8)->reflectance, 0.25, 0, 0) &&
                colour_is(material_at(scene, 9)->reflectance, 0.25, 0, 0),
            "textures too; without Kd they are grey");
+    tap_ok(scene && repairs.unread == 2 &&
+               colour_is(material_at(scene, 10)->reflectance, 0.25, 0, 0) &&
+               colour_is(material_at(scene, 10)->emission, 1, 0, 0) &&
+               colour_is(material_at(scene, 11)->reflectance, 0, 0, 0),
+           "spectral and xyz too; beside them numbers count");
     scene_destroy(scene);
 }
 
