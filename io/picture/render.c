@@ -1,5 +1,9 @@
 /* Rendering. A pixel depends only on its place, so scanlines can be dealt to ranks in any
- * way. A ray that meets the back of a triangle sees its twin, if there is one. The N x N
+ * way. A rank visits its own in the order of their numbers with the digits backwards:
+ * each part of them is spread over the picture, and the share that is done tells the time
+ * left, also where the upper half is dark.
+ *
+ * A ray that meets the back of a triangle sees its twin, if there is one. The N x N
  * rays of a pixel are on a grid whose rows and columns are slanted by a part of a cell,
  * so that no two have the same x or y: across an upright edge there are N x N steps.
  *
@@ -316,6 +320,15 @@ static void render_scanline(struct strip *strip, int py, float *rgb)
     }
 }
 
+/* Returns the number that the last binary digits of i are backwards. */
+static int backwards(int i, int digits)
+{
+    int number = 0;
+    for (; digits > 0; digits--, i >>= 1)
+        number = 2 * number + (i & 1);
+    return number;
+}
+
 float *render_scanlines(const struct renderer *renderer, const struct camera *camera,
                         int samples, int first, int step, struct progress *progress)
 {
@@ -334,8 +347,14 @@ float *render_scanlines(const struct renderer *renderer, const struct camera *ca
                  .whole = alloc_array(rays, sizeof *strip.view.whole),
                  .at = alloc_array(rays, sizeof *strip.view.at)}};
     strip.hits = alloc_array((size_t)strip.pixels * rays, sizeof *strip.hits);
-    for (int i = 0; i < scanlines; i++) {
-        progress_tick(progress, (double)i / scanlines);
+    int digits = 0, done = 0;
+    while (1 << digits < scanlines)
+        digits++;
+    for (int k = 0; k < 1 << digits; k++) {
+        int i = backwards(k, digits);
+        if (i >= scanlines)
+            continue;
+        progress_tick(progress, (double)done++ / scanlines);
         render_scanline(&strip, first + i * step, rgb + (size_t)i * length);
     }
     alloc_free(strip.hits);

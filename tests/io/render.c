@@ -3,6 +3,7 @@
 #include "mpi/beyond/beyond.h"
 #include "io/picture/render.h"
 
+#include "geom/alloc.h"
 #include "geom/lambert.h"
 #include "tests/defaults.h"
 #include "tests/tap.h"
@@ -322,6 +323,38 @@ static void test_edges(void)
     solution_free(&s);
 }
 
+/* Segments that have been fired when half of the picture is done. */
+static const struct gather_counts *fired;
+static int64_t fired_at_half;
+
+static void look_at_half(struct progress *progress)
+{
+    if (progress->share <= 0.5)
+        fired_at_half = fired->segments;
+}
+
+/* The floor in the lower half of a picture, nothing in the upper. Scanlines near the
+ * horizon have other work than those below: of 34, two make up a tenth. */
+static void test_order(void)
+{
+    struct solution s = half_shadow(64);
+    struct final_gather *gather = &s.solver->beyond->answer.gather;
+    struct renderer renderer = renderer_make(s.octree, NULL, gather);
+    struct camera camera = {.eye = point(0, -4, 1), .at = point(0, 4, 1),
+                            .up = point(0, 0, 1), .fov = 40.0, .width = 8};
+    struct progress progress = {.show = look_at_half};
+    fired = &gather->counts;
+    for (camera.height = 34; camera.height <= 100; camera.height += 33) {
+        int64_t before = fired->segments;
+        alloc_free(render_scanlines(&renderer, &camera, 1, 0, 1, &progress));
+        double share = (double)(fired_at_half - before) /
+                       (double)(fired->segments - before);
+        tap_ok(fabs(share - 0.5) < 0.1,
+               "half of %d scanlines are %.2f of the work", camera.height, share);
+    }
+    solution_free(&s);
+}
+
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -337,6 +370,7 @@ int main(int argc, char **argv)
     test_bowl();
     test_smoothed_box();
     test_edges();
+    test_order();
     comm_stop(&world_comm);
     return tap_done();
 }
