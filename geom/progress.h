@@ -3,7 +3,6 @@
 #ifndef GEOM_PROGRESS_H
 #define GEOM_PROGRESS_H
 
-#include <stddef.h>
 #include <stdint.h>
 
 struct progress {

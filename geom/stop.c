@@ -11,8 +11,6 @@
  * that have no other use for it. */
 #include "geom/stop.h"
 
-#include <stddef.h>
-
 static bool (*is_asked)(void);
 
 void stop_when(bool (*asked)(void))

@@ -13,8 +13,6 @@
  * ranks; a limit for links alone, since half of the memory is in small patches. */
 #include "mpi/memory.h"
 
-#include <string.h>
-
 #include "geom/alloc.h"
 #include "geom/hash.h"
 

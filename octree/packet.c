@@ -19,8 +19,6 @@
  * directions differ in sign, go down one by one (octree/hit.c). The point on the triangle
  * is computed in double, as there. So the answers are the same to the bit, and do not
  * depend on which rays form a packet. */
-#include <stddef.h>
-
 #include "octree/octree.h"
 #include "octree/ray.h"
 

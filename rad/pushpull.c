@@ -8,7 +8,6 @@
 #include "rad/pushpull.h"
 
 #include <math.h>
-#include <stddef.h>
 
 struct rgb leaf_irradiance(const struct forest *forest, int32_t leaf,
                            struct flux_unit unit)

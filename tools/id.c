@@ -3,7 +3,6 @@
  * root and hierarchy part as one number. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "tools/label.h"
 

@@ -10,7 +10,6 @@
 #include "io/picture/render.h"
 #include "io/picture/viewpoint.h"
 #include "io/picture/vtk.h"
-#include "io/run/output.h"
 #include "mpi/picture.h"
 #include "rad/pushpull.h"
 #include "tools/show.h"

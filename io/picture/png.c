@@ -10,7 +10,6 @@
 #include "io/picture/png.h"
 
 #include <stdint.h>
-#include <string.h>
 
 #include "geom/alloc.h"
 #include "geom/stop.h"

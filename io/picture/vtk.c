@@ -4,7 +4,6 @@
 #include "io/picture/vtk.h"
 
 #include "geom/stop.h"
-#include "io/picture/mesh.h"
 #include "io/run/output.h"
 
 enum column { CORNERS, RADIOSITY, ROOT, HIERARCHY, LEVEL, ERROR };

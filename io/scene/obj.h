@@ -12,7 +12,6 @@
 #ifndef IO_SCENE_OBJ_H
 #define IO_SCENE_OBJ_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "geom/error.h"

@@ -4,7 +4,6 @@
 #define IO_SCENE_TEXT_H
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #include "geom/error.h"

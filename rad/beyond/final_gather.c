@@ -26,7 +26,6 @@
 #include "rad/beyond/range.h"
 #include "rad/beyond/receiver.h"
 #include "rad/beyond/sequence.h"
-#include "rad/pushpull.h"
 
 /* A lamp emits more than GLOW times the mean radiosity, if surfaces that do so are LAMP
  * times as bright as the mean; if not, more than LAMP times the mean: where all surfaces

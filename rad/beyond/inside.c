@@ -5,8 +5,6 @@
  * and behind them there are as many exits as entries. */
 #include "rad/beyond/inside.h"
 
-#include <math.h>
-
 #include "rad/beyond/sample.h"
 
 /* Faces that a ray crosses, at most. */

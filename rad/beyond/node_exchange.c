@@ -20,8 +20,6 @@
  * not alike and a link means the same on any rank. */
 #include "rad/beyond/node_exchange.h"
 
-#include <math.h>
-
 #include "geom/hash.h"
 #include "rad/beyond/sample.h"
 

@@ -40,8 +40,6 @@
  * the errors of all elements. */
 #include "rad/beyond/paths.h"
 
-#include <math.h>
-
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "geom/stop.h"

@@ -16,7 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "geom/alloc.h"
 #include "tests/deviation.h"
 #include "tests/reading.h"
 

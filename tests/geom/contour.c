@@ -3,8 +3,6 @@
  * up to the whole, no order of arguments, no motion and no unit matters. */
 #include "geom/contour.h"
 
-#include <string.h>
-
 #include "tests/scenes.h"
 #include "tests/tap.h"
 #include "tools/cases.h"

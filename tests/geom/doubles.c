@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-#include "geom/alloc.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
 

@@ -8,7 +8,6 @@
 #include "geom/polygon.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "geom/alloc.h"
 #include "tests/tap.h"

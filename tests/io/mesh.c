@@ -3,7 +3,6 @@
  * going down each root. */
 #include "io/picture/mesh.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "io/picture/vtk.h"

@@ -3,9 +3,7 @@
  * one list of values. */
 #include "io/scene/ply.h"
 
-#include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "io/scene/palette.h"

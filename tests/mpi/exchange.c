@@ -13,7 +13,6 @@
 #include <sys/mman.h>
 
 #include "mpi/beyond/beyond.h"
-#include "mpi/assign.h"
 #include "mpi/broadcast.h"
 #include "mpi/migrate.h"
 #include "mpi/picture.h"

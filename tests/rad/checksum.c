@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "geom/hash.h"
-#include "rad/pushpull.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"
 

@@ -4,8 +4,6 @@
 
 #include <string.h>
 
-#include "rad/pushpull.h"
-
 #include "tests/tap.h"
 #include "tests/transfers.h"
 

@@ -16,7 +16,6 @@
 
 #include "mpi/beyond/beyond.h"
 #include "geom/signals.h"
-#include "rad/beyond/node_link.h"
 #include "rad/beyond/patch_link.h"
 #include "tests/scenes.h"
 #include "tests/solve.h"

@@ -5,7 +5,6 @@
 #include "geom/stop.h"
 #include "geom/wall.h"
 
-#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,9 +1,6 @@
 /* Tests of method_of() of rad/method.h: each ablation exchanges its own entries and no
  * other. */
-#include "rad/beyond/error_oracle.h"
-#include "rad/beyond/node_link.h"
-#include "rad/beyond/patch_link.h"
-#include "rad/oracle.h"
+#include "rad/model.h"
 
 #include "tests/tap.h"
 
