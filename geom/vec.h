@@ -7,6 +7,7 @@
 #define GEOM_VEC_H
 
 #include <math.h>
+#include <stdbool.h>
 
 static const double PI = 3.14159265358979323846;
 
@@ -67,6 +68,18 @@ static inline struct vec3 vec3_unit(struct vec3 a)
 static inline double vec3_axis(struct vec3 a, int axis)
 {
     return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
+}
+
+static inline bool vec3_is_equal(struct vec3 a, struct vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* Below 0, 0 or above 0, by x, then y, then z: for qsort(). */
+static inline int vec3_compare(struct vec3 a, struct vec3 b)
+{
+    int x = (a.x > b.x) - (a.x < b.x), y = (a.y > b.y) - (a.y < b.y);
+    return x ? x : y ? y : (a.z > b.z) - (a.z < b.z);
 }
 
 /* As fmin() and fmax() for numbers that are not NaN; compilers make one instruction of

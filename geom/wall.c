@@ -49,16 +49,10 @@ struct wall_side {
     bool is_upward;                /* from low to high */
 };
 
-static int compare_places(const struct vec3 *a, const struct vec3 *b)
-{
-    int x = (a->x > b->x) - (a->x < b->x), y = (a->y > b->y) - (a->y < b->y);
-    return x ? x : y ? y : (a->z > b->z) - (a->z < b->z);
-}
-
 static int compare_ends(const struct wall_side *s, const struct wall_side *t)
 {
-    int order = compare_places(s->low, t->low);
-    return order ? order : compare_places(s->high, t->high);
+    int order = vec3_compare(*s->low, *t->low);
+    return order ? order : vec3_compare(*s->high, *t->high);
 }
 
 static int compare_sides(const void *a, const void *b)
@@ -71,7 +65,7 @@ static int compare_sides(const void *a, const void *b)
 static struct wall_side side_make(const struct triangle *t, int32_t number)
 {
     const struct vec3 *a = &t->corner[number % 3], *b = &t->corner[(number + 1) % 3];
-    bool is_upward = compare_places(a, b) < 0;
+    bool is_upward = vec3_compare(*a, *b) < 0;
     return (struct wall_side){is_upward ? a : b, is_upward ? b : a, number, is_upward};
 }
 

@@ -78,11 +78,6 @@ static uint64_t hash_point(struct vec3 x, int32_t surface)
     return hash;
 }
 
-static bool is_same_point(struct vec3 a, struct vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 /* Returns the slot of the vertex, or the free slot where it belongs. */
 static int64_t find_slot(const struct table *table, struct vec3 x, int32_t surface)
 {
@@ -90,7 +85,7 @@ static int64_t find_slot(const struct table *table, struct vec3 x, int32_t surfa
     for (;; slot = (slot + 1) & (table->slot_count - 1)) {
         int32_t vertex = table->slots[slot];
         if (vertex < 0 || (table->surfaces[vertex] == surface &&
-                           is_same_point(table->positions[vertex], x)))
+                           vec3_is_equal(table->positions[vertex], x)))
             return slot;
     }
 }

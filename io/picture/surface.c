@@ -24,20 +24,11 @@ struct root_edge {
     int8_t low_corner, high_corner; /* corners of the root at low and high, 0 to 2 */
 };
 
-static int compare_points(struct vec3 a, struct vec3 b)
-{
-    if (a.x != b.x)
-        return a.x < b.x ? -1 : 1;
-    if (a.y != b.y)
-        return a.y < b.y ? -1 : 1;
-    return (a.z > b.z) - (a.z < b.z);
-}
-
 static int compare_edges(const void *left, const void *right)
 {
     const struct root_edge *a = left, *b = right;
-    int order = compare_points(a->low, b->low);
-    order = order ? order : compare_points(a->high, b->high);
+    int order = vec3_compare(a->low, b->low);
+    order = order ? order : vec3_compare(a->high, b->high);
     return order ? order : (a->root > b->root) - (a->root < b->root);
 }
 
@@ -79,7 +70,7 @@ int32_t *surface_of_roots(const struct scene *scene)
         surface[root] = root;
         for (int k = 0; k < 3 && scene_root_area(scene, root) > 0.0; k++) {
             int next = (k + 1) % 3;
-            bool ordered = compare_points(t.corner[k], t.corner[next]) <= 0;
+            bool ordered = vec3_compare(t.corner[k], t.corner[next]) <= 0;
             int low = ordered ? k : next, high = ordered ? next : k;
             edges[count++] = (struct root_edge){t.corner[low], t.corner[high], root,
                                                 (int8_t)low, (int8_t)high};
@@ -88,8 +79,8 @@ int32_t *surface_of_roots(const struct scene *scene)
     qsort(edges, count, sizeof *edges, compare_edges);
     for (size_t i = 0; i < count; i++) {
         for (size_t j = i + 1;
-             j < count && compare_points(edges[i].low, edges[j].low) == 0 &&
-             compare_points(edges[i].high, edges[j].high) == 0;
+             j < count && vec3_is_equal(edges[i].low, edges[j].low) &&
+             vec3_is_equal(edges[i].high, edges[j].high);
              j++)
             if (is_smooth(scene, &edges[i], &edges[j]))
                 surface[first_of(surface, edges[i].root)] =

@@ -79,11 +79,6 @@ static double reach_above(const struct end *a, const struct end *b)
     return a->cluster ? reach : reach - a->facet.plane.offset;
 }
 
-static bool vec3_is_equal(struct vec3 a, struct vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 /* Roots of exactly one normal never face each other: of two parallel planes one lies
  * behind the other. */
 static bool look_the_same_way(const struct end *a, const struct end *b)

@@ -89,11 +89,6 @@ static struct scene *twins(int count)
 
 /* --- invariants --- */
 
-static bool same_point(struct vec3 a, struct vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 /* A cluster has the sums of its roots. Sums may be off by their rounding, 1e-16 a
  * root. */
 static bool is_true(const struct cluster_tree *tree, const struct scene *scene,
@@ -121,9 +116,9 @@ static bool is_true(const struct cluster_tree *tree, const struct scene *scene,
         dark = dark && material_is_dark(material);
     }
     const double rounding = 1e-10;
-    return same_point(low, cluster->low) && same_point(high, cluster->high) &&
-           same_point(normal_low, cluster->normal_low) &&
-           same_point(normal_high, cluster->normal_high) &&
+    return vec3_is_equal(low, cluster->low) && vec3_is_equal(high, cluster->high) &&
+           vec3_is_equal(normal_low, cluster->normal_low) &&
+           vec3_is_equal(normal_high, cluster->normal_high) &&
            fabs(cluster->area / area - 1.0) < rounding && dark == cluster->is_dark &&
            fabs(cluster->reflecting - reflecting) <= rounding * reflecting &&
            fabs(cluster->reflectance.band[1] * reflecting - reflected) <=
