@@ -7,15 +7,6 @@
  * whatever its place. */
 #include "geom/hull.h"
 
-#include <math.h>
-
-static double most_above(const struct plane *plane, const struct triangle *t)
-{
-    double a = plane_distance(plane, t->corner[0]),
-           b = plane_distance(plane, t->corner[1]);
-    return fmax(a, fmax(b, plane_distance(plane, t->corner[2])));
-}
-
 static void add_plane(struct hull *hull, struct vec3 normal, double offset)
 {
     hull->planes[hull->count++] = (struct plane){normal, offset};
@@ -36,11 +27,11 @@ static void add_sides(struct hull *hull, const struct triangle *p,
             struct plane out = {vec3_scale(n, 1.0 / length), 0.0};
             out.offset = vec3_dot(out.normal, a);
             struct plane in = {vec3_scale(out.normal, -1.0), -out.offset};
-            if (most_above(&out, p) <= GEOM_ROUNDING &&
-                most_above(&out, q) <= GEOM_ROUNDING)
+            if (triangle_reach(p, &out) <= GEOM_ROUNDING &&
+                triangle_reach(q, &out) <= GEOM_ROUNDING)
                 add_plane(hull, out.normal, out.offset);
-            else if (most_above(&in, p) <= GEOM_ROUNDING &&
-                     most_above(&in, q) <= GEOM_ROUNDING)
+            else if (triangle_reach(p, &in) <= GEOM_ROUNDING &&
+                     triangle_reach(q, &in) <= GEOM_ROUNDING)
                 add_plane(hull, in.normal, in.offset);
         }
 }

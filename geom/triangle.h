@@ -135,6 +135,14 @@ static inline double plane_distance(const struct plane *plane, struct vec3 x)
     return vec3_dot(plane->normal, x) - plane->offset;
 }
 
+/* The largest distance of a corner in front of the plane; below 0 if all lie behind. */
+static inline double triangle_reach(const struct triangle *t, const struct plane *plane)
+{
+    double a = plane_distance(plane, t->corner[0]);
+    double b = plane_distance(plane, t->corner[1]);
+    return real_max(a, real_max(b, plane_distance(plane, t->corner[2])));
+}
+
 /* True if the triangle lies in the plane, of another one, and faces the same way. `own`:
  * its own plane. */
 bool triangle_is_in(const struct triangle *t, const struct plane *own,

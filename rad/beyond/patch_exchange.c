@@ -14,19 +14,10 @@
 
 enum { SUBAREAS = BUNDLE_ENDS, RAYS = BUNDLE_RAYS, ALL_RAYS = (1 << RAYS) - 1 };
 
-/* Largest distance of a corner of `t` in front of `plane`. */
-static double reach_above(const struct plane *plane, const struct triangle *t)
-{
-    double a = plane_distance(plane, t->corner[0]);
-    double b = plane_distance(plane, t->corner[1]);
-    double c = plane_distance(plane, t->corner[2]);
-    return real_max(a, real_max(b, c));
-}
-
 bool facets_face(const struct facet *p, const struct facet *q)
 {
-    return reach_above(&p->plane, &q->triangle) > GEOM_ROUNDING &&
-           reach_above(&q->plane, &p->triangle) > GEOM_ROUNDING;
+    return triangle_reach(&q->triangle, &p->plane) > GEOM_ROUNDING &&
+           triangle_reach(&p->triangle, &q->plane) > GEOM_ROUNDING;
 }
 
 /* A guess for patches that the other's plane cuts, by a disk with the heights of the
@@ -37,8 +28,8 @@ static double exchange_across_horizon(const struct facet *p, const struct facet 
     struct vec3 d = vec3_sub(triangle_centroid(&q->triangle),
                              triangle_centroid(&p->triangle));
     double r2 = vec3_dot(d, d);
-    double rise_p = reach_above(&p->plane, &q->triangle);
-    double rise_q = reach_above(&q->plane, &p->triangle);
+    double rise_p = triangle_reach(&q->triangle, &p->plane);
+    double rise_q = triangle_reach(&p->triangle, &q->plane);
     double cosines = fmin(1.0, rise_p * rise_q / r2);
     return p->area * q->area * cosines / (PI * r2 + fmax(p->area, q->area));
 }
