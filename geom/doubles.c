@@ -102,8 +102,7 @@ static int side_of(const struct signature *s)
 
 /* --- faces --- */
 
-/* The number of the triangle behind the last of the face that triangle i is of. */
-static int32_t face_end(const struct faces *faces, int32_t i)
+int32_t face_end(const struct faces *faces, int32_t i)
 {
     do
         i++;

@@ -17,6 +17,9 @@ struct faces {
     int32_t count;
 };
 
+/* The number of the triangle behind the last of the face that triangle i is of. */
+int32_t face_end(const struct faces *faces, int32_t i);
+
 /* Sets first[i] to the number of an earlier triangle if triangle i, or the face that it
  * is cut from, has the corners of an earlier one that is kept, in any rotation, and faces
  * the same way; else to i: it is kept. Of a face of several triangles that is the number

@@ -222,22 +222,20 @@ static void cut_alike(struct scene *scene, int32_t begin, int32_t count, int32_t
     alloc_free(before);
 }
 
-static int32_t face_end(const struct scene *scene, int32_t i)
+static struct faces faces_of(const struct scene *scene)
 {
-    do
-        i++;
-    while (i < scene->input_count && scene->groups.goes_on[i]);
-    return i;
+    return (struct faces){scene->triangles, scene->areas, scene->groups.goes_on,
+                          scene->input_count};
 }
 
 /* Returns the first triangle of an earlier polygon whose back the polygon from `begin` on
  * is, or -1. */
-static int32_t front_of(const struct scene *scene, int32_t begin, int32_t end,
+static int32_t front_of(const struct faces *faces, int32_t begin, int32_t end,
                         const int32_t *opposite)
 {
     int32_t other = opposite[begin], count = end - begin;
-    if (other < 0 || other > begin || scene->groups.goes_on[other] ||
-        face_end(scene, other) != other + count)
+    if (other < 0 || other > begin || faces->goes_on[other] ||
+        face_end(faces, other) != other + count)
         return -1;
     for (int32_t k = 1; k < count; k++)
         if (opposite[begin + k] != other + k)
@@ -248,8 +246,7 @@ static int32_t front_of(const struct scene *scene, int32_t begin, int32_t end,
 /* Finds doubles and backs, with arrays as doubles_find() has them. */
 static void find_doubles(struct scene *scene, int32_t **first, int32_t **opposite)
 {
-    struct faces faces = {scene->triangles, scene->areas, scene->groups.goes_on,
-                          scene->input_count};
+    struct faces faces = faces_of(scene);
     *first = alloc_array((size_t)scene->input_count, sizeof **first);
     *opposite = alloc_array((size_t)scene->input_count, sizeof **opposite);
     doubles_find(&faces, *first, *opposite);
@@ -259,11 +256,12 @@ static void find_doubles(struct scene *scene, int32_t **first, int32_t **opposit
 
 static void handle_doubles(struct scene *scene, struct scene_repairs *repairs)
 {
+    struct faces faces = faces_of(scene);
     int32_t *first, *opposite;
     find_doubles(scene, &first, &opposite);
     for (int32_t i = 0, end; i < scene->input_count; i = end) {
-        end = face_end(scene, i);
-        int32_t front = end > i + 1 ? front_of(scene, i, end, opposite) : -1;
+        end = face_end(&faces, i);
+        int32_t front = end > i + 1 ? front_of(&faces, i, end, opposite) : -1;
         if (front >= 0)
             cut_alike(scene, i, end - i, front);
     }
