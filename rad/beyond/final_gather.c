@@ -344,7 +344,7 @@ static struct gather_sum *sum_of(struct final_gather *g, int32_t place, int32_t 
     return &sums->items[sums->count++];
 }
 
-static inline void add_patch(struct receiver *r, int32_t patch, const struct rgb *weight)
+void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight)
 {
     struct final_gather *g = r->gather;
     const struct rgb *b = &g->model->forest->radiosity[patch];
@@ -357,25 +357,20 @@ static inline void add_patch(struct receiver *r, int32_t patch, const struct rgb
         sum->weight[c] += weight->band[c];
 }
 
-void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *weight)
-{
-    add_patch(r, patch, weight);
-}
-
 void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
                         const struct rgb *weight)
 {
     const struct final_gather *g = r->gather;
     struct gather_slope slope =
         g->sums.exact ? gather_slope(g, patch) : g->near.leaves[patch].slope;
-    add_patch(r, patch, weight);
+    receiver_add_patch(r, patch, weight);
     struct rgb steep = *weight, part;
     for (int c = 0; c < BANDS; c++)
         steep.band[c] *= slope.rise;
     for (int k = 0; k < 3 && slope.rise != 0.0; k++) {
         for (int c = 0; c < BANDS; c++)
             part.band[c] = steep.band[c] * (at[k] - 1.0 / 3.0);
-        add_patch(r, slope.first + k, &part);
+        receiver_add_patch(r, slope.first + k, &part);
     }
 }
 

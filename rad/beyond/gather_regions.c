@@ -53,7 +53,8 @@ bool patch_is_dark(const struct final_gather *g, int32_t patch)
     return DARK_TIMES * h < g->mean;
 }
 
-bool patch_is_lit(const struct final_gather *g, int32_t patch)
+/* True if it is known, and not dark. */
+static bool patch_is_lit(const struct final_gather *g, int32_t patch)
 {
     return DARK_TIMES * patch_irradiance(g->model->forest, patch) >= g->mean;
 }

@@ -22,10 +22,9 @@ int32_t region_of(struct final_gather *gather, int32_t leaf);
 /* True if it is one where light is looked for in the dark. */
 bool region_is_dark(struct final_gather *gather, int32_t region);
 
-/* True if little light comes to the patch, as the links or looks have it; if more does.
- * Of a black one it is not known. */
+/* True if little light comes to the patch, as the links or looks have it. Of a black one
+ * it is not known. */
 bool patch_is_dark(const struct final_gather *gather, int32_t patch);
-bool patch_is_lit(const struct final_gather *gather, int32_t patch);
 
 /* True if a leaf of the patch is in the dark. */
 bool patch_has_dark(const struct final_gather *gather, int32_t patch);
