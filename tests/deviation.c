@@ -98,10 +98,7 @@ struct list {
 /* B - E of a root. */
 static struct rgb reflected(const struct scene *scene, int32_t root, struct rgb radiosity)
 {
-    struct rgb emission = scene_root_material(scene, root)->emission;
-    for (int c = 0; c < BANDS; c++)
-        radiosity.band[c] -= emission.band[c];
-    return radiosity;
+    return rgb_sub(radiosity, scene_root_material(scene, root)->emission);
 }
 
 static struct rgb mean_of(const struct element *elements, int64_t count, int half)

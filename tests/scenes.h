@@ -51,6 +51,13 @@ static inline struct vec3 random_point_on(struct random *random, const struct tr
     return vec3_add(t->corner[0], vec3_add(along, across));
 }
 
+/* True if corner k of a triangle is this point. */
+static inline bool corner_is(const struct scene *scene, int32_t triangle, int k, double x,
+                             double y, double z)
+{
+    return vec3_is_equal(scene->triangles[triangle].corner[k], point(x, y, z));
+}
+
 /* A patch of one of the roots 0 .. roots - 1, at any level up to this one. */
 static inline struct patch_id random_id(struct random *random, int roots, int max_level)
 {

@@ -10,6 +10,7 @@
 #include "io/scene/text.h"
 #include "tests/load.h"
 #include "tests/refusal.h"
+#include "tests/scenes.h"
 
 #define OBJ "build/obj_test.obj"
 #define MTL "build/obj_test.mtl"
@@ -37,13 +38,6 @@ static void check_library_refused(const char *library, const char *message)
 {
     write_text(MTL, library);
     check_refused("mtllib obj_test.mtl\n" CORNERS "f 1 2 3\n", message);
-}
-
-static bool corner_is(const struct scene *scene, int32_t triangle, int k, double x,
-                      double y, double z)
-{
-    struct vec3 corner = scene->triangles[triangle].corner[k];
-    return corner.x == x && corner.y == y && corner.z == z;
 }
 
 /* Whether the text is one or more triangles, each (0,0,0), (1,0,0), (1,1,0). */

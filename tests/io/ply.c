@@ -10,6 +10,7 @@
 #include "tests/load.h"
 #include "tests/memory.h"
 #include "tests/refusal.h"
+#include "tests/scenes.h"
 
 #define PLY "build/ply_test.ply"
 #define XYZ "property float x\nproperty float y\nproperty float z\n"
@@ -48,13 +49,6 @@ static void check_bytes_refused(const void *bytes, size_t size, const char *mess
 static void check_refused(const char *text, const char *message)
 {
     check_bytes_refused(text, strlen(text), message);
-}
-
-static bool corner_is(const struct scene *scene, int32_t triangle, int k, double x,
-                      double y, double z)
-{
-    struct vec3 corner = scene->triangles[triangle].corner[k];
-    return corner.x == x && corner.y == y && corner.z == z;
 }
 
 /* True for the unit square, cut into (0, 1, 2) and (0, 2, 3). */

@@ -27,11 +27,10 @@ static void put(void *writer, const struct link *links, const int *owners, int64
     store_put_links(writer, links, count);
 }
 
-static bool save(struct solver *solver, const struct vote *vote, enum store_kind kind,
-                 const char *path)
+static bool save(struct solver *solver, const struct vote *vote, const char *path)
 {
     struct error error = {0};
-    struct store_terms terms = {kind, STORE_SETTINGS, solver->model.scene,
+    struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, solver->model.scene,
                                 solver->beyond->tree};
     struct snapshot snapshot;
     struct store_writer writer;
@@ -75,7 +74,7 @@ static void test_round_trip(void)
     struct vote vote;
     struct error error = {0};
     struct solver *solver = run_two_passes(&vote);
-    tap_ok(save(solver, &vote, STORE_CHECKPOINT, PATH), "a checkpoint is written");
+    tap_ok(save(solver, &vote, PATH), "a checkpoint is written");
     struct store_terms terms = {STORE_CHECKPOINT, STORE_SETTINGS, scene, NULL};
     struct store_reader reader;
     struct criterion criterion = solver->model.criterion;
@@ -103,7 +102,7 @@ static void test_round_trip(void)
                forest_count(other->model.forest).patches ==
                    forest_count(solver->model.forest).patches,
            "the restored state is the same");
-    tap_ok(save(other, &vote, STORE_CHECKPOINT, AGAIN), "it is written again");
+    tap_ok(save(other, &vote, AGAIN), "it is written again");
     size_t size = load(PATH, bytes, ROOM);
     tap_ok(size > 0 && size == load(AGAIN, again, ROOM) &&
                memcmp(bytes, again, size) == 0,
@@ -337,7 +336,7 @@ static void test_clusters(void)
     int64_t clusters = 0;
     for (int64_t i = 0; i < solver->links.count; i++)
         clusters += node_is_cluster(solver->links.items[i].p);
-    bool saved = save(solver, &vote, STORE_CHECKPOINT, PATH);
+    bool saved = save(solver, &vote, PATH);
     size_t size = load(PATH, bytes, ROOM);
     tap_ok(saved && solver->beyond->tree->count < 99 && clusters > 0 &&
                takes(bytes, size, &terms, &error),

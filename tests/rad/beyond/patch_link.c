@@ -12,10 +12,10 @@
 #include "tests/tap.h"
 #include "tests/transfers.h"
 
-static struct world make_default_pair(double size, struct material floor,
-                                      struct material ceiling, struct soup *more)
+static struct world make_default_pair(struct material floor, struct material ceiling,
+                                      struct soup *more)
 {
-    struct world world = make_pair(size, floor, ceiling, more);
+    struct world world = make_pair(1.0, floor, ceiling, more);
     world.model.method = DEFAULT;
     return world;
 }
@@ -26,11 +26,11 @@ static void test_dropping(void)
 {
     struct link link;
     struct material black = material_grey(0, 0), white = material_grey(0.5, 0);
-    struct world dark = make_default_pair(1.0, black, black, NULL);
+    struct world dark = make_default_pair(black, black, NULL);
     tap_ok(!make(&dark, 0, 1, &link) && dark.model.counts.rays == 0,
            "two dark patches are not linked, and get no rays");
     world_free(&dark);
-    struct world half = make_default_pair(1.0, black, white, NULL);
+    struct world half = make_default_pair(black, white, NULL);
     tap_ok(make(&half, 0, 1, &link) && make(&half, 1, 0, &link),
            "one dark patch is linked");
     world_free(&half);
@@ -39,7 +39,7 @@ static void test_dropping(void)
     struct triangle *cover = &more.items[0];
     for (int k = 0; k < 3; k++)
         cover->corner[k].y -= 0.1;
-    struct world covered = make_default_pair(1.0, white, white, &more);
+    struct world covered = make_default_pair(white, white, &more);
     struct link children[4];
     tap_ok(make(&covered, 0, 1,
                 &link) && link_area(&link) == 0.0 && covered.model.counts.rays == 16 &&
@@ -54,8 +54,8 @@ static void test_doubt(void)
 {
     struct soup more = {0};
     soup_add_quad(&more, point(-1, -1, 0.5), point(3, 0, 0), point(0, 3, 0), 1);
-    struct world world = make_default_pair(1.0, material_grey(0.5, 0),
-                                           material_grey(0, 1), &more);
+    struct world world = make_default_pair(material_grey(0.5, 0), material_grey(0, 1),
+                                           &more);
     struct link link;
     tap_ok(make(&world, 0, 1, &link) && link_area(&link) == 0.0 &&
                link_unoccluded(&link) > 0.0,
@@ -296,8 +296,8 @@ static void test_parts(void)
 static void test_inheriting(void)
 {
     struct soup more = bystander();
-    struct world world = make_default_pair(1.0, material_grey(0.5, 0),
-                                           material_grey(0, 1), &more);
+    struct world world = make_default_pair(material_grey(0.5, 0), material_grey(0, 1),
+                                           &more);
     struct link link, children[4];
     make(&world, 0, 1, &link);
     link.seen = LINK_OPEN;
@@ -309,7 +309,7 @@ static void test_inheriting(void)
     tap_ok(open, "children of an open link are open and cost no ray");
     world_free(&world);
     soup_add_quad(&more, point(-1, -1, 0.5), point(3, 0, 0), point(0, 3, 0), 1);
-    world = make_default_pair(1.0, material_grey(0.5, 0), material_grey(0, 1), &more);
+    world = make_default_pair(material_grey(0.5, 0), material_grey(0, 1), &more);
     bool made = make(&world, 0, 1, &link);
     tap_ok(made && link.seen == 0 && link.blocker >= 2 && link.blocker <= 3,
            "a link knows its blocker");
