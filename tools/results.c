@@ -27,8 +27,7 @@ static void write_pictures(struct run *run, int view, float *picture)
     const struct options *options = &run->options;
     const struct camera *camera = &run->cameras[view];
     struct image image = {camera->width, camera->height, picture};
-    struct tone tone =
-        choose_tone(run, picture, (int64_t)camera->width * camera->height);
+    struct tone tone = choose_tone(run, picture, (int64_t)camera->width * camera->height);
     for (int i = 0; i < options->output_count; i++) {
         const struct target *target = &options->outputs[i];
         if (target->view == view && !format_is_mesh(target->format))
@@ -111,8 +110,7 @@ static bool show_views(struct run *run, const struct renderer *renderer)
     for (int view = 0; view < run_camera_count(run); view++) {
         double start = comm_seconds();
         float *picture = make_picture(run, renderer, &run->cameras[view]);
-        bool good = run_goes_on(run) &&
-                    show_overlay(run, &run->cameras[view], picture);
+        bool good = run_goes_on(run) && show_overlay(run, &run->cameras[view], picture);
         double made = comm_seconds();
         seconds[PHASE_RENDER] += made - start;
         if (good && run->comm.rank == 0)

@@ -224,8 +224,7 @@ static const double COVERED = 1e-12;
 static struct rgb open_radiosity(const struct forest *forest, const struct rgb *less,
                                  int32_t leaf, double fraction)
 {
-    struct rgb b = forest->radiosity[leaf],
-               e = forest_material(forest, leaf)->emission;
+    struct rgb b = forest->radiosity[leaf], e = forest_material(forest, leaf)->emission;
     for (int c = 0; c < BANDS && less; c++)
         b.band[c] = fmax(e.band[c], b.band[c] - less[leaf].band[c]);
     for (int c = 0; c < BANDS && fraction > 0.0; c++)

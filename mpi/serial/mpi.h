@@ -20,7 +20,7 @@ typedef int MPI_Errhandler;
 typedef ptrdiff_t MPI_Aint;
 
 enum { MPI_SUCCESS = 0, MPI_COMM_WORLD = 0, MPI_COMM_SELF = 1, MPI_REQUEST_NULL = 0 };
-enum { MPI_SUM, MPI_MAX, MPI_MIN };
+enum { MPI_SUM, MPI_MAX };
 enum {
     MPI_INFO_NULL,
     MPI_ERRORS_RETURN,

@@ -153,8 +153,7 @@ struct final_gather final_gather_create(struct model *model, int rays)
     gather.near.unit_area = 0x1p-50 * model->area;
     gather.near.unit_watts = 0x1p-44 * model->area * gather.mean;
     gather.near.seen = alloc_array((size_t)forest->count, sizeof *gather.near.seen);
-    gather.near.items =
-        alloc_array((size_t)forest->count, sizeof *gather.near.items);
+    gather.near.items = alloc_array((size_t)forest->count, sizeof *gather.near.items);
     gather.order = forest_order(forest);
     gather.place = alloc_array((size_t)forest->count, sizeof *gather.place);
     gather.sums.latest = alloc_array((size_t)forest->count, sizeof *gather.sums.latest);
@@ -301,8 +300,7 @@ void final_gather_renew(struct final_gather *gather)
     }
     gather->bright.part = part;
     alloc_free(gather->near.leaves);
-    gather->near.leaves =
-        alloc_array((size_t)forest->count, sizeof *gather->near.leaves);
+    gather->near.leaves = alloc_array((size_t)forest->count, sizeof *gather->near.leaves);
     for (int32_t p = 0; p < forest->count; p++) {
         struct triangle t = forest_triangle(forest, p);
         gather->near.leaves[p] = (struct gather_leaf){

@@ -107,8 +107,7 @@ static bool is_seen(struct model *model, struct vec3 from, int32_t on, struct ve
                     int32_t at, int32_t *blocker)
 {
     const int32_t own[2] = {on, at};
-    return !octree_blocks_segment(model->octree, from, to, own, blocker,
-                                  &model->counts);
+    return !octree_blocks_segment(model->octree, from, to, own, blocker, &model->counts);
 }
 
 static void look_from_afar(struct model *model, const struct meeting *m, uint64_t seed,

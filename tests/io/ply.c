@@ -198,8 +198,7 @@ static void test_binary(void)
         struct scene *scene = read_bytes(file.data, file.size);
         tap_ok(is_square(scene), "binary, %s endian: %s", big ? "big" : "little",
                error.text);
-        check_material(scene, 1, &BY_TYPE,
-                       "colours by type, emission as it is");
+        check_material(scene, 1, &BY_TYPE, "colours by type, emission as it is");
         scene_destroy(scene);
     }
 }
@@ -246,15 +245,13 @@ static void test_colours(void)
     scene = read_text(ASCII SQUARE COLOURS("uchar") FACE(2)
                       "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n"
                       "0 1 0 0 0 0\n3 0 1 2\n3 2 3 0\n");
-    check_material(scene, 0, &MEAN,
-                   "colours of vertices: the mean of the corners");
+    check_material(scene, 0, &MEAN, "colours of vertices: the mean of the corners");
     scene_destroy(scene);
     scene = read_text(ASCII SQUARE COLOURS("uchar") FACE(3) COLOURS("double")
                       "end_header\n0 0 0 255 0 51\n1 0 0 0 0 51\n1 1 0 0 153 51\n"
                       "0 1 0 0 0 0\n3 0 1 2 0.1 0.2 0.3\n"
                       "3 2 3 0 0.5 0.5 0.5\n3 0 1 3 0.1 0.2 0.3\n");
-    check_material(scene, 0, &OWN,
-                   "colours of faces come first");
+    check_material(scene, 0, &OWN, "colours of faces come first");
     tap_ok(scene && scene->material_count == 2 &&
                scene->material_of[2] == scene->material_of[0],
            "faces of one colour share a material");

@@ -124,8 +124,7 @@ static bool takes(const uint8_t *bytes, size_t size, const struct store_terms *t
     struct link links[100];
     struct store_reader reader;
     *error = (struct error){0};
-    bool good =
-        store_open_file(&reader, file_of_bytes(bytes, size), "F", terms, error);
+    bool good = store_open_file(&reader, file_of_bytes(bytes, size), "F", terms, error);
     while (good && store_get_links(&reader, links, 100, error) > 0) {
     }
     store_close(&reader);

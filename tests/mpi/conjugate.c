@@ -281,8 +281,7 @@ static double difference(const struct problem *a, const struct problem *b)
         for (int c = 0; c < BANDS; c++) {
             int32_t leaf = a->leaves[i];
             double at = p->radiosity[leaf].band[c];
-            missing +=
-                forest_area(p, leaf) * fabs(at - q->radiosity[leaf].band[c]);
+            missing += forest_area(p, leaf) * fabs(at - q->radiosity[leaf].band[c]);
             light += forest_area(p, leaf) * at;
         }
     return missing / light;

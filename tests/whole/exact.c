@@ -166,8 +166,7 @@ static void test_same_answer(const struct comm *comm)
     const struct forest *a = s[0].solver->model.forest, *b = s[1].solver->model.forest;
     for (int32_t p = 0; p < a->root_count; p++)
         for (int c = 0; c < BANDS; c++)
-            off = fmax(off, fabs(a->radiosity[p].band[c] -
-                                 b->radiosity[p].band[c]));
+            off = fmax(off, fabs(a->radiosity[p].band[c] - b->radiosity[p].band[c]));
     double emitted = s[0].stats.emitted_power;
     double absorbed =
         fabs(s[0].stats.absorbed_power - s[1].stats.absorbed_power) / emitted;
