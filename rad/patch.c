@@ -7,10 +7,9 @@
  * a child) means none. */
 #include "rad/patch.h"
 
-#include <string.h>
-
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "geom/little.h"
 
 struct forest *forest_create(const struct scene *scene)
 {
@@ -126,14 +125,11 @@ int32_t *forest_order(const struct forest *forest)
 
 /* --- the checksum --- */
 
-/* Least significant byte first, whatever the machine. */
 static uint64_t hash_number(uint64_t hash, double value)
 {
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    for (int k = 0; k < 8; k++)
-        hash = hash_bytes(hash, &(uint8_t){(uint8_t)(bits >> (8 * k))}, 1);
-    return hash;
+    uint8_t bytes[8];
+    little_put_double(bytes, value);
+    return hash_bytes(hash, bytes, sizeof bytes);
 }
 
 /* One bit for each patch, depth first, 1 = split; eight to a byte, the first in the

@@ -126,10 +126,8 @@ double mean_factor(const struct triangle *from, struct vec3 normal,
 struct rgb lamp_light(const struct lamps *lamps, int32_t patch)
 {
     const struct forest *forest = lamps->model->forest;
-    struct rgb light = forest_material(forest, patch)->emission;
-    for (int c = 0; c < BANDS && lamps->reflect; c++)
-        light.band[c] = forest->radiosity[patch].band[c] - light.band[c];
-    return light;
+    struct rgb emission = forest_material(forest, patch)->emission;
+    return lamps->reflect ? rgb_sub(forest->radiosity[patch], emission) : emission;
 }
 
 /* The roots of a node: places in the tree's order. */
