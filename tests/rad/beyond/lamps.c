@@ -318,6 +318,8 @@ static void test_choice(void)
     for (int k = 0; k < CHOICES; k++) {
         struct lamp lamp = lamp_choose_at(&g.gather.lamps, x, up, HUGE_VAL,
                                           (k + 0.5) / CHOICES);
+        if (lamp.patch < 0)
+            continue; /* none of the lamps that it came down to faces x */
         struct triangle t = scene_root_triangle(scene, lamp.patch);
         double h = lamp.share * point_triangle_factor(x, up, &t);
         mean += h / CHOICES;
