@@ -199,14 +199,14 @@ static void aim_at_lamp(struct receiver *r, const struct sequence *sequence, int
             continue;
         bool hidden = receiver_blocker(r, x, y, root) >= 0;
         add_segment(&own, half_of(volley, fired++, count), light, hidden ? 0.0 : light);
-        r->shares.doubt = r->shares.doubt || hidden;
     }
     double all = own.direct[0] + own.direct[1], seen = own.seen[0] + own.seen[1];
-    r->shares.doubt = r->shares.doubt || !(all > 0.0);
+    double factor = direct / rgb_sum(emission);
+    r->shares.doubt += seen < all || !(all > 0.0) ? factor : 0.0;
     if (!(all > 0.0))
         return;
     add_volley(volley, &own, direct / all);
-    add_lamp(r, emission, direct * (seen / all) / rgb_sum(emission));
+    add_lamp(r, emission, factor * (seen / all));
 }
 
 /* The same for a wide lamp, whose variance is known. */
@@ -215,9 +215,10 @@ static void aim_at_wide_lamp(struct receiver *r, int count, int32_t root, double
     struct sequence sequence = sequence_to(r, root);
     struct rgb emission = scene_root_material(r->gather->model->scene, root)->emission;
     struct receiver_share share = receiver_share_of_wide(r, &sequence, count, root);
-    add_lamp(r, emission, direct * share.seen / rgb_sum(emission));
+    double factor = direct / rgb_sum(emission);
+    add_lamp(r, emission, factor * share.seen);
     r->shares.direct += direct;
-    r->shares.doubt = r->shares.doubt || share.seen < 1.0;
+    r->shares.doubt += share.seen < 1.0 ? factor : 0.0;
     for (int c = 0; c < BANDS; c++) {
         double h = direct * emission.band[c] / rgb_sum(emission);
         r->row.chance[c] += h * h * share.variance;
@@ -321,7 +322,7 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
     int most = lamps->reflect ? (int)ceil(r->rays * fmax(AIMED_LEAST, lamps->part))
                : dark         ? r->gather->rays
                               : r->segments;
-    r->shares.doubt = r->shares.doubt || dark || (!lamps->reflect && !lamps->alike);
+    r->shares.doubt += dark || (!lamps->reflect && !lamps->alike) ? 1.0 : 0.0;
     lamps_group(lamps, &r->facet, most,
                 most_light(r->gather->model->forest, r->row.leaf),
                 &r->gather->model->estimating);

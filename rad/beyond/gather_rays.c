@@ -11,7 +11,7 @@
  *     H = sum over aimed rays of F B  +  (1 - sum of F) * mean of B over the others,
  *
  * so rows still sum to 1. In a row, rays that have met lamps stand for the form factor of
- * these, if segments have found it without doubt. Beside a bright patch all this does not
+ * these, if segments leave little doubt of it. Beside a bright patch all this does not
  * apply: rays find it often enough, and factors of a few points of it would vary without
  * bound.
  *
@@ -60,6 +60,10 @@ static const double CUT = 16.0;
 /* A point is beside a patch if the square of its distance is less than this times the
  * square of the patch's radius. */
 static const double BESIDE = 2.0;
+
+/* The form factor of lamps that segments have found is sure if that of lamps in doubt is
+ * at most that of so many rays: one more or less meets a lamp by chance. */
+static const double SURE_RAYS = 0.5;
 
 /* Most points of a path; those from which it goes on in any case. */
 enum { PATH_MOST = 256, PATH_SURE = 2 };
@@ -376,7 +380,7 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
     struct gather_nears *near = &g->near;
     if (!r->keeps || /* a look's leaves may have no places yet */
         leaf_has_sparks(g, met->patch)) { /* sparks tell how bright it is seen */
-        r->shares.doubt = true;
+        r->shares.doubt = 1.0;
         return;
     }
     r->near = g->place[met->patch];
@@ -443,7 +447,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
     } else if (ends_on_mesh(r, &point, origin, normal)) {
         end_ray(r, &point, aimed, &weight);
     } else {
-        r->shares.doubt = r->shares.doubt || aimed;
+        r->shares.doubt += aimed ? 1.0 : 0.0;
         begin_path(r, &point, aimed, &weight);
         go_on(r, point, aimed, weight, seed, true);
     }
@@ -486,15 +490,16 @@ struct factors {
 };
 
 /* The rays of a row that have met lamps stand for the lamps' form factor where segments
- * have found it without doubt: how many did by chance is noise. */
+ * have found it, but for less than their number can tell: how many did by chance is
+ * noise. */
 static struct factors factors_of(const struct receiver *r)
 {
     int aside = r->sums.aside[0] + r->sums.aside[1], on = r->sums.on_lamps;
     int others = r->rays - aside - on;
     double rest = fmax(0.0, 1.0 - r->shares.bright) * r->rays;
     double all = rest / (aside < r->rays ? r->rays - aside : r->rays);
-    if (!r->keeps || r->shares.doubt || aside > 0 || on == 0 || others == 0 ||
-        !(r->shares.bright + r->shares.lit < 1.0))
+    if (!r->keeps || r->shares.doubt * r->rays > SURE_RAYS || aside > 0 || on == 0 ||
+        others == 0 || !(r->shares.bright + r->shares.lit < 1.0))
         return (struct factors){all, all};
     double lit = r->shares.lit * r->rays;
     return (struct factors){lit / on, (rest - lit) / others};

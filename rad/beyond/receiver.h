@@ -23,7 +23,8 @@ struct aimed_shares {
     double lit;    /* form factor of the lamps, as segments have found it, 1 */
     double direct; /* light of all that is aimed at, over all bands, if nothing hid any,
                       W/m^2 */
-    bool doubt;    /* that may be wrong: something hides a lamp, or it is near */
+    double doubt;  /* part of `lit` that may be wrong: something hides a lamp, or it is
+                      near */
 };
 
 /* What a leaf in the dark looks for. */

@@ -716,7 +716,7 @@ static double light_between_spheres(const struct scene *scene, const double *b,
 }
 
 /* The inner sphere, of this radius, emits. A share q of the rays from outside meet it, if
- * spheres are round. */
+ * spheres are round: if rays told that share, the RMS outside would be up to .17 %. */
 static void test_concentric(double radius, const double rho[2], int level)
 {
     char name[64];
@@ -734,7 +734,7 @@ static void test_concentric(double radius, const double rho[2], int level)
     snprintf(name, sizeof name, "spheres, r / R %g, rho %g, %g", radius, rho[0], rho[1]);
     judge(&s, name, 0, &(struct truth){.value = b[0]}, BARS, 0.0);
     struct truth outer = {.light = light_between_spheres, .b = b};
-    judge(&s, name, 1, &outer, BARS, 0.0);
+    judge(&s, name, 1, &outer, (struct errors){BARS.mean, 1.3e-3, BARS.worst}, 0.0);
     solution_free(&s);
 }
 
@@ -838,6 +838,7 @@ int main(int argc, char **argv)
                                   {0.0, material_grey(.8, 0)}};
     test_sphere("crater", crater, 2, 2);
     test_concentric(0.2, (double[]){.5, .8}, 2);
+    test_concentric(0.275, (double[]){.5, .8}, 2);
     test_concentric(0.35, (double[]){.5, .8}, 2);
     test_concentric(0.5, (double[]){.5, .8}, 2);
     test_concentric(0.7, (double[]){.5, .8}, 2);
