@@ -23,7 +23,9 @@
  * (n / (1 - n) would be the whole, and noise where hardly any far ray meets the leaf.)
  * As a part of W that would make rows of both signs, and light in bright rooms would grow
  * with each reflection; as a factor of B it makes none. The factors are those of the
- * answer before, so light is solved for in turns, until one changes nothing.
+ * answer before, so light is solved for in turns, until one changes nothing. In the first
+ * turn they are 1: of the links' light, which may lack much in a gap, some would be so
+ * high that a bright room reflects more than it receives.
  *
  * Where a box stands on part of a leaf, rays from there meet its inside: that part is
  * dark, so the part that others see is brighter than the mean, by the inverse of its
@@ -58,12 +60,12 @@
 
 enum { STEPS_MOST = 500 };
 
-/* Times that it is found anew how bright leaves too near are seen, at most. Most end at
- * five, when one changes nothing. In gaps of rho .999 each leaves .6 of the error. */
-enum { ROUNDS_MOST = 20 };
+/* Turns, at most; the last one only finds what is left. Most end at five, when one
+ * changes nothing. In gaps of rho .999 each leaves .6 of the error. */
+enum { TURNS_MOST = 40 };
 
-/* The part of what is left of the equation that each turn but the last one leaves: how
- * bright leaves are seen in the next one changes it by as much. */
+/* The part of what is left of the equation that each turn leaves: how bright leaves are
+ * seen in the next one changes it by as much. */
 static const double LEFT = 0.03;
 
 /* A scene is closed if no more than this part of all rays escapes. */
@@ -173,7 +175,7 @@ static void share_near(struct gathering *g)
             continue;
         number[place] = (int32_t)g->near_count;
         items[g->near_count] = items[place];
-        g->near[g->near_count++].leaf = i;
+        g->near[g->near_count++] = (struct too_near){i, {{1.0, 1.0, 1.0}}};
     }
     for (int64_t k = final_gather_terms(gather) - 1; k >= 0; k--)
         if (gather->terms[k].near >= 0)
@@ -223,6 +225,7 @@ static void find_shown(struct gathering *g, const struct rgb *b)
         double n = fmin(1.0, part), damping = fmin(1.0, 2.0 * (1.0 - n));
         for (int c = 0; c < BANDS; c++) {
             double met = (double)(watts[BANDS * k + c] + near->watts[c]) * unit; /* n L */
+            met = fmax(0.0, met); /* slopes may bring it below */
             double excess = own->band[c] > 0.0 ? n - met / own->band[c] : 0.0;
             g->near[k].shown.band[c] = fmax(0.0, 1.0 + damping * excess);
         }
@@ -419,15 +422,13 @@ static double *weigh(const struct gathering *g, const struct rgb *b)
     return weights;
 }
 
-/* Collective. One turn: finds how bright leaves are seen and how missing light is spread,
- * by `answer`, and solves for `b`, which becomes the answer but where it is below 0. `h`
- * and `r`: buffers. */
+/* Collective. One turn: finds how missing light is spread, by `answer`, and solves for
+ * `b`, which becomes the answer but where it is below 0. `h` and `r`: buffers. */
 static struct bicgstab take_turn(struct gathering *g, const double *weights,
                                  struct bicgstab_end end, struct rgb *b, struct rgb *h,
                                  struct rgb *r, struct rgb *answer)
 {
     size_t count = (size_t)g->count;
-    find_shown(g, answer);
     irradiances(g, answer, true, h);
     memcpy(g->spread, h, count * sizeof *h);
     irradiances(g, b, true, h);
@@ -465,9 +466,11 @@ static void solve_rows(struct gathering *g, struct vote *vote)
         .part = LEFT, .steps = STEPS_MOST};
     double *weights = weigh(g, b);
     struct bicgstab done = {.steps = 1};
-    for (int turn = 1; done.steps > 0 && turn <= ROUNDS_MOST; turn++) {
-        if (turn == ROUNDS_MOST)
-            end.part = 0.0;
+    for (int turn = 1; done.steps > 0; turn++) {
+        if (turn > 1)
+            find_shown(g, answer);
+        if (turn == TURNS_MOST)
+            end.steps = 0;
         done = take_turn(g, weights, end, b, h, r, answer);
     }
     alloc_free(weights);

@@ -151,7 +151,7 @@ struct final_gather final_gather_create(struct model *model, int rays)
     gather.lamps = lamps_create(model, least_of_lamps(model), false);
     final_gather_renew(&gather);
     gather.near.unit_area = 0x1p-50 * model->area;
-    gather.near.unit_watts = 0x1p-44 * model->area * gather.mean;
+    gather.near.unit_watts = 0x1p-52 * model->area * gather.mean;
     gather.near.seen = alloc_array((size_t)forest->count, sizeof *gather.near.seen);
     gather.near.items = alloc_array((size_t)forest->count, sizeof *gather.near.items);
     gather.order = forest_order(forest);
