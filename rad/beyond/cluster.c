@@ -31,8 +31,10 @@
 /* Keys that are compared by scatter: place, direction, size; and two of 0 and 1. */
 enum { KEYS = 7, NO_LAMP = KEYS, OTHER_SPACE, ALL_KEYS };
 
-/* Scene units of place that count like a unit of direction, and of the root of area. */
-static const double DIRECTION_WEIGHT = 0.3, SIZE_WEIGHT = 3.0;
+/* Scene units of place that count like a unit of direction, and of the root of area. The
+ * square of the former is at most so many times the variance of place: a small thing in a
+ * wide scene would be cut by direction alone, into groups that are all as wide as it. */
+static const double DIRECTION_WEIGHT = 0.3, SIZE_WEIGHT = 3.0, DIRECTION_MOST = 8.0;
 
 /* A root on its way into the tree. */
 struct member {
@@ -58,7 +60,7 @@ static struct member member_of(const struct scene *scene, int32_t root, double m
     struct member item = {.weight = area + mean_area, .root = root};
     for (int axis = 0; axis < 3; axis++) {
         item.key[axis] = vec3_axis(centre, axis);
-        item.key[3 + axis] = DIRECTION_WEIGHT * vec3_axis(normal, axis);
+        item.key[3 + axis] = vec3_axis(normal, axis);
     }
     item.key[6] = SIZE_WEIGHT * sqrt(area);
     item.key[NO_LAMP] = !material_emits(scene_root_material(scene, root));
@@ -86,7 +88,7 @@ static int32_t part_items(struct cutter *cutter, int32_t from, int32_t to, int k
 static int widest_key(const struct member *items, int32_t count, double *mean)
 {
     int widest = 0;
-    double most = -1.0;
+    double most = -1.0, place = 0.0;
     for (int key = 0; key < KEYS; key++) {
         double weight = 0.0, sum = 0.0, square = 0.0, first = items[0].key[key];
         for (int32_t i = 0; i < count; i++) {
@@ -96,6 +98,11 @@ static int widest_key(const struct member *items, int32_t count, double *mean)
             square += items[i].weight * off * off;
         }
         double scatter = square - sum * sum / weight;
+        if (key < 3)
+            place += scatter / weight;
+        else if (key < 6)
+            scatter *= real_min(DIRECTION_WEIGHT * DIRECTION_WEIGHT,
+                                DIRECTION_MOST * place);
         if (scatter > most) {
             most = scatter;
             widest = key;

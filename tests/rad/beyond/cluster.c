@@ -409,6 +409,35 @@ static void test_lamps(void)
     scene_destroy(scene);
 }
 
+/* The mean width of clusters of so many roots, 2 to 1 times, scene units. */
+static double mean_width(const struct cluster_tree *tree, int32_t roots)
+{
+    double sum = 0.0;
+    int count = 0;
+    for (int32_t i = 0; i < tree->count; i++) {
+        const struct cluster *c = &tree->clusters[i];
+        if (c->end - c->first > roots || 2 * (c->end - c->first) < roots)
+            continue;
+        sum += vec3_length(vec3_sub(c->high, c->low));
+        count++;
+    }
+    return sum / count;
+}
+
+/* Triangles in all directions, in a cube that is a millionth of the scene's width. Cut by
+ * direction alone a hundredth of them is .94 as wide as all, .74 if places count, too. */
+static void test_small(void)
+{
+    enum { COUNT = 6400 };
+    struct scene *scene = huge_and_tiny(COUNT);
+    struct cluster_tree *tree = tree_create(scene, NULL);
+    double part = mean_width(tree, COUNT / 100) / mean_width(tree, COUNT);
+    tap_ok(part < 0.85, "a hundredth of a small thing in a wide scene is %.2f as wide",
+           part);
+    cluster_tree_destroy(tree);
+    scene_destroy(scene);
+}
+
 int main(void)
 {
     for (int count = 1; count <= 4; count++)
@@ -424,5 +453,6 @@ int main(void)
     test_order();
     test_spaces();
     test_lamps();
+    test_small();
     return tap_done();
 }
