@@ -343,13 +343,13 @@ static void add_patch(const struct lamps *lamps, const struct lit *leaf, int32_t
     struct facet facet = facet_make(forest, patch);
     struct vec3 apart = vec3_sub(triangle_centroid(&facet.triangle), leaf->centroid);
     double distance2 = real_max(vec3_dot(apart, apart), facet.area);
-    double radius = triangle_radius(&facet.triangle);
+    double radius = triangle_radius(&facet.triangle), power = lamps->power[patch];
+    if (!facets_face(leaf->facet, &facet))
+        return;
     struct lamp_group group = {.node = patch};
-    double around = real_min(lamps->power[patch] / (PI * distance2),
-                             lamps->power[patch] / facet.area);
-    if (facets_face(leaf->facet, &facet))
-        group.direct = around * cosine_to(&leaf->facet->plane, apart, distance2) *
-                       cosine_to(&facet.plane, vec3_scale(apart, -1.0), distance2);
+    group.direct = real_min(power / (PI * distance2), power / facet.area) *
+                   cosine_to(&leaf->facet->plane, apart, distance2) *
+                   cosine_to(&facet.plane, vec3_scale(apart, -1.0), distance2);
     bool small = radius * radius <= leaf->small * leaf->small * distance2;
     if (lamps->part_of[patch] == patch || (small && group.direct <= leaf->each)) {
         add_group(groups, group);
