@@ -7,11 +7,12 @@
  *
  *     area * variance of rho H over it  >  MESH * epsilon * sum of area * (rho H)^2,
  *
- * so that all leaves have about the same share of it. At most, if all of its light falls
- * on one quarter, a leaf has a variance of 3 times the square of its light: a leaf that
- * could not even then be split, by the light of the links, is not looked at. In a scene
- * of many small triangles few are looked at. Leaves of which a part is in a dark room are
- * split in any case (rad/beyond/gather_regions.c).
+ * so that all leaves have about the same share of it. Where a thing stands on a leaf,
+ * chance counts as well: below a house the light of a lawn is another one. If all of its
+ * light falls on one quarter, a leaf has a variance of 3 times the square of its light,
+ * at most: a leaf that could not even then be split, by the light of the links, is not
+ * looked at. In a scene of many small triangles few are looked at. Leaves of which a
+ * part is in a dark room are split in any case (rad/beyond/gather_regions.c).
  *
  * Leaves with exact rows are not looked at: links without blockers tell where B varies,
  * over a leaf it is linear, and where it bends (rad/beyond/gather_bends.c) the leaf is
@@ -145,8 +146,8 @@ static struct gather_look *look(struct looking *l, const int32_t *leaves, int64_
     return looks;
 }
 
-/* Variance of rho H over the leaf, less the variance by chance; summed over bands. */
-static double spread_of(const struct gather_look *look)
+/* Variance of rho H over the leaf and by chance, summed over bands. */
+static double variance_of(const struct gather_look *look)
 {
     double spread = 0.0;
     for (int c = 0; c < BANDS; c++) {
@@ -158,7 +159,13 @@ static double spread_of(const struct gather_look *look)
         }
         spread += 0.25 * squares - 0.0625 * sum * sum;
     }
-    return fmax(0.0, spread - look->noise);
+    return spread;
+}
+
+/* The same, less the variance by chance. */
+static double spread_of(const struct gather_look *look)
+{
+    return fmax(0.0, variance_of(look) - look->noise);
 }
 
 static double square_of(const struct gather_look *look)
@@ -237,9 +244,10 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     int64_t made = 0;
     for (int64_t i = 0; i < count; i++) {
         int32_t leaf = (*leaves)[i];
-        double error = forest_area(forest, leaf) * spread_of(&looks[i]);
+        bool cut = final_gather_is_cut(&l->gather, leaf);
+        double spread = cut ? variance_of(&looks[i]) : spread_of(&looks[i]);
         keep_known(l, leaf, &looks[i]);
-        bool split = error > *threshold ||
+        bool split = forest_area(forest, leaf) * spread > *threshold ||
                      final_gather_is_at_border(&l->gather, leaf, &looks[i]);
         if (!split || !may_split(l, leaf))
             continue;

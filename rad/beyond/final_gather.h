@@ -53,6 +53,9 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
 bool final_gather_is_at_border(struct final_gather *gather, int32_t leaf,
                                const struct gather_look *look);
 
+/* True if a thing stands on the leaf or cuts it: light may differ on both sides. */
+bool final_gather_is_cut(struct final_gather *gather, int32_t leaf);
+
 /* Appends the row of a leaf, made by `rays` rays, and `segments` to lamps; or, if `exact`
  * and its root is open, by exact factors. */
 void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int segments,

@@ -92,6 +92,37 @@ static void test_even(void)
     solution_free(&s);
 }
 
+/* The smallest leaf of a floor below four lamps and a box that is so far above it, as a
+ * part of the floor. */
+static double least_below(double height)
+{
+    struct soup soup = {0};
+    double least = 1.0;
+    soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_box(&soup, point(0.30, 0.15, height), point(0.31, 0.16, 0.05), 1, false);
+    paint(&soup, 0.0, 0.0);
+    soup_add_quad(&soup, point(0, 0, 0.5), point(0, 1, 0), point(1, 0, 0), 2);
+    paint(&soup, 0.0, 1.0);
+    struct solution s = solve_soup(&soup, "--epsilon 0.02");
+    const struct forest *forest = s.solver->model.forest;
+    for (int32_t p = forest_next_leaf(forest, -1); p >= 0;
+         p = forest_next_leaf(forest, p))
+        if (forest->patches[p].id.root < 2)
+            least = fmin(least, forest_area(forest, p) / 2.0 / forest_area(forest, 0));
+    solution_free(&s);
+    return least;
+}
+
+/* Where a thing stands on a leaf, few rays may not tell chance from light that differs
+ * around it, and the leaf is split. */
+static void test_cut(void)
+{
+    double above = least_below(1e-3), below = least_below(0.0);
+    tap_ok(below <= 0.25 * above,
+           "below a box a leaf of %.4f of the floor, %.4f if it hangs", below, above);
+}
+
 /* Every second cell of the walls of a room, upwards or downwards. */
 static void add_cells(struct soup *soup, int odd)
 {
@@ -246,6 +277,7 @@ int main(int argc, char **argv)
     test_mesh(0.02);
     test_near();
     test_even();
+    test_cut();
     test_chance();
     test_looks();
     test_guess("--final-gather 16");
