@@ -244,8 +244,7 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     int64_t made = 0;
     for (int64_t i = 0; i < count; i++) {
         int32_t leaf = (*leaves)[i];
-        bool cut = final_gather_is_cut(&l->gather, leaf);
-        double spread = cut ? variance_of(&looks[i]) : spread_of(&looks[i]);
+        double spread = looks[i].cut ? variance_of(&looks[i]) : spread_of(&looks[i]);
         keep_known(l, leaf, &looks[i]);
         bool split = forest_area(forest, leaf) * spread > *threshold ||
                      final_gather_is_at_border(&l->gather, leaf, &looks[i]);

@@ -28,6 +28,7 @@ struct gather_look {
     double of_segment;         /* that of the segment, over the whole leaf */
     float fixed;               /* tests of a quarter, without its rays */
     float work;                /* tests of each ray */
+    bool cut;                  /* a thing stands on the leaf */
 };
 
 /* The light reflected, in the mean over all surface, summed over bands, W/m^2. */
@@ -52,9 +53,6 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
  * leaf is large: it lies below a wall or a door. */
 bool final_gather_is_at_border(struct final_gather *gather, int32_t leaf,
                                const struct gather_look *look);
-
-/* True if a thing stands on the leaf or cuts it: light may differ on both sides. */
-bool final_gather_is_cut(struct final_gather *gather, int32_t leaf);
 
 /* Appends the row of a leaf, made by `rays` rays, and `segments` to lamps; or, if `exact`
  * and its root is open, by exact factors. */

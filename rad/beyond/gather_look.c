@@ -76,7 +76,7 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     const struct forest *forest = gather->model->forest;
     const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
     struct receiver whole = receiver_of_leaf(gather, leaf, rays);
-    struct gather_look look = {.noise = 0.0f};
+    struct gather_look look = {.cut = leaf_is_cut(gather, leaf)};
     struct quarter quarters[4];
     struct rgb *each = alloc_array((size_t)rays, sizeof *each);
     double variance = 0.0, by_segments = 0.0;

@@ -130,9 +130,9 @@ static bool is_partly_covered(const struct final_gather *gather, int32_t leaf)
            gather->near.partly_covered[gather->place[leaf]];
 }
 
-/* True if a thing stands on the leaf or cuts it: just above it something is between its
- * middle and a corner, or the middle of an edge. Light may differ on both sides. */
-bool final_gather_is_cut(struct final_gather *gather, int32_t leaf)
+/* Just above the leaf something is between its middle and a corner, or the middle of an
+ * edge. */
+bool leaf_is_cut(struct final_gather *gather, int32_t leaf)
 {
     static const double INSET = 0.99;
     const struct forest *forest = gather->model->forest;
@@ -165,7 +165,7 @@ static bool is_cut_between(const struct receiver *r, const struct point *met,
     struct vec3 ray = vec3_sub(met->at, x);
     return r->keeps &&
            vec3_dot(ray, ray) < CUT * r->gather->near.leaves[met->patch].area &&
-           final_gather_is_cut(r->gather, met->patch);
+           leaf_is_cut(r->gather, met->patch);
 }
 
 /* True if a ray from x, where a surface has this normal, takes the mesh's light at the

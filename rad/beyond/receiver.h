@@ -70,6 +70,9 @@ void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *wei
 void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
                         const struct rgb *weight);
 
+/* True if a thing stands on the leaf or cuts it: light may differ on both sides. */
+bool leaf_is_cut(struct final_gather *gather, int32_t leaf);
+
 /* Adds the light of lamps, by segments. */
 void receiver_aim(struct receiver *r);
 
