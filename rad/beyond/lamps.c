@@ -32,6 +32,10 @@ static const double SMALL = 0.25, SMALL_AT_FIRST = 3.0;
 static const double EXACT_WITHIN = 16.0;
 enum { LOOKED = 2 };
 
+/* A cluster of which some lamps may face the leaf and others not brings all or nothing by
+ * a segment: it is a group if it would get this part of one. */
+static const double TORN = 1.0 / 16.0;
+
 /* Least cosine that a group of lamps is counted with: where a part of it may be above the
  * horizon, it has to be chosen now and then. */
 static const double LEAST_COSINE = 0.1;
@@ -325,7 +329,8 @@ static void add_cluster(const struct lamps *lamps, const struct lit *leaf,
         facing = real_min(1.0, real_max(facing / distance, LEAST_COSINE));
         group.direct = cosine_to(plane, apart, distance2) * facing * cluster->watts /
                        real_max(PI * distance2, leaf->facet->area);
-        if (group.direct <= leaf->each) {
+        bool torn = facing_most(cluster, apart) + reach > 0.0;
+        if (group.direct <= (torn ? TORN : 1.0) * leaf->each) {
             add_group(groups, group);
             return;
         }

@@ -837,7 +837,7 @@ int main(int argc, char **argv)
     const struct zone crater[] = {{-0.7, material_grey(.8, 1)},
                                   {0.0, material_grey(.8, 0)}};
     test_sphere("crater", crater, 2, 2);
-    test_concentric(0.2, (double[]){.5, .8}, 2);
+    test_concentric(0.175, (double[]){.5, .8}, 2);
     test_concentric(0.275, (double[]){.5, .8}, 2);
     test_concentric(0.35, (double[]){.5, .8}, 2);
     test_concentric(0.5, (double[]){.5, .8}, 2);
