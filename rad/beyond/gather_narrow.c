@@ -22,9 +22,13 @@
 #include "rad/beyond/remainder.h"
 
 /* Regions examined, those that send most; points from which each is looked at, or until
- * SEEN past known blockers; points of a leaf, least and most; quarterings of that. */
+ * SEEN past known blockers; points of a leaf, least and most. */
 enum { MOST_REGIONS = 64, POINTS_LOOKED = 256, SEEN = 8 };
-enum { POINTS = 64, MOST_POINTS = 256, QUARTERINGS = 3 };
+enum { POINTS = 64, MOST_POINTS = 256 };
+
+/* From a leaf beside a wall of 75 m that is seen along it, most of the factor is that of
+ * some centimetres. */
+enum { QUARTERINGS = 16 };
 
 /* A region is worth aiming at if fewer rays than this find it. */
 static const double WORTH = 16.0;
@@ -88,22 +92,24 @@ static int find_bright(struct final_gather *g, const struct facet *receiver,
     return count;
 }
 
-/* Looks from a point `x` of the receiver at the remainder: returns the factor of all that
- * is seen of it, and a point `y` of that; 0 if there is none. */
+/* Looks from a point `x` of the receiver at a point `y` of the remainder: returns the
+ * factor of all that is seen of it, as its kernel at y has it, so that light that differs
+ * over the remainder counts right; 0 if nothing is seen. */
 static double look(struct receiver *r, struct remainder *remainder,
                    const struct sequence *sequence, int index, struct vec3 *x,
                    struct vec3 *y)
 {
     struct vec3 normal = r->facet.plane.normal;
-    double u[SEQUENCE_DIMENSIONS];
+    double u[SEQUENCE_DIMENSIONS], density;
     sequence_point(sequence, (uint32_t)index, u);
     *x = receiver_start(r, u[0], u[1]);
     double seen = remainder_look(remainder, r->gather->model->scene, *x, normal);
     r->gather->model->estimating += 1 + remainder->count;
     if (!(seen > 0.0))
         return 0.0;
-    *y = remainder_point(remainder, QUARTERINGS, u[2], u[3], NULL);
-    return receiver_kernel(*x, normal, *y, remainder->plane.normal) > 0.0 ? seen : 0.0;
+    *y = remainder_point(remainder, QUARTERINGS, u[2], u[3], &density);
+    double kernel = receiver_kernel(*x, normal, *y, remainder->plane.normal);
+    return density > 0.0 ? kernel / density : 0.0;
 }
 
 /* True if the remainder of a region can be seen from the receiver, and is so small that

@@ -10,6 +10,11 @@
 #include "geom/lambert.h"
 #include "rad/beyond/sequence.h"
 
+/* Quarterings that are made wherever a part is; more, as long as the square of its radius
+ * is more than this times the square of its distance. */
+enum { LEAST_QUARTERINGS = 3 };
+static const double NEAR = 0.01;
+
 struct remainder remainder_start(const struct forest *forest, int32_t patch)
 {
     int32_t root = (int32_t)forest->patches[patch].id.root;
@@ -73,12 +78,22 @@ static double spread(double u, double before, double own)
     return own > 0.0 ? fmin(1.0 - 0x1p-32, fmax(0.0, (u - before) / own)) : u;
 }
 
+/* True if a part is so near to x, for its size, that it is not as good as a point. */
+static bool is_near(const struct triangle *part, struct vec3 x)
+{
+    double radius = triangle_radius(part);
+    struct vec3 apart = vec3_sub(triangle_centroid(part), x);
+    return radius * radius > NEAR * vec3_dot(apart, apart);
+}
+
 /* Quarters are chosen by their factors, until they are as good as points: of a wall that
  * is seen along it, a small part has most of the factor. */
 static struct triangle quarter_of(const struct remainder *r, struct triangle t,
                                   int quarterings, double *u)
 {
-    for (int step = 0; step < quarterings; step++) {
+    for (int step = 0; step < quarterings && (step < LEAST_QUARTERINGS ||
+                                              is_near(&t, r->outlook.from));
+         step++) {
         double before[5] = {0.0};
         struct triangle child[4];
         for (int k = 0; k < 4; k++) {

@@ -33,6 +33,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "geom/contour.h"
 #include "geom/lambert.h"
 #include "mpi/beyond/beyond.h"
 #include "tests/defaults.h"
@@ -244,6 +245,51 @@ static void test_few_rays(void)
     tap_ok(many && !aims, "leaves with 64 rays aim at openings, with 63 they do not");
 }
 
+/* H of a leaf by exact factors to all others, of which none hides another. */
+static double exact_irradiance(const struct forest *forest, int32_t leaf)
+{
+    struct triangle t = forest_triangle(forest, leaf);
+    int32_t other = forest_next_leaf(forest, -1);
+    double sum = 0.0;
+    for (; other >= 0; other = forest_next_leaf(forest, other)) {
+        struct triangle sender = forest_triangle(forest, other);
+        if (forest->patches[other].id.root != forest->patches[leaf].id.root)
+            sum += forest->radiosity[other].band[0] * triangle_exchange(&t, &sender);
+    }
+    return sum / triangle_area(&t);
+}
+
+/* A floor and a wall of 600 m are lit at one end. Two of their triangles are dark in the
+ * mean, so the leaves of their tips there look for light as those in the dark do: of the
+ * next face, which they see along it, most of the factor is that of some centimetres.
+ * Points chosen evenly on metres of it made leaves beside the edge 12 % too bright. */
+static void test_long_walls(void)
+{
+    static const struct vec3 along = {600, 0, 0}, side = {0, 3, 0}, up = {0, 0, 3};
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(0, 0, 0), along, side, 1);
+    soup_add_quad(&soup, point(0, 0, 0), up, along, 1);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0, 0, 0), side, up, 1);
+    paint(&soup, 0.5, 10.0);
+    struct solution s = solve_soup(&soup, "--epsilon 1e-3 --final-gather 64");
+    const struct forest *forest = s.solver->model.forest;
+    double found = 0.0, exact = 0.0;
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf)) {
+        struct triangle t = forest_triangle(forest, leaf);
+        struct vec3 x = scene_to_input(s.scene, triangle_centroid(&t));
+        uint32_t root = forest->patches[leaf].id.root;
+        if ((root == 0 || root == 3) && x.x > 2.0 && x.x < 20.0 && x.y + x.z < 0.1) {
+            found += triangle_area(&t) * forest->radiosity[leaf].band[0];
+            exact += triangle_area(&t) * 0.5 * exact_irradiance(forest, leaf);
+        }
+    }
+    tap_ok(exact > 0.0 && fabs(found / exact - 1.0) <= 0.06, "beside the edge of long "
+           "walls light is off by %+.2f %% (at most 6)", 100.0 * (found / exact - 1.0));
+    solution_free(&s);
+}
+
 int main(int argc, char **argv)
 {
     comm_start(&world_comm, &argc, &argv);
@@ -274,6 +320,7 @@ int main(int argc, char **argv)
     test_posts(4.743e-4);
     test_screen();
     test_few_rays();
+    test_long_walls();
     comm_stop(&world_comm);
     return tap_done();
 }
