@@ -342,27 +342,32 @@ static void add_cluster(const struct lamps *lamps, const struct lit *leaf,
 /* Adds a patch that is bright, or has bright ones below it and is small for its distance,
  * as a group; or those below it. Their light is estimated. */
 static void add_patch(const struct lamps *lamps, const struct lit *leaf, int32_t patch,
-                      struct lamp_groups *groups)
+                      const struct facet *facet, struct lamp_groups *groups)
 {
-    const struct forest *forest = lamps->model->forest;
-    struct facet facet = facet_make(forest, patch);
-    struct vec3 apart = vec3_sub(triangle_centroid(&facet.triangle), leaf->centroid);
-    double distance2 = real_max(vec3_dot(apart, apart), facet.area);
-    double radius = triangle_radius(&facet.triangle), power = lamps->power[patch];
-    if (!facets_face(leaf->facet, &facet))
+    const struct patch *self = &lamps->model->forest->patches[patch];
+    if (!facets_face(leaf->facet, facet))
         return;
-    struct lamp_group group = {.node = patch};
-    group.direct = real_min(power / (PI * distance2), power / facet.area) *
-                   cosine_to(&leaf->facet->plane, apart, distance2) *
-                   cosine_to(&facet.plane, vec3_scale(apart, -1.0), distance2);
-    bool small = radius * radius <= leaf->small * leaf->small * distance2;
-    if (lamps->part_of[patch] == patch || (small && group.direct <= leaf->each)) {
-        add_group(groups, group);
-        return;
+    struct vec3 apart = vec3_sub(triangle_centroid(&facet->triangle), leaf->centroid);
+    double distance2 = real_max(vec3_dot(apart, apart), facet->area);
+    double radius = triangle_radius(&facet->triangle), power = lamps->power[patch];
+    bool bright = lamps->part_of[patch] == patch;
+    if (bright || radius * radius <= leaf->small * leaf->small * distance2) {
+        struct lamp_group group = {.node = patch};
+        group.direct = real_min(power / (PI * distance2), power / facet->area) *
+                       cosine_to(&leaf->facet->plane, apart, distance2) *
+                       cosine_to(&facet->plane, vec3_scale(apart, -1.0), distance2);
+        if (bright || group.direct <= leaf->each) {
+            add_group(groups, group);
+            return;
+        }
     }
+    struct facet child = *facet;
+    child.area *= 0.25;
     for (int32_t k = 0; k < 4; k++)
-        if (lamps->power[forest->patches[patch].children + k] > 0.0)
-            add_patch(lamps, leaf, forest->patches[patch].children + k, groups);
+        if (lamps->power[self->children + k] > 0.0) {
+            child.triangle = triangle_child(&facet->triangle, k);
+            add_patch(lamps, leaf, self->children + k, &child, groups);
+        }
 }
 
 /* Adds a lamp as a group. `work` NULL: its direct light is estimated. */
@@ -389,12 +394,14 @@ static void add_child(const struct lamps *lamps, const struct lit *leaf, int32_t
                       struct lamp_groups *groups, int64_t *work)
 {
     int64_t first = groups->count;
-    if (child < 0)
+    if (child < 0) {
         add_cluster(lamps, leaf, &lamps->lit[~child], groups, work);
-    else if (lamps->reflect)
-        add_patch(lamps, leaf, child, groups);
-    else
+    } else if (lamps->reflect) {
+        struct facet root = facet_make(lamps->model->forest, child);
+        add_patch(lamps, leaf, child, &root, groups);
+    } else {
         add_root(lamps, leaf, child, groups, work);
+    }
     limit(groups, first, leaf->most);
 }
 
