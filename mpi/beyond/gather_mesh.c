@@ -83,7 +83,8 @@ struct looking {
     double unseen;   /* sum of area * (rho H)^2 of leaves that are not looked at */
     int rays;        /* of a look at a quarter */
     int64_t links;   /* of all ranks */
-    const int32_t *leaves;     /* [] that are looked at */
+    const int32_t *leaves;     /* [count] that are looked at */
+    int64_t count;
     struct gather_look *looks; /* [looked] of this rank */
     int64_t looked;
 };
@@ -120,6 +121,8 @@ static void look_at(void *context, int64_t item)
 {
     struct looking *l = context;
     l->looks[l->looked++] = final_gather_look(&l->gather, l->leaves[item], l->rays);
+    progress_tick(l->solver->progress,
+                  (double)l->looked * l->solver->comm->size / (double)l->count);
 }
 
 /* Collective. Looks at `count` leaves; [count], on all ranks. */
@@ -132,6 +135,7 @@ static struct gather_look *look(struct looking *l, const int32_t *leaves, int64_
                             .context = l, .work = work, .count = count};
     final_gather_renew(&l->gather);
     l->leaves = leaves;
+    l->count = count;
     l->looks = alloc_array((size_t)count, sizeof *looks);
     l->looked = 0;
     stages_run(&stages);
@@ -406,6 +410,7 @@ static void refine(struct looking *l)
     int64_t count;
     int32_t *leaves = choose_leaves(l, &count);
     for (int round = 0; round < ROUNDS && count > 0; round++) {
+        progress_begin(l->solver->progress, "looking", round, 0);
         count = split_leaves(l, &leaves, count, &threshold);
         mesh->split += count / 4;
     }
