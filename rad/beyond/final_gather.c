@@ -185,6 +185,7 @@ void final_gather_free(struct final_gather *gather)
     regions_free(gather->view.regions);
     openings_free(gather->view.openings);
     sparks_free(gather->view.sparks);
+    lamps_views_free(gather->view.lamps);
     alloc_free(gather->view.faced);
     alloc_free(gather->view.overlapped);
     alloc_free(gather->near.seen);

@@ -18,6 +18,7 @@
 #include "geom/lambert.h"
 #include "rad/beyond/gather_narrow.h"
 #include "rad/beyond/gather_regions.h"
+#include "rad/beyond/lamps_seen.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
@@ -315,7 +316,9 @@ static double most_light(const struct forest *forest, int32_t patch)
 /* Segments are dealt to the groups in proportion to the light that they can bring: lamps
  * behind walls, however bright, leave some for those in the room. A group that is sure to
  * get one counts with its own light, shared among its segments. The others are dealt
- * theirs apart, a whole number, so that together they count with their own light. */
+ * theirs apart, a whole number, so that together they count with their own light. Where
+ * a share is seen from around, the variance is that of chance by this share at least: all
+ * of few segments may miss, which would seem sure. */
 void receiver_aim_at(struct receiver *r, struct lamps *lamps)
 {
     bool dark = !lamps->reflect && receiver_is_in_the_dark(r);
@@ -326,6 +329,8 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
     lamps_group(lamps, &r->facet, most,
                 most_light(r->gather->model->forest, r->row.leaf),
                 &r->gather->model->estimating);
+    if (r->points && !lamps->reflect)
+        receiver_weigh_groups(r, lamps, most);
     const struct lamp_groups *groups = &lamps->groups;
     if (!(groups->worth > 0.0))
         return;
@@ -334,7 +339,7 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
         faint += groups->items[i].worth < each ? groups->items[i].worth : 0.0;
     struct dealing strong = {each, start}, weak = {faint / ceil(faint / each), start};
     struct volley volley = {.direct = {0.0, 0.0}};
-    struct rgb light = {{0.0, 0.0, 0.0}};
+    struct rgb light = {{0.0, 0.0, 0.0}}, around = light;
     for (int64_t i = 0; i < groups->count; i++) {
         const struct lamp_group *group = &groups->items[i];
         bool sure = group->worth >= each;
@@ -353,10 +358,17 @@ void receiver_aim_at(struct receiver *r, struct lamps *lamps)
         }
         aim_at_group(r, lamps, group, count, direct, &volley);
         light = lamp_light(lamps, lamp_choose(lamps, group->node, 0.5).patch);
+        double squares = direct * direct / count * group->seen * (1.0 - group->seen);
+        for (int c = 0; c < BANDS && squares > 0.0; c++) {
+            double part = light.band[c] / rgb_sum(light);
+            around.band[c] += part * part * squares;
+        }
         if (volley.count[0] + volley.count[1] >= VOLLEY)
             end_volley(r, &volley, light);
     }
     end_volley(r, &volley, light);
+    for (int c = 0; c < BANDS; c++)
+        r->row.chance[c] = fmax(r->row.chance[c], around.band[c]);
 }
 
 bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 x)

@@ -1,7 +1,8 @@
 /* Lamps as a leaf sees them.
  *
  * From the top of the tree downwards, a cluster is one group as soon as it is small for
- * its distance and would get no more than one segment; a lamp by itself is a group whose
+ * its distance and would get no more than one segment, or a sixteenth of one if some of
+ * its lamps may face away; a lamp by itself is a group whose
  * direct light is known from exact factors. So a hall with ten thousand lamps has some
  * hundreds of groups for each leaf. How much light one segment is to bring is estimated
  * first, without exact factors. Light that walls may keep off counts for no more than
@@ -34,7 +35,7 @@ enum { LOOKED = 2 };
 
 /* A cluster of which some lamps may face the leaf and others not brings all or nothing by
  * a segment: it is a group if it would get this part of one. */
-static const double TORN = 1.0 / 16.0;
+static const double PART_OF_MIXED = 1.0 / 16.0;
 
 /* Least cosine that a group of lamps is counted with: where a part of it may be above the
  * horizon, it has to be chosen now and then. */
@@ -134,10 +135,9 @@ struct rgb lamp_light(const struct lamps *lamps, int32_t patch)
     return lamps->reflect ? rgb_sub(forest->radiosity[patch], emission) : emission;
 }
 
-/* The roots of a node: places in the tree's order. */
-static void places_of(const struct cluster_tree *tree, int32_t node, int32_t *first,
-                      int32_t *end)
+void lamps_places(const struct lamps *lamps, int32_t node, int32_t *first, int32_t *end)
 {
+    const struct cluster_tree *tree = lamps->model->clusters->tree;
     const struct cluster *cluster = node_is_cluster(node) ? &tree->clusters[~node] : NULL;
     *first = cluster ? cluster->first : tree->place[node];
     *end = cluster ? cluster->end : *first + 1;
@@ -146,7 +146,7 @@ static void places_of(const struct cluster_tree *tree, int32_t node, int32_t *fi
 static double watts_of(const struct lamps *lamps, int32_t node)
 {
     int32_t first, end;
-    places_of(lamps->model->clusters->tree, node, &first, &end);
+    lamps_places(lamps, node, &first, &end);
     return lamps->before[end] - lamps->before[first];
 }
 
@@ -291,6 +291,7 @@ static void limit(struct lamp_groups *groups, int64_t first, double most)
 static void add_group(struct lamp_groups *groups, struct lamp_group group)
 {
     group.worth = group.direct;
+    group.seen = 1.0;
     RESERVE(groups->items, &groups->capacity, groups->count + 1);
     groups->items[groups->count++] = group;
 }
@@ -329,8 +330,8 @@ static void add_cluster(const struct lamps *lamps, const struct lit *leaf,
         facing = real_min(1.0, real_max(facing / distance, LEAST_COSINE));
         group.direct = cosine_to(plane, apart, distance2) * facing * cluster->watts /
                        real_max(PI * distance2, leaf->facet->area);
-        bool torn = facing_most(cluster, apart) + reach > 0.0;
-        if (group.direct <= (torn ? TORN : 1.0) * leaf->each) {
+        bool mixed = facing_most(cluster, apart) + reach > 0.0;
+        if (group.direct <= (mixed ? PART_OF_MIXED : 1.0) * leaf->each) {
             add_group(groups, group);
             return;
         }
@@ -464,7 +465,7 @@ struct lamp lamp_choose(const struct lamps *lamps, int32_t node, double u)
         int32_t patch = bright_at(lamps, node, u * lamps->power[node]);
         return (struct lamp){patch, lamps->power[node] / lamps->power[patch]};
     }
-    places_of(tree, node, &first, &end);
+    lamps_places(lamps, node, &first, &end);
     double all = lamps->before[end] - lamps->before[first];
     double at = lamps->before[first] + u * all;
     first += (int32_t)sum_place(lamps->before + first + 1, end - first, at);

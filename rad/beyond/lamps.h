@@ -11,6 +11,8 @@ struct lamp_group {
     int32_t node;  /* a cluster or a root; a bright patch, or one with some below it */
     double direct; /* irradiance of the leaf, about, over all bands, unoccluded, W/m^2 */
     double worth;  /* the same, less where that is more than may arrive, W/m^2 */
+    double seen;   /* share of its light that is seen from around the leaf; 1 where that
+                      is not asked */
 };
 
 struct lamp_groups {
@@ -59,6 +61,9 @@ struct lamp {
 struct lamps lamps_create(const struct model *model, double least, bool reflect);
 void lamps_free(struct lamps *lamps);
 
+/* The roots of a node: places in the tree's order. */
+void lamps_places(const struct lamps *lamps, int32_t node, int32_t *first, int32_t *end);
+
 /* The light that a lamp sends, W/m^2. */
 struct rgb lamp_light(const struct lamps *lamps, int32_t patch);
 
@@ -72,9 +77,10 @@ static inline bool root_is_lamp(const struct lamps *lamps, int32_t root)
 
 /* Finds the groups of lamps that a leaf tells apart by so many segments, in the tree's
  * order: each is a root, or a cluster that is small for its distance and would get about
- * one segment at most. All lamps of a node of the tree below its top are worth no more
- * than `most` to it, W/m^2; then a quarter of all worth is shared by direct light. Adds
- * the tests that it took to `work`. */
+ * one segment at most, a sixteenth of one if some of its lamps may face away. All lamps
+ * of a node of the tree below its top are worth no more than `most` to it, W/m^2; then a
+ * quarter of all worth is shared by direct light. Adds the tests that it took to
+ * `work`. */
 void lamps_group(struct lamps *lamps, const struct facet *leaf, int segments,
                  double most, int64_t *work);
 

@@ -129,6 +129,10 @@ void openings_free(struct openings *openings);
 struct sparks;
 void sparks_free(struct sparks *sparks);
 
+/* Lamps as patches see them: lamps_seen.c. */
+struct lamps_views;
+void lamps_views_free(struct lamps_views *views);
+
 /* A root and the roots that it faces. */
 struct gather_view {
     int32_t root;      /* -1: none yet */
@@ -138,6 +142,7 @@ struct gather_view {
     struct regions *regions;   /* NULL: none yet */
     struct openings *openings; /* NULL: none yet */
     struct sparks *sparks;     /* NULL: none yet */
+    struct lamps_views *lamps; /* NULL: none yet */
     uint8_t *overlapped; /* [roots] 2: another overlaps it in its plane; 1: none does; 0:
                             unknown */
     struct octree_counts counts; /* of all proofs, which each rank makes that has a leaf
