@@ -84,7 +84,7 @@ struct looking {
     int rays;        /* of a look at a quarter */
     int64_t links;   /* of all ranks */
     const int32_t *leaves;     /* [count] that are looked at */
-    int64_t count;
+    int64_t count;             /* of `leaves` */
     struct gather_look *looks; /* [looked] of this rank */
     int64_t looked;
 };

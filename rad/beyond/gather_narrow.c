@@ -93,8 +93,9 @@ static int find_bright(struct final_gather *g, const struct facet *receiver,
 }
 
 /* Looks from a point `x` of the receiver at a point `y` of the remainder: returns the
- * factor of all that is seen of it, as its kernel at y has it, so that light that differs
- * over the remainder counts right; 0 if nothing is seen. */
+ * weight of y, its kernel over the density at which it was chosen; in the mean that is
+ * the factor of all that is seen, and light that differs over the remainder has the right
+ * mean. 0: nothing is seen. */
 static double look(struct receiver *r, struct remainder *remainder,
                    const struct sequence *sequence, int index, struct vec3 *x,
                    struct vec3 *y)
@@ -124,17 +125,17 @@ static bool is_worth_aiming(struct receiver *r, struct opening *opening)
     int i = 0, passed = 0; /* since a blocker was learnt */
     for (; i < POINTS_LOOKED && (passed < SEEN || i < POINTS); i++) {
         struct vec3 x, y;
-        double seen = look(r, remainder, &sequence, i, &x, &y);
+        double weight = look(r, remainder, &sequence, i, &x, &y);
         int32_t blocker =
-            seen > 0.0 ? receiver_first_blocker(r, x, y, remainder->root) : -1;
+            weight > 0.0 ? receiver_first_blocker(r, x, y, remainder->root) : -1;
         if (blocker >= 0 &&
             remainder_learn(remainder, r->gather->model->scene, blocker)) {
             passed = 0;
             i--;
             continue;
         }
-        sum += blocker < 0 ? seen : 0.0;
-        passed += seen > 0.0 && blocker < 0;
+        sum += blocker < 0 ? weight : 0.0;
+        passed += weight > 0.0 && blocker < 0;
     }
     return passed > 0 && sum * r->gather->rays < WORTH * i;
 }
@@ -260,9 +261,9 @@ static void aim_at(struct receiver *r, struct opening *opening)
     for (int k = 0; k < points; k++) {
         struct vec3 x, y;
         struct rgb source = r->row.source;
-        double seen = look(r, remainder, &sequence, k, &x, &y);
-        if (seen > 0.0 && receiver_blocker(r, x, y, remainder->root) < 0) {
-            receiver_see(r, remainder->root, y, seen / points,
+        double weight = look(r, remainder, &sequence, k, &x, &y);
+        if (weight > 0.0 && receiver_blocker(r, x, y, remainder->root) < 0) {
+            receiver_see(r, remainder->root, y, weight / points,
                          hash_mix(seed ^ hash_mix((uint64_t)k)));
             receiver_catch(r, x, rgb_sub(r->row.source, source));
         }

@@ -86,8 +86,8 @@ static bool is_near(const struct triangle *part, struct vec3 x)
     return radius * radius > NEAR * vec3_dot(apart, apart);
 }
 
-/* Quarters are chosen by their factors, until they are as good as points: of a wall that
- * is seen along it, a small part has most of the factor. */
+/* Quarters are chosen by their factors, three times at least, and until they are as good
+ * as points: of a wall that is seen along it, a small part has most of the factor. */
 static struct triangle quarter_of(const struct remainder *r, struct triangle t,
                                   int quarterings, double *u)
 {
