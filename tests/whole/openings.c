@@ -239,9 +239,9 @@ static void test_screen(void)
 static void test_few_rays(void)
 {
     struct vec3 low = point(0, 1.05, 0), high = point(0, 1.95, 0.015);
-    light_through(0.04, low, high, false, 0, "--final-gather 64");
+    light_through(0.04, low, high, false, 0, "--epsilon 1e-3 --final-gather 64");
     bool many = aims;
-    light_through(0.04, low, high, false, 0, "--final-gather 63");
+    light_through(0.04, low, high, false, 0, "--epsilon 1e-3 --final-gather 63");
     tap_ok(many && !aims, "leaves with 64 rays aim at openings, with 63 they do not");
 }
 
