@@ -2,13 +2,13 @@
  *
  * From the top of the tree downwards, a cluster is one group as soon as it is small for
  * its distance and would get no more than one segment, or a sixteenth of one if some of
- * its lamps may face away; a lamp by itself is a group whose
- * direct light is known from exact factors. So a hall with ten thousand lamps has some
- * hundreds of groups for each leaf. How much light one segment is to bring is estimated
- * first, without exact factors. Light that walls may keep off counts for no more than
- * comes to the leaf as the links have it. Of bright patches, a root with some below it is
- * told apart in the same way. Their direct light decides only how often rays are aimed at
- * them: an estimate is enough.
+ * its lamps may face away; a lamp by itself is a group whose direct light is known from
+ * exact factors. So a hall with ten thousand lamps has some hundreds of groups for each
+ * leaf. How much light one segment is to bring is estimated first, without exact factors.
+ * Light that walls may keep off counts for no more than comes to the leaf as the links
+ * have it. Of bright patches, a root with some below it is told apart in the same way.
+ * Their direct light decides only how often rays are aimed at them: an estimate is
+ * enough.
  *
  * The mean factor is taken at three points with a rule that is exact for polynomials of
  * the second degree. Where the other triangle is nearer than the size of this one, the

@@ -36,8 +36,8 @@ double remainder_look(struct remainder *remainder, const struct scene *scene,
 
 /* A point of it as looked at last, chosen by u and v in [0, 1): by the factors of its
  * parts, which are quartered so often at most, less often where they are far for their
- * size, and evenly within these. `density`: at which it
- * was chosen, for each square scene unit; NULL: not wanted. */
+ * size, and evenly within these. `density`: at which it was chosen, for each square scene
+ * unit; NULL: not wanted. */
 struct vec3 remainder_point(const struct remainder *remainder, int quarterings, double u,
                             double v, double *density);
 

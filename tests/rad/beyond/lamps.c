@@ -525,6 +525,18 @@ static void test_screen_in_the_dark(void)
     trial_free(&g);
 }
 
+/* A wall at x = 4 from z = `foot` on, in pieces around a window of a metre: the fourth is
+ * its sill. */
+static void add_wall_with_window(struct soup *soup, int pieces, double foot)
+{
+    const double edges[4][4] = {
+        {-20, 1.5, foot, 20}, {2.5, 20, foot, 20}, {1.5, 2.5, 2, 20}, {1.5, 2.5, 0, 1}};
+    for (int k = 0; k < pieces; k++)
+        soup_add_quad(soup, point(4, edges[k][0], edges[k][2]),
+                      point(0, 0, edges[k][3] - edges[k][2]),
+                      point(0, edges[k][1] - edges[k][0], 0), 1);
+}
+
 /* A wide lamp behind a window of a metre in a wall of four pieces, as a point of a floor
  * sees it in a pixel: all of the window shines. Of segments to all of the lamp one in
  * twenty or fewer passes the window; 32 of them are off by a half. What walls hide is cut
@@ -541,12 +553,7 @@ static void test_window(bool sill)
     const struct vec3 low = point(4, 1.5, sill ? 1 : -2), high = point(4, 1.5, 2),
                       floor = point(1.5, 1.6, 0);
     const double foot = sill ? 0 : -3;
-    const double pieces[4][4] = {
-        {-20, 1.5, foot, 20}, {2.5, 20, foot, 20}, {1.5, 2.5, 2, 20}, {1.5, 2.5, 0, 1}};
-    for (int k = 0; k < walls; k++)
-        soup_add_quad(&soup, point(4, pieces[k][0], pieces[k][2]),
-                      vec3_scale(z, pieces[k][3] - pieces[k][2]),
-                      vec3_scale(y, pieces[k][1] - pieces[k][0]), 1);
+    add_wall_with_window(&soup, walls, foot);
     soup_add_quad(&soup, point(0, 0, 0), point(4, 0, 0), point(0, 4, 0), 1);
     paint(&soup, 0.5, 0.0);
     soup_add_quad(&soup, point(9, -20, -6), vec3_scale(z, 36), vec3_scale(y, 45), 1);
@@ -586,14 +593,9 @@ static double sum_of_runs(struct trial *g, const struct gather_points *points,
 static void test_sky_behind_window(void)
 {
     enum { RUNS = 64, SEGMENTS = 32 };
-    static const double pieces[4][4] = {
-        {-20, 1.5, 0, 20}, {2.5, 20, 0, 20}, {1.5, 2.5, 2, 20}, {1.5, 2.5, 0, 1}};
     struct soup soup = {0};
     const struct vec3 y = point(0, 1, 0), z = point(0, 0, 1), floor = point(1.5, 1.6, 0);
-    for (int k = 0; k < 4; k++)
-        soup_add_quad(&soup, point(4, pieces[k][0], pieces[k][2]),
-                      vec3_scale(z, pieces[k][3] - pieces[k][2]),
-                      vec3_scale(y, pieces[k][1] - pieces[k][0]), 1);
+    add_wall_with_window(&soup, 4, 0.0);
     soup_add_quad(&soup, point(1, 1, 0), point(1, 0, 0), point(0, 1, 0), 1);
     paint(&soup, 0.5, 0.0);
     soup_add_quad(&soup, point(9, -20, -6), vec3_scale(z, 36), vec3_scale(y, 45), 16);
