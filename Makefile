@@ -29,6 +29,7 @@
 #                        forty moments
 #   make cycles          pictures beside those of Blender's Cycles, where it is installed
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
+#   make pace            renews the instructions of runs in tests/pace (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
 #   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
 #   make install         to $(DESTDIR)$(prefix)      make uninstall  make clean
@@ -247,6 +248,10 @@ check: $(PHR) $(IMGDIFF) pathtracer tests build/room $(BUILD)/direct $(COURSE)
 golden: $(PHR)
 	sh tests/golden.sh tests/golden ./$(PHR)
 
+# Only on purpose, too: what runs take now becomes what they may take.
+pace: $(PHR) build/room
+	BUILD="$(BUILD)" PHR="$(PHR)" RENEW=yes sh tests/56-pace.sh
+
 portability:
 	MAKE="$(MAKE)" sh tests/portability.sh
 
@@ -290,5 +295,5 @@ FORCE:
 
 .PHONY: all demo tests room pathtracer bench errors chart growth scaling check \
     pages ablation stability course exercise film answers \
-    check-long prove cycles golden portability fuzz install \
+    check-long prove cycles golden pace portability fuzz install \
         uninstall clean FORCE
