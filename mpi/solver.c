@@ -50,25 +50,6 @@ void solver_destroy(struct solver *solver)
     alloc_free(solver);
 }
 
-void solver_record_iteration(struct solver *solver)
-{
-    int64_t now[] = {solver->account.bytes_gather, solver->account.bytes_scatter,
-                     solver->account.copied};
-    int own = solver->routes.receivers.counts[solver->comm->rank];
-    struct phase_work phase = {.kind = WORK_TRANSFER,
-                               .share.done = solver->links.seen,
-                               .bytes = now[0] - solver->account.recorded[0]};
-    ledger_add(&solver->account.ledger, phase);
-    phase = (struct phase_work){.kind = WORK_OWN,
-                                .share.done = own,
-                                .bytes = now[1] - solver->account.recorded[1]};
-    ledger_add(&solver->account.ledger, phase);
-    phase = (struct phase_work){.kind = WORK_PATCHES,
-                                .share.done = now[2] - solver->account.recorded[2]};
-    ledger_add(&solver->account.ledger, phase);
-    memcpy(solver->account.recorded, now, sizeof now);
-}
-
 /* Bytes that this process held at most, 0 where the system does not tell. */
 static int64_t peak_memory(void)
 {

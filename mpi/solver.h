@@ -196,9 +196,6 @@ struct vote solver_vote_jacobi(struct solver *solver, const struct ballot *sum);
 struct vote vote_make(const struct solver *solver, const struct ballot *sum,
                       double remaining);
 
-/* Enters the work of the iteration into the ledger. */
-void solver_record_iteration(struct solver *solver);
-
 /* Writes the row sums of the links into `stats`, after the last iteration. */
 void solver_measure_row_sums(struct solver *solver, struct stats *stats);
 

@@ -10,6 +10,8 @@
  * factors lack or have too much. */
 #include "mpi/solver.h"
 
+#include <string.h>
+
 void ballot_add(struct ballot *sum, const struct ballot *ballot)
 {
     sum->light = flux_add(sum->light, ballot->light);
@@ -48,11 +50,31 @@ struct vote vote_make(const struct solver *solver, const struct ballot *sum,
     return vote;
 }
 
+/* Enters the work of the iteration into the ledger. */
+static void record_iteration(struct solver *solver)
+{
+    int64_t now[] = {solver->account.bytes_gather, solver->account.bytes_scatter,
+                     solver->account.copied};
+    int own = solver->routes.receivers.counts[solver->comm->rank];
+    struct phase_work phase = {.kind = WORK_TRANSFER,
+                               .share.done = solver->links.seen,
+                               .bytes = now[0] - solver->account.recorded[0]};
+    ledger_add(&solver->account.ledger, phase);
+    phase = (struct phase_work){.kind = WORK_OWN,
+                                .share.done = own,
+                                .bytes = now[1] - solver->account.recorded[1]};
+    ledger_add(&solver->account.ledger, phase);
+    phase = (struct phase_work){.kind = WORK_PATCHES,
+                                .share.done = now[2] - solver->account.recorded[2]};
+    ledger_add(&solver->account.ledger, phase);
+    memcpy(solver->account.recorded, now, sizeof now);
+}
+
 struct vote solver_vote(struct solver *solver)
 {
     struct ballot sum = solver->ballot;
     solver->turn.stop = (int)sum.stop;
     struct vote vote = solver->steps.vote(solver, &sum);
-    solver_record_iteration(solver);
+    record_iteration(solver);
     return vote;
 }
