@@ -1,0 +1,89 @@
+# Circles of objects: an object points at another if it uses a symbol that the other
+# defines, as nm sees them, over all folders. Objects that reach each other stand in a
+# circle, and none may.
+
+. tests/tap.sh
+
+# Objects that still stand in a circle. Whoever takes one out crosses it out here; none is
+# added.
+known='rad/beyond/final_gather rad/beyond/gather_aim rad/beyond/gather_exact
+rad/beyond/gather_narrow rad/beyond/gather_rays rad/beyond/gather_regions
+rad/beyond/gather_sparks rad/beyond/gather_spots rad/beyond/gather_wide
+rad/beyond/lamps_seen'
+
+# symbols MODULE...: their symbols, "MODULE: VALUE TYPE NAME" or "MODULE: TYPE NAME".
+symbols() {
+    for module in "$@"; do
+        nm "$BUILD/$module.o" | sed "s,^,$module: ,"
+    done
+}
+
+# circles: of the symbols on its input, prints "circle A B ..." for each circle, and
+# "A -> B: NAME ..." for each pair of it where A uses symbols of B.
+circles() {
+    awk '
+    { module = substr($1, 1, length($1) - 1); name = $NF; type = $(NF - 1) }
+    type ~ /^[ABCDGRSTVW]$/ { home[name] = module }
+    type == "U" { user[++uses] = module; used[uses] = name }
+    END {
+        for (i = 1; i <= uses; i++) {
+            from = user[i]
+            to = home[used[i]]
+            if (to == "" || to == from)
+                continue
+            reaches[from, to] = modules[from] = modules[to] = 1
+            pairs[from, to] = pairs[from, to] " " used[i]
+        }
+        for (middle in modules)
+            for (from in modules)
+                if ((from, middle) in reaches)
+                    for (to in modules)
+                        if ((middle, to) in reaches)
+                            reaches[from, to] = 1
+        for (from in modules) {
+            if (!((from, from) in reaches) || from in told)
+                continue
+            circle = ""
+            for (to in modules)
+                if ((from, to) in reaches && (to, from) in reaches) {
+                    told[to]
+                    circle = circle " " to
+                }
+            print "circle" circle
+        }
+        for (pair in pairs) {
+            split(pair, end, SUBSEP)
+            if ((end[2], end[1]) in reaches)
+                print end[1] " -> " end[2] ":" pairs[pair]
+        }
+    }'
+}
+
+# missing LIST NAME...: the names that the list lacks, on a line.
+missing() {
+    list=$1
+    shift
+    for name in "$@"; do
+        case " $(echo $list) " in *" $name "*) ;; *) printf ' %s' "$name" ;; esac
+    done
+}
+
+symbols $(find phr.c geom octree rad mpi io tools -name '*.c' | sed 's/\.c$//') \
+    >"$work/symbols"
+check "nm sees main() of phr.c" grep -q '^phr: .* T _*main$' "$work/symbols"
+circles <"$work/symbols" | sort >"$work/circles"
+sed -n 's/^circle/# circle:/p' "$work/circles"
+sed -n '/->/s/^/    /p' "$work/circles"
+circular=$(sed -n 's/^circle//p' "$work/circles")
+more=$(missing "$known" $circular)
+check "no object stands in a circle but those that are known:$more" [ -z "$more" ]
+gone=$(missing "$circular" $known)
+check "and each of these does:$gone" [ -z "$gone" ]
+
+# The test can fail: a circle of three, two of which reach a fourth.
+printf '%s\n' 'a: U of_b' 'b: U of_c' 'c: U of_a' 'c: U of_d' 'b: U of_d' \
+    'a: 0 T of_a' 'b: 0 T of_b' 'c: 0 D of_c' 'd: 0 T of_d' >"$work/planted"
+check "a circle of three objects is found" \
+    [ "$(circles <"$work/planted" | grep -cE '^circle( [abc]){3}$|->')" -eq 4 ]
+
+tap_done
