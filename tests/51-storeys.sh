@@ -16,7 +16,7 @@ calls_to_form_factor      6     7
 includes_of_beyond        0     0
 ground_floor_lines     4236  4500
 source_lines          30395 16000
-test_lines            32223 16000
+test_lines            32372 16000
 long_lines                0     0
 what_per_1000_words     1.2     2
 large_structs             0     0
