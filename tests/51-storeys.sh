@@ -1,12 +1,16 @@
-# The two storeys: how much of phr a reader of the paper has to walk through, in
-# figures. Each is printed with its limit and its goal, and may not be above its limit.
-# A limit above its goal is the figure of the day when it was written here: whoever
-# makes a figure smaller writes it down, and no figure rises.
+# The two storeys: how much of phr a reader of the paper has to walk through, and one of
+# the final gather, in figures. Each is printed with its limit and its goal, and may not
+# be above its limit. A limit above its goal is the figure of the day when it was written
+# here: whoever makes a figure smaller writes it down, and no figure rises.
 
 . tests/tap.sh
 
-# The function of the form factor of Eq. (2), with visibility.
+# The function of the form factor of Eq. (2), with visibility; that which makes a row of
+# the final gather, and those that fire its rays and its segments to lamps.
 factor=exchange_area
+row=final_gather_add
+ray=octree_stream_hits
+segment=octree_blocks_segment
 
 # name                limit  goal
 limits='
@@ -27,6 +31,9 @@ named_numbers_upstairs  172    70
 bare_numbers_upstairs   134   134
 fields_upstairs         120    20
 fields_elsewhere        158    20
+functions_of_row        422   200
+calls_to_first_ray       12     9
+calls_to_first_segment   16    10
 '
 
 # judge NAME FIGURE [DETAILS]: the figure is not above its limit.
@@ -66,19 +73,57 @@ while read -r name figure details; do
     judge "$name" "$figure" "$details"
 done <"$work/figures"
 
-# --- figures of a run of --paper: two triangles that face each other, no picture ---
+# --- figures of runs, of a build whose functions stay apart and tell of their calls ---
 
 here=$BUILD/storeys # kept, so that the next build is short
-flags='-O0 -w -fno-inline --coverage -finstrument-functions -no-pie'
+flags='-O0 -g1 -w -fno-inline --coverage -finstrument-functions -no-pie'
+flags="$flags -ffunction-sections -fdata-sections"
 mkdir -p "$here/hooks"
 rm -f "$here/phr"
 if ! command -v gcov >/dev/null ||
     ! $CC -O0 -c tests/chain.c -o "$here/hooks/chain.o" ||
     ! $MAKE SERIAL=1 CC="$CC" BUILD="$here" CFLAGS="$flags" CPPFLAGS= \
         LDFLAGS="$here/hooks/chain.o" "$here/phr" >"$work/make.log" 2>&1; then
-    tap 0 "the run of --paper # SKIP there is no gcov, or no compiler that goes with it"
+    tap 0 "runs # SKIP there is no gcov, or no compiler that goes with it"
     tap_done
 fi
+nm "$here/phr" | awk '$2 ~ /^[tT]$/ { print $1, $3 }' >"$work/symbols"
+
+# address_of FUNCTION: in phr; none if it has none of that name.
+address_of() {
+    awk -v name="$1" '$2 == name { print $1 }' "$work/symbols"
+}
+
+# judge_calls NAME FUNCTION WAY ARGUMENTS...: a run of phr has few calls from main() to
+# the first of the function, if any by way of another.
+judge_calls() {
+    name=$1 function=$2 way=$3
+    shift 3
+    echo 0 >"$work/chain" # it is not called
+    CALLED_AT=$(address_of "$function") BY_WAY_OF=$(address_of "$way") \
+        CHAIN=$work/chain "$here/phr" "$@" >"$work/out" 2>"$work/log"
+    chain=$(awk 'NR == FNR { name[$1] = $2; next }
+        { while (length($1) < 16) $1 = "0" $1; print name[$1] }' \
+        "$work/symbols" "$work/chain" | sed -n '/^main$/,$p')
+    calls=$(echo "$chain" | sed 1d | grep -c .)
+    [ "$calls" -gt 0 ] || calls=
+    judge "$name" "$calls" "$(echo $chain | sed 's/ / > /g')"
+    check "which ends in $function()" [ "$(echo "$chain" | tail -n 1)" = "$function" ]
+}
+
+# The linker leaves out of a program that begins with a row what can't be reached from it,
+# be it by a call or through a table. Functions of a header are in many objects.
+$CC -no-pie --coverage -Wl,--gc-sections -Wl,-e,$row \
+    -o "$work/reached" "$here/hooks/chain.o" "$here/libphr.a" -lm >"$work/link.log" 2>&1
+nm -l "$work/reached" | awk '$2 ~ /^[tT]$/ && $4 ~ /:[0-9]+$/ && $3 !~ /^_sub_/ {
+    print $4, $3 }' | sort -u >"$work/reached.functions"
+check "a row can reach $ray()" grep -q " $ray\$" "$work/reached.functions"
+judge functions_of_row "$(wc -l <"$work/reached.functions")"
+gathers="scenes/cornell.obj --epsilon 1e-2 --final-gather 16"
+judge_calls calls_to_first_ray $ray $row $gathers
+judge_calls calls_to_first_segment $segment $row $gathers
+
+# --- figures of a run of --paper: two triangles that face each other, no picture ---
 
 cat >"$work/two.mtl" <<'END'
 newmtl lamp
@@ -101,11 +146,7 @@ usemtl wall
 f 4 6 5
 END
 find "$here" -name '*.gcda' -exec rm -f {} +
-nm "$here/phr" | awk '$2 ~ /^[tT]$/ { print $1, $3 }' >"$work/symbols"
-FACTOR_AT=$(awk -v name=$factor '$2 == name { print $1 }' "$work/symbols")
-CHAIN=$work/chain
-export FACTOR_AT CHAIN
-"$here/phr" --paper "$work/two.obj" >"$work/out" 2>"$work/log"
+judge_calls calls_to_form_factor $factor "" --paper "$work/two.obj"
 check "two triangles are solved by --paper" grep -q '^links ' "$work/out"
 
 gcov -b -t $(find "$here" -name '*.gcda') >"$work/listing" 2>"$work/gcov.log"
@@ -118,14 +159,5 @@ check "gcov has seen main()" grep -qx 'phr.c main' "$work/functions"
 judge functions_run "$(wc -l <"$work/functions")" "$(awk '{ n[$1]++ }
     END { for (f in n) printf "%s %d, ", f, n[f] }' "$work/functions")"
 judge files_run "$(grep -o '^[^ ]*\.c' "$work/functions" | sort -u | wc -l)"
-
-[ -s "$work/chain" ] || echo 0 >"$work/chain" # it is not called
-chain=$(awk 'NR == FNR { name[$1] = $2; next }
-    { while (length($1) < 16) $1 = "0" $1; print name[$1] }' \
-    "$work/symbols" "$work/chain" | sed -n '/^main$/,$p')
-calls=$(echo "$chain" | sed 1d | grep -c .)
-[ "$calls" -gt 0 ] || calls=
-judge calls_to_form_factor "$calls" "$(echo $chain | sed 's/ / > /g')"
-check "which ends in $factor()" [ "$(echo "$chain" | tail -n 1)" = $factor ]
 
 tap_done

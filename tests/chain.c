@@ -1,6 +1,7 @@
 /* Linked to a phr that is compiled with -finstrument-functions: writes the chain of calls
  * from main() to the first call of one function, an address a line, main() first. The
- * environment names the address of that function, FACTOR_AT, and the file, CHAIN. */
+ * environment names the address of that function, CALLED_AT, of another that has to be
+ * in the chain, BY_WAY_OF, if any has to, and the file, CHAIN. */
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -22,19 +23,39 @@ static void write_chain(void)
         fclose(file);
 }
 
+/* The address that the environment names; 0: none. */
+static uintptr_t address(const char *name)
+{
+    const char *text = getenv(name);
+    return text ? (uintptr_t)strtoull(text, NULL, 16) : 0;
+}
+
+static bool is_on_the_way(uintptr_t function)
+{
+    for (int i = 0; i < depth; i++)
+        if ((uintptr_t)calls[i] == function)
+            return true;
+    return function == 0;
+}
+
 void __cyg_profile_func_enter(void *function, void *site);
 void __cyg_profile_func_exit(void *function, void *site);
 
 void __cyg_profile_func_enter(void *function, void *site)
 {
-    static unsigned long long wanted;
+    static bool begun;
+    static uintptr_t called, by_way_of;
     (void)site;
+    if (!begun) {
+        begun = true;
+        called = address("CALLED_AT");
+        by_way_of = address("BY_WAY_OF");
+    }
     if (depth < DEPTH_MAX)
         calls[depth] = function;
     depth++;
-    if (!wanted)
-        wanted = getenv("FACTOR_AT") ? strtoull(getenv("FACTOR_AT"), NULL, 16) : 1;
-    if (!done && (uintptr_t)function == wanted && depth <= DEPTH_MAX) {
+    if (!done && (uintptr_t)function == called && depth <= DEPTH_MAX &&
+        is_on_the_way(by_way_of)) {
         done = true;
         write_chain();
     }
