@@ -3,7 +3,7 @@
 #define TESTS_GATHERED_H
 
 #include "geom/lambert.h"
-#include "rad/beyond/final_gather.h"
+#include "rad/beyond/gather/gather.h"
 #include "tests/defaults.h"
 
 struct trial {

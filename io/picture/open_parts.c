@@ -14,7 +14,7 @@
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
-#include "rad/beyond/inside.h"
+#include "rad/beyond/gather/inside.h"
 
 /* A gap is narrow for a leaf if it is less than this part of the distance from the middle
  * to a corner of its quarter. */

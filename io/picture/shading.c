@@ -52,7 +52,7 @@
 #include "geom/alloc.h"
 #include "geom/stop.h"
 #include "io/picture/surface.h"
-#include "rad/beyond/final_gather.h"
+#include "rad/beyond/gather/gather.h"
 
 /* --- vertices: a hash table from (point, surface) to a number --- */
 

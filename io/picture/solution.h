@@ -33,7 +33,7 @@ struct solution_leaf {
     double error;             /* W/m^2 */
 };
 
-/* The light of lamps in a final gather (rad/beyond/final_gather.h). */
+/* The light of lamps in a final gather (rad/beyond/gather/gather.h). */
 struct solution_lamps {
     bool known;        /* false: there was no final gather */
     double lamp_least; /* a lamp emits more than this over all bands, W/m^2 */

@@ -3,7 +3,7 @@
 #define MPI_BEYOND_BEYOND_H
 
 #include "mpi/solver.h"
-#include "rad/beyond/final_gather.h"
+#include "rad/beyond/gather/gather.h"
 #include "rad/beyond/conjugate.h"
 
 /* The state of --accuracy; see mpi/beyond/accuracy.c. */

@@ -240,7 +240,7 @@ static double shining_area(const struct gathering *g, int64_t i)
 {
     uint32_t root = g->solver->model.forest->patches[g->leaves[i]].id.root;
     const struct cover *cover = &g->covers[i];
-    bool lamp = root_is_lamp(&g->gather.lamps, (int32_t)root);
+    bool lamp = root_is_sender(g->gather.lamps, (int32_t)root);
     return (lamp ? g->areas[i] : cover->bare) * cover->outside * cover->kept;
 }
 

@@ -11,8 +11,7 @@
  * chance counts as well: below a house the light of a lawn is another one. If all of its
  * light falls on one quarter, a leaf has a variance of 3 times the square of its light,
  * at most: a leaf that could not even then be split, by the light of the links, is not
- * looked at. In a scene of many small triangles few are looked at. Leaves of which a
- * part is in a dark room are split in any case (rad/beyond/gather_regions.c).
+ * looked at. In a scene of many small triangles few are looked at.
  *
  * Leaves with exact rows are not looked at: links without blockers tell where B varies,
  * over a leaf it is linear, and where it bends (rad/beyond/gather_bends.c) the leaf is
@@ -39,7 +38,7 @@
 #include "mpi/beyond/gather_shots.h"
 #include "mpi/beyond/stages.h"
 #include "mpi/memory.h"
-#include "rad/beyond/gather_bends.h"
+#include "rad/beyond/gather/bends.h"
 #include "rad/oracle.h"
 
 static const double MESH = 0.005;
@@ -250,9 +249,7 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
         int32_t leaf = (*leaves)[i];
         double spread = looks[i].cut ? variance_of(&looks[i]) : spread_of(&looks[i]);
         keep_known(l, leaf, &looks[i]);
-        bool split = forest_area(forest, leaf) * spread > *threshold ||
-                     final_gather_is_at_border(&l->gather, leaf, &looks[i]);
-        if (!split || !may_split(l, leaf))
+        if (forest_area(forest, leaf) * spread <= *threshold || !may_split(l, leaf))
             continue;
         split_leaf(forest, leaf, &looks[i]);
         for (int k = 0; k < 4; k++) {

@@ -3,7 +3,7 @@
 #define MPI_BEYOND_GATHER_MESH_H
 
 #include "mpi/solver.h"
-#include "rad/beyond/final_gather.h"
+#include "rad/beyond/gather/gather.h"
 
 /* The leaves that have an area, in the order of forest_order(). */
 struct gather_mesh {

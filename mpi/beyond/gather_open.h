@@ -3,7 +3,7 @@
 #define MPI_BEYOND_GATHER_OPEN_H
 
 #include "mpi/solver.h"
-#include "rad/beyond/final_gather.h"
+#include "rad/beyond/gather/gather.h"
 
 /* Collective. Returns 1 for each root of which it is proved that nothing stands between
  * it and the roots that it faces, else 0: [roots], to be freed. All are 0 if the open

@@ -3,7 +3,7 @@
 #define MPI_BEYOND_STAGES_H
 
 #include "mpi/solver.h"
-#include "rad/beyond/final_gather.h"
+#include "rad/beyond/gather/gather.h"
 
 struct stages {
     struct solver *solver;

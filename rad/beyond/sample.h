@@ -36,4 +36,15 @@ int32_t root_met(const struct scene *scene, const struct octree *octree,
                  const struct half_line *ray, int32_t outside,
                  struct octree_counts *counts);
 
+/* cos cos' / (pi r^2) of the points x and y, 1 per square scene unit, without visibility;
+ * 0 below a horizon. */
+static inline double point_kernel(struct vec3 x, struct vec3 normal_x, struct vec3 y,
+                                  struct vec3 normal_y)
+{
+    struct vec3 d = vec3_sub(y, x);
+    double d2 = vec3_dot(d, d);
+    double rise = vec3_dot(normal_x, d), fall = -vec3_dot(normal_y, d);
+    return rise > 0.0 && fall > 0.0 ? rise * fall / (PI * d2 * d2) : 0.0;
+}
+
 #endif

@@ -1,4 +1,4 @@
-/* Tests of rad/beyond/final_gather.h: rows and the light of leaves and points, against
+/* Tests of rad/beyond/gather/gather.h: rows and the light of leaves and points, against
  * closed forms. */
 #include "rad/beyond/sequence.h"
 #include "tests/gathered.h"

@@ -3,7 +3,7 @@
 #ifndef RAD_BEYOND_MET_H
 #define RAD_BEYOND_MET_H
 
-#include "rad/beyond/receiver.h"
+#include "rad/beyond/gather/receiver.h"
 
 struct point {
     int32_t patch;     /* leaf of the forest */

@@ -9,11 +9,11 @@
  * in each band apart, since dim bands are to be right, too. Links make a mesh for the
  * brightest band. It may be too coarse by more than a level for a dim one that is
  * reflected more often, and where much is reflected next to an edge. */
-#include "rad/beyond/gather_bends.h"
+#include "rad/beyond/gather/bends.h"
 
 #include <math.h>
 
-#include "rad/beyond/final_gather.h"
+#include "rad/beyond/gather/gather.h"
 
 static const double BENT = 0.002;
 

@@ -9,8 +9,10 @@
  *
  * Rejected: exact factors to whatever a leaf sees openly and rays for the rest. Proofs
  * for all pairs cost more than the rays that they save. */
-#include "rad/beyond/final_gather.h"
-#include "rad/beyond/receiver.h"
+#include "rad/beyond/gather/gather.h"
+#include "rad/beyond/gather/factor.h"
+#include "rad/beyond/gather/receiver.h"
+#include "rad/beyond/sample.h"
 
 #include <math.h>
 
@@ -117,7 +119,7 @@ static bool is_open(struct final_gather *g, int32_t number, bool proof)
         struct facet other = facet_make(g->model->forest, view->faced[i]);
         const int32_t own[2] = {root.facet.input, other.input};
         struct vec3 there = triangle_centroid(&other.triangle);
-        open = !(receiver_kernel(middle, root.facet.plane.normal, there,
+        open = !(point_kernel(middle, root.facet.plane.normal, there,
                                  other.plane.normal) > 0.0) ||
                !octree_blocks_segment(octree, middle, there, own, &guess, &view->counts);
     }
@@ -187,7 +189,7 @@ static void place_of_light(const struct facet *to, const struct triangle *sender
         for (int k = 0; k < 3; k++) {
             double light = 0.0;
             for (int i = 0; i < 3; i++)
-                light += receiver_kernel(x[i], to->plane.normal, y[k], normal);
+                light += point_kernel(x[i], to->plane.normal, y[k], normal);
             sum = vec3_add(sum, vec3_scale(weights[k], light));
             all += light;
         }

@@ -17,14 +17,14 @@
  * Rejected: B interpolated between corners that neighbours share. It needs to know over
  * which edges light goes on smoothly, and at shadows, where interpolation matters, it
  * does not. */
-#include "rad/beyond/final_gather.h"
+#include "rad/beyond/gather/gather.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
 #include "rad/beyond/range.h"
-#include "rad/beyond/receiver.h"
+#include "rad/beyond/gather/met.h"
 #include "rad/beyond/sequence.h"
 
 /* A lamp emits more than GLOW times the mean radiosity, if surfaces that do so are LAMP
@@ -148,7 +148,7 @@ struct final_gather final_gather_create(struct model *model, int rays)
     gather.mean = mean_radiosity(model);
     gather.sums.scale = scale_of_bands(model, gather.mean);
     gather.sums.flat = FLAT;
-    gather.lamps = lamps_create(model, least_of_lamps(model), false);
+    gather.lamps = senders_create(model, least_of_lamps(model), false);
     final_gather_renew(&gather);
     gather.near.unit_area = 0x1p-50 * model->area;
     gather.near.unit_watts = 0x1p-52 * model->area * gather.mean;
@@ -180,12 +180,12 @@ void final_gather_drop_rows(struct final_gather *gather)
 
 void final_gather_free(struct final_gather *gather)
 {
-    lamps_free(&gather->lamps);
-    lamps_free(&gather->bright);
-    regions_free(gather->view.regions);
-    openings_free(gather->view.openings);
-    sparks_free(gather->view.sparks);
-    lamps_views_free(gather->view.lamps);
+    senders_destroy(gather->lamps);
+    senders_destroy(gather->bright);
+    regions_destroy(gather->regions);
+    cuts_free(&gather->lamp_cuts);
+    cuts_free(&gather->bright_cuts);
+    alloc_free(gather->worth);
     alloc_free(gather->view.faced);
     alloc_free(gather->view.overlapped);
     alloc_free(gather->near.seen);
@@ -282,24 +282,37 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     return slope;
 }
 
+/* Finds the bright patches, if there is enough to win by aiming at them. */
+static void find_bright(struct final_gather *gather)
+{
+    const struct model *model = gather->model;
+    double reflected = forest_mean_reflected(model->forest), squares = 0.0;
+    senders_destroy(gather->bright);
+    struct senders *bright = senders_create(model, BRIGHT * reflected, true);
+    for (int64_t i = 0; i < bright->sender_count; i++) {
+        double power = bright->before[i + 1] - bright->before[i];
+        squares += power * power / forest_area(model->forest, bright->patches[i]);
+    }
+    squares /= reflected * reflected * model->area;
+    if (!(squares >= LEAST_BRIGHT)) { /* NaN where nothing is reflected */
+        senders_destroy(bright);
+        bright = senders_create(model, HUGE_VAL, true);
+    }
+    gather->bright = bright;
+    gather->bright_part = senders_power(bright) / (reflected * model->area);
+}
+
 void final_gather_renew(struct final_gather *gather)
 {
     const struct model *model = gather->model;
     const struct forest *forest = model->forest;
-    double reflected = forest_mean_reflected(model->forest);
-    lamps_free(&gather->bright);
-    gather->bright = lamps_create(model, BRIGHT * reflected, true);
-    double part = lamps_power(&gather->bright) / (reflected * model->area), squares = 0.0;
-    for (int32_t p = 0; p < forest->count; p++)
-        if (gather->bright.part_of[p] == p && gather->bright.power[p] > 0.0)
-            squares += gather->bright.power[p] * gather->bright.power[p] /
-                       forest_area(forest, p);
-    squares /= reflected * reflected * model->area;
-    if (!(squares >= LEAST_BRIGHT)) { /* NaN where nothing is reflected */
-        lamps_free(&gather->bright);
-        gather->bright = lamps_create(model, HUGE_VAL, true);
-    }
-    gather->bright.part = part;
+    find_bright(gather);
+    regions_destroy(gather->regions);
+    cuts_free(&gather->lamp_cuts);
+    cuts_free(&gather->bright_cuts);
+    gather->regions = regions_create(model);
+    gather->lamp_cuts = cuts_create(gather->lamps, gather->regions);
+    gather->bright_cuts = cuts_create(gather->bright, gather->regions);
     alloc_free(gather->near.leaves);
     gather->near.leaves = alloc_array((size_t)forest->count, sizeof *gather->near.leaves);
     for (int32_t p = 0; p < forest->count; p++) {
@@ -410,7 +423,7 @@ static struct receiver receiver_make(struct final_gather *gather, int32_t patch,
     return (struct receiver){.gather = gather, .facet = facet, .seed = seed,
                              .row = {.leaf = patch},
                              .along = direction_along(facet.plane.normal), .rays = rays,
-                             .segments = rays, .near = -1, .dark = {.least = -1.0}};
+                             .segments = rays, .near = -1};
 }
 
 uint64_t patch_seed(const struct forest *forest, int32_t patch)
@@ -433,7 +446,7 @@ static struct rgb light_of_lamps(const struct receiver *r)
     for (int64_t i = 0; i < g->sums.count; i++) {
         int32_t patch = g->order[g->sums.items[i].place];
         const struct material *m = forest_material(forest, patch);
-        if (!root_is_lamp(&g->lamps, (int32_t)forest->patches[patch].id.root))
+        if (!root_is_sender(g->lamps, (int32_t)forest->patches[patch].id.root))
             continue;
         for (int c = 0; c < BANDS; c++)
             light.band[c] += g->sums.items[i].weight[c] * m->emission.band[c];
@@ -451,9 +464,6 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int s
     if (exact && receiver_add_exact(&r)) {
         r.row.lamps = light_of_lamps(&r);
     } else {
-        gather_find_sparks(gather);
-        receiver_find_openings(&r);
-        receiver_find_sparks(&r);
         r.light = (struct rgb){{0.0, 0.0, 0.0}};
         gather->sums.count = gather->sums.first = 0; /* of this row alone */
         receiver_aim(&r);
@@ -487,7 +497,9 @@ struct gather_light final_gather_at(struct final_gather *gather,
     struct facet facet = {.triangle = {{x, x, x}},
                           .plane = points->plane,
                           .input = scene_input_of(gather->model->scene, points->root)};
-    struct receiver r = receiver_make(gather, points->root, facet, hash_mix(seed), count);
+    struct point point = {.at = x};
+    find_leaf(gather->model->forest, points->root, &point);
+    struct receiver r = receiver_make(gather, point.patch, facet, hash_mix(seed), count);
     struct gather_light light = {.variance = 0.0};
     r.points = points;
     receiver_aim(&r);

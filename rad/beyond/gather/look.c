@@ -2,8 +2,8 @@
  *
  * A few rays from each quarter of a leaf, in the same directions, tell whether its light
  * varies, and how noisy it is: by rays, and by segments to lamps. */
-#include "rad/beyond/final_gather.h"
-#include "rad/beyond/receiver.h"
+#include "rad/beyond/gather/gather.h"
+#include "rad/beyond/gather/receiver.h"
 
 #include <math.h>
 

@@ -8,7 +8,7 @@
 #ifndef RAD_BEYOND_FINAL_GATHER_H
 #define RAD_BEYOND_FINAL_GATHER_H
 
-#include "rad/beyond/rows.h"
+#include "rad/beyond/gather/rows.h"
 
 /* The mean irradiance of points, W/m^2. */
 struct gather_light {
@@ -48,11 +48,6 @@ bool final_gather_root_is_open(struct final_gather *gather, int32_t root, bool p
 
 /* Looks at the quarters of a leaf, by `rays` rays each. */
 struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays);
-
-/* True if a quarter of a leaf is in a dark room by a look, and another is lit, and the
- * leaf is large: it lies below a wall or a door. */
-bool final_gather_is_at_border(struct final_gather *gather, int32_t leaf,
-                               const struct gather_look *look);
 
 /* Appends the row of a leaf, made by `rays` rays, and `segments` to lamps; or, if `exact`
  * and its root is open, by exact factors. */

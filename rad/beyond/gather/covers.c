@@ -4,11 +4,11 @@
  * they are told by probes that meet bounds of the thing on all sides (inside.h). Other
  * faces in the leaf's plane, as of a picture on a wall, are found by a few points just
  * above it. */
-#include "rad/beyond/met.h"
+#include "rad/beyond/gather/met.h"
 
 #include <math.h>
 
-#include "rad/beyond/inside.h"
+#include "rad/beyond/gather/inside.h"
 #include "rad/beyond/sequence.h"
 #include "rad/beyond/sample.h"
 

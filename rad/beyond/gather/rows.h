@@ -2,10 +2,10 @@
  *
  * The irradiance of a leaf is H = source + sum of weight B over its terms, band by band:
  * the row of the leaf. */
-#ifndef RAD_BEYOND_ROWS_H
-#define RAD_BEYOND_ROWS_H
+#ifndef RAD_BEYOND_GATHER_ROWS_H
+#define RAD_BEYOND_GATHER_ROWS_H
 
-#include "rad/beyond/lamps.h"
+#include "rad/beyond/gather/cuts.h"
 
 /* Bands with less than this part of all light are no more right than one with this part:
  * their light is known no better than to the tolerance of all. */
@@ -117,32 +117,12 @@ struct gather_counts {
     int64_t exact;          /* rows made without rays */
 };
 
-/* Surfaces in the dark, and lit ones: gather_regions.c. */
-struct regions;
-void regions_free(struct regions *regions);
-
-/* Bright regions that one sees through narrow openings: gather_narrow.c. */
-struct openings;
-void openings_free(struct openings *openings);
-
-/* Points in the dark where light comes in: gather_sparks.c. */
-struct sparks;
-void sparks_free(struct sparks *sparks);
-
-/* Lamps as patches see them: lamps_seen.c. */
-struct lamps_views;
-void lamps_views_free(struct lamps_views *views);
-
 /* A root and the roots that it faces. */
 struct gather_view {
     int32_t root;      /* -1: none yet */
     bool open;         /* proved: nothing stands between the root and any of `faced` */
     int32_t *faced;    /* [count], roots */
     int64_t count, capacity;
-    struct regions *regions;   /* NULL: none yet */
-    struct openings *openings; /* NULL: none yet */
-    struct sparks *sparks;     /* NULL: none yet */
-    struct lamps_views *lamps; /* NULL: none yet */
     uint8_t *overlapped; /* [roots] 2: another overlaps it in its plane; 1: none does; 0:
                             unknown */
     struct octree_counts counts; /* of all proofs, which each rank makes that has a leaf
@@ -154,8 +134,13 @@ struct final_gather {
     struct model *model; /* borrowed; rays are counted there */
     int rays;              /* from a leaf, in the mean */
     double mean;           /* radiosity, over bands and all surface, W/m^2 */
-    struct lamps lamps;
-    struct lamps bright;       /* patches that reflect so much that rays aim at them */
+    struct senders *lamps;
+    struct senders *bright;    /* patches that reflect so much that rays aim at them */
+    double bright_part;        /* of all reflected light that these send, 1 */
+    struct regions *regions;
+    struct cuts lamp_cuts, bright_cuts;
+    double *worth;             /* [worth_capacity] room for that of the nodes of a cut */
+    int64_t worth_capacity;
     struct gather_view view;   /* of the root of the leaf at hand */
     int32_t *order; /* [forest->count] patches as in forest_order() */
     int32_t *place; /* [forest->count] the place of each patch in `order` */

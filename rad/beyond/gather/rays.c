@@ -24,15 +24,14 @@
  * segment, and from one more ray, until a ray ends far enough away. That is a path tracer
  * for near surfaces and radiosity for the rest. In pixels one ray is aimed at a bright
  * patch from there, too: else single pixels shine along all edges of a room. */
-#include "rad/beyond/met.h"
+#include "rad/beyond/gather/met.h"
 
 #include <math.h>
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
-#include "rad/beyond/final_gather.h"
-#include "rad/beyond/gather_narrow.h"
-#include "rad/beyond/gather_sparks.h"
+#include "rad/beyond/gather/factor.h"
+#include "rad/beyond/gather/gather.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
@@ -42,10 +41,6 @@ static const double NEAR = 0.2, NEAR_PIXEL = 1.0;
 
 /* The same, where that is the distance at which the ray met the leaf. */
 static const double NEAR_RAY = 0.05;
-
-/* The same, for paths that have come through an opening: there light falls off over the
- * width of the opening, and leaves may be as wide. */
-static const double NEAR_OPENING = 16.0;
 
 /* A ray has met a leaf in a gap only if the square of the ray's length is less than this
  * times the leaf's area: small facets of a round thing far away are seen along their
@@ -60,10 +55,6 @@ static const double CUT = 16.0;
 /* A point is beside a patch if the square of its distance is less than this times the
  * square of the patch's radius. */
 static const double BESIDE = 2.0;
-
-/* The form factor of lamps that segments have found is sure if that of lamps in doubt is
- * at most that of so many rays: one more or less meets a lamp by chance. */
-static const double SURE_RAYS = 0.5;
 
 /* Most points of a path; those from which it goes on in any case. */
 enum { PATH_MOST = 256, PATH_SURE = 2 };
@@ -100,7 +91,7 @@ static bool is_aimed_lamp(const struct receiver *r, const struct point *met,
                           struct vec3 x)
 {
     int32_t root = root_of(r, met);
-    return root_is_lamp(&r->gather->lamps, root) &&
+    return root_is_sender(r->gather->lamps, root) &&
            !receiver_lamp_is_near(r->gather->model->scene, root, x);
 }
 
@@ -235,43 +226,14 @@ static bool leave(struct receiver *r, const struct point *point, bool aimed,
     return true;
 }
 
-void receiver_see(struct receiver *r, int32_t root, struct vec3 y, double factor,
-                  uint64_t seed)
-{
-    const struct final_gather *g = r->gather;
-    const struct forest *forest = g->model->forest;
-    struct rgb weight = {{factor, factor, factor}};
-    struct point point = {.at = y,
-                          .normal = scene_root_plane(forest->scene, root).normal};
-    bool aimed = root_is_lamp(&g->lamps, root);
-    find_leaf(forest, root, &point);
-    r->shares.bright += factor;
-    bool near = true;
-    for (int count = 1; near && count < PATH_MOST; count++, seed += 16) {
-        struct vec3 origin, direction;
-        if (!leave(r, &point, aimed, seed, &weight, &origin, &direction))
-            return;
-        if (trace(r, origin, direction, &point) != MET_FRONT) {
-            r->escaped++;
-            return;
-        }
-        aimed = is_aimed_lamp(r, &point, origin);
-        struct vec3 ray = vec3_sub(point.at, origin);
-        near = vec3_dot(ray, ray) < NEAR_OPENING * g->near.leaves[point.patch].area;
-    }
-    add_mesh(r, &point, aimed, &weight);
-}
-
 /* True if rays from x, where a surface has this normal, are aimed at the bright patch
- * that the point which one has met is on. A leaf that sends sparks is not aimed at: these
- * bring its first light. From pixels the path of such a ray goes on where it does not end
+ * that the point which one has met is on. From pixels the path of such a ray goes on where it does not end
  * on the mesh, from the holder of a bulb, say: found by chance it is a bright speck. */
 static bool is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x,
                         struct vec3 normal)
 {
-    int32_t bright = r->gather->bright.part_of[met->patch];
-    return bright >= 0 && !receiver_sees_sparks(r, met->patch) &&
-           !is_beside(r->gather->model->forest, bright, x) &&
+    int32_t bright = r->gather->bright->part_of[met->patch];
+    return bright >= 0 && !is_beside(r->gather->model->forest, bright, x) &&
            (r->points || ends_on_mesh(r, met, x, normal));
 }
 
@@ -281,13 +243,13 @@ static bool is_aimed_at(const struct receiver *r, const struct point *met, struc
 static bool is_aimed_at_beside(const struct receiver *r, const struct point *met,
                                struct vec3 x)
 {
-    const struct lamps *bright = &r->gather->bright;
+    const struct senders *bright = r->gather->bright;
     int32_t patch = bright->part_of[met->patch];
     if (!r->points || patch < 0)
         return false;
     struct vec3 ray = vec3_sub(met->at, x);
-    double area = forest_area(r->gather->model->forest, patch);
-    return PI * vec3_dot(ray, ray) * bright->power[patch] >= area * lamps_power(bright);
+    double sent = rgb_sum(sender_light(bright, patch));
+    return PI * vec3_dot(ray, ray) * sent >= senders_power(bright);
 }
 
 /* A path goes on from a point that it has met and does not end on; adds its light, times
@@ -300,18 +262,18 @@ static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
                         const struct rgb *weight, uint64_t seed)
 {
     const struct final_gather *g = r->gather;
-    if (!r->points || !(lamps_power(&g->bright) > 0.0))
+    if (!r->points || !(senders_power(g->bright) > 0.0))
         return;
-    struct lamp lamp = lamp_choose(&g->bright, NODE_TOP, hash_unit(seed));
-    struct facet facet = facet_make(g->model->forest, lamp.patch);
+    struct choice bright = sender_choose(g->bright, g->bright->nodes, hash_unit(seed));
+    struct facet facet = facet_make(g->model->forest, bright.patch);
     struct vec3 y =
         triangle_of_square(&facet.triangle, hash_unit(seed + 1), hash_unit(seed + 2));
     double factor =
-        lamp.share * facet.area * receiver_kernel(x, normal, y, facet.plane.normal);
+        bright.share * facet.area * point_kernel(x, normal, y, facet.plane.normal);
     struct point point;
     if (!(factor > 0.0) ||
         trace(r, x, vec3_unit(vec3_sub(y, x)), &point) != MET_FRONT ||
-        g->bright.part_of[point.patch] != lamp.patch || !is_aimed_at_beside(r, &point, x))
+        g->bright->part_of[point.patch] != bright.patch || !is_aimed_at_beside(r, &point, x))
         return;
     struct rgb light = *weight;
     for (int c = 0; c < BANDS; c++)
@@ -323,52 +285,25 @@ static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
         go_on(r, point, aimed, light, hash_mix(seed), false);
 }
 
-void receiver_look_at(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
-                      double factor, uint64_t seed)
+void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
+                  double factor, uint64_t seed)
 {
     const struct final_gather *g = r->gather;
-    struct vec3 way = vec3_sub(y, x), normal = r->facet.plane.normal;
-    struct point point;
-    if (is_beside(g->model->forest, patch, x) ||
-        trace(r, point_above(x, normal), vec3_scale(way, 1.0 / vec3_length(way)),
-              &point) != MET_FRONT ||
-        g->bright.part_of[point.patch] != patch || !is_aimed_at(r, &point, x, normal) ||
-        receiver_aims_through(r, point.patch))
+    const struct forest *forest = g->model->forest;
+    int32_t root = (int32_t)forest->patches[patch].id.root;
+    struct vec3 normal = r->facet.plane.normal;
+    struct point point = {.at = y,
+                          .normal = scene_root_plane(forest->scene, root).normal};
+    find_leaf(forest, root, &point);
+    if (!is_aimed_at(r, &point, x, normal))
         return;
     struct rgb weight = {{factor, factor, factor}};
-    bool aimed = root_is_lamp(&g->lamps, root_of(r, &point));
+    bool aimed = root_is_sender(g->lamps, root);
     r->shares.bright += factor;
     if (ends_on_mesh(r, &point, x, normal))
         add_mesh(r, &point, aimed, &weight);
     else
         go_on(r, point, aimed, weight, seed, true);
-}
-
-/* The first ray of a path ends on the mesh. If it has met a lamp, it counts as one that
- * has. */
-static void end_ray(struct receiver *r, const struct point *point, bool aimed,
-                    const struct rgb *weight)
-{
-    const struct forest *forest = r->gather->model->forest;
-    struct rgb emission = forest_material(forest, point->patch)->emission;
-    add_mesh(r, point, aimed, weight);
-    r->sums.on_lamps += aimed;
-    for (int c = 0; c < BANDS && aimed; c++)
-        r->sums.taken.band[c] -= weight->band[c] * emission.band[c];
-}
-
-/* Adds the mean light of a leaf less its first light, which sparks bring. B slopes as the
- * first light does, steeply where the leaf reaches into a gap: with the slope, the dark
- * end less the mean first light would be below 0. */
-static void add_without_sparks(struct receiver *r, const struct point *point, bool aimed,
-                               const struct rgb *weight)
-{
-    receiver_add_patch(r, point->patch, weight);
-    if (aimed)
-        receiver_add_source(
-            r, weight, forest_material(r->gather->model->forest, point->patch)->emission,
-            -1.0);
-    receiver_leave_out_sparks(r, point->patch, weight->band[0]);
 }
 
 /* A row's ray begins a path: the leaf that it has met is too near. */
@@ -378,11 +313,8 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
     struct final_gather *g = r->gather;
     struct rgb emission = forest_material(g->model->forest, met->patch)->emission;
     struct gather_nears *near = &g->near;
-    if (!r->keeps || /* a look's leaves may have no places yet */
-        leaf_has_sparks(g, met->patch)) { /* sparks tell how bright it is seen */
-        r->shares.doubt = 1.0;
+    if (!r->keeps) /* a look's leaves may have no places yet */
         return;
-    }
     r->near = g->place[met->patch];
     RESERVE(near->paths, &near->path_capacity, near->path_count + 1);
     near->paths[near->path_count++] = (struct gather_path){.place = r->near};
@@ -437,17 +369,14 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
     if (met != MET_FRONT)
         return;
     find_leaf(forest, point.patch, &point);
-    if (receiver_aims_through(r, point.patch) || is_aimed_at(r, &point, origin, normal)) {
+    if (is_aimed_at(r, &point, origin, normal)) {
         r->sums.aside[half]++;
         return;
     }
-    bool aimed = root_is_lamp(&r->gather->lamps, root_of(r, &point));
-    if (receiver_sees_sparks(r, point.patch)) {
-        add_without_sparks(r, &point, aimed, &weight);
-    } else if (ends_on_mesh(r, &point, origin, normal)) {
-        end_ray(r, &point, aimed, &weight);
+    bool aimed = root_is_sender(r->gather->lamps, root_of(r, &point));
+    if (ends_on_mesh(r, &point, origin, normal)) {
+        add_mesh(r, &point, aimed, &weight);
     } else {
-        r->shares.doubt += aimed ? 1.0 : 0.0;
         begin_path(r, &point, aimed, &weight);
         go_on(r, point, aimed, weight, seed, true);
     }
@@ -484,25 +413,13 @@ static void add_variances(struct receiver *r)
     }
 }
 
-/* Factors of the weights of rays that have met lamps, and of others. */
-struct factors {
-    double lamps, others;
-};
-
-/* The rays of a row that have met lamps stand for the lamps' form factor where segments
- * have found it, but for less than their number can tell: how many did by chance is
- * noise. */
-static struct factors factors_of(const struct receiver *r)
+/* The factor of the weights of rays that are not put aside: they stand for all directions
+ * but those that are aimed at. */
+static double factor_of_rays(const struct receiver *r)
 {
-    int aside = r->sums.aside[0] + r->sums.aside[1], on = r->sums.on_lamps;
-    int others = r->rays - aside - on;
+    int aside = r->sums.aside[0] + r->sums.aside[1];
     double rest = fmax(0.0, 1.0 - r->shares.bright) * r->rays;
-    double all = rest / (aside < r->rays ? r->rays - aside : r->rays);
-    if (!r->keeps || r->shares.doubt * r->rays > SURE_RAYS || aside > 0 || on == 0 ||
-        others == 0 || !(r->shares.bright + r->shares.lit < 1.0))
-        return (struct factors){all, all};
-    double lit = r->shares.lit * r->rays;
-    return (struct factors){lit / on, (rest - lit) / others};
+    return rest / (aside < r->rays ? r->rays - aside : r->rays);
 }
 
 /* Adds the light of the row's paths to that of the leaves too near that they have
@@ -531,24 +448,15 @@ static void add_bright(struct receiver *r, struct rgb source)
     struct gather_sums *sums = &g->sums;
     struct rgb after = r->row.source;
     sums->first = sums->count;
-    receiver_aim_at(r, &g->bright);
-    receiver_aim_through(r);
-    receiver_add_sparks(r);
-    struct factors factors = factors_of(r);
-    add_paths(&g->near, r, factors.others);
-    for (int64_t i = 0; i < sums->first; i++) {
-        int32_t patch = g->order[sums->items[i].place];
-        bool lamp =
-            sums->items[i].near < 0 &&
-            root_is_lamp(&g->lamps, (int32_t)g->model->forest->patches[patch].id.root);
+    receiver_aim_at_bright(r);
+    double factor = factor_of_rays(r);
+    add_paths(&g->near, r, factor);
+    for (int64_t i = 0; i < sums->first; i++)
         for (int c = 0; c < BANDS; c++)
-            sums->items[i].weight[c] *= lamp ? factors.lamps : factors.others;
-    }
+            sums->items[i].weight[c] *= factor;
     for (int c = 0; c < BANDS; c++) {
-        double by_rays = after.band[c] - source.band[c], taken = r->sums.taken.band[c];
-        r->row.source.band[c] += (factors.others - 1.0) * (by_rays - taken) +
-                                 (factors.lamps - 1.0) * taken;
-        r->sums.h.band[c] = factors.others * r->sums.h.band[c] + r->light.band[c];
+        r->row.source.band[c] += (factor - 1.0) * (after.band[c] - source.band[c]);
+        r->sums.h.band[c] = factor * r->sums.h.band[c] + r->light.band[c];
         r->light.band[c] = 0.0;
     }
 }

@@ -3,7 +3,7 @@
  * crossing number of a polygon: a front is an entry, a back an exit, and one exit more
  * than entries is the thing that the ray has begun in. The walls of a room are entered,
  * and behind them there are as many exits as entries. */
-#include "rad/beyond/inside.h"
+#include "rad/beyond/gather/inside.h"
 
 #include "rad/beyond/sample.h"
 

@@ -1,0 +1,366 @@
+/* Aiming at senders, from a receiver of the final gather.
+ *
+ * Segments are dealt to the nodes of the cut of the receiver's region (cuts.h). A node
+ * that brings the light D with nothing in the way, and is seen by a share s of the
+ * segments, has the mean square s D^2 by one segment; so each gets segments in proportion
+ * to D times the root of s (Neyman, 1934), s being known of the region. A sender of which the exact factor is F, and n segments of
+ * which have the kernels K between their ends and meet a blocker or not (V), brings
+ *
+ *     F  sum of V K / sum of K  times its light:
+ *
+ * exactly F where all of it is seen, and 0 where nothing is. Of a node with several
+ * senders each segment chooses one by its power.
+ *
+ * Rays that meet a lamp count its reflected light and not its emission. A ray that meets
+ * a bright patch which is aimed at is put aside (rays.c). */
+#include "rad/beyond/gather/receiver.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "geom/alloc.h"
+#include "geom/hash.h"
+#include "geom/lambert.h"
+#include "rad/beyond/gather/factor.h"
+#include "rad/beyond/gather/met.h"
+#include "rad/beyond/sample.h"
+#include "rad/beyond/sequence.h"
+
+/* A lamp is near if the square of its distance is less than this times its area. */
+static const double NEAR_LAMP = 4.0;
+
+/* For each ray in all directions there are as many segments to bright patches as these
+ * send of the reflected light, at least so many. */
+static const double AIMED_LEAST = 0.25;
+
+/* Fewest segments that are enough to estimate the visible share of senders; most tries
+ * for a point of a sender above the horizon. */
+enum { VOLLEY = 4, TRIES_MOST = 16 };
+
+void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
+                       double factor)
+{
+    struct gather_nears *near = &r->gather->near;
+    for (int c = 0; c < BANDS && r->near >= 0; c++)
+        near->paths[near->path_count - 1].light.band[c] +=
+            weight->band[c] * factor * emission.band[c];
+}
+
+void receiver_add_source(struct receiver *r, const struct rgb *weight,
+                         struct rgb emission, double factor)
+{
+    receiver_add_near(r, weight, emission, factor);
+    for (int c = 0; c < BANDS; c++) {
+        double h = weight->band[c] * factor * emission.band[c];
+        r->row.source.band[c] += h;
+        r->light.band[c] += h;
+    }
+}
+
+/* The triangle that blocks a segment to a sender, or -1. */
+static inline int32_t blocker_of(struct receiver *r, struct vec3 from, int32_t input,
+                                 struct vec3 to, int32_t root)
+{
+    int32_t own[2] = {input, scene_input_of(r->gather->model->scene, root)}, guess = -1;
+    r->gather->counts.segments++;
+    return octree_blocks_segment(r->gather->model->octree, from, to, own, &guess,
+                                 &r->gather->model->counts)
+               ? guess
+               : -1;
+}
+
+int32_t receiver_blocker(struct receiver *r, struct vec3 x, struct vec3 y, int32_t root)
+{
+    int32_t input = r->facet.input;
+    if (r->points && r->points->above) {
+        const struct scene *scene = r->gather->model->scene;
+        struct segment segment = segment_make(x, y);
+        if (segment_is_blocked_by(&segment, &scene->triangles[input],
+                                  &scene->planes[input]))
+            return input;
+    }
+    return blocker_of(r, x, input, y, root);
+}
+
+/* Segments to nodes that are next to each other in the cut, in two halves. */
+struct volley {
+    double direct[2]; /* light without blockers, about, over all bands, W/m^2 */
+    double seen[2];   /* light with them */
+    int count[2];     /* segments */
+    double direct2, seen2, both; /* sums over segments of `direct` and `seen` squared, and
+                                    of their product */
+};
+
+/* Adds a segment to a half. */
+static void add_segment(struct volley *volley, int half, double direct, double seen)
+{
+    volley->direct[half] += direct;
+    volley->seen[half] += seen;
+    volley->count[half]++;
+    volley->direct2 += direct * direct;
+    volley->seen2 += seen * seen;
+    volley->both += direct * seen;
+}
+
+/* The half that segment `i` of `count` to a node belongs to; a single one, the
+ * smaller. */
+static int half_of(const struct volley *volley, int i, int count)
+{
+    return count > 1 ? 2 * i >= count : volley->count[0] > volley->count[1];
+}
+
+/* Adds the variance of the volley's light, in the colour of one of its senders: as if by
+ * chance, by how far single segments are from the mean share that is seen, and by the
+ * difference of its halves. */
+static void end_volley(struct receiver *r, struct volley *volley, struct rgb light)
+{
+    double direct = volley->direct[0] + volley->direct[1], apart = 0.0;
+    double share = direct > 0.0 ? (volley->seen[0] + volley->seen[1]) / direct : 0.0;
+    double variance =
+        volley->seen2 + share * (share * volley->direct2 - 2.0 * volley->both);
+    r->shares.direct += direct;
+    if (volley->direct[0] > 0.0 && volley->direct[1] > 0.0)
+        apart = 0.5 * (volley->seen[0] / volley->direct[0] -
+                       volley->seen[1] / volley->direct[1]);
+    for (int c = 0; c < BANDS && share > 0.0; c++) {
+        double part = light.band[c] / rgb_sum(light), h = direct * part;
+        r->row.chance[c] += part * part * fmax(0.0, variance);
+        r->row.halves[c] += h * h * apart * apart;
+    }
+    *volley = (struct volley){.direct = {0.0, 0.0}};
+}
+
+/* The place of choice k of `count` in the order of what is chosen from: the first half
+ * takes every other place, the second the rest, so that both are spread evenly. */
+static int choice_place(int k, int count)
+{
+    return 2 * k < count ? 2 * k : (2 * k - count) | 1;
+}
+
+/* The senders that are aimed at, and the segments to a node of their cut. */
+struct aim {
+    const struct senders *senders;
+    struct sequence sequence; /* of the node */
+    int index;                /* in the sequence, of the next segment */
+    struct volley volley;
+};
+
+/* A segment from the receiver to a sender. */
+struct shot {
+    struct vec3 x, y;
+    double kernel; /* 0: an end is below the other's horizon */
+};
+
+static struct shot shot_at(const struct receiver *r, const struct aim *aim,
+                           const struct facet *sender, int index)
+{
+    double u[SEQUENCE_DIMENSIONS];
+    sequence_point(&aim->sequence, (uint32_t)index, u);
+    struct shot shot = {receiver_start(r, u[0], u[1]),
+                        triangle_of_square(&sender->triangle, u[2], u[3]), 0.0};
+    shot.kernel =
+        point_kernel(shot.x, r->facet.plane.normal, shot.y, sender->plane.normal);
+    return shot;
+}
+
+/* Adds the light of a sender that arrives by a shot, which has this form factor. Returns
+ * it, over all bands, W/m^2. */
+static double add_shot(struct receiver *r, const struct aim *aim, const struct shot *shot,
+                       int32_t patch, double factor, uint64_t seed)
+{
+    static const struct rgb ALL = {{1.0, 1.0, 1.0}};
+    const struct forest *forest = r->gather->model->forest;
+    int32_t root = (int32_t)forest->patches[patch].id.root;
+    double before = rgb_sum(r->light);
+    if (receiver_blocker(r, shot->x, shot->y, root) >= 0)
+        return 0.0;
+    if (aim->senders->reflect)
+        receiver_see(r, shot->x, shot->y, patch, factor, seed);
+    else
+        receiver_add_source(r, &ALL, sender_light(aim->senders, patch), factor);
+    return rgb_sum(r->light) - before;
+}
+
+/* Fires `count` segments at a sender, for `share` of its light. Points below a horizon are passed over, or the light would be
+ * lost where all of few are. */
+static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, int count,
+                          double share)
+{
+    struct facet sender = facet_make(r->gather->model->forest, patch);
+    double all = 0.0;
+    int first = aim->index, end = first, found = 0;
+    if (!facets_face(&r->facet, &sender))
+        return;
+    for (; found < count && end < first + TRIES_MOST * count; end++) {
+        double kernel = shot_at(r, aim, &sender, end).kernel;
+        found += kernel > 0.0;
+        all += kernel;
+    }
+    aim->index = end;
+    if (found == 0)
+        return;
+    double factor = share * mean_factor(&r->facet.triangle, r->facet.plane.normal,
+                                        &sender.triangle, &r->gather->model->estimating);
+    double sent = rgb_sum(sender_light(aim->senders, patch));
+    for (int i = first, k = 0; i < end; i++) {
+        struct shot shot = shot_at(r, aim, &sender, i);
+        if (!(shot.kernel > 0.0))
+            continue;
+        double part = factor * (shot.kernel / all);
+        double seen = add_shot(r, aim, &shot, patch, part,
+                               hash_mix(aim->sequence.scramble[1] + (uint64_t)i));
+        add_segment(&aim->volley, half_of(&aim->volley, k++, count), part * sent, seen);
+    }
+}
+
+/* Fires `count` segments at a node of the cut, for `share` of its light. They are spread
+ * evenly over its power, and each half of them is. */
+static void aim_at_node(struct receiver *r, struct aim *aim, int32_t number, int count,
+                        double share)
+{
+    const struct sender_node *node = &aim->senders->nodes[number];
+    double start = hash_unit(aim->sequence.scramble[0]);
+    if (node->child[0] < 0) {
+        aim_at_sender(r, aim, aim->senders->patches[node->first], count, share);
+        return;
+    }
+    for (int k = 0; k < count; k++) {
+        double place = (choice_place(k, count) + start) / count;
+        struct choice choice = sender_choose(aim->senders, node, place);
+        aim_at_sender(r, aim, choice.patch, 1, choice.share * share / count);
+    }
+}
+
+/* Segments that are still to be dealt, one for each so much light. */
+struct dealing {
+    double each; /* W/m^2 */
+    double sum;  /* light of the nodes so far, in segments, from a chance start on */
+};
+
+/* Returns the number of segments of the next node, which brings the light `direct`. */
+static int deal(struct dealing *dealing, double direct)
+{
+    double before = floor(dealing->sum);
+    dealing->sum += direct / dealing->each;
+    return (int)(floor(dealing->sum) - before);
+}
+
+/* The light of each node of a cut at the receiver. */
+struct offers {
+    double *worth; /* [cut.count] by which segments are dealt, W/m^2 */
+    double sum;    /* W/m^2 */
+};
+
+/* The offers of a cut: light without blockers times the root of the share seen. */
+static struct offers weigh_cut(struct receiver *r, const struct cuts *cuts,
+                               struct cut cut)
+{
+    struct final_gather *g = r->gather;
+    struct bounds bounds = {triangle_centroid(&r->facet.triangle), r->facet.plane.normal,
+                            r->facet.plane.normal, triangle_radius(&r->facet.triangle)};
+    RESERVE(g->worth, &g->worth_capacity, cut.count);
+    struct offers offers = {g->worth, 0.0};
+    for (int64_t i = 0; i < cut.count; i++) {
+        const struct cut_node *node = &cuts->nodes[cut.first + i];
+        offers.worth[i] =
+            sqrt(node->seen) *
+            sender_node_worth(cuts->senders, &cuts->senders->nodes[node->node], &bounds);
+        offers.sum += offers.worth[i];
+    }
+    return offers;
+}
+
+/* A node that is sure to get a segment counts with its own light, shared among its
+ * segments. The others are dealt theirs apart, a whole number, so that together they
+ * count with their own light. Where a share is seen from around, the variance is that of
+ * chance by this share at least: all of few segments may miss, which would seem sure. */
+static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
+{
+    struct cut cut = cuts_at(cuts, r->row.leaf, &r->gather->view.counts);
+    struct offers offers = weigh_cut(r, cuts, cut);
+    if (!(offers.sum > 0.0))
+        return;
+    double each = offers.sum / segments, start = hash_unit(r->seed + 16), faint = 0.0;
+    for (int64_t i = 0; i < cut.count; i++)
+        faint += offers.worth[i] < each ? offers.worth[i] : 0.0;
+    struct dealing strong = {each, start}, weak = {faint / ceil(faint / each), start};
+    struct aim aim = {.senders = cuts->senders};
+    struct rgb light = {{0.0, 0.0, 0.0}}, around = light;
+    for (int64_t i = 0; i < cut.count; i++) {
+        const struct cut_node *node = &cuts->nodes[cut.first + i];
+        double worth = offers.worth[i], seen = node->seen;
+        bool sure = worth >= each;
+        int count = worth > 0.0 ? deal(sure ? &strong : &weak, worth) : 0;
+        if (count == 0)
+            continue;
+        struct volley before = aim.volley, *volley = &aim.volley;
+        aim.sequence = sequence_start(hash_mix(r->seed + 8) ^
+                                      hash_mix((uint64_t)node->node));
+        aim.index = 0;
+        aim_at_node(r, &aim, node->node, count, sure ? 1.0 : count * weak.each / worth);
+        double direct =
+            volley->direct[0] + volley->direct[1] - before.direct[0] - before.direct[1];
+        bool none = volley->seen[0] + volley->seen[1] <= before.seen[0] + before.seen[1];
+        const struct sender_node *at = &cuts->senders->nodes[node->node];
+        light = sender_light(cuts->senders, cuts->senders->patches[at->first]);
+        for (int c = 0; c < BANDS && none; c++) {
+            double h = direct * light.band[c] / rgb_sum(light);
+            around.band[c] += h * h / count * seen * (1.0 - seen);
+        }
+        if (volley->count[0] + volley->count[1] >= VOLLEY)
+            end_volley(r, volley, light);
+    }
+    end_volley(r, &aim.volley, light);
+    for (int c = 0; c < BANDS; c++)
+        r->row.chance[c] = fmax(r->row.chance[c], around.band[c]);
+}
+
+void receiver_aim_at_bright(struct receiver *r)
+{
+    const struct final_gather *g = r->gather;
+    aim_at_cut(r, &r->gather->bright_cuts,
+               (int)ceil(r->rays * fmax(AIMED_LEAST, g->bright_part)));
+}
+
+bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 x)
+{
+    struct triangle t = scene_root_triangle(scene, lamp);
+    struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
+    return vec3_dot(apart, apart) < NEAR_LAMP * scene_root_area(scene, lamp);
+}
+
+/* The lamp is chosen by the cut of the patch's region, a point of it above the horizon by
+ * hashes. */
+void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
+                         int32_t patch, const struct rgb *weight, uint64_t seed)
+{
+    struct final_gather *g = r->gather;
+    const struct forest *forest = g->model->forest;
+    const struct scene *scene = g->model->scene;
+    int32_t input = scene_input_of(scene, (int32_t)forest->patches[patch].id.root);
+    struct cut cut = cuts_at(&g->lamp_cuts, patch, &g->view.counts);
+    struct choice lamp = cuts_choose(&g->lamp_cuts, cut, hash_unit(seed));
+    if (lamp.patch < 0 || receiver_lamp_is_near(scene, lamp.patch, x))
+        return;
+    struct triangle triangle = scene_root_triangle(scene, lamp.patch);
+    struct vec3 facing = scene_root_plane(scene, lamp.patch).normal;
+    struct rgb emission = scene_root_material(scene, lamp.patch)->emission;
+    double factor = point_triangle_factor(x, normal, &triangle);
+    uint64_t at = seed + 2;
+    for (int k = 0; k < TRIES_MOST && factor > 0.0; k++, at = hash_mix(at)) {
+        struct vec3 y = triangle_of_square(&triangle, hash_unit(at), hash_unit(at + 1));
+        if (!(point_kernel(x, normal, y, facing) > 0.0))
+            continue;
+        if (blocker_of(r, x, input, y, lamp.patch) < 0)
+            receiver_add_source(r, weight, emission, factor * lamp.share);
+        return;
+    }
+}
+
+void receiver_aim(struct receiver *r)
+{
+    aim_at_cut(r, &r->gather->lamp_cuts, r->segments);
+    r->lamps = r->light;
+    r->light = (struct rgb){{0.0, 0.0, 0.0}};
+    memcpy(r->row.of_segments, r->row.chance, sizeof r->row.of_segments);
+}

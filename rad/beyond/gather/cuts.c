@@ -1,0 +1,249 @@
+/* Cuts.
+ *
+ * From the top of the tree downwards, a node is in the cut as soon as it is small for its
+ * distance and would get no more than one of SEGMENTS segments, if these were dealt by
+ * light; less where some of its senders may face away, for such a node brings all or
+ * nothing by one segment.
+ *
+ * What is learnt decides only how segments are dealt, and how unsure a leaf is that has
+ * found nothing; it never stands for light itself. Of a node of which k of n segments
+ * are seen the share is taken for (k + m) / (n + 1), with the mean share m of all nodes
+ * of the cut: so no share is 0, and a node behind a wall with a window counts for less
+ * than one that a leg of a chair hides. */
+#include "rad/beyond/gather/cuts.h"
+
+#include <math.h>
+
+#include "geom/alloc.h"
+#include "geom/hash.h"
+#include "rad/beyond/sample.h"
+#include "rad/beyond/sequence.h"
+
+/* Leaves of a region, at most; segments that its cut is made for; segments that tell how
+ * much of a node is seen. */
+enum { REGION_LEAVES = 64, SEGMENTS = 64, PILOTS = 16 };
+
+/* A node is small if its radius is at most this part of its distance. */
+static const double SMALL = 0.25;
+
+/* The part of a segment that a node gets at most of which some senders may face away. */
+static const double MIXED = 1.0 / 16.0;
+
+/* --- regions --- */
+
+/* Counts the leaves of a patch. */
+static int32_t leaves_of(const struct forest *forest, int32_t patch)
+{
+    const struct patch *self = &forest->patches[patch];
+    int32_t count = 0;
+    for (int k = 0; k < 4 && !patch_is_leaf(self); k++)
+        count += leaves_of(forest, self->children + k);
+    return patch_is_leaf(self) ? 1 : count;
+}
+
+/* Makes all leaves of a node part of a region, or adds the regions in it if that is
+ * -1. `before`: [root_count + 1] leaves before a place in the tree. */
+static void name_leaves(struct regions *regions, const struct model *model, int32_t node,
+                        const int64_t *before, int32_t region)
+{
+    bool cluster = node_is_cluster(node);
+    const struct cluster *self =
+        cluster ? &model->clusters->tree->clusters[~node] : NULL;
+    bool leaf = !cluster && patch_is_leaf(&model->forest->patches[node]);
+    if (region < 0 && (leaf || (cluster ? before[self->end] - before[self->first]
+                                        : leaves_of(model->forest, node)) <=
+                                   REGION_LEAVES)) {
+        RESERVE(regions->nodes, &regions->capacity, regions->count + 1);
+        region = (int32_t)regions->count++;
+        regions->nodes[region] = node;
+    }
+    if (leaf)
+        regions->of[node] = region;
+    for (int k = 0; k < 4 && !leaf; k++)
+        if (node_child(model, node, k) != NODE_NONE)
+            name_leaves(regions, model, node_child(model, node, k), before, region);
+}
+
+struct regions *regions_create(const struct model *model)
+{
+    const struct cluster_tree *tree = model->clusters->tree;
+    struct regions *regions = alloc_array(1, sizeof *regions);
+    int64_t *before = alloc_array((size_t)tree->root_count + 1, sizeof *before);
+    regions->of = alloc_array((size_t)model->forest->count, sizeof *regions->of);
+    for (int64_t p = 0; p < model->forest->count; p++)
+        regions->of[p] = -1;
+    for (int32_t place = 0; place < tree->root_count; place++)
+        before[place + 1] = before[place] + leaves_of(model->forest, tree->roots[place]);
+    name_leaves(regions, model, NODE_TOP, before, -1);
+    alloc_free(before);
+    return regions;
+}
+
+void regions_destroy(struct regions *regions)
+{
+    if (!regions)
+        return;
+    alloc_free(regions->nodes);
+    alloc_free(regions->of);
+    alloc_free(regions);
+}
+
+/* --- cuts --- */
+
+struct cuts cuts_create(const struct senders *senders, const struct regions *regions)
+{
+    struct cuts cuts = {.senders = senders, .regions = regions};
+    cuts.cuts = alloc_array((size_t)regions->count, sizeof *cuts.cuts);
+    for (int64_t i = 0; i < regions->count; i++)
+        cuts.cuts[i].first = -1;
+    return cuts;
+}
+
+void cuts_free(struct cuts *cuts)
+{
+    alloc_free(cuts->cuts);
+    alloc_free(cuts->nodes);
+    *cuts = (struct cuts){0};
+}
+
+/* Appends the nodes of a cut below a node. `most`: light of one of them, at most, W/m^2.
+ * Returns the light of all. */
+static double add_nodes(struct cuts *cuts, const struct bounds *region, int32_t number,
+                        double most)
+{
+    const struct sender_node *node = &cuts->senders->nodes[number];
+    double worth = sender_node_worth(cuts->senders, node, region), sum = 0.0;
+    if (!(worth > 0.0))
+        return 0.0;
+    struct vec3 apart = vec3_sub(node->bounds.middle, region->middle);
+    double reach = node->bounds.radius + region->radius;
+    double far = real_max(vec3_length(apart) - reach, region->radius);
+    double share = sender_node_is_mixed(node, apart, reach) ? MIXED : 1.0;
+    if (node->child[0] < 0 ||
+        (node->bounds.radius <= SMALL * far && worth <= share * most)) {
+        RESERVE(cuts->nodes, &cuts->capacity, cuts->count + 1);
+        cuts->nodes[cuts->count++] = (struct cut_node){.node = number, .upto = worth};
+        return worth;
+    }
+    for (int k = 0; k < 4 && node->child[k] >= 0; k++)
+        sum += add_nodes(cuts, region, node->child[k], most);
+    return sum;
+}
+
+/* A point of a surface. */
+struct spot {
+    struct vec3 at, normal;
+    int32_t input; /* triangle */
+};
+
+static struct spot spot_on(const struct forest *forest, int32_t patch, double u, double v)
+{
+    struct facet facet = facet_make(forest, patch);
+    return (struct spot){triangle_of_square(&facet.triangle, u, v), facet.plane.normal,
+                         facet.input};
+}
+
+/* A point of a region, evenly distributed; `pick` chooses one of its roots. */
+static struct spot spot_in(const struct model *model, int32_t node, double pick,
+                           const double u[SEQUENCE_DIMENSIONS])
+{
+    if (node_is_cluster(node)) {
+        const struct cluster_tree *tree = model->clusters->tree;
+        const struct cluster *cluster = &tree->clusters[~node];
+        const double *before = tree->area_before;
+        int64_t place = cluster->first +
+                        sum_place(before + cluster->first + 1,
+                                  cluster->end - cluster->first,
+                                  before[cluster->first] + pick * cluster->area);
+        node = tree->roots[place];
+    }
+    return spot_on(model->forest, node, u[0], u[1]);
+}
+
+static bool sees(const struct model *model, const struct spot *from, const struct spot *to,
+                 struct octree_counts *counts)
+{
+    int32_t own[2] = {from->input, to->input}, guess = -1;
+    return !octree_blocks_segment(model->octree, from->at, to->at, own, &guess, counts);
+}
+
+/* Asks segments between a region and a node of its cut how many of those whose ends face
+ * each other are seen: sets `asked`, and `seen` to a number. */
+static void ask(const struct cuts *cuts, int32_t region, struct cut_node *node,
+                struct octree_counts *counts)
+{
+    const struct model *model = cuts->senders->model;
+    struct sequence sequence =
+        sequence_start(hash_mix((uint64_t)region) ^ (uint64_t)node->node);
+    double start = hash_unit(sequence.scramble[0]);
+    for (int k = 0; k < PILOTS; k++) {
+        double u[SEQUENCE_DIMENSIONS];
+        sequence_point(&sequence, (uint32_t)k, u);
+        struct choice choice = sender_choose(
+            cuts->senders, &cuts->senders->nodes[node->node], (k + start) / PILOTS);
+        struct spot from = spot_in(model, cuts->regions->nodes[region],
+                                   hash_unit(sequence.scramble[1] + (uint64_t)k), u);
+        struct spot to = spot_on(model->forest, choice.patch, u[2], u[3]);
+        if (!(point_kernel(from.at, from.normal, to.at, to.normal) > 0.0))
+            continue;
+        node->asked++;
+        node->seen += sees(model, &from, &to, counts);
+    }
+}
+
+static void make_cut(struct cuts *cuts, int32_t region, struct octree_counts *counts)
+{
+    struct bounds bounds = bounds_of(cuts->senders->model, cuts->regions->nodes[region]);
+    struct cut *cut = &cuts->cuts[region];
+    double most = HUGE_VAL;
+    cut->first = cuts->count;
+    for (int pass = 0; pass < 2 && cuts->senders->count > 0; pass++) {
+        cuts->count = cut->first;
+        most = add_nodes(cuts, &bounds, 0, most) / SEGMENTS;
+    }
+    cut->count = cuts->count - cut->first;
+    double upto = 0.0, seen = 0.5, asked = 1.0;
+    for (int64_t i = cut->first; i < cuts->count; i++) {
+        ask(cuts, region, &cuts->nodes[i], counts);
+        seen += cuts->nodes[i].seen;
+        asked += cuts->nodes[i].asked;
+    }
+    for (int64_t i = cut->first; i < cuts->count; i++) {
+        struct cut_node *node = &cuts->nodes[i];
+        node->seen = (node->seen + seen / asked) / (node->asked + 1);
+        upto += node->upto * sqrt(node->seen);
+        node->upto = upto;
+    }
+}
+
+struct cut cuts_at(struct cuts *cuts, int32_t leaf, struct octree_counts *counts)
+{
+    int32_t region = cuts->regions->of[leaf];
+    if (region < 0)
+        return (struct cut){0, 0};
+    if (cuts->cuts[region].first < 0)
+        make_cut(cuts, region, counts);
+    return cuts->cuts[region];
+}
+
+struct choice cuts_choose(const struct cuts *cuts, struct cut cut, double u)
+{
+    const struct cut_node *nodes = cuts->nodes + cut.first;
+    int64_t low = 0, high = cut.count - 1;
+    if (cut.count == 0)
+        return (struct choice){-1, 0.0};
+    double all = nodes[high].upto, at = u * all;
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+        if (nodes[middle].upto > at)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    double before = low > 0 ? nodes[low - 1].upto : 0.0, own = nodes[low].upto - before;
+    struct choice choice =
+        sender_choose(cuts->senders, &cuts->senders->nodes[nodes[low].node],
+                      real_min(1.0 - 0x1p-32, (at - before) / own));
+    choice.share *= all / own;
+    return choice;
+}

@@ -1,0 +1,58 @@
+/* Cuts: the senders as a region of leaves sees them.
+ *
+ * A region is the largest node with at most REGION_LEAVES leaves: a part of a wall, or a
+ * cluster of small things. Its cut is a list of nodes of the tree of senders that have
+ * every sender below exactly one of them, but for those that face away. How much of each
+ * is seen from the region is learnt by a few segments, once, and shared by the leaves of
+ * the region and by the pixels on it. */
+#ifndef RAD_BEYOND_GATHER_CUTS_H
+#define RAD_BEYOND_GATHER_CUTS_H
+
+#include "rad/beyond/gather/senders.h"
+
+/* The regions of a forest, numbered in the order of its tree: the same on all ranks. */
+struct regions {
+    int32_t *nodes;  /* [count] */
+    int32_t *of;     /* [forest->count] region of a leaf that has an area; -1: of other
+                        patches, or none */
+    int64_t count, capacity;
+};
+
+struct regions *regions_create(const struct model *model);
+void regions_destroy(struct regions *regions);
+
+/* A node of a cut. */
+struct cut_node {
+    int32_t node; /* of the tree of senders */
+    int32_t asked; /* segments from the region to points that it faces */
+    double seen;  /* share of its light that is seen from the region, 1; above 0 */
+    double upto;  /* light that reaches the region, about, from this node of the cut and
+                     those before it, over all bands, W/m^2 */
+};
+
+struct cut {
+    int64_t first; /* of its nodes; -1: not made yet */
+    int64_t count;
+};
+
+struct cuts {
+    const struct senders *senders; /* borrowed */
+    const struct regions *regions; /* borrowed */
+    struct cut *cuts;              /* [regions->count] */
+    struct cut_node *nodes;        /* of all cuts made so far */
+    int64_t count, capacity;
+};
+
+struct cuts cuts_create(const struct senders *senders, const struct regions *regions);
+void cuts_free(struct cuts *cuts);
+
+/* Returns the cut of the region of a leaf; makes it when it is asked for first, a pure
+ * function of the region, so the same on any rank. Adds the tests that it took to
+ * `counts`. */
+struct cut cuts_at(struct cuts *cuts, int32_t leaf, struct octree_counts *counts);
+
+/* Chooses a sender of a cut for a point of its region by the light that it is known to
+ * bring there; `u` in [0, 1). patch -1: none. */
+struct choice cuts_choose(const struct cuts *cuts, struct cut cut, double u);
+
+#endif
