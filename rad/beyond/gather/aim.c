@@ -303,7 +303,7 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
         bool none = volley->seen[0] + volley->seen[1] <= before.seen[0] + before.seen[1];
         const struct sender_node *at = &cuts->senders->nodes[node->node];
         light = sender_light(cuts->senders, cuts->senders->patches[at->first]);
-        for (int c = 0; c < BANDS && none; c++) {
+        for (int c = 0; c < BANDS && none && !r->looks; c++) {
             double h = direct * light.band[c] / rgb_sum(light);
             around.band[c] += h * h / count * seen * (1.0 - seen);
         }

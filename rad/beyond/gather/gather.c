@@ -318,7 +318,7 @@ void final_gather_renew(struct final_gather *gather)
     for (int32_t p = 0; p < forest->count; p++) {
         struct triangle t = forest_triangle(forest, p);
         gather->near.leaves[p] = (struct gather_leaf){
-            triangle_centroid(&t), forest_area(forest, p), gather_slope(gather, p), 0};
+            triangle_centroid(&t), forest_area(forest, p), gather_slope(gather, p)};
     }
 }
 

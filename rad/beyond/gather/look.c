@@ -76,18 +76,20 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
     const struct forest *forest = gather->model->forest;
     const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
     struct receiver whole = receiver_of_leaf(gather, leaf, rays);
-    struct gather_look look = {.cut = leaf_is_cut(gather, leaf)};
+    struct gather_look look = {.on_back = false};
     struct quarter quarters[4];
     struct rgb *each = alloc_array((size_t)rays, sizeof *each);
     double variance = 0.0, by_segments = 0.0;
     int64_t before = model_work(gather->model), fixed = gather->model->estimating;
     whole.seed = hash_mix(patch_seed(forest, leaf) + 1);
     whole.sums.each = each;
+    whole.looks = true;
     for (int k = 0; k < 4; k++) {
         struct receiver r = whole;
         r.facet.triangle = triangle_child(&whole.facet.triangle, k);
         r.facet.area = 0.25 * whole.facet.area;
         quarters[k] = look_at(&r, rho);
+        look.on_back = look.on_back || r.sums.on_back;
         variance += 0.25 * quarters[k].by_all;
         by_segments += 0.25 * quarters[k].by_segments;
         for (int c = 0; c < BANDS; c++)

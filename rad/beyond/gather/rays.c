@@ -30,27 +30,13 @@
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
-#include "rad/beyond/gather/factor.h"
 #include "rad/beyond/gather/gather.h"
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
-/* A leaf is too near for its size if the square of its distance is less than this part of
- * its area. A pixel shows the error at one place, where a receiving leaf has its mean. */
-static const double NEAR = 0.2, NEAR_PIXEL = 1.0;
-
-/* The same, where that is the distance at which the ray met the leaf. */
-static const double NEAR_RAY = 0.05;
-
-/* A ray has met a leaf in a gap only if the square of the ray's length is less than this
- * times the leaf's area: small facets of a round thing far away are seen along their
- * planes, with no gap. */
-static const double ALONG = 16.0;
-
-/* A leaf that a wall cuts is too near if the square of the ray's length is less than this
- * times its area. A Cornell box takes 2 % more rays than with 1, for which it is a third
- * too bright inside of a hut on a lawn. */
-static const double CUT = 16.0;
+/* A leaf is too near if the square of the length of the ray that has met it is less than
+ * this times the leaf's area. */
+static const double NEAR = 0.1;
 
 /* A point is beside a patch if the square of its distance is less than this times the
  * square of the patch's radius. */
@@ -95,77 +81,14 @@ static bool is_aimed_lamp(const struct receiver *r, const struct point *met,
            !receiver_lamp_is_near(r->gather->model->scene, root, x);
 }
 
-/* True if the leaf that a ray has met is too near to the ray's origin, for its size, for
- * its mean radiosity to hold there. The distance is that of its centroid, so that a point
- * takes the mean of the whole leaf or none of it: a far part alone would be given the
- * mean of the whole. But a small thing in the shade at the edge of a wide ground has to
- * see the shade around it, and not the mean: rays that end at once are too near, too. In
- * a gap that is narrow for the leaf more of it is too near, for it may reach from the gap
- * into the light. */
-static bool is_too_near(const struct receiver *r, const struct point *met, struct vec3 x,
-                        struct vec3 normal)
-{
-    double near = r->points ? NEAR_PIXEL : NEAR;
-    const struct gather_leaf *leaf = &r->gather->near.leaves[met->patch];
-    double area = leaf->area;
-    struct vec3 apart = vec3_sub(leaf->middle, x), ray = vec3_sub(met->at, x);
-    double width = vec3_dot(apart, met->normal);
-    return vec3_dot(apart, apart) < near * area || vec3_dot(ray, ray) < NEAR_RAY * area ||
-           (vec3_dot(ray, ray) < ALONG * area &&
-            gap_is_narrow(normal, met->normal, width, area));
-}
-
-static bool is_partly_covered(const struct final_gather *gather, int32_t leaf)
-{
-    return gather->near.partly_covered &&
-           gather->near.partly_covered[gather->place[leaf]];
-}
-
-/* Just above the leaf something is between its middle and a corner, or the middle of an
- * edge. */
-bool leaf_is_cut(struct final_gather *gather, int32_t leaf)
-{
-    static const double INSET = 0.99;
-    const struct forest *forest = gather->model->forest;
-    uint8_t *known = &gather->near.leaves[leaf].cut;
-    if (*known != 0)
-        return *known == 2;
-    struct triangle t = forest_triangle(forest, leaf);
-    int32_t root = (int32_t)forest->patches[leaf].id.root, own[2] = {-1, -1};
-    struct vec3 normal = scene_root_plane(forest->scene, root).normal;
-    struct vec3 middle = triangle_centroid(&t);
-    int32_t guess = -1;
-    *known = 1;
-    for (int k = 0; k < 6 && *known == 1; k++) {
-        struct vec3 a = t.corner[k % 3], b = t.corner[(k + k / 3) % 3];
-        struct vec3 end = vec3_scale(vec3_add(a, b), 0.5);
-        end = vec3_add(middle, vec3_scale(vec3_sub(end, middle), INSET));
-        if (octree_blocks_segment(gather->model->octree, point_above(middle, normal),
-                                  point_above(end, normal), own, &guess,
-                                  &gather->view.counts))
-            *known = 2;
-    }
-    return *known == 2;
-}
-
-/* True if a ray has met a leaf that is cut, and is not far away: whoever stands on one
- * side sees that alone, and the mean is that of both. */
-static bool is_cut_between(const struct receiver *r, const struct point *met,
-                           struct vec3 x)
+/* True if a ray from x takes the mesh's light at the point that it has met. The leaf there
+ * is too near for its mean to hold if less than a third of it is within the ray's length
+ * of the point: what stands that near, the receiver itself above all, shades or lights
+ * this part of the leaf and not the rest. (pi .1 = 1/3.) */
+static bool ends_on_mesh(const struct receiver *r, const struct point *met, struct vec3 x)
 {
     struct vec3 ray = vec3_sub(met->at, x);
-    return r->keeps &&
-           vec3_dot(ray, ray) < CUT * r->gather->near.leaves[met->patch].area &&
-           leaf_is_cut(r->gather, met->patch);
-}
-
-/* True if a ray from x, where a surface has this normal, takes the mesh's light at the
- * point that it has met. */
-static bool ends_on_mesh(const struct receiver *r, const struct point *met, struct vec3 x,
-                         struct vec3 normal)
-{
-    return !(is_too_near(r, met, x, normal) || is_cut_between(r, met, x) ||
-             is_partly_covered(r->gather, met->patch));
+    return vec3_dot(ray, ray) >= NEAR * r->gather->near.leaves[met->patch].area;
 }
 
 /* A ray has met a back, and not from inside of a thing: else another ray from there meets
@@ -226,15 +149,14 @@ static bool leave(struct receiver *r, const struct point *point, bool aimed,
     return true;
 }
 
-/* True if rays from x, where a surface has this normal, are aimed at the bright patch
- * that the point which one has met is on. From pixels the path of such a ray goes on where it does not end
+/* True if rays from x are aimed at the bright patch that the point which one has met is
+ * on. From pixels the path of such a ray goes on where it does not end
  * on the mesh, from the holder of a bulb, say: found by chance it is a bright speck. */
-static bool is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x,
-                        struct vec3 normal)
+static bool is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x)
 {
     int32_t bright = r->gather->bright->part_of[met->patch];
     return bright >= 0 && !is_beside(r->gather->model->forest, bright, x) &&
-           (r->points || ends_on_mesh(r, met, x, normal));
+           (r->points || ends_on_mesh(r, met, x));
 }
 
 /* True if the bright patch that a path has met, from x on its way, is aimed at from
@@ -279,7 +201,7 @@ static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
     for (int c = 0; c < BANDS; c++)
         light.band[c] *= factor;
     bool aimed = is_aimed_lamp(r, &point, x);
-    if (ends_on_mesh(r, &point, x, normal))
+    if (ends_on_mesh(r, &point, x))
         add_mesh(r, &point, aimed, &light);
     else
         go_on(r, point, aimed, light, hash_mix(seed), false);
@@ -291,16 +213,15 @@ void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patc
     const struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     int32_t root = (int32_t)forest->patches[patch].id.root;
-    struct vec3 normal = r->facet.plane.normal;
     struct point point = {.at = y,
                           .normal = scene_root_plane(forest->scene, root).normal};
     find_leaf(forest, root, &point);
-    if (!is_aimed_at(r, &point, x, normal))
+    if (!is_aimed_at(r, &point, x))
         return;
     struct rgb weight = {{factor, factor, factor}};
     bool aimed = root_is_sender(g->lamps, root);
     r->shares.bright += factor;
-    if (ends_on_mesh(r, &point, x, normal))
+    if (ends_on_mesh(r, &point, x))
         add_mesh(r, &point, aimed, &weight);
     else
         go_on(r, point, aimed, weight, seed, true);
@@ -341,7 +262,7 @@ static void go_on(struct receiver *r, struct point point, bool aimed, struct rgb
         aimed = is_aimed_lamp(r, &point, origin);
         if (aims && is_aimed_at_beside(r, &point, origin))
             return;
-        if (count + 1 == PATH_MOST || ends_on_mesh(r, &point, origin, normal)) {
+        if (count + 1 == PATH_MOST || ends_on_mesh(r, &point, origin)) {
             add_mesh(r, &point, aimed, &weight);
             return;
         }
@@ -355,7 +276,6 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
 {
     struct vec3 origin = stream->origins[ray], direction = stream->directions[ray];
     const struct forest *forest = r->gather->model->forest;
-    struct vec3 normal = r->facet.plane.normal;
     struct point point;
     enum met met = meet(r, origin, direction, &stream->hits[ray], &point);
     if (ray_comes_from_inside(r, origin, direction)) {
@@ -369,12 +289,12 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
     if (met != MET_FRONT)
         return;
     find_leaf(forest, point.patch, &point);
-    if (is_aimed_at(r, &point, origin, normal)) {
+    if (is_aimed_at(r, &point, origin)) {
         r->sums.aside[half]++;
         return;
     }
     bool aimed = root_is_sender(r->gather->lamps, root_of(r, &point));
-    if (ends_on_mesh(r, &point, origin, normal)) {
+    if (ends_on_mesh(r, &point, origin)) {
         add_mesh(r, &point, aimed, &weight);
     } else {
         begin_path(r, &point, aimed, &weight);
@@ -487,7 +407,8 @@ static void fill_stream(struct receiver *r, const struct sequence *sequence, int
         stream->directions[i] = cosine_direction(normal, r->along, u[0], u[1]);
     }
     octree_stream_hits(model->octree, stream, false, &model->counts);
-    r->sums.on_back = r->keeps && (r->sums.on_back || meets_backs(r, stream));
+    r->sums.on_back =
+        !r->points && (r->sums.on_back || meets_backs(r, stream));
 }
 
 void receiver_fire(struct receiver *r)

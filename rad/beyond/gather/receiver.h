@@ -27,6 +27,7 @@ struct receiver {
     struct facet facet;   /* the leaf; for points, a triangle without extent */
     const struct gather_points *points; /* NULL: the receiver is a leaf */
     bool keeps;           /* its terms are kept, as a row, in the gather's sums */
+    bool looks;           /* its light is compared: only what was found counts as noise */
     struct gather_row row;
     uint64_t seed;        /* made of an ID */
     struct vec3 along;    /* a direction in the plane */
@@ -55,9 +56,6 @@ void receiver_add_patch(struct receiver *r, int32_t patch, const struct rgb *wei
  * barycentric coordinates `at`: see gather_slope(). */
 void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
                         const struct rgb *weight);
-
-/* True if a thing stands on the leaf or cuts it: light may differ on both sides. */
-bool leaf_is_cut(struct final_gather *gather, int32_t leaf);
 
 /* Adds the light of lamps, by segments. */
 void receiver_aim(struct receiver *r);

@@ -90,7 +90,6 @@ struct gather_leaf {
     struct vec3 middle; /* its centroid */
     double area;        /* square scene units */
     struct gather_slope slope;
-    uint8_t cut; /* 2: something cuts the leaf; 1: nothing does; 0: unknown */
 };
 
 /* Sums of integers, for they are over ranks; the patches as rays meet them, and the
