@@ -247,7 +247,7 @@ static int64_t split_leaves(struct looking *l, int32_t **leaves, int64_t count,
     int64_t made = 0;
     for (int64_t i = 0; i < count; i++) {
         int32_t leaf = (*leaves)[i];
-        double spread = looks[i].on_back ? variance_of(&looks[i]) : spread_of(&looks[i]);
+        double spread = looks[i].cut ? variance_of(&looks[i]) : spread_of(&looks[i]);
         keep_known(l, leaf, &looks[i]);
         if (forest_area(forest, leaf) * spread <= *threshold || !may_split(l, leaf))
             continue;

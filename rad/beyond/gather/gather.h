@@ -28,7 +28,7 @@ struct gather_look {
     double of_segment;         /* that of the segment, over the whole leaf */
     float fixed;               /* tests of a quarter, without its rays */
     float work;                /* tests of each ray */
-    bool on_back;              /* some ray has met a back: a thing may stand on the leaf */
+    bool cut;                  /* a thing stands on the leaf */
 };
 
 /* The light reflected, in the mean over all surface, summed over bands, W/m^2. */

@@ -9,6 +9,7 @@
 
 #include "geom/alloc.h"
 #include "geom/hash.h"
+#include "rad/beyond/sample.h"
 
 /* What a quarter has found. */
 struct quarter {
@@ -71,12 +72,32 @@ static struct quarter look_at(struct receiver *r, const struct rgb *rho)
     return quarter;
 }
 
+/* True if a thing stands on the leaf or across it: just above the leaf something is
+ * between its middle and a corner, or the middle of an edge. */
+static bool is_cut(struct final_gather *gather, int32_t leaf)
+{
+    static const double INSET = 0.99;
+    struct facet facet = facet_make(gather->model->forest, leaf);
+    const struct vec3 *corner = facet.triangle.corner, normal = facet.plane.normal;
+    struct vec3 middle = triangle_centroid(&facet.triangle);
+    int32_t own[2] = {-1, -1}, guess = -1;
+    for (int k = 0; k < 6; k++) {
+        struct vec3 end = vec3_middle(corner[k % 3], corner[(k + k / 3) % 3]);
+        end = vec3_add(middle, vec3_scale(vec3_sub(end, middle), INSET));
+        if (octree_blocks_segment(gather->model->octree, point_above(middle, normal),
+                                  point_above(end, normal), own, &guess,
+                                  &gather->view.counts))
+            return true;
+    }
+    return false;
+}
+
 struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, int rays)
 {
     const struct forest *forest = gather->model->forest;
     const struct rgb *rho = &forest_material(forest, leaf)->reflectance;
     struct receiver whole = receiver_of_leaf(gather, leaf, rays);
-    struct gather_look look = {.on_back = false};
+    struct gather_look look = {.cut = is_cut(gather, leaf)};
     struct quarter quarters[4];
     struct rgb *each = alloc_array((size_t)rays, sizeof *each);
     double variance = 0.0, by_segments = 0.0;
@@ -89,7 +110,6 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
         r.facet.triangle = triangle_child(&whole.facet.triangle, k);
         r.facet.area = 0.25 * whole.facet.area;
         quarters[k] = look_at(&r, rho);
-        look.on_back = look.on_back || r.sums.on_back;
         variance += 0.25 * quarters[k].by_all;
         by_segments += 0.25 * quarters[k].by_segments;
         for (int c = 0; c < BANDS; c++)

@@ -407,8 +407,7 @@ static void fill_stream(struct receiver *r, const struct sequence *sequence, int
         stream->directions[i] = cosine_direction(normal, r->along, u[0], u[1]);
     }
     octree_stream_hits(model->octree, stream, false, &model->counts);
-    r->sums.on_back =
-        !r->points && (r->sums.on_back || meets_backs(r, stream));
+    r->sums.on_back = r->keeps && (r->sums.on_back || meets_backs(r, stream));
 }
 
 void receiver_fire(struct receiver *r)
