@@ -112,6 +112,13 @@ said=$(./phr "$work/long.ply" 2>&1 >"$work/stdout" | grep warning)
 long="1 line(s) with more values than the header says, passed over (first: line 14)"
 check "values that the header does not have are passed over, which is said" \
     [ "$said" = "phr: $work/long.ply: warning: $long" ]
+sed 's/^element face/property float nx\n&/; s/^[01] [01] 0$/& 7/
+    s/^end_header/element edge 0\nproperty int vertex1\n&/' "$work/lamp.ply" \
+    >"$work/more.ply"
+passed="element(s) or propert(ies) passed over:"
+said=$(./phr "$work/more.ply" 2>&1 >"$work/stdout" | grep warning)
+check "elements and properties that are not read are named" \
+    [ "$said" = "phr: $work/more.ply: warning: 2 $passed nx edge" ]
 ./phr "$work/scene.obj" --quiet --ke radiance --checkpoint "$work/of-radiance"
 said=$(./phr "$work/scene.obj" --quiet --resume "$work/of-radiance" 2>&1)
 made="made with --ke radiance, this run has --ke radiosity"

@@ -123,7 +123,7 @@ static bool take_stored(struct run *run, struct ply_file *file)
 static bool read_ply(struct run *run, struct source *source)
 {
     struct ply_file file;
-    char number[32];
+    char number[32], names[200];
     bool good = ply_file_open(&file, source, &run->error);
     if (good && solution_is_stored(&file) && !run->options.form_factors)
         good = take_stored(run, &file);
@@ -135,6 +135,9 @@ static bool read_ply(struct run *run, struct source *source)
              "line(s) with more values than the header says, passed over "
              "(first: line %s)",
              number);
+    text_names_list(&file.passed, names, sizeof names);
+    if (good && !run->stored)
+        warn(run, file.passed.count, "element(s) or propert(ies) passed over: %s", names);
     ply_file_close(&file);
     return good && run->scene;
 }

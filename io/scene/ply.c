@@ -37,8 +37,8 @@ struct reader {
     struct vec3 *vertices;
     struct rgb *colours;   /* of the vertices; NULL if faces have colours */
     int64_t vertex_count;  /* as the header declares */
-    struct face *faces;
-    int64_t face_count;
+    struct face *faces;    /* of strips too, triangle by triangle */
+    int64_t face_count, face_capacity;
     int32_t *corners;      /* of all faces */
     int64_t corner_count, corner_capacity;
     int64_t triangle_count;
@@ -52,6 +52,15 @@ static bool has_three(const struct ply_element *element, enum ply_field first)
     return element && element->type_of[first] != PLY_NONE &&
            element->type_of[first + 1] != PLY_NONE &&
            element->type_of[first + 2] != PLY_NONE;
+}
+
+/* Returns the first field of the colours of an element, or PLY_FIELDS. */
+static enum ply_field colours_of(const struct ply_element *element)
+{
+    for (int first = PLY_RED; first <= PLY_COLOR_0; first += BANDS)
+        if (has_three(element, (enum ply_field)first))
+            return (enum ply_field)first;
+    return PLY_FIELDS;
 }
 
 /* Returns the value of a colour that means a reflectance of 1. */
@@ -81,82 +90,116 @@ static bool take_rgb(struct reader *reader, const struct ply_element *element,
 static bool read_vertices(struct reader *reader, const struct ply_element *element)
 {
     const double *value = reader->file->value;
+    enum ply_field colours = colours_of(element);
     reader->vertices = alloc_array((size_t)element->count, sizeof *reader->vertices);
-    if (has_three(element, PLY_RED) &&
-        !has_three(ply_file_find(reader->file, PLY_FACE), PLY_RED))
+    if (colours != PLY_FIELDS &&
+        colours_of(ply_file_find(reader->file, PLY_FACE)) == PLY_FIELDS)
         reader->colours = alloc_array((size_t)element->count, sizeof *reader->colours);
     for (int64_t i = 0; i < element->count; i++) {
         if (!ply_file_record(reader->file, element, i, reader->error))
             return false;
         reader->vertices[i] = (struct vec3){value[PLY_X], value[PLY_Y], value[PLY_Z]};
         if (reader->colours &&
-            !take_rgb(reader, element, PLY_RED, true, &reader->colours[i]))
+            !take_rgb(reader, element, colours, true, &reader->colours[i]))
             return false;
     }
     return true;
 }
 
-static bool check_corners(const struct reader *reader)
+static bool check_corners(const struct reader *reader, const int32_t *corners,
+                          int64_t count)
 {
-    const struct ply_file *file = reader->file;
     char text[100] = "";
-    if (file->corner_count < 3 || file->corner_count > CORNER_MAX)
-        snprintf(text, sizeof text, "%lld corners instead of 3 to %d",
-                 (long long)file->corner_count, CORNER_MAX);
-    for (int64_t i = 0; i < file->corner_count && !text[0]; i++)
-        if (file->corners[i] >= reader->vertex_count)
+    if (count < 3 || count > CORNER_MAX)
+        snprintf(text, sizeof text, "%lld corners instead of 3 to %d", (long long)count,
+                 CORNER_MAX);
+    for (int64_t i = 0; i < count && !text[0]; i++)
+        if (corners[i] >= reader->vertex_count)
             snprintf(text, sizeof text, "corner %ld, but the last vertex is %lld",
-                     (long)file->corners[i], (long long)reader->vertex_count - 1);
-    return !text[0] || ply_fail(file, reader->error, text);
+                     (long)corners[i], (long long)reader->vertex_count - 1);
+    return !text[0] || ply_fail(reader->file, reader->error, text);
 }
 
-static bool add_face(struct reader *reader, const struct ply_element *element,
-                     struct face *face)
+static bool add_face(struct reader *reader, const int32_t *corners, int64_t count,
+                     const struct material *material)
 {
-    const struct ply_file *file = reader->file;
-    struct material material = NEUTRAL;
-    if (!check_corners(reader) ||
-        (has_three(element, PLY_RED) &&
-         !take_rgb(reader, element, PLY_RED, true, &material.reflectance)) ||
-        (has_three(element, PLY_EMISSION_R) &&
-         !take_rgb(reader, element, PLY_EMISSION_R, false, &material.emission)))
+    if (!check_corners(reader, corners, count))
         return false;
-    *face = (struct face){reader->corner_count, (int32_t)file->corner_count,
-                          palette_add(&reader->palette, &material)};
-    RESERVE(reader->corners, &reader->corner_capacity,
-            reader->corner_count + file->corner_count);
-    memcpy(reader->corners + reader->corner_count, file->corners,
-           (size_t)file->corner_count * sizeof *file->corners);
-    reader->corner_count += file->corner_count;
-    reader->triangle_count += file->corner_count - 2;
+    RESERVE(reader->faces, &reader->face_capacity, reader->face_count + 1);
+    reader->faces[reader->face_count++] =
+        (struct face){reader->corner_count, (int32_t)count,
+                      palette_add(&reader->palette, material)};
+    RESERVE(reader->corners, &reader->corner_capacity, reader->corner_count + count);
+    memcpy(reader->corners + reader->corner_count, corners,
+           (size_t)count * sizeof *corners);
+    reader->corner_count += count;
+    reader->triangle_count += count - 2;
     return reader->triangle_count <= COUNT_MAX ||
-           ply_fail(file, reader->error, "too many triangles");
+           ply_fail(reader->file, reader->error, "too many triangles");
+}
+
+static bool take_face(struct reader *reader, const struct ply_element *element)
+{
+    struct material material = NEUTRAL;
+    enum ply_field colours = colours_of(element);
+    return (colours == PLY_FIELDS ||
+            take_rgb(reader, element, colours, true, &material.reflectance)) &&
+           (!has_three(element, PLY_EMISSION_R) ||
+            take_rgb(reader, element, PLY_EMISSION_R, false, &material.emission)) &&
+           add_face(reader, reader->file->corners, reader->file->corner_count,
+                    &material);
+}
+
+/* Takes a strip: its third corner and each further one make a triangle with the two
+ * before, of which every other one is turned over. */
+static bool take_strip(struct reader *reader)
+{
+    const int32_t *corners = reader->file->corners;
+    bool good = true;
+    for (int64_t k = 0, first = 0; k < reader->file->corner_count && good; k++) {
+        first = corners[k] < 0 ? k + 1 : first;
+        if (k < first + 2)
+            continue;
+        int64_t odd = (k - first) % 2;
+        const int32_t triangle[] = {corners[k - 2 + odd], corners[k - 1 - odd],
+                                    corners[k]};
+        good = add_face(reader, triangle, 3, &NEUTRAL);
+    }
+    return good;
 }
 
 static bool read_faces(struct reader *reader, const struct ply_element *element)
 {
-    reader->faces = alloc_array((size_t)element->count, sizeof *reader->faces);
-    reader->face_count = element->count;
     for (int64_t i = 0; i < element->count; i++)
         if (!ply_file_record(reader->file, element, i, reader->error) ||
-            !add_face(reader, element, &reader->faces[i]))
+            !(element->kind == PLY_FACE ? take_face(reader, element)
+                                        : take_strip(reader)))
             return false;
     return true;
+}
+
+/* True if there is an element of faces or strips and it has their corners. */
+static bool has_corners(const struct ply_element *element)
+{
+    return element && element->count > 0 &&
+           (element->kind == PLY_FACE ? element->type_of[PLY_CORNERS] != PLY_NONE
+                                      : element->type_of[PLY_STRIP] != PLY_NONE);
 }
 
 static bool check_header(struct reader *reader)
 {
     const struct ply_element *vertex = ply_file_find(reader->file, PLY_VERTEX);
     const struct ply_element *face = ply_file_find(reader->file, PLY_FACE);
+    const struct ply_element *strips = ply_file_find(reader->file, PLY_STRIPS);
     const char *path = reader->file->binary.path;
     if (!has_three(vertex, PLY_X))
         return error_set(reader->error, EXIT_USAGE, "%s: no vertices with x, y and z",
                          path);
-    if (!face || face->type_of[PLY_CORNERS] == PLY_NONE || face->count == 0)
+    if (!has_corners(face) && !has_corners(strips))
         return error_set(reader->error, EXIT_USAGE, "%s: no faces with vertex_indices",
                          path);
     reader->vertex_count = vertex->count;
-    if (vertex->count > COUNT_MAX || face->count > COUNT_MAX)
+    if (vertex->count > COUNT_MAX || (face && face->count > COUNT_MAX))
         return error_set(reader->error, EXIT_USAGE, "%s: more than %d vertices or faces",
                          path, COUNT_MAX);
     return true;
@@ -168,11 +211,12 @@ static bool read_file(struct reader *reader)
     bool good = check_header(reader);
     for (int64_t i = 0; good && i < file->header.element_count; i++) {
         const struct ply_element *element = &file->header.elements[i];
-        switch (element->kind) {
-        case PLY_VERTEX: good = read_vertices(reader, element); break;
-        case PLY_FACE: good = read_faces(reader, element); break;
-        default: good = ply_file_skip(file, element, reader->error); break;
-        }
+        if (element->kind == PLY_VERTEX)
+            good = read_vertices(reader, element);
+        else if (element->kind <= PLY_STRIPS && has_corners(element))
+            good = read_faces(reader, element);
+        else
+            good = ply_file_skip(file, element, reader->error);
     }
     return good && ply_file_end(file, reader->error);
 }

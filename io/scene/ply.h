@@ -1,12 +1,13 @@
 /* Reading scenes from PLY meshes, as text or binary in either byte order.
  *
  * Vertices are x y z in any types. Faces have corners (vertex_indices or vertex_index),
- * and polygons are cut into triangles as in OBJ files. Faces or else vertices may have
- * `red green blue`, taken as linear reflectances: an integer type counts in 255ths (16
- * bits: in 65535ths), float and double as they are. A face without a colour has the mean
- * colour of its corners; in a file without colours all faces are neutral grey, 0.5. Faces
- * may have `emission_r emission_g emission_b`, the emitted radiosity E in W/m^2. Other
- * properties are skipped. */
+ * and polygons are cut into triangles as in OBJ files; `tristrips` are triangles. Faces
+ * or else vertices may have `red green blue`, or such a name as in plyfile.c, taken as
+ * linear reflectances: an integer type counts in 255ths (16 bits: in 65535ths), float and
+ * double as they are. A face without a colour has the mean colour of its corners; in a
+ * file without colours all faces are neutral grey, 0.5. Faces may have `emission_r
+ * emission_g emission_b`, the emitted radiosity E in W/m^2. Other elements and properties
+ * are skipped, and named in the file's `passed`. */
 #ifndef IO_SCENE_PLY_H
 #define IO_SCENE_PLY_H
 

@@ -29,58 +29,40 @@ static const struct {
              {"ushort", "uint16", 2}, {"int", "int32", 4},      {"uint", "uint32", 4},
              {"float", "float32", 4}, {"double", "float64", 8}};
 
+/* Properties that are read: names in the order of their fields. */
 static const struct {
     enum ply_kind kind;
-    const char *name;
-    enum ply_field field;
-} FIELDS[] = {{PLY_VERTEX, "x", PLY_X},
-              {PLY_VERTEX, "y", PLY_Y},
-              {PLY_VERTEX, "z", PLY_Z},
-              {PLY_VERTEX, "red", PLY_RED},
-              {PLY_VERTEX, "green", PLY_GREEN},
-              {PLY_VERTEX, "blue", PLY_BLUE},
+    const char *names;
+    enum ply_field first;
+} FIELDS[] = {{PLY_VERTEX, "x y z", PLY_X},
+              {PLY_VERTEX, "red green blue", PLY_RED},
+              {PLY_VERTEX, "r g b", PLY_R},
+              {PLY_VERTEX, "diffuse_red diffuse_green diffuse_blue", PLY_DIFFUSE_RED},
+              {PLY_VERTEX, "color_0 color_1 color_2", PLY_COLOR_0},
               {PLY_FACE, "vertex_indices", PLY_CORNERS},
               {PLY_FACE, "vertex_index", PLY_CORNERS},
-              {PLY_FACE, "red", PLY_RED},
-              {PLY_FACE, "green", PLY_GREEN},
-              {PLY_FACE, "blue", PLY_BLUE},
-              {PLY_FACE, "emission_r", PLY_EMISSION_R},
-              {PLY_FACE, "emission_g", PLY_EMISSION_G},
-              {PLY_FACE, "emission_b", PLY_EMISSION_B},
-              {PLY_FACE, "radiosity_r", PLY_RADIOSITY_R},
-              {PLY_FACE, "radiosity_g", PLY_RADIOSITY_G},
-              {PLY_FACE, "radiosity_b", PLY_RADIOSITY_B},
-              {PLY_FACE, "root", PLY_ROOT},
-              {PLY_FACE, "hierarchy", PLY_HIERARCHY},
-              {PLY_FACE, "error", PLY_ERROR},
-              {PLY_FACE, "rest_r", PLY_REST_R},
-              {PLY_FACE, "rest_g", PLY_REST_G},
-              {PLY_FACE, "rest_b", PLY_REST_B},
-              {PLY_MATERIAL, "reflectance_r", PLY_REFLECTANCE_R},
-              {PLY_MATERIAL, "reflectance_g", PLY_REFLECTANCE_G},
-              {PLY_MATERIAL, "reflectance_b", PLY_REFLECTANCE_B},
-              {PLY_MATERIAL, "emission_r", PLY_EMISSION_R},
-              {PLY_MATERIAL, "emission_g", PLY_EMISSION_G},
-              {PLY_MATERIAL, "emission_b", PLY_EMISSION_B},
-              {PLY_ROOT_CORNER, "x", PLY_X},
-              {PLY_ROOT_CORNER, "y", PLY_Y},
-              {PLY_ROOT_CORNER, "z", PLY_Z},
-              {PLY_ROOT_CORNER, "material", PLY_MATERIAL_NUMBER},
-              {PLY_ROOT_CORNER, "nx", PLY_NX},
-              {PLY_ROOT_CORNER, "ny", PLY_NY},
-              {PLY_ROOT_CORNER, "nz", PLY_NZ},
-              {PLY_SOLUTION, "x", PLY_X},
-              {PLY_SOLUTION, "y", PLY_Y},
-              {PLY_SOLUTION, "z", PLY_Z},
-              {PLY_SOLUTION, "exponent", PLY_EXPONENT},
-              {PLY_SOLUTION, "two_sided", PLY_TWO_SIDED},
-              {PLY_SOLUTION, "two_sided_lamps", PLY_TWO_SIDED_LAMPS},
-              {PLY_SOLUTION, "lamp_least", PLY_LAMP_LEAST},
-              {PLY_SOLUTION, "mean", PLY_MEAN}};
+              {PLY_FACE, "red green blue", PLY_RED},
+              {PLY_FACE, "r g b", PLY_R},
+              {PLY_FACE, "diffuse_red diffuse_green diffuse_blue", PLY_DIFFUSE_RED},
+              {PLY_FACE, "color_0 color_1 color_2", PLY_COLOR_0},
+              {PLY_FACE, "emission_r emission_g emission_b", PLY_EMISSION_R},
+              {PLY_FACE, "radiosity_r radiosity_g radiosity_b", PLY_RADIOSITY_R},
+              {PLY_FACE, "root hierarchy error", PLY_ROOT},
+              {PLY_FACE, "rest_r rest_g rest_b", PLY_REST_R},
+              {PLY_STRIPS, "vertex_indices", PLY_STRIP},
+              {PLY_STRIPS, "vertex_index", PLY_STRIP},
+              {PLY_MATERIAL, "reflectance_r reflectance_g reflectance_b",
+               PLY_REFLECTANCE_R},
+              {PLY_MATERIAL, "emission_r emission_g emission_b", PLY_EMISSION_R},
+              {PLY_ROOT_CORNER, "x y z", PLY_X},
+              {PLY_ROOT_CORNER, "nx ny nz material", PLY_NX},
+              {PLY_SOLUTION, "x y z", PLY_X},
+              {PLY_SOLUTION, "exponent two_sided two_sided_lamps lamp_least mean",
+               PLY_EXPONENT}};
 
 /* Names of elements, and of their records in messages. */
 static const char *const KIND_NAMES[] = {
-    "vertex", "face", "material", "root_corner", "solution", "row"};
+    "vertex", "face", "tristrips", "material", "root_corner", "solution", "row"};
 
 /* --- the header --- */
 
@@ -141,6 +123,8 @@ static bool read_element(struct ply_file *file, char *rest, struct error *error)
         return fail_word(file, error, "bad number of elements", count);
     if (element.kind != PLY_OTHER && ply_file_find(file, element.kind))
         return fail_word(file, error, "a second element", name);
+    if (element.kind == PLY_OTHER)
+        text_names_add(&file->passed, name ? name : "");
     RESERVE(header->elements, &header->element_capacity, header->element_count + 1);
     header->elements[header->element_count++] = element;
     return true;
@@ -156,9 +140,15 @@ static enum ply_type find_type(const char *word)
 
 static enum ply_field find_field(enum ply_kind kind, const char *name)
 {
-    for (size_t i = 0; i < sizeof FIELDS / sizeof FIELDS[0]; i++)
-        if (FIELDS[i].kind == kind && strcmp(name, FIELDS[i].name) == 0)
-            return FIELDS[i].field;
+    for (size_t i = 0; i < sizeof FIELDS / sizeof FIELDS[0]; i++) {
+        const char *at = FIELDS[i].names;
+        for (int k = 0; FIELDS[i].kind == kind && *at; k++, at += *at == ' ') {
+            size_t length = strcspn(at, " ");
+            if (strlen(name) == length && strncmp(at, name, length) == 0)
+                return (enum ply_field)((int)FIELDS[i].first + k);
+            at += length;
+        }
+    }
     return PLY_FIELDS;
 }
 
@@ -169,9 +159,12 @@ static bool check_field(struct ply_file *file, struct ply_element *element,
                         struct error *error)
 {
     bool list = property->count_type != PLY_NONE;
-    if (property->field == PLY_FIELDS)
+    if (property->field == PLY_FIELDS) {
+        if (element->kind != PLY_OTHER)
+            text_names_add(&file->passed, name);
         return true;
-    if (list != (property->field == PLY_CORNERS) || (list && property->type >= PLY_FLOAT))
+    }
+    if (list != (property->field >= PLY_CORNERS) || (list && property->type >= PLY_FLOAT))
         return fail_word(file, error, "the wrong kind of property for", name);
     if (element->type_of[property->field] != PLY_NONE)
         return fail_word(file, error, "a second property", name);
@@ -269,6 +262,7 @@ void ply_file_close(struct ply_file *file)
     binary_free(&file->binary);
     alloc_free(file->header.elements);
     alloc_free(file->header.properties);
+    text_names_free(&file->passed);
     alloc_free(file->corners);
     *file = (struct ply_file){0};
 }
@@ -354,13 +348,14 @@ static bool take_corners(struct ply_file *file, const struct ply_property *prope
                          struct error *error)
 {
     int64_t count;
+    double least = property->field == PLY_STRIP ? -1.0 : 0.0;
     if (!take_count(file, property, &count, error))
         return false;
     for (file->corner_count = 0; file->corner_count < count; file->corner_count++) {
         double value;
         if (!take(file, (enum ply_type)property->type, &value, error))
             return false;
-        if (!(value >= 0.0 && value <= INT32_MAX) || value != floor(value))
+        if (!(value >= least && value <= INT32_MAX) || value != floor(value))
             return ply_fail(file, error, "a corner is not the number of a vertex");
         RESERVE(file->corners, &file->corner_capacity, file->corner_count + 1);
         file->corners[file->corner_count] = (int32_t)value;
@@ -387,7 +382,7 @@ static bool pass_list(struct ply_file *file, const struct ply_property *property
 static bool take_property(struct ply_file *file, const struct ply_property *property,
                           struct error *error)
 {
-    if (property->field == PLY_CORNERS)
+    if (property->field >= PLY_CORNERS && property->field < PLY_FIELDS)
         return take_corners(file, property, error);
     if (property->count_type != PLY_NONE)
         return pass_list(file, property, error);

@@ -14,22 +14,27 @@
 
 #include "geom/error.h"
 #include "io/scene/binary.h"
+#include "io/scene/text.h"
 
-enum ply_kind { PLY_VERTEX, PLY_FACE, PLY_MATERIAL, PLY_ROOT_CORNER, PLY_SOLUTION,
-                PLY_OTHER };
+enum ply_kind { PLY_VERTEX, PLY_FACE, PLY_STRIPS, PLY_MATERIAL, PLY_ROOT_CORNER,
+                PLY_SOLUTION, PLY_OTHER };
 
 /* Properties that are read, of one kind of elements or of several. */
 enum ply_field {
     PLY_X, PLY_Y, PLY_Z,
-    PLY_RED, PLY_GREEN, PLY_BLUE,
+    PLY_RED, PLY_GREEN, PLY_BLUE, /* colours, and the other names that they have */
+    PLY_R, PLY_G, PLY_B,
+    PLY_DIFFUSE_RED, PLY_DIFFUSE_GREEN, PLY_DIFFUSE_BLUE,
+    PLY_COLOR_0, PLY_COLOR_1, PLY_COLOR_2,
     PLY_EMISSION_R, PLY_EMISSION_G, PLY_EMISSION_B,
     PLY_RADIOSITY_R, PLY_RADIOSITY_G, PLY_RADIOSITY_B,
-    PLY_ROOT, PLY_HIERARCHY,
-    PLY_ERROR, PLY_REST_R, PLY_REST_G, PLY_REST_B,
+    PLY_ROOT, PLY_HIERARCHY, PLY_ERROR,
+    PLY_REST_R, PLY_REST_G, PLY_REST_B,
     PLY_NX, PLY_NY, PLY_NZ, PLY_MATERIAL_NUMBER,
     PLY_REFLECTANCE_R, PLY_REFLECTANCE_G, PLY_REFLECTANCE_B,
     PLY_EXPONENT, PLY_TWO_SIDED, PLY_TWO_SIDED_LAMPS, PLY_LAMP_LEAST, PLY_MEAN,
     PLY_CORNERS, /* the list vertex_indices or vertex_index */
+    PLY_STRIP,   /* the same of tristrips, where -1 begins a strip */
     PLY_FIELDS
 };
 
@@ -65,8 +70,10 @@ struct ply_file {
     bool ascii, big_endian;
     char line_end;                   /* the last character of a line */
     struct ply_header header;
+    struct text_names passed;        /* elements and properties that are not read */
     double value[PLY_FIELDS];        /* of the current record */
-    int32_t *corners;                /* [corner_count] of the current record, each >= 0 */
+    int32_t *corners;                /* [corner_count] of the current record, >= 0, or -1
+                                      * in a strip */
     int64_t corner_count, corner_capacity;
     int64_t record;                     /* number of the current record, from 0 */
     const char *record_name;         /* the name of the element, or "row", for messages */

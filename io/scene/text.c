@@ -319,6 +319,21 @@ int32_t text_names_add(struct text_names *names, const char *name)
     return *slot - 1;
 }
 
+void text_names_list(const struct text_names *names, char *list, size_t size)
+{
+    size_t used = 0;
+    *list = '\0';
+    for (int32_t i = 0; i < names->count; i++) {
+        size_t length = strlen(names->name[i]);
+        bool fits = used + length + 5 < size;
+        snprintf(list + used, size - used, "%s%s", used ? " " : "",
+                 fits ? names->name[i] : "...");
+        if (!fits)
+            return;
+        used += length + (used > 0);
+    }
+}
+
 void text_names_free(struct text_names *names)
 {
     for (int32_t i = 0; i < names->count; i++)

@@ -89,6 +89,10 @@ struct text_names {
 
 /* Returns the number of `name`, which is added (copied) if it is new. */
 int32_t text_names_add(struct text_names *names, const char *name);
+
+/* Writes the names with blanks between, as many as fit into `size` bytes, and "..." for
+ * the others. Pre: size >= 4. */
+void text_names_list(const struct text_names *names, char *list, size_t size);
 void text_names_free(struct text_names *names);
 
 #endif

@@ -176,6 +176,7 @@ static const struct material BY_TYPE = {{{0.2, 0.2, 0.25}}, {{0, 1000, 0.5}}},
                              GREY = {{{0.5, 0.5, 0.5}}, {{0, 0, 0}}},
                              MEAN = {{{1.0 / 3, 0.2, 0.2}}, {{0, 0, 0}}},
                              OWN = {{{0.1, 0.2, 0.3}}, {{0, 0, 0}}},
+                             BY_FIFTHS = {{{0.2, 0.4, 0.6}}, {{0, 0, 0}}},
                              GREY_LAMP = {{{0.5, 0.5, 0.5}}, {{5, 6, 7}}};
 
 static void check_material(const struct scene *scene, int32_t triangle,
@@ -262,6 +263,73 @@ static void test_colours(void)
                       "3 0 1 2 5 6 7\n3 0 2 3 0 0 0\n");
     check_material(scene, 0, &GREY_LAMP, "a lamp without colours");
     scene_destroy(scene);
+}
+
+/* Colours by each of their names, of vertices and of faces; others beside them are
+ * passed over. */
+static void test_names_of_colours(void)
+{
+    static const char *const NAMES[][BANDS] = {
+        {"r", "g", "b"},
+        {"diffuse_red", "diffuse_green", "diffuse_blue"},
+        {"color_0", "color_1", "color_2"}};
+    for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
+        char colours[200], text[600];
+        snprintf(colours, sizeof colours,
+                 "property float alpha\nproperty uchar %s\nproperty uchar %s\n"
+                 "property uchar %s\n", NAMES[i][0], NAMES[i][1], NAMES[i][2]);
+        snprintf(text, sizeof text,
+                 ASCII SQUARE "%s" FACE(2) "end_header\n0 0 0 1 255 0 51\n"
+                 "1 0 0 1 0 0 51\n1 1 0 1 0 153 51\n0 1 0 1 0 0 0\n3 0 1 2\n3 2 3 0\n",
+                 colours);
+        struct scene *scene = read_text(text);
+        check_material(scene, 0, &MEAN, NAMES[i][0]);
+        scene_destroy(scene);
+        snprintf(text, sizeof text,
+                 ASCII SQUARE FACE(2) "%s" "end_header\n" CORNERS
+                 "3 0 1 2 1 51 102 153\n3 2 3 0 1 0 0 0\n", colours);
+        scene = read_text(text);
+        check_material(scene, 0, &BY_FIFTHS, "the same of faces");
+        scene_destroy(scene);
+    }
+    struct scene *scene = read_text(
+        ASCII SQUARE "property float r\n" COLOURS("uchar") FACE(2) "end_header\n"
+        "0 0 0 9 255 0 51\n1 0 0 9 0 0 51\n1 1 0 9 0 153 51\n0 1 0 9 0 0 0\n"
+        "3 0 1 2\n3 2 3 0\n");
+    check_material(scene, 0, &MEAN, "a radius r beside red");
+    scene_destroy(scene);
+}
+
+/* Triangle i of a strip is (i, i + 1, i + 2), every other one turned over, so that all
+ * face up. */
+static void test_strips(void)
+{
+    static const char head[] =
+        ASCII "element vertex 6\n" XYZ COLOURS("uchar")
+        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+        "0 0 0 255 0 51\n1 0 0 0 0 51\n0 1 0 0 153 51\n1 1 0 0 0 0\n0 2 0 0 0 0\n"
+        "1 2 0 0 0 0\n";
+    char text[600];
+    snprintf(text, sizeof text, "%s11 0 1 2 3 4 -1 -1 2 3 4 5\n", head);
+    struct scene *scene = read_text(text);
+    bool up = scene && scene->input_count == 5;
+    for (int32_t i = 0; up && i < 5; i++)
+        up = triangle_plane(&scene->triangles[i]).normal.z > 0.0;
+    tap_ok(up, "a strip that starts again: 5 triangles, which face up%s", error.text);
+    tap_ok(up && corner_is(scene, 1, 0, 0, 1, 0) && corner_is(scene, 1, 1, 1, 0, 0) &&
+               corner_is(scene, 1, 2, 1, 1, 0) && corner_is(scene, 3, 0, 0, 1, 0) &&
+               corner_is(scene, 4, 2, 1, 2, 0),
+           "their corners");
+    check_material(scene, 0, &MEAN, "the colours of its vertices");
+    scene_destroy(scene);
+    snprintf(text, sizeof text, "%s3 0 1 6\n", head);
+    check_refused(text, ":19: corner 6, but the last vertex is 5");
+    snprintf(text, sizeof text, "%s3 0 1 -2\n", head);
+    check_refused(text, ":19: a corner is not the number of a vertex");
+    check_refused(ASCII SQUARE FACE(1) "end_header\n" CORNERS "3 0 1 -1\n",
+                  ":14: a corner is not the number of a vertex");
+    check_refused(ASCII SQUARE "element tristrips 0\nproperty list int int vertex_index\n"
+                  "end_header\n" CORNERS, ": no faces with vertex_indices");
 }
 
 /* An arrow head: corner 3 is concave; the fan from corner 0 is right, one from 1
@@ -428,6 +496,8 @@ int main(void)
     test_lengths();
     test_binary_errors();
     test_colours();
+    test_names_of_colours();
+    test_strips();
     test_concave();
     test_palette();
     test_header_errors();
