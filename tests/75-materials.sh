@@ -80,7 +80,7 @@ $notes 1 transparent material(s) (d or Tr), taken as opaque
 $notes 1 material(s) with a texture, which is not read: Kd counts, or grey
 $notes 1 $unread
 $notes 2 corner(s) with a vn that is no direction, or not there: ignored
-$notes 2 line(s) with unknown keywords passed over (first: line 8)"
+$notes 2 line(s) with unknown keywords or numbers passed over (first: line 8)"
 are_the_notes() {
     [ "$said" = "$expected" ] && return
     echo "$said" | sed 's/^/# /'

@@ -44,7 +44,7 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
          "corner(s) with a vn that is no direction, or not there: ignored", "");
     snprintf(number, sizeof number, "%ld", read->first_unknown);
     warn(run, read->unknown_lines,
-         "line(s) with unknown keywords passed over (first: line %s)", number);
+         "line(s) with unknown keywords or numbers passed over (first: line %s)", number);
     warn(run, prepared->clamped,
          "material(s) with a reflectance of 1 or more, set to 0.999", "");
     warn(run, prepared->degenerate, "face(s) without area dropped", "");

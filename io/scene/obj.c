@@ -24,6 +24,7 @@
 #include "geom/stop.h"
 #include "io/scene/library.h"
 #include "io/scene/mtl.h"
+#include "io/scene/palette.h"
 #include "io/scene/text.h"
 
 enum {
@@ -40,13 +41,19 @@ struct obj_triangle {
     struct obj_corner corner[3];
     int32_t material; /* number in the material table */
     int32_t group;    /* number of the group's name */
+    int32_t colour;   /* number of the mean colour of the face's corners, or -1 */
     bool goes_on;     /* of the same face as the one before */
 };
 
-/* The vectors of all v lines, or of all vn lines. */
+/* The vectors of all v lines, the colours behind them, or those of all vn lines. */
 struct obj_vectors {
     struct vec3 *at; /* [count] */
     int64_t count, capacity;
+};
+
+struct obj_colours {
+    struct obj_vectors vertices; /* of those up to the last with one */
+    struct palette faces;        /* as reflectances */
 };
 
 struct obj_triangles {
@@ -57,6 +64,7 @@ struct obj_triangles {
 struct obj_reader {
     struct text text;
     struct obj_vectors vertices;
+    struct obj_colours colours;
     struct obj_vectors normals;    /* of length 1, or 0 where the line has no direction */
     bool has_normals;              /* a face has a normal with a direction */
     struct obj_triangles triangles;
@@ -74,6 +82,9 @@ struct obj_reader {
 /* A shorter normal counts as 0: its square may have lost digits. */
 static const double DIRECTION_MIN = 1e-100;
 
+/* The colour of a vertex without one. */
+static const struct vec3 COLOURLESS = {-1.0, -1.0, -1.0};
+
 static const char DEFAULT_GROUP[] = "default";
 
 /* The first materials: of faces before any usemtl, and behind one without a name. If no
@@ -84,6 +95,31 @@ static void vectors_add(struct obj_vectors *vectors, struct vec3 vector)
 {
     RESERVE(vectors->at, &vectors->capacity, vectors->count + 1);
     vectors->at[vectors->count++] = vector;
+}
+
+/* Counts the line as one that is passed over, in whole or in part. */
+static bool pass_over(struct obj_reader *reader)
+{
+    if (reader->repairs->unknown_lines++ == 0)
+        reader->repairs->first_unknown = reader->text.line;
+    return true;
+}
+
+/* Takes the numbers behind the coordinates of the last vertex: three are its colour, and
+ * one is a weight, which polygons have no use for. */
+static bool take_colour(struct obj_reader *reader, char *rest)
+{
+    double value[3];
+    int count = 0, words = 0;
+    for (const char *word; words < 4 && (word = text_word(&rest)) != NULL; words++)
+        count += words < 3 && text_is_number(word, &value[words]) &&
+                 value[words] >= 0.0 && value[words] <= TEXT_NUMBER_MAX;
+    if (words != 3 || count != 3)
+        return words < 2 || pass_over(reader);
+    while (reader->colours.vertices.count < reader->vertices.count - 1)
+        vectors_add(&reader->colours.vertices, COLOURLESS);
+    vectors_add(&reader->colours.vertices, (struct vec3){value[0], value[1], value[2]});
+    return true;
 }
 
 static bool read_vertex(struct obj_reader *reader, char *rest)
@@ -102,7 +138,7 @@ static bool read_vertex(struct obj_reader *reader, char *rest)
         return error_set(reader->error, EXIT_USAGE, "%s:%ld: more than %d vertices",
                          reader->text.path, reader->text.line, COUNT_MAX);
     vectors_add(&reader->vertices, (struct vec3){value[0], value[1], value[2]});
-    return true;
+    return take_colour(reader, rest);
 }
 
 /* Returns the direction of three numbers, of length 1, or 0 if they have none. */
@@ -209,16 +245,34 @@ static bool read_corners(struct obj_reader *reader, char *rest)
     return true;
 }
 
+/* Returns the number of the mean colour of the face's corners; -1 if one has none. */
+static int32_t find_colour(struct obj_reader *reader)
+{
+    const struct obj_vectors *colours = &reader->colours.vertices;
+    struct vec3 sum = {0.0, 0.0, 0.0};
+    for (int64_t i = 0; i < reader->corner_count; i++) {
+        int32_t vertex = reader->corners[i].vertex;
+        if (vertex >= colours->count || colours->at[vertex].x < 0.0)
+            return -1;
+        sum = vec3_add(sum, colours->at[vertex]);
+    }
+    double count = (double)reader->corner_count;
+    const struct material mean = {{{sum.x / count, sum.y / count, sum.z / count}},
+                                  {{0.0, 0.0, 0.0}}};
+    return palette_add(&reader->colours.faces, &mean);
+}
+
 /* Adds the triangle between three corners of the face; `cut` are their numbers. */
-static void add_triangle(struct obj_reader *reader, const int32_t cut[3], bool goes_on)
+static void add_triangle(struct obj_reader *reader, const int32_t cut[3], int32_t colour,
+                         bool goes_on)
 {
     const struct obj_corner *corners = reader->corners;
     reader->triangles.at[reader->triangles.count++] =
         (struct obj_triangle){{corners[cut[0]], corners[cut[1]], corners[cut[2]]},
-                              reader->material, reader->group, goes_on};
+                              reader->material, reader->group, colour, goes_on};
 }
 
-static void add_polygon(struct obj_reader *reader)
+static void add_polygon(struct obj_reader *reader, int32_t colour)
 {
     int32_t count = (int32_t)reader->corner_count;
     struct vec3 *positions = alloc_array((size_t)count, sizeof *positions);
@@ -227,7 +281,7 @@ static void add_polygon(struct obj_reader *reader)
         positions[i] = reader->vertices.at[reader->corners[i].vertex];
     polygon_triangulate(positions, count, cut);
     for (int32_t i = 0; i < count - 2; i++)
-        add_triangle(reader, &cut[3 * i], i > 0);
+        add_triangle(reader, &cut[3 * i], colour, i > 0);
     alloc_free(positions);
     alloc_free(cut);
 }
@@ -243,10 +297,11 @@ static bool read_face(struct obj_reader *reader, char *rest)
     struct obj_triangles *triangles = &reader->triangles;
     RESERVE(triangles->at, &triangles->capacity, needed);
     reader->materials.entries[reader->material].used = true;
+    int32_t colour = find_colour(reader);
     if (reader->corner_count == 3)
-        add_triangle(reader, (const int32_t[]){0, 1, 2}, false);
+        add_triangle(reader, (const int32_t[]){0, 1, 2}, colour, false);
     else
-        add_polygon(reader);
+        add_polygon(reader, colour);
     return true;
 }
 
@@ -289,8 +344,8 @@ static bool read_line(struct obj_reader *reader, char *line)
         return read_group(reader, line);
     if (strcmp(keyword, "usemtl") == 0)
         reader->material = mtl_find(&reader->materials, text_trim(line));
-    else if (!is_harmless(keyword) && reader->repairs->unknown_lines++ == 0)
-        reader->repairs->first_unknown = reader->text.line;
+    else if (!is_harmless(keyword))
+        return pass_over(reader);
     return true;
 }
 
@@ -373,26 +428,49 @@ static void make_normals(const struct obj_reader *reader, struct scene *scene)
         }
 }
 
+/* Makes the materials of faces with colours: the colour in place of Kd. The numbers of
+ * their colours become those of these materials. */
+static struct palette mix_materials(const struct obj_reader *reader)
+{
+    const struct mtl_entry *entries = reader->materials.entries;
+    struct palette mixed = {0};
+    for (int64_t i = 0; i < reader->triangles.count; i++) {
+        struct obj_triangle *triangle = &reader->triangles.at[i];
+        if (triangle->colour < 0)
+            continue;
+        struct material material = reader->colours.faces.materials[triangle->colour];
+        material.emission = entries[triangle->material].material.emission;
+        triangle->colour = palette_add(&mixed, &material);
+    }
+    return mixed;
+}
+
 static struct scene *make_scene(const struct obj_reader *reader)
 {
     int32_t known = reader->materials.names.count;
     int32_t *number = alloc_array((size_t)known, sizeof *number);
-    int32_t material_count = number_materials(reader, number);
-    struct scene *scene = scene_create((int32_t)reader->triangles.count, material_count);
+    int32_t named = number_materials(reader, number);
+    struct palette mixed = mix_materials(reader);
+    struct scene *scene =
+        scene_create((int32_t)reader->triangles.count, named + mixed.count);
     for (int32_t i = 0; i < known; i++)
         if (reader->materials.entries[i].used)
             scene->materials[number[i]] = reader->materials.entries[i].material;
+    for (int32_t i = 0; i < mixed.count; i++)
+        scene->materials[named + i] = mixed.materials[i];
     for (int32_t i = 0; i < scene->input_count; i++) {
         const struct obj_triangle *triangle = &reader->triangles.at[i];
         for (int k = 0; k < 3; k++)
             scene->triangles[i].corner[k] =
                 reader->vertices.at[triangle->corner[k].vertex];
-        scene->material_of[i] = number[triangle->material];
+        scene->material_of[i] = triangle->colour < 0 ? number[triangle->material]
+                                                     : named + triangle->colour;
         scene->groups.goes_on[i] = triangle->goes_on;
     }
     make_groups(reader, scene);
     if (reader->has_normals)
         make_normals(reader, scene);
+    palette_free(&mixed);
     alloc_free(number);
     return scene;
 }
@@ -406,6 +484,8 @@ struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
     text_free(&reader.text);
     struct scene *scene = good ? make_scene(&reader) : NULL;
     alloc_free(reader.vertices.at);
+    alloc_free(reader.colours.vertices.at);
+    palette_free(&reader.colours.faces);
     alloc_free(reader.normals.at);
     alloc_free(reader.triangles.at);
     alloc_free(reader.corners);

@@ -1,14 +1,15 @@
 /* Reading Wavefront OBJ scenes with their MTL materials.
  *
- * Understood: v (three coordinates; weights or colours behind them are skipped), vn (for
- * smooth shading), f (v, v/vt, v//vn, v/vt/vn, negative indices, polygons), usemtl,
- * mtllib, o, g; in MTL files newmtl, Kd (the reflectance rho) and Ke (the emitted
- * radiosity E, W/m^2). An o or g line puts the faces up to the next such line into the
- * group that the rest of the line names; faces before any such line, or behind one
- * without a name, are in the group "default". Groups are numbered by their first faces.
- * Points, lines, texture coordinates and settings of programs are skipped. Other
- * keywords, such as those of free-form surfaces, are skipped and counted. Lines may end
- * in LF or CRLF and go on after a backslash. */
+ * Understood: v (three coordinates; three numbers behind them are a colour, one is a
+ * weight and skipped), vn (for smooth shading), f (v, v/vt, v//vn, v/vt/vn, negative
+ * indices, polygons), usemtl, mtllib, o, g; in MTL files newmtl, Kd (the reflectance rho)
+ * and Ke (the emitted radiosity E, W/m^2). An o or g line puts the faces up to the next
+ * such line into the group that the rest of the line names; faces before any such line,
+ * or behind one without a name, are in the group "default". Groups are numbered by their
+ * first faces. A face whose corners all have colours has the mean of them in place of Kd,
+ * as a linear reflectance (io/scene/ply.h). Points, lines, texture coordinates and
+ * settings of programs are skipped. Other keywords, such as those of free-form surfaces,
+ * are skipped and counted. Lines may end in LF or CRLF and go on after a backslash. */
 #ifndef IO_SCENE_OBJ_H
 #define IO_SCENE_OBJ_H
 
@@ -28,7 +29,7 @@ struct obj_repairs {
     int64_t nameless;              /* newmtl lines without a name, as of usemtl */
     int64_t textured;              /* used materials with map_Kd: of one colour instead */
     int64_t unread;                /* used materials with Kd or Ke as spectral or xyz */
-    int64_t unknown_lines;         /* lines with unknown keywords: skipped */
+    int64_t unknown_lines;         /* with unknown keywords, or numbers: skipped */
     long first_unknown;            /* number of the first such line */
 };
 

@@ -175,6 +175,35 @@ static void test_normals(void)
                   OBJ ":6: bad corner '1//1a' of a face");
 }
 
+/* Colours behind coordinates. */
+static void test_colours(void)
+{
+    static const char coloured[] = "v 0 0 0 0 .5 0\nv 1 0 0 1 .5 0\nv 1 1 0 .5 .5 0\n"
+                                   "v 0 1 0 .5 .5 1\nv 0 2 0\nv 0 3 0 1 -1 0\n"
+                                   "v 0 4 0 1 1\nv 0 5 0 1 1 1 1\nv 0 6 0 .9\n";
+    char text[400];
+    write_text(MTL, "newmtl wall\nKd .75 0 0\nnewmtl lamp\nKe 1 2 3\n");
+    snprintf(text, sizeof text,
+             "mtllib obj_test.mtl\n%susemtl wall\nf 1 2 3 4\nf 2 3 5\nf 2 3 6\nf 2 3 7\n"
+             "f 2 3 8\nf 2 3 9\nusemtl lamp\nf 1 2 3 4\nusemtl wall\nf 4 3 2 1\n",
+             coloured);
+    struct scene *scene = read_scene(text);
+    tap_ok(scene && colour_is(material_at(scene, 0)->reflectance, 0.5, 0.5, 0.25) &&
+               scene->material_of[1] == scene->material_of[0] &&
+               scene->material_of[9] == scene->material_of[0],
+           "the mean of the corners' colours%s", error.text);
+    bool named = scene != NULL;
+    for (int32_t i = 2; named && i < 7; i++)
+        named = colour_is(material_at(scene, i)->reflectance, 0.75, 0, 0);
+    tap_ok(named, "Kd where a corner has none");
+    tap_ok(scene && colour_is(material_at(scene, 7)->reflectance, 0.5, 0.5, 0.25) &&
+               colour_is(material_at(scene, 7)->emission, 1, 2, 3),
+           "a lamp with a colour");
+    tap_ok(repairs.unknown_lines == 3 && repairs.first_unknown == 7,
+           "numbers that are neither colour nor weight are counted");
+    scene_destroy(scene);
+}
+
 static void test_polygons(void)
 {
     struct scene *scene = read_scene(CORNERS "f 3 3 3\nf 1 2 3 4\nf 4 3 2\n");
@@ -450,6 +479,7 @@ int main(void)
     test_vertices();
     test_corners();
     test_normals();
+    test_colours();
     test_polygons();
     test_spiral();
     test_many_corners();
