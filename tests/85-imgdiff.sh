@@ -67,9 +67,33 @@ printf "$hdr 1\n\200\200\200\201" >"$work/one.hdr"
 printf "$hdr 2\n\231\314\0\200\0\0\0\0" >"$work/b.hdr"
 ends 0 "linear, of two formats" "$work/one.hdr" "$work/big.pfm"
 ends 2 "HDR and codes" "$work/b.hdr" "$work/b.ppm"
-printf '\211PNG\r\n\032\n' >"$work/a.png"
-ends 2 "PNG is not read" "$work/a.png" "$work/b.ppm"
-check "and it says so" grep -q 'PNG is not read; compare .ppm, .pfm or .hdr' "$err"
+
+# PNG of another program, with all types of colours, filters and blocks, and its PPM of
+# the same codes.
+for png in tests/fuzz/corpus/image/*.png; do
+    ends 0 "the codes of $png" --tolerance 0 "$png" "${png%.png}.ppm"
+done
+png=tests/fuzz/corpus/image/rgba.png
+# changed AT BYTE: the file with this byte, in octal, at this place from 0.
+changed() {
+    head -c "$1" "$png"
+    printf "\\$2"
+    tail -c +"$(($1 + 2))" "$png"
+}
+changed 24 20 >"$work/deep.png"
+changed 28 1 >"$work/interlaced.png"
+changed 150 0 >"$work/damaged.png"
+head -c 200 "$png" >"$work/short.png"
+changed 19 12 >"$work/wider.png"
+changed 16 177 >"$work/huge.png"
+for kind in deep interlaced huge; do
+    ends 2 "PNG: $kind" "$work/$kind.png" "${png%.png}.ppm"
+    check "$kind: not read" grep -q 'not a PNG of 8 bits a sample, without interl' "$err"
+done
+for kind in damaged short wider; do
+    ends 2 "PNG: $kind" "$work/$kind.png" "${png%.png}.ppm"
+    check "$kind: damaged" grep -q 'the PNG is damaged' "$err"
+done
 
 # --- blocks: 3 x 2 grey pixels, of 64; the third column is a block of its own ---
 

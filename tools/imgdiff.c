@@ -178,7 +178,7 @@ static bool diff_images(const struct request *request, struct source sources[2],
                 image_read(&b, &kind_b, &sources[1], error);
     if (good && kind_a != kind_b)
         good = error_set(error, EXIT_USAGE,
-                         "%s and %s: one is linear (PFM, HDR), the other not (PPM)",
+                         "%s and %s: one is linear (PFM, HDR), the other not (PPM, PNG)",
                          request->paths[0], request->paths[1]);
     if (good && (a.width != b.width || a.height != b.height))
         good = error_set(error, EXIT_USAGE, "%s is %dx%d, %s is %dx%d", request->paths[0],

@@ -1,6 +1,5 @@
 /* Pictures in files. Writers go by the format that is asked for, readers by the first
- * bytes, so that a picture may have any name. PNG is written only: its codes are those of
- * the PPM, and reading it would take all of deflate. */
+ * bytes, so that a picture may have any name. */
 #include "io/picture/imagefile.h"
 
 #include "geom/alloc.h"
@@ -8,8 +7,7 @@
 #include "io/picture/png.h"
 #include "io/picture/pnm.h"
 
-/* How files begin; PNG is known to be refused. */
-static const char MAGIC[] = "P #? \x89PNG", KIND[] = "a picture (PFM, PPM or HDR)";
+static const char MAGIC[] = "P #? \x89PNG", KIND[] = "a picture (PFM, PPM, HDR or PNG)";
 
 bool image_write(const struct image *image, const struct tone *tone,
                  const struct target *target, struct error *error)
@@ -33,9 +31,7 @@ bool image_read(struct image *image, enum image_kind *kind, struct source *sourc
     switch (binary.data[0]) {
     case 'P': good = pnm_read(image, kind, &binary, error); break;
     case '#': good = hdr_read(image, kind, &binary, error); break;
-    default:
-        error_set(error, EXIT_USAGE, "%s: PNG is not read; compare .ppm, .pfm or .hdr",
-                  source->path);
+    default: good = png_read(image, kind, &binary, error);
     }
     binary_free(&binary);
     if (!good) {

@@ -15,7 +15,7 @@
 bool image_write(const struct image *image, const struct tone *tone,
                  const struct target *target, struct error *error);
 
-/* Reads PFM, PPM or HDR from an open file, as pnm_read() and hdr_read(). `rgb` is to be
+/* Reads PFM, PPM, HDR or PNG from an open file, as their readers do. `rgb` is to be
  * freed with alloc_free().
  * Errors: "PATH: REASON", EXIT_USAGE: not such a picture, bytes missing or left over, a
  * sample above the greatest value. */

@@ -220,7 +220,7 @@ bool pnm_read(struct image *image, enum image_kind *kind, struct binary *binary,
     struct image_reader reader = {.binary = binary, .image = image, .error = error};
     const char *data = binary->data;
     if (!is_blank(data[0] && data[1] ? data[2] : '\0') || !strchr("Ff36", data[1]))
-        return refuse(&reader, "not a picture (PFM, PPM or HDR)");
+        return refuse(&reader, "not a picture (PFM, PPM, HDR or PNG)");
     binary->position = 2;
     bool floats = data[1] == 'F' || data[1] == 'f';
     *kind = floats ? IMAGE_LINEAR : IMAGE_CODES;

@@ -122,10 +122,10 @@ static void test_reading(void)
 
 static void test_refusing(void)
 {
-    REFUSED("", "not a picture (PFM, PPM or HDR)");
-    REFUSED("P", "not a picture (PFM, PPM or HDR)");
-    REFUSED("P5\n1 1 255\n\1", "not a picture (PFM, PPM or HDR)");
-    REFUSED("P6", "not a picture (PFM, PPM or HDR)");
+    REFUSED("", "not a picture (PFM, PPM, HDR or PNG)");
+    REFUSED("P", "not a picture (PFM, PPM, HDR or PNG)");
+    REFUSED("P5\n1 1 255\n\1", "not a picture (PFM, PPM, HDR or PNG)");
+    REFUSED("P6", "not a picture (PFM, PPM, HDR or PNG)");
     REFUSED("PF\n0 1\n-1\n", "bad width or height of the picture");
     REFUSED("PF\n1 -1\n-1\n", "bad width or height of the picture");
     REFUSED("PF\n1\n", "bad width or height of the picture");

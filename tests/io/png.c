@@ -6,6 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "io/picture/imagefile.h"
 #include "io/picture/pnm.h"
 #include "tests/load.h"
 #include "tests/random.h"
@@ -162,6 +163,17 @@ static bool rows_are(const uint8_t *pixels, size_t width, size_t height)
 
 /* --- pictures --- */
 
+static bool read_picture(const char *path, struct image *image)
+{
+    struct source source;
+    struct error error = {EXIT_DONE, ""};
+    enum image_kind kind;
+    bool good = source_open(&source, path, &error) &&
+                image_read(image, &kind, &source, &error) && kind == IMAGE_CODES;
+    source_close(&source);
+    return good;
+}
+
 /* Codes anywhere, or near those of the pixels to their left. */
 static void check_picture(int width, int height, bool smooth)
 {
@@ -187,6 +199,14 @@ static void check_picture(int width, int height, bool smooth)
     tap_ok(rows_are(expected + all - samples, w, h), "the pixels of the PPM");
     tap_ok(!smooth || 3 * size < 2 * all, "of %zu bytes, the PPM of %zu", size, all);
     alloc_free(image.rgb);
+    struct image again = {0}, codes = {0};
+    bool read = read_picture(PNG, &again) && read_picture(PPM, &codes) &&
+                again.width == width && again.height == height;
+    for (size_t i = 0; read && i < samples; i++)
+        read = again.rgb[i] == codes.rgb[i];
+    tap_ok(read, "read as the PPM is");
+    alloc_free(again.rgb);
+    alloc_free(codes.rgb);
 }
 
 int main(void)
