@@ -44,6 +44,9 @@ Kd 0.5 0.5 0.5
 d 0.25
 newmtl painted
 map_Kd wood.png
+Ks .5 .5 .5
+illum 2
+norm wood.png
 newmtl measured
 Kd spectral grass.rfl
 newmtl
@@ -72,21 +75,42 @@ surf 0 1 0 1 1 2 3
 END
 said=$(./phr "$work/notes.obj" 2>&1 >"$work/stdout" | grep warning)
 notes="phr: $work/notes.obj: warning:"
+texture="material(s) with a texture: Kd, or Ke, times its mean counts; where that cannot"
+texture="$texture be read (1, first: $work/wood.png), Kd alone, or .5 if it is 1"
 unread="material(s) with Kd or Ke as spectral or xyz, not read: Kd is grey, and Ke 0"
 expected="$notes 1 material file(s) missing or not readable (first: absent.mtl)
 $notes 1 material(s) without a definition, taken as grey (first: nothing)
 $notes 1 newmtl without a name: taken as the material of usemtl without one
 $notes 1 transparent material(s) (d or Tr), taken as opaque
-$notes 1 material(s) with a texture, which is not read: Kd counts, or grey
+$notes 1 $texture
+$notes 2 keyword(s) of materials passed over: Ks norm
 $notes 1 $unread
 $notes 2 corner(s) with a vn that is no direction, or not there: ignored
-$notes 2 line(s) with unknown keywords or numbers passed over (first: line 8)"
+$notes 2 line(s) with other keywords or numbers passed over (first: line 8)"
 are_the_notes() {
     [ "$said" = "$expected" ] && return
     echo "$said" | sed 's/^/# /'
     return 1
 }
 check "statements without effect are noted once for each kind" are_the_notes
+
+# A picture of half white counts, on any number of ranks, and no output goes over it.
+printf 'P3 2 1 255 255 255 255 0 0 0\n' >"$work/wood.png"
+printf 'newmtl lamp\nKe 1 1 1\nKd 1 1 1\nmap_Kd wood.png\n' >"$work/notes.mtl"
+printf 'newmtl lamp\nKe 1 1 1\nKd .5 .5 .5\n' >"$work/half.mtl"
+sed 's/notes.mtl/half.mtl/' "$work/notes.obj" >"$work/half.obj"
+for ranks in 1 3; do
+    for name in half notes; do
+        $MPIEXEC -n $ranks ./phr "$work/$name.obj" --epsilon 1e-2 -o "$work/$name.pfm" \
+            --size 9x9 >"$work/$name.out" 2>"$work/said"
+    done
+    check "a texture of half white is a Kd of one half, on $ranks" \
+        cmp "$work/half.pfm" "$work/notes.pfm"
+done
+check "which is said" grep -q ': 1 material(s) with a texture: .*counts$' "$work/said"
+said=$(./phr "$work/notes.obj" -o "$work/wood.png" 2>&1)
+check "no output goes over a texture: $said" \
+    [ "$said" = "phr: $work/wood.png is read: no output goes over it" ]
 
 # emitted FILE OPTIONS...: the emitted power, W.
 emitted() {

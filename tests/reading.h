@@ -2,6 +2,7 @@
 #ifndef TESTS_READING_H
 #define TESTS_READING_H
 
+#include "io/picture/texture.h"
 #include "io/scene/obj.h"
 #include "mpi/broadcast.h"
 
@@ -14,7 +15,7 @@ struct reading {
 /* The prepared scene, or NULL after an error. */
 static inline struct scene *scene_read(struct reading reading, struct error *error)
 {
-    struct obj_repairs read = {0};
+    struct obj_repairs read = {.mean_of = texture_mean};
     struct scene_repairs repairs;
     struct scene *scene = obj_read(reading.path, &read, error);
     if (!scene)

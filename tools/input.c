@@ -5,6 +5,7 @@
 
 #include "geom/alloc.h"
 #include "geom/stop.h"
+#include "io/picture/texture.h"
 #include "io/run/files.h"
 #include "io/scene/obj.h"
 #include "io/scene/ply.h"
@@ -16,7 +17,7 @@
 /* Warns of `count` cases, if there are any; `text` may have a place for `detail`. */
 static void warn(struct run *run, int64_t count, const char *text, const char *detail)
 {
-    char line[300];
+    char line[400];
     snprintf(line, sizeof line, text, detail);
     if (count > 0)
         run_say(run, "%s: warning: %lld %s", run->options.scene, (long long)count, line);
@@ -25,7 +26,7 @@ static void warn(struct run *run, int64_t count, const char *text, const char *d
 static void warn_repairs(struct run *run, const struct obj_repairs *read,
                          const struct scene_repairs *prepared)
 {
-    char number[64] = "";
+    char number[64] = "", lost[250] = "";
     warn(run, read->libraries.count,
          "material file(s) missing or not readable (first: %s)", read->libraries.first);
     warn(run, read->materials.count,
@@ -35,8 +36,15 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
          "newmtl without a name: taken as the material of usemtl without one", "");
     warn(run, read->transparent, "transparent material(s) (d or Tr), taken as opaque",
          "");
+    if (read->textures.count > 0)
+        snprintf(lost, sizeof lost,
+                 "; where that cannot be read (%lld, first: %s), Kd alone, or .5 if it "
+                 "is 1",
+                 (long long)read->textures.count, read->textures.first);
     warn(run, read->textured,
-         "material(s) with a texture, which is not read: Kd counts, or grey", "");
+         "material(s) with a texture: Kd, or Ke, times its mean counts%s", lost);
+    warn(run, read->passed_count, "keyword(s) of materials passed over: %s",
+         read->passed);
     warn(run, read->unread,
          "material(s) with Kd or Ke as spectral or xyz, not read: Kd is grey, and Ke 0",
          "");
@@ -44,7 +52,7 @@ static void warn_repairs(struct run *run, const struct obj_repairs *read,
          "corner(s) with a vn that is no direction, or not there: ignored", "");
     snprintf(number, sizeof number, "%ld", read->first_unknown);
     warn(run, read->unknown_lines,
-         "line(s) with unknown keywords or numbers passed over (first: line %s)", number);
+         "line(s) with other keywords or numbers passed over (first: line %s)", number);
     warn(run, prepared->clamped,
          "material(s) with a reflectance of 1 or more, set to 0.999", "");
     warn(run, prepared->degenerate, "face(s) without area dropped", "");
@@ -142,29 +150,29 @@ static bool read_ply(struct run *run, struct source *source)
     return good && run->scene;
 }
 
-/* Reads the scene and its libraries, over which no output goes. */
+/* Reads the scene, its libraries and its pictures, over which no output goes. */
 static bool read_file(struct run *run, struct obj_repairs *repairs)
 {
-    struct text_names libraries = {0};
+    struct text_names files = {0};
     struct source source;
-    repairs->files = &libraries;
+    repairs->files = &files;
     bool good = source_open(&source, run->options.scene, &run->error);
     if (good && ply_is_meant(&source))
         good = read_ply(run, &source);
     else if (good)
         good = (run->scene = obj_of_source(&source, repairs, &run->error)) != NULL;
     source_close(&source);
-    for (int32_t i = 0; i < libraries.count && good; i++)
-        good = files_check_input(&run->options, libraries.name[i], &run->error);
+    for (int32_t i = 0; i < files.count && good; i++)
+        good = files_check_input(&run->options, files.name[i], &run->error);
     repairs->files = NULL;
-    text_names_free(&libraries);
+    text_names_free(&files);
     return good;
 }
 
 static bool read_scene(struct run *run)
 {
     struct error *error = &run->error;
-    struct obj_repairs read = {0};
+    struct obj_repairs read = {.mean_of = texture_mean};
     struct scene_repairs prepared = {0};
     if (!read_file(run, &read) || !stop_check(error))
         return false;

@@ -25,6 +25,7 @@
 
 #include "geom/alloc.h"
 #include "io/picture/imagefile.h"
+#include "io/picture/texture.h"
 #include "io/picture/viewpoint.h"
 #include "io/run/options.h"
 #include "io/run/files.h"
@@ -100,7 +101,7 @@ static bool check_outputs(struct tracing *run)
 
 static bool read_scene(struct tracing *run)
 {
-    struct obj_repairs read = {0};
+    struct obj_repairs read = {.mean_of = texture_mean};
     struct scene_repairs prepared = {0};
     const char *path = run->options.scene;
     struct source source;

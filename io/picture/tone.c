@@ -30,7 +30,7 @@ static double fifth_root(double x)
     return y;
 }
 
-static double srgb_to_linear(double s)
+double tone_decode(double s)
 {
     if (s <= 0.04045)
         return s / 12.92;
@@ -42,7 +42,7 @@ struct tone tone_make(double exposure)
 {
     struct tone tone = {.exposure = exposure};
     for (int k = 0; k < 255; k++)
-        tone.threshold[k] = srgb_to_linear((k + 0.5) / 255.0);
+        tone.threshold[k] = tone_decode((k + 0.5) / 255.0);
     return tone;
 }
 

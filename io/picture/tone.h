@@ -15,6 +15,9 @@ struct tone tone_make(double exposure);
 /* Returns the 8-bit sRGB code of a linear value. */
 uint8_t tone_encode(const struct tone *tone, double linear);
 
+/* Returns the linear value of an sRGB code, both as shares of white. */
+double tone_decode(double code);
+
 /* Returns the exposure for `count` linear RGB pixels, from the largest band of each pixel
  * that is not black. It maps to 0.9 the 95th percentile of these values, so that hardly
  * any colour is cut off, or four times their median if that is lower, but at least a 16th

@@ -6,12 +6,12 @@
  *
  * Ke is not in the original description of the format, but modelling programs write it
  * for lights. A material with Ke alone is a black light: grey would be a reflectance that
- * nobody wrote down. A texture without Kd is neutral grey: it reflects light of an
- * unknown colour. So does a Kd as `spectral` or `xyz`: the reflectance with an X, Y and Z
+ * nobody wrote down. A texture that is not found is neutral grey unless Kd says another
+ * colour: exporters write Kd 1 1 1 beside map_Kd, and a room of white walls would be
+ * nearly a furnace. So is a Kd as `spectral` or `xyz`: the reflectance with an X, Y and Z
  * depends on the light that they were taken under, which no file says. Such a Ke has no
- * neutral value, and is 0. Ka, Ks, Tf and illum do not describe diffuse surfaces and are
- * skipped. Where d and Tr contradict each other, d counts: programs disagree on the
- * meaning of Tr 1.
+ * neutral value, and is 0. Where d and Tr contradict each other, d counts: programs
+ * disagree on the meaning of Tr 1.
  *
  * Kd and Ke themselves are read strictly: a negative or misspelt number would give a
  * wrong picture without a message. */
@@ -91,7 +91,7 @@ static bool read_colour(const struct text *text, const char *keyword, char *rest
         entry->material.reflectance = numbers;
     else
         entry->material.emission = numbers;
-    entry->has_kd = entry->has_kd || is_kd;
+    *(is_kd ? &entry->has_kd : &entry->has_ke) = true;
     return true;
 }
 
@@ -119,10 +119,53 @@ static void note_opacity(struct mtl_entry *entry, char *rest, bool is_d)
     entry->has_d = is_d;
 }
 
-static void note_texture(struct mtl_entry *entry)
+static char *next_word(char *at)
 {
-    entry->textured = true;
-    take_neutral(entry);
+    at += strcspn(at, " \t");
+    return at + strspn(at, " \t");
+}
+
+/* Returns the number of the picture that a line names behind its options, from 1; 0 if it
+ * names none. An option is a word, a value, and further numbers. */
+static int32_t find_map(struct mtl_table *table, const struct text *text, char *rest)
+{
+    char *name = text_trim(rest);
+    while (*name == '-') {
+        name = next_word(next_word(name));
+        for (size_t end; (end = strspn(name, "+-.0123456789eE")) > 0 &&
+                         (name[end] == ' ' || name[end] == '\t');)
+            name = next_word(name);
+    }
+    if (!*name)
+        return 0;
+    char *path = text_path_beside(text->path, name);
+    for (char *at = path; *at; at++)
+        *at = *at == '\\' ? '/' : *at;
+    int32_t number = text_names_add(&table->maps, path) + 1;
+    alloc_free(path);
+    return number;
+}
+
+/* True if nothing is lost without the statement: all its numbers are in a range that
+ * diffuse surfaces have, or it only shapes the highlights of another statement. */
+static bool is_plain(const char *keyword, char *rest)
+{
+    static const struct {
+        const char *keyword;
+        double low, high;
+    } PLAIN[] = {{"ka", 0, 1e9}, {"ns", 0, 1e9},   {"ni", 0, 1e9},  {"sharpness", 0, 1e9},
+                 {"pr", 0, 1e9}, {"pcr", 0, 1e9},  {"illum", 1, 2}, {"anisor", 0, 1e9},
+                 {"ks", 0, 0},   {"pm", 0, 0},     {"ps", 0, 0},    {"pc", 0, 0},
+                 {"tf", 1, 1},   {"aniso", 0, 0}};
+    size_t row = 0, rows = sizeof PLAIN / sizeof PLAIN[0];
+    double value;
+    while (row < rows && !is_keyword(keyword, PLAIN[row].keyword))
+        row++;
+    bool plain = row < rows;
+    for (const char *word; plain && (word = text_word(&rest)) != NULL;)
+        plain = text_is_number(word, &value) && value >= PLAIN[row].low &&
+                value <= PLAIN[row].high;
+    return plain;
 }
 
 /* `*current` is the number of the material that the line belongs to, or negative. */
@@ -145,8 +188,10 @@ static bool read_line(struct mtl_table *table, const struct text *text, char *li
     struct mtl_entry *entry = &table->entries[*current];
     if (is_keyword(keyword, "d") || is_keyword(keyword, "tr"))
         note_opacity(entry, line, is_keyword(keyword, "d"));
-    else if (is_keyword(keyword, "map_kd"))
-        note_texture(entry);
+    else if (is_keyword(keyword, "map_kd") || is_keyword(keyword, "map_ke"))
+        entry->maps[is_keyword(keyword, "map_ke")] = find_map(table, text, line);
+    else if (!is_colour && !is_plain(keyword, line))
+        text_names_add(&table->passed, keyword);
     return !is_colour || read_colour(text, keyword, line, entry, error);
 }
 
@@ -172,8 +217,54 @@ bool mtl_read(struct mtl_table *table, const char *path, bool *found, struct err
     return good;
 }
 
+struct map_mean {
+    enum { NOT_TRIED, FOUND, LOST } state;
+    struct rgb mean;
+};
+
+/* Takes the map of Kd (`k` is 0) or Ke (1) of a material. */
+static void take_map(struct mtl_entry *entry, int k, const struct map_mean *map)
+{
+    struct rgb *colour =
+        k == 0 ? &entry->material.reflectance : &entry->material.emission;
+    bool given = k == 0 ? entry->has_kd || entry->unread : entry->has_ke;
+    bool found = map->state == FOUND, white = true;
+    for (int c = 0; c < BANDS; c++) {
+        colour->band[c] = given || (k == 1 && !found) ? colour->band[c] : 1.0;
+        white = white && colour->band[c] >= 1.0;
+        colour->band[c] *= found ? map->mean.band[c] : 1.0;
+    }
+    if (k == 0 && white && !found)
+        *colour = NEUTRAL.reflectance;
+}
+
+void mtl_take_maps(struct mtl_table *table, mtl_mean *mean_of, struct text_missing *lost,
+                   struct text_names *files)
+{
+    struct map_mean *maps = alloc_array((size_t)table->maps.count, sizeof *maps);
+    for (int32_t i = 0; i < table->names.count; i++)
+        for (int k = 0; k < 2; k++) {
+            int32_t number = table->entries[i].maps[k] - 1;
+            if (number < 0 || !table->entries[i].used)
+                continue;
+            const char *path = table->maps.name[number];
+            struct error error = {EXIT_DONE, ""};
+            struct map_mean *map = &maps[number];
+            if (map->state == NOT_TRIED)
+                map->state = mean_of && mean_of(path, &map->mean, &error) ? FOUND : LOST;
+            if (map->state == LOST)
+                text_missing_add(lost, path);
+            if (files)
+                text_names_add(files, path);
+            take_map(&table->entries[i], k, map);
+        }
+    alloc_free(maps);
+}
+
 void mtl_free(struct mtl_table *table)
 {
+    text_names_free(&table->maps);
+    text_names_free(&table->passed);
     text_names_free(&table->names);
     alloc_free(table->entries);
     *table = (struct mtl_table){0};

@@ -1,9 +1,10 @@
 /* Reading Wavefront MTL material libraries.
  *
  * Understood: newmtl, Kd (the reflectance rho, 1) and Ke (the emitted radiosity E,
- * W/m^2), each as three numbers or one for grey, in capitals or not. d, Tr and map_Kd
- * only set flags for a warning: every material is opaque and of one colour. So do Kd and
- * Ke in the forms `spectral` and `xyz`. All other keywords are skipped. */
+ * W/m^2), each as three numbers or one for grey, in capitals or not; map_Kd and map_Ke,
+ * pictures of which the mean counts. d, Tr, and Kd and Ke in the forms `spectral` and
+ * `xyz` only set flags for a warning: every material is opaque. All other statements are
+ * skipped, and named unless nothing is lost without them. */
 #ifndef IO_SCENE_MTL_H
 #define IO_SCENE_MTL_H
 
@@ -19,9 +20,9 @@ struct mtl_entry {
     bool defined;             /* a library defines it */
     bool used;                /* a face has it; set by the caller */
     bool transparent;         /* d below 1 or, without d, Tr above 0 */
-    bool textured;            /* has map_Kd */
+    int32_t maps[2];          /* pictures of Kd and Ke: numbers from 1; 0: none */
     bool unread;              /* has Kd or Ke as spectral or xyz */
-    bool has_kd;              /* Kd was read */
+    bool has_kd, has_ke;      /* Kd, Ke was read */
     bool has_d;               /* d was read, which overrides Tr */
 };
 
@@ -31,13 +32,19 @@ struct mtl_table {
     struct mtl_entry *entries; /* [names.count] */
     int64_t capacity;          /* of entries */
     int64_t nameless;          /* newmtl lines without a name: their name is "" */
+    struct text_names maps;    /* paths of pictures */
+    struct text_names passed;  /* keywords of statements that are passed over */
 };
+
+/* The mean colour of a picture in a file, 1 for white. False with an error if it cannot
+ * be found. */
+typedef bool mtl_mean(const char *path, struct rgb *mean, struct error *error);
 
 /* Returns the number of the material `name`. A new name is added, not yet defined. */
 int32_t mtl_find(struct mtl_table *table, const char *name);
 
 /* Adds the materials of the library `path`. A material without Kd is black, or grey if it
- * has a texture, or a Kd that is not read; one without Ke emits nothing; of two
+ * has a Kd that is not read; one without Ke emits nothing; of two
  * definitions the later one counts. If the file cannot be read, `*found` is false and the
  * table unchanged, without an error.
  * Errors: "FILE:LINE: REASON"; EXIT_USAGE. */
@@ -46,6 +53,13 @@ bool mtl_read(struct mtl_table *table, const char *path, bool *found,
 
 /* Does the same with a text in memory. Its lines are used up; it stays the caller's. */
 bool mtl_of_text(struct mtl_table *table, struct text *text, struct error *error);
+
+/* Multiplies Kd and Ke of the materials in use, 1 where they are not given, by the means
+ * of their pictures. Where one cannot be found, Kd stays as it is, or is halved if it is
+ * white, and Ke stays. `mean_of` may be NULL: none can be found. Adds these to `lost`,
+ * and the paths of all to `files` unless it is NULL. */
+void mtl_take_maps(struct mtl_table *table, mtl_mean *mean_of, struct text_missing *lost,
+                   struct text_names *files);
 
 void mtl_free(struct mtl_table *table);
 

@@ -312,17 +312,17 @@ static bool read_group(struct obj_reader *reader, char *rest)
     return true;
 }
 
-/* True if lines with the keyword do not concern triangles or their colours. */
-static bool is_harmless(const char *keyword)
+/* True if the statement concerns neither triangles nor their colours. Smoothing is lost
+ * without normals: then faces look flat. */
+static bool is_harmless(const struct obj_reader *reader, const char *keyword, char *rest)
 {
-    static const char *const words[] = {"vt",     "s",          "l",        "p",
-                                        "vp",     "vw",         "mg",       "usemap",
-                                        "maplib", "lod",        "c_interp", "d_interp",
-                                        "bevel",  "shadow_obj", "trace_obj"};
+    static const char *const words[] = {"vt", "l", "p", "vp", "vw", "mg", "lod"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         if (strcmp(keyword, words[i]) == 0)
             return true;
-    return false;
+    const char *value = strcmp(keyword, "s") == 0 ? text_trim(rest) : NULL;
+    return value && (reader->normals.count > 0 || strcmp(value, "off") == 0 ||
+                     strcmp(value, "0") == 0);
 }
 
 static bool read_line(struct obj_reader *reader, char *line)
@@ -344,7 +344,7 @@ static bool read_line(struct obj_reader *reader, char *line)
         return read_group(reader, line);
     if (strcmp(keyword, "usemtl") == 0)
         reader->material = mtl_find(&reader->materials, text_trim(line));
-    else if (!is_harmless(keyword))
+    else if (!is_harmless(reader, keyword, line))
         return pass_over(reader);
     return true;
 }
@@ -370,6 +370,8 @@ static int32_t number_materials(const struct obj_reader *reader, int32_t *number
     struct mtl_entry *entries = reader->materials.entries;
     int32_t count = 0;
     repairs->nameless = reader->materials.nameless;
+    repairs->passed_count = reader->materials.passed.count;
+    text_names_list(&reader->materials.passed, repairs->passed, sizeof repairs->passed);
     if (!entries[NAMELESS].defined) {
         entries[NO_MATERIAL].used = entries[NO_MATERIAL].used || entries[NAMELESS].used;
         entries[NAMELESS].used = false;
@@ -381,7 +383,7 @@ static int32_t number_materials(const struct obj_reader *reader, int32_t *number
         if (entry->used && !entry->defined)
             text_missing_add(&repairs->materials, reader->materials.names.name[i]);
         repairs->transparent += entry->used && entry->transparent;
-        repairs->textured += entry->used && entry->textured;
+        repairs->textured += entry->used && (entry->maps[0] || entry->maps[1]);
         repairs->unread += entry->used && entry->unread;
     }
     if (!entries[NAMELESS].defined)
@@ -478,10 +480,13 @@ static struct scene *make_scene(const struct obj_reader *reader)
 struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
                             struct error *error)
 {
-    *repairs = (struct obj_repairs){.files = repairs->files};
+    *repairs = (struct obj_repairs){repairs->files, repairs->mean_of, .textured = 0};
     struct obj_reader reader = {.repairs = repairs, .error = error};
     bool good = text_of_source(&reader.text, source, error) && read_lines(&reader);
     text_free(&reader.text);
+    if (good)
+        mtl_take_maps(&reader.materials, repairs->mean_of, &repairs->textures,
+                      repairs->files);
     struct scene *scene = good ? make_scene(&reader) : NULL;
     alloc_free(reader.vertices.at);
     alloc_free(reader.colours.vertices.at);

@@ -2,8 +2,7 @@
  *
  * Understood: v (three coordinates; three numbers behind them are a colour, one is a
  * weight and skipped), vn (for smooth shading), f (v, v/vt, v//vn, v/vt/vn, negative
- * indices, polygons), usemtl, mtllib, o, g; in MTL files newmtl, Kd (the reflectance rho)
- * and Ke (the emitted radiosity E, W/m^2). An o or g line puts the faces up to the next
+ * indices, polygons), usemtl, mtllib, o, g. An o or g line puts the faces up to the next
  * such line into the group that the rest of the line names; faces before any such line,
  * or behind one without a name, are in the group "default". Groups are numbered by their
  * first faces. A face whose corners all have colours has the mean of them in place of Kd,
@@ -17,17 +16,22 @@
 
 #include "geom/error.h"
 #include "geom/scene.h"
+#include "io/scene/mtl.h"
 #include "io/scene/text.h"
 
-/* Counts of repairs, for one warning per kind. Starts as {0}, or with `files`. */
+/* Counts of repairs, for one warning per kind. Starts as {0}, or with the first two. */
 struct obj_repairs {
-    struct text_names *files;      /* where paths of the libraries go, or NULL */
+    struct text_names *files;      /* where paths of libraries and pictures go, or NULL */
+    mtl_mean *mean_of;             /* finds the colour of a picture; NULL: of none */
     struct text_missing materials; /* names without a definition: neutral grey instead */
     struct text_missing libraries; /* mtllib files that could not be opened */
     int64_t bad_normals;           /* corners whose vn is absent or 0: without a normal */
     int64_t transparent;           /* used materials with d or Tr: opaque instead */
     int64_t nameless;              /* newmtl lines without a name, as of usemtl */
-    int64_t textured;              /* used materials with map_Kd: of one colour instead */
+    int64_t textured;              /* used materials with pictures: of one colour */
+    struct text_missing textures;  /* pictures of these whose mean is not found */
+    int64_t passed_count;          /* keywords of materials that are passed over */
+    char passed[200];              /* these keywords */
     int64_t unread;                /* used materials with Kd or Ke as spectral or xyz */
     int64_t unknown_lines;         /* with unknown keywords, or numbers: skipped */
     long first_unknown;            /* number of the first such line */

@@ -3,6 +3,12 @@
  * A pipe gives its bytes to whoever opens it first, and ends when that one closes it. So
  * the first bytes, by which a format is recognised, are kept for the reader of that
  * format. Rejected: ungetc(), for which C promises one byte. */
+#if defined(__unix__) || defined(__APPLE__)
+#define _XOPEN_SOURCE 700
+#include <sys/stat.h>
+#define HAVE_POSIX 1
+#endif
+
 #include "io/scene/source.h"
 
 #include <errno.h>
@@ -26,6 +32,17 @@ bool source_open(struct source *source, const char *path, struct error *error)
 {
     errno = 0;
     return source_of_file(source, path, fopen(path, "rb"), error);
+}
+
+bool source_open_regular(struct source *source, const char *path, struct error *error)
+{
+#ifdef HAVE_POSIX
+    struct stat status;
+    *source = (struct source){.path = path};
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode))
+        return error_set(error, EXIT_USAGE, "%s: not a regular file", path);
+#endif
+    return source_open(source, path, error);
 }
 
 bool source_of_file(struct source *source, const char *path, FILE *file,

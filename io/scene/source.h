@@ -23,6 +23,10 @@ struct source {
 bool source_open(struct source *source, const char *path, struct error *error);
 void source_close(struct source *source);
 
+/* Does the same with a file that another one names: a folder, a pipe or a device is
+ * refused, as reading it may never end. */
+bool source_open_regular(struct source *source, const char *path, struct error *error);
+
 /* Does the same with an open file, which it takes over; NULL: one that fopen() could not
  * open. */
 bool source_of_file(struct source *source, const char *path, FILE *file,

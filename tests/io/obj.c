@@ -343,6 +343,77 @@ static void test_notes(void)
     scene_destroy(scene);
 }
 
+/* Finds the mean of pictures called found.png beside the library. */
+static bool mean_of(const char *path, struct rgb *mean, struct error *reason)
+{
+    *mean = (struct rgb){{0.5, 0.25, 0}};
+    return strcmp(path, "build/found.png") == 0 || strcmp(path, "build/a/b c.png") == 0 ||
+           error_set(reason, EXIT_USAGE, "%s: no picture", path);
+}
+
+static void test_textures(void)
+{
+    static const double EXPECTED[][6] = {
+        {.25, .125, 0}, {.5, .25, 0}, {.5, .25, 0, 1, .25, 0}, {0, 0, 0, .5, .25, 0},
+        {.5, .5, .5},   {.25, 0, 0},  {.5, .5, .5}, {.75, 1, 1, 2, 2, 2}, {.25, .125, 0},
+        {.5, .5, .5}};
+    char text[400] = "mtllib obj_test.mtl\n" CORNERS;
+    write_text(MTL,
+               "newmtl a\nKd .5 .5 .5\nmap_Kd found.png\nnewmtl b\nmap_kd found.png\n"
+               "newmtl c\nKe 2 1 1\nKd 1 1 1\nmap_Ke found.png\nmap_Kd -s 1 2 3 "
+               "-clamp on -mm 0 1 a\\b c.png\nnewmtl d\nmap_Ke -o 1 found.png\n"
+               "newmtl e\nKd 1 1 1\n"
+               "map_Kd lost.png\nnewmtl f\nKd .25 0 0\nmap_Kd lost.png\nnewmtl g\n"
+               "map_Kd x y.jpg\nnewmtl h\nKd .75 1 1\nKe 2\nmap_Ke lost.png\n"
+               "map_Kd lost.png\nnewmtl i\nKd xyz 1 1 1\nmap_Kd found.png\n"
+               "newmtl j\nKd 1.5\nmap_Kd lost.png\nnewmtl unused\nmap_Kd lost.png\n");
+    for (char name = 'a'; name <= 'j'; name++)
+        sprintf(text + strlen(text), "usemtl %c\nf 1 2 3\n", name);
+    struct text_names files = {0};
+    repairs.files = &files;
+    repairs.mean_of = mean_of;
+    struct scene *scene = read_scene(text);
+    for (int32_t i = 0; scene && i < 10; i++) {
+        const double *e = EXPECTED[i];
+        tap_ok(colour_is(material_at(scene, i)->reflectance, e[0], e[1], e[2]) &&
+                   colour_is(material_at(scene, i)->emission, e[3], e[4], e[5]),
+               "texture of material %c", 'a' + i);
+    }
+    tap_ok(scene && repairs.textured == 10 && repairs.textures.count == 6 &&
+               strcmp(repairs.textures.first, "build/lost.png") == 0,
+           "pictures that are not found are counted%s", error.text);
+    tap_ok(files.count == 5 && strcmp(files.name[1], "build/found.png") == 0,
+           "the paths of all are told");
+    scene_destroy(scene);
+    text_names_free(&files);
+    repairs = (struct obj_repairs){0};
+}
+
+/* Statements that are passed over, but for those that say what is so anyway. */
+static void test_passed(void)
+{
+    write_text(MTL, "newmtl a\nKa .5 .5 .5\nKs 0 0 0\nNs 250\nNi 1.45\nd 1\nillum 2\n"
+                    "Tf 1 1 1\nPr .5\nPm 0\nsharpness 60\n");
+    struct scene *scene =
+        read_scene("mtllib obj_test.mtl\n" CORNERS "s off\nusemtl a\nf 1 2 3\ns 0\n");
+    tap_ok(scene && repairs.passed_count == 0 && repairs.unknown_lines == 0,
+           "of statements that say what is so no word is said: %s", repairs.passed);
+    scene_destroy(scene);
+    write_text(MTL, "newmtl a\nKs .5 .5 .5\nillum 3\nTf .5 1 1\nPm 1\nnorm n.png\n"
+                    "bump -bm 2 b.png\nmap_Bump b.png\nKs 1 1 1\nillum x\nhello\n");
+    scene = read_scene("mtllib obj_test.mtl\n" CORNERS
+                       "s 1\nusemtl a\nf 1 2 3\nusemap x\nbevel on\n");
+    tap_ok(scene && repairs.passed_count == 8 &&
+               strcmp(repairs.passed, "Ks illum Tf Pm norm bump map_Bump hello") == 0,
+           "others are named: %s", repairs.passed);
+    tap_ok(repairs.unknown_lines == 3 && repairs.first_unknown == 6,
+           "as are settings of an OBJ that would change light or picture");
+    scene_destroy(scene);
+    scene = read_scene(CORNERS "vn 0 0 1\ns 1\nf 1//1 2//1 3//1\n");
+    tap_ok(scene && repairs.unknown_lines == 0, "smoothing that normals say");
+    scene_destroy(scene);
+}
+
 static void test_missing(void)
 {
     struct scene *scene = read_scene(
@@ -485,6 +556,8 @@ int main(void)
     test_many_corners();
     test_materials();
     test_notes();
+    test_textures();
+    test_passed();
     test_missing();
     test_libraries();
     test_many_names();
