@@ -477,6 +477,20 @@ static struct scene *make_scene(const struct obj_reader *reader)
     return scene;
 }
 
+/* Returns the format of meshes that the file seems to have, or NULL. */
+static const char *format_of(const struct source *source)
+{
+    static const char *const FORMATS[][3] = {{"STL", "soli", ".stl"},
+                                             {"glTF", "glTF", ".gltf"},
+                                             {"glTF", "{", ".glb"},
+                                             {"XML", "<", ".xml"}};
+    for (size_t i = 0; i < sizeof FORMATS / sizeof FORMATS[0]; i++)
+        if (strncmp(source->start, FORMATS[i][1], strlen(FORMATS[i][1])) == 0 ||
+            text_ends_with(source->path, FORMATS[i][2]))
+            return FORMATS[i][0];
+    return NULL;
+}
+
 struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
                             struct error *error)
 {
@@ -484,6 +498,12 @@ struct scene *obj_of_source(struct source *source, struct obj_repairs *repairs,
     struct obj_reader reader = {.repairs = repairs, .error = error};
     bool good = text_of_source(&reader.text, source, error) && read_lines(&reader);
     text_free(&reader.text);
+    if (!good && !reader.text.unreadable && reader.vertices.count == 0 &&
+        error->code == EXIT_USAGE && format_of(source)) {
+        *error = (struct error){EXIT_DONE, ""};
+        error_set(error, EXIT_USAGE, "%s: not an OBJ file: it looks like %s",
+                  source->path, format_of(source));
+    }
     if (good)
         mtl_take_maps(&reader.materials, repairs->mean_of, &repairs->textures,
                       repairs->files);

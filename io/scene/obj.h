@@ -40,9 +40,9 @@ struct obj_repairs {
 /* Reads `path` and the material libraries that it names (relative to it).
  * Returns a scene before scene_prepare() (positions in input units), or NULL with `error`
  * set to "FILE:LINE: REASON" (EXIT_USAGE).
- * Errors: a file that cannot be read or has no faces, malformed numbers, NaN and
- * infinities, indices out of range, faces with fewer than three corners, negative
- * reflectance or emission. */
+ * Errors: a file that cannot be read or has no faces, which may be because it looks like
+ * another format; malformed numbers, NaN and infinities, indices out of range, faces with
+ * fewer than three corners, negative reflectance or emission. */
 struct scene *obj_read(const char *path, struct obj_repairs *repairs,
                        struct error *error);
 

@@ -14,6 +14,7 @@
 
 #define OBJ "build/obj_test.obj"
 #define MTL "build/obj_test.mtl"
+#define STL "build/obj_test.STL"
 #define OTHER "build/obj test two.mtl"
 #define CORNERS "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
@@ -535,6 +536,20 @@ static void test_bad_files(void)
     check_refused("\xEF\xBB\xBF", OBJ ": no faces");
     check_refused(CORNERS, OBJ ": no faces");
     check_refused("just some words\n\nand more", OBJ ": no faces");
+    check_refused("solid cube\nfacet normal 0 0 1\n",
+                  OBJ ": not an OBJ file: it looks like STL");
+    check_refused("glTF\2\1", OBJ ": not an OBJ file: it looks like glTF");
+    check_refused("{\"v\": [1, 2]}\n", OBJ ": not an OBJ file: it looks like glTF");
+    check_refused("<?xml version=\"1.0\"?>\nf 1 2 3\n",
+                  OBJ ": not an OBJ file: it looks like XML");
+    check_triangle("an OBJ that begins as STL", "solid wood\n" CORNERS "f 1 2 3\n");
+    check_refused("solid wood\n" CORNERS "f 1 2 9\n",
+                  OBJ ":6: face refers to vertex 9 of 4");
+    forget_error();
+    write_text(STL, "binary\1");
+    check_error(obj_read(STL, &repairs, &error),
+                STL ": not an OBJ file: it looks like STL");
+    remove(STL);
     check_refused(CORNERS "f 1 2 3\n\x1B\n", OBJ ": not a text file");
     forget_error();
     struct scene *scene = obj_read("build/obj_test_absent.obj", &repairs, &error);
