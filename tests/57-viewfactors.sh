@@ -116,6 +116,28 @@ while read -r id exact; do
     done
 done <"$work/cases"
 
+# An attic: it is convex, so all is exact, also between strips too small to be split.
+awk 'function strips(name, a, b, c, d,    i, k) {
+        print "g " name
+        for (i = 0; i < 12; i++) {
+            for (k = 0; k < 4; k++) {
+                split(k < 2 ? a : d, from); split(k < 2 ? b : c, to)
+                s = (i + (k == 1 || k == 2)) / 12
+                printf "v %.17g %.17g %.17g\n", from[1] + s * (to[1] - from[1]), \
+                    from[2] + s * (to[2] - from[2]), from[3] + s * (to[3] - from[3])
+            }
+            print c == d ? "f -4 -3 -2" : "f -4 -3 -2 -1"
+        } }
+    BEGIN { strips("floor", "0 0 0", "6 1 0", "5 5 0", "-1 4 0")
+        strips("south", "6 1 0", "0 0 0", "-.5 2 2.5", "5.5 3 2.5")
+        strips("north", "-1 4 0", "5 5 0", "5.5 3 2.5", "-.5 2 2.5")
+        strips("west", "0 0 0", "-1 4 0", "-.5 2 2.5", "-.5 2 2.5")
+        strips("east", "5 5 0", "6 1 0", "5.5 3 2.5", "5.5 3 2.5") }' >"$work/attic.obj"
+claimed attic
+check "an attic: no error is told, but $claim" [ "$claim" = 0 ]
+check "its rows sum to 1" awk -F , '$2 == "*" { n++; bad += ($4 - 1) ^ 2 > 1e-24 }
+    END { exit bad || n != 5 }' "$work/attic.csv"
+
 # Twenty-five small squares in one plane, none in the shadow of another: F(A, B) past them
 # is F(A, B) without them less F(A, squares), both exact.
 awk 'BEGIN {

@@ -4,7 +4,7 @@
  * and T a threshold:
  *
  *   - if G is at most T, the exchange is G times the visible fraction of 16 segments,
- *     weighted by the light that they would carry;
+ *     weighted by the light that they would carry; exact if nothing is in the shaft;
  *   - if not, the triangles in the shaft between the two are listed. None: the exchange
  *     is G, for patches of any size. Few: it is found from points of the smaller patch,
  *     each of which knows exactly what it sees past them (tools/screened.h), within a
@@ -59,7 +59,8 @@ static const double ERROR_AGREED = 0.1, ERROR_SEEN = 0.02, ERROR_UNKNOWN = 0.5;
 /* Standard errors in a limit. */
 static const double LIMIT = 3.0;
 
-/* No error but 0 is stated below this one: there, differences of sums tell little. */
+/* No error but 0 is stated below this one: there, differences of sums tell little, and
+ * sums over parts are as good as this, as a part of them. */
 static const double LEAST = 1e-5;
 
 /* A patch of a pair. */
@@ -281,6 +282,16 @@ static bool add_past_few(struct root_pair *pair, const struct piece *p,
     return true;
 }
 
+/* True if it is proved that nothing stands between p and q. */
+static bool are_open(struct root_pair *pair, const struct piece *p, const struct piece *q)
+{
+    const int32_t own[2] = {p->facet.input, q->facet.input};
+    int32_t blocker;
+    return octree_list_shaft(pair->factors->octree, &p->facet.triangle, &p->facet.plane,
+                             &q->facet.triangle, &q->facet.plane, own, &blocker, 1,
+                             &pair->factors->counts) == 0;
+}
+
 /* Adds the exchange of p and q. `parents`: the visible fraction of their parents'
  * pair. */
 static void add_pair(struct root_pair *pair, const struct piece *p, const struct piece *q,
@@ -300,11 +311,14 @@ static void add_pair(struct root_pair *pair, const struct piece *p, const struct
         return;
     if (side < 0) {
         add_exchange(pair, visible.fraction * open);
+        if (visible.fraction == 1.0 && are_open(pair, p, q))
+            return;
         double near = ERROR_AGREED + open / fmin(p->facet.area, q->facet.area);
         pair->variance += fmax(visible.variance, square(fmin(near, ERROR_UNKNOWN))) *
                           square(open);
         return;
     }
+    pair->variance += square(LEAST * open);
     for (int k = 0; k < 4; k++) {
         struct piece part = piece_child(side == 0 ? p : q, k);
         add_pair(pair, side == 0 ? &part : p, side == 0 ? q : &part, visible.fraction);
