@@ -266,7 +266,7 @@ static void handle_doubles(struct scene *scene, struct scene_repairs *repairs)
             cut_alike(scene, i, end - i, front);
     }
     for (int32_t i = 0; i < scene->input_count; i++) {
-        if (first[i] == i || !(scene->areas[i] > 0.0))
+        if (first[i] == i || !(scene->areas[i] > 0.0) || !(scene->areas[first[i]] > 0.0))
             continue;
         repairs->doubles++;
         repairs->unlike += !material_is_same(scene_root_material(scene, i),
