@@ -129,6 +129,7 @@ struct group {
     const struct tree *tree;
     struct search *searches; /* of all rays */
     struct octree_counts *counts;
+    int32_t (*met)[LANES]; /* [STREAM_RAYS] of one node; -1: a ray meets a child's box */
     int near;
 };
 
@@ -139,23 +140,28 @@ static void group_walk(const struct group *group, int32_t child, const uint8_t *
 static void group_split(const struct group *group, const struct node *node,
                         const uint8_t *rays, int count)
 {
-    int32_t met[STREAM_RAYS][LANES]; /* -1: a ray meets the box of a child */
-    uint8_t meeting[STREAM_RAYS];
+    uint8_t meeting[LANES][STREAM_RAYS]; /* of each child */
+    int numbers[LANES];
     lanes_mask in, any = mask_all(0), weights;
     lanes enter;
     for (int i = 0; i < count; i++) {
         ray_boxes(&group->searches[rays[i]].ray, group->near, node, &in, &enter);
-        memcpy(met[i], &in, sizeof in);
+        memcpy(group->met[i], &in, sizeof in);
         any = mask_or(any, in);
     }
     mask_set_weights(&weights, group->near);
-    for (unsigned left = mask_select(&any, &weights); left != 0; left &= left - 1) {
-        int k = lowest_bit(left) ^ group->near, number = 0;
+    unsigned children = mask_select(&any, &weights);
+    for (unsigned left = children; left != 0; left &= left - 1) {
+        int bit = lowest_bit(left), k = bit ^ group->near, number = 0;
         for (int i = 0; i < count; i++) {
-            meeting[number] = rays[i];
-            number -= met[i][k];
+            meeting[bit][number] = rays[i];
+            number -= group->met[i][k];
         }
-        group_walk(group, node->child[k], meeting, number);
+        numbers[bit] = number;
+    }
+    for (unsigned left = children; left != 0; left &= left - 1) {
+        int bit = lowest_bit(left);
+        group_walk(group, node->child[bit ^ group->near], meeting[bit], numbers[bit]);
     }
 }
 
@@ -179,6 +185,7 @@ void octree_stream_hits(const struct octree *octree, struct stream *stream,
                         bool fronts_only, struct octree_counts *counts)
 {
     struct search searches[STREAM_RAYS];
+    int32_t met[STREAM_RAYS][LANES];
     uint8_t rays[LANES][STREAM_RAYS];
     int sizes[LANES] = {0};
     counts->rays += stream->count;
@@ -190,7 +197,7 @@ void octree_stream_hits(const struct octree *octree, struct stream *stream,
     }
     for (int k = 0; k < 2 * LANES; k++) {
         const struct tree *tree = k & 1 ? &octree->hull : &octree->inside;
-        struct group group = {tree, searches, counts, k / 2};
+        struct group group = {tree, searches, counts, met, k / 2};
         if (tree->node_count > 0 && sizes[k / 2] > 0)
             group_walk(&group, 0, rays[k / 2], sizes[k / 2]);
     }
