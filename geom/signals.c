@@ -22,6 +22,25 @@
 
 #include "geom/stop.h"
 
+/* Signals that stop a run: of users, of terminals that close, of batch systems when time
+ * is nearly up. */
+static const struct {
+    int number;
+    const char *name;
+} STOPS[] = {
+    {SIGTERM, "SIGTERM"}, {SIGINT, "SIGINT"},
+#ifdef SIGHUP
+    {SIGHUP, "SIGHUP"},
+#endif
+#ifdef SIGXCPU
+    {SIGXCPU, "SIGXCPU"},
+#endif
+#ifdef SIGUSR1
+    {SIGUSR1, "SIGUSR1"},
+#endif
+};
+enum { STOP_COUNT = sizeof STOPS / sizeof STOPS[0] };
+
 static volatile sig_atomic_t seen;
 
 static void remember(int number)
@@ -30,10 +49,16 @@ static void remember(int number)
 }
 
 #ifdef HAVE_SIGACTION
+/* A second signal has its usual effect, but of SIGXCPU, which then comes each second. */
+static int flags_of(int number, bool restarts)
+{
+    return (int)((number == SIGXCPU ? 0 : SA_RESETHAND) | (restarts ? SA_RESTART : 0));
+}
+
 static void catch_once(int number)
 {
     struct sigaction before, action = {.sa_handler = remember};
-    action.sa_flags = (int)(SA_RESTART | SA_RESETHAND);
+    action.sa_flags = flags_of(number, true);
     sigemptyset(&action.sa_mask);
     if (sigaction(number, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
         sigaction(number, &action, NULL);
@@ -45,7 +70,7 @@ static void set_restart(int number, bool restarts)
     struct sigaction action;
     if (sigaction(number, NULL, &action) != 0 || action.sa_handler != remember)
         return;
-    action.sa_flags = (int)(SA_RESETHAND | (restarts ? SA_RESTART : 0));
+    action.sa_flags = flags_of(number, restarts);
     sigaction(number, &action, NULL);
 }
 #else
@@ -68,8 +93,8 @@ static bool is_seen(void)
 
 void signals_catch(void)
 {
-    catch_once(SIGTERM);
-    catch_once(SIGINT);
+    for (int i = 0; i < STOP_COUNT; i++)
+        catch_once(STOPS[i].number);
     stop_when(is_seen);
 #ifdef SIGXFSZ
     signal(SIGXFSZ, SIG_IGN);
@@ -81,8 +106,8 @@ void signals_catch(void)
 
 void signals_end_calls(bool ends)
 {
-    set_restart(SIGTERM, !ends);
-    set_restart(SIGINT, !ends);
+    for (int i = 0; i < STOP_COUNT; i++)
+        set_restart(STOPS[i].number, !ends);
 }
 
 int signals_seen(void)
@@ -92,5 +117,8 @@ int signals_seen(void)
 
 const char *signals_name(int number)
 {
-    return number == SIGTERM ? "SIGTERM" : number == SIGINT ? "SIGINT" : "a signal";
+    for (int i = 0; i < STOP_COUNT; i++)
+        if (STOPS[i].number == number)
+            return STOPS[i].name;
+    return "a signal";
 }

@@ -1,13 +1,13 @@
-/* Being asked to stop: SIGTERM and SIGINT. */
+/* Being asked to stop: SIGTERM, SIGINT, SIGHUP, SIGXCPU and SIGUSR1. */
 #ifndef GEOM_SIGNALS_H
 #define GEOM_SIGNALS_H
 
 #include <stdbool.h>
 
-/* From here on the first SIGTERM or SIGINT is remembered and stops loops that ask
- * stop_is_asked(); a second one has its usual effect; a write beyond the limit of a
- * file's size (SIGXFSZ) or to a pipe that nobody reads any more (SIGPIPE) is an error
- * like a full disk. */
+/* From here on the first of these signals is remembered and stops loops that ask
+ * stop_is_asked(); a second of its kind has its usual effect, but of SIGXCPU; a write
+ * beyond the limit of a file's size (SIGXFSZ) or to a pipe that nobody reads any more
+ * (SIGPIPE) is an error like a full disk. */
 void signals_catch(void);
 
 /* Whether a signal ends a system call that waits, such as for a pipe, with an error. At
@@ -17,7 +17,7 @@ void signals_end_calls(bool ends);
 /* The signal that this rank has got, 0: none. */
 int signals_seen(void);
 
-/* "SIGTERM", "SIGINT". */
+/* "SIGTERM" and so on. */
 const char *signals_name(int number);
 
 #endif
