@@ -8,7 +8,15 @@
  * Programs also write folders of the machine that they ran on, with either slash. Where
  * such a file does not exist, the file of the same last name beside the OBJ file is
  * taken. If only the folders have blanks, the line may as well be a list, and its words
- * are tried. */
+ * are tried.
+ *
+ * A scene may come from anybody, so it cannot name a pipe or a device, which would make
+ * phr wait for ever. */
+#if defined(__unix__) || defined(__APPLE__)
+#define _XOPEN_SOURCE 700
+#include <sys/stat.h>
+#endif
+
 #include "io/scene/library.h"
 
 #include <string.h>
@@ -40,11 +48,26 @@ static bool is_descriptor(const char *path)
     return strcmp(path, "/dev/stdin") == 0 || strncmp(path, "/dev/fd/", 8) == 0;
 }
 
+/* True if the path leads to a file, a folder or nowhere. */
+static bool is_harmless(const char *path)
+{
+#ifdef S_ISREG
+    struct stat status;
+    return stat(path, &status) != 0 || S_ISREG(status.st_mode) || S_ISDIR(status.st_mode);
+#else
+    return *path != '\0';
+#endif
+}
+
 static bool read_file(const struct lookup *lookup, const char *name, bool *found)
 {
     const char *beside = lookup->obj->path;
     char *path = text_path_beside(is_descriptor(beside) ? "" : beside, name);
-    bool good = mtl_read(lookup->table, path, found, lookup->error);
+    *found = false;
+    bool good = is_harmless(path)
+                    ? mtl_read(lookup->table, path, found, lookup->error)
+                    : error_set(lookup->error, EXIT_USAGE, "%s:%ld: %s is not a file",
+                                beside, lookup->obj->line, path);
     if (*found && lookup->files)
         text_names_add(lookup->files, path);
     alloc_free(path);
