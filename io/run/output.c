@@ -137,9 +137,18 @@ static FILE *open_new(const char *path, const char *old)
     enum { MODES = 0777 };
     struct stat status;
     int file = open(path, O_WRONLY | O_CREAT | O_EXCL, 0666);
-    if (file >= 0 && stat(old, &status) == 0)
+    if (file < 0)
+        return NULL;
+    if (stat(old, &status) == 0)
         (void)fchmod(file, status.st_mode & MODES);
-    return file < 0 ? NULL : fdopen(file, "wb");
+    FILE *stream = fdopen(file, "wb");
+    int reason = errno;
+    if (!stream) {
+        close(file);
+        remove(path);
+    }
+    errno = reason;
+    return stream;
 }
 
 static FILE *open_temporary(struct output *output)
@@ -243,6 +252,9 @@ bool output_open(struct output *output, const char *path, struct error *error)
     if (output->file)
         return true;
     int reason = errno;
+    if (output->temporary && reason == EEXIST)
+        error_set(error, EXIT_FAILED, "%s: cannot write: %s and all before it are there, "
+                  "as killed runs leave them", shown, output->temporary);
     release(output);
     return fail(shown, reason, error);
 }

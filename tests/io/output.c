@@ -227,6 +227,29 @@ static void test_long_names(void)
 }
 
 /* A pipe that nobody reads: opening it for writing would wait, or fail. */
+/* Files that killed runs have left are named when there are too many. */
+static void test_left_behind(void)
+{
+    enum { MOST = 100 };
+    struct output output;
+    char path[sizeof PATH + 20];
+    for (int n = 0; n < MOST; n++) {
+        snprintf(path, sizeof path, PATH ".%d.tmp", n);
+        write_text(path, "half");
+    }
+    tap_ok(!start(&output, PATH) && error.code == EXIT_FAILED &&
+               strcmp(error.text, PATH ": cannot write: " PATH ".99.tmp and all before "
+                                  "it are there, as killed runs leave them") == 0,
+           "a hundred files left behind: %s", error.text);
+    remove(path);
+    tap_ok(start(&output, PATH) && output_close(&output, &error),
+           "one of them removed, there is room");
+    for (int n = 0; n < MOST; n++) {
+        snprintf(path, sizeof path, PATH ".%d.tmp", n);
+        remove(path);
+    }
+}
+
 static void test_pipe(void)
 {
     static const char path[] = "build/output_test.pipe";
@@ -279,6 +302,7 @@ int main(void)
     test_modes();
     test_links();
     test_long_names();
+    test_left_behind();
     test_pipe();
     test_numbers();
     remove(PATH);
