@@ -84,9 +84,10 @@ TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wal
         contour octree bundles bicgstab sequence id flux patch compact formfactor \
         patch_exchange link patch_link method cluster node oracle error_oracle pushpull \
         final_gather lamps checksum paths plan balance assign gather_mesh spotcheck \
-        text obj ply output files store tone image png texture hdr camera viewpoint \
-        open_parts shading mesh render options progress screened stop norms cie whole \
-        stability gaps openings leaks linking exchange conjugate exact converge
+        text obj ply output files machine store tone image png texture hdr camera \
+        viewpoint open_parts shading mesh render options progress screened stop norms \
+        cie whole stability gaps openings leaks linking exchange conjugate exact \
+        converge
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
 vpath %.c tests/tools tests/whole
 

@@ -55,14 +55,14 @@ static bool is_paper(const struct criterion *criterion)
 static void create_solver(struct run *run)
 {
     const struct criterion *criterion = &run->options.criterion;
-    report_forecast(run);
     struct solver *solver =
         is_paper(criterion)
             ? solver_create(&run->comm, run->scene, run->octree, criterion, PAPER)
             : beyond_create(&run->comm, run->scene, run->octree, criterion);
     run->solver = solver;
     memory_watch(&solver->memory, &run->comm, solver->model.forest->root_count,
-                 run->options.memory, machine_memory());
+                 run->options.memory, machine_memory(), machine_room());
+    report_memory(run);
     solver->account.seconds[PHASE_READ] = comm_seconds() - run->start;
     solver->account.seconds[PHASE_OCTREE] = run->block.seconds;
     solver->progress = &run->progress.progress;

@@ -29,21 +29,23 @@ enum { BYTES_PER_RAY = 60 };
 /* The part of the machines' memory that links, patches and clusters may take. */
 static const double SHARE = 0.8;
 
-/* The machine that a rank runs on, as told to the others; no padding. */
+/* What a rank may take, as told to the others; no padding. */
 struct machine {
-    uint64_t name; /* hash */
-    int64_t bytes;
+    uint64_t name;       /* hash */
+    int64_t bytes, room; /* of the machine, of the rank; 0: unknown, no limit */
 };
 
-/* Bytes of all machines, each counted once; 0 if one of them is unknown. */
-static int64_t machines_together(const struct comm *comm, int64_t bytes)
+/* Bytes of all machines, each counted once, or of all ranks, if each of them may take no
+ * more than that with the least room; 0 if a machine is unknown. Of an address space a
+ * half is for what lists have grown by and do not use yet. */
+static int64_t machines_together(const struct comm *comm, int64_t bytes, int64_t room)
 {
     char name[MPI_MAX_PROCESSOR_NAME] = "";
     int length = 0;
     MPI_Get_processor_name(name, &length);
-    struct machine own = {hash_bytes(HASH_START, name, (size_t)length), bytes};
+    struct machine own = {hash_bytes(HASH_START, name, (size_t)length), bytes, room};
     struct machine *all = comm_gather_each(comm, &own, sizeof own);
-    int64_t sum = 0;
+    int64_t sum = 0, least = 0;
     bool known = true;
     for (int r = 0; r < comm->size; r++) {
         bool again = false;
@@ -51,9 +53,13 @@ static int64_t machines_together(const struct comm *comm, int64_t bytes)
             again = all[before].name == all[r].name;
         sum += again ? 0 : all[r].bytes;
         known = known && all[r].bytes > 0;
+        if (all[r].room > 0 && (least == 0 || all[r].room < least))
+            least = all[r].room;
     }
     alloc_free(all);
-    return known ? sum : 0;
+    least = (least + 1) / 2;
+    bool narrow = least > 0 && (!known || least < sum / comm->size);
+    return narrow ? least * comm->size : known ? sum : 0;
 }
 
 int64_t memory_needed(const struct memory *memory, int copies, int64_t links,
@@ -64,14 +70,14 @@ int64_t memory_needed(const struct memory *memory, int copies, int64_t links,
 }
 
 void memory_watch(struct memory *memory, const struct comm *comm, int64_t roots,
-                  int64_t limit, int64_t machine)
+                  int64_t limit, int64_t machine, int64_t room)
 {
     int64_t least = memory_needed(memory, 1, 0, roots) / 8 * 9;
     memory->limit = least > limit ? least : limit;
     memory->copies = 1;
     if (limit > 0)
         return;
-    memory->limit = (int64_t)(SHARE * (double)machines_together(comm, machine));
+    memory->limit = (int64_t)(SHARE * (double)machines_together(comm, machine, room));
     memory->copies = comm->size;
 }
 

@@ -18,9 +18,10 @@ struct memory {
 /* Collective. The links of all ranks and one copy of patches and clusters may take
  * `limit` bytes, or an eighth more than roots, their rows and clusters alone, if that is
  * more; 0: links and a copy for every rank may take most of the memory of the machines of
- * the run, each of which has `machine` bytes (0: unknown, and there is no limit). */
+ * the run, each of which has `machine` bytes (0: unknown), and most of the `room` bytes
+ * of each rank (0: no limit). */
 void memory_watch(struct memory *memory, const struct comm *comm, int64_t roots,
-                  int64_t limit, int64_t machine);
+                  int64_t limit, int64_t machine, int64_t room);
 
 /* Bytes that links take, the rows of the final gather, and `copies` copies of the patches
  * and clusters. */

@@ -208,6 +208,7 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->clusters = solver->memory.clusters;
     stats->counted_bytes = memory_needed(&solver->memory, 1, stats->links,
                                          solver->model.forest->count);
+    stats->memory_limit = solver->memory.limit;
     stats->memory_limited = solver->memory.reached > 0;
     stats->converged = vote->converged && !stats->memory_limited;
     stats->epsilon = solver->model.criterion.epsilon;

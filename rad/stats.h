@@ -106,6 +106,7 @@ struct stats {
     bool converged;
     int64_t clusters;      /* of the tree above the roots, 0: there is none */
     int64_t counted_bytes; /* of links, patches and clusters, as --memory counts them */
+    int64_t memory_limit;      /* bytes of links, patches and clusters; 0: none */
     bool memory_limited;       /* linking, refinement or the gather's mesh ended there */
     double epsilon;            /* relative to the emitted power */
     double error_estimate;     /* of the leaves, relative RMS; 0: there is none */

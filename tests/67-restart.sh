@@ -274,8 +274,9 @@ check "1 KiB on 3 ranks is 1 KiB on one" same least-3 least-1
 check "there are links" holds "$(stat_of "$work/least-1.json" links) > 100"
 check "and light" holds "$(stat_of "$work/least-1.json" absorbed_power) > \
     0.5 * $(stat_of "$work/least-1.json" emitted_power)"
-check "the warning says more than 1 KiB" \
-    grep -q "bytes (an eighth more than the scene takes without)" "$work/least-3.err"
+limit=$(stat_of "$work/least-1.json" memory_limit)
+check "a warning tells the limit in force, $limit bytes, as does --stats" \
+    grep -q "more than --memory: the limit is $limit bytes, an eighth" "$work/least-3.err"
 
 room="$work/room.obj --paper --size 40x40"
 for ranks in 1 2 3; do

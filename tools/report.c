@@ -75,9 +75,14 @@ void report_solving(struct run *run)
 }
 
 /* A cluster has two children or more: there are at most half as many as roots. */
-void report_forecast(struct run *run)
+void report_memory(struct run *run)
 {
-    int64_t roots = scene_root_count(run->scene);
+    int64_t roots = scene_root_count(run->scene), limit = run->solver->memory.limit;
+    if (run->options.memory > 0 && run->options.memory < limit)
+        run_say(run,
+                "warning: the scene takes more than --memory: the limit is %lld bytes, "
+                "an eighth more than the scene takes before there are links",
+                (long long)limit);
     struct memory memory = {.copies = 1};
     memory.clusters = run->options.criterion.linking == LINKING_TREE ? roots / 2 : 0;
     if (run->options.verbose)
@@ -120,14 +125,10 @@ bool report_summary(struct run *run)
     if (run->comm.rank == 0) {
         if (run->stats.memory_limited)
             run_say(run,
-                    "warning: %s ended at the memory limit of %lld bytes%s, "
+                    "warning: %s ended at the memory limit of %lld bytes, "
                     "with %lld links%s",
                     run->half_linked ? "linking" : "refinement",
                     (long long)run->solver->memory.limit,
-                    run->options.memory > 0 &&
-                            run->options.memory < run->solver->memory.limit
-                        ? " (an eighth more than the scene takes without)"
-                        : "",
                     (long long)run->stats.links,
                     run->half_linked ? ": light is missing" : "");
         else if (!run->vote.converged)

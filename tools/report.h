@@ -4,8 +4,9 @@
 
 #include "tools/run.h"
 
-/* With --verbose: prints the memory of each rank before linking. */
-void report_forecast(struct run *run);
+/* Warns where --memory is less than the limit in force; with --verbose prints the memory
+ * of each rank before linking. */
+void report_memory(struct run *run);
 
 /* Ticks the progress of the iterations over the same links. Pre: run->first_bound is
  * HUGE_VAL before the first. */

@@ -1,48 +1,94 @@
-/* Memory: the physical pages, or the limit of the container (a control group, of either
- * version) if it is lower. Free memory is no measure: it changes from moment to moment,
- * and most of the memory in use is the cache of files. */
+/* Memory: the physical pages, or the lowest limit of the control groups that the process
+ * is in (of either version; each counts, up to the outermost), and what ulimit leaves of
+ * the address space. Free memory is no measure: it changes from moment to moment, and
+ * most of the memory in use is the cache of files. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _XOPEN_SOURCE 700
+#include <sys/resource.h>
 #include <unistd.h>
 #endif
 
 #include "io/run/machine.h"
 
 #include <stdio.h>
+#include <string.h>
 
-/* Reads the file of a limit: a number, or "max" and the like for none. Returns bytes or
- * 0. */
+enum { LINE = 4096 };
+
+/* Returns the lower of two limits, of which 0 is none. */
+static int64_t lower(int64_t a, int64_t b)
+{
+    return a > 0 && (b <= 0 || a < b) ? a : b > 0 ? b : 0;
+}
+
+/* Reads the file of a limit: a number, or "max" and the like for none. Returns the number
+ * or 0. */
 static int64_t read_limit(const char *path)
 {
-    long long bytes = 0;
+    long long number = 0;
     FILE *file = fopen(path, "r");
     if (!file)
         return 0;
-    if (fscanf(file, "%19lld", &bytes) != 1)
-        bytes = 0;
+    if (fscanf(file, "%19lld", &number) != 1)
+        number = 0;
     fclose(file);
-    return bytes;
+    return number;
 }
 
-static int64_t physical_memory(void)
+/* Returns the lowest limit of the group "/OUTER/INNER" and those around it. */
+static int64_t group_limit(const char *root, const char *folder, const char *name,
+                           char *group)
 {
-#ifdef _SC_PHYS_PAGES
-    long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
-    return pages > 0 && size > 0 ? (int64_t)pages * size : 0;
-#else
-    return 0;
-#endif
+    char path[2 * LINE];
+    int64_t least = 0;
+    for (char *end = group + strlen(group); end; end = strrchr(group, '/')) {
+        *end = '\0';
+        snprintf(path, sizeof path, "%s/sys/fs/cgroup%s%s/%s", root, folder, group, name);
+        least = lower(least, read_limit(path));
+    }
+    return least;
+}
+
+/* A line of /proc/self/cgroup is NUMBER:CONTROLLERS:GROUP, without controllers in version
+ * 2. In a container the folder is that of the container, and GROUP may not be in it. */
+int64_t machine_groups(const char *root)
+{
+    char path[LINE], line[LINE], none[1] = "";
+    int64_t least = lower(group_limit(root, "", "memory.max", none),
+                          group_limit(root, "/memory", "memory.limit_in_bytes", none));
+    snprintf(path, sizeof path, "%s/proc/self/cgroup", root);
+    FILE *file = fopen(path, "r");
+    while (file && fgets(line, sizeof line, file)) {
+        char *kind = strchr(line, ':'), *group = kind ? strchr(kind + 1, ':') : NULL;
+        line[strcspn(line, "\n")] = '\0';
+        if (group && group == kind + 1)
+            least = lower(least, group_limit(root, "", "memory.max", group + 1));
+        else if (group && strncmp(kind, ":memory:", 8) == 0)
+            least = lower(least, group_limit(root, "/memory", "memory.limit_in_bytes",
+                                             group + 1));
+    }
+    if (file)
+        fclose(file);
+    return least;
 }
 
 int64_t machine_memory(void)
 {
-    static const char *const LIMITS[] = {"/sys/fs/cgroup/memory.max",
-                                         "/sys/fs/cgroup/memory/memory.limit_in_bytes"};
-    int64_t least = physical_memory();
-    for (int i = 0; i < 2; i++) {
-        int64_t limit = read_limit(LIMITS[i]);
-        if (limit > 0 && (least == 0 || limit < least))
-            least = limit;
-    }
-    return least;
+    int64_t physical = 0;
+#ifdef _SC_PHYS_PAGES
+    physical = (int64_t)sysconf(_SC_PHYS_PAGES) * sysconf(_SC_PAGESIZE);
+#endif
+    return lower(physical, machine_groups(""));
+}
+
+int64_t machine_room(void)
+{
+    int64_t room = 0;
+#ifdef RLIMIT_AS
+    struct rlimit limit;
+    int64_t taken = read_limit("/proc/self/statm") * sysconf(_SC_PAGESIZE);
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        room = (int64_t)limit.rlim_cur > taken ? (int64_t)limit.rlim_cur - taken : 1;
+#endif
+    return room;
 }

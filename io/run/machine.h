@@ -8,4 +8,12 @@
  * unknown. */
 int64_t machine_memory(void);
 
+/* Returns the lowest limit of the control groups that the process is in, bytes; 0: none.
+ * `root` is the folder that /proc and /sys lie in, "" but for tests. */
+int64_t machine_groups(const char *root);
+
+/* Returns the part of the address space that ulimit leaves this process now, bytes, at
+ * least 1; 0: it has no limit. */
+int64_t machine_room(void);
+
 #endif

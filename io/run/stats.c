@@ -73,6 +73,7 @@ static void write_counts(FILE *file, const struct stats *stats)
     fprintf(file, "  \"converged\": %s,\n", stats->converged ? "true" : "false");
     write_integer(file, "clusters", stats->clusters);
     write_integer(file, "counted_bytes", stats->counted_bytes);
+    write_integer(file, "memory_limit", stats->memory_limit);
     fprintf(file, "  \"memory_limited\": %s,\n",
             stats->memory_limited ? "true" : "false");
     write_real(file, "epsilon", stats->epsilon);
