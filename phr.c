@@ -92,12 +92,7 @@ static bool link_roots(struct run *run)
 static bool save_links(struct run *run)
 {
     const char *path = run->options.save_links;
-    if (!path)
-        return true;
-    if (run->half_linked)
-        return error_set(&run->error, EXIT_FAILED,
-                         "%s: not written: linking ended at the memory limit", path);
-    return stored_save(run, STORE_LINKS, path);
+    return !path || stored_save(run, STORE_LINKS, path);
 }
 
 /* True if there is a pass more. */
@@ -150,6 +145,8 @@ static enum finish finish_light(struct run *run)
         run_stopped(run, run->solver->turn.stop);
         return FINISH_STOPPED;
     }
+    if (!stored_complete(run))
+        return FINISH_STOPPED;
     if (!run->solver->steps.finish)
         return FINISH_DONE;
     enum finish finish = run->solver->steps.finish(run->solver, &run->vote);
@@ -256,12 +253,7 @@ int main(int argc, char **argv)
         if (balance_is_absurd(&run) || (results_show(&run) && dump_print(&run)))
             report_summary(&run);
     }
-    if (run.comm.rank == 0 && (fflush(stdout) != 0 || ferror(stdout)))
-        error_set(&run.error, EXIT_FAILED, "cannot write to the standard output");
-    comm_agree(&run.comm, &run.error);
-    progress_view_clear(&run.progress);
-    if (run.error.code != EXIT_DONE && run.comm.rank == 0)
-        fprintf(stderr, "phr: %s\n", run.error.text);
+    run_end(&run);
     release(&run);
     comm_stop(&run.comm);
     if (alloc_balance() != 0) {

@@ -182,8 +182,9 @@ status=$?
 check "a disk that fills up: exit status 1" [ "$status" -eq 1 ]
 check "one line says which file" \
     [ "$(cat "$work/full.err")" = "phr: $work/full: cannot write: File too large" ]
-check "nothing is left" nothing_is_left
-check "nor beside the checkpoint" [ -z "$(find "$work" -name 'full*.tmp')" ]
+check "the run goes on all the same" cmp "$work/new.pfm" "$work/whole.pfm"
+check "nothing is left beside the checkpoint" [ -z "$(find "$work" -name '*.tmp')" ]
+rm -f "$work/new.pfm"
 check "which is the one before, whole" goes_on full
 
 if [ -c /dev/full ]; then

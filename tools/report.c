@@ -146,8 +146,10 @@ bool report_summary(struct run *run)
         if (!run->options.quiet && !run->options.dump)
             stats_print(&run->stats,
                         files_take_stdout(&run->options) ? stderr : stdout);
+        struct error error = {.code = EXIT_DONE};
         if (run->options.stats)
-            stats_write(&run->stats, run->options.stats, &run->error);
+            stats_write(&run->stats, run->options.stats, &error);
+        run_lose(run, &error);
     }
     return run_agree(run);
 }

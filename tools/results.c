@@ -30,8 +30,10 @@ static void write_pictures(struct run *run, int view, float *picture)
     struct tone tone = choose_tone(run, picture, (int64_t)camera->width * camera->height);
     for (int i = 0; i < options->output_count; i++) {
         const struct target *target = &options->outputs[i];
+        struct error error = {.code = EXIT_DONE};
         if (target->view == view && !format_is_mesh(target->format))
-            image_write(&image, &tone, target, &run->error);
+            image_write(&image, &tone, target, &error);
+        run_lose(run, &error);
     }
 }
 
@@ -47,10 +49,12 @@ static void write_meshes(struct run *run, const struct shading *shading)
         {answer->straight, answer->gather.lamps->least, answer->gather.mean}};
     for (int i = 0; i < run->options.output_count; i++) {
         const struct target *target = &run->options.outputs[i];
+        struct error error = {.code = EXIT_DONE};
         if (target->format == FORMAT_VTK)
-            vtk_write(shading, answer->error, target->path, &run->error);
+            vtk_write(shading, answer->error, target->path, &error);
         else if (target->format == FORMAT_PLY)
-            mesh_write(shading, &tone, &solved, target->path, &run->error);
+            mesh_write(shading, &tone, &solved, target->path, &error);
+        run_lose(run, &error);
     }
     alloc_free(colours);
 }

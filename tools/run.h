@@ -24,7 +24,9 @@ struct run {
     struct stats stats;
     struct progress_view progress; /* on rank 0, unless --quiet */
     const char *kept;              /* path of the last checkpoint made or read, or NULL */
-    struct error error;
+    struct error *lost;            /* [lost_count] of outputs not made, on rank 0; owned */
+    int lost_count;
+    struct error error;            /* ends the run */
     double start;                  /* comm_seconds() at the beginning */
     double first_bound;            /* vote.remaining of the first iteration of a pass */
 };
@@ -40,6 +42,14 @@ static inline int run_camera_count(const struct run *run)
 __attribute__((format(printf, 2, 3)))
 #endif
 void run_say(struct run *run, const char *format, ...);
+
+/* On rank 0 alone. Keeps the error of an output, if there is one, for the end: the run
+ * goes on, but for one that is asked to stop, whose error it is. */
+void run_lose(struct run *run, const struct error *error);
+
+/* Collective. Prints the errors of the run and of its outputs, by which all ranks have
+ * an error then. */
+void run_end(struct run *run);
 
 /* Sets the error of a run that a signal stops. Returns false. */
 bool run_stopped(struct run *run, int signal);

@@ -4,6 +4,7 @@
 
 #include "geom/alloc.h"
 #include "geom/signals.h"
+#include "geom/stop.h"
 #include "mpi/beyond/keep.h"
 
 static struct store_terms terms_of(const struct run *run, enum store_kind kind)
@@ -25,26 +26,55 @@ static void put_links(void *context, const struct link *links, const int *owners
     store_put_links(context, links, count);
 }
 
+/* Warns of a file that is lost: the run goes on. */
+static void lose(struct run *run, const struct error *error)
+{
+    if (error->code != EXIT_DONE && !stop_is_asked())
+        run_say(run, "warning: %s", error->text);
+    if (run->comm.rank == 0)
+        run_lose(run, error);
+}
+
 bool stored_save(struct run *run, enum store_kind kind, const char *path)
 {
     double start = comm_seconds();
     struct store_terms terms = terms_of(run, kind);
     struct store_writer writer;
     struct snapshot snapshot;
+    struct error error = {.code = EXIT_DONE};
+    if (run->half_linked) {
+        error_set(&error, EXIT_FAILED,
+                  "%s: not written: linking ended at the memory limit", path);
+        lose(run, &error);
+        return true;
+    }
     snapshot_collect(run->solver, &run->vote, &snapshot);
     if (run->comm.rank == 0)
-        store_create(&writer, path, &terms, &snapshot, &run->error);
+        store_create(&writer, path, &terms, &snapshot, &error);
     snapshot_free(&snapshot);
-    if (!comm_agree(&run->comm, &run->error))
-        return false;
-    links_collect(run->solver, put_links, &writer);
-    if (run->comm.rank == 0)
-        store_finish(&writer, &run->error);
+    if (comm_agree(&run->comm, &error)) {
+        links_collect(run->solver, put_links, &writer);
+        if (run->comm.rank == 0)
+            store_finish(&writer, &error);
+    }
     run->solver->account.seconds[PHASE_WRITE] += comm_seconds() - start;
-    bool good = run_agree(run);
-    if (good && kind == STORE_CHECKPOINT)
+    if (comm_agree(&run->comm, &error) && kind == STORE_CHECKPOINT)
         run->kept = path;
-    return good;
+    lose(run, &error);
+    return run_agree(run);
+}
+
+bool stored_complete(struct run *run)
+{
+    const char *path = run->options.checkpoint;
+    struct error error = {.code = EXIT_DONE};
+    if (!path || run->kept == path)
+        return true;
+    if (!run->vote.unfinished)
+        return stored_save(run, STORE_CHECKPOINT, path);
+    error_set(&error, EXIT_FAILED, "%s: not written: no pass is whole", path);
+    lose(run, &error);
+    return true;
 }
 
 /* Collective. Reads the links of an open file and deals them to the ranks. */
