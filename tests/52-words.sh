@@ -96,6 +96,58 @@ text="$text, $(bytes CLUSTER) for each cluster, and $(bytes RAY) for each patch 
 check "the manual counts bytes as the memory limit does: $text" \
     sh -c 'tr "\n" " " <phr.1 | grep -qF "$0"' "$text"
 
+# keys: those of a report, and the objects between, as paths; of seconds and work, whose
+# objects are alike, the last names once.
+keys() {
+    awk '{ while (match($0, /"[a-z_]*": |[{}]/)) {
+        word = substr($0, RSTART, RLENGTH)
+        $0 = substr($0, RSTART + RLENGTH)
+        if (word == "{") {
+            at[++depth] = at[depth - 1] key (key == "" ? "" : ".")
+            name[depth] = key
+        } else if (word == "}") key = name[depth--]
+        else { key = word; gsub(/[": ]/, "", key); print at[depth] key }
+    } }' | sed -nE 's/^(seconds|work)\.[a-z_]+\./\1.*./; p'
+}
+./phr scenes/squares.obj --paper --quiet --stats "$work/report.json"
+keys <"$work/report.json" | sort -u >"$work/keys"
+grep -vxE "$(sed -n 's/\.[a-z_*.]*$//p' "$work/keys" | sort -u | tr '\n' '|')-" \
+    "$work/keys" >"$work/in-report"
+sed -n '/^## Statistics/,/^## Form/s/^| \(`[^|]*\) |.*/\1/p' docs/formats.md |
+    grep -oE '[a-z_*.]+' | sort -u >"$work/in-table"
+check "docs/formats.md has each key of --stats, and no other" \
+    same_lines "$work/in-report" "$work/in-table"
+check "of which there are many" [ "$(wc -l <"$work/in-report")" -gt 80 ]
+
+# --- what outputs say of themselves ---
+
+# noted RANKS FOLDER: makes outputs of a scene in a folder of any name.
+noted() {
+    mkdir -p "$work/$2"
+    cp scenes/squares.obj "$work/$2/a\"ä.obj"
+    cp scenes/*.mtl "$work/$2"
+    $MPIEXEC -n "$1" ./phr "$work/$2/a\"ä.obj" --epsilon 1e-3 --two-sided --quiet \
+        --size 9x9 -o "$work/$2/n.ply" -o "$work/$2/n.vtk" -o "$work/$2/n.png" \
+        --stats "$work/$2/n.json"
+}
+noted 1 one
+noted 3 three
+hash=$(sed -n 's/.*"scene": .*"checksum": "\([0-9a-f]*\)".*/\1/p' "$work/one/n.json")
+triangles=$(stat_of "$work/one/n.json" triangles)
+origin="scene a[?]{3}[.]obj, $triangles triangles, checksum $hash"
+for suffix in ply vtk png; do
+    tr '\0' '\n' <"$work/one/n.$suffix" >"$work/note"
+    check "a .$suffix names version, scene and settings" [ "$(grep -aoE \
+        "phr $number, format 1|$origin|--two-sided on|--epsilon 0.001" "$work/note" |
+        wc -l)" -eq 4 ]
+    check "and is the same on 3 ranks and in another folder" \
+        cmp "$work/one/n.$suffix" "$work/three/n.$suffix"
+done
+check "--stats names what differs from the defaults" \
+    grep -qF '"options": ["--two-sided on", "--epsilon 0.001"]' "$work/three/n.json"
+check "a mesh with its note is a stored solution" \
+    ./phr "$work/one/n.ply" --quiet -o "$work/again.ply"
+
 # --- progress ---
 
 run="./phr scenes/cornell.obj --max-level 3 --samples 8 --size 128x128"

@@ -64,15 +64,15 @@ run load-closed 3 $pairs --load-links "$work/links-1" --solver jacobi --toleranc
 run closed 1 $pairs --solver jacobi --tolerance 1e-3
 check "other settings than those of links are free" same load-closed closed
 
-cp scenes/cornell.obj "$work/moved.obj"
-cp scenes/cornell.mtl "$work/cornell.mtl"
-run moved 2 "$work/moved.obj" --epsilon 1e-4 --linking pairs --size 40x40 --quiet \
+mkdir "$work/folder"
+cp scenes/cornell.obj scenes/cornell.mtl "$work/folder"
+run moved 2 "$work/folder/cornell.obj" --epsilon 1e-4 --linking pairs --size 40x40 --quiet \
     --load-links "$work/links-1"
 check "the scene may have moved" same moved plain
-sed 's/^Kd 0.7/Kd 0.6/' scenes/cornell.mtl >"$work/cornell.mtl"
+sed 's/^Kd 0.7/Kd 0.6/' scenes/cornell.mtl >"$work/folder/cornell.mtl"
 check "another material is another scene" \
     refused "$work/links-1: made from another scene" \
-    "$work/moved.obj" --epsilon 1e-4 --linking pairs --load-links "$work/links-1"
+    "$work/folder/cornell.obj" --epsilon 1e-4 --linking pairs --load-links "$work/links-1"
 check "made without --oracle bf" \
     refused "$work/links-1: made with --oracle error" $pairs \
     --load-links "$work/links-1" --oracle bf

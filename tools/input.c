@@ -210,7 +210,9 @@ void input_read(struct run *run)
 {
     signals_end_calls(true);
     if (files_check(&run->options, &run->error) &&
-        files_probe(&run->options, &run->error) && read_scene(run) && read_cameras(run))
+        files_probe(&run->options, &run->error) && read_scene(run) && read_cameras(run)) {
+        run_set_note(run);
         show_check(run);
+    }
     signals_end_calls(false);
 }

@@ -123,6 +123,9 @@ bool report_summary(struct run *run)
     run->stats.bytes_broadcast += (int64_t)run->block.bytes;
     progress_view_clear(&run->progress);
     if (run->comm.rank == 0) {
+        run->stats.scene = run_scene_name(run);
+        run->stats.scene_checksum = scene_hash(run->scene);
+        run->stats.options = options_light_settings(&run->options);
         if (run->stats.memory_limited)
             run_say(run,
                     "warning: %s ended at the memory limit of %lld bytes, "

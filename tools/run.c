@@ -2,6 +2,7 @@
  * which all ranks agree after each phase; rank 0 prints them once. */
 #include "tools/run.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -10,6 +11,7 @@
 #include "geom/alloc.h"
 #include "geom/stop.h"
 #include "geom/signals.h"
+#include "io/run/output.h"
 
 void run_say(struct run *run, const char *format, ...)
 {
@@ -50,6 +52,27 @@ void run_end(struct run *run)
     if (run->error.code != EXIT_DONE && run->comm.rank == 0)
         fprintf(stderr, "phr: %s\n", run->error.text);
     alloc_free(run->lost);
+}
+
+const char *run_scene_name(const struct run *run)
+{
+    static char name[61];
+    const char *path = run->options.scene, *slash = strrchr(path, '/');
+    snprintf(name, sizeof name, "%s", slash ? slash + 1 : path);
+    for (char *c = name; *c; c++)
+        *c = *c < ' ' || *c > '~' || *c == '"' || *c == '\\' ? '?' : *c;
+    return name;
+}
+
+void run_set_note(const struct run *run)
+{
+    static char note[1200];
+    snprintf(note, sizeof note,
+             "phr %s, format %d\nscene %s, %ld triangles, checksum %016" PRIx64 "\n%s",
+             PHR_VERSION, PHR_FORMAT, run_scene_name(run), (long)run->scene->input_count,
+             scene_hash(run->scene),
+             run->stored ? "" : options_light_settings(&run->options));
+    output_set_note(note);
 }
 
 bool run_stopped(struct run *run, int signal)

@@ -51,6 +51,14 @@ void run_lose(struct run *run, const struct error *error);
  * an error then. */
 void run_end(struct run *run);
 
+/* Returns the last part of the path of the scene, at most 60 characters of it, with '?'
+ * for those that are not of ASCII, or need a backslash somewhere. */
+const char *run_scene_name(const struct run *run);
+
+/* Lets outputs say what they are made of, and with which options, wherever and on however
+ * many ranks. Pre: the scene is prepared. */
+void run_set_note(const struct run *run);
+
 /* Sets the error of a run that a signal stops. Returns false. */
 bool run_stopped(struct run *run, int signal);
 

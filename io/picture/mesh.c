@@ -65,6 +65,7 @@ bool mesh_write(const struct shading *shading, const struct tone *tone,
     if (!output_open(&output, path, error))
         return false;
     mesh_write_header(&output, shading->vertex_count, forest_count(forest).leaves);
+    output_write_note(&output, "comment ");
     fprintf(output.file, "%s%s", answer->error ? "property float error\n" : "",
             answer->straight ? "property float rest_r\nproperty float rest_g\n"
                                "property float rest_b\n"

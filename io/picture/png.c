@@ -21,7 +21,8 @@ enum {
     LONGEST = 15,        /* bits of a symbol */
     LEFT_DIFFERENCE = 1, /* the filter */
     ADLER = 65521,
-    ROOM = 256           /* bytes of a chunk beside the row: headers, the end */
+    NOTE_MOST = 1000,    /* bytes of the chunk of the note */
+    ROOM = 1024          /* bytes of a chunk beside the row: the note, headers, the end */
 };
 
 struct png {
@@ -188,6 +189,14 @@ static void write_head(struct png *png, const struct image *image)
     write_chunk(png, "IHDR");
     append(png, 0); /* for looking at */
     write_chunk(png, "sRGB");
+    for (const char *c = "Comment"; *c; c++)
+        append(png, *c);
+    append(png, 0);
+    for (const char *c = output_note(); *c && png->count < NOTE_MOST; c++)
+        append(png, *c);
+    if (*output_note())
+        write_chunk(png, "tEXt");
+    png->count = 0;
 }
 
 bool png_write(const struct image *image, const struct tone *tone, const char *path,

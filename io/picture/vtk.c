@@ -3,6 +3,8 @@
  * all numbers arrive. Arrays are columns, so the leaves are walked once for each. */
 #include "io/picture/vtk.h"
 
+#include <string.h>
+
 #include "geom/stop.h"
 #include "io/run/output.h"
 
@@ -65,6 +67,17 @@ static void write_point_data(struct output *output, const struct shading *shadin
     putc('\n', output->file);
 }
 
+/* Writes the line that says what the file is; the format allows 256 characters. */
+static void write_title(struct output *output)
+{
+    char title[256];
+    snprintf(title, sizeof title, "radiosity in W/m^2, made by %s",
+             *output_note() ? output_note() : "phr\n");
+    for (char *c = title; *c; c++)
+        *c = *c == '\n' ? ' ' : *c;
+    fprintf(output->file, "%.*s\n", (int)strlen(title) - 1, title);
+}
+
 bool vtk_write(const struct shading *shading, const float *errors, const char *path,
                struct error *error)
 {
@@ -79,8 +92,9 @@ bool vtk_write(const struct shading *shading, const float *errors, const char *p
     struct output output;
     if (!output_open(&output, path, error))
         return false;
-    fprintf(output.file, "# vtk DataFile Version 3.0\nradiosity in W/m^2, made by phr\n"
-                         "BINARY\nDATASET POLYDATA\n");
+    fprintf(output.file, "# vtk DataFile Version 3.0\n");
+    write_title(&output);
+    fprintf(output.file, "BINARY\nDATASET POLYDATA\n");
     write_points(&output, shading, error);
     fprintf(output.file, "POLYGONS %lld %lld\n", cells, 4 * cells);
     write_column(&output, shading, errors, CORNERS, error);

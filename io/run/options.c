@@ -452,23 +452,25 @@ static bool check_rules(const struct options *o, struct error *error)
     return true;
 }
 
+static const struct options DEFAULTS = {
+    .samples = 3,
+    .criterion = {.oracle = ORACLE_ERROR,
+                  .linking = LINKING_TREE,
+                  .form_factor = FORM_FACTOR_POLYGON,
+                  .solver = SOLVER_CG,
+                  .balance = BALANCE_DEFAULT,
+                  .epsilon = -1.0,
+                  .min_area = 1e-10,
+                  .max_level = 10,
+                  .alpha = 0.5,
+                  .tolerance = 1e-5,
+                  .max_iterations = 1000,
+                  .final_gather = NOT_GIVEN},
+};
+
 bool options_parse(struct options *options, int argc, char **argv, struct error *error)
 {
-    *options = (struct options){
-        .samples = 3,
-        .criterion = {.oracle = ORACLE_ERROR,
-                      .linking = LINKING_TREE,
-                      .form_factor = FORM_FACTOR_POLYGON,
-                      .solver = SOLVER_CG,
-                      .balance = BALANCE_DEFAULT,
-                      .epsilon = -1.0,
-                      .min_area = 1e-10,
-                      .max_level = 10,
-                      .alpha = 0.5,
-                      .tolerance = 1e-5,
-                      .max_iterations = 1000,
-                      .final_gather = NOT_GIVEN},
-    };
+    *options = DEFAULTS;
     options->outputs = alloc_array((size_t)argc, sizeof *options->outputs);
     options->views = alloc_array((size_t)argc, sizeof *options->views);
     for (int i = 1; i < argc; i++) {
@@ -510,7 +512,7 @@ static void describe(const struct options *options, const char *name)
     if (option->set == set_flag)
         snprintf(line, room, "%s %s\n", name,
                  *(const bool *)(const void *)field ? "on" : "off");
-    else if (option->set == set_integer)
+    else if (option->set == set_integer || option->set == set_gather)
         snprintf(line, room, "%s %d\n", name, *(const int *)(const void *)field);
     else if (option->set != set_choice)
         snprintf(line, room, "%s %.17g\n", name, *(const double *)(const void *)field);
@@ -558,6 +560,27 @@ const char *options_run_settings(const struct options *options)
         "--form-factor",
         "--solver", "--epsilon", "--accuracy", "--max-level", "--min-area", NULL};
     return describe_all(options, NAMES);
+}
+
+const char *options_light_settings(const struct options *options)
+{
+    static const char *const NAMES[] = {
+        "--two-sided", "--two-sided-lamps", "--ke", "--oracle", "--linking",
+        "--form-factor", "--solver", "--epsilon", "--accuracy", "--max-level",
+        "--min-area", "--tolerance", "--final-gather", NULL};
+    struct options plain = DEFAULTS;
+    char line[100];
+    size_t length = 0;
+    set_defaults(&plain);
+    settings[0] = '\0';
+    for (const char *const *name = NAMES; *name; name++, settings[length] = '\0') {
+        describe(&plain, *name);
+        snprintf(line, sizeof line, "%s", settings + length);
+        settings[length] = '\0';
+        describe(options, *name);
+        length += strcmp(settings + length, line) == 0 ? 0 : strlen(settings + length);
+    }
+    return settings;
 }
 
 void options_free(struct options *options)

@@ -10,6 +10,7 @@
 #include "rad/model.h"
 
 #define PHR_VERSION "0.3"
+#define PHR_FORMAT 1 /* of --stats and of notes in outputs; a change breaks readers */
 
 /* Formats of outputs, in the order of the table in io/run/options.c. */
 enum output_format { FORMAT_PPM, FORMAT_PFM, FORMAT_PNG, FORMAT_HDR, FORMAT_PLY,
@@ -75,6 +76,10 @@ void options_free(struct options *options);
  * next call. */
 const char *options_link_settings(const struct options *options);
 const char *options_run_settings(const struct options *options);
+
+/* Returns those settings that the light depends on and that are not the defaults, as
+ * above. Overwritten by the next call. */
+const char *options_light_settings(const struct options *options);
 
 /* True if the format is a mesh, false if it is a picture. */
 bool format_is_mesh(enum output_format format);

@@ -293,6 +293,24 @@ bool output_probe(const char *path, struct error *error)
     return true;
 }
 
+static const char *note = "";
+
+void output_set_note(const char *lines)
+{
+    note = lines;
+}
+
+const char *output_note(void)
+{
+    return note;
+}
+
+void output_write_note(struct output *output, const char *before)
+{
+    for (const char *line = note; *line; line = strchr(line, '\n') + 1)
+        fprintf(output->file, "%s%.*s\n", before, (int)strcspn(line, "\n"), line);
+}
+
 void output_uint32(struct output *output, uint32_t value)
 {
     for (int k = 0; k < 4; k++)

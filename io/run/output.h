@@ -37,6 +37,14 @@ bool output_open(struct output *output, const char *path, struct error *error);
  * A request to stop ends writing to a stream with an error. */
 bool output_close(struct output *output, struct error *error);
 
+/* What every picture and mesh of the process says of itself: lines of ASCII, each with
+ * its newline; borrowed. Returned is "" before one is set. */
+void output_set_note(const char *lines);
+const char *output_note(void);
+
+/* Writes these lines, `before` in front of each. */
+void output_write_note(struct output *output, const char *before);
+
 /* Write binary numbers, least significant byte first. */
 void output_uint32(struct output *output, uint32_t value);
 void output_float(struct output *output, float value);

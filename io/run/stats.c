@@ -4,7 +4,9 @@
 #include "io/run/stats.h"
 
 #include <inttypes.h>
+#include <string.h>
 
+#include "io/run/options.h"
 #include "io/run/output.h"
 
 static const char *const PHASE_NAMES[PHASE_COUNT] = {
@@ -58,6 +60,19 @@ static void write_integer(FILE *file, const char *key, int64_t value)
 static void write_real(FILE *file, const char *key, double value)
 {
     fprintf(file, "  \"%s\": %.17g,\n", key, value);
+}
+
+/* Writes what was computed, by which version. */
+static void write_origin(FILE *file, const struct stats *stats)
+{
+    fprintf(file, "  \"version\": \"%s\",\n  \"format\": %d,\n", PHR_VERSION, PHR_FORMAT);
+    fprintf(file, "  \"scene\": {\"name\": \"%s\", \"checksum\": \"%016" PRIx64 "\"},\n",
+            stats->scene, stats->scene_checksum);
+    fprintf(file, "  \"options\": [");
+    for (const char *line = stats->options; *line; line = strchr(line, '\n') + 1)
+        fprintf(file, "%s\"%.*s\"", line == stats->options ? "" : ", ",
+                (int)strcspn(line, "\n"), line);
+    fprintf(file, "],\n");
 }
 
 static void write_counts(FILE *file, const struct stats *stats)
@@ -188,6 +203,7 @@ bool stats_write(const struct stats *stats, const char *path, struct error *erro
     if (!output_open(&output, path, error))
         return false;
     fprintf(output.file, "{\n");
+    write_origin(output.file, stats);
     write_counts(output.file, stats);
     write_seconds(output.file, stats);
     write_balance(output.file, stats);
