@@ -238,7 +238,7 @@ int main(int argc, char **argv)
         idle_warn(&run);
     if (parsed && words) {
         if (run.comm.rank == 0 && run.options.help)
-            options_print_help(stdout);
+            options_print_help(run.options.help_on, stdout);
         else if (run.comm.rank == 0)
             printf("phr %s (%s build), MIT licence\n", PHR_VERSION, comm_build());
     } else if (parsed && run.options.validate) {

@@ -33,6 +33,11 @@ sed 's/\\-/-/g' phr.1 | grep -oE '(^|[^a-zA-Z-])--[a-z][a-z-]+' |
 check "the man page names no option that does not exist" \
     [ -z "$(grep -vxF -f "$work/in-help" "$work/named")" ]
 
+missing=$(while read -r option; do
+    ./phr --help="${option#--}" | sed -n 1p | grep -q -- "^  $option" || echo "$option"
+done <"$work/in-help")
+check "--help=OPTION has each of them: $missing" [ -z "$missing" ]
+
 if command -v groff >/dev/null; then
     groff -man -ww -Tascii phr.1 >"$work/page" 2>"$work/warnings"
     check "the man page renders without a warning" [ ! -s "$work/warnings" ]

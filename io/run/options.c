@@ -351,12 +351,27 @@ static const struct option OPTIONS[] = {
     {"--version", set_flag, FIELD(version), 0, 0, NULL},
 };
 
+/* Finds the option of an argument "--option", "--option=value" or "-o". */
 static const struct option *find_option(const char *name)
 {
+    size_t length = strncmp(name, "--", 2) == 0 ? strcspn(name, "=") : strlen(name);
     for (size_t i = 0; i < sizeof OPTIONS / sizeof OPTIONS[0]; i++)
-        if (strcmp(name, OPTIONS[i].name) == 0)
+        if (strncmp(name, OPTIONS[i].name, length) == 0 && !OPTIONS[i].name[length])
             return &OPTIONS[i];
-    return NULL;
+    return strcmp(name, "-h") == 0 ? find_option("--help") : NULL;
+}
+
+/* Takes the option of --help=OPTION, whose dashes may be left out. */
+static bool set_help_on(struct options *options, const char *name, struct error *error)
+{
+    char dashed[40];
+    snprintf(dashed, sizeof dashed, "--%s", name);
+    const struct option *option = find_option(name);
+    option = option ? option : find_option(dashed);
+    if (!option)
+        return error_set(error, EXIT_USAGE, "--help: there is no option %s", name);
+    options->help_on = option->name;
+    return true;
 }
 
 static bool add_scene(struct options *options, const char *path, struct error *error)
@@ -473,9 +488,14 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
     *options = DEFAULTS;
     options->outputs = alloc_array((size_t)argc, sizeof *options->outputs);
     options->views = alloc_array((size_t)argc, sizeof *options->views);
+    bool files = false; /* behind "--" */
     for (int i = 1; i < argc; i++) {
         const char *argument = argv[i];
-        if (argument[0] != '-' || argument[1] == '\0') {
+        if (!files && strcmp(argument, "--") == 0) {
+            files = true;
+            continue;
+        }
+        if (files || argument[0] != '-' || argument[1] == '\0') {
             if (!add_scene(options, argument, error))
                 return false;
             continue;
@@ -487,9 +507,16 @@ bool options_parse(struct options *options, int argc, char **argv, struct error 
         options->given |= UINT64_C(1) << (option - OPTIONS);
         options->overruled &= ~(UINT64_C(1) << (option - OPTIONS));
         bool alone = option->set == set_flag || option->set == set_paper;
-        if (!alone && ++i >= argc)
+        const char *value = argument[1] == '-' ? strchr(argument, '=') : NULL;
+        value = value ? value + 1 : NULL;
+        bool asks = value && option->offset == FIELD(help);
+        if (asks && !set_help_on(options, value, error))
+            return false;
+        if (alone && value && !asks)
+            return error_set(error, EXIT_USAGE, "%s takes no value", option->name);
+        if (!alone && !value && ++i >= argc)
             return error_set(error, EXIT_USAGE, "%s needs a value", argument);
-        if (!option->set(&(struct argument){option, argv[i], options,
+        if (!option->set(&(struct argument){option, value ? value : argv[i], options,
                                             (char *)options + option->offset, error}))
             return false;
     }
@@ -617,7 +644,23 @@ static const char HELP[] =
     "  phr room.obj -o room.png\n"
     "  mpiexec -n 4 phr scenes/cornell.obj --view scenes/cornell.view -o box.pfm\n";
 
-void options_print_help(FILE *file)
+/* The help has two columns; an entry ends with its line or before the next option. */
+void options_print_help(const char *option, FILE *file)
 {
-    fputs(HELP, file);
+    const struct option *o = option ? find_option(option) : NULL;
+    const char *at = strstr(HELP, "  -o");
+    size_t length = o ? strlen(option) : 0;
+    while (o && at && (strncmp(at, option, length) != 0 || !strchr(" ,\n", at[length])))
+        at = strpbrk(at + 1, "-");
+    if (!o || !at) {
+        fputs(HELP, file);
+        return;
+    }
+    const char *end = strstr(at, " --"), *line = strchr(at, '\n');
+    fprintf(file, "  %.*s\n", (int)((end && end < line ? end : line) - at), at);
+    if (o->high > o->low)
+        fprintf(file, "  from %g to %g\n", o->low, o->high);
+    if (o->choices)
+        fprintf(file, "  one of %s\n", o->choices);
+    fputs("The manual, phr.1, has more.\n", file);
 }

@@ -58,6 +58,7 @@ struct options {
     enum ke ke;               /* of Ke, and of the emissions of a PLY file */
     bool two_sided;           /* backs reflect */
     bool two_sided_lamps;     /* backs of lamps, too; only with two_sided */
+    const char *help_on;      /* option of --help=OPTION, or NULL */
     bool flat, quiet, verbose, help, version, validate, form_factors;
     struct criterion criterion;
     uint64_t given;           /* bit i: the i-th option of the parser's table */
@@ -98,7 +99,7 @@ bool options_show(const struct options *options, int view);
  * joined by commas; an empty text if there are none. Overwritten by the next call. */
 const char *options_given(const struct options *options, const char *const *names);
 
-/* Prints the text of --help. */
-void options_print_help(FILE *file);
+/* Prints the text of --help, or the part of it on an option, with its range. */
+void options_print_help(const char *option, FILE *file);
 
 #endif

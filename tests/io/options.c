@@ -141,6 +141,13 @@ static void test_switches(void)
     tap_ok(parse("--verbose a.obj") && options.verbose && !options.quiet, "--verbose");
     tap_ok(parse("--help") && options.help && !options.version && !options.scene,
            "--help needs no scene");
+    tap_ok(parse("-h") && options.help && !options.help_on, "nor does -h");
+    tap_ok(parse("--help=epsilon") && strcmp(options.help_on, "--epsilon") == 0 &&
+               parse("--help=-o") && strcmp(options.help_on, "-o") == 0,
+           "--help=OPTION, with dashes or without");
+    tap_ok(parse("--samples=5 --size=7x8 -- -a.obj") && options.samples == 5 &&
+               options.width == 7 && strcmp(options.scene, "-a.obj") == 0,
+           "values behind '=', and a scene behind --");
     tap_ok(parse("--version") && options.version && !options.help,
            "--version needs no scene");
     tap_ok(parse("--validate") && options.validate && !options.scene,
@@ -351,9 +358,13 @@ static void test_errors(void)
     check_refused("--quiet -o a.ppm", "no scene given; see --help");
     check_refused("a.obj b.obj", "one scene at a time: a.obj and b.obj");
     check_refused("a.obj --fast", "unknown option --fast; see --help");
-    check_refused("a.obj --flat=1", "unknown option --flat=1; see --help");
+    check_refused("a.obj --flat=1", "--flat takes no value");
+    check_refused("a.obj --flot=1", "unknown option --flot=1; see --help");
+    check_refused("a.obj -o=1", "unknown option -o=1; see --help");
+    check_refused("a.obj --samples=x", "--samples: 'x' is not a number");
+    check_refused("--help=eps", "--help: there is no option eps");
     check_refused("a.obj --Flat", "unknown option --Flat; see --help");
-    check_refused("a.obj --", "unknown option --; see --help");
+    check_refused("a.obj -- --flat", "one scene at a time: a.obj and --flat");
     check_refused("a.obj -f", "unknown option -f; see --help");
     check_refused("a.obj -o ppm:",
                   "-o ppm:: the name must end in .ppm, .pfm, .png, .hdr, .ply or .vtk, "
@@ -525,7 +536,7 @@ static bool read_help(char *text)
     FILE *file = tmpfile();
     if (!file)
         return false;
-    options_print_help(file);
+    options_print_help(NULL, file);
     rewind(file);
     size_t size = fread(text, 1, TEXT_MAX - 1, file);
     text[size] = '\0';
