@@ -32,7 +32,8 @@
 #   make pace            renews the instructions of runs in tests/pace (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
 #   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
-#   make install         to $(DESTDIR)$(prefix)      make uninstall  make clean
+#   make install         to $(DESTDIR)$(prefix), phr as it was built last, with SERIAL=1
+#                        or without                  make uninstall  make clean
 #
 # Knobs: MPICC, CC, MPIEXEC, CFLAGS, CPPFLAGS, LDFLAGS, prefix, DESTDIR.
 # Other builds side by side: BUILD is where objects go, PHR and IMGDIFF the programs made
@@ -48,6 +49,7 @@ INSTALL ?= install
 prefix ?= /usr/local
 bindir = $(prefix)/bin
 mandir = $(prefix)/share/man
+docdir = $(prefix)/share/doc/phr
 PHR ?= phr
 IMGDIFF ?= build/imgdiff
 
@@ -55,6 +57,11 @@ IMGDIFF ?= build/imgdiff
 # errno no result changes, and sqrt and llrint become instructions.)
 STRICT = -std=c99 -ffp-contract=off -fno-math-errno
 WARN = -pedantic -Wall -Wextra -Wshadow -Wconversion
+
+# How PHR was built last.
+ifeq ($(MAKECMDGOALS),install)
+-include build/$(notdir $(PHR)).kind
+endif
 
 ifdef SERIAL
 BUILD ?= build/serial
@@ -104,6 +111,8 @@ all: $(PHR) $(IMGDIFF) build/id
 # again.
 $(PHR): $(BUILD)/phr FORCE
 	@cmp -s $(BUILD)/phr $@ || cp $(BUILD)/phr $@
+	@mkdir -p build
+	@printf '%s\n' "$(if $(SERIAL),SERIAL = 1)" "BUILD ?= $(BUILD)" >build/$(@F).kind
 
 $(IMGDIFF): $(BUILD)/imgdiff FORCE
 	@mkdir -p $(@D)
@@ -280,14 +289,16 @@ $(BUILD)/fuzz-%: $(BUILD)/tests/fuzz/%.o $(BUILD)/libphr.a
 	$(COMPILE) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lm
 
 install: $(PHR) $(IMGDIFF)
-	mkdir -p $(DESTDIR)$(bindir) $(DESTDIR)$(mandir)/man1
+	mkdir -p $(DESTDIR)$(bindir) $(DESTDIR)$(mandir)/man1 $(DESTDIR)$(docdir)
 	$(INSTALL) -m 755 $(PHR) $(DESTDIR)$(bindir)/phr
 	$(INSTALL) -m 755 $(IMGDIFF) $(DESTDIR)$(bindir)/imgdiff
 	$(INSTALL) -m 644 phr.1 tools/imgdiff.1 $(DESTDIR)$(mandir)/man1
+	$(INSTALL) -m 644 LICENSE $(DESTDIR)$(docdir)
 
 uninstall:
 	rm -f $(DESTDIR)$(bindir)/phr $(DESTDIR)$(bindir)/imgdiff
 	rm -f $(DESTDIR)$(mandir)/man1/phr.1 $(DESTDIR)$(mandir)/man1/imgdiff.1
+	rm -f $(DESTDIR)$(docdir)/LICENSE
 
 clean:
 	rm -rf build phr cornell.png cornell.pfm cornell.ply

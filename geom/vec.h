@@ -6,8 +6,13 @@
 #ifndef GEOM_VEC_H
 #define GEOM_VEC_H
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
+
+#if FLT_EVAL_METHOD == 2 || FLT_EVAL_METHOD < 0
+#error "x87 rounds to other numbers than all other processors: add -msse2 -mfpmath=sse"
+#endif
 
 static const double PI = 3.14159265358979323846;
 

@@ -89,8 +89,29 @@ check "install: imgdiff runs" \
     [ "$("$work/root/opt/phr/bin/imgdiff" --version)" = "imgdiff 0.3" ]
 check "install: its man page is there" \
     [ -s "$work/root/opt/phr/share/man/man1/imgdiff.1" ]
+check "install: the licence is there" \
+    cmp LICENSE "$work/root/opt/phr/share/doc/phr/LICENSE"
+check "CITATION.cff has this version" grep -q \
+    "^version: \"$(./phr --version | sed 's/phr \([0-9.]*\).*/\1/')\"" CITATION.cff
 $MAKE BUILD="$BUILD" uninstall DESTDIR="$work/root" prefix=/opt/phr \
     >>"$work/install.log" 2>&1
 check "uninstall leaves no file" [ -z "$(find "$work/root" -type f)" ]
+
+# What was built last is installed, without being built anew.
+unset BUILD
+$MAKE SERIAL=1 PHR=phr-last >"$work/last.log" 2>&1
+$MAKE PHR=phr-last install DESTDIR="$work/last" prefix= >>"$work/last.log" 2>&1
+check "a serial build is installed as it is" \
+    [ "$("$work/last/bin/phr" --version | grep -c 'serial build')" -eq 1 ]
+rm -f phr-last build/phr-last.kind
+
+x87='-std=c99 -fsyntax-only -mfpmath=387 -I.'
+echo 'int main(void) { return 0; }' >"$work/empty.c"
+if $CC $x87 "$work/empty.c" 2>/dev/null; then
+    $CC $x87 geom/error.c geom/triangle.c 2>"$work/x87.log"
+    check "x87 is refused with advice" grep -q 'add -msse2 -mfpmath=sse' "$work/x87.log"
+else
+    tap 0 "x87 is refused # SKIP the compiler has no x87"
+fi
 
 tap_done
