@@ -133,6 +133,7 @@ noted() {
     cp scenes/*.mtl "$work/$2"
     $MPIEXEC -n "$1" ./phr "$work/$2/a\"ä.obj" --epsilon 1e-3 --two-sided --quiet \
         --size 9x9 -o "$work/$2/n.ply" -o "$work/$2/n.vtk" -o "$work/$2/n.png" \
+        -o "$work/$2/n.hdr" \
         --stats "$work/$2/n.json"
 }
 noted 1 one
@@ -140,7 +141,7 @@ noted 3 three
 hash=$(sed -n 's/.*"scene": .*"checksum": "\([0-9a-f]*\)".*/\1/p' "$work/one/n.json")
 triangles=$(stat_of "$work/one/n.json" triangles)
 origin="scene a[?]{3}[.]obj, $triangles triangles, checksum $hash"
-for suffix in ply vtk png; do
+for suffix in ply vtk png hdr; do
     tr '\0' '\n' <"$work/one/n.$suffix" >"$work/note"
     check "a .$suffix names version, scene and settings" [ "$(grep -aoE \
         "phr $number, format 1|$origin|--two-sided on|--epsilon 0.001" "$work/note" |

@@ -47,9 +47,10 @@ bool hdr_write(const struct image *image, const char *path, struct error *error)
     struct output output;
     if (!output_open(&output, path, error))
         return false;
-    fprintf(output.file,
-            "#?RADIANCE\nSOFTWARE=phr\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n",
-            image->height, image->width);
+    fprintf(output.file, "#?RADIANCE\nSOFTWARE=phr\n");
+    output_write_note(&output, "# ");
+    fprintf(output.file, "FORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n", image->height,
+            image->width);
     const float *rgb = image->rgb;
     for (int y = 0; y < image->height && stop_check(error); y++)
         for (int x = 0; x < image->width; x++, rgb += 3) {
