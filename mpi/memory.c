@@ -29,7 +29,7 @@ enum { BYTES_PER_RAY = 60 };
 /* The part of the machines' memory that links, patches and clusters may take. */
 static const double SHARE = 0.8;
 
-/* What a rank may take, as told to the others; no padding. */
+/* The memory of a rank, as told to the others; no padding. */
 struct machine {
     uint64_t name;       /* hash */
     int64_t bytes, room; /* of the machine, of the rank; 0: unknown, no limit */

@@ -66,8 +66,8 @@ check "other settings than those of links are free" same load-closed closed
 
 mkdir "$work/folder"
 cp scenes/cornell.obj scenes/cornell.mtl "$work/folder"
-run moved 2 "$work/folder/cornell.obj" --epsilon 1e-4 --linking pairs --size 40x40 --quiet \
-    --load-links "$work/links-1"
+run moved 2 "$work/folder/cornell.obj" --epsilon 1e-4 --linking pairs --size 40x40 \
+    --quiet --load-links "$work/links-1"
 check "the scene may have moved" same moved plain
 sed 's/^Kd 0.7/Kd 0.6/' scenes/cornell.mtl >"$work/folder/cornell.mtl"
 check "another material is another scene" \

@@ -1,5 +1,5 @@
-# Runs that lose nothing: of outputs one of which cannot be written the others are, and a
-# line at the end says which is not; a checkpoint that was not made is said; limits of the
+# Runs that lose nothing: an output that cannot be written takes no other along, and a
+# line at the end names it; a checkpoint that was not made is said; limits of the
 # address space and of the stack are kept; no file waits for a writer; signals of batch
 # systems and terminals stop a run as SIGTERM does. On 1 and on 3 ranks.
 . tests/tap.sh

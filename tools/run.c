@@ -26,32 +26,37 @@ void run_say(struct run *run, const char *format, ...)
     va_end(arguments);
 }
 
+/* Errors of outputs that are not made, on rank 0. */
+static struct error *lost;
+static int lost_count;
+
 void run_lose(struct run *run, const struct error *error)
 {
     bool known = error->code == EXIT_DONE;
     if (!known && !stop_check(&run->error))
         return;
-    for (int i = 0; i < run->lost_count && !known; i++)
-        known = strcmp(run->lost[i].text, error->text) == 0;
+    for (int i = 0; i < lost_count && !known; i++)
+        known = strcmp(lost[i].text, error->text) == 0;
     if (known)
         return;
-    run->lost = alloc_resize(run->lost, (size_t)run->lost_count + 1, sizeof *run->lost);
-    run->lost[run->lost_count++] = *error;
+    lost = alloc_resize(lost, (size_t)lost_count + 1, sizeof *lost);
+    lost[lost_count++] = *error;
 }
 
 void run_end(struct run *run)
 {
     if (run->comm.rank == 0 && (fflush(stdout) != 0 || ferror(stdout)))
         error_set(&run->error, EXIT_FAILED, "cannot write to the standard output");
-    if (run->error.code == EXIT_DONE && run->lost_count > 0)
-        run->error = run->lost[--run->lost_count];
+    if (run->error.code == EXIT_DONE && lost_count > 0)
+        run->error = lost[--lost_count];
     comm_agree(&run->comm, &run->error);
     progress_view_clear(&run->progress);
-    for (int i = 0; i < run->lost_count; i++)
-        fprintf(stderr, "phr: %s\n", run->lost[i].text);
+    for (int i = 0; i < lost_count; i++)
+        fprintf(stderr, "phr: %s\n", lost[i].text);
     if (run->error.code != EXIT_DONE && run->comm.rank == 0)
         fprintf(stderr, "phr: %s\n", run->error.text);
-    alloc_free(run->lost);
+    alloc_free(lost);
+    lost = NULL;
 }
 
 const char *run_scene_name(const struct run *run)

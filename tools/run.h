@@ -24,8 +24,6 @@ struct run {
     struct stats stats;
     struct progress_view progress; /* on rank 0, unless --quiet */
     const char *kept;              /* path of the last checkpoint made or read, or NULL */
-    struct error *lost;            /* [lost_count] of outputs not made, on rank 0; owned */
-    int lost_count;
     struct error error;            /* ends the run */
     double start;                  /* comm_seconds() at the beginning */
     double first_bound;            /* vote.remaining of the first iteration of a pass */
@@ -43,8 +41,8 @@ __attribute__((format(printf, 2, 3)))
 #endif
 void run_say(struct run *run, const char *format, ...);
 
-/* On rank 0 alone. Keeps the error of an output, if there is one, for the end: the run
- * goes on, but for one that is asked to stop, whose error it is. */
+/* On rank 0 alone. Keeps the error of an output, if there is one, for run_end(): the run
+ * goes on. Where it is asked to stop, the error is that of the run. */
 void run_lose(struct run *run, const struct error *error);
 
 /* Collective. Prints the errors of the run and of its outputs, by which all ranks have
@@ -55,8 +53,7 @@ void run_end(struct run *run);
  * for those that are not of ASCII, or need a backslash somewhere. */
 const char *run_scene_name(const struct run *run);
 
-/* Lets outputs say what they are made of, and with which options, wherever and on however
- * many ranks. Pre: the scene is prepared. */
+/* Lets outputs name the scene and the settings of light. Pre: the scene is prepared. */
 void run_set_note(const struct run *run);
 
 /* Sets the error of a run that a signal stops. Returns false. */

@@ -9,8 +9,8 @@
  * (run_lose()), with a warning. False if the run is asked to stop, on all ranks. */
 bool stored_save(struct run *run, enum store_kind kind, const char *path);
 
-/* Collective. Before the final gather: makes the checkpoint that no pass has made, as of a
- * run resumed when it was finished, or tells why there is none. False as above. */
+/* Collective. Before the final gather: makes the checkpoint that no pass has made, as of
+ * a run resumed when it was finished, or tells the reason for none. False as above. */
 bool stored_complete(struct run *run);
 
 /* Collective. Reads a state. Pre: homes are not assigned. False on an error, on all

@@ -67,7 +67,7 @@ static void write_point_data(struct output *output, const struct shading *shadin
     putc('\n', output->file);
 }
 
-/* Writes the line that says what the file is; the format allows 256 characters. */
+/* Writes the title, for which the format allows 256 characters. */
 static void write_title(struct output *output)
 {
     char title[256];

@@ -78,8 +78,7 @@ void options_free(struct options *options);
 const char *options_link_settings(const struct options *options);
 const char *options_run_settings(const struct options *options);
 
-/* Returns those settings that the light depends on and that are not the defaults, as
- * above. Overwritten by the next call. */
+/* Returns the settings of light that are not the defaults, as above. */
 const char *options_light_settings(const struct options *options);
 
 /* True if the format is a mesh, false if it is a picture. */

@@ -37,8 +37,8 @@ bool output_open(struct output *output, const char *path, struct error *error);
  * A request to stop ends writing to a stream with an error. */
 bool output_close(struct output *output, struct error *error);
 
-/* What every picture and mesh of the process says of itself: lines of ASCII, each with
- * its newline; borrowed. Returned is "" before one is set. */
+/* The note in every picture and mesh of the process: lines of ASCII, each with its
+ * newline; borrowed. Returned is "" before one is set. */
 void output_set_note(const char *lines);
 const char *output_note(void);
 

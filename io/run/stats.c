@@ -62,11 +62,13 @@ static void write_real(FILE *file, const char *key, double value)
     fprintf(file, "  \"%s\": %.17g,\n", key, value);
 }
 
-/* Writes what was computed, by which version. */
+/* Writes the version, the scene and the settings. */
 static void write_origin(FILE *file, const struct stats *stats)
 {
-    fprintf(file, "  \"version\": \"%s\",\n  \"format\": %d,\n", PHR_VERSION, PHR_FORMAT);
-    fprintf(file, "  \"scene\": {\"name\": \"%s\", \"checksum\": \"%016" PRIx64 "\"},\n",
+    fprintf(file, "  \"version\": \"%s\",\n  \"format\": %d,\n", PHR_VERSION,
+            PHR_FORMAT);
+    fprintf(file,
+            "  \"scene\": {\"name\": \"%s\", \"checksum\": \"%016" PRIx64 "\"},\n",
             stats->scene, stats->scene_checksum);
     fprintf(file, "  \"options\": [");
     for (const char *line = stats->options; *line; line = strchr(line, '\n') + 1)
