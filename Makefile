@@ -99,7 +99,7 @@ vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
 vpath %.c tests/tools tests/whole
 
 # Programs that compare phr with what is true.
-BENCHES = reference measure direct replay
+BENCHES = reference measure direct replay prices
 # Formats with a fuzz harness in tests/fuzz/ and a corpus, which is replayed as a test.
 FUZZERS = obj mtl ply image view links checkpoint clusters
 REPLAYS = $(FUZZERS:%=$(BUILD)/tests/fuzz/%)

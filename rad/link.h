@@ -24,8 +24,8 @@ struct link {
     uint8_t parts_p[3], parts_q[3]; /* see rad/beyond/patch_link.h */
     uint8_t seen;        /* share of the segments' weight that arrives, in 252nds; 0
                             only if none does; or a proof, see below */
-    uint8_t cost;        /* predicted cost of splitting it, in box and triangle tests,
-                            >= 1; short form of rad/compact.h */
+    uint8_t cost;        /* box and triangle tests of its form factor, and alpha of its
+                            parent's, >= 1; short form of rad/compact.h */
 };
 
 /* Values of `seen`: all segments arrive; or it is proved that they do, p and q being too
@@ -43,9 +43,10 @@ static inline double link_area(const struct link *link)
     return link->seen ? (double)link->area : 0.0;
 }
 
+/* Predicted cost of splitting a link, in tests; form factors are in it. */
 static inline double link_cost(const struct link *link)
 {
-    return expand8(link->cost);
+    return expand8(link->cost) + 2 * TESTS_PER_FORM_FACTOR;
 }
 
 struct link_list {
@@ -64,8 +65,7 @@ void link_list_free(struct link_list *list);
 bool link_make(struct model *model, int32_t p, const struct facet *facet_p, int32_t q,
                const struct facet *facet_q, const struct link *parent, struct link *link);
 
-/* The cost of a link: the tests that its form factor took, plus a share of its parent's
- * cost (Sec. 3.3.1). `parent` as above. */
+/* The field `cost` of a link (Sec. 3.3.1). `parent` as above. */
 double link_predict_cost(const struct model *model, const struct octree_counts *work,
                          const struct link *parent);
 

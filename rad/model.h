@@ -42,7 +42,7 @@ struct criterion {
 };
 
 enum { GATHER_RAYS_MOST = 16384 };   /* of criterion.final_gather */
-enum { TESTS_PER_FORM_FACTOR = 8 };  /* tests that take about as long as one */
+enum { TESTS_PER_FORM_FACTOR = 12 }; /* tests that take as long as one: rad/link.c */
 
 struct cluster_light;
 

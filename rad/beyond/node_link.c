@@ -60,7 +60,7 @@ static void look(struct model *model, const struct meeting *m, int salt,
     double tests = (double)(model->counts.node_tests + model->counts.triangle_tests -
                             before.node_tests - before.triangle_tests);
     link->cost = compact8(real_max(1.0, tests));
-    model->estimating += TESTS_PER_FORM_FACTOR;
+    model->estimating += TESTS_PER_EXCHANGE;
     model->rays_spared += BUNDLE_RAYS - (model->counts.rays - before.rays);
 }
 

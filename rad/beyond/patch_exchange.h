@@ -12,6 +12,8 @@
 #include "rad/formfactor.h"
 #include "rad/model.h"
 
+enum { TESTS_PER_EXCHANGE = 100 }; /* tests that take about as long: prices.c */
+
 struct exchange {
     double area;       /* G with visibility */
     double unoccluded; /* an estimate of G without blockers, >= area */

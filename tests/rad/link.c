@@ -28,8 +28,9 @@ static void test_making(void)
     tap_ok(world.model.counts.rays == 16 && counts.rays == 16 &&
                tests_done(&world) == counts.node_tests + counts.triangle_tests,
            "its work is added to the counts");
-    tap_ok(tests_done(&world) > 0 && link.cost == compact8((double)tests_done(&world)),
-           "and is its cost");
+    tap_ok(tests_done(&world) > 0 && link.cost == compact8((double)tests_done(&world)) &&
+               model_work(&world.model) == tests_done(&world) + TESTS_PER_FORM_FACTOR,
+           "and is its cost, next to a constant");
     world_free(&world);
 }
 
@@ -74,11 +75,11 @@ static void test_cost(void)
     tap_ok(made && own > 0 && link.cost == compact8((double)own + 256.0),
            "a link inherits alpha of a cost");
     struct link children[4];
-    double inherited = 0.25 * link_cost(&link), sum = 0.0;
+    double inherited = 0.25 * expand8(link.cost), sum = 0.0;
     int64_t before = tests_done(&world);
     int count = link_split(&world.model, &link, 0, children);
     for (int k = 0; k < count; k++)
-        sum += link_cost(&children[k]);
+        sum += expand8(children[k].cost);
     double expected = 4.0 * inherited + (double)(tests_done(&world) - before);
     /* The short form rounds up, by at most an eighth. */
     tap_ok(count == 4 && sum >= expected && sum <= 1.125 * expected,
