@@ -2,8 +2,8 @@
  *
  * Each rank casts a ballot of integers and maxima, which travels with the radiosities of
  * its leaves, and all add them up, so the outcome is the same on any number of ranks. The
- * iterations end when nothing was split and the energy changes by little, or, with
- * --solver cg, the bound on what is still missing is small (mpi/beyond/descent.c).
+ * iterations end when the energy changes by little, or, with --solver cg, when nothing was
+ * split and the bound on what is still missing is small (mpi/beyond/descent.c).
  *
  * The power that escapes is the power that leaves surfaces, emitted or reflected, less
  * the power that links delivered: an open scene's real loss, plus the power that form
@@ -28,9 +28,10 @@ void ballot_add(struct ballot *sum, const struct ballot *ballot)
  * should continue" (Sec. 2.2): relative to all light. */
 struct vote solver_vote_jacobi(struct solver *solver, const struct ballot *sum)
 {
-    double light = flux_to_watts(solver->model.flux_unit, sum->light);
-    double change = flux_to_watts(solver->model.flux_unit, sum->change);
-    return vote_make(solver, sum, sum->change > 0 ? change / light : 0.0);
+    double change = sum->change > 0 ? (double)sum->change / (double)sum->light : 0.0;
+    struct vote vote = vote_make(solver, sum, change);
+    vote.converged = change <= solver->model.criterion.tolerance;
+    return vote;
 }
 
 struct vote vote_make(const struct solver *solver, const struct ballot *sum,
@@ -72,9 +73,8 @@ static void record_iteration(struct solver *solver)
 
 struct vote solver_vote(struct solver *solver)
 {
-    struct ballot sum = solver->ballot;
-    solver->turn.stop = (int)sum.stop;
-    struct vote vote = solver->steps.vote(solver, &sum);
+    solver->turn.stop = (int)solver->ballot.stop;
+    struct vote vote = solver->steps.vote(solver, &solver->ballot);
     record_iteration(solver);
     return vote;
 }

@@ -64,6 +64,15 @@ run load-closed 3 $pairs --load-links "$work/links-1" --solver jacobi --toleranc
 run closed 1 $pairs --solver jacobi --tolerance 1e-3
 check "other settings than those of links are free" same load-closed closed
 
+# --- the end of the paper's iterations ---
+
+few="scenes/cornell.obj --paper --epsilon 1e-4 --quiet"
+run one 2 $few --tolerance 1 --checkpoint "$work/one"
+check "the paper's first iteration changes less than all light: it is the last" \
+    [ "$(stat_of "$work/one.json" iterations)" -eq 1 ]
+run again 3 $few --tolerance 1 --resume "$work/one"
+check "as it is for who resumes" same again one
+
 mkdir "$work/folder"
 cp scenes/cornell.obj scenes/cornell.mtl "$work/folder"
 run moved 2 "$work/folder/cornell.obj" --epsilon 1e-4 --linking pairs --size 40x40 \

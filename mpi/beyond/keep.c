@@ -223,15 +223,14 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
     const int64_t *number = snapshot->number;
     if (solver->comm->rank == 0) {
         model->counts = (struct octree_counts){number[SNAPSHOT_RAYS],
-                                               number[SNAPSHOT_NODE_TESTS],
-                                               number[SNAPSHOT_TRIANGLE_TESTS]};
+            number[SNAPSHOT_NODE_TESTS], number[SNAPSHOT_TRIANGLE_TESTS]};
         model->walled_off = number[SNAPSHOT_WALLED_OFF];
         model->rays_spared = number[SNAPSHOT_RAYS_SPARED];
     }
     solver->turn.pass = number[SNAPSHOT_PASSES];
     solver->turn.iteration = number[SNAPSHOT_ITERATIONS];
-    bool as_limited = number[SNAPSHOT_LIMITED] == solver->memory.limit;
-    solver->memory.reached = as_limited ? number[SNAPSHOT_LIMITED] : 0;
+    int64_t limited = number[SNAPSHOT_LIMITED];
+    solver->memory.reached = limited == solver->memory.limit ? limited : 0;
     solver->beyond->accuracy = (struct accuracy){
         .rounds = number[SNAPSHOT_ROUNDS],
         .coarse = snapshot->value[SNAPSHOT_COARSE],
@@ -242,15 +241,16 @@ static void restore_numbers(struct solver *solver, struct vote *vote,
     }
     if (solver->turn.pass > 0) /* a link cache, before the first pass, has no epsilon */
         model_set_epsilon(model, snapshot->value[SNAPSHOT_EPSILON]);
+    bool may_end = solver->turn.pass > 0 && limited == solver->memory.reached;
     *vote = (struct vote){
-        .settled = number[SNAPSHOT_SETTLED] != 0 &&
-                   (as_limited || number[SNAPSHOT_LIMITED] == 0),
+        .settled = number[SNAPSHOT_SETTLED] != 0 && may_end,
         .links = snapshot->link_count,
         .remaining = snapshot->value[SNAPSHOT_REMAINING],
         .absorbed = snapshot->value[SNAPSHOT_ABSORBED],
         .escaped = snapshot->value[SNAPSHOT_ESCAPED],
     };
-    vote->converged = vote->settled && vote->remaining <= model->criterion.tolerance;
+    may_end = model->criterion.solver == SOLVER_JACOBI ? may_end : vote->settled;
+    vote->converged = may_end && vote->remaining <= model->criterion.tolerance;
 }
 
 int32_t *snapshot_restore(struct solver *solver, struct vote *vote,
