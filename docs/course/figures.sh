@@ -75,7 +75,7 @@ done | chart balance "Most work of a rank of 8, in means" \
 awk -f tools/timeline.awk $work/none-4.json $work/greedy-4.json >$here/timeline.svg
 cp $work/links.png $here
 ${MPIEXEC:-mpiexec} -n 4 ./phr --quiet --paper --epsilon 1e-3 scenes/doorway.obj \
-    --show owner --view scenes/doorway.view --size 200x150 --samples 1 -o $here/owner.png
+    --show owner --view scenes/doorway.view --size 400x300 --samples 1 -o $here/owner.png
 $work/leaves $work/by-factor-0.1.ply |
     patches mesh-factor -v from="3 -4 2.6" -v white=60
 awk 'NR > 1 { print $1, $3, $4 / 100 }' $work/errors.txt |
