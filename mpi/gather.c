@@ -72,8 +72,10 @@ void routes_renew(struct solver *solver)
 {
     struct routes *routes = &solver->routes;
     int ranks = solver->comm->size;
-    link_list_sort(&solver->links);
+    if (routes->trees == solver->model.forest->count)
+        return;
     routes_free(routes);
+    routes->trees = solver->model.forest->count;
     routes->receivers = list_patches(solver, can_receive);
     routes->leaves = list_patches(solver, is_leaf_that_changes);
     struct route *records = &routes->records;
@@ -85,10 +87,10 @@ void routes_renew(struct solver *solver)
         (int)comm_displacements(solver->comm, records->counts, records->at);
     size_t receivers = (size_t)routes->receivers.at[ranks];
     size_t own = (size_t)routes->receivers.counts[solver->comm->rank];
-    size_t radiosities = (size_t)records->at[ranks];
     routes->flux = alloc_array(BANDS * receivers, sizeof *routes->flux);
     routes->own_flux = alloc_array(BANDS * own, sizeof *routes->own_flux);
-    routes->radiosities = alloc_array(radiosities, sizeof *routes->radiosities);
+    routes->radiosities = alloc_array((size_t)records->at[ranks],
+                                      sizeof *routes->radiosities);
 }
 
 /* --- light over links --- */
@@ -160,6 +162,9 @@ void solver_gather(struct solver *solver)
 {
     if (solver->turn.fresh) {
         double start = comm_seconds();
+        link_list_sort(&solver->links);
+        solver->account.seconds[PHASE_SOLVE] += comm_seconds() - start;
+        start = comm_seconds();
         routes_renew(solver);
         solver->account.seconds[PHASE_ROUTES] += comm_seconds() - start;
         if (solver->steps.begin)

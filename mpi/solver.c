@@ -155,14 +155,11 @@ static int64_t count_proxies(const struct solver *solver)
 /* Transfers 1 and leaves no trace in the accounts: it is not of the method. */
 static void carry_ones_unseen(struct solver *solver)
 {
-    int64_t bytes = solver->account.bytes_gather, copied = solver->account.copied;
-    double seconds[PHASE_COUNT];
-    memcpy(seconds, solver->account.seconds, sizeof seconds);
-    routes_renew(solver); /* a finished run that was resumed has none */
+    struct account before = solver->account;
+    link_list_sort(&solver->links); /* a finished run that was resumed has no routes */
+    routes_renew(solver);
     solver_carry_ones(solver);
-    solver->account.bytes_gather = bytes;
-    solver->account.copied = copied;
-    memcpy(solver->account.seconds, seconds, sizeof seconds);
+    solver->account = before;
 }
 
 void solver_measure_row_sums(struct solver *solver, struct stats *stats)

@@ -46,13 +46,13 @@ struct route {
     int *at;          /* [ranks + 1] where those of each home begin */
 };
 
-/* All that travels in every transfer of light over the same trees: flux to the homes of
- * patches, and radiosities back. Found once, so that the transfers need no IDs, no counts
- * and no searching. */
+/* All that travels in every transfer of light over the same trees, flux to homes and
+ * radiosities back: found once, so that transfers need no IDs, counts or searching. */
 struct routes {
     struct route receivers;  /* patches that can receive light */
     struct route leaves;     /* leaves whose B can change */
     struct route records;    /* of these leaves, behind them the ballot of their home */
+    int64_t trees;           /* patches that there were when the routes were renewed */
     int64_t *flux;           /* [BANDS * receivers] room for flux sent home */
     int64_t *own_flux;       /* [BANDS * receivers of this rank] room for its sums */
     struct rgb *radiosities; /* [records] room for all leaves and ballots */
@@ -157,8 +157,7 @@ void solver_assign_roots(struct solver *solver);
  * then it counts as not begun, and there is no light over the links there are. */
 bool solver_refine(struct solver *solver);
 
-/* Local. Renews the routes, and sorts the links, once links have changed. Pre: all ranks
- * have the same trees. */
+/* Local. Renews the routes, if patches are new. Pre: all ranks have the same trees. */
 void routes_renew(struct solver *solver);
 void routes_free(struct routes *routes);
 

@@ -1,9 +1,8 @@
 /* Step 8: the vote on another iteration.
  *
  * Each rank casts a ballot of integers and maxima, which travels with the radiosities of
- * its leaves, and all add them up, so the outcome is the same on any number of ranks. The
- * iterations end when the energy changes by little, or, with --solver cg, when nothing was
- * split and the bound on what is still missing is small (mpi/beyond/descent.c).
+ * its leaves, and all add them up: on any number of ranks the outcome is the same. Energy
+ * that changes by little ends the iterations, a bound those of mpi/beyond/descent.c.
  *
  * The power that escapes is the power that leaves surfaces, emitted or reflected, less
  * the power that links delivered: an open scene's real loss, plus the power that form
