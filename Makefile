@@ -15,7 +15,8 @@
 #   make growth          docs/growth.csv, docs/growth.svg: rooms of 6,348 to a million
 #                        triangles
 #   make scaling         docs/ranks.md: seconds on 1, 32 and 1,024 ranks, line by line;
-#                        docs/tables.md: Tables 1 and 2 of the paper
+#                        docs/tables.md, docs/fig3.svg: Tables 1 and 2 and Fig. 3 of the
+#                        paper, by processor seconds
 #   make pages           docs/ablation.md, docs/stability.md: each idea off and on; what
 #                        breaks radiosity programs (make ablation, make stability)
 #   make course          the programs, outputs and figures of docs/course/
@@ -210,7 +211,7 @@ chart: $(BENCHES:%=$(BUILD)/%) $(BUILD)/hits build/room
 growth: $(PHR) build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/growth.sh
 
-# About four minutes on two cores; ROOM=1000000 takes ten.
+# About eight minutes on two cores; ROOM=1000000 takes 14.
 scaling: $(PHR) $(BUILD)/replay build/room
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/scaling.sh
 	BUILD="$(BUILD)" MPIEXEC="$(MPIEXEC)" sh tests/bench/tables.sh

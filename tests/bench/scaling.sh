@@ -20,14 +20,10 @@ set -eu
 : "${BUILD:=build/mpi}" "${MPIEXEC:=mpiexec}" "${ROOM:=31933}" "${EPSILON:=1e-3}"
 : "${PAPER_ROOM:=2000}" "${PAPER_EPSILON:=1e-3}" "${RANKS:=32}"
 : "${TURNS:=1 2}" "${OUT:=docs/ranks.md}"
+. tests/bench/renew.sh
 work=$BUILD/scaling
 mkdir -p "$work"
 cp scenes/room.mtl "$work"
-
-# processor_seconds: of the children that a shell's `times` tells of.
-processor_seconds() {
-    sed 's/[ms]/ /g' | awk 'END { print 60 * $1 + $2 + 60 * $3 + $4 }'
-}
 
 # measure NAME SIZE OPTIONS: NAME.one.TURN on one rank, behind a line with its processor
 # seconds; NAME.many on 32; NAME.replay.

@@ -1,5 +1,6 @@
-# Runs on one rank, and runs on several with --balance greedy and none: phr's Tables 1 and
-# 2 for one network; see tables.sh.
+# Runs on one rank, each behind a line with its processor seconds, and runs on several,
+# balance by balance: phr's Tables 1 and 2 for one network, and to the file `figure` lines
+# "series ranks speed-up"; see tables.sh.
 
 function value(key,    text) { # the number behind "key":
     text = $0
@@ -8,16 +9,22 @@ function value(key,    text) { # the number behind "key":
 }
 function log2(x) { return log(x) / log(2) }
 
-BEGIN { BYTES_PER_LINK = 32 }
+BEGIN {
+    BYTES_PER_LINK = 32
+    kinds = split("greedy none default", balance)
+}
 FNR == 1 {
     n = split(FILENAME, part, ".")
     run = part[n - 1] == "one" ? "one" : part[n - 1] " " part[n]
     turn += run == "one"
     if (run != "one" && part[n - 1] == "greedy") ranks[++rows] = part[n]
 }
+run == "one" && /^processor/ { processor = $2 }
 run == "one" && /"min".*"mean".*"max"/ && !/closure/ {
     split($0, part, "\"")
     now = value("max")
+    if (part[2] == "total") share = processor / now # the first phase
+    now *= share
     if (turn == 1 || now < seconds[part[2]]) seconds[part[2]] = now
 }
 /"phases"/ {
@@ -49,7 +56,7 @@ function fill(run, p,    k, messages) {
     for (k = 1; k <= columns; k++) total += column[name[k]]
     linking = slowest[run, "linking"] * link_test + \
               (moved[run] - BYTES_PER_LINK * links_sent[run]) / p / bandwidth
-    counted = column["refinement"] + column["idle"]
+    splitting = slowest[run, "splitting"] * test
 }
 
 # Links that moved before levels: the lists "sent" of "balance".
@@ -75,26 +82,30 @@ END {
     printf "\n## %d triangles, %d links, epsilon %s; network: %s\n\n", \
            count["one", "triangles"], count["one", "links"], epsilon, network
     printf "`build/room %d 1 >room.obj`, `mpiexec -n P ./phr room.obj --paper ", size
-    printf "--epsilon %s --balance greedy --stats FILE`, and the same with `none`.\n\n",
-           epsilon
+    printf "--epsilon %s --balance BALANCE --stats FILE`.\n\n", epsilon
     printf "A test takes %.1f ns, a look %.1f, light over a link %.1f; ", 1e9 * test, \
            1e9 * look, 1e9 * transfer
     printf "a message %g s, a byte %g ns.\n\n", message, 1e9 / bandwidth
-    printf "Table 1: seconds, and speed-up. \"Counted\" is refinement and idle alone, "
-    printf "without a network; \"none\" is `--balance none`.\n\n"
-    printf "| ranks | counted | | counted, none | "
-    print "| without linking | | none | | with linking | | none | |"
-    print "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+    print "Table 1: processor seconds of the slowest rank and the network, and speed-up."
+    printf "\n| ranks |"
+    head[1] = "splitting"; head[2] = "without linking"; head[3] = "with linking"
+    for (h = 1; h <= 3; h++)
+        for (b = 1; b <= kinds; b++) printf " %s, %s | |", head[h], balance[b]
+    printf "\n|---|"
+    for (i = 1; i <= 6 * kinds; i++) printf "---|"
+    printf "\n"
     for (i = 1; i <= rows; i++) {
         printf "| %d |", ranks[i]
-        for (b = 0; b < 2; b++) {
-            fill((b ? "none " : "greedy ") ranks[i], ranks[i])
-            c[b] = counted; t[b] = total; w[b] = total + linking
-        }
-        if (i == 1) { c1 = c[0]; t1 = t[0]; w1 = w[0] }
-        for (b = 0; b < 2; b++) printf " %.4f | %.1f |", c[b], c1 / c[b]
-        for (b = 0; b < 2; b++) printf " %.4f | %.1f |", t[b], t1 / t[b]
-        for (b = 0; b < 2; b++) printf " %.4f | %.1f |", w[b], w1 / w[b]
+        for (h = 1; h <= 3; h++)
+            for (b = 1; b <= kinds; b++) {
+                fill(balance[b] " " ranks[i], ranks[i])
+                now = h == 1 ? splitting : h == 2 ? total : total + linking
+                if (i == 1) alone[h, b] = now
+                printf " %.4f | %.1f |", now, alone[h, b] / now
+                if (h == 2 && b == 1)
+                    print "phr,_" count["one", "triangles"], ranks[i], \
+                          alone[h, b] / now >figure
+            }
         printf "\n"
     }
     printf "\nTable 2: seconds.\n\n| ranks |"
