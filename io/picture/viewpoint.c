@@ -1,9 +1,10 @@
 /* The camera of a scene without a view file.
  *
- * Room or object? From a grid of points in the bounding box rays go out in 26 directions.
- * Points that see backs are inside an object or behind the walls; points that see fronts
- * are free. If fewer than a tenth of the rays of free points leave the scene, it is a
- * room, else it is open: a box without its front, like Cornell's, loses one ray in six.
+ * Room or object? From a grid of points in the box of the subject rays go out in 26
+ * directions. Points that see backs, or the dark, are inside an object or behind the
+ * walls; points that see lit fronts are free. If fewer than a tenth of the rays of free
+ * points leave the scene, it is a room, else it is open: a box without its front, like
+ * Cornell's, loses one ray in six. Skies are nothing.
  *
  * In a room, each free point is moved to eye height between the surfaces below and above
  * it, and rates the views around. The best view is deep, by the sum of square roots of
@@ -13,20 +14,19 @@
  * corners by themselves. Unlit surfaces do not count, so that of several rooms a lit one
  * is chosen.
  *
- * An open scene is seen whole, from the direction with the fewest backs in the picture;
- * the front, a little aside and above, is taken unless another direction is clearly
- * better.
- *
- * OBJ does not define the axis that is up. Lamps shine mostly down: if they shine along
- * -y, y is up, along -z, z. Twins do not count, with which all of them would shine both
- * ways. Else (tubes, windows, globes) a room is assumed wider than high: z is up if it is
- * the shortest side of the box. In all other cases y is up, as in most files.
+ * Any other scene is seen whole, from the direction whose picture has the most lit fronts
+ * that no back or twin stands before, and the most materials: of a street its road, of a
+ * box its lamp. The front, a little aside and above, is taken unless another direction
+ * is better; from further above where the subject is low, as a plan or a city; level
+ * where it is a box, also a closed one that is hardly longer than high and would be seen
+ * from too near within. Backs that are black are looked through.
  *
  * Rejected: a fixed corner of the bounding box, which is in a wall or a cupboard as often
  * as not; the brightest picture, which has to wait for the light and changes with
  * epsilon. */
 #include "io/picture/viewpoint.h"
 
+#include "geom/alloc.h"
 #include "geom/elementary.h"
 #include "geom/stop.h"
 
@@ -43,30 +43,35 @@ static const double DOWN = 0.2;         /* slope of a view into a room */
 static const double SLOPE[SLOPES] = {-0.8, -0.5, -0.2, 0.1, 0.4};
 static const double VARIETY = 0.1;      /* added to the rating by a change of material */
 static const double WIDE = 0.7;         /* tangent of half the wider angle in a room */
+static const double OPEN_ROOM = 0.1, OPEN_BOX = 0.25; /* shares of rays that get lost */
 static const double OUTSIDE_FOV = 40.0; /* degrees */
+static const double SMALL = 1.25; /* length of a small box, relative to its height */
+static const double FLAT = 0.5; /* height of a plan, relative to its shorter side */
 
 /* The scene in which the choice is made. */
 struct site {
     const struct scene *scene;
     const struct octree *octree;
     const struct forest *forest; /* or NULL */
-    bool z_up;
+    struct subject subject;
 };
 
 /* Results of a ray: the distance of a front (> 0), or one of these. */
 enum { BACK = 0, NOTHING = -1 };
 
-/* Casts a ray. Sets `*triangle` to the triangle that it meets, if any. */
+/* Casts a ray; skies are nothing. Sets `*root` to that whose front it meets, or -1. */
 static double look_at(const struct site *site, struct vec3 from, struct vec3 direction,
-                      int32_t *triangle)
+                      bool fronts_only, int32_t *root)
 {
     struct octree_hit hit;
     struct octree_counts counts = {0};
+    *root = -1;
     if (stop_is_asked() ||
-        !octree_first_hit(site->octree, from, direction, false, &hit, &counts))
+        !octree_first_hit(site->octree, from, direction, fronts_only, &hit, &counts) ||
+        subject_has_as_sky(&site->subject, site->scene, hit.triangle))
         return NOTHING;
-    *triangle = hit.triangle;
-    if (scene_root_on(site->scene, hit.triangle, hit.front) < 0)
+    *root = scene_root_on(site->scene, hit.triangle, hit.front);
+    if (*root < 0)
         return BACK;
     octree_hit_weights(site->octree, from, direction, &hit);
     const struct triangle *t = &site->scene->triangles[hit.triangle];
@@ -76,14 +81,20 @@ static double look_at(const struct site *site, struct vec3 from, struct vec3 dir
 
 static double look(const struct site *site, struct vec3 from, struct vec3 direction)
 {
-    int32_t triangle;
-    return look_at(site, from, direction, &triangle);
+    int32_t root;
+    return look_at(site, from, direction, false, &root);
+}
+
+/* False for a dark root, and for none. */
+static bool is_lit(const struct site *site, int32_t root)
+{
+    return root >= 0 && (!site->forest || rgb_sum(site->forest->radiosity[root]) > 0.0);
 }
 
 /* Returns a direction from its parts along two level axes and up. */
 static struct vec3 lift(const struct site *site, double right, double front, double up)
 {
-    return site->z_up ? (struct vec3){right, -front, up}
+    return site->subject.z_up ? (struct vec3){right, -front, up}
                       : (struct vec3){right, up, front};
 }
 
@@ -105,10 +116,10 @@ static struct vec3 azimuth(const struct site *site, int k, double slope)
 
 /* --- room or object --- */
 
-static struct vec3 grid_point(const struct scene *scene, int cell)
+static struct vec3 grid_point(const struct subject *subject, int cell)
 {
-    struct vec3 side = vec3_scale(vec3_sub(scene->high, scene->low), 1.0 / GRID);
-    return vec3_add(scene->low, (struct vec3){(cell % GRID + 0.5) * side.x,
+    struct vec3 side = vec3_scale(vec3_sub(subject->high, subject->low), 1.0 / GRID);
+    return vec3_add(subject->low, (struct vec3){(cell % GRID + 0.5) * side.x,
                                               (cell / GRID % GRID + 0.5) * side.y,
                                               (cell / (GRID * GRID) + 0.5) * side.z});
 }
@@ -121,10 +132,11 @@ static bool is_free(const struct site *site, struct vec3 point, int *rays, int *
     for (int k = 0; k < 27; k++) {
         if (k == 13)
             continue;
-        double met =
-            look(site, point, (struct vec3){k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1});
-        fronts += met > 0.0;
-        backs += met == BACK;
+        int32_t root;
+        struct vec3 direction = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+        double met = look_at(site, point, direction, false, &root);
+        fronts += is_lit(site, root);
+        backs += met != NOTHING && !is_lit(site, root);
         nothing += met == NOTHING;
     }
     if (fronts < 4 * backs || fronts == 0)
@@ -134,27 +146,13 @@ static bool is_free(const struct site *site, struct vec3 point, int *rays, int *
     return true;
 }
 
-static bool find_room(const struct site *site, bool free[GRID * GRID * GRID])
+/* Returns the share of the rays from free points that leave the scene, 1 without any. */
+static double find_openings(const struct site *site, bool free[GRID * GRID * GRID])
 {
     int rays = 0, lost = 0;
     for (int cell = 0; cell < GRID * GRID * GRID; cell++)
-        free[cell] = is_free(site, grid_point(site->scene, cell), &rays, &lost);
-    return lost < rays / 10;
-}
-
-static bool find_up(const struct scene *scene, bool is_room)
-{
-    struct vec3 side = vec3_sub(scene->high, scene->low), shine = {0.0, 0.0, 0.0};
-    double power = 0.0;
-    for (int32_t i = 0; i < scene->input_count; i++) {
-        double emitted =
-            scene->areas[i] * rgb_sum(scene_root_material(scene, i)->emission);
-        shine = vec3_add(shine, vec3_scale(scene->planes[i].normal, emitted));
-        power += emitted;
-    }
-    if (-shine.y > 0.5 * power)
-        return false;
-    return -shine.z > 0.5 * power || (is_room && side.z < side.x && side.z < side.y);
+        free[cell] = is_free(site, grid_point(&site->subject, cell), &rays, &lost);
+    return rays > 0 ? (double)lost / rays : 1.0;
 }
 
 /* --- inside --- */
@@ -170,24 +168,17 @@ static struct vec3 stand(const struct site *site, struct vec3 point)
     return vec3_add(point, lift(site, 0.0, 0.0, rise));
 }
 
-static bool is_lit(const struct site *site, int32_t triangle)
-{
-    const struct forest *forest = site->forest;
-    int32_t twin = scene_root_on(site->scene, triangle, false);
-    return !forest || rgb_sum(forest->radiosity[triangle]) > 0.0 ||
-           (twin >= 0 && rgb_sum(forest->radiosity[twin]) > 0.0);
-}
-
 /* Rates the rays above and below one azimuth by depth and variety. */
 static double rate_azimuth(const struct site *site, struct vec3 eye, int k)
 {
     double depth = 0.0;
-    int32_t triangle = 0, before = 0;
+    int32_t root, material = -1, before = -1;
     int changes = 0;
     for (int s = 0; s < SLOPES; s++) {
-        double met = look_at(site, eye, azimuth(site, k, SLOPE[s]), &triangle);
-        int32_t material = site->scene->material_of[triangle];
-        depth += met > 0.0 && is_lit(site, triangle) ? sqrt(met) : 0.0;
+        double met = look_at(site, eye, azimuth(site, k, SLOPE[s]), false, &root);
+        if (root >= 0)
+            material = site->scene->material_of[scene_input_of(site->scene, root)];
+        depth += is_lit(site, root) ? sqrt(met) : 0.0;
         changes += s > 0 && material != before;
         before = material;
     }
@@ -222,7 +213,7 @@ static void enter_room(const struct site *site, const bool free[GRID * GRID * GR
     for (int cell = 0; cell < GRID * GRID * GRID; cell++) {
         if (!free[cell])
             continue;
-        struct vec3 point = stand(site, grid_point(site->scene, cell));
+        struct vec3 point = stand(site, grid_point(&site->subject, cell));
         int k = 0;
         double rating = look_around(site, point, &k);
         if (rating > best) {
@@ -241,32 +232,69 @@ static void enter_room(const struct site *site, const bool free[GRID * GRID * GR
 
 /* --- outside --- */
 
-/* Returns the rays that meet a front less those that meet a back, over the number of
- * both. */
+/* Returns the share of the materials, but for those of skies alone, that a picture has in
+ * `rays` of its rays, each in full if it has a quarter of an equal part. */
+static double rate_variety(const struct site *site, const int *met, int rays)
+{
+    const struct scene *scene = site->scene;
+    bool *there = alloc_array((size_t)scene->material_count, sizeof *there);
+    double all = 0.0, some = 0.0;
+    for (int32_t i = 0; i < scene->input_count; i++)
+        if (scene->areas[i] > 0.0 && !subject_has_as_sky(&site->subject, scene, i))
+            there[scene->material_of[i]] = true;
+    for (int32_t m = 0; m < scene->material_count; m++)
+        all += there[m];
+    for (int32_t m = 0; m < scene->material_count; m++)
+        some += real_min(1.0, 4.0 * all * met[m] / (rays > 0 ? rays : 1));
+    alloc_free(there);
+    return some / all;
+}
+
+/* Rates a picture by the rays that show a lit front, with nothing passed before; and by
+ * its variety. */
 static double rate(const struct site *site, const struct camera *camera)
 {
-    struct vec3 eye = scene_from_input(site->scene, camera->eye);
-    int fronts = 0, backs = 0;
+    const struct scene *scene = site->scene;
+    struct vec3 eye = scene_from_input(scene, camera->eye);
+    int *met = alloc_array((size_t)scene->material_count, sizeof *met);
+    int rays = 0, lit = 0;
     for (int i = 0; i < SAMPLES * SAMPLES; i++) {
         double x = (i % SAMPLES + 0.5) / SAMPLES * camera->width;
         double y = (i / SAMPLES + 0.5) / SAMPLES * camera->height;
-        double met = look(site, eye, camera_ray(camera, x, y));
-        fronts += met > 0.0;
-        backs += met == BACK;
+        struct vec3 direction = camera_ray(camera, x, y);
+        int32_t first, shown;
+        bool passes = look_at(site, eye, direction, false, &first) != NOTHING;
+        bool shows =
+            look_at(site, eye, direction, camera->fronts_only, &shown) != NOTHING;
+        rays += passes || shows;
+        if (!is_lit(site, shown))
+            continue;
+        met[scene->material_of[scene_input_of(scene, shown)]]++;
+        lit += !passes || first == shown;
     }
-    return fronts + backs > 0 ? (double)(fronts - backs) / (fronts + backs) : -1.0;
+    double variety = rate_variety(site, met, rays);
+    alloc_free(met);
+    return rays > 0 ? (double)lit / rays + variety : 0.0;
 }
 
-static void stand_outside(const struct site *site, struct camera *camera)
+enum shape { THING, PLAIN, BOX, SHAPES };
+
+/* Finds the best of the views that are on the list for a shape. */
+static void stand_outside(const struct site *site, enum shape shape,
+                          struct camera *camera)
 {
-    enum { ELEVATIONS = 4, ASIDE = 6, CLEARLY = 20 };
-    static const double ELEVATION[ELEVATIONS] = {0.35, 0.0, 0.9, -0.35};
+    enum { SLOPED = 4, ASIDE = 6 };
+    static const double FROM_ABOVE[SHAPES][SLOPED] = {
+        {0.35, 0.0, 0.7, -0.35}, {0.7, 0.35, 0.0, -0.35}, {0.0, 0.35, 0.7, -0.35}};
+    static const double LIKING[SLOPED] = {0.1, 0.0, 0.0, -0.5};
     struct camera chosen = *camera;
-    double best = -2.0;
-    for (int i = 0; i < AZIMUTHS / 2 * ELEVATIONS; i++) {
-        int k = (ASIDE + 2 * (i / ELEVATIONS)) % AZIMUTHS;
-        camera_frame(camera, site->scene, azimuth(site, k, ELEVATION[i % ELEVATIONS]));
-        double rating = rate(site, camera) + (i == 0 ? 1.0 / CLEARLY : 0.0);
+    double best = -1.0;
+    for (int i = 0; i < AZIMUTHS * SLOPED; i++) {
+        int k = ASIDE + i / (2 * SLOPED) * 2, slope = i / 2 % SLOPED;
+        camera->fronts_only = i % 2 == 0;
+        camera_frame(camera, site->scene, &site->subject,
+                     azimuth(site, k % AZIMUTHS, FROM_ABOVE[shape][slope]));
+        double rating = rate(site, camera) + LIKING[slope] + (i < 2 ? 0.05 : 0.0);
         if (rating > best) {
             best = rating;
             chosen = *camera;
@@ -278,18 +306,22 @@ static void stand_outside(const struct site *site, struct camera *camera)
 struct camera viewpoint_choose(const struct scene *scene, const struct octree *octree,
                                const struct forest *forest, int width, int height)
 {
-    struct site site = {.scene = scene, .octree = octree, .forest = forest};
+    struct site site = {.scene = scene, .octree = octree, .forest = forest,
+                        .subject = subject_find(scene)};
+    struct vec3 side = vec3_sub(site.subject.high, site.subject.low);
+    double tall = site.subject.z_up ? side.z : side.y;
+    double deep = site.subject.z_up ? side.y : side.z;
     bool free[GRID * GRID * GRID];
-    bool is_room = find_room(&site, free);
-    site.z_up = find_up(scene, is_room);
+    double open = find_openings(&site, free);
+    bool is_small = !scene->two_sided && real_max(side.x, deep) < SMALL * tall;
+    bool is_flat = tall < FLAT * real_min(side.x, deep);
     struct camera camera = {.up = lift(&site, 0.0, 0.0, 1.0),
                             .fov = OUTSIDE_FOV,
                             .width = width,
-                            .height = height,
-                            .fronts_only = !is_room};
-    if (is_room)
+                            .height = height};
+    if (open < OPEN_ROOM && !is_small)
         enter_room(&site, free, &camera);
     else
-        stand_outside(&site, &camera);
+        stand_outside(&site, is_flat ? PLAIN : open < OPEN_BOX ? BOX : THING, &camera);
     return camera;
 }

@@ -140,18 +140,19 @@ bool camera_read(const char *path, struct camera *camera, struct error *error)
     return good;
 }
 
-void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 towards)
+void camera_frame(struct camera *camera, const struct scene *scene,
+                  const struct subject *subject, struct vec3 towards)
 {
     struct vec3 back = vec3_unit(towards);
     struct vec3 right = vec3_unit(vec3_cross(camera->up, back));
     struct vec3 above = vec3_cross(back, right),
-                middle = vec3_middle(scene->low, scene->high);
+                middle = vec3_middle(subject->low, subject->high);
     double slope = tangent(camera->fov * PI / 360.0), distance = 0.0;
     double aspect = (double)camera->width / camera->height;
     for (int k = 0; k < 8; k++) {
-        struct vec3 corner = {k & 1 ? scene->high.x : scene->low.x,
-                              k & 2 ? scene->high.y : scene->low.y,
-                              k & 4 ? scene->high.z : scene->low.z};
+        struct vec3 corner = {k & 1 ? subject->high.x : subject->low.x,
+                              k & 2 ? subject->high.y : subject->low.y,
+                              k & 4 ? subject->high.z : subject->low.z};
         struct vec3 arm = vec3_sub(corner, middle);
         double across = fabs(vec3_dot(arm, right)) / (slope * aspect);
         double up = fabs(vec3_dot(arm, above)) / slope;

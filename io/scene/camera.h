@@ -5,6 +5,7 @@
 #include <stdbool.h>
 
 #include "geom/scene.h"
+#include "io/scene/subject.h"
 #include "io/scene/text.h"
 
 enum {
@@ -28,10 +29,11 @@ struct camera {
 bool camera_read(const char *path, struct camera *camera, struct error *error);
 bool camera_of_text(struct camera *camera, struct text *text, struct error *error);
 
-/* Puts the camera outside the bounding box of the scene, in the direction `towards` from
- * its middle (of any length but 0, not along up), at the smallest distance that shows the
+/* Puts the camera outside the box of the subject, in the direction `towards` from its
+ * middle (of any length but 0, not along up), at the smallest distance that shows the
  * whole box. Reads up, fov and size; writes eye and at. */
-void camera_frame(struct camera *camera, const struct scene *scene, struct vec3 towards);
+void camera_frame(struct camera *camera, const struct scene *scene,
+                  const struct subject *subject, struct vec3 towards);
 
 /* The axes of a camera, for many rays. */
 struct camera_basis {

@@ -220,7 +220,8 @@ static bool box_is_framed(struct vec3 low, struct vec3 high, struct vec3 towards
     struct scene *scene = make_scene(low, high);
     struct camera camera = {
         .up = {0.0, 1.0, 0.0}, .fov = 40.0, .width = 150, .height = 400};
-    camera_frame(&camera, scene, towards);
+    struct subject subject = subject_find(scene);
+    camera_frame(&camera, scene, &subject, towards);
     struct camera nearer = camera;
     nearer.eye = vec3_add(vec3_scale(camera.eye, 0.8), vec3_scale(camera.at, 0.2));
     bool seen = true, near_sees = true;

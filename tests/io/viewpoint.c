@@ -1,7 +1,7 @@
 /* Tests of io/picture/viewpoint.h. Proved are, by many more rays than the choice is made
  * with: in a room the eye is within and sees nothing but fronts, far away for the most
- * part; a scene that is no room is seen from outside, whole, by its fronts; and up is
- * where it should be. */
+ * part; a scene that is no room is seen from outside, whole, by its fronts; up is where
+ * it should be; and what stands below a sky fills the picture. */
 #include "io/picture/viewpoint.h"
 
 #include <stdio.h>
@@ -51,14 +51,6 @@ static struct sight look(const struct scene *scene, const struct octree *octree,
     return sight;
 }
 
-static bool is_inside(const struct scene *scene, const struct camera *camera)
-{
-    struct vec3 eye = scene_from_input(scene, camera->eye), low = scene->low,
-                high = scene->high;
-    return eye.x > low.x && eye.x < high.x && eye.y > low.y && eye.y < high.y &&
-           eye.z > low.z && eye.z < high.z;
-}
-
 /* A scene, its camera, and the view from there. */
 struct shot {
     struct scene *scene;
@@ -66,6 +58,40 @@ struct shot {
     struct camera camera;
     struct sight sight;
 };
+
+/* Returns the share of the rays of a picture that show a material. */
+static double share_of(const struct shot *shot, int32_t material)
+{
+    const struct camera *camera = &shot->camera;
+    struct vec3 eye = scene_from_input(shot->scene, camera->eye);
+    int met = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        struct octree_counts counts = {0};
+        struct octree_hit hit;
+        double x = (i % SIDE + 0.5) * camera->width / SIDE;
+        double y = (i / SIDE + 0.5) * camera->height / SIDE;
+        met += octree_first_hit(shot->octree, eye, camera_ray(camera, x, y),
+                                camera->fronts_only, &hit, &counts) &&
+               scene_root_on(shot->scene, hit.triangle, hit.front) >= 0 &&
+               shot->scene->material_of[hit.triangle] == material;
+    }
+    return (double)met / (SIDE * SIDE);
+}
+
+/* Returns the slope of the line of sight, downwards, z up. */
+static double slope_of(const struct camera *camera)
+{
+    struct vec3 to = vec3_sub(camera->at, camera->eye);
+    return -to.z / sqrt(to.x * to.x + to.y * to.y);
+}
+
+static bool is_inside(const struct scene *scene, const struct camera *camera)
+{
+    struct vec3 eye = scene_from_input(scene, camera->eye), low = scene->low,
+                high = scene->high;
+    return eye.x > low.x && eye.x < high.x && eye.y > low.y && eye.y < high.y &&
+           eye.z > low.z && eye.z < high.z;
+}
 
 static struct shot shoot(struct scene *scene, int width, int height)
 {
@@ -131,13 +157,9 @@ static void check_room(const char *name, struct shot shot, double depth, bool z_
 
 static const struct vec3 ZERO = {0.0, 0.0, 0.0};
 
-static void test_cube(void)
+static void test_far_away(void)
 {
-    struct vec3 one = {1, 1, 1}, far = {1e6, 1e6, 1e6};
-    check_room("a cube that glows", shoot_box(ZERO, one, 2, true, 512, 512), 0.4, false);
-    check_room("the same, in a tall picture", shoot_box(ZERO, one, 2, true, 200, 700),
-               0.3, false);
-    check_room("in a wide one", shoot_box(ZERO, one, 2, true, 1600, 400), 0.3, false);
+    struct vec3 far = {1e6, 1e6, 1e6};
     check_room("a room far from the origin",
                shoot_box(far, vec3_add(far, point(5, 4, 3)), 2, true, 99, 99), 0.3, true);
 }
@@ -335,9 +357,173 @@ static void test_cornell(void)
     check_open("the Cornell box", shot, 0.9);
 }
 
+/* --- small boxes, and things below a sky --- */
+
+/* A closed box with a lamp is seen from outside, level, with all that is in it. */
+static void test_small_box(void)
+{
+    static const int SIZES[][2] = {{512, 512}, {200, 700}, {1600, 400}};
+    for (int size = 0; size < 3; size++) {
+        struct soup soup = {0};
+        soup_add_box(&soup, ZERO, point(1, 1, 1), 1, true);
+        paint(&soup, 0.5, 0.0);
+        soup_add_quad(&soup, point(0.3, 0.3, 0.99), point(0, 0.4, 0), point(0.4, 0, 0),
+                      1);
+        paint(&soup, 0.5, 1.0);
+        soup_add_box(&soup, point(0.2, 0.2, 0.001), point(0.5, 0.5, 0.4), 1, false);
+        paint(&soup, 0.2, 0.0);
+        struct shot shot = shoot_soup(&soup, SIZES[size][0], SIZES[size][1]);
+        double lamp = share_of(&shot, 1), thing = share_of(&shot, 2);
+        tap_ok(!is_inside(shot.scene, &shot.camera) && shot.camera.up.z == 1.0 &&
+                   slope_of(&shot.camera) == 0.0 && lamp > 0.0 && thing > 0.01,
+               "a small closed box, %d x %d: %.1f %% lamp, %.1f %% thing",
+               SIZES[size][0], SIZES[size][1], 100.0 * lamp, 100.0 * thing);
+        shot_free(&shot);
+    }
+}
+
+/* Half a ball that shines inwards, z up. */
+static void add_dome(struct soup *soup, double radius)
+{
+    struct soup ball = {0};
+    soup_add_sphere(&ball, radius, 3);
+    for (int64_t i = 0; i < ball.count; i++) {
+        struct triangle t = ball.items[i];
+        if (t.corner[0].z + t.corner[1].z + t.corner[2].z > 0.0)
+            soup_add(soup, reversed(t));
+    }
+    soup_free(&ball);
+    paint(soup, 0.0, 1.0);
+}
+
+/* Things on a large plain below a dome, in two materials: ground and things are the first
+ * two. Seen are both, with slopes in a range; consumes the soup. */
+static void check_sky(const char *name, struct soup *soup, double ground, double things,
+                      const double slopes[2])
+{
+    double radius = 300.0;
+    add_dome(soup, radius);
+    struct soup twice = *soup;
+    twice.items = alloc_array((size_t)soup->count, sizeof *twice.items);
+    for (int64_t i = 0; i < soup->count; i++)
+        twice.items[i] = soup->items[i];
+    for (int sides = 1; sides <= 2; sides++) {
+        struct scene *scene = scene_of_soup(sides == 1 ? soup : &twice);
+        scene->two_sided = sides == 2;
+        struct shot shot = shoot(scene, 512, 384);
+        double slope = slope_of(&shot.camera);
+        double shares[] = {share_of(&shot, 0), share_of(&shot, 1)};
+        tap_ok(shot.camera.up.z == 1.0 && slope >= slopes[0] && slope <= slopes[1] &&
+                   shares[0] > ground && shares[1] > things,
+               "%s below a sky, %d-sided: %.1f %% ground, %.1f %% things, slope %.2f",
+               name, sides, 100.0 * shares[0], 100.0 * shares[1], slope);
+        shot_free(&shot);
+    }
+}
+
+/* A square of ground around the origin, z up. */
+static void add_ground(struct soup *soup, double side)
+{
+    soup_add_quad(soup, point(-side / 2, -side / 2, 0), point(side, 0, 0),
+                  point(0, side, 0), 1);
+    paint(soup, 0.3, 0.0);
+}
+
+/* From 35 degrees above: low things. From less: others. Tangents. */
+static const double HIGH[] = {0.57, 0.84}, MEDIUM[] = {0.3, 0.4};
+
+static void test_below_sky(void)
+{
+    struct soup soup = {0};
+    add_ground(&soup, 200.0);
+    soup_add_box(&soup, point(-5, -4, 0), point(5, 4, 3), 1, false);
+    soup_add_box(&soup, point(7, -2, 0), point(12, 3, 6), 1, false);
+    paint(&soup, 0.5, 0.0);
+    check_sky("two houses", &soup, 0.3, 0.1, HIGH);
+
+    soup = (struct soup){0};
+    add_ground(&soup, 30.0);
+    soup_add_box(&soup, point(-5, -4, 0), point(5, 4, 60), 1, false);
+    paint(&soup, 0.5, 0.0);
+    check_sky("a tower", &soup, 0.02, 0.05, MEDIUM);
+
+    soup = (struct soup){0};
+    add_ground(&soup, 60.0);
+    for (int k = 0; k < 25; k++) {
+        double x = k / 5 * 10.0 - 24.0, y = k % 5 * 10.0 - 24.0;
+        soup_add_box(&soup, point(x, y, 0), point(x + 7, y + 7, 4 + k * 7 % 11), 1,
+                     false);
+    }
+    paint(&soup, 0.5, 0.0);
+    check_sky("a city", &soup, 0.05, 0.15, HIGH);
+}
+
+/* A street is seen along its road, into which no other view looks. */
+static void test_street(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(-80, -5, 0), point(160, 0, 0), point(0, 10, 0), 1);
+    paint(&soup, 0.3, 0.0);
+    for (int k = 0; k < 32; k++) {
+        double x = k / 2 * 10.0 - 80.0, y = k % 2 ? 5 : -17;
+        soup_add_box(&soup, point(x, y, 0), point(x + 10, y + 12, 10 + k * 5 % 7), 1,
+                     false);
+    }
+    paint(&soup, 0.5, 0.0);
+    check_sky("a street", &soup, 0.01, 0.05, HIGH);
+}
+
+/* A floor and walls of 2.7 m, with lamps that shine down: from above into the rooms, also
+ * where walls have one side. */
+static void test_plan(void)
+{
+    for (int thin = 0; thin < 2; thin++) {
+        struct soup soup = {0};
+        soup_add_quad(&soup, ZERO, point(12, 0, 0), point(0, 9, 0), 1);
+        paint(&soup, 0.3, 0.0);
+        for (int k = 0; k < 4; k++) { /* two along x, two along y */
+            struct vec3 low = {k == 1 ? 12 : 0, k == 3 ? 9 : 0, 0.001};
+            struct vec3 along = k < 2 ? point(0, 9, 0) : point(12, 0, 0);
+            struct vec3 far = vec3_add(low, vec3_add(along, point(0.1, 0.1, 2.7)));
+            if (thin)
+                soup_add_quad(&soup, low, along, point(0, 0, 2.7), 1);
+            else
+                soup_add_box(&soup, low, far, 1, false);
+        }
+        soup_add_box(&soup, point(5, 0, 0.001), point(5.1, 7, 2.7), 1, false);
+        paint(&soup, 0.5, 0.0);
+        soup_add_quad(&soup, point(2, 4, 2.6), point(0, 1, 0), point(1, 0, 0), 1);
+        soup_add_quad(&soup, point(8, 4, 2.6), point(0, 1, 0), point(1, 0, 0), 1);
+        paint(&soup, 0.5, 1.0);
+        struct shot shot = shoot_soup(&soup, 512, 384);
+        double slope = slope_of(&shot.camera), floor = share_of(&shot, 0);
+        tap_ok(slope >= HIGH[0] && slope <= HIGH[1] && floor > 0.1,
+               "a plan%s: %.1f %% floor, slope %.2f", thin ? " of thin walls" : "",
+               100.0 * floor, slope);
+        shot_free(&shot);
+    }
+}
+
+/* OBJ does not say which axis is up: without lamps that shine down, a floor does. */
+static void test_floor_tells_up(void)
+{
+    for (int z_up = 0; z_up < 2; z_up++) {
+        struct soup soup = {0};
+        struct vec3 a = {9, 0, 0}, b = z_up ? point(0, 9, 0) : point(0, 0, -9);
+        struct vec3 low = {3, z_up ? 3 : 0.1, z_up ? 0.1 : -4};
+        soup_add_quad(&soup, ZERO, a, b, 1);
+        soup_add_box(&soup, low, vec3_add(low, point(1, 1, 1)), 1, false);
+        paint(&soup, 0.5, 0.0);
+        struct shot shot = shoot_soup(&soup, 512, 512);
+        tap_ok(shot.camera.up.z == z_up && shot.camera.up.y == !z_up,
+               "a block on a floor, %c up", z_up ? 'z' : 'y');
+        shot_free(&shot);
+    }
+}
+
 int main(void)
 {
-    test_cube();
+    test_far_away();
     test_corridor();
     test_furniture();
     test_generated();
@@ -349,5 +535,10 @@ int main(void)
     test_lamp_from_below();
     test_lamp_above();
     test_cornell();
+    test_small_box();
+    test_below_sky();
+    test_street();
+    test_plan();
+    test_floor_tells_up();
     return tap_done();
 }
