@@ -94,7 +94,7 @@ TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wal
         final_gather lamps checksum paths plan balance assign gather_mesh spotcheck \
         text obj ply output files machine store tone image png texture hdr camera \
         viewpoint open_parts shading mesh render options progress screened stop norms \
-        cie whole stability gaps openings leaks linking exchange conjugate exact \
+        cie whole stability gaps openings leaks sky linking exchange conjugate exact \
         converge
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
 vpath %.c tests/tools tests/whole

@@ -79,7 +79,7 @@ static bool link_roots(struct run *run)
         return stored_load(run, STORE_LINKS, options->load_links);
     progress_begin(solver->progress, "linking", -1, 0);
     run_say(run, "%s: %lld triangles; linking", options->scene,
-            (long long)run->scene->input_count);
+            (long long)run->scene->sky_first);
     run->half_linked = !solver_link_roots(solver);
     if (solver->turn.stop)
         return run_stopped(run, solver->turn.stop);

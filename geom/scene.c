@@ -29,7 +29,7 @@ void scene_set_groups(struct scene *scene, int32_t count, int64_t bytes)
 struct scene *scene_create(int32_t input_count, int32_t material_count)
 {
     struct scene *scene = alloc_array(1, sizeof *scene);
-    scene->input_count = input_count;
+    scene->input_count = scene->sky_first = input_count;
     scene->material_count = material_count;
     scene->triangles = alloc_array((size_t)input_count, sizeof *scene->triangles);
     scene->planes = alloc_array((size_t)input_count, sizeof *scene->planes);
@@ -48,6 +48,28 @@ void scene_add_normals(struct scene *scene)
 {
     alloc_free(scene->normals);
     scene->normals = alloc_array(3 * (size_t)scene->input_count, sizeof *scene->normals);
+}
+
+/* Makes an array longer by `more` items, which are 0. */
+#define EXTEND(array, count, more) \
+    ((array) = alloc_resize(array, (size_t)(count) + (size_t)(more), sizeof *(array)), \
+     memset((array) + (count), 0, (size_t)(more) * sizeof *(array)))
+
+void scene_add_sky(struct scene *scene, int32_t count, struct material material)
+{
+    int64_t before = scene->input_count;
+    EXTEND(scene->triangles, before, count);
+    EXTEND(scene->planes, before, count);
+    EXTEND(scene->areas, before, count);
+    EXTEND(scene->material_of, before, count);
+    EXTEND(scene->groups.goes_on, before, count);
+    EXTEND(scene->opposed, before, count);
+    EXTEND(scene->groups.of, before, count);
+    if (scene->normals)
+        EXTEND(scene->normals, 3 * before, 3 * count);
+    EXTEND(scene->materials, scene->material_count, 1);
+    scene->materials[scene->material_count++] = material;
+    scene->input_count += count;
 }
 
 void scene_destroy(struct scene *scene)
@@ -288,7 +310,7 @@ bool scene_prepare(struct scene *scene, struct scene_repairs *repairs,
         return false;
     *repairs = (struct scene_repairs){.clamped = clamp_reflectances(scene)};
     repairs->degenerate = measure_triangles(scene);
-    if (repairs->degenerate == scene->input_count)
+    if (repairs->degenerate == scene->sky_first)
         return error_set(error, EXIT_USAGE, "all faces of the scene are degenerate");
     handle_doubles(scene, repairs);
     return true;
@@ -322,7 +344,7 @@ int32_t scene_root_count(const struct scene *scene)
 
 bool scene_has_twin(const struct scene *scene, int32_t input)
 {
-    return scene->two_sided && !scene->opposed[input] &&
+    return scene->two_sided && !scene->opposed[input] && input < scene->sky_first &&
            (scene->two_sided_lamps || !material_emits(scene_root_material(scene, input)));
 }
 
@@ -353,6 +375,39 @@ double scene_emitted_power(const struct scene *scene)
         sum += scene_root_area(scene, root) *
                rgb_sum(scene_root_material(scene, root)->emission);
     return sum;
+}
+
+double scene_own_area(const struct scene *scene)
+{
+    double sum = 0.0;
+    for (int32_t root = 0; root < scene_root_count(scene); root++)
+        sum += scene_root_own_area(scene, root);
+    return sum;
+}
+
+/* The light of a uniform sky is that of a half space to the top of the box, and to its
+ * sides that of a quarter: half as much. It shines down along y or z, whichever is the
+ * axis of its largest sum of normals. */
+double scene_entering_power(const struct scene *scene)
+{
+    struct vec3 low = scene->triangles[0].corner[0], high = low, down = {0.0, 0.0, 0.0};
+    double sky = 0.0;
+    for (int32_t i = 0; i < scene->sky_first; i++) {
+        low = vec3_least(low, triangle_low(&scene->triangles[i]));
+        high = vec3_most(high, triangle_high(&scene->triangles[i]));
+    }
+    for (int32_t i = scene->sky_first; i < scene->input_count; i++) {
+        down = vec3_add(down, vec3_scale(scene->planes[i].normal, scene->areas[i]));
+        sky += scene->areas[i] * rgb_sum(scene_root_material(scene, i)->emission);
+    }
+    if (!(sky > 0.0))
+        return scene_emitted_power(scene);
+    struct vec3 side = vec3_sub(high, low);
+    double faces[] = {side.y * side.z, side.z * side.x, side.x * side.y};
+    int up = -down.z > -down.y ? 2 : 1;
+    double shown = faces[up] + faces[(up + 1) % 3] + faces[(up + 2) % 3];
+    double b = rgb_sum(scene_root_material(scene, scene->sky_first)->emission);
+    return scene_emitted_power(scene) - sky + b * shown;
 }
 
 double scene_area_unit(const struct scene *scene)

@@ -76,7 +76,10 @@ struct scene {
     struct vec3 *normals;       /* [3 * input_count] or NULL, of corner k of triangle i at
                                  * [3 i + k], for smooth shading: of length 1, or 0 */
     struct scene_groups groups;
-    int32_t input_count;        /* triangles read from the file, dropped ones included */
+    int32_t input_count;        /* triangles read from the file, dropped ones included,
+                                 * and those of a sky */
+    int32_t sky_first;          /* input triangles from this one on are a sky, which is no
+                                 * part of the file; input_count: there is none */
     int32_t material_count;
     bool two_sided;             /* triangles have twins: of i, root i + input_count */
     bool two_sided_lamps;       /* if two_sided: those that emit have twins, too */
@@ -99,6 +102,9 @@ void scene_add_normals(struct scene *scene);
 
 /* Makes room for the names of `count` groups, of `bytes` bytes with their zeros. */
 void scene_set_groups(struct scene *scene, int32_t count, int64_t bytes);
+
+/* Makes room for a sky of `count` triangles, to be set, of a material of its own. */
+void scene_add_sky(struct scene *scene, int32_t count, struct material material);
 
 /* Takes the emissions for radiances, W/m^2/sr, of which radiosities are made. */
 void scene_take_radiances(struct scene *scene);
@@ -130,6 +136,12 @@ int32_t scene_root_count(const struct scene *scene);
 static inline int32_t scene_input_of(const struct scene *scene, int32_t root)
 {
     return root < scene->input_count ? root : root - scene->input_count;
+}
+
+/* True if the root belongs to a sky. */
+static inline bool scene_is_sky(const struct scene *scene, int32_t root)
+{
+    return scene_input_of(scene, root) >= scene->sky_first;
 }
 
 /* True if the back of an input triangle is the front of a twin. */
@@ -174,6 +186,12 @@ static inline double scene_root_area(const struct scene *scene, int32_t root)
     return root == input || scene_has_twin(scene, input) ? scene->areas[input] : 0.0;
 }
 
+/* The same, 0 for a root of a sky. */
+static inline double scene_root_own_area(const struct scene *scene, int32_t root)
+{
+    return scene_is_sky(scene, root) ? 0.0 : scene_root_area(scene, root);
+}
+
 static inline const struct material *scene_root_material(const struct scene *scene,
                                                          int32_t root)
 {
@@ -183,8 +201,14 @@ static inline const struct material *scene_root_material(const struct scene *sce
 /* Sum of the areas of all roots, square scene units. */
 double scene_area(const struct scene *scene);
 
+/* The same without a sky. */
+double scene_own_area(const struct scene *scene);
+
 /* Sum over roots and bands of area times emission, W for areas in square scene units. */
 double scene_emitted_power(const struct scene *scene);
+
+/* The same, but of a sky what enters the box of all else. */
+double scene_entering_power(const struct scene *scene);
 
 /* Square input units in a square scene unit: turns power and areas into those of the
  * input. */

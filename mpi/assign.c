@@ -99,7 +99,7 @@ void solver_assign_roots(struct solver *solver)
     int64_t *weights = alloc_array((size_t)roots, sizeof *weights);
     for (int32_t root = 0; root < roots; root++) /* areas, in parts of 2^-40 of all */
         weights[root] =
-            (int64_t)(scene_root_area(model->scene, root) / model->area * 0x1p40);
+            (int64_t)(scene_root_area(model->scene, root) / model->whole_area * 0x1p40);
     items_deal(weights, roots, solver->comm->size, solver->homes.owner);
     alloc_free(weights);
     for (int32_t root = 0; root < roots; root++)

@@ -108,7 +108,8 @@ double solver_largest(const struct solver *solver, const struct rgb *vector)
 void solver_transfer(struct solver *solver, const struct rgb *vector)
 {
     double start = comm_seconds();
-    solver->flux = flux_unit_for(solver_largest(solver, vector) * solver->model.area);
+    solver->flux =
+        flux_unit_for(solver_largest(solver, vector) * solver->model.whole_area);
     solver->model.method.transfer(&solver->links, &solver->model, vector, solver->flux);
     solver->account.seconds[PHASE_SOLVE] += comm_seconds() - start;
 }

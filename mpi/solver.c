@@ -192,7 +192,7 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     const struct scene *scene = solver->model.scene;
     double unit = scene_area_unit(scene);
     stats->ranks = solver->comm->size;
-    stats->triangles = scene->input_count;
+    stats->triangles = scene->sky_first;
     stats->roots = 0;
     for (int32_t root = 0; root < scene_root_count(scene); root++)
         stats->roots += scene_root_area(scene, root) > 0.0;
@@ -209,9 +209,11 @@ void solver_report(struct solver *solver, const struct vote *vote, struct stats 
     stats->memory_limited = solver->memory.reached > 0;
     stats->converged = vote->converged && !stats->memory_limited;
     stats->epsilon = solver->model.criterion.epsilon;
-    stats->emitted_power = unit * scene_emitted_power(scene);
+    stats->emitted_power = unit * scene_entering_power(scene);
     stats->absorbed_power = unit * vote->absorbed;
     stats->escaped_power = unit * vote->escaped;
+    if (scene->sky_first < scene->input_count)
+        stats->escaped_power = stats->emitted_power - stats->absorbed_power;
     stats->checksum = forest_checksum(solver->model.forest);
     ledger_share(&solver->account.ledger, solver->comm);
     stats->levels = solver->account.ledger.levels;

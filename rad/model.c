@@ -26,13 +26,15 @@ struct model model_make(const struct scene *scene, const struct octree *octree,
         .forest = forest,
         .criterion = *criterion,
         .method = method,
-        .area = scene_area(scene),
-        .emitted_power = scene_emitted_power(scene),
+        .area = scene_own_area(scene),
+        .whole_area = scene_area(scene),
+        .emitted_power = scene_entering_power(scene),
         .absorptance = 1.0 - largest_reflectance(scene),
-        .patch_threshold = criterion->min_area * scene_area(scene),
+        .patch_threshold = criterion->min_area * scene_own_area(scene),
     };
     /* 16 times the most light of a closed scene: rows may sum to more than 1. */
-    model.flux_unit = flux_unit_for(16.0 * model.emitted_power / model.absorptance);
+    model.flux_unit =
+        flux_unit_for(16.0 * scene_emitted_power(scene) / model.absorptance);
     model_set_epsilon(&model, criterion->epsilon);
     return model;
 }

@@ -54,7 +54,9 @@ struct model {
     struct criterion criterion;
     struct method method;
     struct flux_unit flux_unit; /* of powers that ranks add */
-    double area, emitted_power; /* of the scene: square scene units, W */
+    double area, whole_area; /* of the scene without a sky, and with it, square scene
+                              * units */
+    double emitted_power;   /* scene_entering_power(), W */
     double absorptance;     /* 1 less the largest reflectance of any band, 1 */
     double link_threshold;  /* W, areas in square scene units: epsilon times the light */
     double patch_threshold; /* square scene units: no patch smaller than this is made */

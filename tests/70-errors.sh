@@ -134,7 +134,9 @@ $vertices
 usemtl grey
 f 1 2 3 4
 END
-refuse_scene ": nothing emits light" "a scene without a light"
+./phr "$work/dark.obj" -o "$work/dark.pfm" --size 8x8 >/dev/null 2>"$work/err"
+check "a scene without a light gets a sky, with a line that says so" \
+    [ "$? $(grep -c 'dark.obj: nothing emits light: --sky 1 is taken' "$work/err")" = "0 1" ]
 
 scene degenerate.obj <<END
 $lamp

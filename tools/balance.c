@@ -29,7 +29,7 @@ enum {
 
 bool balance_is_absurd(const struct run *run)
 {
-    return run->vote.absorbed > ABSURD * scene_emitted_power(run->scene);
+    return run->vote.absorbed > ABSURD * scene_entering_power(run->scene);
 }
 
 /* A number in -1 .. 1. */

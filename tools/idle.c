@@ -20,7 +20,7 @@ static const char *const LIGHT[] = {
 static const char *const PREDICTION[] = {"--alpha", NULL};
 static const char *const GATHER[] = {"--final-gather", NULL};
 static const char *const FACTORS[] = {"--epsilon", "--accuracy", "--max-level",
-                                      "--two-sided", "--two-sided-lamps", NULL};
+                                      "--sky", "--two-sided", "--two-sided-lamps", NULL};
 static const char *const FILES[] = {"-o", "--view", "--stats", "--dump", "--save-links",
                                     "--load-links", "--checkpoint", "--every",
                                     "--resume", "--form-factors", "--verbose", NULL};

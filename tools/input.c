@@ -9,6 +9,7 @@
 #include "io/run/files.h"
 #include "io/scene/obj.h"
 #include "io/scene/ply.h"
+#include "io/scene/sky.h"
 #include "geom/signals.h"
 #include "tools/idle.h"
 #include "tools/show.h"
@@ -169,6 +170,22 @@ static bool read_file(struct run *run, struct obj_repairs *repairs)
     return good;
 }
 
+/* Adds the sky that is asked for, or one that makes a scene without lamps visible. */
+static void add_sky(struct run *run)
+{
+    struct scene *scene = run->scene;
+    struct rgb sky = run->options.sky;
+    bool emits = rgb_sum(sky) > 0.0;
+    for (int32_t i = 0; i < scene->input_count && !emits; i++)
+        emits = material_emits(scene_root_material(scene, i));
+    if (!emits) {
+        run_say(run, "%s: nothing emits light: --sky 1 is taken", run->options.scene);
+        sky = (struct rgb){{1.0, 1.0, 1.0}};
+    }
+    if (scene->input_count > 0 && rgb_sum(sky) > 0.0)
+        sky_add(scene, sky);
+}
+
 static bool read_scene(struct run *run)
 {
     struct error *error = &run->error;
@@ -182,6 +199,8 @@ static bool read_scene(struct run *run)
         scene_take_radiances(run->scene);
     run->scene->two_sided = run->options.two_sided;
     run->scene->two_sided_lamps = run->options.two_sided_lamps;
+    if (!run->options.form_factors)
+        add_sky(run);
     struct error wrong = {0};
     if (!scene_prepare(run->scene, &prepared, &wrong))
         return error_set(error, wrong.code, "%s: %s", run->options.scene, wrong.text);

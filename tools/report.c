@@ -109,7 +109,7 @@ static void print_stored(struct run *run)
         printf("stored      %lld patches (%lld leaves) of %lld triangles\n",
                (long long)forest_count(forest).patches,
                (long long)forest_count(forest).leaves,
-               (long long)run->scene->input_count);
+               (long long)run->scene->sky_first);
 }
 
 bool report_summary(struct run *run)

@@ -6,6 +6,22 @@
 #include "geom/alloc.h"
 #include "geom/stop.h"
 
+int32_t mesh_next_leaf(const struct forest *forest, int32_t leaf)
+{
+    do
+        leaf = forest_next_leaf(forest, leaf);
+    while (leaf >= 0 && forest_is_sky(forest, leaf));
+    return leaf;
+}
+
+int64_t mesh_count(const struct forest *forest)
+{
+    int64_t count = 0;
+    for (int32_t i = mesh_next_leaf(forest, -1); i >= 0; i = mesh_next_leaf(forest, i))
+        count++;
+    return count;
+}
+
 void mesh_write_header(struct output *output, int64_t vertices, int64_t faces)
 {
     fprintf(output->file,
@@ -27,7 +43,7 @@ void mesh_write_header(struct output *output, int64_t vertices, int64_t faces)
 static void write_vertices(struct output *output, const struct shading *shading,
                            const struct tone *tone)
 {
-    for (int64_t v = 0; v < shading->vertex_count && !stop_is_asked(); v++) {
+    for (int64_t v = 0; v < shading->own_count && !stop_is_asked(); v++) {
         struct vec3 x = scene_to_input(shading->forest->scene, shading->positions[v]);
         output_float(output, (float)x.x);
         output_float(output, (float)x.y);
@@ -61,30 +77,33 @@ bool mesh_write(const struct shading *shading, const struct tone *tone,
                 const struct mesh_answer *answer, const char *path, struct error *error)
 {
     const struct forest *forest = shading->forest;
+    const struct scene *scene = forest->scene;
+    if (scene->sky_first < scene->input_count)
+        scene = NULL; /* the sky would be missing */
     struct output output;
     if (!output_open(&output, path, error))
         return false;
-    mesh_write_header(&output, shading->vertex_count, forest_count(forest).leaves);
+    mesh_write_header(&output, shading->own_count, mesh_count(forest));
     output_write_note(&output, "comment ");
     fprintf(output.file, "%s%s", answer->error ? "property float error\n" : "",
             answer->straight ? "property float rest_r\nproperty float rest_g\n"
                                "property float rest_b\n"
                              : "");
-    solution_write_header(&output, forest->scene, answer->lamps.known);
+    solution_write_header(&output, scene, answer->lamps.known);
     write_vertices(&output, shading, tone);
-    int32_t leaf = forest_next_leaf(forest, -1);
-    for (; leaf >= 0 && stop_check(error); leaf = forest_next_leaf(forest, leaf))
+    int32_t leaf = mesh_next_leaf(forest, -1);
+    for (; leaf >= 0 && stop_check(error); leaf = mesh_next_leaf(forest, leaf))
         write_face(&output, shading, answer, leaf);
-    solution_write_scene(&output, forest->scene, &answer->lamps);
+    solution_write_scene(&output, scene, &answer->lamps);
     return output_close(&output, error);
 }
 
 float *mesh_colours(const struct forest *forest, int64_t *count)
 {
-    float *rgb = alloc_array((size_t)forest_count(forest).leaves * 3, sizeof *rgb);
+    float *rgb = alloc_array((size_t)mesh_count(forest) * 3, sizeof *rgb);
     int64_t at = 0;
-    int32_t leaf = forest_next_leaf(forest, -1);
-    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
+    int32_t leaf = mesh_next_leaf(forest, -1);
+    for (; leaf >= 0; leaf = mesh_next_leaf(forest, leaf))
         for (int c = 0; c < BANDS; c++)
             rgb[at++] = (float)forest->radiosity[leaf].band[c];
     *count = at / 3;

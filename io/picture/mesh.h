@@ -32,7 +32,12 @@ bool mesh_write(const struct shading *shading, const struct tone *tone,
 /* Writes the header of such a mesh up to the hierarchy of its faces. */
 void mesh_write_header(struct output *output, int64_t vertices, int64_t faces);
 
-/* Returns the radiosities of all leaves as linear RGB pixels, for tone_automatic()
+/* Returns the next leaf of a mesh in canonical order, as forest_next_leaf(): none of a
+ * sky; and their number. */
+int32_t mesh_next_leaf(const struct forest *forest, int32_t leaf);
+int64_t mesh_count(const struct forest *forest);
+
+/* Returns the radiosities of all its leaves as linear RGB pixels, for tone_automatic()
  * without a picture, and sets `*count` to their number. To be freed with alloc_free(). */
 float *mesh_colours(const struct forest *forest, int64_t *count);
 

@@ -256,15 +256,20 @@ struct blend {
     double steep;              /* least difference over a steep leaf, over bands, W/m^2 */
 };
 
-/* Calls `visit` for each leaf. */
+/* Calls `visit` for each leaf, those of a sky last. */
 static void for_each_leaf(struct blend *blend,
                           void (*visit)(struct blend *blend, int32_t leaf))
 {
     const struct forest *forest = blend->shading->forest;
-    int32_t leaf = forest_next_leaf(forest, -1);
-    for (blend->number = 0; leaf >= 0 && !stop_is_asked(); blend->number++) {
-        visit(blend, leaf);
-        leaf = forest_next_leaf(forest, leaf);
+    for (int sky = 0; sky < 2; sky++) {
+        int32_t leaf = forest_next_leaf(forest, -1);
+        for (blend->number = 0; leaf >= 0 && !stop_is_asked(); blend->number++) {
+            if (forest_is_sky(forest, leaf) == sky)
+                visit(blend, leaf);
+            leaf = forest_next_leaf(forest, leaf);
+        }
+        if (blend->shading->own_count == 0)
+            blend->shading->own_count = blend->shading->table->count;
     }
 }
 

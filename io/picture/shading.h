@@ -22,6 +22,7 @@ struct shading {
     struct vec3 *positions;      /* [vertex_count] scene units */
     struct rgb *values;          /* [vertex_count] radiosity, W/m^2 */
     int64_t vertex_count;
+    int64_t own_count;           /* vertices before those of a sky */
     bool *divided;               /* [forest->count] leaf: it has T-vertices */
     uint8_t *shades;             /* [forest->count] enum shade of a leaf */
     struct table *table;         /* finds vertices; owns positions and values */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "geom/stop.h"
+#include "io/picture/mesh.h"
 #include "io/run/output.h"
 
 enum column { CORNERS, RADIOSITY, ROOT, HIERARCHY, LEVEL, ERROR };
@@ -38,8 +39,8 @@ static void write_column(struct output *output, const struct shading *shading,
                          const float *errors, enum column column, struct error *error)
 {
     const struct forest *forest = shading->forest;
-    int32_t leaf = forest_next_leaf(forest, -1);
-    for (; leaf >= 0 && stop_check(error); leaf = forest_next_leaf(forest, leaf))
+    int32_t leaf = mesh_next_leaf(forest, -1);
+    for (; leaf >= 0 && stop_check(error); leaf = mesh_next_leaf(forest, leaf))
         write_cell(output, shading, errors, leaf, column);
     putc('\n', output->file);
 }
@@ -47,8 +48,8 @@ static void write_column(struct output *output, const struct shading *shading,
 static void write_points(struct output *output, const struct shading *shading,
                          struct error *error)
 {
-    fprintf(output->file, "POINTS %lld float\n", (long long)shading->vertex_count);
-    for (int64_t v = 0; v < shading->vertex_count && stop_check(error); v++) {
+    fprintf(output->file, "POINTS %lld float\n", (long long)shading->own_count);
+    for (int64_t v = 0; v < shading->own_count && stop_check(error); v++) {
         struct vec3 x = scene_to_input(shading->forest->scene, shading->positions[v]);
         for (int axis = 0; axis < 3; axis++)
             output_float_big(output, (float)vec3_axis(x, axis));
@@ -59,7 +60,7 @@ static void write_points(struct output *output, const struct shading *shading,
 static void write_point_data(struct output *output, const struct shading *shading,
                              struct error *error)
 {
-    long long count = shading->vertex_count;
+    long long count = shading->own_count;
     fprintf(output->file, "POINT_DATA %lld\nFIELD points 1\nradiosity 3 %lld float\n",
             count, count);
     for (int64_t v = 0; v < count && stop_check(error); v++)
@@ -87,7 +88,7 @@ bool vtk_write(const struct shading *shading, const float *errors, const char *p
     static const char *const TYPES[] = {
         [RADIOSITY] = "float", [ROOT] = "unsigned_int", [HIERARCHY] = "unsigned_int",
         [LEVEL] = "unsigned_char", [ERROR] = "float"};
-    long long cells = forest_count(shading->forest).leaves;
+    long long cells = mesh_count(shading->forest);
     int last = errors ? ERROR : LEVEL; /* of as many columns beside the corners */
     struct output output;
     if (!output_open(&output, path, error))

@@ -203,6 +203,26 @@ static bool cut_value(const struct argument *a, size_t ending, char digits[64])
     return true;
 }
 
+/* Sets a colour: a number for all bands, or R,G,B. */
+static bool set_colour(const struct argument *a)
+{
+    struct rgb *colour = a->field;
+    const char *at = a->value;
+    bool alone = !strchr(at, ',');
+    for (int c = 0; c < BANDS; c++) {
+        char digits[64];
+        size_t length = strcspn(at, ",");
+        snprintf(digits, sizeof digits, "%.*s", (int)length, at);
+        if (length >= sizeof digits || !text_is_number(digits, &colour->band[c]) ||
+            (at[length] == ',') == (alone || c == BANDS - 1))
+            return is_not(a, "a number, or three as in R,G,B");
+        if (!check_range(a, colour->band[c], 1.0, "", ""))
+            return false;
+        at += alone ? 0 : length + 1;
+    }
+    return true;
+}
+
 /* Sets a fraction: a number, or a percentage. Of 5, 5% may be meant. */
 static bool set_fraction(const struct argument *a)
 {
@@ -332,6 +352,7 @@ static const struct option OPTIONS[] = {
     {"--tolerance", set_real, FIELD(criterion.tolerance), 0, 1, NULL},
     {"--max-iterations", set_integer, FIELD(criterion.max_iterations), 1, 1e9, NULL},
     {"--ke", set_choice, FIELD(ke), 0, 0, "radiosity|radiance"},
+    {"--sky", set_colour, FIELD(sky), 0, 1e30, NULL},
     {"--two-sided", set_flag, FIELD(two_sided), 0, 0, NULL},
     {"--two-sided-lamps", set_flag, FIELD(two_sided_lamps), 0, 0, NULL},
     {"--save-links", set_text, FIELD(save_links), 0, 0, NULL},
@@ -423,6 +444,7 @@ static const char *find_light(const struct options *options)
            : options->save_links     ? "--save-links"
            : options->load_links     ? "--load-links"
            : options->dump           ? "--dump"
+           : rgb_sum(options->sky) > 0.0 ? "--sky"
            : options->checkpoint     ? "--checkpoint"
            : options->resume         ? "--resume"
                                      : NULL;
@@ -632,7 +654,7 @@ static const char HELP[] =
     "  --linking tree|pairs  where links begin --final-gather N[,pixels]  rays (256)\n"
     "  --solver cg|jacobi  over the links      --balance default|greedy|none\n"
     "  --paper          the paper's of these   --alpha A     inherited cost (0.5)\n"
-    "  --two-sided, and --two-sided-lamps      --ke radiosity|radiance  unit of Ke\n"
+    "  --two-sided, --two-sided-lamps  --ke radiosity|radiance  --sky B or R,G,B\n"
     "  --save-links F   those of all pairs     --load-links F  in their place\n"
     "  --checkpoint F   after each pass        --every N     only each N-th pass (1)\n"
     "  --resume F       go on from there       --memory M    limit, as in 2G (80%)\n"

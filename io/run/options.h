@@ -56,6 +56,7 @@ struct options {
     const char *show_patch;   /* of SHOW_LINKS: ROOT/PATH or X,Y; else NULL */
     double exposure;          /* 0: chosen from the picture */
     enum ke ke;               /* of Ke, and of the emissions of a PLY file */
+    struct rgb sky;           /* radiosity of a sky, W/m^2; 0: none */
     bool two_sided;           /* backs reflect */
     bool two_sided_lamps;     /* backs of lamps, too; only with two_sided */
     const char *help_on;      /* option of --help=OPTION, or NULL */

@@ -41,7 +41,7 @@ static double *axis_of(struct vec3 *v, int axis)
 static bool is_floor(const struct scene *scene, int32_t i, const struct box *box, int up)
 {
     const struct triangle *t = &scene->triangles[i];
-    double facing = vec3_axis(scene->planes[i].normal, up);
+    double facing = vec3_axis(triangle_plane(t).normal, up);
     double bottom = vec3_axis(box->low, up), height = vec3_axis(box->high, up) - bottom;
     return (facing > LEVEL || (facing < -LEVEL && scene_has_twin(scene, i))) &&
            vec3_axis(triangle_high(t), up) <= bottom + FLAT * height;
@@ -54,9 +54,9 @@ static struct box box_of(const struct scene *scene, enum kind kind,
                          const struct box *rest, int up)
 {
     struct box box = {.is_empty = true};
-    for (int32_t i = 0; i < scene->input_count; i++) {
+    for (int32_t i = 0; i < scene->sky_first; i++) {
         bool emits = material_emits(scene_root_material(scene, i));
-        if (!(scene->areas[i] > 0.0) || emits != (kind == LAMPS) ||
+        if (triangle_is_degenerate(&scene->triangles[i]) || emits != (kind == LAMPS) ||
             (kind == THINGS && is_floor(scene, i, rest, up)))
             continue;
         const struct triangle *t = &scene->triangles[i];
@@ -71,8 +71,9 @@ static bool has_floor(const struct scene *scene, const struct box *box, int up)
 {
     struct vec3 side = vec3_sub(box->high, box->low);
     double area = 0.0;
-    for (int32_t i = 0; i < scene->input_count; i++)
-        area += is_floor(scene, i, box, up) ? scene->areas[i] : 0.0;
+    for (int32_t i = 0; i < scene->sky_first; i++)
+        if (is_floor(scene, i, box, up))
+            area += triangle_area(&scene->triangles[i]);
     return area > COVER * vec3_axis(side, (up + 1) % 3) * vec3_axis(side, (up + 2) % 3);
 }
 
@@ -80,10 +81,13 @@ static bool find_up(const struct scene *scene, const struct box *rest)
 {
     struct vec3 side = vec3_sub(rest->high, rest->low), shine = {0.0, 0.0, 0.0};
     double power = 0.0;
-    for (int32_t i = 0; i < scene->input_count; i++) {
-        double emitted =
-            scene->areas[i] * rgb_sum(scene_root_material(scene, i)->emission);
-        shine = vec3_add(shine, vec3_scale(scene->planes[i].normal, emitted));
+    for (int32_t i = 0; i < scene->sky_first; i++) {
+        const struct triangle *t = &scene->triangles[i];
+        double emitted = rgb_sum(scene_root_material(scene, i)->emission);
+        emitted *= triangle_area(t);
+        if (!(emitted > 0.0) || triangle_is_degenerate(t))
+            continue;
+        shine = vec3_add(shine, vec3_scale(triangle_plane(t).normal, emitted));
         power += emitted;
     }
     if (-shine.y > DOWN * power || -shine.z > DOWN * power)
@@ -143,6 +147,8 @@ bool subject_has_as_sky(const struct subject *subject, const struct scene *scene
     const struct triangle *t = &scene->triangles[triangle];
     struct vec3 low = vec3_least(triangle_low(t), subject->low),
                 high = vec3_most(triangle_high(t), subject->high);
+    if (scene_is_sky(scene, triangle))
+        return true;
     return subject->below_sky && material_emits(scene_root_material(scene, triangle)) &&
            !(vec3_is_equal(low, subject->low) && vec3_is_equal(high, subject->high));
 }

@@ -9,11 +9,10 @@
 struct subject {
     bool z_up;             /* else y is up */
     bool below_sky;        /* lamps enclose the things; they are no part of it */
-    struct vec3 low, high; /* box of the things, with some ground around them, scene
-                            * units */
+    struct vec3 low, high; /* box of the things, with some ground around them */
 };
 
-/* Finds the subject of a prepared scene. */
+/* Finds the subject of a scene, prepared or not; of one that is not, in input units. */
 struct subject subject_find(const struct scene *scene);
 
 /* True if an input triangle is a part of the sky. */

@@ -9,7 +9,7 @@ static void transfer(struct solver *solver, const struct rgb *vector)
     above_begin(solver, vector);
     double start = comm_seconds();
     double largest = 2.0 * solver_largest(solver, vector);
-    solver->flux = flux_unit_for(largest * solver->model.area);
+    solver->flux = flux_unit_for(largest * solver->model.whole_area);
     solver->model.method.transfer(&solver->links, &solver->model, vector, solver->flux);
     solver->account.seconds[PHASE_SOLVE] += comm_seconds() - start;
 }

@@ -52,7 +52,7 @@ static const double MOST_REFLECTED = 0.95;
 static double cap_of(double reflectance, double row)
 {
     double most = real_max(MOST_REFLECTED, 0.5 * (1.0 + reflectance));
-    return fmin(1.0, most / (reflectance * row));
+    return reflectance * row > most ? most / (reflectance * row) : 1.0;
 }
 
 /* Chooses the cap of a leaf, and lists it if it reflects. */

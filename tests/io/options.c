@@ -137,6 +137,14 @@ static void test_switches(void)
     tap_ok(parse("--two-sided-lamps a.obj") && options.two_sided &&
                options.two_sided_lamps,
            "--two-sided-lamps includes --two-sided");
+    const double *sky = options.sky.band;
+    tap_ok(parse("--sky 2.5 a.obj") && sky[0] == 2.5 && sky[1] == 2.5 && sky[2] == 2.5,
+           "--sky of one number");
+    tap_ok(parse("--sky 1,2,0 a.obj") && sky[0] == 1.0 && sky[1] == 2.0 && sky[2] == 0.0,
+           "of R,G,B");
+    tap_ok(!parse("--sky 1,2 a.obj") && !parse("--sky 1,2,3,4 a.obj") &&
+               !parse("--sky 1,,2 a.obj") && !parse("--sky -1 a.obj"),
+           "of nothing else");
     tap_ok(parse("--quiet a.obj") && options.quiet && !options.verbose, "--quiet");
     tap_ok(parse("--verbose a.obj") && options.verbose && !options.quiet, "--verbose");
     tap_ok(parse("--help") && options.help && !options.version && !options.scene,
@@ -294,7 +302,7 @@ enum { NUMBER_COUNT = sizeof NUMBERS / sizeof NUMBERS[0] };
 static const char *const VALUED[] = {
     "-o", "--view", "--size", "--stats", "--oracle", "--ke", "--linking", "--form-factor",
     "--solver", "--balance", "--dump", "--show", "--save-links", "--load-links",
-    "--resume", "--checkpoint", "--memory"};
+    "--resume", "--checkpoint", "--memory", "--sky"};
 static const char *const FLAGS[] = {"--flat", "--two-sided", "--two-sided-lamps",
                                     "--paper", "--quiet", "--verbose", "--validate",
                                     "--form-factors", "--help", "--version"};

@@ -59,7 +59,7 @@ static double mean_radiosity(const struct model *model)
 {
     double sum = 0.0;
     for (int32_t root = 0; root < scene_root_count(model->scene); root++)
-        sum += scene_root_area(model->scene, root) *
+        sum += scene_root_own_area(model->scene, root) *
                rgb_sum(model->forest->radiosity[root]);
     return sum / model->area;
 }
@@ -70,7 +70,7 @@ static struct rgb scale_of_bands(const struct model *model, double mean)
     struct rgb scale = {{0.0, 0.0, 0.0}};
     for (int c = 0; c < BANDS && mean > 0.0; c++) {
         for (int32_t root = 0; root < scene_root_count(model->scene); root++)
-            scale.band[c] += scene_root_area(model->scene, root) *
+            scale.band[c] += scene_root_own_area(model->scene, root) *
                              model->forest->radiosity[root].band[c];
         scale.band[c] = mean / fmax(scale.band[c] / model->area, GATHER_DIM * mean);
     }
@@ -84,7 +84,7 @@ double forest_mean_reflected(const struct forest *forest)
         sum += scene_root_area(forest->scene, root) *
                (rgb_sum(forest->radiosity[root]) -
                 rgb_sum(forest_material(forest, root)->emission));
-    return sum / scene_area(forest->scene);
+    return sum / scene_own_area(forest->scene);
 }
 
 /* The surfaces that emit more than `least`, over all bands: their area, in square scene
