@@ -1,0 +1,184 @@
+/* Paths from near surfaces.
+ *
+ * The mesh is wrong where a ray ends nearer than the leaf there is large: under a sheet
+ * of paper on a table the table is dark, but the leaf is not. There the ray goes on: the
+ * point that it met receives light from a lamp, by one segment, and from one more ray,
+ * until a ray ends far enough away. That is a path tracer for near surfaces and radiosity
+ * for the rest. In pixels one ray is aimed at a bright patch from there, too: else single
+ * pixels shine along all edges of a room. */
+#include "rad/beyond/gather/path.h"
+
+#include <math.h>
+
+#include "geom/hash.h"
+#include "rad/beyond/sample.h"
+#include "rad/beyond/sequence.h"
+
+/* A point is beside a patch if the square of its distance is less than this times the
+ * square of the patch's radius. */
+static const double BESIDE = 2.0;
+
+/* Most points of a path; those from which it goes on in any case. */
+enum { PATH_MOST = 256, PATH_SURE = 2 };
+
+static bool is_beside(const struct forest *forest, int32_t patch, struct vec3 x)
+{
+    struct triangle t = forest_triangle(forest, patch);
+    struct vec3 apart = vec3_sub(triangle_centroid(&t), x);
+    double radius = triangle_radius(&t);
+    return vec3_dot(apart, apart) < BESIDE * radius * radius;
+}
+
+/* True if the point that a path has met is of a lamp, which is aimed at from x on its
+ * way. */
+static bool is_aimed_lamp(const struct receiver *r, const struct point *met,
+                          struct vec3 x)
+{
+    int32_t root = point_root(r, met);
+    return root_is_sender(r->gather->lamps, root) &&
+           !receiver_lamp_is_near(r->gather->model->scene, root, x);
+}
+
+/* Russian roulette: the path goes on, for all that would have, with the probability of
+ * the largest reflectance. The mesh's light is added in the mean whether it goes on or
+ * not, so that rows still sum to 1. That is noise where the mesh is far from right, as in
+ * the shade at the edge of a wide bright leaf, so few paths get here. Deep in a gap
+ * between bright surfaces paths are long: if they ended soon with the mesh's light, which
+ * is the mean of inside and outside, gaps would shine. Rejected: ending half of the
+ * longest and giving their light to the others; what is then taken off the mesh makes
+ * large rows of both signs, by which light at rho .999 is not found. */
+static bool survives(struct receiver *r, const struct point *point, bool aimed, double u,
+                    struct rgb *weight)
+{
+    const struct rgb *rho =
+        &forest_material(r->gather->model->forest, point->patch)->reflectance;
+    double most = fmax(rho->band[0], fmax(rho->band[1], rho->band[2]));
+    struct rgb rest = *weight;
+    if (u < most) {
+        for (int c = 0; c < BANDS; c++) {
+            weight->band[c] /= most;
+            rest.band[c] -= weight->band[c];
+        }
+    }
+    path_add_mesh(r, point, aimed, &rest);
+    return u < most;
+}
+
+/* A path that has met the point goes on from there: adds the emission, unless it is
+ * `aimed` at, and the light of a lamp, and makes a ray of the seed's. False if the point
+ * absorbs all. */
+static bool leave(struct receiver *r, const struct point *point, bool aimed,
+                  uint64_t seed, struct rgb *weight, struct vec3 *origin,
+                  struct vec3 *direction)
+{
+    const struct material *material =
+        forest_material(r->gather->model->forest, point->patch);
+    if (!aimed)
+        receiver_add_source(r, weight, material->emission, 1.0);
+    for (int c = 0; c < BANDS; c++)
+        weight->band[c] *= material->reflectance.band[c];
+    if (!(rgb_sum(*weight) > 0.0))
+        return false;
+    receiver_aim_beside(r, point->at, point->normal, point->patch, weight, seed);
+    *origin = point_above(point->at, point->normal);
+    *direction = cosine_direction(point->normal, direction_along(point->normal),
+                                  hash_unit(seed + 14), hash_unit(seed + 15));
+    return true;
+}
+
+bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x)
+{
+    int32_t bright = r->gather->bright->part_of[met->patch];
+    return bright >= 0 && !is_beside(r->gather->model->forest, bright, x) &&
+           (r->points || path_ends(r, met, x));
+}
+
+/* True if the bright patch that a path has met, from x on its way, is aimed at from
+ * there: in pixels, if a point of all bright patches, chosen by power, brings no more
+ * light than a ray that meets this one. (A row would no longer sum to 1.) */
+static bool is_aimed_at_beside(const struct receiver *r, const struct point *met,
+                               struct vec3 x)
+{
+    const struct senders *bright = r->gather->bright;
+    int32_t patch = bright->part_of[met->patch];
+    if (!r->points || patch < 0)
+        return false;
+    struct vec3 ray = vec3_sub(met->at, x);
+    double sent = rgb_sum(sender_light(bright, patch));
+    return PI * vec3_dot(ray, ray) * sent >= senders_power(bright);
+}
+
+/* Adds `weight` times the light of such patches, by one ray from x. */
+static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
+                        const struct rgb *weight, uint64_t seed)
+{
+    const struct final_gather *g = r->gather;
+    if (!r->points || !(senders_power(g->bright) > 0.0))
+        return;
+    struct choice bright = sender_choose(g->bright, g->bright->nodes, hash_unit(seed));
+    struct facet facet = facet_make(g->model->forest, bright.patch);
+    struct vec3 y =
+        triangle_of_square(&facet.triangle, hash_unit(seed + 1), hash_unit(seed + 2));
+    double factor =
+        bright.share * facet.area * point_kernel(x, normal, y, facet.plane.normal);
+    struct point point;
+    if (!(factor > 0.0) ||
+        trace(r, x, vec3_unit(vec3_sub(y, x)), &point) != MET_FRONT ||
+        g->bright->part_of[point.patch] != bright.patch || !is_aimed_at_beside(r, &point, x))
+        return;
+    struct rgb light = *weight;
+    for (int c = 0; c < BANDS; c++)
+        light.band[c] *= factor;
+    bool aimed = is_aimed_lamp(r, &point, x);
+    if (path_ends(r, &point, x))
+        path_add_mesh(r, &point, aimed, &light);
+    else
+        path_go_on(r, point, aimed, light, hash_mix(seed), false);
+}
+
+void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
+                  double factor, uint64_t seed)
+{
+    const struct final_gather *g = r->gather;
+    const struct forest *forest = g->model->forest;
+    int32_t root = (int32_t)forest->patches[patch].id.root;
+    struct point point = {.at = y,
+                          .normal = scene_root_plane(forest->scene, root).normal};
+    find_leaf(forest, root, &point);
+    if (!path_is_aimed_at(r, &point, x))
+        return;
+    struct rgb weight = {{factor, factor, factor}};
+    bool aimed = root_is_sender(g->lamps, root);
+    r->shares.bright += factor;
+    if (path_ends(r, &point, x))
+        path_add_mesh(r, &point, aimed, &weight);
+    else
+        path_go_on(r, point, aimed, weight, seed, true);
+}
+
+void path_go_on(struct receiver *r, struct point point, bool aimed, struct rgb weight,
+                uint64_t seed, bool aims)
+{
+    for (int count = 1; count < PATH_MOST; count++, seed += 16) {
+        struct vec3 origin, direction, normal = point.normal;
+        if (count > PATH_SURE &&
+            !survives(r, &point, aimed, hash_unit(seed + 13), &weight))
+            return;
+        if (!leave(r, &point, aimed, seed, &weight, &origin, &direction))
+            return;
+        if (aims)
+            look_beside(r, origin, normal, &weight, seed + 10);
+        if (trace(r, origin, direction, &point) != MET_FRONT) {
+            r->escaped++;
+            return;
+        }
+        aimed = is_aimed_lamp(r, &point, origin);
+        if (aims && is_aimed_at_beside(r, &point, origin))
+            return;
+        if (count + 1 == PATH_MOST || path_ends(r, &point, origin)) {
+            path_add_mesh(r, &point, aimed, &weight);
+            return;
+        }
+    }
+}
+

@@ -1,0 +1,50 @@
+/* Paths from near surfaces: what happens where a ray of the final gather has met a
+ * leaf. For the files of the final gather alone. */
+#ifndef RAD_BEYOND_GATHER_PATH_H
+#define RAD_BEYOND_GATHER_PATH_H
+
+#include "rad/beyond/gather/met.h"
+
+/* A leaf is too near if the square of the length of the ray that has met it is less than
+ * this times the leaf's area. */
+static const double NEAR = 0.1;
+
+static inline int32_t point_root(const struct receiver *r, const struct point *point)
+{
+    return (int32_t)r->gather->model->forest->patches[point->patch].id.root;
+}
+
+/* Adds the mesh's light at a point; `aimed`: without emission. */
+static inline void path_add_mesh(struct receiver *r, const struct point *point,
+                                 bool aimed, const struct rgb *weight)
+{
+    const struct forest *forest = r->gather->model->forest;
+    struct rgb emission = forest_material(forest, point->patch)->emission;
+    receiver_add_point(r, point->patch, point->weight, weight);
+    if (aimed)
+        receiver_add_source(r, weight, emission, -1.0);
+}
+
+/* True if a ray from x takes the mesh's light at the point that it has met. The leaf there
+ * is too near for its mean to hold if less than a third of it is within the ray's length
+ * of the point: what stands that near, the receiver itself above all, shades or lights
+ * this part of the leaf and not the rest. (pi .1 = 1/3.) */
+static inline bool path_ends(const struct receiver *r, const struct point *met,
+                             struct vec3 x)
+{
+    struct vec3 ray = vec3_sub(met->at, x);
+    return vec3_dot(ray, ray) >= NEAR * r->gather->near.leaves[met->patch].area;
+}
+
+/* True if rays from x are aimed at the bright patch that the point which one has met is
+ * on. From pixels the path of such a ray goes on where it does not end on the mesh, from
+ * the holder of a bulb, say: found by chance it is a bright speck. */
+bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x);
+
+/* A path goes on from a point that it has met and does not end on; adds its light, times
+ * `weight`. `aimed`: the point is of a lamp that is aimed at. `aims`: from all of its
+ * points at bright patches. */
+void path_go_on(struct receiver *r, struct point point, bool aimed, struct rgb weight,
+                uint64_t seed, bool aims);
+
+#endif

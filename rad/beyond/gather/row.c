@@ -1,0 +1,108 @@
+/* Rows of leaves, and the light at points: each is made by the first way that can make
+ * it. */
+#include "rad/beyond/gather/gather.h"
+#include "rad/beyond/gather/met.h"
+
+#include "geom/alloc.h"
+#include "geom/hash.h"
+#include "rad/beyond/sequence.h"
+
+/* Makes the sums the terms of the row. */
+static void keep_terms(struct receiver *r)
+{
+    struct final_gather *g = r->gather;
+    int64_t first = final_gather_terms(g);
+    r->row.end = first + g->sums.count;
+    RESERVE(g->terms, &g->term_capacity, r->row.end);
+    for (int64_t i = 0; i < g->sums.count; i++) {
+        const struct gather_sum *sum = &g->sums.items[i];
+        struct gather_term term = {.place = sum->place, .near = sum->near};
+        for (int c = 0; c < BANDS; c++)
+            term.weight[c] = (float)sum->weight[c];
+        g->terms[first + i] = term;
+    }
+}
+
+/* A receiver on the patch. Rays beyond the points of a sequence would be the same. */
+static struct receiver receiver_make(struct final_gather *gather, int32_t patch,
+                                     struct facet facet, uint64_t seed, int rays)
+{
+    rays = rays < SEQUENCE_POINTS ? rays : SEQUENCE_POINTS;
+    return (struct receiver){.gather = gather, .facet = facet, .seed = seed,
+                             .row = {.leaf = patch},
+                             .along = direction_along(facet.plane.normal), .rays = rays,
+                             .segments = rays, .near = -1};
+}
+
+uint64_t patch_seed(const struct forest *forest, int32_t patch)
+{
+    return hash_mix(id_number(forest->patches[patch].id));
+}
+
+struct receiver receiver_of_leaf(struct final_gather *gather, int32_t leaf, int rays)
+{
+    return receiver_make(gather, leaf, facet_make(gather->model->forest, leaf),
+                         patch_seed(gather->model->forest, leaf), rays);
+}
+
+/* The irradiance straight from lamps, by an exact row. */
+static struct rgb light_of_lamps(const struct receiver *r)
+{
+    const struct final_gather *g = r->gather;
+    const struct forest *forest = g->model->forest;
+    struct rgb light = {{0.0, 0.0, 0.0}};
+    for (int64_t i = 0; i < g->sums.count; i++) {
+        int32_t patch = g->order[g->sums.items[i].place];
+        const struct material *m = forest_material(forest, patch);
+        if (!root_is_sender(g->lamps, (int32_t)forest->patches[patch].id.root))
+            continue;
+        for (int c = 0; c < BANDS; c++)
+            light.band[c] += g->sums.items[i].weight[c] * m->emission.band[c];
+    }
+    return light;
+}
+
+void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int segments,
+                      bool exact)
+{
+    struct receiver r = receiver_of_leaf(gather, leaf, rays);
+    r.segments = segments < SEQUENCE_POINTS ? segments : SEQUENCE_POINTS;
+    r.keeps = true;
+    gather->sums.count = gather->sums.first = 0;
+    if (exact && receiver_add_exact(&r)) {
+        r.row.lamps = light_of_lamps(&r);
+    } else {
+        r.light = (struct rgb){{0.0, 0.0, 0.0}};
+        gather->sums.count = gather->sums.first = 0; /* of this row alone */
+        receiver_aim(&r);
+        receiver_fire(&r);
+        r.row.lamps = r.lamps;
+    }
+    keep_terms(&r);
+    receiver_find_covers(&r);
+    RESERVE(gather->rows, &gather->row_capacity, gather->count + 1);
+    gather->rows[gather->count++] = r.row;
+}
+
+struct gather_light final_gather_at(struct final_gather *gather,
+                                    const struct gather_points *points, uint64_t seed,
+                                    int count, bool all)
+{
+    struct vec3 x = points->middle;
+    struct facet facet = {.triangle = {{x, x, x}},
+                          .plane = points->plane,
+                          .input = scene_input_of(gather->model->scene, points->root)};
+    struct point point = {.at = x};
+    find_leaf(gather->model->forest, points->root, &point);
+    struct receiver r = receiver_make(gather, point.patch, facet, hash_mix(seed), count);
+    struct gather_light light = {.variance = 0.0};
+    r.points = points;
+    receiver_aim(&r);
+    if (all)
+        receiver_fire(&r);
+    for (int c = 0; c < BANDS; c++)
+        light.variance += r.row.chance[c];
+    light.lamps = r.lamps;
+    light.rest = r.sums.h;
+    return light;
+}
