@@ -93,7 +93,7 @@ TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wal
         patch_exchange link patch_link method cluster node oracle error_oracle pushpull \
         final_gather lamps checksum paths plan balance assign gather_mesh spotcheck \
         text obj ply output files machine store tone image png texture hdr camera \
-        viewpoint open_parts shading mesh render options progress screened stop norms \
+        viewpoint shading mesh render options progress screened stop norms \
         cie whole stability gaps openings leaks sky linking exchange conjugate exact \
         converge
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io

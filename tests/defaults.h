@@ -67,7 +67,8 @@ static inline double mean_radiosity(const struct solution *s, int32_t first,
 /* Smooth shading of the light of the links. */
 static inline struct shading *shade(const struct solution *s)
 {
-    return shade_forest(s->solver->model.forest, s->octree, NULL, NULL);
+    return shading_create(s->solver->model.forest, NULL, NULL,
+                          beyond_answer(s->solver)->outside);
 }
 
 /* Radiosity at a point in input units of one of the roots first .. first + count - 1, the

@@ -5,18 +5,6 @@
 #include "io/picture/shading.h"
 #include "tests/scenes.h"
 
-/* Surveys the leaves, and shades them as shading_create(). */
-static inline struct shading *shade_forest(const struct forest *forest,
-                                           const struct octree *octree,
-                                           const struct rgb *less, const float *error)
-{
-    int64_t leaves;
-    uint8_t *open = open_parts_survey(forest, octree, 0, 1, &leaves);
-    struct shading *shading = shading_create(forest, less, error, open);
-    alloc_free(open);
-    return shading;
-}
-
 /* A scene with all that stands on it. */
 struct stage {
     struct scene *scene;
@@ -34,8 +22,8 @@ static inline struct stage stage_of(struct scene *scene)
 static inline void shade_stage(struct stage *stage, bool flat)
 {
     shading_destroy(stage->shading);
-    stage->shading = flat ? shading_create(stage->forest, NULL, NULL, NULL)
-                          : shade_forest(stage->forest, stage->octree, NULL, NULL);
+    stage->shading = flat ? shading_create_flat(stage->forest)
+                          : shading_create(stage->forest, NULL, NULL, NULL);
 }
 
 static inline void dismantle(struct stage *stage)

@@ -45,7 +45,7 @@ static void write_meshes(struct run *run, const struct shading *shading)
     struct tone tone = choose_tone(run, colours, count);
     const struct answer *answer = beyond_answer(run->solver);
     struct mesh_answer solved = {
-        answer->error, answer->straight,
+        answer->error, answer->straight, answer->outside,
         {answer->straight, answer->gather.lamps->least, answer->gather.mean}};
     for (int i = 0; i < run->options.output_count; i++) {
         const struct target *target = &run->options.outputs[i];
@@ -59,28 +59,18 @@ static void write_meshes(struct run *run, const struct shading *shading)
     alloc_free(colours);
 }
 
-/* Collective. Returns the open parts of all leaves, of which each rank examines some;
- * NULL with --flat. */
-static uint8_t *survey_leaves(struct run *run)
+/* Prepares the shading of all leaves, with `rest` without the light that comes straight
+ * from lamps. */
+static struct shading *shade_leaves(struct run *run, bool rest)
 {
-    if (run->options.flat)
-        return NULL;
-    int64_t leaves;
-    uint8_t *open = open_parts_survey(run->solver->model.forest, run->octree,
-                                          run->comm.rank, run->comm.size, &leaves);
-    comm_add_bytes(&run->comm, open, leaves);
-    return open;
-}
-
-/* Prepares the shading of all leaves, without the light that comes straight from lamps if
- * there is an answer. */
-static struct shading *shade_leaves(struct run *run, const struct answer *answer,
-                                    const uint8_t *open)
-{
+    const struct forest *forest = run->solver->model.forest;
+    const struct answer *answer = beyond_answer(run->solver);
     double start = comm_seconds();
     struct shading *shading =
-        shading_create(run->solver->model.forest, answer ? answer->straight : NULL,
-                       answer ? answer->error : NULL, open);
+        run->options.flat
+            ? shading_create_flat(forest)
+            : shading_create(forest, rest ? answer->straight : NULL,
+                             rest ? answer->error : NULL, answer->outside);
     run->solver->account.seconds[PHASE_SHADING] += comm_seconds() - start;
     return shading;
 }
@@ -129,7 +119,7 @@ static bool show_views(struct run *run, const struct renderer *renderer)
 
 /* Collective. Prepares the light of pictures, and shows all views. Their rays are not
  * counted among the solution's. */
-static bool show_pictures(struct run *run, const uint8_t *open)
+static bool show_pictures(struct run *run)
 {
     struct model *model = &run->solver->model;
     struct octree_counts counts = model->counts;
@@ -145,15 +135,13 @@ static bool show_pictures(struct run *run, const uint8_t *open)
     if (colours)
         shading = show_shading(run, colours);
     else if (!run->options.pixels)
-        shading = shade_leaves(run, gathers ? answer : NULL, open);
+        shading = shade_leaves(run, gathers);
     struct renderer renderer =
         renderer_make(run->octree, shading, gathers ? &answer->gather : NULL);
     if (run->options.pixels && renderer.rays < run->options.pixel_rays)
         renderer.rays = run->options.pixel_rays;
-    if (gathers) {
+    if (gathers)
         answer->gather.counts = (struct gather_counts){.rays = 0};
-        final_gather_set_partly_covered(&answer->gather, open, OPEN_PARTS);
-    }
     run->solver->account.seconds[PHASE_RENDER] += comm_seconds() - start;
     bool good = show_views(run, &renderer);
     if (gathers) {
@@ -169,10 +157,10 @@ static bool show_pictures(struct run *run, const uint8_t *open)
 }
 
 /* Collective. */
-static bool show_meshes(struct run *run, const uint8_t *open)
+static bool show_meshes(struct run *run)
 {
     double start = comm_seconds();
-    struct shading *shading = shade_leaves(run, NULL, open);
+    struct shading *shading = shade_leaves(run, false);
     if (run_goes_on(run) && run->comm.rank == 0)
         write_meshes(run, shading);
     shading_destroy(shading);
@@ -206,11 +194,5 @@ bool results_show(struct run *run)
     if (!pictures && !meshes)
         return true;
     beyond_free_vectors(run->solver); /* pictures and meshes take as much */
-    double start = comm_seconds();
-    uint8_t *open = survey_leaves(run);
-    run->solver->account.seconds[PHASE_RENDER] = comm_seconds() - start;
-    bool good = (!meshes || show_meshes(run, open)) &&
-                (!pictures || show_pictures(run, open));
-    alloc_free(open);
-    return good;
+    return (!meshes || show_meshes(run)) && (!pictures || show_pictures(run));
 }

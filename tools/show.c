@@ -154,7 +154,7 @@ struct shading *show_shading(struct run *run, struct rgb *colours)
     struct forest *forest = run->solver->model.forest;
     struct rgb *radiosity = forest->radiosity;
     forest->radiosity = colours;
-    struct shading *shading = shading_create(forest, NULL, NULL, NULL);
+    struct shading *shading = shading_create_flat(forest);
     forest->radiosity = radiosity;
     return shading;
 }

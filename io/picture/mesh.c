@@ -71,6 +71,8 @@ static void write_face(struct output *output, const struct shading *shading,
     for (int c = 0; c < BANDS && answer->straight; c++)
         output_float(output, (float)(shading->forest->radiosity[leaf].band[c] -
                                      answer->straight[leaf].band[c]));
+    if (answer->outside)
+        output_float(output, answer->outside[leaf]);
 }
 
 bool mesh_write(const struct shading *shading, const struct tone *tone,
@@ -85,10 +87,11 @@ bool mesh_write(const struct shading *shading, const struct tone *tone,
         return false;
     mesh_write_header(&output, shading->own_count, mesh_count(forest));
     output_write_note(&output, "comment ");
-    fprintf(output.file, "%s%s", answer->error ? "property float error\n" : "",
+    fprintf(output.file, "%s%s%s", answer->error ? "property float error\n" : "",
             answer->straight ? "property float rest_r\nproperty float rest_g\n"
                                "property float rest_b\n"
-                             : "");
+                             : "",
+            answer->outside ? "property float outside\n" : "");
     solution_write_header(&output, scene, answer->lamps.known);
     write_vertices(&output, shading, tone);
     int32_t leaf = mesh_next_leaf(forest, -1);

@@ -11,10 +11,10 @@
  * point, by segments; reflected light is smooth and interpolated over the mesh. Or all
  * light is gathered at the point: then the picture has no trace of the mesh. So it is
  * where interpolation does not hold (io/picture/shading.h): on a leaf that counts as
- * covered but is seen, as the side of a book that stands out from its neighbours; at a
- * point in a narrow gap, of a leaf that is open elsewhere; on a steep leaf, in the
- * housing of a lamp. All points of a pixel on one triangle are gathered together; where
- * that is noisy, as where lamps are seen in part, a second time by more rays.
+ * covered but is seen, as the side of a book that stands out from its neighbours; on a
+ * steep leaf, in the housing of a lamp. All points of a pixel on one triangle are
+ * gathered together; where that is noisy, as where lamps are seen in part, a second time
+ * by more rays.
  *
  * A surface with normals of its own has the light of the smooth surface in which the
  * facets are inscribed: a point is lifted towards the plane through each corner across
@@ -180,16 +180,12 @@ static int rays_for_all(const struct renderer *renderer, const struct pixel_root
 {
     const struct shading *shading = renderer->shading;
     struct vec3 w = view->weights[i];
-    int32_t leaf, root = view->roots[i];
+    int32_t leaf;
     if (!shading)
         return renderer->rays;
-    *light = shading_at(shading, root, (double[]){w.x, w.y, w.z}, &leaf);
+    *light = shading_at(shading, view->roots[i], (double[]){w.x, w.y, w.z}, &leaf);
     enum shade shade = shading->shades[leaf];
     if (!renderer->gather || shade == SHADE_SMOOTH)
-        return 0;
-    struct triangle t = scene_root_triangle(shading->forest->scene, root);
-    if (shade == SHADE_IN_PART && !leaf_is_shut_at(shading->forest, renderer->octree,
-                                                   leaf, corners_mean(t.corner, w)))
         return 0;
     return shade == SHADE_STEEP ? STEEP : WHOLE;
 }

@@ -23,12 +23,11 @@
  * would be lost: .6 % of the picture of a furnished room (make cycles). The last
  * correction takes deficits whole: as much light is shown as leaves have.
  *
- * Where a box stands on the floor, leaves are covered in part (io/picture/open_parts.h).
- * The covered part is dark and invisible, and must not darken the rest. The light of the
- * leaf belongs to its open part, if that is a quarter at least: the shown irradiance is
- * that of the leaf over the fraction that is open. A vertex with only covered leaves
- * around it takes their mean. Pictures find out whether a point of such a leaf is covered
- * itself: there it is dark.
+ * Where a box stands on the floor, leaves are covered in part: their rows tell the share
+ * outside of things (rad/beyond/gather/covers.c). The covered part is dark and invisible,
+ * and must not darken the rest. The light of the leaf belongs to its open part, if that
+ * is a quarter at least: the shown irradiance is that of the leaf over the share that is
+ * open. A vertex with only covered leaves around it takes their mean.
  *
  * In the housing of a lamp light is a hundred times as bright as in the room, and rises
  * and falls by much of that over a leaf, in no straight line. Leaves over which it varies
@@ -216,6 +215,9 @@ static const double DEVIATION = 0.4;
 enum { ROUNDS = 4 };
 static const double BEYOND = 1.5;
 
+/* Least open share of a leaf that is not covered. */
+static const double LEAST_OPEN = 0.25;
+
 /* Weight of a covered leaf: it counts only at vertices without open leaves. */
 static const double COVERED = 1e-12;
 
@@ -245,8 +247,7 @@ struct blend {
     struct shading *shading;
     const struct rgb *less; /* [patches] radiosity to subtract, W/m^2, or NULL */
     const float *error;     /* [patches] of radiosity, W/m^2, or NULL */
-    const uint8_t *open;    /* of open_parts_survey() */
-    int64_t number;         /* of the leaf at hand in canonical order */
+    const float *outside;   /* [patches] open share of a leaf, 1; NULL: all are open */
     int32_t *surface;       /* [roots] of surface_of_roots() */
     int round;              /* 0: the means at vertices; then corrections */
     bool is_last;           /* of the corrections: it takes deficits as they are */
@@ -263,14 +264,19 @@ static void for_each_leaf(struct blend *blend,
     const struct forest *forest = blend->shading->forest;
     for (int sky = 0; sky < 2; sky++) {
         int32_t leaf = forest_next_leaf(forest, -1);
-        for (blend->number = 0; leaf >= 0 && !stop_is_asked(); blend->number++) {
+        for (; leaf >= 0 && !stop_is_asked(); leaf = forest_next_leaf(forest, leaf))
             if (forest_is_sky(forest, leaf) == sky)
                 visit(blend, leaf);
-            leaf = forest_next_leaf(forest, leaf);
-        }
         if (blend->shading->own_count == 0)
             blend->shading->own_count = blend->shading->table->count;
     }
+}
+
+/* The open share of a leaf, 1; 0: it counts as covered. */
+static double open_share(const struct blend *blend, int32_t leaf)
+{
+    double share = blend->outside ? (double)blend->outside[leaf] : 1.0;
+    return share < LEAST_OPEN ? 0.0 : share;
 }
 
 static void add_flat_leaf(struct blend *blend, int32_t leaf)
@@ -290,10 +296,8 @@ static void add_leaf(struct blend *blend, int32_t leaf)
 {
     const struct forest *forest = blend->shading->forest;
     struct triangle t = forest_triangle(forest, leaf);
-    uint8_t open = blend->open[blend->number];
-    blend->shading->shades[leaf] = open_parts_fraction(open) == 0.0 ? SHADE_COVERED
-                                   : open < PROVED_OPEN             ? SHADE_IN_PART
-                                                                    : SHADE_SMOOTH;
+    blend->shading->shades[leaf] =
+        open_share(blend, leaf) > 0.0 ? SHADE_SMOOTH : SHADE_COVERED;
     for (int k = 0; k < 3; k++)
         blend->shading->corners[3 * (int64_t)leaf + k] =
             reach_vertex(blend->shading->table, t.corner[k],
@@ -370,7 +374,7 @@ static void give_leaf(struct blend *blend, int32_t leaf)
 {
     const struct forest *forest = blend->shading->forest;
     const int32_t *corner = &blend->shading->corners[3 * (int64_t)leaf];
-    double fraction = open_parts_fraction(blend->open[blend->number]);
+    double fraction = open_share(blend, leaf);
     double area = blend->round > 0 ? forest_area(forest, leaf) : 1.0;
     if (blend->less && blend->round > 0 && is_steep(blend, leaf))
         return;
@@ -433,26 +437,41 @@ static void blend_leaves(struct blend *blend)
     for_each_leaf(blend, find_steep);
 }
 
-struct shading *shading_create(const struct forest *forest, const struct rgb *less,
-                               const float *error, const uint8_t *open)
+static struct shading *allocate(const struct forest *forest)
 {
     struct shading *shading = alloc_array(1, sizeof *shading);
     size_t patches = (size_t)forest->count;
     shading->forest = forest;
-    shading->flat = !open;
     shading->corners = alloc_array(3 * patches, sizeof *shading->corners);
     shading->divided = alloc_array(patches, sizeof *shading->divided);
     shading->shades = alloc_array(patches, sizeof *shading->shades);
     shading->table = alloc_array(1, sizeof *shading->table);
-    struct blend blend = {.shading = shading, .less = less, .error = error, .open = open};
-    if (shading->flat)
-        for_each_leaf(&blend, add_flat_leaf);
-    else
-        blend_leaves(&blend);
+    return shading;
+}
+
+static struct shading *publish(struct shading *shading)
+{
     shading->positions = shading->table->positions;
     shading->values = shading->table->values;
     shading->vertex_count = shading->table->count;
     return shading;
+}
+
+struct shading *shading_create(const struct forest *forest, const struct rgb *less,
+                               const float *error, const float *outside)
+{
+    struct blend blend = {.shading = allocate(forest), .less = less, .error = error,
+                          .outside = outside};
+    blend_leaves(&blend);
+    return publish(blend.shading);
+}
+
+struct shading *shading_create_flat(const struct forest *forest)
+{
+    struct blend blend = {.shading = allocate(forest)};
+    blend.shading->flat = true;
+    for_each_leaf(&blend, add_flat_leaf);
+    return publish(blend.shading);
 }
 
 void shading_destroy(struct shading *shading)

@@ -5,12 +5,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "io/picture/open_parts.h"
+#include "rad/patch.h"
 
 /* Where interpolation over a leaf holds. */
 enum shade {
-    SHADE_SMOOTH,  /* at all points */
-    SHADE_IN_PART, /* where nothing covers the leaf: leaf_is_shut_at() */
+    SHADE_SMOOTH,  /* at all points that a camera sees */
     SHADE_COVERED, /* nowhere: only less than a quarter is open */
     SHADE_STEEP    /* nowhere: light varies by more than its mean over all surfaces */
 };
@@ -28,14 +27,17 @@ struct shading {
     struct table *table;         /* finds vertices; owns positions and values */
 };
 
-/* Prepares the shading of a solution. `open`: of open_parts_survey(). NULL gives flat
- * shading: each leaf has three vertices of its own with its constant. `less`: [patches]
- * radiosity to subtract, W/m^2: that by the light of lamps, with its shadows; or NULL.
- * `error`: [patches] that of the radiosity of leaves, as in the mesh, W/m^2, or NULL;
- * heeded only if there is `less`. Vertices are numbered in the canonical order of leaves:
- * the same on every rank. */
+/* Prepares the smooth shading of a solution. `less`: [patches] radiosity to subtract,
+ * W/m^2: that by the light of lamps, with its shadows; or NULL. `error`: [patches] that
+ * of the radiosity of leaves, as in the mesh, W/m^2, or NULL; heeded only if there is
+ * `less`. `outside`: [patches] share of a leaf that no thing on it covers, 1; NULL: all
+ * leaves are open. Vertices are numbered in the canonical order of leaves: the same on
+ * every rank. */
 struct shading *shading_create(const struct forest *forest, const struct rgb *less,
-                               const float *error, const uint8_t *open);
+                               const float *error, const float *outside);
+
+/* Prepares flat shading: each leaf has three vertices of its own with its constant. */
+struct shading *shading_create_flat(const struct forest *forest);
 void shading_destroy(struct shading *shading);
 
 /* Returns the radiosity at the point of a root with these barycentric coordinates,

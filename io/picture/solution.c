@@ -88,6 +88,7 @@ static bool take_leaf(const struct solution_reader *reader, struct solution_leaf
     leaf->radiosity = take_colour(file, PLY_RADIOSITY_R);
     leaf->rest = take_colour(file, PLY_REST_R);
     leaf->error = value[PLY_ERROR];
+    leaf->outside = value[PLY_OUTSIDE];
     leaf->area = triangle_area(&leaf->triangle);
     return true;
 }
@@ -115,6 +116,7 @@ static bool read_leaves(struct solution_reader *reader, const struct ply_element
     }
     solution->count = element->count;
     solution->has_error = element->type_of[PLY_ERROR] != PLY_NONE;
+    solution->has_outside = element->type_of[PLY_OUTSIDE] != PLY_NONE;
     if (solution->leaves[solution->count - 1].end < ROOT_UNITS)
         return ply_fail(reader->file, reader->error, "the last root is not whole");
     return true;

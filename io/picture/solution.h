@@ -31,6 +31,7 @@ struct solution_leaf {
     struct rgb radiosity;     /* W/m^2 */
     struct rgb rest;          /* radiosity less what comes straight from lamps, W/m^2 */
     double error;             /* W/m^2 */
+    double outside;           /* share of the leaf that no thing on it covers, 1 */
 };
 
 /* The light of lamps in a final gather (rad/beyond/gather/gather.h). */
@@ -44,7 +45,7 @@ struct solution_lamps {
 struct solution_mesh {
     struct solution_leaf *leaves; /* [count] */
     int64_t count;
-    bool has_error;
+    bool has_error, has_outside;
     struct solution_lamps lamps;  /* known: leaves have `rest` */
     struct scene *scene;          /* prepared, owned; NULL: the file lacks the roots */
 };

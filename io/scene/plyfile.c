@@ -48,7 +48,7 @@ static const struct {
               {PLY_FACE, "emission_r emission_g emission_b", PLY_EMISSION_R},
               {PLY_FACE, "radiosity_r radiosity_g radiosity_b", PLY_RADIOSITY_R},
               {PLY_FACE, "root hierarchy error", PLY_ROOT},
-              {PLY_FACE, "rest_r rest_g rest_b", PLY_REST_R},
+              {PLY_FACE, "rest_r rest_g rest_b outside", PLY_REST_R},
               {PLY_STRIPS, "vertex_indices", PLY_STRIP},
               {PLY_STRIPS, "vertex_index", PLY_STRIP},
               {PLY_MATERIAL, "reflectance_r reflectance_g reflectance_b",

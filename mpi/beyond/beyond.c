@@ -44,6 +44,7 @@ static void end(struct solver *solver)
     conjugate_free(&beyond->descent);
     alloc_free(beyond->answer.error);
     alloc_free(beyond->answer.straight);
+    alloc_free(beyond->answer.outside);
     final_gather_free(&beyond->answer.gather);
     alloc_free(beyond);
 }

@@ -410,6 +410,17 @@ static void share_straight_light(struct gathering *g)
     alloc_free(light);
 }
 
+/* The shares of leaves that pictures take for open. */
+static void keep_outside(const struct gathering *g)
+{
+    struct answer *answer = &g->solver->beyond->answer;
+    size_t patches = (size_t)g->solver->model.forest->count;
+    alloc_free(answer->outside);
+    answer->outside = alloc_array(patches, sizeof *answer->outside);
+    for (int64_t i = 0; i < g->count; i++)
+        answer->outside[g->leaves[i]] = (float)g->covers[i].outside;
+}
+
 /* Weights of leaves with the radiosities `b`: all of `b` has the size 1 by area, and 1 by
  * leaf. */
 static double *weigh(const struct gathering *g, const struct rgb *b)
@@ -483,6 +494,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     final_gather_pull(&g->gather, g->radiosity);
     gathering_estimate_errors(g, vote->remaining);
     share_straight_light(g);
+    keep_outside(g);
     for (int64_t i = 0; i < g->count; i++)
         forest->radiosity[g->leaves[i]] = answer[i];
     forest_average(forest);

@@ -371,7 +371,7 @@ static double trace_picture(const struct subject *subject, const struct camera *
 static void bench_picture(const struct subject *subject)
 {
     struct forest *forest = forest_create(subject->scene);
-    struct shading *shading = shade_forest(forest, subject->octree, NULL, NULL);
+    struct shading *shading = shading_create(forest, NULL, NULL, NULL);
     struct renderer renderer = renderer_make(subject->octree, shading, NULL);
     struct camera camera =
         viewpoint_choose(subject->scene, subject->octree, NULL, WIDTH, HEIGHT);

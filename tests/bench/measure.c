@@ -59,24 +59,16 @@ struct measure {
     struct error error;
 };
 
-/* Collective. As tools/results.c does. */
+/* As tools/results.c does. */
 static struct shading *shade(const struct measure *measure, const struct solution *s)
 {
     const struct forest *forest = s->solver->model.forest;
+    const struct answer *answer = beyond_answer(s->solver);
     if (measure->options.flat)
-        return shading_create(forest, NULL, NULL, NULL);
-    int64_t leaves;
-    uint8_t *open = open_parts_survey(forest, s->octree, measure->comm.rank,
-                                          measure->comm.size, &leaves);
-    comm_add_bytes(&measure->comm, open, leaves);
-    struct answer *answer = &s->solver->beyond->answer;
-    if (answer->straight)
-        final_gather_set_partly_covered(&answer->gather, open, OPEN_PARTS);
-    struct shading *shading = NULL;
-    if (!measure->options.pixels)
-        shading = shading_create(forest, answer->straight, answer->error, open);
-    alloc_free(open);
-    return shading;
+        return shading_create_flat(forest);
+    if (measure->options.pixels)
+        return NULL;
+    return shading_create(forest, answer->straight, answer->error, answer->outside);
 }
 
 /* --- the line --- */

@@ -19,7 +19,7 @@ enum { LEAVES_MOST = 1000, SIZE_MOST = 1 << 20 };
 static struct world world;
 static struct forest *forest;
 static struct shading *shading;
-static float *errors;
+static float *errors, *shares;
 static int32_t leaves[LEAVES_MOST];
 static int leaf_count;
 static unsigned char file[SIZE_MOST];
@@ -47,12 +47,14 @@ static void make_world(void)
         forest_split(forest, root);
     forest_split(forest, forest->patches[3].children + 2);
     errors = alloc_array((size_t)forest->count, sizeof *errors);
+    shares = alloc_array((size_t)forest->count, sizeof *shares);
     for (int64_t p = 0; p < forest->count; p++) {
         errors[p] = (float)random_unit(&random);
+        shares[p] = (float)random_unit(&random);
         for (int c = 0; c < BANDS; c++)
             forest->radiosity[p].band[c] = 100.0 * random_unit(&random);
     }
-    shading = shade_forest(forest, world.octree, NULL, NULL);
+    shading = shading_create(forest, NULL, NULL, NULL);
     for (int32_t root = 0; root < scene->input_count; root++)
         find_leaves(root);
 }
@@ -154,7 +156,7 @@ static void test_ply(void)
     struct error error = {EXIT_DONE, ""};
     struct tone tone = tone_make(0.01);
     int points = (int)shading->vertex_count;
-    struct mesh_answer answer = {.error = errors};
+    struct mesh_answer answer = {.error = errors, .outside = shares};
     bool written = mesh_write(shading, &tone, &answer, PATH, &error);
     size = load(PATH, file, SIZE_MOST);
     at = 0;
@@ -187,6 +189,7 @@ static void test_ply(void)
         faces = next_number(false) == id.root && faces;
         faces = next_number(false) == id.hierarchy && faces;
         faces = floats_are((double[]){(double)errors[leaves[i]]}, 1, false) && faces;
+        faces = floats_are((double[]){(double)shares[leaves[i]]}, 1, false) && faces;
     }
     tap_ok(faces && at < size, "faces; more follows");
 }
@@ -205,6 +208,7 @@ int main(void)
     remove(PATH);
     shading_destroy(shading);
     alloc_free(errors);
+    alloc_free(shares);
     world_free(&world);
     return tap_done();
 }

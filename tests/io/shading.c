@@ -342,7 +342,7 @@ static double reflected_error(struct stage *stage, double deviation, bool reflec
         error[p] = (float)(2.5 * deviation); /* as mpi/beyond/gather_error.c tells */
     shading_destroy(stage->shading);
     stage->shading =
-        shade_forest(stage->forest, stage->octree, reflected ? lamps : NULL, error);
+        shading_create(stage->forest, reflected ? lamps : NULL, error, NULL);
     double square = 0.0;
     for (int64_t v = 0; v < stage->shading->vertex_count; v++) {
         double off = difference(stage->shading->values[v],
@@ -704,6 +704,101 @@ static void test_two_sided(void)
     dismantle(&stage);
 }
 
+/* --- covered leaves --- */
+
+static void shade_outside(struct stage *stage, const float *outside)
+{
+    shading_destroy(stage->shading);
+    stage->shading = shading_create(stage->forest, NULL, NULL, outside);
+}
+
+/* A box stands on the square, whose leaves end at its feet; it is dark inside. Returns
+ * the smallest and the largest value that is shown outside and at the feet; `inside`: the
+ * largest in the box. `outside`: [patches] or NULL. */
+static void shade_feet(struct stage *stage, const float *outside, double *low,
+                       double *high, double *inside)
+{
+    shade_outside(stage, outside);
+    *low = HUGE_VAL;
+    *high = *inside = 0.0;
+    for (int64_t v = 0; v < stage->shading->vertex_count; v++) {
+        struct vec3 x = scene_to_input(stage->scene, stage->shading->positions[v]);
+        double value = stage->shading->values[v].band[0];
+        if (x.x > 0.25 && x.x < 0.5 && x.y > 0.25 && x.y < 0.75) {
+            *inside = fmax(*inside, value);
+            continue;
+        }
+        *low = fmin(*low, value);
+        *high = fmax(*high, value);
+    }
+}
+
+/* A covered leaf weighs 1e-12 of an open one; up to five lie around a vertex. Where all
+ * leaves count as open the dark blends into the light around it. */
+static void test_covered(void)
+{
+    struct stage stage = square_stage();
+    double low, high, inside;
+    split_regularly(stage.forest, 4);
+    float *outside = alloc_array((size_t)stage.forest->count, sizeof *outside);
+    for (int32_t p = 0; p < stage.forest->count; p++) {
+        struct triangle t = forest_triangle(stage.forest, p);
+        struct vec3 x = scene_to_input(stage.scene, triangle_centroid(&t));
+        bool under = x.x > 0.25 && x.x < 0.5 && x.y > 0.25 && x.y < 0.75;
+        double b = under ? 0.25 : 1.0;
+        outside[p] = under ? 0.0f : 1.0f;
+        stage.forest->radiosity[p] = (struct rgb){{b, b, b}};
+    }
+    shade_feet(&stage, outside, &low, &high, &inside);
+    tap_ok(low > 1.0 - 1e-10 && high <= 1.0 + 1e-15,
+           "under a box: no darkness at its feet (1 - %.1e)", 1.0 - low);
+    tap_ok(inside == 0.25, "and none of the light inside");
+    shade_feet(&stage, NULL, &low, &high, &inside);
+    tap_ok(low < 0.9, "taken for open it darkens the rest (%.2f)", low);
+    alloc_free(outside);
+    dismantle(&stage);
+}
+
+/* Things stand on parts of leaves, of which a quarter is open at least. With the share s
+ * open and the emission E, the radiosity E + s (1 - E) is shown as 1 everywhere. */
+static void test_partly_covered(void)
+{
+    static const double emission[BANDS] = {0.0, 0.5, 0.25};
+    struct random random = random_seed(19);
+    struct stage stage = square_stage();
+    double largest = 0.0;
+    split_randomly(stage.forest, &random, 0.4);
+    float *outside = alloc_array((size_t)stage.forest->count, sizeof *outside);
+    for (int32_t p = 0; p < stage.forest->count; p++) {
+        outside[p] = (float)(1.0 - 0.75 * random_unit(&random));
+        for (int c = 0; c < BANDS; c++) {
+            stage.scene->materials[0].emission.band[c] = emission[c];
+            stage.forest->radiosity[p].band[c] =
+                emission[c] + (double)outside[p] * (1.0 - emission[c]);
+        }
+    }
+    shade_outside(&stage, outside);
+    for (int64_t v = 0; v < stage.shading->vertex_count; v++)
+        largest = fmax(largest, difference(stage.shading->values[v],
+                                           (struct rgb){{1.0, 1.0, 1.0}}));
+    tap_ok(stage.shading->vertex_count > 50 && largest < 1e-15,
+           "the open part of a leaf is shown (within %.1e)", largest);
+    alloc_free(outside);
+    dismantle(&stage);
+}
+
+/* A leaf counts as covered if less than a quarter of it is open. */
+static void test_least_open(void)
+{
+    const float outside[2] = {0.25f, 0.2499f};
+    struct stage stage = square_stage();
+    shade_outside(&stage, outside);
+    tap_ok(stage.shading->shades[0] == SHADE_SMOOTH &&
+               stage.shading->shades[1] == SHADE_COVERED,
+           "a leaf that is open to less than a quarter is covered");
+    dismantle(&stage);
+}
+
 /* --- steep leaves --- */
 
 /* Light rises over one leaf and its neighbours by more than the mean of all; elsewhere it
@@ -815,6 +910,9 @@ int main(void)
     test_curved_edges();
     test_normals_on_a_plane();
     test_two_sided();
+    test_covered();
+    test_partly_covered();
+    test_least_open();
     test_steep(8.0, true);
     test_steep(1.5, false);
     test_beside_jump();

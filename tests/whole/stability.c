@@ -633,8 +633,8 @@ static double mean_shown(struct solution *s)
 {
     enum { GRID = 32 };
     struct answer *answer = &s->solver->beyond->answer;
-    struct shading *shading = shade_forest(s->solver->model.forest, s->octree,
-                                           answer->straight, answer->error);
+    struct shading *shading = shading_create(s->solver->model.forest, answer->straight,
+                                             answer->error, answer->outside);
     struct renderer renderer = renderer_make(s->octree, shading, &answer->gather);
     double sum = 0.0;
     for (int i = 0; i < 2 * GRID * GRID; i++) {

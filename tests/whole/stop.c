@@ -141,20 +141,8 @@ static int64_t choose_camera(void)
     return vec3_length(vec3_sub(camera.eye, right)) == 0.0;
 }
 
-static int64_t survey_leaves(void)
+static int64_t count_vertices(struct shading *made)
 {
-    int64_t count, sum = 0;
-    const struct forest *forest = world.model.forest;
-    uint8_t *open = open_parts_survey(forest, world.octree, 0, 1, &count);
-    for (int64_t i = 0; i < count; i++)
-        sum += open[i];
-    alloc_free(open);
-    return sum;
-}
-
-static int64_t count_vertices(const uint8_t *open)
-{
-    struct shading *made = shading_create(world.model.forest, NULL, NULL, open);
     int64_t count = made->vertex_count;
     shading_destroy(made);
     return count;
@@ -162,16 +150,12 @@ static int64_t count_vertices(const uint8_t *open)
 
 static int64_t shade_flat(void)
 {
-    return count_vertices(NULL);
+    return count_vertices(shading_create_flat(world.model.forest));
 }
 
 static int64_t shade_smooth(void)
 {
-    uint8_t *open = alloc_array((size_t)world.model.forest->count, 1);
-    memset(open, 4, (size_t)world.model.forest->count);
-    int64_t count = count_vertices(open);
-    alloc_free(open);
-    return count;
+    return count_vertices(shading_create(world.model.forest, NULL, NULL, NULL));
 }
 
 static int64_t render(void)
@@ -246,7 +230,6 @@ static const struct phase {
     {"form factors between groups", add_pairs, false, 9, 0},
     {"their table", print_table, false, 0, 1},
     {"choosing a camera", choose_camera, false, 0, 5000},
-    {"looking at leaves", survey_leaves, false, 1, 0},
     {"flat shading", shade_flat, false, 1, 0},
     {"smooth shading", shade_smooth, false, 4, 0},
     {"rendering", render, false, 0, 256},
@@ -347,7 +330,7 @@ int main(int argc, char **argv)
     struct forest *forest = world.model.forest;
     for (int64_t p = 0; p < forest->count; p++)
         forest->radiosity[p] = (struct rgb){{1.0, 1.0, 1.0}};
-    shading = shading_create(forest, NULL, NULL, NULL);
+    shading = shading_create_flat(forest);
     write_scenes();
     test_questions();
     for (size_t i = 0; i < sizeof PHASES / sizeof PHASES[0]; i++)

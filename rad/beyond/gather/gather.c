@@ -190,7 +190,6 @@ void final_gather_free(struct final_gather *gather)
     alloc_free(gather->view.overlapped);
     alloc_free(gather->near.seen);
     alloc_free(gather->near.paths);
-    alloc_free(gather->near.partly_covered);
     alloc_free(gather->near.leaves);
     alloc_free(gather->order);
     alloc_free(gather->place);
@@ -398,19 +397,6 @@ int64_t final_gather_terms(const struct final_gather *gather)
 }
 
 /* --- public --- */
-
-void final_gather_set_partly_covered(struct final_gather *gather, const uint8_t *open,
-                                     uint8_t whole)
-{
-    const struct forest *forest = gather->model->forest;
-    struct gather_nears *near = &gather->near;
-    if (!near->partly_covered)
-        near->partly_covered =
-            alloc_array((size_t)forest->count, sizeof *near->partly_covered);
-    int32_t leaf = forest_next_leaf(forest, -1);
-    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
-        near->partly_covered[gather->place[leaf]] = *open++ < whole;
-}
 
 int64_t gather_units(double value, double unit)
 {

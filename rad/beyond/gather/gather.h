@@ -54,11 +54,6 @@ struct gather_look final_gather_look(struct final_gather *gather, int32_t leaf, 
 void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int segments,
                       bool exact);
 
-/* Tells the gather which leaves things stand on: their means hold for no point. `open`:
- * below `whole` for these; for all leaves with an area, roots in order, depth first. */
-void final_gather_set_partly_covered(struct final_gather *gather, const uint8_t *open,
-                                     uint8_t whole);
-
 /* Returns the light at points, for the radiosities of the forest: by `count` segments to
  * lamps, and, if `all`, `count` rays for the rest. */
 struct gather_light final_gather_at(struct final_gather *gather,

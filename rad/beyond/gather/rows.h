@@ -92,8 +92,7 @@ struct gather_leaf {
     struct gather_slope slope;
 };
 
-/* Sums of integers, for they are over ranks; the patches as rays meet them, and the
- * leaves that things stand on. */
+/* Sums of integers, for they are over ranks; and the patches as rays meet them. */
 struct gather_nears {
     struct gather_near *items; /* [forest->count] by place, for the rows of this rank; of
                                   all ranks, once these are added up, by number */
@@ -102,9 +101,7 @@ struct gather_nears {
     double unit_area;          /* square scene units */
     double unit_watts;         /* W in square scene units */
     struct gather_leaf *leaves; /* [forest->count] all patches, by their numbers */
-    double *seen;            /* [forest->count] by place: shares outside of things, 1 */
-    uint8_t *partly_covered; /* [forest->count] by place: 1: a thing stands on part of
-                                the leaf, at least; NULL: unknown */
+    double *seen; /* [forest->count] by place: shares outside of things, 1 */
 };
 
 /* Work of this rank. */
