@@ -14,8 +14,8 @@ struct mesh_answer {
     const float *error;          /* [patches] of the leaves, W/m^2; or NULL */
     const struct rgb *straight;  /* [patches] light straight from lamps that a leaf
                                     reflects, W/m^2; NULL: there is no answer */
-    const float *outside;        /* [patches] share of a leaf that no thing on it covers,
-                                    1; or NULL */
+    const float *outside;        /* [patches] share of a leaf outside of things on it and
+                                    of narrow gaps, 1; or NULL */
     struct solution_lamps lamps; /* known: there is `straight` */
 };
 
@@ -26,8 +26,8 @@ struct mesh_answer {
  * hierarchy: one face per leaf, roots in order, depth first. After a final gather, float
  * error and float rest_r rest_g rest_b follow, the radiosity less what comes straight
  * from lamps: where that is most of it, both as floats would lose the rest; and float
- * outside, the share of the leaf that no thing on it covers. Then come the roots, as
- * io/picture/solution.h has them.
+ * outside, the share of the leaf outside of things on it and of narrow gaps. Then come
+ * the roots, as io/picture/solution.h has them.
  * Errors: as output_close(). */
 bool mesh_write(const struct shading *shading, const struct tone *tone,
                 const struct mesh_answer *answer, const char *path, struct error *error);

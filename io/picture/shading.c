@@ -23,11 +23,12 @@
  * would be lost: .6 % of the picture of a furnished room (make cycles). The last
  * correction takes deficits whole: as much light is shown as leaves have.
  *
- * Where a box stands on the floor, leaves are covered in part: their rows tell the share
- * outside of things (rad/beyond/gather/covers.c). The covered part is dark and invisible,
- * and must not darken the rest. The light of the leaf belongs to its open part, if that
- * is a quarter at least: the shown irradiance is that of the leaf over the share that is
- * open. A vertex with only covered leaves around it takes their mean.
+ * Where a box stands on the floor, or a picture hangs close to a wall, leaves are covered
+ * in part: their rows tell the share that is open (rad/beyond/gather/rows.h). The covered
+ * part is dark and invisible, and must not darken the rest. The light of the leaf belongs
+ * to its open part, if that is a quarter at least: the shown irradiance is that of the
+ * leaf over the share that is open. A vertex with only covered leaves around it takes
+ * their mean.
  *
  * In the housing of a lamp light is a hundred times as bright as in the room, and rises
  * and falls by much of that over a leaf, in no straight line. Leaves over which it varies

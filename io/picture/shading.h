@@ -30,9 +30,9 @@ struct shading {
 /* Prepares the smooth shading of a solution. `less`: [patches] radiosity to subtract,
  * W/m^2: that by the light of lamps, with its shadows; or NULL. `error`: [patches] that
  * of the radiosity of leaves, as in the mesh, W/m^2, or NULL; heeded only if there is
- * `less`. `outside`: [patches] share of a leaf that no thing on it covers, 1; NULL: all
- * leaves are open. Vertices are numbered in the canonical order of leaves: the same on
- * every rank. */
+ * `less`. `outside`: [patches] share of a leaf outside of things on it and of narrow
+ * gaps, 1; NULL: all leaves are open. Vertices are numbered in the canonical order of
+ * leaves: the same on every rank. */
 struct shading *shading_create(const struct forest *forest, const struct rgb *less,
                                const float *error, const float *outside);
 

@@ -31,7 +31,7 @@ struct solution_leaf {
     struct rgb radiosity;     /* W/m^2 */
     struct rgb rest;          /* radiosity less what comes straight from lamps, W/m^2 */
     double error;             /* W/m^2 */
-    double outside;           /* share of the leaf that no thing on it covers, 1 */
+    double outside;           /* share of the leaf that is open, 1 */
 };
 
 /* The light of lamps in a final gather (rad/beyond/gather/gather.h). */

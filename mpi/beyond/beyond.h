@@ -22,8 +22,8 @@ struct answer {
                              leaves and all bands, W/m^2; NULL: there is no answer */
     struct rgb *straight; /* [patches] light straight from lamps that a leaf reflects,
                              W/m^2; NULL: there is no answer */
-    float *outside;       /* [patches] share of a leaf that no thing on it covers, 1;
-                             NULL: there is no answer */
+    float *outside;       /* [patches] share of a leaf outside of things on it and of
+                             narrow gaps, 1; NULL: there is no answer */
     struct final_gather gather; /* without its rows, for light at any point */
 };
 

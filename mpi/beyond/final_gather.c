@@ -410,15 +410,21 @@ static void share_straight_light(struct gathering *g)
     alloc_free(light);
 }
 
-/* The shares of leaves that pictures take for open. */
-static void keep_outside(const struct gathering *g)
+/* Collective. The shares of leaves that pictures take for open. */
+static void share_open(struct gathering *g)
 {
     struct answer *answer = &g->solver->beyond->answer;
+    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
+    struct rgb *shares = alloc_array((size_t)g->count, sizeof *shares);
     size_t patches = (size_t)g->solver->model.forest->count;
+    for (int64_t row = 0; row < g->gather.count; row++)
+        own[row] = (struct rgb){{(double)g->gather.rows[row].open}};
+    gathering_share_rows(g, shares);
     alloc_free(answer->outside);
     answer->outside = alloc_array(patches, sizeof *answer->outside);
     for (int64_t i = 0; i < g->count; i++)
-        answer->outside[g->leaves[i]] = (float)g->covers[i].outside;
+        answer->outside[g->leaves[i]] = (float)shares[i].band[0];
+    alloc_free(shares);
 }
 
 /* Weights of leaves with the radiosities `b`: all of `b` has the size 1 by area, and 1 by
@@ -494,7 +500,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     final_gather_pull(&g->gather, g->radiosity);
     gathering_estimate_errors(g, vote->remaining);
     share_straight_light(g);
-    keep_outside(g);
+    share_open(g);
     for (int64_t i = 0; i < g->count; i++)
         forest->radiosity[g->leaves[i]] = answer[i];
     forest_average(forest);

@@ -184,6 +184,36 @@ static void test_slot(void)
     solution_free(&s);
 }
 
+/* Radiosity of a floor of two leaves, half of which is below a board with its underside
+ * at `low`, beside it. */
+static double light_beside_board(double low)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    soup_add_box(&soup, point(0.05, 0.05, low), point(0.95, 0.6, 0.1), 1, false);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(0.3, 0.3, 0.999), point(0, 0.4, 0), point(0.4, 0, 0), 1);
+    paint(&soup, 0.0, 10.0);
+    struct solution s = solve_soup(&soup, "--max-level 0 --final-gather 1024");
+    struct shading *shading = shade_rest(&s);
+    int32_t floor = 0;
+    while (scene_root_plane(s.scene, floor).normal.z < 0.9)
+        floor += 2;
+    double light = shown(&s, shading, floor, point(0.7, 0.85, 0));
+    shading_destroy(shading);
+    solution_free(&s);
+    return light;
+}
+
+/* A board that hangs close to the floor keeps as much light off as one that stands on it:
+ * the dark of the gap is not that of the rest. */
+static void test_gap(void)
+{
+    double stands = light_beside_board(-0.1), hangs = light_beside_board(0.005);
+    tap_ok(stands > 0.0 && fabs(hangs / stands - 1.0) <= 0.03,
+           "beside a gap the floor has %.3f W/m^2, beside none %.3f", hangs, stands);
+}
+
 /* --- smooth surfaces --- */
 
 /* A column of eight facets, a small lamp far away: light falls as the cosine of the
@@ -361,6 +391,7 @@ int main(int argc, char **argv)
     test_strip(0.05, true);
     test_strip(0.3, false);
     test_slot();
+    test_gap();
     test_column();
     test_bowl();
     test_smoothed_box();

@@ -3,7 +3,8 @@
  * Rays that begin inside of a thing bring no light, and none of theirs leaves the scene:
  * they are told by probes that meet bounds of the thing on all sides (inside.h). Other
  * faces in the leaf's plane, as of a picture on a wall, are found by a few points just
- * above it. */
+ * above it. Pictures take narrow gaps for covered, too, as behind the frame of a window:
+ * a ray that ends in one has begun there if the upright one ends in it as well. */
 #include "rad/beyond/gather/met.h"
 
 #include <math.h>
@@ -14,6 +15,10 @@
 
 /* Points of a leaf that are tested for being bare. */
 enum { BARE_POINTS = 4 };
+
+/* A gap is narrow for a leaf if the square of its width is no more than this part of the
+ * leaf's area. */
+static const double NARROW = 0x1p-9;
 
 static bool is_bound(struct receiver *r, struct vec3 origin, struct vec3 direction,
                      bool *single)
@@ -63,6 +68,20 @@ bool ray_comes_from_inside(struct receiver *r, struct vec3 origin, struct vec3 d
            is_inside(r, origin);
 }
 
+bool ray_ends_in_gap(struct receiver *r, struct vec3 x, struct vec3 end)
+{
+    struct model *model = r->gather->model;
+    struct vec3 normal = r->facet.plane.normal;
+    struct octree_hit hit;
+    double height = vec3_dot(vec3_sub(end, x), normal), most = NARROW * r->facet.area;
+    if (height * height > most ||
+        !octree_first_hit(model->octree, x, normal, false, &hit, &model->counts))
+        return false;
+    const struct plane *above = &model->scene->planes[hit.triangle];
+    height = plane_distance(above, x) / vec3_dot(above->normal, normal);
+    return height * height <= most;
+}
+
 /* True if a ray of the receiver begins outside of things. */
 static bool is_partly_outside(struct receiver *r)
 {
@@ -98,6 +117,7 @@ void receiver_find_covers(struct receiver *r)
     int covered = 0;
     r->row.bare = 0.0f;
     r->row.outside = 1.0f - (float)r->sums.inside / (float)r->rays;
+    r->row.open = r->row.outside - (float)r->sums.in_gap / (float)r->rays;
     if (r->sums.inside == r->rays ||
         (r->gather->sums.count == 0 && !(rgb_sum(r->row.source) > 0.0)))
         return;

@@ -71,4 +71,8 @@ static inline enum met trace(struct receiver *r, struct vec3 origin,
 bool ray_comes_from_inside(struct receiver *r, struct vec3 origin,
                            struct vec3 direction);
 
+/* True if a ray of a leaf from x ends at `end` in a gap that is narrow for the leaf. At
+ * an edge, where surfaces meet, there is none. */
+bool ray_ends_in_gap(struct receiver *r, struct vec3 x, struct vec3 end);
+
 #endif

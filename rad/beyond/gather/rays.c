@@ -70,6 +70,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         r->escaped += met != MET_FRONT;
     if (met != MET_FRONT)
         return;
+    r->sums.in_gap += r->keeps && ray_ends_in_gap(r, origin, point.at);
     find_leaf(forest, point.patch, &point);
     if (path_is_aimed_at(r, &point, origin)) {
         r->sums.aside[half]++;

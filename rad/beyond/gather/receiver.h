@@ -11,6 +11,7 @@ struct ray_sums {
     struct rgb h, squares, half[2]; /* of H, of H^2, of H by halves */
     int aside[2];     /* rays that have met what is aimed at, by halves */
     int inside;       /* rays from points inside of things */
+    int in_gap;       /* rays from points in gaps that are narrow for the leaf */
     bool on_back;     /* some ray has met a back: a thing may stand on the leaf */
     struct rgb *each; /* [rays] H by each ray is added to these; NULL: not wanted */
 };

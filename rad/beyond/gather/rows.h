@@ -56,6 +56,7 @@ struct gather_row {
     double halves[BANDS]; /* squared difference of the first and second half of the
                              rays: a sample of the variance by the sequence */
     float outside;     /* share of the leaf that is not inside of a thing on it, 1 */
+    float open;        /* share of it outside of things and of narrow gaps, 1 */
     float bare;        /* share of that which no face in the leaf's plane covers, 1 */
     float kept;        /* share of the leaf's light that arrives on fronts, by where its
                           own rays end, 1 */

@@ -243,6 +243,28 @@ static void test_column(double height, double outside)
     trial_free(&g);
 }
 
+/* A board hangs over a quarter of the floor of a room. Gaps below .031 are narrow for the
+ * floor's two leaves. Near its rim rays leave the gap, of 1 % of the floor; edges where
+ * walls meet are no gaps. */
+static void test_board(double height, double open)
+{
+    struct soup soup = {0};
+    soup_add_box(&soup, point(0, 0, 0), point(1, 1, 1), 1, true);
+    soup_add_box(&soup, point(0.25, 0.25, height), point(0.75, 0.75, 0.5), 1, false);
+    paint(&soup, 0.5, 1.0);
+    struct trial g = gather_scene(&soup, "--max-level 0", 1024);
+    double share = 0.0, others = 0.0;
+    for (int64_t i = 0; i < 12; i++) {
+        double up = scene_root_plane(g.s.scene, (int32_t)i).normal.z;
+        *(up > 0.5 ? &share : &others) +=
+            (double)g.gather.rows[i].open / (up > 0.5 ? 2.0 : 10.0);
+    }
+    tap_ok(fabs(share - open) < 0.015 && fabs(others - 1.0) < 1e-9,
+           "a board at the height %g leaves %.3f of a floor open, and of all else %g",
+           height, share, others);
+    trial_free(&g);
+}
+
 /* H at the middle of a ceiling, which a floor of 2 parts^2 leaves lights, without that
  * straight from lamps. */
 static double light_of_floor(int parts)
@@ -296,6 +318,8 @@ int main(int argc, char **argv)
     test_covered();
     test_column(1.0, 0.96);
     test_column(0.9, 1.0);
+    test_board(0.01, 0.75);
+    test_board(0.1, 1.0);
     test_lamp_that_faces_away();
     comm_stop(&world_comm);
     return tap_done();
