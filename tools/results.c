@@ -46,7 +46,8 @@ static void write_meshes(struct run *run, const struct shading *shading)
     const struct answer *answer = beyond_answer(run->solver);
     struct mesh_answer solved = {
         answer->error, answer->straight, answer->outside,
-        {answer->straight, answer->gather.lamps->least, answer->gather.mean}};
+        {answer->straight, answer->straight ? answer->gather.lamps->least : 0.0,
+         answer->gather.mean}};
     for (int i = 0; i < run->options.output_count; i++) {
         const struct target *target = &run->options.outputs[i];
         struct error error = {.code = EXIT_DONE};
