@@ -97,12 +97,6 @@ struct aim {
     struct volley volley;
 };
 
-/* A segment from the receiver to a sender. */
-struct shot {
-    struct vec3 x, y;
-    double kernel; /* 0: an end is below the other's horizon */
-};
-
 static struct shot shot_at(const struct receiver *r, const struct aim *aim,
                            const struct facet *sender, int index)
 {
@@ -139,29 +133,30 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
                           double share)
 {
     struct facet sender = facet_make(r->gather->model->forest, patch);
+    struct final_gather *g = r->gather;
     double all = 0.0;
-    int first = aim->index, end = first, found = 0;
+    int found = 0, end = aim->index + TRIES_MOST * count;
     if (!facets_face(&r->facet, &sender))
         return;
-    for (; found < count && end < first + TRIES_MOST * count; end++) {
-        double kernel = shot_at(r, aim, &sender, end).kernel;
-        found += kernel > 0.0;
-        all += kernel;
+    RESERVE(g->shots, &g->shot_capacity, count);
+    while (found < count && aim->index < end) {
+        struct shot shot = shot_at(r, aim, &sender, aim->index++);
+        g->shots[found] = shot;
+        found += shot.kernel > 0.0;
+        all += shot.kernel;
     }
-    aim->index = end;
     if (found == 0)
         return;
     double factor = share * mean_factor(&r->facet.triangle, r->facet.plane.normal,
-                                        &sender.triangle, &r->gather->model->estimating);
+                                        &sender.triangle, &g->model->estimating);
     double sent = rgb_sum(sender_light(aim->senders, patch));
-    for (int i = first, k = 0; i < end; i++) {
-        struct shot shot = shot_at(r, aim, &sender, i);
-        if (!(shot.kernel > 0.0))
-            continue;
+    for (int k = 0; k < found; k++) {
+        struct shot shot = g->shots[k]; /* the light behind it may be aimed at by more */
         double part = factor * (shot.kernel / all);
-        double seen = add_shot(r, aim, &shot, patch, part,
-                               hash_mix(aim->sequence.scramble[1] + (uint64_t)i));
-        add_segment(&aim->volley, half_of(&aim->volley, k++, count), part * sent, seen);
+        double seen =
+            add_shot(r, aim, &shot, patch, part,
+                     hash_mix(aim->sequence.scramble[1] + (uint64_t)(aim->index + k)));
+        add_segment(&aim->volley, half_of(&aim->volley, k, count), part * sent, seen);
     }
 }
 

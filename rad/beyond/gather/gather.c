@@ -186,6 +186,7 @@ void final_gather_free(struct final_gather *gather)
     cuts_free(&gather->lamp_cuts);
     cuts_free(&gather->bright_cuts);
     alloc_free(gather->worth);
+    alloc_free(gather->shots);
     alloc_free(gather->view.faced);
     alloc_free(gather->view.overlapped);
     alloc_free(gather->near.seen);

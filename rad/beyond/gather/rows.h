@@ -126,6 +126,12 @@ struct gather_view {
                                     of the root */
 };
 
+/* A segment from a receiver to a sender. */
+struct shot {
+    struct vec3 x, y;
+    double kernel; /* 1 per square scene unit; 0: an end is below the other's horizon */
+};
+
 /* The rows of this rank, and their scene. */
 struct final_gather {
     struct model *model; /* borrowed; rays are counted there */
@@ -137,7 +143,8 @@ struct final_gather {
     struct regions *regions;
     struct cuts lamp_cuts, bright_cuts;
     double *worth;             /* [worth_capacity] room for that of the nodes of a cut */
-    int64_t worth_capacity;
+    struct shot *shots;        /* [shot_capacity] room for those at a sender */
+    int64_t worth_capacity, shot_capacity;
     struct gather_view view;   /* of the root of the leaf at hand */
     int32_t *order; /* [forest->count] patches as in forest_order() */
     int32_t *place; /* [forest->count] the place of each patch in `order` */
