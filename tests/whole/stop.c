@@ -320,7 +320,7 @@ static void write_scenes(void)
     }
     fclose(obj);
     fclose(ply);
-    mesh_write(shading, &tone, &(struct mesh_answer){NULL}, MESH_PLY, &error);
+    mesh_write(shading, &tone, &(struct mesh_answer){.error = NULL}, MESH_PLY, &error);
 }
 
 int main(int argc, char **argv)
