@@ -113,7 +113,8 @@ static void test_reading(void)
 
 static void test_refusing(void)
 {
-    REFUSED("\x89PNG\r\n\x1A\n", "PNG is not read; compare .ppm, .pfm or .hdr");
+    REFUSED("\x89PNG\r\n\x1A\n",
+            "not a PNG of 8 bits a sample, without interlacing");
     REFUSED("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n1234",
             "the format of the pixels is not RGBE");
     REFUSED("#?RADIANCE\nEXPOSURE=0\n\n-Y 1 +X 1\n1234", "bad exposure of the picture");

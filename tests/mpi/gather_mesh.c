@@ -92,35 +92,30 @@ static void test_even(void)
     solution_free(&s);
 }
 
-/* The smallest leaf of a floor below four lamps and a box that is so far above it, as a
- * part of the floor. */
-static double least_below(double height)
+/* True if a look at a floor tells that a box stands on it which is so far above it. */
+static bool is_cut_below(double height)
 {
     struct soup soup = {0};
-    double least = 1.0;
     soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
     paint(&soup, 0.5, 0.0);
-    soup_add_box(&soup, point(0.30, 0.15, height), point(0.31, 0.16, 0.05), 1, false);
+    soup_add_box(&soup, point(0.30, 0.15, height), point(0.40, 0.25, 0.05), 1, false);
     paint(&soup, 0.0, 0.0);
     soup_add_quad(&soup, point(0, 0, 0.5), point(0, 1, 0), point(1, 0, 0), 2);
     paint(&soup, 0.0, 1.0);
-    struct solution s = solve_soup(&soup, "--epsilon 0.02");
-    const struct forest *forest = s.solver->model.forest;
-    for (int32_t p = forest_next_leaf(forest, -1); p >= 0;
-         p = forest_next_leaf(forest, p))
-        if (forest->patches[p].id.root < 2)
-            least = fmin(least, forest_area(forest, p) / 2.0 / forest_area(forest, 0));
+    struct solution s = solve_soup(&soup, "--max-level 0 --final-gather 0");
+    struct final_gather gather = final_gather_create(&s.solver->model, 16);
+    bool cut = final_gather_look(&gather, 0, 4).cut || final_gather_look(&gather, 1, 4).cut;
+    final_gather_free(&gather);
     solution_free(&s);
-    return least;
+    return cut;
 }
 
 /* Where a thing stands on a leaf, few rays may not tell chance from light that differs
- * around it, and the leaf is split. */
+ * around it, and looks know it. */
 static void test_cut(void)
 {
-    double above = least_below(1e-3), below = least_below(0.0);
-    tap_ok(below <= 0.25 * above,
-           "below a box a leaf of %.4f of the floor, %.4f if it hangs", below, above);
+    tap_ok(is_cut_below(0.0) && !is_cut_below(1e-3),
+           "a box that stands on a floor cuts its leaves, one that hangs does not");
 }
 
 /* Every second cell of the walls of a room, upwards or downwards. */
@@ -168,7 +163,7 @@ static void test_chance(void)
     int64_t rays = (cube + WALLS) * MEAN / 4, segments = (16 * cube + WALLS / 4) * MEAN;
     tap_ok(gathered->rays >= rays && gathered->rays <= rays + WALLS * MEAN / 4 &&
                gathered->segments > segments - segments / 10 &&
-               gathered->segments <= segments,
+               gathered->segments <= segments + gathered->rays, /* to bright patches */
            "%lld rays, %lld segments for %lld noisy leaves and 1200 black ones",
            (long long)gathered->rays, (long long)gathered->segments, (long long)cube);
     solution_free(&s);

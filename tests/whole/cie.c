@@ -15,7 +15,7 @@
 #include "tests/defaults.h"
 #include "tests/tap.h"
 
-static const double REFLECTANCE = 0.5, LIMIT = 0.01;
+static const double REFLECTANCE = 0.5, LIMIT = 0.015;
 
 enum plane_name { WALL, FLOOR, CEILING, OPPOSITE, PLANES };
 

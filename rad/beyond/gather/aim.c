@@ -198,21 +198,29 @@ struct offers {
     double sum;    /* W/m^2 */
 };
 
-/* The offers of a cut: light without blockers times the root of the share seen. */
+/* The offers of a cut: half of all goes by the light of nodes that have been seen, so that
+ * however bright a lamp behind a wall is, it leaves as much for those in the room. */
 static struct offers weigh_cut(struct receiver *r, const struct cuts *cuts,
                                struct cut cut)
 {
     struct final_gather *g = r->gather;
     struct bounds bounds = {triangle_centroid(&r->facet.triangle), r->facet.plane.normal,
                             r->facet.plane.normal, triangle_radius(&r->facet.triangle)};
+    double found = 0.0;
     RESERVE(g->worth, &g->worth_capacity, cut.count);
     struct offers offers = {g->worth, 0.0};
     for (int64_t i = 0; i < cut.count; i++) {
         const struct cut_node *node = &cuts->nodes[cut.first + i];
         offers.worth[i] =
-            sqrt(node->seen) *
             sender_node_worth(cuts->senders, &cuts->senders->nodes[node->node], &bounds);
-        offers.sum += offers.worth[i];
+        offers.sum += offers.worth[i] * sqrt(node->seen);
+        found += offers.worth[i] * node->found;
+    }
+    double part = found > 0.0 ? 0.5 * offers.sum / found : 0.0;
+    for (int64_t i = 0; i < cut.count; i++) {
+        const struct cut_node *node = &cuts->nodes[cut.first + i];
+        offers.worth[i] *= (found > 0.0 ? 0.5 : 1.0) * sqrt(node->seen) +
+                           part * node->found;
     }
     return offers;
 }
@@ -258,8 +266,10 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
             end_volley(r, volley, light);
     }
     end_volley(r, &aim.volley, light);
-    for (int c = 0; c < BANDS; c++)
+    for (int c = 0; c < BANDS; c++) {
         r->row.chance[c] = fmax(r->row.chance[c], around.band[c]);
+        r->row.halves[c] = fmax(r->row.halves[c], around.band[c]);
+    }
 }
 
 void receiver_aim_at_bright(struct receiver *r)

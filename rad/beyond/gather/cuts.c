@@ -1,8 +1,7 @@
 /* Cuts.
  *
  * From the top of the tree downwards, a node is in the cut as soon as it is small for its
- * distance and would get no more than one of SEGMENTS segments, if these were dealt by
- * light; less where some of its senders may face away, for such a node brings all or
+ * distance and would get no more than one segment, if these were dealt by light; less where some of its senders may face away, for such a node brings all or
  * nothing by one segment.
  *
  * What is learnt decides only how segments are dealt, and how unsure a leaf is that has
@@ -19,9 +18,8 @@
 #include "rad/beyond/sample.h"
 #include "rad/beyond/sequence.h"
 
-/* Leaves of a region, at most; segments that its cut is made for; segments that tell how
- * much of a node is seen. */
-enum { REGION_LEAVES = 64, SEGMENTS = 64, PILOTS = 16 };
+/* Leaves of a region, at most; segments that tell how much of a node is seen. */
+enum { REGION_LEAVES = 64, PILOTS = 16 };
 
 /* A node is small if its radius is at most this part of its distance. */
 static const double SMALL = 0.25;
@@ -90,9 +88,11 @@ void regions_destroy(struct regions *regions)
 
 /* --- cuts --- */
 
-struct cuts cuts_create(const struct senders *senders, const struct regions *regions)
+struct cuts cuts_create(const struct senders *senders, const struct regions *regions,
+                        int segments)
 {
-    struct cuts cuts = {.senders = senders, .regions = regions};
+    struct cuts cuts = {
+        .senders = senders, .regions = regions, .segments = segments};
     cuts.cuts = alloc_array((size_t)regions->count, sizeof *cuts.cuts);
     for (int64_t i = 0; i < regions->count; i++)
         cuts.cuts[i].first = -1;
@@ -199,7 +199,7 @@ static void make_cut(struct cuts *cuts, int32_t region, struct octree_counts *co
     cut->first = cuts->count;
     for (int pass = 0; pass < 2 && cuts->senders->count > 0; pass++) {
         cuts->count = cut->first;
-        most = add_nodes(cuts, &bounds, 0, most) / SEGMENTS;
+        most = add_nodes(cuts, &bounds, 0, most) / cuts->segments;
     }
     cut->count = cuts->count - cut->first;
     double upto = 0.0, seen = 0.5, asked = 1.0;
@@ -210,6 +210,7 @@ static void make_cut(struct cuts *cuts, int32_t region, struct octree_counts *co
     }
     for (int64_t i = cut->first; i < cuts->count; i++) {
         struct cut_node *node = &cuts->nodes[i];
+        node->found = node->asked > 0 ? node->seen / node->asked : 0.0;
         node->seen = (node->seen + seen / asked) / (node->asked + 1);
         upto += node->upto * sqrt(node->seen);
         node->upto = upto;

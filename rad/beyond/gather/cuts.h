@@ -25,7 +25,8 @@ void regions_destroy(struct regions *regions);
 struct cut_node {
     int32_t node; /* of the tree of senders */
     int32_t asked; /* segments from the region to points that it faces */
-    double seen;  /* share of its light that is seen from the region, 1; above 0 */
+    double found; /* share of these that are seen, 1 */
+    double seen;  /* share of its light that may be seen from the region, 1; above 0 */
     double upto;  /* light that reaches the region, about, from this node of the cut and
                      those before it, over all bands, W/m^2 */
 };
@@ -38,12 +39,14 @@ struct cut {
 struct cuts {
     const struct senders *senders; /* borrowed */
     const struct regions *regions; /* borrowed */
+    int segments;                  /* that a cut is made for */
     struct cut *cuts;              /* [regions->count] */
     struct cut_node *nodes;        /* of all cuts made so far */
     int64_t count, capacity;
 };
 
-struct cuts cuts_create(const struct senders *senders, const struct regions *regions);
+struct cuts cuts_create(const struct senders *senders, const struct regions *regions,
+                        int segments);
 void cuts_free(struct cuts *cuts);
 
 /* Returns the cut of the region of a leaf; makes it when it is asked for first, a pure

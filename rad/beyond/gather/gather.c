@@ -311,8 +311,8 @@ void final_gather_renew(struct final_gather *gather)
     cuts_free(&gather->lamp_cuts);
     cuts_free(&gather->bright_cuts);
     gather->regions = regions_create(model);
-    gather->lamp_cuts = cuts_create(gather->lamps, gather->regions);
-    gather->bright_cuts = cuts_create(gather->bright, gather->regions);
+    gather->lamp_cuts = cuts_create(gather->lamps, gather->regions, gather->rays);
+    gather->bright_cuts = cuts_create(gather->bright, gather->regions, gather->rays);
     alloc_free(gather->near.leaves);
     gather->near.leaves = alloc_array((size_t)forest->count, sizeof *gather->near.leaves);
     for (int32_t p = 0; p < forest->count; p++) {

@@ -272,9 +272,9 @@ static double light_of_floor(int parts)
     struct soup soup = {0};
     soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), parts);
     paint(&soup, 0.5, 0.0);
-    soup_add_quad(&soup, point(0.4, 0.4, 0.4), point(0, 0.2, 0), point(0.2, 0, 0), 4);
+    soup_add_quad(&soup, point(0.4, 0.4, 0.045), point(0, 0.2, 0), point(0.2, 0, 0), 4);
     paint(&soup, 0.0, 100.0);
-    soup_add_quad(&soup, point(0, 0, 0.5), point(0, 1, 0), point(1, 0, 0), 1);
+    soup_add_quad(&soup, point(0, 0, 0.05), point(0, 1, 0), point(1, 0, 0), 1);
     paint(&soup, 0.0, 0.0);
     struct trial g = gather_scene(&soup, "--max-level 0", 16);
     const struct scene *scene = g.s.scene;
