@@ -4,10 +4,6 @@
 
 . tests/tap.sh
 
-# Objects that still stand in a circle. Whoever takes one out crosses it out here; none is
-# added.
-known=''
-
 # symbols MODULE...: their symbols, "MODULE: VALUE TYPE NAME" or "MODULE: TYPE NAME".
 symbols() {
     for module in "$@"; do
@@ -56,26 +52,13 @@ circles() {
     }'
 }
 
-# missing LIST NAME...: the names that the list lacks, on a line.
-missing() {
-    list=$1
-    shift
-    for name in "$@"; do
-        case " $(echo $list) " in *" $name "*) ;; *) printf ' %s' "$name" ;; esac
-    done
-}
-
 symbols $(find phr.c geom octree rad mpi io tools -name '*.c' | sed 's/\.c$//') \
     >"$work/symbols"
 check "nm sees main() of phr.c" grep -q '^phr: .* T _*main$' "$work/symbols"
 circles <"$work/symbols" | sort >"$work/circles"
 sed -n 's/^circle/# circle:/p' "$work/circles"
 sed -n '/->/s/^/    /p' "$work/circles"
-circular=$(sed -n 's/^circle//p' "$work/circles")
-more=$(missing "$known" $circular)
-check "no object stands in a circle but those that are known:$more" [ -z "$more" ]
-gone=$(missing "$circular" $known)
-check "and each of these does:$gone" [ -z "$gone" ]
+check "no object stands in a circle" [ ! -s "$work/circles" ]
 
 # The test can fail: a circle of three, two of which reach a fourth.
 printf '%s\n' 'a: U of_b' 'b: U of_c' 'c: U of_a' 'c: U of_d' 'b: U of_d' \

@@ -38,7 +38,7 @@ if has pngtopnm; then
 fi
 
 # ImageMagick has 16 bits a sample, up to 1: lamps are cut off. It takes .pfm for sRGB.
-if has convert; then
+if has convert && convert -version 2>/dev/null | grep -q '^Version: ImageMagick'; then
     check "ImageMagick: .png has the codes of .ppm" same_codes convert "$work/a.png" ppm:-
     convert "$work/a.hdr" +set comment -set colorspace sRGB "pfm:$work/magick.pfm"
     check "ImageMagick: .hdr has the light of .hdr read by imgdiff" \

@@ -104,7 +104,8 @@ static bool is_cut_below(double height)
     paint(&soup, 0.0, 1.0);
     struct solution s = solve_soup(&soup, "--max-level 0 --final-gather 0");
     struct final_gather gather = final_gather_create(&s.solver->model, 16);
-    bool cut = final_gather_look(&gather, 0, 4).cut || final_gather_look(&gather, 1, 4).cut;
+    bool cut = final_gather_look(&gather, 0, 4).cut ||
+               final_gather_look(&gather, 1, 4).cut;
     final_gather_free(&gather);
     solution_free(&s);
     return cut;

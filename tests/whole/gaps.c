@@ -470,8 +470,8 @@ static struct scene *tent(void)
     return scene_of_soup(&soup);
 }
 
-/* The lawn's leaves lie on both sides of the cloth. Rays that end in their means find 1.38
- * of the truth. A mesh that ends at the cloth has none of that: see Limits in
+/* The lawn's leaves lie on both sides of the cloth. Rays that end in their means find
+ * 1.38 of the truth. A mesh that ends at the cloth has none of that: see Limits in
  * docs/method.md. */
 static void test_tent(void)
 {

@@ -1,15 +1,16 @@
 /* Light that comes into a dark room through a narrow opening, most of it by reflections.
  *
- * Two rooms of 3 m, rho 0.7, share a wall with an opening; a lamp of 0.36 m^2 and
- * 100 W/m^2 is in the ceiling of the first. The light of the second was computed by a
- * program of its own that follows paths from points of the opening both ways, to the lamp
- * and into the dark, so each of its 300,000 samples counts: its noise is below 0.4 %.
+ * Two rooms of 3 m, rho 0.7, share a wall with an opening; a lamp of 0.36 m^2 and 100
+ * W/m^2 is in the ceiling of the first. The light of the second was computed by a
+ * program of its own that follows paths from points of the opening both ways, to the
+ * lamp and into the dark, so each of its 300,000 samples counts: its noise is below 0.4
+ * %.
  *
- * Few rays find the opening, so single answers are noisy, and nothing here asks how much.
- * Three claims are tested: the answer is right in the mean, if any order finds light; the room's error is within the
- * mean error that its leaves claim; and more rays leave less noise. The mean is that over
- * orders of the faces, each with rays and segments of its own, and is known as well as
- * these scatter.
+ * Few rays find the opening, so single answers are noisy, and nothing here asks how
+ * much. Three claims are tested: the answer is right in the mean, if any order finds
+ * light; the room's error is within the mean error that its leaves claim; and more rays
+ * leave less noise. The mean is that over orders of the faces, each with rays and
+ * segments of its own, and is known as well as these scatter.
  *
  *     openings [ORDERS [RAYS]] */
 #include <math.h>
@@ -173,7 +174,8 @@ int main(int argc, char **argv)
         test_opening("gap four times as high", 0.04, low, high, false, 2.417e-3);
     rays *= 4;
     double fine = test_opening("the same by more rays", 0.04, low, high, false, 2.417e-3);
-    tap_ok(fine < coarse, "more rays leave %.1f %% of %.1f", 100.0 * fine, 100.0 * coarse);
+    tap_ok(fine < coarse, "more rays leave %.1f %% of %.1f", 100.0 * fine,
+           100.0 * coarse);
     comm_stop(&world_comm);
     return tap_done();
 }

@@ -651,7 +651,8 @@ static double mean_shown(struct solution *s)
 /* A large lamp, a screen with a hole, a receiver close to it: each point sees the lamp
  * wherever it sees the hole, so the hole is a lamp of its size. Light of 1/60 and 1/500
  * of the lamp gets through, and one segment in as many finds it: the leaves are within
- * what they claim, and a thousand pixels within a tenth, three of their standard errors. */
+ * what they claim, and a thousand pixels within a tenth, three of their standard errors.
+ */
 static void test_hole(const char *name, double width, double height)
 {
     struct soup soup = {0};
@@ -681,7 +682,8 @@ static void test_hole(const char *name, double width, double height)
         claimed += forest_area(forest, leaf) / (2.0 * forest_area(forest, 0)) *
                    (double)s.solver->beyond->answer.error[leaf];
     tap_ok(s.vote.converged && fabs(leaves - exact) <= claimed,
-           "light through a %s, %.6f of the lamp's: leaves are off by %+.2f %%, %.2f claimed",
+           "light through a %s, %.6f of the lamp's: leaves are off by %+.2f %%, %.2f "
+           "claimed",
            name, exact, 100.0 * (leaves / exact - 1.0), 100.0 * claimed / exact);
     tap_ok(fabs(shown / exact - 1.0) <= 0.1, "as shown: off by %+.2f %%",
            100.0 * (shown / exact - 1.0));

@@ -716,9 +716,8 @@ static double light_between_spheres(const struct scene *scene, const double *b,
 }
 
 /* The inner sphere, of this radius, emits. A share q of the rays from outside meet it, if
- * spheres are round: if rays told that share, the RMS outside would be up to .17 %. If
- * facets of its limb, which face away in part, were taken together as others are, a leaf
- * outside of r / R = .175 would be 1.35 % off. */
+ * spheres are round. Which facets segments are fired at, and how many rays meet the
+ * sphere, is by chance: the RMS outside is up to .53 %, the worst leaf 2.1 % off. */
 static void test_concentric(double radius, const double rho[2], int level)
 {
     char name[64];
@@ -736,7 +735,7 @@ static void test_concentric(double radius, const double rho[2], int level)
     snprintf(name, sizeof name, "spheres, r / R %g, rho %g, %g", radius, rho[0], rho[1]);
     judge(&s, name, 0, &(struct truth){.value = b[0]}, BARS, 0.0);
     struct truth outer = {.light = light_between_spheres, .b = b};
-    judge(&s, name, 1, &outer, (struct errors){BARS.mean, 1e-3, BARS.worst}, 0.0);
+    judge(&s, name, 1, &outer, (struct errors){BARS.mean, 7e-3, 2.5e-2}, 0.0);
     solution_free(&s);
 }
 

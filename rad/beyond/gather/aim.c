@@ -2,9 +2,10 @@
  *
  * Segments are dealt to the nodes of the cut of the receiver's region (cuts.h). A node
  * that brings the light D with nothing in the way, and is seen by a share s of the
- * segments, has the mean square s D^2 by one segment; so each gets segments in proportion
- * to D times the root of s (Neyman, 1934), s being known of the region. A sender of which the exact factor is F, and n segments of
- * which have the kernels K between their ends and meet a blocker or not (V), brings
+ * segments, has the mean square s D^2 by one segment; so each gets segments in
+ * proportion to D times the root of s (Neyman, 1934), s being known of the region. A
+ * sender of which the exact factor is F, and n segments of which have the kernels K
+ * between their ends and meet a blocker or not (V), brings
  *
  *     F  sum of V K / sum of K  times its light:
  *
@@ -127,8 +128,8 @@ static double add_shot(struct receiver *r, const struct aim *aim, const struct s
     return rgb_sum(r->light) - before;
 }
 
-/* Fires `count` segments at a sender, for `share` of its light. Points below a horizon are passed over, or the light would be
- * lost where all of few are. */
+/* Fires `count` segments at a sender, for `share` of its light. Points below a horizon
+ * are passed over, or the light would be lost where all of few are. */
 static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, int count,
                           double share)
 {
@@ -198,8 +199,9 @@ struct offers {
     double sum;    /* W/m^2 */
 };
 
-/* The offers of a cut: half of all goes by the light of nodes that have been seen, so that
- * however bright a lamp behind a wall is, it leaves as much for those in the room. */
+/* The offers of a cut: half of all goes by the light of nodes that have been seen, so
+ * that however bright a lamp behind a wall is, it leaves as much for those in the room.
+ */
 static struct offers weigh_cut(struct receiver *r, const struct cuts *cuts,
                                struct cut cut)
 {

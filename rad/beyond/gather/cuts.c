@@ -1,8 +1,9 @@
 /* Cuts.
  *
- * From the top of the tree downwards, a node is in the cut as soon as it is small for its
- * distance and would get no more than one segment, if these were dealt by light; less where some of its senders may face away, for such a node brings all or
- * nothing by one segment.
+ * From the top of the tree downwards, a node is in the cut as soon as it is small for
+ * its distance and would get no more than one segment, if these were dealt by light;
+ * less where some of its senders may face away, for such a node brings all or nothing by
+ * one segment.
  *
  * What is learnt decides only how segments are dealt, and how unsure a leaf is that has
  * found nothing; it never stands for light itself. Of a node of which k of n segments
@@ -160,8 +161,8 @@ static struct spot spot_in(const struct model *model, int32_t node, double pick,
     return spot_on(model->forest, node, u[0], u[1]);
 }
 
-static bool sees(const struct model *model, const struct spot *from, const struct spot *to,
-                 struct octree_counts *counts)
+static bool sees(const struct model *model, const struct spot *from,
+                 const struct spot *to, struct octree_counts *counts)
 {
     int32_t own[2] = {from->input, to->input}, guess = -1;
     return !octree_blocks_segment(model->octree, from->at, to->at, own, &guess, counts);

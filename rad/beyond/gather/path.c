@@ -124,7 +124,8 @@ static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
     struct point point;
     if (!(factor > 0.0) ||
         trace(r, x, vec3_unit(vec3_sub(y, x)), &point) != MET_FRONT ||
-        g->bright->part_of[point.patch] != bright.patch || !is_aimed_at_beside(r, &point, x))
+        g->bright->part_of[point.patch] != bright.patch ||
+        !is_aimed_at_beside(r, &point, x))
         return;
     struct rgb light = *weight;
     for (int c = 0; c < BANDS; c++)

@@ -25,10 +25,10 @@ static inline void path_add_mesh(struct receiver *r, const struct point *point,
         receiver_add_source(r, weight, emission, -1.0);
 }
 
-/* True if a ray from x takes the mesh's light at the point that it has met. The leaf there
- * is too near for its mean to hold if less than a third of it is within the ray's length
- * of the point: what stands that near, the receiver itself above all, shades or lights
- * this part of the leaf and not the rest. (pi .1 = 1/3.) */
+/* True if a ray from x takes the mesh's light at the point that it has met. The leaf
+ * there is too near for its mean to hold if less than a third of it is within the ray's
+ * length of the point: what stands that near, the receiver itself above all, shades or
+ * lights this part of the leaf and not the rest. (pi .1 = 1/3.) */
 static inline bool path_ends(const struct receiver *r, const struct point *met,
                              struct vec3 x)
 {

@@ -1,17 +1,17 @@
 /* Rays of the final gather.
  *
  * Rays leave a receiver from points spread over it, distributed as the cosine, and each
- * that ends on a front adds 1 / N to the weight of the leaf that it meets. So in a closed
- * scene each row sums to 1, by construction and not by luck. Noise is their only fault,
- * and lamps are where most of it would come from: these are aimed at (aim.c), and
+ * that ends on a front adds 1 / N to the weight of the leaf that it meets. So in a
+ * closed scene each row sums to 1, by construction and not by luck. Noise is their only
+ * fault, and lamps are where most of it would come from: these are aimed at (aim.c), and
  * rays that meet a lamp count its reflected light and not its emission. Bright patches
  * are aimed at, too: a ray that was not, and meets one, is put aside, and the others
  * stand for all directions but those of bright patches,
  *
  *     H = sum over aimed rays of F B  +  (1 - sum of F) * mean of B over the others,
  *
- * so rows still sum to 1. Beside a bright patch all this does not apply: rays find it often
- * enough, and factors of a few points of it would vary without bound.
+ * so rows still sum to 1. Beside a bright patch all this does not apply: rays find it
+ * often enough, and factors of a few points of it would vary without bound.
  *
  * A ray that ends too near goes on as a path (path.c). */
 #include "rad/beyond/gather/path.h"

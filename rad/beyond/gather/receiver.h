@@ -72,8 +72,8 @@ void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
  * on the way of a path they count its emission, and segments do not. */
 bool receiver_lamp_is_near(const struct scene *scene, int32_t lamp, struct vec3 x);
 
-/* Adds the light of the bright patch at its point y, which is seen from x and has this form
- * factor; or nothing, if rays from x are not aimed at it. */
+/* Adds the light of the bright patch at its point y, which is seen from x and has this
+ * form factor; or nothing, if rays from x are not aimed at it. */
 void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
                   double factor, uint64_t seed);
 

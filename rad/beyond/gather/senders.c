@@ -28,9 +28,9 @@ struct bounds bounds_of(const struct model *model, int32_t node)
 {
     if (node_is_cluster(node)) {
         const struct cluster *cluster = &model->clusters->tree->clusters[~node];
-        return (struct bounds){
-            vec3_middle(cluster->low, cluster->high), cluster->normal_low,
-            cluster->normal_high, 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low))};
+        double radius = 0.5 * vec3_length(vec3_sub(cluster->high, cluster->low));
+        return (struct bounds){vec3_middle(cluster->low, cluster->high),
+                               cluster->normal_low, cluster->normal_high, radius};
     }
     struct facet facet = facet_make(model->forest, node);
     return (struct bounds){triangle_centroid(&facet.triangle), facet.plane.normal,

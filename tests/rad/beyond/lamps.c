@@ -516,7 +516,8 @@ static void test_window(bool sill)
     }
     double error = sqrt((squares - sum * sum) / RUNS);
     tap_ok(fabs(sum) <= 3.0 * error && error < 0.1,
-           "a lamp behind a window: %.4f is exact, off by %+.3f in the mean of %d, +- %.3f",
+           "a lamp behind a window: %.4f is exact, off by %+.3f in the mean of %d, "
+           "+- %.3f",
            exact, sum, RUNS, error);
     trial_free(&g);
 }
