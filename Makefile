@@ -79,7 +79,8 @@ endif
 # All sources of these folders but the programs.
 OCTREE = $(wildcard octree/*.c)
 PROGRAMS = tools/imgdiff tools/pathtracer tools/id
-FOLDERS = geom rad rad/beyond rad/beyond/gather mpi mpi/beyond io/scene io/run io/picture tools
+FOLDERS = geom rad rad/beyond rad/beyond/gather mpi mpi/beyond io/scene io/run \
+          io/picture tools
 SOURCES = $(wildcard $(FOLDERS:%=%/*.c)) $(OCTREE)
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =

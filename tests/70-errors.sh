@@ -136,7 +136,7 @@ f 1 2 3 4
 END
 ./phr "$work/dark.obj" -o "$work/dark.pfm" --size 8x8 >/dev/null 2>"$work/err"
 check "a scene without a light gets a sky, with a line that says so" \
-    [ "$? $(grep -c 'dark.obj: nothing emits light: --sky 1 is taken' "$work/err")" = "0 1" ]
+    [ "$? $(grep -c 'nothing emits light: --sky 1 is taken' "$work/err")" = "0 1" ]
 
 scene degenerate.obj <<END
 $lamp

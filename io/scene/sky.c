@@ -12,7 +12,7 @@ enum { LEVELS = 2, FACETS = 4 << 2 * LEVELS };
 static const double DISTANCE = 1024.0; /* relative to half the diagonal of the scene */
 
 /* The place, and the next facet. */
-struct builder {
+struct dome {
     struct scene *scene;
     struct vec3 centre;
     double radius;
@@ -20,7 +20,7 @@ struct builder {
 };
 
 /* Adds the facets of a triangle of directions, which is seen from within. */
-static void add_part(struct builder *builder, struct triangle part, int levels)
+static void add_part(struct dome *builder, struct triangle part, int levels)
 {
     for (int k = 0; k < 3; k++)
         part.corner[k] = vec3_unit(part.corner[k]);
@@ -44,7 +44,7 @@ void sky_add(struct scene *scene, struct rgb radiosity)
         low = vec3_least(low, triangle_low(&scene->triangles[i]));
         high = vec3_most(high, triangle_high(&scene->triangles[i]));
     }
-    struct builder builder = {scene, vec3_middle(low, high),
+    struct dome builder = {scene, vec3_middle(low, high),
                               0.5 * DISTANCE * vec3_length(vec3_sub(high, low)),
                               scene->input_count};
     *(z_up ? &builder.centre.z : &builder.centre.y) = z_up ? low.z : low.y;

@@ -20,12 +20,12 @@ static const double COVER = 0.5;  /* share of a box that a floor covers */
 static const double STRIP = 0.5;  /* width of the strip of ground, relative to the height
                                    * of the things */
 
-struct box {
+struct extent {
     struct vec3 low, high;
     bool is_empty;
 };
 
-static void box_add(struct box *box, struct vec3 low, struct vec3 high)
+static void box_add(struct extent *box, struct vec3 low, struct vec3 high)
 {
     box->low = box->is_empty ? low : vec3_least(box->low, low);
     box->high = box->is_empty ? high : vec3_most(box->high, high);
@@ -38,7 +38,8 @@ static double *axis_of(struct vec3 *v, int axis)
 }
 
 /* True if the face is a part of a floor at the bottom of the box. */
-static bool is_floor(const struct scene *scene, int32_t i, const struct box *box, int up)
+static bool is_floor(const struct scene *scene, int32_t i, const struct extent *box,
+                     int up)
 {
     const struct triangle *t = &scene->triangles[i];
     double facing = vec3_axis(triangle_plane(t).normal, up);
@@ -50,10 +51,10 @@ static bool is_floor(const struct scene *scene, int32_t i, const struct box *box
 enum kind { LAMPS, THINGS, REST }; /* REST: things and ground */
 
 /* Returns the box of the triangles of a kind. `rest`: that of REST, for THINGS. */
-static struct box box_of(const struct scene *scene, enum kind kind,
-                         const struct box *rest, int up)
+static struct extent box_of(const struct scene *scene, enum kind kind,
+                         const struct extent *rest, int up)
 {
-    struct box box = {.is_empty = true};
+    struct extent box = {.is_empty = true};
     for (int32_t i = 0; i < scene->sky_first; i++) {
         bool emits = material_emits(scene_root_material(scene, i));
         if (triangle_is_degenerate(&scene->triangles[i]) || emits != (kind == LAMPS) ||
@@ -67,7 +68,7 @@ static struct box box_of(const struct scene *scene, enum kind kind,
 
 /* --- up --- */
 
-static bool has_floor(const struct scene *scene, const struct box *box, int up)
+static bool has_floor(const struct scene *scene, const struct extent *box, int up)
 {
     struct vec3 side = vec3_sub(box->high, box->low);
     double area = 0.0;
@@ -77,7 +78,7 @@ static bool has_floor(const struct scene *scene, const struct box *box, int up)
     return area > COVER * vec3_axis(side, (up + 1) % 3) * vec3_axis(side, (up + 2) % 3);
 }
 
-static bool find_up(const struct scene *scene, const struct box *rest)
+static bool find_up(const struct scene *scene, const struct extent *rest)
 {
     struct vec3 side = vec3_sub(rest->high, rest->low), shine = {0.0, 0.0, 0.0};
     double power = 0.0;
@@ -99,7 +100,7 @@ static bool find_up(const struct scene *scene, const struct box *rest)
 /* --- the sky, and the things --- */
 
 /* True if the lamps reach beyond the box on all sides but the bottom. */
-static bool encloses(const struct box *lamps, const struct box *box, int up)
+static bool encloses(const struct extent *lamps, const struct extent *box, int up)
 {
     bool beyond = !lamps->is_empty;
     for (int axis = 0; axis < 3; axis++)
@@ -109,7 +110,7 @@ static bool encloses(const struct box *lamps, const struct box *box, int up)
 }
 
 /* Adds the ground around a box of things. */
-static void add_ground(struct box *box, const struct box *rest, int up)
+static void add_ground(struct extent *box, const struct extent *rest, int up)
 {
     struct vec3 strip;
     double height = vec3_axis(box->high, up) - vec3_axis(rest->low, up);
@@ -123,13 +124,13 @@ static void add_ground(struct box *box, const struct box *rest, int up)
 
 struct subject subject_find(const struct scene *scene)
 {
-    struct box lamps = box_of(scene, LAMPS, NULL, 0), rest;
+    struct extent lamps = box_of(scene, LAMPS, NULL, 0), rest;
     rest = box_of(scene, REST, NULL, 0);
     if (rest.is_empty)
         rest = lamps;
     struct subject subject = {.z_up = find_up(scene, &rest)};
     int up = subject.z_up ? 2 : 1;
-    struct box things = box_of(scene, THINGS, &rest, up);
+    struct extent things = box_of(scene, THINGS, &rest, up);
     if (things.is_empty)
         things = rest;
     subject.below_sky = encloses(&lamps, &things, up);
