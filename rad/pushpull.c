@@ -35,8 +35,9 @@ static void update_leaf(const struct model *model, struct flux_unit flux, int32_
     struct rgb *radiosity = &model->forest->radiosity[leaf];
     const struct material *material = forest_material(model->forest, leaf);
     struct rgb irradiance = leaf_irradiance(model->forest, leaf, flux);
-    double area = forest_is_sky(model->forest, leaf) ? 0.0 /* no part of the sums */
-                                                     : forest_area(model->forest, leaf);
+    int32_t root = (int32_t)model->forest->patches[leaf].id.root;
+    double area = scene_is_sky(model->scene, root) ? 0.0 /* no part of the sums */
+                                                   : forest_area(model->forest, leaf);
     double cap = model->forest->caps ? model->forest->caps[leaf] : 1.0;
     double light = 0.0, absorbed = 0.0, arriving = 0.0, change = 0.0;
     for (int c = 0; c < BANDS; c++) {
@@ -99,7 +100,7 @@ struct row_sums row_sums_measure(const struct forest *forest, const bool *own,
         const struct patch *patch = &forest->patches[p];
         double area = forest_area(forest, (int32_t)p);
         if (!own[patch->id.root] || !patch_is_leaf(patch) || area <= 0.0 ||
-            forest_is_sky(forest, (int32_t)p) ||
+            scene_is_sky(forest->scene, (int32_t)patch->id.root) ||
             material_is_dark(forest_material(forest, (int32_t)p)))
             continue;
         double sum = leaf_irradiance(forest, (int32_t)p, unit).band[0];
