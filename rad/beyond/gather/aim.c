@@ -1,11 +1,11 @@
 /* Aiming at senders, from a receiver of the final gather.
  *
- * Segments are dealt to the nodes of the cut of the receiver's region (cuts.h). A node
- * that brings the light D with nothing in the way, and is seen by a share s of the
- * segments, has the mean square s D^2 by one segment; so each gets segments in
- * proportion to D times the root of s (Neyman, 1934), s being known of the region. A
- * sender of which the exact factor is F, and n segments of which have the kernels K
- * between their ends and meet a blocker or not (V), brings
+ * Segments are dealt to the nodes of the cut of the receiver's region (cuts.h): half of
+ * them by the light that nodes bring with nothing in the way, half by the share of it
+ * that is seen from the region. So a lamp behind a wall, however bright, leaves some for
+ * those in the room, and a node that the region has not seen counts twice as often at
+ * most where it is seen. A sender of which the exact factor is F, and n segments of
+ * which have the kernels K between their ends and meet a blocker or not (V), brings
  *
  *     F  sum of V K / sum of K  times its light:
  *
@@ -199,9 +199,7 @@ struct offers {
     double sum;    /* W/m^2 */
 };
 
-/* The offers of a cut: half of all goes by the light of nodes that have been seen, so
- * that however bright a lamp behind a wall is, it leaves as much for those in the room.
- */
+/* The offers of a cut: half of all by light, half by light that is seen. */
 static struct offers weigh_cut(struct receiver *r, const struct cuts *cuts,
                                struct cut cut)
 {
@@ -215,14 +213,13 @@ static struct offers weigh_cut(struct receiver *r, const struct cuts *cuts,
         const struct cut_node *node = &cuts->nodes[cut.first + i];
         offers.worth[i] =
             sender_node_worth(cuts->senders, &cuts->senders->nodes[node->node], &bounds);
-        offers.sum += offers.worth[i] * sqrt(node->seen);
+        offers.sum += offers.worth[i];
         found += offers.worth[i] * node->found;
     }
     double part = found > 0.0 ? 0.5 * offers.sum / found : 0.0;
     for (int64_t i = 0; i < cut.count; i++) {
         const struct cut_node *node = &cuts->nodes[cut.first + i];
-        offers.worth[i] *= (found > 0.0 ? 0.5 : 1.0) * sqrt(node->seen) +
-                           part * node->found;
+        offers.worth[i] *= (found > 0.0 ? 0.5 : 1.0) + part * node->found;
     }
     return offers;
 }
