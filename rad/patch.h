@@ -79,12 +79,6 @@ static inline const struct material *forest_material(const struct forest *forest
     return scene_root_material(forest->scene, (int32_t)forest->patches[patch].id.root);
 }
 
-/* True for a patch of a sky. */
-static inline bool forest_is_sky(const struct forest *forest, int32_t patch)
-{
-    return scene_is_sky(forest->scene, (int32_t)forest->patches[patch].id.root);
-}
-
 /* Numbers under all roots that have an area. */
 struct forest_counts {
     int64_t patches, leaves;

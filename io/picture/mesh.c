@@ -10,7 +10,8 @@ int32_t mesh_next_leaf(const struct forest *forest, int32_t leaf)
 {
     do
         leaf = forest_next_leaf(forest, leaf);
-    while (leaf >= 0 && forest_is_sky(forest, leaf));
+    while (leaf >= 0 &&
+           scene_is_sky(forest->scene, (int32_t)forest->patches[leaf].id.root));
     return leaf;
 }
 

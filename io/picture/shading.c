@@ -266,7 +266,8 @@ static void for_each_leaf(struct blend *blend,
     for (int sky = 0; sky < 2; sky++) {
         int32_t leaf = forest_next_leaf(forest, -1);
         for (; leaf >= 0 && !stop_is_asked(); leaf = forest_next_leaf(forest, leaf))
-            if (forest_is_sky(forest, leaf) == sky)
+            if (scene_is_sky(forest->scene, (int32_t)forest->patches[leaf].id.root) ==
+                sky)
                 visit(blend, leaf);
         if (blend->shading->own_count == 0)
             blend->shading->own_count = blend->shading->table->count;

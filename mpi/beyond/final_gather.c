@@ -373,7 +373,8 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
     double absorbed = 0.0, leaving = 0.0, arriving = 0.0;
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m = gathering_material(g, i);
-        if (forest_is_sky(g->solver->model.forest, g->leaves[i]))
+        uint32_t root = g->solver->model.forest->patches[g->leaves[i]].id.root;
+        if (scene_is_sky(g->solver->model.scene, (int32_t)root))
             continue;
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c];
