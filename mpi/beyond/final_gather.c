@@ -16,7 +16,7 @@
  * scalar products are the same on all ranks.
  *
  * Where rays meet a leaf too near, such as the floor under a box, their paths find the
- * light there (gather_rays.c). It is darker there than in the mean, so the rest of the
+ * light there (rays.c). It is darker there than in the mean, so the rest of the
  * leaf, which others see, is brighter than the mean. With the part n of the leaf's light
  * that goes to near receivers and the mean radiosity L that they have met, far ones are
  * shown B + n (B - L), and less where n > 1/2: min(1, 2 (1 - n)) of the difference.

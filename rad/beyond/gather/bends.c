@@ -1,6 +1,6 @@
 /* Bends of light over leaves with exact rows.
  *
- * Over such a leaf B counts as linear (rad/beyond/final_gather.c). What is left is the
+ * Over such a leaf B counts as linear (rad/beyond/gather/gather.c). What is left is the
  * bend: B of a leaf less that of the linear function over its parent. Its error comes
  * back as often as light is reflected, so less is allowed where little is absorbed:
  *

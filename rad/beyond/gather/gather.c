@@ -1,7 +1,7 @@
 /* The final gather: its rows, kept, and their products with radiosities.
  *
  * A row holds the form factors from a leaf to the leaves that it sees. It is made by rays
- * (gather_rays.c) or, where nothing is in the way, by exact factors (gather_exact.c).
+ * (rays.c) or, where nothing is in the way, by exact factors (exact.c).
  *
  * As a sender a leaf is no constant: where it has sisters, B is linear over it,
  *

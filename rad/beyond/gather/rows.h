@@ -77,7 +77,7 @@ struct gather_path {
     struct rgb light; /* times the ray's share of the row, that lamps brought, W/m^2 */
 };
 
-/* B as a linear function over a patch: see final_gather.c. */
+/* B as a linear function over a patch: see gather.c. */
 struct gather_slope {
     int32_t first; /* child 0 of the patch, or of its parent */
     double rise;   /* s, made less where B would be below 0; 0: B is constant */
