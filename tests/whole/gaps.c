@@ -254,7 +254,7 @@ static void test_errors(struct scene *scene, uint32_t roots, const char *options
         counts[error_holds(&pathtracer, forest->patches[p].id, found)]++;
     }
     int known = counts[HELD] + counts[BROKEN];
-    tap_ok(2 * known > counts[UNKNOWN] && counts[HELD] >= part * known,
+    tap_ok(4 * known > counts[UNKNOWN] && counts[HELD] >= part * known,
            "%s: errors hold for %d of %d leaves (%.1f s)", name, counts[HELD], known,
            s.seconds);
     pathtracer_free(&pathtracer);

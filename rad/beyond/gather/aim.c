@@ -9,8 +9,9 @@
  *
  *     F  sum of V K / sum of K  times its light:
  *
- * exactly F where all of it is seen, and 0 where nothing is. Of a node with several
- * senders each segment chooses one by its power.
+ * exactly F where all of it is seen, and 0 where nothing is. Of a bright patch that is
+ * not near, F is the mean of K times its area. Of a node with several senders each
+ * segment chooses one by its power.
  *
  * Rays that meet a lamp count its reflected light and not its emission. A ray that meets
  * a bright patch which is aimed at is put aside (rays.c). */
@@ -30,6 +31,10 @@
 /* For each ray in all directions there are as many segments to bright patches as these
  * send of the reflected light, at least so many. */
 static const double AIMED_LEAST = 0.25;
+
+/* A sender is near a receiver if the distance of their centres is at most so many times
+ * the sum of their radii. */
+static const double NEARBY = 2.0;
 
 /* Fewest segments that are enough to estimate the visible share of senders; most tries
  * for a point of a sender above the horizon. */
@@ -128,15 +133,30 @@ static double add_shot(struct receiver *r, const struct aim *aim, const struct s
     return rgb_sum(r->light) - before;
 }
 
-/* Fires `count` segments at a sender, for `share` of its light. Points below a horizon
- * are passed over, or the light would be lost where all of few are. */
+static bool is_nearby(const struct bounds *a, const struct bounds *b)
+{
+    struct vec3 apart = vec3_sub(b->middle, a->middle);
+    double reach = NEARBY * (a->radius + b->radius);
+    return vec3_dot(apart, apart) <= reach * reach;
+}
+
+static double exact_factor(const struct receiver *r, const struct facet *sender)
+{
+    return mean_factor(&r->facet.triangle, r->facet.plane.normal, &sender->triangle,
+                       &r->gather->model->estimating);
+}
+
+/* Fires `count` segments at a sender, for `share` of its light. `factor`: the exact one,
+ * or -1. Where the exact factor is taken, points below a horizon are passed over, or the
+ * light would be lost where all of few are. */
 static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, int count,
-                          double share)
+                          double share, double factor)
 {
     struct facet sender = facet_make(r->gather->model->forest, patch);
     struct final_gather *g = r->gather;
+    bool exact = !aim->senders->reflect || factor >= 0.0;
     double all = 0.0;
-    int found = 0, end = aim->index + TRIES_MOST * count;
+    int found = 0, start = aim->index, end = start + (exact ? TRIES_MOST : 1) * count;
     if (!facets_face(&r->facet, &sender))
         return;
     RESERVE(g->shots, &g->shot_capacity, count);
@@ -148,12 +168,13 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
     }
     if (found == 0)
         return;
-    double factor = share * mean_factor(&r->facet.triangle, r->facet.plane.normal,
-                                        &sender.triangle, &g->model->estimating);
+    if (!(factor >= 0.0))
+        factor = exact ? exact_factor(r, &sender)
+                       : sender.area * all / (aim->index - start);
     double sent = rgb_sum(sender_light(aim->senders, patch));
     for (int k = 0; k < found; k++) {
         struct shot shot = g->shots[k]; /* the light behind it may be aimed at by more */
-        double part = factor * (shot.kernel / all);
+        double part = share * factor * (shot.kernel / all);
         double seen =
             add_shot(r, aim, &shot, patch, part,
                      hash_mix(aim->sequence.scramble[1] + (uint64_t)(aim->index + k)));
@@ -162,20 +183,21 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
 }
 
 /* Fires `count` segments at a node of the cut, for `share` of its light. They are spread
- * evenly over its power, and each half of them is. */
+ * evenly over its power, and each half of them is. `factor`: of a single sender the exact
+ * one, or -1. */
 static void aim_at_node(struct receiver *r, struct aim *aim, int32_t number, int count,
-                        double share)
+                        double share, double factor)
 {
     const struct sender_node *node = &aim->senders->nodes[number];
     double start = hash_unit(aim->sequence.scramble[0]);
     if (node->child[0] < 0) {
-        aim_at_sender(r, aim, aim->senders->patches[node->first], count, share);
+        aim_at_sender(r, aim, aim->senders->patches[node->first], count, share, factor);
         return;
     }
     for (int k = 0; k < count; k++) {
         double place = (choice_place(k, count) + start) / count;
         struct choice choice = sender_choose(aim->senders, node, place);
-        aim_at_sender(r, aim, choice.patch, 1, choice.share * share / count);
+        aim_at_sender(r, aim, choice.patch, 1, choice.share * share / count, -1.0);
     }
 }
 
@@ -193,35 +215,38 @@ static int deal(struct dealing *dealing, double direct)
     return (int)(floor(dealing->sum) - before);
 }
 
-/* The light of each node of a cut at the receiver. */
-struct offers {
-    double *worth; /* [cut.count] by which segments are dealt, W/m^2 */
-    double sum;    /* W/m^2 */
-};
+/* The offer of a node. The exact factor is found for a sender that is near. */
+static struct offer offer_of(const struct receiver *r, const struct senders *senders,
+                             const struct sender_node *node, const struct bounds *own)
+{
+    if (node->child[0] >= 0 || !is_nearby(own, &node->bounds))
+        return (struct offer){sender_node_worth(senders, node, own), -1.0};
+    int32_t patch = senders->patches[node->first];
+    struct facet sender = facet_make(r->gather->model->forest, patch);
+    double factor = facets_face(&r->facet, &sender) ? exact_factor(r, &sender) : 0.0;
+    return (struct offer){factor * rgb_sum(sender_light(senders, patch)), factor};
+}
 
-/* The offers of a cut: half of all by light, half by light that is seen. */
-static struct offers weigh_cut(struct receiver *r, const struct cuts *cuts,
-                               struct cut cut)
+/* Makes the offers of the nodes of a cut: half of all by light, half by light that is
+ * seen. Returns the sum of what they are worth. */
+static double make_offers(struct receiver *r, const struct cuts *cuts, struct cut cut)
 {
     struct final_gather *g = r->gather;
-    struct bounds bounds = {triangle_centroid(&r->facet.triangle), r->facet.plane.normal,
-                            r->facet.plane.normal, triangle_radius(&r->facet.triangle)};
-    double found = 0.0;
-    RESERVE(g->worth, &g->worth_capacity, cut.count);
-    struct offers offers = {g->worth, 0.0};
+    struct bounds own = facet_bounds(&r->facet);
+    double sum = 0.0, found = 0.0;
+    RESERVE(g->offers, &g->offer_capacity, cut.count);
     for (int64_t i = 0; i < cut.count; i++) {
         const struct cut_node *node = &cuts->nodes[cut.first + i];
-        offers.worth[i] =
-            sender_node_worth(cuts->senders, &cuts->senders->nodes[node->node], &bounds);
-        offers.sum += offers.worth[i];
-        found += offers.worth[i] * node->found;
+        g->offers[i] =
+            offer_of(r, cuts->senders, &cuts->senders->nodes[node->node], &own);
+        sum += g->offers[i].worth;
+        found += g->offers[i].worth * node->found;
     }
-    double part = found > 0.0 ? 0.5 * offers.sum / found : 0.0;
-    for (int64_t i = 0; i < cut.count; i++) {
-        const struct cut_node *node = &cuts->nodes[cut.first + i];
-        offers.worth[i] *= (found > 0.0 ? 0.5 : 1.0) + part * node->found;
-    }
-    return offers;
+    double part = found > 0.0 ? 0.5 * sum / found : 0.0;
+    for (int64_t i = 0; i < cut.count; i++)
+        g->offers[i].worth *=
+            (found > 0.0 ? 0.5 : 1.0) + part * cuts->nodes[cut.first + i].found;
+    return sum;
 }
 
 /* A node that is sure to get a segment counts with its own light, shared among its
@@ -231,18 +256,19 @@ static struct offers weigh_cut(struct receiver *r, const struct cuts *cuts,
 static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
 {
     struct cut cut = cuts_at(cuts, r->row.leaf, &r->gather->view.counts);
-    struct offers offers = weigh_cut(r, cuts, cut);
-    if (!(offers.sum > 0.0))
+    double each = make_offers(r, cuts, cut) / segments;
+    const struct offer *offers = r->gather->offers;
+    if (!(each > 0.0))
         return;
-    double each = offers.sum / segments, start = hash_unit(r->seed + 16), faint = 0.0;
+    double start = hash_unit(r->seed + 16), faint = 0.0;
     for (int64_t i = 0; i < cut.count; i++)
-        faint += offers.worth[i] < each ? offers.worth[i] : 0.0;
+        faint += offers[i].worth < each ? offers[i].worth : 0.0;
     struct dealing strong = {each, start}, weak = {faint / ceil(faint / each), start};
     struct aim aim = {.senders = cuts->senders};
     struct rgb light = {{0.0, 0.0, 0.0}}, around = light;
     for (int64_t i = 0; i < cut.count; i++) {
         const struct cut_node *node = &cuts->nodes[cut.first + i];
-        double worth = offers.worth[i], seen = node->seen;
+        double worth = offers[i].worth, seen = node->seen;
         bool sure = worth >= each;
         int count = worth > 0.0 ? deal(sure ? &strong : &weak, worth) : 0;
         if (count == 0)
@@ -251,7 +277,8 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
         aim.sequence = sequence_start(hash_mix(r->seed + 8) ^
                                       hash_mix((uint64_t)node->node));
         aim.index = 0;
-        aim_at_node(r, &aim, node->node, count, sure ? 1.0 : count * weak.each / worth);
+        aim_at_node(r, &aim, node->node, count, sure ? 1.0 : count * weak.each / worth,
+                    offers[i].factor);
         double direct =
             volley->direct[0] + volley->direct[1] - before.direct[0] - before.direct[1];
         bool none = volley->seen[0] + volley->seen[1] <= before.seen[0] + before.seen[1];

@@ -185,7 +185,7 @@ void final_gather_free(struct final_gather *gather)
     regions_destroy(gather->regions);
     cuts_free(&gather->lamp_cuts);
     cuts_free(&gather->bright_cuts);
-    alloc_free(gather->worth);
+    alloc_free(gather->offers);
     alloc_free(gather->shots);
     alloc_free(gather->view.faced);
     alloc_free(gather->view.overlapped);

@@ -132,6 +132,12 @@ struct shot {
     double kernel; /* 1 per square scene unit; 0: an end is below the other's horizon */
 };
 
+/* The light of a node of a cut at a receiver, with nothing in the way. */
+struct offer {
+    double worth;  /* by which segments are dealt, over all bands, W/m^2 */
+    double factor; /* the exact form factor of a single sender that is near, 1; else -1 */
+};
+
 /* The rows of this rank, and their scene. */
 struct final_gather {
     struct model *model; /* borrowed; rays are counted there */
@@ -142,9 +148,9 @@ struct final_gather {
     double bright_part;        /* of all reflected light that these send, 1 */
     struct regions *regions;
     struct cuts lamp_cuts, bright_cuts;
-    double *worth;             /* [worth_capacity] room for that of the nodes of a cut */
+    struct offer *offers;      /* [offer_capacity] room for those of the nodes of a cut */
     struct shot *shots;        /* [shot_capacity] room for those at a sender */
-    int64_t worth_capacity, shot_capacity;
+    int64_t offer_capacity, shot_capacity;
     struct gather_view view;   /* of the root of the leaf at hand */
     int32_t *order; /* [forest->count] patches as in forest_order() */
     int32_t *place; /* [forest->count] the place of each patch in `order` */

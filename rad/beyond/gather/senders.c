@@ -5,8 +5,8 @@
  *     H = cos cos' P / (pi (d^2 + r^2)),
  *
  * with its power P, its distance d, and r^2 the sum of the squares of both radii. Cosines
- * are the largest that the bounds allow, and at least LEAST_COSINE where the bounds reach
- * above both horizons: a node of which a part may be seen is chosen now and then.
+ * are those of the middle, at the largest angle that the bounds allow, or where the node
+ * reaches below a horizon, the mean of what is above.
  *
  * A bright wall is seldom bright all over: beside a lamp it has a strip, below one a
  * spot. Points all over the wall would seldom be there. So a sender is the largest patch
@@ -18,11 +18,15 @@
 #include "geom/alloc.h"
 #include "rad/beyond/sample.h"
 
-static const double LEAST_COSINE = 0.1;
-
 /* A patch is even if the mean square of its light is at most this times the square of the
  * mean. */
 static const double EVEN = 2.0;
+
+struct bounds facet_bounds(const struct facet *facet)
+{
+    return (struct bounds){triangle_centroid(&facet->triangle), facet->plane.normal,
+                           facet->plane.normal, triangle_radius(&facet->triangle)};
+}
 
 struct bounds bounds_of(const struct model *model, int32_t node)
 {
@@ -33,8 +37,7 @@ struct bounds bounds_of(const struct model *model, int32_t node)
                                cluster->normal_low, cluster->normal_high, radius};
     }
     struct facet facet = facet_make(model->forest, node);
-    return (struct bounds){triangle_centroid(&facet.triangle), facet.plane.normal,
-                           facet.plane.normal, triangle_radius(&facet.triangle)};
+    return facet_bounds(&facet);
 }
 
 struct rgb sender_light(const struct senders *senders, int32_t patch)
@@ -176,6 +179,14 @@ bool sender_node_is_mixed(const struct sender_node *node, struct vec3 apart, dou
     return facing_most(&node->bounds, apart) + reach > 0.0;
 }
 
+/* The mean of the heights above 0 of what is at this height, and reaches as far above it
+ * as below. */
+static double mean_above(double height, double reach)
+{
+    double top = height + reach;
+    return height >= reach ? height : 0.25 * top * top / reach;
+}
+
 double sender_node_worth(const struct senders *senders, const struct sender_node *node,
                          const struct bounds *to)
 {
@@ -186,8 +197,8 @@ double sender_node_worth(const struct senders *senders, const struct sender_node
     if (rise + reach <= 0.0 || fall + reach <= 0.0)
         return 0.0;
     double distance2 = vec3_dot(apart, apart), distance = sqrt(distance2);
-    double cosines = real_min(1.0, real_max(rise / distance, LEAST_COSINE)) *
-                     real_min(1.0, real_max(fall / distance, LEAST_COSINE));
+    double cosines = real_min(1.0, mean_above(rise, reach) / distance) *
+                     real_min(1.0, mean_above(fall, reach) / distance);
     double wide2 = distance2 + node->bounds.radius * node->bounds.radius +
                    to->radius * to->radius;
     return cosines * (senders->before[node->end] - senders->before[node->first]) /

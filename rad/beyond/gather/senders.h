@@ -16,6 +16,8 @@ struct bounds {
     double radius;
 };
 
+struct bounds facet_bounds(const struct facet *facet);
+
 /* The bounds of a patch or a cluster. */
 struct bounds bounds_of(const struct model *model, int32_t node);
 

@@ -269,6 +269,7 @@ static void test_board(double height, double open)
  * straight from lamps. */
 static double light_of_floor(int parts)
 {
+    enum { SEEDS = 16 };
     struct soup soup = {0};
     soup_add_quad(&soup, point(0, 0, 0), point(1, 0, 0), point(0, 1, 0), parts);
     paint(&soup, 0.5, 0.0);
@@ -284,19 +285,21 @@ static double light_of_floor(int parts)
     struct gather_points points = {.at = &x, .count = 1, .middle = x,
                                    .plane = scene_root_plane(scene, last),
                                    .root = last};
-    double light = final_gather_at(&g.gather, &points, 1, 1024, true).rest.band[0];
+    double light = 0.0;
+    for (uint64_t seed = 0; seed < SEEDS; seed++)
+        light += final_gather_at(&g.gather, &points, seed, 1024, true).rest.band[0];
     trial_free(&g);
-    return light;
+    return light / SEEDS;
 }
 
 /* A ceiling is lit by the floor, and that by a lamp of 32 facets which faces it, but not
  * the ceiling. Paths that go on from a floor of two leaves, which are too near for their
- * means, find the lamp: as much light as by the means of small leaves, but for the noise
- * of 1,024 rays. */
+ * means, find the lamp: as much light as by the means of small leaves, but for rays which
+ * end far enough away for the mean of half of the floor, that links find by few points. */
 static void test_lamp_that_faces_away(void)
 {
     double means = light_of_floor(8), points = light_of_floor(1);
-    tap_ok(means > 0.1 && fabs(points / means - 1.0) <= 0.05,
+    tap_ok(means > 0.1 && fabs(points / means - 1.0) <= 0.1,
            "by points of a floor a ceiling has H = %.3f, by means of leaves %.3f", points,
            means);
 }
