@@ -156,8 +156,8 @@ static void restore_answer(struct solver *solver, const struct solution_mesh *so
     struct forest *forest = solver->model.forest;
     struct answer *answer = &solver->beyond->answer;
     size_t count = (size_t)forest->count;
-    answer->gather =
-        final_gather_create(&solver->model, solver->model.criterion.final_gather);
+    answer->gather = final_gather_create(&solver->model,
+                                         solver->model.criterion.final_gather, NULL);
     if (solution->lamps.known) {
         senders_destroy(answer->gather.lamps);
         answer->gather.lamps =

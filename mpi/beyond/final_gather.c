@@ -83,8 +83,8 @@ static const double DARK = 1e-3;
 static void gathering_start(struct gathering *g, struct solver *solver)
 {
     size_t patches = (size_t)solver->model.forest->count;
-    g->gather =
-        final_gather_create(&solver->model, solver->model.criterion.final_gather);
+    g->gather = final_gather_create(
+        &solver->model, solver->model.criterion.final_gather, g->mesh.cut);
     g->leaves = g->mesh.leaves;
     g->count = g->mesh.count;
     g->areas = alloc_array((size_t)g->count, sizeof *g->areas);
@@ -505,6 +505,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     for (int64_t i = 0; i < g->count; i++)
         forest->radiosity[g->leaves[i]] = answer[i];
     forest_average(forest);
+    g->gather.cut = NULL;
     final_gather_renew(&g->gather); /* as a stored solution has them */
     alloc_free(answer);
     alloc_free(r);

@@ -40,9 +40,8 @@ static struct rgb variation_of(const struct gathering *g, int64_t place, struct 
     struct rgb deviation = rgb_sub(g->radiosity[place], base);
     double part = 0.5;
     if (parent < 0) {
-        const struct gather_leaf *leaf = &g->gather.near.leaves[patch];
-        struct vec3 apart = vec3_sub(leaf->middle, from);
-        double near = sqrt(leaf->area / vec3_dot(apart, apart));
+        struct vec3 apart = vec3_sub(g->gather.near.leaves[patch].middle, from);
+        double near = sqrt(forest_area(forest, patch) / vec3_dot(apart, apart));
         part = fmin(1.0, fmax(UNDIVIDED, UNDIVIDED_NEAR * near));
     }
     for (int c = 0; c < BANDS; c++)

@@ -197,6 +197,8 @@ static void split_leaf(struct forest *forest, int32_t leaf,
 static void keep_known(struct looking *l, int32_t leaf, const struct gather_look *look)
 {
     RESERVE(l->known, &l->known_capacity, l->solver->model.forest->count);
+    RESERVE(l->mesh->cut, &l->mesh->cut_capacity, l->solver->model.forest->count);
+    l->mesh->cut[leaf] = look->cut;
     double all = look->variance + spread_of(look);
     double by_segment = fmin(all, look->of_segment);
     l->known[leaf] =
@@ -418,6 +420,15 @@ static void refine(struct looking *l)
     guess_unseen(l);
 }
 
+/* Inner patches are cut where one of their children is. */
+static void raise_cuts(struct gather_mesh *mesh, const struct forest *forest)
+{
+    RESERVE(mesh->cut, &mesh->cut_capacity, forest->count);
+    for (int64_t i = forest->count - 1; i >= 0; i--)
+        if (mesh->cut[i] && forest->patches[i].parent >= 0)
+            mesh->cut[forest->patches[i].parent] = 1;
+}
+
 /* --- rays --- */
 
 /* Shares rays and segments in proportion to the square root of area times variance.
@@ -450,7 +461,7 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
 {
     struct model *model = &solver->model;
     struct looking l = {.solver = solver, .mesh = mesh, .links = links};
-    l.gather = final_gather_create(model, model->criterion.final_gather);
+    l.gather = final_gather_create(model, model->criterion.final_gather, NULL);
     l.rays = l.gather.rays / ROWS_PER_LOOK;
     list_leaves(mesh, model->forest);
     l.open = gather_find_open_roots(solver, &l.gather);
@@ -459,6 +470,7 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     know_nothing(&l);
     if (l.rays >= FEWEST_LOOKED)
         refine(&l);
+    raise_cuts(mesh, model->forest);
     share_rays(&l);
     mesh->work = predict_work(&l, mesh->leaves, mesh, mesh->count);
     mesh->traced = l.gather.counts.rays + l.gather.counts.segments;
@@ -477,5 +489,6 @@ void gather_mesh_free(struct gather_mesh *mesh)
     alloc_free(mesh->segments);
     alloc_free(mesh->exact);
     alloc_free(mesh->work);
+    alloc_free(mesh->cut);
     *mesh = (struct gather_mesh){0};
 }

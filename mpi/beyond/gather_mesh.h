@@ -13,6 +13,8 @@ struct gather_mesh {
     bool *exact;     /* [count] the row may be exact */
     int64_t *work;   /* [count] predicted for the row, in tests */
     int64_t count;
+    uint8_t *cut;    /* [forest->count] 1: a thing stands on the patch, or across it */
+    int64_t cut_capacity;
     int64_t split;   /* leaves split */
     bool limited;    /* the memory limit has kept others from it */
     int64_t traced;  /* rays and segments of looks on this rank */

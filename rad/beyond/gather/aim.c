@@ -133,13 +133,6 @@ static double add_shot(struct receiver *r, const struct aim *aim, const struct s
     return rgb_sum(r->light) - before;
 }
 
-static bool is_nearby(const struct bounds *a, const struct bounds *b)
-{
-    struct vec3 apart = vec3_sub(b->middle, a->middle);
-    double reach = NEARBY * (a->radius + b->radius);
-    return vec3_dot(apart, apart) <= reach * reach;
-}
-
 static double exact_factor(const struct receiver *r, const struct facet *sender)
 {
     return mean_factor(&r->facet.triangle, r->facet.plane.normal, &sender->triangle,
@@ -219,7 +212,9 @@ static int deal(struct dealing *dealing, double direct)
 static struct offer offer_of(const struct receiver *r, const struct senders *senders,
                              const struct sender_node *node, const struct bounds *own)
 {
-    if (node->child[0] >= 0 || !is_nearby(own, &node->bounds))
+    struct vec3 apart = vec3_sub(node->bounds.middle, own->middle);
+    double reach = NEARBY * (node->bounds.radius + own->radius);
+    if (node->child[0] >= 0 || vec3_dot(apart, apart) > reach * reach)
         return (struct offer){sender_node_worth(senders, node, own), -1.0};
     int32_t patch = senders->patches[node->first];
     struct facet sender = facet_make(r->gather->model->forest, patch);
@@ -228,7 +223,7 @@ static struct offer offer_of(const struct receiver *r, const struct senders *sen
 }
 
 /* Makes the offers of the nodes of a cut: half of all by light, half by light that is
- * seen. Returns the sum of what they are worth. */
+ * seen. Returns the sum of their light, W/m^2. */
 static double make_offers(struct receiver *r, const struct cuts *cuts, struct cut cut)
 {
     struct final_gather *g = r->gather;

@@ -50,6 +50,10 @@ static const double FLAT = 0.01;
  * to tell more. */
 static const double STEEPEST = 1.5;
 
+/* A leaf is too near if the square of the length of the ray that has met it is less than
+ * this times the leaf's area. (pi .1 = 1/3: see path_ends().) */
+static const double NEAR = 0.1;
+
 /* Rays of a leaf halve at 2, 8, 32, ... times MANY leaves; fewest rays of a leaf. */
 enum { MANY = 25000, FEWEST = 4 };
 
@@ -127,6 +131,11 @@ static int rays_for(int rays, int64_t leaves)
     return rays;
 }
 
+static bool is_cut(const struct final_gather *gather, int32_t patch)
+{
+    return gather->cut && gather->cut[patch];
+}
+
 /* How far apart radiosities are, over all bands; or `scaled`: in the band where that is
  * the largest part of the band's mean, the same part of the mean over all bands. */
 static double difference(const struct final_gather *g, struct rgb a, struct rgb b,
@@ -140,10 +149,11 @@ static double difference(const struct final_gather *g, struct rgb a, struct rgb 
     return most;
 }
 
-struct final_gather final_gather_create(struct model *model, int rays)
+struct final_gather final_gather_create(struct model *model, int rays,
+                                        const uint8_t *cut)
 {
     struct forest *forest = model->forest;
-    struct final_gather gather = {.model = model, .view = {.root = -1}};
+    struct final_gather gather = {.model = model, .cut = cut, .view = {.root = -1}};
     gather.rays = rays_for(rays, forest_count(forest).leaves);
     gather.mean = mean_radiosity(model);
     gather.sums.scale = scale_of_bands(model, gather.mean);
@@ -265,6 +275,8 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
     if (parent < 0)
         return (struct gather_slope){.rise = 0.0};
     struct gather_slope slope = {.first = patches[parent].children};
+    if (is_cut(gather, parent))
+        return slope;
     const struct rgb *b = forest->radiosity + slope.first;
     struct rgb middle;
     for (int c = 0; c < BANDS; c++)
@@ -317,8 +329,10 @@ void final_gather_renew(struct final_gather *gather)
     gather->near.leaves = alloc_array((size_t)forest->count, sizeof *gather->near.leaves);
     for (int32_t p = 0; p < forest->count; p++) {
         struct triangle t = forest_triangle(forest, p);
-        gather->near.leaves[p] = (struct gather_leaf){
-            triangle_centroid(&t), forest_area(forest, p), gather_slope(gather, p)};
+        double reach2 =
+            is_cut(gather, p) ? HUGE_VAL : NEAR * forest_area(forest, p);
+        gather->near.leaves[p] = (struct gather_leaf){triangle_centroid(&t), reach2,
+                                                      gather_slope(gather, p)};
     }
 }
 

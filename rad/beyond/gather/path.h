@@ -5,10 +5,6 @@
 
 #include "rad/beyond/gather/met.h"
 
-/* A leaf is too near if the square of the length of the ray that has met it is less than
- * this times the leaf's area. */
-static const double NEAR = 0.1;
-
 static inline int32_t point_root(const struct receiver *r, const struct point *point)
 {
     return (int32_t)r->gather->model->forest->patches[point->patch].id.root;
@@ -28,12 +24,13 @@ static inline void path_add_mesh(struct receiver *r, const struct point *point,
 /* True if a ray from x takes the mesh's light at the point that it has met. The leaf
  * there is too near for its mean to hold if less than a third of it is within the ray's
  * length of the point: what stands that near, the receiver itself above all, shades or
- * lights this part of the leaf and not the rest. (pi .1 = 1/3.) */
+ * lights this part of the leaf and not the rest. A leaf that a thing stands across is too
+ * near from anywhere: the light before a wall is not that behind it. */
 static inline bool path_ends(const struct receiver *r, const struct point *met,
                              struct vec3 x)
 {
     struct vec3 ray = vec3_sub(met->at, x);
-    return vec3_dot(ray, ray) >= NEAR * r->gather->near.leaves[met->patch].area;
+    return vec3_dot(ray, ray) >= r->gather->near.leaves[met->patch].reach2;
 }
 
 /* True if rays from x are aimed at the bright patch that the point which one has met is

@@ -89,7 +89,8 @@ struct gather_slope {
 /* A patch as rays meet it. */
 struct gather_leaf {
     struct vec3 middle; /* its centroid */
-    double area;        /* square scene units */
+    double reach2;      /* a ray that is shorter than the root of this meets it too near,
+                           square scene units */
     struct gather_slope slope;
 };
 
@@ -146,6 +147,8 @@ struct final_gather {
     struct senders *lamps;
     struct senders *bright;    /* patches that reflect so much that rays aim at them */
     double bright_part;        /* of all reflected light that these send, 1 */
+    const uint8_t *cut;        /* borrowed, [forest->count] 1: a thing stands on the patch
+                                  or across it; NULL: on none */
     struct regions *regions;
     struct cuts lamp_cuts, bright_cuts;
     struct offer *offers;      /* [offer_capacity] room for those of the nodes of a cut */

@@ -5,8 +5,8 @@
  *     H = cos cos' P / (pi (d^2 + r^2)),
  *
  * with its power P, its distance d, and r^2 the sum of the squares of both radii. Cosines
- * are those of the middle, at the largest angle that the bounds allow, or where the node
- * reaches below a horizon, the mean of what is above.
+ * are those of the middle, the largest that the bounds of normals allow, or where the node
+ * reaches below a horizon, means over the part above.
  *
  * A bright wall is seldom bright all over: beside a lamp it has a strip, below one a
  * spot. Points all over the wall would seldom be there. So a sender is the largest patch
@@ -179,8 +179,8 @@ bool sender_node_is_mixed(const struct sender_node *node, struct vec3 apart, dou
     return facing_most(&node->bounds, apart) + reach > 0.0;
 }
 
-/* The mean of the heights above 0 of what is at this height, and reaches as far above it
- * as below. */
+/* The mean of the heights above 0 of a node at this height, which reaches as far above it
+ * as below; heights below 0 count as 0. */
 static double mean_above(double height, double reach)
 {
     double top = height + reach;
