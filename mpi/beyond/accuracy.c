@@ -66,6 +66,8 @@ static void settle_claim(struct solver *solver, const struct spotcheck *check)
         estimate > 0.0 ? fmax(1.0, beyond->answer.counts.error / estimate) : 1.0;
     for (int64_t p = 0; p < solver->model.forest->count; p++)
         beyond->answer.error[p] *= (float)larger;
+    beyond->answer.counts.median *= larger;
+    beyond->answer.counts.percentile_90 *= larger;
 }
 
 /* --- limits --- */

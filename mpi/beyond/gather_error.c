@@ -8,6 +8,7 @@
 #include "mpi/beyond/gather_error.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "geom/alloc.h"
@@ -212,6 +213,51 @@ static void variances_by_rays(struct gathering *g, struct rgb *variance)
     alloc_free(halves);
 }
 
+/* A leaf's error relative to its own light. */
+struct own_error {
+    double relative, area;
+};
+
+/* A compare function of qsort(); equal errors may change places. */
+static int compare_errors(const void *left, const void *right)
+{
+    const struct own_error *a = left, *b = right;
+    return (a->relative > b->relative) - (a->relative < b->relative);
+}
+
+/* Finds percentiles, by area, of the errors of leaves relative to their own light. Leaves
+ * that have neither light nor error do not count. */
+static void rank_errors(const struct gathering *g, const struct rgb *variance,
+                        double remaining, struct gathered *counts)
+{
+    struct own_error *errors = alloc_array((size_t)g->count, sizeof *errors);
+    int64_t count = 0;
+    double area = 0.0, passed = 0.0;
+    for (int64_t i = 0; i < g->count; i++) {
+        double square = 0.0, light = 0.0;
+        for (int c = 0; c < BANDS; c++) {
+            double rho = gathering_material(g, i)->reflectance.band[c];
+            double h = irradiance_of(g, i, c);
+            square += rho * rho * variance[i].band[c];
+            light += rho * rho * h * h;
+        }
+        if (!(square + light > 0.0))
+            continue;
+        errors[count++] = (struct own_error){fmin(1.0, sqrt(square / light) + remaining),
+                                             g->areas[i]};
+        area += g->areas[i];
+    }
+    qsort(errors, (size_t)count, sizeof *errors, compare_errors);
+    for (int64_t k = 0; k < count; k++) {
+        passed += errors[k].area;
+        if (passed <= 0.5 * area)
+            counts->median = errors[k].relative;
+        if (passed <= 0.9 * area)
+            counts->percentile_90 = errors[k].relative;
+    }
+    alloc_free(errors);
+}
+
 void gathering_estimate_errors(struct gathering *g, double remaining)
 {
     struct solver *solver = g->solver;
@@ -239,6 +285,9 @@ void gathering_estimate_errors(struct gathering *g, double remaining)
         }
         error[g->leaves[i]] = (float)largest;
     }
+    for (int64_t i = 0; i < g->count; i++)
+        rgb_add(&rays[i], 1.0, mesh[i]);
+    rank_errors(g, rays, remaining, &solver->beyond->answer.counts);
     if (light > 0.0) {
         solver->beyond->answer.counts.by_rays = sqrt(by_rays / light);
         solver->beyond->answer.counts.by_mesh = sqrt(by_mesh / light);

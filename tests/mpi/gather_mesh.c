@@ -210,6 +210,47 @@ static void test_looks(void)
     solution_free(&s);
 }
 
+/* The part of the surface, of leaves with light, on which errors are at most this part of
+ * a leaf's own light. All is grey, and what is left of the equation is next to nothing, so
+ * `error` is 2.5 deviations in any band. */
+static double surface_within(const struct solution *s, double part)
+{
+    const struct forest *forest = s->solver->model.forest;
+    double within = 0.0, all = 0.0;
+    int32_t leaf = forest_next_leaf(forest, -1);
+    for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf)) {
+        double light = forest->radiosity[leaf].band[0] -
+                       forest_material(forest, leaf)->emission.band[0];
+        double error = (double)s->solver->beyond->answer.error[leaf];
+        if (!(light > 0.0))
+            continue;
+        all += forest_area(forest, leaf);
+        if (error <= 2.5 * part * light)
+            within += forest_area(forest, leaf);
+    }
+    return within / all;
+}
+
+/* A box on a floor below a lamp. */
+static void test_own_errors(void)
+{
+    struct soup soup = {0};
+    soup_add_quad(&soup, point(-2, -2, 0), point(4, 0, 0), point(0, 4, 0), 1);
+    soup_add_box(&soup, point(-0.4, -0.3, 0), point(0.4, 0.3, 0.8), 1, false);
+    paint(&soup, 0.5, 0.0);
+    soup_add_quad(&soup, point(-0.5, -0.5, 2), point(0, 1, 0), point(1, 0, 0), 1);
+    paint(&soup, 0.0, 1.0);
+    struct solution s =
+        solve_soup(&soup, "--epsilon 1e-3 --final-gather 32 --tolerance 1e-9");
+    const struct gathered *told = &s.solver->beyond->answer.counts;
+    double half = surface_within(&s, told->median);
+    double most = surface_within(&s, told->percentile_90);
+    tap_ok(fabs(half - 0.5) < 0.02 && fabs(most - 0.9) < 0.02,
+           "leaves are within %.1f %% on %.3f of the surface, within %.1f %% on %.3f",
+           100.0 * told->median, half, 100.0 * told->percentile_90, most);
+    solution_free(&s);
+}
+
 /* With few rays, or where no leaf would be split whatever it shows, there are no looks.
  * Of three squares of a size, grey, white, and white below a lamp, the first reflects a
  * quarter of the noise that the second does, and the third is brighter than the mean.
@@ -279,6 +320,7 @@ int main(int argc, char **argv)
     test_guess("--final-gather 16");
     test_guess("--final-gather 64 --epsilon 1e4");
     test_shots();
+    test_own_errors();
     comm_stop(&world_comm);
     return tap_done();
 }
