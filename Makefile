@@ -25,9 +25,10 @@
 #                        ImageMagick docs/film.gif
 #   make answers         scenes/answers.csv: the light of the scenes for lectures, by
 #                        paths
-#   make prove           long tests: errors over six fourfold steps of epsilon; 500 random
-#                        sets of options; pictures beside the path tracer's; kills at
-#                        forty moments
+#   make prove           long tests: all cases of `make check`, which has some of each
+#                        kind; errors over six fourfold steps of epsilon; 500 random sets
+#                        of options; pictures beside the path tracer's; kills at forty
+#                        moments
 #   make cycles          pictures beside those of Blender's Cycles, where it is installed
 #   make golden          renews the golden pictures in tests/golden (on purpose only)
 #   make pace            renews the instructions of runs in tests/pace (on purpose only)
@@ -87,7 +88,7 @@ BRUTE =
 MODULES = $(filter-out $(PROGRAMS),$(sort $(SOURCES:%.c=%))) $(BRUTE:%=tests/%)
 OBJECTS = $(MODULES:%=$(BUILD)/%.o)
 
-# Unit tests, bottom up; the last five are run with several ranks. Their sources lie in
+# Unit tests, bottom up; the last four are run with several ranks. Their sources lie in
 # folders, the programs do not: tests/geom/alloc.c becomes $(BUILD)/tests/alloc.
 TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wall \
         contour octree bundles bicgstab sequence id flux patch compact formfactor \
@@ -95,8 +96,8 @@ TESTS = alloc elementary triangle lambert outlook hull doubles scene polygon wal
         final_gather lamps checksum paths plan balance assign gather_mesh spotcheck \
         text obj ply output files machine store tone image png texture hdr camera \
         viewpoint shading mesh render options progress screened stop norms \
-        cie whole stability gaps openings leaks sky linking exchange conjugate exact \
-        converge
+        cie whole stability gaps openings leaks sky converge linking exchange conjugate \
+        exact
 vpath %.c tests/geom tests/octree tests/rad tests/rad/beyond tests/mpi tests/io
 vpath %.c tests/tools tests/whole
 
@@ -253,6 +254,9 @@ answers: $(PHR) pathtracer build/room build/course/leaves
 	mv build/answers.csv scenes/answers.csv
 
 check: $(PHR) $(IMGDIFF) pathtracer tests build/room $(BUILD)/direct $(COURSE)
+	cp scenes/room.mtl $(BUILD)/tests
+	build/room 1000 1 >$(BUILD)/tests/room.obj
+	$(BUILD)/direct scenes/shadow.obj $(BUILD)/tests/shadow.ref 10000
 	MPIEXEC="$(MPIEXEC)" MPICC="$(MPICC)" CC="$(CC)" MAKE="$(MAKE)" BUILD="$(BUILD)" \
 	    sh tests/run.sh $(TESTS)
 
@@ -273,6 +277,7 @@ check-long: $(PHR)
 
 # About an hour and a half, most of it for references that are kept in $(BUILD)/prove.
 prove: errors $(PHR) $(IMGDIFF) pathtracer build/room check-long $(BUILD)/tests/openings
+	$(MAKE) check PROVE=yes
 	BUILD="$(BUILD)" sh tests/prove.sh
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" RUNS=500 SEED=2 sh tests/68-sweep.sh
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/pictures.sh

@@ -1,10 +1,10 @@
 #!/bin/sh
 # Runs all tests: the unit tests named as arguments, the corpora of the fuzz harnesses and
-# the scripts tests/[0-9]*.sh, as many at a time as there are cores, but for those that
-# run many ranks for long or have limits of time, one by one after them. Each prints TAP
-# lines; failures are shown, and the last line is "N passed, N failed". A test that dies
-# or ends without its plan counts as one failure more. Called by `make check`, which sets
-# BUILD, MPIEXEC, MPICC, CC and MAKE.
+# the scripts tests/[0-9]*.sh, as many at a time as there are cores, the long ones first.
+# Each prints TAP lines; failures are shown, the seconds of each test, slowest last, and
+# in the last line "N passed, N failed". A test that dies or ends without its plan counts
+# as one failure more. Called by `make check`, which sets BUILD, MPIEXEC, MPICC, CC and
+# MAKE. With PROVE set, by `make prove`, tests have all cases, not one of each kind.
 
 cd "$(dirname "$0")/.." || exit 2
 logs=$BUILD/tests/logs
@@ -12,12 +12,15 @@ rm -rf "$logs"
 mkdir -p "$logs"
 passed=0
 failed=0
-apart="60-ranks 67-restart 70-errors 72-faults 74-pipes"
+# Those of more than ten seconds, longest first.
+long="60-ranks 67-restart whole 72-faults 56-pace 57-viewfactors gaps 51-storeys"
 
-# judge NAME STATUS: shows the verdict on a test from its log, and adds it to the counts.
+# judge NAME STATUS SECONDS: shows the verdict on a test from its log, and adds it to the
+# counts.
 judge() {
     name=$1
     status=$2
+    seconds=$3
     log=$logs/$name.tap
     good=$(grep -c '^ok ' "$log")
     bad=$(grep -c '^not ok ' "$log")
@@ -31,45 +34,36 @@ judge() {
     failed=$((failed + bad))
     grep '^# ' "$log"
     if [ "$bad" -gt 0 ]; then
-        echo "FAIL $name ($good passed, $bad failed), from $log:"
+        echo "FAIL $name ($good passed, $bad failed), $seconds s, from $log:"
         grep -v '^ok ' "$log" | tail -n 40
     else
-        echo "ok   $name ($good)"
+        echo "ok   $name ($good), $seconds s"
     fi
 }
 
-# run NAME COMMAND...: runs one test.
-run() {
-    name=$1
-    shift
-    timeout -k 10 900 "$@" >"$logs/$name.tap" 2>&1
-    judge "$name" $?
-}
-
-# run_together FILE: runs the tests of the file's lines, "NAME COMMAND", side by side.
-run_together() {
-    xargs -P "$(getconf _NPROCESSORS_ONLN || echo 1)" -I LINE sh -c '
-        log=$1/${2%% *}
-        timeout -k 10 900 ${2#* } >"$log.tap" 2>&1
-        echo $? >"$log.status"' sh "$logs" LINE <"$1"
-    while read -r name command; do
-        judge "$name" "$(cat "$logs/$name.status")"
-    done <"$1"
-}
-
-# run_on_ranks NAME P...: the unit test NAME with mpiexec, once for each number of ranks.
-run_on_ranks() {
+# on_ranks TEST RANKS...: lines of a unit test with mpiexec, one for each number of ranks.
+on_ranks() {
     program=$1
     shift
     for ranks in "$@"; do
-        run "$program-on-$ranks" $MPIEXEC -n "$ranks" "$BUILD/tests/$program"
+        echo "$program-on-$ranks $MPIEXEC -n $ranks $BUILD/tests/$program"
     done
 }
 
-{
+# tests TEST...: a line "NAME COMMAND" for each test, of these unit tests.
+tests() {
     for test in "$@"; do
         case $test in
-        linking | exchange | conjugate | exact | converge) ;;
+        linking) on_ranks "$test" 1 3 7 ;;
+        exchange) on_ranks "$test" 1 2 3 4 7 ${PROVE:+6 8} ;;
+        conjugate) on_ranks "$test" 1 3 6 ;;
+        exact) on_ranks "$test" 1 3 ;;
+        converge)
+            scenes=$BUILD/tests
+            echo "$test-box $BUILD/tests/$test scenes/cornell.obj"
+            echo "$test-room $BUILD/tests/$test $scenes/room.obj"
+            echo "$test-shadow $BUILD/tests/$test scenes/shadow.obj $scenes/shadow.ref"
+            ;;
         *) echo "$test $BUILD/tests/$test" ;;
         esac
     done
@@ -78,32 +72,23 @@ run_on_ranks() {
         echo "fuzz-$format $BUILD/tests/fuzz/$format tests/fuzz/corpus/$format/*"
     done
     for script in tests/[0-9]*.sh; do
-        name=$(basename "$script" .sh)
-        case " $apart " in
-        *" $name "*) ;;
-        *) echo "$name sh $script" ;;
-        esac
+        echo "$(basename "$script" .sh) sh $script"
     done
-} >"$logs/together"
-run_together "$logs/together"
-for test in "$@"; do
-    case $test in
-    linking) run_on_ranks "$test" 1 3 7 ;;
-    exchange) run_on_ranks "$test" 1 2 3 4 6 7 8 ;;
-    conjugate) run_on_ranks "$test" 1 3 6 ;;
-    exact) run_on_ranks "$test" 1 3 ;;
-    converge)
-        cp scenes/room.mtl "$BUILD/tests"
-        build/room 1000 1 >"$BUILD/tests/room.obj"
-        "$BUILD/direct" scenes/shadow.obj "$BUILD/tests/shadow.ref" 10000
-        run "$test" $MPIEXEC -n 2 "$BUILD/tests/$test" "$BUILD/tests/room.obj" \
-            "$BUILD/tests/shadow.ref"
-        ;;
-    esac
-done
-for name in $apart; do
-    run "$name" sh "tests/$name.sh"
-done
+}
+
+tests "$@" >"$logs/tests"
+{ for name in $long; do grep "^$name " "$logs/tests"; done; cat "$logs/tests"; } |
+    awk '!dealt[$1]++' >"$logs/dealt"
+xargs -P "$(getconf _NPROCESSORS_ONLN || echo 1)" -I LINE sh -c '
+    name=${2%% *} begun=$(date +%s)
+    timeout -k 10 900 ${2#* } >"$1/$name.tap" 2>&1
+    status=$?
+    echo "$(($(date +%s) - begun)) $status $name" >>"$1/ended"' sh "$logs" LINE \
+    <"$logs/dealt"
+sort -n "$logs/ended" >"$logs/sorted"
+while read -r seconds status name; do
+    judge "$name" "$status" "$seconds"
+done <"$logs/sorted"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

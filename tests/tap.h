@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "geom/alloc.h"
 
@@ -26,6 +27,12 @@ static bool tap_ok(bool passed, const char *format, ...)
     fflush(stdout);
     va_end(arguments);
     return passed;
+}
+
+/* True in `make prove`, which tries all cases; `make check` tries one of each kind. */
+static inline bool tap_proves(void)
+{
+    return getenv("PROVE") != NULL;
 }
 
 /* To end main() with: the leak test, the plan, the verdict. */

@@ -51,6 +51,12 @@ ply_head() {
     echo end_header
 }
 
+# proves: true in `make prove`, which tries all cases; `make check` tries one of each
+# kind.
+proves() {
+    [ -n "${PROVE-}" ]
+}
+
 tap_done() {
     echo "1..$tap_count"
     [ "$tap_failed" -eq 0 ]
