@@ -170,17 +170,19 @@ static double reflected(const struct solution *s, int32_t patch)
            forest_material(forest, patch)->emission.band[0];
 }
 
-/* One leaf in 400 may be noisy: in a lamp's housing few rays find the slit of light. */
+/* One leaf in 400 may be noisy: in a lamp's housing few rays find the slit of light. Of
+ * every fourth leaf, or, in `make prove`, of each. */
 static void test_room(void)
 {
+    const int step = tap_proves() ? 1 : 4;
     struct solution s = solve_scene(room(), "");
     const struct forest *forest = s.solver->model.forest;
     struct pathtracer pathtracer = pathtracer_make(s.scene, s.octree);
-    int counts[VERDICTS] = {0};
+    int counts[VERDICTS] = {0}, leaves = 0;
     double mean = forest_mean_reflected(forest) / BANDS, worst = 1.0, truth;
     char where[100] = "";
     for (int32_t p = 0; p < forest->count; p++) {
-        if (!patch_is_leaf(&forest->patches[p]))
+        if (!patch_is_leaf(&forest->patches[p]) || leaves++ % step > 0)
             continue;
         struct found found = {reflected(&s, p),
                               (double)s.solver->beyond->answer.error[p]};
@@ -328,7 +330,8 @@ static struct scene *house(void)
 static void test_lower_storey(void)
 {
     enum { TRIANGLES = 18 };
-    test_errors(house(), TRIANGLES, "", "below a stairwell", 0.95);
+    test_errors(house(), TRIANGLES, "--epsilon 1e-3 --final-gather 64",
+                "below a stairwell", 0.95);
 }
 
 /* Noise of light that is not reflected is no error: all other rows are the same, but for
@@ -519,7 +522,8 @@ int main(int argc, char **argv)
     test_lower_storey();
     test_black_plain();
     test_lamp_in_column();
-    test_white_room(0.9);
+    if (tap_proves())
+        test_white_room(0.9);
     test_white_room(0.99);
     test_below_box();
     test_tent();

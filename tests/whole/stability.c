@@ -219,7 +219,7 @@ static void test_leak(void)
     soup_add_box(&soup, point(1, 0, 0), point(2, 1, 1), 1, true);
     soup_add_box(&soup, point(0, 1, 0), point(1.5, 2, 1), 1, true);
     paint(&soup, 0.9, 0.0);
-    struct solution s = solve_soup(&soup, "--epsilon 1e-4");
+    struct solution s = solve_soup(&soup, "--epsilon 1e-3");
     tap_ok(s.vote.converged && within(&s, 12, 24, 0.0),
            "rooms beside a lit one are dark, exactly (%lld links)",
            (long long)s.stats.links);
@@ -393,8 +393,8 @@ static void test_degenerate(void)
     spoilt->triangles[plain->input_count + 1] = (struct triangle){{a, a, a}};
     spoilt->triangles[plain->input_count + 2] =
         (struct triangle){{a, b, vec3_middle(a, b)}};
-    struct solution one = solve_scene(plain, "--epsilon 1e-4");
-    struct solution two = solve_scene(spoilt, "--epsilon 1e-4");
+    struct solution one = solve_scene(plain, "--epsilon 1e-3");
+    struct solution two = solve_scene(spoilt, "--epsilon 1e-3");
     bool same = one.stats.links == two.stats.links;
     for (int32_t root = 0; root < plain->input_count; root++)
         same = same && radiosity(&one, root) == radiosity(&two, root);
@@ -503,11 +503,11 @@ static void test_ground(void)
 static void test_emission_scale(void)
 {
     static const int powers[] = {-80, -1, 60};
-    struct solution one = solve_scene(furnished(1.0, 0.25), "--epsilon 1e-4");
+    struct solution one = solve_scene(furnished(1.0, 0.25), "--epsilon 1e-3");
     for (int k = 0; k < COUNT(powers); k++) {
         double factor = ldexp(1.0, powers[k]);
         struct solution two =
-            solve_scene(furnished(factor, 0.25 * factor), "--epsilon 1e-4");
+            solve_scene(furnished(factor, 0.25 * factor), "--epsilon 1e-3");
         tap_ok(exact_bits(&one, &two, factor),
                "emission times 2^%d: so is the light, to the bit", powers[k]);
         solution_free(&two);
@@ -718,7 +718,7 @@ static void test_flipped(void)
 /* Pixels of a picture taken inside an unevenly refined furnace. */
 static void test_cracks(void)
 {
-    struct solution s = solve_scene(furnished(1.0, 1.0), "--epsilon 1e-4");
+    struct solution s = solve_scene(furnished(1.0, 1.0), "--epsilon 1e-3");
     struct forest *forest = s.solver->model.forest;
     for (int64_t p = 0; p < forest->count; p++)
         forest->radiosity[p] = (struct rgb){{2.0, 2.0, 2.0}};
@@ -790,7 +790,7 @@ int main(int argc, char **argv)
                     1e-6); /* the copies below are not seen */
     test_duplicates(0.6, "--epsilon 1e-3 --final-gather 0", 1.0 / 0.05, 1e-3);
     test_duplicates(0.6, "--epsilon 1e-3 --paper", 0.0, 0.0);
-    test_covered("--epsilon 1e-4 --tolerance 1e-6");
+    test_covered("--epsilon 1e-3 --tolerance 1e-6");
     test_standing();
     test_slivers();
     test_degenerate();
