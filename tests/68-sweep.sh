@@ -1,9 +1,9 @@
-# 100 runs of options drawn at random on five odd scenes; others with another SEED, more
+# 40 runs of options drawn at random on five odd scenes; others with another SEED, more
 # with RUNS. Whatever is asked for, what is printed and written has to hold together.
 
 . tests/tap.sh
 
-: "${RUNS:=100}" "${SEED:=1}"
+: "${RUNS:=40}" "${SEED:=1}"
 case $PHR in /*) ;; *) PHR=$PWD/$PHR ;; esac
 mkdir "$work/scenes"
 
