@@ -62,7 +62,7 @@ else
     done <"$work/runs"
     # The test can fail: the first run with an eighth more rays, by the same rule.
     read -r figure arguments <"$work/runs"
-    now=$(millions $(echo "$arguments" | sed 's/final-gather 64/final-gather 72/'))
+    now=$(millions $(echo "$arguments" | sed 's/final-gather 32/final-gather 36/'))
     keeps_pace "$figure" "$now"
     check "an eighth more rays are found out: $now" [ $? -eq 1 ]
 fi
