@@ -55,16 +55,16 @@ missing=$(git ls-files 2>/dev/null | sed -n 's,/.*,,p' | sort -u |
     while read -r folder; do grep -qF "\`$folder/" README.md || echo "$folder"; done)
 check "the README has every folder: $missing" [ -z "$missing" ]
 
-# Names in backquotes that match PATTERN, of the README and of docs/.
+# Names in backquotes that match PATTERN, of the README, of docs/ and of the course.
 quoted() {
-    grep -ohE "\`$1\`" README.md docs/*.md | tr -d '\`' | sort -u
+    grep -ohE "\`$1\`" README.md docs/*.md docs/course/*.md | tr -d '\`' | sort -u
 }
-gone=$(quoted '[a-z0-9_]+[a-z0-9_./-]*/[a-z0-9_.-]+\.(c|h|sh|md|obj|view|csv)' |
+gone=$(quoted '[a-zA-Z0-9_]+[a-zA-Z0-9_./-]*/[a-zA-Z0-9_.-]+\.[a-z0-9]+' |
     grep -v '^build/' | while read -r file; do [ -e "$file" ] || echo "$file"; done)
 check "the files that README and docs/ name are there: $gone" [ -z "$gone" ]
 gone=$(quoted '[a-z0-9_]+\(\)' | while read -r name; do
-    grep -qE "^[a-z].*\b${name%()}\(" phr.c $house mpi/*.c mpi/beyond/*.c ||
-        echo "$name"; done)
+    grep -qE "^[a-z].*\b${name%()}\(" phr.c $house mpi/*.[ch] mpi/beyond/*.[ch] \
+        docs/course/*.c docs/course/exercises/*.c || echo "$name"; done)
 check "and the functions: $gone" [ -z "$gone" ]
 # Stops of the README's reading order: FILE FUNCTION, pair by pair.
 gone=$(sed -n '/^## Reading order/,/^## The house/p' README.md |
@@ -96,14 +96,6 @@ check "CITATION.cff has this version" grep -q \
 $MAKE BUILD="$BUILD" uninstall DESTDIR="$work/root" prefix=/opt/phr \
     >>"$work/install.log" 2>&1
 check "uninstall leaves no file" [ -z "$(find "$work/root" -type f)" ]
-
-# What was built last is installed, without being built anew.
-unset BUILD
-$MAKE SERIAL=1 PHR=phr-last >"$work/last.log" 2>&1
-$MAKE PHR=phr-last install DESTDIR="$work/last" prefix= >>"$work/last.log" 2>&1
-check "a serial build is installed as it is" \
-    [ "$("$work/last/bin/phr" --version | grep -c 'serial build')" -eq 1 ]
-rm -f phr-last build/phr-last.kind
 
 x87='-std=c99 -fsyntax-only -mfpmath=387 -I.'
 echo 'int main(void) { return 0; }' >"$work/empty.c"

@@ -125,26 +125,7 @@ judge_calls calls_to_first_segment $segment $row $gathers
 
 # --- figures of a run of --paper: two triangles that face each other, no picture ---
 
-cat >"$work/two.mtl" <<'END'
-newmtl lamp
-Kd 0.5 0.5 0.5
-Ke 1 1 1
-newmtl wall
-Kd 0.5 0.5 0.5
-END
-cat >"$work/two.obj" <<'END'
-mtllib two.mtl
-v 0 0 0
-v 1 0 0
-v 0 1 0
-v 0 0 1
-v 1 0 1
-v 0 1 1
-usemtl lamp
-f 1 2 3
-usemtl wall
-f 4 6 5
-END
+two_triangles
 find "$here" -name '*.gcda' -exec rm -f {} +
 judge_calls calls_to_form_factor $factor "" --paper "$work/two.obj"
 check "two triangles are solved by --paper" grep -q '^links ' "$work/out"

@@ -5,21 +5,7 @@
 . tests/tap.sh
 . tests/faults.sh
 
-printf 'newmtl lamp\nKd 0.5 0.5 0.5\nKe 1 1 1\nnewmtl wall\nKd 0.5 0.5 0.5\n' \
-    >"$work/two.mtl"
-cat >"$work/two.obj" <<'END_OBJ'
-mtllib two.mtl
-v 0 0 0
-v 1 0 0
-v 0 1 0
-v 0 0 1
-v 1 0 1
-v 0 1 1
-usemtl lamp
-f 1 2 3
-usemtl wall
-f 4 6 5
-END_OBJ
+two_triangles
 
 # limited RANKS LIMITS ARGUMENTS...: a run below these limits of the shell; $status, and
 # its words in $work/err.

@@ -73,20 +73,10 @@ done
 
 # --- names ---
 
-# Names in backquotes that match PATTERN, of the course.
-quoted() {
-    grep -ohE "\`$1\`" $course/*.md | tr -d '\`' | sort -u
-}
-gone=$(quoted '[a-zA-Z0-9_]+[a-zA-Z0-9_./-]*/[a-zA-Z0-9_.-]+\.[a-z0-9]+' |
-    grep -v '^build/' | while read -r file; do [ -e "$file" ] || echo "$file"; done)
-check "the files that the course names are there: $gone" [ -z "$gone" ]
-gone=$(quoted '[a-z0-9_]+\(\)' | while read -r name; do
-    grep -qE "^[a-z].*\b${name%()}\(" phr.c ./*/*.[ch] ./*/beyond/*.[ch] io/*/*.[ch] \
-        $course/*.c $course/exercises/*.c || echo "$name"; done)
-check "and the functions: $gone" [ -z "$gone" ]
-gone=$(quoted '\-\-[a-z-]+' | while read -r option; do
-    grep -qF -e "$option" io/run/options.c || echo "$option"; done)
-check "and the options: $gone" [ -z "$gone" ]
+gone=$(grep -ohE '`--[a-z-]+`' $course/*.md | tr -d '`' | sort -u |
+    while read -r option; do
+        grep -qF -e "$option" io/run/options.c || echo "$option"; done)
+check "the options that the course names are there: $gone" [ -z "$gone" ]
 missing=$(ls -d $course/* | while read -r file; do
     name=$(basename "$file")
     grep -qF "\`$name" $course/README.md || [ "$name" = README.md ] ||
@@ -138,7 +128,7 @@ done
 # --- scenes for lectures (1 %: behind doors, and far away, by reflections alone) ---
 
 solve doorway
-solve corridor --epsilon 1e-4 --final-gather 1024
+solve corridor --epsilon 1e-3 --final-gather 512
 for scene in squares corner box doorway corridor; do
     awk -F, -v scene=$scene '$1 == scene { print $2, $3 }' scenes/answers.csv \
         >"$work/answers"

@@ -51,6 +51,15 @@ ply_head() {
     echo end_header
 }
 
+# two_triangles: that face each other, a lamp and a wall: $work/two.obj.
+two_triangles() {
+    printf 'newmtl lamp\nKd 0.5 0.5 0.5\nKe 1 1 1\nnewmtl wall\nKd 0.5 0.5 0.5\n' \
+        >"$work/two.mtl"
+    echo mtllib two.mtl >"$work/two.obj"
+    printf 'v %d %d %d\n' 0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 0 1 1 >>"$work/two.obj"
+    printf 'usemtl %s\nf %d %d %d\n' lamp 1 2 3 wall 4 6 5 >>"$work/two.obj"
+}
+
 # proves: true in `make prove`, which tries all cases; `make check` tries one of each
 # kind.
 proves() {
