@@ -3,6 +3,8 @@
 # whose reader goes away ends with an error. Scenes and solutions on pipes, of whatever
 # name: known by their first bytes. On 1 and on 4 ranks.
 . tests/tap.sh
+. tests/faults.sh
+patience=20
 
 scene="scenes/cornell.obj --max-level 1 --samples 1 --size 300x200"
 view="--view scenes/cornell.view"
@@ -16,25 +18,12 @@ bounded() { timeout -s KILL 20 "$@"; }
 # waits RANKS: it has no reader, and ends soon after one SIGTERM, with one line. (A
 # launcher that was sent a signal may end with 0 whatever its ranks end with.)
 waits() {
-    : >"$work/err"
-    $MPIEXEC -n "$1" sh -c 'exec 2>>"$0"; exec "$@"' "$work/err" "$PHR" $scene $view \
-        -o "$pipe" >/dev/null 2>&1 &
-    launched=$!
-    ticks=400
-    until grep -q '(0 split)' "$work/err" || [ $ticks -eq 0 ]; do
-        ticks=$((ticks - 1))
-        sleep 0.05
-    done
+    start "$1" $scene $view -o "$pipe"
+    wait_for 1 '(0 split)'
     sleep 0.5
-    kill -TERM $launched
-    ticks=100
-    while kill -0 $launched 2>/dev/null && [ $ticks -gt 0 ]; do
-        ticks=$((ticks - 1))
-        sleep 0.05
-    done
-    kill -KILL $launched 2>/dev/null && echo "# it hangs"
-    wait $launched 2>/dev/null
-    [ $ticks -gt 0 ] && [ "$(tail -n 1 "$work/err")" = "phr: stopped by SIGTERM" ]
+    kill -TERM "$launched"
+    finish
+    [ "$status" != hang ] && [ "$(tail -n 1 "$work/err")" = "phr: stopped by SIGTERM" ]
 }
 
 # sends RANKS FORMAT ARGUMENTS...: an output goes to stdout, alone.
