@@ -276,7 +276,7 @@ check-long: $(PHR)
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" sh tests/kill.sh
 
 # About an hour and a half, most of it for references that are kept in $(BUILD)/prove.
-prove: errors $(PHR) $(IMGDIFF) pathtracer build/room check-long $(BUILD)/tests/openings
+prove: errors $(PHR) $(IMGDIFF) pathtracer build/room check-long
 	$(MAKE) check PROVE=yes
 	BUILD="$(BUILD)" sh tests/prove.sh
 	MPIEXEC="$(MPIEXEC)" BUILD="$(BUILD)" RUNS=500 SEED=2 sh tests/68-sweep.sh

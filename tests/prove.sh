@@ -2,10 +2,9 @@
 # steps, over links alone, and with a final gather whose rays double with each step, in
 # the Cornell box and in rooms of 1,004 and 6,348 triangles; with OFFICE3=FILE.obj also in
 # that scene, two-sided. References are made first, where $BUILD/prove has none. And in
-# closed rooms as much light arrives over links as leaves, within 1 %. Light through
-# openings is right for more orders of the faces than in `make check`. And with half
-# of the memory that it counts, phr takes 30 MB more at most, picture and MPI included.
-# About an hour.
+# closed rooms as much light arrives over links as leaves, within 1 %. And with half of
+# the memory that it counts, phr takes 30 MB more at most, picture and MPI included. About
+# an hour.
 #
 # A step counts as a fall where RMS and L1, of leaves and of roots, become smaller or are
 # below the noise of the reference. Each epsilon is a quarter of the one before.
@@ -80,7 +79,5 @@ fits "$folder/room31933.obj"
 prove cornell scenes/cornell.obj
 prove room1000 "$folder/room1000.obj"
 prove room6350 "$folder/room6350.obj"
-"$BUILD/tests/openings" 8 >"$work/openings"
-check "light through openings, faces in eight orders" [ $? -eq 0 ]
 [ -z "${OFFICE3-}" ] || prove office3 "$OFFICE3" --two-sided
 tap_done
