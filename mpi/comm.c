@@ -253,24 +253,6 @@ void *comm_exchange(const struct comm *comm, const void *records, const int *cou
     return arrived;
 }
 
-void comm_add_home(const struct comm *comm, const int64_t *values, const int *counts,
-                   int width, int64_t *own)
-{
-    int *numbers = alloc_array((size_t)comm->size, sizeof *numbers);
-    int64_t sum = 0; /* libraries add these numbers up as int */
-    for (int r = 0; r < comm->size; r++) {
-        int64_t number = (int64_t)counts[r] * width;
-        sum += number;
-        comm_count(comm, sum);
-        numbers[r] = (int)number;
-    }
-    MPI_Request request;
-    MPI_Ireduce_scatter(values, own, numbers, MPI_INT64_T, MPI_SUM, comm->handle,
-                        &request);
-    comm_wait(&request);
-    alloc_free(numbers);
-}
-
 void comm_share(const struct comm *comm, void *records, const int *counts, const int *at,
                 size_t bytes)
 {

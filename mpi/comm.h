@@ -58,12 +58,6 @@ int64_t comm_displacements(const struct comm *comm, const int *counts,
 void *comm_exchange(const struct comm *comm, const void *records, const int *counts,
                     size_t bytes, int64_t *arriving);
 
-/* Collective. Every rank gets sums over all ranks: `values` holds counts[0] groups of
- * `width` for rank 0, then counts[1] for rank 1, and so on; `own` receives the sums of
- * those for this rank. */
-void comm_add_home(const struct comm *comm, const int64_t *values, const int *counts,
-                   int width, int64_t *own);
-
 /* Collective. All ranks get the records of all: counts[r] of rank r begin at[r] records
  * behind `records`; each rank's own are in place. */
 void comm_share(const struct comm *comm, void *records, const int *counts, const int *at,

@@ -1,97 +1,19 @@
-/* Step 5: light is transferred over the links, and flux that proxies received goes home.
- * A proxy is the copy of a patch on a rank that is not its home.
+/* Step 5: light is transferred over the links, and proxies that received flux go home. A
+ * proxy is the copy of a patch on a rank that is not its home.
  *
- * A rank's links add flux to patches of nearly all homes. One reduction adds up the flux
- * of all ranks, and each home gets the sums of its patches: integers, so in any order.
- * From P ranks to P homes that takes log P messages a rank, where one to each home would
- * take P - 1.
+ * A total exchange: each rank tells each home which of its patches have received flux
+ * over links that live there, and how much; homes add it up. Flux is an integer, so the
+ * order does not matter.
  *
- * Which patches travel follows from the trees and from the homes, which all ranks know:
- * each finds the routes by itself. */
+ * Rejected: a reduction of the flux of all patches, with log P messages for each rank in
+ * place of up to P - 1. In a room of 1,004 triangles (--paper) it has 1.2 times the bytes
+ * on 2 ranks, 2.1 times on 8, 4.3 times on 32. */
 #include "mpi/solver.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "geom/alloc.h"
-
-/* --- routes --- */
-
-void routes_free(struct routes *routes)
-{
-    struct route *all[] = {&routes->receivers, &routes->leaves, &routes->records};
-    for (int k = 0; k < 3; k++) {
-        alloc_free(all[k]->patches);
-        alloc_free(all[k]->counts);
-        alloc_free(all[k]->at);
-    }
-    alloc_free(routes->flux);
-    alloc_free(routes->own_flux);
-    alloc_free(routes->radiosities);
-    *routes = (struct routes){0};
-}
-
-static bool can_receive(const struct solver *solver, int32_t patch)
-{
-    uint32_t root = solver->model.forest->patches[patch].id.root;
-    return scene_root_area(solver->model.scene, (int32_t)root) > 0.0;
-}
-
-/* A dark leaf stays at 0. */
-static bool is_leaf_that_changes(const struct solver *solver, int32_t patch)
-{
-    const struct patch *at = &solver->model.forest->patches[patch];
-    return patch_is_leaf(at) && can_receive(solver, patch) &&
-           !material_is_dark(forest_material(solver->model.forest, patch));
-}
-
-/* The patches for which `is_listed` is true. */
-static struct route list_patches(const struct solver *solver,
-                                 bool (*is_listed)(const struct solver *, int32_t))
-{
-    const struct forest *forest = solver->model.forest;
-    const struct comm *comm = solver->comm;
-    const int *owner = solver->homes.owner;
-    struct route route = {.patches = NULL};
-    route.counts = alloc_array((size_t)comm->size, sizeof *route.counts);
-    route.at = alloc_array((size_t)comm->size + 1, sizeof *route.at);
-    for (int64_t p = 0; p < forest->count; p++)
-        route.counts[owner[forest->patches[p].id.root]] +=
-            is_listed(solver, (int32_t)p);
-    int count = (int)comm_displacements(comm, route.counts, route.at);
-    route.patches = alloc_array((size_t)count, sizeof *route.patches);
-    for (int32_t root = 0; root < forest->root_count; root++)
-        for (int32_t p = root; p >= 0; p = forest_next(forest, p, true))
-            if (is_listed(solver, p))
-                route.patches[route.at[owner[root]]++] = p;
-    route.at[comm->size] = (int)comm_displacements(comm, route.counts, route.at);
-    return route;
-}
-
-void routes_renew(struct solver *solver)
-{
-    struct routes *routes = &solver->routes;
-    int ranks = solver->comm->size;
-    if (routes->trees == solver->model.forest->count)
-        return;
-    routes_free(routes);
-    routes->trees = solver->model.forest->count;
-    routes->receivers = list_patches(solver, can_receive);
-    routes->leaves = list_patches(solver, is_leaf_that_changes);
-    struct route *records = &routes->records;
-    records->counts = alloc_array((size_t)ranks, sizeof *records->counts);
-    records->at = alloc_array((size_t)ranks + 1, sizeof *records->at);
-    for (int home = 0; home < ranks; home++)
-        records->counts[home] = routes->leaves.counts[home] + BALLOT_RECORDS;
-    records->at[ranks] =
-        (int)comm_displacements(solver->comm, records->counts, records->at);
-    size_t receivers = (size_t)routes->receivers.at[ranks];
-    size_t own = (size_t)routes->receivers.counts[solver->comm->rank];
-    routes->flux = alloc_array(BANDS * receivers, sizeof *routes->flux);
-    routes->own_flux = alloc_array(BANDS * own, sizeof *routes->own_flux);
-    routes->radiosities = alloc_array((size_t)records->at[ranks],
-                                      sizeof *routes->radiosities);
-}
 
 /* --- light over links --- */
 
@@ -116,26 +38,70 @@ void solver_transfer(struct solver *solver, const struct rgb *vector)
 
 /* --- step 5 --- */
 
+/* The flux of a proxy on its way home; 32 bytes, no padding. */
+struct wire_flux {
+    struct patch_id id;
+    int64_t flux[BANDS];
+};
+
+/* True of a proxy that has received flux. */
+static bool is_updated(const struct solver *solver, int64_t p)
+{
+    static const int64_t NOTHING[BANDS];
+    const struct patch *patch = &solver->model.forest->patches[p];
+    return !solver->homes.own[patch->id.root] &&
+           memcmp(patch->flux, NOTHING, sizeof NOTHING) != 0;
+}
+
+/* Packs the proxies to be sent, home by home: counts[h] go to rank h. */
+static struct wire_flux *pack_proxies(const struct solver *solver, int *counts)
+{
+    const struct forest *forest = solver->model.forest;
+    const int *owner = solver->homes.owner;
+    int *at = alloc_array((size_t)solver->comm->size, sizeof *at);
+    for (int64_t p = 0; p < forest->count; p++)
+        counts[owner[forest->patches[p].id.root]] += is_updated(solver, p);
+    int64_t all = comm_displacements(solver->comm, counts, at);
+    struct wire_flux *wire = alloc_array((size_t)all, sizeof *wire);
+    for (int64_t p = 0; p < forest->count; p++) {
+        const struct patch *patch = &forest->patches[p];
+        if (!is_updated(solver, p))
+            continue;
+        struct wire_flux *to = &wire[at[owner[patch->id.root]]++];
+        to->id = patch->id;
+        memcpy(to->flux, patch->flux, sizeof to->flux);
+    }
+    alloc_free(at);
+    return wire;
+}
+
+/* Collective. Own patches get the flux of all their proxies. Pre: all ranks have the same
+ * trees. */
 static void bring_home(struct solver *solver)
 {
     double start = comm_seconds();
-    const struct routes *routes = &solver->routes;
-    const struct route *receivers = &routes->receivers;
-    struct patch *patches = solver->model.forest->patches;
-    int all = receivers->at[solver->comm->size];
-    int own = receivers->counts[solver->comm->rank];
-    for (int i = 0; i < all; i++)
-        memcpy(routes->flux + BANDS * (size_t)i, patches[receivers->patches[i]].flux,
-               sizeof patches->flux);
-    comm_add_home(solver->comm, routes->flux, receivers->counts, BANDS,
-                  routes->own_flux);
-    const int32_t *homecomers = receivers->patches + receivers->at[solver->comm->rank];
-    for (int i = 0; i < own; i++)
-        memcpy(patches[homecomers[i]].flux, routes->own_flux + BANDS * (size_t)i,
-               sizeof patches->flux);
-    solver->account.bytes_gather += (all - own) * (int64_t)sizeof patches->flux;
-    solver->account.copied += (int64_t)all + own;
-    solver->account.seconds[PHASE_GATHER] += comm_seconds() - start;
+    struct forest *forest = solver->model.forest;
+    struct account *account = &solver->account;
+    int *counts = alloc_array((size_t)solver->comm->size, sizeof *counts);
+    int64_t arriving, messages = comm_counts().messages;
+    struct wire_flux *out = pack_proxies(solver, counts);
+    struct wire_flux *in =
+        comm_exchange(solver->comm, out, counts, sizeof *out, &arriving);
+    for (int64_t i = 0; i < arriving; i++) {
+        struct patch *patch = &forest->patches[forest_reach(forest, in[i].id)];
+        for (int c = 0; c < BANDS; c++)
+            patch->flux[c] += in[i].flux[c];
+    }
+    for (int r = 0; r < solver->comm->size; r++) {
+        account->bytes[CARGO_FLUX] += counts[r] * (int64_t)sizeof *out;
+        account->copied += counts[r];
+    }
+    account->copied += arriving;
+    account->messages[CARGO_FLUX] += comm_counts().messages - messages;
+    alloc_free(in);
+    alloc_free(out);
+    alloc_free(counts);
+    account->seconds[PHASE_GATHER] += comm_seconds() - start;
 }
 
 void solver_carry(struct solver *solver, const struct rgb *vector)

@@ -72,12 +72,14 @@ struct traffic links_migrate(struct solver *solver, struct link_list *list,
     for (int64_t i = 0; i < list->count; i++)
         counts[destination[i]] += destination[i] != comm->rank;
     struct traffic traffic = {.sent = comm_displacements(comm, counts, at)};
+    int64_t messages = comm_counts().messages;
     struct wire_link *out = pack_leaving(solver, list, destination, at, traffic.sent);
     struct wire_link *in =
         comm_exchange(comm, out, counts, sizeof *out, &traffic.received);
     for (int64_t i = 0; i < traffic.received; i++)
         link_list_append(list, unpack(&solver->model, &in[i]));
-    solver->account.bytes_migration += traffic.sent * (int64_t)sizeof *out;
+    solver->account.messages[CARGO_LINKS] += comm_counts().messages - messages;
+    solver->account.bytes[CARGO_LINKS] += traffic.sent * (int64_t)sizeof *out;
     alloc_free(in);
     alloc_free(out);
     alloc_free(at);

@@ -109,7 +109,8 @@ static void share_splits(struct solver *solver)
         forest_reach(forest, id);
     }
     solver->turn.shared = forest->count;
-    solver->account.bytes_scatter += at[comm->size] - count * (int64_t)sizeof *split;
+    solver->account.bytes[CARGO_LIGHT] +=
+        at[comm->size] - count * (int64_t)sizeof *split;
     alloc_free(all);
     alloc_free(at);
     alloc_free(split);

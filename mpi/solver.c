@@ -100,13 +100,15 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     int64_t own[COUNT_SUMS] = {counts->rays,
                                counts->node_tests,
                                counts->triangle_tests,
-                               solver->account.bytes_migration,
-                               solver->account.bytes_gather,
-                               solver->account.bytes_scatter,
+                               solver->account.bytes[CARGO_LINKS],
+                               solver->account.bytes[CARGO_FLUX],
+                               solver->account.bytes[CARGO_LIGHT],
                                solver->model.walled_off,
                                solver->model.rays_spared,
                                peak_memory()};
-    int64_t sum[COUNT_SUMS], largest[2] = {own[8], comm_counts().messages};
+    const int64_t *messages = solver->account.messages;
+    int64_t sum[COUNT_SUMS], largest[2 + CARGO_COUNT] = {own[8], comm_counts().messages};
+    memcpy(largest + 2, messages, CARGO_COUNT * sizeof *messages);
     for (int64_t i = 0; i < solver->links.count; i++)
         own[9 + kind_of(&solver->links.items[i])]++;
     MPI_Request request;
@@ -116,9 +118,7 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     stats->rays = sum[0];
     stats->node_tests = sum[1];
     stats->triangle_tests = sum[2];
-    stats->bytes_migration = sum[3];
-    stats->bytes_gather = sum[4];
-    stats->bytes_scatter = sum[5];
+    memcpy(stats->bytes_of, sum + 3, sizeof stats->bytes_of);
     stats->walled_off = sum[6];
     stats->rays_spared = sum[7];
     stats->peak_rss_bytes_sum = sum[8];
@@ -126,11 +126,12 @@ static void report_counts(const struct solver *solver, struct stats *stats)
     stats->links_seen = sum[10];
     stats->links_partly = sum[11];
     stats->links_unseen = sum[12];
-    MPI_Iallreduce(MPI_IN_PLACE, largest, 2, MPI_INT64_T, MPI_MAX, solver->comm->handle,
-                   &request);
+    MPI_Iallreduce(MPI_IN_PLACE, largest, 2 + CARGO_COUNT, MPI_INT64_T, MPI_MAX,
+                   solver->comm->handle, &request);
     comm_wait(&request);
     stats->peak_rss_bytes = largest[0];
     stats->messages = largest[1];
+    memcpy(stats->messages_with, largest + 2, sizeof stats->messages_with);
 }
 
 /* Patches of other homes that links of this rank lead to. */
@@ -156,8 +157,7 @@ static int64_t count_proxies(const struct solver *solver)
 static void carry_ones_unseen(struct solver *solver)
 {
     struct account before = solver->account;
-    link_list_sort(&solver->links); /* a finished run that was resumed has no routes */
-    routes_renew(solver);
+    link_list_sort(&solver->links); /* those of a finished run that was resumed are not */
     solver_carry_ones(solver);
     solver->account = before;
 }

@@ -38,25 +38,22 @@ struct homes {
     bool *own;  /* [roots] owner[root] == rank */
 };
 
-/* Patches that travel, home by home; of each home roots in order, depth first: the same
- * on all ranks. */
-struct route {
-    int32_t *patches; /* [at[ranks]] local numbers; of records NULL */
-    int *counts;      /* [ranks] of each home */
-    int *at;          /* [ranks + 1] where those of each home begin */
+/* The radiosities that homes tell all ranks in step 7, over the same trees: home by home
+ * those of leaves whose B can change, roots in order and depth first, and behind them the
+ * home's ballot. Found once, so that transfers need no IDs, counts or searching. */
+struct routes {
+    int32_t *leaves;         /* [at[ranks]] local number of the leaf of each record */
+    int *counts;             /* [ranks] records of each home */
+    int *at;                 /* [ranks + 1] where those of each home begin */
+    struct rgb *radiosities; /* [at[ranks]] room for the records */
+    int64_t trees;           /* patches that there were when the routes were renewed */
 };
 
-/* All that travels in every transfer of light over the same trees, flux to homes and
- * radiosities back: found once, so that transfers need no IDs, counts or searching. */
-struct routes {
-    struct route receivers;  /* patches that can receive light */
-    struct route leaves;     /* leaves whose B can change */
-    struct route records;    /* of these leaves, behind them the ballot of their home */
-    int64_t trees;           /* patches that there were when the routes were renewed */
-    int64_t *flux;           /* [BANDS * receivers] room for flux sent home */
-    int64_t *own_flux;       /* [BANDS * receivers of this rank] room for its sums */
-    struct rgb *radiosities; /* [records] room for all leaves and ballots */
-};
+/* The number of leaves of a home. */
+static inline int routes_leaves(const struct routes *routes, int home)
+{
+    return routes->counts[home] - BALLOT_RECORDS;
+}
 
 /* Where the run is. */
 struct turn {
@@ -72,9 +69,8 @@ struct turn {
 /* The accounts of this rank, for the report. */
 struct account {
     double seconds[PHASE_COUNT];
-    int64_t bytes_migration; /* sent to other ranks */
-    int64_t bytes_gather;    /* sent to other ranks */
-    int64_t bytes_scatter;   /* got from other ranks */
+    int64_t bytes[CARGO_COUNT];    /* to or from other ranks */
+    int64_t messages[CARGO_COUNT]; /* as in struct comm_counts */
     int64_t copied;          /* patch records packed or unpacked */
     int64_t recorded[3];     /* of the last three, in the ledger */
     struct ledger ledger;
@@ -111,7 +107,7 @@ struct solver {
     struct model model;        /* scene, octree, forest, criterion; the forest is owned */
     struct link_list links;    /* the links that live here ("allInteractions") */
     struct homes homes;
-    struct routes routes;      /* of light between the ranks */
+    struct routes routes;      /* of radiosities from the homes to all ranks */
     struct turn turn;
     struct memory memory;
     struct flux_unit flux;     /* unit of the flux of the last transfer */
@@ -161,11 +157,11 @@ bool solver_refine(struct solver *solver);
 void routes_renew(struct solver *solver);
 void routes_free(struct routes *routes);
 
-/* Step 5: light is transferred over the links there are, and flux of proxies goes
- * home. */
+/* Step 5: light is transferred over the links there are, and proxies that received flux
+ * go home. */
 void solver_gather(struct solver *solver);
 
-/* The transfer alone, of any vector [patches], over links whose routes are known. */
+/* The transfer alone, of any vector [patches]. Pre: the links are sorted. */
 void solver_carry(struct solver *solver, const struct rgb *vector);
 
 /* The transfer of 1 from all patches in the first band: what arrives are row sums. */

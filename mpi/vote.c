@@ -53,9 +53,9 @@ struct vote vote_make(const struct solver *solver, const struct ballot *sum,
 /* Enters the work of the iteration into the ledger. */
 static void record_iteration(struct solver *solver)
 {
-    int64_t now[] = {solver->account.bytes_gather, solver->account.bytes_scatter,
-                     solver->account.copied};
-    int own = solver->routes.receivers.counts[solver->comm->rank];
+    int64_t now[] = {solver->account.bytes[CARGO_FLUX],
+                     solver->account.bytes[CARGO_LIGHT], solver->account.copied};
+    int own = routes_leaves(&solver->routes, solver->comm->rank);
     struct phase_work phase = {.kind = WORK_TRANSFER,
                                .share.done = solver->links.seen,
                                .bytes = now[0] - solver->account.recorded[0]};

@@ -58,10 +58,18 @@ enum work {
     WORK_LOOKS,     /* links looked at between passes */
     WORK_SPLITTING, /* refinement: tests */
     WORK_TRANSFER,  /* links over which light was transferred */
-    WORK_OWN,       /* own patches in push-pull */
+    WORK_OWN,       /* own leaves in push-pull */
     WORK_PATCHES,   /* patch records packed or unpacked */
     WORK_FINAL_GATHER, /* rows of the final gather: tests */
     WORK_COUNT
+};
+
+/* What travels between ranks. */
+enum cargo {
+    CARGO_LINKS, /* that move, in steps 3 and 4 */
+    CARGO_FLUX,  /* sent in step 5 */
+    CARGO_LIGHT, /* got in step 7; new patches, at the end of step 4 */
+    CARGO_COUNT
 };
 
 /* Of all phases of one kind. */
@@ -136,12 +144,12 @@ struct stats {
     struct level_balance *levels; /* [level_count], borrowed from the solver */
     int64_t level_count;
     int64_t *proxies; /* [ranks] borrowed: patches of other homes in a rank's links */
-    int64_t bytes_migration; /* of links that moved, all ranks */
-    int64_t bytes_gather;    /* sent in step 5 */
-    int64_t bytes_scatter;   /* got in step 7, and at the end of step 4 */
+    int64_t bytes_of[CARGO_COUNT]; /* of all ranks */
     struct work_sums work[WORK_COUNT];
     int64_t exchanges; /* collective operations */
-    int64_t messages;  /* log P an exchange, and those with links; the most of any rank */
+    int64_t messages;  /* log P an exchange, and those from rank to rank; the most of any
+                          rank */
+    int64_t messages_with[CARGO_COUNT]; /* of these */
     int64_t bytes_broadcast;    /* scene, octree and tree, one copy */
     int64_t peak_rss_bytes;     /* largest over ranks; 0 if unknown */
     int64_t peak_rss_bytes_sum; /* sum over ranks; shared memory counts for each */

@@ -22,7 +22,7 @@ same() {
 for options in "" --paper; do
     for what in patches links; do
         dump 1 $what $options --stats "$work/stats"
-        dump 4 $what $options
+        dump 4 $what $options --stats "$work/4.stats"
         check "$what ${options:-by default}: the same on 4 ranks, but for owners" \
             same $what
         check "as many as --stats counts" \
@@ -50,6 +50,15 @@ for options in "" --paper; do
         $4 < 0 || $4 > 1 { wrong++ }
         END { exit wrong || links < 100 }' "$work/1.patches" "$work/1.links"
 done
+
+# Of --paper, which is the last above: a proxy that links lead to has 32 bytes in step 5,
+# and no other patch travels.
+check "proxies that links lead to go home, and no others" holds "$(awk '
+    /"proxies"/ { gsub(/[^0-9 ]/, ""); for (i = 1; i <= NF; i++) proxies += $i }
+    /"iterations"/ { iterations = $2 + 0 }
+    /"bytes": {"migration"/ { sub(/.*"gather": /, ""); bytes = $0 + 0 }
+    END { most = 32 * iterations * proxies
+          print bytes " > .5 * " most " && " bytes " <= " most }' "$work/4.stats")"
 
 # Steps end with 41 patches below 0, within the tolerance.
 for ranks in 1 4; do

@@ -96,7 +96,7 @@ void above_collect(struct solver *solver)
     int64_t count = BANDS * (int64_t)solver->beyond->tree->count;
     comm_add(solver->comm, clusters->flux, count);
     if (solver->comm->size > 1)
-        solver->account.bytes_gather += 2 * count * (int64_t)sizeof *clusters->flux;
+        solver->account.bytes[CARGO_FLUX] += 2 * count * (int64_t)sizeof *clusters->flux;
     double come = comm_seconds();
     cluster_light_push(clusters, solver->model.forest, solver->flux);
     solver->account.seconds[PHASE_GATHER] += come - start;

@@ -21,12 +21,12 @@ static const double WHILE_SPLITTING = 0.03;
 void descent_begin(struct solver *solver)
 {
     struct forest *forest = solver->model.forest;
-    const struct route *leaves = &solver->routes.leaves;
+    const struct routes *routes = &solver->routes;
     struct rgb *rows = alloc_array((size_t)forest->count, sizeof *rows);
     int rank = solver->comm->rank;
     solver_carry_ones(solver);
-    for (int i = 0; i < leaves->counts[rank]; i++) {
-        int32_t leaf = leaves->patches[leaves->at[rank] + i];
+    for (int i = 0; i < routes_leaves(routes, rank); i++) {
+        int32_t leaf = routes->leaves[routes->at[rank] + i];
         rows[leaf] = leaf_irradiance(forest, leaf, solver->flux);
     }
     solver_share(solver, rows);

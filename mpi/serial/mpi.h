@@ -238,13 +238,6 @@ static inline int MPI_Iallreduce(const void *send, void *receive, int count,
     return MPI_Ibarrier(comm, request);
 }
 
-static inline int MPI_Ireduce_scatter(const void *send, void *receive, const int *counts,
-                                      MPI_Datatype type, MPI_Op op, MPI_Comm comm,
-                                      MPI_Request *request)
-{
-    return MPI_Iallreduce(send, receive, counts[0], type, op, comm, request);
-}
-
 static inline int MPI_Iallgather(const void *send, int count, MPI_Datatype type,
                                  void *receive, int receive_count,
                                  MPI_Datatype receive_type, MPI_Comm comm,

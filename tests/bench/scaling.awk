@@ -34,6 +34,7 @@ what == "one" && /"(triangles|links)": [0-9]*,$/ {
     slowest[what, part[2]] = value("slowest")
     sent[part[2]] = value("bytes") # in the end of the run on many
 }
+what == "many" && /"messages_with"/ { gather_messages = value("gather") }
 what == "many" && /"exchanges"/ { exchanges = value("exchanges") }
 what == "many" && /"messages"/ { messages = value("messages") }
 what == "many" && /"broadcast"/ { broadcast = value("broadcast") }
@@ -115,7 +116,8 @@ END {
     line("the rest", "repeated", least, least, least, "repeated")
     partners = messages - exchanges * log_ranks
     sending("links that move", sent["splitting"], 0, 0, moved[1024])
-    sending("gather", sent["transfer"], 0, 0, sent["transfer"])
+    homes = gather_messages * (1023 / (ranks - 1) - 1) # beside those of `ranks` homes
+    sending("gather", sent["transfer"], 0, homes, sent["transfer"])
     sending("scatter", sent["own"], 0, 0, sent["own"])
     if (tree) sending("vectors of the final gather", sent["final_gather"], 0, 0,
                       sent["final_gather"])

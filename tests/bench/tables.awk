@@ -7,7 +7,6 @@ function value(key,    text) { # the number behind "key":
     sub(".*\"" key "\": *", "", text)
     return text + 0
 }
-function log2(x) { return log(x) / log(2) }
 
 BEGIN {
     BYTES_PER_LINK = 32
@@ -33,23 +32,28 @@ run == "one" && /"min".*"mean".*"max"/ && !/closure/ {
     slowest[run, part[2]] = value("slowest")
     sent[run, part[2]] = value("bytes")
 }
-/"(triangles|links|iterations|messages)": [0-9]*,$/ {
+/"messages_with"/ {
+    with_flux[run] = value("gather")
+    with_light[run] = value("scatter")
+}
+/"(triangles|links|messages)": [0-9]*,$/ {
     split($0, part, "\"")
     count[run, part[2]] = value(part[2])
 }
-/"migration": [0-9]*, "gather"/ { moved[run] = value("migration") }
+/"bytes": {"migration"/ { moved[run] = value("migration") }
 
 # Fills the columns of a run on P ranks.
-function fill(run, p,    k, messages) {
-    messages = count[run, "iterations"] * log2(p) * message
+function fill(run, p,    k, gather, scatter) {
+    gather = with_flux[run] * message
+    scatter = with_light[run] * message
     column["refinement"] = (all[run, "splitting"] * test + all[run, "looks"] * look) / p
     column["idle"] = slowest[run, "splitting"] * test + slowest[run, "looks"] * look - \
                      column["refinement"]
-    column["migration"] = count[run, "messages"] * message - 2 * messages + \
+    column["migration"] = count[run, "messages"] * message - gather - scatter + \
                           sent[run, "splitting"] / bandwidth
-    column["gather"] = messages + sent[run, "transfer"] / bandwidth
+    column["gather"] = gather + sent[run, "transfer"] / bandwidth
     column["push-pull"] = slowest[run, "own"] * own
-    column["scatter"] = messages + sent[run, "own"] / bandwidth
+    column["scatter"] = scatter + sent[run, "own"] / bandwidth
     column["light"] = slowest[run, "transfer"] * transfer
     column["alike"] = alike
     total = 0
