@@ -32,7 +32,7 @@ struct spread {
 };
 
 /* A level of refinement on one rank. Work is counted in box and triangle tests; a form
- * factor counts as 12 of them, an exchange of phr's own as 100. */
+ * factor counts as 12 of them, an exchange of phr's own as 50 or 150. */
 struct level_share {
     int64_t links;     /* that it split */
     int64_t load;      /* predicted work before links moved */

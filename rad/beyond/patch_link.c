@@ -52,7 +52,7 @@ bool patch_link_make(struct model *model, int32_t p, const struct facet *facet_p
         exchange_estimate(facet_p, facet_q, model->octree, &visibility, &work);
     octree_counts_add(&model->counts, &work);
     model->rays_spared += BUNDLE_RAYS - work.rays;
-    model->estimating += TESTS_PER_EXCHANGE;
+    model->estimating += (exchange.apart ? 1 : 3) * TESTS_PER_EXCHANGE;
     *link = (struct link){
         .p = p, .q = q,
         .area = float_below(exchange.seen > 0.0 ? exchange.area : exchange.unoccluded),
