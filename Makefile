@@ -30,12 +30,14 @@
 #                        of options; pictures beside the path tracer's; kills at forty
 #                        moments
 #   make cycles          pictures beside those of Blender's Cycles, where it is installed
-#   make golden          renews the golden pictures in tests/golden (on purpose only)
+#   make golden          renews the golden pictures in tests/golden (on purpose only), or
+#                        that of CASE=NAME
 #   make pace            renews the instructions of runs in tests/pace (on purpose only)
 #   make portability     golden pictures on other compilers, MPIs, processors
 #   make fuzz            build/fuzz/fuzz-FORMAT with clang: libFuzzer and sanitizers
 #   make install         to $(DESTDIR)$(prefix), phr as it was built last, with SERIAL=1
 #                        or without                  make uninstall  make clean
+#   make install-lib     libphr.a and phr.h, for other programs: docs/library.md
 #
 # Knobs: MPICC, CC, MPIEXEC, CFLAGS, CPPFLAGS, LDFLAGS, prefix, DESTDIR.
 # Other builds side by side: BUILD is where objects go, PHR and IMGDIFF the programs made
@@ -48,8 +50,11 @@ SHELL = /bin/sh
 MPICC ?= mpicc
 CFLAGS ?= -O3 -g
 INSTALL ?= install
+OBJCOPY ?= objcopy
 prefix ?= /usr/local
 bindir = $(prefix)/bin
+libdir = $(prefix)/lib
+includedir = $(prefix)/include
 mandir = $(prefix)/share/man
 docdir = $(prefix)/share/doc/phr
 PHR ?= phr
@@ -61,7 +66,7 @@ STRICT = -std=c99 -ffp-contract=off -fno-math-errno
 WARN = -pedantic -Wall -Wextra -Wshadow -Wconversion
 
 # How PHR was built last.
-ifeq ($(MAKECMDGOALS),install)
+ifneq ($(filter install install-lib,$(MAKECMDGOALS)),)
 -include build/$(notdir $(PHR)).kind
 endif
 
@@ -81,7 +86,7 @@ endif
 OCTREE = $(wildcard octree/*.c)
 PROGRAMS = tools/imgdiff tools/pathtracer tools/id
 FOLDERS = geom rad rad/beyond rad/beyond/gather mpi mpi/beyond io/scene io/run \
-          io/picture tools
+          io/picture tools lib
 SOURCES = $(wildcard $(FOLDERS:%=%/*.c)) $(OCTREE)
 # OCTREE= BRUTE=brute builds with tests/brute.c in place of octree/.
 BRUTE =
@@ -169,7 +174,7 @@ $(TESTS:%=$(BUILD)/tests/%.o): $(BUILD)/tests/%.o: %.c Makefile
 # compute_light(), for tests and benches, without a main() in the way of theirs.
 $(BUILD)/tests/phr.o: phr.c Makefile
 	@mkdir -p $(@D)
-	$(COMPILED) -Dmain=phr_main
+	$(COMPILED) -Dmain=program_main
 
 -include $(OBJECTS:.o=.d) $(BUILD)/phr.d $(BUILD)/tests/phr.d \
     $(PROGRAMS:%=$(BUILD)/%.d) $(TESTS:%=$(BUILD)/tests/%.d) \
@@ -262,7 +267,7 @@ check: $(PHR) $(IMGDIFF) pathtracer tests build/room $(BUILD)/direct $(COURSE)
 
 # Only on purpose: what the pictures are now becomes what is expected.
 golden: $(PHR)
-	sh tests/golden.sh tests/golden ./$(PHR)
+	CASE="$(CASE)" sh tests/golden.sh tests/golden ./$(PHR)
 
 # Only on purpose, too: what runs take now becomes what they may take.
 pace: $(PHR) build/room
@@ -302,10 +307,23 @@ install: $(PHR) $(IMGDIFF)
 	$(INSTALL) -m 644 phr.1 tools/imgdiff.1 $(DESTDIR)$(mandir)/man1
 	$(INSTALL) -m 644 LICENSE $(DESTDIR)$(docdir)
 
+# One object, of whose names only those of lib/phr.h stay global.
+$(BUILD)/lib/libphr.a: $(BUILD)/lib/phr.o $(BUILD)/libphr.a
+	rm -f $@
+	$(LD) -r -o $(@D)/one.o $^
+	$(OBJCOPY) --wildcard --keep-global-symbol='phr_*' $(@D)/one.o
+	ar rcs $@ $(@D)/one.o
+
+install-lib: $(BUILD)/lib/libphr.a
+	mkdir -p $(DESTDIR)$(libdir) $(DESTDIR)$(includedir)
+	$(INSTALL) -m 644 $(BUILD)/lib/libphr.a $(DESTDIR)$(libdir)
+	$(INSTALL) -m 644 lib/phr.h $(DESTDIR)$(includedir)
+
 uninstall:
 	rm -f $(DESTDIR)$(bindir)/phr $(DESTDIR)$(bindir)/imgdiff
 	rm -f $(DESTDIR)$(mandir)/man1/phr.1 $(DESTDIR)$(mandir)/man1/imgdiff.1
 	rm -f $(DESTDIR)$(docdir)/LICENSE
+	rm -f $(DESTDIR)$(libdir)/libphr.a $(DESTDIR)$(includedir)/phr.h
 
 clean:
 	rm -rf build phr cornell.png cornell.pfm cornell.ply
@@ -315,4 +333,4 @@ FORCE:
 .PHONY: all demo tests room pathtracer bench errors chart growth scaling check \
     pages ablation stability course exercise film answers \
     check-long prove cycles golden pace portability fuzz install \
-        uninstall clean FORCE
+        install-lib uninstall clean FORCE

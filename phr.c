@@ -4,7 +4,7 @@
  * which is phr's own. Each is in the file of its name under mpi/. Before it stand the
  * parts of steps that are about files and signals; what a run reads, says and shows is in
  * tools/. */
-#include "phr.h"
+#include "compute.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -161,7 +161,7 @@ static enum finish finish_light(struct run *run)
 bool compute_light(struct run *run)
 {
     enum finish finish;
-    if (!run->scene && !broadcast_scene(run))    /* 1: all get the scene */
+    if (!run->octree && !broadcast_scene(run))   /* 1: all get the scene */
         return false;
     if (stored_light(run))                       /* the scene has its light with it */
         return true;
@@ -194,20 +194,6 @@ bool compute_light(struct run *run)
 }
 
 /* --- the program --- */
-
-static void release(struct run *run)
-{
-    solver_destroy(run->solver);
-    octree_destroy(run->octree);
-    scene_destroy(run->scene);
-    if (run->stored)
-        solution_mesh_free(run->stored);
-    alloc_free(run->stored);
-    alloc_free(run->cameras);
-    if (run->block.data)
-        node_block_destroy(&run->block);
-    options_free(&run->options);
-}
 
 /* Collective. True if all ranks have the arguments of rank 0: they decide alike from here
  * on. */
@@ -254,7 +240,7 @@ int main(int argc, char **argv)
             report_summary(&run);
     }
     run_end(&run);
-    release(&run);
+    run_free(&run);
     comm_stop(&run.comm);
     if (alloc_balance() != 0) {
         fprintf(stderr, "phr: BUG: %lld blocks of memory were not freed\n",

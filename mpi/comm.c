@@ -45,6 +45,7 @@ enum {
 static MPI_Comm failing_comm;
 
 static int all_ranks; /* size of the first communicator */
+static int was_there; /* MPI was initialised by the program around */
 static int tests_before_sleep = TESTS_BEFORE_SLEEP;
 static struct comm_counts counted;
 
@@ -60,7 +61,9 @@ void comm_start(struct comm *comm, int *argc, char ***argv)
 #ifdef M_MMAP_THRESHOLD
     mallopt(M_MMAP_THRESHOLD, LARGE); /* or it grows to the largest array freed so far */
 #endif
-    MPI_Init(argc, argv);
+    MPI_Initialized(&was_there);
+    if (!was_there)
+        MPI_Init(argc, argv);
     MPI_Comm_idup(MPI_COMM_WORLD, &comm->handle, &request);
     comm_wait(&request);
     MPI_Comm_rank(comm->handle, &comm->rank);
@@ -81,7 +84,8 @@ void comm_stop(struct comm *comm)
     comm_wait(&request);
     alloc_on_failure(NULL);
     MPI_Comm_free(&comm->handle);
-    MPI_Finalize();
+    if (!was_there)
+        MPI_Finalize();
 }
 
 static void leave_processor(int tests)

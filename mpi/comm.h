@@ -13,11 +13,12 @@ struct comm {
     int rank, size;
 };
 
-/* Initialises MPI; from here on, running out of memory ends all ranks with exit code
- * 1. */
+/* Initialises MPI, unless it is; from here on, running out of memory ends all ranks with
+ * exit code 1. */
 void comm_start(struct comm *comm, int *argc, char ***argv);
 
-/* Collective. Waits for all ranks and finalises MPI. */
+/* Collective. Waits for all ranks, and finalises MPI if comm_start() has initialised
+ * it. */
 void comm_stop(struct comm *comm);
 
 /* Messages from one rank to another. Those of one tag never overtake each other. */

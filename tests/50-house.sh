@@ -32,7 +32,7 @@ named() {
 }
 
 missing=
-for file in $house mpi/*.[ch] mpi/beyond/*.[ch] scenes/* docs/*; do
+for file in $house mpi/*.[ch] mpi/beyond/*.[ch] lib/*.[ch] scenes/* docs/*; do
     folder=$(dirname "$file")
     [ "$file" = "$folder/README.md" ] || named "$file" "$folder/README.md" ||
         missing="$missing $file"
@@ -44,7 +44,7 @@ done
 check "each folder's README has every file:$missing" [ -z "$missing" ]
 
 gone=
-for folder in geom octree rad rad/beyond mpi mpi/beyond io/* tools; do
+for folder in geom octree rad rad/beyond mpi mpi/beyond io/* tools lib; do
     for name in $(sed -n 's/^| `\([^`]*\)`.*/\1/p' "$folder/README.md"); do
         ls "$folder/$name".[ch] >/dev/null 2>&1 || gone="$gone $folder/$name"
     done

@@ -5,7 +5,7 @@
 #include <time.h>
 
 #include "mpi/beyond/beyond.h"
-#include "phr.h"
+#include "compute.h"
 
 #include "tests/scenes.h"
 

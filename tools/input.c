@@ -151,11 +151,14 @@ static bool read_ply(struct run *run, struct source *source)
     return good && run->scene;
 }
 
-/* Reads the scene, its libraries and its pictures, over which no output goes. */
+/* Reads the scene, its libraries and its pictures, over which no output goes, unless the
+ * scene is there. */
 static bool read_file(struct run *run, struct obj_repairs *repairs)
 {
     struct text_names files = {0};
     struct source source;
+    if (run->scene)
+        return true;
     repairs->files = &files;
     bool good = source_open(&source, run->options.scene, &run->error);
     if (good && ply_is_meant(&source))

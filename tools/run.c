@@ -59,6 +59,20 @@ void run_end(struct run *run)
     lost = NULL;
 }
 
+void run_free(struct run *run)
+{
+    solver_destroy(run->solver);
+    octree_destroy(run->octree);
+    scene_destroy(run->scene);
+    if (run->stored)
+        solution_mesh_free(run->stored);
+    alloc_free(run->stored);
+    alloc_free(run->cameras);
+    if (run->block.data)
+        node_block_destroy(&run->block);
+    options_free(&run->options);
+}
+
 const char *run_scene_name(const struct run *run)
 {
     static char name[61];

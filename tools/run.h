@@ -49,6 +49,9 @@ void run_lose(struct run *run, const struct error *error);
  * an error then. */
 void run_end(struct run *run);
 
+/* Collective. Frees all that a run owns but its ranks. */
+void run_free(struct run *run);
+
 /* Returns the last part of the path of the scene, at most 60 characters of it, with '?'
  * for those that are not of ASCII, or need a backslash somewhere. */
 const char *run_scene_name(const struct run *run);

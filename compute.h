@@ -1,6 +1,6 @@
-/* The algorithm, for the program and for its tests. */
-#ifndef PHR_H
-#define PHR_H
+/* The algorithm, for the program, the library and the tests. */
+#ifndef COMPUTE_H
+#define COMPUTE_H
 
 #include "tools/run.h"
 
