@@ -129,6 +129,7 @@ struct stats {
     double emitted_power;  /* W, input units, sum over bands, like the next two */
     double absorbed_power;
     double escaped_power;
+    double touching_power; /* emitted between touching faces, which absorb it */
     uint64_t checksum;
     int64_t rays, node_tests, triangle_tests;                      /* of form factors */
     int64_t links_open;    /* links proved to be open; with the next three, all links */

@@ -35,16 +35,16 @@ copied behind "4 3 2 1"
 copied over "2 3 4 2 4 1"
 
 # run RANKS SCENE OPTIONS...: runs phr; leaves its words in $work/log, its exit status in
-# $status, the powers in $emitted, $absorbed and $escaped.
+# $status, the powers in $emitted, $absorbed, $escaped and $touching.
 run() {
     ranks=$1
     shift
     $MPIEXEC -n "$ranks" ./phr --epsilon 1e-2 --final-gather 0 "$@" \
         >"$work/out" 2>"$work/log"
     status=$?
-    powers='s/^power *\(.*\) W emitted, \(.*\) W absorbed, \(.*\) W escaped/\1 \2 \3/p'
-    read -r emitted absorbed escaped <<END
-$(sed -n "$powers" "$work/out")
+    read -r emitted absorbed escaped touching <<END
+$(awk '/^power / { for (i = 2; i <= NF; i++) if ($i ~ /^-?[0-9]/) print $i }' \
+    "$work/out" | tr '\n' ' ')
 END
 }
 
@@ -195,6 +195,37 @@ awk '{ print } /^f 1 2 3 4/ { print "f 2 3 4"; print "f 2 4 1" }' "$work/room.ob
 run 1 "$work/wall.obj" --epsilon 1e-3
 check "a wall over a wall absorbs too much" \
     says "% more light is absorbed than emitted: faces may lie on each other"
+
+# boxes MATERIAL X Y Z SIZES...: boxes from outside, as $work/solid.obj.
+boxes() {
+    echo "$@" | xargs -n 7 | awk 'BEGIN { print "mtllib solid.mtl" }
+        { for (k = 0; k < 8; k++)
+            print "v", $2 + k % 2 * $5, $3 + int(k / 2) % 2 * $6, $4 + int(k / 4) * $7
+          print "usemtl", $1
+          print "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4"
+          print "f -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3" }' >"$work/solid.obj"
+}
+
+# A room of six slabs, as of the brushes of a level, a lamp that touches the ceiling, and
+# boxes that touch walls, floor and each other; one is hidden by others on all sides.
+cat >"$work/solid.mtl" <<'END'
+newmtl lamp
+Ke 10 10 10
+Kd 0.999 0.999 0.999
+newmtl wall
+Kd 0.999 0.999 0.999
+END
+boxes wall -.2 -.2 -.2 4.4 3.4 .2  wall -.2 -.2 2.5 4.4 3.4 .2  wall -.2 -.2 0 .2 3.4 2.5 \
+    wall 4 -.2 0 .2 3.4 2.5  wall 0 -.2 0 4 .2 2.5  wall 0 3 0 4 .2 2.5 \
+    lamp 1.5 1 2.3 1 1 .2  wall 0 0 0 1 1 1  wall 1 0 0 1 1 .7  wall 0 1 0 .5 1 1.5 \
+    wall 0 0 1 .8 .8 .5
+for ranks in 1 3; do
+    run $ranks "$work/solid.obj" --epsilon 1e-3 --final-gather 64
+    check "a room of slabs keeps its light at rho .999, on $ranks" \
+        holds "($absorbed / 54 - 1)^2 < 1e-6 && ($escaped)^2 < 1e-3"
+    check "what its lamp sends at the ceiling is named: $touching W" [ "$touching" = 30 ]
+    check "and nothing is warned of" says none
+done
 
 # warnings COMMAND...: number of warnings about the balance of light.
 warnings() {

@@ -5,6 +5,9 @@
  * are such faces, too, and do no harm. Of lamps that lie on each other the sums tell
  * nothing, since both emit; rays do that fall on lamps from close above.
  *
+ * A lamp may lie face to face with another surface, as the top of a box at a ceiling: the
+ * light between both is absorbed there, though no row or link brings it.
+ *
  * Light that escapes from a closed scene is lost. A scene counts as closed if hardly any
  * ray in a random direction from the fronts that have light leaves it (those of a house,
  * outside, are dark); of an open one, the first few do. Light that falls on black backs
@@ -12,6 +15,8 @@
 #include "tools/balance.h"
 
 #include "geom/hash.h"
+#include "rad/beyond/gather/inside.h"
+#include "rad/beyond/sample.h"
 
 /* Parts of the emitted power that are warned of, absorbed beyond it or lost; the part of
  * all light that leaves surfaces, made up for in a closed scene, that is; and the ratio
@@ -23,8 +28,10 @@ static const double ABOVE = 1024.0 * GEOM_ROUNDING, HEIGHT = 0x1p-20;
 
 enum {
     LAMP_RAYS = 1000,  /* onto all lamps */
+    LAMP_POINTS = 64,  /* of each lamp */
     RAYS = 100000,     /* from all fronts that have light */
-    CRACKS = 1         /* of these, so many may leave a closed scene */
+    CRACKS = 1,        /* of these, so many may leave a closed scene */
+    NOTHING = -2       /* for root_met() */
 };
 
 bool balance_is_absurd(const struct run *run)
@@ -54,19 +61,73 @@ static struct vec3 point_over(const struct run *run, int32_t root, double height
     return vec3_add(vec3_add(t.corner[0], along), vec3_scale(normal, height));
 }
 
-/* True if a ray from a random point of the root, in a random direction, leaves. */
-static bool leaves(const struct run *run, int32_t root, uint64_t seed)
+/* A ray from a random point of the root, in a random direction. */
+static struct half_line ray_over(const struct run *run, int32_t root, uint64_t seed)
 {
     struct vec3 normal = scene_root_plane(run->scene, root).normal;
-    struct vec3 x = point_over(run, root, ABOVE, seed);
     struct vec3 d = {random_between(seed + 2), random_between(seed + 3),
                      random_between(seed + 4)};
-    double rise = vec3_dot(d, normal);
+    return (struct half_line){point_over(run, root, ABOVE, seed),
+                              vec3_dot(d, normal) < 0.0 ? vec3_scale(d, -1.0) : d};
+}
+
+/* True if another face lies face to face with the root at that ray's beginning: from
+ * below, its front comes before the root's back. */
+static bool touches(const struct run *run, int32_t root, uint64_t seed)
+{
+    struct vec3 normal = scene_root_plane(run->scene, root).normal;
+    struct vec3 below = point_over(run, root, -FACES_APART, seed);
     struct octree_counts counts = {0};
     struct octree_hit hit;
-    return rise != 0.0 && !octree_first_hit(run->octree, x,
-                                            rise > 0.0 ? d : vec3_scale(d, -1.0), false,
-                                            &hit, &counts);
+    return octree_first_hit(run->octree, below, normal, false, &hit, &counts) &&
+           hit.front;
+}
+
+/* The share of a lamp that lies face to face with others; 0 if they are back to back, as
+ * any ray from there shows that meets a front outside of things, or, of a lamp that is
+ * modelled from both sides, that meets nothing. */
+static double share_touching(const struct run *run, int32_t lamp)
+{
+    struct octree_counts counts = {0};
+    bool single = false;
+    int count = 0;
+    for (int i = 0; i < LAMP_POINTS; i++) {
+        uint64_t seed = hash_mix((uint64_t)i);
+        struct half_line ray = ray_over(run, lamp, seed);
+        if (!touches(run, lamp, seed))
+            continue;
+        int32_t met = root_met(run->scene, run->octree, &ray, NOTHING, &counts);
+        bool bound = ray_is_bound(run->scene, run->octree, ray.origin, ray.direction,
+                                  &single, &counts);
+        if ((met >= 0 && !bound) ||
+            (met == NOTHING && run->scene->opposed[scene_input_of(run->scene, lamp)]))
+            return 0.0;
+        count++;
+    }
+    return (double)count / LAMP_POINTS;
+}
+
+double balance_touching(const struct run *run)
+{
+    const struct scene *scene = run->scene;
+    double power = 0.0;
+    for (int32_t root = 0; root < scene_root_count(scene); root++) {
+        double sent = scene_root_own_area(scene, root) *
+                      rgb_sum(scene_root_material(scene, root)->emission);
+        if (sent > 0.0)
+            power += sent * share_touching(run, root);
+    }
+    return power * scene_area_unit(scene);
+}
+
+/* True if a random ray from the root leaves. */
+static bool leaves(const struct run *run, int32_t root, uint64_t seed)
+{
+    struct half_line ray = ray_over(run, root, seed);
+    struct octree_counts counts = {0};
+    struct octree_hit hit;
+    return !octree_first_hit(run->octree, ray.origin, ray.direction, false, &hit,
+                             &counts);
 }
 
 /* True if a lamp lies over a random point of the root, in its plane. */
@@ -98,10 +159,14 @@ static double share_under_lamps(const struct run *run)
     return (double)under / LAMP_RAYS;
 }
 
-/* The area of a root that has light. */
+/* The area of a root that has light, and sends none between touching faces. */
 static double lit_area(const struct run *run, int32_t root)
 {
     const struct forest *forest = run->solver->model.forest;
+    if (run->stats.touching_power > 0.0 &&
+        material_emits(scene_root_material(run->scene, root)) &&
+        share_touching(run, root) > 0.0)
+        return 0.0;
     return rgb_sum(forest->radiosity[root]) > 0.0 ? scene_root_area(run->scene, root)
                                                   : 0.0;
 }

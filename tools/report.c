@@ -145,6 +145,9 @@ bool report_summary(struct run *run)
                     "warning: the error is %.2g %%, not the %.3g %% of --accuracy: %s",
                     100.0 * run->stats.error_estimate, 100.0 * run->stats.accuracy,
                     HOLDS[run->stats.hold]);
+        run->stats.touching_power =
+            fmin(balance_touching(run), fmax(0.0, run->stats.escaped_power));
+        run->stats.escaped_power -= run->stats.touching_power;
         balance_judge(run);
         if (!run->options.quiet && !run->options.dump)
             stats_print(&run->stats,

@@ -41,8 +41,11 @@ void stats_print(const struct stats *stats, FILE *file)
                 stats->gathered.rays, stats->gathered.segments, stats->gathered.exact);
     fprintf(file, "iterations  %" PRId64 " (%s)\n", stats->iterations,
             stats->converged ? "converged" : "not converged");
-    fprintf(file, "power       %.6g W emitted, %.6g W absorbed, %.6g W escaped\n",
+    fprintf(file, "power       %.6g W emitted, %.6g W absorbed, %.6g W escaped",
             stats->emitted_power, stats->absorbed_power, stats->escaped_power);
+    if (stats->touching_power > 0.0)
+        fprintf(file, ", %.6g W where faces touch", stats->touching_power);
+    fputc('\n', file);
     fprintf(file, "row sums    %.4f .. %.4f, mean %.4f (1 in a closed scene)\n",
             stats->row_sum_min, stats->row_sum_max, stats->row_sum_mean);
     if (stats->error_estimate > 0.0)
@@ -108,6 +111,7 @@ static void write_counts(FILE *file, const struct stats *stats)
     write_real(file, "emitted_power", stats->emitted_power);
     write_real(file, "absorbed_power", stats->absorbed_power);
     write_real(file, "escaped_power", stats->escaped_power);
+    write_real(file, "touching_power", stats->touching_power);
     fprintf(file, "  \"checksum\": \"%016" PRIx64 "\",\n", stats->checksum);
     write_integer(file, "rays", stats->rays);
     write_integer(file, "node_tests", stats->node_tests);

@@ -10,6 +10,7 @@
  * Rejected: exact factors to whatever a leaf sees openly and rays for the rest. Proofs
  * for all pairs cost more than the rays that they save. */
 #include "rad/beyond/gather/gather.h"
+#include "rad/beyond/gather/met.h"
 #include "rad/beyond/gather/factor.h"
 #include "rad/beyond/gather/receiver.h"
 #include "rad/beyond/sample.h"
@@ -336,13 +337,23 @@ static double sum_of_row(const struct gather_sums *sums)
     return sum;
 }
 
-/* False if an exact row has a sum that cannot be true, as where faces lie on each other.
- * One that all but sums to 1 is made to. */
+/* True if the leaf lies inside of a thing, as the foot of a wall on a floor does. */
+static bool lies_inside(struct receiver *r)
+{
+    struct vec3 normal = r->facet.plane.normal;
+    struct vec3 x = point_above(triangle_centroid(&r->facet.triangle), normal);
+    r->sums.on_back = true;
+    return ray_comes_from_inside(r, x, normal);
+}
+
+/* False if an exact row has a sum that cannot be true, as where faces lie on each other,
+ * or has light from leaves that reach into a thing. One that all but sums to 1 is made
+ * to. */
 static bool close_row(struct receiver *r)
 {
     const struct gather_sums *sums = &r->gather->sums;
     double sum = sum_of_row(sums);
-    if (sum > 1.0 + CLOSED)
+    if (sum > 1.0 + CLOSED || (sum > 0.0 && sum < 1.0 - CLOSED && lies_inside(r)))
         return false;
     r->gather->counts.exact++;
     r->row.kept = sum < 1.0 - CLOSED ? (float)sum : 1.0f;

@@ -51,24 +51,26 @@ static bool is_backed(const struct space *space, const struct crossing *front)
            vec3_dot(scene_root_plane(space->scene, other).normal, front->normal) < 0.0;
 }
 
-/* True if a ray that meets the face has left more things than it has entered. */
+/* True if a ray that meets the face has left more things than it has entered, or would
+ * have at a front that another face backs: there one thing may end and another begin.
+ * `*single` becomes true if it goes on through such and leaves one by a back alone. */
 static bool leaves_a_thing(const struct space *space, struct crossing face,
                            struct vec3 direction, bool *single)
 {
     int entered = 0;
+    bool bound = false;
     for (int count = 0; count < CROSSED_MOST && face.input >= 0; count++) {
         bool backed = !face.back && is_backed(space, &face);
-        if (entered == 0 && (face.back || backed)) {
-            *single = *single || face.back;
-            return true;
-        }
+        if (entered == 0 && face.back)
+            return *single = true;
+        bound = bound || (entered == 0 && backed);
         if (!backed && !scene_has_twin(space->scene, face.input))
             entered += face.back ? -1 : 1;
         double beyond = face.back ? FACES_APART : -FACES_APART;
         struct vec3 origin = vec3_add(face.at, vec3_scale(face.normal, beyond));
         face = next_face(space, origin, direction);
     }
-    return false;
+    return bound;
 }
 
 bool ray_is_bound(const struct scene *scene, const struct octree *octree,
