@@ -6,6 +6,9 @@
  * one, so that a long phase does not look dead and a short one stays silent. Under
  * mpiexec stderr is a pipe on every rank: phr writes a log.
  *
+ * Of a phase that takes long a line says after some seconds how long, and what could be
+ * done, so that nobody waits in vain.
+ *
  * The percentage is that of rank 0. Work is balanced, so the others are about as far. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _POSIX_C_SOURCE 200112L
@@ -16,11 +19,16 @@
 #include "io/run/progress.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static const double REWRITE = 0.1, LOG = 30.0; /* seconds between lines */
 
 /* The time left is shown from this part of a stage and this many seconds on. */
 static const double DONE_LEAST = 0.02, SECONDS_LEAST = 1.0;
+
+/* A phase is long that takes more seconds than this, as is seen from so many seconds
+ * on. */
+static const double LONG = 60.0, SECONDS_TO_TELL = 5.0;
 
 static bool stderr_is_terminal(void)
 {
@@ -63,6 +71,30 @@ int progress_text(char text[PROGRESS_WIDTH + 1], const struct progress *progress
     return length < PROGRESS_WIDTH ? length : PROGRESS_WIDTH;
 }
 
+/* Says once of a phase that it takes long, if it does. */
+static void tell_long(struct progress_view *view, double seconds)
+{
+    static const char *const SHORTER[][2] = {
+        {"refining", "larger --epsilon"},
+        {"looking", "larger --epsilon"},
+        {"gathering", "smaller --final-gather or a larger --epsilon"},
+        {"rendering", "smaller --size or --samples"}};
+    const char *phase = view->progress.phase;
+    double done = view->progress.share;
+    char duration[32];
+    if (view->told == phase || !(done > 0.0) || seconds < SECONDS_TO_TELL ||
+        seconds < LONG * done)
+        return;
+    for (size_t i = 0; i < sizeof SHORTER / sizeof SHORTER[0]; i++)
+        if (strcmp(SHORTER[i][0], phase) == 0) {
+            print_duration(duration, sizeof duration, seconds / done);
+            progress_view_clear(view);
+            fprintf(stderr, "phr: %s takes about %s; a %s takes less\n", phase, duration,
+                    SHORTER[i][1]);
+            view->told = phase;
+        }
+}
+
 static void show(struct progress *progress)
 {
     struct progress_view *view = (void *)progress; /* its first field */
@@ -71,6 +103,7 @@ static void show(struct progress *progress)
         view->stage = progress->stage;
         view->begun = now;
     }
+    tell_long(view, now - view->begun);
     if (now - view->shown < (view->terminal ? REWRITE : LOG))
         return;
     char text[PROGRESS_WIDTH + 1];

@@ -17,9 +17,12 @@ struct progress_view {
     double begun;             /* clock at the first tick of the stage */
     double shown;             /* clock at the last line written */
     int width;                /* of the line on the terminal; 0: there is none */
+    const char *told;         /* the last phase that was said to take long */
 };
 
-/* Shows the progress from now on; without this call, ticks do nothing. */
+/* Shows the progress from now on; without this call, ticks do nothing. Of a phase that
+ * takes more than a minute a line that stays says so early, and which options make it
+ * shorter. */
 void progress_view_open(struct progress_view *view, double (*clock)(void));
 
 /* Removes the line. To be called before any other output on stderr. */

@@ -115,6 +115,40 @@ static void test_log(void)
     remove(LOG);
 }
 
+/* Ticks of a phase that takes so many seconds, one a second; the lines of the log after
+ * ten. */
+static int lines_of_phase(const char *phase, double seconds)
+{
+    struct progress_view view;
+    now = 0.0;
+    if (!freopen(LOG, "w", stderr))
+        return -1;
+    progress_view_open(&view, test_clock);
+    progress_begin(&view.progress, phase, -1, 0);
+    for (int i = 0; i <= 10; i++) {
+        now = i;
+        progress_tick(&view.progress, i / seconds);
+    }
+    fflush(stderr);
+    return log_lines();
+}
+
+static void test_long(void)
+{
+    char line[100] = "";
+    int lines = lines_of_phase("gathering", 240.0);
+    FILE *file = fopen(LOG, "r");
+    tap_ok(lines == 1 && file && fgets(line, sizeof line, file) &&
+               strcmp(line, "phr: gathering takes about 4 min; a smaller --final-gather "
+                            "or a larger --epsilon takes less\n") == 0,
+           "a phase of four minutes is said to be long, once: %.40s", line);
+    if (file)
+        fclose(file);
+    tap_ok(lines_of_phase("gathering", 50.0) == 0, "one of 50 s is not");
+    tap_ok(lines_of_phase("checking", 240.0) == 0, "nor one that nothing shortens");
+    remove(LOG);
+}
+
 int main(void)
 {
     test_text();
@@ -122,5 +156,6 @@ int main(void)
     test_nobody();
     test_pairs();
     test_log();
+    test_long();
     return tap_done();
 }
