@@ -337,27 +337,21 @@ static double sum_of_row(const struct gather_sums *sums)
     return sum;
 }
 
-/* True if the leaf lies inside of a thing, as the foot of a wall on a floor does. */
-static bool lies_inside(struct receiver *r)
-{
-    struct vec3 normal = r->facet.plane.normal;
-    struct vec3 x = point_above(triangle_centroid(&r->facet.triangle), normal);
-    r->sums.on_back = true;
-    return ray_comes_from_inside(r, x, normal);
-}
-
 /* False if an exact row has a sum that cannot be true, as where faces lie on each other,
- * or has light from leaves that reach into a thing. One that all but sums to 1 is made
- * to. */
+ * or is inside of a thing. One that all but sums to 1 is made to. */
 static bool close_row(struct receiver *r)
 {
     const struct gather_sums *sums = &r->gather->sums;
     double sum = sum_of_row(sums);
-    if (sum > 1.0 + CLOSED || (sum > 0.0 && sum < 1.0 - CLOSED && lies_inside(r)))
+    bool partial = sum > 0.0 && sum < 1.0 - CLOSED;
+    struct vec3 normal = r->facet.plane.normal, x = triangle_centroid(&r->facet.triangle);
+    r->sums.on_back = true;
+    if (sum > 1.0 + CLOSED ||
+        (partial && ray_comes_from_inside(r, point_above(x, normal), normal)))
         return false;
     r->gather->counts.exact++;
     r->row.kept = sum < 1.0 - CLOSED ? (float)sum : 1.0f;
-    r->gather->counts.escaped += sum > 0.0 && sum < 1.0 - CLOSED;
+    r->gather->counts.escaped += partial;
     for (int64_t i = 0; i < sums->count && sum >= 1.0 - CLOSED; i++)
         for (int c = 0; c < BANDS; c++)
             sums->items[i].weight[c] /= sum;

@@ -51,9 +51,8 @@ static bool is_backed(const struct space *space, const struct crossing *front)
            vec3_dot(scene_root_plane(space->scene, other).normal, front->normal) < 0.0;
 }
 
-/* True if a ray that meets the face has left more things than it has entered, or would
- * have at a front that another face backs: there one thing may end and another begin.
- * `*single` becomes true if it goes on through such and leaves one by a back alone. */
+/* True if a ray that meets the face has left more things than it has entered, or meets a
+ * front first that another backs; `*single`: it comes to a back alone, there or beyond. */
 static bool leaves_a_thing(const struct space *space, struct crossing face,
                            struct vec3 direction, bool *single)
 {
