@@ -78,7 +78,7 @@ missing=$(while IFS= read -r line; do
     grep -qxF -- "$line" README.md || echo "$line"
 done <"$work/summary")
 check "the README shows the summary of make demo: $missing" [ -z "$missing" ]
-check "which has nine lines" [ "$(wc -l <"$work/summary")" -eq 9 ]
+check "which has ten lines" [ "$(wc -l <"$work/summary")" -eq 10 ]
 
 $MAKE BUILD="$BUILD" install DESTDIR="$work/root" prefix=/opt/phr \
     >"$work/install.log" 2>&1

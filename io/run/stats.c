@@ -131,7 +131,8 @@ static void write_counts(FILE *file, const struct stats *stats)
             stats->gathered.rays, stats->gathered.segments, stats->gathered.exact,
             stats->gathered.terms, stats->gathered.looks, stats->gathered.split,
             stats->gathered.pixels, stats->gathered.closing, stats->gathered.error,
-            stats->gathered.median, stats->gathered.percentile_90, stats->gathered.by_rays, stats->gathered.by_mesh);
+            stats->gathered.median, stats->gathered.percentile_90,
+            stats->gathered.by_rays, stats->gathered.by_mesh);
     fprintf(file,
             "  \"closure\": {\"min\": %.17g, \"mean\": %.17g, \"max\": %.17g, \"rms\": "
             "%.17g},\n",

@@ -211,8 +211,8 @@ static void test_looks(void)
 }
 
 /* The part of the surface, of leaves with light, on which errors are at most this part of
- * a leaf's own light. All is grey, and what is left of the equation is next to nothing, so
- * `error` is 2.5 deviations in any band. */
+ * a leaf's own light. All is grey, and next to nothing is left of the equation: `error`
+ * is 2.5 deviations in any band. */
 static double surface_within(const struct solution *s, double part)
 {
     const struct forest *forest = s->solver->model.forest;

@@ -1,7 +1,7 @@
 /* Bundles of the octree, and their segments one by one, against brute force in double
  * precision: 100,000 segments in each of five scenes, ten times as many in `make prove`;
- * a third of their end points lie on edges and corners. No answer may differ, near edges or not: cases that float cannot
- * decide are decided by the same test in double. */
+ * a third of their end points lie on edges and corners. No answer may differ, near edges
+ * or not: cases that float cannot decide are decided by the same test in double. */
 #include "octree/lanes.h"
 #include "tests/scenes.h"
 #include "tests/tap.h"

@@ -52,7 +52,7 @@ static bool is_backed(const struct space *space, const struct crossing *front)
 }
 
 /* True if a ray that meets the face has left more things than it has entered, or meets a
- * front first that another backs; `*single`: it comes to a back alone, there or beyond. */
+ * front first that another backs; `*single`: it comes to a back alone, there or later. */
 static bool leaves_a_thing(const struct space *space, struct crossing face,
                            struct vec3 direction, bool *single)
 {

@@ -5,8 +5,8 @@
  *     H = cos cos' P / (pi (d^2 + r^2)),
  *
  * with its power P, its distance d, and r^2 the sum of the squares of both radii. Cosines
- * are those of the middle, the largest that the bounds of normals allow, or where the node
- * reaches below a horizon, means over the part above.
+ * are those of the middle, the largest that the bounds of normals allow; or where the
+ * node reaches below a horizon, means over the part above.
  *
  * A bright wall is seldom bright all over: beside a lamp it has a strip, below one a
  * spot. Points all over the wall would seldom be there. So a sender is the largest patch

@@ -295,7 +295,7 @@ static double light_of_floor(int parts)
 /* A ceiling is lit by the floor, and that by a lamp of 32 facets which faces it, but not
  * the ceiling. Paths that go on from a floor of two leaves, which are too near for their
  * means, find the lamp: as much light as by the means of small leaves, but for rays which
- * end far enough away for the mean of half of the floor, that links find by few points. */
+ * end far enough away for the mean of half of the floor, found by links of few points. */
 static void test_lamp_that_faces_away(void)
 {
     double means = light_of_floor(8), points = light_of_floor(1);
