@@ -9,9 +9,9 @@
  *
  *     F  sum of V K / sum of K  times its light:
  *
- * exactly F where all of it is seen, and 0 where nothing is. Of a bright patch that is
- * not near, F is the mean of K times its area. Of a node with several senders each
- * segment chooses one by its power.
+ * exactly F where all of it is seen, and 0 where nothing is. Of a sender that is far away
+ * F is the mean of K times its area. Of a node with several senders each segment chooses
+ * one by its power.
  *
  * Rays that meet a lamp count its reflected light and not its emission. A ray that meets
  * a bright patch which is aimed at is put aside (rays.c). */
@@ -34,7 +34,7 @@ static const double AIMED_LEAST = 0.25;
 
 /* A sender is near a receiver if the distance of their centres is at most so many times
  * the sum of their radii. */
-static const double NEARBY = 2.0;
+static const double NEARBY = 4.0;
 
 /* Fewest segments that are enough to estimate the visible share of senders; most tries
  * for a point of a sender above the horizon. */
@@ -133,12 +133,6 @@ static double add_shot(struct receiver *r, const struct aim *aim, const struct s
     return rgb_sum(r->light) - before;
 }
 
-static double exact_factor(const struct receiver *r, const struct facet *sender)
-{
-    return mean_factor(&r->facet.triangle, r->facet.plane.normal, &sender->triangle,
-                       &r->gather->model->estimating);
-}
-
 /* Fires `count` segments at a sender, for `share` of its light. `factor`: the exact one,
  * or -1. Where the exact factor is taken, points below a horizon are passed over, or the
  * light would be lost where all of few are. */
@@ -147,7 +141,7 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
 {
     struct facet sender = facet_make(r->gather->model->forest, patch);
     struct final_gather *g = r->gather;
-    bool exact = !aim->senders->reflect || factor >= 0.0;
+    bool exact = factor >= 0.0;
     double all = 0.0;
     int found = 0, start = aim->index, end = start + (exact ? TRIES_MOST : 1) * count;
     if (!facets_face(&r->facet, &sender))
@@ -161,9 +155,8 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
     }
     if (found == 0)
         return;
-    if (!(factor >= 0.0))
-        factor = exact ? exact_factor(r, &sender)
-                       : sender.area * all / (aim->index - start);
+    if (!exact)
+        factor = sender.area * all / (aim->index - start);
     double sent = rgb_sum(sender_light(aim->senders, patch));
     for (int k = 0; k < found; k++) {
         struct shot shot = g->shots[k]; /* the light behind it may be aimed at by more */
@@ -218,7 +211,10 @@ static struct offer offer_of(const struct receiver *r, const struct senders *sen
         return (struct offer){sender_node_worth(senders, node, own), -1.0};
     int32_t patch = senders->patches[node->first];
     struct facet sender = facet_make(r->gather->model->forest, patch);
-    double factor = facets_face(&r->facet, &sender) ? exact_factor(r, &sender) : 0.0;
+    double factor = 0.0;
+    if (facets_face(&r->facet, &sender))
+        factor = mean_factor(&r->facet.triangle, r->facet.plane.normal, &sender.triangle,
+                             &r->gather->model->estimating);
     return (struct offer){factor * rgb_sum(sender_light(senders, patch)), factor};
 }
 
