@@ -9,8 +9,8 @@
  *
  *     F  sum of V K / sum of K  times its light:
  *
- * exactly F where all of it is seen, and 0 where nothing is. Of a sender that is far away
- * F is the mean of K times its area. Of a node with several senders each segment chooses
+ * exactly F where all of it is seen, and 0 where nothing is. Of a bright patch that is
+ * far away F is the mean of K times its area. Of a node with several senders each segment chooses
  * one by its power.
  *
  * Rays that meet a lamp count its reflected light and not its emission. A ray that meets
@@ -34,7 +34,10 @@ static const double AIMED_LEAST = 0.25;
 
 /* A sender is near a receiver if the distance of their centres is at most so many times
  * the sum of their radii. */
-static const double NEARBY = 4.0;
+static const double NEARBY = 2.0;
+
+/* A near sender has an exact offer if it is for this part of a segment at least. */
+static const double FOR_EXACT = 0.0625;
 
 /* Fewest segments that are enough to estimate the visible share of senders; most tries
  * for a point of a sender above the horizon. */
@@ -133,6 +136,12 @@ static double add_shot(struct receiver *r, const struct aim *aim, const struct s
     return rgb_sum(r->light) - before;
 }
 
+static double exact_factor(const struct receiver *r, const struct facet *sender)
+{
+    return mean_factor(&r->facet.triangle, r->facet.plane.normal, &sender->triangle,
+                       &r->gather->model->estimating);
+}
+
 /* Fires `count` segments at a sender, for `share` of its light. `factor`: the exact one,
  * or -1. Where the exact factor is taken, points below a horizon are passed over, or the
  * light would be lost where all of few are. */
@@ -141,7 +150,7 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
 {
     struct facet sender = facet_make(r->gather->model->forest, patch);
     struct final_gather *g = r->gather;
-    bool exact = factor >= 0.0;
+    bool exact = factor >= 0.0 || !aim->senders->reflect;
     double all = 0.0;
     int found = 0, start = aim->index, end = start + (exact ? TRIES_MOST : 1) * count;
     if (!facets_face(&r->facet, &sender))
@@ -157,6 +166,8 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
         return;
     if (!exact)
         factor = sender.area * all / (aim->index - start);
+    else if (factor < 0.0)
+        factor = exact_factor(r, &sender);
     double sent = rgb_sum(sender_light(aim->senders, patch));
     for (int k = 0; k < found; k++) {
         struct shot shot = g->shots[k]; /* the light behind it may be aimed at by more */
@@ -201,43 +212,53 @@ static int deal(struct dealing *dealing, double direct)
     return (int)(floor(dealing->sum) - before);
 }
 
-/* The offer of a node. The exact factor is found for a sender that is near. */
-static struct offer offer_of(const struct receiver *r, const struct senders *senders,
-                             const struct sender_node *node, const struct bounds *own)
+static bool is_near_sender(const struct sender_node *node, const struct bounds *own)
 {
     struct vec3 apart = vec3_sub(node->bounds.middle, own->middle);
     double reach = NEARBY * (node->bounds.radius + own->radius);
-    if (node->child[0] >= 0 || vec3_dot(apart, apart) > reach * reach)
-        return (struct offer){sender_node_worth(senders, node, own), -1.0};
+    return node->child[0] < 0 && vec3_dot(apart, apart) <= reach * reach;
+}
+
+/* The offer of a node that is a single sender, by its exact factor. */
+static struct offer exact_offer(const struct receiver *r, const struct senders *senders,
+                                const struct sender_node *node)
+{
     int32_t patch = senders->patches[node->first];
     struct facet sender = facet_make(r->gather->model->forest, patch);
-    double factor = 0.0;
-    if (facets_face(&r->facet, &sender))
-        factor = mean_factor(&r->facet.triangle, r->facet.plane.normal, &sender.triangle,
-                             &r->gather->model->estimating);
+    double factor = facets_face(&r->facet, &sender) ? exact_factor(r, &sender) : 0.0;
     return (struct offer){factor * rgb_sum(sender_light(senders, patch)), factor};
 }
 
 /* Makes the offers of the nodes of a cut: half of all by light, half by light that is
- * seen. Returns the sum of their light, W/m^2. */
-static double make_offers(struct receiver *r, const struct cuts *cuts, struct cut cut)
+ * seen. Those that are near, and bring a good part of what a segment is for, are exact.
+ * Returns the light that each segment is for, W/m^2. */
+static double make_offers(struct receiver *r, const struct cuts *cuts, struct cut cut,
+                          int segments)
 {
     struct final_gather *g = r->gather;
+    const struct senders *senders = cuts->senders;
     struct bounds own = facet_bounds(&r->facet);
-    double sum = 0.0, found = 0.0;
+    double all = 0.0, sum = 0.0, found = 0.0;
     RESERVE(g->offers, &g->offer_capacity, cut.count);
     for (int64_t i = 0; i < cut.count; i++) {
-        const struct cut_node *node = &cuts->nodes[cut.first + i];
-        g->offers[i] =
-            offer_of(r, cuts->senders, &cuts->senders->nodes[node->node], &own);
+        const struct sender_node *node =
+            &senders->nodes[cuts->nodes[cut.first + i].node];
+        g->offers[i] = (struct offer){sender_node_worth(senders, node, &own), -1.0};
+        all += g->offers[i].worth;
+    }
+    for (int64_t i = 0; i < cut.count; i++) {
+        const struct cut_node *at = &cuts->nodes[cut.first + i];
+        const struct sender_node *node = &senders->nodes[at->node];
+        if (g->offers[i].worth * segments >= FOR_EXACT * all && is_near_sender(node, &own))
+            g->offers[i] = exact_offer(r, senders, node);
         sum += g->offers[i].worth;
-        found += g->offers[i].worth * node->found;
+        found += g->offers[i].worth * at->found;
     }
     double part = found > 0.0 ? 0.5 * sum / found : 0.0;
     for (int64_t i = 0; i < cut.count; i++)
         g->offers[i].worth *=
             (found > 0.0 ? 0.5 : 1.0) + part * cuts->nodes[cut.first + i].found;
-    return sum;
+    return sum / segments;
 }
 
 /* A node that is sure to get a segment counts with its own light, shared among its
@@ -248,7 +269,7 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
 static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
 {
     struct cut cut = cuts_at(cuts, r->row.leaf, &r->gather->view.counts);
-    double each = make_offers(r, cuts, cut) / segments;
+    double each = make_offers(r, cuts, cut, segments);
     const struct offer *offers = r->gather->offers;
     if (!(each > 0.0))
         return;
