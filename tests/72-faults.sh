@@ -4,8 +4,8 @@
 . tests/tap.sh
 . tests/faults.sh
 
-box="scenes/cornell.obj --epsilon 1e-6 --flat --size 20x20"
-scene="$box --final-gather 8"
+# Long enough to be stopped on the way. Six runs go on to its end, in half a minute.
+scene="scenes/cornell.obj --epsilon 2e-6 --flat --size 20x20 --final-gather 8"
 
 # A launcher that was sent a signal may end with 0 whatever its ranks end with: then the
 # message of phr counts.
@@ -89,7 +89,7 @@ check "it goes on from the checkpoint of the solution" \
     grep -q "^phr: stopped by SIGTERM; go on with --resume $work/check\$" "$work/err"
 
 # Outlines are found by rays of their own, once the picture is there.
-outlines="scenes/cornell.obj --epsilon 1e-2 --final-gather 0 --show mesh --size 3000x3000
+outlines="scenes/cornell.obj --epsilon 1e-2 --final-gather 0 --show mesh --size 2000x2000
     --samples 1"
 "$PHR" $outlines --quiet -o "$work/outlines.ppm"
 for wait in 0.5 0.7 0.9; do
@@ -189,9 +189,8 @@ check "which is the one before, whole" goes_on full
 
 if [ -c /dev/full ]; then
     for option in --checkpoint "--paper --save-links"; do
-        $MPIEXEC -n 2 sh -c 'exec 2>"$0/full.err"; exec "$@"' "$work" "$PHR" $box \
-            --quiet $option /dev/full \
-            >/dev/null 2>&1
+        $MPIEXEC -n 2 sh -c 'exec 2>"$0/full.err"; exec "$@"' "$work" "$PHR" \
+            scenes/cornell.obj --max-level 2 --quiet $option /dev/full >/dev/null 2>&1
         status=$?
         check "$option on a full device: exit status 1" [ "$status" -eq 1 ]
     done
