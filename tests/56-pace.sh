@@ -1,7 +1,8 @@
 # The pace: instructions of the runs of tests/pace/figures, beside their figures. Seconds
 # are noisy; instructions repeat to one in ten thousand. They depend on the compiler and
 # its options, so phr of another compiler is not judged. With RENEW=yes (`make pace`) what
-# the runs take now becomes what is expected.
+# the runs take now becomes what is expected. Half a minute: callgrind is 50 times as slow
+# as the processor.
 
 . tests/tap.sh
 

@@ -4,7 +4,8 @@
 # with the reason (every reason there is: tests/io/store.c; settings: tests/io/options.c).
 . tests/tap.sh
 
-# Small runs: files differ in the way that the code goes, not in the size.
+# Small runs: files differ in the way that the code goes, not in the size. There are 80 of
+# them, on up to 4 ranks, which take 40 s. One that is to be stopped is longer.
 links="scenes/cornell.obj --epsilon 1e-3 --size 40x40 --quiet"
 gathered="$links --final-gather 16"
 cornell=$gathered

@@ -1,5 +1,6 @@
 # 40 runs of options drawn at random on five odd scenes; others with another SEED, more
-# with RUNS. Whatever is asked for, what is printed and written has to hold together.
+# with RUNS. Whatever is asked for, what is printed and written has to hold together. A
+# run takes .3 s.
 
 . tests/tap.sh
 

@@ -4,7 +4,7 @@
 # are the limit of a hang, not of a speed).
 #
 # Output is taken from each rank itself, so that words of the launcher about an exit
-# status that is not 0 do not count as ours.
+# status that is not 0 do not count as ours. A hundred launches take ten seconds.
 . tests/tap.sh
 
 out=$work/stdout

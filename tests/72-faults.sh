@@ -138,7 +138,7 @@ stopped_early "while a pipe is read that stays open"
 exec 3>&-
 
 start 2 scenes/cornell.obj -o "$work/new.ppm" --resume "$work/pipe.obj"
-sleep 0.5
+sleep 2
 stopped_early "while a checkpoint is waited for"
 
 build/room 300000 1 >"$work/large.obj"

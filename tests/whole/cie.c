@@ -11,7 +11,8 @@
  * these one lies on the very edge of the shadow: from there on it gets brighter by 6 % a
  * metre, and of this a leaf's mean and the interpolation show some at the edge. The
  * tolerance, 0.1 %, is met 1.6 cm away. The other, half a metre into the shadow, may
- * have the error of a link, epsilon. */
+ * have the error of a link, epsilon. The slab and the runs at the default epsilon take
+ * most of 10 s. */
 #include "tests/defaults.h"
 #include "tests/tap.h"
 

@@ -1,5 +1,6 @@
 /* Light in gaps: a whole run with phr's defaults of a room in which things hang and stand
- * 2 mm from each other. The truth is that of the path tracer. */
+ * 2 mm from each other. The truth is that of the path tracer, whose paths for 2,300
+ * leaves, and white rooms, take most of its 25 s. */
 #include "mpi/beyond/beyond.h"
 #include "tests/defaults.h"
 #include "tests/tap.h"

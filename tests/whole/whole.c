@@ -4,6 +4,7 @@
  * in a sphere all form factors are shares of the area, and in a furnace B is the same
  * everywhere. With an argument all runs but those of the convergence have it as their
  * options. `make check` has one or two cases of each kind, `make prove` all.
+ * It takes 40 s, for 45 runs of up to 10,000 leaves.
  *
  * The answer of a leaf is its mean. For each surface: the error of its mean, the error of
  * leaves, root mean square over the area, and that of the worst leaf, all relative to the
