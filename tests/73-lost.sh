@@ -134,7 +134,7 @@ fi
 
 # --- signals ---
 
-box="scenes/cornell.obj --epsilon 1e-6 --final-gather 8 --checkpoint $work/signal.check"
+box="scenes/cornell.obj --epsilon 2e-6 --final-gather 8 --checkpoint $work/signal.check"
 for signal in HUP XCPU USR1; do
     for ranks in 1 3; do
         start $ranks $box
