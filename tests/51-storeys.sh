@@ -30,7 +30,7 @@ upstairs_lines         9880  9200
 named_numbers_upstairs  128    70
 bare_numbers_upstairs   119   134
 fields_upstairs         106    20
-fields_elsewhere        164    20
+fields_elsewhere        165    20
 functions_of_row        320   200
 calls_to_first_ray       12     9
 calls_to_first_segment   16    10

@@ -79,10 +79,11 @@ static void tell_long(struct progress_view *view, double seconds)
         {"looking", "larger --epsilon"},
         {"gathering", "smaller --final-gather or a larger --epsilon"},
         {"rendering", "smaller --size or --samples"}};
+    static const char *told; /* the last phase that was said to take long */
     const char *phase = view->progress.phase;
     double done = view->progress.share;
     char duration[32];
-    if (view->told == phase || !(done > 0.0) || seconds < SECONDS_TO_TELL ||
+    if (told == phase || !(done > 0.0) || seconds < SECONDS_TO_TELL ||
         seconds < LONG * done)
         return;
     for (size_t i = 0; i < sizeof SHORTER / sizeof SHORTER[0]; i++)
@@ -91,7 +92,7 @@ static void tell_long(struct progress_view *view, double seconds)
             progress_view_clear(view);
             fprintf(stderr, "phr: %s takes about %s; a %s takes less\n", phase, duration,
                     SHORTER[i][1]);
-            view->told = phase;
+            told = phase;
         }
 }
 

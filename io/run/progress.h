@@ -17,7 +17,6 @@ struct progress_view {
     double begun;             /* clock at the first tick of the stage */
     double shown;             /* clock at the last line written */
     int width;                /* of the line on the terminal; 0: there is none */
-    const char *told;         /* the last phase that was said to take long */
 };
 
 /* Shows the progress from now on; without this call, ticks do nothing. Of a phase that
