@@ -88,7 +88,7 @@ static bool touches(const struct run *run, int32_t root, uint64_t seed)
  * modelled from both sides, that meets nothing. */
 static double share_touching(const struct run *run, int32_t lamp)
 {
-    struct octree_counts counts = {0};
+    struct model model = {.scene = run->scene, .octree = run->octree}; /* its own counts */
     bool single = false;
     int count = 0;
     for (int i = 0; i < LAMP_POINTS; i++) {
@@ -96,9 +96,8 @@ static double share_touching(const struct run *run, int32_t lamp)
         struct half_line ray = ray_over(run, lamp, seed);
         if (!touches(run, lamp, seed))
             continue;
-        int32_t met = root_met(run->scene, run->octree, &ray, NOTHING, &counts);
-        bool bound = ray_is_bound(run->scene, run->octree, ray.origin, ray.direction,
-                                  &single, &counts);
+        int32_t met = root_met(run->scene, run->octree, &ray, NOTHING, &model.counts);
+        bool bound = ray_is_bound(&model, ray.origin, ray.direction, &single);
         if ((met >= 0 && !bound) ||
             (met == NOTHING && run->scene->opposed[scene_input_of(run->scene, lamp)]))
             return 0.0;

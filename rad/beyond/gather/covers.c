@@ -20,23 +20,15 @@ enum { BARE_POINTS = 4 };
  * leaf's area. */
 static const double NARROW = 0x1p-9;
 
-static bool is_bound(struct receiver *r, struct vec3 origin, struct vec3 direction,
-                     bool *single)
-{
-    struct model *model = r->gather->model;
-    return ray_is_bound(model->scene, model->octree, origin, direction, single,
-                        &model->counts);
-}
-
 /* True if rays from the point, along the plane in four directions, all meet bounds. */
-static bool is_among_bounds(struct receiver *r, struct vec3 origin, struct vec3 normal,
+static bool is_among_bounds(struct model *model, struct vec3 origin, struct vec3 normal,
                             bool *single)
 {
     static const double RISE = 0.1;
     struct vec3 along = direction_along(normal);
     for (int k = 0; k < 4; k++, along = vec3_cross(normal, along)) {
         struct vec3 direction = vec3_add(along, vec3_scale(normal, RISE));
-        if (!is_bound(r, origin, vec3_unit(direction), single))
+        if (!ray_is_bound(model, origin, vec3_unit(direction), single))
             return false;
     }
     return true;
@@ -48,15 +40,16 @@ static bool is_among_bounds(struct receiver *r, struct vec3 origin, struct vec3 
  * tells the inside of a box from a room, and it is taken for a room. */
 static bool is_inside(struct receiver *r, struct vec3 origin)
 {
+    struct model *model = r->gather->model;
     struct vec3 normal = r->facet.plane.normal;
     bool single = false;
-    if (!is_among_bounds(r, origin, normal, &single))
+    if (!is_among_bounds(model, origin, normal, &single))
         return false;
-    if (is_bound(r, origin, normal, &single))
+    if (ray_is_bound(model, origin, normal, &single))
         return single;
     struct point point;
     return probe(r, origin, normal, &point) == MET_FRONT &&
-           is_among_bounds(r, point_above(point.at, point.normal), point.normal,
+           is_among_bounds(model, point_above(point.at, point.normal), point.normal,
                            &single) &&
            single;
 }
@@ -64,7 +57,8 @@ static bool is_inside(struct receiver *r, struct vec3 origin)
 bool ray_comes_from_inside(struct receiver *r, struct vec3 origin, struct vec3 direction)
 {
     bool single = false;
-    return r->sums.on_back && is_bound(r, origin, direction, &single) &&
+    return r->sums.on_back &&
+           ray_is_bound(r->gather->model, origin, direction, &single) &&
            is_inside(r, origin);
 }
 

@@ -18,71 +18,63 @@ struct crossing {
     struct vec3 normal; /* towards the ray's origin, but of a back */
 };
 
-struct space {
-    const struct scene *scene;
-    const struct octree *octree;
-    struct octree_counts *counts;
-};
-
 /* The face that a ray crosses next; a back in the place of a front counts as that. */
-static struct crossing next_face(const struct space *space, struct vec3 origin,
-                             struct vec3 direction)
+static struct crossing next_face(struct model *model, struct vec3 origin,
+                                 struct vec3 direction)
 {
     struct octree_hit hit;
-    if (!octree_first_hit(space->octree, origin, direction, false, &hit, space->counts))
+    if (!octree_first_hit(model->octree, origin, direction, false, &hit, &model->counts))
         return (struct crossing){.input = -1};
-    struct plane plane = space->scene->planes[hit.triangle];
+    struct plane plane = model->scene->planes[hit.triangle];
     double fall = vec3_dot(plane.normal, direction);
     double along = fall != 0.0 ? -plane_distance(&plane, origin) / fall : 0.0;
-    bool twin = scene_has_twin(space->scene, hit.triangle);
+    bool twin = scene_has_twin(model->scene, hit.triangle);
     return (struct crossing){
         hit.triangle, !hit.front && !twin, vec3_add(origin, vec3_scale(direction, along)),
         vec3_scale(plane.normal, !hit.front && twin ? -1.0 : 1.0)};
 }
 
 /* True if another face lies back to back with a front. */
-static bool is_backed(const struct space *space, const struct crossing *front)
+static bool is_backed(struct model *model, const struct crossing *front)
 {
     struct vec3 step = vec3_scale(front->normal, FACES_APART);
     int32_t own[2] = {front->input, -1}, other = -1;
-    return octree_blocks_segment(space->octree, vec3_add(front->at, step),
+    return octree_blocks_segment(model->octree, vec3_add(front->at, step),
                                  vec3_sub(front->at, step), own, &other,
-                                 space->counts) &&
-           vec3_dot(scene_root_plane(space->scene, other).normal, front->normal) < 0.0;
+                                 &model->counts) &&
+           vec3_dot(scene_root_plane(model->scene, other).normal, front->normal) < 0.0;
 }
 
 /* True if a ray that meets the face has left more things than it has entered, or meets a
  * front first that another backs; `*single`: it comes to a back alone, there or later. */
-static bool leaves_a_thing(const struct space *space, struct crossing face,
+static bool leaves_a_thing(struct model *model, struct crossing face,
                            struct vec3 direction, bool *single)
 {
     int entered = 0;
     bool bound = false;
     for (int count = 0; count < CROSSED_MOST && face.input >= 0; count++) {
-        bool backed = !face.back && is_backed(space, &face);
+        bool backed = !face.back && is_backed(model, &face);
         if (entered == 0 && face.back)
             return *single = true;
         bound = bound || (entered == 0 && backed);
-        if (!backed && !scene_has_twin(space->scene, face.input))
+        if (!backed && !scene_has_twin(model->scene, face.input))
             entered += face.back ? -1 : 1;
         double beyond = face.back ? FACES_APART : -FACES_APART;
         struct vec3 origin = vec3_add(face.at, vec3_scale(face.normal, beyond));
-        face = next_face(space, origin, direction);
+        face = next_face(model, origin, direction);
     }
     return bound;
 }
 
-bool ray_is_bound(const struct scene *scene, const struct octree *octree,
-                  struct vec3 origin, struct vec3 direction, bool *single,
-                  struct octree_counts *counts)
+bool ray_is_bound(struct model *model, struct vec3 origin, struct vec3 direction,
+                  bool *single)
 {
-    const struct space space = {scene, octree, counts};
-    struct crossing first = next_face(&space, origin, direction);
-    if (leaves_a_thing(&space, first, direction, single))
+    struct crossing first = next_face(model, origin, direction);
+    if (leaves_a_thing(model, first, direction, single))
         return true;
     if (first.input < 0 || first.back)
         return false;
     origin = point_above(first.at, first.normal);
-    return leaves_a_thing(&space, next_face(&space, origin, first.normal), first.normal,
+    return leaves_a_thing(model, next_face(model, origin, first.normal), first.normal,
                           single);
 }

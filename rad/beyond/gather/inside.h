@@ -2,10 +2,7 @@
 #ifndef RAD_BEYOND_INSIDE_H
 #define RAD_BEYOND_INSIDE_H
 
-#include <stdbool.h>
-
-#include "geom/scene.h"
-#include "octree/octree.h"
+#include "rad/model.h"
 
 /* Faces in one place are less far apart, in scene units. */
 #define FACES_APART 0x1p-26
@@ -16,8 +13,7 @@
  * that is a back with no front in its place: where all walls are double nothing tells the
  * inside of a box from a room. Faces with two sides bound nothing. Points in scene units;
  * `direction` has length 1. */
-bool ray_is_bound(const struct scene *scene, const struct octree *octree,
-                  struct vec3 origin, struct vec3 direction, bool *single,
-                  struct octree_counts *counts);
+bool ray_is_bound(struct model *model, struct vec3 origin, struct vec3 direction,
+                  bool *single);
 
 #endif
