@@ -130,11 +130,7 @@ static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
     struct rgb light = *weight;
     for (int c = 0; c < BANDS; c++)
         light.band[c] *= factor;
-    bool aimed = is_aimed_lamp(r, &point, x);
-    if (path_ends(r, &point, x))
-        path_add_mesh(r, &point, aimed, &light);
-    else
-        path_go_on(r, point, aimed, light, hash_mix(seed), false);
+    path_go_on(r, point, x, is_aimed_lamp(r, &point, x), light, hash_mix(seed), false);
 }
 
 void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patch,
@@ -148,38 +144,32 @@ void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patc
     find_leaf(forest, root, &point);
     if (!path_is_aimed_at(r, &point, x))
         return;
-    struct rgb weight = {{factor, factor, factor}};
-    bool aimed = root_is_sender(g->lamps, root);
     r->shares.bright += factor;
-    if (path_ends(r, &point, x))
-        path_add_mesh(r, &point, aimed, &weight);
-    else
-        path_go_on(r, point, aimed, weight, seed, true);
+    path_go_on(r, point, x, root_is_sender(g->lamps, root),
+               (struct rgb){{factor, factor, factor}}, seed, true);
 }
 
-void path_go_on(struct receiver *r, struct point point, bool aimed, struct rgb weight,
-                uint64_t seed, bool aims)
+void path_go_on(struct receiver *r, struct point point, struct vec3 x, bool aimed,
+                struct rgb weight, uint64_t seed, bool aims)
 {
-    for (int count = 1; count < PATH_MOST; count++, seed += 16) {
-        struct vec3 origin, direction, normal = point.normal;
+    for (int count = 1; count < PATH_MOST && !path_ends(r, &point, x);
+         count++, seed += 16) {
+        struct vec3 direction, normal = point.normal;
         if (count > PATH_SURE &&
             !survives(r, &point, aimed, hash_unit(seed + 13), &weight))
             return;
-        if (!leave(r, &point, aimed, seed, &weight, &origin, &direction))
+        if (!leave(r, &point, aimed, seed, &weight, &x, &direction))
             return;
         if (aims)
-            look_beside(r, origin, normal, &weight, seed + 10);
-        if (trace(r, origin, direction, &point) != MET_FRONT) {
+            look_beside(r, x, normal, &weight, seed + 10);
+        if (trace(r, x, direction, &point) != MET_FRONT) {
             r->escaped++;
             return;
         }
-        aimed = is_aimed_lamp(r, &point, origin);
-        if (aims && is_aimed_at_beside(r, &point, origin))
+        aimed = is_aimed_lamp(r, &point, x);
+        if (aims && is_aimed_at_beside(r, &point, x))
             return;
-        if (count + 1 == PATH_MOST || path_ends(r, &point, origin)) {
-            path_add_mesh(r, &point, aimed, &weight);
-            return;
-        }
     }
+    path_add_mesh(r, &point, aimed, &weight);
 }
 

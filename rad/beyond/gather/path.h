@@ -38,10 +38,10 @@ static inline bool path_ends(const struct receiver *r, const struct point *met,
  * the holder of a bulb, say: found by chance it is a bright speck. */
 bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x);
 
-/* A path goes on from a point that it has met and does not end on; adds its light, times
- * `weight`. `aimed`: the point is of a lamp that is aimed at. `aims`: from all of its
- * points at bright patches. */
-void path_go_on(struct receiver *r, struct point point, bool aimed, struct rgb weight,
-                uint64_t seed, bool aims);
+/* Adds the light of a path, times `weight`, that has met a point by a ray from x: it ends
+ * there or goes on. `aimed`: the point is of a lamp that is aimed at. `aims`: from all of
+ * its points at bright patches. */
+void path_go_on(struct receiver *r, struct point point, struct vec3 x, bool aimed,
+                struct rgb weight, uint64_t seed, bool aims);
 
 #endif

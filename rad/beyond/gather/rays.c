@@ -77,12 +77,9 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         return;
     }
     bool aimed = root_is_sender(r->gather->lamps, point_root(r, &point));
-    if (path_ends(r, &point, origin)) {
-        path_add_mesh(r, &point, aimed, &weight);
-    } else {
+    if (!path_ends(r, &point, origin))
         begin_path(r, &point, aimed, &weight);
-        path_go_on(r, point, aimed, weight, seed, true);
-    }
+    path_go_on(r, point, origin, aimed, weight, seed, true);
 }
 
 /* Adds the light of ray i's path to the sums, and to the half of the rays that it belongs
