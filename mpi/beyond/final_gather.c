@@ -391,41 +391,33 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
         vote->converged && vote->remaining <= g->solver->model.criterion.tolerance;
 }
 
-/* Collective. */
-static void share_straight_light(struct gathering *g)
-{
-    const struct forest *forest = g->solver->model.forest;
-    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
-    struct rgb *light = alloc_array((size_t)g->count, sizeof *light);
-    struct rgb *straight = alloc_array((size_t)forest->count, sizeof *straight);
-    for (int64_t row = 0; row < g->gather.count; row++)
-        own[row] = g->gather.rows[row].lamps;
-    gathering_share_rows(g, light);
-    for (int64_t i = 0; i < g->count; i++) {
-        struct rgb rho = gathering_material(g, i)->reflectance;
-        for (int c = 0; c < BANDS; c++)
-            straight[g->leaves[i]].band[c] = rho.band[c] * light[i].band[c];
-    }
-    alloc_free(g->solver->beyond->answer.straight);
-    g->solver->beyond->answer.straight = straight;
-    alloc_free(light);
-}
-
-/* Collective. The shares of leaves that pictures take for open. */
-static void share_open(struct gathering *g)
+/* Collective. What pictures need to know of leaves: light straight from lamps, and the
+ * shares that are open. */
+static void share_answer(struct gathering *g)
 {
     struct answer *answer = &g->solver->beyond->answer;
     struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
-    struct rgb *shares = alloc_array((size_t)g->count, sizeof *shares);
+    struct rgb *light = alloc_array((size_t)g->count, sizeof *light);
+    struct rgb *open = alloc_array((size_t)g->count, sizeof *open);
     size_t patches = (size_t)g->solver->model.forest->count;
     for (int64_t row = 0; row < g->gather.count; row++)
+        own[row] = g->gather.rows[row].lamps;
+    gathering_share_rows(g, light);
+    for (int64_t row = 0; row < g->gather.count; row++)
         own[row] = (struct rgb){{(double)g->gather.rows[row].open}};
-    gathering_share_rows(g, shares);
+    gathering_share_rows(g, open);
+    alloc_free(answer->straight);
     alloc_free(answer->outside);
+    answer->straight = alloc_array(patches, sizeof *answer->straight);
     answer->outside = alloc_array(patches, sizeof *answer->outside);
-    for (int64_t i = 0; i < g->count; i++)
-        answer->outside[g->leaves[i]] = (float)shares[i].band[0];
-    alloc_free(shares);
+    for (int64_t i = 0; i < g->count; i++) {
+        struct rgb rho = gathering_material(g, i)->reflectance;
+        for (int c = 0; c < BANDS; c++)
+            answer->straight[g->leaves[i]].band[c] = rho.band[c] * light[i].band[c];
+        answer->outside[g->leaves[i]] = (float)open[i].band[0];
+    }
+    alloc_free(open);
+    alloc_free(light);
 }
 
 /* Weights of leaves with the radiosities `b`: all of `b` has the size 1 by area, and 1 by
@@ -500,8 +492,7 @@ static void solve_rows(struct gathering *g, struct vote *vote)
     place_radiosities(g, answer);
     final_gather_pull(&g->gather, g->radiosity);
     gathering_estimate_errors(g, vote->remaining);
-    share_straight_light(g);
-    share_open(g);
+    share_answer(g);
     for (int64_t i = 0; i < g->count; i++)
         forest->radiosity[g->leaves[i]] = answer[i];
     forest_average(forest);

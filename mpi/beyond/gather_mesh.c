@@ -338,27 +338,25 @@ static int32_t *choose_leaves(struct looking *l, int64_t *count)
 {
     const struct gather_mesh *mesh = l->mesh;
     const struct model *model = &l->solver->model;
-    double *light = alloc_array((size_t)mesh->count, sizeof *light), sum = 0.0;
-    for (int64_t i = 0; i < mesh->count; i++) {
-        light[i] = forest_area(model->forest, mesh->leaves[i]) *
-                   square_of_light(model->forest, mesh->leaves[i]);
-        sum += light[i];
-    }
+    double sum = 0.0;
+    for (int64_t i = 0; i < mesh->count; i++)
+        sum += forest_area(model->forest, mesh->leaves[i]) *
+               square_of_light(model->forest, mesh->leaves[i]);
     int32_t *leaves = alloc_array((size_t)mesh->count, sizeof *leaves);
     *count = 0;
     for (int64_t i = 0; i < mesh->count; i++) {
         struct known *known = &l->known[mesh->leaves[i]];
         bool exact = known->by_ray == IS_EXACT;
         double area = forest_area(model->forest, mesh->leaves[i]);
-        double most = SPREAD_MOST * (light[i] + UNSURE * area * (sum / model->area));
+        double light = area * square_of_light(model->forest, mesh->leaves[i]);
+        double most = SPREAD_MOST * (light + UNSURE * area * (sum / model->area));
         if (!exact && most >= MESH * model->criterion.epsilon * sum) {
             leaves[(*count)++] = mesh->leaves[i];
         } else {
             known->by_ray = exact ? IS_EXACT : IS_UNSEEN;
-            l->unseen += light[i];
+            l->unseen += light;
         }
     }
-    alloc_free(light);
     return leaves;
 }
 
