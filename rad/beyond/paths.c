@@ -180,11 +180,8 @@ static int32_t choose_light(const struct pathtracer *pathtracer, struct draw *dr
 static double coupling(const struct pathtracer *pathtracer, const struct arrival *p,
                        const struct arrival *q)
 {
-    struct vec3 d = vec3_sub(q->x, p->x);
-    double square = vec3_dot(d, d);
-    double out = vec3_dot(scene_root_plane(pathtracer->scene, p->root).normal, d);
-    double in = -vec3_dot(scene_root_plane(pathtracer->scene, q->root).normal, d);
-    return out > 0.0 && in > 0.0 ? out * in / (PI * square * square) : 0.0;
+    return point_kernel(p->x, scene_root_plane(pathtracer->scene, p->root).normal, q->x,
+                        scene_root_plane(pathtracer->scene, q->root).normal);
 }
 
 static bool is_blocked(const struct pathtracer *pathtracer, const struct arrival *p,

@@ -66,14 +66,6 @@ static bool trees_are_whole(const struct snapshot *snapshot)
 static const int64_t MOST_COUNTED = INT64_C(1) << 60;
 static const double MOST_LIGHT = 1e37, MOST_POWER = 1e60;
 
-static bool light_is_sane(struct rgb light)
-{
-    for (int c = 0; c < BANDS; c++)
-        if (!(fabs(light.band[c]) <= MOST_LIGHT))
-            return false;
-    return true;
-}
-
 /* False for a NaN, too. */
 static bool is_within(double value)
 {
@@ -97,8 +89,8 @@ static bool numbers_are_sane(const struct snapshot *snapshot)
 
 static bool leaves_are_sane(const struct snapshot *snapshot)
 {
-    for (int64_t i = 0; i < snapshot_leaf_count(snapshot); i++)
-        if (!light_is_sane(snapshot->leaves[i]))
+    for (int64_t k = 0; k < BANDS * snapshot_leaf_count(snapshot); k++)
+        if (!(fabs(snapshot->leaves[k / BANDS].band[k % BANDS]) <= MOST_LIGHT))
             return false;
     return true;
 }

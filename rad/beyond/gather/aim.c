@@ -39,9 +39,8 @@ static const double NEARBY = 2.0;
 /* A near sender has an exact offer if it is for this part of a segment at least. */
 static const double FOR_EXACT = 0.0625;
 
-/* Fewest segments that are enough to estimate the visible share of senders; most tries
- * for a point of a sender above the horizon. */
-enum { VOLLEY = 4, TRIES_MOST = 16 };
+/* Fewest segments that are enough to estimate the visible share of senders. */
+enum { VOLLEY = 4 };
 
 /* Segments to nodes that are next to each other in the cut, in two halves. */
 struct volley {
@@ -52,22 +51,18 @@ struct volley {
                                     of their product */
 };
 
-/* Adds a segment to a half. */
-static void add_segment(struct volley *volley, int half, double direct, double seen)
+/* Adds segment `i` of `count` to a node: to the half that it belongs to; a single one, to
+ * the smaller. */
+static void add_segment(struct volley *volley, int i, int count, double direct,
+                        double seen)
 {
+    int half = count > 1 ? 2 * i >= count : volley->count[0] > volley->count[1];
     volley->direct[half] += direct;
     volley->seen[half] += seen;
     volley->count[half]++;
     volley->direct2 += direct * direct;
     volley->seen2 += seen * seen;
     volley->both += direct * seen;
-}
-
-/* The half that segment `i` of `count` to a node belongs to; a single one, the
- * smaller. */
-static int half_of(const struct volley *volley, int i, int count)
-{
-    return count > 1 ? 2 * i >= count : volley->count[0] > volley->count[1];
 }
 
 /* Adds the variance of the volley's light, in the colour of one of its senders: as if by
@@ -89,13 +84,6 @@ static void end_volley(struct receiver *r, struct volley *volley, struct rgb lig
         r->row.halves[c] += h * h * apart * apart;
     }
     *volley = (struct volley){.direct = {0.0, 0.0}};
-}
-
-/* The place of choice k of `count` in the order of what is chosen from: the first half
- * takes every other place, the second the rest, so that both are spread evenly. */
-static int choice_place(int k, int count)
-{
-    return 2 * k < count ? 2 * k : (2 * k - count) | 1;
 }
 
 /* The senders that are aimed at, and the segments to a node of their cut. */
@@ -175,13 +163,13 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
         double seen =
             add_shot(r, aim, &shot, patch, part,
                      hash_mix(aim->sequence.scramble[1] + (uint64_t)(aim->index + k)));
-        add_segment(&aim->volley, half_of(&aim->volley, k, count), part * sent, seen);
+        add_segment(&aim->volley, k, count, part * sent, seen);
     }
 }
 
 /* Fires `count` segments at a node of the cut, for `share` of its light. They are spread
- * evenly over its power, and each half of them is. `factor`: of a single sender the exact
- * one, or -1. */
+ * evenly over its power, and each half of them is: the first takes every other place, the
+ * second the rest. `factor`: of a single sender the exact one, or -1. */
 static void aim_at_node(struct receiver *r, struct aim *aim, int32_t number, int count,
                         double share, double factor)
 {
@@ -192,8 +180,9 @@ static void aim_at_node(struct receiver *r, struct aim *aim, int32_t number, int
         return;
     }
     for (int k = 0; k < count; k++) {
-        double place = (choice_place(k, count) + start) / count;
-        struct choice choice = sender_choose(aim->senders, node, place);
+        int place = 2 * k < count ? 2 * k : (2 * k - count) | 1;
+        struct choice choice =
+            sender_choose(aim->senders, node, (place + start) / count);
         aim_at_sender(r, aim, choice.patch, 1, choice.share * share / count, -1.0);
     }
 }
@@ -322,7 +311,7 @@ void receiver_aim_at_bright(struct receiver *r)
 void receiver_aim(struct receiver *r)
 {
     aim_at_cut(r, &r->gather->lamp_cuts, r->segments);
-    r->lamps = r->light;
+    r->row.lamps = r->light;
     r->light = (struct rgb){{0.0, 0.0, 0.0}};
     memcpy(r->row.of_segments, r->row.chance, sizeof r->row.of_segments);
 }

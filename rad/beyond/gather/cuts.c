@@ -161,13 +161,6 @@ static struct spot spot_in(const struct model *model, int32_t node, double pick,
     return spot_on(model->forest, node, u[0], u[1]);
 }
 
-static bool sees(const struct model *model, const struct spot *from,
-                 const struct spot *to, struct octree_counts *counts)
-{
-    int32_t own[2] = {from->input, to->input}, guess = -1;
-    return !octree_blocks_segment(model->octree, from->at, to->at, own, &guess, counts);
-}
-
 /* Asks segments between a region and a node of its cut how many of those whose ends face
  * each other are seen: sets `asked`, and `seen` to a number. */
 static void ask(const struct cuts *cuts, int32_t region, struct cut_node *node,
@@ -187,8 +180,10 @@ static void ask(const struct cuts *cuts, int32_t region, struct cut_node *node,
         struct spot to = spot_on(model->forest, choice.patch, u[2], u[3]);
         if (!(point_kernel(from.at, from.normal, to.at, to.normal) > 0.0))
             continue;
+        int32_t own[2] = {from.input, to.input}, guess = -1;
         node->asked++;
-        node->seen += sees(model, &from, &to, counts);
+        node->seen += !octree_blocks_segment(model->octree, from.at, to.at, own, &guess,
+                                             counts);
     }
 }
 

@@ -44,12 +44,15 @@ static bool is_near(const struct triangle *from, const struct triangle *to)
     return distance2_to_box(triangle_centroid(from), to) <= 4.0 * size * size;
 }
 
+/* True if the two face each other across a gap that is narrow beside the first: its width
+ * is less than a fifth of the square root of the area. */
 static bool is_across_gap(const struct triangle *from, struct vec3 normal,
                           const struct triangle *to)
 {
     struct plane plane = triangle_plane(to);
     double width = plane_distance(&plane, triangle_centroid(from));
-    return gap_is_narrow(normal, plane.normal, width, triangle_area(from));
+    return vec3_dot(normal, plane.normal) < -0.7 &&
+           width * width < 0.04 * triangle_area(from);
 }
 
 static double factor_of_quarters(const struct triangle *from, struct vec3 normal,

@@ -2,7 +2,6 @@
 #ifndef RAD_BEYOND_GATHER_FACTOR_H
 #define RAD_BEYOND_GATHER_FACTOR_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "geom/triangle.h"
@@ -16,13 +15,5 @@ double mean_factor(const struct triangle *from, struct vec3 normal,
 /* The same, in closed form if the other is near. Pre: the first has an area. */
 double near_factor(const struct triangle *from, struct vec3 normal,
                    const struct triangle *to, int64_t *work);
-
-/* True if surfaces with these unit normals face each other, across a gap that is narrow
- * beside one of this area: its width is less than a fifth of the area's square root. */
-static inline bool gap_is_narrow(struct vec3 normal, struct vec3 other, double width,
-                                 double area)
-{
-    return vec3_dot(normal, other) < -0.7 && width * width < 0.04 * area;
-}
 
 #endif

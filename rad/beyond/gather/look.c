@@ -61,7 +61,7 @@ static double variance_by_shade(const struct quarter *quarters, const struct rgb
 static struct quarter look_at(struct receiver *r, const struct rgb *rho)
 {
     receiver_aim(r);
-    struct quarter quarter = {r->lamps, r->lamps, r->shares.direct, 0.0, 0.0};
+    struct quarter quarter = {r->row.lamps, r->row.lamps, r->shares.direct, 0.0, 0.0};
     receiver_fire(r); /* aims at bright patches, too */
     rgb_add(&quarter.light, 1.0, r->sums.h);
     for (int c = 0; c < BANDS; c++) {

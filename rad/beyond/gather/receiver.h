@@ -6,6 +6,9 @@
 #include "rad/beyond/gather/rows.h"
 #include "rad/beyond/sequence.h"
 
+/* Most tries for a point of a sender above the horizon. */
+enum { TRIES_MOST = 16 };
+
 /* Sums over the rays of a receiver. */
 struct ray_sums {
     struct rgb h, squares, half[2]; /* of H, of H^2, of H by halves */
@@ -39,7 +42,6 @@ struct receiver {
     int32_t near;         /* place of the leaf too near that the ray at hand met first;
                              -1: none */
     struct rgb light;     /* H by the ray at hand, with the forest's radiosities */
-    struct rgb lamps;     /* H by lamps */
     struct aimed_shares shares;
     struct ray_sums sums;
 };

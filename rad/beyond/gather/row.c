@@ -76,7 +76,6 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int s
         gather->sums.count = gather->sums.first = 0; /* of this row alone */
         receiver_aim(&r);
         receiver_fire(&r);
-        r.row.lamps = r.lamps;
     }
     keep_terms(&r);
     receiver_find_covers(&r);
@@ -102,7 +101,7 @@ struct gather_light final_gather_at(struct final_gather *gather,
         receiver_fire(&r);
     for (int c = 0; c < BANDS; c++)
         light.variance += r.row.chance[c];
-    light.lamps = r.lamps;
+    light.lamps = r.row.lamps;
     light.rest = r.sums.h;
     return light;
 }

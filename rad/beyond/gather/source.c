@@ -10,9 +10,6 @@
 /* A lamp is near if the square of its distance is less than this times its area. */
 static const double NEAR_LAMP = 4.0;
 
-/* Most tries for a point of a lamp above the horizon. */
-enum { TRIES_MOST = 16 };
-
 void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
                        double factor)
 {
