@@ -8,7 +8,7 @@
 
 struct trial {
     struct solution s;
-    struct final_gather gather;
+    struct final_gather *gather;
     struct rgb *radiosity; /* by place */
 };
 
@@ -21,23 +21,23 @@ static inline struct trial gather_scene(struct soup *soup, const char *words, in
     g.gather = final_gather_create(&g.s.solver->model, rays, NULL);
     g.radiosity = alloc_array((size_t)forest->count, sizeof *g.radiosity);
     for (int64_t i = 0; i < forest->count; i++)
-        g.radiosity[i] = forest->radiosity[g.gather.order[i]];
+        g.radiosity[i] = forest->radiosity[g.gather->order[i]];
     int32_t leaf = forest_next_leaf(forest, -1);
     for (; leaf >= 0; leaf = forest_next_leaf(forest, leaf))
-        final_gather_add(&g.gather, leaf, rays, rays, true);
+        final_gather_add(g.gather, leaf, rays, rays, true);
     return g;
 }
 
 static inline void trial_free(struct trial *g)
 {
-    final_gather_free(&g->gather);
+    final_gather_destroy(g->gather);
     alloc_free(g->radiosity);
     solution_free(&g->s);
 }
 
 static inline double irradiance(const struct trial *g, int64_t row)
 {
-    return final_gather_irradiance(&g->gather, row, g->radiosity, true).band[0];
+    return final_gather_irradiance(g->gather, row, g->radiosity, true).band[0];
 }
 
 /* The mean of H over the leaves of these roots, W/m^2. */
@@ -45,8 +45,8 @@ static inline double mean_of_roots(const struct trial *g, uint32_t first, uint32
 {
     const struct forest *forest = g->s.solver->model.forest;
     double sum = 0.0, area = 0.0;
-    for (int64_t i = 0; i < g->gather.count; i++) {
-        int32_t leaf = g->gather.rows[i].leaf;
+    for (int64_t i = 0; i < g->gather->count; i++) {
+        int32_t leaf = g->gather->rows[i].leaf;
         if (forest->patches[leaf].id.root - first >= count)
             continue;
         sum += forest_area(forest, leaf) * irradiance(g, i);

@@ -46,8 +46,8 @@ static void write_meshes(struct run *run, const struct shading *shading)
     const struct answer *answer = beyond_answer(run->solver);
     struct mesh_answer solved = {
         answer->error, answer->straight, answer->outside,
-        {answer->straight, answer->straight ? answer->gather.lamps->least : 0.0,
-         answer->gather.mean}};
+        {answer->straight, answer->straight ? answer->gather->lamps->least : 0.0,
+         answer->gather ? answer->gather->mean : 0.0}};
     for (int i = 0; i < run->options.output_count; i++) {
         const struct target *target = &run->options.outputs[i];
         struct error error = {.code = EXIT_DONE};
@@ -138,16 +138,16 @@ static bool show_pictures(struct run *run)
     else if (!run->options.pixels)
         shading = shade_leaves(run, gathers);
     struct renderer renderer =
-        renderer_make(run->octree, shading, gathers ? &answer->gather : NULL);
+        renderer_make(run->octree, shading, gathers ? answer->gather : NULL);
     if (run->options.pixels && renderer.rays < run->options.pixel_rays)
         renderer.rays = run->options.pixel_rays;
     if (gathers)
-        answer->gather.counts = (struct gather_counts){.rays = 0};
+        answer->gather->counts = (struct gather_counts){.rays = 0};
     run->solver->account.seconds[PHASE_RENDER] += comm_seconds() - start;
     bool good = show_views(run, &renderer);
     if (gathers) {
         answer->counts.pixels =
-            answer->gather.counts.rays + answer->gather.counts.segments;
+            answer->gather->counts.rays + answer->gather->counts.segments;
         comm_add(&run->comm, &answer->counts.pixels, 1);
     }
     model->counts = counts;

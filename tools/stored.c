@@ -159,11 +159,11 @@ static void restore_answer(struct solver *solver, const struct solution_mesh *so
     answer->gather = final_gather_create(&solver->model,
                                          solver->model.criterion.final_gather, NULL);
     if (solution->lamps.known) {
-        senders_destroy(answer->gather.lamps);
-        answer->gather.lamps =
+        senders_destroy(answer->gather->lamps);
+        answer->gather->lamps =
             senders_create(&solver->model, solution->lamps.lamp_least, false);
-        answer->gather.mean = solution->lamps.mean;
-        final_gather_renew(&answer->gather);
+        answer->gather->mean = solution->lamps.mean;
+        final_gather_renew(answer->gather);
         answer->straight = alloc_array(count, sizeof *answer->straight);
     }
     if (solution->has_error)

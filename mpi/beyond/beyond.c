@@ -45,7 +45,7 @@ static void end(struct solver *solver)
     alloc_free(beyond->answer.error);
     alloc_free(beyond->answer.straight);
     alloc_free(beyond->answer.outside);
-    final_gather_free(&beyond->answer.gather);
+    final_gather_destroy(beyond->answer.gather);
     alloc_free(beyond);
 }
 

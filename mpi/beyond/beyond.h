@@ -24,7 +24,8 @@ struct answer {
                              W/m^2; NULL: there is no answer */
     float *outside;       /* [patches] share of a leaf outside of things on it and of
                              narrow gaps, 1; NULL: there is no answer */
-    struct final_gather gather; /* without its rows, for light at any point */
+    struct final_gather *gather; /* without its rows, for light at any point; NULL: there
+                                    is no answer */
 };
 
 /* The state of a rank beyond the paper's. */

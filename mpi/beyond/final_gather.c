@@ -100,8 +100,9 @@ static void gathering_start(struct gathering *g, struct solver *solver)
 /* Hands the gather over to the solver. */
 static void gathering_end(struct gathering *g)
 {
-    final_gather_drop_rows(&g->gather);
-    final_gather_free(&g->solver->beyond->answer.gather); /* of a round before */
+    if (g->gather)
+        final_gather_drop_rows(g->gather);
+    final_gather_destroy(g->solver->beyond->answer.gather); /* of a round before */
     g->solver->beyond->answer.gather = g->gather;
     gather_mesh_free(&g->mesh);
     alloc_free(g->areas);
@@ -116,10 +117,10 @@ static void gathering_end(struct gathering *g)
 static void make_row(void *context, int64_t i)
 {
     struct gathering *g = context;
-    final_gather_add(&g->gather, g->leaves[i], g->mesh.rays[i], g->mesh.segments[i],
+    final_gather_add(g->gather, g->leaves[i], g->mesh.rays[i], g->mesh.segments[i],
                      g->mesh.exact[i]);
     progress_tick(g->solver->progress,
-                  (double)g->gather.count * g->solver->comm->size / (double)g->count);
+                  (double)g->gather->count * g->solver->comm->size / (double)g->count);
 }
 
 /* Collective. False if a signal on any rank has ended it. */
@@ -127,12 +128,12 @@ static bool make_rows(struct gathering *g)
 {
     struct solver *solver = g->solver;
     progress_begin(solver->progress, "gathering", -1, 0);
-    g->stages = (struct stages){.solver = solver, .gather = &g->gather, .act = make_row,
+    g->stages = (struct stages){.solver = solver, .gather = g->gather, .act = make_row,
                                 .context = g, .work = g->mesh.work, .count = g->count};
     stages_run(&g->stages);
-    const struct gather_counts *counts = &g->gather.counts;
+    const struct gather_counts *counts = &g->gather->counts;
     int64_t sums[] = {counts->escaped, stop_is_asked(), counts->rays, counts->segments,
-                      counts->exact, final_gather_terms(&g->gather),
+                      counts->exact, final_gather_terms(g->gather),
                       g->mesh.traced};
     comm_add(solver->comm, sums, sizeof sums / sizeof sums[0]);
     g->closed = (double)sums[0] <= CRACKS * (double)(sums[2] + g->count);
@@ -149,7 +150,7 @@ static bool make_rows(struct gathering *g)
 static void place_radiosities(struct gathering *g, const struct rgb *b)
 {
     for (int64_t i = 0; i < g->count; i++)
-        g->radiosity[g->gather.place[g->leaves[i]]] = b[i];
+        g->radiosity[g->gather->place[g->leaves[i]]] = b[i];
 }
 
 /* Collective. Adds up integers of all ranks, which go to the sum and back. */
@@ -163,8 +164,8 @@ static void add_up(struct gathering *g, int64_t *values, int64_t count)
  * these leaves, in the order of all. */
 static void share_near(struct gathering *g)
 {
-    enum { EACH = (int)(sizeof *g->gather.near.items / sizeof(int64_t)) };
-    struct final_gather *gather = &g->gather;
+    enum { EACH = (int)(sizeof *g->gather->near.items / sizeof(int64_t)) };
+    struct final_gather *gather = g->gather;
     struct gather_near *items = gather->near.items;
     size_t patches = (size_t)g->solver->model.forest->count;
     int32_t *number = alloc_array(patches, sizeof *number);
@@ -194,7 +195,7 @@ static void see_bare_parts(struct gathering *g, const struct rgb *b, bool lamps)
         struct rgb e = gathering_material(g, i)->emission;
         for (int c = 0; c < BANDS; c++) {
             double own = lamps ? e.band[c] : 0.0;
-            g->radiosity[g->gather.place[g->leaves[i]]].band[c] =
+            g->radiosity[g->gather->place[g->leaves[i]]].band[c] =
                 own + (b[i].band[c] - own) / share;
         }
     }
@@ -204,7 +205,7 @@ static void see_bare_parts(struct gathering *g, const struct rgb *b, bool lamps)
  * their radiosities `b`: see above. */
 static void find_shown(struct gathering *g, const struct rgb *b)
 {
-    const struct final_gather *gather = &g->gather;
+    const struct final_gather *gather = g->gather;
     double *seconds = &g->solver->account.seconds[PHASE_PRODUCTS];
     int64_t *watts = alloc_array(BANDS * (size_t)g->near_count, sizeof *watts);
     place_radiosities(g, b);
@@ -240,7 +241,7 @@ static double shining_area(const struct gathering *g, int64_t i)
 {
     uint32_t root = g->solver->model.forest->patches[g->leaves[i]].id.root;
     const struct cover *cover = &g->covers[i];
-    bool lamp = root_is_sender(g->gather.lamps, (int32_t)root);
+    bool lamp = root_is_sender(g->gather->lamps, (int32_t)root);
     return (lamp ? g->areas[i] : cover->bare) * cover->outside * cover->kept;
 }
 
@@ -280,14 +281,14 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
     place_radiosities(g, b);
     see_bare_parts(g, b, lamps);
     for (int64_t k = 0; k < g->near_count; k++) {
-        int32_t place = g->gather.place[g->leaves[g->near[k].leaf]];
+        int32_t place = g->gather->place[g->leaves[g->near[k].leaf]];
         for (int c = 0; c < BANDS; c++)
             g->radiosity[place].band[c] *= g->near[k].shown.band[c];
     }
-    final_gather_pull(&g->gather, g->radiosity);
+    final_gather_pull(g->gather, g->radiosity);
     *seconds -= comm_seconds();
-    for (int64_t row = 0; row < g->gather.count; row++)
-        own[row] = final_gather_irradiance(&g->gather, row, g->radiosity, lamps);
+    for (int64_t row = 0; row < g->gather->count; row++)
+        own[row] = final_gather_irradiance(g->gather, row, g->radiosity, lamps);
     *seconds += comm_seconds();
     gathering_share_rows(g, h);
     if (g->closed)
@@ -298,12 +299,12 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
 static void find_seen(struct gathering *g)
 {
     const struct forest *forest = g->solver->model.forest;
-    const int32_t *place = g->gather.place;
-    double *seen = g->gather.near.seen;
+    const int32_t *place = g->gather->place;
+    double *seen = g->gather->near.seen;
     for (int64_t i = 0; i < g->count; i++)
         seen[place[g->leaves[i]]] = g->covers[i].outside;
     for (int64_t i = forest->count - 1; i >= 0; i--) {
-        const struct patch *patch = &forest->patches[g->gather.order[i]];
+        const struct patch *patch = &forest->patches[g->gather->order[i]];
         for (int k = 0; k < 4 && !patch_is_leaf(patch); k++)
             seen[i] += 0.25 * seen[place[patch->children + k]];
     }
@@ -314,10 +315,10 @@ static void share_covers(struct gathering *g)
 {
     struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
     struct rgb *shares = alloc_array((size_t)g->count, sizeof *shares);
-    for (int64_t row = 0; row < g->gather.count; row++)
-        own[row] = (struct rgb){{(double)g->gather.rows[row].bare,
-                                 (double)g->gather.rows[row].outside,
-                                 (double)g->gather.rows[row].kept}};
+    for (int64_t row = 0; row < g->gather->count; row++)
+        own[row] = (struct rgb){{(double)g->gather->rows[row].bare,
+                                 (double)g->gather->rows[row].outside,
+                                 (double)g->gather->rows[row].kept}};
     gathering_share_rows(g, shares);
     for (int64_t i = 0; i < g->count; i++)
         g->covers[i] = (struct cover){.bare = g->areas[i] * shares[i].band[0],
@@ -400,11 +401,11 @@ static void share_answer(struct gathering *g)
     struct rgb *light = alloc_array((size_t)g->count, sizeof *light);
     struct rgb *open = alloc_array((size_t)g->count, sizeof *open);
     size_t patches = (size_t)g->solver->model.forest->count;
-    for (int64_t row = 0; row < g->gather.count; row++)
-        own[row] = g->gather.rows[row].lamps;
+    for (int64_t row = 0; row < g->gather->count; row++)
+        own[row] = g->gather->rows[row].lamps;
     gathering_share_rows(g, light);
-    for (int64_t row = 0; row < g->gather.count; row++)
-        own[row] = (struct rgb){{(double)g->gather.rows[row].open}};
+    for (int64_t row = 0; row < g->gather->count; row++)
+        own[row] = (struct rgb){{(double)g->gather->rows[row].open}};
     gathering_share_rows(g, open);
     alloc_free(answer->straight);
     alloc_free(answer->outside);
@@ -430,7 +431,7 @@ static double *weigh(const struct gathering *g, const struct rgb *b)
     for (int64_t i = 0; i < g->count && all > 0.0; i++)
         weights[i] = g->areas[i] / all +
                      1.0 / ((double)g->count *
-                            fmax(rgb_sum(b[i]), DARK * g->gather.mean));
+                            fmax(rgb_sum(b[i]), DARK * g->gather->mean));
     return weights;
 }
 
@@ -490,14 +491,14 @@ static void solve_rows(struct gathering *g, struct vote *vote)
         told->closing = fmax(told->closing, fabs(g->missing.band[c]));
     judge(g, h, answer, done.residual, vote);
     place_radiosities(g, answer);
-    final_gather_pull(&g->gather, g->radiosity);
+    final_gather_pull(g->gather, g->radiosity);
     gathering_estimate_errors(g, vote->remaining);
     share_answer(g);
     for (int64_t i = 0; i < g->count; i++)
         forest->radiosity[g->leaves[i]] = answer[i];
     forest_average(forest);
-    g->gather.cut = NULL;
-    final_gather_renew(&g->gather); /* as a stored solution has them */
+    g->gather->cut = NULL;
+    final_gather_renew(g->gather); /* as a stored solution has them */
     alloc_free(answer);
     alloc_free(r);
     alloc_free(h);

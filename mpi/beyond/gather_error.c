@@ -35,13 +35,13 @@ enum { CLASSES = 48, BRIGHTEST = 8, FEWEST = 128 };
 static struct rgb variation_of(const struct gathering *g, int64_t place, struct vec3 from)
 {
     const struct forest *forest = g->solver->model.forest;
-    int32_t patch = g->gather.order[place], parent = forest->patches[patch].parent;
-    struct rgb base = parent >= 0 ? g->radiosity[g->gather.place[parent]]
+    int32_t patch = g->gather->order[place], parent = forest->patches[patch].parent;
+    struct rgb base = parent >= 0 ? g->radiosity[g->gather->place[parent]]
                                   : forest_material(forest, patch)->emission;
     struct rgb deviation = rgb_sub(g->radiosity[place], base);
     double part = 0.5;
     if (parent < 0) {
-        struct vec3 apart = vec3_sub(g->gather.near.leaves[patch].middle, from);
+        struct vec3 apart = vec3_sub(g->gather->near.leaves[patch].middle, from);
         double near = sqrt(forest_area(forest, patch) / vec3_dot(apart, apart));
         part = fmin(1.0, fmax(UNDIVIDED, UNDIVIDED_NEAR * near));
     }
@@ -55,7 +55,7 @@ static struct rgb variation_of(const struct gathering *g, int64_t place, struct 
  * their errors add up as variances. Pre: g->radiosity is the solution. */
 static void variances_by_mesh(struct gathering *g, struct rgb *variance)
 {
-    const struct final_gather *gather = &g->gather;
+    const struct final_gather *gather = g->gather;
     struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
     for (int64_t row = 0, k = 0; row < gather->count; row++) {
         struct vec3 from = gather->near.leaves[gather->rows[row].leaf].middle;
@@ -123,7 +123,7 @@ static double irradiance_of(const struct gathering *g, int64_t leaf, int band)
 {
     const struct material *m = gathering_material(g, leaf);
     double rho = m->reflectance.band[band];
-    double b = g->radiosity[g->gather.place[g->leaves[leaf]]].band[band];
+    double b = g->radiosity[g->gather->place[g->leaves[leaf]]].band[band];
     return rho > 0.0 ? fmax(0.0, (b - m->emission.band[band]) / rho) : 0.0;
 }
 
@@ -187,8 +187,8 @@ static void variances_by_rays(struct gathering *g, struct rgb *variance)
     struct rgb *lamps = alloc_array((size_t)g->count, sizeof *lamps);
     struct rgb *const to[3] = {variance, halves, lamps};
     for (int kind = 0; kind < 3; kind++) {
-        for (int64_t row = 0; row < g->gather.count; row++) {
-            const struct gather_row *at = &g->gather.rows[row];
+        for (int64_t row = 0; row < g->gather->count; row++) {
+            const struct gather_row *at = &g->gather->rows[row];
             const double *const of[3] = {at->chance, at->halves, at->of_segments};
             memcpy(own[row].band, of[kind], sizeof own[row].band);
         }
@@ -272,7 +272,7 @@ void gathering_estimate_errors(struct gathering *g, double remaining)
     solver->beyond->answer.error = error;
     for (int64_t i = 0; i < g->count; i++) {
         const struct material *m = gathering_material(g, i);
-        struct rgb b = g->radiosity[g->gather.place[g->leaves[i]]];
+        struct rgb b = g->radiosity[g->gather->place[g->leaves[i]]];
         double largest = 0.0;
         for (int c = 0; c < BANDS; c++) {
             double rho = m->reflectance.band[c];

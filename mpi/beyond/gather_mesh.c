@@ -74,7 +74,7 @@ struct known {
 
 struct looking {
     struct solver *solver;
-    struct final_gather gather;
+    struct final_gather *gather;
     struct gather_mesh *mesh;
     uint8_t *open;   /* [roots] 1: leaves of the root have exact rows */
     struct known *known; /* [forest->count] of leaves */
@@ -119,7 +119,7 @@ static void list_leaves(struct gather_mesh *mesh, const struct forest *forest)
 static void look_at(void *context, int64_t item)
 {
     struct looking *l = context;
-    l->looks[l->looked++] = final_gather_look(&l->gather, l->leaves[item], l->rays);
+    l->looks[l->looked++] = final_gather_look(l->gather, l->leaves[item], l->rays);
     progress_tick(l->solver->progress,
                   (double)l->looked * l->solver->comm->size / (double)l->count);
 }
@@ -130,9 +130,9 @@ static struct gather_look *look(struct looking *l, const int32_t *leaves, int64_
     const struct comm *comm = l->solver->comm;
     int64_t *work = predict_work(l, leaves, NULL, count);
     struct gather_look *looks = alloc_array((size_t)count, sizeof *looks);
-    struct stages stages = {.solver = l->solver, .gather = &l->gather, .act = look_at,
+    struct stages stages = {.solver = l->solver, .gather = l->gather, .act = look_at,
                             .context = l, .work = work, .count = count};
-    final_gather_renew(&l->gather);
+    final_gather_renew(l->gather);
     l->leaves = leaves;
     l->count = count;
     l->looks = alloc_array((size_t)count, sizeof *looks);
@@ -319,7 +319,7 @@ static struct known guess_of(const struct looking *l, int32_t leaf)
 {
     const struct forest *forest = l->solver->model.forest;
     double rho = rgb_sum(forest_material(forest, leaf)->reflectance) / BANDS;
-    double mean = rho * l->gather.mean / BANDS; /* of a band */
+    double mean = rho * l->gather->mean / BANDS; /* of a band */
     double guess = square_of_light(forest, leaf) + VARIANCE_OF_MEAN * BANDS * mean * mean;
     return (struct known){guess, guess, 0.0f, 1.0f};
 }
@@ -442,14 +442,14 @@ static void share_rays(struct looking *l)
         double variance = k % 2 ? known->by_segment : fmax(0.0, known->by_ray);
         worth[k] = sqrt(forest_area(forest, mesh->leaves[k / 2]) * variance);
     }
-    gather_share_shots(worth, 2 * mesh->count, l->gather.rays, shots);
+    gather_share_shots(worth, 2 * mesh->count, l->gather->rays, shots);
     mesh->rays = alloc_array((size_t)mesh->count, sizeof *mesh->rays);
     mesh->segments = alloc_array((size_t)mesh->count, sizeof *mesh->segments);
     mesh->exact = alloc_array((size_t)mesh->count, sizeof *mesh->exact);
     for (int64_t i = 0; i < mesh->count; i++) {
         mesh->exact[i] = l->known[mesh->leaves[i]].by_ray == IS_EXACT;
-        mesh->rays[i] = mesh->exact[i] ? l->gather.rays : shots[2 * i];
-        mesh->segments[i] = mesh->exact[i] ? l->gather.rays : shots[2 * i + 1];
+        mesh->rays[i] = mesh->exact[i] ? l->gather->rays : shots[2 * i];
+        mesh->segments[i] = mesh->exact[i] ? l->gather->rays : shots[2 * i + 1];
     }
     alloc_free(shots);
     alloc_free(worth);
@@ -460,9 +460,9 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     struct model *model = &solver->model;
     struct looking l = {.solver = solver, .mesh = mesh, .links = links};
     l.gather = final_gather_create(model, model->criterion.final_gather, NULL);
-    l.rays = l.gather.rays / ROWS_PER_LOOK;
+    l.rays = l.gather->rays / ROWS_PER_LOOK;
     list_leaves(mesh, model->forest);
-    l.open = gather_find_open_roots(solver, &l.gather);
+    l.open = gather_find_open_roots(solver, l.gather);
     if (l.rays >= FEWEST_LOOKED)
         split_bent(&l);
     know_nothing(&l);
@@ -471,10 +471,10 @@ bool gather_mesh_make(struct solver *solver, int64_t links, struct gather_mesh *
     raise_cuts(mesh, model->forest);
     share_rays(&l);
     mesh->work = predict_work(&l, mesh->leaves, mesh, mesh->count);
-    mesh->traced = l.gather.counts.rays + l.gather.counts.segments;
+    mesh->traced = l.gather->counts.rays + l.gather->counts.segments;
     int64_t stopped = stop_is_asked();
     comm_add(solver->comm, &stopped, 1);
-    final_gather_free(&l.gather);
+    final_gather_destroy(l.gather);
     alloc_free(l.known);
     alloc_free(l.open);
     return stopped == 0;

@@ -22,7 +22,7 @@ struct too_near {
  * rank are in the order of its leaves. */
 struct gathering {
     struct solver *solver;
-    struct final_gather gather;
+    struct final_gather *gather;
     struct gather_mesh mesh;
     int32_t *leaves;        /* [count] local numbers; borrowed from the mesh */
     double *areas;          /* [count] square scene units */

@@ -268,7 +268,7 @@ static void report(const struct measure *measure, struct solution *s,
     bool gathers = s->solver->beyond->answer.straight && !measure->options.flat;
     struct renderer renderer =
         renderer_make(s->octree, shading,
-                      gathers ? &s->solver->beyond->answer.gather : NULL);
+                      gathers ? s->solver->beyond->answer.gather : NULL);
     struct measured answer = {
         .stats = s->stats,
         .seconds = s->seconds,

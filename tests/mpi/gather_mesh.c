@@ -103,10 +103,10 @@ static bool is_cut_below(double height)
     soup_add_quad(&soup, point(0, 0, 0.5), point(0, 1, 0), point(1, 0, 0), 2);
     paint(&soup, 0.0, 1.0);
     struct solution s = solve_soup(&soup, "--max-level 0 --final-gather 0");
-    struct final_gather gather = final_gather_create(&s.solver->model, 16, NULL);
-    bool cut = final_gather_look(&gather, 0, 4).cut ||
-               final_gather_look(&gather, 1, 4).cut;
-    final_gather_free(&gather);
+    struct final_gather *gather = final_gather_create(&s.solver->model, 16, NULL);
+    bool cut = final_gather_look(gather, 0, 4).cut ||
+               final_gather_look(gather, 1, 4).cut;
+    final_gather_destroy(gather);
     solution_free(&s);
     return cut;
 }
@@ -186,13 +186,13 @@ static void test_looks(void)
     paint(&soup, 0.5, 1.0);
     struct solution s = solve_soup(&soup, "--epsilon 0.1");
     struct model *model = &s.solver->model;
-    struct final_gather gather = final_gather_create(model, RAYS, NULL);
+    struct final_gather *gather = final_gather_create(model, RAYS, NULL);
     double spread = 0.0, noise = 0.0, alone = 0.0;
     int32_t p = forest_next_leaf(model->forest, -1);
     for (; p >= 0; p = forest_next_leaf(model->forest, p)) {
         if (model->forest->patches[p].id.root < WALLS)
             continue;
-        struct gather_look look = final_gather_look(&gather, p, RAYS);
+        struct gather_look look = final_gather_look(gather, p, RAYS);
         double sum = 0.0, squares = 0.0;
         for (int k = 0; k < 4; k++) {
             double b = (double)look.reflected[k][0];
@@ -206,7 +206,7 @@ static void test_looks(void)
     tap_ok(spread < 2.0 * noise && spread > 0.5 * noise && noise < 0.5 * alone,
            "quarters differ by %.1e, %.1e expected, %.1e by rays of their own", spread,
            noise, alone);
-    final_gather_free(&gather);
+    final_gather_destroy(gather);
     solution_free(&s);
 }
 

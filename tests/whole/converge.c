@@ -60,11 +60,11 @@ static struct result run(const struct comm *comm, const char *path,
         struct shading *shading =
             shading_create(forest, answer->straight, answer->error, answer->outside);
         struct renderer renderer =
-            renderer_make(s.octree, shading, answer->straight ? &answer->gather : NULL);
+            renderer_make(s.octree, shading, answer->straight ? answer->gather : NULL);
         result.leaf = deviation_of_leaves(forest, truth).rms;
         result.shown = deviation_of_points(&renderer, s.scene, truth).rms;
         if (pixels) {
-            renderer = renderer_make(s.octree, NULL, &answer->gather);
+            renderer = renderer_make(s.octree, NULL, answer->gather);
             result.pixels = deviation_of_points(&renderer, s.scene, truth).rms;
         }
         shading_destroy(shading);

@@ -635,7 +635,7 @@ static double mean_shown(struct solution *s)
     struct answer *answer = &s->solver->beyond->answer;
     struct shading *shading = shading_create(s->solver->model.forest, answer->straight,
                                              answer->error, answer->outside);
-    struct renderer renderer = renderer_make(s->octree, shading, &answer->gather);
+    struct renderer renderer = renderer_make(s->octree, shading, answer->gather);
     double sum = 0.0;
     for (int i = 0; i < 2 * GRID * GRID; i++) {
         double u = (i % GRID + 0.5) / GRID, v = (i / GRID % GRID + 0.5) / GRID;

@@ -149,30 +149,31 @@ static double difference(const struct final_gather *g, struct rgb a, struct rgb 
     return most;
 }
 
-struct final_gather final_gather_create(struct model *model, int rays,
-                                        const uint8_t *cut)
+struct final_gather *final_gather_create(struct model *model, int rays,
+                                         const uint8_t *cut)
 {
     struct forest *forest = model->forest;
-    struct final_gather gather = {.model = model, .cut = cut, .view = {.root = -1}};
-    gather.rays = rays_for(rays, forest_count(forest).leaves);
-    gather.mean = mean_radiosity(model);
-    gather.sums.scale = scale_of_bands(model, gather.mean);
-    gather.sums.flat = FLAT;
-    gather.lamps = senders_create(model, least_of_lamps(model), false);
-    final_gather_renew(&gather);
-    gather.near.unit_area = 0x1p-50 * model->area;
-    gather.near.unit_watts = 0x1p-52 * model->area * gather.mean;
-    gather.near.seen = alloc_array((size_t)forest->count, sizeof *gather.near.seen);
-    gather.near.items = alloc_array((size_t)forest->count, sizeof *gather.near.items);
-    gather.order = forest_order(forest);
-    gather.place = alloc_array((size_t)forest->count, sizeof *gather.place);
-    gather.sums.latest = alloc_array((size_t)forest->count, sizeof *gather.sums.latest);
-    gather.view.overlapped = alloc_array((size_t)forest->root_count, 1);
-    gather.sums.ranges = alloc_array((size_t)forest->count, sizeof *gather.sums.ranges);
+    struct final_gather *gather = alloc_array(1, sizeof *gather);
+    *gather = (struct final_gather){.model = model, .cut = cut, .view = {.root = -1}};
+    gather->rays = rays_for(rays, forest_count(forest).leaves);
+    gather->mean = mean_radiosity(model);
+    gather->sums.scale = scale_of_bands(model, gather->mean);
+    gather->sums.flat = FLAT;
+    gather->lamps = senders_create(model, least_of_lamps(model), false);
+    final_gather_renew(gather);
+    gather->near.unit_area = 0x1p-50 * model->area;
+    gather->near.unit_watts = 0x1p-52 * model->area * gather->mean;
+    gather->near.seen = alloc_array((size_t)forest->count, sizeof *gather->near.seen);
+    gather->near.items = alloc_array((size_t)forest->count, sizeof *gather->near.items);
+    gather->order = forest_order(forest);
+    gather->place = alloc_array((size_t)forest->count, sizeof *gather->place);
+    gather->sums.latest = alloc_array((size_t)forest->count, sizeof *gather->sums.latest);
+    gather->view.overlapped = alloc_array((size_t)forest->root_count, 1);
+    gather->sums.ranges = alloc_array((size_t)forest->count, sizeof *gather->sums.ranges);
     for (int c = 0; c < BANDS; c++)
-        forest_raise_ranges(forest, c, gather.sums.scale.band[c], gather.sums.ranges);
+        forest_raise_ranges(forest, c, gather->sums.scale.band[c], gather->sums.ranges);
     for (int64_t i = 0; i < forest->count; i++)
-        gather.place[gather.order[i]] = (int32_t)i;
+        gather->place[gather->order[i]] = (int32_t)i;
     return gather;
 }
 
@@ -188,8 +189,10 @@ void final_gather_drop_rows(struct final_gather *gather)
     gather->term_capacity = 0;
 }
 
-void final_gather_free(struct final_gather *gather)
+void final_gather_destroy(struct final_gather *gather)
 {
+    if (!gather)
+        return;
     senders_destroy(gather->lamps);
     senders_destroy(gather->bright);
     regions_destroy(gather->regions);
@@ -208,7 +211,7 @@ void final_gather_free(struct final_gather *gather)
     alloc_free(gather->sums.latest);
     alloc_free(gather->sums.ranges);
     final_gather_drop_rows(gather);
-    *gather = (struct final_gather){0};
+    alloc_free(gather);
 }
 
 /* --- rows --- */

@@ -36,9 +36,9 @@ double forest_mean_reflected(const struct forest *forest);
 
 /* Borrows the model, which has clusters and a solution, and `cut`: see struct
  * final_gather. `rays`: at least 1. */
-struct final_gather final_gather_create(struct model *model, int rays,
-                                        const uint8_t *cut);
-void final_gather_free(struct final_gather *gather);
+struct final_gather *final_gather_create(struct model *model, int rays,
+                                         const uint8_t *cut);
+void final_gather_destroy(struct final_gather *gather); /* NULL: none */
 
 /* Finds the bright patches anew, and what rays meet, by the radiosities of the forest and
  * its leaves. To be called when these have changed. */

@@ -19,13 +19,13 @@ static void test_furnished(void)
     double worst = 0.0;
     for (int64_t k = 0; k < g.s.solver->model.forest->count; k++)
         g.radiosity[k] = (struct rgb){{1.0, 1.0, 1.0}};
-    for (int64_t i = 0; i < g.gather.count; i++)
-        if (g.gather.rows[i].bare == 1.0f && g.gather.rows[i].outside == 1.0f)
+    for (int64_t i = 0; i < g.gather->count; i++)
+        if (g.gather->rows[i].bare == 1.0f && g.gather->rows[i].outside == 1.0f)
             worst = fmax(worst, fabs(irradiance(&g, i) - 1.0));
-    tap_ok(worst <= 2e-6 && g.gather.counts.escaped == 0,
-           "rows of %lld leaves sum to 1, within %.1e", (long long)g.gather.count, worst);
-    tap_ok(g.gather.counts.rays > 64 * 60, "by %lld rays",
-           (long long)g.gather.counts.rays);
+    tap_ok(worst <= 2e-6 && g.gather->counts.escaped == 0,
+           "rows of %lld leaves sum to 1, within %.1e", (long long)g.gather->count, worst);
+    tap_ok(g.gather->counts.rays > 64 * 60, "by %lld rays",
+           (long long)g.gather->counts.rays);
     trial_free(&g);
 }
 
@@ -38,7 +38,7 @@ static void test_most_rays(void)
     soup_add_quad(&soup, point(0.4, 0.4, 1e-3), point(0, 0.2, 0), point(0.2, 0, 0), 1);
     paint(&soup, 0.0, 1.0);
     struct trial g = gather_scene(&soup, "--max-level 0", 2 * SEQUENCE_POINTS);
-    int64_t rays = g.gather.counts.rays, leaves = g.gather.count - g.gather.counts.exact;
+    int64_t rays = g.gather->counts.rays, leaves = g.gather->count - g.gather->counts.exact;
     tap_ok(leaves > 0 && rays == SEQUENCE_POINTS * leaves, "%lld rays for %lld leaves",
            (long long)rays, (long long)leaves);
     trial_free(&g);
@@ -56,7 +56,7 @@ static void test_open(void)
     paint(&soup, 0.0, 0.0);
     struct trial g = gather_scene(&soup, "", 64);
     double h = mean_of_roots(&g, 8, 8), exact = 0.199824895698;
-    tap_ok(g.gather.counts.rays == 0 && g.gather.counts.exact == g.gather.count,
+    tap_ok(g.gather->counts.rays == 0 && g.gather->counts.exact == g.gather->count,
            "open plates have exact rows only");
     tap_ok(fabs(h / exact - 1.0) <= 5e-4, "H %.6f, exact %.6f", h, exact);
     trial_free(&g);
@@ -77,14 +77,14 @@ static void test_given_up(void)
     struct trial g = gather_scene(&soup, "--max-level 0", 64);
     const struct forest *forest = g.s.solver->model.forest;
     double lamps = 0.0, rays = 0.0;
-    for (int64_t i = 0; i < g.gather.count; i++) {
-        const struct gather_row *row = &g.gather.rows[i];
+    for (int64_t i = 0; i < g.gather->count; i++) {
+        const struct gather_row *row = &g.gather->rows[i];
         if (forest->patches[row->leaf].id.root >= 2)
             continue;
         lamps = fmax(lamps, rgb_sum(row->lamps));
         rays = fmax(rays, row->halves[0] + row->chance[0]);
     }
-    tap_ok(final_gather_root_is_open(&g.gather, 0, true) && rays > 0.0,
+    tap_ok(final_gather_root_is_open(g.gather, 0, true) && rays > 0.0,
            "exact rows are given up on where a sheet lies");
     tap_ok(lamps == 0.0, "lamps bring nothing to its underside: %g W/m^2", lamps);
     trial_free(&g);
@@ -101,9 +101,9 @@ static void test_hinge(double start, bool exact)
     soup_add_quad(&soup, point(start, 0, 0), point(1, 0, 0), point(0, 1, 0), 1);
     paint(&soup, 0.5, 1.0);
     struct trial g = gather_scene(&soup, "--max-level 0", 64);
-    tap_ok((g.gather.counts.exact == g.gather.count) == exact,
+    tap_ok((g.gather->counts.exact == g.gather->count) == exact,
            "%s: %lld of %lld rows are exact", exact ? "a hinge" : "a leaning sheet",
-           (long long)g.gather.counts.exact, (long long)g.gather.count);
+           (long long)g.gather->counts.exact, (long long)g.gather->count);
     trial_free(&g);
 }
 
@@ -140,10 +140,10 @@ static void test_speck(double size)
     paint(&soup, 0.5, 1.0);
     struct trial g = gather_scene(&soup, "--max-level 0", 64);
     int64_t near = 0, lost = 0;
-    for (int64_t k = 0; k < final_gather_terms(&g.gather); k++) {
-        int32_t leaf = g.gather.terms[k].near;
+    for (int64_t k = 0; k < final_gather_terms(g.gather); k++) {
+        int32_t leaf = g.gather->terms[k].near;
         near += leaf >= 0;
-        lost += leaf >= 0 && g.gather.near.items[leaf].area == 0;
+        lost += leaf >= 0 && g.gather->near.items[leaf].area == 0;
     }
     tap_ok(near > 0 && lost == 0, "a speck of %g: %lld terms by way of leaves "
            "too near, %lld without a unit", size, (long long)near, (long long)lost);
@@ -212,9 +212,9 @@ static void test_covered(void)
     struct trial g = gather_scene(&soup, "--max-level 0", 16);
     double bare = 0.0;
     for (int64_t i = 0; i < 128; i++)
-        bare += (double)g.gather.rows[i].bare / 128.0;
+        bare += (double)g.gather->rows[i].bare / 128.0;
     tap_ok(fabs(bare - 0.75) < 1e-6, "of a wall with a picture in it %.3f is bare", bare);
-    tap_ok(g.gather.rows[128].bare == 1.0f, "as is all of the picture");
+    tap_ok(g.gather->rows[128].bare == 1.0f, "as is all of the picture");
     trial_free(&g);
 }
 
@@ -236,7 +236,7 @@ static void test_column(double height, double outside)
     struct trial g = gather_scene(&soup, "--max-level 0", 256);
     double share = 0.0;
     for (int64_t i = 0; i < 32; i++)
-        share += (double)g.gather.rows[i].outside / 32.0;
+        share += (double)g.gather->rows[i].outside / 32.0;
     tap_ok(fabs(share - outside) < 0.002,
            "a column of height %g stands on a floor: %.4f of it is outside", height,
            share);
@@ -257,7 +257,7 @@ static void test_board(double height, double open)
     for (int64_t i = 0; i < 12; i++) {
         double up = scene_root_plane(g.s.scene, (int32_t)i).normal.z;
         *(up > 0.5 ? &share : &others) +=
-            (double)g.gather.rows[i].open / (up > 0.5 ? 2.0 : 10.0);
+            (double)g.gather->rows[i].open / (up > 0.5 ? 2.0 : 10.0);
     }
     tap_ok(fabs(share - open) < 0.015 && fabs(others - 1.0) < 1e-9,
            "a board at the height %g leaves %.3f of a floor open, and of all else %g",
@@ -287,7 +287,7 @@ static double light_of_floor(int parts)
                                    .root = last};
     double light = 0.0;
     for (uint64_t seed = 0; seed < SEEDS; seed++)
-        light += final_gather_at(&g.gather, &points, seed, 1024, true).rest.band[0];
+        light += final_gather_at(g.gather, &points, seed, 1024, true).rest.band[0];
     trial_free(&g);
     return light / SEEDS;
 }

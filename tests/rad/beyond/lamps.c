@@ -59,7 +59,7 @@ static double lit_floor(int lamps, bool screened, double *exact, int64_t *groups
     struct trial g = gather_scene(&soup, "", 64);
     *exact = factor_of_floor(g.s.scene, 32 + 2 * lamps * lamps);
     struct octree_counts counts = {0};
-    *groups = cuts_at(&g.gather.lamp_cuts, g.gather.rows[0].leaf, &counts).count;
+    *groups = cuts_at(&g.gather->lamp_cuts, g.gather->rows[0].leaf, &counts).count;
     double mean = mean_of_roots(&g, 0, 32);
     trial_free(&g);
     return mean;
@@ -100,8 +100,8 @@ static void test_sky(void)
     paint(&soup, 0.0, 0.0);
     struct trial g = gather_scene(&soup, "", 64);
     double largest = 0.0, sum = 0.0;
-    for (int64_t i = 0; i < g.gather.count; i++) {
-        if (g.s.solver->model.forest->patches[g.gather.rows[i].leaf].id.root >= 32)
+    for (int64_t i = 0; i < g.gather->count; i++) {
+        if (g.s.solver->model.forest->patches[g.gather->rows[i].leaf].id.root >= 32)
             continue;
         double off = irradiance(&g, i) - 1.0;
         largest = fmax(largest, fabs(off));
@@ -134,8 +134,8 @@ static void test_bulbs(void)
     paint(&soup, 0.0, 0.0);
     struct trial g = gather_scene(&soup, "", 64);
     double largest = 0.0, squares = 0.0;
-    for (int64_t i = 0; i < g.gather.count; i++) {
-        int32_t leaf = g.gather.rows[i].leaf;
+    for (int64_t i = 0; i < g.gather->count; i++) {
+        int32_t leaf = g.gather->rows[i].leaf;
         const struct forest *forest = g.s.solver->model.forest;
         if (forest->patches[leaf].id.root >= 32)
             continue;
@@ -172,7 +172,7 @@ static void test_bright(void)
     struct trial g = gather_scene(&soup, "--max-level 0", 64);
     double exact = factor_of_floor(g.s.scene, 34);
     for (int64_t k = 0; k < g.s.solver->model.forest->count; k++) {
-        uint32_t root = g.s.solver->model.forest->patches[g.gather.order[k]].id.root;
+        uint32_t root = g.s.solver->model.forest->patches[g.gather->order[k]].id.root;
         g.radiosity[k].band[0] = root == 32 || root == 33 ? 1.0 : 0.0;
     }
     double h = mean_of_roots(&g, 0, 32);
@@ -201,8 +201,8 @@ static void test_bright_part(struct vec3 at, double length, const char *words)
     const struct forest *forest = g.s.solver->model.forest;
     double squares = 0.0, count = 0.0;
     int64_t work = 0;
-    for (int64_t i = 0; i < g.gather.count; i++) {
-        int32_t leaf = g.gather.rows[i].leaf, from = forest_next_leaf(forest, -1);
+    for (int64_t i = 0; i < g.gather->count; i++) {
+        int32_t leaf = g.gather->rows[i].leaf, from = forest_next_leaf(forest, -1);
         struct triangle to = forest_triangle(forest, leaf);
         double exact = 0.0;
         for (; from >= 0; from = forest_next_leaf(forest, from))
@@ -233,10 +233,10 @@ static void judge_pixel(struct trial *g, int32_t root, struct vec3 weights,
     struct gather_points points = {.at = &x, .count = 1, .middle = x,
                                    .plane = scene_root_plane(g->s.scene, root),
                                    .root = root};
-    double truth = final_gather_at(&g->gather, &points, RUNS, MORE, true).rest.band[0];
+    double truth = final_gather_at(g->gather, &points, RUNS, MORE, true).rest.band[0];
     double mean = 0.0, squares = 0.0, most = 0.0;
     for (uint64_t run = 0; run < RUNS; run++) {
-        double h = final_gather_at(&g->gather, &points, run, RAYS, true).rest.band[0];
+        double h = final_gather_at(g->gather, &points, run, RAYS, true).rest.band[0];
         mean += h / RUNS;
         squares += h * h / RUNS;
         most = fmax(most, h);
@@ -310,9 +310,9 @@ static void test_choice(void)
     }
     enum { CHOICES = 1 << 16 };
     struct octree_counts counts = {0};
-    struct cut cut = cuts_at(&g.gather.lamp_cuts, g.gather.rows[0].leaf, &counts);
+    struct cut cut = cuts_at(&g.gather->lamp_cuts, g.gather->rows[0].leaf, &counts);
     for (int k = 0; k < CHOICES; k++) {
-        struct choice lamp = cuts_choose(&g.gather.lamp_cuts, cut, (k + 0.5) / CHOICES);
+        struct choice lamp = cuts_choose(&g.gather->lamp_cuts, cut, (k + 0.5) / CHOICES);
         struct triangle t = scene_root_triangle(scene, lamp.patch);
         mean += lamp.share * point_triangle_factor(x, up, &t) / CHOICES;
     }
@@ -333,20 +333,20 @@ static void test_bright_rows(void)
     soup_add_box(&soup, point(0.6, 0.5, 0.5), point(0.65, 0.55, 0.55), 1, false);
     paint(&soup, 0.0, 100.0);
     struct trial g = gather_scene(&soup, "", 64);
-    const struct gather_row *rows = g.gather.rows;
-    double worst = 0.0, bright = senders_power(g.gather.bright);
+    const struct gather_row *rows = g.gather->rows;
+    double worst = 0.0, bright = senders_power(g.gather->bright);
     int64_t count = 0;
-    for (int64_t i = 0, k = 0; i < g.gather.count; i++) {
+    for (int64_t i = 0, k = 0; i < g.gather->count; i++) {
         double sum = 0.0;
         bool near = false;
         for (; k < rows[i].end; k++) {
-            sum += (double)g.gather.terms[k].weight[0];
-            near = near || g.gather.terms[k].near >= 0;
+            sum += (double)g.gather->terms[k].weight[0];
+            near = near || g.gather->terms[k].near >= 0;
         }
         worst = fmax(worst, near ? 0.0 : fabs(sum - 1.0));
         count += !near;
     }
-    tap_ok(bright > 0.0 && worst <= 2e-6 && 4 * count > g.gather.count,
+    tap_ok(bright > 0.0 && worst <= 2e-6 && 4 * count > g.gather->count,
            "beside a bright box rows of %lld leaves sum to 1, within %.1e",
            (long long)count, worst);
     trial_free(&g);
@@ -364,8 +364,8 @@ static void test_grain(void)
     soup_add_box(&soup, point(0.5, 0.5, 0), point(0.501, 0.501, 0.001), 1, false);
     paint(&soup, 0.9, 0.0);
     struct trial g = gather_scene(&soup, "", 64);
-    double bright = senders_power(g.gather.bright);
-    double lamps = senders_power(g.gather.lamps);
+    double bright = senders_power(g.gather->bright);
+    double lamps = senders_power(g.gather->lamps);
     tap_ok(bright == 0.0 && lamps > 0.0, "no ray is aimed at a white grain (%g W)",
            bright);
     trial_free(&g);
@@ -509,7 +509,7 @@ static void test_window(bool sill)
     double exact = point_polygon_factor(floor, z, window, 4), sum = 0.0, squares = 0.0;
     for (uint64_t run = 0; run < RUNS; run++) {
         struct rgb h =
-            final_gather_at(&g.gather, &points, run, SEGMENTS, false).lamps;
+            final_gather_at(g.gather, &points, run, SEGMENTS, false).lamps;
         double off = h.band[0] / exact - 1.0;
         sum += off / RUNS;
         squares += off * off / RUNS;
@@ -528,7 +528,7 @@ static double sum_of_runs(struct trial *g, const struct gather_points *points,
 {
     double sum = 0.0;
     for (uint64_t run = 0; run < 32; run++)
-        sum += final_gather_at(&g->gather, points, run, segments, false).lamps.band[0];
+        sum += final_gather_at(g->gather, points, run, segments, false).lamps.band[0];
     return sum;
 }
 
@@ -554,13 +554,13 @@ static void test_sky_behind_window(void)
     double exact = point_polygon_factor(floor, z, window, 4), sum = 0.0, square = 0.0;
     double claimed = HUGE_VAL;
     double first = sum_of_runs(&g, &points, SEGMENTS);
-    final_gather_renew(&g.gather);
+    final_gather_renew(g.gather);
     sum_of_runs(&g, &points, 4 * SEGMENTS);
     tap_ok(first == sum_of_runs(&g, &points, SEGMENTS),
            "the lamps that a leaf sees are the same whoever asks first");
     for (uint64_t run = 0; run < RUNS; run++) {
         struct gather_light light =
-            final_gather_at(&g.gather, &points, run, SEGMENTS, false);
+            final_gather_at(g.gather, &points, run, SEGMENTS, false);
         double off = light.lamps.band[0] / exact - 1.0;
         sum += off / RUNS;
         square += off * off / RUNS;
