@@ -46,7 +46,7 @@ static void write_meshes(struct run *run, const struct shading *shading)
     const struct answer *answer = beyond_answer(run->solver);
     struct mesh_answer solved = {
         answer->error, answer->straight, answer->outside,
-        {answer->straight, answer->straight ? answer->gather->lamps->least : 0.0,
+        {answer->straight, answer->straight ? answer->gather->aims->lamps->least : 0.0,
          answer->gather ? answer->gather->mean : 0.0}};
     for (int i = 0; i < run->options.output_count; i++) {
         const struct target *target = &run->options.outputs[i];

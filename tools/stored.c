@@ -159,8 +159,8 @@ static void restore_answer(struct solver *solver, const struct solution_mesh *so
     answer->gather = final_gather_create(&solver->model,
                                          solver->model.criterion.final_gather, NULL);
     if (solution->lamps.known) {
-        senders_destroy(answer->gather->lamps);
-        answer->gather->lamps =
+        senders_destroy(answer->gather->aims->lamps);
+        answer->gather->aims->lamps =
             senders_create(&solver->model, solution->lamps.lamp_least, false);
         answer->gather->mean = solution->lamps.mean;
         final_gather_renew(answer->gather);

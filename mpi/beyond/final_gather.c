@@ -164,9 +164,9 @@ static void add_up(struct gathering *g, int64_t *values, int64_t count)
  * these leaves, in the order of all. */
 static void share_near(struct gathering *g)
 {
-    enum { EACH = (int)(sizeof *g->gather->near.items / sizeof(int64_t)) };
+    enum { EACH = (int)(sizeof *g->gather->near->items / sizeof(int64_t)) };
     struct final_gather *gather = g->gather;
-    struct gather_near *items = gather->near.items;
+    struct gather_near *items = gather->near->items;
     size_t patches = (size_t)g->solver->model.forest->count;
     int32_t *number = alloc_array(patches, sizeof *number);
     add_up(g, &items->area, EACH * (int64_t)patches);
@@ -218,11 +218,11 @@ static void find_shown(struct gathering *g, const struct rgb *b)
     add_up(g, watts, BANDS * g->near_count);
     for (int64_t k = 0; k < g->near_count; k++) {
         int64_t i = g->near[k].leaf;
-        const struct gather_near *near = &gather->near.items[k];
+        const struct gather_near *near = &gather->near->items[k];
         const struct rgb *own = &g->radiosity[gather->place[g->leaves[i]]];
         double area = g->areas[i] * fmax(LEAST_OUTSIDE, g->covers[i].outside);
-        double part = (double)near->area * gather->near.unit_area / area;
-        double unit = gather->near.unit_watts / (area * fmax(1.0, part));
+        double part = (double)near->area * gather->near->unit_area / area;
+        double unit = gather->near->unit_watts / (area * fmax(1.0, part));
         double n = fmin(1.0, part), damping = fmin(1.0, 2.0 * (1.0 - n));
         for (int c = 0; c < BANDS; c++) {
             double met = (double)(watts[BANDS * k + c] + near->watts[c]) * unit; /* n L */
@@ -241,7 +241,7 @@ static double shining_area(const struct gathering *g, int64_t i)
 {
     uint32_t root = g->solver->model.forest->patches[g->leaves[i]].id.root;
     const struct cover *cover = &g->covers[i];
-    bool lamp = root_is_sender(g->gather->lamps, (int32_t)root);
+    bool lamp = root_is_sender(g->gather->aims->lamps, (int32_t)root);
     return (lamp ? g->areas[i] : cover->bare) * cover->outside * cover->kept;
 }
 
@@ -300,7 +300,7 @@ static void find_seen(struct gathering *g)
 {
     const struct forest *forest = g->solver->model.forest;
     const int32_t *place = g->gather->place;
-    double *seen = g->gather->near.seen;
+    double *seen = g->gather->near->seen;
     for (int64_t i = 0; i < g->count; i++)
         seen[place[g->leaves[i]]] = g->covers[i].outside;
     for (int64_t i = forest->count - 1; i >= 0; i--) {

@@ -41,7 +41,7 @@ static struct rgb variation_of(const struct gathering *g, int64_t place, struct 
     struct rgb deviation = rgb_sub(g->radiosity[place], base);
     double part = 0.5;
     if (parent < 0) {
-        struct vec3 apart = vec3_sub(g->gather->near.leaves[patch].middle, from);
+        struct vec3 apart = vec3_sub(g->gather->near->leaves[patch].middle, from);
         double near = sqrt(forest_area(forest, patch) / vec3_dot(apart, apart));
         part = fmin(1.0, fmax(UNDIVIDED, UNDIVIDED_NEAR * near));
     }
@@ -58,7 +58,7 @@ static void variances_by_mesh(struct gathering *g, struct rgb *variance)
     const struct final_gather *gather = g->gather;
     struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
     for (int64_t row = 0, k = 0; row < gather->count; row++) {
-        struct vec3 from = gather->near.leaves[gather->rows[row].leaf].middle;
+        struct vec3 from = gather->near->leaves[gather->rows[row].leaf].middle;
         for (int c = 0; c < BANDS; c++) {
             double off = FACTORS * gather->rows[row].lamps.band[c];
             own[row].band[c] = off * off;

@@ -137,16 +137,16 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
                           double share, double factor)
 {
     struct facet sender = facet_make(r->gather->model->forest, patch);
-    struct final_gather *g = r->gather;
+    struct gather_aims *aims = r->gather->aims;
     bool exact = factor >= 0.0 || !aim->senders->reflect;
     double all = 0.0;
     int found = 0, start = aim->index, end = start + (exact ? TRIES_MOST : 1) * count;
     if (!facets_face(&r->facet, &sender))
         return;
-    RESERVE(g->shots, &g->shot_capacity, count);
+    RESERVE(aims->shots, &aims->shot_capacity, count);
     while (found < count && aim->index < end) {
         struct shot shot = shot_at(r, aim, &sender, aim->index++);
-        g->shots[found] = shot;
+        aims->shots[found] = shot;
         found += shot.kernel > 0.0;
         all += shot.kernel;
     }
@@ -158,7 +158,7 @@ static void aim_at_sender(struct receiver *r, struct aim *aim, int32_t patch, in
         factor = exact_factor(r, &sender);
     double sent = rgb_sum(sender_light(aim->senders, patch));
     for (int k = 0; k < found; k++) {
-        struct shot shot = g->shots[k]; /* the light behind it may be aimed at by more */
+        struct shot shot = aims->shots[k]; /* light behind it may be aimed at by more */
         double part = share * factor * (shot.kernel / all);
         double seen =
             add_shot(r, aim, &shot, patch, part,
@@ -224,28 +224,28 @@ static struct offer exact_offer(const struct receiver *r, const struct senders *
 static double make_offers(struct receiver *r, const struct cuts *cuts, struct cut cut,
                           int segments)
 {
-    struct final_gather *g = r->gather;
+    struct gather_aims *aims = r->gather->aims;
     const struct senders *senders = cuts->senders;
     struct bounds own = facet_bounds(&r->facet);
     double all = 0.0, sum = 0.0, found = 0.0;
-    RESERVE(g->offers, &g->offer_capacity, cut.count);
+    RESERVE(aims->offers, &aims->offer_capacity, cut.count);
     for (int64_t i = 0; i < cut.count; i++) {
         const struct sender_node *node =
             &senders->nodes[cuts->nodes[cut.first + i].node];
-        g->offers[i] = (struct offer){sender_node_worth(senders, node, &own), -1.0};
-        all += g->offers[i].worth;
+        aims->offers[i] = (struct offer){sender_node_worth(senders, node, &own), -1.0};
+        all += aims->offers[i].worth;
     }
     for (int64_t i = 0; i < cut.count; i++) {
         const struct cut_node *at = &cuts->nodes[cut.first + i];
         const struct sender_node *node = &senders->nodes[at->node];
-        if (g->offers[i].worth * segments >= FOR_EXACT * all && is_near_sender(node, &own))
-            g->offers[i] = exact_offer(r, senders, node);
-        sum += g->offers[i].worth;
-        found += g->offers[i].worth * at->found;
+        if (aims->offers[i].worth * segments >= FOR_EXACT * all && is_near_sender(node, &own))
+            aims->offers[i] = exact_offer(r, senders, node);
+        sum += aims->offers[i].worth;
+        found += aims->offers[i].worth * at->found;
     }
     double part = found > 0.0 ? 0.5 * sum / found : 0.0;
     for (int64_t i = 0; i < cut.count; i++)
-        g->offers[i].worth *=
+        aims->offers[i].worth *=
             (found > 0.0 ? 0.5 : 1.0) + part * cuts->nodes[cut.first + i].found;
     return sum / segments;
 }
@@ -257,9 +257,9 @@ static double make_offers(struct receiver *r, const struct cuts *cuts, struct cu
  * (count + 1), and its light may be missing. */
 static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
 {
-    struct cut cut = cuts_at(cuts, r->row.leaf, &r->gather->view.counts);
+    struct cut cut = cuts_at(cuts, r->row.leaf, &r->gather->view->counts);
     double each = make_offers(r, cuts, cut, segments);
-    const struct offer *offers = r->gather->offers;
+    const struct offer *offers = r->gather->aims->offers;
     if (!(each > 0.0))
         return;
     double start = hash_unit(r->seed + 16), faint = 0.0;
@@ -303,14 +303,14 @@ static void aim_at_cut(struct receiver *r, struct cuts *cuts, int segments)
 
 void receiver_aim_at_bright(struct receiver *r)
 {
-    const struct final_gather *g = r->gather;
-    aim_at_cut(r, &r->gather->bright_cuts,
-               (int)ceil(r->rays * fmax(AIMED_LEAST, g->bright_part)));
+    const struct gather_aims *aims = r->gather->aims;
+    aim_at_cut(r, aims->bright_cuts,
+               (int)ceil(r->rays * fmax(AIMED_LEAST, aims->bright_part)));
 }
 
 void receiver_aim(struct receiver *r)
 {
-    aim_at_cut(r, &r->gather->lamp_cuts, r->segments);
+    aim_at_cut(r, r->gather->aims->lamp_cuts, r->segments);
     r->row.lamps = r->light;
     r->light = (struct rgb){{0.0, 0.0, 0.0}};
     memcpy(r->row.of_segments, r->row.chance, sizeof r->row.of_segments);

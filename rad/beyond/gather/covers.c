@@ -113,7 +113,7 @@ void receiver_find_covers(struct receiver *r)
     r->row.outside = 1.0f - (float)r->sums.inside / (float)r->rays;
     r->row.open = r->row.outside - (float)r->sums.in_gap / (float)r->rays;
     if (r->sums.inside == r->rays ||
-        (r->gather->sums.count == 0 && !(rgb_sum(r->row.source) > 0.0)))
+        (r->gather->sums->count == 0 && !(rgb_sum(r->row.source) > 0.0)))
         return;
     for (uint32_t i = 0; i < BARE_POINTS; i++) {
         sequence_point(&sequence, i, u);

@@ -89,22 +89,26 @@ void regions_destroy(struct regions *regions)
 
 /* --- cuts --- */
 
-struct cuts cuts_create(const struct senders *senders, const struct regions *regions,
-                        int segments)
+struct cuts *cuts_create(const struct senders *senders, const struct regions *regions,
+                         int segments)
 {
-    struct cuts cuts = {
-        .senders = senders, .regions = regions, .segments = segments};
-    cuts.cuts = alloc_array((size_t)regions->count, sizeof *cuts.cuts);
+    struct cuts *cuts = alloc_array(1, sizeof *cuts);
+    cuts->senders = senders;
+    cuts->regions = regions;
+    cuts->segments = segments;
+    cuts->cuts = alloc_array((size_t)regions->count, sizeof *cuts->cuts);
     for (int64_t i = 0; i < regions->count; i++)
-        cuts.cuts[i].first = -1;
+        cuts->cuts[i].first = -1;
     return cuts;
 }
 
-void cuts_free(struct cuts *cuts)
+void cuts_destroy(struct cuts *cuts)
 {
+    if (!cuts)
+        return;
     alloc_free(cuts->cuts);
     alloc_free(cuts->nodes);
-    *cuts = (struct cuts){0};
+    alloc_free(cuts);
 }
 
 /* Appends the nodes of a cut below a node. `most`: light of one of them, at most, W/m^2.

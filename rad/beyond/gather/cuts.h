@@ -45,9 +45,9 @@ struct cuts {
     int64_t count, capacity;
 };
 
-struct cuts cuts_create(const struct senders *senders, const struct regions *regions,
-                        int segments);
-void cuts_free(struct cuts *cuts);
+struct cuts *cuts_create(const struct senders *senders, const struct regions *regions,
+                         int segments);
+void cuts_destroy(struct cuts *cuts); /* NULL: none */
 
 /* Returns the cut of the region of a leaf; makes it when it is asked for first, a pure
  * function of the region, so the same on any rank. Adds the tests that it took to

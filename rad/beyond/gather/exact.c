@@ -53,7 +53,7 @@ static const double CLOSED = 1e-3, ALL_BUT = 0.1;
 /* Adds the roots below a node that the root faces. False once there are too many. */
 static bool view_node(struct final_gather *g, const struct end *root, int32_t node)
 {
-    struct gather_view *view = &g->view;
+    struct gather_view *view = g->view;
     struct end end = end_of(g->model, node);
     if (!ends_may_face(root, &end))
         return true;
@@ -77,7 +77,7 @@ static bool has_overlap(struct final_gather *g, const struct end *root, int32_t 
     struct end end = end_of(g->model, node);
     const struct facet *s = &root->facet, *t = &end.facet;
     bool found = false;
-    g->view.counts.node_tests++;
+    g->view->counts.node_tests++;
     if (node == root->node || !ends_meet(root, &end).near)
         return false;
     if (!end.cluster)
@@ -90,7 +90,7 @@ static bool has_overlap(struct final_gather *g, const struct end *root, int32_t 
 
 static bool is_overlapped(struct final_gather *g, int32_t root)
 {
-    uint8_t *known = &g->view.overlapped[root];
+    uint8_t *known = &g->view->overlapped[root];
     struct end end = end_of(g->model, root);
     if (*known == 0)
         *known = has_overlap(g, &end, NODE_TOP) ? 2 : 1;
@@ -111,7 +111,7 @@ static bool is_open(struct final_gather *g, int32_t number, bool proof)
 {
     struct end root = end_of(g->model, number);
     const struct octree *octree = g->model->octree;
-    struct gather_view *view = &g->view;
+    struct gather_view *view = g->view;
     struct vec3 middle = triangle_centroid(&root.facet.triangle);
     int32_t guess = -1;
     view->count = 0;
@@ -134,10 +134,10 @@ static bool is_open(struct final_gather *g, int32_t number, bool proof)
 
 static const struct gather_view *view_of(struct final_gather *g, int32_t root)
 {
-    if (g->view.root != root)
-        g->view.open = is_open(g, root, true);
-    g->view.root = root;
-    return &g->view;
+    if (g->view->root != root)
+        g->view->open = is_open(g, root, true);
+    g->view->root = root;
+    return g->view;
 }
 
 /* True if the leaf and a sender form a hinge: the sender ends at the leaf's plane, or
@@ -207,7 +207,7 @@ static bool is_to_be_split(const struct receiver *r, const struct triangle *send
 {
     const struct final_gather *g = r->gather;
     double near2 = fmin(1.0, nearness(&r->facet.triangle, sender));
-    return factor * range * near2 * g->rays > VARIES * g->sums.flat * g->mean;
+    return factor * range * near2 * g->rays > VARIES * g->sums->flat * g->mean;
 }
 
 /* A patch as a sender, or a part of a leaf. */
@@ -242,8 +242,8 @@ static double factor_to(const struct receiver *r, const struct triangle *sender)
 {
     int64_t *work = &r->gather->model->estimating;
     const struct vec3 normal = r->facet.plane.normal;
-    return r->gather->sums.sharp ? near_factor(&r->facet.triangle, normal, sender, work)
-                                 : mean_factor(&r->facet.triangle, normal, sender, work);
+    return r->gather->sums->sharp ? near_factor(&r->facet.triangle, normal, sender, work)
+                                  : mean_factor(&r->facet.triangle, normal, sender, work);
 }
 
 /* True if a part is so near, for its size or the leaf's, that three points of the leaf do
@@ -319,7 +319,7 @@ static bool add_sender(struct receiver *r, int32_t patch)
         return !lies_on(r, patch, factor);
     }
     if (!is_to_be_split(r, &whole.triangle, factor,
-                        (double)g->sums.ranges[patch])) {
+                        (double)g->sums->ranges[patch])) {
         add_whole(r, &whole, factor);
         return !lies_on(r, patch, factor);
     }
@@ -341,7 +341,7 @@ static double sum_of_row(const struct gather_sums *sums)
  * or is inside of a thing. One that all but sums to 1 is made to. */
 static bool close_row(struct receiver *r)
 {
-    const struct gather_sums *sums = &r->gather->sums;
+    const struct gather_sums *sums = r->gather->sums;
     double sum = sum_of_row(sums);
     bool partial = sum > 0.0 && sum < 1.0 - CLOSED;
     struct vec3 normal = r->facet.plane.normal, x = triangle_centroid(&r->facet.triangle);
@@ -364,7 +364,7 @@ bool final_gather_root_is_open(struct final_gather *gather, int32_t root, bool p
 {
     if (proof)
         return view_of(gather, root)->open;
-    gather->view.root = -1;
+    gather->view->root = -1;
     return is_open(gather, root, false);
 }
 
@@ -374,24 +374,24 @@ bool receiver_add_exact(struct receiver *r)
 {
     struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
-    double flat = g->sums.flat;
+    double flat = g->sums->flat;
     uint32_t root = forest->patches[r->row.leaf].id.root;
     const struct gather_view *view = view_of(g, (int32_t)root);
     bool good = view->open;
-    g->sums.exact = true;
-    g->sums.flat = fmin(flat, sqrt(g->model->criterion.epsilon));
+    g->sums->exact = true;
+    g->sums->flat = fmin(flat, sqrt(g->model->criterion.epsilon));
     for (int turn = 0; turn < 2 && good; turn++) {
-        double off = fabs(sum_of_row(&g->sums) - 1.0);
+        double off = fabs(sum_of_row(g->sums) - 1.0);
         if (turn > 0 && (off <= CLOSED || off > ALL_BUT))
             break;
-        g->sums.sharp = turn > 0;
-        g->sums.count = 0;
+        g->sums->sharp = turn > 0;
+        g->sums->count = 0;
         r->light = (struct rgb){{0.0, 0.0, 0.0}};
         for (int64_t i = 0; i < view->count && good; i++)
             good = add_sender(r, view->faced[i]);
     }
-    g->sums.sharp = false;
-    g->sums.flat = flat;
-    g->sums.exact = false;
+    g->sums->sharp = false;
+    g->sums->flat = flat;
+    g->sums->exact = false;
     return good && close_row(r);
 }

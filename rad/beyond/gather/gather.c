@@ -145,35 +145,56 @@ static double difference(const struct final_gather *g, struct rgb a, struct rgb 
     if (!scaled)
         return fabs(rgb_sum(a) - rgb_sum(b));
     for (int c = 0; c < BANDS; c++)
-        most = real_max(most, g->sums.scale.band[c] * fabs(a.band[c] - b.band[c]));
+        most = real_max(most, g->sums->scale.band[c] * fabs(a.band[c] - b.band[c]));
     return most;
+}
+
+/* Leaves too near, of none yet. */
+static struct gather_nears *nears_create(const struct model *model, double mean)
+{
+    size_t count = (size_t)model->forest->count;
+    struct gather_nears *near = alloc_array(1, sizeof *near);
+    near->unit_area = 0x1p-50 * model->area;
+    near->unit_watts = 0x1p-52 * model->area * mean;
+    near->seen = alloc_array(count, sizeof *near->seen);
+    near->items = alloc_array(count, sizeof *near->items);
+    return near;
+}
+
+static struct gather_sums *sums_create(const struct model *model, double mean)
+{
+    const struct forest *forest = model->forest;
+    struct gather_sums *sums = alloc_array(1, sizeof *sums);
+    sums->scale = scale_of_bands(model, mean);
+    sums->flat = FLAT;
+    sums->latest = alloc_array((size_t)forest->count, sizeof *sums->latest);
+    sums->ranges = alloc_array((size_t)forest->count, sizeof *sums->ranges);
+    for (int c = 0; c < BANDS; c++)
+        forest_raise_ranges(forest, c, sums->scale.band[c], sums->ranges);
+    return sums;
 }
 
 struct final_gather *final_gather_create(struct model *model, int rays,
                                          const uint8_t *cut)
 {
-    struct forest *forest = model->forest;
+    const struct forest *forest = model->forest;
     struct final_gather *gather = alloc_array(1, sizeof *gather);
-    *gather = (struct final_gather){.model = model, .cut = cut, .view = {.root = -1}};
+    gather->model = model;
+    gather->cut = cut;
     gather->rays = rays_for(rays, forest_count(forest).leaves);
     gather->mean = mean_radiosity(model);
-    gather->sums.scale = scale_of_bands(model, gather->mean);
-    gather->sums.flat = FLAT;
-    gather->lamps = senders_create(model, least_of_lamps(model), false);
-    final_gather_renew(gather);
-    gather->near.unit_area = 0x1p-50 * model->area;
-    gather->near.unit_watts = 0x1p-52 * model->area * gather->mean;
-    gather->near.seen = alloc_array((size_t)forest->count, sizeof *gather->near.seen);
-    gather->near.items = alloc_array((size_t)forest->count, sizeof *gather->near.items);
     gather->order = forest_order(forest);
     gather->place = alloc_array((size_t)forest->count, sizeof *gather->place);
-    gather->sums.latest = alloc_array((size_t)forest->count, sizeof *gather->sums.latest);
-    gather->view.overlapped = alloc_array((size_t)forest->root_count, 1);
-    gather->sums.ranges = alloc_array((size_t)forest->count, sizeof *gather->sums.ranges);
-    for (int c = 0; c < BANDS; c++)
-        forest_raise_ranges(forest, c, gather->sums.scale.band[c], gather->sums.ranges);
     for (int64_t i = 0; i < forest->count; i++)
         gather->place[gather->order[i]] = (int32_t)i;
+    gather->view = alloc_array(1, sizeof *gather->view);
+    gather->view->root = -1;
+    gather->view->overlapped = alloc_array((size_t)forest->root_count, 1);
+    gather->near = nears_create(model, gather->mean);
+    gather->sums = sums_create(model, gather->mean);
+    gather->aims = alloc_array(1, sizeof *gather->aims);
+    gather->aims->lamps = senders_create(model, least_of_lamps(model), false);
+    final_gather_renew(gather);
     return gather;
 }
 
@@ -181,36 +202,45 @@ void final_gather_drop_rows(struct final_gather *gather)
 {
     alloc_free(gather->rows);
     alloc_free(gather->terms);
-    alloc_free(gather->near.items);
+    alloc_free(gather->near->items);
     gather->rows = NULL;
     gather->terms = NULL;
-    gather->near.items = NULL;
+    gather->near->items = NULL;
     gather->count = gather->row_capacity = 0;
     gather->term_capacity = 0;
+}
+
+static void aims_destroy(struct gather_aims *aims)
+{
+    senders_destroy(aims->lamps);
+    senders_destroy(aims->bright);
+    regions_destroy(aims->regions);
+    cuts_destroy(aims->lamp_cuts);
+    cuts_destroy(aims->bright_cuts);
+    alloc_free(aims->offers);
+    alloc_free(aims->shots);
+    alloc_free(aims);
 }
 
 void final_gather_destroy(struct final_gather *gather)
 {
     if (!gather)
         return;
-    senders_destroy(gather->lamps);
-    senders_destroy(gather->bright);
-    regions_destroy(gather->regions);
-    cuts_free(&gather->lamp_cuts);
-    cuts_free(&gather->bright_cuts);
-    alloc_free(gather->offers);
-    alloc_free(gather->shots);
-    alloc_free(gather->view.faced);
-    alloc_free(gather->view.overlapped);
-    alloc_free(gather->near.seen);
-    alloc_free(gather->near.paths);
-    alloc_free(gather->near.leaves);
+    final_gather_drop_rows(gather);
+    aims_destroy(gather->aims);
+    alloc_free(gather->view->faced);
+    alloc_free(gather->view->overlapped);
+    alloc_free(gather->view);
+    alloc_free(gather->near->seen);
+    alloc_free(gather->near->paths);
+    alloc_free(gather->near->leaves);
+    alloc_free(gather->near);
+    alloc_free(gather->sums->items);
+    alloc_free(gather->sums->latest);
+    alloc_free(gather->sums->ranges);
+    alloc_free(gather->sums);
     alloc_free(gather->order);
     alloc_free(gather->place);
-    alloc_free(gather->sums.items);
-    alloc_free(gather->sums.latest);
-    alloc_free(gather->sums.ranges);
-    final_gather_drop_rows(gather);
     alloc_free(gather);
 }
 
@@ -286,23 +316,22 @@ struct gather_slope gather_slope(const struct final_gather *gather, int32_t patc
         middle.band[c] = (b[0].band[c] + b[1].band[c] + b[2].band[c]) / 3.0;
     for (int k = 0; k < 3; k++)
         slope.range = real_max(
-            slope.range, difference(gather, b[k], middle, gather->sums.exact));
-    if (slope.range > gather->sums.flat * gather->mean)
+            slope.range, difference(gather, b[k], middle, gather->sums->exact));
+    if (slope.range > gather->sums->flat * gather->mean)
         slope.rise = slope_part(b, middle) *
                      (!leaf ? 2.0 : patch == slope.first + 3 ? -1.0 : 1.0);
     slope.steep = 1.0;
-    if (gather->sums.exact && leaf && slope.rise != 0.0)
+    if (gather->sums->exact && leaf && slope.rise != 0.0)
         slope.steep = steepening(forest, patch);
     slope.rise *= slope.steep;
     return slope;
 }
 
 /* Finds the bright patches, if there is enough to win by aiming at them. */
-static void find_bright(struct final_gather *gather)
+static void find_bright(struct gather_aims *aims, const struct model *model)
 {
-    const struct model *model = gather->model;
     double reflected = forest_mean_reflected(model->forest), squares = 0.0;
-    senders_destroy(gather->bright);
+    senders_destroy(aims->bright);
     struct senders *bright = senders_create(model, BRIGHT * reflected, true);
     for (int64_t i = 0; i < bright->sender_count; i++) {
         double power = bright->before[i + 1] - bright->before[i];
@@ -313,29 +342,31 @@ static void find_bright(struct final_gather *gather)
         senders_destroy(bright);
         bright = senders_create(model, HUGE_VAL, true);
     }
-    gather->bright = bright;
-    gather->bright_part = senders_power(bright) / (reflected * model->area);
+    aims->bright = bright;
+    aims->bright_part = senders_power(bright) / (reflected * model->area);
 }
 
 void final_gather_renew(struct final_gather *gather)
 {
     const struct model *model = gather->model;
     const struct forest *forest = model->forest;
-    find_bright(gather);
-    regions_destroy(gather->regions);
-    cuts_free(&gather->lamp_cuts);
-    cuts_free(&gather->bright_cuts);
-    gather->regions = regions_create(model);
-    gather->lamp_cuts = cuts_create(gather->lamps, gather->regions, gather->rays);
-    gather->bright_cuts = cuts_create(gather->bright, gather->regions, gather->rays);
-    alloc_free(gather->near.leaves);
-    gather->near.leaves = alloc_array((size_t)forest->count, sizeof *gather->near.leaves);
+    struct gather_aims *aims = gather->aims;
+    find_bright(aims, model);
+    regions_destroy(aims->regions);
+    cuts_destroy(aims->lamp_cuts);
+    cuts_destroy(aims->bright_cuts);
+    aims->regions = regions_create(model);
+    aims->lamp_cuts = cuts_create(aims->lamps, aims->regions, gather->rays);
+    aims->bright_cuts = cuts_create(aims->bright, aims->regions, gather->rays);
+    alloc_free(gather->near->leaves);
+    struct gather_leaf *leaves = alloc_array((size_t)forest->count, sizeof *leaves);
+    gather->near->leaves = leaves;
     for (int32_t p = 0; p < forest->count; p++) {
         struct triangle t = forest_triangle(forest, p);
         double reach2 =
             is_cut(gather, p) ? HUGE_VAL : NEAR * forest_area(forest, p);
-        gather->near.leaves[p] = (struct gather_leaf){triangle_centroid(&t), reach2,
-                                                      gather_slope(gather, p)};
+        leaves[p] = (struct gather_leaf){triangle_centroid(&t), reach2,
+                                         gather_slope(gather, p)};
     }
 }
 
@@ -362,7 +393,7 @@ struct rgb light_by_parent(const struct forest *forest, int32_t patch)
 /* The sum of the row at hand for a patch, by way of the leaf that its ray met first. */
 static struct gather_sum *sum_of(struct final_gather *g, int32_t place, int32_t near)
 {
-    struct gather_sums *sums = &g->sums;
+    struct gather_sums *sums = g->sums;
     int32_t at = sums->latest[place];
     if (at >= sums->first && at < sums->count && sums->items[at].place == place &&
         sums->items[at].near == near)
@@ -391,7 +422,7 @@ void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
 {
     const struct final_gather *g = r->gather;
     struct gather_slope slope =
-        g->sums.exact ? gather_slope(g, patch) : g->near.leaves[patch].slope;
+        g->sums->exact ? gather_slope(g, patch) : g->near->leaves[patch].slope;
     receiver_add_patch(r, patch, weight);
     struct rgb steep = *weight, part;
     for (int c = 0; c < BANDS; c++)
@@ -405,7 +436,7 @@ void receiver_add_point(struct receiver *r, int32_t patch, const double at[3],
 
 int64_t final_gather_work(const struct final_gather *gather)
 {
-    const struct octree_counts *proofs = &gather->view.counts;
+    const struct octree_counts *proofs = &gather->view->counts;
     return model_work(gather->model) + proofs->node_tests + proofs->triangle_tests;
 }
 
@@ -435,14 +466,14 @@ void final_gather_add_near(const struct final_gather *gather, int64_t row,
         for (int c = 0; c < BANDS; c++)
             watts[BANDS * term->near + c] += gather_units(
                 area * (double)term->weight[c] * radiosity[term->place].band[c],
-                gather->near.unit_watts);
+                gather->near->unit_watts);
     }
 }
 
 void final_gather_pull(const struct final_gather *gather, struct rgb *radiosity)
 {
     const struct forest *forest = gather->model->forest;
-    const double *seen = gather->near.seen;
+    const double *seen = gather->near->seen;
     for (int64_t i = forest->count - 1; i >= 0; i--) {
         const struct patch *patch = &forest->patches[gather->order[i]];
         if (patch_is_leaf(patch) || !(seen[i] > 0.0))

@@ -83,7 +83,7 @@ struct rgb light_by_parent(const struct forest *forest, int32_t patch);
 int64_t gather_units(double value, double unit);
 
 /* Adds the light of a row, W in square scene units, that comes by way of leaves too near
- * to these: `watts`, by `near` of the terms and band, in gather->near.unit_watts. */
+ * to these: `watts`, by `near` of the terms and band, in gather->near->unit_watts. */
 void final_gather_add_near(const struct final_gather *gather, int64_t row,
                            const struct rgb *radiosity, int64_t *watts);
 

@@ -86,7 +86,7 @@ static bool is_cut(struct final_gather *gather, int32_t leaf)
         end = vec3_add(middle, vec3_scale(vec3_sub(end, middle), INSET));
         if (octree_blocks_segment(gather->model->octree, point_above(middle, normal),
                                   point_above(end, normal), own, &guess,
-                                  &gather->view.counts))
+                                  &gather->view->counts))
             return true;
     }
     return false;

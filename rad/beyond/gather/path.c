@@ -35,7 +35,7 @@ static bool is_aimed_lamp(const struct receiver *r, const struct point *met,
                           struct vec3 x)
 {
     int32_t root = point_root(r, met);
-    return root_is_sender(r->gather->lamps, root) &&
+    return root_is_sender(r->gather->aims->lamps, root) &&
            !receiver_lamp_is_near(r->gather->model->scene, root, x);
 }
 
@@ -88,7 +88,7 @@ static bool leave(struct receiver *r, const struct point *point, bool aimed,
 
 bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct vec3 x)
 {
-    int32_t bright = r->gather->bright->part_of[met->patch];
+    int32_t bright = r->gather->aims->bright->part_of[met->patch];
     return bright >= 0 && !is_beside(r->gather->model->forest, bright, x) &&
            (r->points || path_ends(r, met, x));
 }
@@ -99,7 +99,7 @@ bool path_is_aimed_at(const struct receiver *r, const struct point *met, struct 
 static bool is_aimed_at_beside(const struct receiver *r, const struct point *met,
                                struct vec3 x)
 {
-    const struct senders *bright = r->gather->bright;
+    const struct senders *bright = r->gather->aims->bright;
     int32_t patch = bright->part_of[met->patch];
     if (!r->points || patch < 0)
         return false;
@@ -112,11 +112,11 @@ static bool is_aimed_at_beside(const struct receiver *r, const struct point *met
 static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
                         const struct rgb *weight, uint64_t seed)
 {
-    const struct final_gather *g = r->gather;
-    if (!r->points || !(senders_power(g->bright) > 0.0))
+    const struct senders *senders = r->gather->aims->bright;
+    if (!r->points || !(senders_power(senders) > 0.0))
         return;
-    struct choice bright = sender_choose(g->bright, g->bright->nodes, hash_unit(seed));
-    struct facet facet = facet_make(g->model->forest, bright.patch);
+    struct choice bright = sender_choose(senders, senders->nodes, hash_unit(seed));
+    struct facet facet = facet_make(r->gather->model->forest, bright.patch);
     struct vec3 y =
         triangle_of_square(&facet.triangle, hash_unit(seed + 1), hash_unit(seed + 2));
     double factor =
@@ -124,7 +124,7 @@ static void look_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
     struct point point;
     if (!(factor > 0.0) ||
         trace(r, x, vec3_unit(vec3_sub(y, x)), &point) != MET_FRONT ||
-        g->bright->part_of[point.patch] != bright.patch ||
+        senders->part_of[point.patch] != bright.patch ||
         !is_aimed_at_beside(r, &point, x))
         return;
     struct rgb light = *weight;
@@ -145,7 +145,7 @@ void receiver_see(struct receiver *r, struct vec3 x, struct vec3 y, int32_t patc
     if (!path_is_aimed_at(r, &point, x))
         return;
     r->shares.bright += factor;
-    path_go_on(r, point, x, root_is_sender(g->lamps, root),
+    path_go_on(r, point, x, root_is_sender(g->aims->lamps, root),
                (struct rgb){{factor, factor, factor}}, seed, true);
 }
 

@@ -30,7 +30,7 @@ static inline bool path_ends(const struct receiver *r, const struct point *met,
                              struct vec3 x)
 {
     struct vec3 ray = vec3_sub(met->at, x);
-    return vec3_dot(ray, ray) >= r->gather->near.leaves[met->patch].reach2;
+    return vec3_dot(ray, ray) >= r->gather->near->leaves[met->patch].reach2;
 }
 
 /* True if rays from x are aimed at the bright patch that the point which one has met is

@@ -41,7 +41,7 @@ static void begin_path(struct receiver *r, const struct point *met, bool aimed,
 {
     struct final_gather *g = r->gather;
     struct rgb emission = forest_material(g->model->forest, met->patch)->emission;
-    struct gather_nears *near = &g->near;
+    struct gather_nears *near = g->near;
     if (!r->keeps) /* a look's leaves may have no places yet */
         return;
     r->near = g->place[met->patch];
@@ -76,7 +76,7 @@ static void follow(struct receiver *r, const struct stream *stream, int ray,
         r->sums.aside[half]++;
         return;
     }
-    bool aimed = root_is_sender(r->gather->lamps, point_root(r, &point));
+    bool aimed = root_is_sender(r->gather->aims->lamps, point_root(r, &point));
     if (!path_ends(r, &point, origin))
         begin_path(r, &point, aimed, &weight);
     path_go_on(r, point, origin, aimed, weight, seed, true);
@@ -145,12 +145,12 @@ static void add_paths(struct gather_nears *near, const struct receiver *r, doubl
 static void add_bright(struct receiver *r, struct rgb source)
 {
     struct final_gather *g = r->gather;
-    struct gather_sums *sums = &g->sums;
+    struct gather_sums *sums = g->sums;
     struct rgb after = r->row.source;
     sums->first = sums->count;
     receiver_aim_at_bright(r);
     double factor = factor_of_rays(r);
-    add_paths(&g->near, r, factor);
+    add_paths(g->near, r, factor);
     for (int64_t i = 0; i < sums->first; i++)
         for (int c = 0; c < BANDS; c++)
             sums->items[i].weight[c] *= factor;

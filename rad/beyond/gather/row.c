@@ -12,10 +12,10 @@ static void keep_terms(struct receiver *r)
 {
     struct final_gather *g = r->gather;
     int64_t first = final_gather_terms(g);
-    r->row.end = first + g->sums.count;
+    r->row.end = first + g->sums->count;
     RESERVE(g->terms, &g->term_capacity, r->row.end);
-    for (int64_t i = 0; i < g->sums.count; i++) {
-        const struct gather_sum *sum = &g->sums.items[i];
+    for (int64_t i = 0; i < g->sums->count; i++) {
+        const struct gather_sum *sum = &g->sums->items[i];
         struct gather_term term = {.place = sum->place, .near = sum->near};
         for (int c = 0; c < BANDS; c++)
             term.weight[c] = (float)sum->weight[c];
@@ -51,13 +51,13 @@ static struct rgb light_of_lamps(const struct receiver *r)
     const struct final_gather *g = r->gather;
     const struct forest *forest = g->model->forest;
     struct rgb light = {{0.0, 0.0, 0.0}};
-    for (int64_t i = 0; i < g->sums.count; i++) {
-        int32_t patch = g->order[g->sums.items[i].place];
+    for (int64_t i = 0; i < g->sums->count; i++) {
+        int32_t patch = g->order[g->sums->items[i].place];
         const struct material *m = forest_material(forest, patch);
-        if (!root_is_sender(g->lamps, (int32_t)forest->patches[patch].id.root))
+        if (!root_is_sender(g->aims->lamps, (int32_t)forest->patches[patch].id.root))
             continue;
         for (int c = 0; c < BANDS; c++)
-            light.band[c] += g->sums.items[i].weight[c] * m->emission.band[c];
+            light.band[c] += g->sums->items[i].weight[c] * m->emission.band[c];
     }
     return light;
 }
@@ -68,12 +68,12 @@ void final_gather_add(struct final_gather *gather, int32_t leaf, int rays, int s
     struct receiver r = receiver_of_leaf(gather, leaf, rays);
     r.segments = segments < SEQUENCE_POINTS ? segments : SEQUENCE_POINTS;
     r.keeps = true;
-    gather->sums.count = gather->sums.first = 0;
+    gather->sums->count = gather->sums->first = 0;
     if (exact && receiver_add_exact(&r)) {
         r.row.lamps = light_of_lamps(&r);
     } else {
         r.light = (struct rgb){{0.0, 0.0, 0.0}};
-        gather->sums.count = gather->sums.first = 0; /* of this row alone */
+        gather->sums->count = gather->sums->first = 0; /* of this row alone */
         receiver_aim(&r);
         receiver_fire(&r);
     }

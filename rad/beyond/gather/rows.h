@@ -139,26 +139,31 @@ struct offer {
     double factor; /* the exact form factor of a single sender that is near, 1; else -1 */
 };
 
-/* The rows of this rank, and their scene. */
-struct final_gather {
-    struct model *model; /* borrowed; rays are counted there */
-    int rays;              /* from a leaf, in the mean */
-    double mean;           /* radiosity, over bands and all surface, W/m^2 */
+/* What segments are aimed at. */
+struct gather_aims {
     struct senders *lamps;
     struct senders *bright;    /* patches that reflect so much that rays aim at them */
     double bright_part;        /* of all reflected light that these send, 1 */
-    const uint8_t *cut;        /* borrowed, [forest->count] 1: a thing stands on the patch
-                                  or across it; NULL: on none */
     struct regions *regions;
-    struct cuts lamp_cuts, bright_cuts;
+    struct cuts *lamp_cuts, *bright_cuts;
     struct offer *offers;      /* [offer_capacity] room for those of the nodes of a cut */
     struct shot *shots;        /* [shot_capacity] room for those at a sender */
     int64_t offer_capacity, shot_capacity;
-    struct gather_view view;   /* of the root of the leaf at hand */
-    int32_t *order; /* [forest->count] patches as in forest_order() */
-    int32_t *place; /* [forest->count] the place of each patch in `order` */
-    struct gather_nears near;
-    struct gather_sums sums;
+};
+
+/* The rows of this rank, and their scene. */
+struct final_gather {
+    struct model *model; /* borrowed; rays are counted there */
+    int rays;            /* from a leaf, in the mean */
+    double mean;         /* radiosity, over bands and all surface, W/m^2 */
+    const uint8_t *cut;  /* borrowed, [forest->count] 1: a thing stands on the patch or
+                            across it; NULL: on none */
+    int32_t *order;      /* [forest->count] patches as in forest_order() */
+    int32_t *place;      /* [forest->count] the place of each patch in `order` */
+    struct gather_aims *aims;
+    struct gather_view *view; /* of the root of the leaf at hand */
+    struct gather_nears *near;
+    struct gather_sums *sums;
     struct gather_row *rows;   /* [count] */
     struct gather_term *terms; /* of all rows, one after the other */
     int64_t count, row_capacity, term_capacity;

@@ -13,7 +13,7 @@ static const double NEAR_LAMP = 4.0;
 void receiver_add_near(struct receiver *r, const struct rgb *weight, struct rgb emission,
                        double factor)
 {
-    struct gather_nears *near = &r->gather->near;
+    struct gather_nears *near = r->gather->near;
     for (int c = 0; c < BANDS && r->near >= 0; c++)
         near->paths[near->path_count - 1].light.band[c] +=
             weight->band[c] * factor * emission.band[c];
@@ -71,8 +71,8 @@ void receiver_aim_beside(struct receiver *r, struct vec3 x, struct vec3 normal,
     const struct forest *forest = g->model->forest;
     const struct scene *scene = g->model->scene;
     int32_t input = scene_input_of(scene, (int32_t)forest->patches[patch].id.root);
-    struct cut cut = cuts_at(&g->lamp_cuts, patch, &g->view.counts);
-    struct choice lamp = cuts_choose(&g->lamp_cuts, cut, hash_unit(seed));
+    struct cut cut = cuts_at(g->aims->lamp_cuts, patch, &g->view->counts);
+    struct choice lamp = cuts_choose(g->aims->lamp_cuts, cut, hash_unit(seed));
     if (lamp.patch < 0 || receiver_lamp_is_near(scene, lamp.patch, x))
         return;
     struct triangle triangle = scene_root_triangle(scene, lamp.patch);

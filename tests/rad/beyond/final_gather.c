@@ -23,7 +23,8 @@ static void test_furnished(void)
         if (g.gather->rows[i].bare == 1.0f && g.gather->rows[i].outside == 1.0f)
             worst = fmax(worst, fabs(irradiance(&g, i) - 1.0));
     tap_ok(worst <= 2e-6 && g.gather->counts.escaped == 0,
-           "rows of %lld leaves sum to 1, within %.1e", (long long)g.gather->count, worst);
+           "rows of %lld leaves sum to 1, within %.1e", (long long)g.gather->count,
+           worst);
     tap_ok(g.gather->counts.rays > 64 * 60, "by %lld rays",
            (long long)g.gather->counts.rays);
     trial_free(&g);
@@ -38,7 +39,8 @@ static void test_most_rays(void)
     soup_add_quad(&soup, point(0.4, 0.4, 1e-3), point(0, 0.2, 0), point(0.2, 0, 0), 1);
     paint(&soup, 0.0, 1.0);
     struct trial g = gather_scene(&soup, "--max-level 0", 2 * SEQUENCE_POINTS);
-    int64_t rays = g.gather->counts.rays, leaves = g.gather->count - g.gather->counts.exact;
+    int64_t rays = g.gather->counts.rays;
+    int64_t leaves = g.gather->count - g.gather->counts.exact;
     tap_ok(leaves > 0 && rays == SEQUENCE_POINTS * leaves, "%lld rays for %lld leaves",
            (long long)rays, (long long)leaves);
     trial_free(&g);
@@ -143,7 +145,7 @@ static void test_speck(double size)
     for (int64_t k = 0; k < final_gather_terms(g.gather); k++) {
         int32_t leaf = g.gather->terms[k].near;
         near += leaf >= 0;
-        lost += leaf >= 0 && g.gather->near.items[leaf].area == 0;
+        lost += leaf >= 0 && g.gather->near->items[leaf].area == 0;
     }
     tap_ok(near > 0 && lost == 0, "a speck of %g: %lld terms by way of leaves "
            "too near, %lld without a unit", size, (long long)near, (long long)lost);

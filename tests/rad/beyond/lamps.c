@@ -59,7 +59,7 @@ static double lit_floor(int lamps, bool screened, double *exact, int64_t *groups
     struct trial g = gather_scene(&soup, "", 64);
     *exact = factor_of_floor(g.s.scene, 32 + 2 * lamps * lamps);
     struct octree_counts counts = {0};
-    *groups = cuts_at(&g.gather->lamp_cuts, g.gather->rows[0].leaf, &counts).count;
+    *groups = cuts_at(g.gather->aims->lamp_cuts, g.gather->rows[0].leaf, &counts).count;
     double mean = mean_of_roots(&g, 0, 32);
     trial_free(&g);
     return mean;
@@ -310,9 +310,10 @@ static void test_choice(void)
     }
     enum { CHOICES = 1 << 16 };
     struct octree_counts counts = {0};
-    struct cut cut = cuts_at(&g.gather->lamp_cuts, g.gather->rows[0].leaf, &counts);
+    struct cuts *cuts = g.gather->aims->lamp_cuts;
+    struct cut cut = cuts_at(cuts, g.gather->rows[0].leaf, &counts);
     for (int k = 0; k < CHOICES; k++) {
-        struct choice lamp = cuts_choose(&g.gather->lamp_cuts, cut, (k + 0.5) / CHOICES);
+        struct choice lamp = cuts_choose(cuts, cut, (k + 0.5) / CHOICES);
         struct triangle t = scene_root_triangle(scene, lamp.patch);
         mean += lamp.share * point_triangle_factor(x, up, &t) / CHOICES;
     }
@@ -334,7 +335,7 @@ static void test_bright_rows(void)
     paint(&soup, 0.0, 100.0);
     struct trial g = gather_scene(&soup, "", 64);
     const struct gather_row *rows = g.gather->rows;
-    double worst = 0.0, bright = senders_power(g.gather->bright);
+    double worst = 0.0, bright = senders_power(g.gather->aims->bright);
     int64_t count = 0;
     for (int64_t i = 0, k = 0; i < g.gather->count; i++) {
         double sum = 0.0;
@@ -364,8 +365,8 @@ static void test_grain(void)
     soup_add_box(&soup, point(0.5, 0.5, 0), point(0.501, 0.501, 0.001), 1, false);
     paint(&soup, 0.9, 0.0);
     struct trial g = gather_scene(&soup, "", 64);
-    double bright = senders_power(g.gather->bright);
-    double lamps = senders_power(g.gather->lamps);
+    double bright = senders_power(g.gather->aims->bright);
+    double lamps = senders_power(g.gather->aims->lamps);
     tap_ok(bright == 0.0 && lamps > 0.0, "no ray is aimed at a white grain (%g W)",
            bright);
     trial_free(&g);
