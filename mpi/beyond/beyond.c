@@ -32,7 +32,7 @@ void beyond_free_vectors(struct solver *solver)
 {
     routes_free(&solver->routes);
     if (solver->beyond)
-        conjugate_free(&solver->beyond->descent);
+        conjugate_free(solver->beyond->descent);
     if (solver->model.clusters)
         cluster_light_free_vectors(solver->model.clusters);
 }
@@ -41,7 +41,8 @@ static void end(struct solver *solver)
 {
     struct beyond *beyond = solver->beyond;
     above_free(solver);
-    conjugate_free(&beyond->descent);
+    conjugate_free(beyond->descent);
+    alloc_free(beyond->descent);
     alloc_free(beyond->answer.error);
     alloc_free(beyond->answer.straight);
     alloc_free(beyond->answer.outside);
@@ -54,6 +55,7 @@ struct beyond *beyond_attach(struct solver *solver)
     if (solver->beyond)
         return solver->beyond;
     struct beyond *beyond = solver->beyond = alloc_array(1, sizeof *beyond);
+    beyond->descent = alloc_array(1, sizeof *beyond->descent);
     solver->steps.report = report;
     solver->steps.end = end;
     return beyond;

@@ -32,7 +32,7 @@ struct answer {
 struct beyond {
     struct cluster_tree *tree;    /* above the roots; NULL: none */
     struct node_block tree_block; /* the memory of a tree that is a view */
-    struct conjugate descent;
+    struct conjugate *descent;
     struct accuracy accuracy;
     struct answer answer;
 };

@@ -30,7 +30,7 @@ void descent_begin(struct solver *solver)
         rows[leaf] = leaf_irradiance(forest, leaf, solver->flux);
     }
     solver_share(solver, rows);
-    conjugate_begin(&solver->beyond->descent, forest, rows);
+    conjugate_begin(solver->beyond->descent, forest, rows);
     alloc_free(rows);
 }
 
@@ -62,7 +62,7 @@ struct vote descent_vote(struct solver *solver, const struct ballot *sum)
 {
     const struct criterion *criterion = &solver->model.criterion;
     struct forest *forest = solver->model.forest;
-    struct conjugate *cg = &solver->beyond->descent;
+    struct conjugate *cg = solver->beyond->descent;
     double light = flux_to_watts(solver->model.flux_unit, sum->light);
     double remaining = sum->light > 0 ? conjugate_missing(cg, forest) / light : 0.0;
     double wanted = wanted_of(solver, sum);

@@ -84,9 +84,9 @@ static void gathering_start(struct gathering *g, struct solver *solver)
 {
     size_t patches = (size_t)solver->model.forest->count;
     g->gather = final_gather_create(
-        &solver->model, solver->model.criterion.final_gather, g->mesh.cut);
-    g->leaves = g->mesh.leaves;
-    g->count = g->mesh.count;
+        &solver->model, solver->model.criterion.final_gather, g->mesh->cut);
+    g->leaves = g->mesh->leaves;
+    g->count = g->mesh->count;
     g->areas = alloc_array((size_t)g->count, sizeof *g->areas);
     g->covers = alloc_array((size_t)g->count, sizeof *g->covers);
     for (int64_t i = 0; i < g->count; i++)
@@ -104,21 +104,21 @@ static void gathering_end(struct gathering *g)
         final_gather_drop_rows(g->gather);
     final_gather_destroy(g->solver->beyond->answer.gather); /* of a round before */
     g->solver->beyond->answer.gather = g->gather;
-    gather_mesh_free(&g->mesh);
+    gather_mesh_free(g->mesh);
     alloc_free(g->areas);
     alloc_free(g->covers);
     alloc_free(g->near);
     alloc_free(g->radiosity);
     alloc_free(g->all);
     alloc_free(g->spread);
-    stages_free(&g->stages);
+    stages_free(g->stages);
 }
 
 static void make_row(void *context, int64_t i)
 {
     struct gathering *g = context;
-    final_gather_add(g->gather, g->leaves[i], g->mesh.rays[i], g->mesh.segments[i],
-                     g->mesh.exact[i]);
+    final_gather_add(g->gather, g->leaves[i], g->mesh->rays[i], g->mesh->segments[i],
+                     g->mesh->exact[i]);
     progress_tick(g->solver->progress,
                   (double)g->gather->count * g->solver->comm->size / (double)g->count);
 }
@@ -128,19 +128,19 @@ static bool make_rows(struct gathering *g)
 {
     struct solver *solver = g->solver;
     progress_begin(solver->progress, "gathering", -1, 0);
-    g->stages = (struct stages){.solver = solver, .gather = g->gather, .act = make_row,
-                                .context = g, .work = g->mesh.work, .count = g->count};
-    stages_run(&g->stages);
+    *g->stages = (struct stages){.solver = solver, .gather = g->gather, .act = make_row,
+                                .context = g, .work = g->mesh->work, .count = g->count};
+    stages_run(g->stages);
     const struct gather_counts *counts = &g->gather->counts;
     int64_t sums[] = {counts->escaped, stop_is_asked(), counts->rays, counts->segments,
                       counts->exact, final_gather_terms(g->gather),
-                      g->mesh.traced};
+                      g->mesh->traced};
     comm_add(solver->comm, sums, sizeof sums / sizeof sums[0]);
     g->closed = (double)sums[0] <= CRACKS * (double)(sums[2] + g->count);
     solver->beyond->answer.counts = (struct gathered){
         .rays = sums[2], .segments = sums[3], .exact = sums[4],
-        .terms = sums[5], .looks = sums[6], .split = g->mesh.split,
-        .limited = g->mesh.limited};
+        .terms = sums[5], .looks = sums[6], .split = g->mesh->split,
+        .limited = g->mesh->limited};
     return sums[1] == 0;
 }
 
@@ -277,7 +277,7 @@ static void irradiances(struct gathering *g, const struct rgb *b, bool lamps,
                         struct rgb *h)
 {
     double *seconds = &g->solver->account.seconds[PHASE_PRODUCTS];
-    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
+    struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
     place_radiosities(g, b);
     see_bare_parts(g, b, lamps);
     for (int64_t k = 0; k < g->near_count; k++) {
@@ -313,7 +313,7 @@ static void find_seen(struct gathering *g)
 /* Collective. */
 static void share_covers(struct gathering *g)
 {
-    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
+    struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
     struct rgb *shares = alloc_array((size_t)g->count, sizeof *shares);
     for (int64_t row = 0; row < g->gather->count; row++)
         own[row] = (struct rgb){{(double)g->gather->rows[row].bare,
@@ -397,7 +397,7 @@ static void judge(const struct gathering *g, const struct rgb *h, const struct r
 static void share_answer(struct gathering *g)
 {
     struct answer *answer = &g->solver->beyond->answer;
-    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
+    struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
     struct rgb *light = alloc_array((size_t)g->count, sizeof *light);
     struct rgb *open = alloc_array((size_t)g->count, sizeof *open);
     size_t patches = (size_t)g->solver->model.forest->count;
@@ -507,9 +507,11 @@ static void solve_rows(struct gathering *g, struct vote *vote)
 
 bool solver_final_gather(struct solver *solver, struct vote *vote)
 {
-    struct gathering g = {.solver = solver};
+    struct gather_mesh mesh = {.count = 0};
+    struct stages stages = {.count = 0};
+    struct gathering g = {.solver = solver, .mesh = &mesh, .stages = &stages};
     double start = comm_seconds();
-    bool done = gather_mesh_make(solver, vote->links, &g.mesh);
+    bool done = gather_mesh_make(solver, vote->links, &mesh);
     if (done) {
         gathering_start(&g, solver);
         done = make_rows(&g);

@@ -56,7 +56,7 @@ static struct rgb variation_of(const struct gathering *g, int64_t place, struct 
 static void variances_by_mesh(struct gathering *g, struct rgb *variance)
 {
     const struct final_gather *gather = g->gather;
-    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
+    struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
     for (int64_t row = 0, k = 0; row < gather->count; row++) {
         struct vec3 from = gather->near->leaves[gather->rows[row].leaf].middle;
         for (int c = 0; c < BANDS; c++) {
@@ -182,7 +182,7 @@ static double ratio_of_sequence(const struct noise *classes, int class)
  * that have about as much light. */
 static void variances_by_rays(struct gathering *g, struct rgb *variance)
 {
-    struct rgb *own = g->all + g->stages.at[g->solver->comm->rank];
+    struct rgb *own = g->all + g->stages->at[g->solver->comm->rank];
     struct rgb *halves = alloc_array((size_t)g->count, sizeof *halves);
     struct rgb *lamps = alloc_array((size_t)g->count, sizeof *lamps);
     struct rgb *const to[3] = {variance, halves, lamps};
@@ -202,8 +202,8 @@ static void variances_by_rays(struct gathering *g, struct rgb *variance)
         ratios[k] = ratio_of_sequence(classes, k);
     for (int64_t i = 0; i < g->count; i++)
         variance[i] = rgb_sub(variance[i], lamps[i]);
-    raise_to_sisters(g, g->mesh.rays, variance);
-    raise_to_sisters(g, g->mesh.segments, lamps);
+    raise_to_sisters(g, g->mesh->rays, variance);
+    raise_to_sisters(g, g->mesh->segments, lamps);
     for (int64_t i = 0; i < g->count; i++)
         rgb_add(&variance[i], 1.0, lamps[i]);
     for (int64_t k = 0; k < BANDS * g->count; k++)

@@ -6,8 +6,8 @@
 
 void gathering_share_rows(struct gathering *g, struct rgb *values)
 {
-    comm_share(g->solver->comm, g->all, g->stages.counts, g->stages.at, sizeof *g->all);
+    comm_share(g->solver->comm, g->all, g->stages->counts, g->stages->at, sizeof *g->all);
     g->bytes += g->count * (int64_t)sizeof *g->all;
     for (int64_t i = 0; i < g->count; i++)
-        values[i] = g->all[g->stages.place[i]];
+        values[i] = g->all[g->stages->place[i]];
 }

@@ -23,7 +23,7 @@ struct too_near {
 struct gathering {
     struct solver *solver;
     struct final_gather *gather;
-    struct gather_mesh mesh;
+    struct gather_mesh *mesh; /* borrowed */
     int32_t *leaves;        /* [count] local numbers; borrowed from the mesh */
     double *areas;          /* [count] square scene units */
     struct cover *covers;   /* [count] */
@@ -36,7 +36,7 @@ struct gathering {
     struct rgb *radiosity;  /* by place: radiosities to be gathered */
     struct rgb *all;        /* [count] buffer: a value of each row, rank by rank */
     int64_t bytes;          /* of values that ranks have exchanged so far */
-    struct stages stages;   /* who has which rows */
+    struct stages *stages;  /* borrowed: who has which rows */
 };
 
 /* The material of a leaf, by its number. */

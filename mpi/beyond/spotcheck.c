@@ -66,7 +66,7 @@ struct finding {
 
 struct checking {
     struct solver *solver;
-    struct pathtracer pathtracer;
+    struct pathtracer *pathtracer; /* borrowed */
     int32_t *leaves;  /* [count] those that reflect, in forest_order() */
     double *upto;     /* [count] sum of the probabilities of these leaves */
     int64_t count;
@@ -148,7 +148,7 @@ static struct finding trace_leaf(const struct checking *c, int32_t leaf, uint64_
     uint64_t seed = hash_mix(hash_mix(id_number(id)) + draw);
     struct finding found;
     for (uint64_t half = 0; half < 2; half++)
-        found.half[half] = pathtracer_reflected(&c->pathtracer, (int32_t)id.root, &part,
+        found.half[half] = pathtracer_reflected(c->pathtracer, (int32_t)id.root, &part,
                                                 c->paths, seed + half);
     return found;
 }
@@ -159,7 +159,7 @@ static void trace_batch(struct checking *c, int batch)
     const struct comm *comm = c->solver->comm;
     int *counts = alloc_array((size_t)comm->size, sizeof *counts);
     int *at = alloc_array((size_t)comm->size, sizeof *at);
-    int64_t before = c->pathtracer.counts->rays;
+    int64_t before = c->pathtracer->counts->rays;
     struct finding all[BATCH] = {{.half = {{{0.0, 0.0, 0.0}}}}};
     for (int k = 0; k < BATCH; k++)
         counts[k % comm->size]++;
@@ -170,7 +170,7 @@ static void trace_batch(struct checking *c, int batch)
     comm_share(comm, all, counts, at, sizeof *all);
     for (int k = 0; k < BATCH; k++)
         c->found[k] = all[at[k % comm->size] + k / comm->size];
-    int64_t sums[] = {c->pathtracer.counts->rays - before, stop_is_asked()};
+    int64_t sums[] = {c->pathtracer->counts->rays - before, stop_is_asked()};
     comm_add(comm, sums, 2);
     c->result.rays += sums[0];
     c->result.done = c->result.done && sums[1] == 0;
@@ -240,24 +240,26 @@ struct spotcheck spotcheck_run(struct solver *solver, double goal)
 {
     const struct gathered *gathered = &solver->beyond->answer.counts;
     double start = comm_seconds(), expected = fmax(0.5 * goal, gathered->error);
-    struct checking c = {.solver = solver, .result = {.done = true}};
+    struct pathtracer pathtracer =
+        pathtracer_make(solver->model.scene, solver->model.octree);
+    struct checking c = {
+        .solver = solver, .pathtracer = &pathtracer, .result = {.done = true}};
     c.rays_most = RAYS_FREE + gathered->rays + gathered->segments;
-    c.pathtracer = pathtracer_make(solver->model.scene, solver->model.octree);
-    c.pathtracer.guess = solver->model.forest;
+    pathtracer.guess = solver->model.forest;
     list_leaves(&c);
     progress_begin(solver->progress, "checking", -1, 0);
     if (c.light > 0.0) {
         choose_paths(&c, expected * expected);
         check_leaves(&c, goal);
     }
-    const struct octree_counts *counts = c.pathtracer.counts;
+    const struct octree_counts *counts = pathtracer.counts;
     ledger_add(&solver->account.ledger,
                (struct phase_work){.kind = WORK_FINAL_GATHER,
                                    .share.done =
                                        counts->node_tests + counts->triangle_tests});
     alloc_free(c.leaves);
     alloc_free(c.upto);
-    pathtracer_free(&c.pathtracer);
+    pathtracer_free(&pathtracer);
     solver->account.seconds[PHASE_SPOT_CHECKS] += comm_seconds() - start;
     return c.result;
 }
